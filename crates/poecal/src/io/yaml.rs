@@ -14,8 +14,10 @@ use crate::text::visible;
 pub(super) struct Value {
     /// The keys that lead to it.
     pub(super) keys: Vec<String>,
-    /// Its text.
+    /// Its text; of a list, dots in brackets.
     pub(super) text: String,
+    /// Whether it is marked as degrees.
+    in_degrees: bool,
     line: usize,
     column: usize,
 }
@@ -39,11 +41,11 @@ impl Value {
         if number.abs() > LARGEST_NUMBER {
             return Err(found("a number of metres or radians below 1e6"));
         }
-        Ok(number)
+        Ok(if self.in_degrees { number.to_radians() } else { number })
     }
 }
 
-/// The values of the mappings of a text, in its order; lists have none. `expected` describes the file in messages.
+/// The values of the mappings of a text, in its order; a list is one without its entries. `expected` describes the file in messages.
 pub(super) fn values(text: &str, path: &Path, expected: &str) -> Result<Vec<Value>> {
     let refuse = |span: &Span, found: &str| {
         let message = format!("found {found}, expected {expected}");
@@ -59,7 +61,7 @@ pub(super) fn values(text: &str, path: &Path, expected: &str) -> Result<Vec<Valu
             Error::new(ErrorKind::Syntax, message).at(path, place.line(), place.col() + 1)
         })?;
         match event {
-            Event::Scalar(text, ..) => match open.last_mut() {
+            Event::Scalar(text, _, _, tag) => match open.last_mut() {
                 Some(Open::Map { key: key @ None, seen }) => {
                     if !seen.insert(text.to_string()) {
                         return refuse(&span, &format!("the key `{}` twice", visible(&text)));
@@ -67,9 +69,17 @@ pub(super) fn values(text: &str, path: &Path, expected: &str) -> Result<Vec<Valu
                     *key = Some(text.to_string());
                 }
                 Some(Open::Map { .. }) => {
+                    // As xacro reads them; others would be other numbers.
+                    let in_degrees = match tag.as_ref().map(|tag| (tag.handle(), tag.suffix())) {
+                        None | Some(("tag:yaml.org,2002:", _) | ("!", "radians")) => false,
+                        Some(("!", "degrees")) => true,
+                        Some((_, name)) => {
+                            return refuse(&span, &format!("the unknown tag `!{}`", visible(name)));
+                        }
+                    };
                     let keys = open.iter().filter_map(Open::key).collect();
                     let (line, column) = (span.start.line(), span.start.col() + 1);
-                    found.push(Value { keys, text: text.to_string(), line, column });
+                    found.push(Value { keys, text: text.to_string(), in_degrees, line, column });
                     close_value(&mut open);
                 }
                 Some(Open::List) => {}
@@ -81,6 +91,12 @@ pub(super) fn values(text: &str, path: &Path, expected: &str) -> Result<Vec<Valu
                 }
                 if open.len() > DEEPEST {
                     return refuse(&span, "more than 64 mappings in each other");
+                }
+                let is_list = matches!(event, Event::SequenceStart(..));
+                if is_list && open.iter().all(|it| matches!(it, Open::Map { .. })) && !open.is_empty() {
+                    let keys = open.iter().filter_map(Open::key).collect();
+                    let (line, column) = (span.start.line(), span.start.col() + 1);
+                    found.push(Value { keys, text: "[...]".to_owned(), in_degrees: false, line, column });
                 }
                 open.push(if matches!(event, Event::MappingStart(..)) {
                     Open::Map { key: None, seen: BTreeSet::new() }

@@ -141,9 +141,9 @@ fn bad_yaml_gets_one_sentence_each() {
          "arm.yaml:18:5: found the key `x` twice, expected the origins of an arm's joints in YAML: `kinematics` with `shoulder` … `wrist_3` (Universal \
           Robots) or `joint1` … (uFactory), or `joint1` … `joint8` with `kinematic` (Franka)"),
         (driver(|_| None).replace("forearm", "elbow"),
-         "arm.yaml:17:8: found `kinematics.elbow.x`, expected origins of shoulder, upper_arm, forearm, wrist_1, wrist_2, wrist_3 alone: is a joint missing?"),
+         "arm.yaml:17:8: found `kinematics.elbow.x`, expected origins of shoulder, upper_arm, forearm, wrist_1, wrist_2, wrist_3 alone, each of x, y, z, roll, pitch, yaw: is a joint missing?"),
         ("kinematics:\n  joint1: {x: 0, y: 0, z: 0, roll: 0, pitch: 0, yaw: 0}\n  joint3: {x: 0, y: 0, z: 0, roll: 0, pitch: 0, yaw: 0}\n".into(),
-         "arm.yaml:3:15: found `kinematics.joint3.x`, expected origins of joint1 alone: is a joint missing?"),
+         "arm.yaml:3:15: found `kinematics.joint3.x`, expected origins of joint1 alone, each of x, y, z, roll, pitch, yaw: is a joint missing?"),
         ("kinematics: [1, 2\n".into(),
          "arm.yaml:1:13: found broken YAML (unclosed bracket '['), expected the origins of an arm's joints in YAML: `kinematics` \
           with `shoulder` … `wrist_3` (Universal Robots) or `joint1` … (uFactory), or `joint1` … `joint8` with `kinematic` (Franka)"),

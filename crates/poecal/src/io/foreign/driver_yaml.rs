@@ -1,11 +1,12 @@
 //! Origins of joints by link or joint, in YAML, as Universal Robots' driver, uFactory's and Franka's descriptions have them.
 
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use nalgebra::Vector3;
 
 use super::links::{LinkJoint, LinkJointKind, Links};
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::{Error, ErrorKind, Result, first_few};
 use crate::forms::AxisFrames;
 use crate::io::yaml::{Value, values};
 use crate::lie::Pose;
@@ -34,8 +35,13 @@ pub(super) fn read(text: &str, path: &Path) -> Result<Links> {
     let is_franka = first.keys.get(1).is_some_and(|key| key == "kinematic");
     let own: &[&str] = if is_franka { &["kinematic"] } else { &[] };
     let above: &[&str] = if is_franka { &[] } else { &["kinematics"] };
-    let has =
-        |key: &str| values.iter().any(|value| parts(value, above, own).is_some_and(|(it, _)| it == key));
+    let mut known: BTreeMap<&str, BTreeMap<&str, &Value>> = BTreeMap::new();
+    for value in &values {
+        if let Some((key, number)) = parts(value, above, own) {
+            known.entry(key).or_default().insert(number, value);
+        }
+    }
+    let has = |key: &str| known.contains_key(key);
     let keys: Vec<String> = if UR.iter().any(|(link, _)| has(link)) {
         UR.map(|(link, _)| link.to_owned()).to_vec()
     } else {
@@ -44,21 +50,26 @@ pub(super) fn read(text: &str, path: &Path) -> Result<Links> {
     if keys.is_empty() {
         return refuse(format!("`{}`", first.keys.join(".")));
     }
+    let names: BTreeSet<&str> = keys.iter().map(String::as_str).collect();
     let unknown = values.iter().find(|value| match parts(value, above, own) {
-        Some((key, _)) => !keys.iter().any(|known| known == key),
-        // Joint limits, masses and a checksum may stand beside.
-        None => false,
+        Some((key, _)) => !names.contains(key),
+        // Joint limits, masses and a checksum may stand beside, but no other origin.
+        None => strip(&value.keys, above).and_then(<[String]>::split_first).is_some_and(|(key, rest)| {
+            let is_joint = names.contains(key.as_str()) || key.strip_prefix("joint").is_some_and(is_number);
+            is_joint && !rest.is_empty() && strip(rest, own).is_some()
+        }),
     });
     if let Some(value) = unknown {
         let message = format!(
-            "found `{}`, expected origins of {} alone: is a joint missing?",
+            "found `{}`, expected origins of {} alone, each of {}: is a joint missing?",
             value.keys.join("."),
-            keys.join(", ")
+            first_few(&keys.iter().map(String::as_str).collect::<Vec<_>>()),
+            NUMBERS.join(", ")
         );
         return Err(value.error(path, message));
     }
     let mut joints =
-        keys.iter().map(|key| origin(&values, path, (above, key, own))).collect::<Result<Vec<_>>>()?;
+        keys.iter().map(|key| origin(known.get(key.as_str()), path, key)).collect::<Result<Vec<_>>>()?;
     if keys.first().is_some_and(|key| key == UR[0].0) {
         return Ok(ur_arm(&AxisFrames { joints, last_from_tip: Pose::identity() }));
     }
@@ -83,11 +94,14 @@ fn strip<'a>(keys: &'a [String], first: &[&str]) -> Option<&'a [String]> {
     head.iter().eq(first).then_some(rest)
 }
 
-fn origin(values: &[Value], path: &Path, (above, key, own): (&[&str], &str, &[&str])) -> Result<Pose> {
+fn is_number(word: &str) -> bool {
+    !word.is_empty() && word.bytes().all(|byte| byte.is_ascii_digit())
+}
+
+fn origin(of: Option<&BTreeMap<&str, &Value>>, path: &Path, key: &str) -> Result<Pose> {
     let mut numbers = [0.0; 6];
     for (number, name) in numbers.iter_mut().zip(NUMBERS) {
-        let found = values.iter().find(|value| parts(value, above, own) == Some((key, name)));
-        let Some(value) = found else {
+        let Some(value) = of.and_then(|of| of.get(name)) else {
             let message = format!("found no `{name}` of `{key}`, expected {}", NUMBERS.join(", "));
             return Err(Error::new(ErrorKind::Model, message).in_file(path));
         };

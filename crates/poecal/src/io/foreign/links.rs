@@ -1,12 +1,12 @@
 //! Links and joints, and the URDF that says them.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 
 use nalgebra::{Unit, Vector3};
 
 use crate::io::numbers::shortest;
-use crate::io::urdf::{escaped, origin_values};
+use crate::io::urdf::{WIDE_LIMIT_M, escaped, origin_values};
 use crate::lie::Pose;
 use crate::robot::Limits;
 
@@ -15,8 +15,36 @@ use crate::robot::Limits;
 pub(super) struct Links {
     name: String,
     links: Vec<(String, Option<Inertial>)>,
-    names: BTreeSet<String>,
+    names: Names,
+    joint_names: Names,
     pub(super) joints: Vec<LinkJoint>,
+}
+
+/// Names that are there, those of the file among them from the beginning, and those that were made.
+#[derive(Default)]
+struct Names {
+    of_file: BTreeSet<String>,
+    used: BTreeSet<String>,
+    made: BTreeMap<String, usize>,
+}
+
+impl Names {
+    /// A name of the file, or another one if it was used.
+    fn stated(&mut self, name: &str) -> String {
+        if self.used.insert(name.to_owned()) { name.to_owned() } else { self.free(name) }
+    }
+
+    /// A name that no one has: the wanted one, or with a number behind.
+    fn free(&mut self, wanted: &str) -> String {
+        let count = self.made.entry(wanted.to_owned()).or_default();
+        let mut name = wanted.to_owned();
+        while self.of_file.contains(&name) || self.used.contains(&name) {
+            *count += 1;
+            name = format!("{wanted}_{count}");
+        }
+        self.used.insert(name.clone());
+        name
+    }
 }
 
 /// A mass with its centre.
@@ -62,28 +90,42 @@ impl Links {
         Links { name: name.to_owned(), ..Links::default() }
     }
 
-    /// Adds a link, with its name changed if there is one of that name already; returns the name.
-    pub(super) fn add(&mut self, wanted: &str, inertial: Option<Inertial>) -> String {
-        let mut name = wanted.to_owned();
-        while self.names.contains(&name) {
-            name.push('_');
-        }
-        self.names.insert(name.clone());
+    /// Keeps the names of the file's links and joints from those that are made.
+    pub(super) fn keep_names(&mut self, links: BTreeSet<String>, joints: BTreeSet<String>) {
+        self.names.of_file = links;
+        self.joint_names.of_file = joints;
+    }
+
+    /// Adds a link of the file; returns its name, which is another one if there is a link of that name already.
+    pub(super) fn add(&mut self, name: &str, inertial: Option<Inertial>) -> String {
+        let name = self.names.stated(name);
         self.links.push((name.clone(), inertial));
         name
     }
 
-    /// Whether there is a link of this name.
+    /// Adds a link that the file does not name.
+    pub(super) fn add_unnamed(&mut self, wanted: &str, inertial: Option<Inertial>) -> String {
+        let name = self.names.free(wanted);
+        self.links.push((name.clone(), inertial));
+        name
+    }
+
+    /// Whether there is, or will be, a link of this name.
     pub(super) fn has(&self, name: &str) -> bool {
-        self.names.contains(name)
+        self.names.of_file.contains(name) || self.names.used.contains(name)
+    }
+
+    /// The name of a joint of the file, or one for a joint without.
+    pub(super) fn joint_name(&mut self, stated: Option<&str>, wanted: &str) -> String {
+        match stated {
+            Some(name) => self.joint_names.stated(name),
+            None => self.joint_names.free(wanted),
+        }
     }
 
     /// Fixes a link to another one.
     pub(super) fn fix(&mut self, parent: &str, child: &str, parent_from_child: Pose) {
-        let mut name = format!("{child}_mount");
-        while self.joints.iter().any(|joint| joint.name == name) {
-            name.push('_');
-        }
+        let name = self.joint_names.free(&format!("{child}_mount"));
         self.joints.push(LinkJoint {
             name,
             kind: LinkJointKind::Fixed,
@@ -134,7 +176,10 @@ impl LinkJoint {
             let [x, y, z] = <[f64; 3]>::from(self.axis.into_inner()).map(shortest);
             let _ = writeln!(text, "    <axis xyz=\"{x} {y} {z}\"/>");
         }
-        if let Some(Limits { lower, upper }) = self.limits {
+        // URDF demands limits of a prismatic joint.
+        let wide = Limits { lower: -WIDE_LIMIT_M, upper: WIDE_LIMIT_M };
+        let limits = self.limits.or((self.kind == LinkJointKind::Slides).then_some(wide));
+        if let Some(Limits { lower, upper }) = limits {
             let (lower, upper) = (shortest(lower), shortest(upper));
             let _ = writeln!(
                 text,

@@ -17,6 +17,8 @@ use crate::robot::{Limits, Mass};
 const WORLD: &str = "world";
 /// What is read.
 const EXPECTED: &str = "a model of MuJoCo";
+/// Ways to say a rotation.
+const ROTATIONS: [&str; 5] = ["quat", "axisangle", "euler", "xyaxes", "zaxis"];
 /// Elements that stand for others, which MuJoCo makes when it compiles the model.
 const MADE_BY_MUJOCO: [&str; 4] = ["include", "replicate", "attach", "composite"];
 
@@ -25,6 +27,11 @@ pub(super) fn read(text: &str, path: &Path, named: &[&str]) -> Result<Links> {
     let document = parsed(text, path, EXPECTED)?;
     let source = XmlSource { document: &document, path };
     let root = document.root_element();
+    if root.has_tag_name("mujocoinclude") {
+        let message = "found a part of a model (<mujocoinclude>), expected the model that includes it, saved whole by MuJoCo: \
+             mujoco.mj_saveLastXML(\"whole.xml\", model)";
+        return Err(source.syntax_error(root, message.to_owned()));
+    }
     if let Some(node) = root.descendants().find(|node| MADE_BY_MUJOCO.contains(&node.tag_name().name())) {
         let message = format!(
             "found <{}>, expected bodies alone: save the whole model with MuJoCo, mujoco.mj_saveLastXML(\"whole.xml\", model)",
@@ -35,6 +42,7 @@ pub(super) fn read(text: &str, path: &Path, named: &[&str]) -> Result<Links> {
     let mut reader = Reader {
         source,
         settings: Settings::read(&source, root)?,
+        classes: Vec::new(),
         defaults: BTreeMap::new(),
         main: String::new(),
         named,
@@ -42,8 +50,14 @@ pub(super) fn read(text: &str, path: &Path, named: &[&str]) -> Result<Links> {
         references: BTreeMap::new(),
     };
     for node in source.children(root, "default") {
-        reader.read_defaults(node, &[])?;
+        reader.read_defaults(node)?;
     }
+    let names = |tags: &[&str]| {
+        let worlds = source.children(root, "worldbody").flat_map(|world| world.descendants());
+        let named = worlds.filter(|node| tags.contains(&node.tag_name().name()));
+        named.filter_map(|node| node.attribute("name").map(str::to_owned)).collect()
+    };
+    reader.links.keep_names(names(&["body"]), names(&["joint", "freejoint"]));
     reader.links.add(WORLD, None);
     for world in source.children(root, "worldbody") {
         reader.read_bodies(world)?;
@@ -75,7 +89,15 @@ impl<'a> Settings<'a> {
                 None => {}
             }
             if let Some(word) = node.attribute("autolimits") {
-                settings.limits_alone = word == "true";
+                settings.limits_alone = match word {
+                    "true" => true,
+                    "false" => false,
+                    _ => {
+                        let message =
+                            format!("found autolimits=\"{word}\" in <compiler>, expected true or false");
+                        return Err(source.error(node, message));
+                    }
+                };
             }
             if let Some(order) = node.attribute("eulerseq") {
                 let is_order = order.len() == 3 && order.chars().all(|c| "xyzXYZ".contains(c));
@@ -104,8 +126,10 @@ impl<'a> Settings<'a> {
 struct Reader<'a, 'b> {
     source: XmlSource<'a>,
     settings: Settings<'a>,
-    /// Elements of each class of defaults, the nearest first.
-    defaults: BTreeMap<String, Vec<Node<'a, 'a>>>,
+    /// Blocks of defaults: the element, and the block whose defaults it begins with.
+    classes: Vec<(Node<'a, 'a>, Option<usize>)>,
+    /// The block of each class.
+    defaults: BTreeMap<String, usize>,
     /// The outermost class.
     main: String,
     named: &'b [&'b str],
@@ -114,45 +138,80 @@ struct Reader<'a, 'b> {
     references: BTreeMap<String, f64>,
 }
 
-/// Something in a body: where it stands in the link, and the class of its defaults.
+/// Something in a body: where it stands in the link, the class of its defaults, and whether the only site is the tip.
 struct Inside<'a> {
     link: String,
     link_from_here: Pose,
     class: Option<&'a str>,
+    ends_in_site: bool,
+}
+
+/// An element of a body, in a frame within the body or not: its pose in the body, and the class of its defaults.
+#[derive(Clone, Copy)]
+struct Part<'a> {
+    node: Node<'a, 'a>,
+    body_from_frame: Pose,
+    class: Option<&'a str>,
 }
 
 impl<'a> Reader<'a, '_> {
-    fn read_defaults(&mut self, root: Node<'a, 'a>, outer: &[Node<'a, 'a>]) -> Result<()> {
-        let mut steps = vec![(root, outer.to_vec())];
+    fn read_defaults(&mut self, root: Node<'a, 'a>) -> Result<()> {
+        let is_first = self.main.is_empty();
+        if is_first {
+            self.main = root.attribute("class").unwrap_or("main").to_owned();
+        }
+        let outer = self.defaults.get(&self.main).copied();
+        let mut steps = vec![(root, outer)];
         while let Some((node, outer)) = steps.pop() {
-            let own: Vec<Node<'a, 'a>> = node
-                .children()
-                .filter(|child| child.is_element() && !child.has_tag_name("default"))
-                .collect();
-            let all: Vec<Node<'a, 'a>> = own.into_iter().chain(outer).collect();
-            if node == root && self.main.is_empty() {
-                self.main = node.attribute("class").unwrap_or("main").to_owned();
+            let class = node.attribute("class").unwrap_or(&self.main).to_owned();
+            let index = self.classes.len();
+            self.classes.push((node, outer));
+            // Only the outermost may be stated in parts.
+            if self.defaults.insert(class.clone(), index).is_some() && (node != root || class != self.main) {
+                let message = format!("found the class `{class}` a second time, expected each class once");
+                return Err(self.source.error(node, message));
             }
-            let name = node.attribute("class").unwrap_or(&self.main).to_owned();
-            self.defaults.entry(name).or_default().extend(all.iter().copied());
-            steps.extend(self.source.children(node, "default").map(|child| (child, all.clone())));
+            steps.extend(self.source.children(node, "default").map(|child| (child, Some(index))));
         }
         Ok(())
     }
 
-    /// The element that states an attribute: the element itself, or the nearest default of its class.
-    fn stating(&self, node: Node<'a, 'a>, class: Option<&str>, name: &str) -> Option<Node<'a, 'a>> {
-        if node.has_attribute(name) {
-            return Some(node);
+    /// The first element with one of these attributes: the element itself, or the nearest default of its class for elements of this name.
+    fn stating_one(
+        &self,
+        node: Node<'a, 'a>,
+        class: Option<&str>,
+        tag: &str,
+        names: &[&str],
+    ) -> Result<Option<Node<'a, 'a>>> {
+        let states = |it: &Node<'a, 'a>| names.iter().any(|name| it.has_attribute(*name));
+        let stated = node.attribute("class").or(class);
+        let first = self.defaults.get(stated.unwrap_or(&self.main)).copied();
+        if let (None, Some(class)) = (first, stated) {
+            let message = format!("found the class `{class}`, expected one that a <default> has");
+            return Err(self.source.error(node, message));
         }
-        let class = node.attribute("class").or(class).unwrap_or(&self.main);
-        let tag = node.tag_name().name();
-        let defaults = self.defaults.get(class).map_or(&[][..], Vec::as_slice);
-        defaults.iter().copied().find(|it| it.has_tag_name(tag) && it.has_attribute(name))
+        if states(&node) {
+            return Ok(Some(node));
+        }
+        let mut at = first;
+        while let Some((block, outer)) = at.and_then(|at| self.classes.get(at)) {
+            let mut own = block.children().filter(|it| it.has_tag_name(tag));
+            if let Some(found) = own.find(states) {
+                return Ok(Some(found));
+            }
+            at = *outer;
+        }
+        Ok(None)
     }
 
-    fn word(&self, node: Node<'a, 'a>, class: Option<&str>, name: &str) -> Option<&'a str> {
-        self.stating(node, class, name)?.attribute(name)
+    /// The element that states an attribute.
+    fn stating(&self, node: Node<'a, 'a>, class: Option<&str>, name: &str) -> Result<Option<Node<'a, 'a>>> {
+        self.stating_one(node, class, node.tag_name().name(), &[name])
+    }
+
+    fn word(&self, node: Node<'a, 'a>, class: Option<&str>, name: &str) -> Result<Option<&'a str>> {
+        Ok(self.stating(node, class, name)?.and_then(|it| it.attribute(name)))
     }
 
     fn numbers<const N: usize>(
@@ -161,7 +220,7 @@ impl<'a> Reader<'a, '_> {
         class: Option<&str>,
         name: &str,
     ) -> Result<Option<[f64; N]>> {
-        let Some(stating) = self.stating(node, class, name) else { return Ok(None) };
+        let Some(stating) = self.stating(node, class, name)? else { return Ok(None) };
         self.source.numbers(stating, name, &described(node))
     }
 
@@ -171,24 +230,41 @@ impl<'a> Reader<'a, '_> {
         let zero = |what: &str| {
             Err(self.source.error(node, format!("found {what} of no length in {}", described(node))))
         };
-        let turn = if let Some([w, x, y, z]) = self.numbers::<4>(node, class, "quat")? {
+        // What says the rotation says it alone, whatever farther defaults say.
+        let Some(stating) = self.stating_one(node, class, node.tag_name().name(), &ROTATIONS)? else {
+            return Ok(Pose::from_translation(position.into()));
+        };
+        let mut words = ROTATIONS.into_iter().filter(|name| stating.has_attribute(*name));
+        let (word, second) = (words.next().unwrap_or_default(), words.next());
+        if let Some(second) = second {
+            let message =
+                format!("found `{word}` and `{second}` in {}, expected one of them", described(node));
+            return Err(self.source.error(stating, message));
+        }
+        let of = described(node);
+        let turn = if let Some([w, x, y, z]) = self.source.numbers::<4>(stating, "quat", &of)? {
             if w.abs() + x.abs() + y.abs() + z.abs() == 0.0 {
                 return zero("a quaternion");
             }
             return Ok(Pose::from_position_quaternion(position, [x, y, z, w]));
-        } else if let Some([x, y, z, angle]) = self.numbers::<4>(node, class, "axisangle")? {
+        } else if let Some([x, y, z, angle]) = self.source.numbers::<4>(stating, "axisangle", &of)? {
             let Some(axis) = unit([x, y, z]) else { return zero("an axis") };
             rotation::exp(&(axis.into_inner() * self.settings.radians(angle)))
-        } else if let Some(angles) = self.numbers::<3>(node, class, "euler")? {
+        } else if let Some(angles) = self.source.numbers::<3>(stating, "euler", &of)? {
             self.euler(angles)
-        } else if let Some([a, b, c, d, e, f]) = self.numbers::<6>(node, class, "xyaxes")? {
+        } else if let Some([a, b, c, d, e, f]) = self.source.numbers::<6>(stating, "xyaxes", &of)? {
             let (x, y) = (unit([a, b, c]), Vector3::new(d, e, f));
             let Some(x) = x else { return zero("an axis") };
             let Some(y) = Unit::try_new(y - *x * x.dot(&y), 1e-12) else { return zero("an axis") };
             Matrix3::from_columns(&[*x, *y, x.cross(&y)])
-        } else if let Some(z) = self.numbers::<3>(node, class, "zaxis")? {
+        } else if let Some(z) = self.source.numbers::<3>(stating, "zaxis", &of)? {
             let Some(z) = unit(z) else { return zero("an axis") };
-            rotation::shortest_arc(&Vector3::z(), &z)
+            // Of a direction against z, MuJoCo turns about x.
+            match Unit::try_new(Vector3::z().cross(&z), 1e-10) {
+                Some(axis) => rotation::exp(&(axis.into_inner() * Vector3::z().cross(&z).norm().atan2(z.z))),
+                None if z.z < 0.0 => rotation::about(0, PI),
+                None => Matrix3::identity(),
+            }
         } else {
             Matrix3::identity()
         };
@@ -216,30 +292,45 @@ impl<'a> Reader<'a, '_> {
             link: WORLD.to_owned(),
             link_from_here: Pose::identity(),
             class: world.attribute("childclass"),
+            ends_in_site: false,
         };
         // Not recursive: a chain may be longer than the stack.
         let mut steps = vec![(world, here)];
         while let Some((node, here)) = steps.pop() {
             let mut next = Vec::new();
-            let sites = node.children().filter(|it| it.has_tag_name("site")).count();
-            let is_leaf =
-                node.has_tag_name("body") && !node.descendants().skip(1).any(|it| it.has_tag_name("body"));
             for child in node.children().filter(Node::is_element) {
                 match child.tag_name().name() {
                     "frame" => {
                         let pose = here.link_from_here * self.pose(child, here.class)?;
                         let class = child.attribute("childclass").or(here.class);
-                        next.push((child, Inside { link: here.link.clone(), link_from_here: pose, class }));
+                        let ends_in_site = here.ends_in_site;
+                        next.push((
+                            child,
+                            Inside { link: here.link.clone(), link_from_here: pose, class, ends_in_site },
+                        ));
                     }
                     "body" => next.push((child, self.read_body(child, &here)?)),
                     "site" => {
                         let name = child.attribute("name").unwrap_or_default();
-                        let is_tip = is_leaf && sites == 1 && !name.is_empty();
-                        if (is_tip || self.named.contains(&name)) && !self.links.has(name) {
-                            let pose = here.link_from_here * self.pose(child, here.class)?;
-                            let site = self.links.add(name, None);
-                            self.links.fix(&here.link, &site, pose);
+                        let is_wanted = self.named.contains(&name) && !self.links.has(name);
+                        if name.is_empty() || !(here.ends_in_site || is_wanted) {
+                            continue;
                         }
+                        if self.stating(child, here.class, "fromto")?.is_some() {
+                            let message = format!(
+                                "found `fromto` of {}, expected a site with a pose of its own",
+                                described(child)
+                            );
+                            return Err(self.source.error(child, message));
+                        }
+                        let pose = here.link_from_here * self.pose(child, here.class)?;
+                        // Bodies and sites may have the same names.
+                        let site = if self.links.has(name) {
+                            self.links.add_unnamed(&format!("{name}_site"), None)
+                        } else {
+                            self.links.add(name, None)
+                        };
+                        self.links.fix(&here.link, &site, pose);
                     }
                     _ => {}
                 }
@@ -249,46 +340,81 @@ impl<'a> Reader<'a, '_> {
         Ok(())
     }
 
+    /// Elements of a body that count for it, those in frames within it too, in the order of the file.
+    fn parts(&self, body: Node<'a, 'a>, class: Option<&'a str>, tags: &[&str]) -> Result<Vec<Part<'a>>> {
+        let mut found = Vec::new();
+        let own = |node: Node<'a, 'a>, body_from_frame, class| {
+            let children: Vec<_> = node.children().filter(Node::is_element).collect();
+            children.into_iter().rev().map(move |node| Part { node, body_from_frame, class })
+        };
+        let mut steps: Vec<Part<'a>> = own(body, Pose::identity(), class).collect();
+        while let Some(part) = steps.pop() {
+            if part.node.has_tag_name("frame") {
+                let body_from_frame = part.body_from_frame * self.pose(part.node, part.class)?;
+                steps.extend(own(
+                    part.node,
+                    body_from_frame,
+                    part.node.attribute("childclass").or(part.class),
+                ));
+            } else if tags.contains(&part.node.tag_name().name()) {
+                found.push(part);
+            }
+        }
+        Ok(found)
+    }
+
     /// A body with its joints; what is inside stands in its frame.
     fn read_body(&mut self, node: Node<'a, 'a>, outer: &Inside<'a>) -> Result<Inside<'a>> {
         let class = node.attribute("childclass").or(outer.class);
-        let name = node.attribute("name").unwrap_or("body");
         let mut parent = outer.link.clone();
         let mut parent_from_body = outer.link_from_here * self.pose(node, outer.class)?;
-        let joints: Vec<Node<'a, 'a>> = node
-            .children()
-            .filter(|child| child.has_tag_name("joint") || child.has_tag_name("freejoint"))
-            .collect();
-        let inertial = self.inertial(node)?;
-        let (last, before) = match joints.split_last() {
-            Some((last, before)) => (Some(last), before),
-            None => (None, &[][..]),
-        };
-        for (at, &joint) in before.iter().enumerate() {
-            let link = format!("{name}_{}", at + 1);
-            let (link, pose) = self.read_joint(joint, class, (&parent, &parent_from_body), &link, None)?;
-            (parent, parent_from_body) = (link, pose);
+        for joint in self.parts(node, class, &["joint", "freejoint"])? {
+            (parent, parent_from_body) = self.read_joint(joint, (&parent, &parent_from_body), node)?;
         }
-        let Some(&last) = last else {
-            let link = self.links.add(name, inertial);
-            self.links.fix(&parent, &link, parent_from_body);
-            return Ok(Inside { link, link_from_here: Pose::identity(), class });
+        let inertial = self.inertial(node, class)?;
+        let link = match node.attribute("name") {
+            Some(name) => self.links.add(name, inertial),
+            None => self.links.add_unnamed("body", inertial),
         };
-        let (link, link_from_here) =
-            self.read_joint(last, class, (&parent, &parent_from_body), name, inertial)?;
-        Ok(Inside { link, link_from_here, class })
+        // A joint that goes through the body's frame ends there.
+        let is_there = parent_from_body == Pose::identity();
+        match self.links.joints.last_mut() {
+            Some(last) if is_there && last.child.is_empty() => last.child.clone_from(&link),
+            _ => {
+                let from = self.link_of_last(&parent, node);
+                self.links.fix(&from, &link, parent_from_body);
+            }
+        }
+        let is_leaf = self.parts(node, class, &["body"])?.is_empty();
+        let ends_in_site = is_leaf && self.parts(node, class, &["site"])?.len() == 1;
+        Ok(Inside { link, link_from_here: Pose::identity(), class, ends_in_site })
     }
 
-    /// A joint: its link, which stands on the axis, and the body in it.
+    /// The link of the last joint, made where the joint does not end at its body.
+    fn link_of_last(&mut self, parent: &str, body: Node<'a, 'a>) -> String {
+        let Some(last) = self.links.joints.last().filter(|it| it.child.is_empty()) else {
+            return parent.to_owned();
+        };
+        let wanted = match body.attribute("name") {
+            Some(name) => format!("{name}_{}", last.name),
+            None => format!("{}_frame", last.name),
+        };
+        let link = self.links.add_unnamed(&wanted, None);
+        if let Some(last) = self.links.joints.last_mut() {
+            last.child.clone_from(&link);
+        }
+        link
+    }
+
+    /// A joint of a body: the frame on its axis, whose link is named by what follows (none yet), and the body in it.
     fn read_joint(
         &mut self,
-        node: Node<'a, 'a>,
-        class: Option<&str>,
+        Part { node, body_from_frame, class }: Part<'a>,
         (parent, parent_from_body): (&str, &Pose),
-        link: &str,
-        inertial: Option<Inertial>,
+        body: Node<'a, 'a>,
     ) -> Result<(String, Pose)> {
-        let kind = match self.word(node, class, "type").unwrap_or("hinge") {
+        let parent = self.link_of_last(parent, body);
+        let kind = match self.word(node, class, "type")?.unwrap_or("hinge") {
             _ if node.has_tag_name("freejoint") => LinkJointKind::Free,
             "hinge" => LinkJointKind::Turns,
             "slide" => LinkJointKind::Slides,
@@ -309,19 +435,29 @@ impl<'a> Reader<'a, '_> {
                 .source
                 .error(node, format!("found an axis of no length in {}", described(node))));
         };
+        let axis = Unit::new_normalize(body_from_frame.rotation * axis.into_inner());
         let place: Vector3<f64> = match kind {
-            LinkJointKind::Turns => self.numbers::<3>(node, class, "pos")?.unwrap_or_default().into(),
+            LinkJointKind::Turns => {
+                let place = self.numbers::<3>(node, class, "pos")?.unwrap_or_default();
+                body_from_frame.act(&place.into())
+            }
             LinkJointKind::Fixed | LinkJointKind::Slides | LinkJointKind::Free => Vector3::zeros(),
         };
         let reference = angle(self.numbers::<1>(node, class, "ref")?.map_or(0.0, |[it]| it));
-        let limits = match (self.word(node, class, "limited"), self.numbers::<2>(node, class, "range")?) {
-            (Some("false"), _) | (_, None) => None,
-            (None | Some("auto"), Some(_)) if !self.settings.limits_alone => None,
-            (_, Some(range)) => {
-                let [lower, upper] = range.map(angle);
-                (lower < upper).then_some(Limits { lower, upper })
+        let limited = match self.word(node, class, "limited")? {
+            Some("true") => Some(true),
+            Some("false") => Some(false),
+            Some("auto") | None => None,
+            Some(word) => {
+                let message =
+                    format!("found limited=\"{word}\" of {}, expected true, false or auto", described(node));
+                return Err(self.source.error(node, message));
             }
         };
+        let range = self.numbers::<2>(node, class, "range")?.map(|range| range.map(angle));
+        let counts = limited.unwrap_or(self.settings.limits_alone);
+        let limits = range.filter(|[lower, upper]| counts && lower < upper);
+        let limits = limits.map(|[lower, upper]| Limits { lower, upper });
         let body_from_joint = Pose::from_translation(place);
         // The bodies are stated in the pose in which the joint has its reference.
         let back = match kind {
@@ -331,55 +467,93 @@ impl<'a> Reader<'a, '_> {
             LinkJointKind::Slides => Pose::from_translation(-reference * axis.into_inner()),
             LinkJointKind::Fixed | LinkJointKind::Free => Pose::identity(),
         };
-        let joint_from_body = body_from_joint.inverse();
-        let inertial = inertial.map(|Inertial { pose, kg }| Inertial { pose: joint_from_body * pose, kg });
-        let child = self.links.add(link, inertial);
-        let mut name = node.attribute("name").map_or_else(|| format!("{child}_joint"), str::to_owned);
-        while self.references.contains_key(&name) {
-            name.push('_');
-        }
+        let wanted = format!("{}_joint", body.attribute("name").unwrap_or("body"));
+        let name = self.links.joint_name(node.attribute("name"), &wanted);
         self.references.insert(name.clone(), reference);
         self.links.joints.push(LinkJoint {
             name,
             kind,
-            parent: parent.to_owned(),
-            child: child.clone(),
+            parent,
+            child: String::new(),
             parent_from_child: *parent_from_body * body_from_joint * back,
             axis,
             limits,
             mimic: None,
         });
-        Ok((child, joint_from_body))
+        Ok((String::new(), body_from_joint.inverse()))
     }
 
-    fn inertial(&self, body: Node<'a, 'a>) -> Result<Option<Inertial>> {
-        let Some(node) = self.source.children(body, "inertial").next() else { return Ok(None) };
+    fn inertial(&self, body: Node<'a, 'a>, class: Option<&'a str>) -> Result<Option<Inertial>> {
+        let parts = self.parts(body, class, &["inertial"])?;
+        let Some(&Part { node, body_from_frame, .. }) = parts.first() else { return Ok(None) };
         let Some([kg]) = self.source.numbers::<1>(node, "mass", &described(body))? else { return Ok(None) };
-        let pose = self.pose(node, None)?;
+        let pose = body_from_frame * self.pose(node, None)?;
         Ok(Some(Inertial { pose, kg }).filter(|it| Mass::is_mass(it.kg)))
     }
 
     /// Joints that follow another one: `q₁ − r₁ = a₀ + a₁ (q₂ − r₂)`, with references r.
     fn read_followers(&mut self, equality: Node<'a, 'a>) -> Result<()> {
         for node in self.source.children(equality, "joint") {
-            let (Some(follower), Some(leader)) = (node.attribute("joint1"), node.attribute("joint2")) else {
-                continue;
-            };
-            let words = node.attribute("polycoef").unwrap_or("0 1 0 0 0");
-            let numbers: Vec<f64> = words.split_whitespace().filter_map(|word| word.parse().ok()).collect();
-            let at = |k: usize| numbers.get(k).copied().unwrap_or(0.0);
-            let is_line = (2..5).all(|k| at(k) == 0.0) && numbers.iter().all(|number| number.is_finite());
-            let active = node.attribute("active") != Some("false");
-            let references = (self.references.get(follower), self.references.get(leader));
-            let (Some(own), Some(other)) = references else { continue };
-            if !is_line || !active || at(1) == 0.0 {
+            let active = self.stating_one(node, None, "equality", &["active"])?;
+            if active.is_some_and(|it| it.attribute("active") == Some("false")) {
                 continue;
             }
-            let multiplier = numbers.get(1).copied().unwrap_or(1.0);
-            let mimic =
-                Mimic { joint: leader.to_owned(), multiplier, offset: own + at(0) - multiplier * other };
-            if let Some(joint) = self.links.joints.iter_mut().find(|joint| joint.name == follower) {
-                joint.mimic = Some(mimic);
+            let joint = |name: &str| {
+                let Some(joint) = node.attribute(name) else { return Ok(None) };
+                match self.references.get(joint) {
+                    Some(reference) => Ok(Some((joint, *reference))),
+                    None => {
+                        let message = format!("found {name}=\"{joint}\", expected the name of a joint");
+                        Err(self.source.error(node, message))
+                    }
+                }
+            };
+            let Some((follower, own)) = joint("joint1")? else {
+                let message =
+                    "<joint> of <equality> has no attribute `joint1`, expected the joint that follows";
+                return Err(self.source.error(node, message.to_owned()));
+            };
+            let leader = joint("joint2")?;
+            // What is not stated stays as it is.
+            let mut at = [0.0, 1.0, 0.0, 0.0, 0.0];
+            let words: Vec<&str> =
+                node.attribute("polycoef").unwrap_or_default().split_whitespace().collect();
+            for (k, word) in words.iter().enumerate() {
+                match (at.get_mut(k), word.parse::<f64>()) {
+                    (Some(number), Ok(value)) if value.is_finite() => *number = value,
+                    _ => {
+                        let message =
+                            format!("found polycoef=\"{}\", expected up to 5 numbers", words.join(" "));
+                        return Err(self.source.error(node, message));
+                    }
+                }
+            }
+            let is_line = at[2..].iter().all(|it| *it == 0.0);
+            let Some(joint) = self.links.joints.iter_mut().find(|joint| joint.name == follower) else {
+                continue;
+            };
+            match leader {
+                // No other relation is one of a URDF: a chain over such a joint is refused.
+                Some(_) if !is_line => joint.kind = LinkJointKind::Free,
+                Some((leader, other)) if at[1] != 0.0 => {
+                    let offset = own + at[0] - at[1] * other;
+                    joint.mimic = Some(Mimic { joint: leader.to_owned(), multiplier: at[1], offset });
+                }
+                _ => {
+                    let motion = match joint.kind {
+                        LinkJointKind::Turns => {
+                            let turn = rotation::exp(&(joint.axis.into_inner() * (own + at[0])));
+                            Pose::new(turn, Vector3::zeros())
+                        }
+                        LinkJointKind::Slides => {
+                            Pose::from_translation(joint.axis.into_inner() * (own + at[0]))
+                        }
+                        LinkJointKind::Fixed | LinkJointKind::Free => continue,
+                    };
+                    joint.parent_from_child = joint.parent_from_child * motion;
+                    joint.kind = LinkJointKind::Fixed;
+                    joint.limits = None;
+                }
             }
         }
         Ok(())

@@ -1,5 +1,6 @@
 //! Gazebo's model. Links, joints, frames and models within the model each have a pose in another one; where joints stand in links follows.
 
+use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
@@ -19,6 +20,10 @@ const EXPECTED: &str = "a model of Gazebo (SDF)";
 const WORLD: &str = "world";
 /// A model's own frame.
 const MODEL: &str = "__model__";
+/// Most models in each other: names of what is in them begin with all of theirs.
+const DEEPEST: usize = 64;
+/// Rounding of poses over the frames in between.
+const ROUNDING: f64 = 1e-12;
 /// Limits beyond are none: files write 1e16.
 const NO_LIMIT: f64 = 1e5;
 
@@ -35,7 +40,13 @@ pub(super) fn read(text: &str, path: &Path, named: &[&str]) -> Result<Links> {
     }
     let version =
         root.attribute("version").and_then(|it| it.split_once('.')?.1.parse::<u32>().ok()).unwrap_or(12);
-    let mut frames = Frames { source, found: BTreeMap::new(), links: Vec::new(), joints: Vec::new() };
+    let mut frames = Frames {
+        source,
+        found: BTreeMap::new(),
+        placed: RefCell::default(),
+        links: Vec::new(),
+        joints: Vec::new(),
+    };
     frames.insert(
         WORLD.to_owned(),
         Frame { node: None, pose: Pose::identity(), base: String::new(), on: Some(WORLD.to_owned()) },
@@ -63,6 +74,12 @@ fn the_model<'a>(source: XmlSource<'a>, root: Node<'a, 'a>) -> Result<Node<'a, '
     }
 }
 
+/// An element's text, without comments within.
+fn text_of(node: Node<'_, '_>) -> String {
+    let texts: String = node.children().filter(Node::is_text).filter_map(|it| it.text()).collect();
+    texts.trim().to_owned()
+}
+
 /// Something with a pose.
 struct Frame<'a> {
     node: Option<Node<'a, 'a>>,
@@ -76,6 +93,8 @@ struct Frame<'a> {
 struct Frames<'a> {
     source: XmlSource<'a>,
     found: BTreeMap<String, Frame<'a>>,
+    /// Poses in the world that were asked for.
+    placed: RefCell<BTreeMap<String, Pose>>,
     /// Names of links and joints, in the order of the file, with their model's prefix.
     links: Vec<String>,
     joints: Vec<(String, String)>,
@@ -95,6 +114,10 @@ impl<'a> Frames<'a> {
     fn read_model(&mut self, model: Node<'a, 'a>, prefix: &str, around: &str) -> Result<()> {
         let mut steps = vec![(model, prefix.to_owned(), around.to_owned())];
         while let Some((model, prefix, around)) = steps.pop() {
+            if prefix.matches("::").count() > DEEPEST {
+                let message = format!("found more than {DEEPEST} models in each other, expected fewer");
+                return Err(self.source.error(model, message));
+            }
             let of = format!("<model> `{}`", model.attribute("name").unwrap_or_default());
             if let Some(placed) = model.attribute("placement_frame").filter(|it| !it.is_empty()) {
                 let message = format!(
@@ -140,7 +163,7 @@ impl<'a> Frames<'a> {
                     "link" => (own.clone(), Some(name.clone())),
                     "joint" => {
                         let child = self.child_text(node, "child", &of)?;
-                        (Self::within(&prefix, child), None)
+                        (Self::within(&prefix, &child), None)
                     }
                     _ => {
                         let on = node.attribute("attached_to").filter(|it| !it.is_empty());
@@ -164,8 +187,8 @@ impl<'a> Frames<'a> {
         Ok(())
     }
 
-    fn child_text(&self, node: Node<'a, 'a>, name: &'static str, of: &str) -> Result<&'a str> {
-        let text = self.source.children(node, name).next().and_then(|it| it.text()).map(str::trim);
+    fn child_text(&self, node: Node<'a, 'a>, name: &'static str, of: &str) -> Result<String> {
+        let text = self.source.children(node, name).next().map(text_of);
         text.filter(|text| !text.is_empty()).ok_or_else(|| {
             self.source.error(node, format!("{of} has no <{name}>, expected the name of a link"))
         })
@@ -179,7 +202,10 @@ impl<'a> Frames<'a> {
         let base =
             element.attribute("relative_to").or(element.attribute("frame")).filter(|it| !it.is_empty());
         let numbers = self.numbers_of(element, of)?;
-        let in_degrees = element.attribute("degrees") == Some("true");
+        let in_degrees = match element.attribute("degrees") {
+            Some(word) => self.is_true(element, word, "degrees")?,
+            None => false,
+        };
         let angle = |number: f64| if in_degrees { number.to_radians() } else { number };
         let pose = match (element.attribute("rotation_format"), numbers.as_slice()) {
             (_, []) => Pose::identity(),
@@ -190,6 +216,10 @@ impl<'a> Frames<'a> {
                 if qx.abs() + qy.abs() + qz.abs() + qw.abs() > 0.0 =>
             {
                 Pose::from_position_quaternion([x, y, z], [qx, qy, qz, qw])
+            }
+            (Some("quat_xyzw"), [_, _, _, _, _, _, _]) => {
+                let message = format!("found a quaternion of no length in <pose> of {of}");
+                return Err(self.source.error(element, message));
             }
             (_, numbers) => {
                 let message = format!(
@@ -202,10 +232,23 @@ impl<'a> Frames<'a> {
         Ok((pose, base))
     }
 
+    /// A truth value, as readers of SDF take it.
+    fn is_true(&self, node: Node<'a, 'a>, word: &str, of: &str) -> Result<bool> {
+        match word.trim().to_ascii_lowercase().as_str() {
+            "true" | "1" => Ok(true),
+            "false" | "0" => Ok(false),
+            word => {
+                let message = format!("found `{word}` in `{of}`, expected true, false, 1 or 0");
+                Err(self.source.error(node, message))
+            }
+        }
+    }
+
     /// The numbers of an element's text.
     fn numbers_of(&self, node: Node<'a, 'a>, of: &str) -> Result<Vec<f64>> {
         let tag = node.tag_name().name();
-        let words = node.text().unwrap_or_default().split_whitespace();
+        let text = text_of(node);
+        let words = text.split_whitespace();
         let number = |word: &str| {
             let number = word.parse().ok().filter(|number: &f64| !number.is_nan());
             number.ok_or_else(|| {
@@ -239,15 +282,29 @@ impl<'a> Frames<'a> {
 
     /// Where a frame stands in the world, all joints at zero.
     fn world_from(&self, name: &str) -> Result<Pose> {
-        let (mut at, mut pose, mut asking) = (name.to_owned(), Pose::identity(), None);
-        for _ in 0..=self.found.len() {
-            let frame = self.found.get(&at).ok_or_else(|| self.unknown(asking, &at))?;
-            pose = frame.pose * pose;
-            if frame.base.is_empty() {
-                return Ok(pose);
+        let (mut at, mut asking) = (name, None);
+        // From the frame to the first whose place is known, and back.
+        let mut passed: Vec<(&str, &Frame)> = Vec::new();
+        while passed.len() <= self.found.len() {
+            let known = self.placed.borrow().get(at).copied();
+            let mut pose = match known {
+                Some(pose) => pose,
+                None => {
+                    let frame = self.found.get(at).ok_or_else(|| self.unknown(asking, at))?;
+                    passed.push((at, frame));
+                    if !frame.base.is_empty() {
+                        (asking, at) = (frame.node, &frame.base);
+                        continue;
+                    }
+                    Pose::identity()
+                }
+            };
+            let mut placed = self.placed.borrow_mut();
+            for (name, frame) in passed.iter().rev() {
+                pose = pose * frame.pose;
+                placed.insert((*name).to_owned(), pose);
             }
-            asking = frame.node;
-            at.clone_from(&frame.base);
+            return Ok(pose);
         }
         Err(self.source.error(
             asking.unwrap_or_else(|| self.source.document.root_element()),
@@ -265,12 +322,12 @@ impl<'a> Frames<'a> {
                 Some(on) => at.clone_from(on),
                 None => {
                     let node = frame.node.unwrap_or(asking);
-                    at = match self.source.children(node, "child").next().and_then(|it| it.text()) {
+                    at = match self.source.children(node, "child").next().map(text_of) {
                         Some(child) => {
                             let prefix = at
                                 .rsplit_once("::")
                                 .map_or(String::new(), |(prefix, _)| format!("{prefix}::"));
-                            Self::within(&prefix, child.trim())
+                            Self::within(&prefix, &child)
                         }
                         None => break,
                     };
@@ -285,13 +342,14 @@ impl<'a> Frames<'a> {
     /// Links and joints with their poses.
     fn links(&self, name: &str, version: u32, named: &[&str]) -> Result<Links> {
         let mut links = Links::new(name);
-        let joined: BTreeSet<&str> = self
+        let joined: BTreeSet<String> = self
             .joints
             .iter()
             .filter_map(|(_, joint)| self.found.get(joint)?.node)
-            .filter_map(|node| self.source.children(node, "parent").next()?.text())
-            .map(str::trim)
+            .filter_map(|node| self.source.children(node, "parent").next().map(text_of))
             .collect();
+        let names = |of: &[(String, String)]| of.iter().map(|(_, name)| name.clone()).collect();
+        links.keep_names(self.links.iter().cloned().collect(), names(&self.joints));
         if joined.contains(WORLD) {
             links.add(WORLD, None);
         }
@@ -325,7 +383,7 @@ impl<'a> Frames<'a> {
         let of = format!("<joint> `{joint}`");
         let link = |which| -> Result<String> {
             let name = self.child_text(node, which, &of)?;
-            self.link_of(&Self::within(prefix, name), node)
+            self.link_of(&Self::within(prefix, &name), node)
         };
         let (parent, child) = (link("parent")?, link("child")?);
         let (world_from_joint, world_from_child) = (self.world_from(joint)?, self.world_from(&child)?);
@@ -345,7 +403,7 @@ impl<'a> Frames<'a> {
             }
         };
         let mut made = LinkJoint {
-            name: joint.to_owned(),
+            name: links.joint_name(Some(joint), joint),
             kind,
             parent,
             child: child.clone(),
@@ -364,12 +422,11 @@ impl<'a> Frames<'a> {
             made.limits = self.limits(axis, &of)?;
             made.mimic = self.mimic(axis, (prefix, &of))?;
         }
-        // The joint's frame is the child's, unless it has a pose of its own.
+        // The joint's frame is the child's, unless it has a pose of its own or its child is a frame or a model.
         let (turn, shift) = (&joint_from_child.rotation, &joint_from_child.translation);
-        let is_same = shift.norm() == 0.0 && *turn == nalgebra::Matrix3::identity();
-        let has_pose = self.source.children(node, "pose").next().is_some();
-        if has_pose && !is_same {
-            made.child = links.add(&format!("{joint}_frame"), None);
+        let is_same = shift.norm() + (turn - nalgebra::Matrix3::identity()).norm() < ROUNDING;
+        if !is_same {
+            made.child = links.add_unnamed(&format!("{joint}_frame"), None);
             links.fix(&made.child, &child, joint_from_child);
         }
         links.joints.push(made);
@@ -393,11 +450,10 @@ impl<'a> Frames<'a> {
                 format!("found no direction in <xyz> of {of}, expected three numbers, not all zero");
             return Err(self.source.error(xyz.unwrap_or(axis), message));
         };
-        let in_model =
-            match self.source.children(axis, "use_parent_model_frame").next().and_then(|it| it.text()) {
-                Some(text) => ["1", "true"].contains(&text.trim()),
-                None => version < 5,
-            };
+        let in_model = match self.source.children(axis, "use_parent_model_frame").next() {
+            Some(it) => self.is_true(it, &text_of(it), "use_parent_model_frame")?,
+            None => version < 5,
+        };
         let named = xyz.and_then(|xyz| xyz.attribute("expressed_in")).filter(|it| !it.is_empty());
         let frame = match (named, in_model) {
             (Some(name), _) => Self::within(prefix, name),

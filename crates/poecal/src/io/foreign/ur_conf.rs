@@ -13,6 +13,8 @@ use crate::robot::{DhConvention, DhRow, JointKind, Robot};
 
 /// Number of joints.
 const JOINTS: usize = 6;
+/// What the maker's calibration adds to a, d, alpha and theta.
+const DELTAS: [&str; 4] = ["delta_a", "delta_d", "delta_alpha", "delta_theta"];
 /// What the text must have.
 const EXPECTED: &str =
     "a = [...], d = [...] and alpha = [...] of six numbers in [DH], as in the controller's urcontrol.conf";
@@ -21,7 +23,7 @@ const EXPECTED: &str =
 pub(super) fn sibling(text: &str, path: &Path) -> Option<PathBuf> {
     let lines = lines(text, path);
     let has = |section: &str, key: &str| lines.iter().any(|line| line.section == section && line.key == key);
-    let is_delta = has("mounting", "delta_a") || has("mounting", "delta_theta");
+    let is_delta = DELTAS.iter().any(|key| has("mounting", key));
     (is_delta && !has("DH", "a")).then(|| path.with_file_name("urcontrol.conf"))
 }
 
@@ -30,8 +32,13 @@ pub(super) fn read(text: &str, path: &Path, beside: Option<(&str, &Path)>) -> Re
     let mut lines = lines(text, path);
     lines.extend(beside.into_iter().flat_map(|(text, path)| self::lines(text, path)));
     let list = |section: &str, key: &str| -> Result<Option<[f64; JOINTS]>> {
-        let found = lines.iter().find(|line| line.section == section && line.key == key);
-        found.map(|line| line.numbers()).transpose()
+        let mut found = lines.iter().filter(|line| line.section == section && line.key == key);
+        let (first, second) = (found.next(), found.next());
+        if let Some(line) = second {
+            let message = format!("found `{key}` a second time in [{section}], expected it once");
+            return Err(Error::new(ErrorKind::Model, message).at_line(line.path, line.number));
+        }
+        first.map(Line::numbers).transpose()
     };
     let nominal = |key: &str| -> Result<[f64; JOINTS]> {
         list("DH", key)?.ok_or_else(|| {
@@ -48,16 +55,26 @@ pub(super) fn read(text: &str, path: &Path, beside: Option<(&str, &Path)>) -> Re
                        read urcontrol.conf, the nominal arm";
         return Err(Error::new(ErrorKind::Model, message).at_line(line.path, line.number));
     }
-    let delta = |key: &str| list("mounting", key).map(Option::unwrap_or_default);
-    let deltas = (delta("delta_a")?, delta("delta_d")?, delta("delta_alpha")?, delta("delta_theta")?);
+    let mut found = [None; 4];
+    for (found, key) in found.iter_mut().zip(DELTAS) {
+        *found = list("mounting", key)?;
+    }
+    let missing: Vec<&str> =
+        DELTAS.into_iter().zip(&found).filter_map(|(key, it)| it.is_none().then_some(key)).collect();
+    if !missing.is_empty() && missing.len() < DELTAS.len() {
+        let message =
+            format!("found no {} in [mounting], expected all of {}", missing.join(", "), DELTAS.join(", "));
+        return Err(Error::new(ErrorKind::Model, message).in_file(path));
+    }
+    let deltas = found.map(Option::unwrap_or_default);
     let rows: Vec<DhRow> = (0..JOINTS)
         .map(|k| DhRow {
             name: format!("joint{}", k + 1),
             kind: JointKind::Revolute,
-            a_m: a[k] + deltas.0[k],
-            d_m: d[k] + deltas.1[k],
-            alpha_rad: alpha[k] + deltas.2[k],
-            theta_rad: deltas.3[k],
+            a_m: a[k] + deltas[0][k],
+            d_m: d[k] + deltas[1][k],
+            alpha_rad: alpha[k] + deltas[2][k],
+            theta_rad: deltas[3][k],
             fixed: Pose::identity(),
         })
         .collect();

@@ -23,7 +23,7 @@ pub use selection::{ChainSelection, named_link};
 pub(super) use splice::escaped;
 pub(super) use terms::holdable;
 pub use write::write_new;
-pub(super) use write::written_new;
+pub(super) use write::{WIDE_LIMIT_M, written_new};
 
 use crate::error::Result;
 use crate::io::source_text;

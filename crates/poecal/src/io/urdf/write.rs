@@ -12,7 +12,7 @@ use crate::lie::Pose;
 use crate::robot::{Body, Joint, JointKind, Robot};
 
 /// Limit for a prismatic joint without limits, metres: URDF requires one.
-const WIDE_LIMIT_M: f64 = 1000.0;
+pub(in crate::io) const WIDE_LIMIT_M: f64 = 1000.0;
 
 /// Writes a robot as a new URDF: base link, one link a joint, and the tip on a fixed joint. Instruments, and targets with a body of their own,
 /// are links on fixed joints too.
