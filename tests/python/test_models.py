@@ -6,6 +6,7 @@ from pathlib import Path
 
 import mujoco
 import numpy as np
+import pytest
 from program import ELBOW, poecal, program
 from test_exports import SAME, UR10E, about, assert_same, by_dh, of_rpy
 
@@ -55,6 +56,112 @@ def test_mjcf_is_read_as_mujoco_reads_it():
         assert (found is None) == (expected is None), name
         if found is not None:
             assert np.allclose([found["lower"], found["upper"]] if isinstance(found, dict) else found, expected, atol=1e-12), name
+
+
+GEOM = "<geom size='.01' mass='1'/>"
+
+
+def two_bodies(top="", first="<joint name='j1' axis='0 0 1'/>", place="pos='1 0 0'", second="<joint name='j2' axis='0 1 0'/>", end=None, tail=""):
+    """A model of two bodies `a` and `b` with their joints, and a site `tool` in the second."""
+    end = "<site name='tool' pos='.1 .2 .3'/>" if end is None else end
+    bodies = f"<body name='a' pos='0 0 1'>{GEOM}{first}<body name='b' {place}>{GEOM}{second}{end}</body></body>"
+    return f"<mujoco>{top}<worldbody>{bodies}</worldbody>{tail}</mujoco>"
+
+
+def follower(words):
+    return f"<equality><joint joint1='j2' joint2='j1' {words}/></equality>"
+
+
+TURNED = "<joint name='j2' axis='1 .2 0' pos='.1 .2 .3' ref='13'/><joint name='s' type='slide' axis='.1 .3 2' ref='.2' range='-1 1'/>"
+# Name: model, and the site or body that is the tip.
+ODD_MJCF = {
+    "joint in a frame": (two_bodies(second="<frame pos='.1 .2 .3' euler='10 20 30'><joint name='j2' axis='0 1 0' pos='.1 0 0'/></frame>"), "tool"),
+    "joint in a frame behind another": (
+        two_bodies(second="<joint name='j2' axis='1 0 0'/><frame pos='.1 .2 .3' euler='10 20 30'><joint name='j3' axis='0 1 0' pos='.1 0 0'/></frame>"),
+        "tool",
+    ),
+    "tool against z": (two_bodies(end="<site name='tool' zaxis='0 0 -1'/>"), "tool"),
+    "tool almost against z": (two_bodies(end="<site name='tool' zaxis='1e-3 -2e-3 -1'/>"), "tool"),
+    "joint beside the body that is the tip": (two_bodies(second="<joint name='j2' axis='0 1 0' pos='.1 0 .05'/>", end=""), "b"),
+    "joint beside a body before": (two_bodies(first="<joint name='j1' axis='1 0 1' pos='.1 0 .05'/>"), "tool"),
+    "several joints in a body": (two_bodies(second=TURNED), "tool"),
+    "rotation of a default": (two_bodies("<default><site quat='1 .2 .3 .4'/></default>", end="<site name='tool' euler='10 20 30'/>"), "tool"),
+    "rotation of a default alone": (two_bodies("<default><site axisangle='0 0 1 30'/></default>", end="<site name='tool'/>"), "tool"),
+    "defaults in two parts": (two_bodies("<default><joint pos='.1 0 0'/></default><default><joint pos='.2 0 0'/></default>"), "tool"),
+    "class of the first part": (
+        two_bodies(
+            "<default><default class='k'><joint axis='1 0 0'/></default></default><default><joint pos='.2 0 0'/></default>",
+            second="<joint name='j2' class='k'/>",
+        ),
+        "tool",
+    ),
+    "site alone in a frame": (two_bodies(end="<frame pos='.1 .2 .3' euler='10 20 30'><site name='tool'/></frame>"), "tool"),
+    "body named as another's link": (two_bodies(first="<joint name='x' axis='0 0 1'/><joint name='y' axis='0 1 0'/>", end="").replace("'b'", "'a_1'"), "a_1"),
+    "joint named as another's": (two_bodies(first="<joint/>", second="<joint name='a_joint' axis='1 0 0'/>"), "tool"),
+    "joint named as a mount": (two_bodies(first="", second="<joint name='a_mount' axis='1 0 0'/>"), "tool"),
+    "coefficients that are left out": (two_bodies(tail=follower("polycoef='0.1'")), "tool"),
+    "follower of a line": (two_bodies(tail=follower("polycoef='0.1 -2'")), "tool"),
+    "follower that does not count": (two_bodies("<default><equality active='false'/></default>", tail=follower("")), "tool"),
+    "joint held at a value": (two_bodies(tail="<equality><joint joint1='j2' polycoef='.3 0 0 0 0'/></equality>"), "tool"),
+    "axes in mixed order": (two_bodies("<compiler eulerseq='xYz' angle='radian'/>", place="euler='.1 .2 .3'"), "tool"),
+}
+
+
+@pytest.mark.parametrize("name", ODD_MJCF)
+def test_odd_mjcf_is_read_as_mujoco_reads_it(name, tmp_path):
+    text, tip = ODD_MJCF[name]
+    path = tmp_path / "arm.xml"
+    path.write_text(text)
+    # A site is the tip by itself, the last body is too.
+    robot = package.Robot.read(path, tip_link=tip if tip == "a_1" else None)
+    model = mujoco.MjModel.from_xml_string(text)
+    data = mujoco.MjData(model)
+    readings = np.random.default_rng(4).uniform(-2, 2, (20, len(robot.reading_names)))
+    names = [model.joint(index).name for index in range(model.njnt)]
+    adr = [model.jnt_qposadr[index] for index in range(model.njnt)]
+    places = []
+    for q in readings:
+        data.qpos[:] = model.qpos0
+        for reading, value in zip(robot.reading_names, q, strict=True):
+            # A joint without a name is the only one of a model here.
+            data.qpos[adr[names.index(reading if reading in names else "")]] = value
+        for index in range(model.neq):
+            if model.eq_active0[index]:
+                follows, leader = model.eq_obj1id[index], model.eq_obj2id[index]
+                moved = data.qpos[adr[leader]] - model.qpos0[adr[leader]] if leader >= 0 else 0.0
+                data.qpos[adr[follows]] = model.qpos0[adr[follows]] + np.polyval(model.eq_data[index][4::-1], moved)
+        mujoco.mj_kinematics(model, data)
+        thing = data.site(tip) if tip == "tool" else data.body(tip)
+        place = np.eye(4)
+        place[:3, :3], place[:3, 3] = thing.xmat.reshape(3, 3), thing.xpos
+        places.append(place)
+    assert_same(name, placed(robot), (readings, np.array(places)))
+
+
+REFUSED_MJCF = {
+    "undefined class": (two_bodies(second="<joint name='j2' class='k'/>"), "found the class `k`, expected one that a <default> has"),
+    "undefined class of what is inside": (two_bodies(place="childclass='k'"), "found the class `k`"),
+    "class twice": (two_bodies("<default><default class='k'/><default class='k'/></default>"), "found the class `k` a second time"),
+    "two rotations": (two_bodies(end="<site name='tool' euler='1 2 3' quat='1 0 0 0'/>"), "found `quat` and `euler` in <site> `tool`, expected one of them"),
+    "site between points": (two_bodies(end="<site name='tool' type='capsule' size='.01' fromto='0 0 0 1 1 1'/>"), "found `fromto` of <site> `tool`"),
+    "limits in words": (two_bodies(second="<joint name='j2' limited='yes' range='0 1'/>"), 'found limited="yes" of <joint> `j2`, expected true, false or auto'),
+    "setting in words": (two_bodies("<compiler autolimits='maybe'/>"), 'found autolimits="maybe" in <compiler>, expected true or false'),
+    "coefficient in words": (two_bodies(tail=follower("polycoef='0 1 0 0 x'")), 'found polycoef="0 1 0 0 x", expected up to 5 numbers'),
+    "unknown leader": (two_bodies(tail="<equality><joint joint1='j2' joint2='jx'/></equality>"), 'found joint2="jx", expected the name of a joint'),
+    "curve": (two_bodies(tail=follower("polycoef='0 1 .3 0 0'")), "`j2`"),
+    "part of a model": ("<mujocoinclude><worldbody/></mujocoinclude>", "found a part of a model (<mujocoinclude>)"),
+}
+
+
+@pytest.mark.parametrize("name", REFUSED_MJCF)
+def test_mjcf_that_says_something_else_is_refused(name, tmp_path):
+    text, sentence = REFUSED_MJCF[name]
+    path = tmp_path / "arm.xml"
+    path.write_text(text)
+    with pytest.raises(package.InputError) as raised:
+        package.Robot.read(path)
+    print(raised.value)
+    assert sentence in str(raised.value)
 
 
 def test_sdf_is_read_as_drake_reads_it():

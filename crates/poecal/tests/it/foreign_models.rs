@@ -1,7 +1,9 @@
 //! Models in forms of simulators and makers: mistakes get one sentence each, with their place.
 
+use nalgebra::Vector3;
 use poecal::ChainSelection;
 use poecal::io::model::{Model, ModelSource};
+use poecal::lie::{Pose, Screw};
 
 fn read(text: &str, name: &str, tip: Option<&str>) -> Result<Model, String> {
     let selection = ChainSelection { tip_link: tip.map(str::to_owned), ..ChainSelection::default() };
@@ -70,6 +72,68 @@ fn sdf(joint: &str, more: &str) -> String {
         "<sdf version='1.9'><model name='m'>\n<link name='a'/><link name='b'/>\n<joint name='j' type='revolute'><parent>a</parent><child>b</child>\n\
          {joint}</joint>\n{more}</model></sdf>"
     )
+}
+
+/// Where the tip is at zero.
+fn tip(text: &str, name: &str) -> Vector3<f64> {
+    let model = read(text, name, Some("b")).unwrap();
+    let q = vec![0.0; model.robot.reading_names().len()];
+    model.robot.forward_kinematics(&q).translation
+}
+
+#[test]
+fn sdf_is_read_around_comments_and_through_frames() {
+    let of = |pose: &str, child: &str, more: &str| {
+        format!(
+            "<sdf version='1.9'><model name='m'><link name='a'/><link name='b'>{pose}</link>{more}\
+             <joint name='j' type='revolute'><parent><!-- x -->a</parent><child>{child}</child>\
+             <axis><xyz><!-- was 0 0 1 -->0 1 0</xyz></axis></joint></model></sdf>"
+        )
+    };
+    let frame = "<frame name='g' attached_to='b'><pose>1 2 3 .4 .5 .6</pose></frame>";
+    let there = Vector3::new(1.0, 2.0, 3.0);
+    let commented = of("<pose><!-- x -->1 2 3 .1 .2 .3</pose>", "b", "");
+    assert!((tip(&commented, "m.sdf") - there).norm() < 1e-12);
+    for word in ["true", "1", "True", " TRUE"] {
+        let degrees = of(&format!("<pose degrees='{word}'>1 2 3 90 0 0</pose>"), "b", "");
+        let radians = of("<pose>1 2 3 1.5707963267948966 0 0</pose>", "b", "");
+        let rotation =
+            |text: &str| read(text, "m.sdf", Some("b")).unwrap().robot.forward_kinematics(&[0.3]).rotation;
+        assert!((rotation(&degrees) - rotation(&radians)).norm() < 1e-12, "{word}");
+    }
+    // The joint turns about the frame's axis, and the link is not at the frame.
+    let through = of("<pose>.1 .2 .3 0 0 0</pose>", "g", frame);
+    assert!((tip(&through, "m.sdf") - Vector3::new(0.1, 0.2, 0.3)).norm() < 1e-12);
+    let robot = read(&through, "m.sdf", Some("b")).unwrap().robot;
+    let place = Pose::from_xyz_rpy([1.1, 2.2, 3.3], [0.4, 0.5, 0.6]);
+    let axis = Screw::revolute(&(place.rotation * Vector3::y()), &place.translation);
+    let known = axis.exp(0.7).act(&Vector3::new(0.1, 0.2, 0.3));
+    assert!((robot.forward_kinematics(&[0.7]).translation - known).norm() < 1e-12);
+}
+
+#[test]
+fn very_large_models_end_soon() {
+    let nested = |open: &str, close: &str| open.repeat(20_000) + &close.repeat(20_000);
+    let models = format!(
+        "<sdf version='1.9'><model name='m'><link name='a'/>{}<joint name='j' type='fixed'><parent>world</parent><child>a</child></joint></model></sdf>",
+        nested("<model name='n'><link name='a'/>", "</model>")
+    );
+    assert!(read(&models, "m.sdf", None).unwrap_err().contains("more than 64 models in each other"));
+    let chain: String = (1..20_000)
+        .map(|k| format!("<link name='l{k}'><pose relative_to='l{}'>0 0 1e-4 0 0 0</pose></link>", k - 1))
+        .collect();
+    let chain = format!(
+        "<sdf version='1.9'><model name='m'><link name='l0'/>{chain}<joint name='j' type='revolute'><parent>l0</parent><child>l19999</child></joint></model></sdf>"
+    );
+    let _ = read(&chain, "m.sdf", None);
+    let bodies = format!("<mujoco><worldbody>{}</worldbody></mujoco>", nested("<body><joint/>", "</body>"));
+    assert!(read(&bodies, "m.xml", None).unwrap_err().contains("at most 1000"));
+    let classes: String = (0..20_000).map(|k| format!("<default class='c{k}'>")).collect();
+    let classes = mjcf(&(classes + &"</default>".repeat(20_000)), "", "");
+    assert!(read(&classes, "m.xml", None).is_ok());
+    let origin = "{x: 0, y: 0, z: 0.1, roll: 0, pitch: 0, yaw: 0}";
+    let joints: String = (1..=20_000).map(|k| format!("  joint{k}: {origin}\n")).collect();
+    assert!(read(&format!("kinematics:\n{joints}"), "arm.yaml", None).unwrap_err().contains("at most 1000"));
 }
 
 #[test]

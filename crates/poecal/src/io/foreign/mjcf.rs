@@ -260,7 +260,7 @@ impl<'a> Reader<'a, '_> {
         } else if let Some(z) = self.source.numbers::<3>(stating, "zaxis", &of)? {
             let Some(z) = unit(z) else { return zero("an axis") };
             // Of a direction against z, MuJoCo turns about x.
-            match Unit::try_new(Vector3::z().cross(&z), 1e-10) {
+            match Unit::try_new(Vector3::z().cross(&z), 1e-7) {
                 Some(axis) => rotation::exp(&(axis.into_inner() * Vector3::z().cross(&z).norm().atan2(z.z))),
                 None if z.z < 0.0 => rotation::about(0, PI),
                 None => Matrix3::identity(),
