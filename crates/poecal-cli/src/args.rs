@@ -131,7 +131,7 @@ pub(crate) struct Validate {
 /// Arguments of `poecal predict`.
 #[derive(Args, Debug)]
 pub(crate) struct Predict {
-    /// Robot model: URDF, MJCF, SDF, TOML or calibration.json
+    /// Robot model: URDF, MJCF, SDF, TOML, a maker's YAML or conf, or calibration.json
     pub(crate) model: PathBuf,
     /// Joint readings (CSV); other columns than the joints' and `id` are ignored
     pub(crate) joints: PathBuf,
@@ -158,7 +158,7 @@ pub(crate) struct Predict {
 /// Arguments of `poecal check`.
 #[derive(Args, Debug)]
 pub(crate) struct Check {
-    /// Robot model: URDF, MJCF, SDF, TOML or calibration.json
+    /// Robot model: URDF, MJCF, SDF, TOML, a maker's YAML or conf, or calibration.json
     pub(crate) model: PathBuf,
     /// Measurement files (CSV)
     pub(crate) measurements: Vec<PathBuf>,
@@ -216,7 +216,7 @@ pub(crate) struct Apply {
 /// Arguments of `poecal convert`.
 #[derive(Args, Debug)]
 pub(crate) struct Convert {
-    /// Robot model: URDF, MJCF, SDF, TOML or calibration.json
+    /// Robot model: URDF, MJCF, SDF, TOML, a maker's YAML or conf, or calibration.json
     pub(crate) model: PathBuf,
     #[command(flatten)]
     pub(crate) chain: TreeArgs,

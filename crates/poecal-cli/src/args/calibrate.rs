@@ -16,7 +16,7 @@ use crate::quantity::{BelievedTolerance, share, sigma_m, sigma_rad, whole};
 /// Arguments of `poecal calibrate`.
 #[derive(Args, Debug)]
 pub(crate) struct Calibrate {
-    /// Robot model: URDF, MJCF, SDF, TOML or calibration.json [default: from the settings]
+    /// Robot model: URDF, MJCF, SDF, TOML, a maker's YAML or conf, or calibration.json [default: from the settings]
     pub(crate) model: Option<PathBuf>,
     /// Measurement files (CSV), joined [default: from the settings]
     pub(crate) measurements: Vec<PathBuf>,

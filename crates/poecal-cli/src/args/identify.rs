@@ -13,7 +13,7 @@ use crate::quantity::{sigma_m, sigma_rad};
 /// Arguments of `poecal identify`.
 #[derive(Args, Debug)]
 pub(crate) struct Identify {
-    /// Robot model: URDF, MJCF, SDF, TOML or calibration.json
+    /// Robot model: URDF, MJCF, SDF, TOML, a maker's YAML or conf, or calibration.json
     pub(crate) model: PathBuf,
     /// Joint readings (CSV), joined; other columns than the joints' and `id` are ignored, but for kinds that touch something: these need the
     /// columns that name it

@@ -12,7 +12,7 @@ use crate::quantity::whole;
 /// Arguments of `poecal init`.
 #[derive(Args, Debug)]
 pub(crate) struct Init {
-    /// Robot model: URDF, MJCF, SDF, TOML or calibration.json
+    /// Robot model: URDF, MJCF, SDF, TOML, a maker's YAML or conf, or calibration.json
     pub(crate) model: PathBuf,
     #[command(flatten)]
     pub(crate) chain: TreeArgs,

@@ -11,9 +11,9 @@ use super::words::{END, one_of};
 /// Arguments of `poecal offsets`.
 #[derive(Args, Debug)]
 pub(crate) struct Offsets {
-    /// Nominal robot model: URDF, MJCF, SDF, TOML or calibration.json
+    /// Nominal robot model: URDF, MJCF, SDF, TOML, a maker's YAML or conf, or calibration.json
     pub(crate) nominal: PathBuf,
-    /// Model of the actual robot, with the same joints: URDF, MJCF, SDF, TOML or calibration.json
+    /// Model of the actual robot, with the same joints: URDF, MJCF, SDF, TOML, a maker's YAML or conf, or calibration.json
     pub(crate) actual: PathBuf,
     #[command(flatten)]
     pub(crate) chain: ChainArgs,

@@ -14,7 +14,7 @@ use crate::quantity::{LengthAndAngle, direction, terms};
 /// Arguments of `poecal simulate`.
 #[derive(Args, Debug)]
 pub(crate) struct Simulate {
-    /// Robot model to deviate from: URDF, MJCF, SDF, TOML or calibration.json
+    /// Robot model to deviate from: URDF, MJCF, SDF, TOML, a maker's YAML or conf, or calibration.json
     pub(crate) model: PathBuf,
     #[command(flatten)]
     pub(crate) chain: TreeArgs,

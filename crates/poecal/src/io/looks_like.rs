@@ -6,7 +6,7 @@ use crate::error::{Error, ErrorKind, first_few};
 
 /// Expected models.
 const MODEL: &str =
-    "expected a robot model: URDF, a calibration.json, or TOML that begins with poecal_robot = 1";
+    "expected a robot model: URDF, MJCF, SDF, a calibration.json, or TOML that begins with poecal_robot = 1";
 /// Column names of DH tables, case ignored, by groups of synonyms.
 const DH_COLUMNS: [&str; 12] =
     ["a", "alpha", "d", "theta", "r", "α", "θ", "a_i", "alpha_i", "d_i", "theta_i", "a(i-1)"];
@@ -38,8 +38,8 @@ pub(super) fn table_for_model(text: &str, path: &Path) -> Option<Error> {
 /// The error for a header that is the beginning of a model.
 pub(super) fn model_for_table(line: &str, path: &Path, number: usize) -> Option<Error> {
     let line = line.trim();
-    let form = if line.starts_with("<?xml") || line.starts_with("<robot") || line.starts_with("<!--") {
-        "XML, as a URDF is"
+    let form = if ["<?xml", "<robot", "<mujoco", "<sdf", "<!--"].iter().any(|start| line.starts_with(start)) {
+        "XML, as models are"
     } else if line == "{" || line.starts_with("{\"") || line.starts_with("{ \"") {
         "JSON, as a calibration.json is"
     } else if line.starts_with("poecal_robot") {

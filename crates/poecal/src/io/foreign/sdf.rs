@@ -33,7 +33,8 @@ pub(super) fn read(text: &str, path: &Path, named: &[&str]) -> Result<Links> {
     let source = XmlSource { document: &document, path };
     let root = document.root_element();
     let model = the_model(source, root)?;
-    if let Some(node) = model.descendants().find(|node| node.has_tag_name("include")) {
+    if let Some(node) = model.descendants().find(|node| node.has_tag_name("include") && !is_of_plugin(*node))
+    {
         let message =
             "found <include>, expected a model in one file: `gz sdf --print FILE` writes it whole".to_owned();
         return Err(source.syntax_error(node, message));
@@ -72,6 +73,11 @@ fn the_model<'a>(source: XmlSource<'a>, root: Node<'a, 'a>) -> Result<Node<'a, '
             Err(source.error(**second, message))
         }
     }
+}
+
+/// Whether an element is one of a plugin, which says what it likes.
+fn is_of_plugin(node: Node<'_, '_>) -> bool {
+    node.ancestors().any(|it| it.has_tag_name("plugin"))
 }
 
 /// An element's text, without comments within.
@@ -126,7 +132,8 @@ impl<'a> Frames<'a> {
                 return Err(self.source.error(model, message));
             }
             let own = format!("{prefix}{MODEL}");
-            let links = self.source.children(model, "link").find_map(|link| link.attribute("name"));
+            let first = |tag| self.source.children(model, tag).find_map(|it| it.attribute("name"));
+            let links = first("link").or_else(|| first("model"));
             let (pose, base) = self.pose(model, &of)?;
             let outer = prefix.trim_end_matches("::").rsplit_once("::").map_or("", |(outer, _)| outer);
             let outer = if outer.is_empty() { String::new() } else { format!("{outer}::") };
@@ -417,11 +424,12 @@ impl<'a> Frames<'a> {
             links.joints.push(made);
             return Ok(());
         }
-        if let Some(axis) = self.source.children(node, "axis").next() {
-            made.axis = self.axis(axis, (prefix, &of), &world_from_joint, version)?;
-            made.limits = self.limits(axis, &of)?;
-            made.mimic = self.mimic(axis, (prefix, &of))?;
-        }
+        let Some(axis) = self.source.children(node, "axis").next() else {
+            return Err(self.source.error(node, format!("{of} has no <axis>, expected its direction")));
+        };
+        made.axis = self.axis(axis, (prefix, &of), &world_from_joint, version)?;
+        made.limits = self.limits(axis, &of)?;
+        made.mimic = self.mimic(axis, (prefix, &of))?;
         // The joint's frame is the child's, unless it has a pose of its own or its child is a frame or a model.
         let (turn, shift) = (&joint_from_child.rotation, &joint_from_child.translation);
         let is_same = shift.norm() + (turn - nalgebra::Matrix3::identity()).norm() < ROUNDING;

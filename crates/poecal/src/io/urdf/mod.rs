@@ -84,7 +84,14 @@ impl UrdfDocument {
         let robot_element = document.root_element();
         if robot_element.tag_name().name() != "robot" {
             let name = robot_element.tag_name().name();
-            let message = format!("found root element <{name}>, expected <robot>, as in every URDF file");
+            let message = match name {
+                "mujoco" | "sdf" => format!(
+                    "found root element <{name}>, expected <robot>, as in every URDF file: `poecal export CALIBRATION --format {}` writes this \
+                     form",
+                    if name == "sdf" { "sdf" } else { "mjcf" }
+                ),
+                _ => format!("found root element <{name}>, expected <robot>, as in every URDF file"),
+            };
             return Err(source.syntax_error(robot_element, message));
         }
         refuse_xacro(&source)?;
