@@ -90,7 +90,7 @@ mod tests {
 
     #[test]
     fn a_table_of_dh_parameters_is_told_from_measurements() {
-        let toml = "m.csv:1: found a table of DH parameters (a, alpha, d, theta), expected a robot model: URDF, a calibration.json, or \
+        let toml = "m.csv:1: found a table of DH parameters (a, alpha, d, theta), expected a robot model: URDF, MJCF, SDF, a calibration.json, or \
                     TOML that begins with poecal_robot = 1: write it with convention = \"standard_dh\" or \"modified_dh\" and an entry \
                     of `joint` for each row (docs/file-formats.md, TOML)";
         assert_eq!(model("a,alpha,d,theta\n0,90,400,0\n"), toml);
@@ -102,7 +102,7 @@ mod tests {
             model("25,-90,400,0\n").starts_with("m.csv:1: found a table of numbers, expected a robot model")
         );
         assert!(model("id,joint1[deg],x[mm],y[mm],z[mm]\n1,2,3,4,5\n").ends_with(
-            "found a table with the columns id, joint1, x, y, z, expected a robot model: URDF, a calibration.json, or TOML that begins \
+            "found a table with the columns id, joint1, x, y, z, expected a robot model: URDF, MJCF, SDF, a calibration.json, or TOML that begins \
              with poecal_robot = 1: if these are measurements, the model is named first and they behind it"
         ));
     }
