@@ -1,14 +1,20 @@
 //! An arm: joints with their screws in a row, and its forward kinematics.
 
+use alloc::boxed::Box;
+use alloc::vec;
 use alloc::vec::Vec;
 
 use nalgebra::{Matrix3, Vector3};
 
 use crate::lie::{Pose, Screw, rotation};
+use crate::model::{Joint, Model};
+use crate::real::Real;
 use crate::trig::cosine_and_sine;
 
 /// Most joints of an arm, so that nothing is allocated where it is computed with.
 pub const MOST_JOINTS: usize = 16;
+/// Least joint value per reading of a joint that the reading is said to move.
+const LEAST_SENSE: f64 = 0.5;
 
 /// A serial arm, `base_from_tip(q) = exp(ξ₁q₁) … exp(ξₙqₙ) M` (lou2009 (2)).
 ///
@@ -23,6 +29,7 @@ pub const MOST_JOINTS: usize = 16;
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Arm {
+    /// Of each reading, the screw of the joint that it moves, where all readings are 0.
     screws: Vec<Screw>,
     home: Pose,
     /// Frame of each joint, its axis along z, in that of the joint before (of the first, in the base), at zero.
@@ -30,14 +37,36 @@ pub struct Arm {
     /// The tip in the frame of the last joint.
     tip: Pose,
     reach_m: f64,
+    limits: Vec<(f64, f64)>,
+    /// Joint values per reading; none of an arm in which a reading moves several joints.
+    senses: Option<Vec<f64>>,
+    /// What its joint values are beyond their readings.
+    real: Option<Box<Real>>,
 }
 
-/// Where an arm is: axes of its joints and its tip, in the base.
+/// Where an arm is: its tip, and how that moves with each reading, `velocity = v + w × tip` and `angular = w`, in the base.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Placed {
-    pub(crate) directions: [Vector3<f64>; MOST_JOINTS],
-    pub(crate) origins: [Vector3<f64>; MOST_JOINTS],
+    pub(crate) v: [Vector3<f64>; MOST_JOINTS],
+    pub(crate) w: [Vector3<f64>; MOST_JOINTS],
     pub(crate) tip: Pose,
+}
+
+impl Placed {
+    pub(crate) fn at_rest() -> Self {
+        Placed {
+            v: [Vector3::zeros(); MOST_JOINTS],
+            w: [Vector3::zeros(); MOST_JOINTS],
+            tip: Pose::identity(),
+        }
+    }
+
+    /// How the tip moves with a reading: its point, and its turn.
+    #[inline]
+    pub(crate) fn column(&self, reading: usize) -> (Vector3<f64>, Vector3<f64>) {
+        let w = self.w[reading];
+        (self.v[reading] + w.cross(&self.tip.translation), w)
+    }
 }
 
 impl Arm {
@@ -54,39 +83,100 @@ impl Arm {
         let mut base_from_joint = Pose::identity();
         let mut reach_m = 0.0;
         for screw in screws {
-            let origin = if screw.is_prismatic() {
-                base_from_joint.translation
-            } else {
-                screw.nearest_point(&base_from_joint.translation)
-            };
+            let frame = along(screw, &base_from_joint.translation);
             if !frames.is_empty() {
-                reach_m += (origin - base_from_joint.translation).norm();
+                reach_m += (frame.translation - base_from_joint.translation).norm();
             }
-            let frame = Pose::new(along(&screw.direction()), origin);
             frames.push(base_from_joint.inverse() * frame);
             base_from_joint = frame;
         }
         reach_m += (home.translation - base_from_joint.translation).norm();
         let tip = base_from_joint.inverse() * *home;
-        Some(Arm { screws: screws.to_vec(), home: *home, frames, tip, reach_m: reach_m.max(1e-3) })
+        let limits = vec![(f64::NEG_INFINITY, f64::INFINITY); screws.len()];
+        let senses = Some(vec![1.0; screws.len()]);
+        let reach_m = reach_m.max(1e-3);
+        Some(Arm { screws: screws.to_vec(), home: *home, frames, tip, reach_m, limits, senses, real: None })
     }
 
-    /// Number of joints.
+    /// The arm of a model; `None` if it has no joint, more than [`MOST_JOINTS`] readings, a reading that moves nothing, numbers that are not
+    /// finite, or indices of what is not there.
+    #[must_use]
+    pub fn of(model: &Model) -> Option<Self> {
+        if !model.is_whole() {
+            return None;
+        }
+        let real = Real::new(model);
+        let at_zero = real.placed(&[0.0; MOST_JOINTS]);
+        let mut screws = Vec::with_capacity(model.readings);
+        for reading in 0..model.readings {
+            let (v, w) = (at_zero.v[reading], at_zero.w[reading]);
+            let slides = w.norm() < 1e-6;
+            let size = if slides { v.norm() } else { w.norm() };
+            if size < 1e-9 {
+                return None;
+            }
+            // Across other joints that it moves a little, a reading has a pitch: the axis is what counts.
+            screws.push(if slides {
+                Screw::prismatic(&v)
+            } else {
+                Screw::revolute(&w, &(w.cross(&v) / (size * size)))
+            });
+        }
+        let mut arm = Arm::new(&screws, &at_zero.tip)?;
+        for (limits, own) in arm.limits.iter_mut().zip(&model.limits) {
+            *limits = own.unwrap_or(*limits);
+        }
+        let main = |joint: &Joint| -> Vec<(usize, f64)> {
+            let all = joint.value.linear.iter().copied();
+            all.filter(|(_, factor)| factor.abs() > LEAST_SENSE).collect()
+        };
+        let moved: Vec<Vec<(usize, f64)>> =
+            model.joints.iter().map(main).filter(|it| !it.is_empty()).collect();
+        let is_serial = moved.len() == model.readings
+            && moved
+                .iter()
+                .enumerate()
+                .all(|(index, of)| matches!(of[..], [(reading, _)] if reading == index));
+        arm.senses = is_serial.then(|| moved.iter().flatten().map(|(_, factor)| factor.abs()).collect());
+        let is_rigid = model.joints.len() == model.readings
+            && model.joints.iter().enumerate().all(|(index, joint)| joint.value.is_reading(index));
+        arm.real = (!is_rigid).then(|| Box::new(real));
+        Some(arm)
+    }
+
+    /// Number of readings: of the joints that are moved.
     #[must_use]
     pub fn joints(&self) -> usize {
         self.frames.len()
     }
 
-    /// Screws of the joints in the base, at zero.
+    /// Screws of the joints that readings move, in the base, where all readings are 0.
     #[must_use]
     pub fn screws(&self) -> &[Screw] {
         &self.screws
     }
 
-    /// The tip in the base, at zero.
+    /// The tip in the base, where all readings are 0.
     #[must_use]
     pub fn home(&self) -> &Pose {
         &self.home
+    }
+
+    /// Smallest and largest value of each reading (rad, m), infinite where there is none.
+    #[must_use]
+    pub fn limits(&self) -> &[(f64, f64)] {
+        &self.limits
+    }
+
+    /// Whether joint values are their readings.
+    #[must_use]
+    pub fn is_rigid(&self) -> bool {
+        self.real.is_none()
+    }
+
+    /// Joint values per reading; `None` if a reading moves several joints.
+    pub(crate) fn senses(&self) -> Option<&[f64]> {
+        self.senses.as_deref()
     }
 
     /// Length of the path from the first axis over all axes to the tip, metres: lengths are compared with it.
@@ -95,35 +185,34 @@ impl Arm {
         self.reach_m
     }
 
-    /// `base_from_tip` at joint values (rad, m); values that are not given are 0.
+    /// `base_from_tip` at readings (rad, m); those that are not given are 0.
     #[must_use]
     pub fn forward_kinematics(&self, q: &[f64]) -> Pose {
         self.placed(q).tip
     }
 
-    /// Axes and tip at joint values.
+    /// The tip and its motions at readings.
     #[inline]
     pub(crate) fn placed(&self, q: &[f64]) -> Placed {
-        let mut out = Placed {
-            directions: [Vector3::zeros(); MOST_JOINTS],
-            origins: [Vector3::zeros(); MOST_JOINTS],
-            tip: Pose::identity(),
-        };
+        if let Some(real) = &self.real {
+            let mut all = [0.0; MOST_JOINTS];
+            all.iter_mut().zip(q).for_each(|(to, from)| *to = *from);
+            return real.placed(&all);
+        }
+        let mut out = Placed::at_rest();
         let (mut turned, mut at) = (Matrix3::identity(), Vector3::zeros());
         for (index, (frame, screw)) in self.frames.iter().zip(&self.screws).enumerate() {
             let value = q.get(index).copied().unwrap_or(0.0);
             at += turned * frame.translation;
             turned *= frame.rotation;
             let axis = turned.column(2).into_owned();
-            out.directions[index] = axis;
-            out.origins[index] = at;
             if screw.is_prismatic() {
+                out.v[index] = axis;
                 at += axis * value;
             } else {
-                let (c, s) = cosine_and_sine(value);
-                let (x, y) = (turned.column(0).into_owned(), turned.column(1).into_owned());
-                turned.set_column(0, &(x * c + y * s));
-                turned.set_column(1, &(y * c - x * s));
+                out.v[index] = at.cross(&axis);
+                out.w[index] = axis;
+                turn(&mut turned, value);
             }
         }
         out.tip = Pose::new(turned * self.tip.rotation, at + turned * self.tip.translation);
@@ -131,10 +220,21 @@ impl Arm {
     }
 }
 
-/// A rotation whose third column is a direction.
-fn along(direction: &Vector3<f64>) -> Matrix3<f64> {
-    let x = rotation::perpendicular(direction).normalize();
-    Matrix3::from_columns(&[x, direction.cross(&x), *direction])
+/// Turns a frame about its own z.
+#[inline(always)]
+pub(crate) fn turn(frame: &mut Matrix3<f64>, angle: f64) {
+    let (c, s) = cosine_and_sine(angle);
+    let (x, y) = (frame.column(0).into_owned(), frame.column(1).into_owned());
+    frame.set_column(0, &(x * c + y * s));
+    frame.set_column(1, &(y * c - x * s));
+}
+
+/// A frame on a joint's axis, which is its z, where it is nearest to a point.
+pub(crate) fn along(screw: &Screw, near: &Vector3<f64>) -> Pose {
+    let direction = screw.direction();
+    let x = rotation::perpendicular(&direction).normalize();
+    let origin = if screw.is_prismatic() { *near } else { screw.nearest_point(near) };
+    Pose::new(Matrix3::from_columns(&[x, direction.cross(&x), direction]), origin)
 }
 
 impl Arm {
@@ -150,13 +250,11 @@ impl Arm {
     pub fn smallest_singular_value(&self, q: &[f64]) -> f64 {
         let placed = self.placed(q);
         let mut a = nalgebra::Matrix6::<f64>::zeros();
-        for (index, screw) in self.screws.iter().enumerate() {
-            let (axis, zero) = (placed.directions[index], Vector3::zeros());
-            let (v, w) = if screw.is_prismatic() {
-                (axis, zero)
-            } else {
-                (axis.cross(&(placed.tip.translation - placed.origins[index])) / self.reach_m, axis)
-            };
+        for index in 0..self.joints() {
+            let (mut v, w) = placed.column(index);
+            if !self.screws[index].is_prismatic() {
+                v /= self.reach_m;
+            }
             let column = nalgebra::Vector6::new(v.x, v.y, v.z, w.x, w.y, w.z);
             a += column * column.transpose();
         }

@@ -6,6 +6,7 @@
 //! | to | see |
 //! |---|---|
 //! | have an arm, and the pose of its tip | [`Arm`], [`Arm::forward_kinematics`] |
+//! | have joints that turn more than their readings say | [`Model`], [`Arm::of`] |
 //! | move the tip to a pose, from where the arm is | [`Arm::nearest`] |
 //! | know all configurations for a pose | [`AllBranches`] |
 //! | compute with poses | [`lie`]: poses, twists, screws |
@@ -23,9 +24,12 @@ extern crate std;
 mod arm;
 mod branches;
 pub mod lie;
+mod model;
 mod newton;
+mod real;
 mod small;
 pub mod trig;
 
 pub use arm::{Arm, MOST_JOINTS};
 pub use branches::{AllBranches, Branches, MOST_BRANCHES};
+pub use model::{Drawn, Joint, JointValue, Model, Pull, PulledWeight, Wave};

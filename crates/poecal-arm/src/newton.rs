@@ -55,13 +55,12 @@ fn angle_of(sine: Vector3<f64>, squared: f64) -> Vector3<f64> {
 /// Column of a joint: motion of the tip's point (over the reach) and its turn.
 #[inline]
 fn column(arm: &Arm, placed: &Placed, joint: usize, inverse_reach: f64) -> [f64; 6] {
-    let axis = placed.directions[joint];
-    if arm.screws()[joint].is_prismatic() {
-        // A step is counted in reaches, so that it is of the size of an angle.
-        return [axis.x, axis.y, axis.z, 0.0, 0.0, 0.0];
+    let (mut v, w) = placed.column(joint);
+    // A step that slides is counted in reaches, so that it is of the size of an angle.
+    if !arm.screws()[joint].is_prismatic() {
+        v *= inverse_reach;
     }
-    let moves = axis.cross(&(placed.tip.translation - placed.origins[joint])) * inverse_reach;
-    [moves.x, moves.y, moves.z, axis.x, axis.y, axis.z]
+    [v.x, v.y, v.z, w.x, w.y, w.z]
 }
 
 /// Undamped steps of six joints, as long as they bring the tip closer. `q` becomes the best configuration that was met;

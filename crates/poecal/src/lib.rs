@@ -126,11 +126,15 @@ pub use simulate::{Kind, Simulated, Simulation};
 
 #[doc(inline)]
 pub use poecal_arm::lie;
+#[doc(inline)]
+pub use poecal_arm::{AllBranches, Arm, Branches};
 
 #[doc(hidden)]
 pub use error::nearest;
 #[doc(hidden)]
 pub use measurement::ByQuantity;
+#[doc(hidden)]
+pub use poecal_arm as arm;
 #[doc(hidden)]
 pub use threads::MOST_THREADS;
 #[doc(hidden)]

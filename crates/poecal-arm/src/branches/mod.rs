@@ -9,6 +9,7 @@ mod wrist;
 use alloc::boxed::Box;
 use alloc::vec::Vec;
 use core::cmp::Reverse;
+use core::f64::consts::PI;
 
 use axis::Axis;
 use general::General;
@@ -67,12 +68,11 @@ impl Branches {
     }
 
     fn add(&mut self, q: &[f64; 6]) -> bool {
-        let q = q.map(wrapped);
         let is_same = |other: &[f64; 6]| q.iter().zip(other).all(|(a, b)| wrapped(a - b).abs() < SAME);
         if self.count == MOST_BRANCHES || self.as_slice().iter().any(is_same) {
             return false;
         }
-        self.values[self.count] = q;
+        self.values[self.count] = *q;
         self.count += 1;
         true
     }
@@ -126,11 +126,11 @@ pub struct AllBranches {
 }
 
 impl AllBranches {
-    /// What is computed once for an arm; `None` of an arm that has not six revolute joints.
+    /// What is computed once for an arm; `None` of an arm that has not six revolute joints, each with a reading of its own.
     #[must_use]
     pub fn new(arm: &Arm) -> Option<Self> {
         let screws: &[_; 6] = arm.screws().try_into().ok()?;
-        if screws.iter().any(Screw::is_prismatic) {
+        if screws.iter().any(Screw::is_prismatic) || arm.senses().is_none() {
             return None;
         }
         let axes: [Axis; 6] = screws.map(|screw| Axis::of(&screw));
@@ -217,7 +217,7 @@ impl AllBranches {
         for (here, there) in q.iter_mut().zip(best) {
             *here += wrapped(there - *here);
         }
-        newton(&self.arm, target, q, 1)
+        newton(&self.arm, target, q, MOST_STEPS)
     }
 }
 
@@ -231,7 +231,17 @@ fn follow(arm: &Arm, (way, is_reversed): &(Way, bool), target: &Pose, found: &mu
             q.reverse();
             q = q.map(|it| -it);
         }
-        let left = newton(arm, target, &mut q, MOST_STEPS);
+        for (it, sense) in q.iter_mut().zip(arm.senses().unwrap_or_default()) {
+            *it = wrapped(*it) / sense;
+        }
+        let mut left = newton(arm, target, &mut q, MOST_STEPS);
+        if q.iter().any(|it| it.abs() > PI) {
+            q = q.map(wrapped);
+            if !arm.is_rigid() {
+                // With an error of its gear, a joint is not where it was a turn ago.
+                left = newton(arm, target, &mut q, MOST_STEPS);
+            }
+        }
         is_sure &= left < REACHED && found.add(&q);
     };
     match way {

@@ -1,5 +1,6 @@
 //! Robots: a chain or a tree of joints with screws, a home pose, forward kinematics. No estimation here, and no files.
 
+mod arm;
 mod body;
 mod correction_model;
 mod corrections;

@@ -1,6 +1,7 @@
 //! Moments of weights about joints.
 
 use nalgebra::Vector3;
+use poecal_arm::{Pull, PulledWeight};
 
 use super::{Body, Gravity, JointKind, Mass, Robot, Weight};
 use crate::lie::Pose;
@@ -125,6 +126,34 @@ impl<'a> Statics<'a> {
     #[must_use]
     pub fn carries_masses(&self, joint: usize) -> bool {
         self.mass_levers.get(joint).is_some_and(|all| *all > 0.0)
+    }
+
+    /// What a joint gives with these coefficients of the weights and of all masses, where these joints are the moving ones of an arm.
+    pub(super) fn pull(&self, joint: usize, moving: &[usize], sags: &[f64], of_masses: f64) -> Option<Pull> {
+        let after = |body: Body| {
+            let carrying = self.robot.joints_to(body);
+            moving.iter().take_while(|it| carrying.contains(it)).count()
+        };
+        let weights = &self.gravity.weights;
+        let shares = self.shares.get(joint * weights.len()..)?;
+        let sagging = weights.iter().zip(shares).zip(sags);
+        let sagging = sagging.map(|((weight, share), sag)| (share * sag, weight.body, weight.place));
+        let masses = &self.robot.masses;
+        let shares = self.of_masses.get(joint * masses.len()..)?;
+        let massive =
+            masses.iter().zip(shares).map(|(mass, share)| (share * of_masses, mass.body, mass.place));
+        let pulled = sagging.chain(massive).filter(|(size, ..)| *size != 0.0);
+        let weights: Vec<PulledWeight> =
+            pulled.map(|(size, body, place)| PulledWeight { after: after(body), size, place }).collect();
+        let (screw, place) = self.gravity.axes.get(joint)?;
+        let before = self.robot.body_before(joint);
+        (!weights.is_empty()).then(|| Pull {
+            after: after(before),
+            slides: self.robot.joints[joint].kind == JointKind::Prismatic,
+            direction: screw.direction(),
+            place: *place,
+            weights,
+        })
     }
 
     /// Moments at these values of all joints, without terms.

@@ -69,6 +69,7 @@ fn few_types_are_shown_and_each_has_an_example() {
     modules.push("lie".to_owned());
     let folder = |module: &str| match module {
         "lie" => root.join("../../poecal-arm/src/lie"),
+        "poecal_arm" => root.join("../../poecal-arm/src"),
         _ => root.join(module.replace("::", "/")),
     };
     for module in &modules {

@@ -68,6 +68,7 @@ fn bad_mjcf_gets_one_sentence_each() {
 
 /// A joint between two links.
 fn sdf(joint: &str, more: &str) -> String {
+    let joint = if joint.is_empty() { "<axis><xyz>0 0 1</xyz></axis>" } else { joint };
     format!(
         "<sdf version='1.9'><model name='m'>\n<link name='a'/><link name='b'/>\n<joint name='j' type='revolute'><parent>a</parent><child>b</child>\n\
          {joint}</joint>\n{more}</model></sdf>"
@@ -140,6 +141,7 @@ fn very_large_models_end_soon() {
 fn bad_sdf_gets_one_sentence_each() {
     #[rustfmt::skip]
     let cases = vec![
+        (sdf("<!-- none -->", ""), "m.sdf:3:1: <joint> `j` has no <axis>, expected its direction"),
         ("<sdf version='1.9'><model name='m'><link name='a'/></model></sdf>".into(),
          "m.sdf:1:1: found no <model> with a <joint>, expected one"),
         (format!("{}{}</sdf>", sdf("", "").trim_end_matches("</sdf>"), "<model name='n'><joint name='k'/></model>"),

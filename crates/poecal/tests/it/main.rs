@@ -4,6 +4,7 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, clippy::print_stdout)]
 
+mod arms;
 mod basin;
 mod blocks;
 mod cell;

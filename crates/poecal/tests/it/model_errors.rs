@@ -53,7 +53,8 @@ fn bad_urdfs_get_one_sentence_each() {
         ("<!DOCTYPE robot [<!ENTITY x 'y'>]>\n<robot/>".into(),
          "r.urdf:1:1: found a document type definition, expected a URDF robot description without one"),
         ("<?xml version='1.0'?>\n  <sdf version='1.7'/>".into(),
-         "r.urdf:2:3: found root element <sdf>, expected <robot>, as in every URDF file"),
+         "r.urdf:2:3: found root element <sdf>, expected <robot>, as in every URDF file: `poecal export CALIBRATION --format sdf` \
+          writes this form"),
         ("<robot xmlns:xacro='http://www.ros.org/wiki/xacro'>\n <xacro:arm/></robot>".into(),
          "r.urdf:2:2: found a xacro element, expected plain URDF: expand the file first with `xacro robot.xacro > robot.urdf`"),
         ("<robot>\n <xacro:arm/></robot>".into(),

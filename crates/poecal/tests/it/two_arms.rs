@@ -32,7 +32,7 @@ fn robot(base: &str, instruments: &[(&str, &str)], targets: &[(&str, &str)]) -> 
 }
 
 /// Both hands with a target.
-fn both_hands(base: &str) -> Robot {
+pub(crate) fn both_hands(base: &str) -> Robot {
     robot(base, &[], &[("left", "left_hand"), ("right", "right_hand")])
 }
 

@@ -1,0 +1,110 @@
+//! The arm that kinematics are computed with, beside the robot that it is made of.
+
+use std::f64::consts::PI;
+
+use nalgebra::Vector3;
+use poecal::robot::{
+    Body, Coupling, Factor, FactorReading, Gives, Gravity, Harmonic, JointTerm, Mass, Payload, Sag, Term,
+};
+use poecal::{AllBranches, Arm};
+use poecal::{Robot, simulate};
+
+use poecal::simulate::random;
+use rand_chacha::ChaCha8Rng;
+use rand_core::SeedableRng as _;
+
+use crate::common::lifting_robot;
+use crate::two_arms::both_hands;
+
+/// A number between -1 and 1.
+fn one(numbers: &mut ChaCha8Rng) -> f64 {
+    2.0 * random::uniform(numbers) - 1.0
+}
+
+/// A robot whose joints and links give in every way there is, by up to `size` rad (and m/3).
+fn bent(robot: &Robot, size: f64, numbers: &mut ChaCha8Rng) -> Robot {
+    let all: Vec<usize> = (0..robot.joints.len()).collect();
+    let (mut robot, _) = robot.giving(&all, Gives::All);
+    robot.factors =
+        vec![FactorReading { name: "temperature".into(), reference: 20.0 }, FactorReading::new("payload")];
+    robot.gravity = Some(Gravity::of_unit_weights(&robot, Vector3::new(0.1, 0.2, -1.0)));
+    let bodies = [(1, 3.0), (robot.joints.len() - 1, 1.5)];
+    robot.masses = bodies
+        .map(|(at, kg)| Mass { body: Body::Link(at), place: random::normal_vector(numbers), kg })
+        .into();
+    let weights = robot.gravity.as_ref().unwrap().weights.len();
+    for joint in 0..robot.joints.len() {
+        let mut terms = vec![Term::Offset, Term::Ratio, Term::OwnWeight];
+        terms.push(Term::Factor(Factor { index: 0 }));
+        terms.push(Term::Payload(Payload { index: 1 }));
+        terms.push(Term::Coupling(Coupling { joint: (joint + 7) % robot.joints.len() }));
+        terms.extend((0..weights).map(|weight| Term::Sag(Sag { weight })));
+        for order in [1, 2] {
+            terms.extend([false, true].map(|cosine| Term::Harmonic(Harmonic { order, cosine })));
+        }
+        let slides = robot.joints[joint].kind == poecal::JointKind::Prismatic;
+        let share = if slides { size / 3.0 } else { size } / terms.len() as f64;
+        robot.terms.extend(terms.into_iter().map(|term| JointTerm {
+            joint,
+            term,
+            coefficient: share * one(numbers),
+        }));
+    }
+    robot
+}
+
+#[test]
+fn an_arm_is_where_its_robot_is() {
+    let mut numbers = ChaCha8Rng::seed_from_u64(11);
+    for (name, robot) in
+        [("elbow", simulate::elbow()), ("with a lift", lifting_robot()), ("torso", both_hands("base_link"))]
+    {
+        let robot = bent(&robot, 0.02, &mut numbers);
+        let factors = [26.0, 1.5];
+        let (arm, readings) = robot.arm(&factors).unwrap();
+        let names = robot.reading_names();
+        let mut worst = 0.0_f64;
+        for _ in 0..200 {
+            let q: Vec<f64> = readings.iter().map(|_| PI * one(&mut numbers)).collect();
+            let mut all = vec![0.0; names.len()];
+            readings.iter().zip(&q).for_each(|(&at, q)| all[at] = *q);
+            let count = all.len();
+            all[count - 2..].copy_from_slice(&factors);
+            let (one, other) = (arm.forward_kinematics(&q), robot.forward_kinematics(&all));
+            worst = worst.max((one.translation - other.translation).norm());
+            worst = worst.max((one.rotation - other.rotation).norm());
+        }
+        println!("{name}: {} readings, apart by {worst:.1e}", readings.len());
+        assert!(worst < 1e-13, "{name}: {worst}");
+    }
+}
+
+#[test]
+fn branches_of_a_bent_arm_reach_the_pose() {
+    let mut numbers = ChaCha8Rng::seed_from_u64(12);
+    let robot = bent(&simulate::elbow(), 0.005, &mut numbers);
+    let (arm, _): (Arm, _) = robot.arm(&[20.0, 2.0]).unwrap();
+    let all = AllBranches::new(&arm).unwrap();
+    let (mut worst, mut branches, mut own, mut count) = (0.0_f64, 0, 0, 0);
+    for _ in 0..500 {
+        let q = [0; 6].map(|_| PI * one(&mut numbers));
+        if arm.smallest_singular_value(&q) < 0.01 {
+            continue;
+        }
+        count += 1;
+        let target = arm.forward_kinematics(&q);
+        let found = all.at(&target);
+        for branch in found.as_slice() {
+            let there = arm.forward_kinematics(branch);
+            worst = worst.max((there.translation - target.translation).norm());
+            worst = worst.max((there.rotation - target.rotation).norm());
+        }
+        branches += found.as_slice().len();
+        let is_own = |it: &[f64; 6]| it.iter().zip(q).all(|(a, b)| (a - b).abs() < 1e-9);
+        own += usize::from(found.as_slice().iter().any(is_own));
+    }
+    println!(
+        "{own} of {count} configurations found among {branches} branches; largest remainder {worst:.1e}"
+    );
+    assert!(worst < 1e-10 && own == count && branches > 2 * count);
+}
