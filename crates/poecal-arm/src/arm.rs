@@ -6,13 +6,11 @@ use alloc::vec::Vec;
 
 use nalgebra::{Matrix3, Vector3};
 
-use crate::lie::{Pose, Screw, rotation};
+use crate::lie::{Pose, Screw};
 use crate::model::{Joint, Model};
+use crate::placed::{MOST_JOINTS, Placed, along, turn};
 use crate::real::Real;
-use crate::trig::cosine_and_sine;
 
-/// Most joints of an arm, so that nothing is allocated where it is computed with.
-pub const MOST_JOINTS: usize = 16;
 /// Least joint value per reading of a joint that the reading is said to move.
 const LEAST_SENSE: f64 = 0.5;
 
@@ -42,31 +40,6 @@ pub struct Arm {
     senses: Option<Vec<f64>>,
     /// What its joint values are beyond their readings.
     real: Option<Box<Real>>,
-}
-
-/// Where an arm is: its tip, and how that moves with each reading, `velocity = v + w × tip` and `angular = w`, in the base.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Placed {
-    pub(crate) v: [Vector3<f64>; MOST_JOINTS],
-    pub(crate) w: [Vector3<f64>; MOST_JOINTS],
-    pub(crate) tip: Pose,
-}
-
-impl Placed {
-    pub(crate) fn at_rest() -> Self {
-        Placed {
-            v: [Vector3::zeros(); MOST_JOINTS],
-            w: [Vector3::zeros(); MOST_JOINTS],
-            tip: Pose::identity(),
-        }
-    }
-
-    /// How the tip moves with a reading: its point, and its turn.
-    #[inline]
-    pub(crate) fn column(&self, reading: usize) -> (Vector3<f64>, Vector3<f64>) {
-        let w = self.w[reading];
-        (self.v[reading] + w.cross(&self.tip.translation), w)
-    }
 }
 
 impl Arm {
@@ -220,23 +193,6 @@ impl Arm {
     }
 }
 
-/// Turns a frame about its own z.
-#[inline(always)]
-pub(crate) fn turn(frame: &mut Matrix3<f64>, angle: f64) {
-    let (c, s) = cosine_and_sine(angle);
-    let (x, y) = (frame.column(0).into_owned(), frame.column(1).into_owned());
-    frame.set_column(0, &(x * c + y * s));
-    frame.set_column(1, &(y * c - x * s));
-}
-
-/// A frame on a joint's axis, which is its z, where it is nearest to a point.
-pub(crate) fn along(screw: &Screw, near: &Vector3<f64>) -> Pose {
-    let direction = screw.direction();
-    let x = rotation::perpendicular(&direction).normalize();
-    let origin = if screw.is_prismatic() { *near } else { screw.nearest_point(near) };
-    Pose::new(Matrix3::from_columns(&[x, direction.cross(&x), direction]), origin)
-}
-
 impl Arm {
     /// The smallest singular value of the Jacobian at joint values, lengths over [`Arm::reach_m`]: 0 at singularities.
     ///
@@ -259,5 +215,36 @@ impl Arm {
             a += column * column.transpose();
         }
         nalgebra::ComplexField::sqrt(a.symmetric_eigenvalues().min().max(0.0))
+    }
+}
+
+impl Arm {
+    /// How six joints are bent: the sign of the Jacobian's determinant, which changes where the arm passes through a singularity; 0 of other
+    /// numbers of joints.
+    ///
+    /// ```
+    /// use nalgebra::Vector3;
+    /// use poecal_arm::{Arm, lie::{Pose, Screw}};
+    /// let arm = Arm::new(&[Screw::revolute(&Vector3::z(), &Vector3::zeros())], &Pose::identity()).unwrap();
+    /// assert_eq!(arm.handedness(&[0.0]), 0.0);
+    /// ```
+    #[must_use]
+    pub fn handedness(&self, q: &[f64]) -> f64 {
+        if self.joints() != 6 {
+            return 0.0;
+        }
+        let placed = self.placed(q);
+        let mut rows = [[0.0; 6]; 6];
+        for index in 0..6 {
+            let (mut v, w) = placed.column(index);
+            if !self.screws[index].is_prismatic() {
+                v /= self.reach_m;
+            }
+            for (row, value) in rows.iter_mut().zip([v.x, v.y, v.z, w.x, w.y, w.z]) {
+                row[index] = value;
+            }
+        }
+        let determinant = crate::small::determinant(&mut rows);
+        if determinant == 0.0 { 0.0 } else { determinant.signum() }
     }
 }

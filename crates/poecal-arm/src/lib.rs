@@ -26,10 +26,12 @@ mod branches;
 pub mod lie;
 mod model;
 mod newton;
+mod placed;
 mod real;
 mod small;
 pub mod trig;
 
-pub use arm::{Arm, MOST_JOINTS};
+pub use arm::Arm;
 pub use branches::{AllBranches, Branches, MOST_BRANCHES};
 pub use model::{Drawn, Joint, JointValue, Model, Pull, PulledWeight, Wave};
+pub use placed::MOST_JOINTS;

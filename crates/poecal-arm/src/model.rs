@@ -4,8 +4,8 @@ use alloc::vec::Vec;
 
 use nalgebra::Vector3;
 
-use crate::arm::MOST_JOINTS;
 use crate::lie::{Pose, Screw};
+use crate::placed::MOST_JOINTS;
 
 /// A serial arm as calibration finds it: `base_from_tip(q) = exp(ξ₁θ₁(q)) … exp(ξₘθₘ(q)) M` with n readings q and joint values θ that are
 /// functions of them ([`JointValue`]). Joints that no reading turns are places where links give.

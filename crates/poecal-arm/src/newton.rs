@@ -2,8 +2,9 @@
 
 use nalgebra::Vector3;
 
-use crate::arm::{Arm, MOST_JOINTS, Placed};
+use crate::arm::Arm;
 use crate::lie::{Pose, rotation};
+use crate::placed::{MOST_JOINTS, Placed};
 use crate::small;
 
 // The functions of numbers, where there is no standard library.

@@ -4,9 +4,9 @@ use alloc::vec::Vec;
 
 use nalgebra::{Matrix3, Vector3};
 
-use crate::arm::{MOST_JOINTS, Placed, along, turn};
 use crate::lie::Pose;
 use crate::model::{Drawn, JointValue, Model, Pull};
+use crate::placed::{MOST_JOINTS, Placed, along, turn};
 use crate::trig::cosine_and_sine;
 
 /// A chain of joints, with what does not depend on the configuration.

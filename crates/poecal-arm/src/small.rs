@@ -75,3 +75,35 @@ pub(crate) fn solve_symmetric<const N: usize>(
     }
     Some(())
 }
+
+/// Elimination with row pivots in place; the determinant.
+pub(crate) fn determinant<const N: usize>(a: &mut [[f64; N]; N]) -> f64 {
+    let mut out = 1.0;
+    for k in 0..N {
+        let mut row = k;
+        for i in k + 1..N {
+            if a[i][k].abs() > a[row][k].abs() {
+                row = i;
+            }
+        }
+        if row != k {
+            a.swap(k, row);
+            out = -out;
+        }
+        let pivot = a[k];
+        out *= pivot[k];
+        if pivot[k] == 0.0 {
+            return 0.0;
+        }
+        let inverse = 1.0 / pivot[k];
+        for below in a.iter_mut().skip(k + 1) {
+            let factor = below[k] * inverse;
+            if factor != 0.0 {
+                for j in k + 1..N {
+                    below[j] -= factor * pivot[j];
+                }
+            }
+        }
+    }
+    out
+}

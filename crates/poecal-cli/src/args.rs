@@ -1,6 +1,7 @@
 //! The command line.
 
 mod calibrate;
+mod compensate;
 mod identify;
 mod init;
 mod offsets;
@@ -11,6 +12,7 @@ mod simulate;
 mod words;
 
 pub(crate) use calibrate::Calibrate;
+pub(crate) use compensate::Compensate;
 pub(crate) use identify::Identify;
 pub(crate) use init::Init;
 pub(crate) use offsets::Offsets;
@@ -74,6 +76,8 @@ pub(crate) enum Command {
     Export(Export),
     /// Write calibrated numbers into a URDF
     Apply(Apply),
+    /// Correct a program for the nominal robot so that the actual one does what it means
+    Compensate(Compensate),
     /// Explain how a robot differs from its model by joint offsets
     Offsets(Offsets),
     /// Repeat the experiment of a paper and check its claims, or show the effect of gross errors

@@ -134,6 +134,7 @@ fn run_to_code(arguments: impl IntoIterator<Item = OsString>) -> u8 {
         Command::Convert(options) => commands::convert(options, &console),
         Command::Export(options) => commands::export(options, &console),
         Command::Apply(options) => commands::apply(options, &console),
+        Command::Compensate(options) => commands::compensate(options, &console),
         Command::Offsets(options) => commands::offsets(options, &console),
         Command::Reproduce(options) => commands::reproduce(options, &console),
         Command::Identify(options) => commands::identify(options, &console),

@@ -66,6 +66,8 @@ mod reference;
 pub mod analysis;
 #[cfg_attr(doc, doc(hidden))]
 pub mod calibration;
+#[cfg_attr(doc, doc(hidden))]
+pub mod compensate;
 mod distributions;
 #[cfg_attr(doc, doc(hidden))]
 pub mod error;

@@ -16,6 +16,7 @@ use super::BEYOND;
 use super::axis::{Axis, back};
 use super::roots::{Angles, Trigonometric};
 use crate::lie::Pose;
+use crate::small::determinant;
 use crate::trig::cosine_and_sine;
 
 // The functions of numbers, where there is no standard library.
@@ -352,38 +353,6 @@ fn resultant(equations: &[[Table; 3]; 6], c: f64, s: f64) -> Matrix {
                 let number = one[four][five] + c * cosine[four][five] + s * sine[four][five];
                 out[row][3 * four + five] = number;
                 out[6 + row][3 + 3 * four + five] = number;
-            }
-        }
-    }
-    out
-}
-
-/// Elimination with row pivots in place; the determinant.
-fn determinant(a: &mut Matrix) -> f64 {
-    let mut out = 1.0;
-    for k in 0..12 {
-        let mut row = k;
-        for i in k + 1..12 {
-            if a[i][k].abs() > a[row][k].abs() {
-                row = i;
-            }
-        }
-        if row != k {
-            a.swap(k, row);
-            out = -out;
-        }
-        let pivot = a[k];
-        out *= pivot[k];
-        if pivot[k] == 0.0 {
-            return 0.0;
-        }
-        let inverse = 1.0 / pivot[k];
-        for below in a.iter_mut().skip(k + 1) {
-            let factor = below[k] * inverse;
-            if factor != 0.0 {
-                for j in k + 1..12 {
-                    below[j] -= factor * pivot[j];
-                }
             }
         }
     }

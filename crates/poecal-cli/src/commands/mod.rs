@@ -2,6 +2,7 @@
 
 mod calibrate;
 mod check;
+mod compensate;
 mod completions;
 mod convert;
 mod export;
@@ -19,6 +20,7 @@ mod validate;
 
 pub(crate) use calibrate::calibrate;
 pub(crate) use check::check;
+pub(crate) use compensate::compensate;
 pub(crate) use completions::completions;
 pub(crate) use convert::convert;
 pub(crate) use export::{apply, export};

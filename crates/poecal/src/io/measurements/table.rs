@@ -33,6 +33,8 @@ pub(super) struct Table<'a> {
 
 /// The rows of a block.
 pub(super) struct TableRows<'t> {
+    /// The whole block.
+    pub(super) text: &'t str,
     header: &'t Header<'t>,
     separator: Separator,
     lines: Lines<'t>,
@@ -70,6 +72,16 @@ impl<'a> Table<'a> {
         Ok(Table { header, separator, separator_line, blocks, unread: true })
     }
 
+    /// The text before the first block of rows, of blocks that hold what they pass.
+    pub(super) fn passed(&mut self) -> String {
+        self.blocks.passed()
+    }
+
+    /// Whether the file begins with a byte order mark.
+    pub(super) fn is_marked(&self) -> bool {
+        self.blocks.is_marked()
+    }
+
     /// Checksum of the bytes read so far.
     pub(super) fn sha256(&self) -> Option<String> {
         self.blocks.sha256()
@@ -82,7 +94,8 @@ impl<'a> Table<'a> {
         }
         let Table { header, separator, blocks, .. } = self;
         let lines = blocks.lines(header.last_line());
-        Ok(Some(TableRows { header, separator: *separator, lines, cells: Vec::new() }))
+        let text = blocks.text();
+        Ok(Some(TableRows { text, header, separator: *separator, lines, cells: Vec::new() }))
     }
 }
 

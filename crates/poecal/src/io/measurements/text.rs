@@ -36,6 +36,10 @@ pub(super) struct Blocks<'a> {
     newline: Option<u8>,
     /// Number of lines before the current block.
     lines: usize,
+    /// Whether the text begins with a byte order mark.
+    is_marked: bool,
+    /// The blocks before the current one, where they are asked for.
+    passed: Option<String>,
 }
 
 impl<'a> Blocks<'a> {
@@ -57,13 +61,27 @@ impl<'a> Blocks<'a> {
 
     fn of(path: &'a Path, expected: &'a str, source: TextSource<'a>, size: usize) -> Self {
         let (text, rest) = (String::new(), Vec::new());
-        Blocks { path, expected, source, size, text, rest, newline: None, lines: 0 }
+        Blocks {
+            path,
+            expected,
+            source,
+            size,
+            text,
+            rest,
+            newline: None,
+            lines: 0,
+            is_marked: false,
+            passed: None,
+        }
     }
 
     /// Reads the next block; false at the end.
     pub(super) fn advance(&mut self) -> Result<bool> {
         let newline = self.newline.unwrap_or(b'\n');
         self.lines += memchr::memchr_iter(newline, self.text.as_bytes()).count();
+        if let Some(passed) = &mut self.passed {
+            passed.push_str(&self.text);
+        }
         let mut bytes = std::mem::take(&mut self.text).into_bytes();
         bytes.clear();
         bytes.append(&mut self.rest);
@@ -103,6 +121,7 @@ impl<'a> Blocks<'a> {
         })?;
         if is_first && self.text.starts_with('\u{feff}') {
             self.text.remove(0);
+            self.is_marked = true;
         }
         Ok(!self.text.is_empty())
     }
@@ -113,6 +132,26 @@ impl<'a> Blocks<'a> {
             TextSource::File(file) => Some(file.sha256()),
             TextSource::Text(_) => None,
         }
+    }
+
+    /// The same, which holds what it has passed until that is taken.
+    pub(super) fn keeping(self) -> Self {
+        Blocks { passed: Some(String::new()), ..self }
+    }
+
+    /// The text before the current block, once.
+    pub(super) fn passed(&mut self) -> String {
+        self.passed.take().unwrap_or_default()
+    }
+
+    /// The current block.
+    pub(super) fn text(&self) -> &str {
+        &self.text
+    }
+
+    /// Whether the text begins with a byte order mark, which no block has.
+    pub(super) fn is_marked(&self) -> bool {
+        self.is_marked
     }
 
     /// Lines of the current block, without the first `skip` of the file.

@@ -112,6 +112,41 @@ impl FilePlace {
         self.put().map(Put::finish)
     }
 
+    /// Writes the file from what `make` hands on piece by piece, so that it is never held whole.
+    ///
+    /// # Errors
+    /// Those of `make`, and [`ErrorKind::File`](crate::ErrorKind::File) if the file cannot be written; then nothing has changed, but for what
+    /// a stream has got.
+    pub fn write_by<T>(
+        mut self,
+        make: impl FnOnce(&mut dyn FnMut(&str) -> Result<()>) -> Result<T>,
+    ) -> Result<T> {
+        let named = self.named.clone();
+        let failed = |error: &io::Error| unwritable(&named, error);
+        let made = match &mut self.way {
+            Way::Stream(path) => {
+                let mut out = disk::here().stream(path).map_err(|error| failed(&error))?;
+                let made = make(&mut |piece| match out.write_all(piece.as_bytes()) {
+                    // A closed pipe is no error.
+                    Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
+                    written => written.map_err(|error| failed(&error)),
+                })?;
+                out.sync().map_err(|error| failed(&error))?;
+                made
+            }
+            Way::Staged { staging, .. } => {
+                let mut out = staging.create(NAME).map_err(|error| failed(&error))?;
+                let made =
+                    make(&mut |piece| out.write_all(piece.as_bytes()).map_err(|error| failed(&error)))?;
+                staging.keep(out).and_then(|()| staging.sync()).map_err(|error| failed(&error))?;
+                made
+            }
+        };
+        let _undisturbed = interrupted::undisturbed();
+        self.put().map(Put::finish)?;
+        Ok(made)
+    }
+
     /// Writes the new text beside its place, or to the stream.
     pub(super) fn stage(&mut self, page: Page) -> Result<()> {
         let staged = match &mut self.way {

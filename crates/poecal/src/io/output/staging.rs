@@ -120,6 +120,18 @@ impl Staging {
         Ok(())
     }
 
+    /// Opens one of the new files, to be written and then kept.
+    pub(super) fn create(&mut self, name: &str) -> io::Result<Box<dyn Output>> {
+        self.disk.create(&self.new_files().join(name))
+    }
+
+    /// Keeps a file that was written.
+    pub(super) fn keep(&mut self, mut out: Box<dyn Output>) -> io::Result<()> {
+        out.flush()?;
+        self.unsynced.push(out);
+        Ok(())
+    }
+
     /// Syncs all new files.
     pub(super) fn sync(&mut self) -> io::Result<()> {
         self.unsynced.drain(..).try_for_each(|mut file| file.sync())?;

@@ -1,0 +1,51 @@
+//! Frames on axes, and how the tip moves.
+
+use nalgebra::{Matrix3, Vector3};
+
+use crate::lie::{Pose, Screw, rotation};
+use crate::trig::cosine_and_sine;
+
+/// Most joints of an arm, so that nothing is allocated where it is computed with.
+pub const MOST_JOINTS: usize = 16;
+
+/// Where an arm is: its tip, and how that moves with each reading, `velocity = v + w × tip` and `angular = w`, in the base.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Placed {
+    pub(crate) v: [Vector3<f64>; MOST_JOINTS],
+    pub(crate) w: [Vector3<f64>; MOST_JOINTS],
+    pub(crate) tip: Pose,
+}
+
+impl Placed {
+    pub(crate) fn at_rest() -> Self {
+        Placed {
+            v: [Vector3::zeros(); MOST_JOINTS],
+            w: [Vector3::zeros(); MOST_JOINTS],
+            tip: Pose::identity(),
+        }
+    }
+
+    /// How the tip moves with a reading: its point, and its turn.
+    #[inline]
+    pub(crate) fn column(&self, reading: usize) -> (Vector3<f64>, Vector3<f64>) {
+        let w = self.w[reading];
+        (self.v[reading] + w.cross(&self.tip.translation), w)
+    }
+}
+
+/// Turns a frame about its own z.
+#[inline(always)]
+pub(crate) fn turn(frame: &mut Matrix3<f64>, angle: f64) {
+    let (c, s) = cosine_and_sine(angle);
+    let (x, y) = (frame.column(0).into_owned(), frame.column(1).into_owned());
+    frame.set_column(0, &(x * c + y * s));
+    frame.set_column(1, &(y * c - x * s));
+}
+
+/// A frame on a joint's axis, which is its z, where it is nearest to a point.
+pub(crate) fn along(screw: &Screw, near: &Vector3<f64>) -> Pose {
+    let direction = screw.direction();
+    let x = rotation::perpendicular(&direction).normalize();
+    let origin = if screw.is_prismatic() { *near } else { screw.nearest_point(near) };
+    Pose::new(Matrix3::from_columns(&[x, direction.cross(&x), direction]), origin)
+}

@@ -1,0 +1,201 @@
+//! What to command so that the robot as it is does what a program for its drawing meant.
+
+mod summary;
+mod table;
+
+use nalgebra::Vector3;
+use poecal_arm::{AllBranches, Arm};
+
+pub use summary::{Largest, Summary};
+pub use table::{TableOptions, compensate_table};
+
+use crate::error::{Error, ErrorKind, Result};
+use crate::lie::{Pose, rotation};
+use crate::robot::Robot;
+
+/// Distance (m) and angle (rad) below which a pose counts as reached.
+pub const REACHED: f64 = 1e-9;
+
+/// Compensation of joint readings: those with which the actual robot has its tip where the nominal one has it,
+/// `base_from_tip(q) = nominal base_from_tip(q₀)` (theory.md §9).
+///
+/// ```
+/// use poecal::compensate::Compensation;
+/// use poecal::robot::{JointTerm, Term};
+/// let nominal = poecal::simulate::elbow();
+/// let mut actual = nominal.clone();
+/// actual.terms.push(JointTerm { joint: 1, term: Term::Offset, coefficient: 0.01 });
+/// let mut compensation = Compensation::new(&nominal, &actual, &[])?;
+/// let found = compensation.joints(&[0.1, 0.2, 0.3, 0.4, 0.5, 0.6]);
+/// assert!((found.readings[1] - 0.19).abs() < 1e-12 && found.is_reached());
+/// # Ok::<(), poecal::Error>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Compensation {
+    nominal: Arm,
+    actual: Arm,
+    branches: Option<AllBranches>,
+    /// Of each reading of the arm, its index among the robot's.
+    readings: Vec<usize>,
+    names: Vec<String>,
+    /// The last correction: where the next one begins.
+    last: Vec<f64>,
+    q: Vec<f64>,
+    meant: Vec<f64>,
+    out: Vec<f64>,
+}
+
+/// A corrected configuration.
+///
+/// ```
+/// use poecal::compensate::Compensation;
+/// let robot = poecal::simulate::elbow();
+/// let mut same = Compensation::new(&robot, &robot, &[])?;
+/// assert_eq!(same.joints(&[0.1; 6]).moved_m, 0.0);
+/// # Ok::<(), poecal::Error>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Compensated<'a> {
+    /// Readings to command (rad, m), in the order of [`Robot::reading_names`].
+    pub readings: &'a [f64],
+    /// How far the actual robot's tip would have been off without correction, metres.
+    pub moved_m: f64,
+    /// The same of its orientation, radians.
+    pub turned_rad: f64,
+    /// Distance that is left, metres.
+    pub left_m: f64,
+    /// Angle that is left, radians.
+    pub left_rad: f64,
+    /// Whether the actual robot is bent another way than the nominal one: a singularity lies between them.
+    pub is_other_branch: bool,
+}
+
+impl Compensated<'_> {
+    /// Whether nothing is left but rounding.
+    #[must_use]
+    pub fn is_reached(&self) -> bool {
+        self.left_m <= REACHED && self.left_rad <= REACHED
+    }
+}
+
+/// Distance and angle of two poses.
+fn apart(one: &Pose, other: &Pose) -> (f64, f64) {
+    let turn: Vector3<f64> = rotation::log(&(one.rotation.transpose() * other.rotation));
+    ((one.translation - other.translation).norm(), turn.norm())
+}
+
+impl Compensation {
+    /// Of two robots with the same joints, at these values of the actual one's factors.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Model`] if their joints differ, or as [`Robot::arm`].
+    pub fn new(nominal: &Robot, actual: &Robot, factors: &[f64]) -> Result<Self> {
+        let (nominal_arm, own) = nominal.arm(&[])?;
+        let (actual_arm, readings) = actual.arm(factors)?;
+        let names = actual.joint_reading_names();
+        if names != nominal.joint_reading_names() || own != readings {
+            let message = "the nominal robot has other joints than the actual one, expected the same";
+            return Err(Error::new(ErrorKind::Model, message));
+        }
+        let count = readings.len();
+        Ok(Compensation {
+            branches: AllBranches::new(&actual_arm),
+            nominal: nominal_arm,
+            actual: actual_arm,
+            last: vec![0.0; count],
+            q: vec![0.0; count],
+            meant: vec![0.0; count],
+            out: vec![0.0; names.len()],
+            readings,
+            names,
+        })
+    }
+
+    /// Names of the readings.
+    #[must_use]
+    pub fn names(&self) -> &[String] {
+        &self.names
+    }
+
+    /// The nominal arm.
+    #[must_use]
+    pub fn nominal(&self) -> &Arm {
+        &self.nominal
+    }
+
+    /// The actual arm.
+    #[must_use]
+    pub fn actual(&self) -> &Arm {
+        &self.actual
+    }
+
+    /// Of each reading of the arms, its index among all readings.
+    #[must_use]
+    pub fn readings(&self) -> &[usize] {
+        &self.readings
+    }
+
+    /// Readings of the actual robot for readings of the nominal one (rad, m); those that do not move the tip stay as they are.
+    pub fn joints(&mut self, meant: &[f64]) -> Compensated<'_> {
+        self.out.clear();
+        self.out.extend_from_slice(meant);
+        self.out.resize(self.names.len().max(meant.len()), 0.0);
+        for (to, &at) in self.meant.iter_mut().zip(&self.readings) {
+            *to = meant.get(at).copied().unwrap_or(0.0);
+        }
+        let target = self.nominal.forward_kinematics(&self.meant);
+        let uncorrected = self.actual.forward_kinematics(&self.meant);
+        let (moved_m, turned_rad) = apart(&uncorrected, &target);
+        if moved_m == 0.0 && turned_rad == 0.0 {
+            return self.told((moved_m, turned_rad), (0.0, 0.0), false);
+        }
+        for (to, (meant, last)) in self.q.iter_mut().zip(self.meant.iter().zip(&self.last)) {
+            *to = meant + last;
+        }
+        let mut left = self.solve(&target);
+        let far = |q: &[f64], meant: &[f64]| q.iter().zip(meant).any(|(a, b)| (a - b).abs() > FAR);
+        if left.0 > REACHED || left.1 > REACHED || far(&self.q, &self.meant) {
+            // The last correction may lead astray.
+            self.q.copy_from_slice(&self.meant);
+            left = self.solve(&target);
+        }
+        let is_other_branch = far(&self.q, &self.meant)
+            || self.nominal.handedness(&self.meant) * self.actual.handedness(&self.q) < 0.0;
+        for (last, (to, from)) in self.last.iter_mut().zip(self.q.iter().zip(&self.meant)) {
+            *last = if is_other_branch { 0.0 } else { to - from };
+        }
+        for (&at, value) in self.readings.iter().zip(&self.q) {
+            if let Some(out) = self.out.get_mut(at) {
+                *out = *value;
+            }
+        }
+        self.told((moved_m, turned_rad), left, is_other_branch)
+    }
+
+    fn told(&self, moved: (f64, f64), left: (f64, f64), is_other_branch: bool) -> Compensated<'_> {
+        Compensated {
+            readings: &self.out,
+            moved_m: moved.0,
+            turned_rad: moved.1,
+            left_m: left.0,
+            left_rad: left.1,
+            is_other_branch,
+        }
+    }
+
+    /// Takes `q` to the nearest configuration that has the tip at a pose; distance and angle that are left.
+    fn solve(&mut self, target: &Pose) -> (f64, f64) {
+        match (&self.branches, <&mut [f64; 6]>::try_from(&mut self.q[..])) {
+            (Some(branches), Ok(six)) => {
+                branches.nearest(target, six);
+            }
+            (None, _) | (_, Err(_)) => {
+                self.actual.nearest(target, &mut self.q);
+            }
+        }
+        apart(&self.actual.forward_kinematics(&self.q), target)
+    }
+}
+
+/// Correction of a joint (rad, m) that is none of a robot like its drawing: another branch.
+const FAR: f64 = 0.6;

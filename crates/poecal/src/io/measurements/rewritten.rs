@@ -1,0 +1,158 @@
+//! Tables whose joint readings are replaced, row by row; all else stays as it is.
+
+use std::path::Path;
+
+use super::ReadOptions;
+use super::inputs::{InputReader, InputSource};
+use super::layout::ColumnLayout;
+use super::mapping::ColumnMap;
+use super::number::{DecimalSign, Numbers};
+use super::scale::JointWatch;
+use super::table::{Table, TableRows};
+use super::text::Blocks;
+use super::units::Unit;
+use crate::error::{Error, ErrorKind, Result};
+use crate::io::numbers::push_number;
+use crate::robot::Robot;
+use crate::text::visible;
+
+/// A row of joint readings, and what stands in their place.
+#[derive(Debug)]
+pub struct JointRow<'a> {
+    /// Line of the file, from 1.
+    pub line: usize,
+    /// Readings (rad, m), in the order of [`Robot::reading_names`].
+    pub readings: &'a [f64],
+}
+
+/// A rewritten table.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct RewrittenTable {
+    /// Number of rows.
+    pub rows: usize,
+    /// Warnings, a sentence each.
+    pub warnings: Vec<String>,
+}
+
+/// Reads a file of joint readings (CSV) and hands it on with new readings: `change` gets each row and changes its numbers (rad, m) in place,
+/// `out` gets the text piece by piece. Everything but the digits of changed readings stays byte for byte; they keep the column's unit and the
+/// decimal sign. Nothing is held but a few hundred kilobytes.
+///
+/// # Errors
+/// As [`super::read_joints`]; [`ErrorKind::Measurement`] if a reading is no column of its own; what `change` and `out` return.
+///
+/// ```
+/// use poecal::io::measurements::{ReadOptions, rewrite_joints};
+/// let path = std::env::temp_dir().join(format!("poecal_rewrite_{}.csv", std::process::id()));
+/// std::fs::write(&path, "note,joint1[deg],joint2,joint3,joint4\nstart,90,0,0,0\n").unwrap();
+/// let mut text = String::new();
+/// let mut change = |_: &_, numbers: &mut [f64]| Ok(numbers[1] += 0.5);
+/// let mut out = |piece: &str| Ok(text.push_str(piece));
+/// rewrite_joints(&path, &poecal::simulate::scara(), &ReadOptions::default(), &mut change, &mut out)?;
+/// assert_eq!(text, "note,joint1[deg],joint2,joint3,joint4\nstart,90,0.5,0,0\n");
+/// # std::fs::remove_file(&path).unwrap();
+/// # Ok::<(), poecal::Error>(())
+/// ```
+pub fn rewrite_joints(
+    path: impl AsRef<Path>,
+    robot: &Robot,
+    options: &ReadOptions,
+    change: &mut dyn FnMut(&JointRow<'_>, &mut [f64]) -> Result<()>,
+    out: &mut dyn FnMut(&str) -> Result<()>,
+) -> Result<RewrittenTable> {
+    let path = path.as_ref();
+    let no_map = ColumnMap::default();
+    let map = options.mapping.as_ref().unwrap_or(&no_map);
+    let blocks = Blocks::open(path, "a file of joint readings (CSV)")?;
+    let mut table = Table::open(path, blocks.keeping(), map)?;
+    let layout = ColumnLayout::joints(&table.header, robot, map)?;
+    let columns = columns(&layout, path)?;
+    let mut inputs = InputReader::new(&layout.inputs, layout.inputs.len(), Numbers::new(map.decimal));
+    let mut watch = JointWatch::new(robot);
+    let mut rewritten = RewrittenTable::default();
+    if table.is_marked() {
+        out("\u{feff}")?;
+    }
+    out(&table.passed())?;
+    let mut row_of = Rewriting { columns, numbers: Vec::new(), text: String::new() };
+    while let Some(rows) = table.next_block()? {
+        rewritten.rows += row_of.block(rows, &mut inputs, &mut watch, change)?;
+        out(&row_of.text)?;
+    }
+    if rewritten.rows == 0 {
+        let message = "found a header and no rows, expected at least one row of joint readings";
+        return Err(Error::new(ErrorKind::Measurement, message).at_line(path, table.header.line));
+    }
+    let mut warnings = watch.finish(path, &layout, &inputs.ranges)?;
+    warnings.extend(layout.numbered_words().map(|words| format!("{}: {words}", path.display())));
+    rewritten.warnings = warnings.iter().map(|warning| visible(warning).into_owned()).collect();
+    Ok(rewritten)
+}
+
+/// Column and unit of each reading.
+fn columns(layout: &ColumnLayout, path: &Path) -> Result<Vec<(usize, Unit)>> {
+    let column = |input: &super::inputs::Input| match input.source {
+        InputSource::Column(column) if input.sum.is_empty() => Ok((column, input.unit)),
+        InputSource::Column(_) | InputSource::Constant(_) => {
+            let message = format!(
+                "joint `{}` is a sum of columns or a constant by the mapping, expected a column of its own, which can be corrected",
+                input.name
+            );
+            Err(Error::new(ErrorKind::Measurement, message).in_file(path))
+        }
+    };
+    layout.inputs.iter().map(column).collect()
+}
+
+/// The current block with its new numbers.
+struct Rewriting {
+    columns: Vec<(usize, Unit)>,
+    numbers: Vec<f64>,
+    text: String,
+}
+
+impl Rewriting {
+    fn block(
+        &mut self,
+        mut rows: TableRows<'_>,
+        inputs: &mut InputReader<'_>,
+        watch: &mut JointWatch,
+        change: &mut dyn FnMut(&JointRow<'_>, &mut [f64]) -> Result<()>,
+    ) -> Result<usize> {
+        let block = rows.text;
+        self.text.clear();
+        let (mut count, mut copied) = (0, 0);
+        // Cells in the order of the file.
+        let mut order: Vec<usize> = (0..self.columns.len()).collect();
+        order.sort_by_key(|&at| self.columns[at].0);
+        while let Some(row) = rows.next()? {
+            inputs.read(&row)?;
+            inputs.include_in_ranges();
+            watch.observe(&row, inputs);
+            inputs.take_readings(&row)?;
+            self.numbers.clear();
+            self.numbers.extend_from_slice(inputs.readings());
+            change(&JointRow { line: row.line, readings: inputs.readings() }, &mut self.numbers)?;
+            let start = row.text.as_ptr() as usize - block.as_ptr() as usize;
+            for &at in &order {
+                let ((column, unit), number) = (self.columns[at], self.numbers[at]);
+                if number.to_bits() == inputs.readings()[at].to_bits() {
+                    continue;
+                }
+                let Some(cell) = row.cells.get(column) else { continue };
+                let from = start + (cell.raw.as_ptr() as usize - row.text.as_ptr() as usize);
+                self.text.push_str(block.get(copied..from).unwrap_or_default());
+                let digits = self.text.len();
+                push_number(&mut self.text, unit.from_si(number));
+                if inputs.numbers.sign() == DecimalSign::Comma {
+                    let with_comma = self.text.split_off(digits).replace('.', ",");
+                    self.text.push_str(&with_comma);
+                }
+                copied = from + cell.raw.len();
+            }
+            count += 1;
+        }
+        self.text.push_str(block.get(copied..).unwrap_or_default());
+        Ok(count)
+    }
+}
