@@ -117,6 +117,12 @@ impl Arm {
         Some(arm)
     }
 
+    /// The arm of the numbers of a model ([`Model::numbers`]); `None` if they are none.
+    #[must_use]
+    pub fn from_numbers(numbers: &[f64]) -> Option<Self> {
+        Arm::of(&Model::from_numbers(numbers)?)
+    }
+
     /// Number of readings: of the joints that are moved.
     #[must_use]
     pub fn joints(&self) -> usize {
@@ -215,6 +221,24 @@ impl Arm {
             a += column * column.transpose();
         }
         nalgebra::ComplexField::sqrt(a.symmetric_eigenvalues().min().max(0.0))
+    }
+}
+
+impl Arm {
+    /// How the tip moves with each reading: of its point (m/rad, or m/m) and its turn (rad/rad, or 0), base frame; for the point of the tip,
+    /// as the hybrid or `LOCAL_WORLD_ALIGNED` Jacobian of others. What weights add is not in it, some thousandths of it.
+    ///
+    /// ```
+    /// use nalgebra::Vector3;
+    /// use poecal_arm::{Arm, lie::{Pose, Screw}};
+    /// let screw = Screw::revolute(&Vector3::z(), &Vector3::zeros());
+    /// let arm = Arm::new(&[screw], &Pose::from_translation(Vector3::x())).unwrap();
+    /// assert_eq!(arm.jacobian(&[0.0])[0], (Vector3::y(), Vector3::z()));
+    /// ```
+    #[must_use]
+    pub fn jacobian(&self, q: &[f64]) -> [(Vector3<f64>, Vector3<f64>); MOST_JOINTS] {
+        let placed = self.placed(q);
+        core::array::from_fn(|reading| placed.column(reading))
     }
 }
 

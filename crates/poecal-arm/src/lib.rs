@@ -26,6 +26,7 @@ mod branches;
 pub mod lie;
 mod model;
 mod newton;
+mod numbers;
 mod placed;
 mod real;
 mod small;

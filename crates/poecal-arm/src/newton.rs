@@ -13,6 +13,9 @@ use nalgebra::{ComplexField as _, RealField as _};
 
 /// Residual (lengths over reach, rad) below which a further step changes rounding only.
 const ROUNDED: f64 = 4e-15;
+/// The same of an arm whose joint values are more than its readings: without the weights' share in the Jacobian, each step leaves some
+/// thousandths of what there was, and further ones are not worth their time.
+const SMALL: f64 = 2e-13;
 /// Residual that counts as reached.
 pub(crate) const REACHED: f64 = 2e-11;
 /// Longest step of a joint (rad; m over reach) that is taken whole.
@@ -73,7 +76,8 @@ pub(crate) fn newton(arm: &Arm, target: &Pose, q: &mut [f64; 6], most: u32) -> f
     let mut left = Left::new(&placed.tip, target);
     let mut squared = left.squared(reach);
     let mut steps = 0;
-    while steps < most && squared > ROUNDED * ROUNDED {
+    let enough = if arm.is_rigid() { ROUNDED } else { SMALL };
+    while steps < most && squared > enough * enough {
         let mut a = [[0.0; 6]; 6];
         for joint in 0..6 {
             let moves = column(arm, &placed, joint, inverse_reach);
@@ -122,7 +126,8 @@ pub(crate) fn damped(arm: &Arm, target: &Pose, q: &mut [f64], most: u32) -> f64 
     let mut squared = left.squared(reach);
     let mut damping = 1e-4 * squared.min(1.0);
     let mut steps = 0;
-    while steps < most && squared > ROUNDED * ROUNDED {
+    let enough = if arm.is_rigid() { ROUNDED } else { SMALL };
+    while steps < most && squared > enough * enough {
         steps += 1;
         let mut columns = [[0.0; 6]; MOST_JOINTS];
         for (joint, it) in columns.iter_mut().enumerate().take(n) {

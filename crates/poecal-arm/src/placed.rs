@@ -36,7 +36,12 @@ impl Placed {
 /// Turns a frame about its own z.
 #[inline(always)]
 pub(crate) fn turn(frame: &mut Matrix3<f64>, angle: f64) {
-    let (c, s) = cosine_and_sine(angle);
+    turn_by(frame, cosine_and_sine(angle));
+}
+
+/// The same, by the cosine and sine of the angle.
+#[inline(always)]
+pub(crate) fn turn_by(frame: &mut Matrix3<f64>, (c, s): (f64, f64)) {
     let (x, y) = (frame.column(0).into_owned(), frame.column(1).into_owned());
     frame.set_column(0, &(x * c + y * s));
     frame.set_column(1, &(y * c - x * s));

@@ -5,8 +5,8 @@ use alloc::vec::Vec;
 use nalgebra::{Matrix3, Vector3};
 
 use crate::lie::Pose;
-use crate::model::{Drawn, JointValue, Model, Pull};
-use crate::placed::{MOST_JOINTS, Placed, along, turn};
+use crate::model::{Drawn, JointValue, Model, Pull, Wave};
+use crate::placed::{MOST_JOINTS, Placed, along, turn_by};
 use crate::trig::cosine_and_sine;
 
 /// A chain of joints, with what does not depend on the configuration.
@@ -14,6 +14,9 @@ use crate::trig::cosine_and_sine;
 pub(crate) struct Real {
     links: Vec<Link>,
     tip: Pose,
+    readings: usize,
+    /// Whether values depend on cosines and sines of the readings.
+    has_functions: bool,
     drawing: Vec<(Pose, Drawn)>,
     gravity: Vector3<f64>,
     /// Moments of weights, and the link whose joint they turn.
@@ -78,21 +81,26 @@ impl Moment {
     }
 }
 
+/// Angle below which a few terms of the series are exact.
+const SMALL: f64 = 0.05;
+
+/// `(cos, sin)` of a small angle, as of joints that give.
+#[inline(always)]
+fn small(angle: f64) -> (f64, f64) {
+    let z = angle * angle;
+    let cosine = 1.0 - z * (0.5 - z * (1.0 / 24.0 - z * (1.0 / 720.0 - z / 40320.0)));
+    let sine = angle * (1.0 - z * (1.0 / 6.0 - z * (1.0 / 120.0 - z * (1.0 / 5040.0 - z / 362_880.0))));
+    (cosine, sine)
+}
+
+/// Whether a wave is of the reading itself.
+fn is_plain(wave: &Wave) -> bool {
+    wave.factor == 1.0 && wave.offset == 0.0
+}
+
 impl Real {
     /// The chain of a model that is whole.
     pub(crate) fn new(model: &Model) -> Self {
-        let mut before = Pose::identity();
-        let mut links = Vec::with_capacity(model.joints.len());
-        for joint in &model.joints {
-            let frame = along(&joint.screw, &before.translation);
-            links.push(Link {
-                frame: before.inverse() * frame,
-                slides: joint.screw.is_prismatic(),
-                value: joint.value.clone(),
-            });
-            before = frame;
-        }
-        let tip = before.inverse() * model.home;
         let mut before = Pose::identity();
         let mut from_base = Vec::with_capacity(model.drawing.len() + 1);
         from_base.push(before);
@@ -103,15 +111,35 @@ impl Real {
             from_base.push(frame.inverse());
             before = frame;
         }
-        let pull = |(index, joint): (usize, &crate::model::Joint)| {
-            Some((index, Moment::of(joint.value.pull.as_ref()?, &from_base)))
-        };
-        let pulls = model.joints.iter().enumerate().filter_map(pull).collect();
-        Real { links, tip, drawing, gravity: model.gravity, pulls }
+        let mut before = Pose::identity();
+        let mut links = Vec::with_capacity(model.joints.len());
+        let mut pulls = Vec::new();
+        for joint in model.joints.iter().filter(|joint| joint.value != JointValue::default()) {
+            let frame = along(&joint.screw, &before.translation);
+            if let Some(pull) = &joint.value.pull {
+                pulls.push((links.len(), Moment::of(pull, &from_base)));
+            }
+            links.push(Link {
+                frame: before.inverse() * frame,
+                slides: joint.screw.is_prismatic(),
+                value: joint.value.clone(),
+            });
+            before = frame;
+        }
+        let tip = before.inverse() * model.home;
+        let has_waves = model.joints.iter().any(|joint| !joint.value.waves.is_empty());
+        let has_functions = has_waves || !pulls.is_empty();
+        Real { links, tip, readings: model.readings, has_functions, drawing, gravity: model.gravity, pulls }
     }
 
     /// Where the tip is, and how it moves with each reading: but for what weights add to it, some 1e-3 of it.
     pub(crate) fn placed(&self, q: &[f64; MOST_JOINTS]) -> Placed {
+        let mut found = [(1.0, 0.0); MOST_JOINTS];
+        if self.has_functions {
+            for (found, q) in found.iter_mut().zip(&q[..self.readings]) {
+                *found = cosine_and_sine(*q);
+            }
+        }
         let mut bodies = [Pose::identity(); MOST_JOINTS + 1];
         if !self.pulls.is_empty() {
             for (index, (frame, drawn)) in self.drawing.iter().enumerate() {
@@ -119,8 +147,10 @@ impl Real {
                 let value = drawn.factor * q[drawn.reading] + drawn.constant;
                 if drawn.screw.is_prismatic() {
                     body.translation += body.rotation.column(2) * value;
+                } else if drawn.factor == 1.0 && drawn.constant == 0.0 {
+                    turn_by(&mut body.rotation, found[drawn.reading]);
                 } else {
-                    turn(&mut body.rotation, value);
+                    turn_by(&mut body.rotation, cosine_and_sine(value));
                 }
                 bodies[index + 1] = body;
             }
@@ -143,7 +173,14 @@ impl Real {
                 moves(reading, factor);
             }
             for wave in &link.value.waves {
-                let (c, s) = cosine_and_sine(wave.order * (wave.factor * q[wave.reading] + wave.offset));
+                let (c, s) = match wave.order {
+                    1.0 if is_plain(wave) => found[wave.reading],
+                    2.0 if is_plain(wave) => {
+                        let (c, s) = found[wave.reading];
+                        (c * c - s * s, 2.0 * c * s)
+                    }
+                    order => cosine_and_sine(order * (wave.factor * q[wave.reading] + wave.offset)),
+                };
                 value += wave.cosine * c + wave.sine * s;
                 moves(wave.reading, wave.order * wave.factor * (wave.sine * c - wave.cosine * s));
             }
@@ -153,7 +190,7 @@ impl Real {
             if link.slides {
                 at += axis * value;
             } else {
-                turn(&mut turned, value);
+                turn_by(&mut turned, if value.abs() < SMALL { small(value) } else { cosine_and_sine(value) });
             }
         }
         out.tip = Pose::new(turned * self.tip.rotation, at + turned * self.tip.translation);

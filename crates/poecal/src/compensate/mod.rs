@@ -40,6 +40,7 @@ pub struct Compensation {
     names: Vec<String>,
     /// The last correction: where the next one begins.
     last: Vec<f64>,
+    before: Vec<f64>,
     q: Vec<f64>,
     meant: Vec<f64>,
     out: Vec<f64>,
@@ -103,6 +104,7 @@ impl Compensation {
             nominal: nominal_arm,
             actual: actual_arm,
             last: vec![0.0; count],
+            before: vec![0.0; count],
             q: vec![0.0; count],
             meant: vec![0.0; count],
             out: vec![0.0; names.len()],
@@ -149,8 +151,10 @@ impl Compensation {
         if moved_m == 0.0 && turned_rad == 0.0 {
             return self.told((moved_m, turned_rad), (0.0, 0.0), false);
         }
-        for (to, (meant, last)) in self.q.iter_mut().zip(self.meant.iter().zip(&self.last)) {
-            *to = meant + last;
+        // Along a path, corrections change evenly.
+        let changes = self.last.iter().zip(&self.before).map(|(last, before)| 2.0 * last - before);
+        for (to, (meant, change)) in self.q.iter_mut().zip(self.meant.iter().zip(changes)) {
+            *to = meant + change;
         }
         let mut left = self.solve(&target);
         let far = |q: &[f64], meant: &[f64]| q.iter().zip(meant).any(|(a, b)| (a - b).abs() > FAR);
@@ -160,7 +164,8 @@ impl Compensation {
             left = self.solve(&target);
         }
         let is_other_branch = far(&self.q, &self.meant)
-            || self.nominal.handedness(&self.meant) * self.actual.handedness(&self.q) < 0.0;
+            || self.nominal.handedness(&self.meant) * self.nominal.handedness(&self.q) < 0.0;
+        std::mem::swap(&mut self.last, &mut self.before);
         for (last, (to, from)) in self.last.iter_mut().zip(self.q.iter().zip(&self.meant)) {
             *last = if is_other_branch { 0.0 } else { to - from };
         }
@@ -185,17 +190,20 @@ impl Compensation {
 
     /// Takes `q` to the nearest configuration that has the tip at a pose; distance and angle that are left.
     fn solve(&mut self, target: &Pose) -> (f64, f64) {
-        match (&self.branches, <&mut [f64; 6]>::try_from(&mut self.q[..])) {
-            (Some(branches), Ok(six)) => {
-                branches.nearest(target, six);
-            }
-            (None, _) | (_, Err(_)) => {
-                self.actual.nearest(target, &mut self.q);
-            }
+        let left = match (&self.branches, <&mut [f64; 6]>::try_from(&mut self.q[..])) {
+            (Some(branches), Ok(six)) => branches.nearest(target, six),
+            (None, _) | (_, Err(_)) => self.actual.nearest(target, &mut self.q),
+        };
+        // Both are below their common measure.
+        let (left_m, left_rad) = (left * self.actual.reach_m(), left);
+        if left_m < NOTHING && left_rad < NOTHING {
+            return (left_m, left_rad);
         }
         apart(&self.actual.forward_kinematics(&self.q), target)
     }
 }
 
+/// Remainder (m, rad) of which it does not matter where it is.
+const NOTHING: f64 = 1e-11;
 /// Correction of a joint (rad, m) that is none of a robot like its drawing: another branch.
 const FAR: f64 = 0.6;

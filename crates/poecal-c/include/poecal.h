@@ -1,0 +1,105 @@
+// Kinematics of calibrated robot arms. Made from crates/poecal-c by its test; see its README.md.
+
+#ifndef POECAL_H
+#define POECAL_H
+
+#include <stdarg.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+
+// Most readings of an arm.
+#define POECAL_MOST_JOINTS 16
+
+// Most branches of an arm of six joints.
+#define POECAL_MOST_BRANCHES 16
+
+// An arm.
+typedef struct PoecalArm PoecalArm;
+
+// What an inverse leaves: 0 of a pose that is reached.
+typedef struct {
+  // Distance, metres.
+  double position_m;
+  // Angle, radians.
+  double rotation_rad;
+} PoecalLeft;
+
+#ifdef __cplusplus
+extern "C" {
+#endif // __cplusplus
+
+// The arm of these numbers; null if they are none. Allocates; takes some milliseconds of an arm of six joints.
+//
+// # Safety
+// `numbers` is null or points to `count` numbers.
+PoecalArm *poecal_arm_new(const double *numbers,
+                          size_t count);
+
+// Frees an arm.
+//
+// # Safety
+// `arm` is null or was made by `poecal_arm_new`, and is not used afterwards.
+void poecal_arm_free(PoecalArm *arm);
+
+// Number of readings; 0 of null.
+//
+// # Safety
+// `arm` is null or was made by `poecal_arm_new`.
+size_t poecal_joints(const PoecalArm *arm);
+
+// The pose of the tip at readings; returns 0, or -1 of null.
+//
+// # Safety
+// `arm` is null or was made by `poecal_arm_new`; `q` is null or points to `poecal_joints(arm)` numbers, `pose` to 16.
+int32_t poecal_forward(const PoecalArm *arm,
+                       const double *q,
+                       double *pose);
+
+// How the tip moves with each reading, six numbers a reading: of its point (x, y, z), and its turn, in the base; returns 0, or -1 of null.
+//
+// # Safety
+// As `poecal_forward`; `jacobian` is null or points to 6 times `poecal_joints(arm)` numbers.
+int32_t poecal_jacobian(const PoecalArm *arm,
+                        const double *q,
+                        double *jacobian);
+
+// Takes readings to the nearest configuration that has the tip at a pose, or as close to it as can be; what is left, NaN of null.
+//
+// # Safety
+// As `poecal_forward`; `pose` is null or points to 16 numbers.
+PoecalLeft poecal_nearest(const PoecalArm *arm,
+                          const double *pose,
+                          double *q);
+
+// All configurations of an arm of six turning joints that have its tip at a pose, six readings (-π to π) each; returns their number, or -1
+// of null or of another arm.
+//
+// # Safety
+// `arm` is null or was made by `poecal_arm_new`; `pose` is null or points to 16 numbers, `q` to 6 times `POECAL_MOST_BRANCHES`.
+int32_t poecal_branches(const PoecalArm *arm,
+                        const double *pose,
+                        double *q);
+
+// Readings with which the actual arm has its tip where the nominal one has it at the readings `meant`; what is left, NaN of null or of arms
+// with different numbers of joints.
+//
+// # Safety
+// The arms are null or were made by `poecal_arm_new`; `meant` and `q` are null or point to `poecal_joints(actual)` numbers.
+PoecalLeft poecal_compensate(const PoecalArm *nominal,
+                             const PoecalArm *actual,
+                             const double *meant,
+                             double *q);
+
+extern void *aligned_alloc(size_t align, size_t size);
+
+extern void free(void *pointer);
+
+extern void abort(void);
+
+#ifdef __cplusplus
+}  // extern "C"
+#endif  // __cplusplus
+
+#endif  /* POECAL_H */

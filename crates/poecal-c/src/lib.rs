@@ -1,0 +1,217 @@
+//! The kinematics of [`poecal_arm`] for C: an arm is made of numbers (`poecal export CALIBRATION --format numbers`), then computes without
+//! threads, files or allocation. Poses are 16 numbers, the rows of a 4 × 4 matrix; lengths are metres, angles radians.
+//!
+//! Every function takes null pointers (and then does nothing but say so); other pointers have to be valid, which C cannot promise:
+//! that is what `unsafe` stands for here, and all there is of it.
+
+#![cfg_attr(not(feature = "std"), no_std)]
+
+extern crate alloc;
+
+#[cfg(not(feature = "std"))]
+mod bare;
+
+use alloc::boxed::Box;
+use core::slice;
+
+use nalgebra::{Matrix3, Vector3};
+use poecal_arm::lie::{Pose, rotation};
+use poecal_arm::{AllBranches, Arm};
+
+/// Most readings of an arm.
+pub const POECAL_MOST_JOINTS: usize = 16;
+/// Most branches of an arm of six joints.
+pub const POECAL_MOST_BRANCHES: usize = 16;
+
+/// An arm.
+pub struct PoecalArm {
+    arm: Arm,
+    branches: Option<AllBranches>,
+}
+
+/// What an inverse leaves: 0 of a pose that is reached.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PoecalLeft {
+    /// Distance, metres.
+    pub position_m: f64,
+    /// Angle, radians.
+    pub rotation_rad: f64,
+}
+
+const NOTHING: PoecalLeft = PoecalLeft { position_m: f64::NAN, rotation_rad: f64::NAN };
+
+/// The arm of these numbers; null if they are none. Allocates; takes some milliseconds of an arm of six joints.
+///
+/// # Safety
+/// `numbers` is null or points to `count` numbers.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn poecal_arm_new(numbers: *const f64, count: usize) -> *mut PoecalArm {
+    if numbers.is_null() {
+        return core::ptr::null_mut();
+    }
+    // SAFETY: by the contract above.
+    let numbers = unsafe { slice::from_raw_parts(numbers, count) };
+    let Some(arm) = Arm::from_numbers(numbers) else { return core::ptr::null_mut() };
+    let branches = AllBranches::new(&arm);
+    Box::into_raw(Box::new(PoecalArm { arm, branches }))
+}
+
+/// Frees an arm.
+///
+/// # Safety
+/// `arm` is null or was made by `poecal_arm_new`, and is not used afterwards.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn poecal_arm_free(arm: *mut PoecalArm) {
+    if !arm.is_null() {
+        // SAFETY: by the contract above.
+        drop(unsafe { Box::from_raw(arm) });
+    }
+}
+
+/// Number of readings; 0 of null.
+///
+/// # Safety
+/// `arm` is null or was made by `poecal_arm_new`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn poecal_joints(arm: *const PoecalArm) -> usize {
+    // SAFETY: by the contract above.
+    unsafe { arm.as_ref() }.map_or(0, |it| it.arm.joints())
+}
+
+/// The pose of the tip at readings; returns 0, or -1 of null.
+///
+/// # Safety
+/// `arm` is null or was made by `poecal_arm_new`; `q` is null or points to `poecal_joints(arm)` numbers, `pose` to 16.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn poecal_forward(arm: *const PoecalArm, q: *const f64, pose: *mut f64) -> i32 {
+    // SAFETY: by the contract above.
+    let Some(arm) = (unsafe { arm.as_ref() }) else { return -1 };
+    if q.is_null() || pose.is_null() {
+        return -1;
+    }
+    // SAFETY: by the contract above.
+    let (q, pose) =
+        unsafe { (slice::from_raw_parts(q, arm.arm.joints()), slice::from_raw_parts_mut(pose, 16)) };
+    let tip = arm.arm.forward_kinematics(q);
+    for row in 0..3 {
+        for column in 0..3 {
+            pose[4 * row + column] = tip.rotation[(row, column)];
+        }
+        pose[4 * row + 3] = tip.translation[row];
+    }
+    pose[12..].copy_from_slice(&[0.0, 0.0, 0.0, 1.0]);
+    0
+}
+
+/// How the tip moves with each reading, six numbers a reading: of its point (x, y, z), and its turn, in the base; returns 0, or -1 of null.
+///
+/// # Safety
+/// As `poecal_forward`; `jacobian` is null or points to 6 times `poecal_joints(arm)` numbers.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn poecal_jacobian(arm: *const PoecalArm, q: *const f64, jacobian: *mut f64) -> i32 {
+    // SAFETY: by the contract above.
+    let Some(arm) = (unsafe { arm.as_ref() }) else { return -1 };
+    if q.is_null() || jacobian.is_null() {
+        return -1;
+    }
+    let joints = arm.arm.joints();
+    // SAFETY: by the contract above.
+    let (q, out) =
+        unsafe { (slice::from_raw_parts(q, joints), slice::from_raw_parts_mut(jacobian, 6 * joints)) };
+    for (out, (v, w)) in out.chunks_exact_mut(6).zip(arm.arm.jacobian(q)) {
+        out.copy_from_slice(&[v.x, v.y, v.z, w.x, w.y, w.z]);
+    }
+    0
+}
+
+/// Takes readings to the nearest configuration that has the tip at a pose, or as close to it as can be; what is left, NaN of null.
+///
+/// # Safety
+/// As `poecal_forward`; `pose` is null or points to 16 numbers.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn poecal_nearest(arm: *const PoecalArm, pose: *const f64, q: *mut f64) -> PoecalLeft {
+    // SAFETY: by the contract above.
+    let (Some(arm), Some(target)) = (unsafe { arm.as_ref() }, unsafe { target(pose) }) else {
+        return NOTHING;
+    };
+    if q.is_null() {
+        return NOTHING;
+    }
+    // SAFETY: by the contract above.
+    let q = unsafe { slice::from_raw_parts_mut(q, arm.arm.joints()) };
+    nearest(arm, &target, q)
+}
+
+fn nearest(arm: &PoecalArm, target: &Pose, q: &mut [f64]) -> PoecalLeft {
+    match (&arm.branches, <&mut [f64; 6]>::try_from(&mut *q)) {
+        (Some(branches), Ok(six)) => branches.nearest(target, six),
+        (None, _) | (_, Err(_)) => arm.arm.nearest(target, q),
+    };
+    let tip = arm.arm.forward_kinematics(q);
+    let turn: Vector3<f64> = rotation::log(&(tip.rotation.transpose() * target.rotation));
+    PoecalLeft { position_m: (tip.translation - target.translation).norm(), rotation_rad: turn.norm() }
+}
+
+/// All configurations of an arm of six turning joints that have its tip at a pose, six readings (-π to π) each; returns their number, or -1
+/// of null or of another arm.
+///
+/// # Safety
+/// `arm` is null or was made by `poecal_arm_new`; `pose` is null or points to 16 numbers, `q` to 6 times `POECAL_MOST_BRANCHES`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn poecal_branches(arm: *const PoecalArm, pose: *const f64, q: *mut f64) -> i32 {
+    // SAFETY: by the contract above.
+    let (Some(arm), Some(target)) = (unsafe { arm.as_ref() }, unsafe { target(pose) }) else { return -1 };
+    let Some(branches) = arm.branches.as_ref().filter(|_| !q.is_null()) else { return -1 };
+    // SAFETY: by the contract above.
+    let q = unsafe { slice::from_raw_parts_mut(q, 6 * POECAL_MOST_BRANCHES) };
+    let found = branches.at(&target);
+    for (out, branch) in q.chunks_exact_mut(6).zip(found.as_slice()) {
+        out.copy_from_slice(branch);
+    }
+    i32::try_from(found.as_slice().len()).unwrap_or(-1)
+}
+
+/// Readings with which the actual arm has its tip where the nominal one has it at the readings `meant`; what is left, NaN of null or of arms
+/// with different numbers of joints.
+///
+/// # Safety
+/// The arms are null or were made by `poecal_arm_new`; `meant` and `q` are null or point to `poecal_joints(actual)` numbers.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn poecal_compensate(
+    nominal: *const PoecalArm,
+    actual: *const PoecalArm,
+    meant: *const f64,
+    q: *mut f64,
+) -> PoecalLeft {
+    // SAFETY: by the contract above.
+    let (Some(nominal), Some(actual)) = (unsafe { nominal.as_ref() }, unsafe { actual.as_ref() }) else {
+        return NOTHING;
+    };
+    let joints = actual.arm.joints();
+    if meant.is_null() || q.is_null() || nominal.arm.joints() != joints {
+        return NOTHING;
+    }
+    let mut all = [0.0; POECAL_MOST_JOINTS];
+    // SAFETY: by the contract above; read before written, so that both may be the same.
+    all[..joints].copy_from_slice(unsafe { slice::from_raw_parts(meant, joints) });
+    // SAFETY: by the contract above.
+    let q = unsafe { slice::from_raw_parts_mut(q, joints) };
+    q.copy_from_slice(&all[..joints]);
+    nearest(actual, &nominal.arm.forward_kinematics(&all[..joints]), q)
+}
+
+/// The pose of 16 numbers.
+///
+/// # Safety
+/// `pose` is null or points to 16 numbers.
+unsafe fn target(pose: *const f64) -> Option<Pose> {
+    if pose.is_null() {
+        return None;
+    }
+    // SAFETY: by the contract above.
+    let it = unsafe { slice::from_raw_parts(pose, 16) };
+    let turn = Matrix3::new(it[0], it[1], it[2], it[4], it[5], it[6], it[8], it[9], it[10]);
+    let pose = Pose::new(turn, Vector3::new(it[3], it[7], it[11]));
+    pose.rotation.iter().chain(pose.translation.iter()).all(|it| it.is_finite()).then_some(pose)
+}
