@@ -21,7 +21,7 @@ KNOWN = {
     "graph": {"all-features"},
     # What only cargo-deny applies.
     "advisories": {"yanked", "ignore"},
-    "licenses": {"allow", "confidence-threshold"},
+    "licenses": {"allow", "confidence-threshold", "exceptions"},
     "bans": {"multiple-versions", "wildcards", "allow-wildcard-paths", "deny", "skip"},
     "sources": {"unknown-registry", "unknown-git", "allow-registry"},
 }
@@ -83,6 +83,7 @@ def complaints(rules, packages, shipped):
             if key not in KNOWN.get(table, ()):
                 yield f"deny.toml: found [{table}] {key}, which scripts/check_dependencies.py does not apply: teach it"
     bans, sources, allow = rules["bans"], rules["sources"], set(rules["licenses"]["allow"])
+    exceptions = {one["crate"]: set(one["allow"]) for one in rules["licenses"].get("exceptions", [])}
     refused = {entry["name"]: entry["reason"] for entry in bans["deny"]}
     versions = {}
     for package in packages:
@@ -94,7 +95,7 @@ def complaints(rules, packages, shipped):
         try:
             if not licence:
                 yield f"{full}: found no licence expression, expected one that deny.toml allows"
-            elif not is_allowed(licence, allow):
+            elif not is_allowed(licence, allow | exceptions.get(package["name"], set())):
                 yield f"{full}: found the licence `{licence}`, expected one that deny.toml allows"
         except ValueError as error:
             yield f"{full}: {error}"

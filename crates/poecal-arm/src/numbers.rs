@@ -10,12 +10,14 @@ use crate::placed::MOST_JOINTS;
 
 /// First number of a list: the version of its order.
 const VERSION: f64 = 1.0;
+/// Limit of a reading that has none; every language can write it.
+const UNLIMITED: f64 = 1e300;
 /// Most joints, waves or weights of a list.
 const MOST: usize = 1000;
 
 impl Model {
     /// All numbers of the model (m, rad), in this order: 1 (the version); the numbers of readings, joints and drawn joints; home as three rows
-    /// of rotation and translation; gravity; of each reading its smallest and largest value (infinite if there is none); of each joint its
+    /// of rotation and translation; gravity; of each reading its smallest and largest value (±1e300 if there is none); of each joint its
     /// axis, constant, the number of its linear parts with (reading, factor) each, the number of its waves with (reading, factor, offset,
     /// order, cosine, sine) each, and the number of its weights, before them, if there are any, (drawn joints before it, 1 if it slides,
     /// direction, place), with (drawn joints that carry it, size, place) each; of each drawn joint its axis, reading, factor and constant.
@@ -41,7 +43,7 @@ impl Model {
         out.extend(self.gravity.iter());
         for reading in 0..self.readings {
             let limits = self.limits.get(reading).copied().flatten();
-            let (low, high) = limits.unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
+            let (low, high) = limits.unwrap_or((-UNLIMITED, UNLIMITED));
             out.extend([low, high]);
         }
         let axis = |out: &mut Vec<f64>, screw: &Screw| {
@@ -102,8 +104,8 @@ impl Model {
         model.gravity = rest.vector()?;
         for _ in 0..readings {
             let (low, high) = (rest.number()?, rest.number()?);
-            let is_free = low == f64::NEG_INFINITY && high == f64::INFINITY;
-            model.limits.push((!is_free).then_some((low, high)));
+            let is_limited = low > -UNLIMITED || high < UNLIMITED;
+            model.limits.push(is_limited.then_some((low, high)));
         }
         for _ in 0..joints {
             let screw = rest.axis()?;

@@ -34,3 +34,7 @@ fn panicked(_: &PanicInfo<'_>) -> ! {
     // SAFETY: it has no conditions.
     unsafe { abort() }
 }
+
+/// What Rust's own `alloc` names where it was built to unwind; nothing unwinds here.
+#[unsafe(no_mangle)]
+extern "C" fn rust_eh_personality() {}

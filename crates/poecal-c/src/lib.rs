@@ -1,4 +1,4 @@
-//! The kinematics of [`poecal_arm`] for C: an arm is made of numbers (`poecal export CALIBRATION --format numbers`), then computes without
+//! The kinematics of [`poecal_arm`] for C: an arm is made of numbers (`poecal export CALIBRATION --format c`), then computes without
 //! threads, files or allocation. Poses are 16 numbers, the rows of a 4 × 4 matrix; lengths are metres, angles radians.
 //!
 //! Every function takes null pointers (and then does nothing but say so); other pointers have to be valid, which C cannot promise:

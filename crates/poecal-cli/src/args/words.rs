@@ -122,6 +122,7 @@ pub(super) const EXPORT_FORMAT: Words<ExportForm> = &[
     open(ExportFormat::Usd, "USD physics, as Isaac Sim reads it"),
     open(ExportFormat::Csv, "Origins of the joints, a row each"),
     open(ExportFormat::Offsets, "The joint offsets, base and tool that come nearest, JSON"),
+    open(ExportFormat::C, "Arrays of C for kinematics on a controller, with what joints do"),
     ("kuka", CLOSED, ExportForm::Closed("KUKA's absolute accuracy is a file on the robot's own memory")),
     (
         "fanuc",

@@ -76,7 +76,8 @@ impl Robot {
             }
             let mut sags = vec![0.0; self.gravity.as_ref().map_or(0, |gravity| gravity.weights.len())];
             let mut of_masses = 0.0;
-            for JointTerm { joint: _, term, coefficient } in self.terms.iter().filter(|it| it.joint == joint)
+            for JointTerm { joint: _, term, coefficient } in
+                self.terms.iter().filter(|it| it.joint == joint && it.coefficient != 0.0)
             {
                 let turns = self.joints[joint].give_of.unwrap_or(joint);
                 match term {
@@ -117,7 +118,9 @@ impl Robot {
             }
             value.waves = together(&value.waves);
             value.pull = statics.as_ref().and_then(|it| it.pull(joint, &moving, &sags, of_masses));
-            model.joints.push(ArmJoint { screw: self.joints[joint].screw, value });
+            if value != JointValue::default() {
+                model.joints.push(ArmJoint { screw: self.joints[joint].screw, value });
+            }
         }
         if let Some(gravity) = &self.gravity {
             model.gravity = gravity.direction;

@@ -346,6 +346,11 @@ fn corrected_robots_are_geometry_and_a_file_beside() {
             continue;
         }
         let found = export(&model(&robot), format, &ExportOptions::default()).unwrap();
+        if format == ExportFormat::C {
+            // Numbers hold terms too.
+            assert!(found.beside.is_none() && found.text.contains("1.001") && found.notes.is_empty());
+            continue;
+        }
         assert!(found.notes[0].contains("geometry alone: without"), "{format:?} {:?}", found.notes);
         let beside: Value = serde_json::from_str(&found.beside.unwrap()).unwrap();
         let terms = beside["terms"].as_array().unwrap();

@@ -2,6 +2,7 @@
 
 mod mjcf;
 mod names;
+mod numbers;
 mod offsets;
 mod onto;
 mod origins;
@@ -27,7 +28,7 @@ use origins::Flavour;
 ///
 /// ```
 /// use poecal::io::export::ExportFormat;
-/// assert_eq!(ExportFormat::ALL.len(), 17);
+/// assert_eq!(ExportFormat::ALL.len(), 18);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ExportFormat {
@@ -65,11 +66,13 @@ pub enum ExportFormat {
     Csv,
     /// The joint offsets, base and tool that come nearest, JSON.
     Offsets,
+    /// Arrays of C with the nominal and the actual arm, for kinematics on a controller.
+    C,
 }
 
 impl ExportFormat {
     /// All of them.
-    pub const ALL: [ExportFormat; 17] = [
+    pub const ALL: [ExportFormat; 18] = [
         ExportFormat::Urdf,
         ExportFormat::Toml,
         ExportFormat::Poe,
@@ -87,6 +90,7 @@ impl ExportFormat {
         ExportFormat::Usd,
         ExportFormat::Csv,
         ExportFormat::Offsets,
+        ExportFormat::C,
     ];
 
     /// Its word, as the program and the package name it.
@@ -110,6 +114,7 @@ impl ExportFormat {
             ExportFormat::Usd => "usd",
             ExportFormat::Csv => "csv",
             ExportFormat::Offsets => "offsets",
+            ExportFormat::C => "c",
         }
     }
 }
@@ -179,6 +184,7 @@ pub fn export(model: &Model, format: ExportFormat, options: &ExportOptions) -> R
     let plain = geometry(&model.robot, format, &mut notes);
     let robot = plain.as_ref();
     let written = match format {
+        ExportFormat::C => return numbers::write(model).map_err(|error| error.in_file(&model.path)),
         ExportFormat::Urdf => return converted(model, robot, ModelFormat::Urdf, notes),
         ExportFormat::Toml => return converted(model, robot, ModelFormat::Toml, notes),
         ExportFormat::Poe => screws::write(robot),

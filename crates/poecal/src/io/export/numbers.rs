@@ -1,0 +1,110 @@
+//! The nominal and the actual arm as arrays of C, for kinematics on a controller.
+
+use std::fmt::Write as _;
+
+use poecal_arm::Arm;
+use rand_chacha::ChaCha8Rng;
+use rand_core::SeedableRng;
+
+use super::{CONFIGURATIONS, Exported, export_error, unread};
+use crate::error::Result;
+use crate::io::model::{Model, ModelSource};
+use crate::io::numbers::shortest;
+use crate::io::proof::Difference;
+use crate::lie::rotation;
+use crate::robot::{JointKind, Robot};
+use crate::simulate::Configurations;
+
+/// Distance (m) and angle (rad) below which two computations of a pose are the same but for rounding.
+const ROUNDING: f64 = 1e-12;
+
+/// Writes the arms, and reads them back.
+pub(super) fn write(model: &Model) -> Result<Exported> {
+    let actual = &model.robot;
+    let factors: Vec<f64> = actual.factors.iter().map(|it| it.reference).collect();
+    let mut notes = Vec::new();
+    if !factors.is_empty() {
+        let names: Vec<&str> = actual.factors.iter().map(|it| it.name.as_str()).collect();
+        notes.push(format!("the factors {} are at their references in this form", names.join(", ")));
+    }
+    let mut text = header(actual);
+    let nominal = match &model.source {
+        ModelSource::Calibration(file) => Some(file.nominal_robot()?),
+        ModelSource::Urdf(_) | ModelSource::Toml => None,
+    };
+    let mut remains = Difference { position_m: 0.0, rotation_rad: 0.0 };
+    let arms = [("nominal", nominal.as_ref()), ("actual", Some(actual))];
+    for (name, robot) in arms.into_iter().filter_map(|(name, robot)| Some((name, robot?))) {
+        let of = if name == "actual" { &factors[..] } else { &[] };
+        let (arm, _) = robot.arm_model(of)?;
+        array(&mut text, name, &arm.numbers());
+        let found = compared(robot, of, &text, name)?;
+        remains.position_m = remains.position_m.max(found.position_m);
+        remains.rotation_rad = remains.rotation_rad.max(found.rotation_rad);
+    }
+    if !remains.is_within(ROUNDING * actual.reach_m().max(1.0), ROUNDING) {
+        let message = format!(
+            "the numbers read back differ by {:.1e} m and {:.1e} rad, expected rounding alone: nothing was written",
+            remains.position_m, remains.rotation_rad
+        );
+        return Err(export_error(message));
+    }
+    notes.extend(super::left_out(actual));
+    Ok(Exported { text, notes, remains, beside: None })
+}
+
+fn header(robot: &Robot) -> String {
+    let units = |name: &str| {
+        let joint = robot.joints.iter().find(|joint| joint.reading.name == name && joint.give_of.is_none());
+        if joint.is_some_and(|it| it.kind == JointKind::Prismatic) { "m" } else { "rad" }
+    };
+    let readings: Vec<String> = robot
+        .joint_reading_names()
+        .iter()
+        .map(|name| format!("{} [{}]", name.replace("*/", "* /"), units(name)))
+        .collect();
+    format!(
+        "/* Arms for poecal_arm_new() of poecal.h, in the order that poecal-arm documents (Model::numbers).\n   Readings: {}. */\n",
+        readings.join(", ")
+    )
+}
+
+fn array(text: &mut String, name: &str, numbers: &[f64]) {
+    let _ = write!(text, "static const double poecal_{name}[{}] = {{", numbers.len());
+    for (index, number) in numbers.iter().enumerate() {
+        text.push_str(if index % 6 == 0 { "\n  " } else { " " });
+        text.push_str(&shortest(*number));
+        text.push(',');
+    }
+    text.push_str("\n};\n");
+}
+
+/// Reads an array, and compares its arm with the robot.
+fn compared(robot: &Robot, factors: &[f64], text: &str, name: &str) -> Result<Difference> {
+    let body = text.split_once(&format!("poecal_{name}[")).and_then(|(_, rest)| rest.split_once('{'));
+    let body = body.and_then(|(_, rest)| rest.split_once('}')).map(|(body, _)| body);
+    let numbers = body.unwrap_or_default().split(',').map(str::trim).filter(|it| !it.is_empty());
+    let numbers: Option<Vec<f64>> = numbers.map(|it| it.parse().ok()).collect();
+    let arm = numbers.and_then(|numbers| Arm::from_numbers(&numbers));
+    let arm = arm.ok_or_else(|| unread("numbers that are no arm, since a reading moves nothing"))?;
+    let (_, readings) = robot.arm_model(factors)?;
+    let count = robot.joint_reading_names().len();
+    let mut generator = ChaCha8Rng::seed_from_u64(1);
+    let mut largest = Difference { position_m: 0.0, rotation_rad: 0.0 };
+    let configurations = Configurations::new(robot);
+    for _ in 0..CONFIGURATIONS {
+        let mut all = configurations.random(&mut generator);
+        all.truncate(count);
+        // Joints of other branches are at zero.
+        for (index, it) in all.iter_mut().enumerate() {
+            *it = if readings.contains(&index) { *it } else { 0.0 };
+        }
+        let q: Vec<f64> = readings.iter().filter_map(|&at| all.get(at).copied()).collect();
+        all.extend_from_slice(factors);
+        let (one, other) = (robot.forward_kinematics(&all), arm.forward_kinematics(&q));
+        let turn = rotation::log(&(one.rotation.transpose() * other.rotation)).norm();
+        largest.position_m = largest.position_m.max((one.translation - other.translation).norm());
+        largest.rotation_rad = largest.rotation_rad.max(turn);
+    }
+    Ok(largest)
+}
