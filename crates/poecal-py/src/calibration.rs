@@ -30,6 +30,7 @@ use crate::notebook;
 use crate::pickle;
 use crate::places::{reserved_file, reserved_folder, said};
 use crate::prediction::Prediction;
+use crate::reach;
 use crate::residuals::Residuals;
 use crate::robot::{Robot, poses};
 use crate::words::chosen;
@@ -386,11 +387,9 @@ impl Calibration {
         #[pyo3(from_py_with = arg::target)] target: Option<&str>,
         #[pyo3(from_py_with = arg::model)] model: &str,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let is_corrected = chosen("model", model, &[("corrected", true), ("calibrated", false)])?;
-        let corrected = if is_corrected { self.corrected()? } else { None };
         let frame =
             chosen("frame", frame, &[("base", PredictionFrame::Base), ("device", PredictionFrame::Device)])?;
-        let model = &corrected.map_or_else(|| self.calibrated(), Ok)?.model;
+        let model = &self.actual(model)?.model;
         let joints = Joints::of(joints, &model.robot)?;
         let found = py
             .detach(|| predicted(model, &joints.readings, frame, target, with_uncertainty))
@@ -399,6 +398,73 @@ impl Calibration {
             Some(doubts) => Prediction { poses: found.poses, doubts }.into_bound_py_any(py),
             None => poses(py, &found.poses, joints.single),
         }
+    }
+
+    /// Joint readings to command so that the robot as it is has its tip where a program for the nominal robot meant it.
+    ///
+    /// Parameters
+    /// ----------
+    /// joints
+    ///     Readings of the program, shape (m, n), radians and metres, in the order of `robot.reading_names` without factors; or one, shape (n,).
+    /// factors
+    ///     Values of the corrected model's factors by their names, default their references.
+    /// nearest
+    ///     Whether to give the nearest configuration where a pose cannot be reached, instead of refusing.
+    /// model
+    ///     Which model is the robot as it is: "corrected", where there is one, or "calibrated", geometry alone.
+    ///
+    /// Returns
+    /// -------
+    /// numpy.ndarray
+    ///     Readings to command, of the same shape.
+    #[pyo3(signature = (joints, *, factors=None, nearest=false, model="corrected"))]
+    fn compensate<'py>(
+        &self,
+        py: Python<'py>,
+        joints: &Bound<'py, PyAny>,
+        factors: Option<&Bound<'py, PyAny>>,
+        #[pyo3(from_py_with = arg::nearest)] nearest: bool,
+        #[pyo3(from_py_with = arg::model)] model: &str,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let actual = self.actual(model)?;
+        let nominal = self.file().nominal_robot().map_err(raise)?;
+        let factors = reach::factors(&actual.model.robot, factors)?;
+        reach::compensate(py, (&nominal, &actual.model.robot), joints, &factors, nearest)
+    }
+
+    /// Configurations that have the tip at poses.
+    ///
+    /// Parameters
+    /// ----------
+    /// poses
+    ///     Poses of the tip in the base, shape (m, 4, 4), or one, (4, 4).
+    /// near
+    ///     Configurations to which the found ones are nearest, shape (m, n), or one for all, (n,); default all branches, of a robot with six turning joints.
+    /// limits
+    ///     Whether to keep the joints' limits.
+    /// factors
+    ///     Values of the corrected model's factors by their names, default their references.
+    /// model
+    ///     Which model is the robot as it is: "corrected", where there is one, or "calibrated", geometry alone.
+    ///
+    /// Returns
+    /// -------
+    /// numpy.ndarray or list of numpy.ndarray
+    ///     With `near` the nearest configuration of each pose, shape (m, n), or (n,) for one pose, NaN where there is none; without, the branches of each
+    ///     pose, a list of arrays of shape (k, n), or one array for one pose.
+    #[pyo3(signature = (poses, *, near=None, limits=true, factors=None, model="corrected"))]
+    fn ik<'py>(
+        &self,
+        py: Python<'py>,
+        poses: &Bound<'py, PyAny>,
+        near: Option<&Bound<'py, PyAny>>,
+        #[pyo3(from_py_with = arg::limits)] limits: bool,
+        factors: Option<&Bound<'py, PyAny>>,
+        #[pyo3(from_py_with = arg::model)] model: &str,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let actual = self.actual(model)?;
+        let factors = reach::factors(&actual.model.robot, factors)?;
+        reach::inverse(py, &actual.model.robot, poses, near, &factors, limits)
     }
 
     /// Judges the calibration by measurements that it did not see; every row counts.

@@ -18,6 +18,7 @@ mod pickle;
 mod places;
 mod prediction;
 mod project;
+mod reach;
 mod residuals;
 mod robot;
 mod rows;

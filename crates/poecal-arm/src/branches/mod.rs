@@ -9,12 +9,16 @@ mod wrist;
 use alloc::boxed::Box;
 use alloc::vec::Vec;
 use core::cmp::Reverse;
-use core::f64::consts::PI;
+use core::f64::consts::{PI, TAU};
 
 use axis::Axis;
 use general::General;
 use parallel::Parallel;
 use wrist::Wrist;
+
+// The functions of numbers, where there is no standard library.
+#[allow(unused_imports)]
+use nalgebra::{ComplexField as _, RealField as _};
 
 use crate::arm::Arm;
 use crate::lie::{Pose, Screw};
@@ -182,6 +186,47 @@ impl AllBranches {
                 break;
             }
         }
+        found
+    }
+
+    /// The configurations within the arm's limits ([`Arm::limits`]) that have the tip at a pose: of each branch that one whose joints are nearest
+    /// to `near`, turned by whole turns where that keeps limits; sorted by the joint that has to move most.
+    ///
+    /// ```
+    /// use nalgebra::Vector3;
+    /// use poecal_arm::{AllBranches, Arm, lie::{Pose, Screw}};
+    /// let axes = [Vector3::z(), Vector3::y(), Vector3::y(), Vector3::x(), Vector3::y(), Vector3::x()];
+    /// let points = [0.0, 0.0, 0.4, 0.4, 0.8, 0.8].map(|z| Vector3::new(0.0, 0.0, z));
+    /// let screws: Vec<Screw> = axes.iter().zip(&points).map(|(axis, point)| Screw::revolute(axis, point)).collect();
+    /// let arm = Arm::new(&screws, &Pose::from_translation(Vector3::new(0.1, 0.0, 0.8))).unwrap();
+    /// let q = [0.3, -0.3, 0.9, 0.1, 0.6, 6.2];
+    /// let found = AllBranches::new(&arm).unwrap().within_limits(&arm.forward_kinematics(&q), &q);
+    /// assert!((found.as_slice()[0][5] - 6.2).abs() < 1e-9);
+    /// ```
+    #[must_use]
+    pub fn within_limits(&self, target: &Pose, near: &[f64; 6]) -> Branches {
+        let mut found = Branches::EMPTY;
+        'branch: for branch in self.at(target).as_slice() {
+            let mut q = *branch;
+            for ((q, near), &(low, high)) in q.iter_mut().zip(near).zip(self.arm.limits()) {
+                let turns = ((near - *q) / TAU).round();
+                let turned = *q + turns * TAU;
+                // Limits that are met but for rounding are met.
+                let least = ((low - SAME - turned) / TAU).ceil();
+                let most = ((high + SAME - turned) / TAU).floor();
+                if least > most {
+                    continue 'branch;
+                }
+                *q = turned + TAU * 0.0_f64.clamp(least, most);
+            }
+            if !self.arm.is_rigid() {
+                newton(&self.arm, target, &mut q, MOST_STEPS);
+            }
+            found.values[found.count] = q;
+            found.count += 1;
+        }
+        let far = |q: &[f64; 6]| q.iter().zip(near).map(|(q, near)| (q - near).abs()).fold(0.0, f64::max);
+        found.values[..found.count].sort_unstable_by(|one, other| far(one).total_cmp(&far(other)));
         found
     }
 

@@ -1122,6 +1122,73 @@ class Calibration:
         target: str | None = None,
         model: Literal["corrected", "calibrated"] = "corrected",
     ) -> _Array | Prediction: ...
+    def compensate(
+        self,
+        joints: ArrayLike,
+        *,
+        factors: Mapping[str, float] | None = None,
+        nearest: bool = False,
+        model: Literal["corrected", "calibrated"] = "corrected",
+    ) -> _Array:
+        """Joint readings to command so that the robot as it is has its tip where a program for the nominal robot meant it.
+
+        Parameters
+        ----------
+        joints
+            Readings of the program, shape (m, n), radians and metres, in the order of `robot.reading_names` without factors; or one, shape (n,).
+        factors
+            Values of the corrected model's factors by their names, default their references.
+        nearest
+            Whether to give the nearest configuration where a pose cannot be reached, instead of refusing.
+        model
+            Which model is the robot as it is: "corrected", where there is one, or "calibrated", geometry alone.
+
+        Returns
+        -------
+        numpy.ndarray
+            Readings to command, of the same shape.
+        """
+    @overload
+    def ik(
+        self,
+        poses: ArrayLike,
+        *,
+        near: None = None,
+        limits: bool = True,
+        factors: Mapping[str, float] | None = None,
+        model: Literal["corrected", "calibrated"] = "corrected",
+    ) -> _Array | list[_Array]:
+        """Configurations that have the tip at poses.
+
+        Parameters
+        ----------
+        poses
+            Poses of the tip in the base, shape (m, 4, 4), or one, (4, 4).
+        near
+            Configurations to which the found ones are nearest, shape (m, n), or one for all, (n,); default all branches, of a robot with six turning joints.
+        limits
+            Whether to keep the joints' limits.
+        factors
+            Values of the corrected model's factors by their names, default their references.
+        model
+            Which model is the robot as it is: "corrected", where there is one, or "calibrated", geometry alone.
+
+        Returns
+        -------
+        numpy.ndarray or list of numpy.ndarray
+            With `near` the nearest configuration of each pose, shape (m, n), or (n,) for one pose, NaN where there is none; without, the branches of each
+            pose, a list of arrays of shape (k, n), or one array for one pose.
+        """
+    @overload
+    def ik(
+        self,
+        poses: ArrayLike,
+        *,
+        near: ArrayLike,
+        limits: bool = True,
+        factors: Mapping[str, float] | None = None,
+        model: Literal["corrected", "calibrated"] = "corrected",
+    ) -> _Array: ...
     def validate(
         self, measurements: Measurements, *, refit_frame: bool = False, refit_tool: bool = False
     ) -> Findings:

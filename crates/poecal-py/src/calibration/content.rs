@@ -14,6 +14,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::errors::{argument, raise};
 use crate::robot::{Robot, RobotState};
+use crate::words::chosen;
 
 /// A calibration: the calibrated robot, its errors on fitted and held-out rows, and how far to trust it.
 ///
@@ -210,6 +211,13 @@ impl Calibration {
         let robot = file.robot().map_err(raise)?;
         let model = Model { robot, source: ModelSource::Calibration(Box::new(file)), path: UNWRITTEN.into() };
         Ok(self.calibrated.get_or_init(|| Robot::new(model)))
+    }
+
+    /// The robot that a word names: "corrected", where there is one, or "calibrated".
+    pub(crate) fn actual(&self, model: &str) -> PyResult<&Robot> {
+        let is_corrected = chosen("model", model, &[("corrected", true), ("calibrated", false)])?;
+        let corrected = if is_corrected { self.corrected()? } else { None };
+        corrected.map_or_else(|| self.calibrated(), Ok)
     }
 
     /// The corrected robot as in the file; none without terms.

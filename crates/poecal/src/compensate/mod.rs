@@ -1,11 +1,13 @@
 //! What to command so that the robot as it is does what a program for its drawing meant.
 
+mod inverse;
 mod summary;
 mod table;
 
 use nalgebra::Vector3;
 use poecal_arm::{AllBranches, Arm};
 
+pub use inverse::Inverse;
 pub use summary::{Largest, Summary};
 pub use table::{TableOptions, compensate_table};
 

@@ -209,7 +209,8 @@ impl Robot {
     }
 
     /// The readings of joints alone.
-    pub(crate) fn joint_reading_names(&self) -> Vec<String> {
+    #[must_use]
+    pub fn joint_reading_names(&self) -> Vec<String> {
         let mut names = self.reading_names();
         names.truncate(names.len() - self.factors.len());
         names

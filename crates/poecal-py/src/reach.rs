@@ -1,0 +1,167 @@
+//! Inverse kinematics and compensation, row by row.
+
+use numpy::PyArray1;
+use poecal::Robot;
+use poecal::compensate::{Compensation, Inverse};
+use poecal::lie::Pose;
+use pyo3::IntoPyObjectExt as _;
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyList};
+
+use crate::arrays::{Numbers, pose_of, table};
+use crate::errors::{argument, raise};
+
+/// Values of a robot's factors: those of a mapping from their names, else their references.
+pub(crate) fn factors(robot: &Robot, given: Option<&Bound<'_, PyAny>>) -> PyResult<Vec<f64>> {
+    let mut values: Vec<f64> = robot.factors.iter().map(|it| it.reference).collect();
+    let Some(given) = given.filter(|it| !it.is_none()) else { return Ok(values) };
+    let expected = || {
+        let names: Vec<&str> = robot.factors.iter().map(|it| it.name.as_str()).collect();
+        let names = if names.is_empty() { "this model has none".to_owned() } else { names.join(", ") };
+        format!("expected a mapping from names of factors to numbers: {names}")
+    };
+    let Ok(given) = given.cast::<PyDict>() else {
+        return Err(argument("factors", format!("found something else, {}", expected())));
+    };
+    for (name, value) in given {
+        let index =
+            robot.factors.iter().position(|it| name.extract::<String>().is_ok_and(|name| name == it.name));
+        match (index, value.extract::<f64>()) {
+            (Some(index), Ok(value)) if value.is_finite() => values[index] = value,
+            _ => return Err(argument("factors", format!("found {name}: {value}, {}", expected()))),
+        }
+    }
+    Ok(values)
+}
+
+/// Configurations of the joints alone, and whether it is one.
+fn configurations(value: &Bound<'_, PyAny>, name: &str, robot: &Robot) -> PyResult<(Numbers, bool)> {
+    let names = robot.joint_reading_names();
+    let n = names.len();
+    let expected = format!(
+        "shape (m, {n}) or ({n},): in each configuration {} (radians; metres of sliding joints)",
+        names.join(", ")
+    );
+    let numbers = Numbers::finite(value, name, &expected)?;
+    let is_single = numbers.shape.len() == 1;
+    let wanted: &[Option<usize>] = if is_single { &[Some(n)] } else { &[None, Some(n)] };
+    Ok((numbers.shaped(wanted, name, &expected)?, is_single))
+}
+
+/// Rows of numbers as an array of as many dimensions as were given.
+fn rows<'py>(
+    py: Python<'py>,
+    numbers: Vec<f64>,
+    columns: usize,
+    is_single: bool,
+) -> PyResult<Bound<'py, PyAny>> {
+    if is_single {
+        PyArray1::from_vec(py, numbers).into_bound_py_any(py)
+    } else {
+        table(py, numbers, columns)?.into_bound_py_any(py)
+    }
+}
+
+/// Readings to command for those of a nominal program.
+pub(crate) fn compensate<'py>(
+    py: Python<'py>,
+    (nominal, actual): (&Robot, &Robot),
+    joints: &Bound<'py, PyAny>,
+    factors: &[f64],
+    nearest: bool,
+) -> PyResult<Bound<'py, PyAny>> {
+    let (numbers, is_single) = configurations(joints, "joints", actual)?;
+    let n = actual.joint_reading_names().len();
+    let mut compensation = Compensation::new(nominal, actual, factors).map_err(raise)?;
+    let must_be_reached = !nearest && compensation.readings().len() >= 6;
+    let made = py.detach(|| {
+        let mut out = Vec::with_capacity(numbers.values.len());
+        for (row, meant) in numbers.values.chunks_exact(n.max(1)).enumerate() {
+            let found = compensation.joints(meant);
+            if must_be_reached && !found.is_reached() {
+                return Err((row, found.left_m, found.left_rad));
+            }
+            out.extend_from_slice(found.readings);
+        }
+        Ok(out)
+    });
+    let made = made.map_err(|(row, metres, radians)| {
+        let message = format!(
+            "found a configuration in row {row} whose pose the actual robot cannot reach: {:.3} mm and {:.4} degrees are left, expected poses in \
+             reach: leave it out, or take nearest=True",
+            metres * 1e3,
+            radians.to_degrees()
+        );
+        argument("joints", message)
+    })?;
+    rows(py, made, n, is_single)
+}
+
+/// Poses of an array of shape (m, 4, 4) or (4, 4), and whether it is one.
+fn targets(value: &Bound<'_, PyAny>) -> PyResult<(Vec<Pose>, bool)> {
+    let expected = "poses of the tip in the base, shape (m, 4, 4) or (4, 4)";
+    let numbers = Numbers::finite(value, "poses", expected)?;
+    let is_single = numbers.shape.len() == 2;
+    let wanted: &[Option<usize>] = if is_single { &[Some(4), Some(4)] } else { &[None, Some(4), Some(4)] };
+    let numbers = numbers.shaped(wanted, "poses", expected)?;
+    let pose = |(row, it): (usize, &[f64])| {
+        pose_of(it).map_err(|message| {
+            argument("poses", if is_single { message } else { format!("row {row}: {message}") })
+        })
+    };
+    let poses = numbers.values.chunks_exact(16).enumerate().map(pose).collect::<PyResult<Vec<Pose>>>()?;
+    Ok((poses, is_single))
+}
+
+/// Configurations that have the tip at poses: the nearest to `near`, not a number where there is none; without `near` all branches.
+pub(crate) fn inverse<'py>(
+    py: Python<'py>,
+    robot: &Robot,
+    poses: &Bound<'py, PyAny>,
+    near: Option<&Bound<'py, PyAny>>,
+    factors: &[f64],
+    limits: bool,
+) -> PyResult<Bound<'py, PyAny>> {
+    let (targets, is_single) = targets(poses)?;
+    let inverse = Inverse::new(robot, factors).map_err(raise)?;
+    let n = robot.joint_reading_names().len();
+    let Some(near) = near.filter(|it| !it.is_none()) else {
+        if !inverse.has_branches() {
+            let message = "found None, expected a configuration from which to start: all branches are found of arms with six turning joints";
+            return Err(argument("near", message.to_owned()));
+        }
+        let start = vec![0.0; n];
+        let found: Vec<Vec<Vec<f64>>> =
+            py.detach(|| targets.iter().map(|target| inverse.branches(target, &start, limits)).collect());
+        let arrays = found
+            .into_iter()
+            .map(|branches| table(py, branches.concat(), n))
+            .collect::<PyResult<Vec<_>>>()?;
+        return match (is_single, arrays.first()) {
+            (true, Some(first)) => first.into_bound_py_any(py),
+            _ => PyList::new(py, arrays)?.into_bound_py_any(py),
+        };
+    };
+    let (near, one) = configurations(near, "near", robot)?;
+    if !one && near.rows() != targets.len() {
+        let message = format!(
+            "found {} configurations for {} poses, expected one for each, or one for all",
+            near.rows(),
+            targets.len()
+        );
+        return Err(argument("near", message));
+    }
+    let found = py.detach(|| {
+        let mut out = Vec::with_capacity(targets.len() * n);
+        for (row, target) in targets.iter().enumerate() {
+            let start = if one { 0 } else { row * n };
+            let start = near.values.get(start..start + n).unwrap_or_default();
+            match inverse.nearest(target, start, limits) {
+                Some(q) => out.extend(q),
+                None => out.extend(std::iter::repeat_n(f64::NAN, n)),
+            }
+        }
+        out
+    });
+    rows(py, found, n, is_single)
+}

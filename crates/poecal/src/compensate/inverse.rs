@@ -1,0 +1,98 @@
+//! Inverse kinematics of a robot's tip.
+
+use poecal_arm::{AllBranches, Arm};
+
+use super::{REACHED, apart};
+use crate::error::Result;
+use crate::lie::Pose;
+use crate::robot::Robot;
+
+/// Inverse kinematics of a robot's tip, with terms of its joints at given values of its factors.
+///
+/// ```
+/// use poecal::compensate::Inverse;
+/// let robot = poecal::simulate::elbow();
+/// let inverse = Inverse::new(&robot, &[])?;
+/// let q = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6];
+/// let found = inverse.nearest(&robot.forward_kinematics(&q), &[0.0; 6], true).unwrap();
+/// assert!((found[5] - 0.6).abs() < 1e-9);
+/// # Ok::<(), poecal::Error>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Inverse {
+    arm: Arm,
+    branches: Option<AllBranches>,
+    readings: Vec<usize>,
+    /// Number of the robot's joint readings.
+    count: usize,
+}
+
+impl Inverse {
+    /// Of a robot, at these values of its factors.
+    ///
+    /// # Errors
+    /// As [`Robot::arm`].
+    pub fn new(robot: &Robot, factors: &[f64]) -> Result<Self> {
+        let (arm, readings) = robot.arm(factors)?;
+        let branches = AllBranches::new(&arm);
+        Ok(Inverse { arm, branches, readings, count: robot.joint_reading_names().len() })
+    }
+
+    /// Whether all branches can be found: of six turning joints, each with a reading of its own.
+    #[must_use]
+    pub fn has_branches(&self) -> bool {
+        self.branches.is_some()
+    }
+
+    /// The configuration nearest to `near` (rad, m, in the order of [`Robot::reading_names`]) that has the tip at a pose of the base; within
+    /// limits, if that is asked. `None` if there is none.
+    #[must_use]
+    pub fn nearest(&self, target: &Pose, near: &[f64], within_limits: bool) -> Option<Vec<f64>> {
+        let mut q: Vec<f64> = self.readings.iter().map(|&at| near.get(at).copied().unwrap_or(0.0)).collect();
+        let is_reached = match (&self.branches, <&mut [f64; 6]>::try_from(&mut q[..])) {
+            (Some(branches), Ok(six)) => {
+                let start = *six;
+                branches.nearest(target, six);
+                if within_limits && !self.is_within(six) {
+                    *six = *branches.within_limits(target, &start).as_slice().first()?;
+                }
+                self.is_at(six, target)
+            }
+            (None, _) | (_, Err(_)) => {
+                self.arm.nearest(target, &mut q);
+                self.is_at(&q, target) && !(within_limits && !self.is_within(&q))
+            }
+        };
+        is_reached.then(|| self.all(near, &q))
+    }
+
+    /// All configurations that have the tip at a pose, nearest to `near` first; within limits, if that is asked, else from -π to π.
+    #[must_use]
+    pub fn branches(&self, target: &Pose, near: &[f64], within_limits: bool) -> Vec<Vec<f64>> {
+        let Some(branches) = &self.branches else { return Vec::new() };
+        let mut start = [0.0; 6];
+        start.iter_mut().zip(&self.readings).for_each(|(to, &at)| *to = near.get(at).copied().unwrap_or(0.0));
+        let found = if within_limits { branches.within_limits(target, &start) } else { branches.at(target) };
+        found.as_slice().iter().map(|q| self.all(near, q)).collect()
+    }
+
+    fn is_at(&self, q: &[f64], target: &Pose) -> bool {
+        let (metres, radians) = apart(&self.arm.forward_kinematics(q), target);
+        metres <= REACHED && radians <= REACHED
+    }
+
+    fn is_within(&self, q: &[f64]) -> bool {
+        q.iter().zip(self.arm.limits()).all(|(q, (low, high))| (low - 1e-7..=high + 1e-7).contains(q))
+    }
+
+    /// All readings of the robot: those that do not move the tip are where they were.
+    fn all(&self, near: &[f64], q: &[f64]) -> Vec<f64> {
+        let mut all: Vec<f64> = (0..self.count).map(|at| near.get(at).copied().unwrap_or(0.0)).collect();
+        for (&at, value) in self.readings.iter().zip(q) {
+            if let Some(it) = all.get_mut(at) {
+                *it = *value;
+            }
+        }
+        all
+    }
+}
