@@ -4,6 +4,7 @@
 
 mod bad_input;
 mod commands;
+mod compensate;
 mod diagnosis;
 mod example;
 mod exit_codes;

@@ -19,7 +19,7 @@ use crate::robot::Robot;
 pub const REACHED: f64 = 1e-9;
 
 /// Compensation of joint readings: those with which the actual robot has its tip where the nominal one has it,
-/// `base_from_tip(q) = nominal base_from_tip(q₀)` (theory.md §9).
+/// `base_from_tip(q) = nominal base_from_tip(q₀)` (theory.md §2).
 ///
 /// ```
 /// use poecal::compensate::Compensation;

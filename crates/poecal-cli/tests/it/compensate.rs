@@ -1,0 +1,132 @@
+//! `poecal compensate`: programs of joint readings.
+
+use std::fmt::Write as _;
+
+use poecal::simulate::Kind;
+
+use crate::folder::Folder;
+use crate::session::{numbers, session};
+
+/// A text without its digits, signs and points.
+fn bare(text: &str) -> String {
+    text.chars().filter(|c| !c.is_ascii_digit() && !".,-e".contains(*c)).collect()
+}
+
+const PROGRAM: &str = "\u{feff}# Griff; 1;2;3\r\nname;joint1[deg];joint2[deg];joint3[deg];joint4[deg];joint5[deg];joint6[deg];io\r\n\
+    A;10,5;20,25;30;40;50;60;an\r\n\r\n# nichts: 1;2\r\n\"B; c\";-1;2;-3;4;-50;6; aus\r\n C ; \"1,5\";2;3;4;50;6;";
+
+/// A folder with a calibration and a program.
+fn folder() -> Folder {
+    let folder = session(Kind::Pose);
+    folder.done("calibrate robot.urdf measurements.csv --out results");
+    folder.write("program.csv", PROGRAM);
+    folder
+}
+
+#[test]
+fn everything_but_the_readings_stays_and_the_tip_is_where_it_was_meant() {
+    let folder = folder();
+    let told = folder.done("compensate results/calibration.json program.csv --out out.csv --check");
+    assert!(told.starts_with("3 rows: without correction the tip would be off by "), "{told}");
+    assert!(told.contains("checked from the written numbers: at most "), "{told}");
+    let written = folder.read("out.csv");
+    assert_eq!(bare(&written), bare(PROGRAM));
+    assert_ne!(written, PROGRAM);
+    // By the program's own predictions, of the same readings without the words of the file.
+    let plain = |text: &str| {
+        let mut plain =
+            "joint1[deg],joint2[deg],joint3[deg],joint4[deg],joint5[deg],joint6[deg]\n".to_owned();
+        for row in text.lines().filter(|it| ["A;", "\"B", " C"].iter().any(|name| it.starts_with(name))) {
+            let cells: Vec<String> = row.replace("B; c", "").split(';').skip(1).take(6).map(clean).collect();
+            writeln!(plain, "{}", cells.join(",")).unwrap();
+        }
+        plain
+    };
+    fn clean(cell: &str) -> String {
+        cell.trim().trim_matches('"').replace(',', ".")
+    }
+    folder.write("meant.csv", &plain(PROGRAM));
+    folder.write("commanded.csv", &plain(&written));
+    let meant = numbers(&folder.done("predict robot.urdf meant.csv"), 0);
+    let reached = numbers(&folder.done("predict results/calibration.json commanded.csv"), 0);
+    assert_eq!((meant.len(), reached.len()), (3, 3));
+    let apart = meant.iter().flatten().zip(reached.iter().flatten()).map(|(a, b)| (a - b).abs());
+    let worst = apart.fold(0.0, f64::max);
+    println!("apart by {worst:.1e}");
+    assert!(worst < 1e-9, "{worst}");
+}
+
+#[test]
+fn standard_output_and_pipes_give_the_same_bytes_and_json_the_same_figures() {
+    let folder = folder();
+    let json = folder.done("compensate results/calibration.json program.csv --out out.csv --json");
+    let found: serde_json::Value = serde_json::from_str(&json).unwrap();
+    assert_eq!((&found["rows"], &found["joints"][5]), (&3.into(), &"joint6".into()));
+    assert!(found["left_m"]["value"].as_f64().unwrap() < 1e-9);
+    let written = folder.read("out.csv");
+    assert_eq!(folder.done("compensate results/calibration.json program.csv"), written);
+    let piped = folder.run_with_input("compensate results/calibration.json -", PROGRAM);
+    assert_eq!((piped.code, piped.out), (0, written));
+    // Without what the calibration found there is nothing to correct.
+    folder.write("same.csv", "joint1,joint2,joint3,joint4,joint5,joint6\n0.1,0.2,0.3,0.4,0.5,0.6\n");
+    let other = folder.done("compensate results/calibration.json same.csv --model calibrated");
+    assert_eq!(other.lines().count(), 2);
+}
+
+#[test]
+fn what_cannot_be_corrected_is_told_and_nothing_is_written() {
+    let folder = folder();
+    folder.write("short.csv", "joint1,joint2\n0,0\n");
+    folder.write("word.csv", "joint1,joint2,joint3,joint4,joint5,joint6\n0,0,0,0,0.5,0\n0,0,x,0,0,0\n");
+    folder.write("sum.toml", "[joints]\njoint3 = { columns = { joint2 = 1, joint3 = 1 } }\n");
+    let before = folder.listing();
+    for (arguments, sentence) in [
+        ("robot.urdf program.csv", "error: robot.urdf: found a robot model, expected a calibration.json"),
+        ("results/calibration.json short.csv", "error: short.csv:1: found no column `joint3`"),
+        (
+            "results/calibration.json word.csv",
+            "error: word.csv:3:5: found `x` in column `joint3`, expected a finite number",
+        ),
+        (
+            "results/calibration.json program.csv --factor heat=3",
+            "error: found --factor heat=3, expected NAME=VALUE with a factor of the model: ",
+        ),
+        ("results/calibration.json nowhere.csv", "error: nowhere.csv: found no such file"),
+    ] {
+        let run = folder.run(&format!("compensate {arguments} --out out.csv"));
+        println!("{}", run.err.trim_end());
+        assert_eq!((run.code, run.out.as_str()), (2, ""), "{arguments}");
+        assert!(run.err.contains(sentence), "{arguments}: {}", run.err);
+    }
+    let run = folder.run("compensate results/calibration.json program.csv --out program.csv --force");
+    assert!(run.code == 2 && run.err.contains("input"), "{}", run.err);
+    let run = folder.run("compensate results/calibration.json word.csv --columns sum.toml --out out.csv");
+    assert!(run.code == 2 && run.err.contains("`joint3` is a sum of columns"), "{}", run.err);
+    assert_eq!(folder.listing(), before);
+}
+
+/// The arm of the drawing reaches farther than the one that was measured, in some direction.
+#[test]
+fn poses_out_of_reach_are_refused_or_come_near() {
+    let folder = folder();
+    let mut text = "joint1,joint2,joint3,joint4,joint5,joint6\n".to_owned();
+    for step in 0..60 {
+        writeln!(text, "0.3,0.4,{},0.1,0.5,0.2", -1.5 - 0.002 * f64::from(step)).unwrap();
+        writeln!(text, "0.3,0.4,{},0.1,0.5,0.2", 0.1 * f64::from(step) - 3.0).unwrap();
+    }
+    folder.write("edge.csv", &text);
+    let refused = folder.run("compensate results/calibration.json edge.csv --out out.csv");
+    if refused.code != 0 {
+        assert_eq!(refused.code, 2);
+        assert!(
+            refused.err.contains("the actual robot cannot reach the pose of this row: "),
+            "{}",
+            refused.err
+        );
+        assert!(refused.err.contains("edge.csv:") && !folder.path("out.csv").exists());
+    }
+    let near = folder.run("compensate results/calibration.json edge.csv --out out.csv --nearest");
+    assert_eq!(near.code, 0, "{}", near.err);
+    assert_eq!(refused.code != 0, near.err.contains("cannot be reached by the actual robot"), "{}", near.err);
+    assert_eq!(folder.read("out.csv").lines().count(), text.lines().count());
+}
