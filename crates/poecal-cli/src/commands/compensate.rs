@@ -76,7 +76,7 @@ fn factors(robot: &Robot, stated: &[String], console: &Console) -> Result<Vec<f6
         is_stated[index] = true;
     }
     for (factor, _) in robot.factors.iter().zip(is_stated).filter(|(_, is_stated)| !is_stated) {
-        console.remark(&format!(
+        console.remark(format!(
             "factor `{}` is taken to be {}: state it by --factor {}=VALUE",
             factor.name, factor.reference, factor.name
         ));

@@ -60,7 +60,7 @@ impl Inverse {
             }
             (None, _) | (_, Err(_)) => {
                 self.arm.nearest(target, &mut q);
-                self.is_at(&q, target) && !(within_limits && !self.is_within(&q))
+                self.is_at(&q, target) && (!within_limits || self.is_within(&q))
             }
         };
         is_reached.then(|| self.all(near, &q))
