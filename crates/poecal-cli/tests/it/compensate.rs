@@ -45,8 +45,8 @@ fn everything_but_the_readings_stays_and_the_tip_is_where_it_was_meant() {
     fn clean(cell: &str) -> String {
         cell.trim().trim_matches('"').replace(',', ".")
     }
-    folder.write("meant.csv", &plain(PROGRAM));
-    folder.write("commanded.csv", &plain(&written));
+    folder.write("meant.csv", plain(PROGRAM));
+    folder.write("commanded.csv", plain(&written));
     let meant = numbers(&folder.done("predict robot.urdf meant.csv"), 0);
     let reached = numbers(&folder.done("predict results/calibration.json commanded.csv"), 0);
     assert_eq!((meant.len(), reached.len()), (3, 3));
