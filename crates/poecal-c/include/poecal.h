@@ -98,6 +98,9 @@ extern void free(void *pointer);
 
 extern void abort(void);
 
+// What Rust's own `alloc` names where it was built to unwind; nothing unwinds here.
+void rust_eh_personality(void);
+
 #ifdef __cplusplus
 }  // extern "C"
 #endif  // __cplusplus

@@ -42,12 +42,18 @@ pub struct RewrittenTable {
 /// As [`super::read_joints`]; [`ErrorKind::Measurement`] if a reading is no column of its own; what `change` and `out` return.
 ///
 /// ```
-/// use poecal::io::measurements::{ReadOptions, rewrite_joints};
+/// use poecal::io::measurements::{JointRow, ReadOptions, rewrite_joints};
 /// let path = std::env::temp_dir().join(format!("poecal_rewrite_{}.csv", std::process::id()));
 /// std::fs::write(&path, "note,joint1[deg],joint2,joint3,joint4\nstart,90,0,0,0\n").unwrap();
 /// let mut text = String::new();
-/// let mut change = |_: &_, numbers: &mut [f64]| Ok(numbers[1] += 0.5);
-/// let mut out = |piece: &str| Ok(text.push_str(piece));
+/// let mut change = |_: &JointRow<'_>, numbers: &mut [f64]| {
+///     numbers[1] += 0.5;
+///     Ok(())
+/// };
+/// let mut out = |piece: &str| {
+///     text.push_str(piece);
+///     Ok(())
+/// };
 /// rewrite_joints(&path, &poecal::simulate::scara(), &ReadOptions::default(), &mut change, &mut out)?;
 /// assert_eq!(text, "note,joint1[deg],joint2,joint3,joint4\nstart,90,0.5,0,0\n");
 /// # std::fs::remove_file(&path).unwrap();
