@@ -92,15 +92,6 @@ PoecalLeft poecal_compensate(const PoecalArm *nominal,
                              const double *meant,
                              double *q);
 
-extern void *aligned_alloc(size_t align, size_t size);
-
-extern void free(void *pointer);
-
-extern void abort(void);
-
-// What Rust's own `alloc` names where it was built to unwind; nothing unwinds here.
-void rust_eh_personality(void);
-
 #ifdef __cplusplus
 }  // extern "C"
 #endif  // __cplusplus
