@@ -12,7 +12,6 @@ use core::f64::consts::TAU;
 
 use nalgebra::Vector3;
 
-use super::BEYOND;
 use super::axis::{Axis, back};
 use super::roots::{Angles, Trigonometric};
 use crate::lie::Pose;
@@ -23,6 +22,8 @@ use crate::trig::cosine_and_sine;
 #[allow(unused_imports)]
 use nalgebra::{ComplexField as _, RealField as _};
 
+/// Imaginary part of a pair of roots up to which a real pair of the arm may be near but for rounding, rad.
+const BEYOND: f64 = 0.075;
 /// Equations.
 const EQUATIONS: usize = 14;
 /// Unknown products of the cosines and sines of the first two angles.
@@ -267,7 +268,7 @@ impl General {
                 it.1 += share * sample * s;
             }
         }
-        let roots: Angles<24> = Trigonometric { coefficients }.roots(96, 0.0, 0.3 * BEYOND);
+        let roots: Angles<24> = Trigonometric { coefficients }.roots(96, 0.0, BEYOND);
         for &q3 in roots.as_slice() {
             let (c, s) = cosine_and_sine(q3);
             let x = null_vector(&mut resultant(&equations, c, s));

@@ -11,7 +11,7 @@ use alloc::vec::Vec;
 use core::cmp::Reverse;
 use core::f64::consts::{PI, TAU};
 
-use axis::Axis;
+use axis::{Axis, motion_of};
 use general::General;
 use parallel::Parallel;
 use wrist::Wrist;
@@ -28,7 +28,12 @@ use crate::trig::wrapped;
 /// Least distance of two starts where two branches meet, rad.
 const APART: f64 = 0.06;
 /// Imaginary part of a pair of solutions up to which a real pair of the arm itself may be near, rad.
-const BEYOND: f64 = 0.25;
+const BEYOND: f64 = 0.8;
+/// The same once the arm's difference from its relative is known, and distance of starts that are one.
+const CLOSE: f64 = 0.2;
+/// Distance from a start within which its branches are, and from a branch within which a start leads to it.
+const AROUND: f64 = 0.6;
+const KNOWN: f64 = 0.15;
 /// Difference of all joints (rad) below which two configurations are one.
 const SAME: f64 = 1e-7;
 /// Most branches of an arm of six axes (primrose1986).
@@ -94,6 +99,15 @@ enum Way {
 }
 
 impl Way {
+    /// Joint values of the branches in closed form, and whether two of them meet there or almost do.
+    fn seeds(&self, motion: &Pose, beyond: f64, push: &mut impl FnMut([f64; 6], bool)) {
+        match self {
+            Way::Wrist(wrist) => wrist.seeds(motion, beyond, push),
+            Way::Parallel(parallel) => parallel.seeds(motion, beyond, push),
+            Way::General(_) => {}
+        }
+    }
+
     fn is_closed(&self) -> bool {
         match self {
             Way::Wrist(_) | Way::Parallel(_) => true,
@@ -268,10 +282,9 @@ impl AllBranches {
 
 /// Adds the branches that a way leads to; whether each of its starts leads to one of its own.
 fn follow(arm: &Arm, (way, is_reversed): &(Way, bool), target: &Pose, found: &mut Branches) -> bool {
-    let motion = *target * arm.home().inverse();
-    let motion = if *is_reversed { motion.inverse() } else { motion };
-    let mut is_sure = true;
-    let mut push = |mut q: [f64; 6]| {
+    let oriented = |motion: Pose| if *is_reversed { motion.inverse() } else { motion };
+    let motion = oriented(*target * arm.home().inverse());
+    let readings = |mut q: [f64; 6]| {
         if *is_reversed {
             q.reverse();
             q = q.map(|it| -it);
@@ -279,6 +292,10 @@ fn follow(arm: &Arm, (way, is_reversed): &(Way, bool), target: &Pose, found: &mu
         for (it, sense) in q.iter_mut().zip(arm.senses().unwrap_or_default()) {
             *it = wrapped(*it) / sense;
         }
+        q
+    };
+    let push = |q: [f64; 6], found: &mut Branches| {
+        let mut q = readings(q);
         let mut left = newton(arm, target, &mut q, MOST_STEPS);
         if q.iter().any(|it| it.abs() > PI) {
             q = q.map(wrapped);
@@ -287,14 +304,62 @@ fn follow(arm: &Arm, (way, is_reversed): &(Way, bool), target: &Pose, found: &mu
                 left = newton(arm, target, &mut q, MOST_STEPS);
             }
         }
-        is_sure &= left < REACHED && found.add(&q);
+        left < REACHED && found.add(&q)
     };
-    match way {
-        Way::Wrist(wrist) => wrist.seeds(&motion, &mut push),
-        Way::Parallel(parallel) => parallel.seeds(&motion, &mut push),
-        Way::General(general) => general.seeds(&motion, &mut push),
+    let mut is_sure = true;
+    let axes = match way {
+        Way::General(general) => {
+            general.seeds(&motion, &mut |q| is_sure &= push(q, found));
+            return is_sure;
+        }
+        Way::Wrist(wrist) => wrist.axes(),
+        Way::Parallel(parallel) => parallel.axes(),
+    };
+    // Starts at which two branches meet, and which lead to none of their own.
+    let mut open = Starts { values: [[0.0; 6]; MOST_BRANCHES], count: 0 };
+    way.seeds(&motion, BEYOND, &mut |q, is_touching| {
+        if !push(q, found) {
+            if is_touching {
+                open.add(&q);
+            } else {
+                is_sure = false;
+            }
+        }
+    });
+    for start in &open.values[..open.count] {
+        // There, the arm differs from its relative by a motion that hardly depends on where it is: with it, the closed form tells whether the
+        // branches meet.
+        let is_there = oriented(arm.forward_kinematics(&readings(*start)) * arm.home().inverse());
+        let there = motion * (is_there.inverse() * motion_of(axes, start));
+        let near = |q: &[f64; 6], other: &[f64; 6], most: f64| {
+            q.iter().zip(other).all(|(a, b)| wrapped(a - b).abs() < most)
+        };
+        let before = found.count;
+        way.seeds(&there, CLOSE, &mut |q, _| {
+            let is_known = found.as_slice().iter().any(|it| near(it, &readings(q), KNOWN));
+            if near(&q, start, AROUND) || !is_known {
+                push(q, found);
+            }
+        });
+        is_sure &= found.count > before;
     }
     is_sure
+}
+
+/// Starts of the iteration.
+struct Starts {
+    values: [[f64; 6]; MOST_BRANCHES],
+    count: usize,
+}
+
+impl Starts {
+    fn add(&mut self, q: &[f64; 6]) {
+        let is_same = |other: &[f64; 6]| q.iter().zip(other).all(|(a, b)| wrapped(a - b).abs() < CLOSE);
+        if self.count < MOST_BRANCHES && !self.values[..self.count].iter().any(is_same) {
+            self.values[self.count] = *q;
+            self.count += 1;
+        }
+    }
 }
 
 /// Number of branches that a way finds in a few configurations of an arm: no way serves every geometry alike.

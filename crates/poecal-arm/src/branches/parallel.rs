@@ -2,9 +2,9 @@
 
 use nalgebra::Vector3;
 
+use super::APART;
 use super::axis::{Axis, back};
 use super::roots::linear;
-use super::{APART, BEYOND};
 use crate::lie::{Pose, rotation};
 use crate::trig::cosine_and_sine;
 
@@ -44,8 +44,13 @@ impl Parallel {
         bends.then_some((Parallel { axes, wrist, along }, angle, apart))
     }
 
+    /// Its axes.
+    pub(crate) fn axes(&self) -> &[Axis; 6] {
+        &self.axes
+    }
+
     /// Joint values of the branches for a motion `exp(ξ₁q₁) … exp(ξ₆q₆)`.
-    pub(crate) fn seeds(&self, motion: &Pose, push: &mut impl FnMut([f64; 6])) {
+    pub(crate) fn seeds(&self, motion: &Pose, beyond: f64, push: &mut impl FnMut([f64; 6], bool)) {
         let [a1, a2, a3, a4, a5, a6] = &self.axes;
         let w = &self.along;
         // The height of the wrist along the parallel axes is left to the first joint: w · exp(-ξ₁q₁) p = w · p₀.
@@ -56,12 +61,12 @@ impl Parallel {
         let w6 = motion.rotation * a6.w;
         let (across, along) = (a5.w.cross(w), a5.w * a5.w.dot(w));
         let side = rotation::perpendicular(w);
-        for &q1 in linear(a, b, height, APART, BEYOND).as_slice() {
+        for (q1, one) in linear(a, b, height, APART, beyond).each() {
             let turned = a1.turned(cosine_and_sine(q1), w);
             // w6 · exp(-w5 q5) w = (R w6) · exp(w1 q1) w.
             let (a, b) = (a6.w.dot(&(w - along)), -a6.w.dot(&across));
             let goal = motion.rotation.transpose() * turned;
-            for &q5 in linear(a, b, w6.dot(&turned) - a6.w.dot(&along), 0.0, f64::INFINITY).as_slice() {
+            for (q5, two) in linear(a, b, w6.dot(&turned) - a6.w.dot(&along), 0.0, f64::INFINITY).each() {
                 let bent = a5.turned(back(q5), w);
                 let q6 = a6.angle(&goal, &bent);
                 // What the parallel axes have to do: a turn, and a place of the fourth.
@@ -78,12 +83,13 @@ impl Parallel {
                 // |upper + exp(w q3) fore| = |at|.
                 let (a, b) = (upper.dot(&fore), upper.dot(&w.cross(&fore)));
                 let d = 0.5 * (at.norm_squared() - upper.norm_squared() - fore.norm_squared());
-                for &q3 in linear(a, b, d, APART, BEYOND).as_slice() {
+                for (q3, three) in linear(a, b, d, APART, beyond).each() {
                     let axis = Axis { w: *w, point: a2.point };
                     let reached = upper + axis.turned(cosine_and_sine(q3), &fore);
                     let q2 = axis.angle(&reached, &at);
                     let sign = |axis: &Axis| axis.w.dot(w);
-                    push([q1, sign(a2) * q2, sign(a3) * q3, sign(a4) * (turn - q2 - q3), q5, q6]);
+                    let q = [q1, sign(a2) * q2, sign(a3) * q3, sign(a4) * (turn - q2 - q3), q5, q6];
+                    push(q, one || two || three);
                 }
             }
         }

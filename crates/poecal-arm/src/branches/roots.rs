@@ -2,7 +2,7 @@
 
 use core::f64::consts::{PI, TAU};
 
-use crate::trig::cosine_and_sine;
+use crate::trig::{cosine_and_sine, wrapped};
 
 // The functions of numbers, where there is no standard library.
 #[allow(unused_imports)]
@@ -13,15 +13,41 @@ use nalgebra::{ComplexField as _, RealField as _};
 pub(crate) struct Angles<const N: usize> {
     pub(crate) values: [f64; N],
     pub(crate) count: usize,
+    /// Whether each is one of two that meet or almost do.
+    touching: [bool; N],
 }
 
-impl<const N: usize> Angles<N> {
-    pub(crate) const EMPTY: Self = Angles { values: [0.0; N], count: 0 };
+/// Distance of two angles (rad) below which they almost meet.
+const ALMOST: f64 = 0.15;
 
-    pub(crate) fn push(&mut self, angle: f64) {
+impl<const N: usize> Angles<N> {
+    pub(crate) const EMPTY: Self = Angles { values: [0.0; N], count: 0, touching: [false; N] };
+
+    fn push(&mut self, angle: f64, is_touching: bool) {
         if self.count < N {
             self.values[self.count] = angle;
+            self.touching[self.count] = is_touching;
             self.count += 1;
+        }
+    }
+
+    /// Each with whether it is one of two that meet or almost do.
+    pub(crate) fn each(&self) -> impl Iterator<Item = (f64, bool)> {
+        let all = self.values.iter().zip(&self.touching).take(self.count);
+        all.map(|(value, is_touching)| (*value, *is_touching))
+    }
+
+    /// Whether two of them meet or almost do.
+    pub(crate) fn is_touching(&self) -> bool {
+        self.touching.iter().take(self.count).any(|it| *it)
+    }
+
+    /// Marks those that have another one near.
+    fn mark(&mut self) {
+        for k in 0..self.count {
+            let near =
+                |other: usize| other != k && wrapped(self.values[k] - self.values[other]).abs() < ALMOST;
+            self.touching[k] |= (0..self.count).any(near);
         }
     }
 
@@ -43,9 +69,10 @@ pub(crate) fn linear(a: f64, b: f64, d: f64, apart: f64, beyond: f64) -> Angles<
     } else {
         return found;
     };
+    let is_touching = half < 0.5 * ALMOST || PI - half < 0.5 * ALMOST;
     let half = half.clamp(0.5 * apart, PI - 0.5 * apart);
-    found.push(middle + half);
-    found.push(middle - half);
+    found.push(middle + half, is_touching);
+    found.push(middle - half, is_touching);
     found
 }
 
@@ -107,21 +134,22 @@ impl<const TERMS: usize> Trigonometric<TERMS> {
             let (next_value, next_slope, _) =
                 if k == grid { (start_value, start_slope, 0.0) } else { self.at(next) };
             if (value > 0.0) != (next_value > 0.0) {
-                found.push(self.between(angle, next, value));
+                found.push(self.between(angle, next, value), false);
             } else if (value > 0.0) == (slope < 0.0) && (slope > 0.0) != (next_slope > 0.0) {
                 // Between them the polynomial comes closest to zero.
                 let extremum = self.extremum(angle, next, slope);
                 let (there, _, bend) = self.at(extremum);
                 if (there > 0.0) != (value > 0.0) {
-                    found.push(self.between(angle, extremum, value));
-                    found.push(self.between(extremum, next, there));
+                    found.push(self.between(angle, extremum, value), false);
+                    found.push(self.between(extremum, next, there), false);
                 } else if (2.0 * there / bend).abs() < beyond * beyond {
-                    found.push(extremum - 0.5 * apart);
-                    found.push(extremum + 0.5 * apart);
+                    found.push(extremum - 0.5 * apart, true);
+                    found.push(extremum + 0.5 * apart, true);
                 }
             }
             (angle, value, slope) = (next, next_value, next_slope);
         }
+        found.mark();
         found
     }
 

@@ -2,9 +2,9 @@
 
 use nalgebra::{Matrix3, Vector3};
 
+use super::APART;
 use super::axis::{Axis, back};
 use super::roots::{Angles, Trigonometric, linear};
-use super::{APART, BEYOND};
 use crate::lie::{Pose, rotation};
 use crate::trig::cosine_and_sine;
 
@@ -56,11 +56,16 @@ impl Wrist {
         (bends(3, 4) && bends(4, 5)).then_some((Wrist { axes, centre }, apart))
     }
 
+    /// Its axes.
+    pub(crate) fn axes(&self) -> &[Axis; 6] {
+        &self.axes
+    }
+
     /// Joint values of the branches for a motion `exp(ξ₁q₁) … exp(ξ₆q₆)`.
-    pub(crate) fn seeds(&self, motion: &Pose, push: &mut impl FnMut([f64; 6])) {
+    pub(crate) fn seeds(&self, motion: &Pose, beyond: f64, push: &mut impl FnMut([f64; 6], bool)) {
         let [a1, a2, a3, a4, a5, a6] = &self.axes;
         let place = motion.act(&self.centre);
-        self.regional(&place, &mut |q1, q2, q3| {
+        self.regional(&place, beyond, &mut |[q1, q2, q3], one| {
             let (t1, t2, t3) = (back(q1), back(q2), back(q3));
             let undone = |v: &Vector3<f64>| a3.turned(t3, &a2.turned(t2, &a1.turned(t1, v)));
             let w6 = motion.rotation * a6.w;
@@ -70,18 +75,18 @@ impl Wrist {
             let (a, b) = (a4.w.dot(&(a6.w - along)), a4.w.dot(&across));
             let side = rotation::perpendicular(&a6.w);
             let side_goal = undone(&(motion.rotation * side));
-            for &q5 in linear(a, b, a4.w.dot(&goal) - a4.w.dot(&along), 0.0, f64::INFINITY).as_slice() {
+            for (q5, two) in linear(a, b, a4.w.dot(&goal) - a4.w.dot(&along), 0.0, f64::INFINITY).each() {
                 let bent = a5.turned(cosine_and_sine(q5), &a6.w);
                 let q4 = a4.angle(&bent, &goal);
                 let back_side = a5.turned(back(q5), &a4.turned(back(q4), &side_goal));
-                push([q1, q2, q3, q4, q5, a6.angle(&side, &back_side)]);
+                push([q1, q2, q3, q4, q5, a6.angle(&side, &back_side)], one || two);
             }
         });
     }
 
     /// Angles of the first three joints that bring the centre to a place : its height along the first axis and its distance from a
     /// point of it are what the first joint leaves as they are; both are linear in cos q₂ and sin q₂.
-    fn regional(&self, place: &Vector3<f64>, push: &mut impl FnMut(f64, f64, f64)) {
+    fn regional(&self, place: &Vector3<f64>, beyond: f64, push: &mut impl FnMut([f64; 3], bool)) {
         let [a1, a2, a3, ..] = &self.axes;
         let q = a2.point - a1.point;
         let goal = place - a1.point;
@@ -112,9 +117,9 @@ impl Wrist {
         let (aa, ab, bb) = (ax * ax + ay * ay, ax * bx + ay * by, bx * bx + by * by);
         let at = |it: &[f64; 3], (c, s): (f64, f64)| it[0] + it[1] * c + it[2] * s;
         let centre = |(c, s): (f64, f64)| v0 + v1 * c + v2 * s;
-        let finish = |q2: f64, q3: f64, push: &mut dyn FnMut(f64, f64, f64)| {
+        let finish = |q2: f64, q3: f64, is_touching: bool, push: &mut dyn FnMut([f64; 3], bool)| {
             let u = a2.moved(cosine_and_sine(q2), &(a2.point + centre(cosine_and_sine(q3))));
-            push(a1.angle(&(u - a1.point), &goal), q2, q3);
+            push([a1.angle(&(u - a1.point), &goal), q2, q3], is_touching);
         };
         // Where the first axes (nearly) meet or are parallel, one equation has (nearly) no q₂: it gives q₃, the other q₂.
         let size = goal.norm() + q.norm() + v0.norm() + v1.norm();
@@ -129,22 +134,23 @@ impl Wrist {
             let turned = |(x, y): (f64, f64), (c, s): (f64, f64)| (c * x - s * y, s * x + c * y);
             for (which, other) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
                 let (mut q2, mut q3, mut shift) = (0.0, 0.0, 0.0);
-                let mut is_found = true;
+                let (mut is_found, mut is_touching) = (true, false);
                 for _ in 0..3 {
-                    let third = linear(weak.2[1], weak.2[2], shift - weak.2[0], APART, BEYOND);
+                    let third = linear(weak.2[1], weak.2[2], shift - weak.2[0], APART, beyond);
                     is_found &= third.count == 2;
-                    q3 = third.values[which];
+                    (q3, is_touching) = (third.values[which], third.is_touching());
                     let turn = cosine_and_sine(q3);
                     let z = flat(&centre(turn));
                     let (x, y) = (strong.0 * z.0 + strong.1 * z.1, strong.1 * z.0 - strong.0 * z.1);
-                    let second = linear(x, y, at(&strong.2, turn), APART, BEYOND);
+                    let second = linear(x, y, at(&strong.2, turn), APART, beyond);
                     is_found &= second.count == 2;
                     q2 = second.values[other];
+                    is_touching |= second.is_touching();
                     let z = turned(z, cosine_and_sine(q2));
                     shift = weak.0 * z.0 + weak.1 * z.1;
                 }
                 if is_found {
-                    finish(q2, q3, push);
+                    finish(q2, q3, is_touching, push);
                 }
             }
             return;
@@ -163,14 +169,14 @@ impl Wrist {
         add(bb, &alpha, &alpha);
         add(-det * det, &squared, &[1.0, 0.0, 0.0]);
         add(det * det, &h, &h);
-        let roots: Angles<8> = Trigonometric { coefficients: sum }.roots(24, APART, BEYOND);
-        for &q3 in roots.as_slice() {
+        let roots: Angles<8> = Trigonometric { coefficients: sum }.roots(24, APART, beyond);
+        for (q3, is_touching) in roots.each() {
             let turn = cosine_and_sine(q3);
             let (zx, zy) = flat(&centre(turn));
             let (alpha, beta) = (at(&alpha, turn), at(&beta, turn));
             // Turned by q₂, (zx, zy) has the products α and β with A and B.
             let (x, y) = ((by * alpha - ay * beta) / det, (ax * beta - bx * alpha) / det);
-            finish((zx * y - zy * x).atan2(zx * x + zy * y), q3, push);
+            finish((zx * y - zy * x).atan2(zx * x + zy * y), q3, is_touching, push);
         }
     }
 }
