@@ -182,31 +182,39 @@ impl Summary {
     #[must_use]
     pub fn warnings(&self) -> Vec<String> {
         let mut out = Vec::new();
-        let of = |count: usize| if count == 1 { "1 target".to_owned() } else { format!("{count} targets") };
+        let of = |count: usize, one: &str, several: &str| {
+            if count == 1 { format!("1 target {one}") } else { format!("{count} targets {several}") }
+        };
         if self.unreached.0 > 0 {
             out.push(format!(
-                "{} cannot be reached by the actual robot, the first on line {}: there the nearest configuration is written",
-                of(self.unreached.0),
+                "{} be reached by the actual robot, the first on line {}: there the nearest configuration is written",
+                of(self.unreached.0, "cannot", "cannot"),
                 self.unreached.1
             ));
         }
         if self.beyond_limits.0 > 0 {
             out.push(format!(
-                "{} readings are beyond their joint's limits once corrected, the first of joint `{}` on line {}",
-                self.beyond_limits.0, self.beyond_limits.2, self.beyond_limits.1
+                "{} beyond their joint's limits once corrected, the first of joint `{}` on line {}",
+                if self.beyond_limits.0 == 1 {
+                    "1 reading is".to_owned()
+                } else {
+                    format!("{} readings are", self.beyond_limits.0)
+                },
+                self.beyond_limits.2,
+                self.beyond_limits.1
             ));
         }
         if self.other_branches.0 > 0 {
             out.push(format!(
-                "{} are reached on another branch, since a singularity lies between the drawing and the robot, the first on line {}: look at \
+                "{} reached on another branch, since a singularity lies between the drawing and the robot, the first on line {}: look at \
                  the motion there",
-                of(self.other_branches.0),
+                of(self.other_branches.0, "is", "are"),
                 self.other_branches.1
             ));
         }
         if self.jumps.0 > 0 {
             out.push(format!(
-                "the correction jumps between consecutive targets {} times, most on line {} (by {:.4} rad or m): near singularities",
+                "the correction jumps between consecutive targets ({} times), most on line {} (by {:.4} rad or m): near singularities",
                 self.jumps.0, self.jumps.1.line, self.jumps.1.value
             ));
         }
