@@ -4,11 +4,12 @@ use alloc::boxed::Box;
 use alloc::vec;
 use alloc::vec::Vec;
 
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::Vector3;
 
+use crate::chain::Chain;
 use crate::lie::{Pose, Screw};
 use crate::model::{Joint, Model};
-use crate::placed::{MOST_JOINTS, Placed, along, turn};
+use crate::placed::{MOST_JOINTS, Placed};
 use crate::real::Real;
 
 /// Least joint value per reading of a joint that the reading is said to move.
@@ -30,10 +31,7 @@ pub struct Arm {
     /// Of each reading, the screw of the joint that it moves, where all readings are 0.
     screws: Vec<Screw>,
     home: Pose,
-    /// Frame of each joint, its axis along z, in that of the joint before (of the first, in the base), at zero.
-    frames: Vec<Pose>,
-    /// The tip in the frame of the last joint.
-    tip: Pose,
+    chain: Chain,
     reach_m: f64,
     limits: Vec<(f64, f64)>,
     /// Joint values per reading; none of an arm in which a reading moves several joints.
@@ -52,23 +50,11 @@ impl Arm {
         if screws.is_empty() || screws.len() > MOST_JOINTS || !screws.iter().all(is_finite) || !is_home {
             return None;
         }
-        let mut frames = Vec::with_capacity(screws.len());
-        let mut base_from_joint = Pose::identity();
-        let mut reach_m = 0.0;
-        for screw in screws {
-            let frame = along(screw, &base_from_joint.translation);
-            if !frames.is_empty() {
-                reach_m += (frame.translation - base_from_joint.translation).norm();
-            }
-            frames.push(base_from_joint.inverse() * frame);
-            base_from_joint = frame;
-        }
-        reach_m += (home.translation - base_from_joint.translation).norm();
-        let tip = base_from_joint.inverse() * *home;
+        let chain = Chain::new(screws, home);
         let limits = vec![(f64::NEG_INFINITY, f64::INFINITY); screws.len()];
         let senses = Some(vec![1.0; screws.len()]);
-        let reach_m = reach_m.max(1e-3);
-        Some(Arm { screws: screws.to_vec(), home: *home, frames, tip, reach_m, limits, senses, real: None })
+        let reach_m = chain.length_m.max(1e-3);
+        Some(Arm { screws: screws.to_vec(), home: *home, chain, reach_m, limits, senses, real: None })
     }
 
     /// The arm of a model; `None` if it has no joint, more than [`MOST_JOINTS`] readings, a reading that moves nothing, numbers that are not
@@ -126,7 +112,7 @@ impl Arm {
     /// Number of readings: of the joints that are moved.
     #[must_use]
     pub fn joints(&self) -> usize {
-        self.frames.len()
+        self.chain.len()
     }
 
     /// Screws of the joints that readings move, in the base, where all readings are 0.
@@ -167,36 +153,34 @@ impl Arm {
     /// `base_from_tip` at readings (rad, m); those that are not given are 0.
     #[must_use]
     pub fn forward_kinematics(&self, q: &[f64]) -> Pose {
-        self.placed(q).tip
+        // Small arrays are sooner filled.
+        match self.joints() {
+            ..=6 => self.placed_at(&first::<6>(q)).tip,
+            7 | 8 => self.placed_at(&first::<8>(q)).tip,
+            _ => self.placed(q).tip,
+        }
     }
 
-    /// The tip and its motions at readings.
-    #[inline]
-    pub(crate) fn placed(&self, q: &[f64]) -> Placed {
-        if let Some(real) = &self.real {
-            let mut all = [0.0; MOST_JOINTS];
-            all.iter_mut().zip(q).for_each(|(to, from)| *to = *from);
-            return real.placed(&all);
-        }
-        let mut out = Placed::at_rest();
-        let (mut turned, mut at) = (Matrix3::identity(), Vector3::zeros());
-        for (index, (frame, screw)) in self.frames.iter().zip(&self.screws).enumerate() {
-            let value = q.get(index).copied().unwrap_or(0.0);
-            at += turned * frame.translation;
-            turned *= frame.rotation;
-            let axis = turned.column(2).into_owned();
-            if screw.is_prismatic() {
-                out.v[index] = axis;
-                at += axis * value;
-            } else {
-                out.v[index] = at.cross(&axis);
-                out.w[index] = axis;
-                turn(&mut turned, value);
-            }
-        }
-        out.tip = Pose::new(turned * self.tip.rotation, at + turned * self.tip.translation);
-        out
+    /// The tip and its motions at readings; those that are not given are 0.
+    pub(crate) fn placed(&self, q: &[f64]) -> Placed<MOST_JOINTS> {
+        self.placed_at(&first::<MOST_JOINTS>(q))
     }
+
+    /// The same at as many readings as there are, or more.
+    #[inline]
+    pub(crate) fn placed_at<const N: usize>(&self, q: &[f64; N]) -> Placed<N> {
+        match &self.real {
+            Some(real) => real.placed(q),
+            None => self.chain.placed(q),
+        }
+    }
+}
+
+/// The first readings; those that are not given are 0.
+fn first<const N: usize>(q: &[f64]) -> [f64; N] {
+    let mut all = [0.0; N];
+    all.iter_mut().zip(q).for_each(|(to, from)| *to = *from);
+    all
 }
 
 impl Arm {

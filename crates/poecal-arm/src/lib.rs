@@ -23,6 +23,7 @@ extern crate std;
 
 mod arm;
 mod branches;
+mod chain;
 pub mod lie;
 mod model;
 mod newton;

@@ -44,10 +44,10 @@ impl Left {
         Left { position: target.translation - tip.translation, rotation }
     }
 
-    /// Its square, lengths over a reach.
+    /// Its square, lengths over a reach, of which the inverse is given.
     #[inline]
-    pub(crate) fn squared(&self, reach_m: f64) -> f64 {
-        self.position.norm_squared() / (reach_m * reach_m) + self.rotation.norm_squared()
+    pub(crate) fn squared(&self, inverse_reach: f64) -> f64 {
+        self.position.norm_squared() * (inverse_reach * inverse_reach) + self.rotation.norm_squared()
     }
 }
 
@@ -58,7 +58,7 @@ fn angle_of(sine: Vector3<f64>, squared: f64) -> Vector3<f64> {
 
 /// Column of a joint: motion of the tip's point (over the reach) and its turn.
 #[inline]
-fn column(arm: &Arm, placed: &Placed, joint: usize, inverse_reach: f64) -> [f64; 6] {
+fn column<const N: usize>(arm: &Arm, placed: &Placed<N>, joint: usize, inverse_reach: f64) -> [f64; 6] {
     let (mut v, w) = placed.column(joint);
     // A step that slides is counted in reaches, so that it is of the size of an angle.
     if !arm.screws()[joint].is_prismatic() {
@@ -67,40 +67,73 @@ fn column(arm: &Arm, placed: &Placed, joint: usize, inverse_reach: f64) -> [f64;
     [v.x, v.y, v.z, w.x, w.y, w.z]
 }
 
+/// Columns of six joints: motion of the tip's point (over the reach) and its turn.
+#[inline(always)]
+fn columns_of_six(arm: &Arm, placed: &Placed<6>, inverse_reach: f64) -> [(Vector3<f64>, Vector3<f64>); 6] {
+    let of = |joint: usize| {
+        let (v, w) = placed.column(joint);
+        // A step that slides is counted in reaches, so that it is of the size of an angle.
+        (if arm.screws()[joint].is_prismatic() { v } else { v * inverse_reach }, w)
+    };
+    [of(0), of(1), of(2), of(3), of(4), of(5)]
+}
+
+/// The step of six joints that takes away what is left, to first order.
+#[inline]
+fn step_of_six(arm: &Arm, placed: &Placed<6>, left: &Left, inverse_reach: f64) -> Option<[f64; 6]> {
+    let p = left.position * inverse_reach;
+    let columns = columns_of_six(arm, placed, inverse_reach);
+    if let Some(step) = small::solve_halves(&columns, (p, left.rotation), 1e-4) {
+        return Some(step);
+    }
+    let mut a = [[0.0; 6]; 6];
+    for (joint, (v, w)) in columns.iter().enumerate() {
+        for (row, it) in a.iter_mut().zip([v.x, v.y, v.z, w.x, w.y, w.z]) {
+            row[joint] = it;
+        }
+    }
+    let w = left.rotation;
+    let mut step = [p.x, p.y, p.z, w.x, w.y, w.z];
+    small::solve(&mut a, &mut step, 1e-14)?;
+    Some(step)
+}
+
 /// Undamped steps of six joints, as long as they bring the tip closer. `q` becomes the best configuration that was met;
 /// returns what is left there (lengths over reach, rad).
 pub(crate) fn newton(arm: &Arm, target: &Pose, q: &mut [f64; 6], most: u32) -> f64 {
+    newton_judged(arm, target, q, most).0
+}
+
+/// The same, with how well the first step was: the second one over it, 1 if it was too long to be taken. Where another configuration is as near
+/// to the one that is reached as the start was, this is about 1 (kantorovich1948).
+pub(crate) fn newton_judged(arm: &Arm, target: &Pose, q: &mut [f64; 6], most: u32) -> (f64, f64) {
+    let (mut first, mut ratio) = (0.0, 0.0_f64);
     let reach = arm.reach_m();
     let inverse_reach = 1.0 / reach;
-    let mut placed = arm.placed(q);
+    let slides = |joint: usize| arm.screws()[joint].is_prismatic();
+    let mut placed = arm.placed_at(q);
     let mut left = Left::new(&placed.tip, target);
-    let mut squared = left.squared(reach);
-    let mut steps = 0;
+    let mut squared = left.squared(inverse_reach);
     let enough = if arm.is_rigid() { ROUNDED } else { SMALL };
+    let mut steps = 0;
     while steps < most && squared > enough * enough {
-        let mut a = [[0.0; 6]; 6];
-        for joint in 0..6 {
-            let moves = column(arm, &placed, joint, inverse_reach);
-            for (row, it) in a.iter_mut().zip(moves) {
-                row[joint] = it;
-            }
-        }
-        let (p, w) = (left.position * inverse_reach, left.rotation);
-        let mut step = [p.x, p.y, p.z, w.x, w.y, w.z];
-        if small::solve(&mut a, &mut step, 1e-14).is_none() {
-            break;
-        }
+        let Some(step) = step_of_six(arm, &placed, &left, inverse_reach) else { break };
         let longest = step.iter().fold(0.0_f64, |most, it| most.max(it.abs()));
+        match steps {
+            0 => (first, ratio) = (longest, if longest > LONGEST_STEP { 1.0 } else { 0.0 }),
+            1 => ratio = ratio.max(longest / first),
+            _ => {}
+        }
         let mut share = if longest > LONGEST_STEP { LONGEST_STEP / longest } else { 1.0 };
         let mut is_closer = false;
         for _ in 0..4 {
             let mut next = *q;
             for (joint, (it, step)) in next.iter_mut().zip(step).enumerate() {
-                *it += share * step * if arm.screws()[joint].is_prismatic() { reach } else { 1.0 };
+                *it += share * step * if slides(joint) { reach } else { 1.0 };
             }
-            let there = arm.placed(&next);
+            let there = arm.placed_at(&next);
             let left_there = Left::new(&there.tip, target);
-            let squared_there = left_there.squared(reach);
+            let squared_there = left_there.squared(inverse_reach);
             if squared_there < squared {
                 (*q, placed, left, squared) = (next, there, left_there, squared_there);
                 is_closer = true;
@@ -113,7 +146,7 @@ pub(crate) fn newton(arm: &Arm, target: &Pose, q: &mut [f64; 6], most: u32) -> f
             break;
         }
     }
-    squared.sqrt()
+    (squared.sqrt(), ratio)
 }
 
 /// Damped steps (Levenberg and Marquardt) of any number of joints, the least motion that brings the tip closer;
@@ -123,7 +156,7 @@ pub(crate) fn damped(arm: &Arm, target: &Pose, q: &mut [f64], most: u32) -> f64 
     let n = arm.joints().min(q.len());
     let mut placed = arm.placed(q);
     let mut left = Left::new(&placed.tip, target);
-    let mut squared = left.squared(reach);
+    let mut squared = left.squared(1.0 / reach);
     let mut damping = 1e-4 * squared.min(1.0);
     let mut steps = 0;
     let enough = if arm.is_rigid() { ROUNDED } else { SMALL };
@@ -175,7 +208,7 @@ pub(crate) fn damped(arm: &Arm, target: &Pose, q: &mut [f64], most: u32) -> f64 
         }
         let there = arm.placed(&next[..n]);
         let left_there = Left::new(&there.tip, target);
-        let squared_there = left_there.squared(reach);
+        let squared_there = left_there.squared(1.0 / reach);
         if squared_there < squared {
             q[..n].copy_from_slice(&next[..n]);
             damping = (damping * if squared_there < 0.25 * squared { 0.01 } else { 0.3 }).max(1e-18);

@@ -3,26 +3,21 @@
 use nalgebra::{Matrix3, Vector3};
 
 use crate::lie::{Pose, Screw, rotation};
-use crate::trig::cosine_and_sine;
 
 /// Most joints of an arm, so that nothing is allocated where it is computed with.
 pub const MOST_JOINTS: usize = 16;
 
-/// Where an arm is: its tip, and how that moves with each reading, `velocity = v + w × tip` and `angular = w`, in the base.
+/// Where an arm of up to `N` joints is: its tip, and how that moves with each reading, `velocity = v + w × tip` and `angular = w`, in the base.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Placed {
-    pub(crate) v: [Vector3<f64>; MOST_JOINTS],
-    pub(crate) w: [Vector3<f64>; MOST_JOINTS],
+pub(crate) struct Placed<const N: usize> {
+    pub(crate) v: [Vector3<f64>; N],
+    pub(crate) w: [Vector3<f64>; N],
     pub(crate) tip: Pose,
 }
 
-impl Placed {
+impl<const N: usize> Placed<N> {
     pub(crate) fn at_rest() -> Self {
-        Placed {
-            v: [Vector3::zeros(); MOST_JOINTS],
-            w: [Vector3::zeros(); MOST_JOINTS],
-            tip: Pose::identity(),
-        }
+        Placed { v: [Vector3::zeros(); N], w: [Vector3::zeros(); N], tip: Pose::identity() }
     }
 
     /// How the tip moves with a reading: its point, and its turn.
@@ -33,13 +28,7 @@ impl Placed {
     }
 }
 
-/// Turns a frame about its own z.
-#[inline(always)]
-pub(crate) fn turn(frame: &mut Matrix3<f64>, angle: f64) {
-    turn_by(frame, cosine_and_sine(angle));
-}
-
-/// The same, by the cosine and sine of the angle.
+/// Turns a frame about its own z, by the cosine and sine of the angle.
 #[inline(always)]
 pub(crate) fn turn_by(frame: &mut Matrix3<f64>, (c, s): (f64, f64)) {
     let (x, y) = (frame.column(0).into_owned(), frame.column(1).into_owned());

@@ -133,8 +133,8 @@ impl Real {
     }
 
     /// Where the tip is, and how it moves with each reading: but for what weights add to it, some 1e-3 of it.
-    pub(crate) fn placed(&self, q: &[f64; MOST_JOINTS]) -> Placed {
-        let mut found = [(1.0, 0.0); MOST_JOINTS];
+    pub(crate) fn placed<const N: usize>(&self, q: &[f64; N]) -> Placed<N> {
+        let mut found = [(1.0, 0.0); N];
         if self.has_functions {
             for (found, q) in found.iter_mut().zip(&q[..self.readings]) {
                 *found = cosine_and_sine(*q);

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use crate::lie::{Pose, Screw};
+use crate::lie::Screw;
 use crate::trig::cosine_and_sine;
 
 // The functions of numbers, where there is no standard library.
@@ -58,20 +58,6 @@ impl Axis {
     pub(crate) fn distance(&self, p: &Vector3<f64>) -> f64 {
         self.w.cross(&(p - self.point)).norm()
     }
-}
-
-/// The motion `exp(ξ₁q₁) … exp(ξ₆q₆)` of axes.
-pub(crate) fn motion_of(axes: &[Axis; 6], q: &[f64; 6]) -> Pose {
-    let mut motion = Pose::identity();
-    for (axis, q) in axes.iter().zip(q).rev() {
-        let turn = cosine_and_sine(*q);
-        for column in 0..3 {
-            let turned = axis.turned(turn, &motion.rotation.column(column).into_owned());
-            motion.rotation.set_column(column, &turned);
-        }
-        motion.translation = axis.moved(turn, &motion.translation);
-    }
-    motion
 }
 
 /// `(cos, sin)` of minus the angle.

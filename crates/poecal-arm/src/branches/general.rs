@@ -15,7 +15,7 @@ use nalgebra::Vector3;
 use super::axis::{Axis, back};
 use super::roots::{Angles, Trigonometric};
 use crate::lie::Pose;
-use crate::small::determinant;
+use crate::small::{determinant, null_vector};
 use crate::trig::cosine_and_sine;
 
 // The functions of numbers, where there is no standard library.
@@ -45,6 +45,8 @@ pub(crate) struct General {
     scale: f64,
     /// Of each equation, its numbers by 1, cos and sin of the third angle, then of the fourth and the fifth.
     left: [[Table; 3]; EQUATIONS],
+    /// Cosines and sines of the angles at which the polynomial is sampled.
+    turns: [(f64, f64); SAMPLES],
 }
 
 /// What both ends see.
@@ -86,9 +88,6 @@ fn by_halves(table: &Table) -> Table {
     }
     out
 }
-
-/// A square matrix of the resultant.
-type Matrix = [[f64; 12]; 12];
 
 impl General {
     /// Axes at which the loop can be opened.
@@ -147,7 +146,11 @@ impl General {
                 *table = by_halves(table);
             }
         }
-        General { axes, first, origin, scale, left }
+        let mut turns = [(1.0, 0.0); SAMPLES];
+        for (k, it) in turns.iter_mut().enumerate() {
+            *it = cosine_and_sine(TAU * k as f64 / SAMPLES as f64);
+        }
+        General { axes, first, origin, scale, left, turns }
     }
 
     /// The right side by 1, cos and sin of the first two angles: eight unknown products, and what has none.
@@ -250,10 +253,9 @@ impl General {
         }
         let equations = self.combined(&axes, motion);
         let mut samples = [0.0; SAMPLES];
-        for (k, it) in samples.iter_mut().enumerate() {
-            let (c, s) = cosine_and_sine(TAU * k as f64 / SAMPLES as f64);
-            let mut matrix = resultant(&equations, c, s);
-            *it = determinant(&mut matrix);
+        for ((c, s), it) in self.turns.iter().zip(&mut samples) {
+            let (mut matrix, factor) = reduced(&equations, *c, *s);
+            *it = factor * determinant(&mut matrix);
         }
         let largest = samples.iter().fold(0.0_f64, |most, it| most.max(it.abs()));
         if largest == 0.0 || !largest.is_finite() {
@@ -263,16 +265,16 @@ impl General {
         for (harmonic, it) in coefficients.iter_mut().enumerate() {
             let share = if harmonic == 0 { 1.0 } else { 2.0 } / SAMPLES as f64 / largest;
             for (k, sample) in samples.iter().enumerate() {
-                let (c, s) = cosine_and_sine(TAU * (k * harmonic % SAMPLES) as f64 / SAMPLES as f64);
+                let (c, s) = self.turns[k * harmonic % SAMPLES];
                 it.0 += share * sample * c;
                 it.1 += share * sample * s;
             }
         }
-        let roots: Angles<24> = Trigonometric { coefficients }.roots(96, 0.0, BEYOND);
+        let roots: Angles<24> = Trigonometric { coefficients }.roots(48, 0.0, BEYOND);
         for &q3 in roots.as_slice() {
             let (c, s) = cosine_and_sine(q3);
-            let x = null_vector(&mut resultant(&equations, c, s));
-            // Products tan⁰…³ of the fourth times tan⁰…² of the fifth.
+            // t and t² of the fourth times the powers of the fifth.
+            let x = null_vector(&mut reduced(&equations, c, s).0);
             let ratio = |pairs: &[(usize, usize)]| {
                 let (up, down) = pairs
                     .iter()
@@ -281,10 +283,8 @@ impl General {
                     .unwrap_or((0.0, 1.0));
                 2.0 * up.atan2(down)
             };
-            const FIVE: [(usize, usize); 8] =
-                [(1, 0), (2, 1), (4, 3), (5, 4), (7, 6), (8, 7), (10, 9), (11, 10)];
-            const FOUR: [(usize, usize); 9] =
-                [(3, 0), (4, 1), (5, 2), (6, 3), (7, 4), (8, 5), (9, 6), (10, 7), (11, 8)];
+            const FIVE: [(usize, usize); 4] = [(1, 0), (2, 1), (4, 3), (5, 4)];
+            const FOUR: [(usize, usize); 3] = [(3, 0), (4, 1), (5, 2)];
             let (q4, q5) = (ratio(&FOUR) + TURNED[0], ratio(&FIVE) + TURNED[1]);
             let mut q = self.completed(&axes, motion, [q3, q4, q5]);
             q.rotate_right(self.first);
@@ -345,62 +345,57 @@ impl General {
     }
 }
 
-/// The matrix of the resultant at a third angle: the equations, and the equations times the tangent of half the fourth.
-fn resultant(equations: &[[Table; 3]; 6], c: f64, s: f64) -> Matrix {
-    let mut out = [[0.0; 12]; 12];
+/// The equations at a third angle as a matrix of 6 unknowns, and the factor by which its determinant is that of the resultant.
+///
+/// The resultant has the equations and the equations times the tangent t of half the fourth angle, as blocks of the powers of t:
+/// `[A B C 0; 0 A B C] (1, t, t², t³) = 0`, each block by 1, tan and tan² of half the fifth angle. Its first and its last columns have
+/// numbers in one half of the rows only: without them, `t` and `t²` times the powers of the fifth are left.
+fn reduced(equations: &[[Table; 3]; 6], c: f64, s: f64) -> ([[f64; 6]; 6], f64) {
+    let (mut first, mut last) = ([[0.0; 9]; 6], [[0.0; 9]; 6]);
     for (row, [one, cosine, sine]) in equations.iter().enumerate() {
         for four in 0..3 {
             for five in 0..3 {
                 let number = one[four][five] + c * cosine[four][five] + s * sine[four][five];
-                out[row][3 * four + five] = number;
-                out[6 + row][3 + 3 * four + five] = number;
+                first[row][3 * four + five] = number;
+                // C before A and B.
+                last[row][3 * ((four + 1) % 3) + five] = number;
             }
         }
     }
-    out
+    let mut factor = 1.0;
+    eliminate(&mut first, &mut factor);
+    eliminate(&mut last, &mut factor);
+    let row = |of: &[f64; 9]| [of[3], of[4], of[5], of[6], of[7], of[8]];
+    let [.., a, b, c] = &first;
+    let [.., d, e, f] = &last;
+    ([row(a), row(b), row(c), row(d), row(e), row(f)], factor)
 }
 
-/// The vector that a singular matrix takes to zero: elimination with full pivots, and one step of inverse iteration by its triangle.
-fn null_vector(a: &mut Matrix) -> [f64; 12] {
-    let mut order = [0; 12];
-    for (k, it) in order.iter_mut().enumerate() {
-        *it = k;
-    }
-    for k in 0..11 {
-        let (mut row, mut column, mut most) = (k, k, 0.0);
-        for (i, it) in a.iter().enumerate().skip(k) {
-            for (j, number) in it.iter().enumerate().skip(k) {
-                if number.abs() > most {
-                    (row, column, most) = (i, j, number.abs());
-                }
+/// Takes the first three columns out of the last three rows, with row pivots, whose product goes into the factor.
+#[inline]
+fn eliminate(rows: &mut [[f64; 9]; 6], factor: &mut f64) {
+    for k in 0..3 {
+        let mut row = k;
+        for i in k + 1..6 {
+            if rows[i][k].abs() > rows[row][k].abs() {
+                row = i;
             }
         }
-        if most == 0.0 {
-            break;
+        if row != k {
+            rows.swap(k, row);
+            *factor = -*factor;
         }
-        a.swap(k, row);
-        order.swap(k, column);
-        for it in a.iter_mut() {
-            it.swap(k, column);
-        }
-        let pivot = a[k];
-        let inverse = 1.0 / pivot[k];
-        for below in a.iter_mut().skip(k + 1) {
-            let factor = below[k] * inverse;
-            for j in k..12 {
-                below[j] -= factor * pivot[j];
+        let pivot = rows[k];
+        *factor *= pivot[k];
+        let inverse = if pivot[k] == 0.0 { 0.0 } else { 1.0 / pivot[k] };
+        for below in rows.iter_mut().skip(k + 1) {
+            let share = below[k] * inverse;
+            for j in 3..9 {
+                below[j] -= share * pivot[j];
+            }
+            for j in k + 1..3 {
+                below[j] -= share * pivot[j];
             }
         }
     }
-    let mut sorted = [0.0; 12];
-    sorted[11] = 1.0;
-    for k in (0..11).rev() {
-        let sum: f64 = (k + 1..12).map(|j| a[k][j] * sorted[j]).sum();
-        sorted[k] = if a[k][k] == 0.0 { 0.0 } else { -sum / a[k][k] };
-    }
-    let mut out = [0.0; 12];
-    for (place, value) in order.into_iter().zip(sorted) {
-        out[place] = value;
-    }
-    out
 }

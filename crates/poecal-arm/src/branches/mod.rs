@@ -8,10 +8,9 @@ mod wrist;
 
 use alloc::boxed::Box;
 use alloc::vec::Vec;
-use core::cmp::Reverse;
 use core::f64::consts::{PI, TAU};
 
-use axis::{Axis, motion_of};
+use axis::Axis;
 use general::General;
 use parallel::Parallel;
 use wrist::Wrist;
@@ -22,28 +21,30 @@ use nalgebra::{ComplexField as _, RealField as _};
 
 use crate::arm::Arm;
 use crate::lie::{Pose, Screw};
-use crate::newton::{REACHED, newton};
+use crate::newton::{REACHED, newton, newton_judged};
 use crate::trig::wrapped;
 
 /// Least distance of two starts where two branches meet, rad.
 const APART: f64 = 0.06;
 /// Imaginary part of a pair of solutions up to which a real pair of the arm itself may be near, rad.
 const BEYOND: f64 = 0.8;
-/// The same once the arm's difference from its relative is known, and distance of starts that are one.
-const CLOSE: f64 = 0.2;
-/// Distance from a start within which its branches are, and from a branch within which a start leads to it.
-const AROUND: f64 = 0.6;
-const KNOWN: f64 = 0.15;
+/// Ratio of the first two steps from a start beyond which there may be other branches around, and way (rad) to a branch that is another's.
+const DOUBTFUL: f64 = 0.25;
+const ASTRAY: f64 = 0.6;
 /// Difference of all joints (rad) below which two configurations are one.
 const SAME: f64 = 1e-7;
 /// Most branches of an arm of six axes (primrose1986).
 pub const MOST_BRANCHES: usize = 16;
-/// Of the six ways to set up the equations, so many in a row have to find nothing new.
-const WITHOUT_NEWS: usize = 2;
+/// So many of the six ways to set up the equations are asked where the number of branches is odd.
+const MOST_WAYS: usize = 3;
 /// Configurations in which the ways are compared.
-const SAMPLES: usize = 24;
+const SAMPLES: usize = 48;
 /// Steps between them: 2π times the fractions of the roots of 2, 3, 5, 7, 11 and 13.
 const SPREAD: [f64; 6] = [2.602581, 4.599611, 1.483259, 4.057375, 1.989413, 3.804791];
+/// Distance (rad) of a root from a branch that was found from which it is taken for another one.
+const NEAR: f64 = 1e-4;
+/// Most starts of a way.
+const MOST_STARTS: usize = 24;
 /// Most steps from a start.
 const MOST_STEPS: u32 = 12;
 /// How far (rad, lengths over reach) an arm may be from one with closed branches.
@@ -76,9 +77,9 @@ impl Branches {
         &self.values[..self.count]
     }
 
+    /// Adds a configuration; whether it is new.
     fn add(&mut self, q: &[f64; 6]) -> bool {
-        let is_same = |other: &[f64; 6]| q.iter().zip(other).all(|(a, b)| wrapped(a - b).abs() < SAME);
-        if self.count == MOST_BRANCHES || self.as_slice().iter().any(is_same) {
+        if self.count == MOST_BRANCHES || self.as_slice().iter().any(|other| apart(q, other) < SAME) {
             return false;
         }
         self.values[self.count] = *q;
@@ -87,7 +88,17 @@ impl Branches {
     }
 }
 
-/// A way to starts of the iteration, by the axes in their order or from the tip.
+/// Whether a start is farther than this (rad) from all branches that were found.
+fn is_far_by(distance: f64) -> impl Fn(&[f64; 6], &Branches) -> bool {
+    move |start, found| !found.as_slice().iter().any(|it| apart(it, start) < distance)
+}
+
+/// The largest difference of a joint, rad.
+fn apart(one: &[f64; 6], other: &[f64; 6]) -> f64 {
+    one.iter().zip(other).map(|(a, b)| wrapped(a - b).abs()).fold(0.0, f64::max)
+}
+
+/// A way to starts of the iteration.
 #[derive(Clone, Debug, PartialEq)]
 enum Way {
     /// The nearest arm whose last three axes meet.
@@ -98,28 +109,18 @@ enum Way {
     General(Box<General>),
 }
 
-impl Way {
-    /// Joint values of the branches in closed form, and whether two of them meet there or almost do.
-    fn seeds(&self, motion: &Pose, beyond: f64, push: &mut impl FnMut([f64; 6], bool)) {
-        match self {
-            Way::Wrist(wrist) => wrist.seeds(motion, beyond, push),
-            Way::Parallel(parallel) => parallel.seeds(motion, beyond, push),
-            Way::General(_) => {}
-        }
-    }
-
-    fn is_closed(&self) -> bool {
-        match self {
-            Way::Wrist(_) | Way::Parallel(_) => true,
-            Way::General(_) => false,
-        }
-    }
+/// A way that sees the arm's axes in their order, or from the tip.
+#[derive(Clone, Debug, PartialEq)]
+struct Seen {
+    way: Way,
+    is_reversed: bool,
 }
 
 /// All branches of one arm of six revolute joints: those of the nearest arm that has them in closed form (its last or first three axes meet,
-/// or its second to fourth, or third to fifth, are parallel), each followed by Newton's iteration of the arm itself. Where two of them lead to
-/// the same branch or one leads nowhere, and for arms that are far from such ones, the starts are the roots of the arm's own equations
-/// (raghavan1993), which can be set up in six ways: they are asked until two in a row find nothing new.
+/// or its second to fourth, or third to fifth, are parallel), each followed by Newton's iteration of the arm itself. Where two of them meet or
+/// almost do, where one leads far or nowhere, and for arms that are far from such ones, the starts are the roots of the arm's own equations
+/// (raghavan1993). These can be set up in six ways; the first is the one whose roots are nearest to the branches in a few configurations, and
+/// another one is asked where the number of branches is odd, as they come in pairs.
 ///
 /// ```
 /// use nalgebra::Vector3;
@@ -139,8 +140,12 @@ impl Way {
 #[derive(Clone, Debug, PartialEq)]
 pub struct AllBranches {
     arm: Arm,
-    /// The ways in the order in which they are asked, and whether they go from the tip.
-    ways: Vec<(Way, bool)>,
+    /// The nearest arm with closed branches, if one is near.
+    closed: Option<Seen>,
+    /// The ways to set up the arm's own equations, the best first.
+    general: Vec<Seen>,
+    /// Whether the best of these found what the closed form found: not of an arm that is its own relative, whose equations have no roots.
+    is_general_whole: bool,
 }
 
 impl AllBranches {
@@ -155,50 +160,53 @@ impl AllBranches {
         let mut reversed = axes;
         reversed.reverse();
         let reach = arm.reach_m();
-        let mut nearest: Option<(f64, Way, bool)> = None;
+        let mut nearest: Option<(f64, Seen)> = None;
         let mut general = Vec::new();
         for (axes, is_reversed) in [(axes, false), (reversed, true)] {
             let wrist = Wrist::new(&axes).map(|(it, apart)| (apart / reach, Way::Wrist(it)));
             let parallel = Parallel::new(&axes)
                 .map(|(it, angle, apart)| (f64::max(angle, apart / reach), Way::Parallel(it)));
             for (off, way) in wrist.into_iter().chain(parallel) {
-                if off < FAR && nearest.as_ref().is_none_or(|(least, ..)| off < *least) {
-                    nearest = Some((off, way, is_reversed));
+                if off < FAR && nearest.as_ref().is_none_or(|(least, _)| off < *least) {
+                    nearest = Some((off, Seen { way, is_reversed }));
                 }
             }
             for first in General::FIRST {
-                general.push((Way::General(Box::new(General::new(&axes, first, reach))), is_reversed));
+                let way = Way::General(Box::new(General::new(&axes, first, reach)));
+                general.push(Seen { way, is_reversed });
             }
         }
-        let mut counted: Vec<(usize, (Way, bool))> =
-            general.into_iter().map(|way| (found_in_samples(arm, &way), way)).collect();
-        counted.sort_by_key(|(count, _)| Reverse(*count));
-        let closed = nearest.map(|(_, way, is_reversed)| (way, is_reversed));
-        let ways = closed.into_iter().chain(counted.into_iter().map(|(_, way)| way)).collect();
-        Some(AllBranches { arm: arm.clone(), ways })
+        let closed = nearest.map(|(_, way)| way);
+        let mut judged: Vec<(Judged, Seen)> =
+            general.into_iter().map(|way| (judged(arm, &way), way)).collect();
+        judged.sort_by(|(one, _), (other, _)| other.worth().total_cmp(&one.worth()));
+        let count = |judged: Option<Judged>| judged.map_or(0, |it| it.count);
+        let is_general_whole =
+            count(judged.first().map(|it| it.0)) >= count(closed.as_ref().map(|it| self::judged(arm, it)));
+        let general = judged.into_iter().map(|(_, way)| way).collect();
+        Some(AllBranches { arm: arm.clone(), closed, general, is_general_whole })
     }
 
     /// The configurations that have the tip at a pose of the base.
     #[must_use]
     pub fn at(&self, target: &Pose) -> Branches {
         let mut found = Branches::EMPTY;
-        let mut without_news = 0;
-        for way in &self.ways {
-            let before = found.count;
-            let is_sure = follow(&self.arm, way, target, &mut found);
-            // Branches come and go in pairs.
-            let is_even = found.count.is_multiple_of(2);
-            if way.0.is_closed() {
-                if is_sure && is_even && found.count > 0 {
-                    break;
-                }
-                continue;
+        let closed = self.closed.as_ref().map_or(Starts::EMPTY, |way| way.starts(&self.arm, target));
+        if closed.count > 0 && !closed.is_touching {
+            let doubt = closed.follow(&self.arm, target, &mut found, |_, _| true);
+            let is_sure = found.count == closed.count && doubt < DOUBTFUL;
+            if is_sure && found.count.is_multiple_of(2) {
+                return found;
             }
-            let is_first = before == 0 && without_news == 0;
-            without_news = if found.count == before && !is_first { without_news + 1 } else { 0 };
-            if without_news >= WITHOUT_NEWS && is_even {
+        }
+        for way in self.general.iter().take(MOST_WAYS) {
+            way.starts(&self.arm, target).follow(&self.arm, target, &mut found, is_far_by(NEAR));
+            if found.count.is_multiple_of(2) {
                 break;
             }
+        }
+        if !self.is_general_whole {
+            closed.follow(&self.arm, target, &mut found, is_far_by(ASTRAY));
         }
         found
     }
@@ -280,98 +288,102 @@ impl AllBranches {
     }
 }
 
-/// Adds the branches that a way leads to; whether each of its starts leads to one of its own.
-fn follow(arm: &Arm, (way, is_reversed): &(Way, bool), target: &Pose, found: &mut Branches) -> bool {
-    let oriented = |motion: Pose| if *is_reversed { motion.inverse() } else { motion };
-    let motion = oriented(*target * arm.home().inverse());
-    let readings = |mut q: [f64; 6]| {
-        if *is_reversed {
-            q.reverse();
-            q = q.map(|it| -it);
-        }
-        for (it, sense) in q.iter_mut().zip(arm.senses().unwrap_or_default()) {
-            *it = wrapped(*it) / sense;
-        }
-        q
-    };
-    let push = |q: [f64; 6], found: &mut Branches| {
-        let mut q = readings(q);
-        let mut left = newton(arm, target, &mut q, MOST_STEPS);
-        if q.iter().any(|it| it.abs() > PI) {
-            q = q.map(wrapped);
-            if !arm.is_rigid() {
-                // With an error of its gear, a joint is not where it was a turn ago.
-                left = newton(arm, target, &mut q, MOST_STEPS);
+impl Seen {
+    /// Starts of the iteration, as readings.
+    fn starts(&self, arm: &Arm, target: &Pose) -> Starts {
+        let motion = *target * arm.home().inverse();
+        let motion = if self.is_reversed { motion.inverse() } else { motion };
+        let mut starts = Starts::EMPTY;
+        let mut push = |mut q: [f64; 6], is_touching: bool| {
+            if self.is_reversed {
+                q.reverse();
+                q = q.map(|it| -it);
             }
-        }
-        left < REACHED && found.add(&q)
-    };
-    let mut is_sure = true;
-    let axes = match way {
-        Way::General(general) => {
-            general.seeds(&motion, &mut |q| is_sure &= push(q, found));
-            return is_sure;
-        }
-        Way::Wrist(wrist) => wrist.axes(),
-        Way::Parallel(parallel) => parallel.axes(),
-    };
-    // Starts at which two branches meet, and which lead to none of their own.
-    let mut open = Starts { values: [[0.0; 6]; MOST_BRANCHES], count: 0 };
-    way.seeds(&motion, BEYOND, &mut |q, is_touching| {
-        if !push(q, found) {
-            if is_touching {
-                open.add(&q);
-            } else {
-                is_sure = false;
+            for (it, sense) in q.iter_mut().zip(arm.senses().unwrap_or_default()) {
+                *it = wrapped(*it) / sense;
             }
-        }
-    });
-    for start in &open.values[..open.count] {
-        // There, the arm differs from its relative by a motion that hardly depends on where it is: with it, the closed form tells whether the
-        // branches meet.
-        let is_there = oriented(arm.forward_kinematics(&readings(*start)) * arm.home().inverse());
-        let there = motion * (is_there.inverse() * motion_of(axes, start));
-        let near = |q: &[f64; 6], other: &[f64; 6], most: f64| {
-            q.iter().zip(other).all(|(a, b)| wrapped(a - b).abs() < most)
+            starts.is_touching |= is_touching;
+            if let Some(next) = starts.values.get_mut(starts.count) {
+                *next = q;
+                starts.count += 1;
+            }
         };
-        let before = found.count;
-        way.seeds(&there, CLOSE, &mut |q, _| {
-            let is_known = found.as_slice().iter().any(|it| near(it, &readings(q), KNOWN));
-            if near(&q, start, AROUND) || !is_known {
-                push(q, found);
-            }
-        });
-        is_sure &= found.count > before;
+        match &self.way {
+            Way::Wrist(wrist) => wrist.seeds(&motion, &mut push),
+            Way::Parallel(parallel) => parallel.seeds(&motion, &mut push),
+            Way::General(general) => general.seeds(&motion, &mut |q| push(q, false)),
+        }
+        starts
     }
-    is_sure
 }
 
 /// Starts of the iteration.
 struct Starts {
-    values: [[f64; 6]; MOST_BRANCHES],
+    values: [[f64; 6]; MOST_STARTS],
     count: usize,
+    /// Whether two of them meet or almost do.
+    is_touching: bool,
 }
 
 impl Starts {
-    fn add(&mut self, q: &[f64; 6]) {
-        let is_same = |other: &[f64; 6]| q.iter().zip(other).all(|(a, b)| wrapped(a - b).abs() < CLOSE);
-        if self.count < MOST_BRANCHES && !self.values[..self.count].iter().any(is_same) {
-            self.values[self.count] = *q;
-            self.count += 1;
+    const EMPTY: Self = Starts { values: [[0.0; 6]; MOST_STARTS], count: 0, is_touching: false };
+
+    /// Adds the branches that starts lead to, of those that are asked for; the most that one of them is to be doubted ([`newton_judged`]).
+    fn follow(
+        &self,
+        arm: &Arm,
+        target: &Pose,
+        found: &mut Branches,
+        is_asked: impl Fn(&[f64; 6], &Branches) -> bool,
+    ) -> f64 {
+        let mut doubt = 0.0_f64;
+        for start in &self.values[..self.count] {
+            if !is_asked(start, found) {
+                continue;
+            }
+            let mut q = *start;
+            let (mut left, ratio) = newton_judged(arm, target, &mut q, MOST_STEPS);
+            if q.iter().any(|it| it.abs() > PI) {
+                q = q.map(wrapped);
+                if !arm.is_rigid() {
+                    // With an error of its gear, a joint is not where it was a turn ago.
+                    left = newton(arm, target, &mut q, MOST_STEPS);
+                }
+            }
+            if left < REACHED {
+                found.add(&q);
+                doubt = doubt.max(if apart(start, &q) > ASTRAY { 1.0 } else { ratio });
+            }
         }
+        doubt
     }
 }
 
-/// Number of branches that a way finds in a few configurations of an arm: no way serves every geometry alike.
-fn found_in_samples(arm: &Arm, way: &(Way, bool)) -> usize {
-    let mut count = 0;
+/// What a way finds in a few configurations of an arm.
+#[derive(Clone, Copy)]
+struct Judged {
+    count: usize,
+    /// Sum of the doubts.
+    doubt: f64,
+}
+
+impl Judged {
+    /// Roots are the nearer to branches, the better the equations serve the arm's geometry.
+    fn worth(&self) -> f64 {
+        self.count as f64 - self.doubt
+    }
+}
+
+fn judged(arm: &Arm, way: &Seen) -> Judged {
+    let mut judged = Judged { count: 0, doubt: 0.0 };
     for sample in 1..=SAMPLES {
         // Irrational shares of a turn are spread evenly.
         let spread = |k: usize| wrapped(sample as f64 * SPREAD[k]);
-        let q = [0, 1, 2, 3, 4, 5].map(spread);
+        let target = arm.forward_kinematics(&[0, 1, 2, 3, 4, 5].map(spread));
         let mut found = Branches::EMPTY;
-        follow(arm, way, &arm.forward_kinematics(&q), &mut found);
-        count += found.count;
+        let doubt = way.starts(arm, &target).follow(arm, &target, &mut found, |_, _| true);
+        judged.count += found.count;
+        judged.doubt += doubt.min(1.0);
     }
-    count
+    judged
 }

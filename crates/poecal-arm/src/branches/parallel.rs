@@ -2,9 +2,9 @@
 
 use nalgebra::Vector3;
 
-use super::APART;
 use super::axis::{Axis, back};
 use super::roots::linear;
+use super::{APART, BEYOND};
 use crate::lie::{Pose, rotation};
 use crate::trig::cosine_and_sine;
 
@@ -44,13 +44,8 @@ impl Parallel {
         bends.then_some((Parallel { axes, wrist, along }, angle, apart))
     }
 
-    /// Its axes.
-    pub(crate) fn axes(&self) -> &[Axis; 6] {
-        &self.axes
-    }
-
     /// Joint values of the branches for a motion `exp(ξ₁q₁) … exp(ξ₆q₆)`.
-    pub(crate) fn seeds(&self, motion: &Pose, beyond: f64, push: &mut impl FnMut([f64; 6], bool)) {
+    pub(crate) fn seeds(&self, motion: &Pose, push: &mut impl FnMut([f64; 6], bool)) {
         let [a1, a2, a3, a4, a5, a6] = &self.axes;
         let w = &self.along;
         // The height of the wrist along the parallel axes is left to the first joint: w · exp(-ξ₁q₁) p = w · p₀.
@@ -61,7 +56,7 @@ impl Parallel {
         let w6 = motion.rotation * a6.w;
         let (across, along) = (a5.w.cross(w), a5.w * a5.w.dot(w));
         let side = rotation::perpendicular(w);
-        for (q1, one) in linear(a, b, height, APART, beyond).each() {
+        for (q1, one) in linear(a, b, height, APART, BEYOND).each() {
             let turned = a1.turned(cosine_and_sine(q1), w);
             // w6 · exp(-w5 q5) w = (R w6) · exp(w1 q1) w.
             let (a, b) = (a6.w.dot(&(w - along)), -a6.w.dot(&across));
@@ -83,7 +78,7 @@ impl Parallel {
                 // |upper + exp(w q3) fore| = |at|.
                 let (a, b) = (upper.dot(&fore), upper.dot(&w.cross(&fore)));
                 let d = 0.5 * (at.norm_squared() - upper.norm_squared() - fore.norm_squared());
-                for (q3, three) in linear(a, b, d, APART, beyond).each() {
+                for (q3, three) in linear(a, b, d, APART, BEYOND).each() {
                     let axis = Axis { w: *w, point: a2.point };
                     let reached = upper + axis.turned(cosine_and_sine(q3), &fore);
                     let q2 = axis.angle(&reached, &at);

@@ -1,6 +1,6 @@
 //! Real roots of trigonometric polynomials, `Σ aₖ cos kθ + bₖ sin kθ`, with the places where two roots are about to meet.
 
-use core::f64::consts::{PI, TAU};
+use core::f64::consts::PI;
 
 use crate::trig::{cosine_and_sine, wrapped};
 
@@ -76,6 +76,9 @@ pub(crate) fn linear(a: f64, b: f64, d: f64, apart: f64, beyond: f64) -> Angles<
     found
 }
 
+/// How often a part of the turn is halved.
+const DEPTH: u32 = 7;
+
 /// A trigonometric polynomial of degree `D`, `coefficients[k] = (aₖ, bₖ)`.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Trigonometric<const TERMS: usize> {
@@ -122,35 +125,80 @@ impl<const TERMS: usize> Trigonometric<TERMS> {
     }
 
     /// All real roots; where two are about to meet or have just left each other (imaginary part below `beyond`), two that are at least
-    /// `apart` from each other.
+    /// `apart` from each other. The turn is searched in `grid` parts.
     pub(crate) fn roots<const N: usize>(&self, grid: usize, apart: f64, beyond: f64) -> Angles<N> {
         let mut found = Angles::EMPTY;
-        let width = TAU / grid as f64;
-        let first = -PI;
-        let (start_value, start_slope, _) = self.at(first);
-        let (mut angle, mut value, mut slope) = (first, start_value, start_slope);
-        for k in 1..=grid {
-            let next = if k == grid { PI } else { first + width * k as f64 };
-            let (next_value, next_slope, _) =
-                if k == grid { (start_value, start_slope, 0.0) } else { self.at(next) };
-            if (value > 0.0) != (next_value > 0.0) {
-                found.push(self.between(angle, next, value), false);
-            } else if (value > 0.0) == (slope < 0.0) && (slope > 0.0) != (next_slope > 0.0) {
-                // Between them the polynomial comes closest to zero.
-                let extremum = self.extremum(angle, next, slope);
-                let (there, _, bend) = self.at(extremum);
-                if (there > 0.0) != (value > 0.0) {
-                    found.push(self.between(angle, extremum, value), false);
-                    found.push(self.between(extremum, next, there), false);
-                } else if (2.0 * there / bend).abs() < beyond * beyond {
-                    found.push(extremum - 0.5 * apart, true);
-                    found.push(extremum + 0.5 * apart, true);
-                }
-            }
-            (angle, value, slope) = (next, next_value, next_slope);
+        let half = PI / grid as f64;
+        for k in 0..grid {
+            let middle = half * (2 * k + 1) as f64 - PI;
+            self.roots_around(middle, half, DEPTH, (apart, beyond), &mut found);
         }
         found.mark();
         found
+    }
+
+    /// The roots within half a width of an angle. Where Taylor's series says that the polynomial has no zero there are none, and where it
+    /// bends one way there are two at most, which values and slopes at the ends tell; else halves are searched.
+    fn roots_around<const N: usize>(
+        &self,
+        middle: f64,
+        half: f64,
+        depth: u32,
+        (apart, beyond): (f64, f64),
+        found: &mut Angles<N>,
+    ) {
+        let [value, slope, bend, third, fourth] = self.derivatives(middle).map(f64::abs);
+        // The fourth derivative is not constant, but almost.
+        let (square, fourth) = (half * half, 2.0 * fourth);
+        let change = half * third + square / 2.0 * fourth;
+        let most = half * (slope + half / 2.0 * (bend + half / 3.0 * (third + half / 4.0 * fourth)));
+        if value > most + 0.5 * beyond * beyond * (bend + change) {
+            return;
+        }
+        let is_simple = slope > half * (bend + half / 2.0 * (third + half / 3.0 * fourth)) || bend > change;
+        if depth > 0 && !is_simple {
+            let quarter = 0.5 * half;
+            self.roots_around(middle - quarter, quarter, depth - 1, (apart, beyond), found);
+            self.roots_around(middle + quarter, quarter, depth - 1, (apart, beyond), found);
+            return;
+        }
+        let (low, high) = (middle - half, middle + half);
+        let (low_value, low_slope, _) = self.at(low);
+        let (high_value, high_slope, _) = self.at(high);
+        if (low_value > 0.0) != (high_value > 0.0) {
+            found.push(self.between(low, high, low_value), false);
+        } else if (low_value > 0.0) == (low_slope < 0.0) && (low_slope > 0.0) != (high_slope > 0.0) {
+            // Between them the polynomial comes closest to zero.
+            let extremum = self.extremum(low, high, low_slope);
+            let (there, _, bend) = self.at(extremum);
+            if (there > 0.0) != (low_value > 0.0) {
+                found.push(self.between(low, extremum, low_value), false);
+                found.push(self.between(extremum, high, there), false);
+            } else if (2.0 * there / bend).abs() < beyond * beyond {
+                found.push(extremum - 0.5 * apart, true);
+                found.push(extremum + 0.5 * apart, true);
+            }
+        }
+    }
+
+    /// Value and first four derivatives.
+    #[inline]
+    fn derivatives(&self, angle: f64) -> [f64; 5] {
+        let (c, s) = cosine_and_sine(angle);
+        let (mut ck, mut sk) = (1.0, 0.0);
+        let mut out = [0.0; 5];
+        for (k, (a, b)) in self.coefficients.iter().enumerate() {
+            let k = k as f64;
+            let (here, along) = (a * ck + b * sk, k * (b * ck - a * sk));
+            let squared = k * k;
+            out[0] += here;
+            out[1] += along;
+            out[2] -= squared * here;
+            out[3] -= squared * along;
+            out[4] += squared * squared * here;
+            (ck, sk) = (ck * c - sk * s, sk * c + ck * s);
+        }
+        out
     }
 
     /// The place between two angles where the slope is zero.

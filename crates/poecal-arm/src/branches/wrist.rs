@@ -2,9 +2,9 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::APART;
 use super::axis::{Axis, back};
 use super::roots::{Angles, Trigonometric, linear};
+use super::{APART, BEYOND};
 use crate::lie::{Pose, rotation};
 use crate::trig::cosine_and_sine;
 
@@ -56,16 +56,11 @@ impl Wrist {
         (bends(3, 4) && bends(4, 5)).then_some((Wrist { axes, centre }, apart))
     }
 
-    /// Its axes.
-    pub(crate) fn axes(&self) -> &[Axis; 6] {
-        &self.axes
-    }
-
     /// Joint values of the branches for a motion `exp(ξ₁q₁) … exp(ξ₆q₆)`.
-    pub(crate) fn seeds(&self, motion: &Pose, beyond: f64, push: &mut impl FnMut([f64; 6], bool)) {
+    pub(crate) fn seeds(&self, motion: &Pose, push: &mut impl FnMut([f64; 6], bool)) {
         let [a1, a2, a3, a4, a5, a6] = &self.axes;
         let place = motion.act(&self.centre);
-        self.regional(&place, beyond, &mut |[q1, q2, q3], one| {
+        self.regional(&place, &mut |[q1, q2, q3], one| {
             let (t1, t2, t3) = (back(q1), back(q2), back(q3));
             let undone = |v: &Vector3<f64>| a3.turned(t3, &a2.turned(t2, &a1.turned(t1, v)));
             let w6 = motion.rotation * a6.w;
@@ -86,7 +81,7 @@ impl Wrist {
 
     /// Angles of the first three joints that bring the centre to a place : its height along the first axis and its distance from a
     /// point of it are what the first joint leaves as they are; both are linear in cos q₂ and sin q₂.
-    fn regional(&self, place: &Vector3<f64>, beyond: f64, push: &mut impl FnMut([f64; 3], bool)) {
+    fn regional(&self, place: &Vector3<f64>, push: &mut impl FnMut([f64; 3], bool)) {
         let [a1, a2, a3, ..] = &self.axes;
         let q = a2.point - a1.point;
         let goal = place - a1.point;
@@ -136,13 +131,13 @@ impl Wrist {
                 let (mut q2, mut q3, mut shift) = (0.0, 0.0, 0.0);
                 let (mut is_found, mut is_touching) = (true, false);
                 for _ in 0..3 {
-                    let third = linear(weak.2[1], weak.2[2], shift - weak.2[0], APART, beyond);
+                    let third = linear(weak.2[1], weak.2[2], shift - weak.2[0], APART, BEYOND);
                     is_found &= third.count == 2;
                     (q3, is_touching) = (third.values[which], third.is_touching());
                     let turn = cosine_and_sine(q3);
                     let z = flat(&centre(turn));
                     let (x, y) = (strong.0 * z.0 + strong.1 * z.1, strong.1 * z.0 - strong.0 * z.1);
-                    let second = linear(x, y, at(&strong.2, turn), APART, beyond);
+                    let second = linear(x, y, at(&strong.2, turn), APART, BEYOND);
                     is_found &= second.count == 2;
                     q2 = second.values[other];
                     is_touching |= second.is_touching();
@@ -169,7 +164,7 @@ impl Wrist {
         add(bb, &alpha, &alpha);
         add(-det * det, &squared, &[1.0, 0.0, 0.0]);
         add(det * det, &h, &h);
-        let roots: Angles<8> = Trigonometric { coefficients: sum }.roots(24, APART, beyond);
+        let roots: Angles<8> = Trigonometric { coefficients: sum }.roots(24, APART, BEYOND);
         for (q3, is_touching) in roots.each() {
             let turn = cosine_and_sine(q3);
             let (zx, zy) = flat(&centre(turn));

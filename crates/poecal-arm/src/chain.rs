@@ -1,0 +1,134 @@
+//! Forward kinematics of a chain of joints whose values are their readings.
+
+use alloc::vec::Vec;
+
+use nalgebra::{Matrix3, Vector3};
+
+// The functions of numbers, where there is no standard library.
+#[allow(unused_imports)]
+use nalgebra::{ComplexField as _, RealField as _};
+
+use crate::lie::{Pose, Screw, rotation};
+use crate::placed::{Placed, along};
+use crate::trig::cosine_and_sine;
+
+/// Sine of the angle between two axes below which any direction across both serves.
+const PARALLEL: f64 = 1e-9;
+
+/// A chain of joints. The frame of a joint has its axis along z, and its x across its axis and the next one: then the next frame is turned by
+/// one angle about x and one about its own z, to which the joint's value is added. Origins are where an axis is nearest to the origin before,
+/// so that lengths stay those of the arm also where axes are almost parallel.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Chain {
+    /// The first frame in the base before its joint moves.
+    start: Pose,
+    links: Vec<Link>,
+    /// The tip in the frame of the last joint.
+    tip: Pose,
+    /// Length of the path from the first axis over all axes to the tip, metres.
+    pub(crate) length_m: f64,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Link {
+    /// Its origin in the frame before.
+    origin: Vector3<f64>,
+    /// Cosine and sine of the angle about x from the axis before.
+    tilt: (f64, f64),
+    /// Angle about its own axis at zero.
+    turned: f64,
+    slides: bool,
+}
+
+/// `(y, z)` turned about x by an angle.
+#[inline(always)]
+fn tilted(y: Vector3<f64>, z: Vector3<f64>, (c, s): (f64, f64)) -> (Vector3<f64>, Vector3<f64>) {
+    (y * c + z * s, z * c - y * s)
+}
+
+impl Chain {
+    /// The chain of screws (base frame, at zero) and the tip there.
+    pub(crate) fn new(screws: &[Screw], home: &Pose) -> Self {
+        let axes: Vec<Pose> = {
+            let mut before = Vector3::zeros();
+            let mut place = |screw: &Screw| {
+                let frame = along(screw, &before);
+                before = frame.translation;
+                frame
+            };
+            screws.iter().map(&mut place).collect()
+        };
+        let axis = |k: usize| axes[k].rotation.column(2).into_owned();
+        // Direction across an axis and the next one, or that which there was.
+        let across = |k: usize, old: Vector3<f64>| {
+            let z = axis(k);
+            let cross = if k + 1 < axes.len() { z.cross(&axis(k + 1)) } else { Vector3::zeros() };
+            let x = if cross.norm() < PARALLEL { old } else { cross.normalize() };
+            let x = x - z * z.dot(&x);
+            let size = x.norm();
+            if size < 0.5 { rotation::perpendicular(&z) } else { x / size }
+        };
+        let mut links = Vec::with_capacity(screws.len());
+        let mut length_m = 0.0;
+        let (mut start, mut frame) = (Pose::identity(), Pose::identity());
+        for (k, screw) in screws.iter().enumerate() {
+            let (z, old) = (axis(k), frame);
+            let x = across(k, old.rotation.column(0).into_owned());
+            let rotation = Matrix3::from_columns(&[x, z.cross(&x), z]);
+            frame = Pose::new(rotation, axes[k].translation);
+            let slides = screw.is_prismatic();
+            if k == 0 {
+                start = frame;
+                links.push(Link { origin: Vector3::zeros(), tilt: (1.0, 0.0), turned: 0.0, slides });
+                continue;
+            }
+            length_m += (frame.translation - old.translation).norm();
+            let before = |v: Vector3<f64>| old.rotation.tr_mul(&v);
+            let (along, side) = (before(z), before(x));
+            // About x of the frame before, z = (0, -s, c); then x of this one = (cos, sin) in its plane.
+            let (c, s) = (along.z, -along.y);
+            let size = c.hypot(s);
+            let tilt = (c / size, s / size);
+            let turned = (side.y * tilt.0 + side.z * tilt.1).atan2(side.x);
+            links.push(Link { origin: before(frame.translation - old.translation), tilt, turned, slides });
+        }
+        length_m += (home.translation - frame.translation).norm();
+        Chain { start, links, tip: frame.inverse() * *home, length_m }
+    }
+
+    /// Number of joints.
+    pub(crate) fn len(&self) -> usize {
+        self.links.len()
+    }
+
+    /// Where the tip is at joint values, and how it moves with each; those that are not given are 0.
+    #[inline]
+    pub(crate) fn placed<const N: usize>(&self, q: &[f64; N]) -> Placed<N> {
+        let mut out = Placed::at_rest();
+        let column = |k: usize| self.start.rotation.column(k).into_owned();
+        let (mut x, mut y, mut z, mut at) = (column(0), column(1), column(2), self.start.translation);
+        let (mut cosines, mut sines) = (*q, *q);
+        for (k, link) in self.links.iter().enumerate().take(N) {
+            cosines[k] = link.turned + if link.slides { 0.0 } else { q[k] };
+        }
+        for (c, s) in cosines.iter_mut().zip(sines.iter_mut()) {
+            (*c, *s) = cosine_and_sine(*c);
+        }
+        for (k, (link, (v, w))) in self.links.iter().zip(out.v.iter_mut().zip(out.w.iter_mut())).enumerate() {
+            at += x * link.origin.x + y * link.origin.y + z * link.origin.z;
+            (y, z) = tilted(y, z, link.tilt);
+            if link.slides {
+                *v = z;
+                at += z * q[k];
+            } else {
+                *v = at.cross(&z);
+                *w = z;
+            }
+            let (c, s) = (cosines[k], sines[k]);
+            (x, y) = (x * c + y * s, y * c - x * s);
+        }
+        let turned = Matrix3::from_columns(&[x, y, z]);
+        out.tip = Pose::new(turned * self.tip.rotation, at + turned * self.tip.translation);
+        out
+    }
+}
