@@ -1,6 +1,7 @@
 //! What to command so that the robot as it is does what a program for its drawing meant.
 
 mod inverse;
+mod kinematics;
 mod summary;
 mod table;
 
@@ -8,6 +9,7 @@ use nalgebra::Vector3;
 use poecal_arm::{AllBranches, Arm};
 
 pub use inverse::Inverse;
+pub use kinematics::Kinematics;
 pub use summary::{Largest, Summary};
 pub use table::{TableOptions, compensate_table};
 

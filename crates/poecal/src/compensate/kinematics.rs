@@ -1,0 +1,123 @@
+//! Poses, Jacobians and sag of a robot's tip in many configurations.
+
+use poecal_arm::Arm;
+
+use crate::error::Result;
+use crate::lanes::by_best;
+use crate::lie::Pose;
+use crate::robot::Robot;
+use crate::threads::concat_chunks;
+
+/// Configurations that a thread takes at a time. Each is computed for itself, so that results do not depend on it.
+const SOME: usize = 1024;
+
+/// Where a robot's tip is in many configurations, how it moves there, and what weights do to it, with terms of its joints at given values of
+/// its factors. Eight configurations are computed side by side, and all threads share them; results have the same bits for any number.
+///
+/// Configurations are given one after the other, the readings of each (rad, m) in the order of [`Robot::reading_names`] without factors.
+///
+/// ```
+/// use poecal::compensate::Kinematics;
+/// let robot = poecal::simulate::elbow();
+/// let kinematics = Kinematics::new(&robot, &[])?;
+/// let two = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+/// let tips = kinematics.forward_kinematics(&two);
+/// assert!((tips[0].translation - robot.forward_kinematics(&two[..6]).translation).norm() < 1e-14);
+/// assert_eq!(kinematics.jacobians(&two).len(), 2 * 6 * 6);
+/// assert_eq!(kinematics.sag(&two), [[0.0; 6]; 2]); // nothing gives in the model
+/// # Ok::<(), poecal::Error>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Kinematics {
+    arm: Arm,
+    /// Of each reading of the arm, its index among the robot's.
+    readings: Vec<usize>,
+    /// Number of the robot's joint readings.
+    count: usize,
+}
+
+impl Kinematics {
+    /// Of a robot, at these values of its factors.
+    ///
+    /// # Errors
+    /// As [`Robot::arm`].
+    pub fn new(robot: &Robot, factors: &[f64]) -> Result<Self> {
+        let (arm, readings) = robot.arm(factors)?;
+        Ok(Kinematics { arm, readings, count: robot.joint_reading_names().len() })
+    }
+
+    /// `base_from_tip` in each configuration, theory.md §2 (6) and (7).
+    #[must_use]
+    pub fn forward_kinematics(&self, readings: &[f64]) -> Vec<Pose> {
+        self.of_each(readings, |own, count| {
+            let mut tips = vec![Pose::identity(); count];
+            by_best(
+                #[inline(always)]
+                || self.arm.forward_kinematics_of(own, &mut tips),
+            );
+            tips
+        })
+    }
+
+    /// In each configuration the Jacobian by rows, six rows of as many numbers as readings: the motion of the tip's point (m/rad, or m/m of
+    /// a sliding joint) and its turn (rad/rad, or rad/m), in the base; what weights add is in it. Theory.md §2 (7e).
+    #[must_use]
+    pub fn jacobians(&self, readings: &[f64]) -> Vec<f64> {
+        let n = self.readings.len();
+        let is_whole = self.is_whole();
+        self.of_each(readings, |own, count| {
+            let mut found = vec![0.0; 6 * n * count];
+            by_best(
+                #[inline(always)]
+                || self.arm.jacobians_of(own, &mut found),
+            );
+            if is_whole {
+                return found;
+            }
+            // Joints that do not move the tip have columns of zeros.
+            let mut all = vec![0.0; 6 * self.count * count];
+            for (all, own) in all.chunks_exact_mut(self.count).zip(found.chunks_exact(n)) {
+                self.readings.iter().zip(own).for_each(|(&at, it)| all[at] = *it);
+            }
+            all
+        })
+    }
+
+    /// What weights move the tip in each configuration: how far its point is shifted (m) and how far it is turned, as a rotation vector
+    /// (rad), in the base, from where it would be without what joints and links give under weights: theory.md §2 (7f). Zero of a robot whose
+    /// model has no such terms.
+    #[must_use]
+    pub fn sag(&self, readings: &[f64]) -> Vec<[f64; 6]> {
+        self.of_each(readings, |own, count| {
+            let mut sag = vec![[0.0; 6]; count];
+            by_best(
+                #[inline(always)]
+                || self.arm.sag_of(own, &mut sag),
+            );
+            sag
+        })
+    }
+
+    /// Whether the arm's readings are those of the robot.
+    fn is_whole(&self) -> bool {
+        self.readings.iter().copied().eq(0..self.count)
+    }
+
+    /// What `part` makes of the arm's readings in some configurations, and their number, for all.
+    fn of_each<T: Send>(
+        &self,
+        readings: &[f64],
+        part: impl Fn(&[f64], usize) -> Vec<T> + Sync + Send,
+    ) -> Vec<T> {
+        let width = self.count.max(1);
+        let whole = &readings[..readings.len() / width * width];
+        concat_chunks(whole, SOME * width, |_, some| {
+            let count = some.len() / width;
+            if self.is_whole() {
+                return part(some, count);
+            }
+            let own = |row: &[f64]| self.readings.iter().map(|&at| row[at]).collect::<Vec<f64>>();
+            part(&some.chunks_exact(width).flat_map(own).collect::<Vec<f64>>(), count)
+        })
+    }
+}
