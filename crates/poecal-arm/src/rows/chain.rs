@@ -47,8 +47,10 @@ impl<const N: usize> Rows<N> {
     pub(super) fn column(&self, reading: usize) -> [Vectors<N>; 2] {
         let w = self.w[reading];
         let mut moves = cross(&w, &self.tip.at);
-        for (moves, v) in moves.iter_mut().flatten().zip(self.v[reading].iter().flatten()) {
-            *moves = v + *moves;
+        for (moves, v) in moves.iter_mut().zip(&self.v[reading]) {
+            for l in 0..N {
+                moves[l] += v[l];
+            }
         }
         [moves, w]
     }
@@ -115,8 +117,11 @@ impl<const N: usize> Rows<N> {
                     1.0 if is_plain(wave) => self.found[wave.reading],
                     2.0 if is_plain(wave) => doubled(&self.found[wave.reading]),
                     order => {
-                        let turned = |q| order * (wave.factor * q + wave.offset);
-                        cosines_and_sines(&self.q[wave.reading].map(turned))
+                        let mut angles = self.q[wave.reading];
+                        for angle in &mut angles {
+                            *angle = order * (wave.factor * *angle + wave.offset);
+                        }
+                        cosines_and_sines(&angles)
                     }
                 };
                 let mut slope = [0.0; N];
@@ -130,13 +135,20 @@ impl<const N: usize> Rows<N> {
             }
             if let Some((_, pull)) = pulls.next_if(|(of, _)| *of == index) {
                 let given = pull.values(real, &self.bodies);
-                value.iter_mut().zip(given).for_each(|(value, given)| *value += given);
+                for l in 0..N {
+                    value[l] += given[l];
+                }
                 if wanted == Wanted::Motions {
                     let (v, w) = (&mut self.v, &mut self.w);
-                    pull.slopes(real, &self.bodies, |reading, slope| {
-                        add_times(&mut v[reading], &motion[0], slope);
-                        add_times(&mut w[reading], &motion[1], slope);
-                    });
+                    pull.slopes(
+                        real,
+                        &self.bodies,
+                        #[inline(always)]
+                        |reading, slope| {
+                            add_times(&mut v[reading], &motion[0], slope);
+                            add_times(&mut w[reading], &motion[1], slope);
+                        },
+                    );
                 }
             }
             if link.slides {

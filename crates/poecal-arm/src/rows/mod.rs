@@ -111,6 +111,10 @@ impl Arm {
     /// ```
     #[must_use]
     pub fn jacobian(&self, q: &[f64]) -> [(Vector3<f64>, Vector3<f64>); MOST_JOINTS] {
+        if self.real().is_none_or(|real| real.pulls.is_empty()) {
+            let placed = self.placed(q);
+            return core::array::from_fn(|reading| placed.column(reading));
+        }
         let mut rows = Rows::<1>::new();
         rows.q.iter_mut().zip(q).for_each(|(to, from)| to[0] = *from);
         rows.place(self, Wanted::Motions);

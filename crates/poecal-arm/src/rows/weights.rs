@@ -25,7 +25,10 @@ pub(super) fn place<const N: usize>(
     bodies[0] = body;
     for ((frame, drawn), out) in real.drawing.iter().zip(&mut bodies[1..]) {
         body.advance(frame);
-        let value = q[drawn.reading].map(|q| drawn.factor * q + drawn.constant);
+        let mut value = [0.0; N];
+        for l in 0..N {
+            value[l] = drawn.factor * q[drawn.reading][l] + drawn.constant;
+        }
         if drawn.screw.is_prismatic() {
             body.slide(&value);
         } else if drawn.factor == 1.0 && drawn.constant == 0.0 {
@@ -46,7 +49,11 @@ impl Moment {
         let axis = body.act(self.direction.into(), 0.0);
         let origin = body.act(self.place.into(), 1.0);
         let mut sum = origin;
-        sum.iter_mut().flatten().for_each(|it| *it *= -size);
+        for l in 0..N {
+            for it in &mut sum {
+                it[l] *= -size;
+            }
+        }
         for (after, size, place) in &self.weights {
             add_times(&mut sum, &bodies[*after].act((*place).into(), *size), &[1.0; N]);
         }
@@ -59,12 +66,19 @@ impl Moment {
         let gravity = same(&real.gravity);
         let (size, axis, _, sum) = self.parts(bodies);
         if self.slides {
-            return dot(&axis, &gravity).map(|it| size * it);
+            let mut out = dot(&axis, &gravity);
+            for it in &mut out {
+                *it *= size;
+            }
+            return out;
         }
         dot(&axis, &cross(&sum, &gravity))
     }
 
     /// Tells how that changes with each reading.
+    ///
+    /// With the sum S of sizes times places less that of the origin o, the moment is `m = z · (S × g)`. Turning about `a` through `p`, a joint of
+    /// the drawing changes S by `a × (S' − s' p)`, where S' and s' are sums over what it carries, and z by `a × z` if it carries the axis.
     #[inline(always)]
     pub(super) fn slopes<const N: usize>(
         &self,
@@ -74,42 +88,46 @@ impl Moment {
     ) {
         let gravity = same(&real.gravity);
         let (size, axis, origin, sum) = self.parts(bodies);
-        // What turns with the axis: m = z · (S × g), or s z · g.
-        let along =
-            if self.slides { gravity.map(|it| it.map(|it| size * it)) } else { cross(&sum, &gravity) };
-        // Of the weights that a joint carries, the sum, and of sizes times places.
-        let (mut carried, mut moment) = (0.0, [[0.0; N]; 3]);
+        let none = [[0.0; N]; 3];
+        // m changes by its product with a change of S, and by that of this with the direction of a turn of the axis.
+        let by_sum = if self.slides { none } else { cross(&gravity, &axis) };
+        let mut along = none;
+        if self.slides {
+            add_times(&mut along, &gravity, &[size; N]);
+        } else {
+            along = cross(&sum, &gravity);
+        }
+        let by_turn = cross(&axis, &along);
+        // Of what a joint carries, the sum of sizes, and of sizes times places.
+        let (mut carried, mut moment) = (0.0, none);
         for (index, (_, drawn)) in real.drawing.iter().enumerate().rev() {
             for (_, size, place) in self.weights.iter().filter(|it| it.0 == index + 1) {
                 carried += size;
                 add_times(&mut moment, &bodies[index + 1].act((*place).into(), *size), &[1.0; N]);
             }
-            let carries_axis = index < self.after;
-            if carried == 0.0 && !carries_axis {
-                continue;
+            if index + 1 == self.after {
+                // The origin goes with the axis.
+                carried -= size;
+                add_times(&mut moment, &origin, &[-size; N]);
             }
             let body = &bodies[index + 1];
-            // The origin goes with the axis.
-            let (mut rest, mut of) = (carried, moment);
-            if carries_axis {
-                rest -= size;
-                add_times(&mut of, &origin, &[-size; N]);
-            }
+            let carries_axis = index < self.after;
             let mut slope = [0.0; N];
-            let mut add = |more: Row<N>| slope.iter_mut().zip(more).for_each(|(it, more)| *it += more);
-            let changed = if drawn.screw.is_prismatic() {
-                body.z.map(|it| it.map(|it| it * rest))
-            } else {
-                add_times(&mut of, &body.at, &[-rest; N]);
-                if carries_axis {
-                    add(dot(&cross(&body.z, &axis), &along));
+            if drawn.screw.is_prismatic() {
+                let changes = dot(&body.z, &by_sum);
+                for l in 0..N {
+                    slope[l] = drawn.factor * carried * changes[l];
                 }
-                cross(&body.z, &of)
-            };
-            if !self.slides {
-                add(dot(&axis, &cross(&changed, &gravity)));
+            } else {
+                let mut of = moment;
+                add_times(&mut of, &body.at, &[-carried; N]);
+                let changes = dot(&cross(&body.z, &of), &by_sum);
+                let turns = if carries_axis { dot(&body.z, &by_turn) } else { [0.0; N] };
+                for l in 0..N {
+                    slope[l] = drawn.factor * (changes[l] + turns[l]);
+                }
             }
-            tell(drawn.reading, &slope.map(|it| it * drawn.factor));
+            tell(drawn.reading, &slope);
         }
     }
 }

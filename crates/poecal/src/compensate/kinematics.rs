@@ -6,7 +6,7 @@ use crate::error::Result;
 use crate::lanes::by_best;
 use crate::lie::Pose;
 use crate::robot::Robot;
-use crate::threads::concat_chunks;
+use crate::threads::fill_chunks;
 
 /// Configurations that a thread takes at a time. Each is computed for itself, so that results do not depend on it.
 const SOME: usize = 1024;
@@ -49,53 +49,59 @@ impl Kinematics {
     /// `base_from_tip` in each configuration, theory.md §2 (6) and (7).
     #[must_use]
     pub fn forward_kinematics(&self, readings: &[f64]) -> Vec<Pose> {
-        self.of_each(readings, |own, count| {
-            let mut tips = vec![Pose::identity(); count];
+        let mut tips = vec![Pose::identity(); self.rows(readings)];
+        self.of_each(readings, &mut tips, 1, |own, tips| {
             by_best(
                 #[inline(always)]
-                || self.arm.forward_kinematics_of(own, &mut tips),
+                || self.arm.forward_kinematics_of(own, tips),
             );
-            tips
-        })
+        });
+        tips
     }
 
     /// In each configuration the Jacobian by rows, six rows of as many numbers as readings: the motion of the tip's point (m/rad, or m/m of
-    /// a sliding joint) and its turn (rad/rad, or rad/m), in the base; what weights add is in it. Theory.md §2 (7e).
+    /// a sliding joint) and its turn (rad/rad, or rad/m), in the base; what weights add is in it.
     #[must_use]
     pub fn jacobians(&self, readings: &[f64]) -> Vec<f64> {
         let n = self.readings.len();
-        let is_whole = self.is_whole();
-        self.of_each(readings, |own, count| {
-            let mut found = vec![0.0; 6 * n * count];
+        let mut jacobians = vec![0.0; 6 * self.count * self.rows(readings)];
+        self.of_each(readings, &mut jacobians, 6 * self.count, |own, jacobians| {
+            if self.is_whole() {
+                return by_best(
+                    #[inline(always)]
+                    || self.arm.jacobians_of(own, jacobians),
+                );
+            }
+            // Joints that do not move the tip keep columns of zeros.
+            let mut found = vec![0.0; jacobians.len() / self.count * n];
             by_best(
                 #[inline(always)]
                 || self.arm.jacobians_of(own, &mut found),
             );
-            if is_whole {
-                return found;
-            }
-            // Joints that do not move the tip have columns of zeros.
-            let mut all = vec![0.0; 6 * self.count * count];
-            for (all, own) in all.chunks_exact_mut(self.count).zip(found.chunks_exact(n)) {
+            for (all, own) in jacobians.chunks_exact_mut(self.count).zip(found.chunks_exact(n)) {
                 self.readings.iter().zip(own).for_each(|(&at, it)| all[at] = *it);
             }
-            all
-        })
+        });
+        jacobians
     }
 
     /// What weights move the tip in each configuration: how far its point is shifted (m) and how far it is turned, as a rotation vector
-    /// (rad), in the base, from where it would be without what joints and links give under weights: theory.md §2 (7f). Zero of a robot whose
-    /// model has no such terms.
+    /// (rad), in the base, from where it would be without what joints and links give under weights. Zero where the model has no such terms.
     #[must_use]
     pub fn sag(&self, readings: &[f64]) -> Vec<[f64; 6]> {
-        self.of_each(readings, |own, count| {
-            let mut sag = vec![[0.0; 6]; count];
+        let mut sag = vec![[0.0; 6]; self.rows(readings)];
+        self.of_each(readings, &mut sag, 1, |own, sag| {
             by_best(
                 #[inline(always)]
-                || self.arm.sag_of(own, &mut sag),
+                || self.arm.sag_of(own, sag),
             );
-            sag
-        })
+        });
+        sag
+    }
+
+    /// Number of configurations in their readings.
+    fn rows(&self, readings: &[f64]) -> usize {
+        readings.len() / self.count.max(1)
     }
 
     /// Whether the arm's readings are those of the robot.
@@ -103,21 +109,23 @@ impl Kinematics {
         self.readings.iter().copied().eq(0..self.count)
     }
 
-    /// What `part` makes of the arm's readings in some configurations, and their number, for all.
+    /// Fills so many numbers of each configuration from the arm's readings there.
     fn of_each<T: Send>(
         &self,
         readings: &[f64],
-        part: impl Fn(&[f64], usize) -> Vec<T> + Sync + Send,
-    ) -> Vec<T> {
+        out: &mut [T],
+        numbers: usize,
+        part: impl Fn(&[f64], &mut [T]) + Sync + Send,
+    ) {
         let width = self.count.max(1);
-        let whole = &readings[..readings.len() / width * width];
-        concat_chunks(whole, SOME * width, |_, some| {
-            let count = some.len() / width;
+        fill_chunks(out, SOME * numbers, |index, out| {
+            let first = index * SOME * width;
+            let some = readings.get(first..first + out.len() / numbers * width).unwrap_or_default();
             if self.is_whole() {
-                return part(some, count);
+                return part(some, out);
             }
             let own = |row: &[f64]| self.readings.iter().map(|&at| row[at]).collect::<Vec<f64>>();
-            part(&some.chunks_exact(width).flat_map(own).collect::<Vec<f64>>(), count)
-        })
+            part(&some.chunks_exact(width).flat_map(own).collect::<Vec<f64>>(), out);
+        });
     }
 }
