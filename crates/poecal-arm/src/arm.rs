@@ -139,6 +139,24 @@ impl Arm {
         self.real.is_none()
     }
 
+    /// What its joint values are beyond their readings.
+    #[inline(always)]
+    pub(crate) fn real(&self) -> Option<&Real> {
+        self.real.as_deref()
+    }
+
+    /// Frame of each joint, its axis along z, in that of the joint before, at zero.
+    #[inline(always)]
+    pub(crate) fn frames(&self) -> &[Pose] {
+        &self.frames
+    }
+
+    /// The tip in the frame of the last joint.
+    #[inline(always)]
+    pub(crate) fn tip(&self) -> &Pose {
+        &self.tip
+    }
+
     /// Joint values per reading; `None` if a reading moves several joints.
     pub(crate) fn senses(&self) -> Option<&[f64]> {
         self.senses.as_deref()
@@ -205,24 +223,6 @@ impl Arm {
             a += column * column.transpose();
         }
         nalgebra::ComplexField::sqrt(a.symmetric_eigenvalues().min().max(0.0))
-    }
-}
-
-impl Arm {
-    /// How the tip moves with each reading: of its point (m/rad, or m/m) and its turn (rad/rad, or 0), base frame; for the point of the tip,
-    /// as the hybrid or `LOCAL_WORLD_ALIGNED` Jacobian of others. What weights add is not in it, some thousandths of it.
-    ///
-    /// ```
-    /// use nalgebra::Vector3;
-    /// use poecal_arm::{Arm, lie::{Pose, Screw}};
-    /// let screw = Screw::revolute(&Vector3::z(), &Vector3::zeros());
-    /// let arm = Arm::new(&[screw], &Pose::from_translation(Vector3::x())).unwrap();
-    /// assert_eq!(arm.jacobian(&[0.0])[0], (Vector3::y(), Vector3::z()));
-    /// ```
-    #[must_use]
-    pub fn jacobian(&self, q: &[f64]) -> [(Vector3<f64>, Vector3<f64>); MOST_JOINTS] {
-        let placed = self.placed(q);
-        core::array::from_fn(|reading| placed.column(reading))
     }
 }
 

@@ -7,6 +7,7 @@
 //! |---|---|
 //! | have an arm, and the pose of its tip | [`Arm`], [`Arm::forward_kinematics`] |
 //! | have joints that turn more than their readings say | [`Model`], [`Arm::of`] |
+//! | have many poses, Jacobians, or what weights do, in many configurations | [`Arm::forward_kinematics_of`], [`Arm::jacobians_of`], [`Arm::sag_of`] |
 //! | move the tip to a pose, from where the arm is | [`Arm::nearest`] |
 //! | know all configurations for a pose | [`AllBranches`] |
 //! | compute with poses | [`lie`]: poses, twists, screws |
@@ -30,6 +31,7 @@ mod newton;
 mod numbers;
 mod placed;
 mod real;
+mod rows;
 mod small;
 pub mod trig;
 

@@ -12,34 +12,34 @@ use crate::trig::cosine_and_sine;
 /// A chain of joints, with what does not depend on the configuration.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Real {
-    links: Vec<Link>,
-    tip: Pose,
-    readings: usize,
+    pub(crate) links: Vec<Link>,
+    pub(crate) tip: Pose,
+    pub(crate) readings: usize,
     /// Whether values depend on cosines and sines of the readings.
-    has_functions: bool,
-    drawing: Vec<(Pose, Drawn)>,
-    gravity: Vector3<f64>,
+    pub(crate) has_functions: bool,
+    pub(crate) drawing: Vec<(Pose, Drawn)>,
+    pub(crate) gravity: Vector3<f64>,
     /// Moments of weights, and the link whose joint they turn.
-    pulls: Vec<(usize, Moment)>,
+    pub(crate) pulls: Vec<(usize, Moment)>,
 }
 
 #[derive(Clone, Debug, PartialEq)]
-struct Link {
+pub(crate) struct Link {
     /// Its frame, the axis along z, in that of the link before.
-    frame: Pose,
-    slides: bool,
-    value: JointValue,
+    pub(crate) frame: Pose,
+    pub(crate) slides: bool,
+    pub(crate) value: JointValue,
 }
 
 /// A [`Pull`] with the weights of each body as one.
 #[derive(Clone, Debug, PartialEq)]
-struct Moment {
-    after: usize,
-    slides: bool,
-    direction: Vector3<f64>,
-    place: Vector3<f64>,
+pub(crate) struct Moment {
+    pub(crate) after: usize,
+    pub(crate) slides: bool,
+    pub(crate) direction: Vector3<f64>,
+    pub(crate) place: Vector3<f64>,
     /// Number of joints that carry them, sum of sizes, and of sizes times places.
-    weights: Vec<(usize, f64, Vector3<f64>)>,
+    pub(crate) weights: Vec<(usize, f64, Vector3<f64>)>,
 }
 
 impl Moment {
@@ -82,11 +82,11 @@ impl Moment {
 }
 
 /// Angle below which a few terms of the series are exact.
-const SMALL: f64 = 0.05;
+pub(crate) const SMALL: f64 = 0.05;
 
 /// `(cos, sin)` of a small angle, as of joints that give.
 #[inline(always)]
-fn small(angle: f64) -> (f64, f64) {
+pub(crate) fn small(angle: f64) -> (f64, f64) {
     let z = angle * angle;
     let cosine = 1.0 - z * (0.5 - z * (1.0 / 24.0 - z * (1.0 / 720.0 - z / 40320.0)));
     let sine = angle * (1.0 - z * (1.0 / 6.0 - z * (1.0 / 120.0 - z * (1.0 / 5040.0 - z / 362_880.0))));
@@ -94,7 +94,7 @@ fn small(angle: f64) -> (f64, f64) {
 }
 
 /// Whether a wave is of the reading itself.
-fn is_plain(wave: &Wave) -> bool {
+pub(crate) fn is_plain(wave: &Wave) -> bool {
     wave.factor == 1.0 && wave.offset == 0.0
 }
 

@@ -400,6 +400,88 @@ impl Calibration {
         }
     }
 
+    /// Poses of the tip in the base, by all threads: those of `predict`, at chosen values of factors.
+    ///
+    /// Parameters
+    /// ----------
+    /// joints
+    ///     Configurations, shape (m, n), radians and metres, in the order of `robot.reading_names` without factors; or one, shape (n,).
+    /// factors
+    ///     Values of the corrected model's factors by their names, default their references.
+    /// model
+    ///     Which model is the robot as it is: "corrected", where there is one, or "calibrated", geometry alone.
+    ///
+    /// Returns
+    /// -------
+    /// numpy.ndarray
+    ///     Poses of shape (m, 4, 4), or (4, 4) for one configuration.
+    #[pyo3(signature = (joints, *, factors=None, model="corrected"))]
+    fn forward_kinematics<'py>(
+        &self,
+        py: Python<'py>,
+        joints: &Bound<'py, PyAny>,
+        factors: Option<&Bound<'py, PyAny>>,
+        #[pyo3(from_py_with = arg::model)] model: &str,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let robot = &self.actual(model)?.model.robot;
+        reach::forward(py, robot, joints, &reach::factors(robot, factors)?)
+    }
+
+    /// How the tip moves with each reading: the motion of its point, then its turn, in the axes of the base. What weights add is in it.
+    ///
+    /// Parameters
+    /// ----------
+    /// joints
+    ///     Configurations, shape (m, n), radians and metres, in the order of `robot.reading_names` without factors; or one, shape (n,).
+    /// factors
+    ///     Values of the corrected model's factors by their names, default their references.
+    /// model
+    ///     Which model is the robot as it is: "corrected", where there is one, or "calibrated", geometry alone.
+    ///
+    /// Returns
+    /// -------
+    /// numpy.ndarray
+    ///     Shape (m, 6, n), or (6, n) for one configuration: three rows in m/rad (m/m of sliding joints), then three in rad/rad (rad/m).
+    #[pyo3(signature = (joints, *, factors=None, model="corrected"))]
+    fn jacobian<'py>(
+        &self,
+        py: Python<'py>,
+        joints: &Bound<'py, PyAny>,
+        factors: Option<&Bound<'py, PyAny>>,
+        #[pyo3(from_py_with = arg::model)] model: &str,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let robot = &self.actual(model)?.model.robot;
+        reach::jacobian(py, robot, joints, &reach::factors(robot, factors)?)
+    }
+
+    /// What weights move the tip: how far its point is shifted and how far it is turned, in the axes of the base, from where it would be without what joints and links
+    /// give under weights. Zero where the model has no such terms.
+    ///
+    /// Parameters
+    /// ----------
+    /// joints
+    ///     Configurations, shape (m, n), radians and metres, in the order of `robot.reading_names` without factors; or one, shape (n,).
+    /// factors
+    ///     Values of the corrected model's factors by their names, default their references.
+    /// model
+    ///     Which model is the robot as it is: "corrected", where there is one, or "calibrated", geometry alone.
+    ///
+    /// Returns
+    /// -------
+    /// numpy.ndarray
+    ///     Shape (m, 6), or (6,) for one configuration: the shift in metres, then the turn as a rotation vector in radians.
+    #[pyo3(signature = (joints, *, factors=None, model="corrected"))]
+    fn sag<'py>(
+        &self,
+        py: Python<'py>,
+        joints: &Bound<'py, PyAny>,
+        factors: Option<&Bound<'py, PyAny>>,
+        #[pyo3(from_py_with = arg::model)] model: &str,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let robot = &self.actual(model)?.model.robot;
+        reach::sag(py, robot, joints, &reach::factors(robot, factors)?)
+    }
+
     /// Joint readings to command so that the robot as it is has its tip where a program for the nominal robot meant it.
     ///
     /// Parameters

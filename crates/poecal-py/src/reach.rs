@@ -1,8 +1,8 @@
-//! Inverse kinematics and compensation, row by row.
+//! Kinematics and compensation of many configurations.
 
-use numpy::PyArray1;
+use numpy::{PyArray1, PyArrayMethods as _};
 use poecal::Robot;
-use poecal::compensate::{Compensation, Inverse};
+use poecal::compensate::{Compensation, Inverse, Kinematics};
 use poecal::lie::Pose;
 use pyo3::IntoPyObjectExt as _;
 use pyo3::prelude::*;
@@ -10,6 +10,7 @@ use pyo3::types::{PyDict, PyList};
 
 use crate::arrays::{Numbers, pose_of, table};
 use crate::errors::{argument, raise};
+use crate::robot::poses;
 
 /// Values of a robot's factors: those of a mapping from their names, else their references.
 pub(crate) fn factors(robot: &Robot, given: Option<&Bound<'_, PyAny>>) -> PyResult<Vec<f64>> {
@@ -72,18 +73,15 @@ pub(crate) fn compensate<'py>(
 ) -> PyResult<Bound<'py, PyAny>> {
     let (numbers, is_single) = configurations(joints, "joints", actual)?;
     let n = actual.joint_reading_names().len();
-    let mut compensation = Compensation::new(nominal, actual, factors).map_err(raise)?;
+    let compensation = Compensation::new(nominal, actual, factors).map_err(raise)?;
     let must_be_reached = !nearest && compensation.readings().len() >= 6;
     let made = py.detach(|| {
-        let mut out = Vec::with_capacity(numbers.values.len());
-        for (row, meant) in numbers.values.chunks_exact(n.max(1)).enumerate() {
-            let found = compensation.joints(meant);
+        compensation.of_many(&numbers.values, |row, found| {
             if must_be_reached && !found.is_reached() {
                 return Err((row, found.left_m, found.left_rad));
             }
-            out.extend_from_slice(found.readings);
-        }
-        Ok(out)
+            Ok(found.readings.to_vec())
+        })
     });
     let made = made.map_err(|(row, metres, radians)| {
         let message = format!(
@@ -131,8 +129,9 @@ pub(crate) fn inverse<'py>(
             return Err(argument("near", message.to_owned()));
         }
         let start = vec![0.0; n];
-        let found: Vec<Vec<Vec<f64>>> =
-            py.detach(|| targets.iter().map(|target| inverse.branches(target, &start, limits)).collect());
+        let found: Vec<Vec<Vec<f64>>> = py.detach(|| {
+            inverse.of_many(&targets, |inverse, _, target| inverse.branches(target, &start, limits))
+        });
         let arrays = found
             .into_iter()
             .map(|branches| table(py, branches.concat(), n))
@@ -152,16 +151,54 @@ pub(crate) fn inverse<'py>(
         return Err(argument("near", message));
     }
     let found = py.detach(|| {
-        let mut out = Vec::with_capacity(targets.len() * n);
-        for (row, target) in targets.iter().enumerate() {
+        inverse.of_many(&targets, |inverse, row, target| {
             let start = if one { 0 } else { row * n };
             let start = near.values.get(start..start + n).unwrap_or_default();
-            match inverse.nearest(target, start, limits) {
-                Some(q) => out.extend(q),
-                None => out.extend(std::iter::repeat_n(f64::NAN, n)),
-            }
-        }
-        out
+            inverse.nearest(target, start, limits).unwrap_or_else(|| vec![f64::NAN; n])
+        })
     });
-    rows(py, found, n, is_single)
+    rows(py, found.concat(), n, is_single)
+}
+
+/// Where the tip is.
+pub(crate) fn forward<'py>(
+    py: Python<'py>,
+    robot: &Robot,
+    joints: &Bound<'py, PyAny>,
+    factors: &[f64],
+) -> PyResult<Bound<'py, PyAny>> {
+    let (numbers, is_single) = configurations(joints, "joints", robot)?;
+    let kinematics = Kinematics::new(robot, factors).map_err(raise)?;
+    let found = py.detach(|| kinematics.forward_kinematics(&numbers.values));
+    poses(py, &found, is_single)
+}
+
+/// How the tip moves with each reading.
+pub(crate) fn jacobian<'py>(
+    py: Python<'py>,
+    robot: &Robot,
+    joints: &Bound<'py, PyAny>,
+    factors: &[f64],
+) -> PyResult<Bound<'py, PyAny>> {
+    let (numbers, is_single) = configurations(joints, "joints", robot)?;
+    let kinematics = Kinematics::new(robot, factors).map_err(raise)?;
+    let n = robot.joint_reading_names().len();
+    let found = PyArray1::from_vec(py, py.detach(|| kinematics.jacobians(&numbers.values)));
+    if is_single {
+        return found.reshape([6, n])?.into_bound_py_any(py);
+    }
+    found.reshape([numbers.rows(), 6, n])?.into_bound_py_any(py)
+}
+
+/// What weights move the tip.
+pub(crate) fn sag<'py>(
+    py: Python<'py>,
+    robot: &Robot,
+    joints: &Bound<'py, PyAny>,
+    factors: &[f64],
+) -> PyResult<Bound<'py, PyAny>> {
+    let (numbers, is_single) = configurations(joints, "joints", robot)?;
+    let kinematics = Kinematics::new(robot, factors).map_err(raise)?;
+    let found = py.detach(|| kinematics.sag(&numbers.values).as_flattened().to_vec());
+    rows(py, found, 6, is_single)
 }

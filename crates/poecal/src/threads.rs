@@ -78,3 +78,16 @@ pub(crate) fn concat_chunks<S: Sync, T: Send>(
     parts.for_each(|part| all.extend(part));
     all
 }
+
+/// Fills runs of so many items; `part` gets the index of the run.
+pub(crate) fn fill_chunks<T: Send>(
+    items: &mut [T],
+    size: usize,
+    part: impl Fn(usize, &mut [T]) + Sync + Send,
+) {
+    if items.len() > size && rayon::current_num_threads() > 1 {
+        items.par_chunks_mut(size).with_max_len(1).enumerate().for_each(|(index, some)| part(index, some));
+    } else {
+        items.chunks_mut(size).enumerate().for_each(|(index, some)| part(index, some));
+    }
+}

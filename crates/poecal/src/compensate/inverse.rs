@@ -6,6 +6,10 @@ use super::{REACHED, apart};
 use crate::error::Result;
 use crate::lie::Pose;
 use crate::robot::Robot;
+use crate::threads::concat_chunks;
+
+/// Poses that a thread takes at a time. Each is searched for itself.
+const SOME: usize = 64;
 
 /// Inverse kinematics of a robot's tip, with terms of its joints at given values of its factors.
 ///
@@ -74,6 +78,29 @@ impl Inverse {
         start.iter_mut().zip(&self.readings).for_each(|(to, &at)| *to = near.get(at).copied().unwrap_or(0.0));
         let found = if within_limits { branches.within_limits(target, &start) } else { branches.at(target) };
         found.as_slice().iter().map(|q| self.all(near, q)).collect()
+    }
+
+    /// What `find` finds for each of many poses, whose index it gets too, by all threads, in their order.
+    ///
+    /// ```
+    /// use poecal::compensate::Inverse;
+    /// let robot = poecal::simulate::elbow();
+    /// let inverse = Inverse::new(&robot, &[])?;
+    /// let targets = [[0.3; 6], [0.4; 6]].map(|q| robot.forward_kinematics(&q));
+    /// let found = inverse.of_many(&targets, |inverse, _, target| inverse.nearest(target, &[0.2; 6], true));
+    /// assert!((found[1].as_ref().unwrap()[5] - 0.4).abs() < 1e-9);
+    /// # Ok::<(), poecal::Error>(())
+    /// ```
+    #[must_use]
+    pub fn of_many<T: Send>(
+        &self,
+        targets: &[Pose],
+        find: impl Fn(&Self, usize, &Pose) -> T + Sync + Send,
+    ) -> Vec<T> {
+        concat_chunks(targets, SOME, |index, some| {
+            let each = some.iter().enumerate();
+            each.map(|(row, target)| find(self, index * SOME + row, target)).collect()
+        })
     }
 
     fn is_at(&self, q: &[f64], target: &Pose) -> bool {

@@ -1,6 +1,7 @@
 //! What to command so that the robot as it is does what a program for its drawing meant.
 
 mod inverse;
+mod kinematics;
 mod summary;
 mod table;
 
@@ -8,12 +9,14 @@ use nalgebra::Vector3;
 use poecal_arm::{AllBranches, Arm};
 
 pub use inverse::Inverse;
+pub use kinematics::Kinematics;
 pub use summary::{Largest, Summary};
 pub use table::{TableOptions, compensate_table};
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::lie::{Pose, rotation};
 use crate::robot::Robot;
+use crate::threads::map_chunks;
 
 /// Distance (m) and angle (rad) below which a pose counts as reached.
 pub const REACHED: f64 = 1e-9;
@@ -42,6 +45,8 @@ pub struct Compensation {
     names: Vec<String>,
     /// The last correction: where the next one begins.
     last: Vec<f64>,
+    /// Number of configurations since the last one that began without.
+    since: usize,
     before: Vec<f64>,
     q: Vec<f64>,
     meant: Vec<f64>,
@@ -106,6 +111,7 @@ impl Compensation {
             nominal: nominal_arm,
             actual: actual_arm,
             last: vec![0.0; count],
+            since: 0,
             before: vec![0.0; count],
             q: vec![0.0; count],
             meant: vec![0.0; count],
@@ -139,8 +145,15 @@ impl Compensation {
         &self.readings
     }
 
-    /// Readings of the actual robot for readings of the nominal one (rad, m); those that do not move the tip stay as they are.
+    /// Readings of the actual robot for readings of the nominal one (rad, m); those that do not move the tip stay as they are. The search
+    /// begins with the corrections before, and every [`TOGETHER`] configurations without.
     pub fn joints(&mut self, meant: &[f64]) -> Compensated<'_> {
+        if self.since == TOGETHER {
+            self.since = 0;
+            self.last.fill(0.0);
+            self.before.fill(0.0);
+        }
+        self.since += 1;
         self.out.clear();
         self.out.extend_from_slice(meant);
         self.out.resize(self.names.len().max(meant.len()), 0.0);
@@ -190,6 +203,38 @@ impl Compensation {
         }
     }
 
+    /// What `told` makes of each of many configurations, their readings one after the other, as [`Compensation::joints`] of a new compensation
+    /// one by one, but by all threads; the first error in their order.
+    ///
+    /// # Errors
+    /// Those of `told`, which also gets the index of the configuration.
+    ///
+    /// ```
+    /// use poecal::compensate::Compensation;
+    /// let robot = poecal::simulate::elbow();
+    /// let compensation = Compensation::new(&robot, &robot, &[])?;
+    /// let moved = compensation.of_many(&[0.1; 12], |_, it| Ok::<_, poecal::Error>(vec![it.moved_m]))?;
+    /// assert_eq!(moved, [0.0, 0.0]);
+    /// # Ok::<(), poecal::Error>(())
+    /// ```
+    pub fn of_many<T: Send, E: Send>(
+        &self,
+        readings: &[f64],
+        told: impl Fn(usize, &Compensated<'_>) -> std::result::Result<Vec<T>, E> + Sync + Send,
+    ) -> std::result::Result<Vec<T>, E> {
+        let width = self.names.len().max(1);
+        let parts = map_chunks(readings, TOGETHER * width, |index, some| {
+            let mut own = self.clone();
+            (own.since, own.last, own.before) = (0, vec![0.0; own.last.len()], vec![0.0; own.before.len()]);
+            let mut out = Vec::new();
+            for (row, meant) in some.chunks_exact(width).enumerate() {
+                out.extend(told(index * TOGETHER + row, &own.joints(meant))?);
+            }
+            Ok(out)
+        });
+        Ok(parts.into_iter().collect::<std::result::Result<Vec<_>, E>>()?.into_iter().flatten().collect())
+    }
+
     /// Takes `q` to the nearest configuration that has the tip at a pose; distance and angle that are left.
     fn solve(&mut self, target: &Pose) -> (f64, f64) {
         let left = match (&self.branches, <&mut [f64; 6]>::try_from(&mut self.q[..])) {
@@ -205,6 +250,9 @@ impl Compensation {
     }
 }
 
+/// Configurations that are corrected one after the other, each from where the one before led; the next ones begin anew, so that several
+/// threads find the same bits.
+pub const TOGETHER: usize = 256;
 /// Remainder (m, rad) of which it does not matter where it is.
 const NOTHING: f64 = 1e-11;
 /// Correction of a joint (rad, m) that is none of a robot like its drawing: another branch.

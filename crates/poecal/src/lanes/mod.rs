@@ -26,8 +26,8 @@ pub(crate) use poses::Exponential;
 pub(crate) use rows::{Shape, ShapedRow};
 pub use simd::{SimdLevel, simd_levels};
 pub(crate) use simd::{
-    cholesky, cosines_and_sines, errors, influences, inverse, last_links, product_of_exponentials, solve,
-    sum_gradient, sum_products, whitened_columns,
+    by_best, cholesky, cosines_and_sines, errors, influences, inverse, last_links, product_of_exponentials,
+    solve, sum_gradient, sum_products, whitened_columns,
 };
 pub(crate) use totals::{Tiles, Totals};
 pub(crate) use vector::{WIDTH, Wide};

@@ -83,6 +83,22 @@ pub fn simd_levels() -> Vec<SimdLevel> {
     levels
 }
 
+/// Does work in a function that is compiled for the best instructions of this machine, with what is inlined into `work`, which must itself
+/// be marked `#[inline(always)]`. Without fused products, which the compiler never makes by itself, the bits are the same by all.
+pub(crate) fn by_best<T>(work: impl FnOnce() -> T) -> T {
+    match SimdLevel::best() {
+        #[cfg(target_arch = "x86_64")]
+        SimdLevel::Avx512(simd) => simd.vectorize(work),
+        #[cfg(target_arch = "x86_64")]
+        SimdLevel::Avx2(simd) => simd.vectorize(work),
+        #[cfg(target_arch = "x86_64")]
+        SimdLevel::Avx2Wide(simd) => simd.0.vectorize(work),
+        #[cfg(target_arch = "aarch64")]
+        SimdLevel::Neon(simd) => simd.vectorize(work),
+        SimdLevel::Baseline(_) => work(),
+    }
+}
+
 /// Something that can be used once.
 #[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
 struct Once;

@@ -1,0 +1,133 @@
+//! What weights turn a joint in several configurations, and how that changes.
+
+use super::frames::{Frames, Row, Vectors, add_times, cross, dot};
+use crate::placed::MOST_JOINTS;
+use crate::real::{Moment, Real};
+
+/// Bodies of the drawing, from the base on.
+pub(super) type Bodies<const N: usize> = [Frames<N>; MOST_JOINTS + 1];
+
+/// A vector that is the same in all configurations.
+#[inline(always)]
+fn same<const N: usize>(of: &nalgebra::Vector3<f64>) -> Vectors<N> {
+    [[of.x; N], [of.y; N], [of.z; N]]
+}
+
+/// Moves the bodies of a drawing to readings, whose cosines and sines are known.
+#[inline(always)]
+pub(super) fn place<const N: usize>(
+    real: &Real,
+    q: &[Row<N>; MOST_JOINTS],
+    found: &[[Row<N>; 2]; MOST_JOINTS],
+    bodies: &mut Bodies<N>,
+) {
+    let mut body = Frames::BASE;
+    bodies[0] = body;
+    for ((frame, drawn), out) in real.drawing.iter().zip(&mut bodies[1..]) {
+        body.advance(frame);
+        let mut value = [0.0; N];
+        for l in 0..N {
+            value[l] = drawn.factor * q[drawn.reading][l] + drawn.constant;
+        }
+        if drawn.screw.is_prismatic() {
+            body.slide(&value);
+        } else if drawn.factor == 1.0 && drawn.constant == 0.0 {
+            body.turn_by(&found[drawn.reading]);
+        } else {
+            body.turn_by(&super::frames::cosines_and_sines(&value));
+        }
+        *out = body;
+    }
+}
+
+impl Moment {
+    /// Sum of its weights, its axis, its origin, and the sum of weights times places less that of the origin.
+    #[inline(always)]
+    fn parts<const N: usize>(&self, bodies: &Bodies<N>) -> (f64, Vectors<N>, Vectors<N>, Vectors<N>) {
+        let size: f64 = self.weights.iter().map(|(_, size, _)| size).sum();
+        let body = &bodies[self.after];
+        let axis = body.act(self.direction.into(), 0.0);
+        let origin = body.act(self.place.into(), 1.0);
+        let mut sum = origin;
+        for l in 0..N {
+            for it in &mut sum {
+                it[l] *= -size;
+            }
+        }
+        for (after, size, place) in &self.weights {
+            add_times(&mut sum, &bodies[*after].act((*place).into(), *size), &[1.0; N]);
+        }
+        (size, axis, origin, sum)
+    }
+
+    /// The joint's value by its weights.
+    #[inline(always)]
+    pub(super) fn values<const N: usize>(&self, real: &Real, bodies: &Bodies<N>) -> Row<N> {
+        let gravity = same(&real.gravity);
+        let (size, axis, _, sum) = self.parts(bodies);
+        if self.slides {
+            let mut out = dot(&axis, &gravity);
+            for it in &mut out {
+                *it *= size;
+            }
+            return out;
+        }
+        dot(&axis, &cross(&sum, &gravity))
+    }
+
+    /// Tells how that changes with each reading.
+    ///
+    /// With the sum S of sizes times places less that of the origin o, the moment is `m = z · (S × g)`. Turning about `a` through `p`, a joint of
+    /// the drawing changes S by `a × (S' − s' p)`, where S' and s' are sums over what it carries, and z by `a × z` if it carries the axis.
+    #[inline(always)]
+    pub(super) fn slopes<const N: usize>(
+        &self,
+        real: &Real,
+        bodies: &Bodies<N>,
+        mut tell: impl FnMut(usize, &Row<N>),
+    ) {
+        let gravity = same(&real.gravity);
+        let (size, axis, origin, sum) = self.parts(bodies);
+        let none = [[0.0; N]; 3];
+        // m changes by its product with a change of S, and by that of this with the direction of a turn of the axis.
+        let by_sum = if self.slides { none } else { cross(&gravity, &axis) };
+        let mut along = none;
+        if self.slides {
+            add_times(&mut along, &gravity, &[size; N]);
+        } else {
+            along = cross(&sum, &gravity);
+        }
+        let by_turn = cross(&axis, &along);
+        // Of what a joint carries, the sum of sizes, and of sizes times places.
+        let (mut carried, mut moment) = (0.0, none);
+        for (index, (_, drawn)) in real.drawing.iter().enumerate().rev() {
+            for (_, size, place) in self.weights.iter().filter(|it| it.0 == index + 1) {
+                carried += size;
+                add_times(&mut moment, &bodies[index + 1].act((*place).into(), *size), &[1.0; N]);
+            }
+            if index + 1 == self.after {
+                // The origin goes with the axis.
+                carried -= size;
+                add_times(&mut moment, &origin, &[-size; N]);
+            }
+            let body = &bodies[index + 1];
+            let carries_axis = index < self.after;
+            let mut slope = [0.0; N];
+            if drawn.screw.is_prismatic() {
+                let changes = dot(&body.z, &by_sum);
+                for l in 0..N {
+                    slope[l] = drawn.factor * carried * changes[l];
+                }
+            } else {
+                let mut of = moment;
+                add_times(&mut of, &body.at, &[-carried; N]);
+                let changes = dot(&cross(&body.z, &of), &by_sum);
+                let turns = if carries_axis { dot(&body.z, &by_turn) } else { [0.0; N] };
+                for l in 0..N {
+                    slope[l] = drawn.factor * (changes[l] + turns[l]);
+                }
+            }
+            tell(drawn.reading, &slope);
+        }
+    }
+}
