@@ -4,8 +4,6 @@ use alloc::boxed::Box;
 use alloc::vec;
 use alloc::vec::Vec;
 
-use nalgebra::Vector3;
-
 use crate::chain::Chain;
 use crate::lie::{Pose, Screw};
 use crate::model::{Joint, Model};
@@ -145,16 +143,10 @@ impl Arm {
         self.real.as_deref()
     }
 
-    /// Frame of each joint, its axis along z, in that of the joint before, at zero.
+    /// Its joints as if their values were their readings.
     #[inline(always)]
-    pub(crate) fn frames(&self) -> &[Pose] {
-        &self.frames
-    }
-
-    /// The tip in the frame of the last joint.
-    #[inline(always)]
-    pub(crate) fn tip(&self) -> &Pose {
-        &self.tip
+    pub(crate) fn chain(&self) -> &Chain {
+        &self.chain
     }
 
     /// Joint values per reading; `None` if a reading moves several joints.

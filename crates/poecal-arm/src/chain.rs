@@ -21,23 +21,23 @@ const PARALLEL: f64 = 1e-9;
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Chain {
     /// The first frame in the base before its joint moves.
-    start: Pose,
-    links: Vec<Link>,
+    pub(crate) start: Pose,
+    pub(crate) links: Vec<Link>,
     /// The tip in the frame of the last joint.
-    tip: Pose,
+    pub(crate) tip: Pose,
     /// Length of the path from the first axis over all axes to the tip, metres.
     pub(crate) length_m: f64,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Link {
+pub(crate) struct Link {
     /// Its origin in the frame before.
-    origin: Vector3<f64>,
+    pub(crate) origin: Vector3<f64>,
     /// Cosine and sine of the angle about x from the axis before.
-    tilt: (f64, f64),
+    pub(crate) tilt: (f64, f64),
     /// Angle about its own axis at zero.
-    turned: f64,
-    slides: bool,
+    pub(crate) turned: f64,
+    pub(crate) slides: bool,
 }
 
 /// `(y, z)` turned about x by an angle.

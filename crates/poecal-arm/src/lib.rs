@@ -9,7 +9,7 @@
 //! | have joints that turn more than their readings say | [`Model`], [`Arm::of`] |
 //! | have many poses, Jacobians, or what weights do, in many configurations | [`Arm::forward_kinematics_of`], [`Arm::jacobians_of`], [`Arm::sag_of`] |
 //! | move the tip to a pose, from where the arm is | [`Arm::nearest`] |
-//! | know all configurations for a pose | [`AllBranches`] |
+//! | know all configurations for a pose | [`AllBranches`]; of seven axes by one that is held, [`HeldBranches`] |
 //! | compute with poses | [`lie`]: poses, twists, screws |
 //!
 //! Units are metres and radians, numbers are `f64`.
@@ -36,6 +36,6 @@ mod small;
 pub mod trig;
 
 pub use arm::Arm;
-pub use branches::{AllBranches, Branches, MOST_BRANCHES};
+pub use branches::{AllBranches, Branches, HeldBranches, MOST_BRANCHES};
 pub use model::{Drawn, Joint, JointValue, Model, Pull, PulledWeight, Wave};
 pub use placed::MOST_JOINTS;

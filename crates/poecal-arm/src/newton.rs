@@ -56,6 +56,64 @@ fn angle_of(sine: Vector3<f64>, squared: f64) -> Vector3<f64> {
     sine * (norm.min(1.0).asin() / norm)
 }
 
+/// Six joints of an arm that has six, or seven of which one is held.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Six<'a> {
+    arm: &'a Arm,
+    /// Index of the joint that is held, and its reading.
+    held: Option<(usize, f64)>,
+}
+
+impl<'a> Six<'a> {
+    /// All joints of an arm of six.
+    pub(crate) fn of(arm: &'a Arm) -> Self {
+        Six { arm, held: None }
+    }
+
+    /// The others of an arm of seven.
+    pub(crate) fn without(arm: &'a Arm, joint: usize, reading: f64) -> Self {
+        Six { arm, held: Some((joint, reading)) }
+    }
+
+    /// Readings with that of the joint that is held.
+    pub(crate) fn all(q: &[f64; 6], (joint, reading): (usize, f64)) -> [f64; 7] {
+        core::array::from_fn(|k| match k.cmp(&joint) {
+            core::cmp::Ordering::Less => q[k],
+            core::cmp::Ordering::Equal => reading,
+            core::cmp::Ordering::Greater => q[k - 1],
+        })
+    }
+
+    /// Index among all joints.
+    fn index(&self, joint: usize) -> usize {
+        joint + usize::from(self.held.is_some_and(|(held, _)| joint >= held))
+    }
+
+    pub(crate) fn reach_m(&self) -> f64 {
+        self.arm.reach_m()
+    }
+
+    pub(crate) fn is_rigid(&self) -> bool {
+        self.arm.is_rigid()
+    }
+
+    fn slides(&self, joint: usize) -> bool {
+        self.arm.screws()[self.index(joint)].is_prismatic()
+    }
+
+    pub(crate) fn tip(&self, q: &[f64; 6]) -> Pose {
+        self.placed(q).tip
+    }
+
+    #[inline]
+    fn placed(&self, q: &[f64; 6]) -> Placed<6> {
+        let Some(held) = self.held else { return self.arm.placed_at(q) };
+        let all = self.arm.placed_at(&Self::all(q, held));
+        let of = |vectors: &[Vector3<f64>; 7]| core::array::from_fn(|joint| vectors[self.index(joint)]);
+        Placed { v: of(&all.v), w: of(&all.w), tip: all.tip }
+    }
+}
+
 /// Column of a joint: motion of the tip's point (over the reach) and its turn.
 #[inline]
 fn column<const N: usize>(arm: &Arm, placed: &Placed<N>, joint: usize, inverse_reach: f64) -> [f64; 6] {
@@ -69,18 +127,22 @@ fn column<const N: usize>(arm: &Arm, placed: &Placed<N>, joint: usize, inverse_r
 
 /// Columns of six joints: motion of the tip's point (over the reach) and its turn.
 #[inline(always)]
-fn columns_of_six(arm: &Arm, placed: &Placed<6>, inverse_reach: f64) -> [(Vector3<f64>, Vector3<f64>); 6] {
+fn columns_of_six(
+    arm: &Six<'_>,
+    placed: &Placed<6>,
+    inverse_reach: f64,
+) -> [(Vector3<f64>, Vector3<f64>); 6] {
     let of = |joint: usize| {
         let (v, w) = placed.column(joint);
         // A step that slides is counted in reaches, so that it is of the size of an angle.
-        (if arm.screws()[joint].is_prismatic() { v } else { v * inverse_reach }, w)
+        (if arm.slides(joint) { v } else { v * inverse_reach }, w)
     };
     [of(0), of(1), of(2), of(3), of(4), of(5)]
 }
 
 /// The step of six joints that takes away what is left, to first order.
 #[inline]
-fn step_of_six(arm: &Arm, placed: &Placed<6>, left: &Left, inverse_reach: f64) -> Option<[f64; 6]> {
+fn step_of_six(arm: &Six<'_>, placed: &Placed<6>, left: &Left, inverse_reach: f64) -> Option<[f64; 6]> {
     let p = left.position * inverse_reach;
     let columns = columns_of_six(arm, placed, inverse_reach);
     if let Some(step) = small::solve_halves(&columns, (p, left.rotation), 1e-4) {
@@ -100,18 +162,17 @@ fn step_of_six(arm: &Arm, placed: &Placed<6>, left: &Left, inverse_reach: f64) -
 
 /// Undamped steps of six joints, as long as they bring the tip closer. `q` becomes the best configuration that was met;
 /// returns what is left there (lengths over reach, rad).
-pub(crate) fn newton(arm: &Arm, target: &Pose, q: &mut [f64; 6], most: u32) -> f64 {
+pub(crate) fn newton(arm: &Six<'_>, target: &Pose, q: &mut [f64; 6], most: u32) -> f64 {
     newton_judged(arm, target, q, most).0
 }
 
 /// The same, with how well the first step was: the second one over it, 1 if it was too long to be taken. Where another configuration is as near
 /// to the one that is reached as the start was, this is about 1 (kantorovich1948).
-pub(crate) fn newton_judged(arm: &Arm, target: &Pose, q: &mut [f64; 6], most: u32) -> (f64, f64) {
+pub(crate) fn newton_judged(arm: &Six<'_>, target: &Pose, q: &mut [f64; 6], most: u32) -> (f64, f64) {
     let (mut first, mut ratio) = (0.0, 0.0_f64);
     let reach = arm.reach_m();
     let inverse_reach = 1.0 / reach;
-    let slides = |joint: usize| arm.screws()[joint].is_prismatic();
-    let mut placed = arm.placed_at(q);
+    let mut placed = arm.placed(q);
     let mut left = Left::new(&placed.tip, target);
     let mut squared = left.squared(inverse_reach);
     let enough = if arm.is_rigid() { ROUNDED } else { SMALL };
@@ -129,9 +190,9 @@ pub(crate) fn newton_judged(arm: &Arm, target: &Pose, q: &mut [f64; 6], most: u3
         for _ in 0..4 {
             let mut next = *q;
             for (joint, (it, step)) in next.iter_mut().zip(step).enumerate() {
-                *it += share * step * if slides(joint) { reach } else { 1.0 };
+                *it += share * step * if arm.slides(joint) { reach } else { 1.0 };
             }
-            let there = arm.placed_at(&next);
+            let there = arm.placed(&next);
             let left_there = Left::new(&there.tip, target);
             let squared_there = left_there.squared(inverse_reach);
             if squared_there < squared {
@@ -251,7 +312,7 @@ impl Arm {
             && self.joints() == 6
         {
             let mut undamped = *six;
-            let left = newton(self, target, &mut undamped, MOST_STEPS);
+            let left = newton(&Six::of(self), target, &mut undamped, MOST_STEPS);
             if left < REACHED {
                 *six = undamped;
                 return left;

@@ -13,7 +13,7 @@ use core::f64::consts::TAU;
 use nalgebra::Vector3;
 
 use super::axis::{Axis, back};
-use super::roots::{Angles, Trigonometric};
+use super::roots::{Angles, Care, Trigonometric};
 use crate::lie::Pose;
 use crate::small::{determinant, null_vector};
 use crate::trig::cosine_and_sine;
@@ -270,7 +270,7 @@ impl General {
                 it.1 += share * sample * s;
             }
         }
-        let roots: Angles<24> = Trigonometric { coefficients }.roots(48, 0.0, BEYOND);
+        let roots: Angles<24> = Trigonometric { coefficients }.roots(48, Care::rounding(BEYOND));
         for &q3 in roots.as_slice() {
             let (c, s) = cosine_and_sine(q3);
             // t and t² of the fourth times the powers of the fifth.

@@ -1,19 +1,17 @@
-//! All configurations of an arm of six axes that have its tip at a pose.
+//! All configurations of an arm that have its tip at a pose.
 
 mod axis;
 mod general;
+mod held;
 mod parallel;
 mod roots;
+mod ways;
 mod wrist;
 
-use alloc::boxed::Box;
-use alloc::vec::Vec;
-use core::f64::consts::{PI, TAU};
+use core::f64::consts::TAU;
 
-use axis::Axis;
-use general::General;
-use parallel::Parallel;
-use wrist::Wrist;
+pub use held::HeldBranches;
+use ways::{MOST_STEPS, Ways};
 
 // The functions of numbers, where there is no standard library.
 #[allow(unused_imports)]
@@ -21,34 +19,13 @@ use nalgebra::{ComplexField as _, RealField as _};
 
 use crate::arm::Arm;
 use crate::lie::{Pose, Screw};
-use crate::newton::{REACHED, newton, newton_judged};
+use crate::newton::{REACHED, Six, newton};
 use crate::trig::wrapped;
 
-/// Least distance of two starts where two branches meet, rad.
-const APART: f64 = 0.06;
-/// Imaginary part of a pair of solutions up to which a real pair of the arm itself may be near, rad.
-const BEYOND: f64 = 0.8;
-/// Ratio of the first two steps from a start beyond which there may be other branches around, and way (rad) to a branch that is another's.
-const DOUBTFUL: f64 = 0.25;
-const ASTRAY: f64 = 0.6;
 /// Difference of all joints (rad) below which two configurations are one.
 const SAME: f64 = 1e-7;
 /// Most branches of an arm of six axes (primrose1986).
 pub const MOST_BRANCHES: usize = 16;
-/// So many of the six ways to set up the equations are asked where the number of branches is odd.
-const MOST_WAYS: usize = 3;
-/// Configurations in which the ways are compared.
-const SAMPLES: usize = 48;
-/// Steps between them: 2π times the fractions of the roots of 2, 3, 5, 7, 11 and 13.
-const SPREAD: [f64; 6] = [2.602581, 4.599611, 1.483259, 4.057375, 1.989413, 3.804791];
-/// Distance (rad) of a root from a branch that was found from which it is taken for another one.
-const NEAR: f64 = 1e-4;
-/// Most starts of a way.
-const MOST_STARTS: usize = 24;
-/// Most steps from a start.
-const MOST_STEPS: u32 = 12;
-/// How far (rad, lengths over reach) an arm may be from one with closed branches.
-const FAR: f64 = 0.03;
 
 /// Configurations that have the tip at a pose, joint values (rad) in (-π, π]: those of [`AllBranches::at`].
 ///
@@ -63,57 +40,55 @@ const FAR: f64 = 0.03;
 /// assert!(AllBranches::new(&arm).unwrap().at(&far).as_slice().is_empty());
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Branches {
-    values: [[f64; 6]; MOST_BRANCHES],
+pub struct Branches<const N: usize = 6> {
+    values: [[f64; N]; MOST_BRANCHES],
     count: usize,
 }
 
-impl Branches {
-    const EMPTY: Self = Branches { values: [[0.0; 6]; MOST_BRANCHES], count: 0 };
+impl<const N: usize> Branches<N> {
+    const EMPTY: Self = Branches { values: [[0.0; N]; MOST_BRANCHES], count: 0 };
 
     /// The configurations.
     #[must_use]
-    pub fn as_slice(&self) -> &[[f64; 6]] {
+    pub fn as_slice(&self) -> &[[f64; N]] {
         &self.values[..self.count]
     }
 
-    /// Adds a configuration; whether it is new.
-    fn add(&mut self, q: &[f64; 6]) -> bool {
-        if self.count == MOST_BRANCHES || self.as_slice().iter().any(|other| apart(q, other) < SAME) {
-            return false;
+    /// Adds a configuration, unless it is there or there is no room.
+    fn add(&mut self, q: &[f64; N], same: f64) {
+        if self.count < MOST_BRANCHES && !self.as_slice().iter().any(|other| apart(q, other) < same) {
+            self.values[self.count] = *q;
+            self.count += 1;
         }
-        self.values[self.count] = *q;
-        self.count += 1;
-        true
     }
 }
 
-/// Whether a start is farther than this (rad) from all branches that were found.
-fn is_far_by(distance: f64) -> impl Fn(&[f64; 6], &Branches) -> bool {
-    move |start, found| !found.as_slice().iter().any(|it| apart(it, start) < distance)
-}
-
 /// The largest difference of a joint, rad.
-fn apart(one: &[f64; 6], other: &[f64; 6]) -> f64 {
+fn apart<const N: usize>(one: &[f64; N], other: &[f64; N]) -> f64 {
     one.iter().zip(other).map(|(a, b)| wrapped(a - b).abs()).fold(0.0, f64::max)
 }
 
-/// A way to starts of the iteration.
-#[derive(Clone, Debug, PartialEq)]
-enum Way {
-    /// The nearest arm whose last three axes meet.
-    Wrist(Wrist),
-    /// The nearest arm whose second to fourth axes are parallel.
-    Parallel(Parallel),
-    /// The arm itself.
-    General(Box<General>),
+/// A configuration turned by whole turns to where it is nearest to `near` and within limits; `None` if there is no such one.
+fn turned<const N: usize>(branch: &[f64; N], near: &[f64; N], limits: &[(f64, f64)]) -> Option<[f64; N]> {
+    let mut q = *branch;
+    for ((q, near), &(low, high)) in q.iter_mut().zip(near).zip(limits) {
+        let turns = ((near - *q) / TAU).round();
+        let turned = *q + turns * TAU;
+        // Limits that are met but for rounding are met.
+        let least = ((low - SAME - turned) / TAU).ceil();
+        let most = ((high + SAME - turned) / TAU).floor();
+        if least > most {
+            return None;
+        }
+        *q = turned + TAU * 0.0_f64.clamp(least, most);
+    }
+    Some(q)
 }
 
-/// A way that sees the arm's axes in their order, or from the tip.
-#[derive(Clone, Debug, PartialEq)]
-struct Seen {
-    way: Way,
-    is_reversed: bool,
+/// Sorts configurations by the joint that has to move most.
+fn sort<const N: usize>(found: &mut Branches<N>, near: &[f64; N]) {
+    let far = |q: &[f64; N]| q.iter().zip(near).map(|(q, near)| (q - near).abs()).fold(0.0, f64::max);
+    found.values[..found.count].sort_unstable_by(|one, other| far(one).total_cmp(&far(other)));
 }
 
 /// All branches of one arm of six revolute joints: those of the nearest arm that has them in closed form (its last or first three axes meet,
@@ -140,12 +115,7 @@ struct Seen {
 #[derive(Clone, Debug, PartialEq)]
 pub struct AllBranches {
     arm: Arm,
-    /// The nearest arm with closed branches, if one is near.
-    closed: Option<Seen>,
-    /// The ways to set up the arm's own equations, the best first.
-    general: Vec<Seen>,
-    /// Whether the best of these found what the closed form found: not of an arm that is its own relative, whose equations have no roots.
-    is_general_whole: bool,
+    ways: Ways,
 }
 
 impl AllBranches {
@@ -153,62 +123,19 @@ impl AllBranches {
     #[must_use]
     pub fn new(arm: &Arm) -> Option<Self> {
         let screws: &[_; 6] = arm.screws().try_into().ok()?;
-        if screws.iter().any(Screw::is_prismatic) || arm.senses().is_none() {
+        let senses: [f64; 6] = arm.senses()?.try_into().ok()?;
+        if screws.iter().any(Screw::is_prismatic) {
             return None;
         }
-        let axes: [Axis; 6] = screws.map(|screw| Axis::of(&screw));
-        let mut reversed = axes;
-        reversed.reverse();
-        let reach = arm.reach_m();
-        let mut nearest: Option<(f64, Seen)> = None;
-        let mut general = Vec::new();
-        for (axes, is_reversed) in [(axes, false), (reversed, true)] {
-            let wrist = Wrist::new(&axes).map(|(it, apart)| (apart / reach, Way::Wrist(it)));
-            let parallel = Parallel::new(&axes)
-                .map(|(it, angle, apart)| (f64::max(angle, apart / reach), Way::Parallel(it)));
-            for (off, way) in wrist.into_iter().chain(parallel) {
-                if off < FAR && nearest.as_ref().is_none_or(|(least, _)| off < *least) {
-                    nearest = Some((off, Seen { way, is_reversed }));
-                }
-            }
-            for first in General::FIRST {
-                let way = Way::General(Box::new(General::new(&axes, first, reach)));
-                general.push(Seen { way, is_reversed });
-            }
-        }
-        let closed = nearest.map(|(_, way)| way);
-        let mut judged: Vec<(Judged, Seen)> =
-            general.into_iter().map(|way| (judged(arm, &way), way)).collect();
-        judged.sort_by(|(one, _), (other, _)| other.worth().total_cmp(&one.worth()));
-        let count = |judged: Option<Judged>| judged.map_or(0, |it| it.count);
-        let is_general_whole =
-            count(judged.first().map(|it| it.0)) >= count(closed.as_ref().map(|it| self::judged(arm, it)));
-        let general = judged.into_iter().map(|(_, way)| way).collect();
-        Some(AllBranches { arm: arm.clone(), closed, general, is_general_whole })
+        let mut ways = Ways::new(screws, arm.home(), (arm.reach_m(), senses), None);
+        ways.keep(ways.ranked(&Six::of(arm)));
+        Some(AllBranches { arm: arm.clone(), ways })
     }
 
     /// The configurations that have the tip at a pose of the base.
     #[must_use]
     pub fn at(&self, target: &Pose) -> Branches {
-        let mut found = Branches::EMPTY;
-        let closed = self.closed.as_ref().map_or(Starts::EMPTY, |way| way.starts(&self.arm, target));
-        if closed.count > 0 && !closed.is_touching {
-            let doubt = closed.follow(&self.arm, target, &mut found, |_, _| true);
-            let is_sure = found.count == closed.count && doubt < DOUBTFUL;
-            if is_sure && found.count.is_multiple_of(2) {
-                return found;
-            }
-        }
-        for way in self.general.iter().take(MOST_WAYS) {
-            way.starts(&self.arm, target).follow(&self.arm, target, &mut found, is_far_by(NEAR));
-            if found.count.is_multiple_of(2) {
-                break;
-            }
-        }
-        if !self.is_general_whole {
-            closed.follow(&self.arm, target, &mut found, is_far_by(ASTRAY));
-        }
-        found
+        self.ways.branches(&Six::of(&self.arm), target)
     }
 
     /// The configurations within the arm's limits ([`Arm::limits`]) that have the tip at a pose: of each branch that one whose joints are nearest
@@ -228,27 +155,14 @@ impl AllBranches {
     #[must_use]
     pub fn within_limits(&self, target: &Pose, near: &[f64; 6]) -> Branches {
         let mut found = Branches::EMPTY;
-        'branch: for branch in self.at(target).as_slice() {
-            let mut q = *branch;
-            for ((q, near), &(low, high)) in q.iter_mut().zip(near).zip(self.arm.limits()) {
-                let turns = ((near - *q) / TAU).round();
-                let turned = *q + turns * TAU;
-                // Limits that are met but for rounding are met.
-                let least = ((low - SAME - turned) / TAU).ceil();
-                let most = ((high + SAME - turned) / TAU).floor();
-                if least > most {
-                    continue 'branch;
-                }
-                *q = turned + TAU * 0.0_f64.clamp(least, most);
-            }
+        for branch in self.at(target).as_slice() {
+            let Some(mut q) = turned(branch, near, self.arm.limits()) else { continue };
             if !self.arm.is_rigid() {
-                newton(&self.arm, target, &mut q, MOST_STEPS);
+                newton(&Six::of(&self.arm), target, &mut q, MOST_STEPS);
             }
-            found.values[found.count] = q;
-            found.count += 1;
+            found.add(&q, 0.0);
         }
-        let far = |q: &[f64; 6]| q.iter().zip(near).map(|(q, near)| (q - near).abs()).fold(0.0, f64::max);
-        found.values[..found.count].sort_unstable_by(|one, other| far(one).total_cmp(&far(other)));
+        sort(&mut found, near);
         found
     }
 
@@ -284,106 +198,6 @@ impl AllBranches {
         for (here, there) in q.iter_mut().zip(best) {
             *here += wrapped(there - *here);
         }
-        newton(&self.arm, target, q, MOST_STEPS)
+        newton(&Six::of(&self.arm), target, q, MOST_STEPS)
     }
-}
-
-impl Seen {
-    /// Starts of the iteration, as readings.
-    fn starts(&self, arm: &Arm, target: &Pose) -> Starts {
-        let motion = *target * arm.home().inverse();
-        let motion = if self.is_reversed { motion.inverse() } else { motion };
-        let mut starts = Starts::EMPTY;
-        let mut push = |mut q: [f64; 6], is_touching: bool| {
-            if self.is_reversed {
-                q.reverse();
-                q = q.map(|it| -it);
-            }
-            for (it, sense) in q.iter_mut().zip(arm.senses().unwrap_or_default()) {
-                *it = wrapped(*it) / sense;
-            }
-            starts.is_touching |= is_touching;
-            if let Some(next) = starts.values.get_mut(starts.count) {
-                *next = q;
-                starts.count += 1;
-            }
-        };
-        match &self.way {
-            Way::Wrist(wrist) => wrist.seeds(&motion, &mut push),
-            Way::Parallel(parallel) => parallel.seeds(&motion, &mut push),
-            Way::General(general) => general.seeds(&motion, &mut |q| push(q, false)),
-        }
-        starts
-    }
-}
-
-/// Starts of the iteration.
-struct Starts {
-    values: [[f64; 6]; MOST_STARTS],
-    count: usize,
-    /// Whether two of them meet or almost do.
-    is_touching: bool,
-}
-
-impl Starts {
-    const EMPTY: Self = Starts { values: [[0.0; 6]; MOST_STARTS], count: 0, is_touching: false };
-
-    /// Adds the branches that starts lead to, of those that are asked for; the most that one of them is to be doubted ([`newton_judged`]).
-    fn follow(
-        &self,
-        arm: &Arm,
-        target: &Pose,
-        found: &mut Branches,
-        is_asked: impl Fn(&[f64; 6], &Branches) -> bool,
-    ) -> f64 {
-        let mut doubt = 0.0_f64;
-        for start in &self.values[..self.count] {
-            if !is_asked(start, found) {
-                continue;
-            }
-            let mut q = *start;
-            let (mut left, ratio) = newton_judged(arm, target, &mut q, MOST_STEPS);
-            if q.iter().any(|it| it.abs() > PI) {
-                q = q.map(wrapped);
-                if !arm.is_rigid() {
-                    // With an error of its gear, a joint is not where it was a turn ago.
-                    left = newton(arm, target, &mut q, MOST_STEPS);
-                }
-            }
-            if left < REACHED {
-                found.add(&q);
-                doubt = doubt.max(if apart(start, &q) > ASTRAY { 1.0 } else { ratio });
-            }
-        }
-        doubt
-    }
-}
-
-/// What a way finds in a few configurations of an arm.
-#[derive(Clone, Copy)]
-struct Judged {
-    count: usize,
-    /// Sum of the doubts.
-    doubt: f64,
-}
-
-impl Judged {
-    /// Roots are the nearer to branches, the better the equations serve the arm's geometry.
-    fn worth(&self) -> f64 {
-        self.count as f64 - self.doubt
-    }
-}
-
-fn judged(arm: &Arm, way: &Seen) -> Judged {
-    let mut judged = Judged { count: 0, doubt: 0.0 };
-    for sample in 1..=SAMPLES {
-        // Irrational shares of a turn are spread evenly.
-        let spread = |k: usize| wrapped(sample as f64 * SPREAD[k]);
-        let target = arm.forward_kinematics(&[0, 1, 2, 3, 4, 5].map(spread));
-        let mut found = Branches::EMPTY;
-        let doubt = way.starts(arm, &target).follow(arm, &target, &mut found, |_, _| true);
-        judged.count += found.count;
-        judged.doubt += doubt.min(1.0);
-    }
-    judged
 }

@@ -3,8 +3,7 @@
 use nalgebra::Vector3;
 
 use super::axis::{Axis, back};
-use super::roots::linear;
-use super::{APART, BEYOND};
+use super::roots::{Care, linear};
 use crate::lie::{Pose, rotation};
 use crate::trig::cosine_and_sine;
 
@@ -16,6 +15,7 @@ use nalgebra::{ComplexField as _, RealField as _};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Parallel {
     axes: [Axis; 6],
+    care: Care,
     /// Where the fifth axis meets the sixth.
     wrist: Vector3<f64>,
     /// Direction of the parallel axes.
@@ -24,7 +24,7 @@ pub(crate) struct Parallel {
 
 impl Parallel {
     /// The arm of six axes, and how far it is from it: largest angle between the axes (rad), and distance of the last two (m).
-    pub(crate) fn new(axes: &[Axis; 6]) -> Option<(Self, f64, f64)> {
+    pub(crate) fn new(axes: &[Axis; 6], reach_m: f64) -> Option<(Self, f64, f64)> {
         let first = axes[1].w;
         let signed = |axis: &Axis| if axis.w.dot(&first) < 0.0 { -axis.w } else { axis.w };
         let along = (first + signed(&axes[2]) + signed(&axes[3])).normalize();
@@ -41,7 +41,11 @@ impl Parallel {
             axis.w = along * slope.signum();
         }
         let bends = axes[0].w.cross(&along).norm() > 0.1 && axes[4].w.cross(&along).norm() > 0.1;
-        bends.then_some((Parallel { axes, wrist, along }, angle, apart))
+        bends.then_some((
+            Parallel { axes, wrist, along, care: Care::of(angle.max(apart / reach_m)) },
+            angle,
+            apart,
+        ))
     }
 
     /// Joint values of the branches for a motion `exp(ξ₁q₁) … exp(ξ₆q₆)`.
@@ -56,12 +60,12 @@ impl Parallel {
         let w6 = motion.rotation * a6.w;
         let (across, along) = (a5.w.cross(w), a5.w * a5.w.dot(w));
         let side = rotation::perpendicular(w);
-        for (q1, one) in linear(a, b, height, APART, BEYOND).each() {
+        for (q1, one) in linear(a, b, height, self.care).each() {
             let turned = a1.turned(cosine_and_sine(q1), w);
             // w6 · exp(-w5 q5) w = (R w6) · exp(w1 q1) w.
             let (a, b) = (a6.w.dot(&(w - along)), -a6.w.dot(&across));
             let goal = motion.rotation.transpose() * turned;
-            for (q5, two) in linear(a, b, w6.dot(&turned) - a6.w.dot(&along), 0.0, f64::INFINITY).each() {
+            for (q5, two) in linear(a, b, w6.dot(&turned) - a6.w.dot(&along), self.care.always()).each() {
                 let bent = a5.turned(back(q5), w);
                 let q6 = a6.angle(&goal, &bent);
                 // What the parallel axes have to do: a turn, and a place of the fourth.
@@ -78,7 +82,7 @@ impl Parallel {
                 // |upper + exp(w q3) fore| = |at|.
                 let (a, b) = (upper.dot(&fore), upper.dot(&w.cross(&fore)));
                 let d = 0.5 * (at.norm_squared() - upper.norm_squared() - fore.norm_squared());
-                for (q3, three) in linear(a, b, d, APART, BEYOND).each() {
+                for (q3, three) in linear(a, b, d, self.care).each() {
                     let axis = Axis { w: *w, point: a2.point };
                     let reached = upper + axis.turned(cosine_and_sine(q3), &fore);
                     let q2 = axis.angle(&reached, &at);

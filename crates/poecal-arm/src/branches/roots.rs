@@ -17,8 +17,40 @@ pub(crate) struct Angles<const N: usize> {
     touching: [bool; N],
 }
 
-/// Distance of two angles (rad) below which they almost meet.
-const ALMOST: f64 = 0.15;
+/// What counts as two angles that meet, or almost do: the farther an arm is from its relative, the more.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Care {
+    /// Distance of two angles (rad) below which they almost meet.
+    almost: f64,
+    /// Least distance that is given to two angles where they meet, rad.
+    apart: f64,
+    /// Imaginary part of a pair of solutions up to which a real pair of the arm itself may be near, rad.
+    beyond: f64,
+}
+
+impl Care {
+    /// Nothing but what is real.
+    pub(crate) const NONE: Self = Care { almost: 0.0, apart: 0.0, beyond: 0.0 };
+    /// Of an arm as far from its relative as one is.
+    const MOST: Self = Care { almost: 0.15, apart: 0.06, beyond: 1.6 };
+
+    /// For an arm that is so far (rad, lengths over reach) from its relative, which moves double roots by the square root of that.
+    pub(crate) fn of(off: f64) -> Self {
+        let share = (60.0 * off.sqrt()).min(1.0);
+        let Care { almost, apart, beyond } = Self::MOST;
+        Care { almost: share * almost, apart: share * apart, beyond: share * beyond }
+    }
+
+    /// The same, with a pair wherever none is real.
+    pub(crate) fn always(self) -> Self {
+        Care { apart: 0.0, beyond: f64::INFINITY, ..self }
+    }
+
+    /// For roots that are known but for rounding.
+    pub(crate) fn rounding(beyond: f64) -> Self {
+        Care { beyond, ..Self::NONE }
+    }
+}
 
 impl<const N: usize> Angles<N> {
     pub(crate) const EMPTY: Self = Angles { values: [0.0; N], count: 0, touching: [false; N] };
@@ -43,10 +75,10 @@ impl<const N: usize> Angles<N> {
     }
 
     /// Marks those that have another one near.
-    fn mark(&mut self) {
+    fn mark(&mut self, almost: f64) {
         for k in 0..self.count {
             let near =
-                |other: usize| other != k && wrapped(self.values[k] - self.values[other]).abs() < ALMOST;
+                |other: usize| other != k && wrapped(self.values[k] - self.values[other]).abs() < almost;
             self.touching[k] |= (0..self.count).any(near);
         }
     }
@@ -58,7 +90,8 @@ impl<const N: usize> Angles<N> {
 
 /// Angles with `a cos θ + b sin θ = d`. Where there is none, or two are closer than `apart`, two that are `apart` (rad) on both sides of
 /// the place where they meet, if the imaginary part of the solutions is below `beyond`.
-pub(crate) fn linear(a: f64, b: f64, d: f64, apart: f64, beyond: f64) -> Angles<2> {
+pub(crate) fn linear(a: f64, b: f64, d: f64, care: Care) -> Angles<2> {
+    let Care { almost, apart, beyond } = care;
     let mut found = Angles::EMPTY;
     let size = a.hypot(b);
     let (middle, share) = if size > 0.0 { (b.atan2(a), d / size) } else { (0.0, 0.0) };
@@ -69,7 +102,7 @@ pub(crate) fn linear(a: f64, b: f64, d: f64, apart: f64, beyond: f64) -> Angles<
     } else {
         return found;
     };
-    let is_touching = half < 0.5 * ALMOST || PI - half < 0.5 * ALMOST;
+    let is_touching = half < 0.5 * almost || PI - half < 0.5 * almost;
     let half = half.clamp(0.5 * apart, PI - 0.5 * apart);
     found.push(middle + half, is_touching);
     found.push(middle - half, is_touching);
@@ -126,14 +159,14 @@ impl<const TERMS: usize> Trigonometric<TERMS> {
 
     /// All real roots; where two are about to meet or have just left each other (imaginary part below `beyond`), two that are at least
     /// `apart` from each other. The turn is searched in `grid` parts.
-    pub(crate) fn roots<const N: usize>(&self, grid: usize, apart: f64, beyond: f64) -> Angles<N> {
+    pub(crate) fn roots<const N: usize>(&self, grid: usize, care: Care) -> Angles<N> {
         let mut found = Angles::EMPTY;
         let half = PI / grid as f64;
         for k in 0..grid {
             let middle = half * (2 * k + 1) as f64 - PI;
-            self.roots_around(middle, half, DEPTH, (apart, beyond), &mut found);
+            self.roots_around(middle, half, DEPTH, care, &mut found);
         }
-        found.mark();
+        found.mark(care.almost);
         found
     }
 
@@ -144,9 +177,10 @@ impl<const TERMS: usize> Trigonometric<TERMS> {
         middle: f64,
         half: f64,
         depth: u32,
-        (apart, beyond): (f64, f64),
+        care: Care,
         found: &mut Angles<N>,
     ) {
+        let Care { apart, beyond, .. } = care;
         let [value, slope, bend, third, fourth] = self.derivatives(middle).map(f64::abs);
         // The fourth derivative is not constant, but almost.
         let (square, fourth) = (half * half, 2.0 * fourth);
@@ -158,8 +192,8 @@ impl<const TERMS: usize> Trigonometric<TERMS> {
         let is_simple = slope > half * (bend + half / 2.0 * (third + half / 3.0 * fourth)) || bend > change;
         if depth > 0 && !is_simple {
             let quarter = 0.5 * half;
-            self.roots_around(middle - quarter, quarter, depth - 1, (apart, beyond), found);
-            self.roots_around(middle + quarter, quarter, depth - 1, (apart, beyond), found);
+            self.roots_around(middle - quarter, quarter, depth - 1, care, found);
+            self.roots_around(middle + quarter, quarter, depth - 1, care, found);
             return;
         }
         let (low, high) = (middle - half, middle + half);

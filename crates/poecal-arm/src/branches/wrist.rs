@@ -3,8 +3,7 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::axis::{Axis, back};
-use super::roots::{Angles, Trigonometric, linear};
-use super::{APART, BEYOND};
+use super::roots::{Angles, Care, Trigonometric, linear};
 use crate::lie::{Pose, rotation};
 use crate::trig::cosine_and_sine;
 
@@ -19,6 +18,7 @@ const MET: f64 = 0.03;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Wrist {
     axes: [Axis; 6],
+    care: Care,
     centre: Vector3<f64>,
 }
 
@@ -44,7 +44,7 @@ fn meeting(axes: &[Axis]) -> Option<(Vector3<f64>, f64)> {
 
 impl Wrist {
     /// The wrist of six axes, and how far (m) the last three are from meeting.
-    pub(crate) fn new(axes: &[Axis; 6]) -> Option<(Self, f64)> {
+    pub(crate) fn new(axes: &[Axis; 6], reach_m: f64) -> Option<(Self, f64)> {
         let (centre, apart) = meeting(&axes[3..])?;
         let mut axes = *axes;
         if let Some((middle, _)) = axes[0].between(&axes[1]) {
@@ -53,7 +53,8 @@ impl Wrist {
         }
         // Wrists whose axes are almost parallel turn in two directions only.
         let bends = |one: usize, other: usize| axes[one].w.cross(&axes[other].w).norm() > 0.1;
-        (bends(3, 4) && bends(4, 5)).then_some((Wrist { axes, centre }, apart))
+        (bends(3, 4) && bends(4, 5))
+            .then_some((Wrist { axes, centre, care: Care::of(apart / reach_m) }, apart))
     }
 
     /// Joint values of the branches for a motion `exp(ξ₁q₁) … exp(ξ₆q₆)`.
@@ -70,7 +71,7 @@ impl Wrist {
             let (a, b) = (a4.w.dot(&(a6.w - along)), a4.w.dot(&across));
             let side = rotation::perpendicular(&a6.w);
             let side_goal = undone(&(motion.rotation * side));
-            for (q5, two) in linear(a, b, a4.w.dot(&goal) - a4.w.dot(&along), 0.0, f64::INFINITY).each() {
+            for (q5, two) in linear(a, b, a4.w.dot(&goal) - a4.w.dot(&along), self.care.always()).each() {
                 let bent = a5.turned(cosine_and_sine(q5), &a6.w);
                 let q4 = a4.angle(&bent, &goal);
                 let back_side = a5.turned(back(q5), &a4.turned(back(q4), &side_goal));
@@ -131,13 +132,13 @@ impl Wrist {
                 let (mut q2, mut q3, mut shift) = (0.0, 0.0, 0.0);
                 let (mut is_found, mut is_touching) = (true, false);
                 for _ in 0..3 {
-                    let third = linear(weak.2[1], weak.2[2], shift - weak.2[0], APART, BEYOND);
+                    let third = linear(weak.2[1], weak.2[2], shift - weak.2[0], self.care);
                     is_found &= third.count == 2;
                     (q3, is_touching) = (third.values[which], third.is_touching());
                     let turn = cosine_and_sine(q3);
                     let z = flat(&centre(turn));
                     let (x, y) = (strong.0 * z.0 + strong.1 * z.1, strong.1 * z.0 - strong.0 * z.1);
-                    let second = linear(x, y, at(&strong.2, turn), APART, BEYOND);
+                    let second = linear(x, y, at(&strong.2, turn), self.care);
                     is_found &= second.count == 2;
                     q2 = second.values[other];
                     is_touching |= second.is_touching();
@@ -164,7 +165,7 @@ impl Wrist {
         add(bb, &alpha, &alpha);
         add(-det * det, &squared, &[1.0, 0.0, 0.0]);
         add(det * det, &h, &h);
-        let roots: Angles<8> = Trigonometric { coefficients: sum }.roots(24, APART, BEYOND);
+        let roots: Angles<8> = Trigonometric { coefficients: sum }.roots(24, self.care);
         for (q3, is_touching) in roots.each() {
             let turn = cosine_and_sine(q3);
             let (zx, zy) = flat(&centre(turn));

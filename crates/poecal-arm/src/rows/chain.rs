@@ -70,20 +70,23 @@ impl<const N: usize> Rows<N> {
 
     #[inline(always)]
     fn place_rigid(&mut self, arm: &Arm, wanted: Wanted) {
-        let mut frame = Frames::BASE;
-        for (index, (to, screw)) in arm.frames().iter().zip(arm.screws()).enumerate() {
-            frame.advance(to);
-            let slides = screw.is_prismatic();
+        let chain = arm.chain();
+        let mut frame = Frames::of(&chain.start);
+        for (index, link) in chain.links.iter().enumerate() {
+            frame.tilt(&link.origin, link.tilt);
             if wanted == Wanted::Motions {
-                self.moves(index, &motion(&frame, slides), &[1.0; N]);
+                self.moves(index, &motion(&frame, link.slides), &[1.0; N]);
             }
-            if slides {
+            if link.slides {
                 frame.slide(&self.q[index]);
-            } else {
-                frame.turn_by(&cosines_and_sines(&self.q[index]));
             }
+            let mut angles = [link.turned; N];
+            for l in 0..N {
+                angles[l] += if link.slides { 0.0 } else { self.q[index][l] };
+            }
+            frame.turn_by(&cosines_and_sines(&angles));
         }
-        frame.advance(arm.tip());
+        frame.advance(&chain.tip);
         self.tip = frame;
     }
 

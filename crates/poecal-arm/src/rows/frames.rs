@@ -67,6 +67,27 @@ impl<const N: usize> Frames<N> {
         at: [[0.0; N]; 3],
     };
 
+    /// A frame that is the same in all configurations.
+    #[inline(always)]
+    pub(crate) fn of(pose: &Pose) -> Self {
+        let column = |k: usize| [0, 1, 2].map(|row| [pose.rotation[(row, k)]; N]);
+        let at = [0, 1, 2].map(|row| [pose.translation[row]; N]);
+        Frames { x: column(0), y: column(1), z: column(2), at }
+    }
+
+    /// Takes them to frames whose origin is given in them, and which are turned about x by an angle with this cosine and sine.
+    #[inline(always)]
+    pub(crate) fn tilt(&mut self, origin: &nalgebra::Vector3<f64>, (c, s): (f64, f64)) {
+        for l in 0..N {
+            for k in 0..3 {
+                let (x, y, z) = (self.x[k][l], self.y[k][l], self.z[k][l]);
+                self.at[k][l] += x * origin.x + y * origin.y + z * origin.z;
+                self.y[k][l] = y * c + z * s;
+                self.z[k][l] = z * c - y * s;
+            }
+        }
+    }
+
     /// Takes them to frames that are given in them.
     #[inline(always)]
     pub(crate) fn advance(&mut self, to: &Pose) {

@@ -1,0 +1,169 @@
+//! All configurations of an arm of seven axes, one of which is held.
+
+use core::f64::consts::PI;
+
+use super::ways::{MOST_STEPS, Ranking, Ways};
+use super::{Branches, apart, sort, turned};
+use crate::arm::Arm;
+use crate::lie::{Pose, Screw};
+use crate::newton::{REACHED, Six, newton};
+
+/// Values of the held joint (rad) at which its choice is judged.
+const VALUES: [f64; 3] = [0.5, -1.3, 2.1];
+/// Steps (rad) by which a held joint is moved in search of a configuration.
+const STEP: f64 = 0.1;
+const MOST_MOVES: u32 = 31;
+
+/// All branches of an arm of seven revolute joints with one of them held at a value, the redundancy angle: those of the other six
+/// ([`AllBranches`](super::AllBranches)). The held joint is by default that one without which the arm is nearest to one with branches in closed
+/// form: the third of arms with a round shoulder and wrist, the last where only the shoulder is round.
+///
+/// ```
+/// use nalgebra::Vector3;
+/// use poecal_arm::{Arm, HeldBranches, lie::{Pose, Screw}};
+/// let axes = [Vector3::z(), Vector3::y(), Vector3::z(), -Vector3::y(), Vector3::z(), Vector3::y(), Vector3::z()];
+/// let points = [0.0, 0.36, 0.36, 0.78, 0.78, 1.18, 1.18].map(|z| Vector3::new(0.0, 0.0, z));
+/// let screws: Vec<Screw> = axes.iter().zip(&points).map(|(axis, point)| Screw::revolute(axis, point)).collect();
+/// let arm = Arm::new(&screws, &Pose::from_translation(Vector3::new(0.0, 0.0, 1.3))).unwrap();
+/// let target = arm.forward_kinematics(&[0.3, -0.5, 0.2, 1.1, -0.4, 0.8, 0.1]);
+/// let branches = HeldBranches::new(&arm, None).unwrap();
+/// let found = branches.at(&target, 0.4);
+/// assert_eq!((branches.joint(), found.as_slice().len()), (2, 8));
+/// for q in found.as_slice() {
+///     assert!((arm.forward_kinematics(q).translation - target.translation).norm() < 1e-10);
+///     assert_eq!(q[2], 0.4);
+/// }
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct HeldBranches {
+    arm: Arm,
+    joint: usize,
+    ranking: Ranking,
+}
+
+/// The other six joints where one is held.
+fn ways(arm: &Arm, joint: usize, value: f64, ranking: Option<Ranking>) -> Option<Ways> {
+    let all: &[Screw; 7] = arm.screws().try_into().ok()?;
+    let senses: &[f64; 7] = arm.senses()?.try_into().ok()?;
+    let moved = all[joint].exp(value * senses[joint]);
+    let other = |k: usize| if k < joint { k } else { k + 1 };
+    let screws: [Screw; 6] =
+        core::array::from_fn(|k| if k < joint { all[k] } else { all[k + 1].transformed(&moved) });
+    let senses = core::array::from_fn(|k| senses[other(k)]);
+    Some(Ways::new(&screws, &(moved * *arm.home()), (arm.reach_m(), senses), ranking))
+}
+
+impl HeldBranches {
+    /// What is computed once for an arm and the joint that is held (its index); `None` of an arm that has not seven revolute joints, each
+    /// with a reading of its own, or not this joint.
+    #[must_use]
+    pub fn new(arm: &Arm, joint: Option<usize>) -> Option<Self> {
+        if arm.joints() != 7 || arm.senses().is_none() || arm.screws().iter().any(Screw::is_prismatic) {
+            return None;
+        }
+        // How far from closed branches where it is farthest.
+        let off = |joint: usize| {
+            let at = |value: &f64| ways(arm, joint, *value, None).map_or(f64::INFINITY, |it| it.off());
+            VALUES.iter().map(at).fold(0.0, f64::max)
+        };
+        let joint = match joint {
+            Some(joint) if joint < 7 => joint,
+            Some(_) => return None,
+            // Of such as are all far, the third.
+            None => [2, 6, 0, 4, 1, 3, 5]
+                .into_iter()
+                .min_by(|one, other| off(*one).total_cmp(&off(*other)))
+                .unwrap_or(2),
+        };
+        let ways = ways(arm, joint, VALUES[0], None)?;
+        let ranking = ways.ranked(&Six::without(arm, joint, VALUES[0]));
+        Some(HeldBranches { arm: arm.clone(), joint, ranking })
+    }
+
+    /// Index of the joint that is held.
+    #[must_use]
+    pub fn joint(&self) -> usize {
+        self.joint
+    }
+
+    /// The configurations that have the tip at a pose of the base where the held joint reads a value (rad); the others are in (-π, π].
+    #[must_use]
+    pub fn at(&self, target: &Pose, value: f64) -> Branches<7> {
+        let mut found = Branches::EMPTY;
+        let Some(ways) = ways(&self.arm, self.joint, value, Some(self.ranking)) else { return found };
+        let six = Six::without(&self.arm, self.joint, value);
+        for q in ways.branches(&six, target).as_slice() {
+            found.add(&Six::all(q, (self.joint, value)), 0.0);
+        }
+        found
+    }
+
+    /// Those within the arm's limits, turned by whole turns to where they are nearest to `near`; sorted by the joint that has to move most.
+    ///
+    /// ```
+    /// use nalgebra::Vector3;
+    /// use poecal_arm::{Arm, HeldBranches, lie::{Pose, Screw}};
+    /// let axes = [Vector3::z(), Vector3::y(), Vector3::z(), -Vector3::y(), Vector3::z(), Vector3::y(), Vector3::z()];
+    /// let points = [0.0, 0.36, 0.36, 0.78, 0.78, 1.18, 1.18].map(|z| Vector3::new(0.0, 0.0, z));
+    /// let screws: Vec<Screw> = axes.iter().zip(&points).map(|(axis, point)| Screw::revolute(axis, point)).collect();
+    /// let arm = Arm::new(&screws, &Pose::from_translation(Vector3::new(0.0, 0.0, 1.3))).unwrap();
+    /// let q = [3.5, 0.5, 0.2, 1.1, -0.4, 0.8, 0.1];
+    /// let found = HeldBranches::new(&arm, None).unwrap().within_limits(&arm.forward_kinematics(&q), q[2], &q);
+    /// assert!((found.as_slice()[0][0] - 3.5).abs() < 1e-9);
+    /// ```
+    #[must_use]
+    pub fn within_limits(&self, target: &Pose, value: f64, near: &[f64; 7]) -> Branches<7> {
+        let mut found = Branches::EMPTY;
+        let mut near = *near;
+        near[self.joint] = value;
+        for branch in self.at(target, value).as_slice() {
+            let Some(q) = turned(branch, &near, self.arm.limits()) else { continue };
+            if (q[self.joint] - value).abs() > PI {
+                continue;
+            }
+            found.add(&self.refined(target, &q), 0.0);
+        }
+        sort(&mut found, &near);
+        found
+    }
+
+    /// Where gears have errors, a joint is not where it was a turn ago.
+    fn refined(&self, target: &Pose, q: &[f64; 7]) -> [f64; 7] {
+        if self.arm.is_rigid() {
+            return *q;
+        }
+        let held = (self.joint, q[self.joint]);
+        let mut six = core::array::from_fn(|k| if k < self.joint { q[k] } else { q[k + 1] });
+        newton(&Six::without(&self.arm, held.0, held.1), target, &mut six, MOST_STEPS);
+        Six::all(&six, held)
+    }
+
+    /// As [`Arm::nearest`], the least motion; where its iteration does not reach the pose, the nearest branch at the redundancy angle that is
+    /// nearest to where it is, in steps of 0.1 rad.
+    pub fn nearest(&self, target: &Pose, q: &mut [f64; 7]) -> f64 {
+        let mut near = *q;
+        let left = self.arm.nearest(target, &mut near);
+        if left < REACHED {
+            *q = near;
+            return left;
+        }
+        for move_ in 0..=MOST_MOVES {
+            for value in [q[self.joint] + STEP * f64::from(move_), q[self.joint] - STEP * f64::from(move_)] {
+                let found = self.at(target, value);
+                let far = |it: &&[f64; 7]| apart(it, q);
+                let Some(best) = found.as_slice().iter().min_by(|one, other| far(one).total_cmp(&far(other)))
+                else {
+                    continue;
+                };
+                let mut there = *best;
+                for (there, here) in there.iter_mut().zip(&*q) {
+                    *there = here + crate::trig::wrapped(*there - here);
+                }
+                *q = self.refined(target, &there);
+                return self.arm.nearest(target, q);
+            }
+        }
+        *q = near;
+        left
+    }
+}

@@ -1,0 +1,289 @@
+//! Ways to starts of the iteration to all branches of six axes.
+
+use alloc::vec::Vec;
+use core::f64::consts::PI;
+
+use super::axis::Axis;
+use super::general::General;
+use super::parallel::Parallel;
+use super::wrist::Wrist;
+use super::{Branches, SAME, apart};
+use crate::lie::{Pose, Screw};
+use crate::newton::{REACHED, Six, newton, newton_judged};
+use crate::trig::wrapped;
+
+/// Ratio of the first two steps from a start beyond which there may be other branches around, and way (rad) to a branch that is another's.
+const DOUBTFUL: f64 = 0.25;
+const ASTRAY: f64 = 0.6;
+/// So many of the six ways to set up the equations are asked where the number of branches is odd.
+const MOST_WAYS: usize = 3;
+/// Configurations in which the ways are compared.
+const SAMPLES: usize = 48;
+/// Steps between them: 2π times the fractions of the roots of 2, 3, 5, 7, 11 and 13.
+const SPREAD: [f64; 6] = [2.602581, 4.599611, 1.483259, 4.057375, 1.989413, 3.804791];
+/// Distance (rad) of a root from a branch that was found from which it is taken for another one.
+const NEAR: f64 = 1e-4;
+/// Most starts of a way.
+const MOST_STARTS: usize = 24;
+/// Most steps from a start.
+pub(super) const MOST_STEPS: u32 = 12;
+/// How far (rad, lengths over reach) an arm may be from one with closed branches.
+const FAR: f64 = 0.03;
+
+/// The nearest arm that has its branches in closed form.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Closed {
+    /// Its last three axes meet.
+    Wrist(Wrist),
+    /// Its second to fourth axes are parallel.
+    Parallel(Parallel),
+}
+
+/// A way to set up the arm's own equations: the axis that comes first ([`General::FIRST`]), and whether the arm is seen from its tip.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Order {
+    first: usize,
+    is_reversed: bool,
+}
+
+/// The order in which ways are asked, which takes long to find: that of an arm serves arms like it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Ranking {
+    orders: [Order; MOST_WAYS],
+    /// Whether the first of them found what the closed form found: not of an arm that is its own relative, whose equations have no roots.
+    is_whole: bool,
+}
+
+/// What is computed of six revolute axes before poses are.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Ways {
+    axes: [Axis; 6],
+    home: Pose,
+    reach_m: f64,
+    /// Joint values per reading.
+    senses: [f64; 6],
+    /// How far the nearest relative is, that, and whether it is seen from the tip.
+    closed: Option<(f64, Closed, bool)>,
+    ranking: Ranking,
+    /// Equations that are kept, in the order of the ranking.
+    kept: Vec<General>,
+}
+
+/// The axes from the tip.
+fn reversed(axes: &[Axis; 6], is_reversed: bool) -> [Axis; 6] {
+    let mut axes = *axes;
+    if is_reversed {
+        axes.reverse();
+    }
+    axes
+}
+
+impl Ways {
+    /// Of six revolute axes: their screws and the tip where all readings are 0, and joint values per reading.
+    pub(super) fn new(
+        screws: &[Screw; 6],
+        home: &Pose,
+        (reach_m, senses): (f64, [f64; 6]),
+        ranking: Option<Ranking>,
+    ) -> Self {
+        let axes = screws.map(|screw| Axis::of(&screw));
+        let mut closed: Option<(f64, Closed, bool)> = None;
+        for is_reversed in [false, true] {
+            let axes = reversed(&axes, is_reversed);
+            let wrist = Wrist::new(&axes, reach_m).map(|(it, apart)| (apart / reach_m, Closed::Wrist(it)));
+            let parallel = Parallel::new(&axes, reach_m)
+                .map(|(it, angle, apart)| (f64::max(angle, apart / reach_m), Closed::Parallel(it)));
+            for (off, it) in wrist.into_iter().chain(parallel) {
+                if off < FAR && closed.as_ref().is_none_or(|(least, ..)| off < *least) {
+                    closed = Some((off, it, is_reversed));
+                }
+            }
+        }
+        let first = Order { first: 0, is_reversed: false };
+        let unknown = Ranking { orders: [first; MOST_WAYS], is_whole: true };
+        let ranking = ranking.unwrap_or(unknown);
+        Ways { axes, home: *home, reach_m, senses, closed, ranking, kept: Vec::new() }
+    }
+
+    /// How far the arm is from one that has its branches in closed form; infinite if it is far.
+    pub(super) fn off(&self) -> f64 {
+        self.closed.as_ref().map_or(f64::INFINITY, |(off, ..)| *off)
+    }
+
+    /// Compares the ways to set up the equations, for an arm with these axes.
+    pub(super) fn ranked(&self, arm: &Six<'_>) -> Ranking {
+        let mut judged: Vec<(Judged, Order)> = Vec::new();
+        for is_reversed in [false, true] {
+            for first in General::FIRST {
+                let order = Order { first, is_reversed };
+                let general = self.equations(order);
+                let starts = |target: &Pose| self.starts_of_equations(&general, order, target);
+                judged.push((Judged::of(arm, starts), order));
+            }
+        }
+        judged.sort_by(|(one, _), (other, _)| other.worth().total_cmp(&one.worth()));
+        let closed = Judged::of(arm, |target| self.closed_starts(target));
+        let order = |at: usize| judged[at].1;
+        Ranking { orders: [order(0), order(1), order(2)], is_whole: judged[0].0.count >= closed.count }
+    }
+
+    /// Keeps the equations of a ranking, so that they are not set up for each pose.
+    pub(super) fn keep(&mut self, ranking: Ranking) {
+        self.ranking = ranking;
+        self.kept = ranking.orders.iter().map(|order| self.equations(*order)).collect();
+    }
+
+    fn equations(&self, order: Order) -> General {
+        General::new(&reversed(&self.axes, order.is_reversed), order.first, self.reach_m)
+    }
+
+    /// The configurations that have the tip of an arm with (nearly) these axes at a pose.
+    pub(super) fn branches(&self, arm: &Six<'_>, target: &Pose) -> Branches {
+        let mut found = Branches::EMPTY;
+        let closed = self.closed_starts(target);
+        if closed.count > 0 && !closed.is_touching {
+            let doubt = closed.follow(arm, target, &mut found, |_, _| true);
+            let is_sure = found.count == closed.count && doubt < DOUBTFUL;
+            if is_sure && found.count.is_multiple_of(2) {
+                return found;
+            }
+        }
+        for (at, &order) in self.ranking.orders.iter().enumerate() {
+            let starts = match self.kept.get(at) {
+                Some(general) => self.starts_of_equations(general, order, target),
+                None => self.starts_of_equations(&self.equations(order), order, target),
+            };
+            starts.follow(arm, target, &mut found, is_far_by(NEAR));
+            if found.count.is_multiple_of(2) {
+                break;
+            }
+        }
+        if !self.ranking.is_whole {
+            closed.follow(arm, target, &mut found, is_far_by(NEAR));
+        }
+        found
+    }
+
+    fn closed_starts(&self, target: &Pose) -> Starts {
+        let mut starts = Starts::EMPTY;
+        if let Some((_, closed, is_reversed)) = &self.closed {
+            let motion = self.motion(target, *is_reversed);
+            let push =
+                &mut |q: [f64; 6], is_touching: bool| starts.add(self.readings(q, *is_reversed), is_touching);
+            match closed {
+                Closed::Wrist(wrist) => wrist.seeds(&motion, push),
+                Closed::Parallel(parallel) => parallel.seeds(&motion, push),
+            }
+        }
+        starts
+    }
+
+    fn starts_of_equations(&self, general: &General, order: Order, target: &Pose) -> Starts {
+        let mut starts = Starts::EMPTY;
+        general.seeds(&self.motion(target, order.is_reversed), &mut |q| {
+            starts.add(self.readings(q, order.is_reversed), false);
+        });
+        starts
+    }
+
+    /// The motion from the arm at zero to a pose of its tip, of all axes in the order in which they are seen.
+    fn motion(&self, target: &Pose, is_reversed: bool) -> Pose {
+        let motion = *target * self.home.inverse();
+        if is_reversed { motion.inverse() } else { motion }
+    }
+
+    fn readings(&self, mut q: [f64; 6], is_reversed: bool) -> [f64; 6] {
+        if is_reversed {
+            q.reverse();
+            q = q.map(|it| -it);
+        }
+        for (it, sense) in q.iter_mut().zip(self.senses) {
+            *it = wrapped(*it) / sense;
+        }
+        q
+    }
+}
+
+/// Whether a start is farther than this (rad) from all branches that were found.
+fn is_far_by(distance: f64) -> impl Fn(&[f64; 6], &Branches) -> bool {
+    move |start, found| !found.as_slice().iter().any(|it| apart(it, start) < distance)
+}
+
+/// Starts of the iteration, as readings.
+struct Starts {
+    values: [[f64; 6]; MOST_STARTS],
+    count: usize,
+    /// Whether two of them meet or almost do.
+    is_touching: bool,
+}
+
+impl Starts {
+    const EMPTY: Self = Starts { values: [[0.0; 6]; MOST_STARTS], count: 0, is_touching: false };
+
+    fn add(&mut self, q: [f64; 6], is_touching: bool) {
+        self.is_touching |= is_touching;
+        if let Some(next) = self.values.get_mut(self.count) {
+            *next = q;
+            self.count += 1;
+        }
+    }
+
+    /// Adds the branches that starts lead to, of those that are asked for; the most that one of them is to be doubted ([`newton_judged`]).
+    fn follow(
+        &self,
+        arm: &Six<'_>,
+        target: &Pose,
+        found: &mut Branches,
+        is_asked: impl Fn(&[f64; 6], &Branches) -> bool,
+    ) -> f64 {
+        let mut doubt = 0.0_f64;
+        for start in &self.values[..self.count] {
+            if !is_asked(start, found) {
+                continue;
+            }
+            let mut q = *start;
+            let (mut left, ratio) = newton_judged(arm, target, &mut q, MOST_STEPS);
+            if q.iter().any(|it| it.abs() > PI) {
+                q = q.map(wrapped);
+                if !arm.is_rigid() {
+                    // With an error of its gear, a joint is not where it was a turn ago.
+                    left = newton(arm, target, &mut q, MOST_STEPS);
+                }
+            }
+            if left < REACHED {
+                found.add(&q, SAME);
+                doubt = doubt.max(if apart(start, &q) > ASTRAY { 1.0 } else { ratio });
+            }
+        }
+        doubt
+    }
+}
+
+/// What a way finds in a few configurations of an arm.
+#[derive(Clone, Copy)]
+struct Judged {
+    count: usize,
+    /// Sum of the doubts.
+    doubt: f64,
+}
+
+impl Judged {
+    fn of(arm: &Six<'_>, starts: impl Fn(&Pose) -> Starts) -> Self {
+        let mut judged = Judged { count: 0, doubt: 0.0 };
+        for sample in 1..=SAMPLES {
+            // Irrational shares of a turn are spread evenly.
+            let spread = |k: usize| wrapped(sample as f64 * SPREAD[k]);
+            let target = arm.tip(&[0, 1, 2, 3, 4, 5].map(spread));
+            let mut found = Branches::EMPTY;
+            let doubt = starts(&target).follow(arm, &target, &mut found, |_, _| true);
+            judged.count += found.count;
+            judged.doubt += doubt.min(1.0);
+        }
+        judged
+    }
+
+    /// Roots are the nearer to branches, the better the equations serve the arm's geometry.
+    fn worth(&self) -> f64 {
+        self.count as f64 - self.doubt
+    }
+}
