@@ -4,6 +4,7 @@ import xml.etree.ElementTree as xml
 
 import numpy as np
 import pinocchio as pin
+import poecal as package
 import pytest
 from program import ELBOW, URDFS, poecal, predict, simulated_session, write_table
 
@@ -94,3 +95,22 @@ def test_the_calibrated_urdf_in_pinocchio_is_the_calibration(tmp_path):
     chain = PinocchioChain((out / "calibrated.urdf").read_text(), "tool")
     assert chain.readings == list(joints)
     chain.assert_equals(predict(out / "calibration.json", tmp_path / "joints.csv"), joints)
+
+
+def test_jacobians_of_the_calibrated_robot_are_pinocchios(tmp_path):
+    rng = np.random.default_rng(3)
+    joints = {f"joint{i}": rng.uniform(-2, 2, CONFIGURATIONS) for i in range(1, 7)}
+    measurements, _ = simulated_session(tmp_path, joints)
+    out = tmp_path / "out"
+    poecal("calibrate", ELBOW, measurements, "--out", out)
+    calibration = package.Calibration.read(out / "calibration.json")
+    chain = PinocchioChain((out / "calibrated.urdf").read_text(), "tool")
+    rows = np.stack([joints[name] for name in calibration.robot.reading_names], axis=1)
+    worst = 0.0
+    for q, jacobian in zip(rows, calibration.jacobian(rows, model="calibrated"), strict=True):
+        found = pin.computeFrameJacobian(chain.model, chain.data, q, chain.tip, pin.LOCAL_WORLD_ALIGNED)
+        pin.framesForwardKinematics(chain.model, chain.data, q)
+        turn = chain.data.oMf[chain.base].rotation.T
+        worst = max(worst, np.abs(np.vstack([turn @ found[:3], turn @ found[3:]]) - jacobian).max())
+    print(f"largest difference of Jacobians: {worst:.1e}")
+    assert worst <= TOLERANCE_M

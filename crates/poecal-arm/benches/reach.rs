@@ -5,7 +5,7 @@
 //! For each arm TARGETS poses (20,000 unless given) of random configurations, all joints within a turn; for each pose all branches, and the
 //! nearest configuration from one whose joints are up to 0.3 rad away. *Found* is the share of targets of which the configuration that they
 //! were made with is among the branches; *far* the same where the smallest singular value of its Jacobian is above 0.01. `--json` prints one
-//! object a line for `benches/peers/reach`.
+//! object a line for `benches/peers/reach`, and `--arms` the arms alone: directions and points of axes, and the tip at zero.
 
 #![allow(clippy::print_stdout, clippy::unwrap_used, reason = "a program that prints what it measures")]
 
@@ -44,7 +44,8 @@ fn main() {
     let is_json = arguments.iter().any(|it| it == "--json");
     let kind = arguments.iter().position(|it| it == "--kind").and_then(|at| arguments.get(at + 1));
     let targets = arguments.iter().find_map(|it| it.parse().ok()).unwrap_or(TARGETS);
-    if !is_json {
+    let are_arms = arguments.iter().any(|it| it == "--arms");
+    if !is_json && !are_arms {
         println!("{targets} targets an arm; times in µs, median and 99th percentile");
         println!(
             "{:<27}{:>8}{:>9}{:>9}{:>8}{:>10}{:>10}{:>9}{:>9}{:>10}{:>10}{:>10}",
@@ -68,6 +69,10 @@ fn main() {
         }
         for off in OFF {
             let arm = if name == SEVEN { seven_axes(off) } else { calibrated::arm(name, off.0, off.1) };
+            if are_arms {
+                println!("{}", drawn(&arm, name, off.0 != 0.0));
+                continue;
+            }
             let label = if off.0 == 0.0 { name.to_owned() } else { format!("{name}, cal.") };
             let measured = measured(&arm, targets);
             println!("{}", if is_json { measured.json(name, off.0 != 0.0) } else { measured.line(&label) });
@@ -90,6 +95,23 @@ fn seven_axes((angle_rad, length_m): (f64, f64)) -> Arm {
         })
         .collect();
     Arm::new(&screws, &Pose::from_translation(Vector3::new(0.0, 0.0, 1.306))).unwrap()
+}
+
+/// An arm as JSON.
+fn drawn(arm: &Arm, kind: &str, is_calibrated: bool) -> String {
+    let list = |it: &Vector3<f64>| format!("[{}, {}, {}]", it.x, it.y, it.z);
+    let lists = |of: fn(&Screw) -> Vector3<f64>| {
+        arm.screws().iter().map(|it| list(&of(it))).collect::<Vec<String>>().join(", ")
+    };
+    let rows = arm.home().rotation.transpose();
+    let rows: Vec<String> = rows.column_iter().map(|row| list(&row.into_owned())).collect();
+    format!(
+        "{{\"kind\": \"{kind}\", \"calibrated\": {is_calibrated}, \"directions\": [{}], \"points\": [{}], \"tip\": {}, \"turned\": [{}]}}",
+        lists(Screw::direction),
+        lists(|it| it.nearest_point(&Vector3::zeros())),
+        list(&arm.home().translation),
+        rows.join(", "),
+    )
 }
 
 /// What was measured of an arm.

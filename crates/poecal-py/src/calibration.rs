@@ -546,7 +546,7 @@ impl Calibration {
     ) -> PyResult<Bound<'py, PyAny>> {
         let actual = self.actual(model)?;
         let factors = reach::factors(&actual.model.robot, factors)?;
-        reach::inverse(py, &actual.model.robot, poses, near, &factors, limits)
+        reach::inverse(py, actual, poses, near, &factors, limits)
     }
 
     /// Judges the calibration by measurements that it did not see; every row counts.

@@ -2,7 +2,7 @@
 
 use numpy::{PyArray1, PyArrayMethods as _};
 use poecal::Robot;
-use poecal::compensate::{Compensation, Inverse, Kinematics};
+use poecal::compensate::{Compensation, Kinematics};
 use poecal::lie::Pose;
 use pyo3::IntoPyObjectExt as _;
 use pyo3::prelude::*;
@@ -10,7 +10,7 @@ use pyo3::types::{PyDict, PyList};
 
 use crate::arrays::{Numbers, pose_of, table};
 use crate::errors::{argument, raise};
-use crate::robot::poses;
+use crate::robot::{Robot as Described, poses};
 
 /// Values of a robot's factors: those of a mapping from their names, else their references.
 pub(crate) fn factors(robot: &Robot, given: Option<&Bound<'_, PyAny>>) -> PyResult<Vec<f64>> {
@@ -114,14 +114,15 @@ fn targets(value: &Bound<'_, PyAny>) -> PyResult<(Vec<Pose>, bool)> {
 /// Configurations that have the tip at poses: the nearest to `near`, not a number where there is none; without `near` all branches.
 pub(crate) fn inverse<'py>(
     py: Python<'py>,
-    robot: &Robot,
+    robot: &Described,
     poses: &Bound<'py, PyAny>,
     near: Option<&Bound<'py, PyAny>>,
     factors: &[f64],
     limits: bool,
 ) -> PyResult<Bound<'py, PyAny>> {
     let (targets, is_single) = targets(poses)?;
-    let inverse = Inverse::new(robot, factors).map_err(raise)?;
+    let inverse = robot.inverse(factors).map_err(raise)?;
+    let robot = &robot.model.robot;
     let n = robot.joint_reading_names().len();
     let Some(near) = near.filter(|it| !it.is_none()) else {
         if !inverse.has_branches() {

@@ -1,4 +1,7 @@
-"""Inverse kinematics and compensation."""
+"""Kinematics and compensation."""
+
+import subprocess
+import sys
 
 import numpy as np
 import poecal
@@ -58,6 +61,63 @@ def test_all_branches_are_there_and_limits_are_kept(calibration):
     assert len(one) <= len(calibration.ik(poses[0], limits=False))
 
 
+def test_many_tips_are_those_of_predict(calibration):
+    joints = np.random.default_rng(4).uniform(-2, 2, (1500, 6))
+    tips = calibration.forward_kinematics(joints)
+    print(f"apart from predict by {apart(tips, calibration.predict(joints)):.1e}")
+    # Rounding of some twenty joints, up to 2 m.
+    assert tips.shape == (1500, 4, 4) and apart(tips, calibration.predict(joints)) < 1e-14
+    assert (calibration.forward_kinematics(joints[7]) == tips[7]).all()
+    geometry = calibration.forward_kinematics(joints, model="calibrated")
+    assert 1e-6 < apart(geometry, tips) and apart(geometry, calibration.predict(joints, model="calibrated")) < 1e-14
+    assert calibration.forward_kinematics(np.zeros((0, 6))).shape == (0, 4, 4)
+
+
+def test_jacobians_are_the_differences_of_poses(calibration):
+    joints = np.random.default_rng(5).uniform(-2, 2, (40, 6))
+    jacobians = calibration.jacobian(joints)
+    assert jacobians.shape == (40, 6, 6) and (calibration.jacobian(joints[3]) == jacobians[3]).all()
+    step, worst = 1e-6, 0.0
+    for joint in range(6):
+        after, before = (calibration.predict(joints + by * np.eye(6)[joint]) for by in (step, -step))
+        turn = (after[:, :3, :3] @ before[:, :3, :3].swapaxes(1, 2)) / (2 * step)
+        turn = np.stack([turn[:, i, j] - turn[:, j, i] for i, j in ((2, 1), (0, 2), (1, 0))], axis=1) / 2
+        shift = (after - before)[:, :3, 3] / (2 * step)
+        worst = max(worst, apart(jacobians[:, :, joint], np.concatenate([shift, turn], axis=1)))
+    print(f"off by {worst:.1e}")
+    # Rounding of poses over the step.
+    assert worst < 3e-9
+
+
+def test_sag_is_what_weights_do(calibration):
+    joints = np.random.default_rng(6).uniform(-2, 2, (200, 6))
+    sag = calibration.sag(joints)
+    assert sag.shape == (200, 6) and (calibration.sag(joints[9]) == sag[9]).all()
+    print(f"up to {np.abs(sag[:, :3]).max():.1e} m and {np.abs(sag[:, 3:]).max():.1e} rad")
+    # 2 mrad at the longest lever were planted, a metre from the tip.
+    assert 2e-4 < np.linalg.norm(sag[:, :3], axis=1).max() < 2e-2
+    assert (calibration.sag(joints, model="calibrated") == 0).all()
+
+
+def test_threads_find_the_same_bits(calibration, tmp_path):
+    calibration.write(tmp_path / "out")
+    script = """
+import hashlib, sys, numpy as np, poecal
+poecal.set_threads(int(sys.argv[2]))
+calibration = poecal.Calibration.read(sys.argv[1])
+joints = np.random.default_rng(7).uniform(-1, 1, (1300, 6)) + [0, 0.3, 0.3, 0, 1.5, 0]
+tips = calibration.forward_kinematics(joints)
+found = [tips, calibration.jacobian(joints), calibration.sag(joints), calibration.compensate(joints), calibration.ik(tips, near=joints + 0.1)]
+found += calibration.ik(tips[:200])
+print(hashlib.sha256(b"".join(it.tobytes() for it in found)).hexdigest())
+"""
+    hashes = set()
+    for threads in (1, 2, 5):
+        command = [sys.executable, "-c", script, str(tmp_path / "out/calibration.json"), str(threads)]
+        hashes.add(subprocess.run(command, check=True, capture_output=True, text=True).stdout)
+    assert len(hashes) == 1 and hashes.pop().strip()
+
+
 def test_mistakes_are_told(calibration):
     with pytest.raises(ValueError, match="near: found 2 configurations for 1 poses"):
         calibration.ik(np.eye(4), near=np.zeros((2, 6)))
@@ -69,3 +129,6 @@ def test_mistakes_are_told(calibration):
         calibration.compensate(np.zeros(6), factors={"heat": 3})
     with pytest.raises(ValueError, match="model: "):
         calibration.ik(np.eye(4), near=np.zeros(6), model="nominal")
+    for ask in (calibration.forward_kinematics, calibration.jacobian, calibration.sag):
+        with pytest.raises(ValueError, match=r"joints: found an array of shape \(2, 3\), expected shape \(m, 6\)"):
+            ask(np.zeros((2, 3)))

@@ -1122,6 +1122,27 @@ class Calibration:
         target: str | None = None,
         model: Literal["corrected", "calibrated"] = "corrected",
     ) -> _Array | Prediction: ...
+    def forward_kinematics(
+        self,
+        joints: ArrayLike,
+        *,
+        factors: Mapping[str, float] | None = None,
+        model: Literal["corrected", "calibrated"] = "corrected",
+    ) -> _Array: ...
+    def jacobian(
+        self,
+        joints: ArrayLike,
+        *,
+        factors: Mapping[str, float] | None = None,
+        model: Literal["corrected", "calibrated"] = "corrected",
+    ) -> _Array: ...
+    def sag(
+        self,
+        joints: ArrayLike,
+        *,
+        factors: Mapping[str, float] | None = None,
+        model: Literal["corrected", "calibrated"] = "corrected",
+    ) -> _Array: ...
     def compensate(
         self,
         joints: ArrayLike,

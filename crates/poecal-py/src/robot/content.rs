@@ -2,8 +2,9 @@
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 
+use poecal::compensate::Inverse;
 use poecal::io::calibration_file::{CalibrationFile, Inputs};
 use poecal::io::model::{Model, ModelFormat, ModelSource, convert};
 use poecal::io::urdf::{ChainSelection, UrdfDocument};
@@ -26,23 +27,38 @@ pub(crate) struct Robot {
     pub(crate) model: Arc<Model>,
     /// SHA-256 of the file that it was read from, by its name.
     pub(crate) sha256: Arc<BTreeMap<String, String>>,
+    /// Its inverse kinematics at the factors of the last call.
+    inverse: Arc<Mutex<Option<(Vec<f64>, Arc<Inverse>)>>>,
 }
 
 impl Robot {
     pub(crate) fn new(model: Model) -> Self {
-        Robot { model: Arc::new(model), sha256: Arc::default() }
+        Robot { model: Arc::new(model), sha256: Arc::default(), inverse: Arc::default() }
     }
 
     /// The same file with another robot.
     pub(crate) fn with_robot(&self, robot: poecal::robot::Robot) -> Self {
         let model = Model { robot, source: self.model.source.clone(), path: self.model.path.clone() };
-        Robot { model: Arc::new(model), sha256: Arc::clone(&self.sha256) }
+        Robot { model: Arc::new(model), sha256: Arc::clone(&self.sha256), inverse: Arc::default() }
     }
 
     /// A model from a file, with the file's checksum.
     pub(super) fn of_file(model: Model) -> PyResult<Self> {
         let sha256 = Inputs::checksums([model.path.as_path()].into_iter()).map_err(raise)?;
-        Ok(Robot { model: Arc::new(model), sha256: Arc::new(sha256) })
+        Ok(Robot { model: Arc::new(model), sha256: Arc::new(sha256), inverse: Arc::default() })
+    }
+
+    /// Its inverse kinematics at these factors: made once as long as they stay the same, since that takes longer than many poses.
+    pub(crate) fn inverse(&self, factors: &[f64]) -> poecal::Result<Arc<Inverse>> {
+        let mut kept = self.inverse.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((of, inverse)) = &*kept
+            && of == factors
+        {
+            return Ok(Arc::clone(inverse));
+        }
+        let made = Arc::new(Inverse::new(&self.model.robot, factors)?);
+        *kept = Some((factors.to_vec(), Arc::clone(&made)));
+        Ok(made)
     }
 
     pub(super) fn robot(&self) -> &poecal::robot::Robot {
@@ -86,7 +102,7 @@ impl Robot {
                 ModelSource::Calibration(Box::new(CalibrationFile::parse(&text, &path).map_err(raise)?))
             }
         };
-        Ok(Robot { model: Arc::new(Model { robot, source, path }), sha256: Arc::new(sha256) })
+        Ok(Robot { model: Arc::new(Model { robot, source, path }), sha256: Arc::new(sha256), inverse: Arc::default() })
     }
 }
 

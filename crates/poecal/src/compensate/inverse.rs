@@ -1,8 +1,6 @@
 //! Inverse kinematics of a robot's tip.
 
-use poecal_arm::{AllBranches, Arm};
-
-use super::{REACHED, apart};
+use super::{REACHED, Reach, apart};
 use crate::error::Result;
 use crate::lie::Pose;
 use crate::robot::Robot;
@@ -24,8 +22,7 @@ const SOME: usize = 64;
 /// ```
 #[derive(Clone, Debug)]
 pub struct Inverse {
-    arm: Arm,
-    branches: Option<AllBranches>,
+    arm: Reach,
     readings: Vec<usize>,
     /// Number of the robot's joint readings.
     count: usize,
@@ -38,14 +35,13 @@ impl Inverse {
     /// As [`Robot::arm`].
     pub fn new(robot: &Robot, factors: &[f64]) -> Result<Self> {
         let (arm, readings) = robot.arm(factors)?;
-        let branches = AllBranches::new(&arm);
-        Ok(Inverse { arm, branches, readings, count: robot.joint_reading_names().len() })
+        Ok(Inverse { arm: Reach::new(arm), readings, count: robot.joint_reading_names().len() })
     }
 
     /// Whether all branches can be found: of six turning joints, each with a reading of its own.
     #[must_use]
     pub fn has_branches(&self) -> bool {
-        self.branches.is_some()
+        self.arm.branches().is_some()
     }
 
     /// The configuration nearest to `near` (rad, m, in the order of [`Robot::reading_names`]) that has the tip at a pose of the base; within
@@ -53,27 +49,20 @@ impl Inverse {
     #[must_use]
     pub fn nearest(&self, target: &Pose, near: &[f64], within_limits: bool) -> Option<Vec<f64>> {
         let mut q: Vec<f64> = self.readings.iter().map(|&at| near.get(at).copied().unwrap_or(0.0)).collect();
-        let is_reached = match (&self.branches, <&mut [f64; 6]>::try_from(&mut q[..])) {
-            (Some(branches), Ok(six)) => {
-                let start = *six;
-                branches.nearest(target, six);
-                if within_limits && !self.is_within(six) {
-                    *six = *branches.within_limits(target, &start).as_slice().first()?;
-                }
-                self.is_at(six, target)
-            }
-            (None, _) | (_, Err(_)) => {
-                self.arm.nearest(target, &mut q);
-                self.is_at(&q, target) && (!within_limits || self.is_within(&q))
-            }
-        };
+        let start: Option<[f64; 6]> = q[..].try_into().ok();
+        self.arm.nearest(target, &mut q);
+        if within_limits && !self.is_within(&q) {
+            let (branches, start) = (self.arm.branches()?, start?);
+            q.copy_from_slice(branches.within_limits(target, &start).as_slice().first()?);
+        }
+        let is_reached = self.is_at(&q, target);
         is_reached.then(|| self.all(near, &q))
     }
 
     /// All configurations that have the tip at a pose, nearest to `near` first; within limits, if that is asked, else from -π to π.
     #[must_use]
     pub fn branches(&self, target: &Pose, near: &[f64], within_limits: bool) -> Vec<Vec<f64>> {
-        let Some(branches) = &self.branches else { return Vec::new() };
+        let Some(branches) = self.arm.branches() else { return Vec::new() };
         let mut start = [0.0; 6];
         start.iter_mut().zip(&self.readings).for_each(|(to, &at)| *to = near.get(at).copied().unwrap_or(0.0));
         let found = if within_limits { branches.within_limits(target, &start) } else { branches.at(target) };
@@ -104,12 +93,12 @@ impl Inverse {
     }
 
     fn is_at(&self, q: &[f64], target: &Pose) -> bool {
-        let (metres, radians) = apart(&self.arm.forward_kinematics(q), target);
+        let (metres, radians) = apart(&self.arm.arm().forward_kinematics(q), target);
         metres <= REACHED && radians <= REACHED
     }
 
     fn is_within(&self, q: &[f64]) -> bool {
-        q.iter().zip(self.arm.limits()).all(|(q, (low, high))| (low - 1e-7..=high + 1e-7).contains(q))
+        q.iter().zip(self.arm.arm().limits()).all(|(q, (low, high))| (low - 1e-7..=high + 1e-7).contains(q))
     }
 
     /// All readings of the robot: those that do not move the tip are where they were.

@@ -2,11 +2,13 @@
 
 mod inverse;
 mod kinematics;
+mod reach;
 mod summary;
 mod table;
 
 use nalgebra::Vector3;
-use poecal_arm::{AllBranches, Arm};
+use poecal_arm::Arm;
+use reach::Reach;
 
 pub use inverse::Inverse;
 pub use kinematics::Kinematics;
@@ -38,8 +40,7 @@ pub const REACHED: f64 = 1e-9;
 #[derive(Clone, Debug)]
 pub struct Compensation {
     nominal: Arm,
-    actual: Arm,
-    branches: Option<AllBranches>,
+    actual: Reach,
     /// Of each reading of the arm, its index among the robot's.
     readings: Vec<usize>,
     names: Vec<String>,
@@ -107,9 +108,8 @@ impl Compensation {
         }
         let count = readings.len();
         Ok(Compensation {
-            branches: AllBranches::new(&actual_arm),
             nominal: nominal_arm,
-            actual: actual_arm,
+            actual: Reach::new(actual_arm),
             last: vec![0.0; count],
             since: 0,
             before: vec![0.0; count],
@@ -136,7 +136,7 @@ impl Compensation {
     /// The actual arm.
     #[must_use]
     pub fn actual(&self) -> &Arm {
-        &self.actual
+        self.actual.arm()
     }
 
     /// Of each reading of the arms, its index among all readings.
@@ -161,7 +161,7 @@ impl Compensation {
             *to = meant.get(at).copied().unwrap_or(0.0);
         }
         let target = self.nominal.forward_kinematics(&self.meant);
-        let uncorrected = self.actual.forward_kinematics(&self.meant);
+        let uncorrected = self.actual().forward_kinematics(&self.meant);
         let (moved_m, turned_rad) = apart(&uncorrected, &target);
         if moved_m == 0.0 && turned_rad == 0.0 {
             return self.told((moved_m, turned_rad), (0.0, 0.0), false);
@@ -237,16 +237,13 @@ impl Compensation {
 
     /// Takes `q` to the nearest configuration that has the tip at a pose; distance and angle that are left.
     fn solve(&mut self, target: &Pose) -> (f64, f64) {
-        let left = match (&self.branches, <&mut [f64; 6]>::try_from(&mut self.q[..])) {
-            (Some(branches), Ok(six)) => branches.nearest(target, six),
-            (None, _) | (_, Err(_)) => self.actual.nearest(target, &mut self.q),
-        };
+        let left = self.actual.nearest(target, &mut self.q);
         // Both are below their common measure.
-        let (left_m, left_rad) = (left * self.actual.reach_m(), left);
+        let (left_m, left_rad) = (left * self.actual().reach_m(), left);
         if left_m < NOTHING && left_rad < NOTHING {
             return (left_m, left_rad);
         }
-        apart(&self.actual.forward_kinematics(&self.q), target)
+        apart(&self.actual().forward_kinematics(&self.q), target)
     }
 }
 

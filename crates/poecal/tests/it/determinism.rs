@@ -1,5 +1,8 @@
 //! The same input gives the same bits, whatever the number of threads.
 
+use poecal::compensate::{Compensated, Compensation, Inverse, Kinematics};
+use poecal::robot::{JointTerm, Term};
+
 use crate::common::with_threads;
 use crate::trials::some;
 use poecal::calibration::{CalibrationOptions, calibrate};
@@ -32,4 +35,33 @@ fn calibrations_with_one_thread_and_with_two_are_bit_identical() {
             assert!(one == results(2));
         }
     }
+}
+
+#[test]
+fn kinematics_do_not_depend_on_threads() {
+    let nominal = elbow();
+    let mut actual = nominal.clone();
+    actual.terms.push(JointTerm { joint: 1, term: Term::Offset, coefficient: 0.01 });
+    let readings: Vec<f64> = (0..6 * 2100).map(|at| (f64::from(at) * 0.37).sin()).collect();
+    let found = |threads: usize| {
+        with_threads(threads, || {
+            let kinematics = Kinematics::new(&actual, &[]).unwrap();
+            let (tips, jacobians) = (kinematics.forward_kinematics(&readings), kinematics.jacobians(&readings));
+            let inverse = Inverse::new(&actual, &[]).unwrap();
+            let near = inverse.of_many(&tips[..300], |it, row, tip| it.nearest(tip, &readings[6 * row..][..6], false));
+            let compensation = Compensation::new(&nominal, &actual, &[]).unwrap();
+            let told = |_: usize, it: &Compensated<'_>| Ok::<_, poecal::Error>(it.readings.to_vec());
+            (tips, jacobians, near, compensation.of_many(&readings, told).unwrap())
+        })
+    };
+    let one = found(1);
+    assert!(one.2.iter().all(Option::is_some));
+    for threads in [2, 5] {
+        assert!(found(threads) == one, "{threads} threads");
+    }
+    // Nor do many corrections differ from one after the other.
+    let mut compensation = Compensation::new(&nominal, &actual, &[]).unwrap();
+    let each: Vec<f64> =
+        readings.chunks_exact(6).flat_map(|row| compensation.joints(row).readings.to_vec()).collect();
+    assert!(each == one.3);
 }
