@@ -4,7 +4,8 @@
 //!
 //! For each arm TARGETS poses (20,000 unless given) of random configurations, all joints within a turn; for each pose all branches, and the
 //! nearest configuration from one whose joints are up to 0.3 rad away. *Found* is the share of targets of which the configuration that they
-//! were made with is among the branches; *far* the same where the smallest singular value of its Jacobian is above 0.01. `--json` prints one
+//! were made with is among the branches, of seven axes with one held as it was; *far* the same where the smallest singular value of the Jacobian of
+//! the free joints is above 0.01. `--json` prints one
 //! object a line for `benches/peers/reach`, and `--arms` the arms alone: directions and points of axes, and the tip at zero.
 
 #![allow(clippy::print_stdout, clippy::unwrap_used, reason = "a program that prints what it measures")]
@@ -18,17 +19,16 @@ use std::f64::consts::PI;
 use std::hint::black_box;
 use std::time::Instant;
 
-use nalgebra::Vector3;
+use nalgebra::{Matrix6, Vector3, Vector6};
 use poecal_arm::lie::{Pose, Screw, rotation};
 use poecal_arm::trig::wrapped;
-use poecal_arm::{AllBranches, Arm};
+use poecal_arm::{AllBranches, Arm, Branches, HeldBranches};
 
 use numbers::Numbers;
 
 const TARGETS: usize = 20_000;
 /// How far an arm's axes are off: as drawn, and as calibration finds them (rad, m).
-const OFF: [(f64, f64); 2] = [(0.0, 0.0), (0.005, 1e-3)];
-const SEVEN: &str = "seven axes";
+const OFF: [(f64, f64); 3] = [(0.0, 0.0), (0.005, 1e-3), (0.0175, 5e-3)];
 /// Smallest singular value above which a configuration counts as far from singular.
 const FAR: f64 = 0.01;
 /// How far from its target a search begins, rad.
@@ -63,38 +63,24 @@ fn main() {
             "or all %"
         );
     }
-    for name in calibrated::KINDS.into_iter().chain([SEVEN]) {
+    for name in calibrated::KINDS.into_iter().chain(calibrated::SEVEN) {
         if kind.is_some_and(|kind| kind != name) {
             continue;
         }
         for off in OFF {
-            let arm = if name == SEVEN { seven_axes(off) } else { calibrated::arm(name, off.0, off.1) };
+            let is_seven = calibrated::SEVEN.contains(&name);
+            let make = if is_seven { calibrated::seven } else { calibrated::arm };
+            let arm = make(name, off.0, off.1);
             if are_arms {
                 println!("{}", drawn(&arm, name, off.0 != 0.0));
                 continue;
             }
-            let label = if off.0 == 0.0 { name.to_owned() } else { format!("{name}, cal.") };
+            let label =
+                if off.0 == 0.0 { name.to_owned() } else { format!("{name} {:.1}°", off.0.to_degrees()) };
             let measured = measured(&arm, targets);
-            println!("{}", if is_json { measured.json(name, off.0 != 0.0) } else { measured.line(&label) });
+            println!("{}", if is_json { measured.json(name, off) } else { measured.line(&label) });
         }
     }
-}
-
-/// An arm as collaborative robots of seven axes are, with a spherical shoulder and wrist.
-fn seven_axes((angle_rad, length_m): (f64, f64)) -> Arm {
-    let (y, z) = (Vector3::y(), Vector3::z());
-    let axes = [z, y, z, -y, z, y, z];
-    let heights = [0.0, 0.36, 0.36, 0.78, 0.78, 1.18, 1.18];
-    let mut numbers = Numbers(2009);
-    let screws: Vec<Screw> = axes
-        .iter()
-        .zip(heights)
-        .map(|(axis, height)| {
-            let axis = rotation::exp(&(numbers.vector() * angle_rad)) * axis;
-            Screw::revolute(&axis, &(Vector3::new(0.0, 0.0, height) + numbers.vector() * length_m))
-        })
-        .collect();
-    Arm::new(&screws, &Pose::from_translation(Vector3::new(0.0, 0.0, 1.306))).unwrap()
 }
 
 /// An arm as JSON.
@@ -132,45 +118,73 @@ struct Measured {
 }
 
 fn measured(arm: &Arm, targets: usize) -> Measured {
-    let all = AllBranches::new(arm);
     let mut numbers = Numbers(5);
     let mut out = Measured { targets, ..Measured::default() };
-    for _ in 0..targets {
-        let [a, b, c, d, e, f] = numbers.six(PI);
-        let q = &[a, b, c, d, e, f, PI * numbers.one()][..arm.joints()];
-        let target = arm.forward_kinematics(q);
-        let is_far = arm.smallest_singular_value(q) > FAR;
-        out.far += usize::from(is_far);
-        let mut near = [0.0; 7];
-        near.iter_mut().zip(q).for_each(|(near, q)| *near = q + AWAY * numbers.one());
-        if let (Some(all), Ok(six)) = (&all, <&[f64; 6]>::try_from(q)) {
-            let begin = Instant::now();
-            let found = black_box(all.at(black_box(&target)));
-            out.at_us.push(1e6 * begin.elapsed().as_secs_f32());
-            let is_same =
-                |branch: &&[f64; 6]| branch.iter().zip(six).all(|(a, b)| wrapped(a - b).abs() < SAME);
-            let is_found = found.as_slice().iter().any(|branch| is_same(&branch));
-            out.branches += found.as_slice().len();
-            out.found += usize::from(is_found);
-            out.found_far += usize::from(is_found && is_far);
-            for branch in found.as_slice() {
-                let tip = arm.forward_kinematics(branch);
-                let turned = rotation::log(&(tip.rotation * target.rotation.transpose()));
-                out.position_m = out.position_m.max((tip.translation - target.translation).norm());
-                out.rotation_rad = out.rotation_rad.max(turned.norm());
-            }
-            let mut six = [near[0], near[1], near[2], near[3], near[4], near[5]];
-            out.reached_by_all += usize::from(is_far && all.nearest(&target, &mut six) < REACHED);
-        }
-        let near = &mut near[..arm.joints()];
-        let begin = Instant::now();
-        let left = black_box(arm.nearest(black_box(&target), black_box(near)));
-        out.nearest_us.push(1e6 * begin.elapsed().as_secs_f32());
-        out.reached += usize::from(is_far && left < REACHED);
+    if let Some(all) = AllBranches::new(arm) {
+        let at = |target: &Pose, _: &[f64; 6]| all.at(target);
+        out.run(arm, &mut numbers, (&at, &|target, q| all.nearest(target, q)), None);
+    } else if let Some(held) = HeldBranches::new(arm, None) {
+        let joint = held.joint();
+        let at = |target: &Pose, q: &[f64; 7]| held.at(target, q[joint]);
+        out.run(arm, &mut numbers, (&at, &|target, q| held.nearest(target, q)), Some(joint));
     }
     out.at_us.sort_by(f32::total_cmp);
     out.nearest_us.sort_by(f32::total_cmp);
     out
+}
+
+/// The smallest singular value of the joints that are free, lengths over reach.
+fn smallest(arm: &Arm, q: &[f64], held: Option<usize>) -> f64 {
+    let jacobian = arm.jacobian(q);
+    let mut a = Matrix6::zeros();
+    for (v, w) in (0..q.len()).filter(|it| Some(*it) != held).map(|it| jacobian[it]) {
+        let v = v / arm.reach_m();
+        let column = Vector6::new(v.x, v.y, v.z, w.x, w.y, w.z);
+        a += column * column.transpose();
+    }
+    a.symmetric_eigenvalues().min().max(0.0).sqrt()
+}
+
+/// All branches for a pose, at the held joint of a configuration; and the nearest configuration.
+type Solvers<'a, const N: usize> =
+    (&'a dyn Fn(&Pose, &[f64; N]) -> Branches<N>, &'a dyn Fn(&Pose, &mut [f64; N]) -> f64);
+
+impl Measured {
+    fn run<const N: usize>(
+        &mut self,
+        arm: &Arm,
+        numbers: &mut Numbers,
+        (at, nearest): Solvers<'_, N>,
+        held: Option<usize>,
+    ) {
+        for _ in 0..self.targets {
+            let q: [f64; N] = std::array::from_fn(|_| PI * numbers.one());
+            let target = arm.forward_kinematics(&q);
+            let is_far = smallest(arm, &q, held) > FAR;
+            self.far += usize::from(is_far);
+            let begin = Instant::now();
+            let found = black_box(at(black_box(&target), &q));
+            self.at_us.push(1e6 * begin.elapsed().as_secs_f32());
+            let is_same = |branch: &[f64; N]| branch.iter().zip(&q).all(|(a, b)| wrapped(a - b).abs() < SAME);
+            let is_found = found.as_slice().iter().any(is_same);
+            self.branches += found.as_slice().len();
+            self.found += usize::from(is_found);
+            self.found_far += usize::from(is_found && is_far);
+            for branch in found.as_slice() {
+                let tip = arm.forward_kinematics(branch);
+                let turned = rotation::log(&(tip.rotation * target.rotation.transpose()));
+                self.position_m = self.position_m.max((tip.translation - target.translation).norm());
+                self.rotation_rad = self.rotation_rad.max(turned.norm());
+            }
+            let mut near = q.map(|q| q + AWAY * numbers.one());
+            let mut by_all = near;
+            self.reached_by_all += usize::from(is_far && nearest(&target, &mut by_all) < REACHED);
+            let begin = Instant::now();
+            let left = black_box(arm.nearest(black_box(&target), black_box(&mut near)));
+            self.nearest_us.push(1e6 * begin.elapsed().as_secs_f32());
+            self.reached += usize::from(is_far && left < REACHED);
+        }
+    }
 }
 
 /// A quantile of sorted times; NaN of none.
@@ -185,25 +199,17 @@ fn percent(part: usize, whole: usize) -> f64 {
 
 impl Measured {
     fn line(&self, label: &str) -> String {
-        let branches = if self.at_us.is_empty() {
-            format!("{:>62}", "no branches: not six axes")
-        } else {
-            format!(
-                "{:>8.3}{:>9.3}{:>9.2}{:>8.1}{:>10.1}{:>10.1e}{:>9.1e}",
-                percent(self.found, self.targets),
-                percent(self.found_far, self.far),
-                self.branches as f64 / self.targets as f64,
-                quantile(&self.at_us, 0.5),
-                quantile(&self.at_us, 0.99),
-                self.position_m,
-                self.rotation_rad,
-            )
-        };
-        let by_all = if self.at_us.is_empty() {
-            String::new()
-        } else {
-            format!("{:>10.3}", percent(self.reached_by_all, self.far))
-        };
+        let branches = format!(
+            "{:>8.3}{:>9.3}{:>9.2}{:>8.1}{:>10.1}{:>10.1e}{:>9.1e}",
+            percent(self.found, self.targets),
+            percent(self.found_far, self.far),
+            self.branches as f64 / self.targets as f64,
+            quantile(&self.at_us, 0.5),
+            quantile(&self.at_us, 0.99),
+            self.position_m,
+            self.rotation_rad,
+        );
+        let by_all = format!("{:>10.3}", percent(self.reached_by_all, self.far));
         format!(
             "{label:<27}{branches}{:>9.2}{:>10.2}{:>10.3}{by_all}",
             quantile(&self.nearest_us, 0.5),
@@ -212,23 +218,24 @@ impl Measured {
         )
     }
 
-    fn json(&self, kind: &str, is_calibrated: bool) -> String {
-        let mut fields = vec![
-            format!("\"kind\": \"{kind}\", \"calibrated\": {is_calibrated}, \"targets\": {}", self.targets),
+    fn json(&self, kind: &str, (off_rad, off_m): (f64, f64)) -> String {
+        let fields = [
+            format!(
+                "\"kind\": \"{kind}\", \"calibrated\": {}, \"targets\": {}",
+                off_rad != 0.0,
+                self.targets
+            ),
+            format!("\"axes_off_rad\": {off_rad}, \"axes_off_m\": {off_m}"),
             format!("\"nearest_median_us\": {}", quantile(&self.nearest_us, 0.5)),
             format!("\"nearest_p99_us\": {}", quantile(&self.nearest_us, 0.99)),
             format!("\"nearest_reached_percent\": {}", percent(self.reached, self.far)),
+            format!("\"all_median_us\": {}", quantile(&self.at_us, 0.5)),
+            format!("\"all_p99_us\": {}", quantile(&self.at_us, 0.99)),
+            format!("\"branches\": {}", self.branches as f64 / self.targets as f64),
+            format!("\"found_percent\": {}", percent(self.found, self.targets)),
+            format!("\"found_far_percent\": {}", percent(self.found_far, self.far)),
+            format!("\"off_m\": {:e}, \"off_rad\": {:e}", self.position_m, self.rotation_rad),
         ];
-        if !self.at_us.is_empty() {
-            fields.extend([
-                format!("\"all_median_us\": {}", quantile(&self.at_us, 0.5)),
-                format!("\"all_p99_us\": {}", quantile(&self.at_us, 0.99)),
-                format!("\"branches\": {}", self.branches as f64 / self.targets as f64),
-                format!("\"found_percent\": {}", percent(self.found, self.targets)),
-                format!("\"found_far_percent\": {}", percent(self.found_far, self.far)),
-                format!("\"off_m\": {:e}, \"off_rad\": {:e}", self.position_m, self.rotation_rad),
-            ]);
-        }
         format!("{{{}}}", fields.join(", "))
     }
 }

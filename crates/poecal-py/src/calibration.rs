@@ -522,6 +522,9 @@ impl Calibration {
     ///     Poses of the tip in the base, shape (m, 4, 4), or one, (4, 4).
     /// near
     ///     Configurations to which the found ones are nearest, shape (m, n), or one for all, (n,); default all branches, of a robot with six turning joints.
+    /// held
+    ///     Of a robot with seven turning joints: a mapping from the reading that is held to its value (rad), or to one for each pose, shape (m,); then all branches
+    ///     of the others are found.
     /// limits
     ///     Whether to keep the joints' limits.
     /// factors
@@ -534,19 +537,21 @@ impl Calibration {
     /// numpy.ndarray or list of numpy.ndarray
     ///     With `near` the nearest configuration of each pose, shape (m, n), or (n,) for one pose, NaN where there is none; without, the branches of each
     ///     pose, a list of arrays of shape (k, n), or one array for one pose.
-    #[pyo3(signature = (poses, *, near=None, limits=true, factors=None, model="corrected"))]
+    #[pyo3(signature = (poses, *, near=None, held=None, limits=true, factors=None, model="corrected"))]
+    #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
     fn ik<'py>(
         &self,
         py: Python<'py>,
         poses: &Bound<'py, PyAny>,
         near: Option<&Bound<'py, PyAny>>,
+        held: Option<&Bound<'py, PyAny>>,
         #[pyo3(from_py_with = arg::limits)] limits: bool,
         factors: Option<&Bound<'py, PyAny>>,
         #[pyo3(from_py_with = arg::model)] model: &str,
     ) -> PyResult<Bound<'py, PyAny>> {
         let actual = self.actual(model)?;
         let factors = reach::factors(&actual.model.robot, factors)?;
-        reach::inverse(py, actual, poses, near, &factors, limits)
+        reach::inverse(py, actual, poses, (near, held), &factors, limits)
     }
 
     /// Judges the calibration by measurements that it did not see; every row counts.

@@ -2,7 +2,7 @@
 
 use numpy::{PyArray1, PyArrayMethods as _};
 use poecal::Robot;
-use poecal::compensate::{Compensation, Kinematics};
+use poecal::compensate::{Compensation, Inverse, Kinematics};
 use poecal::lie::Pose;
 use pyo3::IntoPyObjectExt as _;
 use pyo3::prelude::*;
@@ -116,7 +116,7 @@ pub(crate) fn inverse<'py>(
     py: Python<'py>,
     robot: &Described,
     poses: &Bound<'py, PyAny>,
-    near: Option<&Bound<'py, PyAny>>,
+    (near, held): (Option<&Bound<'py, PyAny>>, Option<&Bound<'py, PyAny>>),
     factors: &[f64],
     limits: bool,
 ) -> PyResult<Bound<'py, PyAny>> {
@@ -124,15 +124,37 @@ pub(crate) fn inverse<'py>(
     let inverse = robot.inverse(factors).map_err(raise)?;
     let robot = &robot.model.robot;
     let n = robot.joint_reading_names().len();
-    let Some(near) = near.filter(|it| !it.is_none()) else {
-        if !inverse.has_branches() {
-            let message = "found None, expected a configuration from which to start: all branches are found of arms with six turning joints";
-            return Err(argument("near", message.to_owned()));
-        }
+    let held = held
+        .filter(|it| !it.is_none())
+        .map(|it| held_reading(it, robot, &inverse, targets.len()))
+        .transpose()?;
+    let near = near.filter(|it| !it.is_none());
+    if near.is_some() && held.is_some() {
+        let message = "found a reading that is held, and near, expected one of them: near has the nearest configuration with all joints free";
+        return Err(argument("held", message.to_owned()));
+    }
+    let Some(near) = near else {
         let start = vec![0.0; n];
-        let found: Vec<Vec<Vec<f64>>> = py.detach(|| {
-            inverse.of_many(&targets, |inverse, _, target| inverse.branches(target, &start, limits))
-        });
+        let find = |inverse: &Inverse, row: usize, target: &Pose| match &held {
+            Some((reading, values)) => {
+                let value = values.get(row).or(values.first()).copied().unwrap_or(0.0);
+                inverse.branches_held(target, (*reading, value), &start, limits)
+            }
+            None => inverse.branches(target, &start, limits),
+        };
+        if held.is_none() && !inverse.has_branches() {
+            let message = match inverse.redundant() {
+                Some(reading) => format!(
+                    "found None, expected a configuration from which to start, or held={{\"{}\": value}}: an arm of seven joints has \
+                     branches where one of them is held",
+                    robot.joint_reading_names()[reading]
+                ),
+                None => "found None, expected a configuration from which to start: all branches are found of arms with six turning joints"
+                    .to_owned(),
+            };
+            return Err(argument("near", message));
+        }
+        let found: Vec<Vec<Vec<f64>>> = py.detach(|| inverse.of_many(&targets, find));
         let arrays = found
             .into_iter()
             .map(|branches| table(py, branches.concat(), n))
@@ -159,6 +181,39 @@ pub(crate) fn inverse<'py>(
         })
     });
     rows(py, found.concat(), n, is_single)
+}
+
+/// The reading that is held, and its value for all poses or for each.
+fn held_reading(
+    given: &Bound<'_, PyAny>,
+    robot: &Robot,
+    inverse: &Inverse,
+    poses: usize,
+) -> PyResult<(usize, Vec<f64>)> {
+    let names = robot.joint_reading_names();
+    if inverse.redundant().is_none() {
+        let message = "found a reading that is held, expected none: only an arm of seven turning joints has one more than it needs";
+        return Err(argument("held", message.to_owned()));
+    }
+    let expected = format!(
+        "expected a mapping from one of {} to its value (rad), or to one for each pose",
+        names.join(", ")
+    );
+    let wrong = || argument("held", format!("found something else, {expected}"));
+    let given = given.cast::<PyDict>().map_err(|_| wrong())?;
+    let (name, value) = given.iter().next().filter(|_| given.len() == 1).ok_or_else(wrong)?;
+    let reading = names
+        .iter()
+        .position(|it| name.extract::<String>().is_ok_and(|name| name == *it))
+        .ok_or_else(|| argument("held", format!("found {name}, {expected}")))?;
+    let values = match value.extract::<f64>() {
+        Ok(value) if value.is_finite() => vec![value],
+        Ok(value) => return Err(argument("held", format!("found {value}, {expected}"))),
+        Err(_) => {
+            Numbers::finite(&value, "held", &expected)?.shaped(&[Some(poses)], "held", &expected)?.values
+        }
+    };
+    Ok((reading, values))
 }
 
 /// Where the tip is.

@@ -129,7 +129,7 @@ pub use simulate::{Kind, Simulated, Simulation};
 #[doc(inline)]
 pub use poecal_arm::lie;
 #[doc(inline)]
-pub use poecal_arm::{AllBranches, Arm, Branches};
+pub use poecal_arm::{AllBranches, Arm, Branches, HeldBranches};
 
 #[doc(hidden)]
 pub use error::nearest;

@@ -7,12 +7,16 @@ use super::{Branches, apart, sort, turned};
 use crate::arm::Arm;
 use crate::lie::{Pose, Screw};
 use crate::newton::{REACHED, Six, newton};
+use crate::small::determinant;
+use crate::trig::wrapped;
 
 /// Values of the held joint (rad) at which its choice is judged.
 const VALUES: [f64; 3] = [0.5, -1.3, 2.1];
-/// Steps (rad) by which a held joint is moved in search of a configuration.
+/// A joint that moves less than this share of what the most moving one does leaves no choice: the elbow of a round shoulder and wrist.
+const IDLE: f64 = 0.1;
+/// Steps (rad) by which a held joint is moved in search of a configuration: a whole turn to each side.
 const STEP: f64 = 0.1;
-const MOST_MOVES: u32 = 31;
+const MOST_MOVES: u32 = 63;
 
 /// All branches of an arm of seven revolute joints with one of them held at a value, the redundancy angle: those of the other six
 /// ([`AllBranches`](super::AllBranches)). The held joint is by default that one without which the arm is nearest to one with branches in closed
@@ -53,6 +57,26 @@ fn ways(arm: &Arm, joint: usize, value: f64, ranking: Option<Ranking>) -> Option
     Some(Ways::new(&screws, &(moved * *arm.home()), (arm.reach_m(), senses), ranking))
 }
 
+/// How much each joint moves, in a few configurations, where the arm moves and its tip does not: minors of the Jacobian.
+fn moves(arm: &Arm) -> [f64; 7] {
+    let mut sum = [0.0; 7];
+    for value in VALUES {
+        let placed = arm.placed_at::<7>(&core::array::from_fn(|k| value + 0.7 * k as f64));
+        for (joint, sum) in sum.iter_mut().enumerate() {
+            let mut rows = [[0.0; 6]; 6];
+            for column in 0..6 {
+                let (v, w) = placed.column(if column < joint { column } else { column + 1 });
+                let v = v / arm.reach_m();
+                for (row, it) in rows.iter_mut().zip([v.x, v.y, v.z, w.x, w.y, w.z]) {
+                    row[column] = it;
+                }
+            }
+            *sum += determinant::<6>(&mut rows).abs();
+        }
+    }
+    sum
+}
+
 impl HeldBranches {
     /// What is computed once for an arm and the joint that is held (its index); `None` of an arm that has not seven revolute joints, each
     /// with a reading of its own, or not this joint.
@@ -69,11 +93,13 @@ impl HeldBranches {
         let joint = match joint {
             Some(joint) if joint < 7 => joint,
             Some(_) => return None,
-            // Of such as are all far, the third.
-            None => [2, 6, 0, 4, 1, 3, 5]
-                .into_iter()
-                .min_by(|one, other| off(*one).total_cmp(&off(*other)))
-                .unwrap_or(2),
+            None => {
+                let moves = moves(arm);
+                let most = moves.iter().fold(0.0_f64, |most, it| most.max(*it));
+                // Of such as are all far, the third.
+                let all = [2, 6, 0, 4, 1, 3, 5].into_iter().filter(|joint| moves[*joint] > IDLE * most);
+                all.min_by(|one, other| off(*one).total_cmp(&off(*other))).unwrap_or(2)
+            }
         };
         let ways = ways(arm, joint, VALUES[0], None)?;
         let ranking = ways.ranked(&Six::without(arm, joint, VALUES[0]));
@@ -147,23 +173,48 @@ impl HeldBranches {
             *q = near;
             return left;
         }
-        for move_ in 0..=MOST_MOVES {
-            for value in [q[self.joint] + STEP * f64::from(move_), q[self.joint] - STEP * f64::from(move_)] {
-                let found = self.at(target, value);
-                let far = |it: &&[f64; 7]| apart(it, q);
-                let Some(best) = found.as_slice().iter().min_by(|one, other| far(one).total_cmp(&far(other)))
-                else {
-                    continue;
-                };
-                let mut there = *best;
-                for (there, here) in there.iter_mut().zip(&*q) {
-                    *there = here + crate::trig::wrapped(*there - here);
-                }
-                *q = self.refined(target, &there);
-                return self.arm.nearest(target, q);
-            }
-        }
-        *q = near;
-        left
+        let start = *q;
+        let nearest = self.search(start[self.joint], |value| {
+            let found = self.at(target, value);
+            let far = |it: &&[f64; 7]| apart(it, &start);
+            found.as_slice().iter().min_by(|one, other| far(one).total_cmp(&far(other))).copied()
+        });
+        let Some(best) = nearest else {
+            *q = near;
+            return left;
+        };
+        let there = core::array::from_fn(|k| start[k] + wrapped(best[k] - start[k]));
+        *q = self.refined(target, &there);
+        self.arm.nearest(target, q)
+    }
+
+    /// The configuration within the arm's limits that has the tip at a pose at the redundancy angle nearest to that of `near`, in steps of
+    /// 0.1 rad, and of those the one whose joints are nearest to it.
+    ///
+    /// ```
+    /// use nalgebra::Vector3;
+    /// use poecal_arm::{Arm, HeldBranches, lie::{Pose, Screw}};
+    /// let axes = [Vector3::z(), Vector3::y(), Vector3::z(), -Vector3::y(), Vector3::z(), Vector3::y(), Vector3::z()];
+    /// let points = [0.0, 0.36, 0.36, 0.78, 0.78, 1.18, 1.18].map(|z| Vector3::new(0.0, 0.0, z));
+    /// let screws: Vec<Screw> = axes.iter().zip(&points).map(|(axis, point)| Screw::revolute(axis, point)).collect();
+    /// let arm = Arm::new(&screws, &Pose::from_translation(Vector3::new(0.0, 0.0, 1.3))).unwrap();
+    /// let target = arm.forward_kinematics(&[0.3, -0.5, 0.2, 1.1, -0.4, 0.8, 0.1]);
+    /// let found = HeldBranches::new(&arm, None).unwrap().nearest_within_limits(&target, &[0.3, -0.4, 0.2, 1.0, -0.4, 0.8, 0.1]);
+    /// assert!((found.unwrap()[3] - 1.1).abs() < 1e-9);
+    /// ```
+    #[must_use]
+    pub fn nearest_within_limits(&self, target: &Pose, near: &[f64; 7]) -> Option<[f64; 7]> {
+        let &(low, high) = self.arm.limits().get(self.joint)?;
+        self.search(near[self.joint].clamp(low, high), |value| {
+            let is_within = (low..=high).contains(&value);
+            is_within.then(|| self.within_limits(target, value, near).as_slice().first().copied())?
+        })
+    }
+
+    /// The first that is found at values of the held joint ever farther from a start.
+    fn search(&self, start: f64, find: impl Fn(f64) -> Option<[f64; 7]>) -> Option<[f64; 7]> {
+        (0..=MOST_MOVES)
+            .map(|it| STEP * f64::from(it))
+            .find_map(|by| find(start + by).or_else(|| find(start - by)))
     }
 }

@@ -18,7 +18,7 @@ const ASTRAY: f64 = 0.6;
 /// So many of the six ways to set up the equations are asked where the number of branches is odd.
 const MOST_WAYS: usize = 3;
 /// Configurations in which the ways are compared.
-const SAMPLES: usize = 48;
+const SAMPLES: usize = 8;
 /// Steps between them: 2π times the fractions of the roots of 2, 3, 5, 7, 11 and 13.
 const SPREAD: [f64; 6] = [2.602581, 4.599611, 1.483259, 4.057375, 1.989413, 3.804791];
 /// Distance (rad) of a root from a branch that was found from which it is taken for another one.

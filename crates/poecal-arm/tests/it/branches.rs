@@ -55,7 +55,7 @@ fn compared(arm: &Arm, numbers: &mut Numbers) -> ([usize; 4], f64) {
 fn every_branch_that_a_search_finds_is_found() {
     let (mut sum, mut largest) = ([0; 4], 0.0_f64);
     for kind in KINDS {
-        for (angle, length) in [(0.0, 0.0), (0.005, 1e-3)] {
+        for (angle, length) in [(0.0, 0.0), (0.005, 1e-3), (0.0175, 5e-3)] {
             let (counts, worst) = compared(&arm(kind, angle, length), &mut Numbers(5));
             let [known, found, far, found_far] = counts;
             println!(
@@ -67,9 +67,9 @@ fn every_branch_that_a_search_finds_is_found() {
         }
     }
     assert!(largest < 1e-10);
-    // Where two branches meet, one of them may be lost; far from there, one in 2,000 at most.
-    assert!(sum[1] as f64 >= 0.998 * sum[0] as f64, "{sum:?}");
-    assert!(sum[3] as f64 >= 0.9995 * sum[2] as f64, "{sum:?}");
+    // Where two branches meet, one of them may be lost; far from there, one in 10,000 at most.
+    assert!(sum[1] as f64 >= 0.9995 * sum[0] as f64, "{sum:?}");
+    assert!(sum[3] as f64 >= 0.9999 * sum[2] as f64, "{sum:?}");
 }
 
 #[test]

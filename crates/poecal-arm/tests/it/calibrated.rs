@@ -85,3 +85,26 @@ pub(crate) fn arm(kind: &str, angle_rad: f64, length_m: f64) -> Arm {
     }
     Arm::new(&screws, &home).unwrap()
 }
+
+pub(crate) const SEVEN: [&str; 2] = ["seven axes, round wrist", "seven axes, offset wrist"];
+
+/// The same of an arm of seven axes, as collaborative robots have them: with a round shoulder, and a round wrist or one whose last axis is
+/// beside the others.
+pub(crate) fn seven(kind: &str, angle_rad: f64, length_m: f64) -> Arm {
+    let (y, z) = (Vector3::y(), Vector3::z());
+    let is_round = kind == SEVEN[0];
+    let (axes, points) = if is_round {
+        ([z, y, z, -y, z, y, z], [0.0, 0.36, 0.36, 0.78, 0.78, 1.18, 1.18].map(|height| [0.0, height]))
+    } else {
+        let beside = [[0.0, 0.333], [0.0, 0.333], [0.0, 0.333], [0.0825, 0.649], [0.0, 1.033], [0.0, 1.033]];
+        let [a, b, c, d, e, f] = beside;
+        ([z, y, z, -y, z, -y, -z], [a, b, c, d, e, f, [0.088, 1.033]])
+    };
+    let mut numbers = Numbers(2009);
+    let screws = axes.iter().zip(points).map(|(axis, [x, height])| {
+        let axis = rotation::exp(&(numbers.vector() * angle_rad)) * axis;
+        Screw::revolute(&axis, &(Vector3::new(x, 0.0, height) + numbers.vector() * length_m))
+    });
+    let tip = if is_round { Vector3::new(0.0, 0.0, 1.306) } else { Vector3::new(0.088, 0.0, 0.92) };
+    Arm::new(&screws.collect::<Vec<Screw>>(), &Pose::from_translation(tip)).unwrap()
+}

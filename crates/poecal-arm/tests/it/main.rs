@@ -4,6 +4,7 @@
 
 mod branches;
 mod calibrated;
+mod held;
 mod kinematics;
 mod nearest;
 mod numbers;

@@ -20,6 +20,7 @@ impl Numbers {
         Vector3::new(self.one(), self.one(), self.one())
     }
 
+    #[allow(dead_code, reason = "the benchmark has no use for it")]
     pub(crate) fn six(&mut self, size: f64) -> [f64; 6] {
         [0; 6].map(|_| size * self.one())
     }

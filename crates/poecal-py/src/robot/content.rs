@@ -28,8 +28,11 @@ pub(crate) struct Robot {
     /// SHA-256 of the file that it was read from, by its name.
     pub(crate) sha256: Arc<BTreeMap<String, String>>,
     /// Its inverse kinematics at the factors of the last call.
-    inverse: Arc<Mutex<Option<(Vec<f64>, Arc<Inverse>)>>>,
+    inverse: Arc<Mutex<Option<AtFactors>>>,
 }
+
+/// Values of factors, and the inverse kinematics with them.
+type AtFactors = (Vec<f64>, Arc<Inverse>);
 
 impl Robot {
     pub(crate) fn new(model: Model) -> Self {
@@ -102,7 +105,11 @@ impl Robot {
                 ModelSource::Calibration(Box::new(CalibrationFile::parse(&text, &path).map_err(raise)?))
             }
         };
-        Ok(Robot { model: Arc::new(Model { robot, source, path }), sha256: Arc::new(sha256), inverse: Arc::default() })
+        Ok(Robot {
+            model: Arc::new(Model { robot, source, path }),
+            sha256: Arc::new(sha256),
+            inverse: Arc::default(),
+        })
     }
 }
 

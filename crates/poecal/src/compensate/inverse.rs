@@ -49,11 +49,15 @@ impl Inverse {
     #[must_use]
     pub fn nearest(&self, target: &Pose, near: &[f64], within_limits: bool) -> Option<Vec<f64>> {
         let mut q: Vec<f64> = self.readings.iter().map(|&at| near.get(at).copied().unwrap_or(0.0)).collect();
-        let start: Option<[f64; 6]> = q[..].try_into().ok();
+        let start = q.clone();
         self.arm.nearest(target, &mut q);
         if within_limits && !self.is_within(&q) {
-            let (branches, start) = (self.arm.branches()?, start?);
-            q.copy_from_slice(branches.within_limits(target, &start).as_slice().first()?);
+            if let Ok(start) = <&[f64; 7]>::try_from(&start[..]) {
+                q.copy_from_slice(&self.arm.held(self.arm.best()?)?.nearest_within_limits(target, start)?);
+            } else {
+                let start: [f64; 6] = start[..].try_into().ok()?;
+                q.copy_from_slice(self.arm.branches()?.within_limits(target, &start).as_slice().first()?);
+            }
         }
         let is_reached = self.is_at(&q, target);
         is_reached.then(|| self.all(near, &q))
@@ -66,6 +70,32 @@ impl Inverse {
         let mut start = [0.0; 6];
         start.iter_mut().zip(&self.readings).for_each(|(to, &at)| *to = near.get(at).copied().unwrap_or(0.0));
         let found = if within_limits { branches.within_limits(target, &start) } else { branches.at(target) };
+        found.as_slice().iter().map(|q| self.all(near, q)).collect()
+    }
+
+    /// Of an arm of seven turning joints, the index (in the order of [`Robot::reading_names`]) of the reading that is best held as redundancy
+    /// angle: without its joint the arm is nearest to one with branches in closed form. `None` of other arms.
+    #[must_use]
+    pub fn redundant(&self) -> Option<usize> {
+        self.readings.get(self.arm.best()?).copied()
+    }
+
+    /// All configurations of an arm of seven turning joints that have the tip at a pose with one reading held at a value (rad): its index, in
+    /// the order of [`Robot::reading_names`], and the value. Nearest to `near` first; within limits, if that is asked. None of other arms.
+    #[must_use]
+    pub fn branches_held(
+        &self,
+        target: &Pose,
+        (reading, value): (usize, f64),
+        near: &[f64],
+        within_limits: bool,
+    ) -> Vec<Vec<f64>> {
+        let joint = self.readings.iter().position(|it| *it == reading);
+        let Some(held) = joint.and_then(|joint| self.arm.held(joint)) else { return Vec::new() };
+        let mut start = [0.0; 7];
+        start.iter_mut().zip(&self.readings).for_each(|(to, &at)| *to = near.get(at).copied().unwrap_or(0.0));
+        let found =
+            if within_limits { held.within_limits(target, value, &start) } else { held.at(target, value) };
         found.as_slice().iter().map(|q| self.all(near, q)).collect()
     }
 

@@ -2,7 +2,7 @@
 
 use std::sync::{Arc, OnceLock};
 
-use poecal_arm::{AllBranches, Arm};
+use poecal_arm::{AllBranches, Arm, HeldBranches};
 
 use super::NOTHING;
 use crate::lie::Pose;
@@ -12,11 +12,15 @@ use crate::lie::Pose;
 pub(super) struct Reach {
     arm: Arm,
     branches: Arc<OnceLock<Option<AllBranches>>>,
+    /// Of an arm of seven, with each joint held.
+    held: Arc<[OnceLock<Option<HeldBranches>>; 7]>,
+    /// Index of the joint that is best held.
+    best: Arc<OnceLock<Option<usize>>>,
 }
 
 impl Reach {
     pub(super) fn new(arm: Arm) -> Self {
-        Reach { arm, branches: Arc::default() }
+        Reach { arm, branches: Arc::default(), held: Arc::default(), best: Arc::default() }
     }
 
     pub(super) fn arm(&self) -> &Arm {
@@ -27,19 +31,31 @@ impl Reach {
         self.branches.get_or_init(|| AllBranches::new(&self.arm)).as_ref()
     }
 
-    /// As [`AllBranches::nearest`], and as [`Arm::nearest`] of an arm that has none; what is left.
+    /// The branches of an arm of seven with one of its joints held.
+    pub(super) fn held(&self, joint: usize) -> Option<&HeldBranches> {
+        self.held.get(joint)?.get_or_init(|| HeldBranches::new(&self.arm, Some(joint))).as_ref()
+    }
+
+    /// The joint of an arm of seven that is best held.
+    pub(super) fn best(&self) -> Option<usize> {
+        *self.best.get_or_init(|| HeldBranches::new(&self.arm, None).map(|it| it.joint()))
+    }
+
+    /// As [`AllBranches::nearest`] and [`HeldBranches::nearest`], and as [`Arm::nearest`] of an arm that has neither; what is left.
     pub(super) fn nearest(&self, target: &Pose, q: &mut [f64]) -> f64 {
         let start: Option<[f64; 6]> = (&*q).try_into().ok();
         let left = self.arm.nearest(target, q);
         if left < NOTHING && left * self.arm.reach_m() < NOTHING {
             return left;
         }
-        match (<&mut [f64; 6]>::try_from(q), start, self.branches()) {
-            (Ok(six), Some(start), Some(branches)) => {
-                *six = start;
-                branches.nearest(target, six)
-            }
-            (Err(_), _, _) | (_, None, _) | (_, _, None) => left,
+        if let (Ok(six), Some(start)) = (<&mut [f64; 6]>::try_from(&mut *q), start) {
+            let Some(branches) = self.branches() else { return left };
+            *six = start;
+            return branches.nearest(target, six);
+        }
+        match (<&mut [f64; 7]>::try_from(q), self.best().and_then(|it| self.held(it))) {
+            (Ok(seven), Some(held)) => held.nearest(target, seven),
+            (Err(_), _) | (_, None) => left,
         }
     }
 }
