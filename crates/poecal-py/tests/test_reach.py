@@ -61,6 +61,51 @@ def test_all_branches_are_there_and_limits_are_kept(calibration):
     assert len(one) <= len(calibration.ik(poses[0], limits=False))
 
 
+@pytest.fixture(scope="module")
+def seven():
+    """A calibrated arm of seven axes with a round shoulder and wrist."""
+    directions = [[0, 0, 1], [0, 1, 0], [0, 0, 1], [0, -1, 0], [0, 0, 1], [0, 1, 0], [0, 0, 1]]
+    heights = [0, 0.36, 0.36, 0.78, 0.78, 1.18, 1.18]
+    screws = [np.concatenate([np.cross([0, 0, h], w), w]) for h, w in zip(heights, directions, strict=True)]
+    home = np.eye(4)
+    home[2, 3] = 1.3
+    robot = poecal.Robot.from_screws(np.array(screws), home, limits=np.tile([-2.9, 2.9], (7, 1)))
+    return poecal.calibrate(robot, poecal.simulate(robot, kind="pose", count=90, seed=5).measurements)
+
+
+def test_seven_joints_have_branches_where_one_is_held(seven):
+    joints = np.random.default_rng(8).uniform(-1.8, 1.8, (60, 7))
+    poses = seven.forward_kinematics(joints)
+    found = seven.ik(poses, held={"joint3": joints[:, 2]}, limits=False)
+    counts = [len(it) for it in found]
+    print(f"{min(counts)} to {max(counts)} branches")
+    for q, pose, branches in zip(joints, poses, found, strict=True):
+        assert apart(seven.forward_kinematics(branches), pose) < 1e-10
+        assert np.abs(branches - q).max(axis=1).min() < 1e-7
+    one = seven.ik(poses[0], held={"joint3": joints[0, 2]})
+    assert 1 <= len(one) <= counts[0] and (np.abs(one) <= 2.9 + 1e-6).all()
+    nearest = seven.ik(poses, near=joints + 0.05)
+    assert apart(seven.forward_kinematics(nearest), poses) < 1e-10 and apart(nearest, joints) < 0.2
+
+
+def test_mistakes_about_a_held_joint_are_told(seven, calibration):
+    pose = seven.forward_kinematics(np.full(7, 0.3))
+    with pytest.raises(ValueError, match=r'near: found None, expected a configuration from which to start, or held={"joint3": value}'):
+        seven.ik(pose)
+    with pytest.raises(ValueError, match="held: found joint9, expected a mapping from one of joint1"):
+        seven.ik(pose, held={"joint9": 0.1})
+    with pytest.raises(ValueError, match="held: found something else"):
+        seven.ik(pose, held={"joint3": 0.1, "joint4": 0.1})
+    with pytest.raises(ValueError, match=r"held: found an array of shape \(2,\)"):
+        seven.ik(pose, held={"joint3": [0.1, 0.2]})
+    with pytest.raises(ValueError, match="held: found nan"):
+        seven.ik(pose, held={"joint3": float("nan")})
+    with pytest.raises(ValueError, match="held: found a reading that is held, and near"):
+        seven.ik(pose, near=np.zeros(7), held={"joint3": 0.1})
+    with pytest.raises(ValueError, match="held: found a reading that is held, expected none"):
+        calibration.ik(np.eye(4), held={"joint3": 0.1})
+
+
 def test_many_tips_are_those_of_predict(calibration):
     joints = np.random.default_rng(4).uniform(-2, 2, (1500, 6))
     tips = calibration.forward_kinematics(joints)
