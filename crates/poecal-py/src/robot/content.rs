@@ -102,7 +102,11 @@ impl Robot {
                 ModelSource::Calibration(Box::new(CalibrationFile::parse(&text, &path).map_err(raise)?))
             }
         };
-        Ok(Robot { model: Arc::new(Model { robot, source, path }), sha256: Arc::new(sha256), inverse: Arc::default() })
+        Ok(Robot {
+            model: Arc::new(Model { robot, source, path }),
+            sha256: Arc::new(sha256),
+            inverse: Arc::default(),
+        })
     }
 }
 

@@ -46,9 +46,11 @@ fn kinematics_do_not_depend_on_threads() {
     let found = |threads: usize| {
         with_threads(threads, || {
             let kinematics = Kinematics::new(&actual, &[]).unwrap();
-            let (tips, jacobians) = (kinematics.forward_kinematics(&readings), kinematics.jacobians(&readings));
+            let (tips, jacobians) =
+                (kinematics.forward_kinematics(&readings), kinematics.jacobians(&readings));
             let inverse = Inverse::new(&actual, &[]).unwrap();
-            let near = inverse.of_many(&tips[..300], |it, row, tip| it.nearest(tip, &readings[6 * row..][..6], false));
+            let near = inverse
+                .of_many(&tips[..300], |it, row, tip| it.nearest(tip, &readings[6 * row..][..6], false));
             let compensation = Compensation::new(&nominal, &actual, &[]).unwrap();
             let told = |_: usize, it: &Compensated<'_>| Ok::<_, poecal::Error>(it.readings.to_vec());
             (tips, jacobians, near, compensation.of_many(&readings, told).unwrap())
