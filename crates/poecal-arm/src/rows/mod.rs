@@ -1,5 +1,7 @@
 //! Many configurations, eight side by side.
 
+#![allow(clippy::needless_range_loop, reason = "loops over configurations go over several lists alike")]
+
 mod chain;
 mod frames;
 mod weights;
