@@ -3,7 +3,9 @@ targets (m, 4, 4) and configurations to begin with (m, n), adds microseconds to 
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from functools import cache
 from time import perf_counter
+from types import ModuleType
 
 import numpy as np
 
@@ -75,6 +77,9 @@ def without_home(arm: Arm) -> Callable:
 def ssik_of(arm: Arm, nearest: bool) -> Solve | None:
     import ssik
 
+    # Seven axes have no end of configurations.
+    if not nearest and len(arm.directions) != 6:
+        return None
     limits = np.tile([-np.pi, np.pi], (len(arm.directions), 1))
     solver = ssik.Manipulator.from_axes(arm.directions, arm.steps(), limits=limits)
     solver.prepare()
@@ -131,13 +136,20 @@ def pinocchio_of(arm: Arm) -> Solve:
     return one_by_one(solve)
 
 
-def poecal_of(arm: Arm, nearest: bool) -> Solve | None:
-    """Of a calibration of this arm from poses without noise, all targets in one call, by one thread."""
+@cache
+def poecal_alone() -> ModuleType:
+    """The package, with one thread."""
     import poecal
 
+    poecal.set_threads(1)
+    return poecal
+
+
+def poecal_of(arm: Arm, nearest: bool) -> Solve | None:
+    """Of a calibration of this arm from poses without noise, all targets in one call, by one thread."""
+    poecal = poecal_alone()
     if not nearest and len(arm.directions) != 6:
         return None
-    poecal.set_threads(1)
     screws = [[*np.cross(p, w), *w] for w, p in zip(arm.directions, arm.points, strict=True)]
     robot = poecal.Robot.from_screws(screws, arm.home)
     none = {name: 0.0 for name in ("error_position_mm", "error_rotation_deg", "noise_position_mm", "noise_rotation_deg")}

@@ -1128,21 +1128,70 @@ class Calibration:
         *,
         factors: Mapping[str, float] | None = None,
         model: Literal["corrected", "calibrated"] = "corrected",
-    ) -> _Array: ...
+    ) -> _Array:
+        """Poses of the tip in the base, by all threads: those of `predict`, at chosen values of factors.
+
+        Parameters
+        ----------
+        joints
+            Configurations, shape (m, n), radians and metres, in the order of `robot.reading_names` without factors; or one, shape (n,).
+        factors
+            Values of the corrected model's factors by their names, default their references.
+        model
+            Which model is the robot as it is: "corrected", where there is one, or "calibrated", geometry alone.
+
+        Returns
+        -------
+        numpy.ndarray
+            Poses of shape (m, 4, 4), or (4, 4) for one configuration.
+        """
     def jacobian(
         self,
         joints: ArrayLike,
         *,
         factors: Mapping[str, float] | None = None,
         model: Literal["corrected", "calibrated"] = "corrected",
-    ) -> _Array: ...
+    ) -> _Array:
+        """How the tip moves with each reading: the motion of its point, then its turn, in the axes of the base. What weights add is in it.
+
+        Parameters
+        ----------
+        joints
+            Configurations, shape (m, n), radians and metres, in the order of `robot.reading_names` without factors; or one, shape (n,).
+        factors
+            Values of the corrected model's factors by their names, default their references.
+        model
+            Which model is the robot as it is: "corrected", where there is one, or "calibrated", geometry alone.
+
+        Returns
+        -------
+        numpy.ndarray
+            Shape (m, 6, n), or (6, n) for one configuration: three rows in m/rad (m/m of sliding joints), then three in rad/rad (rad/m).
+        """
     def sag(
         self,
         joints: ArrayLike,
         *,
         factors: Mapping[str, float] | None = None,
         model: Literal["corrected", "calibrated"] = "corrected",
-    ) -> _Array: ...
+    ) -> _Array:
+        """What weights move the tip: how far its point is shifted and how far it is turned, in the axes of the base, from where it would be without what joints and links
+        give under weights. Zero where the model has no such terms.
+
+        Parameters
+        ----------
+        joints
+            Configurations, shape (m, n), radians and metres, in the order of `robot.reading_names` without factors; or one, shape (n,).
+        factors
+            Values of the corrected model's factors by their names, default their references.
+        model
+            Which model is the robot as it is: "corrected", where there is one, or "calibrated", geometry alone.
+
+        Returns
+        -------
+        numpy.ndarray
+            Shape (m, 6), or (6,) for one configuration: the shift in metres, then the turn as a rotation vector in radians.
+        """
     def compensate(
         self,
         joints: ArrayLike,
