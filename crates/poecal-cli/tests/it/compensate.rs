@@ -148,7 +148,7 @@ fn a_robot_program_keeps_its_bytes_and_what_is_left_is_listed() {
     );
     assert!(run.out.contains("checked from the written numbers: at most "), "{}", run.out);
     let row = "  line 4: wp: the tool is not known: state it by --tool (motion on line 5)\n";
-    assert!(run.out.contains(&format!("1 left as they are:\n{row}")), "{}", run.out);
+    assert!(run.out.contains(&format!("1 target is left as it is:\n{row}")), "{}", run.out);
     assert!(run.err.contains("1 target is left as the program has them, the first on line 4"), "{}", run.err);
     let written = std::fs::read(folder.path("out.script")).unwrap();
     let bare = |text: &[u8]| -> Vec<u8> {
@@ -189,7 +189,7 @@ fn mistakes_about_robot_programs_are_told_and_nothing_is_written() {
             "p.script --columns map.toml",
             "error: found --columns for a program in URScript, expected it for tables (CSV) alone",
         ),
-        ("p.script --language logo", "found `logo`, expected"),
+        ("p.script --language logo", "error: invalid value 'logo' for '--language <LANGUAGE>'"),
         ("empty.src", "error: empty.src: the file is empty, expected a robot program"),
         ("wide.src", "error: wide.src: found zero bytes, expected a robot program as text"),
         ("deep.script", "error: deep.script:101: found a block within 100 others, expected fewer"),

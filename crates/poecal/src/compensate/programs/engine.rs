@@ -47,6 +47,8 @@ mod reason {
         Cow::Borrowed("the corrected target is in a configuration that the program states otherwise");
     pub(super) const JOINTS: Cow<'static, str> =
         Cow::Borrowed("poses are corrected of robots with six joints or fewer");
+    pub(super) const NO_BRANCHES: Cow<'static, str> =
+        Cow::Borrowed("all configurations of a pose are known of robots with six turning joints alone");
     pub(super) const NOT_A_POSE: Cow<'static, str> = Cow::Borrowed("its numbers are no pose");
 }
 
@@ -68,7 +70,7 @@ struct Placed {
 #[derive(Clone, Debug)]
 enum Fate {
     Open,
-    Placed(Placed),
+    Placed(Box<Placed>),
     Listed(Reason, usize),
 }
 
@@ -154,7 +156,7 @@ impl<'e> Engine<'e> {
                 (Meant::Joints, _) if motion.refused.is_some() => {
                     Err(motion.refused.clone().unwrap_or_default().into())
                 }
-                (Meant::Joints, Fate::Placed(placed)) => Ok(placed.clone()),
+                (Meant::Joints, Fate::Placed(placed)) => Ok(Placed::clone(placed)),
                 (Meant::Joints, Fate::Open | Fate::Listed(..)) => Err(reason::NOT_A_POSE),
                 (Meant::Pose(form), _) => self.place(target, *form, motion, before),
             };
@@ -168,12 +170,12 @@ impl<'e> Engine<'e> {
     fn alone(&self, target: &Target) -> Fate {
         match target.meant {
             Meant::Pose(_) => Fate::Open,
-            Meant::Joints => Fate::Placed(Placed {
+            Meant::Joints => Fate::Placed(Box::new(Placed {
                 tool: Pose::identity(),
                 frame: Pose::identity(),
                 q: target.numbers.iter().map(Number::scaled).collect(),
                 stated: Stated::Nothing,
-            }),
+            })),
         }
     }
 
@@ -222,6 +224,7 @@ impl<'e> Engine<'e> {
                 let fits = stated.fits(nominal, &self.poses.of_arm(&found));
                 if fits { Ok(found) } else { Err(reason::OTHER) }
             }
+            _ if !self.poses.has_branches() => Err(reason::NO_BRANCHES),
             (stated, _) => {
                 let mut all = self.poses.all(target);
                 if all.is_empty() {
@@ -238,6 +241,9 @@ impl<'e> Engine<'e> {
     }
 
     fn nearest(&self, target: &Pose, near: &[f64]) -> std::result::Result<Vec<f64>, Reason> {
+        if !self.poses.has_branches() {
+            return Err(reason::NO_BRANCHES);
+        }
         self.poses.nearest(target, near).ok_or_else(|| {
             if self.poses.all(target).is_empty() { reason::UNREACHABLE } else { reason::NOT_SURE }
         })
@@ -345,7 +351,7 @@ fn found_in_reach((metres, radians): (f64, f64)) -> bool {
 /// What another motion, on this line, makes of a target.
 fn joined(fate: Fate, placed: std::result::Result<Placed, Reason>, line: usize) -> Fate {
     match (fate, placed) {
-        (Fate::Open, Ok(placed)) => Fate::Placed(placed),
+        (Fate::Open, Ok(placed)) => Fate::Placed(Box::new(placed)),
         (Fate::Open | Fate::Placed(_), Err(reason)) => Fate::Listed(reason, line),
         (Fate::Listed(reason, line), _) => Fate::Listed(reason, line),
         (Fate::Placed(one), Ok(other)) => match differs(&one, &other) {

@@ -67,7 +67,9 @@ impl ProgramSummary {
             let _ = writeln!(out, "0 targets corrected");
         }
         if !self.listed.is_empty() {
-            let _ = writeln!(out, "{} left as they are:", self.listed.len());
+            let count = self.listed.len();
+            let what = if count == 1 { "target is left as it is" } else { "targets are left as they are" };
+            let _ = writeln!(out, "{count} {what}:");
         }
         for it in &self.listed {
             let _ = writeln!(out, "  line {}: {}: {}", it.line, crate::text::visible(&it.name), it.reason);

@@ -235,10 +235,9 @@ impl<'r> Reader<'r> {
         for pair in tokens.windows(2) {
             let name = pair[0].text(self.text).to_ascii_uppercase();
             let is_call = pair[0].kind == Kind::Word && pair[1].is(b'(');
-            if is_call && !["AND", "OR", "NOT", "EXOR", "B_AND", "B_OR"].contains(&name.as_str()) {
-                if !FUNCTIONS.contains(&name.as_str()) {
-                    self.blocks.push([Node::Call(name)]);
-                }
+            let is_word = ["AND", "OR", "NOT", "EXOR", "B_AND", "B_OR"].contains(&name.as_str());
+            if is_call && !is_word && !FUNCTIONS.contains(&name.as_str()) {
+                self.blocks.push([Node::Call(name)]);
             }
         }
     }
@@ -420,7 +419,11 @@ impl<'r> Reader<'r> {
                 let variable = self.variables.of_name(&key)?;
                 (variable.value.clone(), variable.line, variable.name.clone())
             }
-            value => (value, line, shown(self.text, tokens)),
+            found @ (Value::Pose(..)
+            | Value::Joints(_)
+            | Value::Broken(_)
+            | Value::Place(_)
+            | Value::Other) => (found, line, shown(self.text, tokens)),
         };
         match found {
             Value::Pose(numbers, status) => {

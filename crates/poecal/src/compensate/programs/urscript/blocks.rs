@@ -7,6 +7,9 @@ use super::super::scan::{Kind, Rules, Scanner, Token, bracket};
 use super::Step;
 use crate::error::Result;
 
+/// Makes nodes of a statement.
+type Make<'m> = &'m mut dyn FnMut(&[Token], &mut Vec<Node<Step>>);
+
 /// A program in its blocks.
 pub(super) struct Program {
     pub(super) main: Vec<Node<Step>>,
@@ -67,11 +70,7 @@ pub(super) fn header<'t>(text: &'t [u8], tokens: &'t [Token]) -> Option<(&'t str
 
 impl Program {
     /// Reads a text; `make` makes nodes of each statement and of each condition.
-    pub(super) fn read(
-        text: &[u8],
-        rules: &Rules,
-        make: &mut dyn FnMut(&[Token], &mut Vec<Node<Step>>),
-    ) -> Result<Self> {
+    pub(super) fn read(text: &[u8], rules: &Rules, make: Make<'_>) -> Result<Self> {
         let blocks = Blocks::new();
         let mut program =
             Program { main: Vec::new(), blocks, threads_move: false, threads_set: false, thread: None };
@@ -86,12 +85,7 @@ impl Program {
         Ok(program)
     }
 
-    fn statement(
-        &mut self,
-        text: &[u8],
-        tokens: &[Token],
-        make: &mut dyn FnMut(&[Token], &mut Vec<Node<Step>>),
-    ) -> Result<()> {
+    fn statement(&mut self, text: &[u8], tokens: &[Token], make: Make<'_>) -> Result<()> {
         let Some(first) = tokens.first() else { return Ok(()) };
         let (word, line) = (first.text(text), first.line);
         if let Some((name, _)) = header(text, tokens) {

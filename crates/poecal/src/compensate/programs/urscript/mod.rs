@@ -305,7 +305,7 @@ impl Reader<'_> {
     fn literal(&self, tokens: &[Token]) -> Option<Value> {
         match self.variables.value(self.text, tokens, self.axes) {
             Value::Name(name) => self.variables.of_name(&name).ok(),
-            value => Some(value),
+            found @ (Value::Pose(_) | Value::Joints(_) | Value::Broken(_) | Value::Other) => Some(found),
         }
     }
 
