@@ -177,13 +177,14 @@ pub(super) fn check(
 
 /// A robot of six axes, each a direction and a point (m), with limits in degrees.
 pub(super) fn robot(axes: [([f64; 3], [f64; 3]); 6], limits: [(f64, f64); 6], home: Pose) -> Robot {
-    let joint = |(at, ((direction, point), (lower, upper))): (usize, (([f64; 3], [f64; 3]), (f64, f64)))| {
+    let joint = |at: usize| {
+        let ((direction, point), (lower, upper)) = (axes[at], limits[at]);
         let screw = Screw::revolute(&Vector3::from(direction), &Vector3::from(point));
         let mut joint = Joint::revolute(&format!("joint{}", at + 1), screw);
-        joint.limits = Some(Limits { lower: lower.to_radians(), upper: upper.to_radians() });
+        joint.limits = Some(Limits { lower: f64::to_radians(lower), upper: f64::to_radians(upper) });
         joint
     };
-    Robot::new("arm", axes.into_iter().zip(limits).enumerate().map(joint).collect(), home).unwrap()
+    Robot::new("arm", (0..6).map(joint).collect(), home).unwrap()
 }
 
 /// The robot as it is: axes some tenths of a millimetre and of a milliradian off, offsets, and a gear that is out of round.
