@@ -2,6 +2,7 @@
 
 mod inverse;
 mod kinematics;
+mod programs;
 mod reach;
 mod summary;
 mod table;
@@ -12,6 +13,10 @@ use reach::Reach;
 
 pub use inverse::Inverse;
 pub use kinematics::Kinematics;
+pub use programs::{
+    Given, LARGEST_PROGRAM, Language, Listed, PoseCompensation, ProgramOptions, ProgramSummary,
+    compensate_file, compensate_program,
+};
 pub use summary::{Largest, Summary};
 pub use table::{TableOptions, compensate_table};
 
@@ -143,6 +148,17 @@ impl Compensation {
     #[must_use]
     pub fn readings(&self) -> &[usize] {
         &self.readings
+    }
+
+    /// Whether readings are beyond the actual arm's limits.
+    #[must_use]
+    pub fn is_beyond_limits(&self, readings: &[f64]) -> bool {
+        let of = |&at: &usize| readings.get(at).copied().unwrap_or(0.0);
+        self.readings
+            .iter()
+            .map(of)
+            .zip(self.actual.arm().limits())
+            .any(|(it, &(low, high))| it < low || it > high)
     }
 
     /// Readings of the actual robot for readings of the nominal one (rad, m); those that do not move the tip stay as they are. The search

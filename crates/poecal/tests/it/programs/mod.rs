@@ -1,0 +1,5 @@
+//! Programs in the languages of controllers.
+
+mod krl;
+mod slots;
+mod urscript;
