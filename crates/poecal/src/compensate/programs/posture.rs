@@ -1,0 +1,188 @@
+//! How an arm of six axes is bent, in the words by which makers tell its configurations apart.
+
+use nalgebra::Vector3;
+use poecal_arm::Arm;
+
+/// Angle (rad) within which a joint may be on either side of a border.
+pub(super) const MARGIN: f64 = 0.01;
+/// Share of the reach below which a place is on neither side of an axis.
+const ASIDE: f64 = 0.005;
+/// Share of the reach within which axes of a wrist meet.
+const MEET: f64 = 1e-3;
+
+/// An axis: its direction, and a point on it.
+type Axis = (Vector3<f64>, Vector3<f64>);
+
+/// An arm whose readings are 0 where makers have them so: lower arm upright, forearm level and to the front, wrist straight. Only of such an
+/// arm it is plain what front, elbow and wrist are.
+///
+/// Its sides are told by places of axes, not by signs of readings: the wrist's centre W before or behind the first axis,
+/// `(W - o₁)·f` with the front f turned by the first joint; the same before or behind the line of the lower arm from o₂ to o₃,
+/// `((o₃ - o₂) × (W - o₂))·z₂`. Of the fifth joint, the sign of its angle.
+#[derive(Clone, Debug)]
+pub(super) struct Posture<'a> {
+    arm: &'a Arm,
+    /// Front at zero, level, of length 1.
+    front: Vector3<f64>,
+    /// Sign of the lower arm's side on which the wrist is at zero.
+    side: f64,
+    /// Direction of the lower arm at zero.
+    up: Vector3<f64>,
+    /// Whether negative angles of the fifth joint bend the hand down where the other joints are at zero.
+    is_down_negative: bool,
+}
+
+/// How an arm is bent; `None` of what is too near to its border.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Bent {
+    /// The wrist's centre is before the first axis.
+    pub(super) is_front: Option<bool>,
+    /// The wrist's centre is before the lower arm, on the side where it is at zero.
+    pub(super) is_before_arm: Option<bool>,
+    /// The lower arm points up.
+    pub(super) is_arm_up: Option<bool>,
+    /// The angle of the fifth joint is positive.
+    pub(super) is_wrist_positive: Option<bool>,
+}
+
+impl<'a> Posture<'a> {
+    /// Of an arm; `None` if it is not built and zeroed so.
+    pub(super) fn new(arm: &'a Arm) -> Option<Self> {
+        let axes = axes(arm, &[0.0; 6])?;
+        let wrist = wrist(&axes);
+        let reach = arm.reach_m();
+        let meets = |(direction, point): &Axis| {
+            let off = wrist - point;
+            (off - direction * direction.dot(&off)).norm() < MEET * reach
+        };
+        let level = |it: Vector3<f64>| it - axes[0].0 * axes[0].0.dot(&it);
+        let across = |it: Vector3<f64>| it - axes[1].0 * axes[1].0.dot(&it);
+        let lower = across(axes[2].1 - axes[1].1);
+        let front = level(wrist - axes[0].1);
+        let up = lower.try_normalize(MEET * reach)?;
+        let is_built = axes[3..].iter().all(meets)
+            && axes[1].0.cross(&axes[2].0).norm() < MARGIN
+            && axes[0].0.dot(&axes[1].0).abs() < MARGIN
+            && axes[3].0.dot(&axes[4].0).abs() < MARGIN
+            && axes[3].0.cross(&axes[5].0).norm() < MARGIN
+            && axes[4].0.cross(&axes[1].0).norm() < MARGIN;
+        let is_zeroed = up.dot(&axes[0].0).abs() > 0.95
+            && axes[3].0.dot(&axes[0].0).abs() < 0.2
+            && across(front).norm() > 0.1 * reach;
+        if !is_built || !is_zeroed {
+            return None;
+        }
+        let front = across(front).normalize();
+        // Turning by the fifth joint moves the hand, which points to the front, by z₅ × f.
+        let down = -axes[4].0.cross(&front).dot(&up);
+        let side = lower.cross(&(wrist - axes[1].1)).dot(&axes[1].0).signum();
+        Some(Posture { arm, front, side, up, is_down_negative: down < 0.0 })
+    }
+
+    /// Whether negative angles of the fifth joint bend the hand down where the other joints are at zero.
+    pub(super) fn is_down_negative(&self) -> bool {
+        self.is_down_negative
+    }
+
+    /// How it is bent at readings (rad).
+    pub(super) fn at(&self, q: &[f64; 6]) -> Bent {
+        let Some(axes) = axes(self.arm, q) else { return Bent::default() };
+        let wrist = wrist(&axes);
+        let reach = self.arm.reach_m();
+        let first = axes[0].0;
+        // The front turns with the second axis, which at zero is across it.
+        let front = self.turned(&axes, self.front);
+        let ahead = front.dot(&(wrist - axes[0].1));
+        let across = |it: Vector3<f64>| it - axes[1].0 * axes[1].0.dot(&it);
+        let (lower, whole) = (across(axes[2].1 - axes[1].1), across(wrist - axes[1].1));
+        let side = self.side * lower.cross(&whole).dot(&axes[1].0) / lower.norm();
+        let upright = lower.normalize().dot(&(first * self.up.dot(&first).signum()));
+        let told = |value: f64, least: f64| (value.abs() > least).then_some(value > 0.0);
+        Bent {
+            is_front: told(ahead, ASIDE * reach),
+            is_before_arm: told(side, ASIDE * reach),
+            is_arm_up: told(upright, 0.05),
+            is_wrist_positive: told(q[4].sin(), MARGIN),
+        }
+    }
+
+    /// A level direction that is fixed to the link between the first two joints, at zero, where that link is now.
+    fn turned(&self, axes: &[Axis; 6], direction: Vector3<f64>) -> Vector3<f64> {
+        let Some(second) = self.arm.screws().get(1).map(poecal_arm::lie::Screw::direction) else {
+            return direction;
+        };
+        let first = axes[0].0;
+        let other = first.cross(&second);
+        let now = first.cross(&axes[1].0);
+        axes[1].0 * direction.dot(&second) + now * direction.dot(&other)
+    }
+}
+
+/// The axes of six joints at readings, each by its point that is nearest to the tip.
+fn axes(arm: &Arm, q: &[f64; 6]) -> Option<[Axis; 6]> {
+    if arm.joints() != 6 {
+        return None;
+    }
+    let tip = arm.forward_kinematics(q).translation;
+    let moved = arm.jacobian(q);
+    let mut out = [(Vector3::zeros(), Vector3::zeros()); 6];
+    for (axis, (v, w)) in out.iter_mut().zip(&moved) {
+        let size = w.norm_squared();
+        if size < 1e-6 {
+            return None;
+        }
+        // v = w × (tip - o)
+        *axis = (w / size.sqrt(), tip + w.cross(v) / size);
+    }
+    Some(out)
+}
+
+/// The point of the fifth axis that is nearest to the fourth.
+fn wrist(axes: &[Axis; 6]) -> Vector3<f64> {
+    let ((four, of_four), (five, of_five)) = (axes[3], axes[4]);
+    let off = of_four - of_five;
+    let across = four.dot(&five);
+    let along = (five.dot(&off) - across * four.dot(&off)) / (1.0 - across * across).max(1e-9);
+    of_five + five * along
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+
+    use super::Posture;
+    use crate::simulate;
+
+    /// The sides change where the arm passes the border, and nowhere else.
+    #[test]
+    fn sides_are_those_of_the_drawing() {
+        let (arm, _) = simulate::elbow().arm(&[]).unwrap();
+        let posture = Posture::new(&arm).unwrap();
+        let at = |degrees: [f64; 6]| posture.at(&degrees.map(f64::to_radians));
+        let level = at([0.0, 0.0, 0.0, 0.0, 30.0, 0.0]);
+        assert_eq!(level.is_front, Some(true));
+        assert_eq!(level.is_before_arm, Some(true));
+        assert_eq!(level.is_arm_up, Some(true));
+        assert_eq!(level.is_wrist_positive, Some(true));
+        // Its third axis turns the forearm up: over the top of the lower arm to the other side.
+        let over = at([70.0, 0.0, 120.0, 0.0, -30.0, 0.0]);
+        assert_eq!(
+            (over.is_front, over.is_before_arm, over.is_wrist_positive),
+            (Some(false), Some(false), Some(false))
+        );
+        // Leaning back, the elbow is bent as before.
+        let back = at([-50.0, -80.0, 40.0, 10.0, 30.0, 0.0]);
+        assert_eq!((back.is_front, back.is_before_arm, back.is_arm_up), (Some(false), Some(true), Some(true)));
+        assert_eq!(at([0.0; 6]).is_wrist_positive, None);
+        // Its fifth axis is to the left, so that positive angles bend the hand down.
+        assert!(!posture.is_down_negative());
+    }
+
+    #[test]
+    fn arms_of_another_kind_have_no_sides() {
+        for robot in [simulate::scara(), simulate::gantry(), simulate::seven_axis()] {
+            let (arm, _) = robot.arm(&[]).unwrap();
+            assert!(Posture::new(&arm).is_none(), "{}", robot.name);
+        }
+    }
+}
