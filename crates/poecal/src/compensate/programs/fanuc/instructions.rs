@@ -144,7 +144,9 @@ impl<'a> Instructions<'a> {
                 continue;
             }
             if offset.is_some() {
-                list("displaced by an offset, which is left as it is: at most the position itself is corrected");
+                list(
+                    "displaced by an offset, which is left as it is: at most the position itself is corrected",
+                );
             }
             match inside.first().map(|it| it.kind) {
                 Some(Kind::Number(value, 0)) if value >= 0.0 && value < f64::from(u32::MAX) => {

@@ -51,7 +51,9 @@ pub(crate) fn parse(text: &[u8], given: &Given) -> Parsed {
     for (number, line) in text.split_inclusive(|it| *it == b'\n').enumerate() {
         let range = start..start + line.len();
         start = range.end;
-        if let Some(found) = section(line).filter(|it| matches!(it.as_str(), "PROG" | "ATTR" | "APPL" | "MN" | "POS" | "END")) {
+        if let Some(found) =
+            section(line).filter(|it| matches!(it.as_str(), "PROG" | "ATTR" | "APPL" | "MN" | "POS" | "END"))
+        {
             if found == "POS" && name != "POS" {
                 all = positions(text, range.end, number + 2);
             }
@@ -68,7 +70,9 @@ pub(crate) fn parse(text: &[u8], given: &Given) -> Parsed {
 /// Whether a line of the section `/APPL` says that the program follows a moving line.
 fn follows_line(line: &[u8]) -> bool {
     let text = String::from_utf8_lossy(line).to_ascii_uppercase();
-    let number = text.split_once(':').and_then(|(_, it)| it.trim().trim_end_matches([';', ',']).trim().parse::<u32>().ok());
+    let number = text
+        .split_once(':')
+        .and_then(|(_, it)| it.trim().trim_end_matches([';', ',']).trim().parse::<u32>().ok());
     text.contains("LINE_TRACK_SCHEDULE_NUMBER") && number.is_some_and(|it| it > 0)
 }
 
@@ -100,7 +104,15 @@ impl Maker<'_> {
                 Ok((target, tool, frame, stated)) => {
                     let target_index = self.out.targets.len();
                     self.out.targets.push(target);
-                    let motion = Motion { target: target_index, line, after: None, is_straight: false, tool, frame, stated };
+                    let motion = Motion {
+                        target: target_index,
+                        line,
+                        after: None,
+                        is_straight: false,
+                        tool,
+                        frame,
+                        stated,
+                    };
                     self.targets.insert(position.number, (target_index, motion));
                 }
                 Err(reason) => self.out.listed.push(Listed { line, name, reason }),
@@ -150,7 +162,9 @@ impl Maker<'_> {
         }
         let Group::Pose(pose) = group else {
             return match group {
-                Group::Joints(numbers) => Ok((made(numbers.clone(), Meant::Joints), None, None, Stated::Nothing)),
+                Group::Joints(numbers) => {
+                    Ok((made(numbers.clone(), Meant::Joints), None, None, Stated::Nothing))
+                }
                 Group::Pose(_) => Err(String::new()),
                 Group::Unknown(reason) => Err((*reason).to_owned()),
             };
@@ -159,7 +173,10 @@ impl Maker<'_> {
             return Err(format!("the program follows a moving line (line {line})"));
         }
         if let Some(of) = moves.iter().find(|it| it.is_coordinated) {
-            return Err(format!("moved to together with another group, or with a tool that stands, on line {}", of.line));
+            return Err(format!(
+                "moved to together with another group, or with a tool that stands, on line {}",
+                of.line
+            ));
         }
         if pose.is_extended {
             return Err("external axes are used".to_owned());
@@ -169,15 +186,23 @@ impl Maker<'_> {
         };
         for of in moves {
             if let Some(active) = of.frame.filter(|it| *it != frame) {
-                return Err(format!("stated in user frame {frame}, but moved to in {active} on line {}", of.line));
+                return Err(format!(
+                    "stated in user frame {frame}, but moved to in {active} on line {}",
+                    of.line
+                ));
             }
             if let Some(active) = of.tool.filter(|it| *it != tool) {
-                return Err(format!("stated with tool {tool}, but moved to with {active} on line {}", of.line));
+                return Err(format!(
+                    "stated with tool {tool}, but moved to with {active} on line {}",
+                    of.line
+                ));
             }
         }
         let known = |given: Option<Pose>, number: u32, what: &str, flag: &str| {
             let own = (number == 0).then(Pose::identity);
-            given.or(own).ok_or_else(|| format!("its {what} {number} is not in the file: state it by {flag} {number}=X,Y,Z,W,P,R"))
+            given.or(own).ok_or_else(|| {
+                format!("its {what} {number} is not in the file: state it by {flag} {number}=X,Y,Z,W,P,R")
+            })
         };
         let frame = known(self.given.frame(Some(&frame.to_string())), frame, "user frame", "--frame")?;
         let tool = known(self.given.tool(Some(&tool.to_string())), tool, "tool", "--tool")?;

@@ -126,7 +126,8 @@ fn group(text: &[u8], tokens: &[Token]) -> Group {
         } else if name == "UT" {
             pose.tool = whole();
         } else if name == "CONFIG" {
-            let Some((configuration, turns)) = value.first().and_then(|it| Configuration::read(text, it)) else {
+            let Some((configuration, turns)) = value.first().and_then(|it| Configuration::read(text, it))
+            else {
                 continue;
             };
             pose.configuration = Some(configuration);

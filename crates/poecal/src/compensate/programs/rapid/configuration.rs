@@ -26,13 +26,16 @@ const ROUNDING: f64 = 1e-6;
 impl Configuration {
     /// Whether the quarter turns of a configuration of the nominal arm (rad) fit, borders included.
     pub(crate) fn fits(&self, q: &[f64]) -> bool {
-        q.len() == 6 && self.quarters.iter().zip(JOINTS).all(|(&quarter, joint)| is_in(quarter, q.get(joint), MARGIN))
+        q.len() == 6
+            && self.quarters.iter().zip(JOINTS).all(|(&quarter, joint)| is_in(quarter, q.get(joint), MARGIN))
     }
 
     /// Whether the branch fits, as far as it is told: of arms whose branches are plain, with the lower arm upright.
     pub(crate) fn branch_fits(&self, nominal: &Arm, q: &[f64]) -> bool {
         let Ok(q) = <&[f64; 6]>::try_from(q) else { return false };
-        let Some(posture) = Posture::new(nominal).filter(|_| (0..8).contains(&self.branch)) else { return true };
+        let Some(posture) = Posture::new(nominal).filter(|_| (0..8).contains(&self.branch)) else {
+            return true;
+        };
         let bent = posture.at(q);
         let agrees = |found: Option<bool>, bit: i32| found.is_none_or(|it| it == (self.branch & bit == 0));
         agrees(bent.is_front, 4)

@@ -2,8 +2,8 @@
 
 use std::collections::HashMap;
 
-use super::outline::{Outline, Statement};
 use super::super::scan::{Kind, Token};
+use super::outline::{Outline, Statement};
 use super::tokens::{ASSIGN, Value, cut, lower, value, written};
 
 /// Kinds of data that matter here.

@@ -177,15 +177,23 @@ impl Reader<'_> {
                     Some((_, data)) if data.sort == Sort::Parameter => {
                         "a parameter of its routine: its value is that of each call"
                     }
-                    Some((_, data)) if data.sort != expected => "declared as something else than what this move expects",
-                    Some((_, data)) if data.value.is_none() => "a variable without numbers: computed when the program runs",
-                    Some((at, _)) => return self.moves.to_data(at, indices, of, before).filter(|_| !is_relative),
+                    Some((_, data)) if data.sort != expected => {
+                        "declared as something else than what this move expects"
+                    }
+                    Some((_, data)) if data.value.is_none() => {
+                        "a variable without numbers: computed when the program runs"
+                    }
+                    Some((at, _)) => {
+                        return self.moves.to_data(at, indices, of, before).filter(|_| !is_relative);
+                    }
                 };
                 self.list(line, shown(text, written), reason);
                 None
             }
             Argument::Numbers(tokens) => {
-                let name = format!("{instruction} {}", shown(text, tokens));
+                let first = tokens.iter().position(|it| it.is(b']')).map_or(0, |it| it + 1);
+                let name =
+                    format!("{instruction} {},…]", shown(text, tokens.get(..first).unwrap_or_default()));
                 let value = tokens::value(tokens, text, 0);
                 Some(self.moves.in_place(name, value, is_joints, of, before))
             }

@@ -1,8 +1,8 @@
 //! What instructions of RAPID leave switched on for moves after them: program displacements, and configurations that are not followed.
 
+use super::super::scan::Token;
 use super::moves::{Instruction, layout};
 use super::outline::Outline;
-use super::super::scan::Token;
 use super::tokens::ASSIGN;
 
 /// What can be switched on.
@@ -114,14 +114,44 @@ fn switched(switch: Switch, instruction: &Instruction<'_>) -> Option<bool> {
 /// Whether a statement may run other routines or leave this one: all that is no instruction known to do neither.
 pub(super) fn leads_elsewhere(tokens: &[Token], instruction: Option<&Instruction<'_>>) -> bool {
     const STAY: [&str; 36] = [
-        "accset", "clkreset", "clkstart", "clkstop", "confj", "confl", "const", "decr", "eoffsoff", "eoffson",
-        "eoffsset", "gripload", "incr", "invertdo", "moveextj", "pdispoff", "pdispon", "pdispset", "pers",
-        "pulsedo", "reset", "set", "setao", "setdo", "setgo", "singarea", "stop", "tperase", "tpwrite", "var",
-        "velset", "waitdi", "waitdo", "waitrob", "waittime", "waituntil",
+        "accset",
+        "clkreset",
+        "clkstart",
+        "clkstop",
+        "confj",
+        "confl",
+        "const",
+        "decr",
+        "eoffsoff",
+        "eoffson",
+        "eoffsset",
+        "gripload",
+        "incr",
+        "invertdo",
+        "moveextj",
+        "pdispoff",
+        "pdispon",
+        "pdispset",
+        "pers",
+        "pulsedo",
+        "reset",
+        "set",
+        "setao",
+        "setdo",
+        "setgo",
+        "singarea",
+        "stop",
+        "tperase",
+        "tpwrite",
+        "var",
+        "velset",
+        "waitdi",
+        "waitdo",
+        "waitrob",
+        "waittime",
+        "waituntil",
     ];
-    let is_assignment = tokens
-        .get(1)
-        .is_some_and(|it| it.is(ASSIGN) || it.is(b'.') || it.is(b'{'));
+    let is_assignment = tokens.get(1).is_some_and(|it| it.is(ASSIGN) || it.is(b'.') || it.is(b'{'));
     match instruction {
         Some(it) => {
             !is_assignment && layout(&it.name).is_none() && STAY.binary_search(&it.name.as_str()).is_err()

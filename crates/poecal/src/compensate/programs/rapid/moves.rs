@@ -30,8 +30,8 @@ pub(super) struct Layout {
 pub(super) fn layout(name: &str) -> Option<Layout> {
     use ToolAt::{Last, Place};
     let (targets, tool): (&'static [usize], ToolAt) = match name {
-        "movej" | "movel" | "moveabsj" | "movejdo" | "moveldo" | "movejao" | "movelao" | "movejgo" | "movelgo"
-        | "movejsync" | "movelsync" | "trigglios" => (&[0], Place(3)),
+        "movej" | "movel" | "moveabsj" | "movejdo" | "moveldo" | "movejao" | "movelao" | "movejgo"
+        | "movelgo" | "movejsync" | "movelsync" | "trigglios" => (&[0], Place(3)),
         "movec" | "movecdo" | "movecao" | "movecgo" | "movecsync" => (&[0, 1], Place(4)),
         "triggj" | "triggl" | "triggabsj" => (&[0], Place(4)),
         "triggc" => (&[0, 1], Place(5)),

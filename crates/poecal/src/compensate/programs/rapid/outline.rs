@@ -96,7 +96,11 @@ impl Reader<'_> {
     fn next(&mut self) {
         let Some(word) = self.word(self.at) else {
             // A call by a text between percent signs, or what is left of a placeholder.
-            if self.is(self.at, b';') { self.at += 1 } else { self.statement(self.at) }
+            if self.is(self.at, b';') {
+                self.at += 1
+            } else {
+                self.statement(self.at)
+            }
             return;
         };
         if self.is(self.at + 1, b':') {
@@ -231,7 +235,8 @@ impl Reader<'_> {
                     self.at = at + 1;
                     return;
                 }
-                let is_operator = |word: &str| matches!(word, "and" | "or" | "xor" | "not" | "div" | "mod" | "if");
+                let is_operator =
+                    |word: &str| matches!(word, "and" | "or" | "xor" | "not" | "div" | "mod" | "if");
                 let follows_value = self.tokens.get(at - 1).is_some_and(|before| match before.kind {
                     Kind::Word => !is_operator(&lower(self.text, before)),
                     Kind::Number(..) | Kind::Text | Kind::Sign(b')' | b'}' | b']') => true,

@@ -238,12 +238,9 @@ impl Maker<'_> {
         self.targets.push(Target { line, name, numbers, meant });
     }
 
-    fn pose(
-        &self,
-        value: &Value,
-        moves: &[&Move],
-    ) -> Result<(Vec<Number>, Meant, Vec<Known>), String> {
-        const SHAPE: &str = "not written as [[x,y,z],[q1,q2,q3,q4],[cf1,cf4,cf6,cfx],[external axes]] with numbers";
+    fn pose(&self, value: &Value, moves: &[&Move]) -> Result<(Vec<Number>, Meant, Vec<Known>), String> {
+        const SHAPE: &str =
+            "not written as [[x,y,z],[q1,q2,q3,q4],[cf1,cf4,cf6,cfx],[external axes]] with numbers";
         let Value::List(parts) = value else { return Err(SHAPE.to_owned()) };
         let [place, quaternion, configuration, external] = &parts[..] else { return Err(SHAPE.to_owned()) };
         let mut all = numbers(place, 3).ok_or(SHAPE)?;
@@ -274,12 +271,18 @@ impl Maker<'_> {
     }
 
     fn tool(&self, held: &Held) -> Result<Pose, String> {
-        self.known("tool", held, Sort::Tool, self.given.tool(Some(self.name(held, "tool0"))), tool)
+        self.known(
+            ("tool", "--tool"),
+            held,
+            Sort::Tool,
+            self.given.tool(Some(self.name(held, "tool0"))),
+            tool,
+        )
     }
 
     fn frame(&self, held: &Held) -> Result<Pose, String> {
         let stated = self.given.frame(Some(self.name(held, "wobj0")));
-        self.known("work object", held, Sort::WorkObject, stated, work_object)
+        self.known(("work object", "--frame"), held, Sort::WorkObject, stated, work_object)
     }
 
     fn name<'b>(&'b self, held: &'b Held, built_in: &'b str) -> &'b str {
@@ -293,7 +296,7 @@ impl Maker<'_> {
     /// A tool or a work object: as the user states it, else as the file declares it.
     fn known(
         &self,
-        what: &str,
+        (what, flag): (&str, &str),
         held: &Held,
         sort: Sort,
         stated: Option<Pose>,
@@ -305,7 +308,12 @@ impl Maker<'_> {
         let name = self.name(held, "");
         match held {
             Held::BuiltIn => Ok(Pose::identity()),
-            Held::Unknown(_) => Err(format!("its {what} `{name}` is not in this file")),
+            Held::Unknown(_)
+                if name.bytes().any(|it| it.is_ascii_punctuation() && it != b'_') || name.is_empty() =>
+            {
+                Err(format!("its {what} `{name}` is not known"))
+            }
+            Held::Unknown(_) => Err(format!("its {what} `{name}` is not in this file: state it by {flag}")),
             Held::Data(at) => {
                 let data = self.declared.data.get(*at).filter(|it| it.sort == sort && !it.is_double);
                 let data = data.ok_or_else(|| format!("its {what} `{name}` is not known"))?;
@@ -313,10 +321,12 @@ impl Maker<'_> {
                     return Err(format!("its {what} `{name}` is changed on line {line}"));
                 }
                 if let Some((line, to)) = &data.given {
-                    let reason = format!("its {what} `{name}` is given to {to} on line {line}, which may change it");
+                    let reason =
+                        format!("its {what} `{name}` is given to {to} on line {line}, which may change it");
                     return Err(reason);
                 }
-                let value = data.value.as_ref().ok_or_else(|| format!("its {what} `{name}` has no numbers"))?;
+                let value =
+                    data.value.as_ref().ok_or_else(|| format!("its {what} `{name}` has no numbers"))?;
                 read(value).map_err(|reason| format!("its {what} `{name}` {reason}"))
             }
         }
@@ -365,7 +375,12 @@ fn joints(value: &Value) -> Result<Vec<Number>, String> {
 }
 
 /// The elements of an array of so many dimensions.
-fn spread<'a>(value: &'a Value, dimensions: usize, index: &mut Vec<usize>, out: &mut Vec<(Vec<usize>, &'a Value)>) {
+fn spread<'a>(
+    value: &'a Value,
+    dimensions: usize,
+    index: &mut Vec<usize>,
+    out: &mut Vec<(Vec<usize>, &'a Value)>,
+) {
     match value {
         Value::List(values) if dimensions > 0 => {
             for (at, value) in values.iter().enumerate() {

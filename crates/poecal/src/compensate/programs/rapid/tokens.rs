@@ -22,7 +22,8 @@ pub(super) fn tokens(text: &[u8]) -> Vec<Token> {
             line_start = out.len();
             continue;
         }
-        let follows = |sign: u8| out.last().is_some_and(|it| it.is(sign) && it.range.end == token.range.start);
+        let follows =
+            |sign: u8| out.last().is_some_and(|it| it.is(sign) && it.range.end == token.range.start);
         if token.is(b'=') && follows(b':') {
             if let Some(colon) = out.last_mut() {
                 colon.kind = Kind::Sign(ASSIGN);
