@@ -20,7 +20,7 @@ pub(crate) use report::{Report, ReportPlace};
 pub(crate) use reproduce::{Experiment, Reproduce};
 pub(crate) use shared::{TreeArgs, with_mapping};
 pub(crate) use simulate::Simulate;
-pub(crate) use words::{ExportForm, PredictedModel};
+pub(crate) use words::{ExportForm, PredictedModel, ProgramLanguage};
 
 use std::path::PathBuf;
 

@@ -61,15 +61,20 @@ impl Console {
 
     /// A result that must arrive completely; only a closed pipe is no error.
     pub(crate) fn data(&self, text: &str) -> Result<()> {
-        if kept(|said| said.out.push_str(text)) {
+        self.bytes(text.as_bytes())
+    }
+
+    /// Bytes on standard output, as [`Console::data`]. Where output is kept as text, bytes that are no UTF-8 are shown.
+    pub(crate) fn bytes(&self, bytes: &[u8]) -> Result<()> {
+        if kept(|said| said.out.push_str(&String::from_utf8_lossy(bytes))) {
             return Ok(());
         }
         let mut out = std::io::stdout().lock();
-        match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+        match out.write_all(bytes).and_then(|()| out.flush()) {
             Err(error) if error.kind() != ErrorKind::BrokenPipe => {
                 let message = format!(
                     "standard output cannot be written to ({error}), expected room for {} bytes",
-                    text.len()
+                    bytes.len()
                 );
                 Err(poecal::Error::new(poecal::ErrorKind::File, message))
             }

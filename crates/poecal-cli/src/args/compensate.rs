@@ -5,17 +5,34 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::shared::{ColumnArgs, OutFile};
-use super::words::{PREDICTED_MODEL, PredictedModel, one_of};
+use super::words::{LANGUAGE, PREDICTED_MODEL, PredictedModel, ProgramLanguage, one_of};
 
 /// Arguments of `poecal compensate`.
 #[derive(Args, Debug)]
 pub(crate) struct Compensate {
     /// The calibration (calibration.json)
     pub(crate) calibration: PathBuf,
-    /// The program for the nominal robot: joint readings (CSV)
+    /// The program for the nominal robot: joint readings (CSV), or a robot program in URScript (.script), RAPID (.mod, .prg, .sys), KRL (.src,
+    /// .dat) or of FANUC (.ls)
     pub(crate) program: PathBuf,
     #[command(flatten)]
     pub(crate) columns: ColumnArgs,
+    /// The language of the program [default: by the end of its name, else csv]
+    #[arg(long, value_parser = one_of(LANGUAGE))]
+    pub(crate) language: Option<ProgramLanguage>,
+    /// Tool of a robot program, in the controller's flange: by its number or name, or that of programs that set none; the numbers as the
+    /// language writes poses
+    #[arg(long = "tool", value_name = "[NAME=]NUMBERS", allow_hyphen_values = true)]
+    pub(crate) tools: Vec<String>,
+    /// Frame of a robot program's poses (work object, base, user frame), in the controller's base: as --tool
+    #[arg(long = "frame", value_name = "[NAME=]NUMBERS", allow_hyphen_values = true)]
+    pub(crate) frames: Vec<String>,
+    /// The controller's base in the model's base [default: the same]
+    #[arg(long, value_name = "NUMBERS", allow_hyphen_values = true)]
+    pub(crate) base: Option<String>,
+    /// The controller's flange in the model's tip [default: the same]
+    #[arg(long, value_name = "NUMBERS", allow_hyphen_values = true)]
+    pub(crate) flange: Option<String>,
     /// Which model of the calibration is the actual robot: the corrected one, if there is one, or the calibrated one
     #[arg(long = "model", value_parser = one_of(PREDICTED_MODEL), default_value = "corrected")]
     pub(crate) of: PredictedModel,

@@ -2,6 +2,7 @@
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use poecal::calibration::{DeviceFrameKnowledge, Level, Loss, Robust};
+use poecal::compensate::Language;
 use poecal::io::export::ExportFormat;
 use poecal::io::measurements::{Frames, PlaneContact};
 use poecal::io::model::ModelFormat;
@@ -83,6 +84,22 @@ pub(crate) enum PredictedModel {
 pub(super) const PREDICTED_MODEL: Words<PredictedModel> = &[
     ("corrected", "Screws and terms of the joints", PredictedModel::Corrected),
     ("calibrated", "Geometry alone, as a URDF holds it", PredictedModel::Calibrated),
+];
+
+/// What a program is written in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum ProgramLanguage {
+    Table,
+    Robot(Language),
+}
+
+/// What a program may be written in.
+pub(super) const LANGUAGE: Words<ProgramLanguage> = &[
+    ("csv", "A table of joint readings", ProgramLanguage::Table),
+    ("urscript", "URScript of Universal Robots (.script)", ProgramLanguage::Robot(Language::UrScript)),
+    ("rapid", "RAPID of ABB (.mod, .prg, .sys)", ProgramLanguage::Robot(Language::Rapid)),
+    ("krl", "KRL of KUKA (.src, .dat)", ProgramLanguage::Robot(Language::Krl)),
+    ("fanuc", "A program of FANUC as text (.ls)", ProgramLanguage::Robot(Language::Fanuc)),
 ];
 
 /// A form, or one that cannot be written, with the reason.

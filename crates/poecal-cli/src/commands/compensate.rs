@@ -2,15 +2,19 @@
 
 use std::path::{Path, PathBuf};
 
-use poecal::compensate::{TableOptions, compensate_table};
+use poecal::compensate::{
+    Given, Language, ProgramOptions, TableOptions, compensate_program, compensate_table,
+};
 use poecal::io::model::{Model, ModelSource};
+use poecal::io::output::FilePlace;
+use poecal::io::programs::read_program;
 use poecal::io::urdf::ChainSelection;
 use poecal::robot::JointKind;
 use poecal::{Error, ErrorKind, Result, Robot, report};
 
-use crate::DONE;
-use crate::args::{Compensate, PredictedModel};
+use crate::args::{Compensate, PredictedModel, ProgramLanguage};
 use crate::console::Console;
+use crate::{DONE, WORSE};
 
 pub(crate) fn compensate(arguments: &Compensate, console: &Console) -> Result<u8> {
     let mapping = arguments.columns.columns.iter();
@@ -28,13 +32,16 @@ pub(crate) fn compensate(arguments: &Compensate, console: &Console) -> Result<u8
     };
     let nominal = file.nominal_robot()?;
     let factors = factors(&model.robot, &arguments.factors, console)?;
+    let robots = (&nominal, &model.robot);
+    if let Some(language) = language(arguments) {
+        return robot_program(arguments, language, robots, &factors, place, console);
+    }
     let options = TableOptions {
         read: arguments.columns.options()?,
         check: arguments.check,
         nearest: arguments.nearest,
     };
     let is_file = place.is_some();
-    let robots = (&nominal, &model.robot);
     let (summary, table) = match place {
         Some(place) => {
             place.write_by(|out| compensate_table(&arguments.program, robots, &factors, &options, out))?
@@ -46,13 +53,79 @@ pub(crate) fn compensate(arguments: &Compensate, console: &Console) -> Result<u8
     console.warnings(&table.warnings);
     console.warnings(&summary.warnings());
     if is_file {
-        let slides = |name: &str| {
-            let joint = nominal.joints.iter().find(|joint| joint.reading.name == name);
-            joint.is_some_and(|joint| joint.kind == JointKind::Prismatic)
-        };
+        let slides = |name: &str| is_sliding(&nominal, name);
         console.json_or_table(arguments.json, || report::json(&summary), || summary.text(&slides, "rows"))?;
     }
     Ok(DONE)
+}
+
+fn is_sliding(robot: &Robot, name: &str) -> bool {
+    let joint = robot.joints.iter().find(|joint| joint.reading.name == name);
+    joint.is_some_and(|joint| joint.kind == JointKind::Prismatic)
+}
+
+/// The language of a robot program; `None` of a table.
+fn language(arguments: &Compensate) -> Option<Language> {
+    match arguments.language {
+        Some(ProgramLanguage::Table) => None,
+        Some(ProgramLanguage::Robot(language)) => Some(language),
+        None => Language::of(&arguments.program),
+    }
+}
+
+fn robot_program(
+    arguments: &Compensate,
+    language: Language,
+    robots: (&Robot, &Robot),
+    factors: &[f64],
+    place: Option<FilePlace>,
+    console: &Console,
+) -> Result<u8> {
+    if arguments.columns.columns.is_some() {
+        let message = format!(
+            "found --columns for a program in {}, expected it for tables (CSV) alone",
+            language.title()
+        );
+        return Err(Error::new(ErrorKind::Option, message));
+    }
+    let options = ProgramOptions {
+        language,
+        given: given(arguments, language)?,
+        check: arguments.check,
+        nearest: arguments.nearest,
+    };
+    let text = read_program(&arguments.program)?;
+    let made = compensate_program(&text, robots, factors, &options);
+    let (out, summary) = made.map_err(|error| error.in_file(&arguments.program))?;
+    let is_file = place.is_some();
+    match place {
+        Some(place) => place.write_bytes(&out)?,
+        None => console.bytes(&out)?,
+    }
+    console.warnings(&summary.warnings());
+    if is_file {
+        let slides = |name: &str| is_sliding(robots.0, name);
+        console.json_or_table(arguments.json, || report::json(&summary), || summary.text(&slides))?;
+    }
+    Ok(if summary.is_whole() { DONE } else { WORSE })
+}
+
+/// Tools and frames as the words of the command line say them.
+fn given(arguments: &Compensate, language: Language) -> Result<Given> {
+    let mut given = Given::default();
+    for words in &arguments.tools {
+        given.add_tool(words, language)?;
+    }
+    for words in &arguments.frames {
+        given.add_frame(words, language)?;
+    }
+    if let Some(words) = &arguments.base {
+        given.set_base(words, language)?;
+    }
+    if let Some(words) = &arguments.flange {
+        given.set_flange(words, language)?;
+    }
+    Ok(given)
 }
 
 /// Values of a robot's factors: those that are stated, else their references.

@@ -1,6 +1,7 @@
 //! What to command so that the robot as it is does what a program for its drawing meant.
 
 mod inverse;
+mod programs;
 mod summary;
 mod table;
 
@@ -8,6 +9,10 @@ use nalgebra::Vector3;
 use poecal_arm::{AllBranches, Arm};
 
 pub use inverse::Inverse;
+pub use programs::{
+    Given, LARGEST_PROGRAM, Language, Listed, PoseCompensation, ProgramOptions, ProgramSummary,
+    compensate_program,
+};
 pub use summary::{Largest, Summary};
 pub use table::{TableOptions, compensate_table};
 
@@ -137,6 +142,13 @@ impl Compensation {
     #[must_use]
     pub fn readings(&self) -> &[usize] {
         &self.readings
+    }
+
+    /// Whether readings are beyond the actual arm's limits.
+    #[must_use]
+    pub fn is_beyond_limits(&self, readings: &[f64]) -> bool {
+        let of = |&at: &usize| readings.get(at).copied().unwrap_or(0.0);
+        self.readings.iter().map(of).zip(self.actual.limits()).any(|(it, &(low, high))| it < low || it > high)
     }
 
     /// Readings of the actual robot for readings of the nominal one (rad, m); those that do not move the tip stay as they are.

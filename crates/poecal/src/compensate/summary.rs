@@ -139,6 +139,16 @@ impl Summary {
         self.left_rad.include(found.left_rad, line);
     }
 
+    /// Adds what is left of a target with its numbers as they are written, and whether it is not reached.
+    pub(super) fn include_left(&mut self, line: usize, (metres, radians): (f64, f64), is_unreached: bool) {
+        self.left_m.include(metres, line);
+        self.left_rad.include(radians, line);
+        if is_unreached {
+            self.unreached.1 = if self.unreached.0 == 0 { line } else { self.unreached.1 };
+            self.unreached.0 += 1;
+        }
+    }
+
     /// The summary in words, for the terminal; joints that slide are told by their names.
     #[must_use]
     pub fn text(&self, slides: &dyn Fn(&str) -> bool, what: &str) -> String {

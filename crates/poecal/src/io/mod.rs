@@ -15,6 +15,7 @@ pub mod named_files;
 mod numbers;
 pub mod output;
 pub mod predictions;
+pub mod programs;
 mod proof;
 pub mod residuals;
 pub mod robot_toml;

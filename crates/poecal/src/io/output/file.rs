@@ -118,15 +118,30 @@ impl FilePlace {
     /// Those of `make`, and [`ErrorKind::File`](crate::ErrorKind::File) if the file cannot be written; then nothing has changed, but for what
     /// a stream has got.
     pub fn write_by<T>(
-        mut self,
+        self,
         make: impl FnOnce(&mut dyn FnMut(&str) -> Result<()>) -> Result<T>,
+    ) -> Result<T> {
+        self.write_pieces(|out| make(&mut |piece| out(piece.as_bytes())))
+    }
+
+    /// Writes the file from bytes, which need not be text of a known encoding.
+    ///
+    /// # Errors
+    /// As [`FilePlace::write`].
+    pub fn write_bytes(self, bytes: &[u8]) -> Result<()> {
+        self.write_pieces(|out| out(bytes))
+    }
+
+    fn write_pieces<T>(
+        mut self,
+        make: impl FnOnce(&mut dyn FnMut(&[u8]) -> Result<()>) -> Result<T>,
     ) -> Result<T> {
         let named = self.named.clone();
         let failed = |error: &io::Error| unwritable(&named, error);
         let made = match &mut self.way {
             Way::Stream(path) => {
                 let mut out = disk::here().stream(path).map_err(|error| failed(&error))?;
-                let made = make(&mut |piece| match out.write_all(piece.as_bytes()) {
+                let made = make(&mut |piece| match out.write_all(piece) {
                     // A closed pipe is no error.
                     Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
                     written => written.map_err(|error| failed(&error)),
@@ -136,8 +151,7 @@ impl FilePlace {
             }
             Way::Staged { staging, .. } => {
                 let mut out = staging.create(NAME).map_err(|error| failed(&error))?;
-                let made =
-                    make(&mut |piece| out.write_all(piece.as_bytes()).map_err(|error| failed(&error)))?;
+                let made = make(&mut |piece| out.write_all(piece).map_err(|error| failed(&error)))?;
                 staging.keep(out).and_then(|()| staging.sync()).map_err(|error| failed(&error))?;
                 made
             }

@@ -1,0 +1,409 @@
+//! Corrects the targets of a program.
+
+use std::borrow::Cow;
+use std::f64::consts::TAU;
+
+use super::super::{Compensated, REACHED, Summary, apart};
+use super::forms::PoseForm;
+use super::given::Given;
+use super::parsed::{Listed, Meant, Motion, Number, Parsed, Target};
+use super::place::PoseCompensation;
+use super::stated::Stated;
+use crate::error::Result;
+use crate::lie::Pose;
+use crate::robot::Robot;
+
+/// Reasons for which a target stays as it is.
+mod reason {
+    use std::borrow::Cow;
+
+    pub(super) const NO_MOTION: Cow<'static, str> =
+        Cow::Borrowed("no motion of this file goes there: its tool and frame are not known");
+    pub(super) const NO_TOOL: Cow<'static, str> = Cow::Borrowed("the tool is not known: state it by --tool");
+    pub(super) const NO_FRAME: Cow<'static, str> =
+        Cow::Borrowed("the frame is not known: state it by --frame");
+    pub(super) const TWO_PLACES: Cow<'static, str> = Cow::Borrowed("it is used with several tools or frames");
+    pub(super) const TWO_WAYS: Cow<'static, str> = Cow::Borrowed("it is reached in several configurations");
+    pub(super) const NOTHING_STATED: Cow<'static, str> =
+        Cow::Borrowed("the program states no configuration, and the one before is not known");
+    pub(super) const WAY: Cow<'static, str> =
+        Cow::Borrowed("the way to it passes a singularity, or leaves the nominal robot's reach or limits");
+    pub(super) const UNREACHABLE: Cow<'static, str> = Cow::Borrowed("the nominal robot does not reach it");
+    pub(super) const NONE_FITS: Cow<'static, str> =
+        Cow::Borrowed("no configuration of the nominal robot fits the one that is stated");
+    pub(super) const SEVERAL_FIT: Cow<'static, str> =
+        Cow::Borrowed("several configurations of the nominal robot fit the one that is stated");
+    pub(super) const NOT_SURE: Cow<'static, str> =
+        Cow::Borrowed("it is not sure which configuration is the nearest to the one before");
+    pub(super) const OTHER: Cow<'static, str> =
+        Cow::Borrowed("the configuration that is stated is not the one to which the motion before leads");
+    pub(super) const SINGULAR: Cow<'static, str> = Cow::Borrowed("it is at a singularity");
+    pub(super) const OTHER_BRANCH: Cow<'static, str> =
+        Cow::Borrowed("a singularity lies between the nominal and the actual robot");
+    pub(super) const OUT_OF_REACH: Cow<'static, str> = Cow::Borrowed("the actual robot does not reach it");
+    pub(super) const LIMITS: Cow<'static, str> = Cow::Borrowed("it is beyond the limits once corrected");
+    pub(super) const WORDS: Cow<'static, str> =
+        Cow::Borrowed("the corrected target is in a configuration that the program states otherwise");
+    pub(super) const JOINTS: Cow<'static, str> =
+        Cow::Borrowed("poses are corrected of robots with six joints or fewer");
+    pub(super) const NOT_A_POSE: Cow<'static, str> = Cow::Borrowed("its numbers are no pose");
+}
+
+type Reason = Cow<'static, str>;
+
+/// Distance (m) and angle (rad) that rounding may leave of a corrected target.
+const ROUNDING: f64 = 2e-6;
+
+/// A target's place while it is worked on.
+#[derive(Clone, Debug, PartialEq)]
+struct Placed {
+    tool: Pose,
+    frame: Pose,
+    q: Vec<f64>,
+    stated: Stated,
+}
+
+/// What becomes of a target.
+#[derive(Clone, Debug)]
+enum Fate {
+    Open,
+    Placed(Placed),
+    Listed(Reason, usize),
+}
+
+/// A corrected program.
+pub(crate) struct Corrected {
+    /// Its text.
+    pub(crate) text: Vec<u8>,
+    /// Targets that were corrected, and the configurations that they mean.
+    pub(crate) meant: Vec<(usize, Vec<f64>)>,
+    /// What stays as it is.
+    pub(crate) listed: Vec<Listed>,
+    /// What changes.
+    pub(crate) summary: Summary,
+}
+
+/// Corrects a program's targets one after the other.
+pub(crate) struct Engine<'e> {
+    pub(crate) poses: PoseCompensation,
+    pub(crate) given: &'e Given,
+    pub(crate) nearest: bool,
+}
+
+impl<'e> Engine<'e> {
+    pub(crate) fn new(
+        robots: (&Robot, &Robot),
+        factors: &[f64],
+        given: &'e Given,
+        nearest: bool,
+    ) -> Result<Self> {
+        Ok(Engine { poses: PoseCompensation::new(robots.0, robots.1, factors)?, given, nearest })
+    }
+
+    /// Corrects all targets of a text.
+    pub(crate) fn correct(&mut self, text: &[u8], parsed: Parsed) -> Corrected {
+        let mut listed = parsed.listed.clone();
+        let fates = self.fates(&parsed);
+        let mut summary = Summary::new(self.poses.compensation());
+        let mut changes: Vec<(std::ops::Range<usize>, String)> = Vec::new();
+        let mut meant = Vec::new();
+        for (index, (target, fate)) in parsed.targets.iter().zip(fates).enumerate() {
+            let made = match fate {
+                Fate::Open => Err(reason::NO_MOTION),
+                Fate::Listed(reason, line) if line == target.line => Err(reason),
+                Fate::Listed(reason, line) => Err(format!("{reason} (motion on line {line})").into()),
+                Fate::Placed(placed) => self.write(target, &placed, &mut summary).map(|it| (it, placed.q)),
+            };
+            match made {
+                Ok((made, q)) => {
+                    changes.extend(made);
+                    meant.push((index, q));
+                }
+                Err(reason) => {
+                    listed.push(Listed {
+                        line: target.line,
+                        name: target.name.clone(),
+                        reason: reason.into_owned(),
+                    });
+                }
+            }
+        }
+        listed.sort();
+        listed.dedup();
+        Corrected { text: replaced(text, changes), meant, listed, summary }
+    }
+
+    /// What the motions make of each target.
+    fn fates(&self, parsed: &Parsed) -> Vec<Fate> {
+        let mut fates: Vec<Fate> = parsed.targets.iter().map(|it| self.alone(it)).collect();
+        let mut reached: Vec<Option<Vec<f64>>> = Vec::with_capacity(parsed.motions.len());
+        for motion in &parsed.motions {
+            let (Some(target), Some(fate)) =
+                (parsed.targets.get(motion.target), fates.get_mut(motion.target))
+            else {
+                reached.push(None);
+                continue;
+            };
+            let before = motion.after.and_then(|it| reached.get(it)).and_then(Option::as_deref);
+            let placed = match (&target.meant, &*fate) {
+                (Meant::Joints, _) if motion.refused.is_some() => {
+                    Err(motion.refused.clone().unwrap_or_default().into())
+                }
+                (Meant::Joints, Fate::Placed(placed)) => Ok(placed.clone()),
+                (Meant::Joints, Fate::Open | Fate::Listed(..)) => Err(reason::NOT_A_POSE),
+                (Meant::Pose(form), _) => self.place(target, *form, motion, before),
+            };
+            reached.push(placed.as_ref().ok().map(|it| it.q.clone()));
+            *fate = joined(std::mem::replace(fate, Fate::Open), placed, motion.line);
+        }
+        fates
+    }
+
+    /// What is known of a target without its motions.
+    fn alone(&self, target: &Target) -> Fate {
+        match target.meant {
+            Meant::Pose(_) => Fate::Open,
+            Meant::Joints => Fate::Placed(Placed {
+                tool: Pose::identity(),
+                frame: Pose::identity(),
+                q: target.numbers.iter().map(Number::scaled).collect(),
+                stated: Stated::Nothing,
+            }),
+        }
+    }
+
+    /// Where a motion to a pose leads.
+    fn place(
+        &self,
+        target: &Target,
+        form: PoseForm,
+        motion: &Motion,
+        before: Option<&[f64]>,
+    ) -> std::result::Result<Placed, Reason> {
+        let joints = self.poses.compensation().readings().len();
+        if joints > 6 {
+            return Err(reason::JOINTS);
+        }
+        if let Some(reason) = &motion.refused {
+            return Err(reason.clone().into());
+        }
+        let tool = motion.tool.ok_or(reason::NO_TOOL)?;
+        let frame = motion.frame.ok_or(reason::NO_FRAME)?;
+        let numbers: Vec<f64> = target.numbers.iter().map(Number::scaled).collect();
+        let pose = form.pose(numbers.get(..form.names().len()).unwrap_or(&[])).ok_or(reason::NOT_A_POSE)?;
+        let tip_from_tool = self.given.flange * tool;
+        let base_from_tip = self.given.base * frame * pose * tip_from_tool.inverse();
+        let q = self.configuration(motion, &base_from_tip, &tip_from_tool, before)?;
+        if self.poses.is_singular(&q) {
+            return Err(reason::SINGULAR);
+        }
+        Ok(Placed { tool, frame, q, stated: motion.stated.clone() })
+    }
+
+    fn configuration(
+        &self,
+        motion: &Motion,
+        target: &Pose,
+        tip_from_tool: &Pose,
+        before: Option<&[f64]>,
+    ) -> std::result::Result<Vec<f64>, Reason> {
+        let nominal = self.poses.compensation().nominal();
+        match (&motion.stated, before) {
+            (Stated::Near(near), _) => self.nearest(target, near),
+            (Stated::Nothing, None) => Err(reason::NOTHING_STATED),
+            (Stated::Nothing, Some(before)) if !motion.is_straight => self.nearest(target, before),
+            (stated, Some(before)) if motion.is_straight => {
+                let found = self.poses.follow(before, target, tip_from_tool).ok_or(reason::WAY)?;
+                let fits = stated.fits(nominal, &self.poses.of_arm(&found));
+                if fits { Ok(found) } else { Err(reason::OTHER) }
+            }
+            (stated, _) => {
+                let mut all = self.poses.all(target);
+                if all.is_empty() {
+                    return Err(reason::UNREACHABLE);
+                }
+                all.retain(|q| stated.fits(nominal, &self.poses.of_arm(q)));
+                match all.len() {
+                    0 => Err(reason::NONE_FITS),
+                    1 => all.pop().ok_or(reason::NONE_FITS),
+                    _ => Err(reason::SEVERAL_FIT),
+                }
+            }
+        }
+    }
+
+    fn nearest(&self, target: &Pose, near: &[f64]) -> std::result::Result<Vec<f64>, Reason> {
+        self.poses.nearest(target, near).ok_or_else(|| {
+            if self.poses.all(target).is_empty() { reason::UNREACHABLE } else { reason::NOT_SURE }
+        })
+    }
+
+    /// The changed numbers of a target that is placed, each with its bytes.
+    fn write(
+        &mut self,
+        target: &Target,
+        placed: &Placed,
+        summary: &mut Summary,
+    ) -> std::result::Result<Vec<(std::ops::Range<usize>, String)>, Reason> {
+        let is_free = self.poses.compensation().readings().len() >= 6;
+        let nearest = self.nearest;
+        let (told, found) = self.poses.at(&placed.q);
+        if is_free && !nearest && !found.is_reached() {
+            return Err(reason::OUT_OF_REACH);
+        }
+        let (moved, is_other_branch) = ((found.moved_m, found.turned_rad), found.is_other_branch);
+        let left = (found.left_m, found.left_rad);
+        let readings = found.readings.to_vec();
+        let numbers = match target.meant {
+            Meant::Joints => readings.clone(),
+            Meant::Pose(form) => {
+                if is_other_branch {
+                    return Err(reason::OTHER_BRANCH);
+                }
+                if self.poses.compensation().is_beyond_limits(&readings) {
+                    return Err(reason::LIMITS);
+                }
+                let nominal = self.poses.compensation().nominal();
+                let tip_from_tool = self.given.flange * placed.tool;
+                let pose = (self.given.base * placed.frame).inverse() * told * tip_from_tool;
+                let before: Vec<f64> = target.numbers.iter().map(Number::scaled).collect();
+                let count = form.names().len();
+                let mut numbers = form.numbers(&pose, before.get(..count).unwrap_or(&[]));
+                let words = placed.stated.words(nominal, &self.poses.of_arm(&readings));
+                numbers.extend(words.ok_or(reason::WORDS)?);
+                numbers
+            }
+        };
+        let texts: Vec<String> = target
+            .numbers
+            .iter()
+            .zip(&numbers)
+            .enumerate()
+            .map(|(at, it)| number(at, it, target.meant))
+            .collect();
+        let left = self.left(target, placed, &readings, &texts, left);
+        if matches!(target.meant, Meant::Pose(_)) && (left.0 > ROUNDING || left.1 > ROUNDING) {
+            return Err(reason::SINGULAR);
+        }
+        let told = Compensated {
+            readings: &readings,
+            moved_m: moved.0,
+            turned_rad: moved.1,
+            left_m: 0.0,
+            left_rad: 0.0,
+            is_other_branch,
+        };
+        summary.include(target.line, &placed.q, &told);
+        summary.include_left(target.line, left, !found_in_reach(left));
+        let changed = target.numbers.iter().zip(texts).filter(|(_, text)| !text.is_empty());
+        Ok(changed.map(|(number, text)| (number.range.clone(), text)).collect())
+    }
+
+    /// Distance and angle that are left with the numbers as they are written.
+    fn left(
+        &self,
+        target: &Target,
+        placed: &Placed,
+        readings: &[f64],
+        texts: &[String],
+        unrounded: (f64, f64),
+    ) -> (f64, f64) {
+        let written: Vec<f64> = target
+            .numbers
+            .iter()
+            .zip(texts)
+            .map(|(number, text)| text.parse().map_or(number.value, |it: f64| it) * number.scale)
+            .collect();
+        let compensation = self.poses.compensation();
+        let meant = compensation.nominal().forward_kinematics(&self.poses.of_arm(&placed.q));
+        let commanded = match target.meant {
+            Meant::Joints => self.poses.of_arm(&written),
+            Meant::Pose(form) => {
+                let Some(pose) = form.pose(written.get(..form.names().len()).unwrap_or(&[])) else {
+                    return unrounded;
+                };
+                let tip_from_tool = self.given.flange * placed.tool;
+                let told = self.given.base * placed.frame * pose * tip_from_tool.inverse();
+                let mut q = self.poses.of_arm(readings);
+                compensation.nominal().nearest(&told, &mut q);
+                q
+            }
+        };
+        apart(&compensation.actual().forward_kinematics(&commanded), &meant)
+    }
+}
+
+fn found_in_reach((metres, radians): (f64, f64)) -> bool {
+    metres <= ROUNDING.max(REACHED) && radians <= ROUNDING.max(REACHED)
+}
+
+/// What another motion, on this line, makes of a target.
+fn joined(fate: Fate, placed: std::result::Result<Placed, Reason>, line: usize) -> Fate {
+    match (fate, placed) {
+        (Fate::Open, Ok(placed)) => Fate::Placed(placed),
+        (Fate::Open | Fate::Placed(_), Err(reason)) => Fate::Listed(reason, line),
+        (Fate::Listed(reason, line), _) => Fate::Listed(reason, line),
+        (Fate::Placed(one), Ok(other)) => match differs(&one, &other) {
+            Some(reason) => Fate::Listed(reason, line),
+            None => Fate::Placed(one),
+        },
+    }
+}
+
+/// In what two motions to one target differ.
+fn differs(one: &Placed, other: &Placed) -> Option<Reason> {
+    let is_same = |a: &Pose, b: &Pose| {
+        let (metres, radians) = apart(a, b);
+        metres < 1e-12 && radians < 1e-12
+    };
+    if !is_same(&one.tool, &other.tool) || !is_same(&one.frame, &other.frame) {
+        return Some(reason::TWO_PLACES);
+    }
+    let is_turned = |a: &f64, b: &f64| {
+        let turns = ((a - b) / TAU).round();
+        (a - b - turns * TAU).abs() > 1e-6
+    };
+    one.q.iter().zip(&other.q).any(|(a, b)| is_turned(a, b)).then_some(reason::TWO_WAYS)
+}
+
+/// A number as it is written; empty if it stays as it is.
+fn number(at: usize, (number, value): (&Number, &f64), meant: Meant) -> String {
+    let count = match meant {
+        Meant::Joints => usize::MAX,
+        Meant::Pose(form) => form.names().len(),
+    };
+    if at >= count {
+        let is_same = (value - number.value).abs() < 0.5;
+        return if is_same { String::new() } else { format!("{value:.0}") };
+    }
+    let least = match meant {
+        Meant::Pose(form) if number.scale == 1.0 => form.decimals(at),
+        Meant::Pose(_) | Meant::Joints => match number.scale.abs() {
+            it if it >= 0.5 => 9,
+            it if it >= 0.01 => 7,
+            _ => 6,
+        },
+    };
+    let decimals = number.decimals.max(least).min(17);
+    let value = value / number.scale;
+    if (value - number.value).abs() < 0.5 * 10_f64.powi(-(decimals as i32)) {
+        return String::new();
+    }
+    let text = format!("{value:.decimals$}");
+    let is_zero = text.bytes().all(|it| matches!(it, b'-' | b'0' | b'.'));
+    if is_zero { text.replace('-', "") } else { text }
+}
+
+/// A text with other bytes in some ranges.
+fn replaced(text: &[u8], mut changes: Vec<(std::ops::Range<usize>, String)>) -> Vec<u8> {
+    changes.sort_by_key(|(range, _)| range.start);
+    let mut out = Vec::with_capacity(text.len() + 4 * changes.len());
+    let mut at = 0;
+    for (range, new) in changes {
+        out.extend_from_slice(text.get(at..range.start).unwrap_or_default());
+        out.extend_from_slice(new.as_bytes());
+        at = range.end;
+    }
+    out.extend_from_slice(text.get(at..).unwrap_or_default());
+    out
+}

@@ -1,0 +1,138 @@
+//! Tools and frames that a program does not state.
+
+use super::Language;
+use super::forms::PoseForm;
+use crate::error::{Error, ErrorKind, Result};
+use crate::lie::Pose;
+
+/// Tools and frames that the user states, as the controller has them.
+///
+/// ```
+/// use poecal::compensate::{Given, Language};
+/// let mut given = Given::default();
+/// given.add_tool("2=0,0,150,0,0,0", Language::Krl)?;
+/// given.add_tool("0,0,0.1,0,0,0", Language::UrScript)?;
+/// assert!((given.tool(Some("2")).unwrap().translation.z - 0.15).abs() < 1e-15);
+/// assert!((given.tool(None).unwrap().translation.z - 0.1).abs() < 1e-15);
+/// # Ok::<(), poecal::Error>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Given {
+    /// Tools by number or name, `flange_from_tcp`; without one, the tool of programs that set none.
+    pub tools: Vec<(Option<String>, Pose)>,
+    /// Frames (work objects, bases) by number or name, `base_from_frame`; without one, the frame of programs that set none.
+    pub frames: Vec<(Option<String>, Pose)>,
+    /// `model_from_base`: the controller's base in the base of the model.
+    pub base: Pose,
+    /// `tip_from_flange`: the controller's flange in the tip of the model.
+    pub flange: Pose,
+}
+
+impl Default for Given {
+    fn default() -> Self {
+        let (base, flange) = (Pose::identity(), Pose::identity());
+        Given { tools: Vec::new(), frames: Vec::new(), base, flange }
+    }
+}
+
+impl Given {
+    /// A tool by its number or name (letters of either case), or the one without.
+    #[must_use]
+    pub fn tool(&self, name: Option<&str>) -> Option<Pose> {
+        named(&self.tools, name)
+    }
+
+    /// A frame by its number or name (letters of either case), or the one without.
+    #[must_use]
+    pub fn frame(&self, name: Option<&str>) -> Option<Pose> {
+        named(&self.frames, name)
+    }
+}
+
+fn named(poses: &[(Option<String>, Pose)], name: Option<&str>) -> Option<Pose> {
+    let is = |it: &Option<String>| match (it, name) {
+        (Some(it), Some(name)) => it.eq_ignore_ascii_case(name),
+        (None, None) => true,
+        (Some(_), None) | (None, Some(_)) => false,
+    };
+    poses.iter().find(|(it, _)| is(it)).map(|(_, pose)| *pose)
+}
+
+impl Given {
+    /// Adds a tool as words say it: `[NAME=]NUMBERS`, the numbers as the language writes poses.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Option`].
+    pub fn add_tool(&mut self, words: &str, language: Language) -> Result<()> {
+        let found = named_pose(words, language, "--tool")?;
+        add(&mut self.tools, found, words, "--tool")
+    }
+
+    /// Adds a frame as words say it: `[NAME=]NUMBERS`, the numbers as the language writes poses.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Option`].
+    pub fn add_frame(&mut self, words: &str, language: Language) -> Result<()> {
+        let found = named_pose(words, language, "--frame")?;
+        add(&mut self.frames, found, words, "--frame")
+    }
+
+    /// Sets the controller's base in the model's, by numbers as the language writes poses.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Option`].
+    pub fn set_base(&mut self, words: &str, language: Language) -> Result<()> {
+        self.base = plain_pose(words, language, "--base")?;
+        Ok(())
+    }
+
+    /// Sets the controller's flange in the model's tip, by numbers as the language writes poses.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Option`].
+    pub fn set_flange(&mut self, words: &str, language: Language) -> Result<()> {
+        self.flange = plain_pose(words, language, "--flange")?;
+        Ok(())
+    }
+}
+
+type Named = (Option<String>, Pose);
+
+fn add(poses: &mut Vec<Named>, found: Named, words: &str, option: &str) -> Result<()> {
+    let is_same = |it: &Named| match (&it.0, &found.0) {
+        (Some(one), Some(other)) => one.eq_ignore_ascii_case(other),
+        (None, None) => true,
+        (Some(_), None) | (None, Some(_)) => false,
+    };
+    if poses.iter().any(is_same) {
+        let message = format!("found {option} {words} for one that is stated already, expected each once");
+        return Err(Error::new(ErrorKind::Option, message));
+    }
+    poses.push(found);
+    Ok(())
+}
+
+fn plain_pose(words: &str, language: Language, option: &str) -> Result<Pose> {
+    let numbers: Vec<Option<f64>> =
+        words.split(',').map(|it| it.trim().parse().ok().filter(|it: &f64| it.is_finite())).collect();
+    let form = PoseForm::of(language);
+    let expected = form.names();
+    let found: Option<Vec<f64>> = numbers.into_iter().collect();
+    found.filter(|it| it.len() == expected.len()).and_then(|it| form.pose(&it)).ok_or_else(|| {
+        let message = format!(
+            "found {option} {words}, expected {} as {} writes poses ({})",
+            expected.join(","),
+            language.title(),
+            language.units()
+        );
+        Error::new(ErrorKind::Option, message)
+    })
+}
+
+fn named_pose(words: &str, language: Language, option: &str) -> Result<Named> {
+    let (name, numbers) = match words.split_once('=') {
+        Some((name, numbers)) if !name.trim().is_empty() => (Some(name.trim().to_owned()), numbers),
+        Some(_) | None => (None, words),
+    };
+    Ok((name, plain_pose(numbers, language, option)?))
+}

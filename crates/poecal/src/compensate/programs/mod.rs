@@ -1,0 +1,122 @@
+//! Robot programs in the languages of their controllers: targets corrected in place, everything else as it was, byte for byte.
+
+mod axes;
+mod engine;
+mod flow;
+mod forms;
+mod given;
+mod krl;
+mod language;
+mod parsed;
+mod place;
+mod scan;
+mod shape;
+mod stated;
+mod summary;
+mod urscript;
+
+use crate::error::{Error, ErrorKind, Result};
+use crate::robot::Robot;
+use axes::Axes;
+use engine::Engine;
+use parsed::Parsed;
+
+pub use given::Given;
+pub use language::Language;
+pub use parsed::Listed;
+pub use place::PoseCompensation;
+pub use summary::ProgramSummary;
+
+/// Largest program, bytes.
+pub const LARGEST_PROGRAM: usize = 64 << 20;
+
+/// How programs are compensated.
+///
+/// ```
+/// use poecal::compensate::{Language, ProgramOptions};
+/// let options = ProgramOptions::of(Language::Krl);
+/// assert!(!options.check && options.given.tools.is_empty());
+/// ```
+#[derive(Clone, Debug)]
+pub struct ProgramOptions {
+    /// The language.
+    pub language: Language,
+    /// Tools and frames that the program does not state.
+    pub given: Given,
+    /// Compute what is left once more, from the written text by the robots' own forward kinematics.
+    pub check: bool,
+    /// Write the nearest configuration where the actual robot does not reach a target.
+    pub nearest: bool,
+}
+
+impl ProgramOptions {
+    /// Of a language, nothing else stated.
+    #[must_use]
+    pub fn of(language: Language) -> Self {
+        ProgramOptions { language, given: Given::default(), check: false, nearest: false }
+    }
+}
+
+/// Corrects the targets of a program for the robot `actual` at these values of its factors, where it is written for `nominal`
+/// (theory.md §2). Joint targets become those of [`Compensation`](super::Compensation), poses those of [`PoseCompensation`]; what cannot
+/// be corrected for sure stays as it is and is listed. All bytes but those of the changed numbers stay.
+///
+/// ```
+/// use poecal::compensate::{Language, ProgramOptions, compensate_program};
+/// use poecal::robot::{JointTerm, Term};
+/// let nominal = poecal::simulate::elbow();
+/// let mut actual = nominal.clone();
+/// actual.terms.push(JointTerm { joint: 1, term: Term::Offset, coefficient: 0.01 });
+/// let text = b"movej([0.1, 0.2, 0.3, 0.4, 0.5, 0.6], a=1.4) # start\n";
+/// let options = ProgramOptions::of(Language::UrScript);
+/// let (out, summary) = compensate_program(text, (&nominal, &actual), &[], &options)?;
+/// assert_eq!(out, b"movej([0.1, 0.190000000, 0.3, 0.4, 0.5, 0.6], a=1.4) # start\n");
+/// assert_eq!((summary.corrected, summary.listed.len()), (1, 0));
+/// # Ok::<(), poecal::Error>(())
+/// ```
+///
+/// # Errors
+/// [`ErrorKind::Syntax`] if the text is larger than [`LARGEST_PROGRAM`] or is no program, and as
+/// [`Compensation::new`](super::Compensation::new).
+pub fn compensate_program(
+    text: &[u8],
+    (nominal, actual): (&Robot, &Robot),
+    factors: &[f64],
+    options: &ProgramOptions,
+) -> Result<(Vec<u8>, ProgramSummary)> {
+    if text.len() > LARGEST_PROGRAM {
+        let message = format!(
+            "found a program of {} MB, expected at most {} MB: cut it into several",
+            text.len() >> 20,
+            LARGEST_PROGRAM >> 20
+        );
+        return Err(Error::new(ErrorKind::Syntax, message));
+    }
+    let mut engine = Engine::new((nominal, actual), factors, &options.given, options.nearest)?;
+    let axes = Axes::of(nominal, engine.poses.compensation());
+    let parsed = parse(options.language, text, &options.given, &axes)?;
+    let mut made = engine.correct(text, parsed);
+    if options.check {
+        let again = parse(options.language, &made.text, &options.given, &axes)?;
+        made.summary.checked =
+            Some(summary::checked(&engine, (nominal, actual), factors, &again, &made.meant));
+    }
+    let corrected = made.meant.len();
+    let summary =
+        ProgramSummary { language: options.language, corrected, listed: made.listed, changes: made.summary };
+    Ok((made.text, summary))
+}
+
+fn parse(language: Language, text: &[u8], given: &Given, axes: &Axes) -> Result<Parsed> {
+    match language {
+        Language::UrScript => urscript::parse(text, given, axes),
+        Language::Krl => krl::parse(text, given, axes),
+        Language::Rapid | Language::Fanuc => Err(Error::new(
+            ErrorKind::Option,
+            format!(
+                "found a program in {}, which is not corrected here yet, expected URScript or KRL",
+                language.title()
+            ),
+        )),
+    }
+}

@@ -1,0 +1,128 @@
+//! What the languages make of a program: its targets, its motions, and what cannot be corrected.
+
+use std::ops::Range;
+
+use serde::Serialize;
+
+use super::forms::PoseForm;
+use super::stated::Stated;
+use crate::lie::Pose;
+
+/// A place of a program that stays as it is, and why.
+///
+/// ```
+/// use poecal::compensate::{Given, Language, ProgramOptions, compensate_program};
+/// let robot = poecal::simulate::elbow();
+/// let text = b"def p():\n  movej(home)\nend\n";
+/// let options = ProgramOptions { language: Language::UrScript, given: Given::default(), check: false, nearest: false };
+/// let (_, summary) = compensate_program(text, (&robot, &robot), &[], &options)?;
+/// assert_eq!((summary.listed[0].line, summary.listed[0].name.as_str()), (2, "home"));
+/// # Ok::<(), poecal::Error>(())
+/// ```
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+pub struct Listed {
+    /// Line of the program, from 1.
+    pub line: usize,
+    /// The target's name or text.
+    pub name: String,
+    /// Why it stays as it is.
+    pub reason: String,
+}
+
+/// A program as its language understands it.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Parsed {
+    /// Targets that are stated by numbers, in the order of the text.
+    pub(crate) targets: Vec<Target>,
+    /// Motions to these targets, in the order of motion as far as it is known; each comes after [`Motion::after`].
+    pub(crate) motions: Vec<Motion>,
+    /// What cannot be corrected, as the language alone says.
+    pub(crate) listed: Vec<Listed>,
+}
+
+/// A target that is stated by numbers. It is corrected if all motions to it mean the same.
+#[derive(Clone, Debug)]
+pub(crate) struct Target {
+    /// Line of the program where the numbers stand, from 1.
+    pub(crate) line: usize,
+    /// Its name, or its text.
+    pub(crate) name: String,
+    /// Its numbers: of each reading; or as its form has a pose, then the words of its configuration, if there are some
+    /// ([`Stated::words`]).
+    pub(crate) numbers: Vec<Number>,
+    /// What it means.
+    pub(crate) meant: Meant,
+}
+
+/// What the numbers of a target mean.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Meant {
+    /// Readings in the order of the robot's; a number times its [`Number::scale`] is in rad, or m of a joint that slides.
+    Joints,
+    /// A pose of the tool in its frame; a number times its [`Number::scale`] is in the unit of the form.
+    Pose(PoseForm),
+}
+
+/// A motion to a target.
+#[derive(Clone, Debug)]
+pub(crate) struct Motion {
+    /// Index of the target.
+    pub(crate) target: usize,
+    /// Line of the program, from 1.
+    pub(crate) line: usize,
+    /// Index of the motion before it, if the program has one that is always the one before.
+    pub(crate) after: Option<usize>,
+    /// Whether the way to it is straight in space, or an arc.
+    pub(crate) is_straight: bool,
+    /// `flange_from_tcp`, the tool in the controller's flange; `None` if it is not known. Of poses only.
+    pub(crate) tool: Option<Pose>,
+    /// `base_from_frame`, the frame of the pose in the controller's base; `None` if it is not known. Of poses only.
+    pub(crate) frame: Option<Pose>,
+    /// What the program says of the configuration.
+    pub(crate) stated: Stated,
+    /// Why the target cannot be corrected, if the language says so already.
+    pub(crate) refused: Option<String>,
+}
+
+/// A number as it is written.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Number {
+    /// Its bytes, sign included.
+    pub(crate) range: Range<usize>,
+    /// Its value.
+    pub(crate) value: f64,
+    /// Digits behind the point.
+    pub(crate) decimals: usize,
+    /// What it is multiplied with to be in the unit of its target.
+    pub(crate) scale: f64,
+}
+
+impl Number {
+    /// The value in the unit of its target.
+    pub(crate) fn scaled(&self) -> f64 {
+        self.value * self.scale
+    }
+}
+
+/// A tool or a frame while a program runs.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) enum Setting {
+    /// The program has not set it: it is what the user says.
+    #[default]
+    Unset,
+    /// The program has set it to this pose.
+    Is(Pose),
+    /// The program has set it to something that is not known.
+    Unknown,
+}
+
+impl Setting {
+    /// The pose, or what the user says of programs that set none.
+    pub(crate) fn or(&self, given: Option<Pose>) -> Option<Pose> {
+        match self {
+            Setting::Unset => given,
+            Setting::Is(pose) => Some(*pose),
+            Setting::Unknown => None,
+        }
+    }
+}

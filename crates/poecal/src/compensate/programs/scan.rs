@@ -1,0 +1,247 @@
+//! Words, numbers and signs of a program, by the bytes that they have.
+
+use std::ops::Range;
+
+use super::parsed::Number;
+
+/// How a language is written.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Rules {
+    /// What begins a comment, which ends with the line.
+    pub(crate) comments: &'static [&'static str],
+    /// Signs around texts, which end with the line at the latest.
+    pub(crate) quotes: &'static [u8],
+    /// Signs that words have beside letters, digits and `_`; they may begin with them.
+    pub(crate) letters: &'static [u8],
+    /// Whether a sign between brackets takes the line end away.
+    pub(crate) is_open_in_brackets: bool,
+}
+
+/// What a token is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Kind {
+    /// A name or a keyword.
+    Word,
+    /// A number without its sign: value and digits behind the point.
+    Number(f64, usize),
+    /// A text in quotes.
+    Text,
+    /// Any other sign.
+    Sign(u8),
+    /// The end of a line.
+    LineEnd,
+}
+
+/// A piece of a program.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Token {
+    /// What it is.
+    pub(crate) kind: Kind,
+    /// Its bytes.
+    pub(crate) range: Range<usize>,
+    /// Its line, from 1.
+    pub(crate) line: usize,
+}
+
+impl Token {
+    /// Whether it is this sign.
+    pub(crate) fn is(&self, sign: u8) -> bool {
+        self.kind == Kind::Sign(sign)
+    }
+
+    /// Its bytes as text.
+    pub(crate) fn text<'t>(&self, text: &'t [u8]) -> &'t str {
+        text.get(self.range.clone()).and_then(|it| std::str::from_utf8(it).ok()).unwrap_or("")
+    }
+
+    /// Whether it is this word; letters of either case.
+    pub(crate) fn is_word(&self, text: &[u8], word: &str) -> bool {
+        self.kind == Kind::Word && self.text(text).eq_ignore_ascii_case(word)
+    }
+}
+
+/// The tokens of a program, one by one.
+#[derive(Clone, Debug)]
+pub(crate) struct Scanner<'t> {
+    text: &'t [u8],
+    rules: &'t Rules,
+    at: usize,
+    line: usize,
+    depth: usize,
+}
+
+impl<'t> Scanner<'t> {
+    pub(crate) fn new(text: &'t [u8], rules: &'t Rules) -> Self {
+        let at = if text.starts_with(b"\xef\xbb\xbf") { 3 } else { 0 };
+        Scanner { text, rules, at, line: 1, depth: 0 }
+    }
+
+    /// The tokens up to the next line end, without it; `None` at the end of the text.
+    pub(crate) fn statement(&mut self, out: &mut Vec<Token>) -> Option<()> {
+        out.clear();
+        loop {
+            match self.next() {
+                None => return (!out.is_empty()).then_some(()),
+                Some(token) if token.kind == Kind::LineEnd => return Some(()),
+                Some(token) => out.push(token),
+            }
+        }
+    }
+
+    fn end_of_line(&self) -> usize {
+        let rest = &self.text[self.at..];
+        self.at + rest.iter().position(|it| matches!(it, b'\n' | b'\r')).unwrap_or(rest.len())
+    }
+
+    fn is_letter(&self, byte: u8) -> bool {
+        byte.is_ascii_alphabetic() || byte == b'_' || byte >= 0x80 || self.rules.letters.contains(&byte)
+    }
+}
+
+impl Iterator for Scanner<'_> {
+    type Item = Token;
+
+    fn next(&mut self) -> Option<Token> {
+        loop {
+            let byte = *self.text.get(self.at)?;
+            let start = self.at;
+            let token = |kind: Kind, end: usize, line: usize| Some(Token { kind, range: start..end, line });
+            match byte {
+                b'\n' | b'\r' => {
+                    let both = self.text[self.at..].starts_with(b"\r\n");
+                    self.at += if both { 2 } else { 1 };
+                    self.line += 1;
+                    if self.depth == 0 || !self.rules.is_open_in_brackets {
+                        self.depth = 0;
+                        return token(Kind::LineEnd, self.at, self.line - 1);
+                    }
+                }
+                b' ' | b'\t' | 0x0b | 0x0c => self.at += 1,
+                _ if self.rules.comments.iter().any(|it| self.text[start..].starts_with(it.as_bytes())) => {
+                    self.at = self.end_of_line();
+                }
+                _ if self.rules.quotes.contains(&byte) => {
+                    let line_end = self.end_of_line();
+                    let inside = self.text.get(start + 1..line_end).unwrap_or_default();
+                    let closing = inside.iter().position(|it| *it == byte);
+                    self.at = closing.map_or(line_end, |it| start + 2 + it);
+                    return token(Kind::Text, self.at, self.line);
+                }
+                _ if self.is_letter(byte) => {
+                    let rest = &self.text[start..];
+                    let length = rest.iter().position(|&it| !self.is_letter(it) && !it.is_ascii_digit());
+                    self.at += length.unwrap_or(rest.len());
+                    return token(Kind::Word, self.at, self.line);
+                }
+                _ => {
+                    if let Some((length, value, decimals)) = number(&self.text[start..]) {
+                        self.at += length;
+                        return token(Kind::Number(value, decimals), self.at, self.line);
+                    }
+                    self.at += 1;
+                    match byte {
+                        b'(' | b'[' | b'{' => self.depth += 1,
+                        b')' | b']' | b'}' => self.depth = self.depth.saturating_sub(1),
+                        _ => {}
+                    }
+                    return token(Kind::Sign(byte), self.at, self.line);
+                }
+            }
+        }
+    }
+}
+
+/// The number at the beginning of a text: its length, value and digits behind the point.
+fn number(text: &[u8]) -> Option<(usize, f64, usize)> {
+    let digits = |from: usize| {
+        text.get(from..).unwrap_or_default().iter().take_while(|it| it.is_ascii_digit()).count()
+    };
+    let whole = digits(0);
+    let mut end = whole;
+    let mut decimals = 0;
+    if text.get(end) == Some(&b'.') {
+        decimals = digits(end + 1);
+        end += 1 + decimals;
+    }
+    if whole + decimals == 0 {
+        return None;
+    }
+    if matches!(text.get(end), Some(b'e' | b'E')) {
+        let sign = usize::from(matches!(text.get(end + 1), Some(b'+' | b'-')));
+        let exponent = digits(end + 1 + sign);
+        if exponent > 0 {
+            end += 1 + sign + exponent;
+        }
+    }
+    let value: f64 = std::str::from_utf8(text.get(..end)?).ok()?.parse().ok()?;
+    value.is_finite().then_some((end, value, decimals))
+}
+
+/// A number with its sign, and nothing else, in these tokens.
+pub(crate) fn signed(tokens: &[Token]) -> Option<Number> {
+    let (sign, rest) = match tokens {
+        [sign, rest @ ..] if sign.is(b'-') => (-1.0, rest),
+        [sign, rest @ ..] if sign.is(b'+') => (1.0, rest),
+        _ => (1.0, tokens),
+    };
+    let [Token { kind: Kind::Number(value, decimals), range, .. }] = rest else { return None };
+    let start = tokens.first()?.range.start;
+    Some(Number { range: start..range.end, value: sign * value, decimals: *decimals, scale: 1.0 })
+}
+
+/// Tokens between brackets, cut at the commas that are in no further bracket.
+pub(crate) fn parts(tokens: &[Token]) -> Vec<&[Token]> {
+    let mut out = Vec::new();
+    let (mut depth, mut start) = (0_usize, 0);
+    for (at, token) in tokens.iter().enumerate() {
+        match token.kind {
+            Kind::Sign(b'(' | b'[' | b'{') => depth += 1,
+            Kind::Sign(b')' | b']' | b'}') => depth = depth.saturating_sub(1),
+            Kind::Sign(b',') if depth == 0 => {
+                out.push(&tokens[start..at]);
+                start = at + 1;
+            }
+            Kind::Word | Kind::Number(..) | Kind::Text | Kind::Sign(_) | Kind::LineEnd => {}
+        }
+    }
+    if start < tokens.len() || !out.is_empty() {
+        out.push(&tokens[start..]);
+    }
+    out
+}
+
+/// What stands in a bracket at the beginning of tokens, and what follows it.
+pub(crate) fn bracket(tokens: &[Token], open: u8, close: u8) -> Option<(&[Token], &[Token])> {
+    if !tokens.first()?.is(open) {
+        return None;
+    }
+    let mut depth = 0_usize;
+    for (at, token) in tokens.iter().enumerate() {
+        if token.is(open) {
+            depth += 1;
+        } else if token.is(close) {
+            depth -= 1;
+            if depth == 0 {
+                return Some((&tokens[1..at], &tokens[at + 1..]));
+            }
+        }
+    }
+    None
+}
+
+/// The text of tokens as it stands, at most some letters of it.
+pub(crate) fn shown(text: &[u8], tokens: &[Token]) -> String {
+    let (Some(first), Some(last)) = (tokens.first(), tokens.last()) else { return String::new() };
+    let bytes = text.get(first.range.start..last.range.end).unwrap_or_default();
+    let all = String::from_utf8_lossy(bytes);
+    let line: Vec<&str> = all.split_whitespace().collect();
+    let line = line.join(" ");
+    if line.chars().count() <= MOST_SHOWN {
+        return line;
+    }
+    let cut: String = line.chars().take(MOST_SHOWN - 1).collect();
+    format!("{cut}…")
+}
+
+/// Letters of a target's text that are told.
+const MOST_SHOWN: usize = 60;

@@ -1,0 +1,35 @@
+//! What programs say of the configuration at a pose.
+
+use poecal_arm::Arm;
+
+use super::krl::status::Status;
+
+/// What a motion's text says of the configuration in which a pose is reached.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Stated {
+    /// Nothing: it is that to which a straight way leads from the motion before, or the nearest.
+    Nothing,
+    /// The nearest to this configuration, in the order of the robot's readings (rad).
+    Near(Vec<f64>),
+    /// Status and turn of KRL.
+    Krl(Status),
+}
+
+impl Stated {
+    /// Whether a configuration of the nominal arm fits the words, borders included.
+    pub(crate) fn fits(&self, nominal: &Arm, q: &[f64]) -> bool {
+        match self {
+            Stated::Nothing | Stated::Near(_) => true,
+            Stated::Krl(status) => status.fits(nominal, q),
+        }
+    }
+
+    /// The words' numbers for a configuration of the nominal arm, in the order of the target's numbers behind its pose; `None` if words would
+    /// have to change that are no numbers.
+    pub(crate) fn words(&self, nominal: &Arm, q: &[f64]) -> Option<Vec<f64>> {
+        match self {
+            Stated::Nothing | Stated::Near(_) => Some(Vec::new()),
+            Stated::Krl(status) => Some(status.words(nominal, q)),
+        }
+    }
+}

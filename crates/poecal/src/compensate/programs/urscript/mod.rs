@@ -1,0 +1,392 @@
+//! URScript: the language of Universal Robots.
+
+mod blocks;
+mod values;
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::axes::Axes;
+use super::flow::{Node, State, Walk};
+use super::forms::PoseForm;
+use super::given::Given;
+use super::parsed::{Listed, Meant, Motion, Number, Parsed, Setting, Target};
+use super::scan::{Rules, Token, bracket, parts, shown};
+use super::stated::Stated;
+use crate::error::Result;
+use crate::lie::Pose;
+use blocks::{Blocks, Program};
+use values::{Value, Variables};
+
+const RULES: Rules = Rules { comments: &["#"], quotes: b"\"'", letters: b"", is_open_in_brackets: true };
+
+/// Statements that move the robot to targets: their name, the places of the targets among the arguments, and the way there.
+const MOTIONS: [(&str, &[usize], Way); 9] = [
+    ("movej", &[0], Way::Joints),
+    ("movel", &[0], Way::Straight),
+    ("movep", &[0], Way::Straight),
+    ("movec", &[0, 1], Way::Straight),
+    ("optimovej", &[0], Way::Joints),
+    ("optimovel", &[0], Way::Straight),
+    ("servoj", &[0], Way::Stream),
+    ("servoc", &[0], Way::Stream),
+    ("mc_add_linear", &[0], Way::Unknown),
+];
+
+/// Statements after which nobody knows where the robot is.
+const AWAY: [&str; 8] = [
+    "speedj",
+    "speedl",
+    "freedrive_mode",
+    "teach_mode",
+    "force_mode",
+    "move_until",
+    "mc_run_motion",
+    "tool_contact",
+];
+
+/// How a motion gets to its target.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Way {
+    Joints,
+    Straight,
+    /// Many targets in short steps, not each of which is reached.
+    Stream,
+    Unknown,
+}
+
+/// A frame of a pose.
+#[derive(Clone, Debug)]
+enum Frame {
+    Is(Pose),
+    /// By the variable that has it.
+    Named(String),
+}
+
+/// A statement that matters.
+#[derive(Clone, Debug)]
+enum Step {
+    /// A motion to the target with this index, in these frames.
+    Move {
+        target: usize,
+        line: usize,
+        way: Way,
+        frames: Vec<Frame>,
+        stated: Stated,
+        tool: Option<Setting>,
+        is_inverse: bool,
+    },
+    /// The tool is set.
+    Tool(Setting),
+    /// Poses are those of a frame that moves; or no longer.
+    Moving(bool),
+    /// Nobody knows where the robot is.
+    Away,
+}
+
+/// Targets and motions of a program.
+pub(crate) fn parse(text: &[u8], given: &Given, axes: &Axes) -> Result<Parsed> {
+    let variables = Variables::of(text, &RULES, axes);
+    let mut reader = Reader { text, given, axes, variables, out: Parsed::default(), known: BTreeMap::new() };
+    let program = Blocks::read(text, &RULES, &mut |tokens, nodes| reader.statement(tokens, nodes))?;
+    Ok(reader.motions(&program))
+}
+
+/// Reads statements.
+struct Reader<'r> {
+    text: &'r [u8],
+    given: &'r Given,
+    axes: &'r Axes,
+    variables: Variables,
+    out: Parsed,
+    /// Targets by the byte where their numbers begin.
+    known: BTreeMap<usize, usize>,
+}
+
+/// A target of a motion, or why it is none.
+type Found = std::result::Result<Aim, String>;
+
+/// What the argument of a motion says.
+struct Aim {
+    target: usize,
+    frames: Vec<Frame>,
+    stated: Stated,
+    tool: Option<Setting>,
+    /// Whether it is made a configuration before the motion: the nearest, whatever the way.
+    is_inverse: bool,
+}
+
+mod reason {
+    pub(super) const COMPUTED: &str = "it is computed while the program runs";
+    pub(super) const ABSENT: &str = "it is stated in no line of this file";
+    pub(super) const SEVERAL: &str = "it is assigned several times";
+    pub(super) const ARGUMENT: &str = "it is handed to a routine";
+    pub(super) const EXPRESSIONS: &str = "it has words or expressions instead of numbers";
+    pub(super) const COUNT: &str = "it has another number of values than the robot has joints";
+    pub(super) const SPEED: &str = "it is a motion without a target";
+    pub(super) const UNKNOWN: &str = "the motion is none that is known here";
+    pub(super) const RELATIVE: &str = "it is relative to a target that is corrected itself";
+    pub(super) const FRAME: &str = "its frame is stated in no line of this file: state it by --frame NAME=";
+}
+
+impl Reader<'_> {
+    /// What a statement does, as nodes.
+    fn statement(&mut self, tokens: &[Token], nodes: &mut Vec<Node<Step>>) {
+        for (at, token) in tokens.iter().enumerate() {
+            let rest = &tokens[at + 1..];
+            let Some((inside, _)) = bracket(rest, b'(', b')') else { continue };
+            let name = token.text(self.text);
+            let is_run =
+                at > 0 && ["run", "join", "kill"].iter().any(|it| tokens[at - 1].text(self.text) == *it);
+            if self.variables.routines.contains(name) {
+                self.arguments(inside);
+                if !is_run {
+                    nodes.push(Node::Call(name.to_owned()));
+                }
+                continue;
+            }
+            let arguments = parts(inside);
+            if let Some((_, places, way)) = MOTIONS.iter().find(|it| it.0 == name) {
+                for &place in *places {
+                    let argument = arguments.get(place).copied().unwrap_or(&[]);
+                    let step = self.motion(token, argument, *way);
+                    nodes.push(Node::Step(step));
+                }
+            } else if name == "set_tcp" {
+                let setting = self.tool(arguments.first().copied().unwrap_or(&[]));
+                nodes.push(Node::Step(Step::Tool(setting)));
+            } else if name.starts_with("track_conveyor") || name == "stop_conveyor_tracking" {
+                nodes.push(Node::Step(Step::Moving(name.starts_with("track"))));
+            } else if AWAY.contains(&name) {
+                if name.starts_with("speed") {
+                    self.list(&tokens[at..], token.line, reason::SPEED);
+                }
+                nodes.push(Node::Step(Step::Away));
+            }
+        }
+    }
+
+    fn list(&mut self, tokens: &[Token], line: usize, reason: &str) {
+        let name = shown(self.text, tokens);
+        self.out.listed.push(Listed { line, name, reason: reason.to_owned() });
+    }
+
+    /// Targets that are handed to a routine.
+    fn arguments(&mut self, inside: &[Token]) {
+        for argument in parts(inside) {
+            let is_target = match self.variables.value(self.text, argument, self.axes) {
+                Value::Pose(_) | Value::Joints(_) => true,
+                Value::Name(name) => {
+                    matches!(self.variables.of_name(&name), Ok(Value::Pose(_) | Value::Joints(_)))
+                }
+                Value::Broken(_) | Value::Other => false,
+            };
+            if let (true, Some(first)) = (is_target, argument.first()) {
+                self.list(argument, first.line, reason::ARGUMENT);
+            }
+        }
+    }
+
+    fn motion(&mut self, word: &Token, argument: &[Token], way: Way) -> Step {
+        let argument = match argument {
+            [name, sign, rest @ ..] if sign.is(b'=') && !name.is(b'p') => rest,
+            all => all,
+        };
+        let found = if way == Way::Unknown { Err(reason::UNKNOWN.to_owned()) } else { self.aim(argument) };
+        match found {
+            Ok(aim) => Step::Move {
+                target: aim.target,
+                line: word.line,
+                way,
+                frames: aim.frames,
+                stated: aim.stated,
+                tool: aim.tool,
+                is_inverse: aim.is_inverse,
+            },
+            Err(reason) => {
+                let tokens = if argument.is_empty() { std::slice::from_ref(word) } else { argument };
+                self.list(tokens, word.line, &reason);
+                Step::Away
+            }
+        }
+    }
+
+    /// The target that an expression means.
+    fn aim(&mut self, tokens: &[Token]) -> Found {
+        let plain = |target| Aim {
+            target,
+            frames: Vec::new(),
+            stated: Stated::Nothing,
+            tool: None,
+            is_inverse: false,
+        };
+        match self.variables.value(self.text, tokens, self.axes) {
+            Value::Pose(numbers) => {
+                Ok(plain(self.target(tokens, None, numbers, Meant::Pose(PoseForm::RotationVector))))
+            }
+            Value::Joints(numbers) => Ok(plain(self.target(tokens, None, numbers, Meant::Joints))),
+            Value::Broken(reason) => Err(reason.to_owned()),
+            Value::Name(name) => match self.variables.of_name(&name)? {
+                Value::Pose(numbers) => Ok(plain(self.target(
+                    tokens,
+                    Some(&name),
+                    numbers,
+                    Meant::Pose(PoseForm::RotationVector),
+                ))),
+                Value::Joints(numbers) => Ok(plain(self.target(tokens, Some(&name), numbers, Meant::Joints))),
+                Value::Broken(reason) => Err(reason.to_owned()),
+                Value::Name(_) | Value::Other => Err(reason::COMPUTED.to_owned()),
+            },
+            Value::Other => self.of_call(tokens),
+        }
+    }
+
+    /// The target of `pose_trans(…)` or `get_inverse_kin(…)`.
+    fn of_call(&mut self, tokens: &[Token]) -> Found {
+        let computed = || reason::COMPUTED.to_owned();
+        let [name, rest @ ..] = tokens else { return Err(computed()) };
+        let Some((inside, [])) = bracket(rest, b'(', b')') else { return Err(computed()) };
+        let arguments = parts(inside);
+        match (name.text(self.text), &arguments[..]) {
+            ("pose_trans", [frame, pose]) => {
+                let frame = match self.variables.value(self.text, frame, self.axes) {
+                    Value::Pose(numbers) => Frame::Is(pose_of(&numbers).ok_or_else(computed)?),
+                    Value::Name(name) => Frame::Named(name),
+                    Value::Joints(_) | Value::Broken(_) | Value::Other => return Err(computed()),
+                };
+                let mut aim = self.aim(pose)?;
+                if !self.is_pose(aim.target) || aim.is_inverse {
+                    return Err(computed());
+                }
+                aim.frames.insert(0, frame);
+                Ok(aim)
+            }
+            ("get_inverse_kin", [pose, others @ ..]) => self.inverse(pose, others),
+            _ => Err(computed()),
+        }
+    }
+
+    fn inverse(&mut self, pose: &[Token], others: &[&[Token]]) -> Found {
+        let mut aim = self.aim(pose)?;
+        if !self.is_pose(aim.target) || aim.is_inverse {
+            return Err(reason::COMPUTED.to_owned());
+        }
+        aim.is_inverse = true;
+        for (at, argument) in others.iter().enumerate() {
+            let (name, value) = match argument {
+                [name, sign, value @ ..] if sign.is(b'=') => (name.text(self.text), value),
+                all => (
+                    ["qnear", "maxPositionError", "maxOrientationError", "tcp"]
+                        .get(at)
+                        .copied()
+                        .unwrap_or(""),
+                    *all,
+                ),
+            };
+            match name {
+                "qnear" => match self.literal(value) {
+                    Some(Value::Joints(numbers)) => {
+                        aim.stated = Stated::Near(numbers.iter().map(Number::scaled).collect());
+                    }
+                    _ => return Err(reason::COMPUTED.to_owned()),
+                },
+                "tcp" if value.len() == 1 && value[0].text(self.text).contains("active_tcp") => {}
+                "tcp" => aim.tool = Some(self.tool(value)),
+                _ => {}
+            }
+        }
+        Ok(aim)
+    }
+
+    fn is_pose(&self, target: usize) -> bool {
+        self.out.targets.get(target).is_some_and(|it| it.meant != Meant::Joints)
+    }
+
+    /// What stands there in numbers, or of a variable that is assigned once.
+    fn literal(&self, tokens: &[Token]) -> Option<Value> {
+        match self.variables.value(self.text, tokens, self.axes) {
+            Value::Name(name) => self.variables.of_name(&name).ok(),
+            value => Some(value),
+        }
+    }
+
+    fn tool(&self, tokens: &[Token]) -> Setting {
+        let named = || match self.variables.value(self.text, tokens, self.axes) {
+            Value::Name(name) => self.given.tool(Some(&name)),
+            Value::Pose(_) | Value::Joints(_) | Value::Broken(_) | Value::Other => None,
+        };
+        match self.literal(tokens) {
+            Some(Value::Pose(numbers)) => pose_of(&numbers).map_or(Setting::Unknown, Setting::Is),
+            _ => named().map_or(Setting::Unknown, Setting::Is),
+        }
+    }
+
+    /// The index of a target, made if its numbers are new.
+    fn target(&mut self, tokens: &[Token], name: Option<&str>, numbers: Vec<Number>, meant: Meant) -> usize {
+        let start = numbers.first().map_or(0, |it| it.range.start);
+        if let Some(&index) = self.known.get(&start) {
+            return index;
+        }
+        let line = match name {
+            Some(name) => self.variables.line(name),
+            None => tokens.first().map_or(0, |it| it.line),
+        };
+        let name = name.map_or_else(|| shown(self.text, tokens), str::to_owned);
+        let index = self.out.targets.len();
+        self.known.insert(start, index);
+        self.out.targets.push(Target { line, name, numbers, meant });
+        index
+    }
+
+    /// Follows the program from motion to motion.
+    fn motions(mut self, program: &Program<Step>) -> Parsed {
+        let names: BTreeSet<&str> = self.out.targets.iter().map(|it| it.name.as_str()).collect();
+        let given = self.given;
+        let at_start = given.frame(None).unwrap_or(Pose::identity());
+        let mut motions: Vec<Motion> = Vec::new();
+        let frame_of = |frame: &Frame| match frame {
+            Frame::Is(pose) => Ok(*pose),
+            Frame::Named(name) if names.contains(name.as_str()) => Err(reason::RELATIVE.to_owned()),
+            Frame::Named(name) => match (given.frame(Some(name)), self.variables.of_name(name)) {
+                (Some(pose), _) => Ok(pose),
+                (None, Ok(Value::Pose(numbers))) => {
+                    pose_of(&numbers).ok_or_else(|| reason::COMPUTED.to_owned())
+                }
+                (None, Err(reason)) if reason == reason::ABSENT => Err(reason::FRAME.to_owned()),
+                (None, Err(reason)) => Err(format!("its frame {name}: {reason}")),
+                (None, Ok(_)) => Err(format!("its frame {name}: {}", reason::COMPUTED)),
+            },
+        };
+        let mut step = |step: &Step, state: &mut State| match step {
+            Step::Tool(setting) => state.tool = *setting,
+            Step::Moving(true) => state.frame = Setting::Unknown,
+            Step::Moving(false) => state.frame = Setting::Unset,
+            Step::Away => state.last = None,
+            Step::Move { target, line, way, frames, stated, tool, is_inverse } => {
+                let product = frames.iter().map(frame_of).try_fold(at_start, |all, it| it.map(|it| all * it));
+                let frame = product.as_ref().ok().filter(|_| state.frame != Setting::Unknown).copied();
+                let tool = tool.unwrap_or(state.tool).or(given.tool(None));
+                let after = if program.threads_move { None } else { state.last };
+                motions.push(Motion {
+                    target: *target,
+                    line: *line,
+                    after,
+                    is_straight: *way != Way::Joints && !is_inverse,
+                    tool: if program.threads_set { None } else { tool },
+                    frame,
+                    stated: stated.clone(),
+                    refused: product.err(),
+                });
+                state.last = (*way != Way::Stream).then(|| motions.len() - 1);
+            }
+        };
+        let mut walk = Walk::new(&program.routines, program.size, false, &mut step);
+        walk.run(&program.main, &program.called, &|_| false);
+        self.out.motions = motions;
+        self.out
+    }
+}
+
+fn pose_of(numbers: &[Number]) -> Option<Pose> {
+    let values: Vec<f64> = numbers.iter().map(Number::scaled).collect();
+    PoseForm::RotationVector.pose(&values)
+}

@@ -1,0 +1,34 @@
+//! Robot programs, as the bytes that they are.
+
+use std::io::Read as _;
+use std::path::Path;
+
+use super::source;
+use crate::error::{Error, ErrorKind, Result};
+
+/// Largest program that is read, bytes.
+const LARGEST: u64 = 64 << 20;
+
+/// The bytes of a robot program, of whatever encoding.
+///
+/// # Errors
+/// [`ErrorKind::File`] if it is a directory, missing, unreadable, larger than 64 MiB, or empty; [`ErrorKind::Syntax`] if it is text of two
+/// bytes a letter.
+pub fn read_program(path: impl AsRef<Path>) -> Result<Vec<u8>> {
+    let path = path.as_ref();
+    let expected = "a robot program";
+    let mut bytes = Vec::new();
+    source::open(path, expected, LARGEST)?
+        .read_to_end(&mut bytes)
+        .map_err(|error| source::unreadable(path, &error, expected))?;
+    if bytes.iter().all(u8::is_ascii_whitespace) {
+        let message = "the file is empty, expected a robot program";
+        return Err(Error::new(ErrorKind::File, message).in_file(path));
+    }
+    if bytes.contains(&0) {
+        let message = "found zero bytes, expected a robot program as text with one byte for each letter of a word (ASCII, Latin-1, UTF-8): save \
+                       it so";
+        return Err(Error::new(ErrorKind::Syntax, message).in_file(path));
+    }
+    Ok(bytes)
+}
