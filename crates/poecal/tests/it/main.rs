@@ -46,6 +46,7 @@ mod moves;
 mod noise_free;
 mod offsets;
 mod oracle;
+mod programs;
 mod promises;
 mod quantities;
 #[path = "../reference/mod.rs"]

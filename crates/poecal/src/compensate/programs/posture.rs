@@ -3,6 +3,8 @@
 use nalgebra::Vector3;
 use poecal_arm::Arm;
 
+use super::shape::{axes, wrist_centre};
+
 /// Angle (rad) within which a joint may be on either side of a border.
 pub(super) const MARGIN: f64 = 0.01;
 /// Share of the reach below which a place is on neither side of an axis.
@@ -10,7 +12,7 @@ const ASIDE: f64 = 0.005;
 /// Share of the reach within which axes of a wrist meet.
 const MEET: f64 = 1e-3;
 
-/// An axis: its direction, and a point on it.
+/// An axis: a point on it, and its direction.
 type Axis = (Vector3<f64>, Vector3<f64>);
 
 /// An arm whose readings are 0 where makers have them so: lower arm upright, forearm level and to the front, wrist straight. Only of such an
@@ -48,34 +50,33 @@ pub(super) struct Bent {
 impl<'a> Posture<'a> {
     /// Of an arm; `None` if it is not built and zeroed so.
     pub(super) fn new(arm: &'a Arm) -> Option<Self> {
-        let axes = axes(arm, &[0.0; 6])?;
-        let wrist = wrist(&axes);
+        let (axes, wrist) = placed(arm, &[0.0; 6])?;
         let reach = arm.reach_m();
-        let meets = |(direction, point): &Axis| {
+        let meets = |(point, direction): &Axis| {
             let off = wrist - point;
             (off - direction * direction.dot(&off)).norm() < MEET * reach
         };
-        let level = |it: Vector3<f64>| it - axes[0].0 * axes[0].0.dot(&it);
-        let across = |it: Vector3<f64>| it - axes[1].0 * axes[1].0.dot(&it);
-        let lower = across(axes[2].1 - axes[1].1);
-        let front = level(wrist - axes[0].1);
+        let level = |it: Vector3<f64>| it - axes[0].1 * axes[0].1.dot(&it);
+        let across = |it: Vector3<f64>| it - axes[1].1 * axes[1].1.dot(&it);
+        let lower = across(axes[2].0 - axes[1].0);
+        let front = level(wrist - axes[0].0);
         let up = lower.try_normalize(MEET * reach)?;
         let is_built = axes[3..].iter().all(meets)
-            && axes[1].0.cross(&axes[2].0).norm() < MARGIN
-            && axes[0].0.dot(&axes[1].0).abs() < MARGIN
-            && axes[3].0.dot(&axes[4].0).abs() < MARGIN
-            && axes[3].0.cross(&axes[5].0).norm() < MARGIN
-            && axes[4].0.cross(&axes[1].0).norm() < MARGIN;
-        let is_zeroed = up.dot(&axes[0].0).abs() > 0.95
-            && axes[3].0.dot(&axes[0].0).abs() < 0.2
+            && axes[1].1.cross(&axes[2].1).norm() < MARGIN
+            && axes[0].1.dot(&axes[1].1).abs() < MARGIN
+            && axes[3].1.dot(&axes[4].1).abs() < MARGIN
+            && axes[3].1.cross(&axes[5].1).norm() < MARGIN
+            && axes[4].1.cross(&axes[1].1).norm() < MARGIN;
+        let is_zeroed = up.dot(&axes[0].1).abs() > 0.95
+            && axes[3].1.dot(&axes[0].1).abs() < 0.2
             && across(front).norm() > 0.1 * reach;
         if !is_built || !is_zeroed {
             return None;
         }
         let front = across(front).normalize();
         // Turning by the fifth joint moves the hand, which points to the front, by z₅ × f.
-        let down = -axes[4].0.cross(&front).dot(&up);
-        let side = lower.cross(&(wrist - axes[1].1)).dot(&axes[1].0).signum();
+        let down = -axes[4].1.cross(&front).dot(&up);
+        let side = lower.cross(&(wrist - axes[1].0)).dot(&axes[1].1).signum();
         Some(Posture { arm, front, side, up, is_down_negative: down < 0.0 })
     }
 
@@ -86,16 +87,15 @@ impl<'a> Posture<'a> {
 
     /// How it is bent at readings (rad).
     pub(super) fn at(&self, q: &[f64; 6]) -> Bent {
-        let Some(axes) = axes(self.arm, q) else { return Bent::default() };
-        let wrist = wrist(&axes);
+        let Some((axes, wrist)) = placed(self.arm, q) else { return Bent::default() };
         let reach = self.arm.reach_m();
-        let first = axes[0].0;
+        let first = axes[0].1;
         // The front turns with the second axis, which at zero is across it.
         let front = self.turned(&axes, self.front);
-        let ahead = front.dot(&(wrist - axes[0].1));
-        let across = |it: Vector3<f64>| it - axes[1].0 * axes[1].0.dot(&it);
-        let (lower, whole) = (across(axes[2].1 - axes[1].1), across(wrist - axes[1].1));
-        let side = self.side * lower.cross(&whole).dot(&axes[1].0) / lower.norm();
+        let ahead = front.dot(&(wrist - axes[0].0));
+        let across = |it: Vector3<f64>| it - axes[1].1 * axes[1].1.dot(&it);
+        let (lower, whole) = (across(axes[2].0 - axes[1].0), across(wrist - axes[1].0));
+        let side = self.side * lower.cross(&whole).dot(&axes[1].1) / lower.norm();
         let upright = lower.normalize().dot(&(first * self.up.dot(&first).signum()));
         let told = |value: f64, least: f64| (value.abs() > least).then_some(value > 0.0);
         Bent {
@@ -111,39 +111,24 @@ impl<'a> Posture<'a> {
         let Some(second) = self.arm.screws().get(1).map(poecal_arm::lie::Screw::direction) else {
             return direction;
         };
-        let first = axes[0].0;
+        let first = axes[0].1;
         let other = first.cross(&second);
-        let now = first.cross(&axes[1].0);
-        axes[1].0 * direction.dot(&second) + now * direction.dot(&other)
+        let now = first.cross(&axes[1].1);
+        axes[1].1 * direction.dot(&second) + now * direction.dot(&other)
     }
 }
 
-/// The axes of six joints at readings, each by its point that is nearest to the tip.
-fn axes(arm: &Arm, q: &[f64; 6]) -> Option<[Axis; 6]> {
+/// The axes of six joints at readings, directions of length 1, and the centre of the wrist.
+fn placed(arm: &Arm, q: &[f64; 6]) -> Option<([Axis; 6], Vector3<f64>)> {
     if arm.joints() != 6 {
         return None;
     }
-    let tip = arm.forward_kinematics(q).translation;
-    let moved = arm.jacobian(q);
-    let mut out = [(Vector3::zeros(), Vector3::zeros()); 6];
-    for (axis, (v, w)) in out.iter_mut().zip(&moved) {
-        let size = w.norm_squared();
-        if size < 1e-6 {
-            return None;
-        }
-        // v = w × (tip - o)
-        *axis = (w / size.sqrt(), tip + w.cross(v) / size);
+    let mut axes: [Axis; 6] = axes(arm, q).try_into().ok()?;
+    for (_, direction) in &mut axes {
+        *direction = direction.try_normalize(1e-3)?;
     }
-    Some(out)
-}
-
-/// The point of the fifth axis that is nearest to the fourth.
-fn wrist(axes: &[Axis; 6]) -> Vector3<f64> {
-    let ((four, of_four), (five, of_five)) = (axes[3], axes[4]);
-    let off = of_four - of_five;
-    let across = four.dot(&five);
-    let along = (five.dot(&off) - across * four.dot(&off)) / (1.0 - across * across).max(1e-9);
-    of_five + five * along
+    let wrist = wrist_centre(&axes)?;
+    Some((axes, wrist))
 }
 
 #[cfg(test)]

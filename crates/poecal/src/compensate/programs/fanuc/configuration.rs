@@ -6,7 +6,7 @@ use poecal_arm::Arm;
 
 use super::super::parsed::Number;
 use super::super::posture::{MARGIN, Posture};
-use super::super::scan::{Kind, Token, signed};
+use super::super::scan::{Token, signed};
 
 /// Letters and turn numbers.
 ///
@@ -27,13 +27,8 @@ pub(crate) struct Configuration {
 const ORDERS: [[usize; 3]; 2] = [[0, 3, 5], [3, 4, 5]];
 
 impl Configuration {
-    /// Of a text in quotes, with its turn numbers.
-    pub(super) fn read(text: &[u8], token: &Token) -> Option<(Self, Vec<Number>)> {
-        if token.kind != Kind::Text || token.range.len() < 2 {
-            return None;
-        }
-        let inside = token.range.start + 1..token.range.end - 1;
-        let tokens: Vec<Token> = super::tokens(text, inside, token.line).collect();
+    /// Of what stands in quotes, with its turn numbers.
+    pub(super) fn read(text: &[u8], tokens: &[Token]) -> Option<(Self, Vec<Number>)> {
         let mut parts = tokens.split(|it| it.is(b','));
         let mut letters = (None, None, None);
         for letter in parts.next()? {

@@ -66,6 +66,11 @@ impl<'a> Instructions<'a> {
         if bytes.get(digits) != Some(&b':') {
             return;
         }
+        if bytes.iter().take(digits).any(u8::is_ascii_digit) && !self.open.is_empty() {
+            // The one before has no end.
+            let instruction = std::mem::take(&mut self.open);
+            self.instruction(&instruction);
+        }
         let start = digits + 1;
         let rest = bytes.get(start..).unwrap_or_default().trim_ascii_start();
         // Remarks, and instructions that are switched off.

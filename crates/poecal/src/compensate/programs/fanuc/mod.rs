@@ -16,13 +16,14 @@ use instructions::{Instructions, Move};
 use positions::{Group, Position, positions};
 
 use super::forms::PoseForm;
-use super::parsed::{Given, Listed, Meant, Motion, Number, Parsed, Target};
+use super::given::Given;
+use super::parsed::{Listed, Meant, Motion, Number, Parsed, Target};
 use super::scan::{Rules, Scanner, Token};
 use super::stated::Stated;
 use crate::lie::Pose;
 
-/// How the language is written; comments are told by where they stand.
-const RULES: Rules = Rules { comments: &[], quotes: b"'", letters: b"", is_open_in_brackets: false };
+/// How the language is written. Comments are told by where they stand, and a quote is also a letter of comments and names.
+const RULES: Rules = Rules { comments: &[], quotes: b"", letters: b"", is_open_in_brackets: false };
 
 /// The tokens of a part of a program that begins on a line.
 fn tokens(text: &[u8], part: Range<usize>, line: usize) -> impl Iterator<Item = Token> {
@@ -111,6 +112,7 @@ impl Maker<'_> {
                         is_straight: false,
                         tool,
                         frame,
+                        refused: None,
                         stated,
                     };
                     self.targets.insert(position.number, (target_index, motion));

@@ -55,9 +55,14 @@ pub(super) fn positions(text: &[u8], start: usize, line: usize) -> Vec<Position>
     out
 }
 
+/// Most tokens of a position's number and name.
+const LONGEST_HEAD: usize = 80;
+
 /// The position that begins with this word, and what follows it.
 fn position<'t>(text: &[u8], word: &Token, after: &'t [Token]) -> Option<(Position, &'t [Token])> {
-    let (index, body) = bracket(after, b'[', b']')?;
+    let near = after.get(..after.len().min(LONGEST_HEAD))?;
+    let (index, rest) = bracket(near, b'[', b']')?;
+    let body = after.get(near.len() - rest.len()..)?;
     let Kind::Number(number, 0) = index.first()?.kind else { return None };
     let (inner, rest) = braces(body)?;
     let end = body.first()?.range.start;
@@ -79,13 +84,17 @@ fn position<'t>(text: &[u8], word: &Token, after: &'t [Token]) -> Option<(Positi
     Some((Position { number: number as u32, line: word.line, name, groups }, rest))
 }
 
-/// What stands between braces; up to the next position where the closing one is missing.
+/// What stands between braces; `None` where the closing one is missing.
 fn braces(tokens: &[Token]) -> Option<(&[Token], &[Token])> {
     if !tokens.first()?.is(b'{') {
         return None;
     }
-    let end = tokens.iter().position(|it| it.is(b'}'))?;
-    Some((tokens.get(1..end)?, tokens.get(end + 1..)?))
+    let inner = tokens.get(1..)?;
+    let end = inner
+        .iter()
+        .position(|it| it.is(b'}') || it.is(b'{'))
+        .filter(|it| inner.get(*it).is_some_and(|it| it.is(b'}')))?;
+    Some((inner.get(..end)?, inner.get(end + 1..)?))
 }
 
 fn is_group(word: &str) -> bool {
@@ -126,10 +135,11 @@ fn group(text: &[u8], tokens: &[Token]) -> Group {
         } else if name == "UT" {
             pose.tool = whole();
         } else if name == "CONFIG" {
-            let Some((configuration, turns)) = value.first().and_then(|it| Configuration::read(text, it))
-            else {
-                continue;
+            let inside = match value {
+                [open, inside @ .., close] if open.is(QUOTE) && close.is(QUOTE) => inside,
+                _ => continue,
             };
+            let Some((configuration, turns)) = Configuration::read(text, inside) else { continue };
             pose.configuration = Some(configuration);
             pose.numbers = turns;
         } else if let Some(of) = name.strip_prefix('J').and_then(|it| it.parse::<usize>().ok()) {
@@ -156,7 +166,14 @@ fn group(text: &[u8], tokens: &[Token]) -> Group {
     }
 }
 
-/// Entries between commas, each of at least a name and a sign.
+const QUOTE: u8 = b'\'';
+
+/// Entries between commas outside of quotes.
 fn entries(tokens: &[Token]) -> impl Iterator<Item = &[Token]> {
-    tokens.split(|it| it.is(b',')).filter(|it| !it.is_empty())
+    let mut is_quoted = false;
+    let ends = tokens.split(move |it| {
+        is_quoted ^= it.is(QUOTE);
+        it.is(b',') && !is_quoted
+    });
+    ends.filter(|it| !it.is_empty())
 }

@@ -30,7 +30,8 @@ impl Configuration {
             && self.quarters.iter().zip(JOINTS).all(|(&quarter, joint)| is_in(quarter, q.get(joint), MARGIN))
     }
 
-    /// Whether the branch fits, as far as it is told: of arms whose branches are plain, with the lower arm upright.
+    /// Whether the branch fits, as far as it is told: of arms whose sides are plain. What is before and behind the lower arm is plain where
+    /// that is upright, and the wrist before the first axis.
     pub(crate) fn branch_fits(&self, nominal: &Arm, q: &[f64]) -> bool {
         let Ok(q) = <&[f64; 6]>::try_from(q) else { return false };
         let Some(posture) = Posture::new(nominal).filter(|_| (0..8).contains(&self.branch)) else {
@@ -40,7 +41,7 @@ impl Configuration {
         let agrees = |found: Option<bool>, bit: i32| found.is_none_or(|it| it == (self.branch & bit == 0));
         agrees(bent.is_front, 4)
             && agrees(bent.is_wrist_positive, 1)
-            && (bent.is_arm_up != Some(true) || agrees(bent.is_before_arm, 2))
+            && (bent.is_arm_up != Some(true) || bent.is_front != Some(true) || agrees(bent.is_before_arm, 2))
     }
 
     /// The four numbers at a configuration of the nominal arm (rad): quarter turns as they are, where they hold.

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use super::super::scan::{Kind, Token};
-use super::outline::{Outline, Statement};
+use super::outline::{Outline, Routine, Statement};
 use super::tokens::{ASSIGN, Value, cut, lower, value, written};
 
 /// Kinds of data that matter here.
@@ -19,6 +19,18 @@ pub(super) enum Sort {
     Other,
 }
 
+/// What data is given to.
+#[derive(Clone, Debug)]
+pub(super) struct Given {
+    pub(super) line: usize,
+    /// Its name as it is written.
+    pub(super) to: String,
+    pub(super) is_function: bool,
+}
+
+/// Most different names of routines that are kept for one.
+const MOST_GIVEN: usize = 32;
+
 /// Data by its declaration.
 #[derive(Clone, Debug)]
 pub(super) struct Data {
@@ -31,8 +43,8 @@ pub(super) struct Data {
     pub(super) value: Option<Value>,
     /// Line of the first statement that changes it.
     pub(super) changed: Option<usize>,
-    /// Line of the first routine or function that is given it, and its name.
-    pub(super) given: Option<(usize, String)>,
+    /// Routines, instructions and functions that are given it: the line of each.
+    pub(super) given: Vec<Given>,
     /// Whether another declaration has the same name at the same place.
     pub(super) is_double: bool,
 }
@@ -65,7 +77,7 @@ impl Declared {
                     dimensions: 0,
                     value: None,
                     changed: None,
-                    given: None,
+                    given: Vec::new(),
                     is_double: false,
                 };
                 out.add(Seen::Routine(index), data);
@@ -133,10 +145,26 @@ impl Declared {
     }
 
     /// Data that a statement hands to a routine or function.
-    pub(super) fn give(&mut self, name: &str, to: &str, statement: &Statement) {
-        if let Some(data) = self.find(name, statement).and_then(|at| self.data.get_mut(at)) {
-            data.given.get_or_insert_with(|| (statement.line, to.to_owned()));
+    pub(super) fn give(&mut self, name: &str, to: &str, is_function: bool, statement: &Statement) {
+        let Some(data) = self.find(name, statement).and_then(|at| self.data.get_mut(at)) else { return };
+        let is_known = data.given.iter().any(|it| it.to.eq_ignore_ascii_case(to));
+        if !is_known && data.given.len() < MOST_GIVEN {
+            data.given.push(Given { line: statement.line, to: to.to_owned(), is_function });
         }
+    }
+
+    /// What may change a tool or a work object that it is given: routines that are not in the file, and those that change one of their
+    /// parameters or hand it on. Functions of the controller do not.
+    pub(super) fn changes_it<'d>(&self, data: &'d Data, outline: &Outline) -> Option<&'d Given> {
+        let mut routines = data.given.iter().filter(|it| !it.is_function);
+        routines.find(|it| {
+            let named = |routine: &(usize, &Routine)| it.to.eq_ignore_ascii_case(&routine.1.name);
+            let Some((routine, of)) = outline.routines.iter().enumerate().find(named) else { return true };
+            let parameter = |name: &String| self.places.get(&(Seen::Routine(routine), name.clone()));
+            let own = of.parameters.iter().filter_map(parameter).filter_map(|&at| self.data.get(at));
+            data.given.len() >= MOST_GIVEN
+                || own.into_iter().any(|it| it.changed.is_some() || !it.given.is_empty())
+        })
     }
 
     /// Functions in an expression, and the data that they are given: those that only take a target somewhere else, or measure it, are none.
@@ -158,7 +186,7 @@ impl Declared {
                         && !HARMLESS.contains(&function.to_ascii_lowercase().as_str())
                     {
                         let function = function.clone();
-                        self.give(&lower(text, token), &function, statement);
+                        self.give(&lower(text, token), &function, true, statement);
                     }
                 }
                 Kind::Number(..) | Kind::Text | Kind::Sign(_) | Kind::LineEnd => {}
@@ -216,7 +244,7 @@ fn declaration(tokens: &[Token], text: &[u8]) -> Option<(Data, bool)> {
         dimensions,
         value: written_value.map(|it| value(it, text, 0)),
         changed: None,
-        given: None,
+        given: Vec::new(),
         is_double: false,
     };
     Some((data, is_local))

@@ -21,7 +21,8 @@ use outline::Statement;
 use targets::{Held, Move, Moves};
 use tokens::tokens;
 
-use super::parsed::{Given, Listed, Parsed};
+use super::given::Given;
+use super::parsed::{Listed, Parsed};
 use super::scan::{Kind, Token, shown};
 
 /// The targets and motions of a program.
@@ -35,7 +36,7 @@ pub(crate) fn parse(text: &[u8], given: &Given) -> Parsed {
     for (index, statement) in outline.statements.iter().enumerate() {
         reader.statement(index, statement, &tokens, &mut declared);
     }
-    let mut out = targets::parsed(&reader.moves, &declared, given, text);
+    let mut out = targets::parsed(&reader.moves, &declared, &outline, given, text);
     out.listed.append(&mut reader.listed);
     out.listed.sort();
     out.listed.dedup();
@@ -93,7 +94,7 @@ impl Reader<'_> {
         let values = instruction.options.iter().map(|(_, value)| *value);
         for given in instruction.arguments.iter().copied().chain(values) {
             if let Argument::Name(of, _) = argument(given, self.text) {
-                declared.give(&of, &name, statement);
+                declared.give(&of, &name, false, statement);
             }
         }
     }

@@ -33,7 +33,7 @@ impl Modal {
         let mut routine = None;
         let mut handler = 0;
         for (index, statement) in outline.statements.iter().enumerate() {
-            let outermost = outermost(outline, statement.block);
+            let outermost = outline.outermost(statement.block);
             if statement.routine != routine || outermost != handler {
                 if let Some((line, _)) = on.take() {
                     out.everywhere.get_or_insert(line);
@@ -79,15 +79,6 @@ impl Modal {
     pub(super) fn at(&self, index: usize) -> Option<usize> {
         self.on.get(index).copied().flatten().or(self.everywhere)
     }
-}
-
-fn outermost(outline: &Outline, mut block: usize) -> usize {
-    while let Some(&around) = outline.around.get(block)
-        && around != block
-    {
-        block = around;
-    }
-    block
 }
 
 /// Whether an instruction switches it on or off.

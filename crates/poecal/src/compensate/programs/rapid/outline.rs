@@ -32,21 +32,28 @@ pub(super) struct Routine {
 pub(super) struct Outline {
     pub(super) statements: Vec<Statement>,
     pub(super) routines: Vec<Routine>,
-    /// Of each block, the one around it: of a routine's own block, itself.
-    pub(super) around: Vec<usize>,
+    /// Blocks, each after the one around it.
+    pub(super) blocks: Vec<Block>,
+}
+
+/// A block of statements: a routine's own, or a branch, a loop, a handler of errors in it.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Block {
+    /// The outermost block around it.
+    outermost: usize,
+    /// The first block after it and those within.
+    end: usize,
 }
 
 impl Outline {
     /// Whether a block is another one or lies in it.
-    pub(super) fn is_in(&self, mut block: usize, other: usize) -> bool {
-        // Blocks are numbered from the outer to the inner.
-        while block > other {
-            match self.around.get(block) {
-                Some(&around) if around != block => block = around,
-                _ => return false,
-            }
-        }
-        block == other
+    pub(super) fn is_in(&self, block: usize, other: usize) -> bool {
+        block >= other && self.blocks.get(other).is_some_and(|it| block < it.end)
+    }
+
+    /// The outermost block around a block.
+    pub(super) fn outermost(&self, block: usize) -> usize {
+        self.blocks.get(block).map_or(block, |it| it.outermost)
     }
 }
 
@@ -56,7 +63,7 @@ pub(super) fn outline(tokens: &[Token], text: &[u8]) -> Outline {
         tokens,
         text,
         at: 0,
-        out: Outline { around: vec![0], ..Outline::default() },
+        out: Outline { blocks: vec![Block { outermost: 0, end: 1 }], ..Outline::default() },
         open: vec![0],
         routine: None,
         module: 0,
@@ -120,7 +127,7 @@ impl Reader<'_> {
             }
             "endmodule" | "endproc" | "endfunc" | "endtrap" => {
                 self.routine = None;
-                self.open = vec![0];
+                self.leave_all();
                 self.at += 1;
             }
             "local" | "task"
@@ -171,7 +178,7 @@ impl Reader<'_> {
             }
             "error" | "undo" | "backward" if self.routine.is_some() => {
                 // Reached from anywhere in the routine: a block of its own.
-                self.open = vec![0];
+                self.leave_all();
                 self.enter();
                 self.at += 1;
                 self.skip_brackets();
@@ -182,16 +189,27 @@ impl Reader<'_> {
 
     fn enter(&mut self) {
         self.is_entry = true;
-        let block = self.out.around.len();
+        let block = self.out.blocks.len();
         let around = self.open.last().copied().filter(|it| *it != 0);
-        self.out.around.push(around.unwrap_or(block));
+        let outermost = around.map_or(block, |it| self.out.outermost(it));
+        self.out.blocks.push(Block { outermost, end: usize::MAX });
         self.open.push(block);
     }
 
     fn leave(&mut self) {
         self.is_entry = true;
         if self.open.len() > 1 {
-            self.open.pop();
+            let end = self.out.blocks.len();
+            if let Some(block) = self.open.pop().and_then(|it| self.out.blocks.get_mut(it)) {
+                block.end = end;
+            }
+        }
+    }
+
+    /// Leaves all blocks.
+    fn leave_all(&mut self) {
+        while self.open.len() > 1 {
+            self.leave();
         }
     }
 
@@ -217,7 +235,7 @@ impl Reader<'_> {
         }
         self.routine = Some(self.out.routines.len());
         self.out.routines.push(Routine { name, parameters });
-        self.open = vec![0];
+        self.leave_all();
         self.enter();
     }
 

@@ -3,12 +3,13 @@
 use std::collections::HashMap;
 
 use super::super::forms::PoseForm;
-use super::super::parsed::{Given, Listed, Meant, Motion, Number, Parsed, Target};
+use super::super::given::Given;
+use super::super::parsed::{Listed, Meant, Motion, Number, Parsed, Target};
 use super::super::stated::Stated;
 use super::configuration::Configuration;
 use super::declared::{Data, Declared, Sort};
 use super::frames::{has_length, numbers, tool, work_object};
-use super::outline::Statement;
+use super::outline::{Outline, Statement};
 use super::tokens::Value;
 use crate::lie::Pose;
 
@@ -121,7 +122,13 @@ impl Moves {
 }
 
 /// Targets, motions and reasons.
-pub(super) fn parsed(moves: &Moves, declared: &Declared, given: &Given, text: &[u8]) -> Parsed {
+pub(super) fn parsed(
+    moves: &Moves,
+    declared: &Declared,
+    outline: &Outline,
+    given: &Given,
+    text: &[u8],
+) -> Parsed {
     let lines = text.iter().enumerate().filter(|(_, it)| **it == b'\n').map(|(at, _)| at).collect();
     let mut by_place: HashMap<&To, Vec<usize>> = HashMap::new();
     for (number, going) in moves.going.iter().enumerate() {
@@ -131,6 +138,7 @@ pub(super) fn parsed(moves: &Moves, declared: &Declared, given: &Given, text: &[
         moves,
         by_place,
         declared,
+        outline,
         given,
         lines,
         targets: Vec::new(),
@@ -158,6 +166,7 @@ struct Maker<'a> {
     moves: &'a Moves,
     by_place: HashMap<&'a To, Vec<usize>>,
     declared: &'a Declared,
+    outline: &'a Outline,
     given: &'a Given,
     /// Ends of lines.
     lines: Vec<usize>,
@@ -182,8 +191,9 @@ impl Maker<'_> {
         if let Some(line) = data.changed {
             return self.list(data.line, &data.name, format!("changed by the program on line {line}"));
         }
-        if let Some((line, to)) = &data.given {
-            let reason = format!("given to {to} on line {line}, whose use of it is not known");
+        if let Some(given) = data.given.first() {
+            let reason =
+                format!("given to {} on line {}, whose use of it is not known", given.to, given.line);
             return self.list(data.line, &data.name, reason);
         }
         let mut elements = Vec::new();
@@ -228,6 +238,7 @@ impl Maker<'_> {
                 is_straight: of.is_straight,
                 tool: known.map(|it| it.0),
                 frame: known.map(|it| it.1),
+                refused: None,
                 stated: if of.is_not_followed { Stated::Nothing } else { stated.clone() },
             };
             match own.get(number).and_then(|&it| self.motions.get_mut(it)) {
@@ -265,6 +276,20 @@ impl Maker<'_> {
         }
         let known = moves.iter().map(|it| Ok((self.tool(&it.tool)?, self.frame(&it.object)?)));
         let known = known.collect::<Result<Vec<Known>, String>>()?;
+        for (what, is_other) in [
+            (
+                "with different tools",
+                known.iter().position(|it| Some(&it.0) != known.first().map(|it| &it.0)),
+            ),
+            (
+                "in different work objects",
+                known.iter().position(|it| Some(&it.1) != known.first().map(|it| &it.1)),
+            ),
+        ] {
+            if let (Some(one), Some(other)) = (moves.first(), is_other.and_then(|at| moves.get(at))) {
+                return Err(format!("moved {what}, on lines {} and {}", one.line, other.line));
+            }
+        }
         all.extend(quaternion);
         all.extend(configuration);
         Ok((all, Meant::Pose(PoseForm::Quaternion), known))
@@ -320,10 +345,11 @@ impl Maker<'_> {
                 if let Some(line) = data.changed {
                     return Err(format!("its {what} `{name}` is changed on line {line}"));
                 }
-                if let Some((line, to)) = &data.given {
-                    let reason =
-                        format!("its {what} `{name}` is given to {to} on line {line}, which may change it");
-                    return Err(reason);
+                if let Some(given) = self.declared.changes_it(data, self.outline) {
+                    let (to, line) = (&given.to, given.line);
+                    return Err(format!(
+                        "its {what} `{name}` is given to {to} on line {line}, which may change it"
+                    ));
                 }
                 let value =
                     data.value.as_ref().ok_or_else(|| format!("its {what} `{name}` has no numbers"))?;

@@ -1,0 +1,5 @@
+//! Programs in the languages of controllers.
+
+mod expected;
+mod fanuc;
+mod rapid;
