@@ -1,6 +1,7 @@
 //! Robot programs in the languages of their controllers: targets corrected in place, everything else as it was, byte for byte.
 
 mod axes;
+mod build;
 mod engine;
 mod fanuc;
 mod flow;

@@ -2,4 +2,7 @@
 
 mod expected;
 mod fanuc;
+mod krl;
 mod rapid;
+mod slots;
+mod urscript;

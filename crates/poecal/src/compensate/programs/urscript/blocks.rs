@@ -1,44 +1,22 @@
 //! Blocks of URScript: routines, threads, loops and branches.
 
-use std::collections::{BTreeMap, BTreeSet};
-
+use super::super::build::Blocks;
 use super::super::flow::Node;
+use super::super::parsed::Setting;
 use super::super::scan::{Kind, Rules, Scanner, Token, bracket};
 use super::Step;
-use crate::error::{Error, ErrorKind, Result};
-
-/// Blocks within blocks.
-const DEEPEST: usize = 100;
+use crate::error::Result;
 
 /// A program in its blocks.
-pub(super) struct Program<S> {
-    pub(super) main: Vec<Node<S>>,
-    pub(super) routines: BTreeMap<String, Vec<Node<S>>>,
-    pub(super) called: BTreeSet<String>,
-    /// Number of nodes.
-    pub(super) size: usize,
+pub(super) struct Program {
+    pub(super) main: Vec<Node<Step>>,
+    pub(super) blocks: Blocks<Step>,
     /// Whether a thread moves the robot.
     pub(super) threads_move: bool,
     /// Whether a thread sets the tool.
     pub(super) threads_set: bool,
-}
-
-enum Block {
-    Routine {
-        name: String,
-        is_thread: bool,
-    },
-    Loop,
-    /// Arms that are complete, and whether there is one for all other cases.
-    Branch(Vec<Vec<Node<Step>>>, bool),
-}
-
-/// Puts statements into blocks.
-pub(super) struct Blocks {
-    /// Open blocks, and the nodes of what is around each.
-    open: Vec<(Block, Vec<Node<Step>>)>,
-    nodes: Vec<Node<Step>>,
-    program: Program<Step>,
+    /// Open blocks around the thread in which the text is.
+    thread: Option<usize>,
 }
 
 /// Statements of a line: `if x: movej(q) end` are three.
@@ -87,34 +65,25 @@ pub(super) fn header<'t>(text: &'t [u8], tokens: &'t [Token]) -> Option<(&'t str
     Some((name.text(text), parameters))
 }
 
-impl Blocks {
-    /// Reads a text; `statement` makes nodes of each statement and of each condition.
+impl Program {
+    /// Reads a text; `make` makes nodes of each statement and of each condition.
     pub(super) fn read(
         text: &[u8],
         rules: &Rules,
-        statement: &mut dyn FnMut(&[Token], &mut Vec<Node<Step>>),
-    ) -> Result<Program<Step>> {
-        let program = Program {
-            main: Vec::new(),
-            routines: BTreeMap::new(),
-            called: BTreeSet::new(),
-            size: 0,
-            threads_move: false,
-            threads_set: false,
-        };
-        let mut blocks = Blocks { open: Vec::new(), nodes: Vec::new(), program };
+        make: &mut dyn FnMut(&[Token], &mut Vec<Node<Step>>),
+    ) -> Result<Self> {
+        let blocks = Blocks::new();
+        let mut program =
+            Program { main: Vec::new(), blocks, threads_move: false, threads_set: false, thread: None };
         let mut scanner = Scanner::new(text, rules);
         let mut line = Vec::new();
         while scanner.statement(&mut line).is_some() {
             for tokens in cut(text, &line) {
-                blocks.statement(text, tokens, statement)?;
+                program.statement(text, tokens, make)?;
             }
         }
-        while !blocks.open.is_empty() {
-            blocks.end();
-        }
-        blocks.program.main = blocks.nodes;
-        Ok(blocks.program)
+        program.main = program.blocks.finish();
+        Ok(program)
     }
 
     fn statement(
@@ -124,101 +93,60 @@ impl Blocks {
         make: &mut dyn FnMut(&[Token], &mut Vec<Node<Step>>),
     ) -> Result<()> {
         let Some(first) = tokens.first() else { return Ok(()) };
-        let word = first.text(text);
-        if self.open.len() >= DEEPEST {
-            let message = format!(
-                "line {}: found blocks within more than {DEEPEST} others, expected fewer",
-                first.line
-            );
-            return Err(Error::new(ErrorKind::Syntax, message));
-        }
+        let (word, line) = (first.text(text), first.line);
         if let Some((name, _)) = header(text, tokens) {
-            self.begin(Block::Routine { name: name.to_owned(), is_thread: word == "thread" });
+            let depth = self.blocks.depth();
+            self.blocks.begin_routine(name, line)?;
+            if word == "thread" {
+                // It runs beside the program, which may have set any tool.
+                self.thread.get_or_insert(depth);
+                self.blocks.push([Node::Step(Step::Tool(Setting::Unknown))]);
+            }
             return Ok(());
         }
         let mut nodes = Vec::new();
         if !matches!(word, "else" | "end" | "break" | "continue" | "halt") && !first.is(b'$') {
             make(tokens, &mut nodes);
         }
-        self.program.size += 1 + nodes.len();
-        for node in &nodes {
-            if let Node::Call(name) = node {
-                self.program.called.insert(name.clone());
-            }
-        }
         self.note_threads(&nodes);
-        let acts = !nodes.is_empty();
         match word {
             "while" => {
-                self.begin(Block::Loop);
-                self.nodes.extend(nodes);
+                self.blocks.begin_loop(line)?;
+                self.blocks.push(nodes);
             }
             "if" => {
-                self.nodes.extend(nodes);
-                self.begin(Block::Branch(Vec::new(), false));
+                self.blocks.push(nodes);
+                self.blocks.begin_branch(line)?;
             }
             "elif" | "else" => {
-                let is_else = word == "else";
-                if let Some((Block::Branch(arms, has_else), _)) = self.open.last_mut() {
-                    arms.push(std::mem::take(&mut self.nodes));
-                    *has_else |= is_else;
-                }
+                self.blocks.arm(word == "else");
                 // A condition that acts has acted if a later one is asked.
-                self.nodes.extend(nodes);
-                if acts {
-                    self.nodes.push(Node::Label);
-                }
+                let label = (!nodes.is_empty()).then_some(Node::Label);
+                self.blocks.push(nodes.into_iter().chain(label));
             }
-            "end" => self.end(),
+            "end" => {
+                self.blocks.end();
+                self.thread = self.thread.filter(|it| self.blocks.depth() > *it);
+            }
             "break" | "continue" | "return" | "halt" => {
-                self.nodes.extend(nodes);
-                self.nodes.push(Node::Leave);
+                self.blocks.push(nodes.into_iter().chain([Node::Leave]));
             }
-            _ => self.nodes.extend(nodes),
+            _ => self.blocks.push(nodes),
         }
         Ok(())
     }
 
     fn note_threads(&mut self, nodes: &[Node<Step>]) {
-        let is_thread = self.open.iter().any(|(it, _)| matches!(it, Block::Routine { is_thread: true, .. }));
-        if !is_thread {
+        if self.thread.is_none() {
             return;
         }
         for node in nodes {
             match node {
-                Node::Step(Step::Tool(_) | Step::Moving(_)) => self.program.threads_set = true,
-                Node::Step(Step::Move { .. } | Step::Away) => self.program.threads_move = true,
+                Node::Step(Step::Tool(_) | Step::Moving(_)) => self.threads_set = true,
+                Node::Step(Step::Move { .. } | Step::Away) => self.threads_move = true,
                 // What it calls is not looked into.
-                Node::Call(_) => (self.program.threads_set, self.program.threads_move) = (true, true),
+                Node::Call(_) => (self.threads_set, self.threads_move) = (true, true),
                 Node::Either(_) | Node::Loop(_) | Node::Leave | Node::Label => {}
-            }
-        }
-    }
-
-    fn begin(&mut self, block: Block) {
-        self.program.size += 1;
-        self.open.push((block, std::mem::take(&mut self.nodes)));
-    }
-
-    fn end(&mut self) {
-        let Some((block, around)) = self.open.pop() else { return };
-        let inside = std::mem::replace(&mut self.nodes, around);
-        match block {
-            Block::Loop => self.nodes.push(Node::Loop(inside)),
-            Block::Branch(mut arms, has_else) => {
-                arms.push(inside);
-                if !has_else {
-                    arms.push(Vec::new());
-                }
-                self.nodes.push(Node::Either(arms));
-            }
-            Block::Routine { name, is_thread } => {
-                let mut body = inside;
-                if is_thread {
-                    // It runs beside the program, which may have set any tool.
-                    body.insert(0, Node::Step(Step::Tool(super::super::parsed::Setting::Unknown)));
-                }
-                self.program.routines.insert(name, body);
             }
         }
     }

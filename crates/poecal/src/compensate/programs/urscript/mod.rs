@@ -10,11 +10,11 @@ use super::flow::{Node, State, Walk};
 use super::forms::PoseForm;
 use super::given::Given;
 use super::parsed::{Listed, Meant, Motion, Number, Parsed, Setting, Target};
-use super::scan::{Rules, Token, bracket, parts, shown};
+use super::scan::{Kind, Rules, Token, bracket, parts, shown};
 use super::stated::Stated;
 use crate::error::Result;
 use crate::lie::Pose;
-use blocks::{Blocks, Program};
+use blocks::Program;
 use values::{Value, Variables};
 
 const RULES: Rules = Rules { comments: &["#"], quotes: b"\"'", letters: b"", is_open_in_brackets: true };
@@ -87,7 +87,7 @@ enum Step {
 pub(crate) fn parse(text: &[u8], given: &Given, axes: &Axes) -> Result<Parsed> {
     let variables = Variables::of(text, &RULES, axes);
     let mut reader = Reader { text, given, axes, variables, out: Parsed::default(), known: BTreeMap::new() };
-    let program = Blocks::read(text, &RULES, &mut |tokens, nodes| reader.statement(tokens, nodes))?;
+    let program = Program::read(text, &RULES, &mut |tokens, nodes| reader.statement(tokens, nodes))?;
     Ok(reader.motions(&program))
 }
 
@@ -188,7 +188,7 @@ impl Reader<'_> {
 
     fn motion(&mut self, word: &Token, argument: &[Token], way: Way) -> Step {
         let argument = match argument {
-            [name, sign, rest @ ..] if sign.is(b'=') && !name.is(b'p') => rest,
+            [name, sign, rest @ ..] if name.kind == Kind::Word && sign.is(b'=') => rest,
             all => all,
         };
         let found = if way == Way::Unknown { Err(reason::UNKNOWN.to_owned()) } else { self.aim(argument) };
@@ -338,7 +338,7 @@ impl Reader<'_> {
     }
 
     /// Follows the program from motion to motion.
-    fn motions(mut self, program: &Program<Step>) -> Parsed {
+    fn motions(mut self, program: &Program) -> Parsed {
         let names: BTreeSet<&str> = self.out.targets.iter().map(|it| it.name.as_str()).collect();
         let given = self.given;
         let at_start = given.frame(None).unwrap_or(Pose::identity());
@@ -379,8 +379,8 @@ impl Reader<'_> {
                 state.last = (*way != Way::Stream).then(|| motions.len() - 1);
             }
         };
-        let mut walk = Walk::new(&program.routines, program.size, false, &mut step);
-        walk.run(&program.main, &program.called, &|_| false);
+        let mut walk = Walk::new(&program.blocks.routines, program.blocks.size, false, &mut step);
+        walk.run(&program.main, &program.blocks.called, &|_| false);
         self.out.motions = motions;
         self.out
     }

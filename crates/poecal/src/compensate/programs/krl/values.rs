@@ -1,0 +1,322 @@
+//! Values of KRL that are stated in numbers, and the variables that have them.
+
+use std::collections::BTreeMap;
+
+use super::super::axes::Axes;
+use super::super::parsed::Number;
+use super::super::scan::{Kind, Rules, Scanner, Token, bracket, parts, signed};
+use super::reason;
+use super::status::Status;
+
+/// What an expression is.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Value {
+    /// A pose: X, Y, Z, A, B, C, then S and T as far as they are stated.
+    Pose(Vec<Number>, Status),
+    /// Of each reading.
+    Joints(Vec<Number>),
+    /// An aggregate of a target that cannot be taken, and why.
+    Broken(&'static str),
+    /// Tool and base of a point of an inline form.
+    Place(Place),
+    /// A variable, or an element of one.
+    Name(String),
+    /// Anything else.
+    Other,
+}
+
+/// Tool and base by their numbers.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Place {
+    pub(super) tool: Option<i64>,
+    pub(super) base: Option<i64>,
+    /// Whether the tool stands and the workpiece moves.
+    pub(super) is_external: bool,
+}
+
+/// A variable as a file has it.
+#[derive(Clone, Debug)]
+pub(super) struct Variable {
+    pub(super) assignments: usize,
+    pub(super) line: usize,
+    pub(super) value: Value,
+    /// Name as it is written.
+    pub(super) name: String,
+    /// Whether it is declared as a frame.
+    pub(super) is_frame: bool,
+}
+
+/// The variables of a file.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Variables {
+    /// By name in capitals.
+    pub(super) known: BTreeMap<String, Variable>,
+    /// Whether the file is a list of data.
+    pub(super) is_data: bool,
+    /// Whether the file moves the robot's foot.
+    pub(super) moves_root: bool,
+}
+
+/// Name and assigned value of a statement: name, whether a part of it is assigned, its first token, and the value.
+pub(super) struct Assignment<'t> {
+    pub(super) key: String,
+    pub(super) is_part: bool,
+    pub(super) name: &'t Token,
+    pub(super) is_frame: bool,
+    pub(super) value: &'t [Token],
+}
+
+/// An assignment, if a statement is one.
+pub(super) fn assignment<'t>(text: &[u8], tokens: &'t [Token]) -> Option<Assignment<'t>> {
+    let mut depth = 0_usize;
+    let equals = tokens.iter().position(|it| {
+        match it.kind {
+            Kind::Sign(b'(' | b'[' | b'{') => depth += 1,
+            Kind::Sign(b')' | b']' | b'}') => depth = depth.saturating_sub(1),
+            Kind::Word | Kind::Number(..) | Kind::Text | Kind::Sign(_) | Kind::LineEnd => {}
+        }
+        depth == 0 && it.is(b'=')
+    })?;
+    let (left, value) = (&tokens[..equals], &tokens[equals + 1..]);
+    // `DECL GLOBAL E6POS XP1`: the name is the last word before an index or a part.
+    let words = left.iter().take_while(|it| it.kind == Kind::Word).count();
+    let at = words.checked_sub(1)?;
+    let name = left.get(at)?;
+    let is_frame = left[..at].iter().any(|it| it.is_word(text, "FRAME"));
+    let (index, rest) = match bracket(&left[words..], b'[', b']') {
+        Some((inside, rest)) => (Some(inside), rest),
+        None => (None, &left[words..]),
+    };
+    let is_part = !rest.is_empty();
+    Some(Assignment { key: key(text, name, index), is_part, name, is_frame, value })
+}
+
+/// The name of a variable in capitals, with its index, `*` if that is no number.
+pub(super) fn key(text: &[u8], name: &Token, index: Option<&[Token]>) -> String {
+    let name = name.text(text).to_ascii_uppercase();
+    match index {
+        None => name,
+        Some([Token { kind: Kind::Number(value, 0), .. }]) => format!("{name}[{value}]"),
+        Some(_) => format!("{name}[*]"),
+    }
+}
+
+impl Variables {
+    /// Of a text.
+    pub(super) fn of(text: &[u8], rules: &Rules, axes: &Axes) -> Self {
+        let mut out = Variables::default();
+        let mut scanner = Scanner::new(text, rules);
+        let mut tokens = Vec::new();
+        while scanner.statement(&mut tokens).is_some() {
+            let Some(first) = tokens.first() else { continue };
+            if ["DEF", "DEFFCT", "GLOBAL"].iter().any(|it| first.is_word(text, it))
+                && let Some(open) = tokens.iter().position(|it| it.is(b'('))
+            {
+                for parameter in tokens[open..].iter().filter(|it| it.kind == Kind::Word) {
+                    out.assign(&key(text, parameter, None), text, parameter, Value::Other, 2, false);
+                }
+                continue;
+            }
+            out.is_data |= first.is_word(text, "DEFDAT");
+            let is_other =
+                ["IF", "WHILE", "UNTIL", "WAIT", "FOR", "SIGNAL", "INTERRUPT", "TRIGGER", "ON_ERROR_PROCEED"];
+            let is_motion = super::MOTIONS.iter().any(|(it, _)| first.is_word(text, it));
+            if is_motion || is_other.iter().any(|it| first.is_word(text, it)) {
+                continue;
+            }
+            out.hand_over(text, &tokens);
+            if let Some(it) = assignment(text, &tokens) {
+                out.moves_root |= it.key == "$ROBROOT";
+                let value = if it.is_part { Value::Other } else { value(text, it.value, axes) };
+                let times = if it.is_part { 2 } else { 1 };
+                out.assign(&it.key, text, it.name, value, times, it.is_frame);
+            }
+        }
+        out
+    }
+
+    /// Variables that a routine gets may be changed by it.
+    fn hand_over(&mut self, text: &[u8], tokens: &[Token]) {
+        for (at, token) in tokens.iter().enumerate().filter(|(_, it)| it.kind == Kind::Word) {
+            let Some((inside, _)) = bracket(&tokens[at + 1..], b'(', b')') else { continue };
+            if token.is_word(text, "BAS") {
+                continue;
+            }
+            for argument in parts(inside) {
+                if let [name, rest @ ..] = argument
+                    && name.kind == Kind::Word
+                    && (rest.is_empty() || rest[0].is(b'['))
+                {
+                    let index = bracket(rest, b'[', b']').map(|it| it.0);
+                    self.assign(&key(text, name, index), text, name, Value::Other, 2, false);
+                }
+            }
+        }
+    }
+
+    fn assign(&mut self, key: &str, text: &[u8], name: &Token, value: Value, times: usize, is_frame: bool) {
+        let name_as_written = match key.find('[') {
+            Some(at) => format!("{}{}", name.text(text), &key[at..]),
+            None => name.text(text).to_owned(),
+        };
+        let new = || Variable { assignments: 0, line: name.line, value, name: name_as_written, is_frame };
+        self.known.entry(key.to_owned()).or_insert_with(new).assignments += times;
+    }
+
+    /// The variable by a name in capitals, if it is assigned once, or why it has no value.
+    pub(super) fn of_name(&self, key: &str) -> Result<&Variable, &'static str> {
+        let base = key.split('[').next().unwrap_or(key);
+        let is_written = |key: String| self.known.contains_key(&key);
+        if key.ends_with("[*]") {
+            return Err(reason::COMPUTED);
+        }
+        match self.known.get(key) {
+            None => Err(reason::ABSENT),
+            Some(it) if it.assignments > 1 => Err(reason::SEVERAL),
+            // An element may be written by an index that is computed, or with all the others.
+            Some(_) if key != base && (is_written(format!("{base}[*]")) || is_written(base.to_owned())) => {
+                Err(reason::SEVERAL)
+            }
+            Some(it) => Ok(it),
+        }
+    }
+}
+
+/// What an expression is.
+pub(super) fn value(text: &[u8], tokens: &[Token], axes: &Axes) -> Value {
+    match tokens {
+        [name] if name.kind == Kind::Word => Value::Name(key(text, name, None)),
+        [name, rest @ ..] if name.kind == Kind::Word => match bracket(rest, b'[', b']') {
+            Some((index, [])) => Value::Name(key(text, name, Some(index))),
+            _ => Value::Other,
+        },
+        _ => match bracket(tokens, b'{', b'}') {
+            Some((inside, [])) => aggregate(text, inside, axes),
+            _ => Value::Other,
+        },
+    }
+}
+
+/// A field of an aggregate: its name in capitals, its number if it is one, and its tokens.
+type Field<'t> = (String, Option<Number>, &'t [Token]);
+
+fn aggregate(text: &[u8], inside: &[Token], axes: &Axes) -> Value {
+    let inside = match inside {
+        [kind, colon, rest @ ..] if kind.kind == Kind::Word && colon.is(b':') => rest,
+        all => all,
+    };
+    let mut fields: Vec<Field<'_>> = Vec::new();
+    for part in parts(inside) {
+        let [name, value @ ..] = part else { return Value::Other };
+        let name = name.text(text).to_ascii_uppercase();
+        if fields.iter().any(|it| it.0 == name) {
+            return Value::Other;
+        }
+        fields.push((name, signed(value).or_else(|| bits(text, value)), value));
+    }
+    let has = |name: &str| fields.iter().any(|it| it.0 == name);
+    if has("TOOL_NO") || has("BASE_NO") {
+        return Value::Place(place(text, &fields));
+    }
+    let is_pose = ["X", "Y", "Z", "A", "B", "C"].iter().any(|it| has(it));
+    let is_joints = fields.iter().any(|it| is_axis(&it.0, b'A'));
+    if is_pose {
+        pose(&fields)
+    } else if is_joints {
+        joints(&fields, axes)
+    } else {
+        Value::Other
+    }
+}
+
+fn is_axis(name: &str, letter: u8) -> bool {
+    matches!(name.as_bytes(), [first, b'1'..=b'9'] if *first == letter)
+}
+
+/// A number in bits, `'B0101'`, or in base 16, `'H1F'`.
+fn bits(text: &[u8], tokens: &[Token]) -> Option<Number> {
+    let [token] = tokens else { return None };
+    let text: String = token.text(text).split_whitespace().collect();
+    let inside = text.strip_prefix('\'')?.strip_suffix('\'')?;
+    let (letter, digits) = (inside.get(..1)?, inside.get(1..)?);
+    let base = match letter {
+        "B" | "b" => 2,
+        "H" | "h" => 16,
+        _ => return None,
+    };
+    let value = u32::from_str_radix(digits, base).ok()?;
+    Some(Number { range: token.range.clone(), value: f64::from(value), decimals: 0, scale: 1.0 })
+}
+
+fn place(text: &[u8], fields: &[Field<'_>]) -> Place {
+    let number = |name: &str| {
+        let number = fields.iter().find(|it| it.0 == name)?.1.as_ref()?;
+        (number.value.fract() == 0.0).then_some(number.value as i64)
+    };
+    let mode = fields.iter().find(|it| it.0 == "IPO_FRAME");
+    let is_external = mode.is_some_and(|it| !it.2.iter().any(|word| word.is_word(text, "BASE")));
+    Place { tool: number("TOOL_NO"), base: number("BASE_NO"), is_external }
+}
+
+/// Whether fields of external axes are other than zero.
+fn has_external(fields: &[Field<'_>], axes: &Axes) -> bool {
+    let is_known = |name: &str| axes.names.iter().any(|it| it.eq_ignore_ascii_case(name));
+    let external = fields.iter().filter(|it| is_axis(&it.0, b'E') && !is_known(&it.0));
+    external.into_iter().any(|it| it.1.as_ref().is_none_or(|number| number.value != 0.0))
+}
+
+fn pose(fields: &[Field<'_>]) -> Value {
+    let mut numbers = Vec::new();
+    for name in ["X", "Y", "Z", "A", "B", "C"] {
+        match fields.iter().find(|it| it.0 == name) {
+            None => return Value::Broken(reason::PARTIAL),
+            Some((_, None, _)) => return Value::Broken(reason::EXPRESSIONS),
+            Some((_, Some(number), _)) => numbers.push(number.clone()),
+        }
+    }
+    if has_external(fields, &Axes::default()) {
+        return Value::Broken(reason::EXTERNAL);
+    }
+    let mut words = [None, None];
+    for (word, name) in words.iter_mut().zip(["S", "T"]) {
+        match fields.iter().find(|it| it.0 == name) {
+            None => {}
+            Some((_, Some(number), _)) if number.value >= 0.0 && number.value.fract() == 0.0 => {
+                *word = Some(number.value as u32);
+                numbers.push(number.clone());
+            }
+            Some(_) => return Value::Broken(reason::EXPRESSIONS),
+        }
+    }
+    Value::Pose(numbers, Status { status: words[0], turn: words[1] })
+}
+
+fn joints(fields: &[Field<'_>], axes: &Axes) -> Value {
+    if has_external(fields, axes) {
+        return Value::Broken(reason::EXTERNAL);
+    }
+    let is_named = axes
+        .names
+        .iter()
+        .all(|it| is_axis(&it.to_ascii_uppercase(), b'A') || is_axis(&it.to_ascii_uppercase(), b'E'));
+    if !is_named && axes.count() != 6 {
+        return Value::Broken(reason::COUNT);
+    }
+    let mut numbers = Vec::new();
+    for index in 0..axes.count() {
+        let name = if is_named { axes.names[index].to_ascii_uppercase() } else { format!("A{}", index + 1) };
+        match fields.iter().find(|it| it.0 == name) {
+            None => return Value::Broken(reason::PARTIAL),
+            Some((_, None, _)) => return Value::Broken(reason::EXPRESSIONS),
+            Some((_, Some(number), _)) => {
+                let scale = axes.scale(index, 1.0_f64.to_radians(), 1e-3);
+                numbers.push(Number { scale, ..number.clone() });
+            }
+        }
+    }
+    let others = fields.iter().filter(|it| is_axis(&it.0, b'A')).count();
+    let own = (0..axes.count())
+        .filter(|&it| !is_named || is_axis(&axes.names[it].to_ascii_uppercase(), b'A'))
+        .count();
+    if others == own { Value::Joints(numbers) } else { Value::Broken(reason::COUNT) }
+}
