@@ -135,13 +135,32 @@ fn placed(arm: &Arm, q: &[f64; 6]) -> Option<([Axis; 6], Vector3<f64>)> {
 mod tests {
     #![allow(clippy::unwrap_used)]
 
+    use nalgebra::Vector3;
+    use poecal_arm::Arm;
+
     use super::Posture;
-    use crate::simulate;
+    use crate::lie::{Pose, Screw};
+
+    /// An arm by directions of its axes and points on them.
+    fn arm(axes: [([f64; 3], [f64; 3]); 6], tip: [f64; 3]) -> Arm {
+        let screws = axes.map(|(axis, point)| Screw::revolute(&Vector3::from(axis), &Vector3::from(point)));
+        Arm::new(&screws, &Pose::from_translation(Vector3::from(tip))).unwrap()
+    }
 
     /// The sides change where the arm passes the border, and nowhere else.
     #[test]
     fn sides_are_those_of_the_drawing() {
-        let (arm, _) = simulate::elbow().arm(&[]).unwrap();
+        let arm = arm(
+            [
+                ([0.0, 0.0, 1.0], [0.0, 0.0, 0.0]),
+                ([0.0, 1.0, 0.0], [0.15, 0.0, 0.0]),
+                ([0.0, -1.0, 0.0], [0.15, 0.0, 0.57]),
+                ([-1.0, 0.0, 0.0], [0.15, 0.0, 0.72]),
+                ([0.0, 1.0, 0.0], [0.784, 0.0, 0.72]),
+                ([-1.0, 0.0, 0.0], [0.784, 0.0, 0.72]),
+            ],
+            [0.834, 0.0, 0.72],
+        );
         let posture = Posture::new(&arm).unwrap();
         let at = |degrees: [f64; 6]| posture.at(&degrees.map(f64::to_radians));
         let level = at([0.0, 0.0, 0.0, 0.0, 30.0, 0.0]);
@@ -166,11 +185,20 @@ mod tests {
         assert!(!posture.is_down_negative());
     }
 
+    /// An arm whose second to fourth axes are parallel has no wrist in which three axes meet.
     #[test]
     fn arms_of_another_kind_have_no_sides() {
-        for robot in [simulate::scara(), simulate::gantry(), simulate::seven_axis()] {
-            let (arm, _) = robot.arm(&[]).unwrap();
-            assert!(Posture::new(&arm).is_none(), "{}", robot.name);
-        }
+        let arm = arm(
+            [
+                ([0.0, 0.0, 1.0], [0.0, 0.0, 0.0]),
+                ([0.0, 1.0, 0.0], [0.0, 0.0, 0.16]),
+                ([0.0, 1.0, 0.0], [0.0, 0.0, 0.58]),
+                ([0.0, 1.0, 0.0], [0.39, 0.0, 0.58]),
+                ([0.0, 0.0, -1.0], [0.39, 0.13, 0.58]),
+                ([0.0, 1.0, 0.0], [0.39, 0.13, 0.48]),
+            ],
+            [0.39, 0.23, 0.48],
+        );
+        assert!(Posture::new(&arm).is_none());
     }
 }

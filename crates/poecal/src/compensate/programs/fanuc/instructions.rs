@@ -98,10 +98,7 @@ impl<'a> Instructions<'a> {
             return;
         }
         let set = |name: &str| match tokens {
-            [word, equals, value] if is(word, name) && equals.is(b'=') => match value.kind {
-                Kind::Number(value, 0) if value >= 0.0 => Some(Some(value as u32)),
-                _ => Some(None),
-            },
+            [word, equals, value @ ..] if is(word, name) && equals.is(b'=') => Some(super::whole(value)),
             [word, ..] if is(word, name) => Some(None),
             _ => None,
         };
@@ -153,18 +150,14 @@ impl<'a> Instructions<'a> {
                     "displaced by an offset, which is left as it is: at most the position itself is corrected",
                 );
             }
-            match inside.first().map(|it| it.kind) {
-                Some(Kind::Number(value, 0)) if value >= 0.0 && value < f64::from(u32::MAX) => {
-                    let position = value as u32;
-                    self.of_position.entry(position).or_default().push(self.moves.len());
-                    self.moves.push((position, of));
-                }
-                _ => {
-                    let is_known = self.any.iter().any(|it| *it == Move { line: it.line, ..of.clone() });
-                    if !is_known && self.any.len() < MOST {
-                        self.any.push(of);
-                    }
-                }
+            if let Some(position) = inside.get(..1).and_then(super::whole) {
+                self.of_position.entry(position).or_default().push(self.moves.len());
+                self.moves.push((position, of));
+                continue;
+            }
+            let is_known = self.any.iter().any(|it| *it == Move { line: it.line, ..of.clone() });
+            if !is_known && self.any.len() < MOST {
+                self.any.push(of);
             }
         }
     }

@@ -18,7 +18,7 @@ use positions::{Group, Position, positions};
 use super::forms::PoseForm;
 use super::given::Given;
 use super::parsed::{Listed, Meant, Motion, Number, Parsed, Target};
-use super::scan::{Rules, Scanner, Token};
+use super::scan::{Rules, Scanner, Token, signed};
 use super::stated::Stated;
 use crate::lie::Pose;
 
@@ -33,6 +33,12 @@ fn tokens(text: &[u8], part: Range<usize>, line: usize) -> impl Iterator<Item = 
         token.line += line - 1;
         token
     })
+}
+
+/// A number without a sign and without decimals, and nothing else.
+fn whole(tokens: &[Token]) -> Option<u32> {
+    let number = signed(tokens).filter(|it| it.decimals == 0 && (0.0..1e6).contains(&it.value))?;
+    Some(number.value as u32)
 }
 
 /// A section's name in upper case, if a line begins one.

@@ -63,7 +63,7 @@ fn position<'t>(text: &[u8], word: &Token, after: &'t [Token]) -> Option<(Positi
     let near = after.get(..after.len().min(LONGEST_HEAD))?;
     let (index, rest) = bracket(near, b'[', b']')?;
     let body = after.get(near.len() - rest.len()..)?;
-    let Kind::Number(number, 0) = index.first()?.kind else { return None };
+    let number = super::whole(index.get(..1)?)?;
     let (inner, rest) = braces(body)?;
     let end = body.first()?.range.start;
     let name = String::from_utf8_lossy(text.get(word.range.start..end)?).trim().to_owned();
@@ -81,7 +81,7 @@ fn position<'t>(text: &[u8], word: &Token, after: &'t [Token]) -> Option<(Positi
         }
         at = next;
     }
-    Some((Position { number: number as u32, line: word.line, name, groups }, rest))
+    Some((Position { number, line: word.line, name, groups }, rest))
 }
 
 /// What stands between braces; `None` where the closing one is missing.
@@ -118,22 +118,15 @@ fn group(text: &[u8], tokens: &[Token]) -> Group {
         };
         const ANGLE: (&str, f64) = ("deg", 1.0);
         const LENGTH: (&str, f64) = ("mm", 1.0);
-        let whole = || match value {
-            [only] => match only.kind {
-                Kind::Number(value, 0) if value < 1e6 => Some(value as u32),
-                _ => None,
-            },
-            _ => None,
-        };
         if let Some(at) = ["X", "Y", "Z", "W", "P", "R"].iter().position(|it| *it == name) {
             let Some(found) = number(&[if at < 3 { LENGTH } else { ANGLE }]) else {
                 return Group::Unknown("it has no numbers: not taught");
             };
             place[at] = Some(found);
         } else if name == "UF" {
-            pose.frame = whole();
+            pose.frame = super::whole(value);
         } else if name == "UT" {
-            pose.tool = whole();
+            pose.tool = super::whole(value);
         } else if name == "CONFIG" {
             let inside = match value {
                 [open, inside @ .., close] if open.is(QUOTE) && close.is(QUOTE) => inside,

@@ -11,8 +11,8 @@ const LENGTH: f64 = 5e-3;
 /// A list's values.
 fn list(value: &Value, count: usize) -> Option<&[Value]> {
     match value {
-        Value::List(values) if values.len() == count => Some(values),
-        _ => None,
+        Value::List(values) => Some(&values[..]).filter(|it| it.len() == count),
+        Value::Number(_) | Value::Word(_) | Value::Text(_) | Value::Other => None,
     }
 }
 
@@ -20,7 +20,7 @@ fn list(value: &Value, count: usize) -> Option<&[Value]> {
 pub(super) fn numbers(value: &Value, count: usize) -> Option<Vec<Number>> {
     let number = |it: &Value| match it {
         Value::Number(number) => Some(number.clone()),
-        _ => None,
+        Value::List(_) | Value::Word(_) | Value::Text(_) | Value::Other => None,
     };
     list(value, count)?.iter().map(number).collect()
 }

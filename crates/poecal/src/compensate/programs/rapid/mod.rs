@@ -7,6 +7,7 @@
 mod configuration;
 mod declared;
 mod frames;
+mod going;
 mod modal;
 mod moves;
 mod outline;
@@ -15,10 +16,10 @@ mod tokens;
 
 pub(crate) use configuration::Configuration;
 use declared::{Declared, Sort};
+use going::{Held, Move, Moves};
 use modal::{Modal, Switch, leads_elsewhere};
 use moves::{Argument, Instruction, Layout, ToolAt, argument, layout};
 use outline::Statement;
-use targets::{Held, Move, Moves};
 use tokens::tokens;
 
 use super::given::Given;
@@ -185,7 +186,7 @@ impl Reader<'_> {
                         "a variable without numbers: computed when the program runs"
                     }
                     Some((at, _)) => {
-                        return self.moves.to_data(at, indices, of, before).filter(|_| !is_relative);
+                        return self.moves.add_to_data(at, indices, of, before).filter(|_| !is_relative);
                     }
                 };
                 self.list(line, shown(text, written), reason);

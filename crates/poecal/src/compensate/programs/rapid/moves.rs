@@ -1,6 +1,7 @@
 //! Instructions of RAPID that move the robot, and where their arguments are.
 
-use super::super::scan::{Kind, Token};
+use super::super::parsed::Number;
+use super::super::scan::{Kind, Token, signed};
 use super::tokens::{ASSIGN, cut, lower};
 
 /// Where an instruction has its tool.
@@ -109,13 +110,8 @@ fn argument_in<'a>(tokens: &'a [Token], text: &[u8], depth: usize) -> Argument<'
         [name] if name.kind == Kind::Word => Argument::Name(lower(text, name), None),
         [name, open, inner @ .., close] if name.kind == Kind::Word && open.is(b'{') && close.is(b'}') => {
             let Some(parts) = cut(inner, b',') else { return Argument::Computed };
-            let index = |part: &[Token]| match part {
-                [only] => match only.kind {
-                    Kind::Number(value, 0) if value >= 1.0 && value < 1e9 => Some(value as usize),
-                    _ => None,
-                },
-                _ => None,
-            };
+            let whole = |it: &Number| it.value.fract() == 0.0 && (1.0..1e9).contains(&it.value);
+            let index = |part: &[Token]| signed(part).filter(whole).map(|it| it.value as usize);
             Argument::Name(lower(text, name), Some(parts.into_iter().map(index).collect()))
         }
         [name, open, inner @ .., close]
