@@ -8,6 +8,7 @@ use content::part;
 use std::path::{Path, PathBuf};
 
 use numpy::PyArray2;
+use poecal::compensate::ProgramOptions;
 use poecal::io::calibration_file::CalibrationFile;
 use poecal::io::export::{ExportFormat, ExportOptions, export};
 use poecal::io::model::{Model, ModelSource};
@@ -17,7 +18,7 @@ use poecal::io::residuals::{ResidualRows, Residuals as Rows};
 use poecal::report::{self, table::number};
 use pyo3::IntoPyObjectExt as _;
 use pyo3::prelude::*;
-use pyo3::types::PyTuple;
+use pyo3::types::{PyBytes, PyTuple};
 
 use crate::accuracy::{Accuracy, Verdict};
 use crate::arguments::{self as arg, Argument, unexpected};
@@ -430,6 +431,71 @@ impl Calibration {
         let nominal = self.file().nominal_robot().map_err(raise)?;
         let factors = reach::factors(&actual.model.robot, factors)?;
         reach::compensate(py, (&nominal, &actual.model.robot), joints, &factors, nearest)
+    }
+
+    /// A robot program with its targets corrected in place, everything else as it was, byte for byte.
+    ///
+    /// Parameters
+    /// ----------
+    /// path
+    ///     The program for the nominal robot: URScript (.script), RAPID (.mod, .prg, .sys), KRL (.src, .dat) or of FANUC (.ls).
+    /// language
+    ///     Its language, default by the end of its name.
+    /// tools
+    ///     Tools in the controller's flange, each "NUMBERS", the tool of programs that set none, or "NAME=NUMBERS"; numbers as the language writes poses.
+    /// frames
+    ///     Frames of poses (work object, base, user frame) in the controller's base, as tools.
+    /// base
+    ///     The controller's base in the model's, default the same.
+    /// flange
+    ///     The controller's flange in the model's tip, default the same.
+    /// factors
+    ///     Values of the corrected model's factors by their names, default their references.
+    /// nearest
+    ///     Whether to write the nearest configuration where the robot cannot reach a target, instead of leaving it as it is.
+    /// check
+    ///     Whether to compute what is left once more, from the written text.
+    /// model
+    ///     Which model is the robot as it is: "corrected", where there is one, or "calibrated", geometry alone.
+    ///
+    /// Returns
+    /// -------
+    /// tuple of bytes and dict
+    ///     The program, and the summary: how many targets are corrected, which are listed as they are and why, the largest corrections, and what is left.
+    #[pyo3(signature = (path, *, language=None, tools=None, frames=None, base=None, flange=None, factors=None, nearest=false, check=false, model="corrected"))]
+    #[expect(clippy::too_many_arguments, reason = "the options of a Python function")]
+    fn compensate_program<'py>(
+        &self,
+        py: Python<'py>,
+        #[pyo3(from_py_with = arg::path)] path: PathBuf,
+        #[pyo3(from_py_with = arg::language)] language: Option<String>,
+        #[pyo3(from_py_with = arg::tools)] tools: Option<Vec<String>>,
+        #[pyo3(from_py_with = arg::frames)] frames: Option<Vec<String>>,
+        #[pyo3(from_py_with = arg::base)] base: Option<String>,
+        #[pyo3(from_py_with = arg::flange)] flange: Option<String>,
+        factors: Option<&Bound<'py, PyAny>>,
+        #[pyo3(from_py_with = arg::nearest)] nearest: bool,
+        #[pyo3(from_py_with = arg::check)] check: bool,
+        #[pyo3(from_py_with = arg::model)] model: &str,
+    ) -> PyResult<(Bound<'py, PyBytes>, Bound<'py, PyAny>)> {
+        let actual = self.actual(model)?;
+        let nominal = self.file().nominal_robot().map_err(raise)?;
+        let factors = reach::factors(&actual.model.robot, factors)?;
+        let language = reach::language(&path, language.as_deref())?;
+        let mut options = ProgramOptions { nearest, check, ..ProgramOptions::of(language) };
+        for words in tools.iter().flatten() {
+            options.given.add_tool(words, language).map_err(raise)?;
+        }
+        for words in frames.iter().flatten() {
+            options.given.add_frame(words, language).map_err(raise)?;
+        }
+        if let Some(words) = base {
+            options.given.set_base(&words, language).map_err(raise)?;
+        }
+        if let Some(words) = flange {
+            options.given.set_flange(&words, language).map_err(raise)?;
+        }
+        reach::program(py, (&nominal, &actual.model.robot), &path, &factors, &options)
     }
 
     /// Configurations that have the tip at poses.

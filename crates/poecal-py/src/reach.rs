@@ -1,15 +1,18 @@
 //! Inverse kinematics and compensation, row by row.
 
+use std::path::Path;
+
 use numpy::PyArray1;
 use poecal::Robot;
-use poecal::compensate::{Compensation, Inverse};
+use poecal::compensate::{Compensation, Inverse, Language, ProgramOptions, compensate_file};
 use poecal::lie::Pose;
 use pyo3::IntoPyObjectExt as _;
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyList};
+use pyo3::types::{PyBytes, PyDict, PyList};
 
 use crate::arrays::{Numbers, pose_of, table};
 use crate::errors::{argument, raise};
+use crate::words::chosen;
 
 /// Values of a robot's factors: those of a mapping from their names, else their references.
 pub(crate) fn factors(robot: &Robot, given: Option<&Bound<'_, PyAny>>) -> PyResult<Vec<f64>> {
@@ -95,6 +98,39 @@ pub(crate) fn compensate<'py>(
         argument("joints", message)
     })?;
     rows(py, made, n, is_single)
+}
+
+/// The language of a robot program, by its name or the end of the file's.
+pub(crate) fn language(path: &Path, named: Option<&str>) -> PyResult<Language> {
+    let words = [
+        ("urscript", Language::UrScript),
+        ("rapid", Language::Rapid),
+        ("krl", Language::Krl),
+        ("fanuc", Language::Fanuc),
+    ];
+    match named {
+        Some(word) => chosen("language", word, &words),
+        None => Language::of(path).ok_or_else(|| {
+            let message = format!(
+                "found no language for {}, expected one of urscript, rapid, krl, fanuc where the end of the file's name does not tell",
+                path.display()
+            );
+            argument("language", message)
+        }),
+    }
+}
+
+/// A compensated program, and its summary.
+pub(crate) fn program<'py>(
+    py: Python<'py>,
+    robots: (&Robot, &Robot),
+    path: &Path,
+    factors: &[f64],
+    options: &ProgramOptions,
+) -> PyResult<(Bound<'py, PyBytes>, Bound<'py, PyAny>)> {
+    let (text, summary) = py.detach(|| compensate_file(path, robots, factors, options)).map_err(raise)?;
+    let json = poecal::report::json(&summary);
+    Ok((PyBytes::new(py, &text), py.import("json")?.call_method1("loads", (json,))?))
 }
 
 /// Poses of an array of shape (m, 4, 4) or (4, 4), and whether it is one.

@@ -2,12 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use poecal::compensate::{
-    Given, Language, ProgramOptions, TableOptions, compensate_program, compensate_table,
-};
+use poecal::compensate::{Given, Language, ProgramOptions, TableOptions, compensate_file, compensate_table};
 use poecal::io::model::{Model, ModelSource};
 use poecal::io::output::FilePlace;
-use poecal::io::programs::read_program;
 use poecal::io::urdf::ChainSelection;
 use poecal::robot::JointKind;
 use poecal::{Error, ErrorKind, Result, Robot, report};
@@ -94,9 +91,7 @@ fn robot_program(
         check: arguments.check,
         nearest: arguments.nearest,
     };
-    let text = read_program(&arguments.program)?;
-    let made = compensate_program(&text, robots, factors, &options);
-    let (out, summary) = made.map_err(|error| error.in_file(&arguments.program))?;
+    let (out, summary) = compensate_file(&arguments.program, robots, factors, &options)?;
     let is_file = place.is_some();
     match place {
         Some(place) => place.write_bytes(&out)?,

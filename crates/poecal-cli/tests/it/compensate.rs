@@ -1,4 +1,4 @@
-//! `poecal compensate`: programs of joint readings.
+//! `poecal compensate`: tables of joint readings, and robot programs.
 
 use std::fmt::Write as _;
 
@@ -129,4 +129,98 @@ fn poses_out_of_reach_are_refused_or_come_near() {
     assert_eq!(near.code, 0, "{}", near.err);
     assert_eq!(refused.code != 0, near.err.contains("cannot be reached by the actual robot"), "{}", near.err);
     assert_eq!(folder.read("out.csv").lines().count(), text.lines().count());
+}
+
+const SCRIPT: &[u8] = b"# Gr\xfc\xdfe\r\ndef p():\r\n  movej([0.1, 0.2, 0.3, 0.4, 0.5, 0.6], a=1.4)\r\n  wp = p[0.55, 0.1, 0.75, 0.1, 1.2, 0.2]\r\n  \
+    movel(wp)\r\nend\r\n";
+
+#[test]
+fn a_robot_program_keeps_its_bytes_and_what_is_left_is_listed() {
+    let folder = folder();
+    std::fs::write(folder.path("p.script"), SCRIPT).unwrap();
+    let run = folder.run("compensate results/calibration.json p.script --out out.script --check");
+    println!("{}{}", run.out, run.err);
+    assert_eq!(run.code, 1);
+    assert!(
+        run.out.starts_with("1 target corrected: without correction the tip would be off by "),
+        "{}",
+        run.out
+    );
+    assert!(run.out.contains("checked from the written numbers: at most "), "{}", run.out);
+    let row = "  line 4: wp: the tool is not known: state it by --tool (motion on line 5)\n";
+    assert!(run.out.contains(&format!("1 left as they are:\n{row}")), "{}", run.out);
+    assert!(run.err.contains("1 target is left as the program has them, the first on line 4"), "{}", run.err);
+    let written = std::fs::read(folder.path("out.script")).unwrap();
+    let bare = |text: &[u8]| -> Vec<u8> {
+        text.iter().copied().filter(|it| !it.is_ascii_digit() && !b".-".contains(it)).collect()
+    };
+    assert_eq!(bare(&written), bare(SCRIPT));
+    assert_ne!(written, SCRIPT);
+    let end = |text: &[u8]| text[text.len() - 60..].to_vec();
+    assert_eq!(end(&written), end(SCRIPT));
+    let json = folder.run("compensate results/calibration.json p.script --out out.script --json --force");
+    let found: serde_json::Value = serde_json::from_str(&json.out).unwrap();
+    assert_eq!((json.code, &found["corrected"], &found["rows"]), (1, &1.into(), &1.into()));
+    assert_eq!((&found["listed"][0]["line"], &found["language"]), (&4.into(), &"urscript".into()));
+}
+
+#[test]
+fn mistakes_about_robot_programs_are_told_and_nothing_is_written() {
+    let folder = folder();
+    std::fs::write(folder.path("p.script"), SCRIPT).unwrap();
+    folder.write("empty.src", " \n");
+    std::fs::write(folder.path("wide.src"), b"D\0E\0F\0").unwrap();
+    folder.write("deep.script", "if True:\n".repeat(200));
+    folder.write("map.toml", "[joints]\n");
+    let before = folder.listing();
+    for (arguments, sentence) in [
+        (
+            "p.script --tool 0,0,0.1",
+            "error: found --tool 0,0,0.1, expected x,y,z,rx,ry,rz as URScript writes poses (metres",
+        ),
+        ("p.script --tool a=0,0,0,0,0,x", "error: found --tool 0,0,0,0,0,x, expected x,y,z,rx,ry,rz"),
+        (
+            "p.script --tool 1=0,0,0,0,0,0 --tool 1=0,0,1,0,0,0",
+            "error: found --tool 1=0,0,1,0,0,0 for one that is stated already",
+        ),
+        ("p.script --frame inf,0,0,0,0,0", "error: found --frame inf,0,0,0,0,0, expected"),
+        ("p.script --base 1", "error: found --base 1, expected"),
+        (
+            "p.script --columns map.toml",
+            "error: found --columns for a program in URScript, expected it for tables (CSV) alone",
+        ),
+        ("p.script --language logo", "found `logo`, expected"),
+        ("empty.src", "error: empty.src: the file is empty, expected a robot program"),
+        ("wide.src", "error: wide.src: found zero bytes, expected a robot program as text"),
+        ("deep.script", "error: deep.script:101: found a block within 100 others, expected fewer"),
+        ("nowhere.src", "error: nowhere.src: found no such file, expected a robot program"),
+        ("results --language krl", "error: results: found a directory, expected a robot program"),
+    ] {
+        let run = folder.run(&format!("compensate results/calibration.json {arguments} --out out.txt"));
+        println!("{}", run.err.trim_end());
+        assert_eq!((run.code, run.out.as_str()), (2, ""), "{arguments}");
+        assert!(run.err.contains(sentence), "{arguments}: {}", run.err);
+    }
+    assert_eq!(folder.listing(), before);
+}
+
+#[test]
+fn the_language_is_that_of_the_name_or_the_one_that_is_stated() {
+    let folder = folder();
+    folder.write("rows.dat", "joint1,joint2,joint3,joint4,joint5,joint6\n0.1,0.2,0.3,0.4,0.5,0.6\n");
+    let table = folder.done("compensate results/calibration.json rows.dat --language csv");
+    assert_eq!(table.lines().count(), 2);
+    let program = "DEF p()\nPTP {A1 10,A2 20,A3 30,A4 40,A5 50,A6 60} ; {A1 1}\nEND\n";
+    folder.write("p.txt", program);
+    let written = folder.done("compensate results/calibration.json p.txt --language krl");
+    println!("{written}");
+    assert!(
+        written.starts_with("DEF p()\nPTP {A1 ")
+            && written.ends_with("} ; {A1 1}\nEND\n")
+            && written != program
+    );
+    let piped = folder.run_with_input("compensate results/calibration.json - --language krl", program);
+    assert_eq!((piped.code, piped.out), (0, written));
+    folder.write("p.src", program);
+    folder.done("compensate results/calibration.json p.src --out q.src --quiet");
 }

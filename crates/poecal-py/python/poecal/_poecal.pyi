@@ -1148,6 +1148,50 @@ class Calibration:
         numpy.ndarray
             Readings to command, of the same shape.
         """
+    def compensate_program(
+        self,
+        path: _Path,
+        *,
+        language: Literal["urscript", "rapid", "krl", "fanuc"] | None = None,
+        tools: Sequence[str] | None = None,
+        frames: Sequence[str] | None = None,
+        base: str | None = None,
+        flange: str | None = None,
+        factors: Mapping[str, float] | None = None,
+        nearest: bool = False,
+        check: bool = False,
+        model: Literal["corrected", "calibrated"] = "corrected",
+    ) -> tuple[bytes, dict[str, Any]]:
+        """A robot program with its targets corrected in place, everything else as it was, byte for byte.
+
+        Parameters
+        ----------
+        path
+            The program for the nominal robot: URScript (.script), RAPID (.mod, .prg, .sys), KRL (.src, .dat) or of FANUC (.ls).
+        language
+            Its language, default by the end of its name.
+        tools
+            Tools in the controller's flange, each "NUMBERS", the tool of programs that set none, or "NAME=NUMBERS"; numbers as the language writes poses.
+        frames
+            Frames of poses (work object, base, user frame) in the controller's base, as tools.
+        base
+            The controller's base in the model's, default the same.
+        flange
+            The controller's flange in the model's tip, default the same.
+        factors
+            Values of the corrected model's factors by their names, default their references.
+        nearest
+            Whether to write the nearest configuration where the robot cannot reach a target, instead of leaving it as it is.
+        check
+            Whether to compute what is left once more, from the written text.
+        model
+            Which model is the robot as it is: "corrected", where there is one, or "calibrated", geometry alone.
+
+        Returns
+        -------
+        tuple of bytes and dict
+            The program, and the summary: how many targets are corrected, which are listed as they are and why, the largest corrections, and what is left.
+        """
     @overload
     def ik(
         self,

@@ -11,7 +11,7 @@ use poecal_arm::{AllBranches, Arm};
 pub use inverse::Inverse;
 pub use programs::{
     Given, LARGEST_PROGRAM, Language, Listed, PoseCompensation, ProgramOptions, ProgramSummary,
-    compensate_program,
+    compensate_file, compensate_program,
 };
 pub use summary::{Largest, Summary};
 pub use table::{TableOptions, compensate_table};

@@ -61,8 +61,9 @@ impl<S> Blocks<S> {
 
     fn begin(&mut self, block: Block<S>, line: usize) -> Result<()> {
         if self.open.len() >= DEEPEST {
-            let message = format!("line {line}: found a block within {DEEPEST} others, expected fewer");
-            return Err(Error::new(ErrorKind::Syntax, message));
+            let message =
+                format!("found a block within {DEEPEST} others, expected fewer: make routines of them");
+            return Err(Error::new(ErrorKind::Syntax, message).at_line("program", line));
         }
         self.size += 1;
         self.open.push((block, std::mem::take(&mut self.nodes)));

@@ -2,6 +2,7 @@
 
 use std::borrow::Cow;
 use std::f64::consts::TAU;
+use std::ops::Range;
 
 use super::super::{Compensated, REACHED, Summary, apart};
 use super::forms::PoseForm;
@@ -105,7 +106,7 @@ impl<'e> Engine<'e> {
         let mut listed = parsed.listed.clone();
         let fates = self.fates(&parsed);
         let mut summary = Summary::new(self.poses.compensation());
-        let mut changes: Vec<(std::ops::Range<usize>, String)> = Vec::new();
+        let mut changes: Vec<(Range<usize>, String)> = Vec::new();
         let mut meant = Vec::new();
         for (index, (target, fate)) in parsed.targets.iter().zip(fates).enumerate() {
             let made = match fate {
@@ -116,7 +117,11 @@ impl<'e> Engine<'e> {
             };
             match made {
                 Ok((made, q)) => {
-                    changes.extend(made);
+                    let signed = |(range, new): (Range<usize>, String)| {
+                        let old = text.get(range.clone()).unwrap_or_default();
+                        (range, with_sign_as(old, new))
+                    };
+                    changes.extend(made.into_iter().map(signed));
                     meant.push((index, q));
                 }
                 Err(reason) => {
@@ -247,7 +252,7 @@ impl<'e> Engine<'e> {
         target: &Target,
         placed: &Placed,
         summary: &mut Summary,
-    ) -> std::result::Result<Vec<(std::ops::Range<usize>, String)>, Reason> {
+    ) -> std::result::Result<Vec<(Range<usize>, String)>, Reason> {
         let is_free = self.poses.compensation().readings().len() >= 6;
         let nearest = self.nearest;
         let (told, found) = self.poses.at(&placed.q);
@@ -397,8 +402,20 @@ fn number(at: usize, (number, value): (&Number, &f64), meant: Meant) -> String {
     if is_zero { text.replace('-', "") } else { text }
 }
 
+/// A number with its sign as the old one has it: the spaces behind it stay, and a plus.
+fn with_sign_as(old: &[u8], new: String) -> String {
+    let Some(sign @ (b'+' | b'-')) = old.first() else { return new };
+    let gap: String =
+        old[1..].iter().take_while(|it| it.is_ascii_whitespace()).map(|&it| char::from(it)).collect();
+    match (new.strip_prefix('-'), sign) {
+        (Some(digits), _) => format!("-{gap}{digits}"),
+        (None, b'+') => format!("+{gap}{new}"),
+        (None, _) => format!("{gap}{new}"),
+    }
+}
+
 /// A text with other bytes in some ranges.
-fn replaced(text: &[u8], mut changes: Vec<(std::ops::Range<usize>, String)>) -> Vec<u8> {
+fn replaced(text: &[u8], mut changes: Vec<(Range<usize>, String)>) -> Vec<u8> {
     changes.sort_by_key(|(range, _)| range.start);
     let mut out = Vec::with_capacity(text.len() + 4 * changes.len());
     let mut at = 0;

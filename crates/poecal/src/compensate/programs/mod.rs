@@ -19,7 +19,10 @@ mod stated;
 mod summary;
 mod urscript;
 
+use std::path::Path;
+
 use crate::error::{Error, ErrorKind, Result};
+use crate::io::programs::read_program;
 use crate::robot::Robot;
 use axes::Axes;
 use engine::Engine;
@@ -109,6 +112,26 @@ pub fn compensate_program(
     let summary =
         ProgramSummary { language: options.language, corrected, listed: made.listed, changes: made.summary };
     Ok((made.text, summary))
+}
+
+/// [`compensate_program`] of a file.
+///
+/// # Errors
+/// As [`read_program`] and [`compensate_program`], with the place in the file.
+pub fn compensate_file(
+    path: impl AsRef<Path>,
+    robots: (&Robot, &Robot),
+    factors: &[f64],
+    options: &ProgramOptions,
+) -> Result<(Vec<u8>, ProgramSummary)> {
+    let path = path.as_ref();
+    let text = read_program(path)?;
+    compensate_program(&text, robots, factors, options).map_err(|error| {
+        match error.place().and_then(|it| it.line) {
+            Some(line) => error.at_line(path, line),
+            None => error.in_file(path),
+        }
+    })
 }
 
 fn parse(language: Language, text: &[u8], given: &Given, axes: &Axes) -> Result<Parsed> {

@@ -348,8 +348,8 @@ const CASES: [Case; 20] = [
     },
     Case {
         name: "upper and lower case, odd spacing, numbers of every form",
-        text: "def P ( )\n  $Tool = { x 10 , Y - 20, z +150.0 , a 1E1,b 20,C 3.0E+1 }\n  $base=$nullframe\n\tPtp   { Axis : a1 5.,A2 -70.5 , A3 +80, a4 .5,A5 \
-               4.0E1,A6 - 30 }\n  spTP { @S{10 -70 80 20 40 -30|t} }   with $VEL_AXIS[1]=SVEL_JOINT(100.0)\nend\n",
+        text: "def P ( )\n  $Tool = { x 10 , Y - 20, z +150.0 , a 1E1,b 20,C 3.0E+1 }\n  $base=$nullframe\n\tPtp   { Axis : @J{10 -70 80 20 40 \
+               -30} }\n  spTP { @S{10 -70 80 20 40 -30|t} }   with $VEL_AXIS[1]=SVEL_JOINT(100.0)\nend\n",
         options: &[],
         listed: &[],
     },
