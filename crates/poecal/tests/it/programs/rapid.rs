@@ -4,10 +4,10 @@ use std::f64::consts::FRAC_PI_2;
 
 use nalgebra::Vector3;
 use poecal::Robot;
-use poecal::compensate::{Language, ProgramOptions};
+use poecal::compensate::{Inverse, Language, ProgramOptions, compensate_program};
 use poecal::lie::{Pose, rotation};
 
-use super::expected::{Numbers, Reader, check, files, pose_of, robot};
+use super::expected::{Numbers, Reader, actual, check, files, pose_of, robot};
 
 /// An arm as ABB builds them.
 fn nominal() -> Robot {
@@ -80,4 +80,35 @@ fn programs_in_rapid_are_corrected_in_place() {
     assert_eq!(paths.len(), 20);
     // Half of the last digits, 1e-6 mm and 1e-9 of a quaternion, at two metres from the base.
     assert!(metres < 1e-8 && radians < 4e-9);
+}
+
+/// A module of targets alone: the user says which tool and work object its moves have.
+#[test]
+fn targets_without_moves_have_what_the_user_states() {
+    let nominal = nominal();
+    let text = "MODULE Data\n  CONST robtarget p10:=[[1628.128,-12.5,1705.665],[0.13052562,0,0.99144494,0],\
+                [-1,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]];\nENDMODULE\n";
+    let mut options = ProgramOptions::of(Language::Rapid);
+    let run = |options: &ProgramOptions| {
+        compensate_program(text.as_bytes(), (&nominal, &actual(&nominal)), &[], options).unwrap()
+    };
+    let (out, summary) = run(&options);
+    assert_eq!((out.as_slice(), summary.corrected, summary.listed.len()), (text.as_bytes(), 0, 1));
+    options.given.add_tool("0,0,100,1,0,0,0", Language::Rapid).unwrap();
+    assert_eq!(run(&options).1.corrected, 0);
+    options.given.add_frame("-100,0,50,1,0,0,0", Language::Rapid).unwrap();
+    let (out, summary) = run(&options);
+    println!("{}", String::from_utf8_lossy(&out));
+    assert_eq!((summary.corrected, summary.listed.len()), (1, 0), "{:?}", summary.listed);
+    let pose = |text: &[u8]| {
+        let numbers: Vec<f64> = read(text, 2, 0, false).iter().map(|it| it.1).collect();
+        let frame = Pose::from_translation(Vector3::new(-0.1, 0.0, 0.05));
+        frame * pose_of(&numbers) * Pose::from_translation(Vector3::new(0.0, 0.0, -0.1))
+    };
+    let inverse = Inverse::new(&nominal, &[]).unwrap();
+    let meant = inverse.nearest(&pose(text.as_bytes()), &[0.0; 6], true).unwrap();
+    let commanded = inverse.nearest(&pose(&out), &meant, true).unwrap();
+    let left =
+        actual(&nominal).forward_kinematics(&commanded).translation - pose(text.as_bytes()).translation;
+    assert!(left.norm() < 1e-8, "{left}");
 }

@@ -122,6 +122,11 @@ impl Maker<'_> {
         };
         let target = self.targets.len();
         let stated = configuration(numbers.get(7..).unwrap_or_default());
+        if let (true, Some((tool, frame))) = (moves.is_empty(), known.first().copied()) {
+            let (after, is_straight, refused) = (None, false, None);
+            let (tool, frame, stated) = (Some(tool), Some(frame), stated.clone());
+            self.more.push(Motion { target, line, after, is_straight, tool, frame, refused, stated });
+        }
         for (number, of) in moves.iter().enumerate() {
             let known = known.get(number);
             let motion = Motion {
@@ -151,8 +156,16 @@ impl Maker<'_> {
         let quaternion = numbers(quaternion, 4).ok_or(SHAPE)?;
         let configuration = numbers(configuration, 4).ok_or(SHAPE)?;
         let external = numbers(external, 6).ok_or(SHAPE)?;
+        let mut known = Vec::new();
         if moves.is_empty() {
-            return Err("no move of this file goes to it: its tool and work object are not known".to_owned());
+            // The moves are in another module: the user says what is true of them.
+            let (Some(tool), Some(frame)) = (self.given.tool(None), self.given.frame(None)) else {
+                return Err(
+                    "no move of this file goes to it: state its tool and work object by --tool and --frame"
+                        .to_owned(),
+                );
+            };
+            known.push((tool, frame));
         }
         if let Some(line) = moves.iter().find_map(|it| it.displaced) {
             return Err(format!("a program displacement may be active: switched on on line {line}"));
@@ -167,8 +180,9 @@ impl Maker<'_> {
         if !has_length(&quaternion) {
             return Err("its quaternion has not the length 1".to_owned());
         }
-        let known = moves.iter().map(|it| Ok((self.tool(&it.tool)?, self.frame(&it.object)?)));
-        let known = known.collect::<Result<Vec<Known>, String>>()?;
+        for of in moves {
+            known.push((self.tool(&of.tool)?, self.frame(&of.object)?));
+        }
         for (what, is_other) in [
             (
                 "with different tools",
