@@ -127,7 +127,7 @@ pub(crate) fn program<'py>(
     options: &ProgramOptions,
 ) -> PyResult<(Bound<'py, PyBytes>, Bound<'py, PyAny>)> {
     let (text, summary) = py.detach(|| compensate_file(path, robots, factors, options)).map_err(raise)?;
-    let json = poecal::report::json(&summary);
+    let json = poecal::report::json(&summary).map_err(raise)?;
     Ok((PyBytes::new(py, &text), py.import("json")?.call_method1("loads", (json,))?))
 }
 

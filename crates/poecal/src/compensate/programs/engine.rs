@@ -231,6 +231,9 @@ impl<'e> Engine<'e> {
                     return Err(reason::UNREACHABLE);
                 }
                 all.retain(|q| stated.fits(nominal, &self.poses.of_arm(q)));
+                if all.len() > 1 {
+                    all.retain(|q| stated.fits_best(nominal, &self.poses.of_arm(q)));
+                }
                 match all.len() {
                     0 => Err(reason::NONE_FITS),
                     1 => all.pop().ok_or(reason::NONE_FITS),

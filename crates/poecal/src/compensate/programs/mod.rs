@@ -3,6 +3,7 @@
 mod axes;
 mod build;
 mod engine;
+mod fanuc;
 mod flow;
 mod forms;
 mod given;
@@ -10,6 +11,8 @@ mod krl;
 mod language;
 mod parsed;
 mod place;
+mod posture;
+mod rapid;
 mod scan;
 mod shape;
 mod stated;
@@ -135,12 +138,7 @@ fn parse(language: Language, text: &[u8], given: &Given, axes: &Axes) -> Result<
     match language {
         Language::UrScript => urscript::parse(text, given, axes),
         Language::Krl => krl::parse(text, given, axes),
-        Language::Rapid | Language::Fanuc => Err(Error::new(
-            ErrorKind::Option,
-            format!(
-                "found a program in {}, which is not corrected here yet, expected URScript or KRL",
-                language.title()
-            ),
-        )),
+        Language::Rapid => Ok(rapid::parse(text, given)),
+        Language::Fanuc => Ok(fanuc::parse(text, given)),
     }
 }

@@ -3,6 +3,7 @@
 use poecal_arm::Arm;
 
 use super::krl::status::Status;
+use super::{fanuc, rapid};
 
 /// What a motion's text says of the configuration in which a pose is reached.
 #[derive(Clone, Debug, PartialEq)]
@@ -13,6 +14,10 @@ pub(crate) enum Stated {
     Near(Vec<f64>),
     /// Status and turn of KRL.
     Krl(Status),
+    /// Quarter turns and branch of RAPID.
+    Rapid(rapid::Configuration),
+    /// Letters and turn numbers of FANUC.
+    Fanuc(fanuc::Configuration),
 }
 
 impl Stated {
@@ -21,6 +26,16 @@ impl Stated {
         match self {
             Stated::Nothing | Stated::Near(_) => true,
             Stated::Krl(status) => status.fits(nominal, q),
+            Stated::Rapid(configuration) => configuration.fits(q),
+            Stated::Fanuc(configuration) => configuration.fits(nominal, q),
+        }
+    }
+
+    /// Of several configurations that fit, whether one also fits the words that count where the others do not tell them apart.
+    pub(crate) fn fits_best(&self, nominal: &Arm, q: &[f64]) -> bool {
+        match self {
+            Stated::Rapid(configuration) => configuration.branch_fits(nominal, q),
+            Stated::Nothing | Stated::Near(_) | Stated::Krl(_) | Stated::Fanuc(_) => true,
         }
     }
 
@@ -30,6 +45,8 @@ impl Stated {
         match self {
             Stated::Nothing | Stated::Near(_) => Some(Vec::new()),
             Stated::Krl(status) => Some(status.words(nominal, q)),
+            Stated::Rapid(configuration) => Some(configuration.words(q)),
+            Stated::Fanuc(configuration) => configuration.words(nominal, q),
         }
     }
 }

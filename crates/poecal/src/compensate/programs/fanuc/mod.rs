@@ -1,0 +1,221 @@
+//! Positions of programs of FANUC in their printed form (LS): `P[n]` of the section `/POS`, as joints or as poses.
+//!
+//! A position states its user frame, its tool and its configuration itself; frames and tools stand in the controller, and the user states
+//! them. Positions of joints are the controller's readings, whose third joint is counted from the level and not from the lower arm: so are
+//! those of a calibration whose joints were read from the controller.
+
+mod configuration;
+mod instructions;
+mod positions;
+
+use std::collections::HashMap;
+use std::ops::Range;
+
+pub(crate) use configuration::Configuration;
+use instructions::{Instructions, Move};
+use positions::{Group, Position, positions};
+
+use super::forms::PoseForm;
+use super::given::Given;
+use super::parsed::{Listed, Meant, Motion, Number, Parsed, Target};
+use super::scan::{Rules, Scanner, Token, signed};
+use super::stated::Stated;
+use crate::lie::Pose;
+
+/// How the language is written. Comments are told by where they stand, and a quote is also a letter of comments and names.
+const RULES: Rules = Rules { comments: &[], quotes: b"", letters: b"", is_open_in_brackets: false };
+
+/// The tokens of a part of a program that begins on a line.
+fn tokens(text: &[u8], part: Range<usize>, line: usize) -> impl Iterator<Item = Token> {
+    let start = part.start;
+    Scanner::new(text.get(part).unwrap_or_default(), &RULES).map(move |mut token| {
+        token.range = token.range.start + start..token.range.end + start;
+        token.line += line - 1;
+        token
+    })
+}
+
+/// A number without a sign and without decimals, and nothing else.
+fn whole(tokens: &[Token]) -> Option<u32> {
+    let number = signed(tokens).filter(|it| it.decimals == 0 && (0.0..1e6).contains(&it.value))?;
+    Some(number.value as u32)
+}
+
+/// A section's name in upper case, if a line begins one.
+fn section(line: &[u8]) -> Option<String> {
+    let name = line.trim_ascii().strip_prefix(b"/")?;
+    let name = name.split(|it| !it.is_ascii_alphabetic()).next().filter(|it| !it.is_empty())?;
+    std::str::from_utf8(name).ok().map(str::to_ascii_uppercase)
+}
+
+/// The positions and motions of a program.
+pub(crate) fn parse(text: &[u8], given: &Given) -> Parsed {
+    let mut instructions = Instructions::new(text);
+    let mut name = String::new();
+    let mut all = Vec::new();
+    let mut start = 0;
+    let mut tracked = None;
+    for (number, line) in text.split_inclusive(|it| *it == b'\n').enumerate() {
+        let range = start..start + line.len();
+        start = range.end;
+        if let Some(found) =
+            section(line).filter(|it| matches!(it.as_str(), "PROG" | "ATTR" | "APPL" | "MN" | "POS" | "END"))
+        {
+            if found == "POS" && name != "POS" {
+                all = positions(text, range.end, number + 2);
+            }
+            name = found;
+        } else if name == "MN" {
+            instructions.line(range, number + 1);
+        } else if name == "APPL" && tracked.is_none() && follows_line(line) {
+            tracked = Some(number + 1);
+        }
+    }
+    Maker { given, tracked, out: Parsed::default(), targets: HashMap::new() }.all(all, &instructions)
+}
+
+/// Whether a line of the section `/APPL` says that the program follows a moving line.
+fn follows_line(line: &[u8]) -> bool {
+    let text = String::from_utf8_lossy(line).to_ascii_uppercase();
+    let number = text
+        .split_once(':')
+        .and_then(|(_, it)| it.trim().trim_end_matches([';', ',']).trim().parse::<u32>().ok());
+    text.contains("LINE_TRACK_SCHEDULE_NUMBER") && number.is_some_and(|it| it > 0)
+}
+
+struct Maker<'a> {
+    given: &'a Given,
+    /// Line that says that the program follows a moving line.
+    tracked: Option<usize>,
+    out: Parsed,
+    /// Of each position, its target and its motion.
+    targets: HashMap<u32, (usize, Motion)>,
+}
+
+impl Maker<'_> {
+    fn all(mut self, positions: Vec<Position>, instructions: &Instructions<'_>) -> Parsed {
+        let mut count: HashMap<u32, usize> = HashMap::new();
+        for position in &positions {
+            *count.entry(position.number).or_default() += 1;
+        }
+        for position in positions {
+            let is_double = count.get(&position.number).is_some_and(|it| *it > 1);
+            let moves = instructions.moves_to(position.number);
+            let (line, name) = (position.line, position.name.clone());
+            let made = if is_double {
+                Err("stated more than once".to_owned())
+            } else {
+                self.target(&position, &moves)
+            };
+            match made {
+                Ok((target, tool, frame, stated)) => {
+                    let target_index = self.out.targets.len();
+                    self.out.targets.push(target);
+                    let motion = Motion {
+                        target: target_index,
+                        line,
+                        after: None,
+                        is_straight: false,
+                        tool,
+                        frame,
+                        refused: None,
+                        stated,
+                    };
+                    self.targets.insert(position.number, (target_index, motion));
+                }
+                Err(reason) => self.out.listed.push(Listed { line, name, reason }),
+            }
+        }
+        self.motions(instructions);
+        self.out.listed.extend(instructions.listed.iter().cloned());
+        self.out.listed.sort();
+        self.out.listed.dedup();
+        self.out
+    }
+
+    /// Motions in the order of the text, then positions without one: they are corrected too, since another program or an index that is
+    /// computed may lead there.
+    fn motions(&mut self, instructions: &Instructions<'_>) {
+        let mut is_moved = vec![false; self.out.targets.len()];
+        for (number, of) in &instructions.moves {
+            if let Some((target, motion)) = self.targets.get(number) {
+                let motion = Motion { line: of.line, is_straight: of.is_straight, ..motion.clone() };
+                self.out.motions.push(motion);
+                if let Some(it) = is_moved.get_mut(*target) {
+                    *it = true;
+                }
+            }
+        }
+        let mut rest: Vec<&(usize, Motion)> =
+            self.targets.values().filter(|(target, _)| is_moved.get(*target) == Some(&false)).collect();
+        rest.sort_by_key(|(target, _)| *target);
+        self.out.motions.extend(rest.into_iter().map(|(_, motion)| motion.clone()));
+    }
+
+    #[allow(clippy::type_complexity)]
+    fn target(
+        &self,
+        position: &Position,
+        moves: &[&Move],
+    ) -> Result<(Target, Option<Pose>, Option<Pose>, Stated), String> {
+        let made = |numbers: Vec<Number>, meant: Meant| Target {
+            line: position.line,
+            name: position.name.clone(),
+            numbers,
+            meant,
+        };
+        let [group] = &position.groups[..] else { return Err("it is of several groups".to_owned()) };
+        if let Some(of) = moves.iter().find(|it| it.is_incremental) {
+            return Err(format!("moved to by INC on line {}: it is a distance, not a place", of.line));
+        }
+        let Group::Pose(pose) = group else {
+            return match group {
+                Group::Joints(numbers) => {
+                    Ok((made(numbers.clone(), Meant::Joints), None, None, Stated::Nothing))
+                }
+                Group::Pose(_) => Err(String::new()),
+                Group::Unknown(reason) => Err((*reason).to_owned()),
+            };
+        };
+        if let Some(line) = self.tracked {
+            return Err(format!("the program follows a moving line (line {line})"));
+        }
+        if let Some(of) = moves.iter().find(|it| it.is_coordinated) {
+            return Err(format!(
+                "moved to together with another group, or with a tool that stands, on line {}",
+                of.line
+            ));
+        }
+        if pose.is_extended {
+            return Err("external axes are used".to_owned());
+        }
+        let (Some(frame), Some(tool)) = (pose.frame, pose.tool) else {
+            return Err("its user frame or its tool is not a number".to_owned());
+        };
+        for of in moves {
+            if let Some(active) = of.frame.filter(|it| *it != frame) {
+                return Err(format!(
+                    "stated in user frame {frame}, but moved to in {active} on line {}",
+                    of.line
+                ));
+            }
+            if let Some(active) = of.tool.filter(|it| *it != tool) {
+                return Err(format!(
+                    "stated with tool {tool}, but moved to with {active} on line {}",
+                    of.line
+                ));
+            }
+        }
+        let known = |given: Option<Pose>, number: u32, what: &str, flag: &str| {
+            let own = (number == 0).then(Pose::identity);
+            given.or(own).ok_or_else(|| {
+                format!("its {what} {number} is not in the file: state it by {flag} {number}=X,Y,Z,W,P,R")
+            })
+        };
+        let frame = known(self.given.frame(Some(&frame.to_string())), frame, "user frame", "--frame")?;
+        let tool = known(self.given.tool(Some(&tool.to_string())), tool, "tool", "--tool")?;
+        let configuration = pose.configuration.clone().ok_or("its configuration is not understood")?;
+        let target = made(pose.numbers.clone(), Meant::Pose(PoseForm::Wpr));
+        Ok((target, Some(tool), Some(frame), Stated::Fanuc(configuration)))
+    }
+}

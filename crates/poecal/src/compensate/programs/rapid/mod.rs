@@ -1,0 +1,215 @@
+//! Targets of programs in RAPID (ABB): `robtarget` and `jointtarget`, declared or in place.
+//!
+//! A `robtarget` says where the tool is in a work object, but neither which tool nor which work object: the moves to it do. Its
+//! configuration `[cf1,cf4,cf6,cfx]` has the quarter turns of joints 1, 4 and 6, and of eight branches the one (ABB, *Technical reference
+//! manual, RAPID*, `confdata`).
+
+mod configuration;
+mod declared;
+mod frames;
+mod going;
+mod modal;
+mod moves;
+mod outline;
+mod targets;
+mod tokens;
+
+pub(crate) use configuration::Configuration;
+use declared::{Declared, Sort};
+use going::{Held, Move, Moves};
+use modal::{Modal, Switch, leads_elsewhere};
+use moves::{Argument, Instruction, Layout, ToolAt, argument, layout};
+use outline::Statement;
+use tokens::tokens;
+
+use super::given::Given;
+use super::parsed::{Listed, Parsed};
+use super::scan::{Kind, Token, shown};
+
+/// The targets and motions of a program.
+pub(crate) fn parse(text: &[u8], given: &Given) -> Parsed {
+    let tokens = tokens(text);
+    let outline = outline::outline(&tokens, text);
+    let mut declared = Declared::read(&outline, &tokens, text);
+    let modals = [Switch::Displacement, Switch::Lines, Switch::Joints]
+        .map(|switch| Modal::follow(switch, &outline, &tokens, text));
+    let mut reader = Reader { text, modals, moves: Moves::default(), last: None, listed: Vec::new() };
+    for (index, statement) in outline.statements.iter().enumerate() {
+        reader.statement(index, statement, &tokens, &mut declared);
+    }
+    let mut out = targets::parsed(&reader.moves, &declared, &outline, given, text);
+    out.listed.append(&mut reader.listed);
+    out.listed.sort();
+    out.listed.dedup();
+    out
+}
+
+struct Reader<'a> {
+    text: &'a [u8],
+    modals: [Modal; 3],
+    moves: Moves,
+    /// Number and block of the last move, if the next one always comes after it.
+    last: Option<(usize, usize)>,
+    listed: Vec<Listed>,
+}
+
+impl Reader<'_> {
+    fn statement(&mut self, index: usize, statement: &Statement, tokens: &[Token], declared: &mut Declared) {
+        declared.follow(statement, tokens, self.text);
+        let own = tokens.get(statement.tokens.clone()).unwrap_or_default();
+        if statement.routine.is_none() {
+            return;
+        }
+        if statement.is_entry || self.last.is_some_and(|(_, block)| block != statement.block) {
+            self.last = None;
+        }
+        let Some(instruction) = Instruction::of(own, self.text) else {
+            self.last = None;
+            return;
+        };
+        declared.handed(own, statement, self.text);
+        if let Some(layout) = layout(&instruction.name) {
+            self.moved(index, statement, &instruction, &layout, own, declared);
+        } else {
+            if leads_elsewhere(own, Some(&instruction)) {
+                self.last = None;
+            }
+            self.not_moved(statement, &instruction, own, declared);
+        }
+    }
+
+    /// An instruction that is no move: what it is given is used in ways that are not known.
+    fn not_moved(
+        &mut self,
+        statement: &Statement,
+        instruction: &Instruction<'_>,
+        own: &[Token],
+        declared: &mut Declared,
+    ) {
+        const ONLY_READ: [&str; 7] = ["const", "eoffson", "pdispon", "pers", "return", "tpwrite", "var"];
+        let is_assignment = own.get(1).is_some_and(|it| it.kind != Kind::Word && !it.is(b'\\'));
+        if is_assignment || ONLY_READ.contains(&instruction.name.as_str()) {
+            return;
+        }
+        let name = shown(self.text, own.get(..1).unwrap_or_default());
+        let values = instruction.options.iter().map(|(_, value)| *value);
+        for given in instruction.arguments.iter().copied().chain(values) {
+            if let Argument::Name(of, _) = argument(given, self.text) {
+                declared.give(&of, &name, false, statement);
+            }
+        }
+    }
+
+    fn moved(
+        &mut self,
+        index: usize,
+        statement: &Statement,
+        instruction: &Instruction<'_>,
+        layout: &Layout,
+        own: &[Token],
+        declared: &mut Declared,
+    ) {
+        let text = self.text;
+        if let Some(set) = layout.sets.and_then(|at| instruction.arguments.get(at))
+            && let Argument::Name(name, _) = argument(set, text)
+        {
+            declared.change(&name, statement);
+        }
+        let tool = match layout.tool {
+            ToolAt::Place(at) => instruction.arguments.get(at),
+            ToolAt::Last => instruction.arguments.last().filter(|_| instruction.arguments.len() > 2),
+        };
+        let held = |written: &[Token]| Held::of(&shown(text, written), statement, declared);
+        let [displaced, lines, joints] = &self.modals;
+        let not_followed = if layout.is_free { joints } else { lines };
+        let of = Move {
+            line: statement.line,
+            tool: tool.map_or_else(|| Held::Unknown(String::new()), |it| held(it)),
+            object: instruction.option("wobj").map_or(Held::BuiltIn, held),
+            displaced: displaced.at(index).filter(|_| !layout.is_joints),
+            is_not_followed: not_followed.at(index).is_some(),
+            is_straight: !layout.is_free && !layout.is_joints,
+        };
+        let name = shown(text, own.get(..1).unwrap_or_default());
+        for &at in layout.targets {
+            let of = of.clone();
+            let before = self.last.take().map(|(number, _)| number);
+            let number = match instruction.arguments.get(at).copied() {
+                Some(written) => self.to(&name, written, layout.is_joints, statement, of, before, declared),
+                None => {
+                    self.list(statement.line, shown(text, own), "an argument of this move is missing");
+                    None
+                }
+            };
+            self.last = number.map(|number| (number, statement.block));
+        }
+    }
+
+    /// A move to a target as it is written; its number, if it is known where it goes.
+    #[allow(clippy::too_many_arguments)]
+    fn to(
+        &mut self,
+        instruction: &str,
+        written: &[Token],
+        is_joints: bool,
+        statement: &Statement,
+        of: Move,
+        before: Option<usize>,
+        declared: &Declared,
+    ) -> Option<usize> {
+        let text = self.text;
+        let line = written.first().map_or(statement.line, |it| it.line);
+        let of = Move { line, ..of };
+        let mut argument = argument(written, text);
+        let mut is_relative = false;
+        while let Argument::Relative(base) = argument {
+            is_relative = true;
+            argument = *base;
+        }
+        if is_relative {
+            let reason = "relative to a target: the offset is left as it is, at most its target is corrected";
+            self.list(line, shown(text, written), reason);
+        }
+        let number = match argument {
+            Argument::Name(name, indices) => {
+                let sort = declared.find(&name, statement).and_then(|at| Some((at, declared.data.get(at)?)));
+                let expected = if is_joints { Sort::Joints } else { Sort::Target };
+                let reason = match sort {
+                    None => "not declared in this file",
+                    Some((_, data)) if data.sort == Sort::Parameter => {
+                        "a parameter of its routine: its value is that of each call"
+                    }
+                    Some((_, data)) if data.sort != expected => {
+                        "declared as something else than what this move expects"
+                    }
+                    Some((_, data)) if data.value.is_none() => {
+                        "a variable without numbers: computed when the program runs"
+                    }
+                    Some((at, _)) => {
+                        return self.moves.add_to_data(at, indices, of, before).filter(|_| !is_relative);
+                    }
+                };
+                self.list(line, shown(text, written), reason);
+                None
+            }
+            Argument::Numbers(tokens) => {
+                let first = tokens.iter().position(|it| it.is(b']')).map_or(0, |it| it + 1);
+                let name =
+                    format!("{instruction} {},…]", shown(text, tokens.get(..first).unwrap_or_default()));
+                let value = tokens::value(tokens, text, 0);
+                Some(self.moves.in_place(name, value, is_joints, of, before))
+            }
+            Argument::Computed | Argument::Relative(_) => {
+                let is_star = matches!(written, [star] if star.is(b'*'));
+                let reason = if is_star { "no numbers stand here" } else { "computed when the program runs" };
+                self.list(line, shown(text, written), reason);
+                None
+            }
+        };
+        number.filter(|_| !is_relative)
+    }
+
+    fn list(&mut self, line: usize, name: String, reason: &str) {
+        self.listed.push(Listed { line, name, reason: reason.to_owned() });
+    }
+}

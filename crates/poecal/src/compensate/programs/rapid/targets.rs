@@ -1,0 +1,337 @@
+//! From declarations and moves to targets and motions, or to reasons why a target is left as it is.
+
+use std::collections::HashMap;
+
+use super::super::forms::PoseForm;
+use super::super::given::Given;
+use super::super::parsed::{Listed, Meant, Motion, Number, Parsed, Target};
+use super::super::stated::Stated;
+use super::configuration::Configuration;
+use super::declared::{Data, Declared, Sort};
+use super::frames::{has_length, numbers, tool, work_object};
+use super::going::{Held, Move, Moves, To};
+use super::outline::Outline;
+use super::tokens::Value;
+use crate::lie::Pose;
+
+/// Targets, motions and reasons.
+pub(super) fn parsed(
+    moves: &Moves,
+    declared: &Declared,
+    outline: &Outline,
+    given: &Given,
+    text: &[u8],
+) -> Parsed {
+    let lines = text.iter().enumerate().filter(|(_, it)| **it == b'\n').map(|(at, _)| at).collect();
+    let mut by_place: HashMap<&To, Vec<usize>> = HashMap::new();
+    for (number, going) in moves.going.iter().enumerate() {
+        by_place.entry(&going.to).or_default().push(number);
+    }
+    let mut maker = Maker {
+        moves,
+        by_place,
+        declared,
+        outline,
+        given,
+        lines,
+        targets: Vec::new(),
+        motions: vec![None; moves.going.len()],
+        more: Vec::new(),
+        listed: Vec::new(),
+    };
+    for (at, data) in declared.data.iter().enumerate() {
+        if matches!(data.sort, Sort::Target | Sort::Joints)
+            && let Some(value) = &data.value
+        {
+            maker.data(at, data, value);
+        }
+    }
+    for (at, (name, value, is_joints)) in moves.in_place.iter().enumerate() {
+        maker.one(name.clone(), 0, value, *is_joints, &To::InPlace(at));
+    }
+    maker.parsed()
+}
+
+/// What a motion has beside its line.
+type Known = (Pose, Pose);
+
+struct Maker<'a> {
+    moves: &'a Moves,
+    by_place: HashMap<&'a To, Vec<usize>>,
+    declared: &'a Declared,
+    outline: &'a Outline,
+    given: &'a Given,
+    /// Ends of lines.
+    lines: Vec<usize>,
+    targets: Vec<Target>,
+    /// Of each move, its motion.
+    motions: Vec<Option<Motion>>,
+    /// Motions to any element of an array.
+    more: Vec<Motion>,
+    listed: Vec<Listed>,
+}
+
+impl Maker<'_> {
+    fn list(&mut self, line: usize, name: &str, reason: String) {
+        self.listed.push(Listed { line, name: name.to_owned(), reason });
+    }
+
+    fn data(&mut self, at: usize, data: &Data, value: &Value) {
+        let is_joints = data.sort == Sort::Joints;
+        if data.is_double {
+            return self.list(data.line, &data.name, "declared more than once".to_owned());
+        }
+        if let Some(line) = data.changed {
+            return self.list(data.line, &data.name, format!("changed by the program on line {line}"));
+        }
+        if let Some(given) = data.given.first() {
+            let reason =
+                format!("given to {} on line {}, whose use of it is not known", given.to, given.line);
+            return self.list(data.line, &data.name, reason);
+        }
+        let mut elements = Vec::new();
+        spread(value, data.dimensions, &mut Vec::new(), &mut elements);
+        for (index, value) in elements {
+            let words: Vec<String> = index.iter().map(ToString::to_string).collect();
+            let name = match words[..] {
+                [] => data.name.clone(),
+                _ => format!("{}{{{}}}", data.name, words.join(",")),
+            };
+            self.one(name, data.line, value, is_joints, &To::Data(at, index));
+        }
+    }
+
+    /// A target by its value and its place.
+    fn one(&mut self, name: String, line: usize, value: &Value, is_joints: bool, to: &To) {
+        let line = first_number(value).map_or(line, |at| self.lines.partition_point(|end| *end < at) + 1);
+        let own = self.by_place.get(to).cloned().unwrap_or_default();
+        let any: &[Move] = match to {
+            To::Data(at, index) if !index.is_empty() => self.moves.to_any.get(at).map_or(&[], |it| it),
+            To::Data(..) | To::InPlace(_) => &[],
+        };
+        let moves: Vec<&Move> =
+            own.iter().filter_map(|&it| Some(&self.moves.going.get(it)?.of)).chain(any).collect();
+        let made = if is_joints {
+            joints(value).map(|it| (it, Meant::Joints, Vec::new()))
+        } else {
+            self.pose(value, &moves)
+        };
+        let (numbers, meant, known) = match made {
+            Ok(made) => made,
+            Err(reason) => return self.list(line, &name, reason),
+        };
+        let target = self.targets.len();
+        let stated = configuration(numbers.get(7..).unwrap_or_default());
+        if let (true, Some((tool, frame))) = (moves.is_empty(), known.first().copied()) {
+            let (after, is_straight, refused) = (None, false, None);
+            let (tool, frame, stated) = (Some(tool), Some(frame), stated.clone());
+            self.more.push(Motion { target, line, after, is_straight, tool, frame, refused, stated });
+        }
+        for (number, of) in moves.iter().enumerate() {
+            let known = known.get(number);
+            let motion = Motion {
+                target,
+                line: of.line,
+                after: None,
+                is_straight: of.is_straight,
+                tool: known.map(|it| it.0),
+                frame: known.map(|it| it.1),
+                refused: None,
+                stated: if of.is_not_followed { Stated::Nothing } else { stated.clone() },
+            };
+            match own.get(number).and_then(|&it| self.motions.get_mut(it)) {
+                Some(place) => *place = Some(motion),
+                None => self.more.push(motion),
+            }
+        }
+        self.targets.push(Target { line, name, numbers, meant });
+    }
+
+    fn pose(&self, value: &Value, moves: &[&Move]) -> Result<(Vec<Number>, Meant, Vec<Known>), String> {
+        const SHAPE: &str =
+            "not written as [[x,y,z],[q1,q2,q3,q4],[cf1,cf4,cf6,cfx],[external axes]] with numbers";
+        let Value::List(parts) = value else { return Err(SHAPE.to_owned()) };
+        let [place, quaternion, configuration, external] = &parts[..] else { return Err(SHAPE.to_owned()) };
+        let mut all = numbers(place, 3).ok_or(SHAPE)?;
+        let quaternion = numbers(quaternion, 4).ok_or(SHAPE)?;
+        let configuration = numbers(configuration, 4).ok_or(SHAPE)?;
+        let external = numbers(external, 6).ok_or(SHAPE)?;
+        let mut known = Vec::new();
+        if moves.is_empty() {
+            // The moves are in another module: the user says what is true of them.
+            let (Some(tool), Some(frame)) = (self.given.tool(None), self.given.frame(None)) else {
+                return Err(
+                    "no move of this file goes to it: state its tool and work object by --tool and --frame"
+                        .to_owned(),
+                );
+            };
+            known.push((tool, frame));
+        }
+        if let Some(line) = moves.iter().find_map(|it| it.displaced) {
+            return Err(format!("a program displacement may be active: switched on on line {line}"));
+        }
+        // An axis that is not there has 9E9; one at 0 leaves the arm where it is.
+        if external.iter().any(|it| it.value != 0.0 && it.value < 8.9e9) {
+            return Err("external axes are used".to_owned());
+        }
+        if configuration.iter().any(|it| it.value.fract() != 0.0 || it.value.abs() > 100.0) {
+            return Err("its configuration is not written in whole numbers".to_owned());
+        }
+        if !has_length(&quaternion) {
+            return Err("its quaternion has not the length 1".to_owned());
+        }
+        for of in moves {
+            known.push((self.tool(&of.tool)?, self.frame(&of.object)?));
+        }
+        for (what, is_other) in [
+            (
+                "with different tools",
+                known.iter().position(|it| Some(&it.0) != known.first().map(|it| &it.0)),
+            ),
+            (
+                "in different work objects",
+                known.iter().position(|it| Some(&it.1) != known.first().map(|it| &it.1)),
+            ),
+        ] {
+            if let (Some(one), Some(other)) = (moves.first(), is_other.and_then(|at| moves.get(at))) {
+                return Err(format!("moved {what}, on lines {} and {}", one.line, other.line));
+            }
+        }
+        all.extend(quaternion);
+        all.extend(configuration);
+        Ok((all, Meant::Pose(PoseForm::Quaternion), known))
+    }
+
+    fn tool(&self, held: &Held) -> Result<Pose, String> {
+        self.known(
+            ("tool", "--tool"),
+            held,
+            Sort::Tool,
+            self.given.tool(Some(self.name(held, "tool0"))),
+            tool,
+        )
+    }
+
+    fn frame(&self, held: &Held) -> Result<Pose, String> {
+        let stated = self.given.frame(Some(self.name(held, "wobj0")));
+        self.known(("work object", "--frame"), held, Sort::WorkObject, stated, work_object)
+    }
+
+    fn name<'b>(&'b self, held: &'b Held, built_in: &'b str) -> &'b str {
+        match held {
+            Held::BuiltIn => built_in,
+            Held::Data(at) => self.declared.data.get(*at).map_or("", |it| it.name.as_str()),
+            Held::Unknown(written) => written,
+        }
+    }
+
+    /// A tool or a work object: as the user states it, else as the file declares it.
+    fn known(
+        &self,
+        (what, flag): (&str, &str),
+        held: &Held,
+        sort: Sort,
+        stated: Option<Pose>,
+        read: fn(&Value) -> Result<Pose, &'static str>,
+    ) -> Result<Pose, String> {
+        if let Some(stated) = stated {
+            return Ok(stated);
+        }
+        let name = self.name(held, "");
+        match held {
+            Held::BuiltIn => Ok(Pose::identity()),
+            Held::Unknown(_)
+                if name.bytes().any(|it| it.is_ascii_punctuation() && it != b'_') || name.is_empty() =>
+            {
+                Err(format!("its {what} `{name}` is not known"))
+            }
+            Held::Unknown(_) => Err(format!("its {what} `{name}` is not in this file: state it by {flag}")),
+            Held::Data(at) => {
+                let data = self.declared.data.get(*at).filter(|it| it.sort == sort && !it.is_double);
+                let data = data.ok_or_else(|| format!("its {what} `{name}` is not known"))?;
+                if let Some(line) = data.changed {
+                    return Err(format!("its {what} `{name}` is changed on line {line}"));
+                }
+                if let Some(given) = self.declared.changes_it(data, self.outline) {
+                    let (to, line) = (&given.to, given.line);
+                    return Err(format!(
+                        "its {what} `{name}` is given to {to} on line {line}, which may change it"
+                    ));
+                }
+                let value =
+                    data.value.as_ref().ok_or_else(|| format!("its {what} `{name}` has no numbers"))?;
+                read(value).map_err(|reason| format!("its {what} `{name}` {reason}"))
+            }
+        }
+    }
+
+    fn parsed(self) -> Parsed {
+        // Numbers of motions, where moves without one are left out.
+        let mut place = Vec::with_capacity(self.motions.len());
+        let mut count = 0;
+        for motion in &self.motions {
+            place.push(motion.is_some().then_some(count));
+            count += usize::from(motion.is_some());
+        }
+        let mut motions = Vec::with_capacity(count + self.more.len());
+        for (motion, going) in self.motions.into_iter().zip(&self.moves.going) {
+            // A configuration that is stated and followed does not depend on the motion before.
+            let after = going.after.filter(|_| going.of.is_not_followed);
+            let after = after.and_then(|it| place.get(it).copied().flatten());
+            motions.extend(motion.map(|motion| Motion { after, ..motion }));
+        }
+        motions.extend(self.more);
+        Parsed { targets: self.targets, motions, listed: self.listed }
+    }
+}
+
+/// `[cf1,cf4,cf6,cfx]`.
+fn configuration(numbers: &[Number]) -> Stated {
+    match numbers.iter().map(|it| it.value as i32).collect::<Vec<i32>>()[..] {
+        [cf1, cf4, cf6, branch] => Stated::Rapid(Configuration { quarters: [cf1, cf4, cf6], branch }),
+        _ => Stated::Nothing,
+    }
+}
+
+/// `[[six angles in degrees],[external axes]]`: these do not change where the arm's joints are.
+fn joints(value: &Value) -> Result<Vec<Number>, String> {
+    const SHAPE: &str = "not written as [[six angles],[external axes]] with numbers";
+    let Value::List(parts) = value else { return Err(SHAPE.to_owned()) };
+    let [arm, external] = &parts[..] else { return Err(SHAPE.to_owned()) };
+    let mut arm = numbers(arm, 6).ok_or(SHAPE)?;
+    numbers(external, 6).ok_or(SHAPE)?;
+    if arm.iter().any(|it| it.value.abs() > 1e6) {
+        return Err("has no angles of the arm".to_owned());
+    }
+    arm.iter_mut().for_each(|it| it.scale = 1_f64.to_radians());
+    Ok(arm)
+}
+
+/// The elements of an array of so many dimensions.
+fn spread<'a>(
+    value: &'a Value,
+    dimensions: usize,
+    index: &mut Vec<usize>,
+    out: &mut Vec<(Vec<usize>, &'a Value)>,
+) {
+    if let Value::List(values) = value
+        && dimensions > 0
+    {
+        for (at, value) in values.iter().enumerate() {
+            index.push(at + 1);
+            spread(value, dimensions - 1, index, out);
+            index.pop();
+        }
+    } else {
+        out.push((index.clone(), value));
+    }
+}
+
+/// Where the first number of a value is.
+fn first_number(value: &Value) -> Option<usize> {
+    match value {
+        Value::Number(number) => Some(number.range.start),
+        Value::List(values) => values.iter().find_map(first_number),
+        Value::Word(_) | Value::Text(_) | Value::Other => None,
+    }
+}

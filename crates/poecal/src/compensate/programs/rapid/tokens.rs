@@ -1,0 +1,107 @@
+//! Values of RAPID, from their tokens.
+
+use super::super::parsed::Number;
+use super::super::scan::{Kind, Rules, Scanner, Token, signed};
+
+/// How RAPID is written.
+const RULES: Rules = Rules { comments: &["!"], quotes: b"\"", letters: b"", is_open_in_brackets: false };
+
+/// The sign that stands for `:=`, which is one token.
+pub(super) const ASSIGN: u8 = b'\x01';
+
+/// The tokens of a file, without line ends and without the header of older files, which stands between lines that begin with `%%%`.
+pub(super) fn tokens(text: &[u8]) -> Vec<Token> {
+    let mut out: Vec<Token> = Vec::new();
+    let mut is_header = false;
+    let mut line_start = 0;
+    for token in Scanner::new(text, &RULES) {
+        if token.kind == Kind::LineEnd {
+            if is_header {
+                out.truncate(line_start);
+            }
+            line_start = out.len();
+            continue;
+        }
+        let follows =
+            |sign: u8| out.last().is_some_and(|it| it.is(sign) && it.range.end == token.range.start);
+        if token.is(b'=') && follows(b':') {
+            if let Some(colon) = out.last_mut() {
+                colon.kind = Kind::Sign(ASSIGN);
+                colon.range.end = token.range.end;
+            }
+            continue;
+        }
+        let is_third = token.is(b'%') && follows(b'%') && out.len() == line_start + 2;
+        out.push(token);
+        if is_third && out.iter().rev().take(3).all(|it| it.is(b'%')) {
+            is_header = !is_header;
+            out.truncate(line_start);
+        }
+    }
+    out
+}
+
+/// A value as it is written.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Value {
+    Number(Number),
+    List(Vec<Value>),
+    /// A name alone, in lower case: `TRUE`, or a constant.
+    Word(String),
+    /// A text in quotes, and whether it is empty.
+    Text(bool),
+    /// An expression.
+    Other,
+}
+
+/// Most brackets in one another that are looked into: arrays of three dimensions of data of three levels are fewer.
+const DEEPEST: usize = 8;
+
+/// The value that these tokens are.
+pub(super) fn value(tokens: &[Token], text: &[u8], depth: usize) -> Value {
+    if let Some(number) = signed(tokens) {
+        return Value::Number(number);
+    }
+    match tokens {
+        [only] => match only.kind {
+            Kind::Word => Value::Word(lower(text, only)),
+            Kind::Text => Value::Text(only.range.len() <= 2),
+            Kind::Number(..) | Kind::Sign(_) | Kind::LineEnd => Value::Other,
+        },
+        [open, inner @ .., close] if open.is(b'[') && close.is(b']') && depth < DEEPEST => {
+            match cut(inner, b',') {
+                Some(parts) => Value::List(parts.into_iter().map(|it| value(it, text, depth + 1)).collect()),
+                None => Value::Other,
+            }
+        }
+        _ => Value::Other,
+    }
+}
+
+/// Tokens between separators outside of brackets; `None` if brackets do not match.
+pub(super) fn cut(tokens: &[Token], separator: u8) -> Option<Vec<&[Token]>> {
+    let (mut out, mut start, mut depth) = (Vec::new(), 0, 0_usize);
+    for (at, token) in tokens.iter().enumerate() {
+        match token.kind {
+            Kind::Sign(b'[' | b'(' | b'{') => depth += 1,
+            Kind::Sign(b']' | b')' | b'}') => depth = depth.checked_sub(1)?,
+            Kind::Sign(sign) if sign == separator && depth == 0 => {
+                out.push(tokens.get(start..at)?);
+                start = at + 1;
+            }
+            Kind::Word | Kind::Number(..) | Kind::Text | Kind::Sign(_) | Kind::LineEnd => {}
+        }
+    }
+    out.push(tokens.get(start..)?);
+    (depth == 0).then_some(out)
+}
+
+/// A word in lower case.
+pub(super) fn lower(text: &[u8], token: &Token) -> String {
+    written(text, token).to_ascii_lowercase()
+}
+
+/// A token as it is written.
+pub(super) fn written(text: &[u8], token: &Token) -> String {
+    String::from_utf8_lossy(text.get(token.range.clone()).unwrap_or_default()).into_owned()
+}
