@@ -17,6 +17,9 @@ use crate::arrays::{pose_array, pose_arrays};
 use crate::errors::{argument, raise};
 use crate::words::chosen;
 
+/// Inverse kinematics at these values of the factors.
+type KeptInverse = (Vec<f64>, Arc<Inverse>);
+
 /// A serial robot: joints with screws, and a home pose. It never changes.
 ///
 /// Make one by `Robot.read` (any file), `from_urdf`, `from_toml`, `from_screws` or `from_dh`. Lengths are in metres, angles in
@@ -28,11 +31,8 @@ pub(crate) struct Robot {
     /// SHA-256 of the file that it was read from, by its name.
     pub(crate) sha256: Arc<BTreeMap<String, String>>,
     /// Its inverse kinematics at the factors of the last call.
-    inverse: Arc<Mutex<Option<AtFactors>>>,
+    inverse: Arc<Mutex<Option<KeptInverse>>>,
 }
-
-/// Values of factors, and the inverse kinematics with them.
-type AtFactors = (Vec<f64>, Arc<Inverse>);
 
 impl Robot {
     pub(crate) fn new(model: Model) -> Self {
