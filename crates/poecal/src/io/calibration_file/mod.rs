@@ -1,6 +1,7 @@
 //! `calibration.json`: a finished calibration as a versioned file, sufficient for predictions.
 
 mod bodies;
+mod compensation;
 mod corrected;
 mod judging;
 mod keyed;
@@ -13,6 +14,7 @@ mod trust;
 mod validation;
 
 pub use bodies::{BodyEntry, InstrumentEntry, MassEntry, MeasuredEntry};
+pub use compensation::{CompensationEntry, DisplacementEntry, ReadingChangeEntry, WorkspaceCellEntry};
 pub use corrected::{
     CorrectedEntry, EffectEntry, GravityEntry, JointErrorEntry, JointErrorsEntry, TriedEntry, WeightEntry,
 };
@@ -107,6 +109,7 @@ impl CalibrationFile {
             tool: (&robot.last_joint_from_tip()).into(),
             targets: bodies::targets(robot, &calibration.targets),
             instruments: InstrumentEntry::of(robot, &robot.instruments),
+            compensation: CompensationEntry::of(calibration).map(Box::new),
             corrected: calibration.correction.as_ref().map(|it| Box::new(CorrectedEntry::of(it, data))),
         }
     }

@@ -7,6 +7,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::bodies::{BodyEntry, InstrumentEntry, MassEntry, MeasuredEntry};
+use super::compensation::CompensationEntry;
 use super::corrected::{CorrectedEntry, GravityEntry};
 use super::keyed::{Keyed, SigmaKeys};
 use super::original::OriginalUrdf;
@@ -94,6 +95,10 @@ pub struct CalibrationFile {
     /// Instruments on the robot.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub instruments: BTreeMap<String, InstrumentEntry>,
+    /// How far programs for the nominal robot miss in the sampled workspace, and the corrections of the joints that mend it; absent where the
+    /// calibration is not to be used, and of a robot whose tip not every joint moves.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub compensation: Option<Box<CompensationEntry>>,
     /// The corrected model: screws and terms of the joints fitted together; absent if no terms were asked for.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub corrected: Option<Box<CorrectedEntry>>,

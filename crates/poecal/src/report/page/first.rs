@@ -224,7 +224,8 @@ fn noise(file: &CalibrationFile) -> Markup {
 fn contents(file: &CalibrationFile) -> Markup {
     let repeated = file.repeatability.as_ref().map(|_| ("repeatability", "Repeatability"));
     let corrected = file.corrected.as_ref().map(|_| ("corrected", "What the joints do"));
-    let sections = [("view", "In 3D"), ("joints", "Joints")].into_iter().chain(corrected);
+    let gain = file.compensation.as_ref().map(|_| ("compensation", "Corrected programs"));
+    let sections = [("view", "In 3D"), ("joints", "Joints")].into_iter().chain(corrected).chain(gain);
     let rows = [("errors", "Errors of the rows"), ("suspects", "Suspected rows")];
     let rest = [("trust", "How far to trust it"), ("told", "Unknowns"), ("method", "Method and inputs")];
     html! {
