@@ -2,13 +2,14 @@
 
 mod taught;
 
-use nalgebra::Vector3;
+use nalgebra::{Matrix6, Vector3, Vector6};
 use poecal_arm::{Arm, MOST_JOINTS};
 
 use super::expected::allowed_readings;
 use super::{Calibration, DeviceFrameKnowledge, Level};
 use crate::distributions::median;
 use crate::lie::{Pose, rotation};
+use crate::linalg::cholesky_6;
 use crate::robot::{Joint, JointKind, Robot};
 use taught::Taught;
 
@@ -23,6 +24,8 @@ const PRIMES: [f64; MOST_JOINTS] =
 const REACHED: f64 = 1e-9;
 /// Correction of a joint (rad, m) that is none of a robot like its drawing: another branch.
 const FAR: f64 = 0.6;
+/// Most steps of the iteration from a configuration to the one that mends it.
+const STEPS: usize = 8;
 /// Fewest readings of an arm that can mend every displacement.
 const FREE: usize = 6;
 
@@ -253,14 +256,9 @@ impl Arms<'_> {
         if q.len() < FREE {
             return found;
         }
-        let mut mended = q.to_vec();
-        self.actual.nearest(meant, &mut mended);
-        let left = apart(&self.actual.forward_kinematics(&mended), meant);
+        let Some(mended) = self.mended(q, meant) else { return found };
         let changes = mended.iter().zip(q).map(|(to, from)| (to - from).abs());
-        let is_near = left.0 <= REACHED
-            && left.1 <= REACHED
-            && changes.clone().all(|it| it <= FAR)
-            && self.nominal.handedness(&mended) * self.nominal.handedness(q) >= 0.0;
+        let is_near = self.nominal.handedness(&mended) * self.nominal.handedness(q) >= 0.0;
         let is_within =
             |q: &[f64]| q.iter().zip(self.actual.limits()).all(|(q, (low, high))| (low..=high).contains(&q));
         Compared {
@@ -268,5 +266,39 @@ impl Arms<'_> {
             mended: is_near.then(|| changes.collect()),
             ..found
         }
+    }
+
+    /// The configuration to which small corrections lead, with the actual tip where it is meant to be: Newton's iteration by the least
+    /// changes, `q ← q + Jᵀ (J Jᵀ)⁻¹ e`; `None` if it does not end near.
+    fn mended(&self, q: &[f64], meant: &Pose) -> Option<Vec<f64>> {
+        let reach = self.actual.reach_m();
+        let mut mended = q.to_vec();
+        for _ in 0..STEPS {
+            let tip = self.actual.forward_kinematics(&mended);
+            let shift = meant.translation - tip.translation;
+            let turn: Vector3<f64> = rotation::log(&(meant.rotation * tip.rotation.transpose()));
+            if shift.norm() <= REACHED && turn.norm() <= REACHED {
+                return Some(mended);
+            }
+            let columns: Vec<Vector6<f64>> = self.actual.jacobian(&mended)[..q.len()]
+                .iter()
+                .map(|(v, w)| {
+                    let v = v / reach;
+                    Vector6::new(v.x, v.y, v.z, w.x, w.y, w.z)
+                })
+                .collect();
+            let mut products = Matrix6::identity() * f64::EPSILON;
+            columns.iter().for_each(|column| products += column * column.transpose());
+            let left = shift / reach;
+            let step =
+                cholesky_6(products)?.solve(&Vector6::new(left.x, left.y, left.z, turn.x, turn.y, turn.z));
+            for (value, column) in mended.iter_mut().zip(&columns) {
+                *value += column.dot(&step);
+            }
+            if !mended.iter().zip(q).all(|(to, from)| (to - from).abs() <= FAR) {
+                return None;
+            }
+        }
+        None
     }
 }
