@@ -248,7 +248,7 @@ fn suspects(file: &CalibrationFile, residuals: &Residuals) -> Markup {
             (suspect_table(file, residuals))
             @if file.outliers.len() > LISTED {
                 p.note {
-                    "The table has the " (LISTED) " worst; " code { "calibration.json" } " and " code { "residuals.csv" } " have the others."
+                    "The table has the " (LISTED) " worst; the files that were written with this page have the others."
                 }
             }
         }
