@@ -14,7 +14,9 @@ use crate::robot::{Joint, JointKind, Robot};
 use taught::Taught;
 
 /// Configurations that are compared.
-const CONFIGURATIONS: usize = 320;
+const CONFIGURATIONS: usize = 240;
+/// Base and tool are fitted over every third of them.
+const FITTED: usize = 3;
 /// Cells along the longer side of the map, at most.
 const MOST_CELLS: f64 = 14.0;
 /// Configurations are spread by the fractional parts of multiples of the roots of the primes.
@@ -113,7 +115,8 @@ pub(crate) fn workspace(calibration: &Calibration) -> Option<Workspace> {
     let sample: Vec<Vec<f64>> = (0..CONFIGURATIONS).map(|index| configuration(index, &allowed)).collect();
     let tips: Vec<(Pose, Pose)> = sample.iter().map(|q| arms.tips(q)).collect();
     let base_is_known = calibration.frame == DeviceFrameKnowledge::Base;
-    let taught = Taught::of(&tips, nominal.arm_m() / 3.0, base_is_known);
+    let fitted: Vec<(Pose, Pose)> = tips.iter().step_by(FITTED).copied().collect();
+    let taught = Taught::of(&fitted, nominal.arm_m() / 3.0, base_is_known);
     let (axis, about) = axis_of(&nominal);
     let mut compared: Vec<Compared> = sample
         .iter()

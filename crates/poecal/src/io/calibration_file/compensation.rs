@@ -7,8 +7,9 @@ use crate::calibration::{Calibration, Displacements, Spread, Workspace, workspac
 use crate::robot::JointKind;
 
 /// How far the actual robot's tip is from where the nominal one has it, over the sampled workspace; and the corrections of the joints that mend
-/// it. Tool and base of the nominal robot are fitted to the actual one (the base only if the device's frame was unknown), as if both had been
-/// taught on it: what is displaced is displaced by the joints. The actual robot is the corrected model, if there is one.
+/// it. Tool and base of the nominal robot are fitted to the actual one (the base only if the device's frame was unknown), over every third
+/// configuration, as if both had been taught on it: what is displaced is displaced by the joints. The actual robot is the corrected model,
+/// if there is one.
 ///
 /// ```
 /// use poecal::calibration::{CalibrationOptions, calibrate};

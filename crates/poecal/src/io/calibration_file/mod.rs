@@ -1,5 +1,6 @@
 //! `calibration.json`: a finished calibration as a versioned file, sufficient for predictions.
 
+mod alike;
 mod bodies;
 mod compensation;
 mod corrected;
@@ -13,6 +14,7 @@ mod schema;
 mod trust;
 mod validation;
 
+pub use alike::SuspectedConfigurationEntry;
 pub use bodies::{BodyEntry, InstrumentEntry, MassEntry, MeasuredEntry};
 pub use compensation::{CompensationEntry, DisplacementEntry, ReadingChangeEntry, WorkspaceCellEntry};
 pub use corrected::{
@@ -92,6 +94,7 @@ impl CalibrationFile {
             uncertainty: UncertaintyEntry::of(calibration, data),
             robust: RobustEntry::of(calibration),
             outliers: OutlierEntry::of(calibration, data),
+            suspected_configurations: SuspectedConfigurationEntry::of(calibration, data),
             repeatability: RepeatabilityEntry::of(calibration, data),
             warnings: calibration.warnings.clone(),
             diagnosis: calibration.diagnosis.iter().map(DiagnosisEntry::from).collect(),

@@ -6,6 +6,7 @@ use std::path::Path;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::alike::SuspectedConfigurationEntry;
 use super::bodies::{BodyEntry, InstrumentEntry, MassEntry, MeasuredEntry};
 use super::compensation::CompensationEntry;
 use super::corrected::{CorrectedEntry, GravityEntry};
@@ -70,6 +71,9 @@ pub struct CalibrationFile {
     /// Suspected rows, the worst first, at most 1,000; `robust` has their number.
     #[serde(default)]
     pub outliers: Vec<OutlierEntry>,
+    /// Configurations in which all targets are suspected and off alike, the worst first, at most 100: the arm or its readings are wrong there.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub suspected_configurations: Vec<SuspectedConfigurationEntry>,
     /// Configurations that were measured several times; null if there are none.
     #[serde(default)]
     pub repeatability: Option<RepeatabilityEntry>,
