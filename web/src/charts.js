@@ -8,12 +8,10 @@ function componentsOf({ rows }) {
   return rows.residuals.flatMap(({ unit, components }) => components.map(({ name, values }) => [name, values, unit]));
 }
 
-/** Draws every chart that the page has a place for. */
-export function drawCharts(data) {
+/** Draws the chart that a figure is the place for. */
+export function drawChart(figure, data) {
   const charts = { rows, components, joints, histogram, normal, leverage };
-  for (const figure of document.querySelectorAll("[data-chart]")) {
-    charts[figure.dataset.chart](figure.querySelector(".drawing"), data);
-  }
+  charts[figure.dataset.chart](figure.querySelector(".drawing"), data);
 }
 
 const SETS = [
@@ -73,6 +71,7 @@ function components(place, data) {
   const order = inOrder(data);
   keys(place, bySet(data, order, data.rows.number, 5).series);
   const grid = gridIn(place);
+  const readout = readoutLine(place);
   for (const [part, values, unit] of componentsOf(data)) {
     const cell = cellIn(grid, part);
     const { series, columns } = bySet(data, order, values, sized(data) - 1);
@@ -83,6 +82,8 @@ function components(place, data) {
       series,
       values: [data.rows.number, ...columns],
       spoken: `Residuals of ${part} of each row in the order read; the table below has their means and spreads.`,
+      readout,
+      tell: (index) => name(data, order[index]),
     });
   }
 }
@@ -127,12 +128,13 @@ function joints(place, data) {
   const believed = inOrder(data, (row) => !data.rows.suspected[row]);
   keys(place, [...bySet(data, believed, data.rows.error_mm, 5).series, line("smoothed", "ink")]);
   const grid = gridIn(place);
+  const readout = readoutLine(place);
   const draw = () => {
     grid.replaceChildren();
     const [text, valuesOf, unit] = offered[select.selectedIndex];
     const range = commonRange(data.readings.flatMap((_, k) => believed.map((row) => valuesOf(k)[row])));
     data.readings.forEach((reading, k) => {
-      joint(cellIn(grid, reading.name), data, { believed, reading, k, text, values: valuesOf(k), unit, range });
+      joint(cellIn(grid, reading.name), data, { believed, reading, k, text, values: valuesOf(k), unit, range, readout });
     });
   };
   select.addEventListener("change", draw);
@@ -155,7 +157,7 @@ function curveAt(curve, xs) {
   return xs.map((x, k) => (x < first || x > last || apart(k) ? null : interpolate(curve, x)));
 }
 
-function joint(cell, data, { believed, reading, k, text, values, unit, range }) {
+function joint(cell, data, { believed, reading, k, text, values, unit, range, readout }) {
   const column = data.rows.values[k];
   const order = believed.filter((row) => values[row] !== null).sort((a, b) => column[a] - column[b]);
   if (!order.length) {
@@ -181,6 +183,8 @@ function joint(cell, data, { believed, reading, k, text, values, unit, range }) 
     series,
     values: [order.map((row) => column[row]), ...columns],
     spoken: `Residual ${text} over ${reading.name}; the smoothed curve swings by ${withUnit(swing, unit)}.`,
+    readout,
+    tell: (index) => name(data, order[index]),
   });
 }
 

@@ -128,10 +128,40 @@ export function plot(place, { x, y, series, values, height = 260, range, spoken,
   return chart;
 }
 
+/** How far (px) a dot may be from the cursor to be meant. */
+const NEAR = 30;
+
+/** The index of the dot nearest to the cursor, and where it is drawn; none if there is none near. */
+function nearestDot(chart) {
+  const { left, top } = chart.cursor;
+  let best = null;
+  let least = NEAR * NEAR;
+  if (left < 0 || top < 0) return best;
+  const xs = chart.data[0];
+  chart.series.forEach(({ key, size }, series) => {
+    if (!key || !size) return;
+    chart.data[series].forEach((value, index) => {
+      if (value === null || value === undefined) return;
+      const [x, y] = [chart.valToPos(xs[index], "x"), chart.valToPos(value, "y")];
+      const far = (x - left) ** 2 + (y - top) ** 2;
+      if (far < least) [least, best] = [far, { index, x, y }];
+    });
+  });
+  return best;
+}
+
+/** Says what the dot nearest to the cursor is, and marks it. */
 function say(chart, readout, tell) {
-  const index = chart.cursor.idx;
-  const at = index === null || index === undefined ? null : tell(index);
-  readout.textContent = at ?? "";
+  const found = nearestDot(chart);
+  readout.textContent = found ? tell(found.index) : "";
+  let mark = chart.over.querySelector(".meant");
+  if (!mark) {
+    mark = document.createElement("i");
+    mark.className = "meant";
+    chart.over.append(mark);
+  }
+  mark.hidden = !found;
+  if (found) Object.assign(mark.style, { left: `${found.x}px`, top: `${found.y}px` });
 }
 
 /** What colours mean. */

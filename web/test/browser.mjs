@@ -21,9 +21,9 @@ export async function launch() {
 
 /**
  * Opens a report; `page.complaints` are errors on the console, and requests for anything but the report itself;
- * `page.processorTime()` the seconds that its main thread worked, whatever else the machine does.
+ * `whole` says whether all of it is looked at, from top to bottom; `page.processorTime()` the seconds that its main thread worked, whatever else the machine does.
  */
-export async function open(browser, path, { width = 1300, colours = "light" } = {}) {
+export async function open(browser, path, { width = 1300, colours = "light", whole = true } = {}) {
   const page = await browser.newPage({ viewport: { width, height: 900 }, colorScheme: colours });
   const address = pathToFileURL(path).href;
   page.complaints = [];
@@ -42,6 +42,14 @@ export async function open(browser, path, { width = 1300, colours = "light" } = 
   };
   await page.goto(address);
   await page.waitForSelector(":root[data-ready]", { state: "attached" });
-  await page.waitForSelector(".scene canvas[data-drawn]", { state: "attached" });
+  // Below the first screen, things are drawn when they are come near.
+  if (whole) {
+    for (const place of await page.$$("#arm, [data-chart]")) {
+      await place.scrollIntoViewIfNeeded();
+      await place.waitForSelector("canvas, .note, svg", { state: "attached" });
+    }
+    await page.evaluate(() => scrollTo(0, 0));
+  }
+  if (whole) await page.waitForSelector(".scene canvas[data-drawn]", { state: "attached" });
   return page;
 }

@@ -155,6 +155,13 @@ impl Calibration {
         part(py, &self.file().corrections)
     }
 
+    /// How far programs for the nominal robot miss over the workspace, and which corrections mend it: `compensation` of calibration.json; None
+    /// if the calibration is not to be used.
+    #[getter]
+    fn compensation<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        part(py, &self.file().compensation)
+    }
+
     /// Expected errors of predictions: `uncertainty` of calibration.json; None if there are no more residuals than unknowns.
     #[getter]
     fn uncertainty<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {

@@ -130,6 +130,7 @@ def test_copies_are_equal_and_write_the_same_files(calibration, tmp_path):
 
 def test_parts_are_those_of_the_file(calibration):
     found = calibration.to_dict()
+    assert calibration.compensation == found["compensation"]
     assert calibration.corrections == found["corrections"] and calibration.uncertainty == found["uncertainty"]
     assert calibration.identifiability == found["identifiability"] and calibration.warnings == found["warnings"]
     assert found["inputs"] == {"model": "elbow", "measurements": ["simulated"], "sha256": {}, "command": None}

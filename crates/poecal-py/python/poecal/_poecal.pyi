@@ -946,6 +946,11 @@ class Calibration:
     def corrections(self) -> list[dict[str, Any]]:
         """Each joint's correction, its uncertainty and its effect: `corrections` of calibration.json."""
     @property
+    def compensation(self) -> dict[str, Any] | None:
+        """How far programs for the nominal robot miss over the workspace, and which corrections mend it: `compensation` of calibration.json; None
+        if the calibration is not to be used.
+        """
+    @property
     def uncertainty(self) -> dict[str, Any] | None:
         """Expected errors of predictions: `uncertainty` of calibration.json; None if there are no more residuals than unknowns."""
     @property

@@ -111,8 +111,8 @@ fn ranges(robot: &Robot, coverage: &[JointCoverage]) -> Vec<[f64; 2]> {
     robot.joints.iter().zip(coverage).map(of).collect()
 }
 
-/// Joint values of random readings that keep all joints in their ranges: joints of one reading move together.
-fn anywhere(robot: &Robot, ranges: &[[f64; 2]], count: usize, seed: u64) -> Vec<f64> {
+/// Range of each reading that keeps all its joints in theirs: joints of one reading move together. Infinite of what moves no joint.
+pub(super) fn allowed_readings(robot: &Robot, ranges: &[[f64; 2]]) -> Vec<[f64; 2]> {
     let indices = robot.reading_indices();
     let readings = indices.iter().max().map_or(0, |last| last + 1);
     let mut allowed = vec![[f64::NEG_INFINITY, f64::INFINITY]; readings];
@@ -122,6 +122,13 @@ fn anywhere(robot: &Robot, ranges: &[[f64; 2]], count: usize, seed: u64) -> Vec<
             *both = [both[0].max(ends[0].min(ends[1])), both[1].min(ends[0].max(ends[1]))];
         }
     }
+    allowed
+}
+
+/// Joint values of random readings that keep all joints in their ranges.
+fn anywhere(robot: &Robot, ranges: &[[f64; 2]], count: usize, seed: u64) -> Vec<f64> {
+    let indices = robot.reading_indices();
+    let allowed = allowed_readings(robot, ranges);
     let mut generator = ChaCha8Rng::seed_from_u64(seed ^ 0x616e_7977);
     let mut values = Vec::with_capacity(count * ranges.len());
     for _ in 0..count {

@@ -28,6 +28,7 @@ mod suspicion;
 mod tolerance;
 mod trust;
 mod verdict;
+mod workspace;
 
 pub use crate::robot::{CorrectionModel, Corrections, Sizes, TermGroup};
 pub use accuracy::{Accuracy, ModelAccuracy, Models, SetAccuracy, Statistic, set_accuracy};
@@ -54,6 +55,7 @@ pub use split::{settle_sets, split_rows};
 pub use suspicion::JointCorrection;
 pub use trust::Trust;
 pub use verdict::{Level, Verdict};
+pub(crate) use workspace::{Displacements, Spread, Workspace, workspace};
 
 pub use crate::estimate::{RowError, delivered, radian_m};
 

@@ -1,6 +1,8 @@
 //! `calibration.json`: a finished calibration as a versioned file, sufficient for predictions.
 
+mod alike;
 mod bodies;
+mod compensation;
 mod corrected;
 mod judging;
 mod keyed;
@@ -12,7 +14,9 @@ mod schema;
 mod trust;
 mod validation;
 
+pub use alike::SuspectedConfigurationEntry;
 pub use bodies::{BodyEntry, InstrumentEntry, MassEntry, MeasuredEntry};
+pub use compensation::{CompensationEntry, DisplacementEntry, ReadingChangeEntry, WorkspaceCellEntry};
 pub use corrected::{
     CorrectedEntry, EffectEntry, GravityEntry, JointErrorEntry, JointErrorsEntry, TriedEntry, WeightEntry,
 };
@@ -90,6 +94,7 @@ impl CalibrationFile {
             uncertainty: UncertaintyEntry::of(calibration, data),
             robust: RobustEntry::of(calibration),
             outliers: OutlierEntry::of(calibration, data),
+            suspected_configurations: SuspectedConfigurationEntry::of(calibration, data),
             repeatability: RepeatabilityEntry::of(calibration, data),
             warnings: calibration.warnings.clone(),
             diagnosis: calibration.diagnosis.iter().map(DiagnosisEntry::from).collect(),
@@ -107,6 +112,7 @@ impl CalibrationFile {
             tool: (&robot.last_joint_from_tip()).into(),
             targets: bodies::targets(robot, &calibration.targets),
             instruments: InstrumentEntry::of(robot, &robot.instruments),
+            compensation: CompensationEntry::of(calibration).map(Box::new),
             corrected: calibration.correction.as_ref().map(|it| Box::new(CorrectedEntry::of(it, data))),
         }
     }

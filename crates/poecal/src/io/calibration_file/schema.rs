@@ -6,7 +6,9 @@ use std::path::Path;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::alike::SuspectedConfigurationEntry;
 use super::bodies::{BodyEntry, InstrumentEntry, MassEntry, MeasuredEntry};
+use super::compensation::CompensationEntry;
 use super::corrected::{CorrectedEntry, GravityEntry};
 use super::keyed::{Keyed, SigmaKeys};
 use super::original::OriginalUrdf;
@@ -69,6 +71,9 @@ pub struct CalibrationFile {
     /// Suspected rows, the worst first, at most 1,000; `robust` has their number.
     #[serde(default)]
     pub outliers: Vec<OutlierEntry>,
+    /// Configurations in which all targets are suspected and off alike, the worst first, at most 100: the arm or its readings are wrong there.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub suspected_configurations: Vec<SuspectedConfigurationEntry>,
     /// Configurations that were measured several times; null if there are none.
     #[serde(default)]
     pub repeatability: Option<RepeatabilityEntry>,
@@ -94,6 +99,10 @@ pub struct CalibrationFile {
     /// Instruments on the robot.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub instruments: BTreeMap<String, InstrumentEntry>,
+    /// How far programs for the nominal robot miss in the sampled workspace, and the corrections of the joints that mend it; absent where the
+    /// calibration is not to be used, and of a robot whose tip not every joint moves.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub compensation: Option<Box<CompensationEntry>>,
     /// The corrected model: screws and terms of the joints fitted together; absent if no terms were asked for.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub corrected: Option<Box<CorrectedEntry>>,

@@ -17,11 +17,12 @@ const INTERVAL: f64 = 2.0;
 /// Which share of the rows is off by how much, for the models.
 pub(super) fn distributions(residuals: &Residuals, held_out: bool) -> Markup {
     let lead = Lead::of(residuals);
-    let lines = ["nominal", "registered", "calibrated"].iter().enumerate().map(|(model, name)| {
+    // Of an unknown tool the nominal model says nothing, and its errors would take most of the axis.
+    let lines = [(1, "registered"), (2, "calibrated")].into_iter().map(|(model, name)| {
         let rows = residuals.rows().iter().filter(|row| row.held_out == held_out);
         let errors = rows.filter_map(|row| lead.models(row)?.get(model).copied()).collect();
         // The same colours as the residuals of the calibrated model everywhere else.
-        Line { name: (*name).to_owned(), style: [1, 3, 0][model], points: distribution(errors) }
+        Line { name: name.to_owned(), style: [1, 3, 0][model], points: distribution(errors) }
     });
     let rows = residuals.rows().iter().filter(|row| row.held_out == held_out);
     let corrected: Vec<f64> = rows.filter_map(|row| lead.corrected(row)).collect();
@@ -137,17 +138,22 @@ pub(super) fn coverage(file: &CalibrationFile) -> Vec<Markup> {
     plots.collect()
 }
 
-/// How the fit went down.
+/// How each round of the fit went down: the weights differ from round to round, so that a step up is none of a round.
 pub(super) fn convergence(file: &CalibrationFile) -> Markup {
-    let points = file.solver.trace.iter().enumerate().map(|(step, &value)| [step as f64, value]);
+    let trace = &file.solver.trace;
+    let mut step = 0;
+    let rounds = trace.chunk_by(|before, after| after <= before).map(|round| {
+        let points = round.iter().enumerate().map(|(k, &value)| [(step + k) as f64, value]).collect();
+        step += round.len();
+        Line { name: "fit".to_owned(), style: 0, points }
+    });
     let plot = LinePlot {
         title: "How the fit converged".to_owned(),
-        description:
-            "The mean square of the whitened residual by iteration; the table below has the figures."
-                .to_owned(),
+        description: "The mean square of the whitened residual by iteration, a line for each round; the table below has the figures."
+            .to_owned(),
         x: Axis::new("iteration", Scale::Count),
         y: Axis::new("mean square of the whitened residual (logarithmic)", Scale::Log),
-        lines: vec![Line { name: "fit".to_owned(), style: 0, points: points.collect() }],
+        lines: rounds.collect(),
         mark: None,
     };
     PreEscaped(plot.svg())

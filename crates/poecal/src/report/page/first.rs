@@ -12,7 +12,7 @@ use crate::calibration::{Level, NoiseSource, SetAccuracy};
 use crate::io::calibration_file::CalibrationFile;
 use crate::io::residuals::Residuals;
 use crate::measurement::Quantity;
-use crate::report::summary::{ModelRow, Place, Point, expected, has_terms, leading, look_at};
+use crate::report::summary::{ModelRow, Place, Point, SEE_ROBUST, expected, has_terms, leading, look_at};
 use crate::report::table::{STATISTICS, further_words, joints_words, models};
 use crate::unit::Unit;
 
@@ -39,12 +39,20 @@ pub(super) fn screen(file: &CalibrationFile, residuals: &Residuals) -> Markup {
         Some(_) => ("rows held out", "accuracy.held_out.count"),
         None => ("the fitted rows, since none was held out", "accuracy.training.count"),
     };
-    let (set, rows) = leading(file);
+    let (set, mut rows) = leading(file);
+    rows.retain(|(.., key)| key.starts_with("accuracy"));
+    let rest = without_suspected(file, &rows);
     let on = format!("on {of}");
-    let tables =
-        set.calibrated.iter().map(|(quantity, _)| lead_table(&error_words(quantity, &on), &rows, quantity));
+    let tables = set.calibrated.iter().flat_map(|(quantity, _)| {
+        let words = error_words(quantity, &on);
+        let all = lead_table(&words, &rows, quantity);
+        let rest = rest.as_ref().map(|(suspected, rows)| {
+            lead_table(&format!("{words}, without {suspected} suspected"), rows, quantity)
+        });
+        std::iter::once(all).chain(rest)
+    });
     let tables: Vec<HtmlTable> = tables.collect();
-    let caption = html! { (count(set.count, key)) " " (of) ". Nominal: the model before calibration. Registered: tool and device fitted to it." };
+    let caption = html! { (count(set.count, key)) " " (of) ". Registered: tool and device fitted to the nominal axes." };
     html! {
         header {
             h1 { "Calibration of " (quoted(&file.robot.name, "robot.name")) }
@@ -54,6 +62,7 @@ pub(super) fn screen(file: &CalibrationFile, residuals: &Residuals) -> Markup {
         (verdict(file))
         div.first {
             div {
+                (before_after(set, &rows, &on))
                 @for table in &tables { (table) }
                 @if let (None, Some(found)) = (held_out, &file.cross_validation) {
                     @if let Some((quantity, key, rms)) = found.random.rms.leading_key() {
@@ -75,6 +84,39 @@ pub(super) fn screen(file: &CalibrationFile, residuals: &Residuals) -> Markup {
         }
         (contents(file))
     }
+}
+
+/// The mean error of each model, from before the calibration to after it.
+fn before_after(set: &SetAccuracy, rows: &[ModelRow<'_>], on: &str) -> Markup {
+    let Some((quantity, _)) = set.calibrated.leading() else { return Markup::default() };
+    let steps = rows.iter().filter_map(|(name, model, key)| {
+        let mean = figure(model.get(quantity)?.mean, format_args!("{key}.{}.mean", quantity.key()));
+        Some(html! { li { b { (mean) (spaced(quantity.unit())) } " " span { (name) } } })
+    });
+    let steps: Vec<Markup> = steps.collect();
+    html! {
+        p.steps-title { "Mean " (quantity.name()) " error " (on) }
+        ol.steps { @for step in &steps { (step) } }
+    }
+}
+
+/// The same models without the suspected rows, and how many these are; nothing without suspected rows.
+fn without_suspected<'a>(
+    file: &'a CalibrationFile,
+    rows: &[ModelRow<'a>],
+) -> Option<(usize, Vec<ModelRow<'a>>)> {
+    let robust = &file.robust;
+    let (set, suspected, key) = match file.accuracy.held_out {
+        Some(_) => (&robust.held_out_without_suspected, robust.suspected_held_out, "held_out"),
+        None => (&robust.training_without_suspected, robust.suspected_fit, "training"),
+    };
+    let set = set.as_ref()?;
+    let own = rows.iter().filter_map(|(name, _, path)| {
+        let word = path.rsplit('.').next()?;
+        let (_, model) = models(set).into_iter().find(|(own, _)| *own == word)?;
+        Some((name.clone(), model(set)?, format!("robust.{key}_without_suspected.{word}")))
+    });
+    Some((suspected, own.collect()))
 }
 
 /// Errors before and after, of the rows held out or, if there are none, of those fitted.
@@ -137,7 +179,7 @@ fn point_words(file: &CalibrationFile, point: &Point) -> Option<Markup> {
         Place::Reason => None,
         Place::Diagnosis(k) => Some(quoted(&point.text, format_args!("diagnosis.{k}.statement"))),
         Place::Warning(k) => Some(quoted(&point.text, format_args!("warnings.{k}"))),
-        Place::Suspects => Some(html! { a href="#suspects" { (point.text) } }),
+        Place::Suspects => Some(html! { a href="#suspects" { (point.text.replace(SEE_ROBUST, "")) } }),
         Place::Joint(k) => {
             let joint = file.corrections.get(k)?;
             let words = quoted(joint.suspicious.as_deref()?, format_args!("corrections.{k}.suspicious"));
@@ -224,7 +266,8 @@ fn noise(file: &CalibrationFile) -> Markup {
 fn contents(file: &CalibrationFile) -> Markup {
     let repeated = file.repeatability.as_ref().map(|_| ("repeatability", "Repeatability"));
     let corrected = file.corrected.as_ref().map(|_| ("corrected", "What the joints do"));
-    let sections = [("view", "In 3D"), ("joints", "Joints")].into_iter().chain(corrected);
+    let gain = file.compensation.as_ref().map(|_| ("compensation", "Corrected programs"));
+    let sections = [("view", "In 3D"), ("joints", "Joints")].into_iter().chain(corrected).chain(gain);
     let rows = [("errors", "Errors of the rows"), ("suspects", "Suspected rows")];
     let rest = [("trust", "How far to trust it"), ("told", "Unknowns"), ("method", "Method and inputs")];
     html! {

@@ -18,8 +18,7 @@ pub(super) fn sections(file: &CalibrationFile) -> Markup {
         p {
             "The joints' axes are screws in the product of exponentials. Each is corrected as a rigid body, by four numbers for a revolute \
              joint and two for a prismatic one; this parameterisation has no singularity and needs no initial guess. The tool is fitted \
-             too, and the device frame unless it was known. " code { "docs/report.md" } " explains the figures, "
-            code { "docs/theory.md" } " has the formulas; both come with the program."
+             too, and the device frame unless it was known. The documentation of poecal explains the figures and has the formulas."
         }
         (solver(file))
         @if !file.solver.trace.is_empty() { (convergence(file)) }
@@ -53,7 +52,7 @@ fn solver(file: &CalibrationFile) -> Markup {
         @for (k, (name, value)) in terms(file).enumerate() { @if k > 0 { ", " } (name) " " (value) }
     };
     let steps = html! {
-        (solver.method) ", " (count(solver.iterations, "solver.iterations")) " iterations, " (end)
+        (method_words(&solver.method)) ", " (count(solver.iterations, "solver.iterations")) " iterations, " (end)
         @if solver.restarts > 0 { ", " (count(solver.restarts, "solver.restarts")) " further starts" }
     };
     let version = html! {
@@ -69,6 +68,14 @@ fn solver(file: &CalibrationFile) -> Markup {
     facts(&all)
 }
 
+/// The usual method by its name.
+fn method_words(method: &str) -> &str {
+    match method {
+        "levenberg-marquardt" => "damped least squares (Levenberg and Marquardt)",
+        other => other,
+    }
+}
+
 fn convergence(file: &CalibrationFile) -> Markup {
     let trace = &file.solver.trace;
     let mut table =
@@ -79,7 +86,7 @@ fn convergence(file: &CalibrationFile) -> Markup {
     let words =
         if trace.len() > LISTED { "The first iterations as numbers" } else { "The iterations as numbers" };
     html! {
-        (plots(&[figures::convergence(file)], "At 1 the residuals are as large as the noise that they are weighted by. A step up is the start of a new round, with other weights or more rows."))
+        (plots(&[figures::convergence(file)], "Each line is a round of the fit with weights and rows of its own, so that values of different rounds do not compare. At 1 the residuals are as large as the noise that they are weighted by."))
         (folded(words, &table))
     }
 }
@@ -103,10 +110,12 @@ fn inputs(file: &CalibrationFile) -> Markup {
     html! {
         h3 { "Inputs" }
         (table)
-        h3 { "Reproduce" }
         @if let Some(command) = &inputs.command {
-            pre tabindex="0" { code { (quoted(command, "inputs.command")) } }
-            p.note { "Run in the same folder, with the files of these checksums and this version, the command gives the same bytes." }
+            details {
+                summary { "How to make it again" }
+                pre tabindex="0" { code { (quoted(command, "inputs.command")) } }
+                p.note { "Run in the same folder, with the files of these checksums and this version, the command gives the same bytes." }
+            }
         } @else {
             p.note { "The calibration was not made by the program, or by an earlier version, so no command is recorded." }
         }

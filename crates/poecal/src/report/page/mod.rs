@@ -1,5 +1,6 @@
 //! The report of a calibration: one HTML page that holds its style, its script and its data, and loads nothing.
 
+mod compensation;
 mod corrected;
 mod data;
 mod devices;
@@ -72,6 +73,7 @@ pub fn calibration_page(file: &CalibrationFile, residuals: &Residuals) -> Result
             (first::screen(file, residuals))
             (joints::sections(file))
             (corrected::sections(file))
+            (compensation::sections(file))
             (rows::sections(file, residuals))
             (trust::sections(file))
             (method::sections(file))

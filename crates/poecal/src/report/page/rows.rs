@@ -245,15 +245,46 @@ fn suspects(file: &CalibrationFile, residuals: &Residuals) -> Markup {
                 " is the length of the residual in units of its own standard deviation, " b { "weight" }
                 " is that of the row in the fit (or what it would be). Check whether a reflector was knocked, or two were confused."
             }
+            (off_alike(file, residuals))
             (suspect_table(file, residuals))
             @if file.outliers.len() > LISTED {
                 p.note {
-                    "The table has the " (LISTED) " worst; " code { "calibration.json" } " and " code { "residuals.csv" } " have the others."
+                    "The table has the " (LISTED) " worst; the files that were written with this page have the others."
                 }
             }
         }
     };
     section("suspects", "Suspected rows", &content)
+}
+
+/// Configurations whose targets are all off alike.
+fn off_alike(file: &CalibrationFile, residuals: &Residuals) -> Markup {
+    let found = &file.suspected_configurations;
+    if found.is_empty() {
+        return Markup::default();
+    }
+    let head = ["first row", "rows", "targets", "off by from, mm", "to, mm"];
+    let mut table =
+        HtmlTable::new("Configurations in which all targets are off alike, the worst first", 1, &head);
+    for (k, it) in found.iter().enumerate().take(LISTED) {
+        let key = |name: &str| format!("suspected_configurations.{k}.{name}");
+        table.cells([
+            named(residuals, &it.file, it.row, key("row")),
+            count(it.rows, key("rows")),
+            count(it.targets, key("targets")),
+            figure(it.least_mm, key("least_mm")),
+            figure(it.largest_mm, key("largest_mm")),
+        ]);
+    }
+    let one = found.len() == 1;
+    html! {
+        p {
+            "In " b { (found.len()) (if one { " configuration" } else { " configurations" }) } " all targets are off alike: there the robot or its \
+             readings are wrong, not a reflector. Measure " (if one { "it" } else { "them" }) " again, and look at brakes, backlash and the time \
+             between stopping and measuring."
+        }
+        (table)
+    }
 }
 
 fn suspect_table(file: &CalibrationFile, residuals: &Residuals) -> HtmlTable {

@@ -53,7 +53,7 @@ fn expected(file: &CalibrationFile, found: &UncertaintyEntry) -> Markup {
                     (figure_or(found.discrepancy.get(leading), format_args!("uncertainty.discrepancy_{}", leading.key()), "–"))
                     (spaced(leading.unit()))
                     " per component of the residuals count as robot error in the figures above: nothing shows that they are \
-                     measurement noise. A stated noise (" (stated_by(leading)) ") that explains them, or repeated measurements, would."
+                     measurement noise. A stated noise that explains them, or repeated measurements, would."
                 }
                 Attribution::StatedNoise => {
                     "The stated noise explains the residuals, so predictions are better than any single measurement."
@@ -237,13 +237,4 @@ fn observability(file: &CalibrationFile) -> Markup {
         table.row(&[&name, &words, &figure_or(value, key, "zero: a direction is not observed"), &unit]);
     }
     html! { h3 { "Observability" } (table) }
-}
-
-/// Where the noise of a quantity can be stated.
-fn stated_by(quantity: Quantity) -> String {
-    if quantity.is_of_pose() {
-        format!("--sigma-{}", quantity.name())
-    } else {
-        format!("a column sigma_{}", quantity.name())
-    }
 }

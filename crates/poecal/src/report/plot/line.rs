@@ -36,11 +36,13 @@ impl LinePlot {
         let x = self.x.ruler(points().map(|point| point[0]).chain(marked));
         let y = self.y.ruler(points().map(|point| point[1]));
         let mut canvas = Canvas::new();
-        // One line needs no legend: the title says what it is.
-        let legend: Vec<(usize, &str)> = match self.lines.as_slice() {
-            [_] => Vec::new(),
-            lines => lines.iter().map(|line| (line.style, line.name.as_str())).collect(),
-        };
+        // Lines of one name are one in pieces. A single one needs no legend: the title says what it is.
+        let mut legend: Vec<(usize, &str)> =
+            self.lines.iter().map(|line| (line.style, line.name.as_str())).collect();
+        legend.dedup();
+        if legend.len() == 1 {
+            legend.clear();
+        }
         let below = frame::head(&mut canvas, &self.title, &legend, true);
         let top =
             frame::vertical_title(&mut canvas, below, &self.y.title) + frame::mark_room(self.mark.as_ref());

@@ -8,12 +8,14 @@
 mod axis;
 mod dots;
 mod frame;
+mod heat;
 mod line;
 mod ranges;
 mod svg;
 
 pub use axis::{Axis, Scale};
 pub use dots::{DotPlot, Dots};
+pub use heat::{HeatCell, HeatMap};
 pub use line::{Line, LinePlot};
 pub use ranges::{RangePlot, RangeRow};
 

@@ -159,6 +159,27 @@ impl Canvas {
         ));
     }
 
+    /// A square of a map, in a step of colour from 0 to 10, and what is said of it.
+    pub(super) fn cell(&mut self, [left, top]: [f64; 2], side: f64, level: usize, told: &str) {
+        // The colour of the style sheet on light paper.
+        let share = 0.03 + 0.04 * level as f64;
+        let [red, green, blue] =
+            [0.0, 114.0, 178.0].map(|it: f64| (255.0 + share * (it - 255.0)).round() as u8);
+        let title = if told.is_empty() {
+            String::new()
+        } else {
+            format!("<title>{}</title>", told.render().into_string())
+        };
+        self.put(format_args!(
+            r##"<rect class="heat h{level}" x="{left:.2}" y="{top:.2}" width="{side:.2}" height="{side:.2}" fill="#{red:02x}{green:02x}{blue:02x}" stroke="#ffffff">{title}</rect>"##
+        ));
+    }
+
+    /// Text in a cell.
+    pub(super) fn small_text(&mut self, at: [f64; 2], anchor: Anchor, text: &str) {
+        self.styled_text(at, anchor, text, "ink in-cell", " font-size=\"10\" pointer-events=\"none\"");
+    }
+
     /// A series' marker, filled, or hollow for a value that lies beyond the axis.
     pub(super) fn marker(&mut self, style: usize, [x, y]: [f64; 2], radius: f64, filled: bool) {
         let hollow = if filled { "" } else { r##" class="hollow" fill="#ffffff""## };

@@ -13,6 +13,9 @@ const SHORT: usize = 160;
 /// Words of the warning that is about suspected rows, which are given by their figures instead.
 const SUSPECTS: &str = "`outliers` in calibration.json";
 
+/// What the terminal says, but no page, of outliers that were fitted.
+pub(in crate::report) const SEE_ROBUST: &str = ", see --robust";
+
 /// Where in `calibration.json` a point comes from, with its index there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::report) enum Place {
@@ -107,9 +110,12 @@ fn suspects_words(file: &CalibrationFile) -> String {
         _ if robust.suspected_fit == 0 => "",
         Some(Loss::Tukey) => " with almost no weight",
         Some(Loss::Huber | Loss::Cauchy) => " with less weight",
-        None => " with full weight, see --robust",
+        None => " with full weight",
     };
-    let sets = format!("{} fitted{counted}, {} held out", robust.suspected_fit, robust.suspected_held_out);
+    let is_plain = robust.suspected_fit > 0 && robust.loss.is_none();
+    let see = if is_plain { SEE_ROBUST } else { "" };
+    let sets =
+        format!("{} fitted{counted}{see}, {} held out", robust.suspected_fit, robust.suspected_held_out);
     let worst: Vec<String> =
         file.outliers.iter().take(WORST).scan("", |last, outlier| Some(named(outlier, last))).collect();
     let worst = if worst.is_empty() { String::new() } else { format!("; worst {}", worst.join(", ")) };

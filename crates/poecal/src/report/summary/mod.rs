@@ -8,7 +8,7 @@ use std::mem::discriminant;
 
 pub(super) use errors::{ModelRow, has_terms, leading};
 use look::reasons;
-pub(super) use look::{Place, Point, look_at};
+pub(super) use look::{Place, Point, SEE_ROBUST, look_at};
 
 use super::table::{line, lines, number};
 use crate::analysis::{Cause, Direction};

@@ -1,0 +1,186 @@
+//! What a user gains by correcting programs: a map of how far the tip misses without.
+
+use maud::{Markup, PreEscaped, html};
+
+use super::html::{HtmlTable, count, decimal, figure, figure_or, folded, plots, quoted, section};
+use crate::calibration::DeviceFrameKnowledge;
+use crate::io::calibration_file::{CalibrationFile, CompensationEntry, WorkspaceCellEntry};
+use crate::report::plot::{HeatCell, HeatMap};
+use crate::report::table::number;
+
+/// Largest displacement (mm) of a map in micrometres.
+const SMALL: f64 = 0.1;
+
+pub(super) fn sections(file: &CalibrationFile) -> Markup {
+    let Some(found) = file.compensation.as_deref() else { return Markup::default() };
+    let about = match &found.about {
+        Some(name) => html! { "the axis of " (quoted(name, "compensation.about")) },
+        None => html! { "the z axis of the base" },
+    };
+    let caption = html! {
+        "Half a section of the workspace through " (about) ": each cell is a ring about it. In the cells the median distance by which the tip \
+         misses; the stronger the colour, the larger. Empty: none of the configurations."
+    };
+    let content = html! {
+        p.gain { (gain(file, found)) }
+        p {
+            "Compared are the nominal and the actual robot in " (count(found.all.configurations, "compensation.configurations"))
+            " configurations, spread evenly over the measured range of each joint. "
+            @if file.measurement_frame.known == DeviceFrameKnowledge::Base { "The tool of the nominal one is" }
+            @else { "Tool and base of the nominal one are" }
+            " fitted to the actual one first, as if taught on it, so that only the joints make a difference."
+        }
+        div.pair {
+            (plots(&[map(found)], caption))
+            div.tables { (joints(found)) (exceptions(found)) }
+        }
+        (folded("The map as numbers", &table(found)))
+    };
+    section("compensation", "What corrected programs gain", &content)
+}
+
+/// The gain in a sentence.
+pub(super) fn gain(file: &CalibrationFile, found: &CompensationEntry) -> Markup {
+    let corrected = file.corrected.as_ref().and_then(|it| it.uncertainty.as_ref());
+    let expected = match (corrected, &file.uncertainty) {
+        (Some(own), _) => {
+            Some((own.measured.sigma_position_mm, "corrected.uncertainty.measured.sigma_position_mm"))
+        }
+        (None, Some(own)) => Some((own.measured.sigma_position_mm, "uncertainty.measured.sigma_position_mm")),
+        (None, None) => None,
+    };
+    html! {
+        "A program made for the nominal robot, with its frames taught on this one, misses by " (figure(found.all.median_mm, "compensation.median_mm")) " mm in the median, and by up to "
+        (figure(found.all.max_mm, "compensation.max_mm")) " mm, within the measured part of the workspace. "
+        @if let Some((sigma, key)) = expected {
+            "Corrected with this calibration, it is expected to miss by " (figure(sigma, key)) " mm (RMS)."
+        } @else {
+            "Corrected with this calibration, it misses by what the calibration itself is off."
+        }
+    }
+}
+
+fn map(found: &CompensationEntry) -> Markup {
+    let (factor, unit) = if found.all.max_mm < SMALL { (1e3, "µm") } else { (1.0, "mm") };
+    let step = |value: f64| (value / found.cell_m).round() as i64;
+    let cell = |it: &WorkspaceCellEntry| HeatCell {
+        at: [step(it.radius_m), step(it.height_m)],
+        value: factor * it.displaced.median_mm,
+        told: told(found, it),
+    };
+    let axis = if found.about.is_some() { "the axis" } else { "the base\'s z axis" };
+    let worst =
+        found.cells.iter().max_by(|one, other| one.displaced.max_mm.total_cmp(&other.displaced.max_mm));
+    let map = HeatMap {
+        title: "How far an uncorrected program misses".to_owned(),
+        description: format!(
+            "A map over distance from {axis} and height along it: the median distance between nominal and actual tip in each cell. The largest \
+             is at {}. The table below has all figures.",
+            worst.map_or_else(String::new, |it| told(found, it))
+        ),
+        axes: [format!("distance from {axis}, m"), "height above the base, m".to_owned()],
+        cell: found.cell_m,
+        values: format!("{unit} in the median"),
+        cells: found.cells.iter().map(cell).collect(),
+    };
+    PreEscaped(map.svg())
+}
+
+/// A cell in words.
+fn told(found: &CompensationEntry, it: &WorkspaceCellEntry) -> String {
+    let own = &it.displaced;
+    let to = |from: f64| format!("{} to {} m", metres(found, from), metres(found, from + found.cell_m));
+    let configurations = if own.configurations == 1 {
+        "1 configuration".to_owned()
+    } else {
+        format!("{} configurations", own.configurations)
+    };
+    format!(
+        "distance {}, height {}: {} mm in the median, at most {} mm and {}° ({configurations})",
+        to(it.radius_m),
+        to(it.height_m),
+        number(own.median_mm),
+        number(own.max_mm),
+        number(own.max_deg)
+    )
+}
+
+/// A place at an edge of a cell.
+fn metres(found: &CompensationEntry, value: f64) -> String {
+    decimal(value, (-found.cell_m.log10().floor()).clamp(0.0, 9.0) as usize)
+}
+
+fn joints(found: &CompensationEntry) -> Markup {
+    if found.joints.is_empty() {
+        return html! { p.note { "Corrections of the joints are not listed: an arm with fewer than six cannot mend every displacement." } };
+    }
+    let mut table = HtmlTable::new(
+        "Corrections of the joints; the largest are near singularities",
+        1,
+        &["joint", "median", "largest", "unit"],
+    );
+    for (k, it) in found.joints.iter().enumerate() {
+        let key = |name: &str| format!("compensation.joints.{k}.{name}");
+        let (median, largest, of, unit) = match it.median_mm.zip(it.max_mm) {
+            Some((median, largest)) => (Some(median), Some(largest), "mm", "mm"),
+            None => (it.median_deg, it.max_deg, "deg", "°"),
+        };
+        table.row(&[
+            &quoted(&it.reading, key("reading")),
+            &figure_or(median, key(&format!("median_{of}")), "–"),
+            &figure_or(largest, key(&format!("max_{of}")), "–"),
+            &unit,
+        ]);
+    }
+    html! { (table) }
+}
+
+/// Configurations that are not mended as all others are.
+fn exceptions(found: &CompensationEntry) -> Markup {
+    let mut table = HtmlTable::new("Configurations", 1, &["of these", "number"]);
+    let mut row = |words: &str, value: usize, key: &str| {
+        table.row(&[&words, &count(value, format_args!("compensation.{key}"))]);
+    };
+    row("compared", found.all.configurations, "configurations");
+    row(
+        "need no correction: they miss by less than the calibration\'s own expected error",
+        found.needless,
+        "needless",
+    );
+    if !found.joints.is_empty() {
+        row("corrected beyond a joint\'s limits", found.beyond_limits, "beyond_limits");
+        row("near a singularity: the arm would have to bend another way", found.unmended, "unmended");
+    }
+    html! { (table) }
+}
+
+fn table(found: &CompensationEntry) -> HtmlTable {
+    let head = [
+        "distance from, m",
+        "height from, m",
+        "configurations",
+        "median, mm",
+        "largest, mm",
+        "median, °",
+        "largest, °",
+    ];
+    let caption = format!(
+        "Displacement of the uncorrected tip by distance and height, in cells of {} m",
+        metres(found, found.cell_m)
+    );
+    let mut table = HtmlTable::new(&caption, 0, &head);
+    for (k, it) in found.cells.iter().enumerate() {
+        let key = |name: &str| format!("compensation.cells.{k}.{name}");
+        let own = &it.displaced;
+        table.cells([
+            html! { (metres(found, it.radius_m)) },
+            html! { (metres(found, it.height_m)) },
+            count(own.configurations, key("configurations")),
+            figure(own.median_mm, key("median_mm")),
+            figure(own.max_mm, key("max_mm")),
+            figure(own.median_deg, key("median_deg")),
+            figure(own.max_deg, key("max_deg")),
+        ]);
+    }
+    table
+}

@@ -1,0 +1,167 @@
+//! A map of square cells: the darker a cell, the larger its value, which stands in it.
+
+use super::frame::{Area, WIDTH, head, vertical_title};
+use super::svg::{Anchor, Canvas, text_width};
+
+/// Largest side of a cell, and height of all of them, px.
+const LARGEST: f64 = 46.0;
+const HEIGHT: f64 = 480.0;
+/// Room for the labels at the left and the right, px.
+const LEFT: f64 = 44.0;
+const RIGHT: f64 = 24.0;
+/// Room for the scale below the axis, px.
+const SCALE: f64 = 34.0;
+const MARGIN: f64 = 10.0;
+/// Steps of colour.
+const LEVELS: f64 = 10.0;
+/// Distance of labels along an axis, px.
+const APART: f64 = 44.0;
+
+/// A cell of a [`HeatMap`].
+pub struct HeatCell {
+    /// Steps from the origin to its lower left corner.
+    pub at: [i64; 2],
+    pub value: f64,
+    /// What is said of it where a pointer rests.
+    pub told: String,
+}
+
+/// A map of square cells.
+pub struct HeatMap {
+    pub title: String,
+    pub description: String,
+    /// Titles of the horizontal and the vertical axis.
+    pub axes: [String; 2],
+    /// Side of a cell, in the unit of the axes.
+    pub cell: f64,
+    /// What the values are, with their unit.
+    pub values: String,
+    pub cells: Vec<HeatCell>,
+}
+
+/// A value with as many decimals as the largest of the map needs.
+fn shown(value: f64, largest: f64) -> String {
+    let decimals = if largest < 10.0 { 2 } else { usize::from(largest < 100.0) };
+    format!("{value:.decimals$}")
+}
+
+impl HeatMap {
+    /// The map as SVG.
+    pub fn svg(&self) -> String {
+        let mut canvas = Canvas::new();
+        let top = head(&mut canvas, &self.title, &[], false);
+        let top = vertical_title(&mut canvas, top, &self.axes[1]);
+        let steps = |axis: usize| {
+            let all = self.cells.iter().map(|cell| cell.at[axis]);
+            (all.clone().min().unwrap_or(0), all.max().unwrap_or(0) + 1)
+        };
+        let ends = [steps(0), steps(1)];
+        let [columns, rows] = ends.map(|(from, to)| (to - from).max(1) as f64);
+        let side = ((WIDTH - LEFT - RIGHT) / columns).min(HEIGHT / rows).min(LARGEST);
+        let area = Area { left: LEFT, top, right: LEFT + side * columns, bottom: top + side * rows };
+        let range = self.cells.iter().map(|cell| cell.value).filter(|value| value.is_finite());
+        let (least, largest) = range.fold((f64::INFINITY, 0.0), |(least, most), value| {
+            (f64::min(least, value), f64::max(most, value))
+        });
+        for cell in &self.cells {
+            let [column, row] = [cell.at[0] - ends[0].0, cell.at[1] - ends[1].0].map(|it| it as f64);
+            let (left, bottom) = (area.left + side * column, area.bottom - side * row);
+            canvas.cell([left, bottom - side], side, level(cell.value, (least, largest)), &cell.told);
+            let text = shown(cell.value, largest);
+            if text_width(&text) <= 1.15 * side {
+                canvas.small_text([left + 0.5 * side, bottom - 0.5 * side + 3.5], Anchor::Middle, &text);
+            }
+        }
+        self.axes(&mut canvas, &area, side, ends);
+        let bottom = self.scale(&mut canvas, area.bottom + 33.0, (least.min(largest), largest));
+        canvas.finish(WIDTH, bottom + MARGIN, &self.title, &self.description)
+    }
+
+    /// Lines and labels of both axes, at the edges of cells.
+    fn axes(&self, canvas: &mut Canvas, area: &Area, side: f64, ends: [(i64, i64); 2]) {
+        let every = (APART / side).ceil().max(1.0) as i64;
+        let decimals = (-self.cell.log10().floor()).max(0.0) as usize;
+        let label = |step: i64| format!("{:.decimals$}", step as f64 * self.cell).replace('-', "−");
+        let labelled = |(from, to): (i64, i64)| (from..=to).filter(move |step| step.rem_euclid(every) == 0);
+        for step in labelled(ends[0]) {
+            let x = area.left + side * (step - ends[0].0) as f64;
+            canvas.axis_line([x, area.bottom], [x, area.bottom + 4.0]);
+            canvas.text([x, area.bottom + 16.0], Anchor::Middle, &label(step));
+        }
+        for step in labelled(ends[1]) {
+            let y = area.bottom - side * (step - ends[1].0) as f64;
+            canvas.axis_line([area.left - 4.0, y], [area.left, y]);
+            canvas.text([area.left - 7.0, y + 4.0], Anchor::End, &label(step));
+        }
+        canvas.axis_line([area.left, area.bottom], [area.right, area.bottom]);
+        canvas.axis_line([area.left, area.top], [area.left, area.bottom]);
+        canvas.axis_title([area.left, area.bottom + 32.0], Anchor::Start, &self.axes[0]);
+    }
+
+    /// What the colours mean; gives the y below.
+    fn scale(&self, canvas: &mut Canvas, top: f64, (least, largest): (f64, f64)) -> f64 {
+        const BOX: f64 = 12.0;
+        let y = top + SCALE - BOX;
+        let text = shown(least, largest);
+        let mut x = LEFT;
+        canvas.text([x, y + 10.0], Anchor::Start, &text);
+        x += text_width(&text) + 6.0;
+        for level in 0..=LEVELS as usize {
+            canvas.cell([x, y], BOX, level, "");
+            x += BOX;
+        }
+        canvas.text(
+            [x + 6.0, y + 10.0],
+            Anchor::Start,
+            &format!("{} {}", shown(largest, largest), self.values),
+        );
+        y + BOX
+    }
+}
+
+/// Step of colour of a value, from 0.
+fn level(value: f64, (least, largest): (f64, f64)) -> usize {
+    let share = (value - least) / (largest - least);
+    if share.is_finite() { (LEVELS * share.clamp(0.0, 1.0)).round() as usize } else { 0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn map(values: &[f64]) -> HeatMap {
+        let cell = |(k, &value): (usize, &f64)| HeatCell {
+            at: [k as i64 % 3, k as i64 / 3 - 1],
+            value,
+            told: "a < b".to_owned(),
+        };
+        HeatMap {
+            title: "Map".to_owned(),
+            description: String::new(),
+            axes: ["r, m".to_owned(), "z, m".to_owned()],
+            cell: 0.2,
+            values: "mm".to_owned(),
+            cells: values.iter().enumerate().map(cell).collect(),
+        }
+    }
+
+    #[test]
+    fn any_values_give_well_formed_pictures() {
+        let odd = [0.0, 1.0, 1e-300, 1e300, f64::INFINITY, f64::NAN];
+        for values in [&odd[..], &odd[..1], &[], &[2.0, 2.0]] {
+            let svg = map(values).svg();
+            let picture = roxmltree::Document::parse(&svg).unwrap();
+            let cells = picture.descendants().filter(|it| it.has_tag_name("title")).count() - 1;
+            assert_eq!(cells, values.len());
+            assert!(!svg.contains("=\"NaN") && !svg.contains("=\"inf"), "{svg}");
+        }
+    }
+
+    #[test]
+    fn the_least_is_pale_and_the_largest_dark() {
+        assert_eq!(level(1.0, (1.0, 3.0)), 0);
+        assert_eq!(level(2.0, (1.0, 3.0)), 5);
+        assert_eq!(level(3.0, (1.0, 3.0)), 10);
+        assert_eq!(level(3.0, (3.0, 3.0)), 0);
+    }
+}
