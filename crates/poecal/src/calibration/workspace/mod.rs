@@ -14,7 +14,7 @@ use crate::robot::{Joint, JointKind, Robot};
 use taught::Taught;
 
 /// Configurations that are compared.
-const CONFIGURATIONS: usize = 240;
+const CONFIGURATIONS: usize = 192;
 /// Base and tool are fitted over every third of them.
 const FITTED: usize = 3;
 /// Cells along the longer side of the map, at most.
