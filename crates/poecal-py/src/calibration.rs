@@ -517,9 +517,23 @@ impl Calibration {
         #[pyo3(from_py_with = arg::model)] model: &str,
     ) -> PyResult<Bound<'py, PyAny>> {
         let actual = self.actual(model)?;
-        let nominal = self.file().nominal_robot().map_err(raise)?;
+        let taught = self.file().taught(&actual.model.robot).map_err(raise)?;
         let factors = reach::factors(&actual.model.robot, factors)?;
-        reach::compensate(py, (&nominal, &actual.model.robot), joints, &factors, nearest)
+        reach::compensate(py, (&taught.robot, &actual.model.robot), joints, &factors, nearest)
+    }
+
+    /// The nominal robot with base and tool of the actual one: where programs for the nominal robot mean what was measured. Corrected programs take the
+    /// actual robot there.
+    ///
+    /// Parameters
+    /// ----------
+    /// model
+    ///     Which model is the robot as it is: "corrected", where there is one, or "calibrated", geometry alone.
+    #[pyo3(signature = (*, model="corrected"))]
+    fn taught(&self, #[pyo3(from_py_with = arg::model)] model: &str) -> PyResult<Robot> {
+        let actual = self.actual(model)?;
+        let taught = self.file().taught(&actual.model.robot).map_err(raise)?;
+        Ok(actual.with_robot(taught.robot))
     }
 
     /// A robot program with its targets corrected in place, everything else as it was, byte for byte.
@@ -568,7 +582,7 @@ impl Calibration {
         #[pyo3(from_py_with = arg::model)] model: &str,
     ) -> PyResult<(Bound<'py, PyBytes>, Bound<'py, PyAny>)> {
         let actual = self.actual(model)?;
-        let nominal = self.file().nominal_robot().map_err(raise)?;
+        let taught = self.file().taught(&actual.model.robot).map_err(raise)?;
         let factors = reach::factors(&actual.model.robot, factors)?;
         let language = reach::language(&path, language.as_deref())?;
         let mut options = ProgramOptions { nearest, check, ..ProgramOptions::of(language) };
@@ -584,7 +598,8 @@ impl Calibration {
         if let Some(words) = flange {
             options.given.set_flange(&words, language).map_err(raise)?;
         }
-        reach::program(py, (&nominal, &actual.model.robot), &path, &factors, &options)
+        options.given = options.given.taught(&taught);
+        reach::program(py, (&taught.robot, &actual.model.robot), &path, &factors, &options)
     }
 
     /// Configurations that have the tip at poses.

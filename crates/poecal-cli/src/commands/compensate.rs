@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use poecal::compensate::{Given, Language, ProgramOptions, TableOptions, compensate_file, compensate_table};
+use poecal::io::calibration_file::TaughtRobot;
 use poecal::io::model::{Model, ModelSource};
 use poecal::io::output::FilePlace;
 use poecal::io::urdf::ChainSelection;
@@ -27,11 +28,11 @@ pub(crate) fn compensate(arguments: &Compensate, console: &Console) -> Result<u8
         let message = "found a robot model, expected a calibration.json, which has the nominal robot and the actual one";
         return Err(Error::new(ErrorKind::Option, message).in_file(&arguments.calibration));
     };
-    let nominal = file.nominal_robot()?;
+    let taught = file.taught(&model.robot)?;
     let factors = factors(&model.robot, &arguments.factors, console)?;
-    let robots = (&nominal, &model.robot);
+    let robots = (&taught.robot, &model.robot);
     if let Some(language) = language(arguments) {
-        return robot_program(arguments, language, robots, &factors, place, console);
+        return robot_program(arguments, language, (&taught, &model.robot), &factors, place, console);
     }
     let options = TableOptions {
         read: arguments.columns.options()?,
@@ -50,7 +51,7 @@ pub(crate) fn compensate(arguments: &Compensate, console: &Console) -> Result<u8
     console.warnings(&table.warnings);
     console.warnings(&summary.warnings());
     if is_file {
-        let slides = |name: &str| is_sliding(&nominal, name);
+        let slides = |name: &str| is_sliding(&taught.robot, name);
         console.json_or_table(arguments.json, || report::json(&summary), || summary.text(&slides, "rows"))?;
     }
     Ok(DONE)
@@ -73,7 +74,7 @@ fn language(arguments: &Compensate) -> Option<Language> {
 fn robot_program(
     arguments: &Compensate,
     language: Language,
-    robots: (&Robot, &Robot),
+    (taught, actual): (&TaughtRobot, &Robot),
     factors: &[f64],
     place: Option<FilePlace>,
     console: &Console,
@@ -87,11 +88,11 @@ fn robot_program(
     }
     let options = ProgramOptions {
         language,
-        given: given(arguments, language)?,
+        given: given(arguments, language)?.taught(taught),
         check: arguments.check,
         nearest: arguments.nearest,
     };
-    let (out, summary) = compensate_file(&arguments.program, robots, factors, &options)?;
+    let (out, summary) = compensate_file(&arguments.program, (&taught.robot, actual), factors, &options)?;
     let is_file = place.is_some();
     match place {
         Some(place) => place.write_bytes(&out)?,
@@ -99,7 +100,7 @@ fn robot_program(
     }
     console.warnings(&summary.warnings());
     if is_file {
-        let slides = |name: &str| is_sliding(robots.0, name);
+        let slides = |name: &str| is_sliding(&taught.robot, name);
         console.json_or_table(arguments.json, || report::json(&summary), || summary.text(&slides))?;
     }
     Ok(if summary.is_whole() { DONE } else { WORSE })

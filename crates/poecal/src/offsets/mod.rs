@@ -5,9 +5,11 @@ mod at_tip;
 mod fit;
 mod prediction;
 mod start;
+mod taught;
 
 pub use at_tip::nearest_at_tip;
 pub use prediction::TipError;
+pub(crate) use taught::{Taught, with_tool_of};
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::lie::{Pose, rotation};

@@ -1,7 +1,5 @@
 //! How far programs for the nominal robot miss in the workspace, and which corrections of the joints mend it.
 
-mod taught;
-
 use nalgebra::{Matrix6, Vector3, Vector6};
 use poecal_arm::{Arm, MOST_JOINTS};
 
@@ -10,8 +8,8 @@ use super::{Calibration, DeviceFrameKnowledge, Level};
 use crate::distributions::median;
 use crate::lie::{Pose, rotation};
 use crate::linalg::cholesky_6;
+use crate::offsets::{Taught, with_tool_of};
 use crate::robot::{Joint, JointKind, Robot};
-use taught::Taught;
 
 /// Configurations that are compared.
 const CONFIGURATIONS: usize = 192;
@@ -178,13 +176,6 @@ fn configuration(index: usize, allowed: &[[f64; 2]]) -> Vec<f64> {
 fn apart(one: &Pose, other: &Pose) -> (f64, f64) {
     let turn: Vector3<f64> = rotation::log(&(one.rotation.transpose() * other.rotation));
     ((one.translation - other.translation).norm(), turn.norm())
-}
-
-/// The nominal robot with the actual one's tool.
-fn with_tool_of(actual: &Robot, nominal: &Robot) -> Option<Robot> {
-    let last = nominal.joints.get(nominal.tip_body().joint()?)?;
-    let own = actual.joints.iter().find(|joint| joint.name == last.name)?;
-    Some(Robot { home: last.frame * own.frame.inverse() * actual.home, ..nominal.clone() })
 }
 
 /// The axis that the map is about.

@@ -3,6 +3,7 @@
 use super::Language;
 use super::forms::PoseForm;
 use crate::error::{Error, ErrorKind, Result};
+use crate::io::calibration_file::TaughtRobot;
 use crate::lie::Pose;
 
 /// Tools and frames that the user states, as the controller has them.
@@ -36,6 +37,22 @@ impl Default for Given {
 }
 
 impl Given {
+    /// The same in base and tip of a taught robot, which takes the nominal one's place.
+    ///
+    /// ```
+    /// use poecal::compensate::Given;
+    /// use poecal::io::calibration_file::TaughtRobot;
+    /// use poecal::lie::Pose;
+    /// let tool = Pose::from_translation([0.0, 0.0, 0.1].into());
+    /// let taught = TaughtRobot { robot: poecal::simulate::elbow(), base: Pose::identity(), tool };
+    /// // The flange is behind the reflector.
+    /// assert_eq!(Given::default().taught(&taught).flange.translation.z, -0.1);
+    /// ```
+    #[must_use]
+    pub fn taught(self, taught: &TaughtRobot) -> Self {
+        Given { base: taught.base * self.base, flange: taught.tool.inverse() * self.flange, ..self }
+    }
+
     /// A tool by its number or name (letters of either case), or the one without.
     #[must_use]
     pub fn tool(&self, name: Option<&str>) -> Option<Pose> {

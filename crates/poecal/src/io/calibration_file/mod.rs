@@ -11,6 +11,7 @@ mod outliers;
 mod refusal;
 mod repeatability;
 mod schema;
+mod taught;
 mod trust;
 mod validation;
 
@@ -25,6 +26,7 @@ pub use original::OriginalUrdf;
 pub use outliers::{OutlierEntry, OutlierSet, RobustEntry};
 pub use repeatability::{RepeatabilityEntry, RepeatedPoseEntry};
 pub use schema::*;
+pub use taught::TaughtRobot;
 pub use trust::*;
 
 use std::collections::BTreeMap;

@@ -29,7 +29,7 @@ pub(super) fn write(model: &Model) -> Result<Exported> {
     }
     let mut text = header(actual);
     let nominal = match &model.source {
-        ModelSource::Calibration(file) => Some(file.nominal_robot()?),
+        ModelSource::Calibration(file) => Some(file.taught(actual)?.robot),
         ModelSource::Urdf(_) | ModelSource::Toml => None,
     };
     let mut remains = Difference { position_m: 0.0, rotation_rad: 0.0 };

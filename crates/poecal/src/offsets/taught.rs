@@ -4,19 +4,20 @@ use nalgebra::Vector6;
 
 use crate::lie::{Pose, Twist};
 use crate::linalg::combination;
+use crate::robot::Robot;
 
 /// Steps of the fit: the motions are small.
 const STEPS: usize = 2;
 
 /// Motions of a nominal robot's base and tool that take its tips `N` nearest to the actual robot's `A`: `B N T ≈ A`.
-pub(super) struct Taught {
-    base: Pose,
-    tool: Pose,
+pub(crate) struct Taught {
+    pub(crate) base: Pose,
+    pub(crate) tool: Pose,
 }
 
 impl Taught {
     /// Least squares of `log((B N T)⁻¹ A)` over pairs of tips, a radian counting as so many metres. A base that is known is held.
-    pub(super) fn of(tips: &[(Pose, Pose)], radian_m: f64, base_is_known: bool) -> Self {
+    pub(crate) fn of(tips: &[(Pose, Pose)], radian_m: f64, base_is_known: bool) -> Self {
         let mut taught = Taught { base: Pose::identity(), tool: Pose::identity() };
         let weights = Vector6::from_fn(|k, _| if k < 3 { 1.0 } else { radian_m });
         for _ in 0..STEPS {
@@ -48,9 +49,16 @@ impl Taught {
     }
 
     /// The tip of the nominal robot with these frames.
-    pub(super) fn tip(&self, nominal: &Pose) -> Pose {
+    pub(crate) fn tip(&self, nominal: &Pose) -> Pose {
         self.base * *nominal * self.tool
     }
+}
+
+/// The nominal robot with the actual one's tool.
+pub(crate) fn with_tool_of(actual: &Robot, nominal: &Robot) -> Option<Robot> {
+    let last = nominal.joints.get(nominal.tip_body().joint()?)?;
+    let own = actual.joints.iter().find(|joint| joint.name == last.name)?;
+    Some(Robot { home: last.frame * own.frame.inverse() * actual.home, ..nominal.clone() })
 }
 
 #[cfg(test)]
