@@ -26,7 +26,7 @@ def apart(one, other):
 def test_compensated_joints_reach_what_the_nominal_robot_means(calibration):
     generator = np.random.default_rng(1)
     joints = generator.uniform(-1, 1, (200, 6)) + [0, 0.3, 0.3, 0, 1.5, 0]
-    meant = calibration.nominal.forward_kinematics(joints)
+    meant = calibration.taught().forward_kinematics(joints)
     commanded = calibration.compensate(joints)
     assert commanded.shape == joints.shape
     reached = poses_of(calibration, commanded)
@@ -35,6 +35,17 @@ def test_compensated_joints_reach_what_the_nominal_robot_means(calibration):
     assert 1e-4 < np.median(np.abs(commanded - joints)) < 0.05
     assert apart(calibration.compensate(joints[3]), commanded[3]) < 1e-10
     assert calibration.compensate(joints[3]).shape == (6,)
+
+
+def test_taught_is_the_nominal_robot_with_another_base_and_tool(calibration):
+    joints = np.random.default_rng(3).uniform(-2, 2, (50, 6))
+    taught, nominal = (it.forward_kinematics(joints) for it in (calibration.taught(), calibration.nominal))
+    # base · nominal · tool: motions between configurations turn by the same angles.
+    first, turned = np.linalg.solve(taught[0], taught), np.linalg.solve(nominal[0], nominal)
+    angles = [np.arccos(np.clip((np.trace(it[:, :3, :3], axis1=1, axis2=2) - 1) / 2, -1, 1)) for it in (first, turned)]
+    assert apart(*angles) < 1e-7
+    with pytest.raises(ValueError, match="model: "):
+        calibration.taught(model="nominal")
 
 
 def test_the_nearest_configuration_has_the_tip_at_the_pose(calibration):

@@ -61,6 +61,7 @@ mod starts;
 mod stations;
 mod statistics;
 mod suspicion;
+mod taught;
 mod theory;
 mod tree_models;
 #[allow(dead_code)]
