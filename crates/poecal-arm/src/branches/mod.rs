@@ -95,7 +95,7 @@ fn sort<const N: usize>(found: &mut Branches<N>, near: &[f64; N]) {
 /// or its second to fourth, or third to fifth, are parallel), each followed by Newton's iteration of the arm itself. Where two of them meet or
 /// almost do, where one leads far or nowhere, and for arms that are far from such ones, the starts are the roots of the arm's own equations
 /// (raghavan1993). These can be set up in six ways; the first is the one whose roots are nearest to the branches in a few configurations, and
-/// another one is asked where the number of branches is odd, as they come in pairs.
+/// another one is asked where the number of branches is odd, as they come in pairs, and of arms without closed branches.
 ///
 /// ```
 /// use nalgebra::Vector3;

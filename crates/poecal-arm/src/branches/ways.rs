@@ -154,7 +154,8 @@ impl Ways {
                 None => self.starts_of_equations(&self.equations(order), order, target),
             };
             starts.follow(arm, target, &mut found, is_far_by(NEAR));
-            if found.count.is_multiple_of(2) {
+            // Without a relative there is nothing else that would have found a branch which one way misses.
+            if found.count.is_multiple_of(2) && (at > 0 || self.closed.is_some()) {
                 break;
             }
         }
