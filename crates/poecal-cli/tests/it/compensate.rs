@@ -2,6 +2,7 @@
 
 use std::fmt::Write as _;
 
+use poecal::io::calibration_file::CalibrationFile;
 use poecal::simulate::Kind;
 
 use crate::folder::Folder;
@@ -45,12 +46,19 @@ fn everything_but_the_readings_stays_and_the_tip_is_where_it_was_meant() {
     fn clean(cell: &str) -> String {
         cell.trim().trim_matches('"').replace(',', ".")
     }
-    folder.write("meant.csv", plain(PROGRAM));
     folder.write("commanded.csv", plain(&written));
-    let meant = numbers(&folder.done("predict robot.urdf meant.csv"), 0);
     let reached = numbers(&folder.done("predict results/calibration.json commanded.csv"), 0);
+    // Meant with base and tool of the actual robot.
+    let file = CalibrationFile::read(&folder.path("results/calibration.json")).unwrap();
+    let actual = file.corrected().map_or_else(|| file.robot(), |it| it.robot()).unwrap();
+    let taught = file.taught(&actual).unwrap().robot;
+    let meant: Vec<_> = numbers(&plain(PROGRAM), 0)
+        .iter()
+        .map(|degrees| degrees.iter().map(|it| it.to_radians()).collect::<Vec<f64>>())
+        .map(|q| taught.forward_kinematics(&q).translation)
+        .collect();
     assert_eq!((meant.len(), reached.len()), (3, 3));
-    let apart = meant.iter().flatten().zip(reached.iter().flatten()).map(|(a, b)| (a - b).abs());
+    let apart = meant.iter().zip(&reached).flat_map(|(a, b)| a.iter().zip(b).map(|(a, b)| (a - b).abs()));
     let worst = apart.fold(0.0, f64::max);
     println!("apart by {worst:.1e}");
     assert!(worst < 1e-9, "{worst}");

@@ -17,7 +17,7 @@ const UNKNOWN: f64 = 1.0;
 ///
 /// ```no_run
 /// use poecal::io::calibration_file::CalibrationFile;
-/// let file = CalibrationFile::read("results/calibration.json".as_ref())?;
+/// let file = CalibrationFile::read(std::path::Path::new("results/calibration.json"))?;
 /// let taught = file.taught(&file.robot()?)?;
 /// let q = vec![0.1; taught.robot.reading_names().len()];
 /// let tip = taught.base * file.nominal_robot()?.forward_kinematics(&q) * taught.tool;
