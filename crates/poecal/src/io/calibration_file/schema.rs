@@ -72,7 +72,7 @@ pub struct CalibrationFile {
     #[serde(default)]
     pub outliers: Vec<OutlierEntry>,
     /// Configurations in which all targets are suspected and off alike, the worst first, at most 100: the arm or its readings are wrong there.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub suspected_configurations: Vec<SuspectedConfigurationEntry>,
     /// Configurations that were measured several times; null if there are none.
     #[serde(default)]
