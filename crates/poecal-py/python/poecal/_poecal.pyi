@@ -1223,6 +1223,15 @@ class Calibration:
         numpy.ndarray
             Readings to command, of the same shape.
         """
+    def taught(self, *, model: Literal["corrected", "calibrated"] = "corrected") -> Robot:
+        """The nominal robot with base and tool of the actual one: where programs for the nominal robot mean what was measured. Corrected programs take the
+        actual robot there.
+
+        Parameters
+        ----------
+        model
+            Which model is the robot as it is: "corrected", where there is one, or "calibrated", geometry alone.
+        """
     def compensate_program(
         self,
         path: _Path,
@@ -1273,6 +1282,7 @@ class Calibration:
         poses: ArrayLike,
         *,
         near: None = None,
+        held: Mapping[str, ArrayLike] | None = None,
         limits: bool = True,
         factors: Mapping[str, float] | None = None,
         model: Literal["corrected", "calibrated"] = "corrected",
@@ -1285,6 +1295,9 @@ class Calibration:
             Poses of the tip in the base, shape (m, 4, 4), or one, (4, 4).
         near
             Configurations to which the found ones are nearest, shape (m, n), or one for all, (n,); default all branches, of a robot with six turning joints.
+        held
+            Of a robot with seven turning joints: a mapping from the reading that is held to its value (rad), or to one for each pose, shape (m,); then all branches
+            of the others are found.
         limits
             Whether to keep the joints' limits.
         factors
@@ -1304,6 +1317,7 @@ class Calibration:
         poses: ArrayLike,
         *,
         near: ArrayLike,
+        held: None = None,
         limits: bool = True,
         factors: Mapping[str, float] | None = None,
         model: Literal["corrected", "calibrated"] = "corrected",
