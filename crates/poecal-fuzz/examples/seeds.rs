@@ -38,6 +38,13 @@ const MIMIC: &str = r#"<?xml version="1.0"?>
 </robot>
 "#;
 
+const RAPID: &str = include_str!("../../poecal/tests/it/programs/rapid/01_simple.mod");
+const FANUC: &str = include_str!("../../poecal/tests/it/programs/fanuc/01_simple.ls");
+const URSCRIPT: &str = "def a():\n  set_tcp(p[0, 0, 0.1, 0, 0, 0])\n  movej([0.1, 0.2, 0.3, 0.4, 0.5, 0.6], a=1.4) # start\n  \
+    movel(p[0.5, 0.1, 0.4, 0, 3.14, 0], v=0.1)\n  f = p[0.1, 0, 0, 0, 0, 0]\n  movel(pose_trans(f, p[0.4, 0.1, 0.4, 0, 3.14, 0]))\nend\n";
+const KRL: &str = "DEF a()\n  $TOOL={X 0,Y 0,Z 100,A 0,B 0,C 0}\n  $BASE={FRAME: X 0,Y 0,Z 0,A 0,B 0,C 0}\n  PTP {A1 10,A2 20,A3 30,A4 40,A5 50,A6 60} ; start\n  \
+    LIN {X 500,Y 100,Z 400,A 0,B 90,C 0}\n  PTP {POS: X 500,Y 0,Z 400,A 0,B 90,C 0,S 2,T 10}\nEND\n";
+
 const MJCF: &str = include_str!("../../../tests/python/models/arm.xml");
 const SDF: &str = include_str!("../../../tests/python/models/arm.sdf");
 const CONF: &str = "[DH]
@@ -71,6 +78,9 @@ fn main() {
     put("foreign", "sdf", SDF);
     put("foreign", "yaml", &format!("kinematics:\n{}\n  hash: calib_1\n", origins.join("\n")));
     put("foreign", "conf", CONF);
+    for (language, program) in [("rapid", RAPID), ("fanuc", FANUC), ("urscript", URSCRIPT), ("krl", KRL)] {
+        put("programs", language, &format!("{language}\n{program}"));
+    }
     put("robot_toml", "elbow", TOML);
     put("robot_toml", "gantry", &robot_toml::write(&gantry()));
     models.iter().enumerate().for_each(|(index, text)| put("robot_toml", &format!("form{index}"), text));

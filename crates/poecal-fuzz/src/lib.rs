@@ -30,7 +30,7 @@ pub const BETWEEN: &str = "=====";
 ///
 /// ```
 /// let names: Vec<&str> = poecal_fuzz::TARGETS.iter().map(|target| target.name).collect();
-/// assert!(names.contains(&"urdf") && names.len() == 11);
+/// assert!(names.contains(&"urdf") && names.len() == 12);
 /// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Target {
@@ -43,7 +43,7 @@ pub struct Target {
 }
 
 /// All of them.
-pub const TARGETS: [Target; 11] = [
+pub const TARGETS: [Target; 12] = [
     Target { name: "urdf", run: targets::urdf, trials: 1500 },
     Target { name: "robot_toml", run: targets::robot_toml, trials: 1500 },
     Target { name: "foreign", run: targets::foreign, trials: 3000 },
@@ -54,5 +54,6 @@ pub const TARGETS: [Target; 11] = [
     Target { name: "settings", run: targets::settings, trials: 20000 },
     Target { name: "calibration", run: targets::calibration, trials: 1000 },
     Target { name: "report", run: targets::report, trials: 600 },
+    Target { name: "programs", run: targets::programs, trials: 100 },
     Target { name: "pipeline", run: targets::pipeline, trials: 150 },
 ];
