@@ -155,8 +155,9 @@ impl Calibration {
         part(py, &self.file().corrections)
     }
 
-    /// How far programs for the nominal robot miss over the workspace, and which corrections mend it: `compensation` of calibration.json; None
-    /// if the calibration is not to be used.
+    /// How far programs for the nominal robot miss over the workspace, and which corrections mend it.
+    ///
+    /// `compensation` of calibration.json; None if the calibration is not to be used.
     #[getter]
     fn compensation<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         part(py, &self.file().compensation)
@@ -462,8 +463,9 @@ impl Calibration {
         reach::jacobian(py, robot, joints, &reach::factors(robot, factors)?)
     }
 
-    /// What weights move the tip: how far its point is shifted and how far it is turned, in the axes of the base, from where it would be without what joints and links
-    /// give under weights. Zero where the model has no such terms.
+    /// What weights move the tip, from where it would be without what joints and links give under weights.
+    ///
+    /// How far its point is shifted and how far it is turned, in the axes of the base. Zero where the model has no such terms.
     ///
     /// Parameters
     /// ----------
@@ -522,8 +524,7 @@ impl Calibration {
         reach::compensate(py, (&taught.robot, &actual.model.robot), joints, &factors, nearest)
     }
 
-    /// The nominal robot with base and tool of the actual one: where programs for the nominal robot mean what was measured. Corrected programs take the
-    /// actual robot there.
+    /// The nominal robot with base and tool of the actual one: corrected programs take the actual robot to where this one would be.
     ///
     /// Parameters
     /// ----------

@@ -947,8 +947,9 @@ class Calibration:
         """Each joint's correction, its uncertainty and its effect: `corrections` of calibration.json."""
     @property
     def compensation(self) -> dict[str, Any] | None:
-        """How far programs for the nominal robot miss over the workspace, and which corrections mend it: `compensation` of calibration.json; None
-        if the calibration is not to be used.
+        """How far programs for the nominal robot miss over the workspace, and which corrections mend it.
+
+        `compensation` of calibration.json; None if the calibration is not to be used.
         """
     @property
     def uncertainty(self) -> dict[str, Any] | None:
@@ -1180,8 +1181,9 @@ class Calibration:
         factors: Mapping[str, float] | None = None,
         model: Literal["corrected", "calibrated"] = "corrected",
     ) -> _Array:
-        """What weights move the tip: how far its point is shifted and how far it is turned, in the axes of the base, from where it would be without what joints and links
-        give under weights. Zero where the model has no such terms.
+        """What weights move the tip, from where it would be without what joints and links give under weights.
+
+        How far its point is shifted and how far it is turned, in the axes of the base. Zero where the model has no such terms.
 
         Parameters
         ----------
@@ -1224,8 +1226,7 @@ class Calibration:
             Readings to command, of the same shape.
         """
     def taught(self, *, model: Literal["corrected", "calibrated"] = "corrected") -> Robot:
-        """The nominal robot with base and tool of the actual one: where programs for the nominal robot mean what was measured. Corrected programs take the
-        actual robot there.
+        """The nominal robot with base and tool of the actual one: corrected programs take the actual robot to where this one would be.
 
         Parameters
         ----------
