@@ -54,6 +54,6 @@ pub const TARGETS: [Target; 12] = [
     Target { name: "settings", run: targets::settings, trials: 20000 },
     Target { name: "calibration", run: targets::calibration, trials: 1000 },
     Target { name: "report", run: targets::report, trials: 600 },
-    Target { name: "programs", run: targets::programs, trials: 100 },
+    Target { name: "programs", run: targets::programs, trials: 300 },
     Target { name: "pipeline", run: targets::pipeline, trials: 150 },
 ];

@@ -49,7 +49,7 @@ fn everything_but_the_readings_stays_and_the_tip_is_where_it_was_meant() {
     folder.write("commanded.csv", plain(&written));
     let reached = numbers(&folder.done("predict results/calibration.json commanded.csv"), 0);
     // Meant with base and tool of the actual robot.
-    let file = CalibrationFile::read(&folder.path("results/calibration.json")).unwrap();
+    let file = CalibrationFile::read(folder.path("results/calibration.json")).unwrap();
     let actual = file.corrected().map_or_else(|| file.robot(), |it| it.robot()).unwrap();
     let taught = file.taught(&actual).unwrap().robot;
     let meant: Vec<_> = numbers(&plain(PROGRAM), 0)
