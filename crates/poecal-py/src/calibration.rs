@@ -530,6 +530,11 @@ impl Calibration {
     /// ----------
     /// model
     ///     Which model is the robot as it is: "corrected", where there is one, or "calibrated", geometry alone.
+    ///
+    /// Returns
+    /// -------
+    /// Robot
+    ///     That robot.
     #[pyo3(signature = (*, model="corrected"))]
     fn taught(&self, #[pyo3(from_py_with = arg::model)] model: &str) -> PyResult<Robot> {
         let actual = self.actual(model)?;

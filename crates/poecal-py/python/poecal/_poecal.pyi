@@ -1232,6 +1232,11 @@ class Calibration:
         ----------
         model
             Which model is the robot as it is: "corrected", where there is one, or "calibrated", geometry alone.
+
+        Returns
+        -------
+        Robot
+            That robot.
         """
     def compensate_program(
         self,
