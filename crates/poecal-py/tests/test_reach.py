@@ -109,7 +109,7 @@ def test_mistakes_about_a_held_joint_are_told(seven, calibration):
         seven.ik(pose, held={"joint3": 0.1, "joint4": 0.1})
     with pytest.raises(ValueError, match=r"held: found an array of shape \(2,\)"):
         seven.ik(pose, held={"joint3": [0.1, 0.2]})
-    with pytest.raises(ValueError, match="held: found nan"):
+    with pytest.raises(ValueError, match="held: found NaN"):
         seven.ik(pose, held={"joint3": float("nan")})
     with pytest.raises(ValueError, match="held: found a reading that is held, and near"):
         seven.ik(pose, near=np.zeros(7), held={"joint3": 0.1})
