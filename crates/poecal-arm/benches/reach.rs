@@ -19,7 +19,7 @@ use std::f64::consts::PI;
 use std::hint::black_box;
 use std::time::Instant;
 
-use nalgebra::{Matrix6, Vector3, Vector6};
+use nalgebra::Vector3;
 use poecal_arm::lie::{Pose, Screw, rotation};
 use poecal_arm::trig::wrapped;
 use poecal_arm::{AllBranches, Arm, Branches, HeldBranches};
@@ -133,18 +133,6 @@ fn measured(arm: &Arm, targets: usize) -> Measured {
     out
 }
 
-/// The smallest singular value of the joints that are free, lengths over reach.
-fn smallest(arm: &Arm, q: &[f64], held: Option<usize>) -> f64 {
-    let jacobian = arm.jacobian(q);
-    let mut a = Matrix6::zeros();
-    for (v, w) in (0..q.len()).filter(|it| Some(*it) != held).map(|it| jacobian[it]) {
-        let v = v / arm.reach_m();
-        let column = Vector6::new(v.x, v.y, v.z, w.x, w.y, w.z);
-        a += column * column.transpose();
-    }
-    a.symmetric_eigenvalues().min().max(0.0).sqrt()
-}
-
 /// All branches for a pose, at the held joint of a configuration; and the nearest configuration.
 type Solvers<'a, const N: usize> =
     (&'a dyn Fn(&Pose, &[f64; N]) -> Branches<N>, &'a dyn Fn(&Pose, &mut [f64; N]) -> f64);
@@ -160,7 +148,7 @@ impl Measured {
         for _ in 0..self.targets {
             let q: [f64; N] = std::array::from_fn(|_| PI * numbers.one());
             let target = arm.forward_kinematics(&q);
-            let is_far = smallest(arm, &q, held) > FAR;
+            let is_far = calibrated::smallest_free(arm, &q, held) > FAR;
             self.far += usize::from(is_far);
             let begin = Instant::now();
             let found = black_box(at(black_box(&target), &q));

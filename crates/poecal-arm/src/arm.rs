@@ -233,18 +233,22 @@ impl Arm {
         if self.joints() != 6 {
             return 0.0;
         }
-        let placed = self.placed(q);
+        let determinant = self.minor(&self.placed(q), [0, 1, 2, 3, 4, 5]);
+        if determinant == 0.0 { 0.0 } else { determinant.signum() }
+    }
+
+    /// The determinant of the columns of six joints, lengths over [`Arm::reach_m`].
+    pub(crate) fn minor<const N: usize>(&self, placed: &Placed<N>, joints: [usize; 6]) -> f64 {
         let mut rows = [[0.0; 6]; 6];
-        for index in 0..6 {
-            let (mut v, w) = placed.column(index);
-            if !self.screws[index].is_prismatic() {
+        for (column, joint) in joints.into_iter().enumerate() {
+            let (mut v, w) = placed.column(joint);
+            if !self.screws[joint].is_prismatic() {
                 v /= self.reach_m;
             }
             for (row, value) in rows.iter_mut().zip([v.x, v.y, v.z, w.x, w.y, w.z]) {
-                row[index] = value;
+                row[column] = value;
             }
         }
-        let determinant = crate::small::determinant(&mut rows);
-        if determinant == 0.0 { 0.0 } else { determinant.signum() }
+        crate::small::determinant(&mut rows)
     }
 }

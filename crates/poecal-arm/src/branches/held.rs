@@ -7,7 +7,6 @@ use super::{Branches, apart, sort, turned};
 use crate::arm::Arm;
 use crate::lie::{Pose, Screw};
 use crate::newton::{REACHED, Six, newton};
-use crate::small::determinant;
 use crate::trig::wrapped;
 
 /// Values of the held joint (rad) at which its choice is judged.
@@ -63,15 +62,8 @@ fn moves(arm: &Arm) -> [f64; 7] {
     for value in VALUES {
         let placed = arm.placed_at::<7>(&core::array::from_fn(|k| value + 0.7 * k as f64));
         for (joint, sum) in sum.iter_mut().enumerate() {
-            let mut rows = [[0.0; 6]; 6];
-            for column in 0..6 {
-                let (v, w) = placed.column(if column < joint { column } else { column + 1 });
-                let v = v / arm.reach_m();
-                for (row, it) in rows.iter_mut().zip([v.x, v.y, v.z, w.x, w.y, w.z]) {
-                    row[column] = it;
-                }
-            }
-            *sum += determinant::<6>(&mut rows).abs();
+            let others = core::array::from_fn(|k| if k < joint { k } else { k + 1 });
+            *sum += arm.minor(&placed, others).abs();
         }
     }
     sum

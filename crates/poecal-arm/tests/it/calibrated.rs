@@ -1,6 +1,6 @@
 //! Arms as they are drawn, and as calibration finds them.
 
-use nalgebra::Vector3;
+use nalgebra::{Matrix6, Vector3, Vector6};
 use poecal_arm::Arm;
 use poecal_arm::lie::{Pose, Screw, Twist, rotation};
 
@@ -107,4 +107,16 @@ pub(crate) fn seven(kind: &str, angle_rad: f64, length_m: f64) -> Arm {
     });
     let tip = if is_round { Vector3::new(0.0, 0.0, 1.306) } else { Vector3::new(0.088, 0.0, 0.92) };
     Arm::new(&screws.collect::<Vec<Screw>>(), &Pose::from_translation(tip)).unwrap()
+}
+
+/// The smallest singular value of the joints that are free, lengths over reach.
+pub(crate) fn smallest_free(arm: &Arm, q: &[f64], held: Option<usize>) -> f64 {
+    let jacobian = arm.jacobian(q);
+    let mut a = Matrix6::zeros();
+    for (v, w) in (0..q.len()).filter(|it| Some(*it) != held).map(|it| jacobian[it]) {
+        let v = v / arm.reach_m();
+        let column = Vector6::new(v.x, v.y, v.z, w.x, w.y, w.z);
+        a += column * column.transpose();
+    }
+    a.symmetric_eigenvalues().min().max(0.0).sqrt()
 }

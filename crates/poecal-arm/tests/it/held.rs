@@ -2,27 +2,14 @@
 
 use std::f64::consts::PI;
 
-use nalgebra::{Matrix6, Vector6};
 use poecal_arm::lie::Pose;
 use poecal_arm::trig::wrapped;
 use poecal_arm::{Arm, HeldBranches};
 
-use crate::calibrated::{KINDS, SEVEN, arm, seven};
+use crate::calibrated::{KINDS, SEVEN, arm, seven, smallest_free};
 use crate::numbers::Numbers;
 
 const TARGETS: usize = 1500;
-
-/// The smallest singular value of the joints that are free, lengths over reach.
-fn smallest(arm: &Arm, q: &[f64; 7], held: usize) -> f64 {
-    let jacobian = arm.jacobian(q);
-    let mut a = Matrix6::zeros();
-    for (v, w) in (0..7).filter(|it| *it != held).map(|it| jacobian[it]) {
-        let v = v / arm.reach_m();
-        let column = Vector6::new(v.x, v.y, v.z, w.x, w.y, w.z);
-        a += column * column.transpose();
-    }
-    a.symmetric_eigenvalues().min().max(0.0).sqrt()
-}
 
 #[test]
 fn a_target_has_the_branch_it_was_made_with() {
@@ -46,7 +33,7 @@ fn a_target_has_the_branch_it_was_made_with() {
                 let is_same = |it: &[f64; 7]| it.iter().zip(&q).all(|(a, b)| wrapped(a - b).abs() < 1e-6);
                 let is_found = usize::from(branches.as_slice().iter().any(is_same));
                 found += is_found;
-                if smallest(&arm, &q, held.joint()) > 0.01 {
+                if smallest_free(&arm, &q, Some(held.joint())) > 0.01 {
                     far += 1;
                     found_far += is_found;
                 }
