@@ -82,6 +82,19 @@ impl Pose {
         rotation::to_quaternion_xyzw(&self.rotation).into()
     }
 
+    /// Distance of the origins of two poses (m), and the angle between their axes (rad).
+    ///
+    /// ```
+    /// use poecal_arm::lie::Pose;
+    /// let moved = Pose::from_translation([0.0, 0.3, 0.4].into());
+    /// assert_eq!(Pose::identity().apart(&moved), (0.5, 0.0));
+    /// ```
+    #[must_use]
+    pub fn apart(&self, other: &Self) -> (f64, f64) {
+        let turn = rotation::log(&(self.rotation.transpose() * other.rotation));
+        ((self.translation - other.translation).norm(), turn.norm())
+    }
+
     /// `T⁻¹ = (Rᵀ, -Rᵀp)`, as theory.md §1 has `T = (R, p)`.
     #[must_use]
     pub fn inverse(&self) -> Self {

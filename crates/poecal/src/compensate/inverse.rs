@@ -1,6 +1,6 @@
 //! Inverse kinematics of a robot's tip.
 
-use super::{REACHED, Reach, apart};
+use super::{REACHED, Reach};
 use crate::error::Result;
 use crate::lie::Pose;
 use crate::robot::Robot;
@@ -123,7 +123,7 @@ impl Inverse {
     }
 
     fn is_at(&self, q: &[f64], target: &Pose) -> bool {
-        let (metres, radians) = apart(&self.arm.arm().forward_kinematics(q), target);
+        let (metres, radians) = self.arm.arm().forward_kinematics(q).apart(target);
         metres <= REACHED && radians <= REACHED
     }
 

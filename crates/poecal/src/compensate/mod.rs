@@ -7,7 +7,6 @@ mod reach;
 mod summary;
 mod table;
 
-use nalgebra::Vector3;
 use poecal_arm::Arm;
 use reach::Reach;
 
@@ -21,7 +20,7 @@ pub use summary::{Largest, Summary};
 pub use table::{TableOptions, compensate_table};
 
 use crate::error::{Error, ErrorKind, Result};
-use crate::lie::{Pose, rotation};
+use crate::lie::Pose;
 use crate::robot::Robot;
 use crate::threads::map_chunks;
 
@@ -90,12 +89,6 @@ impl Compensated<'_> {
     pub fn is_reached(&self) -> bool {
         self.left_m <= REACHED && self.left_rad <= REACHED
     }
-}
-
-/// Distance and angle of two poses.
-fn apart(one: &Pose, other: &Pose) -> (f64, f64) {
-    let turn: Vector3<f64> = rotation::log(&(one.rotation.transpose() * other.rotation));
-    ((one.translation - other.translation).norm(), turn.norm())
 }
 
 impl Compensation {
@@ -178,7 +171,7 @@ impl Compensation {
         }
         let target = self.nominal.forward_kinematics(&self.meant);
         let uncorrected = self.actual().forward_kinematics(&self.meant);
-        let (moved_m, turned_rad) = apart(&uncorrected, &target);
+        let (moved_m, turned_rad) = uncorrected.apart(&target);
         if moved_m == 0.0 && turned_rad == 0.0 {
             return self.told((moved_m, turned_rad), (0.0, 0.0), false);
         }
@@ -259,7 +252,7 @@ impl Compensation {
         if left_m < NOTHING && left_rad < NOTHING {
             return (left_m, left_rad);
         }
-        apart(&self.actual().forward_kinematics(&self.q), target)
+        self.actual().forward_kinematics(&self.q).apart(target)
     }
 }
 

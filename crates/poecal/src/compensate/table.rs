@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::{Compensation, Summary, apart};
+use super::{Compensation, Summary};
 use crate::error::{Error, ErrorKind, Result};
 use crate::io::measurements::{ReadOptions, RewrittenTable, rewrite_joints};
 use crate::robot::Robot;
@@ -63,7 +63,7 @@ pub fn compensate_table(
             with_factors.extend_from_slice(found.readings);
             with_factors.extend_from_slice(factors);
             let (m, rad): (f64, f64) =
-                apart(&actual.forward_kinematics(&with_factors), &nominal.forward_kinematics(row.readings));
+                actual.forward_kinematics(&with_factors).apart(&nominal.forward_kinematics(row.readings));
             super::Largest::include(metres, m, row.line);
             super::Largest::include(radians, rad, row.line);
         }

@@ -172,12 +172,6 @@ fn configuration(index: usize, allowed: &[[f64; 2]]) -> Vec<f64> {
     allowed.iter().zip(PRIMES).map(value).collect()
 }
 
-/// Distance and angle of two poses.
-fn apart(one: &Pose, other: &Pose) -> (f64, f64) {
-    let turn: Vector3<f64> = rotation::log(&(one.rotation.transpose() * other.rotation));
-    ((one.translation - other.translation).norm(), turn.norm())
-}
-
 /// The axis that the map is about.
 struct Axis {
     point: Vector3<f64>,
@@ -244,7 +238,7 @@ impl Arms<'_> {
     /// Compares the actual tip with where it is meant to be.
     fn compare(&self, q: &[f64], meant: &Pose, actual: &Pose, axis: &Axis) -> Compared {
         let (radius_m, height_m) = axis.cylindrical(&meant.translation);
-        let (moved_m, turned_rad) = apart(actual, meant);
+        let (moved_m, turned_rad) = actual.apart(meant);
         let found =
             Compared { radius_m, height_m, moved_m, turned_rad, mended: None, is_beyond_limits: false };
         if q.len() < FREE {

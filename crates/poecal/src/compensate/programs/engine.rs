@@ -4,7 +4,7 @@ use std::borrow::Cow;
 use std::f64::consts::TAU;
 use std::ops::Range;
 
-use super::super::{Compensated, REACHED, Summary, apart};
+use super::super::{Compensated, REACHED, Summary};
 use super::forms::PoseForm;
 use super::given::Given;
 use super::parsed::{Listed, Meant, Motion, Number, Parsed, Target};
@@ -343,7 +343,7 @@ impl<'e> Engine<'e> {
                 q
             }
         };
-        apart(&compensation.actual().forward_kinematics(&commanded), &meant)
+        compensation.actual().forward_kinematics(&commanded).apart(&meant)
     }
 }
 
@@ -367,7 +367,7 @@ fn joined(fate: Fate, placed: std::result::Result<Placed, Reason>, line: usize) 
 /// In what two motions to one target differ.
 fn differs(one: &Placed, other: &Placed) -> Option<Reason> {
     let is_same = |a: &Pose, b: &Pose| {
-        let (metres, radians) = apart(a, b);
+        let (metres, radians) = a.apart(b);
         metres < 1e-12 && radians < 1e-12
     };
     if !is_same(&one.tool, &other.tool) || !is_same(&one.frame, &other.frame) {

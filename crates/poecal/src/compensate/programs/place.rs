@@ -5,7 +5,7 @@ use std::f64::consts::{PI, TAU};
 use nalgebra::Vector3;
 use poecal_arm::{AllBranches, Arm};
 
-use super::super::{Compensated, Compensation, apart};
+use super::super::{Compensated, Compensation};
 use crate::error::Result;
 use crate::lie::{Pose, rotation};
 use crate::robot::Robot;
@@ -142,7 +142,7 @@ impl PoseCompensation {
         let start = arm.forward_kinematics(&q) * *tip_from_tool;
         let end = *target * *tip_from_tool;
         let turn: Vector3<f64> = rotation::log(&(start.rotation.transpose() * end.rotation));
-        let (metres, radians) = apart(&start, &end);
+        let (metres, radians) = start.apart(&end);
         let steps = (20.0 * metres / arm.reach_m()).max(5.0 * radians).ceil().clamp(2.0, 200.0);
         let tool_from_tip = tip_from_tool.inverse();
         let between = |share: f64| {
@@ -155,7 +155,7 @@ impl PoseCompensation {
         }
         let is_within =
             q.iter().zip(arm.limits()).all(|(q, (low, high))| (low - SLACK..=high + SLACK).contains(q));
-        (is_within && apart(&arm.forward_kinematics(&q), target).0 < 1e-8).then(|| self.of_robot(&q, from))
+        (is_within && arm.forward_kinematics(&q).apart(target).0 < 1e-8).then(|| self.of_robot(&q, from))
     }
 
     /// Whether the nominal arm is so near a singularity that a pose says little of the configuration.

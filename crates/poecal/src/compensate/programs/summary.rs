@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use serde::Serialize;
 
-use super::super::{Largest, Summary, apart};
+use super::super::{Largest, Summary};
 use super::Language;
 use super::engine::Engine;
 use super::parsed::{Listed, Meant, Number, Parsed};
@@ -113,7 +113,7 @@ pub(super) fn checked(
             }
         };
         commanded.extend_from_slice(factors);
-        let (metres, radians) = apart(&actual.forward_kinematics(&commanded), &wanted);
+        let (metres, radians) = actual.forward_kinematics(&commanded).apart(&wanted);
         largest.0.include(metres, target.line);
         largest.1.include(radians, target.line);
     }
