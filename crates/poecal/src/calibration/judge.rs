@@ -166,7 +166,7 @@ pub fn judge(subject: &Subject<'_>, data: &Dataset) -> Result<Judgement> {
 }
 
 /// Errors of a robot's predictions, with device frame and targets refitted as asked.
-fn judged_rows<'a>(
+pub(super) fn judged_rows<'a>(
     subject: &Subject<'_>,
     robot: &'a Robot,
     data: &'a Dataset,

@@ -83,6 +83,7 @@ impl CalibrationFile {
                 joint_offsets: OffsetEntry::of(calibration),
             },
             identifiability: IdentifiabilityEntry::of(&calibration.identifiability),
+            acceptance: calibration.acceptance.clone(),
             verdict: Some(calibration.verdict.clone()),
             coverage: calibration.trust.coverage.clone(),
             cross_validation: CrossValidationEntry::of(&calibration.trust),

@@ -15,7 +15,7 @@ use super::original::OriginalUrdf;
 use super::trust::{CorrectionEntry, CrossValidationEntry, UncertaintyEntry};
 use super::{OutlierEntry, RepeatabilityEntry, RobustEntry};
 use crate::analysis::{Direction, Identifiability, JointCoverage, Observability};
-use crate::calibration::{Accuracy, DeviceFrameKnowledge, FormulationWords, NoiseSource, Verdict};
+use crate::calibration::{Acceptance, Accuracy, DeviceFrameKnowledge, FormulationWords, NoiseSource, Verdict};
 use crate::error::Result;
 use crate::forensics::DiagnosisKind;
 use crate::io::hashes::sha256;
@@ -50,6 +50,9 @@ pub struct CalibrationFile {
     pub identifiability: IdentifiabilityEntry,
     /// Noise by which residuals were weighted.
     pub noise: NoiseEntry,
+    /// Whether the limits that were asked for are kept; absent if none were.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub acceptance: Option<Acceptance>,
     /// Verdict: whether the result is good to use, and where.
     #[serde(default)]
     pub verdict: Option<Verdict>,
