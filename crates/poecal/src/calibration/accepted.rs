@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::acceptance::{Errors, mean_square};
-use super::judge::judged_rows;
+use super::judge::{check_count, judged_rows};
 use super::located::promised_rows;
 use super::{
     Acceptance, AcceptanceLimits, AcceptedLimit, AcceptedModel, AcceptedRows, AcceptedStatistic, Calibration,
@@ -60,26 +60,22 @@ pub(super) fn accepted(
 /// unknowns that took a part of them.
 ///
 /// # Errors
-/// [`ErrorKind::Option`] if no row measured what a limit is for.
+/// [`ErrorKind::Option`] if no row measured what a limit is for, [`ErrorKind::Problem`] if the rows are too few for the refit.
 pub fn accepted_by(
     subject: &Subject<'_>,
     data: &Dataset,
     accept: &AcceptanceLimits,
     model: AcceptedModel,
 ) -> Result<Acceptance> {
+    check_count(subject, data)?;
     let packed = Packed::of(subject.calibrated, data);
     let judged = judged_rows(subject, subject.calibrated, data, &packed);
     let numbers: usize = judged.errors.iter().map(RowError::dim).sum();
     let fitted: usize = judged.free.iter().map(|it| it.model().columns().len()).sum();
     let factor = (numbers as f64 / numbers.saturating_sub(fitted) as f64).sqrt();
     let rows = data.all_rows();
-    let judged = Rows {
-        session: judged.session,
-        rows: &rows,
-        errors: &judged.errors,
-        noise: subject.noise,
-        factor,
-    };
+    let judged =
+        Rows { session: judged.session, rows: &rows, errors: &judged.errors, noise: subject.noise, factor };
     Ok(Acceptance::new(model, AcceptedRows::Judged, judged.limits(&accept.limits)?))
 }
 

@@ -34,10 +34,11 @@ mod workspace;
 
 pub use crate::robot::{CorrectionModel, Corrections, Sizes, TermGroup};
 pub use acceptance::{
-    Acceptance, AcceptanceLimits, AcceptedLimit, AcceptedModel, AcceptedRows, AcceptedStatistic, Decision, Limit,
+    Acceptance, AcceptanceLimits, AcceptedLimit, AcceptedModel, AcceptedRows, AcceptedStatistic, Decision,
+    Limit,
 };
-pub use accepted::accepted_by;
 use accepted::accepted;
+pub use accepted::accepted_by;
 pub use accuracy::{Accuracy, ModelAccuracy, Models, SetAccuracy, Statistic, set_accuracy};
 pub use blocks::BlockChoice;
 pub(crate) use blocks::names;

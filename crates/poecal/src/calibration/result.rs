@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use super::placed::{CalibratedStation, CalibratedTarget};
 use super::{
-    Acceptance, Accuracy, CalibrationOptions, Correction, DeviceFrameKnowledge, Formulation, JointEffect, Models,
-    NoiseSource, Robustness, SolverReport, Trust, Verdict, fit_screws,
+    Acceptance, Accuracy, CalibrationOptions, Correction, DeviceFrameKnowledge, Formulation, JointEffect,
+    Models, NoiseSource, Robustness, SolverReport, Trust, Verdict, fit_screws,
 };
 use crate::analysis::Identifiability;
 use crate::estimate::{Packed, Session, Unknowns};

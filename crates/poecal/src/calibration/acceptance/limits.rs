@@ -116,7 +116,8 @@ impl AcceptanceLimits {
             let same = |other: &&Limit| (other.statistic, other.unit) == (limit.statistic, limit.unit);
             if let Some(other) = limits[..k].iter().find(same) {
                 let [other, own] = [other, limit].map(|it| it.words());
-                let message = format!("found two limits of one kind, {other} and {own}, expected one of them");
+                let message =
+                    format!("found two limits of one kind, {other} and {own}, expected one of them");
                 return Err(Error::new(ErrorKind::Option, message));
             }
         }
