@@ -2,6 +2,8 @@
 
 use maud::{Markup, Render, html};
 
+use super::advice::told;
+use super::certificate::{acceptance, record};
 use super::devices::Device;
 use super::figures;
 use super::html::{HtmlTable, count, facts, figure, figure_or, list, path, plots, quoted};
@@ -59,6 +61,8 @@ pub(super) fn screen(file: &CalibrationFile, residuals: &Residuals) -> Markup {
             p.made { (kinds(file)) " · made by poecal " (quoted(&file.poecal_version, "poecal_version")) }
             div.theme hidden role="group" aria-label="Colours" {}
         }
+        (record(file))
+        (acceptance(file))
         (verdict(file))
         div.first {
             div {
@@ -152,7 +156,7 @@ fn verdict(file: &CalibrationFile) -> Markup {
     let is_good = file.verdict.as_ref().is_some_and(|verdict| verdict.level == Level::Good);
     let reasons = reasons.iter().enumerate().filter(|_| !is_good);
     let reasons: Vec<Markup> =
-        reasons.map(|(k, reason)| quoted(reason, format_args!("verdict.reasons.{k}"))).collect();
+        reasons.map(|(k, reason)| told(reason, format_args!("verdict.reasons.{k}"))).collect();
     let points: Vec<Markup> = look_at(file).iter().filter_map(|point| point_words(file, point)).collect();
     html! {
         section class={ "verdict " (class) } aria-labelledby="verdict-title" {
@@ -177,8 +181,8 @@ fn point_words(file: &CalibrationFile, point: &Point) -> Option<Markup> {
     let known = &file.identifiability;
     match point.place {
         Place::Reason => None,
-        Place::Diagnosis(k) => Some(quoted(&point.text, format_args!("diagnosis.{k}.statement"))),
-        Place::Warning(k) => Some(quoted(&point.text, format_args!("warnings.{k}"))),
+        Place::Diagnosis(k) => Some(told(&point.text, format_args!("diagnosis.{k}.statement"))),
+        Place::Warning(k) => Some(told(&point.text, format_args!("warnings.{k}"))),
         Place::Suspects => Some(html! { a href="#suspects" { (point.text.replace(SEE_ROBUST, "")) } }),
         Place::Joint(k) => {
             let joint = file.corrections.get(k)?;
