@@ -10,7 +10,7 @@ use super::html::{HtmlTable, count, facts, figure, figure_or, list, path, plots,
 use super::lead::{kinds_words, sign, spaced};
 use super::trust::direction_words;
 use crate::analysis::Direction;
-use crate::calibration::{Level, NoiseSource, SetAccuracy};
+use crate::calibration::{Improvements, Level, NoiseSource, SetAccuracy};
 use crate::io::calibration_file::CalibrationFile;
 use crate::io::residuals::Residuals;
 use crate::measurement::Quantity;
@@ -47,9 +47,9 @@ pub(super) fn screen(file: &CalibrationFile, residuals: &Residuals) -> Markup {
     let on = format!("on {of}");
     let tables = set.calibrated.iter().flat_map(|(quantity, _)| {
         let words = error_words(quantity, &on);
-        let all = lead_table(&words, &rows, quantity);
+        let all = lead_table(&words, &rows, quantity, set.improvement.as_ref());
         let rest = rest.as_ref().map(|(suspected, rows)| {
-            lead_table(&format!("{words}, without {suspected} suspected"), rows, quantity)
+            lead_table(&format!("{words}, without {suspected} suspected"), rows, quantity, None)
         });
         std::iter::once(all).chain(rest)
     });
@@ -123,9 +123,15 @@ fn without_suspected<'a>(
     Some((suspected, own.collect()))
 }
 
-/// Errors before and after, of the rows held out or, if there are none, of those fitted.
-fn lead_table(caption: &str, rows: &[ModelRow<'_>], quantity: Quantity) -> HtmlTable {
-    let mut table = HtmlTable::new(caption, 1, &["", "mean", "RMS", "95 %", "max"]);
+/// Errors before and after, of the rows held out or, if there are none, of those fitted; of the former also how many times smaller they are.
+fn lead_table(
+    caption: &str,
+    rows: &[ModelRow<'_>],
+    quantity: Quantity,
+    gain: Option<&Improvements>,
+) -> HtmlTable {
+    let heads = ["", "mean", "RMS", "95 %", "max", "RMS smaller by"];
+    let mut table = HtmlTable::new(caption, 1, &heads[..if gain.is_some() { 6 } else { 5 }]);
     for (name, model, key) in rows {
         let cells = STATISTICS.map(|(_, statistic, value)| {
             figure_or(
@@ -134,9 +140,31 @@ fn lead_table(caption: &str, rows: &[ModelRow<'_>], quantity: Quantity) -> HtmlT
                 "",
             )
         });
-        table.cells(std::iter::once(name.render()).chain(cells));
+        let gain = gain.map(|gain| smaller(gain, key, quantity));
+        table.cells(std::iter::once(name.render()).chain(cells).chain(gain));
     }
     table
+}
+
+/// How many times smaller the errors of a model are than the registered model's, with the interval.
+fn smaller(gain: &Improvements, key: &str, quantity: Quantity) -> Markup {
+    let word = key.rsplit('.').next().unwrap_or_default();
+    let of = match word {
+        "calibrated" => gain.calibrated.get(quantity),
+        "corrected" => gain.corrected.as_ref().and_then(|it| it.get(quantity)),
+        _ => None,
+    };
+    let Some(found) = of else { return Markup::default() };
+    let key = |name: &str| format!("accuracy.held_out.improvement.{word}.{}.{name}", quantity.key());
+    html! {
+        "× " (factor(found.factor, &key("factor"))) small { " (" (factor(found.from, &key("from"))) " to " (factor(found.to, &key("to"))) ")" }
+    }
+}
+
+/// A factor with two or three digits.
+fn factor(value: f64, key: &str) -> Markup {
+    let decimals = if value < 10.0 { 1 } else { 0 };
+    html! { span data-key=(key) { (format!("{value:.decimals$}")) } }
 }
 
 /// How many joints of which kind, and from where to where.
