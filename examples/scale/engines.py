@@ -43,10 +43,16 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--kill-one", action="store_true", help="kill a process half way, to see that the results stay the same")
 
 
+def options_of(parser: argparse.ArgumentParser) -> argparse.Namespace:
+    """The options as they were typed; refuses what does not fit together."""
+    options = parser.parse_args()
+    if options.kill_one and (options.engine == "none" or options.address):
+        parser.error("--kill-one: found no process of its own to kill, expected --engine ray or dask without --address")
+    return options
+
+
 def run(work: Work, items: Sequence[Any], options: argparse.Namespace) -> list[Row]:
     """The row of each item, in their order."""
-    if options.kill_one and (options.engine == "none" or options.address):
-        sys.exit("--kill-one: found no process of its own to kill, expected --engine ray or dask without --address")
     # A task takes one processor. Processes that are started have this from here.
     os.environ.setdefault("RAYON_NUM_THREADS", "1")
     with tempfile.TemporaryDirectory(prefix="scale-", ignore_cleanup_errors=True) as folder:
@@ -72,7 +78,7 @@ def by_ray(work: Work, items: Sequence[Any], options: argparse.Namespace, folder
         os.environ["RAY_ENABLE_WINDOWS_OR_OSX_CLUSTER"] = "0"
     import ray
 
-    def batch(columns: dict[str, Any]) -> dict[str, Any]:
+    def batch(columns: Any) -> Any:
         rows = [json.dumps(work(json.loads(item))) for item in columns["item"]]
         return {"index": columns["index"], "row": rows}
 
@@ -80,8 +86,8 @@ def by_ray(work: Work, items: Sequence[Any], options: argparse.Namespace, folder
     alone |= {"_node_ip_address": "127.0.0.1", "_temp_dir": folder}
     ray.init(**({"address": options.address} if options.address else alone), logging_level=logging.WARNING, log_to_driver=False)
     try:
-        logging.getLogger("ray.data").setLevel(logging.ERROR)
         ray.data.DataContext.get_current().enable_progress_bars = False
+        logging.getLogger("ray.data").setLevel(logging.ERROR)
         columns = [{"index": index, "item": json.dumps(item)} for index, item in enumerate(items)]
         # A block is a task, which takes some hundredths of a second to start, and is done again as a whole; a batch is an item.
         blocks = min(len(columns), BLOCKS * int(ray.cluster_resources()["CPU"]))
@@ -98,7 +104,8 @@ def by_dask(work: Work, items: Sequence[Any], options: argparse.Namespace, folde
     alone = {"n_workers": options.workers, "threads_per_worker": 1, "host": "127.0.0.1", "dashboard_address": None}
     alone |= {"local_directory": folder, "silence_logs": logging.ERROR}
     with nullcontext(options.address) if options.address else LocalCluster(**alone) as cluster, Client(cluster) as client:
-        return client.gather(client.map(work, items, pure=False))
+        rows: list[Row] = client.gather(client.map(work, items, pure=False))
+    return rows
 
 
 ENGINES = {"none": by_none, "ray": by_ray, "dask": by_dask}

@@ -27,7 +27,7 @@ def main() -> None:
     parser.add_argument("--corrections", choices=["auto", "off"], default="auto", help="fit what joints do beyond geometry (default), or not")
     parser.add_argument("--out", type=Path, default=Path("calibrated"), help="folder for the results (default: calibrated)")
     engines.add_options(parser)
-    options = parser.parse_args()
+    options = engines.options_of(parser)
     if options.make:
         make(options.robots, options.make)
         return

@@ -44,7 +44,7 @@ def main() -> None:
     parser.add_argument("--seed", type=engines.count, default=1)
     parser.add_argument("--out", type=Path, required=True, help="folder for the results")
     engines.add_options(parser)
-    options = parser.parse_args()
+    options = engines.options_of(parser)
     plan = {name: getattr(options, name) for name in ["trials", "chunk", "count", "noise_mm", "noise_deg", "seed"]}
     try:
         poecal.Robot.read(options.model)
