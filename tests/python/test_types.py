@@ -21,7 +21,7 @@ CHECKS = {
     "examples": ["mypy", "--strict", "--ignore-missing-imports", "--scripts-are-modules", *EXAMPLES],
     # Ray and Dask have functions without types.
     "scale": ["mypy", "--strict", "--allow-untyped-calls", "--ignore-missing-imports", "--scripts-are-modules", *SCALE],
-    "bench": ["mypy", "--strict", ROOT / "crates/poecal-py/benches/overhead.py"],
+    "benches": ["mypy", "--strict", "--scripts-are-modules", *sorted((ROOT / "crates/poecal-py/benches").glob("*.py"))],
 }
 # What users may write, with the types that it has.
 USE = """
