@@ -120,9 +120,11 @@ def test_stated_uncertainties_are_true(alone, tmp_path):
     assert len(found) == 25
     scatter = (0.95 * 0.05 / count) ** 0.5
     for row in found:
-        # Twice what 100,000 trials showed, and four standard errors of the number of trials.
-        assert abs(float(row["inside"]) - 0.95) < 0.01 + 4 * scatter, row
-        assert float(row["off"]) == pytest.approx(float(row["stated"]), rel=0.03 + 4 / (2 * count) ** 0.5), row
+        # 100,000 trials showed 0.16 % and, of the axes, 1.1 % (the prior is counted in, and moves little), 3.3 % of the tip (whose bound
+        # counts errors of the model too). Half more, and four standard errors of the number of trials.
+        assert abs(float(row["inside"]) - 0.95) < 0.0025 + 4 * scatter, row
+        excess = 0.05 if row["what"] == "tip" else 0.017
+        assert float(row["off"]) == pytest.approx(float(row["stated"]), rel=excess + 4 / (2 * count) ** 0.5), row
 
 
 @pytest.fixture(scope="module")
