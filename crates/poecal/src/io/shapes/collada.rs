@@ -5,7 +5,7 @@ use std::path::Path;
 
 use roxmltree::Node;
 
-use super::mesh::{Collector, Reason, Triangles};
+use super::collector::{Collector, Reason, Triangles};
 use crate::io::xml::parsed;
 
 /// Nodes above each other, at most.

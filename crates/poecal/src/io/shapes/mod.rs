@@ -1,6 +1,7 @@
 //! What a robot looks like: the shapes of its links, from the URDF in a `calibration.json` and the meshes that it names.
 
 mod collada;
+mod collector;
 mod find;
 mod mesh;
 mod obj;
@@ -10,8 +11,9 @@ mod stl;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
+use self::collector::{MOST_TRIANGLES, Triangles};
 use self::find::Folders;
-use self::mesh::Triangles;
+
 use self::simplify::fitted;
 use super::calibration_file::CalibrationFile;
 use super::urdf::{Geometry, Visual};
@@ -123,7 +125,7 @@ impl Shapes {
                     missing.push(name.to_owned());
                     return None;
                 };
-                match mesh::read(&found, scale, mesh::MOST_TRIANGLES.saturating_sub(triangles)) {
+                match mesh::read(&found, scale, MOST_TRIANGLES.saturating_sub(triangles)) {
                     Ok(mesh) => {
                         triangles += mesh.len();
                         read.push(mesh);

@@ -1,6 +1,6 @@
 //! Wavefront OBJ: corners (`v`) and faces (`f`), nothing else.
 
-use super::mesh::{Collector, Reason, Triangles};
+use super::collector::{Collector, Reason, Triangles};
 
 pub(super) fn triangles(text: &str, mut into: Collector) -> Result<Triangles, Reason> {
     let (mut places, mut face): (Vec<[f64; 3]>, Vec<[f64; 3]>) = (Vec::new(), Vec::new());

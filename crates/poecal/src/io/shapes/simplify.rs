@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use super::Mesh;
-use super::mesh::Triangles;
+use super::collector::Triangles;
 
 /// Steps along the longest side of a mesh.
 const STEPS: f32 = 65535.0;

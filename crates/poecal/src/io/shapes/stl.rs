@@ -1,6 +1,6 @@
 //! STL, binary and as text.
 
-use super::mesh::{Collector, Reason, Triangles};
+use super::collector::{Collector, Reason, Triangles};
 
 /// Bytes before the number of triangles, and of a triangle: its normal, three corners, and two bytes without a meaning.
 const HEAD: usize = 80;
