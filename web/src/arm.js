@@ -242,6 +242,7 @@ function stateText(view) {
       return { name: end.name, place, words: place.map((value) => shown(1e3 * value, 5)).join(", "), apart: shown(1e3 * Math.hypot(...subtract(place, other))) };
     });
     text.dataset.tip = calibrated.at(data.tip).t.join(",");
+    text.dataset.shapes = JSON.stringify((data.shapes ?? []).map((shape) => calibrated.at(shape).t));
     text.dataset.ends = JSON.stringify(ends.map(({ name, place }) => [name, place]));
     const [{ words, apart }] = ends;
     const isTip = data.ends.length === 1 && data.ends[0] === data.tip;

@@ -63,11 +63,8 @@ pub(super) fn sets(residuals: &Residuals) -> Markup {
     });
     let (scale, words, from) =
         if is_far_off { (Scale::Log, " (logarithmic)", None) } else { (Scale::Linear, "", Some(0.0)) };
-    let lines = sets.map(|(name, style, errors)| Line {
-        name: name.to_owned(),
-        style,
-        points: distribution(errors),
-    });
+    let lines =
+        sets.map(|(name, style, errors)| Line { name: name.to_owned(), style, points: distribution(errors) });
     let name = lead.name();
     let plot = LinePlot {
         title: "Calibrated model: fitted against held-out rows".to_owned(),
