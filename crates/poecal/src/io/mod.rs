@@ -20,6 +20,7 @@ mod proof;
 pub mod residuals;
 pub mod robot_toml;
 pub mod settings;
+pub mod shapes;
 mod source;
 mod source_text;
 pub mod urdf;

@@ -17,7 +17,7 @@ pub use check::{Check, SetCounts};
 pub use identify::Identify;
 pub use judgement::judgement;
 pub use offsets::{Offsets, offset_ends};
-pub use page::calibration_page;
+pub use page::{calibration_page, calibration_page_with};
 pub use summary::{Detail, summary, unsaid};
 
 use serde::Serialize;
