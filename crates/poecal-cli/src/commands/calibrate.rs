@@ -233,7 +233,7 @@ impl Places {
 /// The report with the shapes of the robot; of meshes that are not there, a note.
 fn page(file: &CalibrationFile, rows: &Residuals, folder: &Path, console: &Console) -> Result<Page> {
     let shapes = Shapes::read(file, &folder.join("calibration.json"));
-    shapes.notes.iter().for_each(|note| console.note(note));
+    shapes.notes.iter().for_each(|note| console.remark(note));
     report::calibration_page_with(file, rows, &shapes)
 }
 

@@ -34,7 +34,7 @@ fn view(file: &CalibrationFile, shapes: &Shapes) -> Markup {
             (picture_words(file, draws_instruments(file)))
         }
         div #arm.arm {}
-        @if !shapes.notes.is_empty() { p.note { (shapes.notes.join(" ")) } }
+        @if !shapes.notes.is_empty() { p.note { (shapes.notes.join(" ").replace('`', "")) } }
         noscript { p.note { "The picture needs JavaScript. All figures are in the tables." } }
         (folded("The axes as numbers", &table))
         @if let Some(table) = stands(file) { (folded("What stands where", &table)) }
