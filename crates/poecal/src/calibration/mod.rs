@@ -2,6 +2,7 @@
 
 mod accuracy;
 mod blocks;
+mod changes;
 mod corrections;
 mod count;
 mod coverage_check;

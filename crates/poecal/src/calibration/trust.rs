@@ -1,11 +1,12 @@
 //! How far a calibration can be trusted: cross-validation, uncertainty of predictions and of each screw, and the effect of each correction.
 
+use super::changes::{joint_changes, sigmas};
 use super::expected::{Expectations, expectations};
 use super::suspicion::{JointCorrection, suspicions};
 use super::{CoverageCheck, Models};
-use crate::analysis::{JointCoverage, PLAUSIBLE, coverage};
+use crate::analysis::{JointCoverage, coverage};
 use crate::estimate::{Estimate, Session, rms_m, sample_rows};
-use crate::gauge::{Deviation, screw_deviations};
+use crate::gauge::screw_deviations;
 use crate::problem::Layout;
 use crate::solve::Normal;
 use crate::start::{Registration, register_again};
@@ -95,11 +96,14 @@ fn joints(finished: &Finished<'_>, uncertainty: Option<&Uncertainty>) -> Vec<Joi
     let normal = finished.normal;
     let shares = Shares::new(view, &normal.gram, normal.dim());
     let from_data = |rows: &[Vec<f64>; 3]| shares.as_ref()?.of_measurements(rows);
+    let changes = joint_changes(finished, uncertainty, &deviations);
     let mut joints: Vec<JointCorrection> = deviations
         .into_iter()
+        .zip(changes)
         .enumerate()
-        .map(|(joint, deviation)| {
-            let (sigma_tilt_rad, sigma_shift_m) = sigmas(&deviation, uncertainty, length_m);
+        .map(|(joint, (deviation, change))| {
+            let (sigma_tilt_rad, sigma_shift_m) =
+                sigmas((&deviation.tilt_by_step, &deviation.shift_by_step), uncertainty, length_m);
             let mut screws = calibrated.screws();
             screws[joint] = nominal[joint];
             let left = registered_again(finished, &rows, &calibrated.with_screws(&screws));
@@ -111,6 +115,7 @@ fn joints(finished: &Finished<'_>, uncertainty: Option<&Uncertainty>) -> Vec<Joi
                 tilt_from_data: from_data(&deviation.tilt_by_step),
                 shift_from_data: from_data(&deviation.shift_by_step),
                 left_nominal_rms_m: rms_m(&view.session.errors(&rows, &left)),
+                change,
                 suspicious: None,
             }
         })
@@ -118,23 +123,6 @@ fn joints(finished: &Finished<'_>, uncertainty: Option<&Uncertainty>) -> Vec<Joi
     let suspicions = suspicions(view, finished.normal, &joints);
     joints.iter_mut().zip(suspicions).for_each(|(joint, words)| joint.suspicious = words);
     joints
-}
-
-/// Standard deviations of tilt and shift; `None` where they exceed half of the uncertainty of a nominal model.
-fn sigmas(
-    deviation: &Deviation,
-    uncertainty: Option<&Uncertainty>,
-    length_m: f64,
-) -> (Option<f64>, Option<f64>) {
-    const DETERMINED: f64 = 0.5;
-    let of = |rows: &[Vec<f64>; 3], most: f64| {
-        let variance: f64 = rows.iter().map(|row| uncertainty.map_or(0.0, |it| it.variance(row))).sum();
-        Some(variance.sqrt()).filter(|sigma| uncertainty.is_some() && *sigma < DETERMINED * most)
-    };
-    let tilt = of(&deviation.tilt_by_step, PLAUSIBLE);
-    let shift = of(&deviation.shift_by_step, PLAUSIBLE * length_m);
-    // The place of an axis of unknown direction means little.
-    if tilt.is_some() && shift.is_some() { (tilt, shift) } else { (None, None) }
 }
 
 /// An estimate with tool and device frame refitted.

@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::keyed::{AttributionKeys, DiscrepancyKeys, FreedomKeys, Keyed, NoiseKeys, RmsKeys, shown};
-use super::{CalibrationFile, PoseEntry};
+use super::{CalibrationFile, JointChangeEntry, PoseEntry};
 use crate::analysis::JointCoverage;
 use crate::calibration::{
     CalibratedTarget, Calibration, Correction, CoverageCheck, Expectations, Expected, JointCorrection,
@@ -116,6 +116,9 @@ pub struct CorrectionEntry {
     pub shift_from_data: Option<f64>,
     /// Root mean square position error with this screw alone nominal, millimetres.
     pub left_nominal_rms_mm: f64,
+    /// The correction in parts, with directions; missing in older files.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub change: Option<JointChangeEntry>,
     /// Why the joint is suspicious: a correction beyond those of the others, or residuals that follow its position.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub suspicious: Option<String>,
@@ -241,6 +244,7 @@ impl CorrectionEntry {
             tilt_from_data: found.tilt_from_data,
             shift_from_data: found.shift_from_data,
             left_nominal_rms_mm: found.left_nominal_rms_m * 1e3,
+            change: Some(JointChangeEntry::from(&found.change)),
             suspicious: found.suspicious.clone(),
         }
     }

@@ -147,6 +147,7 @@ fn corrections(file: &CalibrationFile) -> Markup {
         }
         (plots(&figures::corrections(file), "Dots: corrections. Lines: two standard deviations to each side; none where a correction is not determined."))
         (table)
+        (changes(file))
         @for (k, found) in file.corrections.iter().enumerate() {
             @if let Some(words) = &found.suspicious {
                 p {
@@ -158,6 +159,32 @@ fn corrections(file: &CalibrationFile) -> Markup {
         (offsets(file))
     };
     section("joints", "Joints", &content)
+}
+
+/// The corrections in words, with directions.
+fn changes(file: &CalibrationFile) -> Markup {
+    let mut table = HtmlTable::new("The corrections in words", 2, &["joint", "correction"]);
+    let mut any = false;
+    for (k, found) in file.corrections.iter().enumerate() {
+        let Some(change) = &found.change else { continue };
+        any = true;
+        table.row(&[
+            &quoted(&found.joint, format_args!("corrections.{k}.joint")),
+            &quoted(&change.words, format_args!("corrections.{k}.change.words")),
+        ]);
+    }
+    if !any {
+        return Markup::default();
+    }
+    html! {
+        (table)
+        p.note {
+            "Directions of the base frame with all joints at zero; a shift is that of the axis' point nearest to the joint's origin. "
+            "An offset is to be added to the joint's value: it turns or shifts everything beyond the joint. Tilts and shifts are what offsets and the base "
+            "do not explain, so they may be smaller than in the table above. The offset of the first joint is not determined where the base "
+            "was fitted, that of the last where the tool was."
+        }
+    }
 }
 
 /// Joint offsets, where the formulation has them.
