@@ -35,12 +35,12 @@ fn sigma(rows: &[Vec<f64>], uncertainty: Option<&Uncertainty>, most: f64) -> Opt
     Some(variance.sqrt()).filter(|sigma| *sigma < DETERMINED * most)
 }
 
-/// The correction of each joint. In a robot with branches offsets are not told from the axes.
+/// The correction of each joint, with its derivatives by the unknowns. In a robot with branches offsets are not told from the axes.
 pub(super) fn joint_changes(
     finished: &Finished<'_>,
     uncertainty: Option<&Uncertainty>,
     deviations: &[Deviation],
-) -> Vec<JointChange> {
+) -> Vec<(JointChange, ChangeBySteps)> {
     let session = &finished.view.session;
     let Session { robot: nominal, length_m, .. } = *session;
     let calibrated = &finished.models.calibrated;
@@ -48,21 +48,30 @@ pub(super) fn joint_changes(
     let base = if session.base_free() { End::Free } else { End::Kept };
     let Ok(changes) = Changes::of(nominal, &actual, base) else {
         let joints = nominal.joints.iter().zip(&actual.joints).zip(deviations);
-        return joints.map(|(pair, deviation)| of_axis(pair, deviation, uncertainty, length_m)).collect();
+        let of = |(pair, deviation): (_, &Deviation)| {
+            let by_steps = ChangeBySteps {
+                offset: vec![0.0; finished.layout.dim()],
+                tilt: deviation.tilt_by_step.clone(),
+                shift: deviation.shift_by_step.clone(),
+            };
+            (of_axis(pair, deviation, uncertainty, length_m), by_steps)
+        };
+        return joints.map(of).collect();
     };
     let by_steps = changes.by_steps(&screw_motions(calibrated, finished.layout));
-    let with_sigmas = |(change, by_steps): (&JointChange, &ChangeBySteps)| {
+    let with_sigmas = |(change, by_steps): (&JointChange, ChangeBySteps)| {
         let (sigma_tilt, sigma_shift) = sigmas((&by_steps.tilt, &by_steps.shift), uncertainty, length_m);
         let most = if change.kind == JointKind::Revolute { PLAUSIBLE } else { PLAUSIBLE * length_m };
-        JointChange {
+        let change = JointChange {
             sigma_offset: sigma(std::slice::from_ref(&by_steps.offset), uncertainty, most),
             sigma_tilt,
             sigma_shift,
             is_estimated: uncertainty.is_some(),
             ..*change
-        }
+        };
+        (change, by_steps)
     };
-    changes.joints.iter().zip(&by_steps).map(with_sigmas).collect()
+    changes.joints.iter().zip(by_steps).map(with_sigmas).collect()
 }
 
 /// The correction of an axis alone.

@@ -24,6 +24,9 @@ pub struct JointCorrection {
     pub shift_from_data: Option<f64>,
     /// Root mean square position error with this screw alone nominal, tool and device frame refitted, metres.
     pub left_nominal_rms_m: f64,
+    /// Standard deviations of tilt (radians) and shift (metres) if the axes of all other joints were known; `None` where they are not
+    /// determined even then, or the axis was held.
+    pub held: Option<(f64, f64)>,
     /// The correction in parts, with directions: joint offset, and what of tilt and shift offsets and base do not explain.
     pub change: JointChange,
     /// Why the joint is suspicious, if it is.

@@ -3,6 +3,7 @@
 use super::changes::{joint_changes, sigmas};
 use super::expected::{Expectations, expectations};
 use super::suspicion::{JointCorrection, suspicions};
+use super::together::{CommonDirection, common_directions, held_sigmas};
 use super::{CoverageCheck, Models};
 use crate::analysis::{JointCoverage, coverage};
 use crate::estimate::{Estimate, Session, rms_m, sample_rows};
@@ -44,6 +45,8 @@ pub struct Trust {
     pub held_out: Option<CoverageCheck>,
     /// Correction of each joint.
     pub joints: Vec<JointCorrection>,
+    /// Directions in which corrections of several joints are known only together; none where each is known for itself.
+    pub common: Vec<CommonDirection>,
 }
 
 /// A finished fit.
@@ -66,8 +69,10 @@ pub(super) fn trust(finished: &Finished<'_>) -> Trust {
     let expected = uncertainty.as_ref().map_or_else(Expectations::default, |uncertainty| {
         expectations(&view.session, view.rows, &coverage, uncertainty, finished.seed)
     });
+    let (joints, common) = joints(finished, uncertainty.as_ref());
     Trust {
-        joints: joints(finished, uncertainty.as_ref()),
+        joints,
+        common,
         coverage,
         cross_validation,
         uncertainty,
@@ -86,7 +91,10 @@ fn uncertainty(finished: &Finished<'_>, found: &Discrepancy) -> Option<Uncertain
 }
 
 /// Correction of each joint with its uncertainty and effect.
-fn joints(finished: &Finished<'_>, uncertainty: Option<&Uncertainty>) -> Vec<JointCorrection> {
+fn joints(
+    finished: &Finished<'_>,
+    uncertainty: Option<&Uncertainty>,
+) -> (Vec<JointCorrection>, Vec<CommonDirection>) {
     let view = &finished.view;
     let Session { robot, length_m, .. } = view.session;
     let calibrated = &finished.models.calibrated;
@@ -97,11 +105,13 @@ fn joints(finished: &Finished<'_>, uncertainty: Option<&Uncertainty>) -> Vec<Joi
     let shares = Shares::new(view, &normal.gram, normal.dim());
     let from_data = |rows: &[Vec<f64>; 3]| shares.as_ref()?.of_measurements(rows);
     let changes = joint_changes(finished, uncertainty, &deviations);
+    let held = uncertainty.map_or_else(|| vec![None; changes.len()], |it| held_sigmas(finished, it));
+    let common = uncertainty.map(|it| common_directions(finished, it, &changes, &held));
     let mut joints: Vec<JointCorrection> = deviations
         .into_iter()
-        .zip(changes)
+        .zip(&changes)
         .enumerate()
-        .map(|(joint, (deviation, change))| {
+        .map(|(joint, (deviation, (change, _)))| {
             let (sigma_tilt_rad, sigma_shift_m) =
                 sigmas((&deviation.tilt_by_step, &deviation.shift_by_step), uncertainty, length_m);
             let mut screws = calibrated.screws();
@@ -115,14 +125,15 @@ fn joints(finished: &Finished<'_>, uncertainty: Option<&Uncertainty>) -> Vec<Joi
                 tilt_from_data: from_data(&deviation.tilt_by_step),
                 shift_from_data: from_data(&deviation.shift_by_step),
                 left_nominal_rms_m: rms_m(&view.session.errors(&rows, &left)),
-                change,
+                held: held.get(joint).copied().flatten(),
+                change: *change,
                 suspicious: None,
             }
         })
         .collect();
     let suspicions = suspicions(view, finished.normal, &joints);
     joints.iter_mut().zip(suspicions).for_each(|(joint, words)| joint.suspicious = words);
-    joints
+    (joints, common.unwrap_or_default())
 }
 
 /// An estimate with tool and device frame refitted.

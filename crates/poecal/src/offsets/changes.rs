@@ -15,7 +15,7 @@ const SIGMAS: f64 = 2.0;
 /// Changes that are none (m, rad): rounding.
 const NONE: f64 = 1e-9;
 
-/// How a joint differs from another model's, in three parts (theory.md §8 (38c)): the joint offset, and the tilt and shift of its axis that
+/// How a joint differs from another model's, in three parts (theory.md §8 (38e)): the joint offset, and the tilt and shift of its axis that
 /// offsets and base do not explain. In the base frame at zero joint values.
 ///
 /// ```

@@ -10,7 +10,7 @@ mod taught;
 
 pub use at_tip::nearest_at_tip;
 pub use changes::JointChange;
-pub(crate) use changes::{ChangeBySteps, Changes};
+pub(crate) use changes::{ChangeBySteps, Changes, direction};
 pub use prediction::TipError;
 pub(crate) use taught::{Taught, with_tool_of};
 
