@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::trust::Finished;
+use super::finished::Finished;
 use crate::analysis::PLAUSIBLE;
 use crate::estimate::Session;
 use crate::gauge::{Deviation, screw_motions};

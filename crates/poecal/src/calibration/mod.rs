@@ -8,6 +8,7 @@ mod count;
 mod coverage_check;
 mod doubts;
 mod expected;
+mod finished;
 mod fit;
 mod formulation;
 mod found;

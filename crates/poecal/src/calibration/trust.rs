@@ -1,19 +1,17 @@
 //! How far a calibration can be trusted: cross-validation, uncertainty of predictions and of each screw, and the effect of each correction.
 
+use super::CoverageCheck;
 use super::changes::{joint_changes, sigmas};
 use super::expected::{Expectations, expectations};
+use super::finished::Finished;
 use super::suspicion::{JointCorrection, suspicions};
 use super::together::{CommonDirection, common_directions, held_sigmas};
-use super::{CoverageCheck, Models};
 use crate::analysis::{JointCoverage, coverage};
 use crate::estimate::{Estimate, Session, rms_m, sample_rows};
 use crate::gauge::screw_deviations;
-use crate::problem::Layout;
-use crate::solve::Normal;
 use crate::start::{Registration, register_again};
 use crate::uncertainty::{
-    Bootstrap, CrossValidation, Discrepancy, Remainder, Shares, Uncertainty, View, bootstrap, cross_validate,
-    discrepancy,
+    Bootstrap, CrossValidation, Discrepancy, Shares, Uncertainty, bootstrap, cross_validate, discrepancy,
 };
 
 /// Rows by which the effect of each correction is computed.
@@ -47,16 +45,6 @@ pub struct Trust {
     pub joints: Vec<JointCorrection>,
     /// Directions in which corrections of several joints are known only together; none where each is known for itself.
     pub common: Vec<CommonDirection>,
-}
-
-/// A finished fit.
-pub(super) struct Finished<'a> {
-    pub(super) view: View<'a>,
-    pub(super) layout: &'a Layout,
-    pub(super) normal: &'a Normal,
-    pub(super) remainder: &'a Remainder,
-    pub(super) models: &'a Models,
-    pub(super) seed: u64,
 }
 
 /// Judges a finished fit.

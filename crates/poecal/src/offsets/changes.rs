@@ -228,6 +228,11 @@ impl Changes {
         })
     }
 
+    /// Metres that a radian counts beside shifts: a third of the arm's length.
+    pub(crate) fn length_m(&self) -> f64 {
+        self.length_m
+    }
+
     /// Derivatives of each joint's change by some motions of the actual robot's axes: of each a spatial twist for every joint.
     pub(crate) fn by_steps(&self, steps: &[Vec<Vector6<f64>>]) -> Vec<ChangeBySteps> {
         let zeros = || vec![0.0; steps.len()];
