@@ -2,6 +2,7 @@
 
 mod acceptance;
 mod check;
+mod compared;
 mod identify;
 mod judgement;
 mod offsets;
@@ -15,6 +16,7 @@ mod summary;
 pub mod table;
 
 pub use check::{Check, SetCounts};
+pub use compared::Comparison;
 pub use identify::Identify;
 pub use judgement::judgement;
 pub use offsets::{Offsets, offset_ends};
