@@ -1,0 +1,69 @@
+// Runs the program's command lines, one at a time, in a worker that can be ended.
+import workerText from "inline:worker.js";
+import { unpacked } from "./packed.js";
+
+/** Why a run has no result: it was ended. */
+export class Ended extends Error {}
+
+/** The program: `run(words, files)` gives its exit code, standard output and error, and the files that it wrote. */
+export class Engine {
+  #module = unpacked("engine").then((bytes) => WebAssembly.compile(bytes));
+  #address = URL.createObjectURL(new Blob([workerText], { type: "text/javascript" }));
+  #worker;
+  #waiting;
+
+  constructor() {
+    this.#start();
+  }
+
+  /** A worker with an instance of its own, made before it is asked for anything. */
+  #start() {
+    const worker = new Worker(this.#address);
+    this.#worker = worker;
+    this.#module.then((module) => worker === this.#worker && worker.postMessage({ module }), () => {});
+    worker.onmessage = ({ data }) => this.#settle(data.done, data.failed);
+    worker.onerror = (event) => this.#settle(undefined, event.message || "the worker ended");
+  }
+
+  #settle(done, failed) {
+    const { resolve, reject } = this.#waiting ?? {};
+    this.#waiting = undefined;
+    // After a defect nothing of the instance is trusted.
+    if (failed !== undefined) this.#restart();
+    if (done) resolve?.(done);
+    else reject?.(new Error(failed));
+  }
+
+  #restart() {
+    this.#worker.terminate();
+    this.#start();
+  }
+
+  /** Whether something runs. */
+  get runs() {
+    return this.#waiting !== undefined;
+  }
+
+  /** Ends what runs. */
+  end() {
+    if (!this.#waiting) return;
+    const { reject } = this.#waiting;
+    this.#waiting = undefined;
+    this.#restart();
+    reject(new Ended("ended"));
+  }
+
+  /** Runs a command line on files `{ name, bytes }`; what ran before is ended. */
+  async run(words, files) {
+    this.end();
+    const worker = this.#worker;
+    const result = new Promise((resolve, reject) => (this.#waiting = { resolve, reject }));
+    const waiting = this.#waiting;
+    this.#module.then(
+      // A run that was ended meanwhile has another worker.
+      () => this.#waiting === waiting && worker.postMessage({ run: { words, files: Object.fromEntries(files.map(({ name, bytes }) => [name, bytes])) } }),
+      (error) => this.#waiting === waiting && this.#settle(undefined, error.message),
+    );
+    return result;
+  }
+}
