@@ -1,0 +1,94 @@
+// The page that calibrates: where it is, files dropped on it, and what it then shows.
+import { existsSync } from "node:fs";
+import { createServer } from "node:http";
+import { readFileSync } from "node:fs";
+import { join } from "node:path";
+import { pathToFileURL } from "node:url";
+import { skip } from "./browser.mjs";
+import { ROOT } from "./cases.mjs";
+
+const PAGE = process.env.POECAL_APP ?? join(ROOT, "web/app/dist/poecal.html");
+
+/** Why tests of the page are left out; false where they are not. */
+export const skipped = skip || (existsSync(PAGE) ? false : `found no page at ${PAGE}; build it: node web/app/build.mjs`);
+
+/** Serves the page and nothing else, at any path; its answer to anything but `/poecal.html` is 404. */
+export function serve() {
+  const server = createServer((request, response) => {
+    if (request.url !== "/poecal.html") return response.writeHead(404).end();
+    response.writeHead(200, { "content-type": "text/html" }).end(readFileSync(PAGE));
+  });
+  return new Promise((ready) => server.listen(0, "127.0.0.1", () => ready(server)));
+}
+
+/** Where the page is as a file. */
+export const FILE = pathToFileURL(PAGE).href;
+
+/** Opens the page; `page.complaints` are errors on the console, broken rules of its policy, and requests for anything but the page. */
+export async function open(browser, { address = FILE, width = 1300, colours = "light" } = {}) {
+  const context = await browser.newContext({ viewport: { width, height: 900 }, colorScheme: colours, acceptDownloads: true });
+  const page = await context.newPage();
+  page.complaints = [];
+  await page.exposeFunction("complain", (text) => page.complaints.push(text));
+  await page.addInitScript(() => {
+    addEventListener("securitypolicyviolation", (event) => globalThis.complain?.(`policy: ${event.violatedDirective} ${event.blockedURI}`));
+  });
+  page.on("console", (message) => {
+    if (["error", "warning"].includes(message.type())) page.complaints.push(`${message.type()}: ${message.text()}`);
+  });
+  page.on("pageerror", (error) => page.complaints.push(`error: ${error.message}`));
+  context.on("request", (request) => {
+    if (request.url() !== address && !request.url().startsWith("blob:")) page.complaints.push(`request: ${request.url().slice(0, 100)}`);
+  });
+  await page.goto(address);
+  await page.waitForSelector(":root[data-ready]", { state: "attached" });
+  return page;
+}
+
+/** Drops files, pairs of a name and a text or bytes, on the page. */
+export async function drop(page, files) {
+  const given = Object.entries(files).map(([name, content]) => [name, Buffer.from(content).toString("base64")]);
+  const transfer = await page.evaluateHandle((given) => {
+    const transfer = new DataTransfer();
+    for (const [name, content] of given) transfer.items.add(new File([Uint8Array.from(atob(content), (it) => it.charCodeAt(0))], name));
+    return transfer;
+  }, given);
+  for (const type of ["dragenter", "dragover", "drop"]) await page.dispatchEvent("main", type, { dataTransfer: transfer });
+}
+
+/** Waits until nothing runs and the status says something that matches. */
+export async function status(page, pattern, timeout = 60_000) {
+  await page.waitForFunction(
+    ({ source }) => !document.documentElement.hasAttribute("data-busy") && new RegExp(source).test(document.getElementById("status").textContent),
+    { source: pattern.source },
+    { timeout },
+  );
+  return page.locator("#status").innerText();
+}
+
+/** The messages that are shown: kind and text, and the quoted line. */
+export function messages(page) {
+  return page.$$eval("#messages .message", (all) =>
+    all.map((it) => ({
+      kind: it.classList[1],
+      text: it.querySelector("p").textContent.replace(/^[✕△·]/, ""),
+      quoted: it.querySelector("pre")?.textContent,
+    })),
+  );
+}
+
+/** Takes the page back to no files. */
+export async function clear(page) {
+  for (;;) {
+    const buttons = await page.$$("#list .remove");
+    if (!buttons.length) return;
+    await buttons[0].click();
+    await page.waitForFunction((count) => document.querySelectorAll("#list .remove").length < count, buttons.length);
+  }
+}
+
+/** Saves what a link saves, and gives its bytes. */
+export async function saved(page, link) {
+  const [download] = await Promise.all([page.waitForEvent("download"), link.click()]);
+  return readFileSync(await download.path());
+}
