@@ -31,7 +31,7 @@ async function run(line, given, doing) {
     return { ...result, files: Object.entries(result.files instanceof Map ? Object.fromEntries(result.files) : result.files) };
   } catch (error) {
     if (error instanceof Ended) return undefined;
-    showMessages([{ kind: "error", text: `poecal ended by a defect of its own (${error.message}): please report it with these files` }], given);
+    showMessages([{ kind: "error", text: error.message }], given);
     say("Ended by a defect.");
     return undefined;
   } finally {

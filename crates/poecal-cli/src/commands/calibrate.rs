@@ -24,10 +24,13 @@ use crate::args::{Calibrate, ReportPlace};
 use crate::console::Console;
 use crate::quantity::BelievedTolerance;
 use crate::style::{self, labelled, shown};
-use crate::timings::Timings;
+use crate::timings::{self, Timings};
 use crate::{DONE, WORSE};
 
 pub(crate) fn calibrate(arguments: &Calibrate, typed: &[OsString], console: &Console) -> Result<u8> {
+    if arguments.timings {
+        timings::need_clocks()?;
+    }
     let mut timings = Timings::start();
     let model_path = stated_model(arguments)?;
     let places = Places::reserve(arguments, console)?;
@@ -47,14 +50,14 @@ pub(crate) fn calibrate(arguments: &Calibrate, typed: &[OsString], console: &Con
     timings.end("read");
     let bar = console.progress(Stage::ALL.len() as u64);
     let calibration = calibrate_with_progress(&model.robot, &data, &options, &mut |stage| {
-        bar.set_position(Stage::ALL.iter().position(|&other| other == stage).unwrap_or(0) as u64);
-        bar.set_message(stage.words());
+        let step = Stage::ALL.iter().position(|&other| other == stage).unwrap_or(0);
+        bar.set(step as u64, stage.words());
         if stage == Stage::Analysis {
             timings.end("start");
         }
     });
     timings.end("analysis");
-    bar.finish_and_clear();
+    bar.finish();
     let calibration = calibration?;
     let file = CalibrationFile::new(&calibration, &data, inputs);
     let detail = if arguments.verbose { Detail::Full } else { Detail::Short };
