@@ -1,7 +1,6 @@
 // The page that calibrates: where it is, files dropped on it, and what it then shows.
-import { existsSync } from "node:fs";
+import { existsSync, readFileSync } from "node:fs";
 import { createServer } from "node:http";
-import { readFileSync } from "node:fs";
 import { join } from "node:path";
 import { pathToFileURL } from "node:url";
 import { skip } from "./browser.mjs";
@@ -58,12 +57,12 @@ export async function drop(page, files) {
 
 /** Waits until nothing runs and the status says something that matches. */
 export async function status(page, pattern, timeout = 60_000) {
-  await page.waitForFunction(
-    ({ source }) => !document.documentElement.hasAttribute("data-busy") && new RegExp(source).test(document.getElementById("status").textContent),
-    { source: pattern.source },
-    { timeout },
-  );
-  return page.locator("#status").innerText();
+  const is = ({ source }) => !document.documentElement.hasAttribute("data-busy") && new RegExp(source).test(document.getElementById("status").textContent);
+  const place = page.locator("#status");
+  await page.waitForFunction(is, { source: pattern.source }, { timeout }).catch(async () => {
+    throw new Error(`the status is \`${await place.innerText()}\` after ${timeout / 1000} s, expected ${pattern}`);
+  });
+  return place.innerText();
 }
 
 /** The messages that are shown: kind and text, and the quoted line. */
