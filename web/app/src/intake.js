@@ -1,31 +1,39 @@
 // Files from a drop, a choice or the clipboard, with the paths that they have within what was dropped.
 
-/** Every file of a folder, or the file itself. */
-async function within(entry, path) {
-  if (entry.isFile) {
-    const file = await new Promise((done, failed) => entry.file(done, failed));
-    return [{ path: path + entry.name, file }];
+/** The files of a folder, by its handle. */
+async function withinHandle(folder, path) {
+  const found = [];
+  for await (const [name, it] of folder.entries()) {
+    if (it.kind === "directory") found.push(...(await withinHandle(it, `${path}${name}/`)));
+    else found.push({ path: path + name, file: await it.getFile() });
   }
+  return found;
+}
+
+/** The same by its entry, where a browser has no handles. */
+async function withinEntry(entry, path) {
+  if (entry.isFile) return [{ path: path + entry.name, file: await new Promise((done, failed) => entry.file(done, failed)) }];
   const reader = entry.createReader();
   const found = [];
   for (;;) {
     // A reader gives a hundred at a time.
     const some = await new Promise((done, failed) => reader.readEntries(done, failed));
     if (!some.length) break;
-    for (const it of some) found.push(...(await within(it, `${path}${entry.name}/`)));
+    for (const it of some) found.push(...(await withinEntry(it, `${path}${entry.name}/`)));
   }
   return found;
 }
 
 /** What was dropped or pasted: names and bytes, and whether it was a folder. Must be called within the event. */
 export async function fromTransfer(transfer) {
-  const entries = [...transfer.items].filter((item) => item.kind === "file").map((item) => item.webkitGetAsEntry?.() ?? item.getAsFile());
-  const found = [];
-  for (const entry of entries) {
-    if (entry instanceof File) found.push({ path: entry.name, file: entry });
-    else if (entry) found.push(...(await within(entry, "")));
-  }
-  return read(found);
+  // All is asked for at once: after the event the items are gone. Chromium reads entries on a server only, and handles everywhere.
+  const items = [...transfer.items].filter((item) => item.kind === "file");
+  const asked = items.map((item) => {
+    const entry = item.webkitGetAsEntry?.();
+    if (!entry?.isDirectory) return [{ path: item.getAsFile().name, file: item.getAsFile() }];
+    return item.getAsFileSystemHandle ? item.getAsFileSystemHandle().then((folder) => withinHandle(folder, `${folder.name}/`)) : withinEntry(entry, "");
+  });
+  return read((await Promise.all(asked)).flat());
 }
 
 /** What was chosen by a file button. */

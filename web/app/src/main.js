@@ -10,7 +10,7 @@ import { options } from "./options.js";
 import { unpacked } from "./packed.js";
 import { busy, say, showMessages } from "./progress.js";
 import { clearResult, showCalibration, showPrinted, showText } from "./results.js";
-import { bySettings, guess } from "./roles.js";
+import { besideUrdf, bySettings, guess } from "./roles.js";
 import { findings, showFiles } from "./understood.js";
 
 const engine = new Engine();
@@ -71,7 +71,9 @@ async function look(onwards = false) {
   const result = await run([...checkWords(files, words()), "--json"], files, "reading");
   if (!result) return;
   const check = result.code === 0 ? JSON.parse(result.out) : undefined;
-  showFiles(byId("list"), files, findings(check), change);
+  // A model is shown also where the tables beside it are refused.
+  const alone = check ? undefined : await run([...checkWords(having("model"), words()), "--json"], files, "reading");
+  showFiles(byId("list"), files, findings(check ?? (alone?.code === 0 ? JSON.parse(alone.out) : undefined)), change);
   const told = messages(result.err);
   for (const text of check?.warnings ?? []) if (!told.some((it) => it.text === text)) told.push({ kind: "warning", text });
   showMessages(told, files);
@@ -122,6 +124,7 @@ function add(taken) {
   if (!taken.length) return;
   const added = taken.map(({ name, bytes, whole }) => ({ name, bytes, role: guess(name, bytes, whole) }));
   files = [...files.filter((file) => !added.some((it) => it.name === file.name)), ...added];
+  if (taken.some((it) => it.whole)) for (const file of besideUrdf(added.filter((it) => it.role === "model"))) file.role = "unused";
   // A new model takes the place of the one before.
   if (added.filter((it) => it.role === "model").length === 1) for (const file of having("model")) if (!added.includes(file)) file.role = "unused";
   for (const settings of having("settings")) for (const [file, role] of bySettings(settings, files)) file.role = role;

@@ -30,6 +30,12 @@ export function guess(name, bytes, whole = false) {
   return MODELS.test(name) ? "model" : "measurements";
 }
 
+/** Of several models in one folder, those that are not used because one of them is the URDF. */
+export function besideUrdf(models) {
+  const urdf = models.filter(({ name }) => /\.urdf$/i.test(name));
+  return urdf.length === 1 ? models.filter((it) => it !== urdf[0]) : [];
+}
+
 /** Texts of a key at the top of a settings file: those of `key = "…"` or `key = ["…", …]`. */
 function named(text, key) {
   const found = new RegExp(`^\\s*${key}\\s*=\\s*("[^"]*"|'[^']*'|\\[[^\\]]*\\])`, "m").exec(text);
