@@ -4,7 +4,8 @@ use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
 use poecal::calibration::{
-    BlockChoice, Calibration, CalibrationOptions, Level, Stage, calibrate_with_progress, settle_sets,
+    BlockChoice, Calibration, CalibrationOptions, Decision, Level, Stage, calibrate_with_progress,
+    settle_sets,
 };
 use poecal::io::abb::AbbCalibration;
 use poecal::io::calibration_file::{CalibrationFile, Inputs};
@@ -12,6 +13,7 @@ use poecal::io::measurements::{self, ReadOptions};
 use poecal::io::model::Model;
 use poecal::io::named_files::{refuse_fitted, refuse_repeats};
 use poecal::io::output::{self, Contents, FilePlace, FolderPlace, Results};
+use poecal::io::record::Record;
 use poecal::io::residuals::{ResidualRows, Residuals};
 use poecal::measurement::{ByQuantity, Dataset, Quantity};
 use poecal::report::Detail;
@@ -19,6 +21,7 @@ use poecal::robot::Tolerance;
 use poecal::{Error, ErrorKind, Result, report};
 use poecal_lou2009::{Residual, formulated};
 
+use super::limits::limits;
 use super::typed::command;
 use crate::args::{Calibrate, ReportPlace};
 use crate::console::Console;
@@ -40,6 +43,7 @@ pub(crate) fn calibrate(arguments: &Calibrate, typed: &[OsString], console: &Con
     let (data, inputs) = read_measurements(arguments, &model, reading, console)?;
     let inputs = Inputs { command: Some(command(typed)), ..inputs };
     let options = options(arguments, console)?;
+    let record = record(arguments)?;
     let poses = data.observations.iter().any(|row| row.measurement.sees_orientation());
     if arguments.residual != Residual::default() && !poses {
         console.warning(format!(
@@ -59,7 +63,7 @@ pub(crate) fn calibrate(arguments: &Calibrate, typed: &[OsString], console: &Con
     timings.end("analysis");
     bar.finish();
     let calibration = calibration?;
-    let file = CalibrationFile::new(&calibration, &data, inputs);
+    let file = CalibrationFile { record, ..CalibrationFile::new(&calibration, &data, inputs) };
     let detail = if arguments.verbose { Detail::Full } else { Detail::Short };
     let (text, unsaid) = if arguments.json {
         (file.to_text()?, doubts(&file))
@@ -101,7 +105,13 @@ fn code(arguments: &Calibrate, calibration: &Calibration) -> u8 {
     let level = calibration.verdict.level;
     let worse = arguments.require.is_some_and(|required| level < required);
     let converged = calibration.solver.termination.is_success();
-    if worse || level == Level::DoNotUse || !converged { WORSE } else { DONE }
+    let refused = calibration.acceptance.as_ref().is_some_and(|it| it.decision != Decision::Pass);
+    if worse || refused || level == Level::DoNotUse || !converged { WORSE } else { DONE }
+}
+
+/// What is stated of the session.
+fn record(arguments: &Calibrate) -> Result<Record> {
+    Record::of(arguments.record.iter().map(|(key, text)| (key.as_str(), text.as_str())))
 }
 
 /// The model, if it and measurements are named, by arguments or settings.
@@ -182,6 +192,7 @@ fn options(arguments: &Calibrate, console: &Console) -> Result<CalibrationOption
         held_out: arguments.held_out.unwrap_or(usual.held_out),
         seed: arguments.seed.unwrap_or(usual.seed),
         robust: arguments.robust,
+        accept: limits(&arguments.accept, arguments.accept_model)?,
         formulation: formulated(arguments.formulation, arguments.residual, method),
         ..usual
     })

@@ -1,5 +1,6 @@
 //! Results as text for people. No number here that is not in the result.
 
+mod acceptance;
 mod check;
 mod identify;
 mod judgement;
