@@ -55,6 +55,15 @@ export async function drop(page, files) {
   for (const type of ["dragenter", "dragover", "drop"]) await page.dispatchEvent("main", type, { dataTransfer: transfer });
 }
 
+/** Drops files and folders of the machine on the page, as a user does. */
+export async function dropPaths(page, paths) {
+  const session = await page.context().newCDPSession(page);
+  for (const type of ["dragEnter", "dragOver", "drop"]) {
+    await session.send("Input.dispatchDragEvent", { type, x: 200, y: 200, data: { items: [], files: paths, dragOperationsMask: 1 } });
+  }
+  await session.detach();
+}
+
 /** Waits until nothing runs and the status says something that matches. */
 export async function status(page, pattern, timeout = 60_000) {
   const is = ({ source }) => !document.documentElement.hasAttribute("data-busy") && new RegExp(source).test(document.getElementById("status").textContent);

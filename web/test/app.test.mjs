@@ -6,7 +6,7 @@ import { mkdirSync, readFileSync, writeFileSync } from "node:fs";
 import { createRequire } from "node:module";
 import { join } from "node:path";
 import { after, before, describe, test } from "node:test";
-import { FILE, clear, drop, messages, open, saved, serve, skipped, status } from "./app.mjs";
+import { FILE, clear, drop, dropPaths, messages, open, saved, serve, skipped, status } from "./app.mjs";
 import { launch } from "./browser.mjs";
 import { PROGRAM, ROOT, folder } from "./cases.mjs";
 import { messages as told } from "../app/src/sentences.js";
@@ -65,6 +65,11 @@ function part(from, to) {
   return `${[lines[0], ...lines.slice(1 + from, 1 + to)].join("\n")}\n`;
 }
 
+/** The role of each file that is listed. */
+function roles(page) {
+  return page.$$eval("#list li", (all) => Object.fromEntries(all.map((it) => [it.querySelector("b").textContent, it.querySelector("select").value])));
+}
+
 /** Waits for the report in its frame, with its script run. */
 async function report(page) {
   const frame = await (await page.waitForSelector("#report iframe")).contentFrame();
@@ -85,7 +90,7 @@ describe("the page that calibrates", { skip: skipped }, () => {
     test(`as ${place}: from a drop to the report`, async () => {
       const page = await open(browser, { address: address() });
       const started = performance.now();
-      await drop(page, ELBOW);
+      await dropPaths(page, [join(ROOT, "examples/elbow/robot.urdf"), join(ROOT, "examples/elbow/points.csv")]);
       const frame = await report(page);
       const seconds = (performance.now() - started) / 1000;
       console.log(`as ${place}: the report ${seconds.toFixed(2)} s after the drop`);
@@ -103,6 +108,19 @@ describe("the page that calibrates", { skip: skipped }, () => {
       await frame.waitForSelector(".scene canvas[data-drawn]", { state: "attached" });
       const [tab] = await Promise.all([page.context().waitForEvent("page"), page.click("#whole")]);
       await tab.waitForSelector(":root[data-ready]", { state: "attached" });
+      assert.deepEqual(page.complaints, []);
+      await page.context().close();
+    });
+  }
+
+  for (const [place, address] of [["a file", () => FILE], ["a server", () => served]]) {
+    test(`as ${place}: a folder is dropped`, async () => {
+      const there = session(`folder of ${place}`, { "poecal.toml": 'poecal_settings = 1\nmodel = "robot.urdf"\nmeasurements = ["days/monday.csv"]\n', "robot.urdf": MODEL, "README.md": "#" });
+      session(`folder of ${place}/days`, { "monday.csv": POINTS, "tuesday.csv": POINTS });
+      const page = await open(browser, { address: address() });
+      await dropPaths(page, [there]);
+      await status(page, /^Calibrated/);
+      assert.deepEqual(await roles(page), { "README.md": "unused", "days/monday.csv": "measurements", "days/tuesday.csv": "unused", "poecal.toml": "settings", "robot.urdf": "model" });
       assert.deepEqual(page.complaints, []);
       await page.context().close();
     });
@@ -201,8 +219,7 @@ describe("the page that calibrates", { skip: skipped }, () => {
     const take = POINTS.replace("x[mm],y[mm],z[mm]", "east,north,up");
     await drop(page, { "robot.urdf": MODEL, "take.csv": take, "before.csv": POINTS, "map.toml": map, "poecal.toml": settings });
     await status(page, /^Calibrated/);
-    const roles = await page.$$eval("#list li", (all) => Object.fromEntries(all.map((it) => [it.querySelector("b").textContent, it.querySelector("select").value])));
-    assert.deepEqual(roles, { "robot.urdf": "model", "take.csv": "measurements", "before.csv": "unused", "map.toml": "columns", "poecal.toml": "settings" });
+    assert.deepEqual(await roles(page), { "robot.urdf": "model", "take.csv": "measurements", "before.csv": "unused", "map.toml": "columns", "poecal.toml": "settings" });
     const file = JSON.parse((await saved(page, page.locator("#downloads a", { hasText: "calibration.json" }))).toString());
     assert.equal(file.accuracy.held_out.count, 50);
     assert.deepEqual(page.complaints, []);

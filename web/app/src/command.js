@@ -3,7 +3,7 @@
 /** Options of `poecal calibrate` that `poecal check` and `poecal validate` take too. */
 const READING = ["--columns", "--strict", "--frames", "--socket-distance", "--contact", "--instrument-noise"];
 const CHECKING = [...READING, "--base-link", "--tip-link", "--instrument", "--target", "--fit-where", "--frame"];
-const JUDGING = [...READING, "--refit-frame", "--refit-tool", "--require"];
+const JUDGING = [...READING, "--refit-frame", "--refit-tool", "--require", "--accept"];
 
 /** Words as a shell takes them apart: blanks separate, quotes and backslashes keep together. */
 export function wordsOf(line) {

@@ -5,9 +5,18 @@ import { unpacked } from "./packed.js";
 /** Why a run has no result: it was ended. */
 export class Ended extends Error {}
 
+/** The program's module. */
+async function compiled() {
+  try {
+    return await WebAssembly.compile(await unpacked("engine"));
+  } catch (error) {
+    throw new Error(`the program cannot start in this browser (${error.message}): use one of 2023 or newer, or the program on a terminal`);
+  }
+}
+
 /** The program: `run(words, files)` gives its exit code, standard output and error, and the files that it wrote. */
 export class Engine {
-  #module = unpacked("engine").then((bytes) => WebAssembly.compile(bytes));
+  #module = compiled();
   #address = URL.createObjectURL(new Blob([workerText], { type: "text/javascript" }));
   #worker;
   #waiting;
@@ -26,12 +35,13 @@ export class Engine {
   }
 
   #settle(done, failed) {
-    const { resolve, reject } = this.#waiting ?? {};
+    const waiting = this.#waiting;
+    if (!waiting) return;
     this.#waiting = undefined;
+    if (done) return waiting.resolve(done);
     // After a defect nothing of the instance is trusted.
-    if (failed !== undefined) this.#restart();
-    if (done) resolve?.(done);
-    else reject?.(new Error(failed));
+    this.#restart();
+    waiting.reject(new Error(failed));
   }
 
   #restart() {

@@ -10,6 +10,7 @@ const CONTROLS = [
   { flag: "--tolerance", label: "Tolerance", note: "deviation of an axis from nominal", hint: "0.5deg,5mm", offers: ["auto", "none", "0.2deg,2mm", "3deg,10mm"] },
   { flag: "--corrections", label: "Corrections", note: "what joints do beyond geometry", values: { "": "auto: those that predict better", all: "all: look among more", off: "off: geometry alone" } },
   { flag: "--robust", label: "Outliers", note: "and how they are treated", values: { "": "auto: found, and told", off: "off: every row counts in full", huber: "huber", cauchy: "cauchy", tukey: "tukey" } },
+  { flag: "--accept", label: "Limits to keep", note: "errors of rows that were not fitted", hint: "none, or 0.2mm,max:0.5mm" },
   { flag: "--sigma-position", label: "Noise of a position", note: "standard deviation of each component", hint: "from the rows, or 0.05mm" },
   { flag: "--sigma-rotation", label: "Noise of an orientation", note: "likewise", hint: "from the rows, or 0.01deg" },
   { flag: "--base-link", label: "First link", note: "of the chain, where a URDF has several", hint: "as the model has it" },
