@@ -80,7 +80,7 @@ async function look(onwards = false) {
   if (result.code !== 0) say("The files are not understood yet.");
   else if (lacking) say(lacking);
   else if (onwards && !judges()) await calibrate();
-  else say(`Understood: ${counted(check.files.reduce((sum, file) => sum + file.rows, 0), "row")}. Ready to calibrate.`);
+  else say(`Understood: ${counted(check.files.reduce((sum, file) => sum + file.rows, 0), "row")}. Ready to ${judges() ? "judge the calibration, or to calibrate again" : "calibrate"}.`);
 }
 
 async function calibrate(asked = false) {
@@ -98,7 +98,7 @@ async function calibrate(asked = false) {
     if (asked) byId("messages").focus();
     return;
   }
-  showPrinted("What the program prints", result.out);
+  showPrinted("What the program prints", result.out, result.code !== 0);
   showCalibration(result.files);
   const { level } = JSON.parse(new TextDecoder().decode(calibration)).verdict;
   const verdict = { good: "good", inside_sampled_range: "good inside the sampled range", do_not_use: "do not use" }[level] ?? level;
