@@ -30,7 +30,8 @@ if (!existsSync(join(sysroot, "lib/rustlib", TARGET, "lib"))) {
 }
 
 const flags = [...(plain ? [] : ["-Ctarget-feature=+simd128"]), `-Clink-arg=-zstack-size=${STACK}`];
-const words = ["build", "--locked", "--profile", "web", "--target", TARGET, "-p", "poecal-wasm", "--lib"];
+const words = ["rustc", "--locked", "--profile", "web", "--target", TARGET, "-p", "poecal-wasm", "--lib", "--crate-type", "cdylib"];
+// As a cdylib alone: with a library of Rust beside it, cargo would not optimise across crates.
 const config = `target.${TARGET}.rustflags=${JSON.stringify(flags)}`;
 const built = spawnSync("cargo", [...words, "--config", config], { stdio: ["ignore", "inherit", "inherit"], cwd: ROOT });
 if (built.status !== 0) process.exit(1);
