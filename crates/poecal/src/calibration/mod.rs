@@ -12,6 +12,7 @@ mod expected;
 mod fit;
 mod formulation;
 mod found;
+mod improvement;
 mod instrument_noise;
 mod judge;
 mod located;
@@ -39,7 +40,9 @@ pub use acceptance::{
 };
 use accepted::accepted;
 pub use accepted::accepted_by;
-pub use accuracy::{Accuracy, ModelAccuracy, Models, SetAccuracy, Statistic, set_accuracy};
+pub use accuracy::{
+    Accuracy, Improvement, Improvements, ModelAccuracy, Models, SetAccuracy, Statistic, set_accuracy,
+};
 pub use blocks::BlockChoice;
 pub(crate) use blocks::names;
 use corrections::suspected;
@@ -199,6 +202,11 @@ pub fn calibrate_with_progress(
         }
         Ok(calibration.with_correction(found))
     })?;
+    if let Some(improvement) = improvement::improvements(&found, data)
+        && let Some(set) = &mut found.accuracy.held_out
+    {
+        set.improvement = Some(improvement);
+    }
     if let Some(accept) = &options.accept {
         found.acceptance = Some(accepted(&found, data, accept)?);
     }

@@ -1,5 +1,7 @@
 //! The report of a calibration: one HTML page that holds its style, its script and its data, and loads nothing.
 
+mod advice;
+mod certificate;
 mod compensation;
 mod corrected;
 mod data;
@@ -64,6 +66,7 @@ pub fn calibration_page(file: &CalibrationFile, residuals: &Residuals) -> Result
             meta name="generator" content={ "poecal " (file.poecal_version) };
             title { "Calibration of " (file.robot.name) }
             style { (PreEscaped(STYLE)) }
+            (certificate::pages(file))
         }
         "\n" (PreEscaped("<body>")) "\n"
     };
@@ -77,6 +80,7 @@ pub fn calibration_page(file: &CalibrationFile, residuals: &Residuals) -> Result
             (rows::sections(file, residuals))
             (trust::sections(file))
             (method::sections(file))
+            (certificate::signature(file))
         }
     };
     Ok(vec![
