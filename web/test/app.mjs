@@ -3,6 +3,7 @@ import { existsSync, readFileSync } from "node:fs";
 import { createServer } from "node:http";
 import { join } from "node:path";
 import { pathToFileURL } from "node:url";
+import { gzipSync } from "node:zlib";
 import { skip } from "./browser.mjs";
 import { ROOT } from "./cases.mjs";
 
@@ -11,11 +12,32 @@ const PAGE = process.env.POECAL_APP ?? join(ROOT, "web/app/dist/poecal.html");
 /** Why tests of the page are left out; false where they are not. */
 export const skipped = skip || (existsSync(PAGE) ? false : `found no page at ${PAGE}; build it: node web/app/build.mjs`);
 
-/** Serves the page and nothing else, at any path; its answer to anything but `/poecal.html` is 404. */
+/** A module with the exports of the program, whose every run is a trap. */
+function trapping() {
+  const section = (id, ...bytes) => [id, bytes.length, ...bytes];
+  const named = (name, kind, index) => [name.length, ...Buffer.from(name), kind, index];
+  return Uint8Array.from([
+    0, 0x61, 0x73, 0x6d, 1, 0, 0, 0,
+    ...section(1, 4, 0x60, 1, 0x7f, 1, 0x7f, 0x60, 2, 0x7f, 0x7f, 0, 0x60, 2, 0x7f, 0x7f, 1, 0x7f, 0x60, 0, 1, 0x7f),
+    ...section(3, 4, 0, 1, 2, 3),
+    ...section(5, 1, 0, 1),
+    ...section(7, 5, ...named("memory", 2, 0), ...named("allocate", 0, 0), ...named("release", 0, 1), ...named("run", 0, 2), ...named("last_words", 0, 3)),
+    // allocate gives 1024, run is `unreachable`, and there are no last words.
+    ...section(10, 4, 5, 0, 0x41, 0x80, 8, 0x0b, 2, 0, 0x0b, 3, 0, 0, 0x0b, 4, 0, 0x41, 0, 0x0b),
+  ]);
+}
+
+/** The page with another module. */
+function around(module) {
+  return readFileSync(PAGE, "utf8").replace(/(<script type="text\/plain" id="engine">)[^<]*/, (_, tag) => tag + gzipSync(module).toString("base64"));
+}
+
+/** Serves the page, and the same with a module that traps and with one that is none; everything else is 404. */
 export function serve() {
+  const pages = { "/poecal.html": () => readFileSync(PAGE), "/traps.html": () => around(trapping()), "/none.html": () => around(Buffer.from("none")) };
   const server = createServer((request, response) => {
-    if (request.url !== "/poecal.html") return response.writeHead(404).end();
-    response.writeHead(200, { "content-type": "text/html" }).end(readFileSync(PAGE));
+    if (!pages[request.url]) return response.writeHead(404).end();
+    response.writeHead(200, { "content-type": "text/html" }).end(pages[request.url]());
   });
   return new Promise((ready) => server.listen(0, "127.0.0.1", () => ready(server)));
 }

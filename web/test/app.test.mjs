@@ -256,6 +256,21 @@ describe("the page that calibrates", { skip: skipped }, () => {
     await page.context().close();
   });
 
+  test("a defect of the program is told as one, and the page goes on", async () => {
+    for (const [name, words] of [["traps", /^error: poecal has stopped by a defect of its own/], ["none", /^error: the program cannot start in this browser/]]) {
+      const page = await open(browser, { address: served.replace("poecal.html", `${name}.html`) });
+      for (const files of [ELBOW, { "other.csv": POINTS }]) {
+        await drop(page, files);
+        await status(page, /^Ended by a defect/);
+        const [{ kind, text }] = await messages(page);
+        assert.match(`${kind}: ${text.replace(/^error: /, "")}`, words);
+        await page.evaluate(() => (document.getElementById("status").textContent = ""));
+      }
+      assert.deepEqual(page.complaints, []);
+      await page.context().close();
+    }
+  });
+
   test("by the keyboard alone, from start to download", async () => {
     const page = await open(browser);
     const at = () => page.evaluate(() => document.activeElement.id || document.activeElement.textContent);
