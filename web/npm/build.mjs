@@ -51,6 +51,7 @@ if (plain) {
   rmSync(DIST, { recursive: true, force: true });
   mkdirSync(DIST, { recursive: true });
   writeFileSync(join(DIST, "poecal.wasm"), bytes);
-  for (const name of ["poecal.js"]) copyFileSync(join(HERE, name), join(DIST, name));
+  for (const name of ["poecal.js", "index.js", "index.d.ts", "types.d.ts", "package.json", "README.md"]) copyFileSync(join(HERE, name), join(DIST, name));
+  for (const name of ["LICENSE-MIT", "LICENSE-APACHE", "THIRD-PARTY.txt"]) copyFileSync(join(ROOT, name), join(DIST, name));
   console.log(`web/npm/dist/poecal.wasm: ${size}`);
 }

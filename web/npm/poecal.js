@@ -66,7 +66,7 @@ class Rest {
 }
 
 /** Bytes of a file that is given as a text, an array of bytes or a buffer. */
-function bytesOf(path, content) {
+export function bytesOf(path, content) {
   if (typeof content === "string") return encoder.encode(content);
   if (content instanceof Uint8Array) return content;
   if (ArrayBuffer.isView(content)) return new Uint8Array(content.buffer, content.byteOffset, content.byteLength);
@@ -81,7 +81,7 @@ function entriesOf(files) {
 }
 
 /** The program. `load` makes one. */
-class Poecal {
+export class Poecal {
   #module;
   #instance;
 
@@ -178,7 +178,7 @@ async function beside() {
 }
 
 /** Loads the program: from bytes, a compiled module or a response, or without an argument from poecal.wasm beside this script. */
-export async function load(source) {
+export async function load(source, Kind = Poecal) {
   const module = await compiled(source ?? beside());
-  return new Poecal(module, await WebAssembly.instantiate(module));
+  return new Kind(module, await WebAssembly.instantiate(module));
 }
