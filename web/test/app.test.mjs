@@ -10,6 +10,7 @@ import { FILE, clear, drop, dropPaths, messages, open, saved, serve, skipped, st
 import { launch } from "./browser.mjs";
 import { PROGRAM, ROOT, folder } from "./cases.mjs";
 import { messages as told } from "../app/src/sentences.js";
+import { difference } from "./numbers.mjs";
 import { WRONG } from "./wrong.mjs";
 
 const AXE = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
@@ -77,14 +78,6 @@ async function report(page) {
   return frame;
 }
 
-/** The largest difference of numbers in two texts, which must be the same otherwise; relative above 1. */
-function apart(one, other, name) {
-  const number = /(?<![\w.])[-+]?\d+\.\d+(?:e[-+]?\d+)?/gi;
-  assert.equal(one.replace(number, "#"), other.replace(number, "#"), `${name} differs beyond its numbers`);
-  const [left, right] = [one, other].map((text) => (text.match(number) ?? []).map(Number));
-  return Math.max(0, ...left.map((value, k) => Math.abs(value - right[k]) / Math.max(1, Math.abs(value))));
-}
-
 describe("the page that calibrates", { skip: skipped }, () => {
   for (const [place, address] of [["a file", () => FILE], ["a server", () => served]]) {
     test(`as ${place}: from a drop to the report`, async () => {
@@ -134,9 +127,9 @@ describe("the page that calibrates", { skip: skipped }, () => {
     await status(page, /^Calibrated/);
     const link = (name) => page.locator("#downloads a", { hasText: new RegExp(`^${name}$`) });
     for (const name of ["calibrated.urdf", "calibration.json", "residuals.csv"]) {
-      const difference = apart(readFileSync(join(there, "calibration", name), "utf8"), (await saved(page, link(name))).toString(), name);
-      console.log(`${name}: numbers differ by up to ${difference.toExponential(1)}`);
-      assert.ok(difference < SAME, `${name}: ${difference}`);
+      const most = difference((await saved(page, link(name))).toString(), readFileSync(join(there, "calibration", name), "utf8"), name);
+      console.log(`${name}: numbers differ by up to ${most.toExponential(1)}`);
+      assert.ok(most < SAME, `${name}: ${most}`);
     }
     assert.match((await saved(page, link("report.html"))).toString(), /<title>Calibration of elbow<\/title>/);
     const archive = join(there, "poecal.zip");
@@ -148,8 +141,8 @@ describe("the page that calibrates", { skip: skipped }, () => {
     await page.click("#export");
     native(there, "export", "calibration/calibration.json", "--format", "hayati", "--out", "hayati.json");
     const written = (await saved(page, page.locator("#exported a"))).toString();
-    const difference = apart(readFileSync(join(there, "hayati.json"), "utf8"), written, "hayati.json");
-    assert.ok(difference < SAME, `hayati.json: ${difference}`);
+    const most = difference(written, readFileSync(join(there, "hayati.json"), "utf8"), "hayati.json");
+    assert.ok(most < SAME, `hayati.json: ${most}`);
     // A form that this arm does not have.
     await page.selectOption("#form", "franka");
     await page.click("#export");
