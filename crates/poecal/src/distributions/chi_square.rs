@@ -29,7 +29,7 @@ pub(crate) fn upper_quantile(probability: f64, freedom: usize) -> f64 {
 /// Degrees of freedom beyond which the approximation of wilson1931 is as good as the F distribution of so many more.
 const MANY: f64 = 1000.0;
 /// Degrees of freedom that stand for infinitely many.
-const INFINITE: f64 = 1e5;
+const INFINITE: f64 = 1e6;
 /// Normal quantile that is exceeded with a probability of 0.05.
 const NORMAL: f64 = 1.644_853_627;
 
@@ -120,7 +120,7 @@ mod tests {
         {
             let [low, high] = [lower_mean_square(freedom), upper_mean_square(freedom)].map(|it| it * freedom);
             println!("{freedom}: {low:.5} {high:.4}, table {lower} {upper}");
-            // The tables' digits, and 1e5 for infinitely many degrees of freedom.
+            // The tables' digits, and 1e6 for infinitely many degrees of freedom.
             assert!((low - lower).abs() < 2e-4 * lower.max(0.03) + 1e-5 && (high / upper - 1.0).abs() < 4e-4);
         }
         for of in [lower_mean_square, upper_mean_square] {
