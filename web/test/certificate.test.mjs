@@ -41,7 +41,7 @@ describe("certificate", { skip }, () => {
         assert.match(await page.textContent("#acceptance-title"), words);
         const { y } = await page.locator(".acceptance").boundingBox();
         assert.ok(y < 300, `acceptance begins ${y} px down at ${width} px`);
-        const { scrollWidth } = await page.evaluate(() => document.documentElement);
+        const scrollWidth = await page.evaluate(() => document.documentElement.scrollWidth);
         assert.ok(scrollWidth <= width, `the page is ${scrollWidth} px wide at ${width} px`);
       }
       await page.close();

@@ -173,10 +173,7 @@ fn setting(value: &Spanned<DeValue>) -> Option<SettingValue> {
 
 /// Text, number or date, as typed.
 fn dated(value: &Spanned<DeValue>) -> Option<String> {
-    match value.get_ref() {
-        DeValue::Datetime(date) => Some(date.to_string()),
-        _ => plain(value),
-    }
+    if let DeValue::Datetime(date) = value.get_ref() { Some(date.to_string()) } else { plain(value) }
 }
 
 /// Text or number, as typed.
