@@ -48,7 +48,7 @@ def left(run: str) -> list[int]:
     return found
 
 
-def run(script: str, *arguments: object, seconds: float = 900, code: int = 0) -> str:
+def run(script: str, *arguments: object, seconds: float = 2400, code: int = 0) -> str:
     """Runs an example; it has to end with this code, and all its processes with it. Gives what it says to people."""
     name = uuid.uuid4().hex
     command = [sys.executable, str(SCALE / script), *map(str, arguments)]
