@@ -127,6 +127,19 @@ def test_stated_uncertainties_are_true(alone, tmp_path):
         assert float(row["off"]) == pytest.approx(float(row["stated"]), rel=excess + 4 / (2 * count) ** 0.5), row
 
 
+def test_a_cluster_gets_model_and_functions_with_the_tasks(tmp_path):
+    """Its processes have the package, and nothing of the examples."""
+    pytest.importorskip(MODULES["dask"], reason="found no dask: its part of docs/scale.md is not tested")
+    from dask.distributed import LocalCluster
+
+    several = ["--trials", 200, "--chunk", 50]
+    run("monte_carlo.py", *several, "--out", tmp_path / "alone")
+    place = {"n_workers": 1, "threads_per_worker": 1, "host": "127.0.0.1", "dashboard_address": None}
+    with LocalCluster(**place, local_directory=tmp_path / "dask") as cluster:
+        run("monte_carlo.py", *several, "--out", tmp_path / "cluster", "--engine", "dask", "--address", cluster.scheduler_address)
+    assert_same(tmp_path / "alone", tmp_path / "cluster")
+
+
 @pytest.fixture(scope="module")
 def robots(tmp_path_factory):
     """Simulated robots, of which two have broken files, and their calibrations in one process."""
