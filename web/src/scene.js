@@ -158,10 +158,10 @@ export class Scene {
     const geometry = new BufferGeometry();
     geometry.setAttribute("position", new Float32BufferAttribute(places, 3));
     this.world.add(new LineSegments(geometry, this.materials.grid));
-    // How large a square is stands at its side.
-    const side = new CylinderGeometry(this.size * 0.003, this.size * 0.003, square, 8).rotateZ(Math.PI / 2).translate(half - square / 2, -half, 0);
+    // How large a square is stands at the side of one near the base.
+    const side = new CylinderGeometry(this.size * 0.003, this.size * 0.003, square, 8).rotateZ(Math.PI / 2).translate(1.5 * square, -square, 0);
     this.world.add(new Mesh(side, this.materials.mark));
-    this.labels.add("grid", `${this.legend.square} mm`).place.set(half - square / 2, -half, 0);
+    this.labels.add("grid", `${this.legend.square} mm`).place.set(1.5 * square, -square, 0);
   }
 
   /** The axes of the base's frame, with their names. */

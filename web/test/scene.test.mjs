@@ -161,8 +161,8 @@ describe("meshes of a URDF", { skip }, () => {
     assert.equal(dataOf(out).shapes, undefined);
     const page = await open(browser, join(out, "report.html"));
     const note = await page.locator("#view .note").first().textContent();
-    assert.match(note, /`meshes\/no\.stl` was not found beside the URDF/);
-    assert.match(note, /`meshes\/arm\.stl` is not drawn: found 216 bytes of triangles in it/);
+    assert.match(note, /meshes\/no\.stl was not found beside the URDF/);
+    assert.match(note, /meshes\/arm\.stl is not drawn: found 216 bytes of triangles in it/);
     assert.ok((await extent(page)).height > 0.3);
     assert.deepEqual(page.complaints, []);
     await page.close();

@@ -19,7 +19,7 @@ pub(crate) fn report(arguments: &Report, console: &Console) -> Result<u8> {
     let file = CalibrationFile::read(&arguments.calibration)?;
     let residuals = Residuals::read(&path)?;
     let shapes = Shapes::read(&file, &arguments.calibration);
-    shapes.notes.iter().for_each(|note| console.note(note));
+    shapes.notes.iter().for_each(|note| console.remark(note));
     let page =
         text::calibration_page_with(&file, &residuals, &shapes).map_err(|error| error.in_file(&path))?;
     place.write(page)?;

@@ -1,6 +1,8 @@
 //! Results as text for people. No number here that is not in the result.
 
+mod acceptance;
 mod check;
+mod compared;
 mod identify;
 mod judgement;
 mod offsets;
@@ -14,6 +16,7 @@ mod summary;
 pub mod table;
 
 pub use check::{Check, SetCounts};
+pub use compared::Comparison;
 pub use identify::Identify;
 pub use judgement::judgement;
 pub use offsets::{Offsets, offset_ends};

@@ -6,6 +6,7 @@ use super::lead::Lead;
 use crate::io::calibration_file::CalibrationFile;
 use crate::io::residuals::Residuals;
 use crate::report::plot::{Axis, Line, LinePlot, RangePlot, RangeRow, Scale};
+use crate::report::summary::has_terms;
 use crate::robot::JointKind;
 use crate::threads;
 
@@ -15,8 +16,9 @@ const STEPS: usize = 20;
 const INTERVAL: f64 = 2.0;
 
 /// Which share of the rows is off by how much, for the models.
-pub(super) fn distributions(residuals: &Residuals, held_out: bool) -> Markup {
+pub(super) fn distributions(file: &CalibrationFile, residuals: &Residuals) -> Markup {
     let lead = Lead::of(residuals);
+    let held_out = file.accuracy.held_out.is_some();
     // Of an unknown tool the nominal model says nothing, and its errors would take most of the axis.
     let lines = [(1, "registered"), (2, "calibrated")].into_iter().map(|(model, name)| {
         let rows = residuals.rows().iter().filter(|row| row.held_out == held_out);
@@ -25,7 +27,9 @@ pub(super) fn distributions(residuals: &Residuals, held_out: bool) -> Markup {
         Line { name: name.to_owned(), style: [1, 3, 0][model], points: distribution(errors) }
     });
     let rows = residuals.rows().iter().filter(|row| row.held_out == held_out);
-    let corrected: Vec<f64> = rows.filter_map(|row| lead.corrected(row)).collect();
+    // A corrected model without terms is the calibrated one.
+    let corrected: Vec<f64> =
+        rows.filter(|_| has_terms(file)).filter_map(|row| lead.corrected(row)).collect();
     let corrected = (!corrected.is_empty()).then(|| Line {
         name: "corrected".to_owned(),
         style: 2,

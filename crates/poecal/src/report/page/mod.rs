@@ -1,5 +1,7 @@
 //! The report of a calibration: one HTML page that holds its style, its script and its data, and loads nothing.
 
+mod advice;
+mod certificate;
 mod compensation;
 mod corrected;
 mod data;
@@ -92,6 +94,7 @@ pub fn calibration_page_with(file: &CalibrationFile, residuals: &Residuals, shap
             meta name="generator" content={ "poecal " (file.poecal_version) };
             title { "Calibration of " (file.robot.name) }
             style { (PreEscaped(STYLE)) }
+            (certificate::pages(file))
         }
         "\n" (PreEscaped("<body>")) "\n"
     };
@@ -105,6 +108,7 @@ pub fn calibration_page_with(file: &CalibrationFile, residuals: &Residuals, shap
             (rows::sections(file, residuals))
             (trust::sections(file))
             (method::sections(file))
+            (certificate::signature(file))
         }
     };
     Ok(vec![
