@@ -3,6 +3,7 @@
 use maud::{Markup, PreEscaped, html};
 
 use super::html::{HtmlTable, count, facts, figure, quoted};
+use super::short as shorter;
 use crate::calibration::{Acceptance, AcceptedLimit, Decision};
 use crate::io::calibration_file::CalibrationFile;
 use crate::report::acceptance::{counts, plain};
@@ -23,8 +24,8 @@ pub(super) fn record(file: &CalibrationFile) -> Markup {
 /// Whether the limits are kept, each with what was found.
 pub(super) fn acceptance(file: &CalibrationFile) -> Markup {
     let Some(found) = &file.acceptance else { return Markup::default() };
-    let head = ["error", "limit", "found", "lower bound", "upper bound", "rows", ""];
-    let mut table = HtmlTable::new("Errors and their limits", 1, &head);
+    let head = ["error", "decision", "limit", "found", "lower bound", "upper bound", "rows"];
+    let mut table = HtmlTable::new("Errors and their limits", 2, &head);
     for (k, limit) in found.limits.iter().enumerate() {
         row(&mut table, k, limit);
     }
@@ -34,7 +35,7 @@ pub(super) fn acceptance(file: &CalibrationFile) -> Markup {
             (table)
             p.note {
                 "Errors of the " b { (found.model.word()) } " model, measured minus predicted, by " (found.by.words())
-                ". Each bound holds with 95 % confidence. A limit is kept if the upper bound does not exceed it, and exceeded if the lower bound \
+                ". Each bound holds with 95\u{a0}% confidence. A limit is kept if the upper bound does not exceed it, and exceeded if the lower bound \
                  does; between them neither is shown."
             }
         }
@@ -68,15 +69,17 @@ fn row(table: &mut HtmlTable, k: usize, limit: &AcceptedLimit) {
         html! { (counts(limit)) }
     };
     let decision = html! { b class={ "decision " (limit.decision.word()) } { (limit.decision.words()) } };
-    table.cells([name, most, found, from, to, rows, decision]);
+    table.cells([name, decision, most, found, from, to, rows]);
 }
 
 /// Where it is signed, on paper alone: what is certified, of which files, and lines for two hands.
 pub(super) fn signature(file: &CalibrationFile) -> Markup {
     let inputs = &file.inputs;
+    let all_names: Vec<String> =
+        std::iter::once(&inputs.model).chain(&inputs.measurements).cloned().collect();
     let short = |name: &String| {
         let hash = inputs.sha256.get(name)?;
-        Some(html! { (name) " " code { (hash.get(..SHORT).unwrap_or(hash)) "…" } })
+        Some(html! { (shorter(&all_names, name)) " " code { (hash.get(..SHORT).unwrap_or(hash)) "…" } })
     };
     let files: Vec<Markup> =
         std::iter::once(&inputs.model).chain(&inputs.measurements).filter_map(short).collect();
@@ -131,7 +134,8 @@ fn in_style(text: &str) -> String {
     let letter = |c: char| match c {
         ' ' => " ".to_owned(),
         c if c.is_ascii_alphanumeric() => c.to_string(),
-        c => format!("\\{:06x}", u32::from(c)),
+        // The blank ends the number.
+        c => format!("\\{:x} ", u32::from(c)),
     };
     shown.chars().take(LONGEST).map(letter).collect()
 }
@@ -145,10 +149,7 @@ mod tests {
 
     #[test]
     fn nothing_ends_the_quotes_of_a_style() {
-        assert_eq!(
-            in_style("a\"}</style>\n"),
-            "a\\000022\\00007d\\00003c\\00002fstyle\\00003e\\00005cu\\00007ba\\00007d"
-        );
+        assert_eq!(in_style("a\"}</style>\n"), "a\\22 \\7d \\3c \\2f style\\3e \\5c u\\7b a\\7d ");
         assert_eq!(in_style(&"x".repeat(100)).len(), 70);
     }
 }

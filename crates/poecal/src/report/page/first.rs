@@ -130,7 +130,7 @@ fn lead_table(
     quantity: Quantity,
     gain: Option<&Improvements>,
 ) -> HtmlTable {
-    let heads = ["", "mean", "RMS", "95 %", "max", "RMS smaller by"];
+    let heads = ["", "mean", "RMS", "95 %", "max", "smaller by"];
     let mut table = HtmlTable::new(caption, 1, &heads[..if gain.is_some() { 6 } else { 5 }]);
     for (name, model, key) in rows {
         let cells = STATISTICS.map(|(_, statistic, value)| {
@@ -157,7 +157,7 @@ fn smaller(gain: &Improvements, key: &str, quantity: Quantity) -> Markup {
     let Some(found) = of else { return Markup::default() };
     let key = |name: &str| format!("accuracy.held_out.improvement.{word}.{}.{name}", quantity.key());
     html! {
-        "× " (factor(found.factor, &key("factor"))) small { " (" (factor(found.from, &key("from"))) " to " (factor(found.to, &key("to"))) ")" }
+        "× " (factor(found.factor, &key("factor"))) small { "(" (factor(found.from, &key("from"))) " to " (factor(found.to, &key("to"))) ")" }
     }
 }
 
