@@ -26,7 +26,8 @@ export function dataOf(out) {
   return complete(JSON.parse(page.split('id="report-data">')[1].split("</script>")[0]));
 }
 
-function calibrate(name, ...words) {
+/** A calibration's folder. */
+export function calibrate(name, ...words) {
   const out = join(folder, name);
   try {
     poecal("calibrate", ...words, "--out", out, "--quiet");

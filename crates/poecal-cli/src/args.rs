@@ -68,6 +68,8 @@ pub(crate) enum Command {
     Report(Report),
     /// Judge a calibration by other measurements
     Validate(Validate),
+    /// Compare two calibrations of one robot: what changed, and what is noise
+    Compare(Compare),
     /// Predict poses from joint readings
     Predict(Predict),
     /// Show how a model and measurement files are understood
@@ -107,6 +109,20 @@ pub(crate) struct Completions {
 pub(crate) struct Man {
     /// The command [default: the program itself]
     pub(crate) command: Option<String>,
+}
+
+/// Arguments of `poecal compare`.
+#[derive(Args, Debug)]
+pub(crate) struct Compare {
+    /// The first calibration (calibration.json)
+    pub(crate) first: PathBuf,
+    /// The second calibration of the same robot (calibration.json)
+    pub(crate) second: PathBuf,
+    /// Print JSON instead of the table
+    #[arg(long)]
+    pub(crate) json: bool,
+    #[command(flatten)]
+    pub(crate) place: OutFile,
 }
 
 /// Arguments of `poecal validate`.

@@ -133,6 +133,7 @@ fn run_to_code(arguments: impl IntoIterator<Item = OsString>) -> u8 {
         Command::Calibrate(options) => commands::calibrate(options, &typed, &console),
         Command::Simulate(options) => commands::simulate(options, &console),
         Command::Validate(options) => commands::validate(options, &console),
+        Command::Compare(options) => commands::compare(options, &console),
         Command::Predict(options) => commands::predict(options, &console),
         Command::Check(options) => commands::check(options, &console),
         Command::Convert(options) => commands::convert(options, &console),

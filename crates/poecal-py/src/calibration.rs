@@ -16,6 +16,7 @@ use poecal::io::model::{Model, ModelSource};
 use poecal::io::output::{self, Contents, Existing, Results};
 use poecal::io::predictions::{PredictionFrame, predicted};
 use poecal::io::residuals::{ResidualRows, Residuals as Rows};
+use poecal::io::shapes::Shapes;
 use poecal::report::{self, table::number};
 use pyo3::IntoPyObjectExt as _;
 use pyo3::prelude::*;
@@ -294,7 +295,8 @@ impl Calibration {
             let page = match &report {
                 ReportPlace::Among(false) => None,
                 ReportPlace::Among(true) | ReportPlace::File(_) => {
-                    Some(report::calibration_page(file, residuals)?)
+                    let shapes = Shapes::read(file, &folder.join("calibration.json"));
+                    Some(report::calibration_page_with(file, residuals, &shapes)?)
                 }
             };
             let results =
@@ -378,7 +380,11 @@ impl Calibration {
         let (file, residuals) = (self.file(), self.rows()?);
         let existing = if force { Existing::Replaced } else { Existing::Own };
         let place = reserved_file(py, &path, existing, &[])?;
-        py.detach(|| place.write(report::calibration_page(file, residuals)?)).map_err(raise)
+        let page = || {
+            let shapes = Shapes::read(file, &path);
+            place.write(report::calibration_page_with(file, residuals, &shapes)?)
+        };
+        py.detach(page).map_err(raise)
     }
 
     /// Poses of the tip, or of a target.

@@ -12,9 +12,10 @@ use poecal::io::calibration_file::{CalibrationFile, Inputs};
 use poecal::io::measurements::{self, ReadOptions};
 use poecal::io::model::Model;
 use poecal::io::named_files::{refuse_fitted, refuse_repeats};
-use poecal::io::output::{self, Contents, FilePlace, FolderPlace, Results};
+use poecal::io::output::{self, Contents, FilePlace, FolderPlace, Page, Results};
 use poecal::io::record::Record;
 use poecal::io::residuals::{ResidualRows, Residuals};
+use poecal::io::shapes::Shapes;
 use poecal::measurement::{ByQuantity, Dataset, Quantity};
 use poecal::report::Detail;
 use poecal::robot::Tolerance;
@@ -243,6 +244,13 @@ impl Places {
     }
 }
 
+/// The report with the shapes of the robot; of meshes that are not there, a note.
+fn page(file: &CalibrationFile, rows: &Residuals, folder: &Path, console: &Console) -> Result<Page> {
+    let shapes = Shapes::read(file, &folder.join("calibration.json"));
+    shapes.notes.iter().for_each(|note| console.remark(note));
+    report::calibration_page_with(file, rows, &shapes)
+}
+
 /// Writes the results; returns their place.
 fn write(
     places: Places,
@@ -254,7 +262,7 @@ fn write(
     // Without a report, rows are computed while they are written.
     let place = &arguments.report;
     let residuals = (!matches!(place, Some(ReportPlace::None))).then(|| Residuals::of(data, calibration));
-    let report = residuals.as_ref().map(|rows| report::calibration_page(&file, rows)).transpose()?;
+    let report = residuals.as_ref().map(|rows| page(&file, rows, &arguments.out, console)).transpose()?;
     let residuals = residuals.as_ref().map_or(ResidualRows::Of(data, calibration), ResidualRows::AtHand);
     let results = Results { file, residuals, report };
     let written =

@@ -2,6 +2,7 @@
 
 mod calibrate;
 mod check;
+mod compare;
 mod compensate;
 mod completions;
 mod convert;
@@ -21,6 +22,7 @@ mod validate;
 
 pub(crate) use calibrate::calibrate;
 pub(crate) use check::check;
+pub(crate) use compare::compare;
 pub(crate) use compensate::compensate;
 pub(crate) use completions::completions;
 pub(crate) use convert::convert;

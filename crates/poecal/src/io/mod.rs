@@ -22,6 +22,7 @@ pub mod record;
 pub mod residuals;
 pub mod robot_toml;
 pub mod settings;
+pub mod shapes;
 mod source;
 mod source_text;
 pub mod urdf;

@@ -2,6 +2,7 @@
 
 mod alike;
 mod bodies;
+mod changes;
 mod compensation;
 mod corrected;
 mod judging;
@@ -17,6 +18,7 @@ mod validation;
 
 pub use alike::SuspectedConfigurationEntry;
 pub use bodies::{BodyEntry, InstrumentEntry, MassEntry, MeasuredEntry};
+pub use changes::{CommonDirectionEntry, CorrelatedEntry, CorrelationsEntry, JointChangeEntry};
 pub use compensation::{CompensationEntry, DisplacementEntry, ReadingChangeEntry, WorkspaceCellEntry};
 pub use corrected::{
     CorrectedEntry, EffectEntry, GravityEntry, JointErrorEntry, JointErrorsEntry, TriedEntry, WeightEntry,
@@ -96,6 +98,7 @@ impl CalibrationFile {
                 .zip(&calibration.trust.joints)
                 .map(CorrectionEntry::of)
                 .collect(),
+            common: CommonDirectionEntry::of(calibration),
             uncertainty: UncertaintyEntry::of(calibration, data),
             robust: RobustEntry::of(calibration),
             outliers: OutlierEntry::of(calibration, data),

@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::alike::SuspectedConfigurationEntry;
 use super::bodies::{BodyEntry, InstrumentEntry, MassEntry, MeasuredEntry};
+use super::changes::CommonDirectionEntry;
 use super::compensation::CompensationEntry;
 use super::corrected::{CorrectedEntry, GravityEntry};
 use super::keyed::{Keyed, SigmaKeys};
@@ -71,6 +72,9 @@ pub struct CalibrationFile {
     /// Each joint's correction.
     #[serde(default)]
     pub corrections: Vec<CorrectionEntry>,
+    /// Directions in which corrections of several joints are known only together; absent where there is none.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub common: Vec<CommonDirectionEntry>,
     /// Expected errors of predictions; null without more residuals than unknowns.
     #[serde(default)]
     pub uncertainty: Option<UncertaintyEntry>,

@@ -84,7 +84,7 @@ pub(super) fn screen(file: &CalibrationFile, residuals: &Residuals) -> Markup {
                 }
                 (facts(&the_facts(file, residuals)))
             }
-            (plots(&[figures::distributions(residuals, held_out.is_some())], caption))
+            (plots(&[figures::distributions(file, residuals)], caption))
         }
         (contents(file))
     }
