@@ -9,6 +9,7 @@ import { dirname, join } from "node:path";
 import { test } from "node:test";
 import { fileURLToPath } from "node:url";
 import { gzipSync } from "node:zlib";
+import { difference } from "./numbers.mjs";
 
 const ROOT = fileURLToPath(new URL("../..", import.meta.url));
 const NPM = join(ROOT, "web/npm");
@@ -49,26 +50,6 @@ const example = (path) => readFileSync(join(ROOT, "examples", path), "utf8");
 const text = (bytes) => new TextDecoder().decode(bytes);
 const robot = example("elbow/robot.urdf");
 const simulated = (...words) => text(poecal.run(["simulate", "robot.urdf", ...words, "--out", "s"], { "robot.urdf": robot }).files["s/measurements.csv"]);
-
-/** Numbers of a text, and the text without them. */
-function split(words) {
-  const numbers = [];
-  const rest = words.replace(/(?<![\w.])-?\d+(?:\.\d+)?(?:[eE][-+]?\d+)?(?![\w.])/g, (number) => {
-    numbers.push(Number(number));
-    return "#";
-  });
-  return { numbers, rest };
-}
-
-/** The largest difference of the numbers of two texts, which must be alike but for these. */
-function difference(one, other, about) {
-  const [a, b] = [split(one), split(other)];
-  if (a.rest !== b.rest) {
-    const at = [...a.rest].findIndex((letter, k) => letter !== b.rest[k]);
-    assert.fail(`${about}: found the words …${a.rest.slice(at - 60, at + 60)}…, expected …${b.rest.slice(at - 60, at + 60)}…`);
-  }
-  return a.numbers.reduce((most, number, k) => Math.max(most, Math.abs(number - b.numbers[k]) / Math.max(1, Math.abs(number))), 0);
-}
 
 /** The mapping file that a page shows. */
 const shown = (page) => readFileSync(join(ROOT, "docs/howto", page), "utf8").split("```toml\n")[1].split("```")[0];

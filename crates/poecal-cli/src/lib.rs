@@ -1,8 +1,8 @@
 //! The `poecal` program as a function from arguments to an exit code. Commands read files, call the library and print; they compute
 //! nothing.
 //!
-//! Exit codes: 0 done, and a calibration is usable; 1 there are results, but they should not be used, are worse than `--require` asks, or
-//! could not be printed; 2 refused: wrong input or usage, and nothing was written; 3 there is no result.
+//! Exit codes: 0 done, and a calibration is usable; 1 there are results, but they should not be used, are worse than `--require` asks, do not
+//! show that they keep a limit of `--accept`, or could not be printed; 2 refused: wrong input or usage, and nothing was written; 3 there is no result.
 
 mod args;
 mod commands;
@@ -133,6 +133,7 @@ fn run_to_code(arguments: impl IntoIterator<Item = OsString>) -> u8 {
         Command::Calibrate(options) => commands::calibrate(options, &typed, &console),
         Command::Simulate(options) => commands::simulate(options, &console),
         Command::Validate(options) => commands::validate(options, &console),
+        Command::Compare(options) => commands::compare(options, &console),
         Command::Predict(options) => commands::predict(options, &console),
         Command::Check(options) => commands::check(options, &console),
         Command::Convert(options) => commands::convert(options, &console),

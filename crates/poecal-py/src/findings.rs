@@ -1,4 +1,4 @@
-//! Results of `check`, `identify`, `offsets`, `reproduce` and `Calibration.validate`.
+//! Results of `check`, `compare`, `identify`, `offsets`, `reproduce` and `Calibration.validate`.
 
 use std::path::PathBuf;
 
@@ -6,7 +6,7 @@ use poecal::analysis::{self, PlannedSession};
 use poecal::calibration::DeviceFrameKnowledge;
 use poecal::io::output::{self, Contents, Existing};
 use poecal::measurement::{Noise, Quantity};
-use poecal::{forensics, offsets as explanations, report};
+use poecal::{compare as compared, forensics, offsets as explanations, report};
 use poecal_lou2009::{self as experiments, report as reproduced};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
@@ -240,6 +240,25 @@ pub(crate) fn offsets(
     }
     crate::warn(py, &warnings)?;
     Findings::new(found.text(), &found, warnings)
+}
+
+/// Two calibrations of one robot: what changed, and what is noise.
+///
+/// Parameters
+/// ----------
+/// first, second
+///     The calibrations.
+///
+/// Returns
+/// -------
+/// Findings
+///     Whether more changed than noise makes (`changed`), each joint's change with its test, and how far the predictions are apart.
+#[pyfunction]
+pub(crate) fn compare(py: Python<'_>, first: &Calibration, second: &Calibration) -> PyResult<Findings> {
+    let (one, other) = (first.file(), second.file());
+    let found = py.detach(|| compared::compare(one, other)).map_err(raise)?;
+    let told = report::Comparison::new(("first", one), ("second", other), &found).map_err(raise)?;
+    Findings::new(told.text(), &told, Vec::new())
 }
 
 /// Repeats the experiment of a paper and checks its claims, or shows the effect of gross errors.

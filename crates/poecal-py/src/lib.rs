@@ -58,7 +58,7 @@ mod _poecal {
     #[pymodule_export]
     use crate::covariance::Covariance;
     #[pymodule_export]
-    use crate::findings::{Findings, check, identify, offsets, reproduce};
+    use crate::findings::{Findings, check, compare, identify, offsets, reproduce};
     #[pymodule_export]
     use crate::measurements::Measurements;
     #[pymodule_export]

@@ -6,8 +6,9 @@ use nalgebra::{Matrix3x6, Matrix6, Vector3, Vector6};
 use crate::estimate::Estimate;
 use crate::lie::{Pose, Screw, Twist, by_turn, by_twist, hat, rotation};
 use crate::linalg;
+use crate::parameters::Parameter;
 use crate::problem::Layout;
-use crate::robot::{Joint, JointKind, Robot};
+use crate::robot::{Joint, JointKind, Robot, Term};
 
 /// Weight of a target's deviation beside that of the screws: it decides only directions that the screws leave undetermined.
 const TARGET_WEIGHT: f64 = 1e-3;
@@ -137,6 +138,23 @@ fn motions(estimate: &Estimate, layout: &Layout, step: Vec<f64>) -> (Vec<Vector6
         places.iter().for_each(|&(place, _)| rest[place] = 0.0);
     }
     (motions, rest)
+}
+
+/// Spatial motion of each screw by each scaled unknown, of a serial chain; the offset of a joint moves all screws beyond it.
+#[must_use]
+pub fn screw_motions(estimate: &Estimate, layout: &Layout) -> Vec<Vec<Vector6<f64>>> {
+    let n = layout.dim();
+    let unit = |k: usize| (0..n).map(|it| if it == k { 1.0 } else { 0.0 }).collect();
+    let mut moved: Vec<_> = (0..n).map(|k| motions(estimate, layout, unit(k)).0).collect();
+    let screws = estimate.screws();
+    for (parameter, places) in layout.parameters() {
+        let (Parameter::ValueTerm(term), [(place, scale)]) = (parameter, places) else { continue };
+        if term.term == Term::Offset {
+            let by_offset = screws[term.joint].twist().to_vector() / *scale;
+            moved[*place].iter_mut().skip(term.joint + 1).for_each(|motion| *motion += by_offset);
+        }
+    }
+    moved
 }
 
 /// Deviation of a screw from nominal, with its derivatives by the unknowns.

@@ -1,13 +1,15 @@
-//! The commands, one per file (and `typed`, the command line of a run).
+//! The commands, one per file (and what several need: `typed`, the command line of a run, and `limits`).
 
 mod calibrate;
 mod check;
+mod compare;
 mod compensate;
 mod completions;
 mod convert;
 mod export;
 mod identify;
 mod init;
+mod limits;
 mod man;
 mod offsets;
 mod predict;
@@ -20,6 +22,7 @@ mod validate;
 
 pub(crate) use calibrate::calibrate;
 pub(crate) use check::check;
+pub(crate) use compare::compare;
 pub(crate) use compensate::compensate;
 pub(crate) use completions::completions;
 pub(crate) use convert::convert;

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use super::count::check_count;
 use super::doubts::doubts;
+use super::finished::Finished;
 use super::fit::{self, Task};
 use super::found::Fitted;
 use super::instrument_noise::{ROUNDS, noise_ratios};
@@ -13,7 +14,7 @@ use super::noise_doubts::noise_doubts;
 use super::placed::{place_tip, stations};
 use super::robust::{self, RobustFit};
 use super::stations::{check_length, check_stations};
-use super::trust::{Finished, trust};
+use super::trust::trust;
 use super::verdict::{Grounds, verdict};
 use super::{
     Accuracy, Calibration, CalibrationOptions, CoverageCheck, Formulation, Level, Models, NoiseSource,
@@ -208,6 +209,7 @@ impl<'a> Prepared<'a> {
             solver: fitted.report,
             identifiability,
             trust,
+            acceptance: None,
             verdict,
             noise: fitted.noise,
             noise_ratios: self.session.noise_ratios.to_vec(),

@@ -1,6 +1,7 @@
 //! Corrections of joints, and suspicious joints: the correction stands out, or the residuals follow the joint's position.
 
 use crate::distributions::median;
+use crate::offsets::JointChange;
 use crate::robot::JointKind;
 use crate::solve::Normal;
 use crate::uncertainty::{Pattern, View, strongest_pattern};
@@ -23,6 +24,11 @@ pub struct JointCorrection {
     pub shift_from_data: Option<f64>,
     /// Root mean square position error with this screw alone nominal, tool and device frame refitted, metres.
     pub left_nominal_rms_m: f64,
+    /// Standard deviations of tilt (radians) and shift (metres) if the axes of all other joints were known; `None` where they are not
+    /// determined even then, or the axis was held.
+    pub held: Option<(f64, f64)>,
+    /// The correction in parts, with directions: joint offset, and what of tilt and shift offsets and base do not explain.
+    pub change: JointChange,
     /// Why the joint is suspicious, if it is.
     pub suspicious: Option<String>,
 }

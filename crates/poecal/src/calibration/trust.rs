@@ -1,17 +1,17 @@
 //! How far a calibration can be trusted: cross-validation, uncertainty of predictions and of each screw, and the effect of each correction.
 
+use super::CoverageCheck;
+use super::changes::{joint_changes, sigmas};
 use super::expected::{Expectations, expectations};
+use super::finished::Finished;
 use super::suspicion::{JointCorrection, suspicions};
-use super::{CoverageCheck, Models};
-use crate::analysis::{JointCoverage, PLAUSIBLE, coverage};
+use super::together::{CommonDirection, common_directions, held_sigmas};
+use crate::analysis::{JointCoverage, coverage};
 use crate::estimate::{Estimate, Session, rms_m, sample_rows};
-use crate::gauge::{Deviation, screw_deviations};
-use crate::problem::Layout;
-use crate::solve::Normal;
+use crate::gauge::screw_deviations;
 use crate::start::{Registration, register_again};
 use crate::uncertainty::{
-    Bootstrap, CrossValidation, Discrepancy, Remainder, Shares, Uncertainty, View, bootstrap, cross_validate,
-    discrepancy,
+    Bootstrap, CrossValidation, Discrepancy, Shares, Uncertainty, bootstrap, cross_validate, discrepancy,
 };
 
 /// Rows by which the effect of each correction is computed.
@@ -43,16 +43,8 @@ pub struct Trust {
     pub held_out: Option<CoverageCheck>,
     /// Correction of each joint.
     pub joints: Vec<JointCorrection>,
-}
-
-/// A finished fit.
-pub(super) struct Finished<'a> {
-    pub(super) view: View<'a>,
-    pub(super) layout: &'a Layout,
-    pub(super) normal: &'a Normal,
-    pub(super) remainder: &'a Remainder,
-    pub(super) models: &'a Models,
-    pub(super) seed: u64,
+    /// Directions in which corrections of several joints are known only together; none where each is known for itself.
+    pub common: Vec<CommonDirection>,
 }
 
 /// Judges a finished fit.
@@ -65,8 +57,10 @@ pub(super) fn trust(finished: &Finished<'_>) -> Trust {
     let expected = uncertainty.as_ref().map_or_else(Expectations::default, |uncertainty| {
         expectations(&view.session, view.rows, &coverage, uncertainty, finished.seed)
     });
+    let (joints, common) = joints(finished, uncertainty.as_ref());
     Trust {
-        joints: joints(finished, uncertainty.as_ref()),
+        joints,
+        common,
         coverage,
         cross_validation,
         uncertainty,
@@ -85,7 +79,10 @@ fn uncertainty(finished: &Finished<'_>, found: &Discrepancy) -> Option<Uncertain
 }
 
 /// Correction of each joint with its uncertainty and effect.
-fn joints(finished: &Finished<'_>, uncertainty: Option<&Uncertainty>) -> Vec<JointCorrection> {
+fn joints(
+    finished: &Finished<'_>,
+    uncertainty: Option<&Uncertainty>,
+) -> (Vec<JointCorrection>, Vec<CommonDirection>) {
     let view = &finished.view;
     let Session { robot, length_m, .. } = view.session;
     let calibrated = &finished.models.calibrated;
@@ -95,11 +92,16 @@ fn joints(finished: &Finished<'_>, uncertainty: Option<&Uncertainty>) -> Vec<Joi
     let normal = finished.normal;
     let shares = Shares::new(view, &normal.gram, normal.dim());
     let from_data = |rows: &[Vec<f64>; 3]| shares.as_ref()?.of_measurements(rows);
+    let changes = joint_changes(finished, uncertainty, &deviations);
+    let held = uncertainty.map_or_else(|| vec![None; changes.len()], |it| held_sigmas(finished, it));
+    let common = uncertainty.map(|it| common_directions(finished, it, &changes, &held));
     let mut joints: Vec<JointCorrection> = deviations
         .into_iter()
+        .zip(&changes)
         .enumerate()
-        .map(|(joint, deviation)| {
-            let (sigma_tilt_rad, sigma_shift_m) = sigmas(&deviation, uncertainty, length_m);
+        .map(|(joint, (deviation, (change, _)))| {
+            let (sigma_tilt_rad, sigma_shift_m) =
+                sigmas((&deviation.tilt_by_step, &deviation.shift_by_step), uncertainty, length_m);
             let mut screws = calibrated.screws();
             screws[joint] = nominal[joint];
             let left = registered_again(finished, &rows, &calibrated.with_screws(&screws));
@@ -111,30 +113,15 @@ fn joints(finished: &Finished<'_>, uncertainty: Option<&Uncertainty>) -> Vec<Joi
                 tilt_from_data: from_data(&deviation.tilt_by_step),
                 shift_from_data: from_data(&deviation.shift_by_step),
                 left_nominal_rms_m: rms_m(&view.session.errors(&rows, &left)),
+                held: held.get(joint).copied().flatten(),
+                change: *change,
                 suspicious: None,
             }
         })
         .collect();
     let suspicions = suspicions(view, finished.normal, &joints);
     joints.iter_mut().zip(suspicions).for_each(|(joint, words)| joint.suspicious = words);
-    joints
-}
-
-/// Standard deviations of tilt and shift; `None` where they exceed half of the uncertainty of a nominal model.
-fn sigmas(
-    deviation: &Deviation,
-    uncertainty: Option<&Uncertainty>,
-    length_m: f64,
-) -> (Option<f64>, Option<f64>) {
-    const DETERMINED: f64 = 0.5;
-    let of = |rows: &[Vec<f64>; 3], most: f64| {
-        let variance: f64 = rows.iter().map(|row| uncertainty.map_or(0.0, |it| it.variance(row))).sum();
-        Some(variance.sqrt()).filter(|sigma| uncertainty.is_some() && *sigma < DETERMINED * most)
-    };
-    let tilt = of(&deviation.tilt_by_step, PLAUSIBLE);
-    let shift = of(&deviation.shift_by_step, PLAUSIBLE * length_m);
-    // The place of an axis of unknown direction means little.
-    if tilt.is_some() && shift.is_some() { (tilt, shift) } else { (None, None) }
+    (joints, common.unwrap_or_default())
 }
 
 /// An estimate with tool and device frame refitted.

@@ -41,7 +41,7 @@ pub(super) struct Normal {
 }
 
 /// A residual and its derivative by a spatial motion of everything from a joint on.
-type Block = (Vector3<f64>, Matrix3x6<f64>);
+pub(super) type Block = (Vector3<f64>, Matrix3x6<f64>);
 
 impl Normal {
     /// By the upper half of the normal matrix.
@@ -62,10 +62,15 @@ impl Normal {
 
     /// The damped step, none in open directions.
     pub(super) fn step(&self, damping: f64) -> Vec<f64> {
-        let n = self.gradient.len();
+        self.step_by(&self.gradient, damping)
+    }
+
+    /// The same for another gradient.
+    pub(super) fn step_by(&self, gradient: &[f64], damping: f64) -> Vec<f64> {
+        let n = gradient.len();
         let mut step = vec![0.0; n];
         for (&value, vector) in self.values.iter().zip(self.vectors.column_iter()).skip(self.open()) {
-            let along: f64 = vector.iter().zip(&self.gradient).map(|(a, b)| a * b).sum();
+            let along: f64 = vector.iter().zip(gradient).map(|(a, b)| a * b).sum();
             step.iter_mut().zip(vector.iter()).for_each(|(s, a)| *s -= a * along / (value + damping));
         }
         step
@@ -204,7 +209,7 @@ impl<'a> Comparison<'a> {
     }
 
     /// Metres that a unit of each unknown counts.
-    fn scales(&self) -> Vec<f64> {
+    pub(super) fn scales(&self) -> Vec<f64> {
         let mut scales = Vec::new();
         if self.offsets_free {
             scales.extend(self.nominal.joints.iter().map(|joint| match joint.kind {
@@ -240,7 +245,7 @@ impl<'a> Comparison<'a> {
     }
 
     /// The residuals of the joints in order, then of the home pose, each with the number of joints that move it.
-    fn blocks(&self, state: &OffsetState) -> (Vec<Screw>, Vec<(usize, Block)>) {
+    pub(super) fn blocks(&self, state: &OffsetState) -> (Vec<Screw>, Vec<(usize, Block)>) {
         let (screws, home) = self.moved(state);
         let mut blocks = Vec::new();
         for (index, (screw, joint)) in screws.iter().zip(&self.actual.joints).enumerate() {
@@ -267,10 +272,16 @@ impl<'a> Comparison<'a> {
 
     fn normal(&self, state: &OffsetState) -> Normal {
         let (screws, blocks) = self.blocks(state);
+        let (normal, _) = self.equations(&screws, &blocks);
+        normal
+    }
+
+    /// Normal equations of some blocks, and the derivatives of their residuals by the scaled unknowns, row by row.
+    pub(super) fn equations(&self, screws: &[Screw], blocks: &[(usize, Block)]) -> (Normal, Vec<f64>) {
         let scales = self.scales();
         let n = scales.len();
         let (mut rows, mut residuals) = (Vec::new(), Vec::new());
-        for (movers, (residual, derivative)) in &blocks {
+        for (movers, (residual, derivative)) in blocks {
             // An offset moves all later screws and the home pose by the joint's own screw at its current place.
             let mut columns: Vec<Vector3<f64>> = Vec::with_capacity(n);
             if self.offsets_free {
@@ -289,7 +300,7 @@ impl<'a> Comparison<'a> {
         let (mut gram, mut gradient) = (vec![0.0; n * n], vec![0.0; n]);
         linalg::add_gram(&mut gram, n, &rows, 0);
         linalg::add_gradient(&mut gradient, &rows, &residuals);
-        Normal::new(&gram, gradient, &residuals)
+        (Normal::new(&gram, gradient, &residuals), rows)
     }
 }
 

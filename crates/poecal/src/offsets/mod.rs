@@ -2,12 +2,15 @@
 //! how one robot differs from another (theory.md §8, lou2009 equations 11 to 15).
 
 mod at_tip;
+mod changes;
 mod fit;
 mod prediction;
 mod start;
 mod taught;
 
 pub use at_tip::nearest_at_tip;
+pub use changes::JointChange;
+pub(crate) use changes::{ChangeBySteps, Changes, direction};
 pub use prediction::TipError;
 pub(crate) use taught::{Taught, with_tool_of};
 

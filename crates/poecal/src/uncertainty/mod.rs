@@ -2,8 +2,10 @@
 
 mod bootstrap;
 mod clusters;
+mod correlation;
 mod discrepancy;
 mod folds;
+mod held;
 mod motions;
 mod neighbours;
 mod order;
@@ -15,9 +17,11 @@ mod share;
 mod view;
 
 pub use bootstrap::{Bootstrap, bootstrap};
+pub use correlation::Correlations;
 pub use discrepancy::{Discrepancy, discrepancy};
 pub(crate) use folds::parts_to_leave_out;
 pub use folds::{CrossValidation, LeftOut, cross_validate, leave_clusters_out};
+pub(crate) use held::held_covariance;
 pub use pattern::{Pattern, strongest_pattern};
 pub use prediction::{PredictedError, Quantile, bound};
 pub use refit::Refit;
@@ -226,7 +230,7 @@ fn covariance(factor: &Factor, variance: f64) -> Option<Vec<f64>> {
 
 /// Mean over rows of `v_kᵀ v_l`, row-major: the Q of theory.md §9 (45). `δᵀ Q δ` is the mean square distance by which a step δ moves
 /// predicted places.
-fn position_information(view: &View<'_>, rows: &[u32]) -> Vec<f64> {
+pub(crate) fn position_information(view: &View<'_>, rows: &[u32]) -> Vec<f64> {
     let problem = view.problem(Vec::new());
     let layout = problem.layout();
     let linkage = Linkage::new(view.estimate);

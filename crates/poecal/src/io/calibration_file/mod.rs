@@ -2,6 +2,7 @@
 
 mod alike;
 mod bodies;
+mod changes;
 mod compensation;
 mod corrected;
 mod judging;
@@ -17,6 +18,7 @@ mod validation;
 
 pub use alike::SuspectedConfigurationEntry;
 pub use bodies::{BodyEntry, InstrumentEntry, MassEntry, MeasuredEntry};
+pub use changes::{CommonDirectionEntry, CorrelatedEntry, CorrelationsEntry, JointChangeEntry};
 pub use compensation::{CompensationEntry, DisplacementEntry, ReadingChangeEntry, WorkspaceCellEntry};
 pub use corrected::{
     CorrectedEntry, EffectEntry, GravityEntry, JointErrorEntry, JointErrorsEntry, TriedEntry, WeightEntry,
@@ -32,6 +34,7 @@ pub use trust::*;
 use std::collections::BTreeMap;
 use std::path::Path;
 
+use super::record::Record;
 use super::{json_text, source_text};
 use crate::calibration::{CalibratedStation, Calibration, DeviceFrameKnowledge, ModelAccuracy, names};
 use crate::error::{Error, ErrorKind, Result};
@@ -64,6 +67,7 @@ impl CalibrationFile {
             schema: SCHEMA.to_owned(),
             poecal_version: env!("CARGO_PKG_VERSION").to_owned(),
             inputs,
+            record: Record::default(),
             accuracy: calibration.accuracy,
             blocks: BlocksEntry::of(calibration, data),
             solver: SolverEntry {
@@ -83,6 +87,7 @@ impl CalibrationFile {
                 joint_offsets: OffsetEntry::of(calibration),
             },
             identifiability: IdentifiabilityEntry::of(&calibration.identifiability),
+            acceptance: calibration.acceptance.clone(),
             verdict: Some(calibration.verdict.clone()),
             coverage: calibration.trust.coverage.clone(),
             cross_validation: CrossValidationEntry::of(&calibration.trust),
@@ -93,6 +98,7 @@ impl CalibrationFile {
                 .zip(&calibration.trust.joints)
                 .map(CorrectionEntry::of)
                 .collect(),
+            common: CommonDirectionEntry::of(calibration),
             uncertainty: UncertaintyEntry::of(calibration, data),
             robust: RobustEntry::of(calibration),
             outliers: OutlierEntry::of(calibration, data),

@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::keyed::{AttributionKeys, DiscrepancyKeys, FreedomKeys, Keyed, NoiseKeys, RmsKeys, shown};
-use super::{CalibrationFile, PoseEntry};
+use super::{CalibrationFile, CorrelationsEntry, JointChangeEntry, PoseEntry};
 use crate::analysis::JointCoverage;
 use crate::calibration::{
     CalibratedTarget, Calibration, Correction, CoverageCheck, Expectations, Expected, JointCorrection,
@@ -108,6 +108,12 @@ pub struct CorrectionEntry {
     pub sigma_tilt_deg: Option<f64>,
     /// Standard deviation of the axis' place at the joint, millimetres; null where it is not determined.
     pub sigma_shift_mm: Option<f64>,
+    /// The same as `sigma_tilt_deg` if the axes of all other joints were known; missing in older files, and where the axis was held.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sigma_tilt_held_deg: Option<f64>,
+    /// The same of `sigma_shift_mm`; missing of a joint that slides.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sigma_shift_held_mm: Option<f64>,
     /// The measurements' share in what is known of the direction, from 0 to 1; the rest is the tolerance's. Absent without a tolerance.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub tilt_from_data: Option<f64>,
@@ -116,6 +122,9 @@ pub struct CorrectionEntry {
     pub shift_from_data: Option<f64>,
     /// Root mean square position error with this screw alone nominal, millimetres.
     pub left_nominal_rms_mm: f64,
+    /// The correction in parts, with directions; missing in older files.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub change: Option<JointChangeEntry>,
     /// Why the joint is suspicious: a correction beyond those of the others, or residuals that follow its position.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub suspicious: Option<String>,
@@ -169,6 +178,9 @@ pub struct UncertaintyEntry {
     /// Point of the device frame about which its unknowns turn, metres, where the frame is among them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub frame_about_m: Option<[f64; 3]>,
+    /// Correlations of the unknowns, by blocks; missing in older files and of the corrected model.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub correlations: Option<CorrelationsEntry>,
     /// Covariance of the unknowns, square metres, turns multiplied by `length_m`: the upper triangle by rows, in the order of the fit with
     /// pure translations first.
     pub covariance_m2: Vec<f64>,
@@ -188,6 +200,7 @@ struct Predicting<'a> {
     targets: &'a [CalibratedTarget],
     /// Errors of the fitted rows.
     measured: &'a ModelAccuracy,
+    tells_correlations: bool,
 }
 
 impl LeftOutEntry {
@@ -238,9 +251,12 @@ impl CorrectionEntry {
             shift_mm: found.shift_m * 1e3,
             sigma_tilt_deg: found.sigma_tilt_rad.map(f64::to_degrees),
             sigma_shift_mm: found.sigma_shift_m.map(|sigma| sigma * 1e3),
+            sigma_tilt_held_deg: found.held.map(|(tilt, _)| tilt.to_degrees()),
+            sigma_shift_held_mm: found.held.filter(|(_, shift)| *shift > 0.0).map(|(_, shift)| 1e3 * shift),
             tilt_from_data: found.tilt_from_data,
             shift_from_data: found.shift_from_data,
             left_nominal_rms_mm: found.left_nominal_rms_m * 1e3,
+            change: Some(JointChangeEntry::from(&found.change)),
             suspicious: found.suspicious.clone(),
         }
     }
@@ -259,6 +275,7 @@ impl UncertaintyEntry {
                 robot: &calibration.nominal,
                 targets: &calibration.targets,
                 measured: &calibration.accuracy.training.calibrated,
+                tells_correlations: true,
             },
             data,
         )
@@ -275,6 +292,7 @@ impl UncertaintyEntry {
                 robot: &correction.robot,
                 targets: &correction.targets,
                 measured: &correction.training,
+                tells_correlations: false,
             },
             data,
         )
@@ -289,6 +307,7 @@ impl UncertaintyEntry {
             robot,
             targets,
             measured,
+            tells_correlations,
         } = *model;
         let n = found.layout.dim();
         // Predictions are in the frame of the first station, so that those of others do not matter.
@@ -357,6 +376,13 @@ impl UncertaintyEntry {
             length_m: found.length_m,
             axes: found.estimate.base_from_axis.iter().map(PoseEntry::from).collect(),
             targets: targets.iter().map(|it| (it.name.clone().unwrap_or_default(), it.is_frame)).collect(),
+            correlations: tells_correlations.then(|| {
+                let covariance: Vec<f64> = kept
+                    .iter()
+                    .flat_map(|&i| kept.iter().map(move |&j| found.covariance[i * n + j]))
+                    .collect();
+                CorrelationsEntry::of(&covariance, &unknowns)
+            }),
             unknowns,
             frame_about_m: about,
             covariance_m2: upper(&found.covariance),

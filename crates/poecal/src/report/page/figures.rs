@@ -6,6 +6,7 @@ use super::lead::Lead;
 use crate::io::calibration_file::CalibrationFile;
 use crate::io::residuals::Residuals;
 use crate::report::plot::{Axis, Line, LinePlot, RangePlot, RangeRow, Scale};
+use crate::report::summary::has_terms;
 use crate::robot::JointKind;
 use crate::threads;
 
@@ -15,8 +16,9 @@ const STEPS: usize = 20;
 const INTERVAL: f64 = 2.0;
 
 /// Which share of the rows is off by how much, for the models.
-pub(super) fn distributions(residuals: &Residuals, held_out: bool) -> Markup {
+pub(super) fn distributions(file: &CalibrationFile, residuals: &Residuals) -> Markup {
     let lead = Lead::of(residuals);
+    let held_out = file.accuracy.held_out.is_some();
     // Of an unknown tool the nominal model says nothing, and its errors would take most of the axis.
     let lines = [(1, "registered"), (2, "calibrated")].into_iter().map(|(model, name)| {
         let rows = residuals.rows().iter().filter(|row| row.held_out == held_out);
@@ -25,7 +27,9 @@ pub(super) fn distributions(residuals: &Residuals, held_out: bool) -> Markup {
         Line { name: name.to_owned(), style: [1, 3, 0][model], points: distribution(errors) }
     });
     let rows = residuals.rows().iter().filter(|row| row.held_out == held_out);
-    let corrected: Vec<f64> = rows.filter_map(|row| lead.corrected(row)).collect();
+    // A corrected model without terms is the calibrated one.
+    let corrected: Vec<f64> =
+        rows.filter(|_| has_terms(file)).filter_map(|row| lead.corrected(row)).collect();
     let corrected = (!corrected.is_empty()).then(|| Line {
         name: "corrected".to_owned(),
         style: 2,
@@ -45,22 +49,33 @@ pub(super) fn distributions(residuals: &Residuals, held_out: bool) -> Markup {
     PreEscaped(plot.svg())
 }
 
+/// Largest error over that below which 95 % lie, from which on a linear axis would leave all others in a corner.
+const FAR_OFF: f64 = 4.0;
+
 /// Errors of the calibrated model on fitted rows and on those held out.
 pub(super) fn sets(residuals: &Residuals) -> Markup {
     let lead = Lead::of(residuals);
-    let of = |name: &str, style, held_out: bool| {
+    let errors = |held_out: bool| -> Vec<f64> {
         let rows = residuals.rows().iter().filter(|row| row.held_out == held_out);
-        let errors: Vec<f64> = rows.filter_map(|row| lead.error(row)).collect();
-        Line { name: name.to_owned(), style, points: distribution(errors) }
+        rows.filter_map(|row| lead.error(row)).collect()
     };
-    let lines = [of("fitted", 0, false), of("held out", 1, true)];
+    let sets = [("fitted", 0, errors(false)), ("held out", 1, errors(true))];
+    let is_far_off = sets.iter().any(|(_, _, errors)| {
+        let points = distribution(errors.clone());
+        let most = points.iter().find(|[_, share]| *share >= 95.0).zip(points.last());
+        most.is_some_and(|([usual, _], [largest, _])| *largest > FAR_OFF * usual)
+    });
+    let (scale, words, from) =
+        if is_far_off { (Scale::Log, " (logarithmic)", None) } else { (Scale::Linear, "", Some(0.0)) };
+    let lines =
+        sets.map(|(name, style, errors)| Line { name: name.to_owned(), style, points: distribution(errors) });
     let name = lead.name();
     let plot = LinePlot {
         title: "Calibrated model: fitted against held-out rows".to_owned(),
         description: format!(
             "The share of fitted and of held-out rows whose {name} error is below a value; the table below has the figures."
         ),
-        x: Axis::new(&format!("{name} error, {}", lead.unit()), Scale::Linear).including(&[0.0]),
+        x: Axis::new(&format!("{name} error, {}{words}", lead.unit()), scale).including(from.as_slice()),
         y: Axis::new("share of the rows below, %", Scale::Linear).including(&[0.0, 100.0]),
         lines: lines.into_iter().filter(|line| !line.points.is_empty()).collect(),
         mark: None,

@@ -6,15 +6,16 @@ use nalgebra::Vector3;
 use super::devices::{Device, further, picture_words};
 use super::figures;
 use super::frames::draws_instruments;
-use super::html::{HtmlTable, decimal, figure, figure_or, folded, plots, quoted, section};
+use super::html::{HtmlTable, decimal, figure, figure_or, folded, list, plots, quoted, section};
 use crate::io::calibration_file::{CalibrationFile, JointEntry, ScrewEntry, StationEntry};
+use crate::io::shapes::Shapes;
 use crate::robot::{Body, JointKind};
 
-pub(super) fn sections(file: &CalibrationFile) -> Markup {
-    html! { (view(file)) (corrections(file)) }
+pub(super) fn sections(file: &CalibrationFile, shapes: &Shapes) -> Markup {
+    html! { (view(file, shapes)) (corrections(file)) }
 }
 
-fn view(file: &CalibrationFile) -> Markup {
+fn view(file: &CalibrationFile, shapes: &Shapes) -> Markup {
     let head = ["joint", "kind", "model", "x", "y", "z", "through x, mm", "y, mm", "z, mm"];
     let mut table = HtmlTable::new(
         "Axes in the base frame with all joints at zero: direction, and the point nearest to the base",
@@ -28,10 +29,12 @@ fn view(file: &CalibrationFile) -> Markup {
     let content = html! {
         p {
             "The " (if draws_instruments(file) { "robot" } else { "arm" })
-            " as lines along its joints' axes: nominal in grey, calibrated in colour."
+            @if shapes.shapes.is_empty() { " as links from axis to axis" } @else { " with the shapes of its URDF" }
+            ": nominal in grey, calibrated in colour."
             (picture_words(file, draws_instruments(file)))
         }
         div #arm.arm {}
+        @if !shapes.notes.is_empty() { p.note { (shapes.notes.join(" ").replace('`', "")) } }
         noscript { p.note { "The picture needs JavaScript. All figures are in the tables." } }
         (folded("The axes as numbers", &table))
         @if let Some(table) = stands(file) { (folded("What stands where", &table)) }
@@ -142,11 +145,14 @@ fn corrections(file: &CalibrationFile) -> Markup {
     let content = html! {
         p {
             "Correction of each axis from nominal, its standard deviation, and its effect: the error that would remain if this axis alone \
-             stayed nominal, with tool and device refitted. By data: the measurements' share in what is known of the axis, from 0 to 1; the \
+             stayed nominal while all others are as calibrated, with tool and device refitted. It may be large although the standard deviation \
+             is too: the axes fit each other, and one that is put back alone does not. By data: the measurements' share in what is known of the axis, from 0 to 1; the \
              rest was said by the tolerance."
         }
         (plots(&figures::corrections(file), "Dots: corrections. Lines: two standard deviations to each side; none where a correction is not determined."))
         (table)
+        (changes(file))
+        (common(file))
         @for (k, found) in file.corrections.iter().enumerate() {
             @if let Some(words) = &found.suspicious {
                 p {
@@ -158,6 +164,66 @@ fn corrections(file: &CalibrationFile) -> Markup {
         (offsets(file))
     };
     section("joints", "Joints", &content)
+}
+
+/// The corrections in words, with directions.
+fn changes(file: &CalibrationFile) -> Markup {
+    let mut table = HtmlTable::new("The corrections in words", 2, &["joint", "correction"]);
+    let mut any = false;
+    for (k, found) in file.corrections.iter().enumerate() {
+        let Some(change) = &found.change else { continue };
+        any = true;
+        table.row(&[
+            &quoted(&found.joint, format_args!("corrections.{k}.joint")),
+            &quoted(&change.words, format_args!("corrections.{k}.change.words")),
+        ]);
+    }
+    if !any {
+        return Markup::default();
+    }
+    html! {
+        (table)
+        p.note {
+            "Directions of the base frame with all joints at zero; a shift is that of the axis' point nearest to the joint's origin. "
+            "An offset is to be added to the joint's value: it turns or shifts everything beyond the joint. Tilts and shifts are what offsets and the base "
+            "do not explain, so they may be smaller than in the table above. The offset of the first joint is not determined where the base "
+            "was fitted, that of the last where the tool was."
+        }
+    }
+}
+
+/// What is known of several joints only together.
+fn common(file: &CalibrationFile) -> Markup {
+    if file.common.is_empty() {
+        return Markup::default();
+    }
+    let mut table = HtmlTable::new(
+        "Standard deviations of each axis, all axes unknown and those of the other joints held",
+        1,
+        &["joint", "tilt, °", "others held", "shift, mm", "others held"],
+    );
+    for (k, found) in file.corrections.iter().enumerate() {
+        let figure =
+            |value, name: &str, words| figure_or(value, format_args!("corrections.{k}.{name}"), words);
+        table.row(&[
+            &quoted(&found.joint, format_args!("corrections.{k}.joint")),
+            &figure(found.sigma_tilt_deg, "sigma_tilt_deg", "not determined"),
+            &figure(found.sigma_tilt_held_deg, "sigma_tilt_held_deg", "–"),
+            &figure(found.sigma_shift_mm, "sigma_shift_mm", "not determined"),
+            &figure(found.sigma_shift_held_mm, "sigma_shift_held_mm", "–"),
+        ]);
+    }
+    let items = file.common.iter().enumerate();
+    let items = items.map(|(k, it)| quoted(&it.words, format_args!("common.{k}.words")));
+    html! {
+        h3 { "Known only together" }
+        p {
+            "Some standard deviations are large because these joints can change together with little effect on what was measured; with the \
+             others held each is known better. One standard deviation of each such direction:"
+        }
+        (list(&items.collect::<Vec<_>>()))
+        (folded("Standard deviations with the others held", &table))
+    }
 }
 
 /// Joint offsets, where the formulation has them.

@@ -7,7 +7,7 @@ use super::html::{HtmlTable, count, decimal, figure, figure_or, list, plots, quo
 use super::lead::{sign, spaced};
 use crate::analysis::Direction;
 use crate::io::calibration_file::{
-    CalibrationFile, CrossValidationEntry, LeftOutEntry, RangeEntry, UncertaintyEntry,
+    CalibrationFile, CorrelatedEntry, CrossValidationEntry, LeftOutEntry, RangeEntry, UncertaintyEntry,
 };
 use crate::measurement::Quantity;
 use crate::robot::JointKind;
@@ -198,6 +198,7 @@ fn told(file: &CalibrationFile) -> Markup {
             @if !directions.is_empty() { h3 { (title) } (list(&items(directions, key))) }
         }
         (observability(file))
+        (correlations(file))
     };
     section("told", "Unknowns that the data determine", &content)
 }
@@ -209,6 +210,50 @@ pub(super) fn direction_words(direction: &Direction, key: &str) -> Markup {
         @if direction.directions > 1 {
             " (" (count(direction.directions, format_args!("{key}.directions"))) " directions)"
         }
+    }
+}
+
+/// Which blocks are known only together: a map, and the strongest pairs.
+fn correlations(file: &CalibrationFile) -> Markup {
+    let Some(found) = file.uncertainty.as_ref().and_then(|it| it.correlations.as_ref()) else {
+        return Markup::default();
+    };
+    let head: Vec<&str> = std::iter::once("").chain(found.blocks.iter().map(String::as_str)).collect();
+    let mut map = HtmlTable::new("Largest correlation between the unknowns of two blocks", 1, &head);
+    for (i, (block, row)) in found.blocks.iter().zip(&found.largest).enumerate() {
+        map.marked(&html! {
+            tr {
+                th scope="row" { (quoted(block, format_args!("uncertainty.correlations.blocks.{i}"))) }
+                @for (j, value) in row.iter().enumerate() {
+                    td class=(format_args!("heat h{:.0}", (10.0 * value).round().min(10.0))) {
+                        (figure(*value, format_args!("uncertainty.correlations.largest.{i}.{j}")))
+                    }
+                }
+                @for _ in row.len()..found.blocks.len() { td {} }
+            }
+        });
+    }
+    let pair = |(k, pair): (usize, &CorrelatedEntry)| {
+        let key = format!("uncertainty.correlations.pairs.{k}");
+        let [one, other] = &pair.unknowns;
+        html! {
+            (quoted(one, format_args!("{key}.unknowns.0"))) " and " (quoted(other, format_args!("{key}.unknowns.1"))) ": "
+            (figure(pair.correlation, format_args!("{key}.correlation")))
+        }
+    };
+    let pairs: Vec<Markup> = found.pairs.iter().enumerate().map(pair).collect();
+    html! {
+        h3 { "Correlations" }
+        p {
+            @if found.strong == 0 { "No pair of unknowns is correlated by 0.95 or more." }
+            @else {
+                (count(found.strong, "uncertainty.correlations.strong"))
+                " pairs of unknowns are correlated by 0.95 or more: the rows determine their sum or difference much better than each of them."
+                @if found.strong > pairs.len() { " The strongest:" }
+            }
+        }
+        (list(&pairs))
+        details { summary { "Correlations of all blocks" } div.map { (map) } }
     }
 }
 

@@ -172,4 +172,9 @@ fn trust(out: &mut String, file: &CalibrationFile) {
             &format!("error (RMS) with this axis alone left nominal: {}", joints.join(", ")),
         );
     }
+    let changes = file.corrections.iter().filter_map(|it| {
+        let change = it.change.as_ref()?;
+        Some(format!("{}: {}", visible(&it.joint), visible(&change.words)))
+    });
+    lines(out, "corrections", changes);
 }

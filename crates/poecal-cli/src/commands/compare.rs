@@ -1,0 +1,30 @@
+//! `poecal compare`: two calibrations of one robot.
+
+use poecal::compare;
+use poecal::io::calibration_file::CalibrationFile;
+use poecal::{ErrorKind, Result, report};
+
+use crate::args::Compare;
+use crate::console::Console;
+use crate::{DONE, WORSE};
+
+pub(crate) fn compare(arguments: &Compare, console: &Console) -> Result<u8> {
+    let place = arguments.place.reserve(&[&arguments.first, &arguments.second], console)?;
+    let first = CalibrationFile::read(&arguments.first)?;
+    let second = CalibrationFile::read(&arguments.second)?;
+    let in_file = |error: poecal::Error| {
+        if error.kind() == ErrorKind::Option { error.in_file(&arguments.second) } else { error }
+    };
+    first.robot().map_err(|error| error.in_file(&arguments.first))?;
+    second.robot().map_err(|error| error.in_file(&arguments.second))?;
+    let found = compare::compare(&first, &second).map_err(in_file)?;
+    let [one, other] = [&arguments.first, &arguments.second].map(|path| path.display().to_string());
+    let told = report::Comparison::new((&one, &first), (&other, &second), &found)?;
+    let text = if arguments.json { report::json(&told)? } else { told.text() };
+    if arguments.json || place.is_some() {
+        console.deliver(text, place)?;
+    } else {
+        console.say(&text)?;
+    }
+    Ok(if found.is_change() == Some(true) { WORSE } else { DONE })
+}

@@ -1,0 +1,295 @@
+//! What changed between two calibrations of one robot.
+
+use std::fmt::Write as _;
+
+use serde::Serialize;
+
+use super::summary::{expected, leading};
+use super::table::{line, number, number_or_dash};
+use crate::compare::{ChiSquare, Compared, ComparedJoint};
+use crate::io::calibration_file::{CalibrationFile, JointChangeEntry};
+use crate::robot::{ReadingKind, Robot};
+use crate::text::visible;
+
+/// Two calibrations compared, for a person to look over or a machine to read.
+///
+/// ```
+/// use poecal::calibration::{CalibrationOptions, calibrate};
+/// use poecal::io::calibration_file::{CalibrationFile, Inputs};
+/// use poecal::report::Comparison;
+/// use poecal::simulate::{Kind, Simulation, elbow};
+/// let made = Simulation { count: 60, ..Simulation::default() }.run(&elbow(), Kind::Pose)?;
+/// let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default())?;
+/// let file = CalibrationFile::new(&calibration, &made.data, Inputs::default());
+/// let found = Comparison::new(("a.json", &file), ("b.json", &file), &poecal::compare::compare(&file, &file)?)?;
+/// assert!(found.text().starts_with("verdict       no change beyond noise"), "{}", found.text());
+/// # Ok::<(), poecal::Error>(())
+/// ```
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Comparison {
+    first: SideEntry,
+    second: SideEntry,
+    /// Whether more changed than noise makes; null without the uncertainty of both.
+    changed: Option<bool>,
+    /// Names of the joints that did.
+    changed_joints: Vec<String>,
+    test: Option<TestEntry>,
+    joints: Vec<JointEntry>,
+    base: &'static str,
+    tip: TipEntry,
+}
+
+/// A calibration: its accuracy.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+struct SideEntry {
+    calibration: String,
+    model: String,
+    measurements: Vec<String>,
+    /// The rows that judge: held out, or fitted where none was.
+    rows: &'static str,
+    count: usize,
+    quantity: &'static str,
+    unit: &'static str,
+    /// Root mean square error of each model.
+    rms: Vec<ModelEntry>,
+    /// Expected error as its verdict states it, millimetres (RMS); null where no use is advised.
+    expected_mm: Option<f64>,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize)]
+struct ModelEntry {
+    model: String,
+    rms: f64,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+struct TestEntry {
+    chi_square: f64,
+    freedom: usize,
+    limit: f64,
+    changed: bool,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize)]
+struct JointEntry {
+    name: String,
+    /// From nominal to the first.
+    first: Option<JointChangeEntry>,
+    /// From nominal to the second.
+    second: Option<JointChangeEntry>,
+    /// From the first to the second.
+    change: JointChangeEntry,
+    test: Option<TestEntry>,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize)]
+struct TipEntry {
+    configurations: usize,
+    rms_mm: f64,
+    max_mm: f64,
+    rms_deg: f64,
+    max_at: Vec<ReadingEntry>,
+    max_place_mm: [f64; 3],
+    expected_mm: Option<f64>,
+}
+
+/// A reading of the configuration of the largest difference: degrees or millimetres.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+struct ReadingEntry {
+    reading: String,
+    value: f64,
+    unit: &'static str,
+}
+
+impl From<ChiSquare> for TestEntry {
+    fn from(test: ChiSquare) -> Self {
+        TestEntry {
+            chi_square: test.value,
+            freedom: test.freedom,
+            limit: test.limit,
+            changed: test.is_change(),
+        }
+    }
+}
+
+impl SideEntry {
+    fn new((name, file): (&str, &CalibrationFile)) -> Self {
+        let (set, rows) = leading(file);
+        let quantity = set.calibrated.leading().map(|(quantity, _)| quantity);
+        let rms = rows.iter().filter_map(|(model, errors, _)| {
+            Some(ModelEntry { model: model.clone(), rms: errors.get(quantity?)?.rms })
+        });
+        SideEntry {
+            calibration: name.to_owned(),
+            model: file.inputs.model.clone(),
+            measurements: file.inputs.measurements.clone(),
+            rows: if file.accuracy.held_out.is_some() { "held out" } else { "fitted" },
+            count: set.count,
+            quantity: quantity.map_or("", |it| it.name()),
+            unit: quantity.map_or("", |it| it.unit().symbol()),
+            rms: rms.collect(),
+            expected_mm: expected(file).map(|(sigma, ..)| sigma),
+        }
+    }
+}
+
+impl Comparison {
+    /// Of two calibrations by their names.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Model`](crate::ErrorKind::Model) if a file holds no valid robot.
+    pub fn new(
+        first: (&str, &CalibrationFile),
+        second: (&str, &CalibrationFile),
+        found: &Compared,
+    ) -> crate::error::Result<Self> {
+        let robot = first.1.robot()?;
+        let correction = |file: &CalibrationFile, name: &str| {
+            file.corrections.iter().find(|it| it.joint == name).and_then(|it| it.change.clone())
+        };
+        let joint = |it: &ComparedJoint| JointEntry {
+            name: it.name.clone(),
+            first: correction(first.1, &it.name),
+            second: correction(second.1, &it.name),
+            change: JointChangeEntry::from(&it.change),
+            test: it.test.map(TestEntry::from),
+        };
+        Ok(Comparison {
+            changed: found.is_change(),
+            changed_joints: found.changed().map(|it| it.name.clone()).collect(),
+            test: found.test.map(TestEntry::from),
+            joints: found.joints.iter().map(joint).collect(),
+            base: if found.base_is_free { "free" } else { "kept" },
+            tip: TipEntry {
+                configurations: found.tip.configurations,
+                rms_mm: 1e3 * found.tip.rms_m,
+                max_mm: 1e3 * found.tip.max_m,
+                rms_deg: found.tip.rms_rad.to_degrees(),
+                max_at: found
+                    .tip
+                    .max_at
+                    .iter()
+                    .map(|(name, value)| ReadingEntry::new(&robot, name, *value))
+                    .collect(),
+                max_place_mm: (1e3 * found.tip.max_place).into(),
+                expected_mm: found.tip.expected_m.map(|it| 1e3 * it),
+            },
+            first: SideEntry::new(first),
+            second: SideEntry::new(second),
+        })
+    }
+
+    /// As text of lines up to 80 characters (but for names that are longer).
+    #[must_use]
+    pub fn text(&self) -> String {
+        let mut out = String::new();
+        line(&mut out, "verdict", &self.verdict());
+        line(&mut out, "first", &self.first.calibration);
+        line(&mut out, "second", &self.second.calibration);
+        out.push('\n');
+        self.accuracy(&mut out);
+        out.push('\n');
+        for joint in &self.joints {
+            line(&mut out, "joint", &format!("{}{}", visible(&joint.name), joint.test_words()));
+            let both = [("first", &joint.first), ("second", &joint.second)];
+            for (name, change) in both {
+                if let Some(change) = change {
+                    line(&mut out, &format!("  {name}"), &change.words);
+                }
+            }
+            line(&mut out, "  change", &joint.change.words);
+        }
+        out.push('\n');
+        line(&mut out, "tip", &self.tip.words());
+        let words = if self.base == "free" {
+            "base and tool of the second are fitted to the first, since calibrations choose them"
+        } else {
+            "the base is kept, the tool of the second is fitted to the first"
+        };
+        line(&mut out, "compared", words);
+        out
+    }
+
+    fn verdict(&self) -> String {
+        let Some(test) = self.test else {
+            return "unknown: a calibration has no uncertainty, so that noise is not told from change"
+                .to_owned();
+        };
+        let numbers = format!(
+            "χ² {:.1} of {} degrees of freedom, noise up to {:.1}",
+            test.chi_square, test.freedom, test.limit
+        );
+        match self.changed {
+            Some(true) if self.changed_joints.is_empty() => {
+                format!("more changed than noise, in no single joint ({numbers})")
+            }
+            Some(true) => format!("more changed than noise: {} ({numbers})", self.changed_joints.join(", ")),
+            _ => format!("no change beyond noise ({numbers})"),
+        }
+    }
+
+    /// The errors of both, side by side.
+    fn accuracy(&self, out: &mut String) {
+        let (one, other) = (&self.first, &self.second);
+        let title = format!("{} error, {} (RMS)", one.quantity, one.unit);
+        // Writing to a String cannot fail.
+        let _ = writeln!(out, "{title:<42}{:>13}{:>13}", "first", "second");
+        let mut names: Vec<&str> = one.rms.iter().map(|it| it.model.as_str()).collect();
+        names.extend(
+            other
+                .rms
+                .iter()
+                .map(|it| it.model.as_str())
+                .filter(|it| !one.rms.iter().any(|own| own.model == *it)),
+        );
+        let of = |side: &SideEntry, name: &str| {
+            let is_same = (side.quantity, side.unit) == (one.quantity, one.unit);
+            let found = side.rms.iter().find(|it| it.model == name).map(|it| it.rms);
+            number_or_dash(found.filter(|_| is_same))
+        };
+        for name in names {
+            let _ = writeln!(out, "  {name:<40}{:>13}{:>13}", of(one, name), of(other, name));
+        }
+        let [a, b] = [one, other].map(|it| number_or_dash(it.expected_mm));
+        let _ = writeln!(out, "  {:<40}{a:>13}{b:>13}", "expected, mm");
+        let [a, b] = [one, other].map(|it| format!("{} {}", it.count, it.rows));
+        let _ = writeln!(out, "  {:<40}{a:>13}{b:>13}", "rows");
+    }
+}
+
+impl ReadingEntry {
+    fn new(robot: &Robot, name: &str, value: f64) -> Self {
+        let (value, unit) = match robot.reading_kind(name) {
+            ReadingKind::Angle => (value.to_degrees(), "deg"),
+            ReadingKind::Length => (1e3 * value, "mm"),
+            ReadingKind::Factor => (value, ""),
+        };
+        ReadingEntry { reading: name.to_owned(), value, unit }
+    }
+}
+
+impl JointEntry {
+    fn test_words(&self) -> String {
+        let Some(test) = self.test else { return String::new() };
+        let words = if test.changed { "changed by more than noise" } else { "no change beyond noise" };
+        format!(": {words} (χ² {:.1}, noise up to {:.1})", test.chi_square, test.limit)
+    }
+}
+
+impl TipEntry {
+    fn words(&self) -> String {
+        let at = self.max_at.iter().map(|it| format!("{} {:.1} {}", it.reading, it.value, it.unit));
+        let at: Vec<String> = at.map(|it| it.trim_end().to_owned()).collect();
+        let expected = self.expected_mm.map_or_else(String::new, |expected| {
+            format!("; the expected errors of both together are {} mm", number(expected))
+        });
+        format!(
+            "the models' tips differ by {} mm and {} deg (RMS) on {} random configurations within the limits, at most by {} mm at {}{expected}",
+            number(self.rms_mm),
+            number(self.rms_deg),
+            self.configurations,
+            number(self.max_mm),
+            at.join(", ")
+        )
+    }
+}
