@@ -9,6 +9,7 @@ import csv
 import json
 import logging
 import os
+import secrets
 import signal
 import sys
 import tempfile
@@ -72,10 +73,10 @@ def by_none(work: Work, items: Sequence[Any], options: argparse.Namespace, folde
 
 def by_ray(work: Work, items: Sequence[Any], options: argparse.Namespace, folder: str) -> list[Row]:
     """Tasks of Ray Data, which asks the network for nothing."""
-    os.environ |= {"RAY_USAGE_STATS_ENABLED": "0", "RAY_AUTH_MODE": os.environ.get("RAY_AUTH_MODE", "disabled")}
+    os.environ["RAY_USAGE_STATS_ENABLED"] = "0"
     if not options.address:
-        # Keeps to 127.0.0.1, on Linux too.
-        os.environ["RAY_ENABLE_WINDOWS_OR_OSX_CLUSTER"] = "0"
+        # Keeps to 127.0.0.1, on Linux too, and to those who know the word.
+        os.environ |= {"RAY_ENABLE_WINDOWS_OR_OSX_CLUSTER": "0", "RAY_AUTH_MODE": "token", "RAY_AUTH_TOKEN": secrets.token_hex(32)}
     import ray
 
     def batch(columns: Any) -> Any:

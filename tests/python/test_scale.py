@@ -48,7 +48,7 @@ def left(run: str) -> list[int]:
     return found
 
 
-def run(script: str, *arguments: object, seconds: float = 900, code: int = 0) -> str:
+def run(script: str, *arguments: object, seconds: float = 2400, code: int = 0) -> str:
     """Runs an example; it has to end with this code, and all its processes with it. Gives what it says to people."""
     name = uuid.uuid4().hex
     command = [sys.executable, str(SCALE / script), *map(str, arguments)]
@@ -125,6 +125,19 @@ def test_stated_uncertainties_are_true(alone, tmp_path):
         assert abs(float(row["inside"]) - 0.95) < 0.0025 + 4 * scatter, row
         excess = 0.05 if row["what"] == "tip" else 0.017
         assert float(row["off"]) == pytest.approx(float(row["stated"]), rel=excess + 4 / (2 * count) ** 0.5), row
+
+
+def test_a_cluster_gets_model_and_functions_with_the_tasks(tmp_path):
+    """Its processes have the package, and nothing of the examples."""
+    pytest.importorskip(MODULES["dask"], reason="found no dask: its part of docs/scale.md is not tested")
+    from dask.distributed import LocalCluster
+
+    several = ["--trials", 200, "--chunk", 50]
+    run("monte_carlo.py", *several, "--out", tmp_path / "alone")
+    place = {"n_workers": 1, "threads_per_worker": 1, "host": "127.0.0.1", "dashboard_address": None}
+    with LocalCluster(**place, local_directory=tmp_path / "dask") as cluster:
+        run("monte_carlo.py", *several, "--out", tmp_path / "cluster", "--engine", "dask", "--address", cluster.scheduler_address)
+    assert_same(tmp_path / "alone", tmp_path / "cluster")
 
 
 @pytest.fixture(scope="module")

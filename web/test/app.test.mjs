@@ -219,6 +219,26 @@ describe("the page that calibrates", { skip: skipped }, () => {
     await page.context().close();
   });
 
+  test("options are those of the program, also where they change the exit code", async () => {
+    const page = await open(browser);
+    await drop(page, ELBOW);
+    await status(page, /^Calibrated/);
+    await page.click("#options summary");
+    for (const [limit, word, open] of [["1mm", "PASS", false], ["0.01mm", "FAIL", true]]) {
+      await page.getByLabel("Limits to keep").fill(limit);
+      await page.getByLabel("Corrections").selectOption("off");
+      await page.getByLabel("Further options").fill("--seed 3 --record 'customer=A B'");
+      await page.click("#calibrate");
+      await page.waitForFunction((limit) => document.getElementById("line").textContent.includes(limit), limit);
+      await status(page, /^Calibrated/);
+      assert.equal(await page.locator("#line").innerText(), `poecal calibrate robot.urdf points.csv --corrections off --accept ${limit} --seed 3 --record 'customer=A B' --out calibration`);
+      assert.match(await page.locator("#printed-text").textContent(), new RegExp(`acceptance +${word}: the calibrated model`));
+      assert.equal(await page.locator("#printed").evaluate((it) => it.open), open, "what is not to be used is shown opened");
+    }
+    assert.deepEqual(page.complaints, []);
+    await page.context().close();
+  });
+
   test("a calibration is judged by other measurements", async () => {
     const page = await open(browser);
     await drop(page, ELBOW);

@@ -4,6 +4,7 @@
 //! to JavaScript through plain memory; the module imports nothing. `web/npm/poecal.js` is the other side, with the same encoding.
 
 mod disk;
+#[cfg(target_arch = "wasm32")]
 mod exports;
 mod handle;
 mod message;

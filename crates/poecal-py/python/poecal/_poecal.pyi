@@ -29,6 +29,7 @@ __all__ = [
     "_robot",
     "calibrate",
     "check",
+    "compare",
     "convert",
     "identify",
     "init",
@@ -1540,6 +1541,19 @@ def check(robot: Robot, measurements: Measurements | None = None, *, frame: _Fra
     -------
     Findings
         What is understood, with mistakes under "diagnosis".
+    """
+def compare(first: Calibration, second: Calibration) -> Findings:
+    """Two calibrations of one robot: what changed, and what is noise.
+
+    Parameters
+    ----------
+    first, second
+        The calibrations.
+
+    Returns
+    -------
+    Findings
+        Whether more changed than noise makes (`changed`), each joint's change with its test, and how far the predictions are apart.
     """
 def convert(
     robot: Robot,

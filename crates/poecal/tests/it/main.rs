@@ -9,6 +9,7 @@ mod basin;
 mod blocks;
 mod cell;
 mod common;
+mod compared;
 mod compensation_map;
 mod components;
 mod corrections;
