@@ -120,7 +120,7 @@ pub(super) fn common_directions(
     let information = DMatrix::from_row_slice(n, n, &position_information(&finished.view, &sampled));
     let told = |k: usize| -> Option<CommonDirection> {
         let value = values[k];
-        if !(value > SHARE * total) {
+        if value <= SHARE * total || value <= 0.0 {
             return None;
         }
         let direction = vectors.column(k).into_owned();
