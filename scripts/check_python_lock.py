@@ -23,7 +23,8 @@ def listed(text):
         line = line.split("#")[0].strip()
         if not line:
             continue
-        name, ranges = re.fullmatch(r"([A-Za-z0-9._-]+)((?:>=|<|==).+)", line).groups()
+        # Extras choose further packages, which are locked as what they are.
+        name, ranges = re.fullmatch(r"([A-Za-z0-9._-]+)(?:\[[a-z,]+\])?((?:>=|<|==).+)", line).groups()
         ranges = [re.fullmatch(r"(>=|<|==)([0-9.]+)", part.strip()).groups() for part in ranges.split(",")]
         found[normal(name)] = ranges
     return found

@@ -1,6 +1,6 @@
 """Checks that one version is named everywhere before it is published.
 
-    python scripts/check_version.py         as it stands, in Cargo.toml, CHANGELOG.md and CITATION.cff
+    python scripts/check_version.py         as it stands, in Cargo.toml, CHANGELOG.md, CITATION.cff and the npm package
     python scripts/check_version.py v1.2.3  for a release: that tag, and a day in the changelog
 """
 
@@ -33,6 +33,9 @@ def complaints(tag=None):
     cited = one(r"^version: (\S+)", "CITATION.cff")[1].strip('"')
     if cited != version:
         yield f"CITATION.cff: found {cited}, expected {version}"
+    npm = one(r'^  "version": "([^"]+)"', "web/npm/package.json")[1]
+    if npm != version:
+        yield f"web/npm/package.json: found {npm}, expected {version}"
     if tag is not None:
         if tag != f"v{version}":
             yield f"the tag: found {tag}, expected v{version}"

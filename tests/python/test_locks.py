@@ -106,6 +106,7 @@ def test_the_lock_is_compared_with_the_list():
 
     assert found("# words\nnumpy>=2,<3\n") == []
     assert found("numpy>=2,<3\npin>=3\n") == ["pin: is listed and not locked"]
+    assert found("numpy[data]>=2,<3\n") == []
     assert found("numpy>=2.3,<3\n") == ["numpy 2.2.6: is locked, but >=2.3 is listed"]
     assert found("numpy>=1,<2.2.6\n") == ["numpy 2.2.6: is locked, but <2.2.6 is listed"]
     assert found("") == ["numpy 2.2.6: is locked as listed, but is not listed"]

@@ -53,6 +53,9 @@ def test_another_builder_makes_the_same_pages(tmp_path):
         settings = settings.replace(f"!ENV [{variable}]", folder)
     (tmp_path / "mkdocs.yml").write_text(settings)
     subprocess.run([sys.executable, ROOT / "scripts/docs/stage.py", tmp_path / "pages"], check=True)
+    # The page that calibrates, which scripts/build-docs builds or replaces.
+    (tmp_path / "pages/app").mkdir()
+    (tmp_path / "pages/app/index.html").write_text("<!DOCTYPE html>")
     # The package's texts alone, as scripts/build-docs takes them.
     (tmp_path / "package/poecal").mkdir(parents=True)
     for path in (ROOT / "crates/poecal-py/python/poecal").glob("*.py*"):

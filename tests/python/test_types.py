@@ -13,12 +13,15 @@ from program import ROOT
 from snippets import blocks
 
 EXAMPLES = sorted((ROOT / "examples/python").glob("*.py"))
+SCALE = sorted((ROOT / "examples/scale").glob("*.py"))
 CHECKS = {
     "stubs": ["mypy.stubtest", "poecal"],
     "package": ["mypy", "--strict", "-p", "poecal"],
     # Packages that an example needs may be absent, or without types.
     "examples": ["mypy", "--strict", "--ignore-missing-imports", "--scripts-are-modules", *EXAMPLES],
-    "bench": ["mypy", "--strict", ROOT / "crates/poecal-py/benches/overhead.py"],
+    # Ray and Dask have functions without types.
+    "scale": ["mypy", "--strict", "--allow-untyped-calls", "--ignore-missing-imports", "--scripts-are-modules", *SCALE],
+    "benches": ["mypy", "--strict", "--scripts-are-modules", *sorted((ROOT / "crates/poecal-py/benches").glob("*.py"))],
 }
 # What users may write, with the types that it has.
 USE = """

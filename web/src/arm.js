@@ -5,9 +5,6 @@ import { kindWords } from "./places.js";
 import { Scene } from "./scene.js";
 import { onColours } from "./theme.js";
 
-/** Share of random places that were not measured from which on they would hide the arm: they are then shown if asked for. */
-const MOST_REACH = 0.7;
-
 /** Fills `place` with the picture and its controls. */
 export function showArm(place, data) {
   let scene;
@@ -19,22 +16,21 @@ export function showArm(place, data) {
   }
   const stage = element("div", data.draws_instruments ? "stage stays" : "stage");
   const frame = element("div", "scene");
-  frame.append(scene.canvas, scene.paper);
-  if (scene.instruments) frame.append(scene.instruments.names);
-  stage.append(frame, colourLine(data), scaleLine(scene));
+  frame.append(scene.canvas, scene.paper, scene.labels.element);
   const panel = element("div", "panel");
   place.append(stage, panel);
   scene.follow(frame);
   const state = { readings: data.readings.map((_, k) => middle(data, k)), row: null };
   const view = { data, scene, state, listeners: [] };
-  panel.append(measurementControls(view), jointControls(view), sizeControls(view), shownControls(view), viewControls(view), stateText(view));
+  stage.append(frame, viewControls(view), colourLine(view), scaleLine(scene));
+  panel.append(measurementControls(view), jointControls(view), sizeControls(view), shownControls(view), stateText(view));
   scene.onChoice((row) => choose(view, row));
   onColours(() => {
     scene.recolour();
     scene.renderNow();
   });
   choose(view, 0);
-  if (data.draws_instruments) scene.look("oblique");
+  scene.look("oblique");
 }
 
 function element(name, className, text) {
@@ -130,7 +126,7 @@ function slider(label, { min, max, step, value, spoken }, changedTo) {
     tell();
   });
   tell();
-  line.append(name, output, input);
+  line.append(name, input, output);
   return { line, input, output, tell };
 }
 
@@ -163,7 +159,8 @@ function jointControls(view) {
       tell();
       const outside = value < sampled[0] - 1e-3 || value > sampled[1] + 1e-3;
       output.classList.toggle("outside", outside);
-      if (outside) output.textContent += ", not sampled";
+      line.title = outside ? "not sampled" : "";
+      if (outside) input.setAttribute("aria-valuetext", `${output.textContent}, not sampled`);
     });
     set.append(line);
   });
@@ -184,8 +181,8 @@ function sizeControls(view) {
     );
     set.append(line);
   };
-  add("nominal against calibrated", scene.axisScale, 1000, (value) => (scene.axisScale = value));
-  if (scene.has.arrows) add("residual arrows", scene.arrowScale, 1e5, (value) => (scene.arrowScale = value));
+  add("nominal arm", scene.axisScale, 1000, (value) => (scene.axisScale = value));
+  if (scene.has.arrows) add("arrows", scene.arrowScale, 1e5, (value) => (scene.arrowScale = value));
   return set;
 }
 
@@ -203,21 +200,33 @@ function shownControls(view) {
     const line = element("div", "row");
     line.append(label);
     set.append(line);
+    return box;
   };
   add("nominal arm", "nominal", true);
   add(residualWords(view.scene), "arrows", true);
-  add("where it could reach but was not measured", "reach", view.scene.reachShare < MOST_REACH);
-  if (view.scene.instruments) add(`${kindWords(view.data)}${kindWords(view.data) ? " and " : ""}names`, "instruments", true);
+  const reach = view.scene.reachShare > 0 && add("reachable, but not measured", "reach", false);
+  const kinds = deviceWords(view);
+  add(kinds ? `${kinds} and names` : "names", "instruments", true);
+  if (reach) reach.addEventListener("change", () => (view.keyOfReach.hidden = !reach.checked));
   return set;
 }
 
-function viewControls(view) {
-  const set = group("View");
-  const line = element("div", "row");
-  for (const name of ["oblique", "front", "side", "top"]) line.append(button(name, () => view.scene.look(name)));
-  line.append(button("nearer", () => view.scene.zoom(0.8)), button("farther", () => view.scene.zoom(1.25)));
-  set.append(line);
-  return set;
+/** Words on the buttons of the views. */
+const VIEWS = [["oblique", "from the corner"], ["front", "front"], ["side", "side"], ["top", "top"]];
+
+function viewControls({ scene }) {
+  const line = element("div", "row views");
+  line.setAttribute("role", "group");
+  line.setAttribute("aria-label", "View");
+  for (const [name, words] of VIEWS) line.append(button(words, () => scene.look(name)));
+  const all = button("all measurements", () => {
+    scene.look(scene.direction, !scene.looksAtAll);
+    all.setAttribute("aria-pressed", String(scene.looksAtAll));
+  });
+  all.setAttribute("aria-pressed", "false");
+  if (scene.near !== scene.all) line.append(all);
+  line.append(button("nearer", () => scene.zoom(0.8)), button("farther", () => scene.zoom(1.25)));
+  return line;
 }
 
 /** Where the arms end, in words that a screen reader hears when they have come to rest. */
@@ -233,6 +242,7 @@ function stateText(view) {
       return { name: end.name, place, words: place.map((value) => shown(1e3 * value, 5)).join(", "), apart: shown(1e3 * Math.hypot(...subtract(place, other))) };
     });
     text.dataset.tip = calibrated.at(data.tip).t.join(",");
+    text.dataset.shapes = JSON.stringify((data.shapes ?? []).map((shape) => calibrated.at(shape).t));
     text.dataset.ends = JSON.stringify(ends.map(({ name, place }) => [name, place]));
     const [{ words, apart }] = ends;
     const isTip = data.ends.length === 1 && data.ends[0] === data.tip;
@@ -243,17 +253,29 @@ function stateText(view) {
   return text;
 }
 
-function colourLine(data) {
+/** What is drawn beside the robot, in words. */
+function deviceWords({ data, scene }) {
+  if (data.draws_instruments) return kindWords(data);
+  return scene.instruments.isUnknown[0] || data.instruments[0]?.kind === "pair" ? "" : "measuring device";
+}
+
+function colourLine(view) {
+  const { data } = view;
   const line = element("ul", "keys");
   const keys = [["calibrated", "s0"], ["nominal", "soft"], ["axes of the joints", "s2"], ["chosen measurement", "alarm"]];
-  if (data.draws_instruments && kindWords(data)) keys.push([kindWords(data), "s3"]);
-  for (const [text, name] of keys) {
+  const devices = deviceWords(view);
+  if (devices) keys.push([devices, "s3"]);
+  const add = (text, name, className = "") => {
     const item = element("li");
-    const sign = element("i");
+    const sign = element("i", className);
     sign.style.setProperty("--key", `var(--${name})`);
     item.append(sign, text);
     line.append(item);
-  }
+    return item;
+  };
+  for (const [text, name] of keys) add(text, name);
+  view.keyOfReach = add("reachable, but not measured", "soft", "ring");
+  view.keyOfReach.hidden = true;
   return line;
 }
 
@@ -272,6 +294,6 @@ function scaleLine(scene) {
   const { name, unit } = scene.data.lead;
   const what = residualWords(scene, "arrows", "dots");
   const of = name === "position" ? "" : ` of ${name}`;
-  line.append(`${what[0].toUpperCase()}${what.slice(1)}: ${least}`, ramp, `${withUnit(most, unit)}${of} and more. Grid: ${square} mm. Drag to turn, wheel to come nearer.`);
+  line.append(`${what[0].toUpperCase()}${what.slice(1)}: ${least}`, ramp, `${withUnit(most, unit)}${of} and more. Squares of the grid: ${square} mm. Drag or arrow keys turn it, the wheel or + and − come nearer and go farther.`);
   return line;
 }

@@ -1,6 +1,6 @@
 // The charts of the rows.
 import { shown, withUnit } from "./data.js";
-import { bars, dots, keys, line, plot, readoutLine, steps } from "./plot.js";
+import { bars, dots, edge, keys, line, plot, readoutLine, steps } from "./plot.js";
 import { interpolate, normalQuantile, quantile, smooth } from "./statistics.js";
 
 /** Residuals by component: name, values, unit. */
@@ -25,7 +25,7 @@ function bySet({ rows }, order, values, size) {
   const of = (keep) => order.map((row) => (keep(row) ? values[row] : null));
   const series = [
     [dots("fitted", "s0", { size }), of((row) => !held_out[row])],
-    [dots("held out", "s1", { size }), of((row) => held_out[row])],
+    [dots("held out", "s1", { size: size + 1, open: true }), of((row) => held_out[row])],
     [dots("suspected", "alarm", { size: size + 5, ring: true }), of((row) => suspected[row])],
   ];
   const present = series.filter(([, column]) => column.some((value) => value !== null));
@@ -126,7 +126,7 @@ function joints(place, data) {
   choice.append("Residual", select);
   place.append(choice);
   const believed = inOrder(data, (row) => !data.rows.suspected[row]);
-  keys(place, [...bySet(data, believed, data.rows.error_mm, 5).series, line("smoothed", "ink")]);
+  keys(place, [...bySet(data, believed, data.rows.error_mm, 5).series, line("smoothed, with two standard deviations to each side", "ink")]);
   const grid = gridIn(place);
   const readout = readoutLine(place);
   const draw = () => {
@@ -150,7 +150,8 @@ function commonRange(values) {
 }
 
 /** The curve at sorted places, broken where nothing was measured for a good part of its range. */
-function curveAt(curve, xs) {
+function curveAt({ places, values }, xs) {
+  const curve = { places, values };
   const [first, last] = [curve.places[0], curve.places[curve.places.length - 1]];
   const gap = (last - first) * Math.max(1 / 20, 8 / xs.length);
   const apart = (k) => k > 0 && xs[k] - xs[k - 1] > gap;
@@ -169,10 +170,14 @@ function joint(cell, data, { believed, reading, k, text, values, unit, range, re
   }
   const { series, columns } = bySet(data, order, values, sized(data) - 1);
   const even = order.filter((row) => data.rows.even[row]);
+  let band;
   const curve = smooth(even.map((row) => column[row]), even.map((row) => values[row]));
   if (curve) {
-    series.push(line("smoothed", "ink"));
-    columns.push(curveAt(curve, order.map((row) => column[row])));
+    const xs = order.map((row) => column[row]);
+    const beside = (factor) => curveAt({ places: curve.places, values: curve.values.map((value, at) => value + factor * curve.spreads[at]) }, xs);
+    band = { series: [series.length + 2, series.length + 3], key: "ink" };
+    series.push(line("smoothed", "ink"), edge(), edge());
+    columns.push(curveAt(curve, xs), beside(2), beside(-2));
   }
   const swing = curve ? Math.max(...curve.values) - Math.min(...curve.values) : NaN;
   plot(cell, {
@@ -181,8 +186,9 @@ function joint(cell, data, { believed, reading, k, text, values, unit, range, re
     height: 190,
     range: () => range,
     series,
+    band,
     values: [order.map((row) => column[row]), ...columns],
-    spoken: `Residual ${text} over ${reading.name}; the smoothed curve swings by ${withUnit(swing, unit)}.`,
+    spoken: `Residual ${text} over ${reading.name}; the smoothed curve swings by ${withUnit(swing, unit)}, with a standard deviation of ${withUnit(curve ? quantile([...curve.spreads].sort((a, b) => a - b), 0.5) : NaN, unit)}.`,
     readout,
     tell: (index) => name(data, order[index]),
   });

@@ -10,7 +10,7 @@ export function readData() {
 export function complete(data) {
   data.factors = data.readings.map((reading) => (reading.unit === "mm" ? 1e-3 : Math.PI / 180));
   const { rows, tip, targets, instruments } = data;
-  for (const frame of [tip, ...targets, ...instruments]) {
+  for (const frame of [tip, ...targets, ...instruments, ...(data.shapes ?? [])]) {
     frame.pose = poseOf(frame.pose);
     frame.nominal_pose = frame.nominal_pose && poseOf(frame.nominal_pose);
   }

@@ -35,6 +35,45 @@ export function solid(opacity = 1, isSheet = false) {
   });
 }
 
+/** Solid things of flat faces, whose normals are those of the triangles as they are drawn. */
+export function faceted(opacity = 1) {
+  return new ShaderMaterial({
+    side: DoubleSide,
+    uniforms: { tint: { value: new Color() }, opacity: { value: opacity } },
+    transparent: opacity < 1,
+    vertexShader: `
+      varying vec3 place;
+      void main() {
+        // As the veil has it, to the last digit.
+        vec4 seen = modelViewMatrix * vec4(position, 1.0);
+        place = seen.xyz;
+        gl_Position = projectionMatrix * seen;
+      }`,
+    fragmentShader: `
+      varying vec3 place;
+      uniform vec3 tint;
+      uniform float opacity;
+      void main() {
+        vec3 normal = normalize(cross(dFdx(place), dFdy(place)));
+        gl_FragColor = vec4(tint * (0.55 + 0.35 * abs(normal.z) + 0.1 * normal.y), opacity);
+      }`,
+  });
+}
+
+/** What hides what is behind it, and is not seen itself: drawn before transparent things, it leaves only their front. */
+export function veil() {
+  return new ShaderMaterial({
+    side: DoubleSide,
+    transparent: true,
+    colorWrite: false,
+    vertexShader: "void main() { vec4 seen = modelViewMatrix * vec4(position, 1.0); gl_Position = projectionMatrix * seen; }",
+    polygonOffset: true,
+    polygonOffsetFactor: 1,
+    polygonOffsetUnits: 1,
+    fragmentShader: "void main() { gl_FragColor = vec4(0.0); }",
+  });
+}
+
 /** Lines of one colour. */
 export function flat() {
   return new ShaderMaterial({

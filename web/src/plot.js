@@ -36,15 +36,15 @@ function padded(_, least, most) {
   return [least - room, most + room];
 }
 
-/** Series of dots that follow the colour of `name`: discs, or rings around what is suspected. */
+/** Series of dots that follow the colour of `name`: discs, open ones that hide nothing, or rings around what is suspected. */
 export function dots(label, name, options = {}) {
-  const { size = 5, ring = false } = options;
-  return { label, key: name, ring, size, paths: () => null, points: { show: false } };
+  const { size = 5, ring = false, open = false } = options;
+  return { label, key: name, ring, open, size, paths: () => null, points: { show: false } };
 }
 
 /** Draws a series of dots. Small ones are squares, which thousands of take no time. */
 function drawDots(chart, index) {
-  const { key, ring, size } = chart.series[index];
+  const { key, ring, open, size } = chart.series[index];
   if (!size) return;
   const { ctx, bbox } = chart;
   const [xs, ys] = [chart.data[0], chart.data[index]];
@@ -55,17 +55,18 @@ function drawDots(chart, index) {
   ctx.clip();
   ctx.fillStyle = ctx.strokeStyle = colour(key);
   ctx.globalAlpha = ring ? 1 : 0.75;
-  ctx.lineWidth = 2 * devicePixelRatio;
+  ctx.lineWidth = (ring ? 2 : 1.25) * devicePixelRatio;
   ys.forEach((value, k) => {
     if (value === null || value === undefined) return;
     const [x, y] = [chart.valToPos(xs[k], "x", true), chart.valToPos(value, "y", true)];
-    if (!ring && size < 4) {
-      ctx.fillRect(x - side / 2, y - side / 2, side, side);
+    if (!ring && size < 5 - !open) {
+      if (open) ctx.strokeRect(x - side / 2, y - side / 2, side, side);
+      else ctx.fillRect(x - side / 2, y - side / 2, side, side);
       return;
     }
     ctx.beginPath();
     ctx.arc(x, y, side / 2, 0, 2 * Math.PI);
-    if (ring) ctx.stroke();
+    if (ring || open) ctx.stroke();
     else ctx.fill();
   });
   ctx.restore();
@@ -75,6 +76,11 @@ function drawDots(chart, index) {
 export function line(label, name, options = {}) {
   const { width = 2, dash, paths } = options;
   return { label, key: name, isLine: true, stroke: () => colour(name), width, dash, paths, points: { show: false } };
+}
+
+/** An edge of a band, which is not drawn itself. */
+export function edge() {
+  return { label: "", stroke: "transparent", width: 0, points: { show: false } };
 }
 
 /** Bars that follow the colour of `name`. */
@@ -99,7 +105,7 @@ export function steps(label, name) {
  * Draws a chart into `place`. `spoken` is what a screen reader says instead of the picture, `tell(index)` what stands below when the
  * cursor is near a point.
  */
-export function plot(place, { x, y, series, values, height = 260, range, spoken, readout, tell, wide = false }) {
+export function plot(place, { x, y, series, values, height = 260, range, spoken, readout, tell, wide = false, band }) {
   const target = document.createElement("div");
   place.append(target);
   const width = () => Math.max(target.clientWidth, 120);
@@ -113,6 +119,7 @@ export function plot(place, { x, y, series, values, height = 260, range, spoken,
       scales: { x: { time: false, range: wide ? undefined : padded }, y: range ? { range } : {} },
       axes: [axis(x, 27, 8), axis(y, 52, 4)],
       series: [{}, ...series],
+      bands: band ? [{ series: band.series, fill: () => `color-mix(in srgb, ${colour(band.key)} 15%, transparent)` }] : [],
       hooks: { drawSeries: [drawDots], setCursor: readout ? [(it) => say(it, readout, tell)] : [] },
     },
     values,
@@ -168,11 +175,11 @@ function say(chart, readout, tell) {
 export function keys(place, series) {
   const list = document.createElement("ul");
   list.className = "keys";
-  for (const { label, key, ring, isLine } of series) {
+  for (const { label, key, ring, open, isLine } of series) {
     const item = document.createElement("li");
     const sign = document.createElement("i");
     sign.style.setProperty("--key", `var(--${key})`);
-    sign.className = ring ? "ring" : isLine ? "line" : "";
+    sign.className = ring ? "ring" : open ? "open" : isLine ? "line" : "";
     item.append(sign, label);
     list.append(item);
   }

@@ -1,20 +1,28 @@
-// What is drawn of the arm: axes, links, arrows, and where it could reach.
+// What is drawn of the robot: both models, arrows, the base with its grid, and where it could reach.
 import {
-  BufferGeometry, Color, ColorManagement, ConeGeometry, CylinderGeometry, Float32BufferAttribute, Group, InstancedMesh, LinearSRGBColorSpace,
-  LineSegments, Matrix4, Mesh, PerspectiveCamera, Points, Quaternion, Scene as World, SphereGeometry, Vector3, WebGLRenderer,
+  BufferGeometry, Color, ColorManagement, CylinderGeometry, Float32BufferAttribute, Group, LinearSRGBColorSpace, LineSegments, Matrix4, Mesh,
+  PerspectiveCamera, Points, Scene as World, SphereGeometry, Vector3, WebGLRenderer,
 } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
+import { Arrows, roomOf } from "./arrows.js";
 import { readingsOf } from "./data.js";
 import { Instruments } from "./instruments.js";
 import { CALIBRATED, NOMINAL, act, add, configure, scale, subtract } from "./kinematics.js";
-import { dot, flat, solid } from "./materials.js";
-import { extent, hasPlace, roomForArrows } from "./places.js";
+import { Labels } from "./labels.js";
+import { dot, faceted, flat, solid, veil } from "./materials.js";
+import { extent, hasPlace } from "./places.js";
+import { REACH_POINTS, unsampled } from "./reach.js";
+import { Figure, Looks, farther } from "./shapes.js";
 import { quantile } from "./statistics.js";
 import { colour } from "./theme.js";
+import { DIRECTIONS, framed, middlePlaces } from "./view.js";
 
-const REACH_POINTS = 2500;
 const ASPECT = 0.72;
-const UP = new Vector3(0, 1, 0);
+/** Angle (radians) and share of the distance that a key moves the eye. */
+const TURN = Math.PI / 24;
+const NEARER = 0.8;
+/** Radius of a tool's rod as a part of the picture's size. */
+const TOOL = 0.006;
 
 // Colours are those of the style sheet, as they are.
 ColorManagement.enabled = false;
@@ -29,7 +37,7 @@ export class Scene {
     this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
     this.canvas = this.renderer.domElement;
     this.canvas.setAttribute("role", "img");
-    this.canvas.setAttribute("aria-label", "The arm in three dimensions, nominal and calibrated, with residual arrows. The text beside says where its tip is.");
+    this.canvas.setAttribute("aria-label", "The robot in three dimensions, nominal and calibrated, with residual arrows. The text beside says where its tip is. Arrow keys turn it, plus and minus come nearer and go farther.");
     // What is printed: paper takes the last picture that was on the screen, which may be in other colours.
     this.paper = document.createElement("canvas");
     this.paper.className = "paper";
@@ -38,11 +46,13 @@ export class Scene {
     this.world = new World();
     this.camera = new PerspectiveCamera(35, 1 / ASPECT, 0.01, 100);
     this.camera.up.set(0, 0, 1);
+    this.labels = new Labels();
     this.measure();
     this.build();
     this.controls = new OrbitControls(this.camera, this.canvas);
     this.controls.enablePan = false;
     this.controls.addEventListener("change", () => this.render());
+    this.listenToKeys();
     this.look("oblique");
     // The text and the charts come first: shaders take their time where a processor has to draw.
     setTimeout(() => {
@@ -55,28 +65,20 @@ export class Scene {
   /** Sizes that everything else follows. */
   measure() {
     const { rows } = this.data;
-    const { count } = rows;
     const errors = rows.error_mm.filter((error) => error !== null).sort((a, b) => a - b);
-    const isArrow = (shift) => shift !== null;
-    this.has = { arrows: rows.residual.some(isArrow), dots: !rows.residual.every(isArrow) };
     const ends = [[0, 0, 0], ...rows.predicted, ...elbows(this.data)];
     const bounds = boundsOf(ends);
     this.size = Math.max(Math.hypot(...bounds.map(([a, b]) => b - a)) * 0.6, 0.1);
     this.centre = middleOf(bounds);
-    const [xs, ys, zs] = bounds;
-    // What the views show: all of this, and the robot as it is drawn.
+    // What the views show: the robot as it is drawn with what was measured near it, or all of this.
     this.drawn = [];
-    this.fitted = xs.flatMap((x) => ys.flatMap((y) => zs.map((z) => [x, y, z])));
-    if (this.data.draws_instruments) {
-      this.fitted = [...ends, ...nearInstruments(this.data, this.centre, this.size)];
-      this.centre = middleOf(boundsOf(this.fitted));
-    }
+    this.near = middlePlaces(rows.predicted);
+    this.all = ends;
+    if (this.data.draws_instruments) this.near = this.all = [...ends, ...nearInstruments(this.data, this.centre, this.size)];
     this.legend = { least: 0, most: quantile(errors, 0.95) || 1e-9, square: 0 };
     this.legend.square = 1e3 * [1, 0.5, 0.2, 0.1, 0.05, 0.02, 0.01].find((it) => it <= this.size / 3 || it === 0.01);
-    // Many arrows are shorter, so that they stay apart.
-    this.room = Math.min(0.09 * this.size * Math.min(1, Math.sqrt(300 / count)), ...this.data.instruments.map((it) => roomForArrows(it, this.size)));
-    const length = this.room;
-    this.arrowScale = round(length / (this.legend.most * 1e-3));
+    this.room = roomOf(this.data, this.size);
+    this.arrowScale = round(this.room / (this.legend.most * 1e-3));
     this.axisScale = round((0.05 * this.size) / this.deviation());
   }
 
@@ -92,59 +94,32 @@ export class Scene {
   }
 
   build() {
-    this.materials = { calibrated: solid(), nominal: solid(0.55), axis: solid(), chosen: solid(), arrow: solid(), grid: flat(), reach: dot(this.size * 0.012) };
-    this.parts = { calibrated: new Group(), nominal: new Group() };
-    this.buildArrows();
+    this.materials = {
+      calibrated: solid(), nominal: faceted(0.3), axis: solid(), thin: solid(0.55), chosen: solid(), arrow: solid(), grid: flat(), mark: solid(),
+      shape: faceted(), x: solid(), y: solid(), z: solid(), reach: dot(this.size * 0.012),
+    };
+    const { calibrated, shape, axis, nominal, thin } = this.materials;
+    const looks = new Looks(this.data, this.size);
+    const hides = veil();
+    this.figures = [new Figure(looks, { rods: calibrated, shapes: shape, axes: axis }), new Figure(looks, { rods: nominal, shapes: nominal, axes: thin, before: hides })];
+    this.parts = { calibrated: this.figures[0].group, nominal: this.figures[1].group };
+    this.arrows = new Arrows(this.data, this.size, this.room, this.materials.arrow);
+    this.has = this.arrows.has;
+    this.parts.arrows = this.arrows.group;
+    this.chosen = new Mesh(new SphereGeometry(this.size * 0.013, 16, 12), this.materials.chosen);
+    this.world.add(this.parts.calibrated, this.parts.nominal, this.parts.arrows, this.chosen);
     this.buildReach();
     this.buildGrid();
+    this.buildBase();
     this.buildInstruments();
-    this.chosen = new Mesh(new SphereGeometry(this.size * 0.013, 16, 12), this.materials.chosen);
-    this.world.add(this.parts.calibrated, this.parts.nominal, this.chosen);
+    this.names = this.data.joints.map((joint) => this.labels.add("joint", joint.name));
     this.recolour();
   }
 
-  buildArrows() {
-    const { rows } = this.data;
-    const width = Math.min(this.size * (rows.count > 800 ? 0.0016 : 0.003), this.room / 30);
-    this.dots = new InstancedMesh(new SphereGeometry(this.size * (rows.count > 800 ? 0.004 : 0.0075), 10, 8), this.materials.arrow, rows.count);
-    const shaft = new CylinderGeometry(width, width, 1, 5);
-    const head = new ConeGeometry(width * 3, 1, 8);
-    this.shafts = new InstancedMesh(shaft, this.materials.arrow, rows.count);
-    this.heads = new InstancedMesh(head, this.materials.arrow, rows.count);
-    this.parts.arrows = new Group();
-    this.parts.arrows.add(this.shafts, this.heads);
-    if (this.has.dots) this.parts.arrows.add(this.dots);
-    this.headLength = width * 8;
-    this.world.add(this.parts.arrows);
-  }
-
   buildInstruments() {
-    if (!this.data.draws_instruments) return;
-    this.instruments = new Instruments(this.data, this.size);
+    this.instruments = new Instruments(this.data, this.size, this.labels);
     this.parts.instruments = this.instruments.group;
     this.world.add(this.parts.instruments);
-  }
-
-  /** Puts every arrow where its target was predicted, or a dot where the residual is no shift in the picture. */
-  placeArrows() {
-    const { rows } = this.data;
-    rows.predicted.forEach((from, row) => {
-      const shift = rows.residual[row];
-      this.dots.setMatrixAt(row, shift ? new Matrix4().makeScale(0, 0, 0) : new Matrix4().makeTranslation(...from));
-      const arrow = scale(shift ?? [0, 0, 0], 1e-3 * this.arrowScale);
-      const length = Math.max(Math.hypot(...arrow), 1e-6);
-      const direction = new Vector3(...arrow).divideScalar(length);
-      const turn = new Quaternion().setFromUnitVectors(UP, direction);
-      const head = Math.min(this.headLength, 0.5 * length);
-      const at = (share) => new Vector3(...from).addScaledVector(direction, share);
-      this.shafts.setMatrixAt(row, new Matrix4().compose(at((length - head) / 2), turn, new Vector3(1, length - head, 1)));
-      this.heads.setMatrixAt(row, new Matrix4().compose(at(length - head / 2), turn, new Vector3(head / this.headLength, head, head / this.headLength)));
-    });
-    for (const mesh of [this.shafts, this.heads, this.dots]) {
-      mesh.instanceMatrix.needsUpdate = true;
-      mesh.computeBoundingSphere();
-    }
-    this.placedScale = this.arrowScale;
   }
 
   /** Random places within the limits that are farther from every measurement than those are from each other. */
@@ -160,22 +135,18 @@ export class Scene {
   recolour() {
     const of = (name) => new Color(colour(name));
     this.renderer.setClearColor(of("card"));
-    const colours = { calibrated: "s0", nominal: "soft", axis: "s2", chosen: "alarm", grid: "rule", reach: "soft" };
+    const colours = {
+      calibrated: "s0", shape: "s0", nominal: "soft", axis: "s2", thin: "soft", chosen: "alarm", grid: "rule", mark: "soft", reach: "soft", x: "alarm", y: "s2", z: "s0",
+    };
     for (const [material, name] of Object.entries(colours)) this.materials[material].uniforms.tint.value = of(name);
     const ofInstruments = { body: "s3", x: "alarm", y: "s2", z: "s0", sight: "alarm", plumb: "soft", wire: "rule", sheet: "s3", edge: "s3" };
-    for (const [material, name] of Object.entries(ofInstruments)) if (this.instruments) this.instruments.materials[material].uniforms.tint.value = of(name);
+    for (const [material, name] of Object.entries(ofInstruments)) this.instruments.materials[material].uniforms.tint.value = of(name);
     // One hue, from near the page's colour to full: the larger the residual, the stronger.
     const [least, most] = [of("s1").lerp(of("card"), 0.7), of("s1").lerp(of("ink"), 0.15)];
     const root = document.documentElement.style;
     root.setProperty("--arrow-least", `#${least.getHexString()}`);
     root.setProperty("--arrow-most", `#${most.getHexString()}`);
-    this.data.rows.error_mm.forEach((error, row) => {
-      const shade = least.clone().lerp(most, Math.min(error / this.legend.most, 1));
-      this.shafts.setColorAt(row, shade);
-      this.heads.setColorAt(row, shade);
-      this.dots.setColorAt(row, shade);
-    });
-    for (const mesh of [this.shafts, this.heads, this.dots]) mesh.instanceColor.needsUpdate = true;
+    this.arrows.recolour(least, most, this.legend.most);
     this.render();
   }
 
@@ -187,6 +158,21 @@ export class Scene {
     const geometry = new BufferGeometry();
     geometry.setAttribute("position", new Float32BufferAttribute(places, 3));
     this.world.add(new LineSegments(geometry, this.materials.grid));
+    // How large a square is stands at the side of one near the base.
+    const side = new CylinderGeometry(this.size * 0.003, this.size * 0.003, square, 8).rotateZ(Math.PI / 2).translate(1.5 * square, -square, 0);
+    this.world.add(new Mesh(side, this.materials.mark));
+    this.labels.add("grid", `${this.legend.square} mm`).place.set(1.5 * square, -square, 0);
+  }
+
+  /** The axes of the base's frame, with their names. */
+  buildBase() {
+    const length = this.size * 0.16;
+    const rod = new CylinderGeometry(this.size * 0.005, this.size * 0.005, length, 8).translate(0, length / 2, 0);
+    const turns = { x: new Matrix4().makeRotationZ(-Math.PI / 2), y: new Matrix4(), z: new Matrix4().makeRotationX(Math.PI / 2) };
+    for (const [name, turn] of Object.entries(turns)) {
+      this.world.add(new Mesh(rod.clone().applyMatrix4(turn), this.materials[name]));
+      this.labels.add(`axis ${name}`, name).place.set(0, length, 0).applyMatrix4(turn);
+    }
   }
 
   /** Shows both arms at these readings (radians, metres), and the measurement that was chosen. */
@@ -205,41 +191,27 @@ export class Scene {
     const nominalPlace = (frame) => (frame.on === null ? nominal.at(frame).t : add(nominal.at(frame).t, subtract(axes[frame.on].point, nominal.axes[frame.on].point)));
     const links = this.links(calibrated.axes, placeOf);
     const target = targets[rows.target[row]];
-    if (target && !target.nominal_pose) links.push([placeOf(tip), placeOf(target)]);
-    for (const { on, pose } of mounted) if (on === null) links.push([pose.t, pose.t]);
-    const nominalLinks = this.links(axes, nominalPlace);
-    if (this.data.draws_instruments) this.drawn = [...links, ...nominalLinks].flat();
-    this.fill(this.parts.calibrated, calibrated.axes, links, this.materials.calibrated, this.materials.axis);
-    this.fill(this.parts.nominal, axes, nominalLinks, this.materials.nominal, this.materials.nominal);
+    if (target && !target.nominal_pose) links.push({ on: tip.on, from: placeOf(tip), to: placeOf(target), thick: TOOL });
+    for (const { on, pose } of mounted) if (on === null) links.push({ on, from: pose.t, to: pose.t, thick: 2 * TOOL });
+    const [own, other] = [calibrated, nominal].map((model) => (this.data.shapes ?? []).map(model.at));
+    const shown = this.figures[0].pose({ axes: calibrated.axes, links, poses: own });
+    const away = this.figures[1].pose({ axes, links: this.links(axes, nominalPlace), poses: other.map((pose, k) => farther(pose, own[k], this.axisScale)) });
+    this.drawn = this.data.draws_instruments ? [...shown, ...away] : shown;
+    calibrated.axes.forEach(({ point, direction }, k) => this.names[k].place.set(...add(point, scale(direction, this.size * 0.09))));
     const seen = row === null ? null : rows.predicted[row];
     this.chosen.visible = row !== null;
     if (seen) this.chosen.position.set(...seen);
-    this.instruments?.pose(instruments.map(calibrated.at), mounted.map(placeOf), rows.instrument[row], { seen, tip: placeOf(tip) });
-    if (this.placedScale !== this.arrowScale) this.placeArrows();
+    this.instruments.pose(instruments.map(calibrated.at), mounted.map(placeOf), rows.instrument[row], { seen, tip: placeOf(tip) });
+    this.arrows.place(this.arrowScale);
     this.render();
   }
 
-  /** Links from the axis of each body to those of the joints that stand on it, and to where its arm ends. */
+  /** Links of each body from its axis to those of the joints that stand on it, and to where its arm ends. */
   links(axes, placeOf) {
     const from = (on) => (on === null ? [0, 0, 0] : axes[on].point);
     const { joints, ends } = this.data;
-    return [...joints.map((joint, k) => [from(joint.on), axes[k].point]), ...ends.map((end) => [from(end.on), placeOf(end)])];
-  }
-
-  /** Links and the axes as rods, in place of what was there. */
-  fill(group, axes, links, linkMaterial, axisMaterial) {
-    for (const child of group.children) child.geometry.dispose();
-    group.clear();
-    for (const [from, to] of links) {
-      rod(group, from, to, this.size * 0.009, linkMaterial);
-      const joint = new Mesh(new SphereGeometry(this.size * 0.0125, 12, 8), linkMaterial);
-      joint.position.set(...to);
-      group.add(joint);
-    }
-    for (const { point, direction } of axes) {
-      const half = scale(direction, this.size * 0.075);
-      rod(group, subtract(point, half), add(point, half), this.size * 0.0035, axisMaterial);
-    }
+    const toJoints = joints.map(({ on }, k) => ({ on, from: from(on), to: axes[k].point }));
+    return [...toJoints, ...ends.map((end) => ({ on: end.on, from: from(end.on), to: placeOf(end) })).filter(({ on }) => on !== null)];
   }
 
   show(part, on) {
@@ -248,35 +220,40 @@ export class Scene {
     this.render();
   }
 
-  look(name) {
-    const directions = { oblique: [1, -1.25, 0.75], front: [0, -1.7, 0.02], side: [1.7, 0, 0.02], top: [0.001, -0.02, 1.7] };
-    const direction = new Vector3(...directions[name]).normalize();
-    const { centre, distance } = this.fit(direction);
+  /** Looks from a direction at the robot and what is near, or at `all`. */
+  look(name, all = this.looksAtAll) {
+    this.looksAtAll = all;
+    this.direction = name;
+    const direction = new Vector3(...DIRECTIONS[name]).normalize();
+    const places = [...this.drawn, ...(all ? this.all : this.near)];
+    const { centre, distance } = framed(places.length ? places : this.all, direction, { half: Math.tan((this.camera.fov * Math.PI) / 360), aspect: ASPECT });
     this.camera.position.copy(centre).addScaledVector(direction, distance);
     this.controls.target.copy(centre);
     this.controls.update();
     this.render();
   }
 
-  /** From how far away, and about which centre, everything is seen from a direction. */
-  fit(direction) {
-    const right = new Vector3(0, 0, 1).cross(direction).normalize();
-    const up = direction.clone().cross(right);
-    const half = Math.tan((this.camera.fov * Math.PI) / 360);
-    const centre = new Vector3(...this.centre);
-    const places = [...this.fitted, ...this.drawn].map((place) => new Vector3(...place).sub(centre));
-    const room = this.data.draws_instruments ? 1.15 : 1.02;
-    const distance = () => room * Math.max(...places.map((at) => at.dot(direction) + Math.max(Math.abs(at.dot(up)), Math.abs(at.dot(right)) * ASPECT) / half));
-    if (!this.data.draws_instruments) return { centre, distance: distance() };
-    // As much room on the left as on the right, and below as above.
-    for (const side of [right, up, right, up, right, up]) {
-      const from = distance();
-      const parts = places.map((at) => at.dot(side) / (from - at.dot(direction)));
-      const shift = side.clone().multiplyScalar((from * (Math.min(...parts) + Math.max(...parts))) / 2);
-      centre.add(shift);
-      for (const at of places) at.sub(shift);
-    }
-    return { centre, distance: distance() };
+  /** Arrow keys turn, plus and minus come nearer and go farther. */
+  listenToKeys() {
+    this.canvas.tabIndex = 0;
+    const turns = { ArrowLeft: [-TURN, 0], ArrowRight: [TURN, 0], ArrowUp: [0, -TURN], ArrowDown: [0, TURN] };
+    this.canvas.addEventListener("keydown", (event) => {
+      if (turns[event.key]) this.turn(...turns[event.key]);
+      else if (event.key === "+" || event.key === "-") this.zoom(event.key === "+" ? NEARER : 1 / NEARER);
+      else return;
+      event.preventDefault();
+    });
+  }
+
+  /** Moves the eye about what it looks at: around, and away from the vertical. */
+  turn(around, down) {
+    const offset = this.camera.position.clone().sub(this.controls.target);
+    const [length, tilt, about] = [offset.length(), Math.acos(offset.z / offset.length()), Math.atan2(offset.y, offset.x)];
+    const polar = Math.min(Math.max(tilt + down, 0.01), Math.PI - 0.01);
+    offset.set(Math.sin(polar) * Math.cos(about + around), Math.sin(polar) * Math.sin(about + around), Math.cos(polar)).multiplyScalar(length);
+    this.camera.position.copy(this.controls.target).add(offset);
+    this.controls.update();
+    this.render();
   }
 
   zoom(factor) {
@@ -339,7 +316,7 @@ export class Scene {
   renderNow() {
     if (!this.begun) return;
     this.renderer.render(this.world, this.camera);
-    this.instruments?.write(this.camera, this.canvas.clientWidth, this.canvas.clientHeight);
+    this.labels.write(this.camera, this.canvas.clientWidth, this.canvas.clientHeight);
   }
 }
 
@@ -370,50 +347,8 @@ function nearInstruments({ draws_instruments, instruments }, centre, size) {
   return places.filter((place) => Math.hypot(...subtract(place, centre)) < 2.5 * size);
 }
 
-function rod(group, from, to, radius, material) {
-  const [a, b] = [new Vector3(...from), new Vector3(...to)];
-  const length = a.distanceTo(b);
-  if (length < 1e-6) return;
-  const mesh = new Mesh(new CylinderGeometry(radius, radius, length, 10), material);
-  mesh.position.copy(a).lerp(b, 0.5);
-  mesh.quaternion.setFromUnitVectors(UP, b.sub(a).divideScalar(length));
-  group.add(mesh);
-}
-
 /** Two digits of a scale that is at least 1. */
 function round(value) {
   const power = 10 ** Math.floor(Math.log10(Math.max(value, 1)));
   return Math.max(1, Math.min(Math.round((value / power) * 2) / 2, 10) * power);
-}
-
-/** Numbers from 0 to 1 that are the same each time the page is opened (mulberry32). */
-function generator(seed) {
-  let state = seed;
-  return () => {
-    state = (state + 0x6d2b79f5) | 0;
-    let value = Math.imul(state ^ (state >>> 15), 1 | state);
-    value = (value + Math.imul(value ^ (value >>> 7), 61 | value)) ^ value;
-    return ((value ^ (value >>> 14)) >>> 0) / 4294967296;
-  };
-}
-
-/** Places of what moves in random configurations within the limits, without those near to where it was measured. */
-function unsampled(data, size) {
-  const next = generator(1);
-  const cell = size / 7;
-  const key = (place) => place.map((value) => Math.floor(value / cell)).join(",");
-  const sampled = new Set();
-  for (const place of data.rows.reached) {
-    for (const dx of [-1, 0, 1]) for (const dy of [-1, 0, 1]) for (const dz of [-1, 0, 1]) sampled.add(key(add(place, [dx * cell, dy * cell, dz * cell])));
-  }
-  const ranges = data.readings.map((_, k) => {
-    const joint = data.joints.find((it) => it.reading === k);
-    const limits = joint.limits && joint.limits[1] - joint.limits[0] < 100 ? joint.limits : joint.sampled ?? [0, 0];
-    return limits.map((limit) => (limit - joint.offset) / joint.multiplier);
-  });
-  const places = Array.from({ length: REACH_POINTS }, (_, k) => {
-    const readings = ranges.map(([a, b]) => a + (b - a) * next());
-    return configure(data, readings, CALIBRATED).at(data.reaching[k % data.reaching.length]).t;
-  });
-  return places.filter((place) => !sampled.has(key(place)));
 }

@@ -26,7 +26,8 @@ export function normalQuantile(p) {
 
 /**
  * A smooth curve through points sorted by x: straight lines fitted locally, the nearer points counting more (cleveland1979), at `count`
- * places from the first x to the last. About thirty points make each value, at most a quarter of the range wide.
+ * places from the first x to the last. About thirty points make each value, at most a quarter of the range wide. `spreads` are standard
+ * deviations of the values, by the scatter of the points about the curve.
  */
 export function smooth(xs, ys, count = 150) {
   const points = xs.map((x, k) => [x, ys[k]]).filter(([, y]) => y !== null);
@@ -36,11 +37,13 @@ export function smooth(xs, ys, count = 150) {
   const share = Math.min(0.25, Math.max(0.05, 30 / points.length));
   // Wide enough for a share of the range, and for at least eight points.
   const places = Array.from({ length: count }, (_, k) => first + ((last - first) * k) / (count - 1));
-  const values = places.map((place) => {
+  const found = places.map((place) => {
     const width = Math.max((share * (last - first)) / 2, 1.01 * distanceOfNearest(points, place, 8));
     return local(points, place, width);
   });
-  return { places, values };
+  const values = found.map(([value]) => value);
+  const scatter = Math.sqrt(points.reduce((sum, [x, y]) => sum + (y - interpolate({ places, values }, x)) ** 2, 0) / Math.max(points.length - 2 / share, 1));
+  return { places, values, spreads: found.map(([, gain]) => scatter * gain) };
 }
 
 /** Within which distance of a place `count` points lie. */
@@ -54,12 +57,15 @@ function distanceOfNearest(points, place, count) {
   return nearest;
 }
 
+/** The value of the line at a place, and its standard deviation over that of a point. */
 function local(points, place, width) {
   let [s, sx, sy, sxx, sxy] = [0, 0, 0, 0, 0];
+  const near = [];
   for (const [x, y] of points) {
     const d = (x - place) / width;
     if (Math.abs(d) >= 1) continue;
     const weight = (1 - Math.abs(d) ** 3) ** 3;
+    near.push([d, weight]);
     s += weight;
     sx += weight * d;
     sy += weight * y;
@@ -67,7 +73,10 @@ function local(points, place, width) {
     sxy += weight * d * y;
   }
   const determinant = s * sxx - sx * sx;
-  return determinant > 1e-9 * s * s ? (sxx * sy - sx * sxy) / determinant : sy / s;
+  const isLine = determinant > 1e-9 * s * s;
+  const share = ([d, weight]) => (isLine ? (weight * (sxx - sx * d)) / determinant : weight / s);
+  const gain = Math.sqrt(near.reduce((sum, point) => sum + share(point) ** 2, 0));
+  return [isLine ? (sxx * sy - sx * sxy) / determinant : sy / s, gain];
 }
 
 /** The value of a curve at `x`, by straight lines between its places. */

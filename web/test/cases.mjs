@@ -7,7 +7,7 @@ import { fileURLToPath } from "node:url";
 import { complete } from "../src/data.js";
 
 export const ROOT = fileURLToPath(new URL("../..", import.meta.url));
-const PROGRAM = process.env.POECAL_PROGRAM ?? join(ROOT, "target/release/poecal");
+export const PROGRAM = process.env.POECAL_PROGRAM ?? join(ROOT, "target/release/poecal");
 const ELBOW = join(ROOT, "examples/elbow");
 
 if (!existsSync(PROGRAM)) throw new Error(`found no program at ${PROGRAM}; build it (cargo build --release -p poecal-cli), or name it: POECAL_PROGRAM=/path`);
@@ -26,7 +26,8 @@ export function dataOf(out) {
   return complete(JSON.parse(page.split('id="report-data">')[1].split("</script>")[0]));
 }
 
-function calibrate(name, ...words) {
+/** A calibration's folder. */
+export function calibrate(name, ...words) {
   const out = join(folder, name);
   try {
     poecal("calibrate", ...words, "--out", out, "--quiet");

@@ -151,10 +151,12 @@ describe("a slider", { skip }, () => {
 });
 
 describe("the picture of a robot without branches", { skip }, () => {
-  test("shows no names", async () => {
+  test("names its joints and its measuring device", async () => {
     const [, make] = CASES[0];
     const page = await open(browser, join(make(), "report.html"));
-    assert.equal(await page.locator(".names").count(), 0);
+    const names = (kind) => page.$$eval(`.names .${kind}`, (all) => all.map((it) => it.dataset.name));
+    assert.deepEqual([await names("instrument"), await names("target")], [["measuring device"], []]);
+    assert.deepEqual(await names("joint"), [1, 2, 3, 4, 5, 6].map((k) => `joint${k}`));
     assert.match(await page.locator("#tip").textContent(), /^Tip at /);
     await page.close();
   });

@@ -25,18 +25,20 @@ pub(crate) use words::{ExportForm, PredictedModel, ProgramLanguage};
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
-use poecal::calibration::{DeviceFrameKnowledge, Level};
+use poecal::calibration::{AcceptedModel, DeviceFrameKnowledge, Level, Limit};
 use poecal::io::model::ModelFormat;
 use poecal::io::predictions::PredictionFrame;
 
 use crate::quantity::threads;
 use shared::{ChainArgs, ColumnArgs, Meaning, OutFile, Reading};
-use words::{EXPORT_FORMAT, FORM, FRAME, PREDICT_IN, PREDICTED_MODEL, REQUIRED_LEVEL, one_of};
+use words::{
+    ACCEPTED_MODEL, EXPORT_FORMAT, FORM, FRAME, PREDICT_IN, PREDICTED_MODEL, REQUIRED_LEVEL, one_of,
+};
 
 /// What the program ends with.
 const EXIT_CODES: &str = "Exit codes: 0 done, and a calibration is usable; 1 there are results, but the verdict is `do not use` or \
-                          worse than --require asks for, or they could not be printed; 2 refused: wrong input or usage, nothing was \
-                          written; 3 no result at all";
+                          worse than --require asks for, a limit of --accept is not shown to be kept, or they could not be \
+                          printed; 2 refused: wrong input or usage, nothing was written; 3 no result at all";
 
 /// Calibrates robot arms: URDF and tracker, CMM or camera measurements in, a URDF that matches the real arm out.
 #[derive(Debug, Parser)]
@@ -145,6 +147,13 @@ pub(crate) struct Validate {
     /// (RMS) is at most twice the expected one; `inside_sampled_range` if that holds of the rows inside the sampled range
     #[arg(long, value_parser = one_of(REQUIRED_LEVEL), value_name = "VERDICT")]
     pub(crate) require: Option<Level>,
+    /// Limits that the errors shall keep, like 0.2mm or 0.2mm,max:0.5mm,0.05deg: rms (the default), p95 or max of all errors in a unit. End with
+    /// code 1 unless each is shown to be kept, with 95 % confidence
+    #[arg(long, value_name = "[rms:|p95:|max:]LIMIT", value_delimiter = ',')]
+    pub(crate) accept: Vec<Limit>,
+    /// Which model shall keep them: the corrected one, if there is one, or the calibrated one, which a URDF holds
+    #[arg(long, value_parser = one_of(ACCEPTED_MODEL), default_value = "corrected")]
+    pub(crate) accept_model: AcceptedModel,
     /// Print JSON instead of the table
     #[arg(long)]
     pub(crate) json: bool,

@@ -2,16 +2,15 @@
 
 use std::cell::RefCell;
 use std::fmt::Display;
-use std::io::{ErrorKind, IsTerminal as _, Write as _};
+use std::io::{ErrorKind, Write as _};
 use std::path::Path;
-use std::time::Duration;
 
 use anstream::{AutoStream, ColorChoice};
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use poecal::Result;
 use poecal::io::output::FilePlace;
 use poecal::text::{visible, visible_lines};
 
+use crate::progress::Progress;
 use crate::{DONE, Said, WORSE, style};
 
 thread_local! {
@@ -166,31 +165,27 @@ impl Console {
     }
 
     /// A progress bar of `steps` on a terminal; nothing elsewhere.
-    pub(crate) fn progress(&self, steps: u64) -> ProgressBar {
-        let draws =
-            std::io::stderr().is_terminal() && std::env::var_os("TERM").is_none_or(|term| term != "dumb");
-        if self.quiet || !draws {
-            return ProgressBar::with_draw_target(Some(steps), ProgressDrawTarget::hidden());
-        }
-        let bar = ProgressBar::new(steps);
-        if let Ok(style) = ProgressStyle::with_template("{bar:20} {elapsed} {wide_msg}") {
-            bar.set_style(style);
-        }
-        bar.enable_steady_tick(Duration::from_millis(200));
-        bar
+    pub(crate) fn progress(&self, steps: u64) -> Progress {
+        Progress::new(steps, self.quiet)
     }
 }
 
-/// Width of standard output, if it is a terminal.
+/// Width of a stream, if it is a terminal.
 #[cfg(unix)]
 fn width_of(stream: &impl std::os::fd::AsFd) -> Option<usize> {
     terminal_size::terminal_size_of(stream).map(|(terminal_size::Width(width), _)| usize::from(width))
 }
 
-/// Width of standard error, if it is a terminal.
+/// Width of a stream, if it is a terminal.
 #[cfg(windows)]
 fn width_of(stream: &impl std::os::windows::io::AsHandle) -> Option<usize> {
     terminal_size::terminal_size_of(stream).map(|(terminal_size::Width(width), _)| usize::from(width))
+}
+
+/// Elsewhere there are no terminals.
+#[cfg(not(any(unix, windows)))]
+fn width_of<S>(_: &S) -> Option<usize> {
+    None
 }
 
 /// A message on standard error: one line, or on a terminal as many as its width requires.

@@ -1,12 +1,13 @@
 //! The `poecal` program as a function from arguments to an exit code. Commands read files, call the library and print; they compute
 //! nothing.
 //!
-//! Exit codes: 0 done, and a calibration is usable; 1 there are results, but they should not be used, are worse than `--require` asks, or
-//! could not be printed; 2 refused: wrong input or usage, and nothing was written; 3 there is no result.
+//! Exit codes: 0 done, and a calibration is usable; 1 there are results, but they should not be used, are worse than `--require` asks, do not
+//! show that they keep a limit of `--accept`, or could not be printed; 2 refused: wrong input or usage, and nothing was written; 3 there is no result.
 
 mod args;
 mod commands;
 mod console;
+mod progress;
 mod quantity;
 mod settings;
 mod signals;
@@ -120,7 +121,10 @@ fn run_to_code(arguments: impl IntoIterator<Item = OsString>) -> u8 {
         Err(code) => return code,
     };
     let console = Console::new(arguments.quiet);
-    if let Some(threads) = arguments.threads {
+    // Where there are no threads, the work is done by this one: a pool that cannot be built would be missed later.
+    if let Some(threads) = arguments.threads
+        && cfg!(not(target_family = "wasm"))
+    {
         // Fails only if a pool exists already, which is then used.
         let _ = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
     }

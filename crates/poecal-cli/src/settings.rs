@@ -20,6 +20,8 @@ const COMMAND: &str = "calibrate";
 /// Options of a single run, which settings cannot hold.
 const NOT_KEPT: [&str; 8] =
     ["settings", "verbose", "json", "timings", "quiet", "threads", "help", "force_own"];
+/// The setting that is a table: what is typed replaces the entry of that key.
+const TABLE: &str = "record";
 /// Settings with the place of an output.
 const OUTPUTS: [&str; 2] = ["out", "report"];
 /// Settings with file names, relative to the settings' folder.
@@ -58,8 +60,12 @@ pub(crate) fn complete(typed: &[OsString], matches: &ArgMatches) -> Result<Optio
         options.push(OsString::from(format!("--settings={USUAL}")));
     }
     for arg in kept(command) {
-        let entry = settings.entries.iter().find(|entry| arg.get_id() == entry.key.as_str());
-        if let Some(entry) = entry.filter(|_| !is_replaced(arg, command, matches)) {
+        let own = settings.entries.iter().filter(|entry| arg.get_id() == entry.key.as_str());
+        let by_key = arg.get_id() == TABLE;
+        let is_kept = |entry: &&Setting| {
+            if by_key { !is_typed_in_table(entry, matches) } else { !is_replaced(arg, command, matches) }
+        };
+        for entry in own.filter(is_kept) {
             let values = values(arg, entry, &settings)?;
             if arg.is_positional() {
                 files.extend(values.into_iter().map(not_an_option));
@@ -76,8 +82,12 @@ impl Completed {
     pub(crate) fn error(&self, error: &clap::Error) -> Option<Error> {
         let option = error.get(ContextKind::InvalidArg)?.to_string();
         let key = option.split([' ', '=']).next()?.trim_start_matches('-').replace('-', "_");
-        let entry = self.settings.entries.iter().find(|entry| entry.key == key)?;
         let text = |kind| error.get(kind).map(ToString::to_string);
+        let value = text(ContextKind::InvalidValue);
+        let all = || self.settings.entries.iter().filter(|entry| entry.key == key);
+        let is_it =
+            |entry: &&Setting| matches!(&entry.value, SettingValue::One(own) if Some(own) == value.as_ref());
+        let entry = all().find(is_it).or_else(|| all().next())?;
         let sentence = match (error.source(), text(ContextKind::InvalidValue), text(ContextKind::ValidValue))
         {
             (Some(sentence), _, _) => sentence.to_string(),
@@ -101,6 +111,14 @@ fn is_replaced(arg: &Arg, command: &Command, matches: &ArgMatches) -> bool {
     let excludes =
         |other: &Arg| command.get_arg_conflicts_with(arg).iter().any(|it| it.get_id() == other.get_id());
     typed(arg) || kept(command).any(|other| typed(other) && (excluded(other) || excludes(other)))
+}
+
+/// Whether an entry of a table was typed with its key.
+fn is_typed_in_table(entry: &Setting, matches: &ArgMatches) -> bool {
+    let SettingValue::One(own) = &entry.value else { return false };
+    let key = own.split('=').next();
+    let typed = matches.get_many::<(String, String)>(TABLE).into_iter().flatten();
+    typed.into_iter().any(|(other, _)| Some(other.as_str()) == key)
 }
 
 /// A setting as words of a command line.

@@ -1,9 +1,9 @@
 //! Times of the parts of a calibration.
 
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
-use cpu_time::ProcessTime;
 use poecal::solve::Summary;
+use poecal::{Error, ErrorKind, Result};
 use serde_json::{Value, json};
 
 /// Time and number of repetitions of a solve, at most.
@@ -30,19 +30,45 @@ impl Span {
 }
 
 /// A stop watch for both.
+#[cfg(any(unix, windows))]
 struct Watch {
-    cpu: ProcessTime,
-    wall: Instant,
+    cpu: cpu_time::ProcessTime,
+    wall: std::time::Instant,
 }
 
+#[cfg(any(unix, windows))]
 impl Watch {
     fn start() -> Self {
-        Watch { cpu: ProcessTime::now(), wall: Instant::now() }
+        Watch { cpu: cpu_time::ProcessTime::now(), wall: std::time::Instant::now() }
     }
 
     fn read(&self) -> Span {
         Span { cpu: self.cpu.elapsed(), wall: self.wall.elapsed() }
     }
+}
+
+/// A stop watch that stands still: without an operating system there are no clocks.
+#[cfg(not(any(unix, windows)))]
+struct Watch;
+
+#[cfg(not(any(unix, windows)))]
+impl Watch {
+    fn start() -> Self {
+        Watch
+    }
+
+    fn read(&self) -> Span {
+        Span::default()
+    }
+}
+
+/// Refuses to tell times where there are no clocks.
+pub(crate) fn need_clocks() -> Result<()> {
+    if cfg!(any(unix, windows)) {
+        return Ok(());
+    }
+    let message = "found --timings where the program has no clock, expected to run on an operating system: leave it out";
+    Err(Error::new(ErrorKind::Option, message))
 }
 
 /// Times of consecutive parts.
@@ -83,9 +109,9 @@ impl Timings {
 
 /// Median of repeated solves, how many, and the iterations of each.
 fn repeated(solve: &impl Fn() -> Summary) -> (Span, usize, usize) {
-    let begin = Instant::now();
+    let begin = Watch::start();
     let (mut cpu, mut wall, mut iterations) = (Vec::new(), Vec::new(), 0);
-    while cpu.len() < FEWEST_REPEATS || (begin.elapsed() < LONG_ENOUGH && cpu.len() < MOST_REPEATS) {
+    while cpu.len() < FEWEST_REPEATS || (begin.read().wall < LONG_ENOUGH && cpu.len() < MOST_REPEATS) {
         let watch = Watch::start();
         iterations = solve().iterations;
         let span = watch.read();

@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 use std::fmt::Display;
 use std::path::PathBuf;
 
-use poecal::calibration::Corrections;
+use poecal::calibration::{AcceptanceLimits, Corrections};
+use poecal::io::record::Record;
 use poecal::io::urdf::ChainSelection;
 use poecal::robot::GravityDirection;
 use poecal::text::visible;
@@ -32,9 +33,9 @@ macro_rules! named {
 }
 
 named! {
-    actual angle_unit angular_first base base_link check columns contact convention corrections count error_position_mm error_rotation_deg experiment fit_where fix flange folder
+    accept accept_model actual angle_unit angular_first base base_link check columns contact convention corrections count error_position_mm error_rotation_deg experiment fit_where fix flange folder
     force format formulation frame frames free gravity harmonics hash held_out held_out_count ids ignore_sets instrument_noise instruments kind kinds language length_unit level limits measure measurements method
-    model motors name names nearest noise_position_mm noise_rotation_deg nominal offset out parts path paths progress quantity refit_frame refit_tool report residual
+    model motors name names nearest noise_position_mm noise_rotation_deg nominal offset out parts path paths progress quantity record refit_frame refit_tool report residual
     residuals robot robust seed sets sigma_position_mm sigma_rotation_deg socket_distance starts strict target targets terms text tip tip_link to tolerance_deg_mm tools
     trials validate with_uncertainty
 }
@@ -222,6 +223,30 @@ impl<'a, 'py> Argument<'a, 'py> for BTreeMap<String, f64> {
             Ok((key, number))
         };
         entries.iter().map(entry).collect()
+    }
+}
+
+impl<'a, 'py> Argument<'a, 'py> for AcceptanceLimits {
+    fn of(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
+        if !value.is_instance_of::<PyString>() {
+            return Err(unexpected(name, value, "a text, like \"0.2mm\" or \"0.2mm,max:0.5mm\""));
+        }
+        String::of(value, name)?.parse().map_err(|error: poecal::Error| argument(name, error.message()))
+    }
+}
+
+impl<'a, 'py> Argument<'a, 'py> for Record {
+    fn of(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
+        let entries =
+            value.cast::<PyDict>().map_err(|_| unexpected(name, value, "a dict of keys and texts"))?;
+        let entry = |(key, text): (Bound<'py, PyAny>, Bound<'py, PyAny>)| {
+            let key = String::of(&key, &format!("{name}, a key"))?;
+            let text = String::of(&text, &format!("{name}[\"{key}\"]"))?;
+            Ok((key, text))
+        };
+        let entries: Vec<(String, String)> = entries.iter().map(entry).collect::<PyResult<_>>()?;
+        let pairs = entries.iter().map(|(key, text)| (key.as_str(), text.as_str()));
+        Record::of(pairs).map_err(|error| argument(name, error.message()))
     }
 }
 

@@ -5,11 +5,13 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use poecal::calibration::{
-    BlockChoice, CalibrationOptions, Corrections, Stage, calibrate_with_progress, settle_sets,
+    AcceptanceLimits, AcceptedModel, BlockChoice, CalibrationOptions, Corrections, Stage,
+    calibrate_with_progress, settle_sets,
 };
 use poecal::io::abb::AbbCalibration;
 use poecal::io::calibration_file::Inputs;
 use poecal::io::named_files::refuse_fitted;
+use poecal::io::record::Record;
 use poecal::measurement::{ByQuantity, Dataset, Quantity};
 use poecal::robot::{GravityDirection, Tolerance};
 use poecal::{Error, ErrorKind};
@@ -65,6 +67,14 @@ use crate::words::{chosen, frame as frame_word, from_mm, robust as robust_word, 
 ///     "levenberg-marquardt" or "gauss-newton" (default for formulations with free screws).
 /// validate
 ///     Measurements to judge by: all other rows are fitted.
+/// accept
+///     Limits that the errors of rows that were not fitted shall keep, like "0.2mm" or "0.2mm,max:0.5mm,0.05deg": rms (the default), p95 or
+///     max of all errors in a unit. `Calibration.acceptance` says whether each is shown to be kept.
+/// accept_model
+///     Which model shall keep them: "corrected", if there is one, or "calibrated".
+/// record
+///     What the report states of the session: a dict of texts with keys among "certificate", "laboratory", "customer", "robot", "serial",
+///     "instrument", "operator", "date", "place", "temperature" and "note".
 /// progress
 ///     Called with the next stage, in words.
 ///
@@ -83,8 +93,8 @@ use crate::words::{chosen, frame as frame_word, from_mm, robust as robust_word, 
 ///     No finite result is reached.
 #[pyfunction]
 #[pyo3(signature = (robot, measurements, *, frame="unknown", sigma_position_mm=None, sigma_rotation_deg=None, tolerance_deg_mm=Believed::Given((0.5, 5.0)),
-                    corrections=None, harmonics=2, gravity=None, fix=None, free=None, held_out=None, seed=None, robust="auto", formulation="adjoint", residual="tool", method=None, validate=None, progress=None),
-        text_signature = "(robot, measurements, *, frame='unknown', sigma_position_mm=None, sigma_rotation_deg=None, tolerance_deg_mm=(0.5, 5.0), corrections='auto', harmonics=2, gravity=(0, 0, -1), fix=None, free=None, held_out=None, seed=None, robust='auto', formulation='adjoint', residual='tool', method=None, validate=None, progress=None)")]
+                    corrections=None, harmonics=2, gravity=None, fix=None, free=None, held_out=None, seed=None, robust="auto", formulation="adjoint", residual="tool", method=None, validate=None, accept=None, accept_model="corrected", record=None, progress=None),
+        text_signature = "(robot, measurements, *, frame='unknown', sigma_position_mm=None, sigma_rotation_deg=None, tolerance_deg_mm=(0.5, 5.0), corrections='auto', harmonics=2, gravity=(0, 0, -1), fix=None, free=None, held_out=None, seed=None, robust='auto', formulation='adjoint', residual='tool', method=None, validate=None, accept=None, accept_model='corrected', record=None, progress=None)")]
 #[expect(clippy::too_many_arguments, reason = "the options of a Python function")]
 pub(crate) fn calibrate(
     py: Python<'_>,
@@ -106,6 +116,9 @@ pub(crate) fn calibrate(
     #[pyo3(from_py_with = arg::residual)] residual: &str,
     #[pyo3(from_py_with = arg::method)] method: Option<&str>,
     #[pyo3(from_py_with = arg::validate)] validate: Option<&Measurements>,
+    #[pyo3(from_py_with = arg::accept)] accept: Option<AcceptanceLimits>,
+    #[pyo3(from_py_with = arg::accept_model)] accept_model: &str,
+    #[pyo3(from_py_with = arg::record)] record: Option<Record>,
     #[pyo3(from_py_with = arg::progress)] progress: Option<Function>,
 ) -> PyResult<Calibration> {
     let usual = CalibrationOptions::default();
@@ -139,6 +152,7 @@ pub(crate) fn calibrate(
         held_out: held_out.unwrap_or(usual.held_out),
         seed: seed.unwrap_or(usual.seed),
         robust: robust_word(robust)?,
+        accept: accept_limits(accept, accept_model)?,
         formulation: formulated(formulation, residual, method),
         ..usual
     };
@@ -152,7 +166,17 @@ pub(crate) fn calibrate(
             Arc::new(poecal::io::measurements::MeasurementFile { data, ..Default::default() })
         }
     };
-    Ok(Calibration::of_fit(robot.clone(), found, data, inputs, took))
+    Ok(Calibration::of_fit(robot.clone(), found, data, (inputs, record.unwrap_or_default()), took))
+}
+
+/// Limits for the model of this name.
+pub(crate) fn accept_limits(
+    accept: Option<AcceptanceLimits>,
+    model: &str,
+) -> PyResult<Option<AcceptanceLimits>> {
+    let models = [AcceptedModel::Corrected, AcceptedModel::Calibrated].map(|it| (it.word(), it));
+    let model = chosen("accept_model", model, &models)?;
+    Ok(accept.map(|limits| AcceptanceLimits { model, ..limits }))
 }
 
 /// The fit, without the interpreter's lock, and the time of the library. Warns as the program does.

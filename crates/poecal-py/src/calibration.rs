@@ -8,6 +8,7 @@ use content::part;
 use std::path::{Path, PathBuf};
 
 use numpy::PyArray2;
+use poecal::calibration::{AcceptanceLimits, Judgement};
 use poecal::compensate::ProgramOptions;
 use poecal::io::calibration_file::CalibrationFile;
 use poecal::io::export::{ExportFormat, ExportOptions, export};
@@ -15,6 +16,7 @@ use poecal::io::model::{Model, ModelSource};
 use poecal::io::output::{self, Contents, Existing, Results};
 use poecal::io::predictions::{PredictionFrame, predicted};
 use poecal::io::residuals::{ResidualRows, Residuals as Rows};
+use poecal::io::shapes::Shapes;
 use poecal::report::{self, table::number};
 use pyo3::IntoPyObjectExt as _;
 use pyo3::prelude::*;
@@ -23,6 +25,7 @@ use pyo3::types::{PyBytes, PyTuple};
 use crate::accuracy::{Accuracy, Verdict};
 use crate::arguments::{self as arg, Argument, unexpected};
 use crate::arrays::{Joints, pose_array};
+use crate::calibrate::accept_limits;
 use crate::covariance::Covariance;
 use crate::errors::{python_words, raise};
 use crate::findings::{self, Findings};
@@ -121,6 +124,18 @@ impl Calibration {
     #[getter]
     fn verdict(&self) -> PyResult<Verdict> {
         self.judged().cloned().map(Verdict)
+    }
+
+    /// Whether the limits that were asked for are kept: `acceptance` of calibration.json; None if none were.
+    #[getter]
+    fn acceptance<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        part(py, &self.file().acceptance)
+    }
+
+    /// What is stated of the session: a dict of texts.
+    #[getter]
+    fn record<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        part(py, &self.file().record)
     }
 
     /// Whether the fit reached an optimum.
@@ -280,7 +295,8 @@ impl Calibration {
             let page = match &report {
                 ReportPlace::Among(false) => None,
                 ReportPlace::Among(true) | ReportPlace::File(_) => {
-                    Some(report::calibration_page(file, residuals)?)
+                    let shapes = Shapes::read(file, &folder.join("calibration.json"));
+                    Some(report::calibration_page_with(file, residuals, &shapes)?)
                 }
             };
             let results =
@@ -364,7 +380,11 @@ impl Calibration {
         let (file, residuals) = (self.file(), self.rows()?);
         let existing = if force { Existing::Replaced } else { Existing::Own };
         let place = reserved_file(py, &path, existing, &[])?;
-        py.detach(|| place.write(report::calibration_page(file, residuals)?)).map_err(raise)
+        let page = || {
+            let shapes = Shapes::read(file, &path);
+            place.write(report::calibration_page_with(file, residuals, &shapes)?)
+        };
+        py.detach(page).map_err(raise)
     }
 
     /// Poses of the tip, or of a target.
@@ -658,23 +678,37 @@ impl Calibration {
     ///     Whether to refit the device's frame to them.
     /// refit_tool
     ///     Whether to refit the targets to them.
+    /// accept
+    ///     Limits that the errors shall keep, like "0.2mm" or "0.2mm,max:0.5mm,0.05deg"; see `poecal.calibrate`.
+    /// accept_model
+    ///     Which model shall keep them: "corrected", if there is one, or "calibrated".
     ///
     /// Returns
     /// -------
     /// Findings
-    ///     Errors of the nominal and the calibrated robot, and their share inside the predicted bounds.
-    #[pyo3(signature = (measurements, *, refit_frame=false, refit_tool=false))]
+    ///     Errors of the nominal and the calibrated robot, their share inside the predicted bounds, and `acceptance`.
+    #[pyo3(signature = (measurements, *, refit_frame=false, refit_tool=false, accept=None, accept_model="corrected"))]
     fn validate(
         &self,
         py: Python<'_>,
         #[pyo3(from_py_with = arg::measurements)] measurements: &Measurements,
         #[pyo3(from_py_with = arg::refit_frame)] refit_frame: bool,
         #[pyo3(from_py_with = arg::refit_tool)] refit_tool: bool,
+        #[pyo3(from_py_with = arg::accept)] accept: Option<AcceptanceLimits>,
+        #[pyo3(from_py_with = arg::accept_model)] accept_model: &str,
     ) -> PyResult<Findings> {
         measurements.check_robot(self.calibrated()?)?;
         let file = self.file();
         let data = measurements.data();
-        let judgement = py.detach(|| file.judge(data, refit_frame, refit_tool)).map_err(raise)?;
+        let limits = accept_limits(accept, accept_model)?;
+        let sha256 = &measurements.source.sha256;
+        let judged = py.detach(|| {
+            let judgement = file.judge(data, refit_frame, refit_tool)?;
+            let accept = |limits| file.accept(data, refit_frame, refit_tool, limits, sha256);
+            let acceptance = limits.as_ref().map(accept).transpose()?;
+            Ok(Judgement { acceptance, ..judgement })
+        });
+        let judgement = judged.map_err(raise)?;
         let names = measurements.source.names.join(", ");
         let text =
             report::judgement(&self.calibrated()?.model.path.display().to_string(), &names, &judgement);

@@ -3,14 +3,15 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use poecal::calibration::{Corrections, DeviceFrameKnowledge, Level, Robust};
+use poecal::calibration::{AcceptedModel, Corrections, DeviceFrameKnowledge, Level, Limit, Robust};
 use poecal::io::output::Existing;
+use poecal::io::record::Record;
 use poecal::robot::GravityDirection;
 use poecal_lou2009::{Formulation, Method, Residual};
 
 use super::report::ReportPlace;
 use super::shared::{Reading, TreeArgs};
-use super::words::{FORMULATION, FRAME, METHOD, REQUIRED_LEVEL, RESIDUAL, ROBUST, one_of};
+use super::words::{ACCEPTED_MODEL, FORMULATION, FRAME, METHOD, REQUIRED_LEVEL, RESIDUAL, ROBUST, one_of};
 use crate::quantity::{BelievedTolerance, share, sigma_m, sigma_rad, whole};
 
 /// Arguments of `poecal calibrate`.
@@ -100,6 +101,17 @@ pub(crate) struct Calibrate {
     /// End with code 1 if the verdict is worse than this (results are written all the same); it also does if the verdict is `do not use`
     #[arg(long, value_parser = one_of(REQUIRED_LEVEL), value_name = "VERDICT")]
     pub(crate) require: Option<Level>,
+    /// Limits that the errors of rows that were not fitted shall keep, like 0.2mm or 0.2mm,max:0.5mm,0.05deg: rms (the default), p95 or max of all
+    /// errors in a unit. End with code 1 unless each is shown to be kept, with 95 % confidence
+    #[arg(long, value_name = "[rms:|p95:|max:]LIMIT", value_delimiter = ',')]
+    pub(crate) accept: Vec<Limit>,
+    /// Which model shall keep them: the corrected one, if there is one, or the calibrated one, which a URDF holds
+    #[arg(long, value_parser = one_of(ACCEPTED_MODEL), default_value = "corrected")]
+    pub(crate) accept_model: AcceptedModel,
+    /// What the report states of the session, like serial=4711 (repeatable): certificate, laboratory, customer, robot, serial, instrument,
+    /// operator, date, place, temperature or note
+    #[arg(long, value_name = "KEY=TEXT", value_parser = Record::pair)]
+    pub(crate) record: Vec<(String, String)>,
     /// Print everything: errors of fitted rows and of the nominal model, noise, solver, cross-validation, every joint
     #[arg(long)]
     pub(crate) verbose: bool,

@@ -1,7 +1,7 @@
 //! Options that are one of a few words: of each its help and what it means to the library.
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
-use poecal::calibration::{DeviceFrameKnowledge, Level, Loss, Robust};
+use poecal::calibration::{AcceptedModel, DeviceFrameKnowledge, Level, Loss, Robust};
 use poecal::compensate::Language;
 use poecal::io::export::ExportFormat;
 use poecal::io::measurements::{Frames, PlaneContact};
@@ -84,6 +84,12 @@ pub(crate) enum PredictedModel {
 pub(super) const PREDICTED_MODEL: Words<PredictedModel> = &[
     ("corrected", "Screws and terms of the joints", PredictedModel::Corrected),
     ("calibrated", "Geometry alone, as a URDF holds it", PredictedModel::Calibrated),
+];
+
+/// Which model shall keep limits.
+pub(super) const ACCEPTED_MODEL: Words<AcceptedModel> = &[
+    ("corrected", "Screws and terms of the joints", AcceptedModel::Corrected),
+    ("calibrated", "Geometry alone, as a URDF holds it", AcceptedModel::Calibrated),
 ];
 
 /// What a program is written in.

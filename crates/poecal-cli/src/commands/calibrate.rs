@@ -4,30 +4,37 @@ use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
 use poecal::calibration::{
-    BlockChoice, Calibration, CalibrationOptions, Level, Stage, calibrate_with_progress, settle_sets,
+    BlockChoice, Calibration, CalibrationOptions, Decision, Level, Stage, calibrate_with_progress,
+    settle_sets,
 };
 use poecal::io::abb::AbbCalibration;
 use poecal::io::calibration_file::{CalibrationFile, Inputs};
 use poecal::io::measurements::{self, ReadOptions};
 use poecal::io::model::Model;
 use poecal::io::named_files::{refuse_fitted, refuse_repeats};
-use poecal::io::output::{self, Contents, FilePlace, FolderPlace, Results};
+use poecal::io::output::{self, Contents, FilePlace, FolderPlace, Page, Results};
+use poecal::io::record::Record;
 use poecal::io::residuals::{ResidualRows, Residuals};
+use poecal::io::shapes::Shapes;
 use poecal::measurement::{ByQuantity, Dataset, Quantity};
 use poecal::report::Detail;
 use poecal::robot::Tolerance;
 use poecal::{Error, ErrorKind, Result, report};
 use poecal_lou2009::{Residual, formulated};
 
+use super::limits::limits;
 use super::typed::command;
 use crate::args::{Calibrate, ReportPlace};
 use crate::console::Console;
 use crate::quantity::BelievedTolerance;
 use crate::style::{self, labelled, shown};
-use crate::timings::Timings;
+use crate::timings::{self, Timings};
 use crate::{DONE, WORSE};
 
 pub(crate) fn calibrate(arguments: &Calibrate, typed: &[OsString], console: &Console) -> Result<u8> {
+    if arguments.timings {
+        timings::need_clocks()?;
+    }
     let mut timings = Timings::start();
     let model_path = stated_model(arguments)?;
     let places = Places::reserve(arguments, console)?;
@@ -37,6 +44,7 @@ pub(crate) fn calibrate(arguments: &Calibrate, typed: &[OsString], console: &Con
     let (data, inputs) = read_measurements(arguments, &model, reading, console)?;
     let inputs = Inputs { command: Some(command(typed)), ..inputs };
     let options = options(arguments, console)?;
+    let record = record(arguments)?;
     let poses = data.observations.iter().any(|row| row.measurement.sees_orientation());
     if arguments.residual != Residual::default() && !poses {
         console.warning(format!(
@@ -47,16 +55,16 @@ pub(crate) fn calibrate(arguments: &Calibrate, typed: &[OsString], console: &Con
     timings.end("read");
     let bar = console.progress(Stage::ALL.len() as u64);
     let calibration = calibrate_with_progress(&model.robot, &data, &options, &mut |stage| {
-        bar.set_position(Stage::ALL.iter().position(|&other| other == stage).unwrap_or(0) as u64);
-        bar.set_message(stage.words());
+        let step = Stage::ALL.iter().position(|&other| other == stage).unwrap_or(0);
+        bar.set(step as u64, stage.words());
         if stage == Stage::Analysis {
             timings.end("start");
         }
     });
     timings.end("analysis");
-    bar.finish_and_clear();
+    bar.finish();
     let calibration = calibration?;
-    let file = CalibrationFile::new(&calibration, &data, inputs);
+    let file = CalibrationFile { record, ..CalibrationFile::new(&calibration, &data, inputs) };
     let detail = if arguments.verbose { Detail::Full } else { Detail::Short };
     let (text, unsaid) = if arguments.json {
         (file.to_text()?, doubts(&file))
@@ -98,7 +106,13 @@ fn code(arguments: &Calibrate, calibration: &Calibration) -> u8 {
     let level = calibration.verdict.level;
     let worse = arguments.require.is_some_and(|required| level < required);
     let converged = calibration.solver.termination.is_success();
-    if worse || level == Level::DoNotUse || !converged { WORSE } else { DONE }
+    let refused = calibration.acceptance.as_ref().is_some_and(|it| it.decision != Decision::Pass);
+    if worse || refused || level == Level::DoNotUse || !converged { WORSE } else { DONE }
+}
+
+/// What is stated of the session.
+fn record(arguments: &Calibrate) -> Result<Record> {
+    Record::of(arguments.record.iter().map(|(key, text)| (key.as_str(), text.as_str())))
 }
 
 /// The model, if it and measurements are named, by arguments or settings.
@@ -179,6 +193,7 @@ fn options(arguments: &Calibrate, console: &Console) -> Result<CalibrationOption
         held_out: arguments.held_out.unwrap_or(usual.held_out),
         seed: arguments.seed.unwrap_or(usual.seed),
         robust: arguments.robust,
+        accept: limits(&arguments.accept, arguments.accept_model)?,
         formulation: formulated(arguments.formulation, arguments.residual, method),
         ..usual
     })
@@ -229,6 +244,13 @@ impl Places {
     }
 }
 
+/// The report with the shapes of the robot; of meshes that are not there, a note.
+fn page(file: &CalibrationFile, rows: &Residuals, folder: &Path, console: &Console) -> Result<Page> {
+    let shapes = Shapes::read(file, &folder.join("calibration.json"));
+    shapes.notes.iter().for_each(|note| console.remark(note));
+    report::calibration_page_with(file, rows, &shapes)
+}
+
 /// Writes the results; returns their place.
 fn write(
     places: Places,
@@ -240,7 +262,7 @@ fn write(
     // Without a report, rows are computed while they are written.
     let place = &arguments.report;
     let residuals = (!matches!(place, Some(ReportPlace::None))).then(|| Residuals::of(data, calibration));
-    let report = residuals.as_ref().map(|rows| report::calibration_page(&file, rows)).transpose()?;
+    let report = residuals.as_ref().map(|rows| page(&file, rows, &arguments.out, console)).transpose()?;
     let residuals = residuals.as_ref().map_or(ResidualRows::Of(data, calibration), ResidualRows::AtHand);
     let results = Results { file, residuals, report };
     let written =

@@ -18,14 +18,14 @@ pub(crate) fn reproduce(arguments: &Reproduce, console: &Console) -> Result<u8> 
         seed: arguments.seed,
     };
     let bar = console.progress(1);
-    bar.set_message("repeating the experiment");
+    bar.set(0, "repeating the experiment");
     let found = match arguments.experiment {
         Experiment::Lou2009 => lou2009(&options)
             .and_then(|found| Ok((report::reproduction_files(&found)?, report::claims(&found)))),
         Experiment::Breakdown => breakdown(&options)
             .and_then(|found| Ok((report::breakdown_files(&found)?, report::breakdown_table(&found)))),
     };
-    bar.finish_and_clear();
+    bar.finish();
     let (files, words) = found?;
     let written = output::write_reproduction(place, &files)?;
     console.warnings(&written.notes);

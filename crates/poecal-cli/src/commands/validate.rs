@@ -3,11 +3,13 @@
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
+use poecal::calibration::Decision;
 use poecal::io::calibration_file::CalibrationFile;
 use poecal::io::measurements::{self, ReadOptions};
 use poecal::io::named_files::{actual, refuse_repeats};
 use poecal::{ErrorKind, Result, report};
 
+use super::limits::limits;
 use crate::args::Validate;
 use crate::console::Console;
 use crate::{DONE, WORSE};
@@ -22,7 +24,12 @@ pub(crate) fn validate(arguments: &Validate, console: &Console) -> Result<u8> {
     // Every row counts, whatever its set.
     let options = ReadOptions { ignore_sets: true, ..arguments.meaning.options()? };
     let read = measurements::read(&arguments.measurements, &calibrated, &options)?;
-    let judgement = file.judge(&read.data, arguments.refit_frame, arguments.refit_tool).map_err(in_file)?;
+    let (refit_frame, refit_tool) = (arguments.refit_frame, arguments.refit_tool);
+    let mut judgement = file.judge(&read.data, refit_frame, refit_tool).map_err(in_file)?;
+    if let Some(limits) = limits(&arguments.accept, arguments.accept_model)? {
+        let found = file.accept(&read.data, refit_frame, refit_tool, &limits, &read.sha256);
+        judgement.acceptance = Some(found.map_err(in_file)?);
+    }
     console.warnings(&read.warnings);
     let table = || {
         let calibration = arguments.calibration.display().to_string();
@@ -32,8 +39,10 @@ pub(crate) fn validate(arguments: &Validate, console: &Console) -> Result<u8> {
     if let Some(doubt) = file.doubt(&judgement) {
         console.warning(doubt);
     }
-    let Some(required) = arguments.require else { return Ok(DONE) };
-    let Some(reason) = judgement.falls_short(required) else { return Ok(DONE) };
+    let refused = judgement.acceptance.as_ref().is_some_and(|it| it.decision != Decision::Pass);
+    let code = if refused { WORSE } else { DONE };
+    let Some(required) = arguments.require else { return Ok(code) };
+    let Some(reason) = judgement.falls_short(required) else { return Ok(code) };
     console.warning(format!("not what --require {} asks for: {reason}", required.word()));
     Ok(WORSE)
 }

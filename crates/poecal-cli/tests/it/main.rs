@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, clippy::print_stdout)]
 
+mod acceptance;
 mod bad_input;
 mod commands;
 mod compensate;

@@ -929,6 +929,12 @@ class Calibration:
     def verdict(self) -> Verdict:
         """How far the calibration may be used, and why no farther; an error for a file that does not say so."""
     @property
+    def acceptance(self) -> dict[str, Any] | None:
+        """Whether the limits that were asked for are kept: `acceptance` of calibration.json; None if none were."""
+    @property
+    def record(self) -> dict[str, str]:
+        """What is stated of the session: a dict of texts."""
+    @property
     def converged(self) -> bool:
         """Whether the fit reached an optimum."""
     @property
@@ -1330,7 +1336,13 @@ class Calibration:
         model: Literal["corrected", "calibrated"] = "corrected",
     ) -> _Array: ...
     def validate(
-        self, measurements: Measurements, *, refit_frame: bool = False, refit_tool: bool = False
+        self,
+        measurements: Measurements,
+        *,
+        refit_frame: bool = False,
+        refit_tool: bool = False,
+        accept: str | None = None,
+        accept_model: Literal["corrected", "calibrated"] = "corrected",
     ) -> Findings:
         """Judges the calibration by measurements that it did not see; every row counts.
 
@@ -1342,11 +1354,15 @@ class Calibration:
             Whether to refit the device's frame to them.
         refit_tool
             Whether to refit the targets to them.
+        accept
+            Limits that the errors shall keep, like "0.2mm" or "0.2mm,max:0.5mm,0.05deg"; see `poecal.calibrate`.
+        accept_model
+            Which model shall keep them: "corrected", if there is one, or "calibrated".
 
         Returns
         -------
         Findings
-            Errors of the nominal and the calibrated robot, and their share inside the predicted bounds.
+            Errors of the nominal and the calibrated robot, their share inside the predicted bounds, and `acceptance`.
         """
     def identify(
         self,
@@ -1437,6 +1453,9 @@ def calibrate(
     residual: Literal["tool", "spatial"] = "tool",
     method: Literal["levenberg-marquardt", "gauss-newton"] | None = None,
     validate: Measurements | None = None,
+    accept: str | None = None,
+    accept_model: Literal["corrected", "calibrated"] = "corrected",
+    record: Mapping[str, str] | None = None,
     progress: Callable[[str], object] | None = None,
 ) -> Calibration:
     """Calibrates a robot from measurements.
@@ -1481,6 +1500,14 @@ def calibrate(
         "levenberg-marquardt" or "gauss-newton" (default for formulations with free screws).
     validate
         Measurements to judge by: all other rows are fitted.
+    accept
+        Limits that the errors of rows that were not fitted shall keep, like "0.2mm" or "0.2mm,max:0.5mm,0.05deg": rms (the default), p95 or
+        max of all errors in a unit. `Calibration.acceptance` says whether each is shown to be kept.
+    accept_model
+        Which model shall keep them: "corrected", if there is one, or "calibrated".
+    record
+        What the report states of the session: a dict of texts with keys among "certificate", "laboratory", "customer", "robot", "serial",
+        "instrument", "operator", "date", "place", "temperature" and "note".
     progress
         Called with the next stage, in words.
 

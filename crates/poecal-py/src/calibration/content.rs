@@ -6,6 +6,7 @@ use std::time::Duration;
 use poecal::io::calibration_file::{CalibrationFile, Inputs};
 use poecal::io::measurements::MeasurementFile;
 use poecal::io::model::{Model, ModelSource};
+use poecal::io::record::Record;
 use poecal::io::residuals::Residuals;
 use poecal::report;
 use poecal::{Error, ErrorKind};
@@ -42,6 +43,7 @@ struct Fit {
     calibration: poecal::calibration::Calibration,
     data: Arc<MeasurementFile>,
     inputs: Inputs,
+    record: Record,
     took: Duration,
     file: OnceLock<CalibrationFile>,
     residuals: OnceLock<Residuals>,
@@ -76,13 +78,14 @@ impl Calibration {
         nominal: Robot,
         calibration: poecal::calibration::Calibration,
         data: Arc<MeasurementFile>,
-        inputs: Inputs,
+        (inputs, record): (Inputs, Record),
         took: Duration,
     ) -> Self {
         let fit = Fit {
             calibration,
             data,
             inputs,
+            record,
             took,
             file: OnceLock::new(),
             residuals: OnceLock::new(),
@@ -136,9 +139,10 @@ impl Calibration {
     /// The contents of `calibration.json`.
     pub(crate) fn file(&self) -> &CalibrationFile {
         match &self.found {
-            Found::Fit(fit) => fit
-                .file
-                .get_or_init(|| CalibrationFile::new(&fit.calibration, &fit.data.data, fit.inputs.clone())),
+            Found::Fit(fit) => fit.file.get_or_init(|| CalibrationFile {
+                record: fit.record.clone(),
+                ..CalibrationFile::new(&fit.calibration, &fit.data.data, fit.inputs.clone())
+            }),
             Found::Written(written) => &written.file,
         }
     }

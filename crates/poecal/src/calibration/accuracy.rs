@@ -112,6 +112,37 @@ impl Measured<Statistic> {
     }
 }
 
+/// Root mean square error of the registered model over that of another, on the same rows.
+///
+/// ```
+/// use poecal::{CalibrationOptions, Kind, Simulation, calibrate, simulate::elbow};
+/// let made = Simulation { count: 60, ..Simulation::default() }.run(&elbow(), Kind::Point)?;
+/// let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default())?;
+/// let held_out = calibration.accuracy.held_out.expect("30 % are held out");
+/// let (_, found) = held_out.improvement.expect("rows are held out").calibrated.leading().expect("points");
+/// assert!(1.0 < found.from && found.from < found.factor && found.factor < found.to);
+/// # Ok::<(), poecal::Error>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Improvement {
+    /// The factor.
+    pub factor: f64,
+    /// Lower end of its interval, with 95 % confidence.
+    pub from: f64,
+    /// Upper end.
+    pub to: f64,
+}
+
+/// Improvement of each quantity by the models that are fitted.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Improvements {
+    /// Of the calibrated model.
+    pub calibrated: Measured<Improvement>,
+    /// Of the corrected model; absent if there is none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub corrected: Option<Measured<Improvement>>,
+}
+
 /// Errors of the three models on one set of rows.
 ///
 /// ```
@@ -135,6 +166,9 @@ pub struct SetAccuracy {
     /// Screws and terms of the joints fitted together; absent if no terms were asked for.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub corrected: Option<ModelAccuracy>,
+    /// How many times smaller than the registered model's the errors of rows held out are; absent of others.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub improvement: Option<Improvements>,
 }
 
 /// Errors on training and held-out rows.
@@ -165,6 +199,7 @@ pub fn set_accuracy(session: &Session<'_>, rows: &[u32], models: &Models) -> Set
         registered: of(&models.registered),
         calibrated: of(&models.calibrated),
         corrected: None,
+        improvement: None,
     }
 }
 

@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use super::acceptance::Acceptance;
 use super::accuracy::{ModelAccuracy, model_accuracy};
 use super::count::of_device;
 use super::coverage_check::{
@@ -89,7 +90,7 @@ pub enum Refitted {
 /// let errors = Statistic { mean: 0.1, rms: 0.11, p95: 0.2, max: 0.25 };
 /// let calibrated = Measured::of(|quantity| (quantity == Quantity::Position).then_some(errors));
 /// let judgement = Judgement { count: 20, refitted: vec![], calibrated: calibrated.into(), corrected: None, nominal: None, promised: None,
-///     in_sampled_range: None };
+///     in_sampled_range: None, acceptance: None };
 /// assert_eq!(judgement.calibrated.position_mm().max, 0.25);
 /// ```
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -109,6 +110,9 @@ pub struct Judgement {
     pub promised: Option<CoverageCheck>,
     /// The same for rows inside the sampled range; `None` without such rows or without predicted bounds.
     pub in_sampled_range: Option<InSampledRange>,
+    /// Whether the limits that were asked for are kept; `None` if none were.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub acceptance: Option<Acceptance>,
 }
 
 /// Errors of a model, and coverage of its predicted bounds.
@@ -162,11 +166,12 @@ pub fn judge(subject: &Subject<'_>, data: &Dataset) -> Result<Judgement> {
         nominal,
         promised,
         in_sampled_range,
+        acceptance: None,
     })
 }
 
 /// Errors of a robot's predictions, with device frame and targets refitted as asked.
-fn judged_rows<'a>(
+pub(super) fn judged_rows<'a>(
     subject: &Subject<'_>,
     robot: &'a Robot,
     data: &'a Dataset,
@@ -194,7 +199,7 @@ fn judged_rows<'a>(
 }
 
 /// Refuses measurements that cannot determine the refitted unknowns, and empty ones.
-fn check_count(subject: &Subject<'_>, data: &Dataset) -> Result<()> {
+pub(super) fn check_count(subject: &Subject<'_>, data: &Dataset) -> Result<()> {
     let frames = (0..data.station_count()).map(|station| of_device(data, station, &data.all_rows()));
     let frame: usize = if subject.refit_frame { frames.sum() } else { 0 };
     let targets = data.target_freedoms(&data.all_rows()).into_iter().map(Freedom::count);

@@ -1,5 +1,7 @@
 //! From a robot and measurements to a calibrated robot: the steps by name.
 
+mod acceptance;
+mod accepted;
 mod accuracy;
 mod blocks;
 mod changes;
@@ -12,6 +14,7 @@ mod finished;
 mod fit;
 mod formulation;
 mod found;
+mod improvement;
 mod instrument_noise;
 mod judge;
 mod located;
@@ -34,7 +37,15 @@ mod verdict;
 mod workspace;
 
 pub use crate::robot::{CorrectionModel, Corrections, Sizes, TermGroup};
-pub use accuracy::{Accuracy, ModelAccuracy, Models, SetAccuracy, Statistic, set_accuracy};
+pub use acceptance::{
+    Acceptance, AcceptanceLimits, AcceptedLimit, AcceptedModel, AcceptedRows, AcceptedStatistic, Decision,
+    Limit,
+};
+use accepted::accepted;
+pub use accepted::accepted_by;
+pub use accuracy::{
+    Accuracy, Improvement, Improvements, ModelAccuracy, Models, SetAccuracy, Statistic, set_accuracy,
+};
 pub use blocks::BlockChoice;
 pub(crate) use blocks::names;
 use corrections::suspected;
@@ -166,7 +177,7 @@ pub fn calibrate_with_progress(
         Corrections::Auto | Corrections::Off => None,
     };
     let sizes = sizes.filter(|_| options.formulation == Formulation::default());
-    prepared.with_instruments(&registered, fit, source, &mut |prepared, fit| {
+    let mut found = prepared.with_instruments(&registered, fit, source, &mut |prepared, fit| {
         progress(Stage::Analysis);
         let assess = |fit| prepared.clone().assess(Arc::clone(&packed), registered.clone(), fit);
         let mut calibration = threads::in_pool(rows, || assess(fit.clone()));
@@ -194,7 +205,16 @@ pub fn calibrate_with_progress(
             found = correct(&calibration);
         }
         Ok(calibration.with_correction(found))
-    })
+    })?;
+    if let Some(improvement) = improvement::improvements(&found, data)
+        && let Some(set) = &mut found.accuracy.held_out
+    {
+        set.improvement = Some(improvement);
+    }
+    if let Some(accept) = &options.accept {
+        found.acceptance = Some(accepted(&found, data, accept)?);
+    }
+    Ok(found)
 }
 
 /// Refuses groups of terms that depend on columns that are not read.

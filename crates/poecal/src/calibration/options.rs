@@ -9,7 +9,7 @@ use crate::problem::Prior;
 use crate::robot::{Extent, GravityDirection, Tolerance};
 use crate::solve;
 
-use super::{BlockChoice, Corrections, Formulation, Robust};
+use super::{AcceptanceLimits, BlockChoice, Corrections, Formulation, Robust};
 
 /// What is known of the measuring device's frame.
 ///
@@ -65,6 +65,8 @@ pub struct CalibrationOptions {
     pub gravity: GravityDirection,
     /// How to treat outliers.
     pub robust: Robust,
+    /// Limits that the errors of rows that were not fitted shall keep.
+    pub accept: Option<AcceptanceLimits>,
     /// Options of the solver.
     pub solver: solve::Options,
     /// Whether mistakes in the input are searched for where the residuals leave room for them; takes some tenths of a second.
@@ -88,6 +90,7 @@ impl Default for CalibrationOptions {
             harmonics: Extent::default().orders,
             gravity: GravityDirection::default(),
             robust: Robust::default(),
+            accept: None,
             solver: solve::Options::default(),
             diagnose: true,
             restarts: 24,

@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use super::placed::{CalibratedStation, CalibratedTarget};
 use super::{
-    Accuracy, CalibrationOptions, Correction, DeviceFrameKnowledge, Formulation, JointEffect, Models,
-    NoiseSource, Robustness, SolverReport, Trust, Verdict, fit_screws,
+    Acceptance, Accuracy, CalibrationOptions, Correction, DeviceFrameKnowledge, Formulation, JointEffect,
+    Models, NoiseSource, Robustness, SolverReport, Trust, Verdict, fit_screws,
 };
 use crate::analysis::Identifiability;
 use crate::estimate::{Packed, Session, Unknowns};
@@ -60,6 +60,8 @@ pub struct Calibration {
     pub identifiability: Identifiability,
     /// Uncertainty, cross-validation, corrections.
     pub trust: Trust,
+    /// Whether the limits that were asked for are kept; none if none were.
+    pub acceptance: Option<Acceptance>,
     /// Verdict with its reasons.
     pub verdict: Verdict,
     /// Noise by which residuals were whitened where a row stated none; of the first of several instruments.

@@ -209,6 +209,7 @@ impl<'a> Prepared<'a> {
             solver: fitted.report,
             identifiability,
             trust,
+            acceptance: None,
             verdict,
             noise: fitted.noise,
             noise_ratios: self.session.noise_ratios.to_vec(),

@@ -28,6 +28,7 @@ pub(super) fn chosen(
             chooses_tolerance: false,
             corrections: super::Corrections::Off,
             diagnose: false,
+            accept: None,
             ..options.clone()
         };
         let found = calibrate(&options)?;

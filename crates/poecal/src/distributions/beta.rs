@@ -13,6 +13,14 @@ pub(crate) fn f_quantile(probability: f64, first: f64, second: f64) -> f64 {
     second * low / (first * (1.0 - low)).max(f64::MIN_POSITIVE)
 }
 
+/// Probability of at most `most` events in `count` independent trials, each with this probability.
+pub(crate) fn binomial_at_most(most: usize, count: usize, probability: f64) -> f64 {
+    if most >= count {
+        return 1.0;
+    }
+    incomplete_beta(1.0 - probability, (count - most) as f64, most as f64 + 1.0)
+}
+
 /// The regularised incomplete beta function `I_x(a, b)` by its continued fraction.
 fn incomplete_beta(x: f64, a: f64, b: f64) -> f64 {
     if x <= 0.0 {
@@ -83,6 +91,24 @@ mod tests {
     use super::*;
 
     /// Upper 5 % and 1 % points as tables print them (and χ² over its degrees for the last).
+    /// Sums of terms that are written out.
+    #[test]
+    fn binomial_probabilities_are_sums_of_their_terms() {
+        for (count, probability) in [(1, 0.3), (20, 0.95), (59, 0.05), (200, 0.95)] {
+            let mut term = (1.0f64 - probability).powi(count);
+            let mut sum = 0.0;
+            for most in 0..count {
+                sum += term;
+                term *= f64::from(count - most) / f64::from(most + 1) * probability / (1.0 - probability);
+                let found = binomial_at_most(most as usize, count as usize, probability);
+                // Roundings of the logarithms of the gamma function.
+                assert!((found - sum).abs() < 1e-11, "{count} {probability} {most}: {found} {sum}");
+            }
+        }
+        // Fewer than 59 errors do not bound their 95 % quantile from above (wilks1941).
+        assert!(1.0 - binomial_at_most(57, 58, 0.95) > 0.05 && 1.0 - binomial_at_most(58, 59, 0.95) < 0.05);
+    }
+
     #[test]
     fn quantiles_agree_with_tables() {
         for (probability, first, second, table) in [

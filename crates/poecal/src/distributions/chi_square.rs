@@ -2,6 +2,8 @@
 
 use std::f64::consts::PI;
 
+use super::beta::f_quantile;
+
 /// Medians for 1 to 6 degrees of freedom.
 const MEDIANS: [f64; 6] = [0.4549, 1.3863, 2.3660, 3.3567, 4.3515, 5.3481];
 
@@ -22,6 +24,29 @@ pub(crate) fn upper_quantile(probability: f64, freedom: usize) -> f64 {
         }
     }
     x
+}
+
+/// Degrees of freedom beyond which the approximation of wilson1931 is as good as the F distribution of so many more.
+const MANY: f64 = 1000.0;
+/// Degrees of freedom that stand for infinitely many.
+const INFINITE: f64 = 1e5;
+/// Normal quantile that is exceeded with a probability of 0.05.
+const NORMAL: f64 = 1.644_853_627;
+
+/// What a mean square of `freedom` degrees of freedom, which need not be whole, of variables of variance 1 exceeds with a probability of 0.05.
+pub(crate) fn upper_mean_square(freedom: f64) -> f64 {
+    if freedom > MANY { cubed(freedom, NORMAL) } else { f_quantile(0.05, freedom, INFINITE) }
+}
+
+/// What it falls below with a probability of 0.05.
+pub(crate) fn lower_mean_square(freedom: f64) -> f64 {
+    if freedom > MANY { cubed(freedom, -NORMAL) } else { 1.0 / f_quantile(0.05, INFINITE, freedom) }
+}
+
+/// Quantile of a mean square by its normal quantile (wilson1931).
+fn cubed(freedom: f64, normal: f64) -> f64 {
+    let spread = 2.0 / (9.0 * freedom);
+    (1.0 - spread + normal * spread.sqrt()).powi(3)
 }
 
 /// Normal quantile of the 99 % band of a mean square.
@@ -84,6 +109,22 @@ mod tests {
             let found = upper_quantile(probability, freedom);
             println!("{probability} {freedom}: {found:.4}, table {table}");
             assert!((found - table).abs() < 6e-4);
+        }
+    }
+
+    /// Both 5 % points of χ² over its degrees of freedom as tables print them, and continuous where the way to compute them changes.
+    #[test]
+    fn mean_squares_agree_with_tables() {
+        for (freedom, lower, upper) in
+            [(1.0, 0.00393, 3.841), (3.0, 0.3518, 7.815), (10.0, 3.940, 18.307), (100.0, 77.929, 124.342)]
+        {
+            let [low, high] = [lower_mean_square(freedom), upper_mean_square(freedom)].map(|it| it * freedom);
+            println!("{freedom}: {low:.5} {high:.4}, table {lower} {upper}");
+            // The tables' digits, and 1e5 for infinitely many degrees of freedom.
+            assert!((low - lower).abs() < 2e-4 * lower.max(0.03) + 1e-5 && (high / upper - 1.0).abs() < 4e-4);
+        }
+        for of in [lower_mean_square, upper_mean_square] {
+            assert!((of(MANY) / of(MANY + 1e-6) - 1.0).abs() < 1e-4);
         }
     }
 

@@ -3,8 +3,10 @@
 mod beta;
 mod chi_square;
 
-pub(crate) use beta::f_quantile;
-pub(crate) use chi_square::{chi_square_median, is_within_band, upper_quantile};
+pub(crate) use beta::{binomial_at_most, f_quantile};
+pub(crate) use chi_square::{
+    chi_square_median, is_within_band, lower_mean_square, upper_mean_square, upper_quantile,
+};
 
 use nalgebra::Vector3;
 

@@ -11,6 +11,9 @@ use crate::error::{Error, ErrorKind, Result, nearest_or_all};
 /// Key with the version of the file.
 const VERSION_KEY: &str = "poecal_settings";
 
+/// Setting that is a table of texts, each an entry `KEY=TEXT` of the setting.
+const TABLE: &str = "record";
+
 /// Value of a setting.
 ///
 /// ```
@@ -109,6 +112,25 @@ impl Settings {
                 let message = format!("found the key `{}`, expected a setting: {near}", key.get_ref());
                 return Err(at(key.span().start, message));
             }
+            if let DeValue::Table(table) = value.get_ref()
+                && key.get_ref() == TABLE
+            {
+                for (own, value) in table {
+                    let start = value.span().start;
+                    let typed = dated(value).ok_or_else(|| {
+                        let message = format!(
+                            "found {} for `{}` of `{TABLE}`, expected a text or a number",
+                            value.get_ref().type_str(),
+                            own.get_ref()
+                        );
+                        at(start, message)
+                    })?;
+                    let (line, column) = position(text, start);
+                    let value = SettingValue::One(format!("{}={typed}", own.get_ref()));
+                    entries.push(Setting { key: TABLE.to_owned(), value, line, column });
+                }
+                continue;
+            }
             let value = setting(value).ok_or_else(|| {
                 let message = format!(
                     "found {} for `{}`, expected a text, a number, true, false, or a list of texts or numbers",
@@ -146,6 +168,14 @@ fn setting(value: &Spanned<DeValue>) -> Option<SettingValue> {
         | DeValue::Float(_)
         | DeValue::Datetime(_)
         | DeValue::Table(_) => plain(value).map(SettingValue::One),
+    }
+}
+
+/// Text, number or date, as typed.
+fn dated(value: &Spanned<DeValue>) -> Option<String> {
+    match value.get_ref() {
+        DeValue::Datetime(date) => Some(date.to_string()),
+        _ => plain(value),
     }
 }
 
@@ -216,5 +246,22 @@ mod tests {
                 .starts_with("s.toml:3:1: duplicate key")
         );
         assert!(refused("poecal_settings = 2\n").contains("poecal_settings = 1"));
+    }
+
+    #[test]
+    fn the_record_is_a_table_of_texts() {
+        let known = ["model", "record"];
+        let text = "poecal_settings = 1\n[record]\nserial = \"A = 7\"\ndate = 2026-03-02\nplace = 12\n";
+        let settings = Settings::parse(text, "s.toml", &known).unwrap();
+        let found: Vec<_> = settings.entries.iter().map(|it| (&it.value, it.line, it.column)).collect();
+        let one = |text: &str| SettingValue::One(text.to_owned());
+        let expected =
+            [(one("serial=A = 7"), 3, 10), (one("date=2026-03-02"), 4, 8), (one("place=12"), 5, 9)];
+        assert!(found.iter().zip(&expected).all(|(a, b)| (a.0, a.1, a.2) == (&b.0, b.1, b.2)), "{found:?}");
+        let refused = |text: &str| Settings::parse(text, "s.toml", &known).unwrap_err().to_string();
+        assert_eq!(
+            refused("poecal_settings = 1\n[record]\nserial = [1]\n"),
+            "s.toml:3:10: found array for `serial` of `record`, expected a text or a number"
+        );
     }
 }

@@ -3,6 +3,8 @@
 use pulp::Scalar128b;
 #[cfg(target_arch = "aarch64")]
 use pulp::aarch64::Neon;
+#[cfg(target_arch = "wasm32")]
+use pulp::wasm::Simd128;
 #[cfg(target_arch = "x86_64")]
 use pulp::x86::{V3, V3_512b, V4};
 
@@ -33,6 +35,9 @@ pub enum SimdLevel {
     /// NEON: two numbers at a time.
     #[cfg(target_arch = "aarch64")]
     Neon(Neon),
+    /// WebAssembly's vectors: two numbers at a time.
+    #[cfg(target_arch = "wasm32")]
+    Simd128(Simd128),
     /// Instructions of every machine of the target: two numbers at a time.
     Baseline(Scalar128b),
 }
@@ -60,8 +65,14 @@ fn detected() -> Option<SimdLevel> {
     Neon::try_new().map(SimdLevel::Neon)
 }
 
+/// WebAssembly's vectors, if the module was compiled for them: a module cannot ask, and one with others is refused as a whole.
+#[cfg(target_arch = "wasm32")]
+fn detected() -> Option<SimdLevel> {
+    Simd128::try_new().map(SimdLevel::Simd128)
+}
+
 /// There are none that the kernels are compiled for.
-#[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
+#[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64", target_arch = "wasm32")))]
 fn detected() -> Option<SimdLevel> {
     None
 }
@@ -95,17 +106,19 @@ pub(crate) fn by_best<T>(work: impl FnOnce() -> T) -> T {
         SimdLevel::Avx2Wide(simd) => simd.0.vectorize(work),
         #[cfg(target_arch = "aarch64")]
         SimdLevel::Neon(simd) => simd.vectorize(work),
+        #[cfg(target_arch = "wasm32")]
+        SimdLevel::Simd128(simd) => simd.vectorize(work),
         SimdLevel::Baseline(_) => work(),
     }
 }
 
 /// Something that can be used once.
-#[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
+#[cfg(any(target_arch = "x86_64", target_arch = "aarch64", target_arch = "wasm32"))]
 struct Once;
 
 /// Calls a kernel in a function that is compiled for the instructions of a level. Only a closure that can be called but once is inlined
 /// there; another would be compiled without these instructions.
-#[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
+#[cfg(any(target_arch = "x86_64", target_arch = "aarch64", target_arch = "wasm32"))]
 macro_rules! vectorize {
     ($level:expr, $simd:expr, $module:ident :: $name:ident ($($argument:ident),*)) => {{
         let once = Once;
@@ -133,6 +146,8 @@ macro_rules! dispatch {
                 SimdLevel::Avx2Wide(simd) => vectorize!(simd.0, simd, $module::$name($($argument),*)),
                 #[cfg(target_arch = "aarch64")]
                 SimdLevel::Neon(simd) => vectorize!(simd, simd, $module::$name($($argument),*)),
+                #[cfg(target_arch = "wasm32")]
+                SimdLevel::Simd128(simd) => vectorize!(simd, simd, $module::$name($($argument),*)),
                 SimdLevel::Baseline(simd) => $module::$name(simd, $($argument),*),
             }
         }

@@ -119,10 +119,10 @@ impl<S: Simd> Lanes<S> {
     }
 }
 
-/// Whether the instructions multiply and add at once; for those of every machine a function of software would.
+/// Whether the instructions multiply and add at once; for those of every machine, and for WebAssembly's, a function of software would.
 #[inline(always)]
 fn is_fused<S: Simd>() -> bool {
-    TypeId::of::<S>() != TypeId::of::<Scalar128b>()
+    cfg!(not(target_arch = "wasm32")) && TypeId::of::<S>() != TypeId::of::<Scalar128b>()
 }
 
 impl<S: Simd> Add for Lanes<S> {

@@ -1,5 +1,6 @@
 //! The table of a calibration judged on other measurements.
 
+use super::acceptance;
 use super::table::{STATISTICS, WIDTHS, line, number, number_or_dash, row};
 use crate::calibration::{JudgedModel, Judgement, ModelAccuracy, PartCoverage, Refitted, Statistic};
 use crate::measurement::Quantity;
@@ -31,6 +32,9 @@ pub fn judgement(calibration: &str, measurements: &str, judgement: &Judgement) -
             }
         }
         line(&mut out, "sampled range", &range_words(judgement));
+    }
+    if let Some(found) = &judgement.acceptance {
+        acceptance::lines(&mut out, found);
     }
     if let Some(model) = with_terms(judgement)
         && let Some(check) = &model.promised

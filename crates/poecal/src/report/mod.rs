@@ -1,5 +1,6 @@
 //! Results as text for people. No number here that is not in the result.
 
+mod acceptance;
 mod check;
 mod compared;
 mod identify;
@@ -19,7 +20,7 @@ pub use compared::Comparison;
 pub use identify::Identify;
 pub use judgement::judgement;
 pub use offsets::{Offsets, offset_ends};
-pub use page::calibration_page;
+pub use page::{calibration_page, calibration_page_with};
 pub use summary::{Detail, summary, unsaid};
 
 use serde::Serialize;

@@ -1,15 +1,17 @@
 //! How far programs for the nominal robot miss in the workspace, and which corrections of the joints mend it.
 
-use nalgebra::{Matrix6, Vector3, Vector6};
+use nalgebra::{Matrix3, Matrix6, Vector3, Vector6};
 use poecal_arm::{Arm, MOST_JOINTS};
 
 use super::expected::allowed_readings;
 use super::{Calibration, DeviceFrameKnowledge, Level};
 use crate::distributions::median;
+use crate::estimate::Packed;
 use crate::lie::{Pose, rotation};
 use crate::linalg::cholesky_6;
 use crate::offsets::{Taught, with_tool_of};
 use crate::robot::{Joint, JointKind, Robot};
+use crate::uncertainty::Uncertainty;
 
 /// Configurations that are compared.
 const CONFIGURATIONS: usize = 192;
@@ -59,6 +61,8 @@ pub(crate) struct WorkspaceCell {
     /// Its height along the axis above the base's origin, from, metres.
     pub(crate) height_m: f64,
     pub(crate) displaced: Displacements,
+    /// Expected error of predictions here (root mean square, metres), `sqrt(mean tr P_p)` of theory.md §9 (40).
+    pub(crate) expected_m: Option<f64>,
 }
 
 /// Displacements of some configurations.
@@ -98,9 +102,10 @@ pub(crate) fn workspace(calibration: &Calibration) -> Option<Workspace> {
     if calibration.verdict.level == Level::DoNotUse {
         return None;
     }
-    let (actual, expected) = match calibration.correction.as_deref() {
-        Some(found) => (&found.robot, &found.expected),
-        None => (&calibration.robot, &calibration.trust.expected),
+    let trust = &calibration.trust;
+    let (actual, expected, uncertainty) = match calibration.correction.as_deref() {
+        Some(found) => (&found.robot, &found.expected, found.uncertainty.as_ref()),
+        None => (&calibration.robot, &trust.expected, trust.uncertainty.as_ref()),
     };
     let nominal = with_tool_of(actual, &calibration.nominal)?;
     let (nominal_arm, readings) = nominal.arm(&[]).ok()?;
@@ -121,6 +126,10 @@ pub(crate) fn workspace(calibration: &Calibration) -> Option<Workspace> {
         .zip(&tips)
         .map(|(q, (nominal, actual))| arms.compare(q, &taught.tip(nominal), actual, &axis))
         .collect();
+    if let Some(uncertainty) = uncertainty {
+        let squares = expected_squares(actual, &readings, &sample, uncertainty);
+        compared.iter_mut().zip(squares).for_each(|(it, square)| it.expected_m2 = Some(square));
+    }
     let is_free = readings.len() >= FREE;
     let expected_m = expected.measured.map_or(REACHED, |it| it.sigma_m);
     let cell_m = cell(&compared);
@@ -132,6 +141,11 @@ pub(crate) fn workspace(calibration: &Calibration) -> Option<Workspace> {
             radius_m: radius as f64 * cell_m,
             height_m: height as f64 * cell_m,
             displaced: Displacements::of(own.iter()),
+            expected_m: own
+                .iter()
+                .map(|it| it.expected_m2)
+                .sum::<Option<f64>>()
+                .map(|sum| (sum / own.len() as f64).sqrt()),
         })
     });
     let names = nominal.reading_names();
@@ -151,6 +165,23 @@ pub(crate) fn workspace(calibration: &Calibration) -> Option<Workspace> {
         beyond_limits: compared.iter().filter(|it| it.is_beyond_limits).count(),
         unmended: compared.iter().filter(|it| is_free && it.mended.is_none()).count(),
     })
+}
+
+/// Mean square errors of predicted places (of the first target, or the tip) in configurations, of these readings.
+fn expected_squares(
+    robot: &Robot,
+    readings: &[usize],
+    sample: &[Vec<f64>],
+    uncertainty: &Uncertainty,
+) -> Vec<f64> {
+    let indices = robot.reading_indices();
+    let mut values = Vec::with_capacity(sample.len() * indices.len());
+    for q in sample {
+        let of = |index: usize| readings.iter().position(|&own| own == index).and_then(|k| q.get(k)).copied();
+        let joints = robot.joints.iter().zip(&indices);
+        values.extend(joints.map(|(joint, &index)| joint.reading.value(of(index).unwrap_or_default())));
+    }
+    uncertainty.positions(&Packed::of_values(robot, &values), 0).iter().map(Matrix3::trace).collect()
 }
 
 /// Sampled range of each of these readings; `None` if one has none.
@@ -228,6 +259,8 @@ struct Compared {
     /// Sizes of the corrections, where small ones mend it.
     mended: Option<Vec<f64>>,
     is_beyond_limits: bool,
+    /// Expected mean square error of a prediction here, square metres.
+    expected_m2: Option<f64>,
 }
 
 impl Arms<'_> {
@@ -239,8 +272,15 @@ impl Arms<'_> {
     fn compare(&self, q: &[f64], meant: &Pose, actual: &Pose, axis: &Axis) -> Compared {
         let (radius_m, height_m) = axis.cylindrical(&meant.translation);
         let (moved_m, turned_rad) = actual.apart(meant);
-        let found =
-            Compared { radius_m, height_m, moved_m, turned_rad, mended: None, is_beyond_limits: false };
+        let found = Compared {
+            radius_m,
+            height_m,
+            moved_m,
+            turned_rad,
+            mended: None,
+            is_beyond_limits: false,
+            expected_m2: None,
+        };
         if q.len() < FREE {
             return found;
         }

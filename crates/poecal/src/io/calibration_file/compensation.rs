@@ -68,6 +68,10 @@ pub struct WorkspaceCellEntry {
     /// The displacements.
     #[serde(flatten)]
     pub displaced: DisplacementEntry,
+    /// Expected error of predicted positions in these configurations (root mean square, millimetres): what a corrected program is expected to
+    /// miss by. Missing without an uncertainty, and in files of earlier versions.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sigma_position_mm: Option<f64>,
 }
 
 /// By how much a reading is corrected.
@@ -124,6 +128,7 @@ impl CompensationEntry {
             radius_m: it.radius_m,
             height_m: it.height_m,
             displaced: DisplacementEntry::of(&it.displaced),
+            sigma_position_mm: it.expected_m.map(|sigma| 1e3 * sigma),
         });
         Some(CompensationEntry {
             all: DisplacementEntry::of(&found.all),

@@ -34,6 +34,7 @@ pub use trust::*;
 use std::collections::BTreeMap;
 use std::path::Path;
 
+use super::record::Record;
 use super::{json_text, source_text};
 use crate::calibration::{CalibratedStation, Calibration, DeviceFrameKnowledge, ModelAccuracy, names};
 use crate::error::{Error, ErrorKind, Result};
@@ -66,6 +67,7 @@ impl CalibrationFile {
             schema: SCHEMA.to_owned(),
             poecal_version: env!("CARGO_PKG_VERSION").to_owned(),
             inputs,
+            record: Record::default(),
             accuracy: calibration.accuracy,
             blocks: BlocksEntry::of(calibration, data),
             solver: SolverEntry {
@@ -85,6 +87,7 @@ impl CalibrationFile {
                 joint_offsets: OffsetEntry::of(calibration),
             },
             identifiability: IdentifiabilityEntry::of(&calibration.identifiability),
+            acceptance: calibration.acceptance.clone(),
             verdict: Some(calibration.verdict.clone()),
             coverage: calibration.trust.coverage.clone(),
             cross_validation: CrossValidationEntry::of(&calibration.trust),

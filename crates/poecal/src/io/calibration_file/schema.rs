@@ -16,10 +16,13 @@ use super::original::OriginalUrdf;
 use super::trust::{CorrectionEntry, CrossValidationEntry, UncertaintyEntry};
 use super::{OutlierEntry, RepeatabilityEntry, RobustEntry};
 use crate::analysis::{Direction, Identifiability, JointCoverage, Observability};
-use crate::calibration::{Accuracy, DeviceFrameKnowledge, FormulationWords, NoiseSource, Verdict};
+use crate::calibration::{
+    Acceptance, Accuracy, DeviceFrameKnowledge, FormulationWords, NoiseSource, Verdict,
+};
 use crate::error::Result;
 use crate::forensics::DiagnosisKind;
 use crate::io::hashes::sha256;
+use crate::io::record::Record;
 use crate::measurement::Measured;
 use crate::robot::{FactorReading, JointKind, Reading, Term};
 use crate::solve::Termination;
@@ -40,6 +43,9 @@ pub struct CalibrationFile {
     pub poecal_version: String,
     /// Inputs.
     pub inputs: Inputs,
+    /// What is stated of the session; absent if nothing is.
+    #[serde(default, skip_serializing_if = "Record::is_empty")]
+    pub record: Record,
     /// Errors of the nominal, registered and calibrated model on training and held-out rows.
     pub accuracy: Accuracy,
     /// What was fitted and what held, where that is not the usual: all axes, targets and frames.
@@ -51,6 +57,9 @@ pub struct CalibrationFile {
     pub identifiability: IdentifiabilityEntry,
     /// Noise by which residuals were weighted.
     pub noise: NoiseEntry,
+    /// Whether the limits that were asked for are kept; absent if none were.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub acceptance: Option<Acceptance>,
     /// Verdict: whether the result is good to use, and where.
     #[serde(default)]
     pub verdict: Option<Verdict>,

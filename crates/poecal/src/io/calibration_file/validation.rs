@@ -1,10 +1,13 @@
 //! A calibration file judged by other measurements.
 
-use super::CalibrationFile;
+use std::collections::BTreeMap;
+
+use super::{CalibrationFile, CorrectedEntry};
 use crate::calibration::{
-    CoverageCheck, JudgedModel, Judgement, PartCoverage, PredictedUncertainty, Refitted, Subject, judge,
+    Acceptance, AcceptanceLimits, AcceptedModel, CoverageCheck, JudgedModel, Judgement, PartCoverage,
+    PredictedUncertainty, Refitted, Subject, accepted_by, judge,
 };
-use crate::error::Result;
+use crate::error::{Error, ErrorKind, Result};
 use crate::estimate::Range;
 use crate::measurement::{Dataset, Quantity};
 use crate::robot::Body;
@@ -38,7 +41,52 @@ impl CalibrationFile {
         Ok(Judgement { corrected, ..judgement })
     }
 
+    /// Judges limits by all rows of some measurements, with device frame and targets refitted as asked: theory.md §9, *Acceptance*. `sha256`
+    /// are the checksums of their files, none of which may be of the calibration itself.
+    ///
+    /// # Errors
+    /// As [`CalibrationFile::judge`], and [`ErrorKind::Option`](crate::ErrorKind::Option) if no row measured what a limit is for,
+    /// [`ErrorKind::Problem`](crate::ErrorKind::Problem) if the calibration was made of one of the files.
+    pub fn accept(
+        &self,
+        data: &Dataset,
+        refit_frame: bool,
+        refit_tool: bool,
+        limits: &AcceptanceLimits,
+        sha256: &BTreeMap<String, String>,
+    ) -> Result<Acceptance> {
+        let names = self.inputs.measurements.iter().filter_map(|name| self.inputs.sha256.get(name));
+        let seen: Vec<&String> = names.collect();
+        if let Some((name, _)) = sha256.iter().find(|(_, sha256)| seen.contains(sha256)) {
+            let message = format!(
+                "found `{name}`, which the calibration was made of, expected measurements that it has not seen: it was accepted or not by its own \
+                 rows held out when it was made"
+            );
+            return Err(Error::new(ErrorKind::Problem, message));
+        }
+        let has_terms = |file: &CorrectedEntry| file.sizes.values().any(|size| *size > 0.0);
+        let is_corrected =
+            limits.model == AcceptedModel::Corrected && self.corrected.as_deref().is_some_and(has_terms);
+        let corrected = if is_corrected { self.corrected() } else { None };
+        let model = if corrected.is_some() { AcceptedModel::Corrected } else { AcceptedModel::Calibrated };
+        let file = corrected.as_ref().unwrap_or(self);
+        file.with_subject(data, refit_frame, refit_tool, |subject, data| {
+            accepted_by(subject, data, limits, model)
+        })
+    }
+
     fn judged(&self, data: &Dataset, refit_frame: bool, refit_tool: bool) -> Result<Judgement> {
+        self.with_subject(data, refit_frame, refit_tool, judge)
+    }
+
+    /// What `to` makes of the calibration and the measurements that judge it.
+    fn with_subject<T>(
+        &self,
+        data: &Dataset,
+        refit_frame: bool,
+        refit_tool: bool,
+        to: impl FnOnce(&Subject<'_>, &Dataset) -> Result<T>,
+    ) -> Result<T> {
         let (calibrated, nominal) = (self.robot()?, self.nominal_robot()?);
         if !refit_tool {
             self.check_targets(data)?;
@@ -77,7 +125,7 @@ impl CalibrationFile {
             refit_tool,
             uncertainty: predicted,
         };
-        judge(&subject, data)
+        to(&subject, data)
     }
 
     /// Uncertainty of predictions as the first instrument sees them: they do not depend on what moves both.

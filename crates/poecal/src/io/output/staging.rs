@@ -51,6 +51,11 @@ pub(super) fn prefix(beside: Option<&OsStr>) -> OsString {
     prefix
 }
 
+/// Number of this process; 0 where there are none, and a disk has one user.
+fn process() -> u32 {
+    if cfg!(target_family = "wasm") { 0 } else { std::process::id() }
+}
+
 impl Staging {
     /// Creates one in a folder, with a name that begins with `prefix`.
     pub(super) fn new(disk: &Arc<dyn Disk>, parent: &Path, prefix: &OsStr) -> io::Result<Self> {
@@ -63,7 +68,7 @@ impl Staging {
     pub(super) fn make(disk: &Arc<dyn Disk>, parent: &Path, prefix: &OsStr) -> io::Result<Self> {
         for attempt in 0..ATTEMPTS {
             let mut name = prefix.to_owned();
-            name.push(format!("{}-{attempt}", std::process::id()));
+            name.push(format!("{}-{attempt}", process()));
             let folder = parent.join(name);
             match disk.create_folder(&folder) {
                 Err(error) if error.kind() == io::ErrorKind::AlreadyExists => continue,

@@ -12,6 +12,7 @@ mod selection;
 mod splice;
 mod terms;
 mod tree;
+mod visuals;
 mod write;
 
 use std::path::{Path, PathBuf};
@@ -22,6 +23,7 @@ pub(super) use patch::origin_values;
 pub use selection::{ChainSelection, named_link};
 pub(super) use splice::escaped;
 pub(super) use terms::holdable;
+pub(super) use visuals::{Geometry, Visual};
 pub use write::write_new;
 pub(super) use write::{WIDE_LIMIT_M, written_new};
 

@@ -147,6 +147,11 @@ fn mass<'a>(source: &XmlSource<'a>, link: Node<'a, 'a>, at: At, of: &str) -> Res
     Ok(Some(Mass { body: at.body, place: at.base_from_link.act(&Vector3::from(centre)), kg }))
 }
 
+/// The `<origin>` of any joint of the tree; none if it cannot be read.
+pub(super) fn fixed_pose(source: &XmlSource, joint: &TreeJoint) -> Option<Pose> {
+    read_part(source, joint).ok().map(|part| part.parent_from_joint)
+}
+
 fn moving_joint(tree: &Tree, joint: &TreeJoint, axis: &Vector3<f64>, base_from_joint: Pose) -> Result<Joint> {
     let direction = base_from_joint.rotation * axis;
     let kind = match joint.kind {

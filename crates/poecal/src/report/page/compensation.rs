@@ -31,7 +31,10 @@ pub(super) fn sections(file: &CalibrationFile) -> Markup {
             " fitted to the actual one first, as if taught on it, so that only the joints make a difference."
         }
         div.pair {
-            (plots(&[map(found)], caption))
+            div {
+                (plots(&[map(found)], caption))
+                @if let Some(map) = expected_map(found) { (plots(&[map], "The same cells by what corrected programs are expected to miss by (RMS).")) }
+            }
             div.tables { (joints(found)) (exceptions(found)) }
         }
         (folded("The map as numbers", &table(found)))
@@ -60,28 +63,71 @@ pub(super) fn gain(file: &CalibrationFile, found: &CompensationEntry) -> Markup 
     }
 }
 
+/// How far uncorrected programs miss.
 fn map(found: &CompensationEntry) -> Markup {
-    let (factor, unit) = if found.all.max_mm < SMALL { (1e3, "µm") } else { (1.0, "mm") };
-    let step = |value: f64| (value / found.cell_m).round() as i64;
-    let cell = |it: &WorkspaceCellEntry| HeatCell {
-        at: [step(it.radius_m), step(it.height_m)],
-        value: factor * it.displaced.median_mm,
-        told: told(found, it),
-    };
-    let axis = if found.about.is_some() { "the axis" } else { "the base\'s z axis" };
+    let value = |it: &WorkspaceCellEntry| Some(it.displaced.median_mm);
+    let axis = axis_words(found);
     let worst =
         found.cells.iter().max_by(|one, other| one.displaced.max_mm.total_cmp(&other.displaced.max_mm));
+    let description = format!(
+        "A map over distance from {axis} and height along it: the median distance between nominal and actual tip in each cell. The largest \
+         is at {}. The table below has all figures.",
+        worst.map_or_else(String::new, |it| told(found, it))
+    );
+    heat_map(
+        found,
+        found.all.max_mm < SMALL,
+        value,
+        ("How far an uncorrected program misses", description, "in the median"),
+    )
+}
+
+/// What corrected programs are expected to miss by; none of a file that does not say it.
+fn expected_map(found: &CompensationEntry) -> Option<Markup> {
+    let value = |it: &WorkspaceCellEntry| it.sigma_position_mm;
+    let worst = found
+        .cells
+        .iter()
+        .filter_map(|it| Some((it, value(it)?)))
+        .max_by(|one, other| one.1.total_cmp(&other.1));
+    let (place, sigma) = worst?;
+    let description = format!(
+        "A map over distance from {} and height along it: the expected error of predicted positions in each cell. The largest, {} mm, is at {}. \
+         The table below has all figures.",
+        axis_words(found),
+        number(sigma),
+        place_words(found, place)
+    );
+    Some(heat_map(found, sigma < SMALL, value, ("Expected error of a corrected program", description, "RMS")))
+}
+
+fn axis_words(found: &CompensationEntry) -> &'static str {
+    if found.about.is_some() { "the axis" } else { "the base's z axis" }
+}
+
+/// A map of the cells that have a value, millimetres, with title, description and what the value is.
+fn heat_map(
+    found: &CompensationEntry,
+    is_small: bool,
+    value: impl Fn(&WorkspaceCellEntry) -> Option<f64>,
+    (title, description, what): (&str, String, &str),
+) -> Markup {
+    let (factor, unit) = if is_small { (1e3, "µm") } else { (1.0, "mm") };
+    let step = |value: f64| (value / found.cell_m).round() as i64;
+    let cell = |it: &WorkspaceCellEntry| {
+        Some(HeatCell {
+            at: [step(it.radius_m), step(it.height_m)],
+            value: factor * value(it)?,
+            told: told(found, it),
+        })
+    };
     let map = HeatMap {
-        title: "How far an uncorrected program misses".to_owned(),
-        description: format!(
-            "A map over distance from {axis} and height along it: the median distance between nominal and actual tip in each cell. The largest \
-             is at {}. The table below has all figures.",
-            worst.map_or_else(String::new, |it| told(found, it))
-        ),
-        axes: [format!("distance from {axis}, m"), "height above the base, m".to_owned()],
+        title: title.to_owned(),
+        description,
+        axes: [format!("distance from {}, m", axis_words(found)), "height above the base, m".to_owned()],
         cell: found.cell_m,
-        values: format!("{unit} in the median"),
-        cells: found.cells.iter().map(cell).collect(),
+        values: format!("{unit} {what}"),
+        cells: found.cells.iter().filter_map(cell).collect(),
     };
     PreEscaped(map.svg())
 }
@@ -89,20 +135,27 @@ fn map(found: &CompensationEntry) -> Markup {
 /// A cell in words.
 fn told(found: &CompensationEntry, it: &WorkspaceCellEntry) -> String {
     let own = &it.displaced;
-    let to = |from: f64| format!("{} to {} m", metres(found, from), metres(found, from + found.cell_m));
     let configurations = if own.configurations == 1 {
         "1 configuration".to_owned()
     } else {
         format!("{} configurations", own.configurations)
     };
+    let expected =
+        it.sigma_position_mm.map(|sigma| format!(", corrected {} mm (RMS) expected", number(sigma)));
     format!(
-        "distance {}, height {}: {} mm in the median, at most {} mm and {}° ({configurations})",
-        to(it.radius_m),
-        to(it.height_m),
+        "{}: {} mm in the median, at most {} mm and {}°{} ({configurations})",
+        place_words(found, it),
         number(own.median_mm),
         number(own.max_mm),
-        number(own.max_deg)
+        number(own.max_deg),
+        expected.unwrap_or_default()
     )
+}
+
+/// The place of a cell in words.
+fn place_words(found: &CompensationEntry, it: &WorkspaceCellEntry) -> String {
+    let to = |from: f64| format!("{} to {} m", metres(found, from), metres(found, from + found.cell_m));
+    format!("distance {}, height {}", to(it.radius_m), to(it.height_m))
 }
 
 /// A place at an edge of a cell.
@@ -163,6 +216,7 @@ fn table(found: &CompensationEntry) -> HtmlTable {
         "largest, mm",
         "median, °",
         "largest, °",
+        "corrected, expected, mm",
     ];
     let caption = format!(
         "Displacement of the uncorrected tip by distance and height, in cells of {} m",
@@ -180,6 +234,7 @@ fn table(found: &CompensationEntry) -> HtmlTable {
             figure(own.max_mm, key("max_mm")),
             figure(own.median_deg, key("median_deg")),
             figure(own.max_deg, key("max_deg")),
+            figure_or(it.sigma_position_mm, key("sigma_position_mm"), "–"),
         ]);
     }
     table

@@ -8,10 +8,12 @@ use serde::Serialize;
 
 use super::frames::{FrameData, Frames, draws_instruments};
 use super::lead::{Lead, component_words, sign};
+use super::shapes::{MeshData, ShapeData};
 use super::{reading_index, readings_of, short};
 use crate::error::{Error, ErrorKind, Result};
 use crate::io::calibration_file::{CalibrationFile, ScrewEntry};
 use crate::io::residuals::{ResidualRow, Residuals};
+use crate::io::shapes::Shapes;
 use crate::measurement::Quantity;
 use crate::robot::{JointKind, Situation, Term};
 use crate::text::visible;
@@ -38,6 +40,11 @@ struct Data<'a> {
     rows: RowData,
     /// How many rows there are.
     count: usize,
+    /// What the links look like; where it is not said, the picture makes its own.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    shapes: Vec<ShapeData<'a>>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    meshes: Vec<MeshData<'a>>,
 }
 
 #[derive(Serialize)]
@@ -113,7 +120,7 @@ struct ComponentData {
 }
 
 /// The data, safe within a script element.
-pub(super) fn json(file: &CalibrationFile, residuals: &Residuals) -> Result<String> {
+pub(super) fn json(file: &CalibrationFile, residuals: &Residuals, shapes: &Shapes) -> Result<String> {
     let robot = file.robot()?;
     let joints = file.joints.iter().enumerate().map(|(k, joint)| {
         let sampled = file.coverage.iter().find(|found| found.joint == joint.name);
@@ -146,6 +153,8 @@ pub(super) fn json(file: &CalibrationFile, residuals: &Residuals) -> Result<Stri
         lead: LeadData { name: lead.name(), unit: lead.unit() },
         rows: RowData::of(residuals, &lead),
         count: residuals.rows().len(),
+        shapes: shapes.shapes.iter().map(ShapeData::of).collect(),
+        meshes: shapes.meshes.iter().map(MeshData::of).collect(),
     };
     let text = serde_json::to_string(&data).map_err(|error| {
         Error::new(ErrorKind::Export, format!("the report's data cannot be written: {error}"))

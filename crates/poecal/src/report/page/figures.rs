@@ -49,22 +49,33 @@ pub(super) fn distributions(file: &CalibrationFile, residuals: &Residuals) -> Ma
     PreEscaped(plot.svg())
 }
 
+/// Largest error over that below which 95 % lie, from which on a linear axis would leave all others in a corner.
+const FAR_OFF: f64 = 4.0;
+
 /// Errors of the calibrated model on fitted rows and on those held out.
 pub(super) fn sets(residuals: &Residuals) -> Markup {
     let lead = Lead::of(residuals);
-    let of = |name: &str, style, held_out: bool| {
+    let errors = |held_out: bool| -> Vec<f64> {
         let rows = residuals.rows().iter().filter(|row| row.held_out == held_out);
-        let errors: Vec<f64> = rows.filter_map(|row| lead.error(row)).collect();
-        Line { name: name.to_owned(), style, points: distribution(errors) }
+        rows.filter_map(|row| lead.error(row)).collect()
     };
-    let lines = [of("fitted", 0, false), of("held out", 1, true)];
+    let sets = [("fitted", 0, errors(false)), ("held out", 1, errors(true))];
+    let is_far_off = sets.iter().any(|(_, _, errors)| {
+        let points = distribution(errors.clone());
+        let most = points.iter().find(|[_, share]| *share >= 95.0).zip(points.last());
+        most.is_some_and(|([usual, _], [largest, _])| *largest > FAR_OFF * usual)
+    });
+    let (scale, words, from) =
+        if is_far_off { (Scale::Log, " (logarithmic)", None) } else { (Scale::Linear, "", Some(0.0)) };
+    let lines =
+        sets.map(|(name, style, errors)| Line { name: name.to_owned(), style, points: distribution(errors) });
     let name = lead.name();
     let plot = LinePlot {
         title: "Calibrated model: fitted against held-out rows".to_owned(),
         description: format!(
             "The share of fitted and of held-out rows whose {name} error is below a value; the table below has the figures."
         ),
-        x: Axis::new(&format!("{name} error, {}", lead.unit()), Scale::Linear).including(&[0.0]),
+        x: Axis::new(&format!("{name} error, {}{words}", lead.unit()), scale).including(from.as_slice()),
         y: Axis::new("share of the rows below, %", Scale::Linear).including(&[0.0, 100.0]),
         lines: lines.into_iter().filter(|line| !line.points.is_empty()).collect(),
         mark: None,

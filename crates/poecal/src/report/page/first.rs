@@ -2,13 +2,15 @@
 
 use maud::{Markup, Render, html};
 
+use super::advice::told;
+use super::certificate::{acceptance, record};
 use super::devices::Device;
 use super::figures;
 use super::html::{HtmlTable, count, facts, figure, figure_or, list, path, plots, quoted};
 use super::lead::{kinds_words, sign, spaced};
 use super::trust::direction_words;
 use crate::analysis::Direction;
-use crate::calibration::{Level, NoiseSource, SetAccuracy};
+use crate::calibration::{Improvements, Level, NoiseSource, SetAccuracy};
 use crate::io::calibration_file::CalibrationFile;
 use crate::io::residuals::Residuals;
 use crate::measurement::Quantity;
@@ -45,9 +47,9 @@ pub(super) fn screen(file: &CalibrationFile, residuals: &Residuals) -> Markup {
     let on = format!("on {of}");
     let tables = set.calibrated.iter().flat_map(|(quantity, _)| {
         let words = error_words(quantity, &on);
-        let all = lead_table(&words, &rows, quantity);
+        let all = lead_table(&words, &rows, quantity, set.improvement.as_ref());
         let rest = rest.as_ref().map(|(suspected, rows)| {
-            lead_table(&format!("{words}, without {suspected} suspected"), rows, quantity)
+            lead_table(&format!("{words}, without {suspected} suspected"), rows, quantity, None)
         });
         std::iter::once(all).chain(rest)
     });
@@ -59,6 +61,8 @@ pub(super) fn screen(file: &CalibrationFile, residuals: &Residuals) -> Markup {
             p.made { (kinds(file)) " · made by poecal " (quoted(&file.poecal_version, "poecal_version")) }
             div.theme hidden role="group" aria-label="Colours" {}
         }
+        (record(file))
+        (acceptance(file))
         (verdict(file))
         div.first {
             div {
@@ -119,9 +123,15 @@ fn without_suspected<'a>(
     Some((suspected, own.collect()))
 }
 
-/// Errors before and after, of the rows held out or, if there are none, of those fitted.
-fn lead_table(caption: &str, rows: &[ModelRow<'_>], quantity: Quantity) -> HtmlTable {
-    let mut table = HtmlTable::new(caption, 1, &["", "mean", "RMS", "95 %", "max"]);
+/// Errors before and after, of the rows held out or, if there are none, of those fitted; of the former also how many times smaller they are.
+fn lead_table(
+    caption: &str,
+    rows: &[ModelRow<'_>],
+    quantity: Quantity,
+    gain: Option<&Improvements>,
+) -> HtmlTable {
+    let heads = ["", "mean", "RMS", "95 %", "max", "smaller by"];
+    let mut table = HtmlTable::new(caption, 1, &heads[..if gain.is_some() { 6 } else { 5 }]);
     for (name, model, key) in rows {
         let cells = STATISTICS.map(|(_, statistic, value)| {
             figure_or(
@@ -130,9 +140,31 @@ fn lead_table(caption: &str, rows: &[ModelRow<'_>], quantity: Quantity) -> HtmlT
                 "",
             )
         });
-        table.cells(std::iter::once(name.render()).chain(cells));
+        let gain = gain.map(|gain| smaller(gain, key, quantity));
+        table.cells(std::iter::once(name.render()).chain(cells).chain(gain));
     }
     table
+}
+
+/// How many times smaller the errors of a model are than the registered model's, with the interval.
+fn smaller(gain: &Improvements, key: &str, quantity: Quantity) -> Markup {
+    let word = key.rsplit('.').next().unwrap_or_default();
+    let of = match word {
+        "calibrated" => gain.calibrated.get(quantity),
+        "corrected" => gain.corrected.as_ref().and_then(|it| it.get(quantity)),
+        _ => None,
+    };
+    let Some(found) = of else { return Markup::default() };
+    let key = |name: &str| format!("accuracy.held_out.improvement.{word}.{}.{name}", quantity.key());
+    html! {
+        "× " (factor(found.factor, &key("factor"))) small { "(" (factor(found.from, &key("from"))) " to " (factor(found.to, &key("to"))) ")" }
+    }
+}
+
+/// A factor with two or three digits.
+fn factor(value: f64, key: &str) -> Markup {
+    let decimals = if value < 10.0 { 1 } else { 0 };
+    html! { span data-key=(key) { (format!("{value:.decimals$}")) } }
 }
 
 /// How many joints of which kind, and from where to where.
@@ -152,7 +184,7 @@ fn verdict(file: &CalibrationFile) -> Markup {
     let is_good = file.verdict.as_ref().is_some_and(|verdict| verdict.level == Level::Good);
     let reasons = reasons.iter().enumerate().filter(|_| !is_good);
     let reasons: Vec<Markup> =
-        reasons.map(|(k, reason)| quoted(reason, format_args!("verdict.reasons.{k}"))).collect();
+        reasons.map(|(k, reason)| told(reason, format_args!("verdict.reasons.{k}"))).collect();
     let points: Vec<Markup> = look_at(file).iter().filter_map(|point| point_words(file, point)).collect();
     html! {
         section class={ "verdict " (class) } aria-labelledby="verdict-title" {
@@ -177,8 +209,8 @@ fn point_words(file: &CalibrationFile, point: &Point) -> Option<Markup> {
     let known = &file.identifiability;
     match point.place {
         Place::Reason => None,
-        Place::Diagnosis(k) => Some(quoted(&point.text, format_args!("diagnosis.{k}.statement"))),
-        Place::Warning(k) => Some(quoted(&point.text, format_args!("warnings.{k}"))),
+        Place::Diagnosis(k) => Some(told(&point.text, format_args!("diagnosis.{k}.statement"))),
+        Place::Warning(k) => Some(told(&point.text, format_args!("warnings.{k}"))),
         Place::Suspects => Some(html! { a href="#suspects" { (point.text.replace(SEE_ROBUST, "")) } }),
         Place::Joint(k) => {
             let joint = file.corrections.get(k)?;

@@ -8,13 +8,14 @@ use super::figures;
 use super::frames::draws_instruments;
 use super::html::{HtmlTable, decimal, figure, figure_or, folded, list, plots, quoted, section};
 use crate::io::calibration_file::{CalibrationFile, JointEntry, ScrewEntry, StationEntry};
+use crate::io::shapes::Shapes;
 use crate::robot::{Body, JointKind};
 
-pub(super) fn sections(file: &CalibrationFile) -> Markup {
-    html! { (view(file)) (corrections(file)) }
+pub(super) fn sections(file: &CalibrationFile, shapes: &Shapes) -> Markup {
+    html! { (view(file, shapes)) (corrections(file)) }
 }
 
-fn view(file: &CalibrationFile) -> Markup {
+fn view(file: &CalibrationFile, shapes: &Shapes) -> Markup {
     let head = ["joint", "kind", "model", "x", "y", "z", "through x, mm", "y, mm", "z, mm"];
     let mut table = HtmlTable::new(
         "Axes in the base frame with all joints at zero: direction, and the point nearest to the base",
@@ -28,10 +29,12 @@ fn view(file: &CalibrationFile) -> Markup {
     let content = html! {
         p {
             "The " (if draws_instruments(file) { "robot" } else { "arm" })
-            " as lines along its joints' axes: nominal in grey, calibrated in colour."
+            @if shapes.shapes.is_empty() { " as links from axis to axis" } @else { " with the shapes of its URDF" }
+            ": nominal in grey, calibrated in colour."
             (picture_words(file, draws_instruments(file)))
         }
         div #arm.arm {}
+        @if !shapes.notes.is_empty() { p.note { (shapes.notes.join(" ").replace('`', "")) } }
         noscript { p.note { "The picture needs JavaScript. All figures are in the tables." } }
         (folded("The axes as numbers", &table))
         @if let Some(table) = stands(file) { (folded("What stands where", &table)) }

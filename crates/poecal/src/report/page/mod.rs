@@ -1,5 +1,7 @@
 //! The report of a calibration: one HTML page that holds its style, its script and its data, and loads nothing.
 
+mod advice;
+mod certificate;
 mod compensation;
 mod corrected;
 mod data;
@@ -12,6 +14,7 @@ mod joints;
 mod lead;
 mod method;
 mod rows;
+mod shapes;
 mod trust;
 
 use maud::{DOCTYPE, PreEscaped, html};
@@ -21,6 +24,7 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::io::calibration_file::CalibrationFile;
 use crate::io::output::Page;
 use crate::io::residuals::Residuals;
+use crate::io::shapes::Shapes;
 use crate::robot::ReadingKind;
 use crate::text::visible_markup;
 
@@ -32,7 +36,8 @@ const SAME: f64 = 1e-9;
 /// What a browser may do with the page: nothing is loaded from anywhere.
 const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data:; base-uri 'none'; form-action 'none'";
 
-/// The report of a calibration as an HTML page that is complete in itself. All of it can be read without its script, which adds the
+/// The report of a calibration as an HTML page that is complete in itself, without opening any file: of the shapes in a URDF it has boxes,
+/// cylinders and spheres. All of it can be read without its script, which adds the
 /// robot in three dimensions and charts of the rows. In pieces, since most of it is the same for every calibration.
 ///
 /// ```
@@ -52,8 +57,33 @@ const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; script-src 
 /// [`ErrorKind::Problem`] if the residuals are not those of this calibration, [`ErrorKind::Model`] if the file has been changed into no
 /// calibration.
 pub fn calibration_page(file: &CalibrationFile, residuals: &Residuals) -> Result<Page> {
+    calibration_page_with(file, residuals, &Shapes::of(file))
+}
+
+/// [`calibration_page`] with what the robot looks like: [`Shapes::read`] reads the meshes that its URDF names.
+///
+/// ```
+/// use poecal::calibration::{CalibrationOptions, calibrate};
+/// use poecal::io::calibration_file::{CalibrationFile, Inputs};
+/// use poecal::io::residuals::Residuals;
+/// use poecal::io::shapes::Shapes;
+/// use poecal::report::{calibration_page, calibration_page_with};
+/// use poecal::simulate::{Kind, Simulation, elbow};
+/// let made = Simulation::default().run(&elbow(), Kind::Point)?;
+/// let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default())?;
+/// let file = CalibrationFile::new(&calibration, &made.data, Inputs::default());
+/// let residuals = Residuals::of(&made.data, &calibration);
+/// // A robot that is no URDF has no shapes of its own.
+/// let shapes = Shapes::read(&file, "poecal-out/calibration.json".as_ref());
+/// assert_eq!(calibration_page_with(&file, &residuals, &shapes)?, calibration_page(&file, &residuals)?);
+/// # Ok::<(), poecal::Error>(())
+/// ```
+///
+/// # Errors
+/// As [`calibration_page`].
+pub fn calibration_page_with(file: &CalibrationFile, residuals: &Residuals, shapes: &Shapes) -> Result<Page> {
     check(file, residuals)?;
-    let data = data::json(file, residuals)?;
+    let data = data::json(file, residuals, shapes)?;
     let head = html! {
         (DOCTYPE) "\n" (PreEscaped("<html lang=\"en\">")) "\n"
         head {
@@ -64,6 +94,7 @@ pub fn calibration_page(file: &CalibrationFile, residuals: &Residuals) -> Result
             meta name="generator" content={ "poecal " (file.poecal_version) };
             title { "Calibration of " (file.robot.name) }
             style { (PreEscaped(STYLE)) }
+            (certificate::pages(file))
         }
         "\n" (PreEscaped("<body>")) "\n"
     };
@@ -71,12 +102,13 @@ pub fn calibration_page(file: &CalibrationFile, residuals: &Residuals) -> Result
         a.skip href="#main" { "Skip to the verdict" }
         main #main {
             (first::screen(file, residuals))
-            (joints::sections(file))
+            (joints::sections(file, shapes))
             (corrected::sections(file))
             (compensation::sections(file))
             (rows::sections(file, residuals))
             (trust::sections(file))
             (method::sections(file))
+            (certificate::signature(file))
         }
     };
     Ok(vec![

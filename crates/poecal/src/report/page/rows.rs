@@ -42,7 +42,7 @@ fn errors(file: &CalibrationFile, residuals: &Residuals) -> Markup {
         (chart(
             "joints",
             "By joint",
-            "Residuals over each joint's value, with a smoothed curve. A periodic curve (once or twice a turn, or with the period of a gear) is an error of a \
+            "Residuals over each joint's value, with a smoothed curve and two standard deviations to each side of it. A periodic curve (once or twice a turn, or with the period of a gear) is an error of a \
              gear or an encoder that is not modelled; a curve that follows the load is a flexible link.",
         ))
         (folded("Errors by parts of each joint's values", &joint_table(residuals)))

@@ -10,6 +10,7 @@ pub(super) use errors::{ModelRow, has_terms, leading};
 use look::reasons;
 pub(super) use look::{Place, Point, SEE_ROBUST, look_at};
 
+use super::acceptance;
 use super::table::{line, lines, number};
 use crate::analysis::{Cause, Direction};
 use crate::calibration::{Level, TermGroup};
@@ -48,6 +49,9 @@ pub enum Detail {
 pub fn summary(file: &CalibrationFile, detail: Detail) -> String {
     let mut out = String::new();
     verdict(&mut out, file);
+    if let Some(acceptance) = &file.acceptance {
+        acceptance::lines(&mut out, acceptance);
+    }
     points(&mut out, file, detail);
     out.push('\n');
     errors::table(&mut out, file);

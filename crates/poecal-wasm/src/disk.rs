@@ -1,0 +1,241 @@
+//! A disk in memory.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::ffi::OsString;
+use std::io::{self, ErrorKind, Read};
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use poecal::io::disk::{Disk, Lock, Object, ObjectKind, Output};
+
+use crate::handle::{Reader, Writer};
+use crate::names::{Names, Node, whole};
+
+#[derive(Debug)]
+struct State {
+    names: Names,
+    /// The bytes of each file that there ever was; empty for one that has no name any more.
+    files: Vec<Arc<Vec<u8>>>,
+    /// The files that were put here, by their paths and numbers.
+    put: BTreeMap<PathBuf, usize>,
+    locks: BTreeSet<PathBuf>,
+    input: Option<Vec<u8>>,
+}
+
+/// Folders and files in memory; the current folder is the root. Clones are the same disk. What was written is there at once, so that
+/// there is nothing to sync, and errors are those that a system gives.
+///
+/// ```
+/// use std::path::Path;
+/// use poecal::io::disk::Disk as _;
+/// use poecal_wasm::MemoryDisk;
+/// let disk = MemoryDisk::new(Vec::new());
+/// disk.put(Path::new("cell/robot.urdf"), b"<robot/>".to_vec())?;
+/// assert_eq!(disk.names(Path::new("cell"))?, ["robot.urdf"]);
+/// // A file in the way is not replaced.
+/// disk.create(Path::new("new"))?.write_all(b"text")?;
+/// let refused = disk.rename_new(Path::new("new"), Path::new("cell/robot.urdf"));
+/// assert_eq!(refused.unwrap_err().kind(), std::io::ErrorKind::AlreadyExists);
+/// # Ok::<(), std::io::Error>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct MemoryDisk(Arc<Mutex<State>>);
+
+/// A lock, until it is dropped.
+struct Held(MemoryDisk, PathBuf);
+
+impl Drop for Held {
+    fn drop(&mut self) {
+        self.0.state().locks.remove(&self.1);
+    }
+}
+
+impl MemoryDisk {
+    /// An empty disk, and what standard input gives.
+    #[must_use]
+    pub fn new(input: Vec<u8>) -> Self {
+        MemoryDisk(Arc::new(Mutex::new(State {
+            names: Names::new(),
+            files: Vec::new(),
+            put: BTreeMap::new(),
+            locks: BTreeSet::new(),
+            input: Some(input),
+        })))
+    }
+
+    fn state(&self) -> MutexGuard<'_, State> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Puts a file here, with the folders on its way; a folder if its path ends in `/`.
+    ///
+    /// # Errors
+    /// [`ErrorKind::AlreadyExists`] if something is at its path, [`ErrorKind::NotADirectory`] if a file is on its way.
+    pub fn put(&self, path: &Path, bytes: Vec<u8>) -> io::Result<()> {
+        let is_folder = path.as_os_str().as_encoded_bytes().ends_with(b"/");
+        let path = whole(path);
+        let mut state = self.state();
+        let mut folders: Vec<&Path> = path.ancestors().skip(usize::from(!is_folder)).collect();
+        folders.reverse();
+        for folder in folders {
+            match state.names.at(folder) {
+                Err(error) if error.kind() == ErrorKind::NotFound => {
+                    state.names.add(folder.to_owned(), Node::Folder)?
+                }
+                _ => state.names.folder(folder)?,
+            }
+        }
+        if !is_folder {
+            let number = state.files.len();
+            state.names.add(path.clone(), Node::File(number))?;
+            state.files.push(Arc::new(bytes));
+            state.put.insert(path, number);
+        }
+        Ok(())
+    }
+
+    /// Files that are not as they were put here, new or in place of others, by paths from the root, and those that are gone.
+    #[must_use]
+    pub fn changes(&self) -> (BTreeMap<String, Vec<u8>>, Vec<String>) {
+        let state = self.state();
+        let named = |path: &Path| path.strip_prefix("/").unwrap_or(path).to_string_lossy().into_owned();
+        let mut written = BTreeMap::new();
+        for (path, node) in state.names.all() {
+            if let Node::File(number) = node
+                && state.put.get(path) != Some(&number)
+                && let Some(bytes) = state.files.get(number)
+            {
+                written.insert(named(path), bytes.as_ref().clone());
+            }
+        }
+        let gone = state.put.keys().filter(|path| state.names.file(path).is_err());
+        (written, gone.map(|path| named(path)).collect())
+    }
+
+    /// Writes at the end of a file.
+    pub(crate) fn append(&self, number: usize, bytes: &[u8]) -> io::Result<()> {
+        let mut state = self.state();
+        let file = state.files.get_mut(number).ok_or(ErrorKind::NotFound)?;
+        Arc::make_mut(file).extend_from_slice(bytes);
+        Ok(())
+    }
+}
+
+impl Disk for MemoryDisk {
+    fn look(&self, path: &Path) -> io::Result<Object> {
+        let node = self.state().names.at(&whole(path))?;
+        let (kind, identity) = match node {
+            Node::Folder => (ObjectKind::Folder, None),
+            Node::File(number) => (ObjectKind::File, Some((0, number as u64))),
+        };
+        Ok(Object { kind, identity, is_mine: true })
+    }
+
+    fn follow(&self, path: &Path) -> io::Result<Object> {
+        self.look(path)
+    }
+
+    fn actual(&self, path: &Path) -> io::Result<PathBuf> {
+        self.look(path).map(|_| whole(path))
+    }
+
+    fn names(&self, folder: &Path) -> io::Result<Vec<OsString>> {
+        let (state, folder) = (self.state(), whole(folder));
+        state.names.folder(&folder)?;
+        let children = state.names.children(&folder);
+        Ok(children.iter().filter_map(|path| path.file_name()).map(OsString::from).collect())
+    }
+
+    fn open(&self, path: &Path) -> io::Result<Box<dyn Read + Send>> {
+        let state = self.state();
+        let number = state.names.file(&whole(path))?;
+        let bytes = state.files.get(number).cloned().unwrap_or_default();
+        Ok(Box::new(Reader { bytes, at: 0 }))
+    }
+
+    fn standard_input(&self) -> io::Result<Box<dyn Read + Send>> {
+        let taken = || io::Error::new(ErrorKind::ResourceBusy, "standard input is read already");
+        let bytes = Arc::new(self.state().input.take().ok_or_else(taken)?);
+        Ok(Box::new(Reader { bytes, at: 0 }))
+    }
+
+    fn create(&self, path: &Path) -> io::Result<Box<dyn Output>> {
+        let mut state = self.state();
+        let number = state.files.len();
+        state.names.add(whole(path), Node::File(number))?;
+        state.files.push(Arc::default());
+        Ok(Box::new(Writer { disk: self.clone(), number }))
+    }
+
+    fn stream(&self, _: &Path) -> io::Result<Box<dyn Output>> {
+        Err(ErrorKind::Unsupported.into())
+    }
+
+    fn create_folder(&self, path: &Path) -> io::Result<()> {
+        self.state().names.add(whole(path), Node::Folder)
+    }
+
+    fn remove_file(&self, path: &Path) -> io::Result<()> {
+        let (mut state, path) = (self.state(), whole(path));
+        state.names.file(&path)?;
+        state.names.remove(&path);
+        Ok(())
+    }
+
+    fn remove_folder(&self, path: &Path) -> io::Result<()> {
+        let (mut state, path) = (self.state(), whole(path));
+        state.names.folder(&path)?;
+        if path.parent().is_none() {
+            return Err(ErrorKind::ResourceBusy.into());
+        }
+        if !state.names.children(&path).is_empty() {
+            return Err(ErrorKind::DirectoryNotEmpty.into());
+        }
+        state.names.remove(&path);
+        Ok(())
+    }
+
+    fn rename(&self, from: &Path, to: &Path) -> io::Result<()> {
+        self.state().names.rename(&whole(from), &whole(to), true)
+    }
+
+    fn rename_new(&self, from: &Path, to: &Path) -> io::Result<()> {
+        self.state().names.rename(&whole(from), &whole(to), false)
+    }
+
+    fn exchange(&self, one: &Path, other: &Path) -> io::Result<()> {
+        self.state().names.exchange(&whole(one), &whole(other))
+    }
+
+    fn link(&self, from: &Path, to: &Path) -> io::Result<()> {
+        let mut state = self.state();
+        let number = state.names.file(&whole(from))?;
+        state.names.add(whole(to), Node::File(number))
+    }
+
+    fn copy_access(&self, from: &Path, to: &Path) -> io::Result<()> {
+        // All is the caller's.
+        self.look(from).and_then(|_| self.look(to)).map(|_| ())
+    }
+
+    fn sync_folder(&self, path: &Path) -> io::Result<()> {
+        self.state().names.folder(&whole(path))
+    }
+
+    fn lock(&self, path: &Path) -> io::Result<Option<Lock>> {
+        let path = whole(path);
+        let found = self.state().names.file(&path);
+        match found {
+            Err(error) if error.kind() == ErrorKind::NotFound => drop(self.create(&path)?),
+            found => drop(found?),
+        }
+        let is_free = self.state().locks.insert(path.clone());
+        Ok(is_free.then(|| Box::new(Held(self.clone(), path)) as Lock))
+    }
+
+    fn lock_folder(&self, path: &Path) -> io::Result<Lock> {
+        // A disk has one user, whose runs come one after the other.
+        self.state().names.folder(&whole(path))?;
+        Ok(Box::new(()))
+    }
+}

@@ -1,0 +1,70 @@
+//! The program `poecal` as a WebAssembly module: words and files in, an exit code, words and files out.
+//!
+//! [`run`] is the whole of it: it puts files on a [`MemoryDisk`], runs the program on it, and collects what was written. `exports` hands it
+//! to JavaScript through plain memory; the module imports nothing. `web/npm/poecal.js` is the other side, with the same encoding.
+
+mod disk;
+#[cfg(target_arch = "wasm32")]
+mod exports;
+mod handle;
+mod message;
+mod names;
+
+use std::collections::BTreeMap;
+use std::ffi::OsString;
+use std::path::Path;
+use std::sync::Arc;
+
+use poecal::io::disk::on;
+use poecal_cli::{Said, run_captured};
+
+pub use disk::MemoryDisk;
+pub use message::{decode, encode};
+
+/// A run that is asked for.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Request {
+    /// The words after the program's name.
+    pub words: Vec<String>,
+    /// What `-` reads; an empty text if nothing is given.
+    pub input: Vec<u8>,
+    /// Files by their paths, which begin in the current folder. A path that ends in `/` is a folder.
+    pub files: Vec<(String, Vec<u8>)>,
+}
+
+/// What a run came to.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Answer {
+    /// Exit code, standard output and standard error.
+    pub said: Said,
+    /// Files written by the run, new or in place of others, by paths as in [`Request::files`].
+    pub written: BTreeMap<String, Vec<u8>>,
+    /// Files that were there before and are no longer.
+    pub removed: Vec<String>,
+}
+
+/// Runs the program on a disk of its own.
+///
+/// ```
+/// use poecal_wasm::{Request, run};
+/// let request = Request { words: vec!["check".into(), "robot.urdf".into()], ..Request::default() };
+/// let answer = run(request);
+/// assert_eq!(answer.said.code, 2);
+/// assert!(answer.said.err.contains("no such file"), "{}", answer.said.err);
+/// ```
+#[must_use]
+pub fn run(request: Request) -> Answer {
+    let disk = MemoryDisk::new(request.input);
+    for (path, bytes) in request.files {
+        if let Err(error) = disk.put(Path::new(&path), bytes) {
+            let err = format!(
+                "error: {path}: the file cannot be put on the disk ({error}), expected a path of its own\n"
+            );
+            return Answer { said: Said { code: 2, err, ..Said::default() }, ..Answer::default() };
+        }
+    }
+    let words = std::iter::once("poecal".to_owned()).chain(request.words).map(OsString::from);
+    let said = on(Arc::new(disk.clone()), || run_captured(words));
+    let (written, removed) = disk.changes();
+    Answer { said, written, removed }
+}

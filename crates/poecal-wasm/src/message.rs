@@ -1,0 +1,86 @@
+//! Requests and answers as bytes.
+//!
+//! Numbers are `u32`, lowest byte first. A text or file is its length and its bytes, a list its count and its entries. A request is the
+//! list of words, the input, and the list of files, each a path and its bytes. An answer is the exit code, standard output, standard
+//! error, the list of files written, and the list of those removed.
+
+use crate::{Answer, Request};
+
+/// What is left to read.
+struct Rest<'a>(&'a [u8]);
+
+impl<'a> Rest<'a> {
+    fn bytes(&mut self, count: usize) -> Option<&'a [u8]> {
+        let (first, rest) = self.0.split_at_checked(count)?;
+        self.0 = rest;
+        Some(first)
+    }
+
+    fn number(&mut self) -> Option<usize> {
+        let bytes = self.bytes(4)?.try_into().ok()?;
+        usize::try_from(u32::from_le_bytes(bytes)).ok()
+    }
+
+    fn block(&mut self) -> Option<&'a [u8]> {
+        let length = self.number()?;
+        self.bytes(length)
+    }
+
+    fn text(&mut self) -> Option<String> {
+        String::from_utf8(self.block()?.to_vec()).ok()
+    }
+}
+
+/// The request in these bytes; `None` if they are none.
+///
+/// ```
+/// use poecal_wasm::{Request, decode};
+/// let none_of_each = [0; 12];
+/// assert_eq!(decode(&none_of_each), Some(Request::default()));
+/// assert_eq!(decode(&none_of_each[1..]), None);
+/// ```
+#[must_use]
+pub fn decode(bytes: &[u8]) -> Option<Request> {
+    let mut rest = Rest(bytes);
+    let mut request = Request::default();
+    for _ in 0..rest.number()? {
+        request.words.push(rest.text()?);
+    }
+    request.input = rest.block()?.to_vec();
+    for _ in 0..rest.number()? {
+        request.files.push((rest.text()?, rest.block()?.to_vec()));
+    }
+    rest.0.is_empty().then_some(request)
+}
+
+/// Adds a number. What a module of 4 GiB holds is counted by 32 bits.
+fn number(out: &mut Vec<u8>, number: usize) {
+    out.extend(u32::try_from(number).unwrap_or(u32::MAX).to_le_bytes());
+}
+
+fn block(out: &mut Vec<u8>, bytes: &[u8]) {
+    number(out, bytes.len());
+    out.extend_from_slice(bytes);
+}
+
+/// An answer as bytes.
+///
+/// ```
+/// use poecal_wasm::{Answer, encode};
+/// assert_eq!(encode(&Answer::default()), [0; 20]);
+/// ```
+#[must_use]
+pub fn encode(answer: &Answer) -> Vec<u8> {
+    let mut out = Vec::new();
+    number(&mut out, usize::from(answer.said.code));
+    block(&mut out, answer.said.out.as_bytes());
+    block(&mut out, answer.said.err.as_bytes());
+    number(&mut out, answer.written.len());
+    for (path, bytes) in &answer.written {
+        block(&mut out, path.as_bytes());
+        block(&mut out, bytes);
+    }
+    number(&mut out, answer.removed.len());
+    answer.removed.iter().for_each(|path| block(&mut out, path.as_bytes()));
+    out
+}

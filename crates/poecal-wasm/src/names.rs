@@ -1,0 +1,151 @@
+//! Names on a disk in memory: a tree of folders and files.
+
+use std::collections::BTreeMap;
+use std::io::{self, ErrorKind};
+use std::ops::Bound;
+use std::path::{Component, Path, PathBuf};
+
+/// What a name stands for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Node {
+    Folder,
+    /// The file of this number.
+    File(usize),
+}
+
+/// All names, by their paths from the root.
+#[derive(Debug)]
+pub(crate) struct Names(BTreeMap<PathBuf, Node>);
+
+/// A path from the root, without `.` and `..`; the current folder is the root.
+pub(crate) fn whole(path: &Path) -> PathBuf {
+    let mut out = PathBuf::from("/");
+    for part in path.components() {
+        match part {
+            Component::ParentDir => drop(out.pop()),
+            Component::Normal(name) => out.push(name),
+            Component::CurDir | Component::RootDir | Component::Prefix(_) => {}
+        }
+    }
+    out
+}
+
+impl Names {
+    /// The root alone.
+    pub(crate) fn new() -> Self {
+        Names(BTreeMap::from([(PathBuf::from("/"), Node::Folder)]))
+    }
+
+    pub(crate) fn all(&self) -> impl Iterator<Item = (&Path, Node)> {
+        self.0.iter().map(|(path, node)| (path.as_path(), *node))
+    }
+
+    /// What is at a whole path.
+    pub(crate) fn at(&self, path: &Path) -> io::Result<Node> {
+        if let Some(node) = self.0.get(path) {
+            return Ok(*node);
+        }
+        // A file on the way is another mistake than a name that is missing.
+        let is_through_file =
+            path.ancestors().skip(1).any(|above| matches!(self.0.get(above), Some(Node::File(_))));
+        Err(if is_through_file { ErrorKind::NotADirectory } else { ErrorKind::NotFound }.into())
+    }
+
+    pub(crate) fn folder(&self, path: &Path) -> io::Result<()> {
+        match self.at(path)? {
+            Node::Folder => Ok(()),
+            Node::File(_) => Err(ErrorKind::NotADirectory.into()),
+        }
+    }
+
+    pub(crate) fn file(&self, path: &Path) -> io::Result<usize> {
+        match self.at(path)? {
+            Node::File(number) => Ok(number),
+            Node::Folder => Err(ErrorKind::IsADirectory.into()),
+        }
+    }
+
+    /// Everything below a folder.
+    fn below(&self, folder: &Path) -> impl Iterator<Item = (&PathBuf, &Node)> {
+        let all = self.0.range::<Path, _>((Bound::Excluded(folder), Bound::Unbounded));
+        all.take_while(move |(path, _)| path.starts_with(folder))
+    }
+
+    /// Names in a folder, sorted.
+    pub(crate) fn children(&self, folder: &Path) -> Vec<&Path> {
+        self.below(folder)
+            .filter(|(path, _)| path.parent() == Some(folder))
+            .map(|(path, _)| path.as_path())
+            .collect()
+    }
+
+    /// A new name, where none is and its folder is there.
+    pub(crate) fn add(&mut self, path: PathBuf, node: Node) -> io::Result<()> {
+        if self.0.contains_key(&path) {
+            return Err(ErrorKind::AlreadyExists.into());
+        }
+        self.folder(path.parent().unwrap_or(Path::new("/")))?;
+        self.0.insert(path, node);
+        Ok(())
+    }
+
+    pub(crate) fn remove(&mut self, path: &Path) {
+        self.0.remove(path);
+    }
+
+    /// Moves a file, or a folder with all below it, to where nothing is, or a file is in place of a file.
+    pub(crate) fn rename(&mut self, from: &Path, to: &Path, replaces: bool) -> io::Result<()> {
+        let node = self.at(from)?;
+        self.folder(to.parent().unwrap_or(Path::new("/")))?;
+        match (node, self.0.get(to)) {
+            (_, Some(_)) if !replaces => return Err(ErrorKind::AlreadyExists.into()),
+            (Node::File(_), Some(Node::Folder)) => return Err(ErrorKind::IsADirectory.into()),
+            (Node::Folder, Some(Node::File(_))) => return Err(ErrorKind::NotADirectory.into()),
+            (Node::Folder, Some(Node::Folder)) if from != to && self.below(to).next().is_some() => {
+                return Err(ErrorKind::DirectoryNotEmpty.into());
+            }
+            _ => {}
+        }
+        if to != from && to.starts_with(from) {
+            return Err(ErrorKind::InvalidInput.into());
+        }
+        for (path, node) in self.taken(from) {
+            self.0.insert(moved(&path, from, to), node);
+        }
+        Ok(())
+    }
+
+    /// Exchanges two folders that are not within each other.
+    pub(crate) fn exchange(&mut self, one: &Path, other: &Path) -> io::Result<()> {
+        self.folder(one)?;
+        self.folder(other)?;
+        if one != other && (one.starts_with(other) || other.starts_with(one)) {
+            return Err(ErrorKind::InvalidInput.into());
+        }
+        let (first, second) = (self.taken(one), self.taken(other));
+        for (path, node) in first {
+            self.0.insert(moved(&path, one, other), node);
+        }
+        for (path, node) in second {
+            self.0.insert(moved(&path, other, one), node);
+        }
+        Ok(())
+    }
+
+    /// Takes a name, and all below it, out of the tree.
+    fn taken(&mut self, path: &Path) -> Vec<(PathBuf, Node)> {
+        let mut paths: Vec<PathBuf> = self.below(path).map(|(path, _)| path.clone()).collect();
+        paths.push(path.to_owned());
+        paths.into_iter().filter_map(|path| self.0.remove_entry(&path)).collect()
+    }
+}
+
+/// A path below `from`, below `to` instead.
+fn moved(path: &Path, from: &Path, to: &Path) -> PathBuf {
+    match path.strip_prefix(from) {
+        // Joined with nothing, a path would get a mark at its end.
+        Ok(rest) if rest.as_os_str().is_empty() => to.to_owned(),
+        Ok(rest) => to.join(rest),
+        Err(_) => path.to_owned(),
+    }
+}

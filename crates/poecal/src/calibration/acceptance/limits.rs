@@ -1,0 +1,134 @@
+//! The limits that are asked for.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::error::{Error, ErrorKind, Result};
+use crate::unit::Unit;
+
+/// What of the errors is limited.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum AcceptedStatistic {
+    /// Root mean square over all configurations like those that decide.
+    #[default]
+    Rms,
+    /// The error that 95 % of them keep.
+    P95,
+    /// The largest error of the rows that decide.
+    Max,
+}
+
+impl AcceptedStatistic {
+    /// All, in the order of tables.
+    pub const ALL: [AcceptedStatistic; 3] =
+        [AcceptedStatistic::Rms, AcceptedStatistic::P95, AcceptedStatistic::Max];
+
+    /// The word used in files and for limits.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            AcceptedStatistic::Rms => "rms",
+            AcceptedStatistic::P95 => "p95",
+            AcceptedStatistic::Max => "max",
+        }
+    }
+
+    /// For people: `RMS`.
+    #[must_use]
+    pub fn words(self) -> &'static str {
+        match self {
+            AcceptedStatistic::Rms => "RMS",
+            AcceptedStatistic::P95 => "95 %",
+            AcceptedStatistic::Max => "max",
+        }
+    }
+}
+
+/// Which model is judged.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum AcceptedModel {
+    /// The corrected model, with what joints do beyond geometry; the calibrated one if there is no other.
+    #[default]
+    Corrected,
+    /// The calibrated model: geometry alone, as a URDF holds it.
+    Calibrated,
+}
+
+impl AcceptedModel {
+    /// The word used in files.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            AcceptedModel::Corrected => "corrected",
+            AcceptedModel::Calibrated => "calibrated",
+        }
+    }
+}
+
+/// The most that an error may be.
+///
+/// ```
+/// use poecal::calibration::{AcceptedStatistic, Limit};
+/// let limit: Limit = "max:0.5mm".parse()?;
+/// assert_eq!((limit.statistic, limit.most), (AcceptedStatistic::Max, 0.5e-3));
+/// # Ok::<(), poecal::Error>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Limit {
+    /// What of the errors.
+    pub statistic: AcceptedStatistic,
+    /// Unit: the limit is for all measured quantities of this unit.
+    pub unit: Unit,
+    /// Metres or radians.
+    pub most: f64,
+}
+
+/// Limits, and the model that they are for.
+///
+/// ```
+/// use poecal::calibration::{AcceptanceLimits, AcceptedModel};
+/// let accept: AcceptanceLimits = "0.2mm,max:0.5mm,0.05deg".parse()?;
+/// assert_eq!((accept.limits.len(), accept.model), (3, AcceptedModel::Corrected));
+/// assert!("0.2mm,rms:0.3mm".parse::<AcceptanceLimits>().is_err());
+/// # Ok::<(), poecal::Error>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct AcceptanceLimits {
+    /// At least one; no two of one statistic and unit.
+    pub limits: Vec<Limit>,
+    /// Which model.
+    pub model: AcceptedModel,
+}
+
+impl AcceptanceLimits {
+    /// Limits for a model.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Option`] if there are none, or two of one statistic and unit.
+    pub fn new(limits: Vec<Limit>, model: AcceptedModel) -> Result<Self> {
+        if limits.is_empty() {
+            let message = "found no limit to accept, expected at least one, like 0.2mm or max:0.5mm";
+            return Err(Error::new(ErrorKind::Option, message));
+        }
+        for (k, limit) in limits.iter().enumerate() {
+            let same = |other: &&Limit| (other.statistic, other.unit) == (limit.statistic, limit.unit);
+            if let Some(other) = limits[..k].iter().find(same) {
+                let [other, own] = [other, limit].map(|it| it.words());
+                let message =
+                    format!("found two limits of one kind, {other} and {own}, expected one of them");
+                return Err(Error::new(ErrorKind::Option, message));
+            }
+        }
+        Ok(AcceptanceLimits { limits, model })
+    }
+}
+
+impl Limit {
+    /// As it may be typed: `max:0.5mm`.
+    #[must_use]
+    pub fn words(&self) -> String {
+        format!("{}:{}{}", self.statistic.word(), self.unit.shown(self.most), self.unit.symbol())
+    }
+}

@@ -1,0 +1,155 @@
+//! What makes the page a certificate: what is stated of the session, whether limits are kept, and where it is signed.
+
+use maud::{Markup, PreEscaped, html};
+
+use super::html::{HtmlTable, count, facts, figure, quoted};
+use super::short as shorter;
+use crate::calibration::{Acceptance, AcceptedLimit, Decision};
+use crate::io::calibration_file::CalibrationFile;
+use crate::report::acceptance::{counts, plain};
+
+/// Letters of a checksum that tell files apart.
+const SHORT: usize = 16;
+
+/// What is stated of the session; nothing where nothing is.
+pub(super) fn record(file: &CalibrationFile) -> Markup {
+    let entries = file.record.entries();
+    let entry = |&(key, label, text): &(&'static str, &'static str, &str)| {
+        (label, quoted(text, format_args!("record.{key}")))
+    };
+    let entries: Vec<(&str, Markup)> = entries.iter().map(entry).collect();
+    html! { @if !entries.is_empty() { section.record aria-label="Session" { (facts(&entries)) } } }
+}
+
+/// Whether the limits are kept, each with what was found.
+pub(super) fn acceptance(file: &CalibrationFile) -> Markup {
+    let Some(found) = &file.acceptance else { return Markup::default() };
+    let head = ["error", "decision", "limit", "found", "lower bound", "upper bound", "rows"];
+    let mut table = HtmlTable::new("Errors and their limits", 2, &head);
+    for (k, limit) in found.limits.iter().enumerate() {
+        row(&mut table, k, limit);
+    }
+    html! {
+        section class={ "verdict acceptance " (found.decision.word()) } aria-labelledby="acceptance-title" {
+            h2 #acceptance-title { span.sign aria-hidden="true" {} (title(found)) }
+            (table)
+            p.note {
+                "Errors of the " b { (found.model.word()) } " model, measured minus predicted, by " (found.by.words())
+                ". Each bound holds with 95\u{a0}% confidence. A limit is kept if the upper bound does not exceed it, and exceeded if the lower bound \
+                 does; between them neither is shown."
+            }
+        }
+    }
+}
+
+fn title(found: &Acceptance) -> &'static str {
+    match (found.decision, found.limits.len()) {
+        (Decision::Pass, 1) => "PASS: the limit is kept",
+        (Decision::Pass, _) => "PASS: every limit is kept",
+        (Decision::Fail, 1) => "FAIL: the limit is exceeded",
+        (Decision::Fail, _) => "FAIL: a limit is exceeded",
+        (Decision::NotShown, _) => {
+            "NOT SHOWN: the rows show neither that the limits are kept nor that they are not"
+        }
+    }
+}
+
+fn row(table: &mut HtmlTable, k: usize, limit: &AcceptedLimit) {
+    let key = |name: &str| format!("acceptance.limits.{k}.{name}");
+    let unit = if limit.unit == "deg" { "°" } else { " mm" };
+    let name = html! { (limit.quantity) " " (limit.statistic.words()) };
+    let most = html! { span data-key=(key("limit")) { (plain(limit.limit)) } (unit) };
+    let found = html! { b { (figure(limit.found, key("found"))) (unit) } };
+    let from = html! { (figure(limit.from, key("from"))) (unit) };
+    let to =
+        html! { @if let Some(to) = limit.to { (figure(to, key("to"))) (unit) } @else { "too few rows" } };
+    let rows = if limit.rows == limit.configurations {
+        count(limit.rows, key("rows"))
+    } else {
+        html! { (counts(limit)) }
+    };
+    let decision = html! { b class={ "decision " (limit.decision.word()) } { (limit.decision.words()) } };
+    table.cells([name, decision, most, found, from, to, rows]);
+}
+
+/// Where it is signed, on paper alone: what is certified, of which files, and lines for two hands.
+pub(super) fn signature(file: &CalibrationFile) -> Markup {
+    let inputs = &file.inputs;
+    let all_names: Vec<String> =
+        std::iter::once(&inputs.model).chain(&inputs.measurements).cloned().collect();
+    let short = |name: &String| {
+        let hash = inputs.sha256.get(name)?;
+        Some(html! { (shorter(&all_names, name)) " " code { (hash.get(..SHORT).unwrap_or(hash)) "…" } })
+    };
+    let files: Vec<Markup> =
+        std::iter::once(&inputs.model).chain(&inputs.measurements).filter_map(short).collect();
+    let mut all = vec![(
+        "Robot",
+        html! { (file.robot.name) @if let Some(serial) = &file.record.serial { ", serial number " (serial) } },
+    )];
+    all.extend(file.record.certificate.as_ref().map(|number| ("Certificate", html! { (number) })));
+    all.extend(file.acceptance.as_ref().map(|found| ("Acceptance", html! { (title(found)) })));
+    all.push(("Made by", html! { "poecal " (file.poecal_version) }));
+    if !files.is_empty() {
+        all.push((
+            "SHA-256 of",
+            html! { @for (k, file) in files.iter().enumerate() { @if k > 0 { br; } (file) } },
+        ));
+    }
+    let hand = |role: &str, name: &str| {
+        html! {
+            div { b { (role) } span { "Name" i { (name) } } span { "Date" i {} } span { "Signature" i {} } }
+        }
+    };
+    html! {
+        section.signature aria-label="Signatures" {
+            h2 { "Signatures" }
+            (facts(&all))
+            div.hands {
+                (hand("Calibrated by", file.record.operator.as_deref().unwrap_or("")))
+                (hand("Approved by", ""))
+            }
+        }
+    }
+}
+
+/// Head and foot of printed pages, where the browser has them.
+pub(super) fn pages(file: &CalibrationFile) -> Markup {
+    let number = file.record.certificate.as_ref().map(|number| format!(" · {number}"));
+    let title = format!("Calibration of {}{}", file.robot.name, number.unwrap_or_default());
+    let right = format!("poecal {}", file.poecal_version);
+    html! {
+        style {
+            (PreEscaped(format!(
+                "@page {{ @top-left {{ content: \"{}\"; }} @top-right {{ content: \"{}\"; }} @bottom-right {{ content: counter(page) \" / \" counter(pages); }} }}",
+                in_style(&title), in_style(&right)
+            )))
+        }
+    }
+}
+
+/// Text within quotes of a style: all but letters, digits and blanks as numbers, so that nothing in it can end the quotes or the style.
+fn in_style(text: &str) -> String {
+    let shown = crate::text::visible(text);
+    let letter = |c: char| match c {
+        ' ' => " ".to_owned(),
+        c if c.is_ascii_alphanumeric() => c.to_string(),
+        // The blank ends the number.
+        c => format!("\\{:x} ", u32::from(c)),
+    };
+    shown.chars().take(LONGEST).map(letter).collect()
+}
+
+/// Letters of a page's head.
+const LONGEST: usize = 70;
+
+#[cfg(test)]
+mod tests {
+    use super::in_style;
+
+    #[test]
+    fn nothing_ends_the_quotes_of_a_style() {
+        assert_eq!(in_style("a\"}</style>\n"), "a\\22 \\7d \\3c \\2f style\\3e \\5c u\\7b a\\7d ");
+        assert_eq!(in_style(&"x".repeat(100)).len(), 70);
+    }
+}

@@ -1,0 +1,210 @@
+// The page: files in, the program's words about them, a calibration, and its files out.
+import { themeSwitch } from "../../src/theme.js";
+import { calibrateWords, checkWords, shown, validateWords } from "./command.js";
+import { byId, counted } from "./dom.js";
+import { Ended, Engine } from "./engine.js";
+import { offerExports } from "./exports.js";
+import { fromInput, fromText, fromTransfer } from "./intake.js";
+import { messages } from "./sentences.js";
+import { options } from "./options.js";
+import { unpacked } from "./packed.js";
+import { busy, say, showMessages } from "./progress.js";
+import { clearResult, showCalibration, showPrinted, showText } from "./results.js";
+import { besideUrdf, bySettings, guess } from "./roles.js";
+import { findings, showFiles } from "./understood.js";
+
+const engine = new Engine();
+/** The files of the session: name, bytes and role. */
+let files = [];
+let calibration;
+const words = options(byId("controls"), () => look());
+
+const having = (role) => files.filter((file) => file.role === role);
+/** Whether the model is a calibration, which other measurements can judge. */
+const judges = () => having("model").some(({ name, bytes }) => /\.json$/i.test(name) && /"schema"\s*:\s*"poecal-calibration/.test(new TextDecoder().decode(bytes.subarray(0, 1000))));
+
+/** Runs a command line; none if it was ended, or if the program had a defect, which is then told. */
+async function run(line, given, doing) {
+  busy(doing);
+  try {
+    const result = await engine.run(line, given);
+    return { ...result, files: Object.entries(result.files instanceof Map ? Object.fromEntries(result.files) : result.files) };
+  } catch (error) {
+    if (error instanceof Ended) return undefined;
+    showMessages([{ kind: "error", text: error.message }], given);
+    say("Ended by a defect.");
+    return undefined;
+  } finally {
+    if (!engine.runs) busy(undefined);
+  }
+}
+
+/** What is missing before anything can be calibrated, in a sentence; none if nothing is. */
+function missing() {
+  const [models, tables] = [having("model"), [...having("measurements"), ...having("validate")]];
+  if (models.length > 1) return `found ${models.length} robot models, ${models.map((it) => it.name).join(" and ")}, expected one: remove the others, or choose “not used” for them`;
+  for (const role of ["columns", "settings"]) {
+    if (having(role).length > 1) return `found ${having(role).map((it) => it.name).join(" and ")} as ${role === "columns" ? "mapping of columns" : "settings"}, expected one file: remove the others, or choose “not used” for them`;
+  }
+  if (!models.length) return tables.length ? "Measurements are there; add a robot model: URDF, MJCF, SDF, TOML, or a calibration.json." : "Add a robot model and measurements.";
+  return tables.length ? undefined : "The robot model is there; add measurements: a CSV with a row for each configuration.";
+}
+
+/** Asks the program how the files are understood, and calibrates if `onwards` says so and nothing is missing. */
+async function look(onwards = false) {
+  engine.end();
+  const lacking = missing();
+  const refused = lacking?.startsWith("found");
+  byId("calibrate").disabled = Boolean(lacking);
+  byId("judge").hidden = !judges();
+  byId("judge").disabled = Boolean(lacking);
+  byId("files").hidden = !files.length;
+  document.documentElement.toggleAttribute("data-files", files.length > 0);
+  byId("line").textContent = lacking ? "" : shown(calibrateWords(files, words()));
+  if (refused || !having("model").length) {
+    showFiles(byId("list"), files, new Map(), change);
+    showMessages(refused ? [{ kind: "error", text: lacking }] : [], files);
+    say(refused ? "This cannot be calibrated yet." : lacking);
+    busy(undefined);
+    return;
+  }
+  const result = await run([...checkWords(files, words()), "--json"], files, "reading");
+  if (!result) return;
+  const check = result.code === 0 ? JSON.parse(result.out) : undefined;
+  // A model is shown also where the tables beside it are refused.
+  const alone = check ? undefined : await run([...checkWords(having("model"), words()), "--json"], files, "reading");
+  showFiles(byId("list"), files, findings(check ?? (alone?.code === 0 ? JSON.parse(alone.out) : undefined)), change);
+  const told = messages(result.err);
+  for (const text of check?.warnings ?? []) if (!told.some((it) => it.text === text)) told.push({ kind: "warning", text });
+  showMessages(told, files);
+  if (result.code !== 0) say("The files are not understood yet.");
+  else if (lacking) say(lacking);
+  else if (onwards && !judges()) await calibrate();
+  else say(`Understood: ${counted(check.files.reduce((sum, file) => sum + file.rows, 0), "row")}. Ready to ${judges() ? "judge the calibration, or to calibrate again" : "calibrate"}.`);
+}
+
+async function calibrate(asked = false) {
+  clearResult();
+  const line = calibrateWords(files, words());
+  byId("line").textContent = shown(line);
+  const started = performance.now();
+  const result = await run(line, files, "calibrating");
+  if (!result) return;
+  const told = messages(result.err);
+  showMessages(told, files);
+  calibration = result.files.find(([path]) => path.endsWith("calibration.json"))?.[1];
+  if (!calibration) {
+    say("There is no result.");
+    if (asked) byId("messages").focus();
+    return;
+  }
+  showPrinted("What the program prints", result.out, result.code !== 0);
+  showCalibration(result.files);
+  const { level } = JSON.parse(new TextDecoder().decode(calibration)).verdict;
+  const verdict = { good: "good", inside_sampled_range: "good inside the sampled range", do_not_use: "do not use" }[level] ?? level;
+  say(`Calibrated in ${((performance.now() - started) / 1000).toFixed(1)} s; the verdict: ${verdict}.`);
+  if (asked) byId("result-title").focus();
+}
+
+async function judge() {
+  clearResult();
+  const line = validateWords(files, words());
+  byId("line").textContent = shown(line);
+  const result = await run(line, files, "judging");
+  if (!result) return;
+  showMessages(messages(result.err), files);
+  if (!result.out) return say("There is no result.");
+  showText("The calibration on these measurements", result.out);
+  say("Judged.");
+  byId("result-title").focus();
+}
+
+/** Takes files in, in place of those of the same names. */
+function add(taken) {
+  if (!taken.length) return;
+  const added = taken.map(({ name, bytes, whole }) => ({ name, bytes, role: guess(name, bytes, whole) }));
+  files = [...files.filter((file) => !added.some((it) => it.name === file.name)), ...added];
+  if (taken.some((it) => it.whole)) for (const file of besideUrdf(added.filter((it) => it.role === "model"))) file.role = "unused";
+  // A new model takes the place of the one before.
+  if (added.filter((it) => it.role === "model").length === 1) for (const file of having("model")) if (!added.includes(file)) file.role = "unused";
+  for (const settings of having("settings")) for (const [file, role] of bySettings(settings, files)) file.role = role;
+  clearResult();
+  return look(true);
+}
+
+function change(file, role) {
+  if (role) file.role = role;
+  else files = files.filter((it) => it !== file);
+  clearResult();
+  look();
+  if (!role) byId("choose").focus();
+}
+
+/** Reads what `reading` promises, and says so if it cannot be read. */
+async function take(reading) {
+  try {
+    await add(await reading);
+  } catch (error) {
+    showMessages([{ kind: "error", text: `a file could not be read (${error.message}): choose it again` }], files);
+  }
+}
+
+function wire() {
+  for (const [button, input] of [["choose", "chosen"], ["choose-folder", "chosen-folder"]]) {
+    byId(button).addEventListener("click", () => byId(input).click());
+    byId(input).addEventListener("change", async ({ target }) => {
+      await take(fromInput(target));
+      target.value = "";
+    });
+  }
+  let inside = 0;
+  const over = (step) => (event) => {
+    event.preventDefault();
+    inside = Math.max(0, inside + step);
+    document.documentElement.toggleAttribute("data-over", inside > 0);
+  };
+  addEventListener("dragenter", over(1));
+  addEventListener("dragleave", over(-1));
+  addEventListener("dragover", (event) => event.preventDefault());
+  addEventListener("drop", (event) => {
+    over(-Infinity)(event);
+    take(fromTransfer(event.dataTransfer));
+  });
+  addEventListener("paste", (event) => {
+    if (event.target.closest?.("input, textarea")) return;
+    const text = event.clipboardData.getData("text/plain");
+    if (event.clipboardData.files.length) take(fromTransfer(event.clipboardData));
+    else if (text.trim()) add([fromText(text)]);
+  });
+  byId("use-pasted").addEventListener("click", () => byId("pasted").value.trim() && add([fromText(byId("pasted").value)]));
+  byId("example").addEventListener("click", async () => {
+    const example = JSON.parse(new TextDecoder().decode(await unpacked("examples")));
+    files = [];
+    add(Object.entries(example).map(([name, text]) => ({ name, bytes: new TextEncoder().encode(text), whole: false })));
+  });
+  byId("calibrate").addEventListener("click", () => calibrate(true));
+  byId("judge").addEventListener("click", judge);
+  byId("cancel").addEventListener("click", () => {
+    engine.end();
+    busy(undefined);
+    say("Cancelled.");
+    byId("calibrate").focus();
+  });
+  byId("licences").addEventListener("toggle", async ({ target }) => {
+    const place = target.querySelector("pre");
+    if (target.open && !place.textContent) place.textContent = new TextDecoder().decode(await unpacked("licence-texts"));
+  });
+}
+
+offerExports(async (line) => {
+  const result = await run(line, [{ name: "calibration.json", bytes: calibration }], "writing");
+  if (!result) return undefined;
+  showMessages(messages(result.err), files, byId("export-messages"));
+  say(result.code === 0 ? "Written: it is in the list." : "This form was not written.");
+  return result.files;
+});
+wire();
+themeSwitch(document.querySelector(".theme"));
+busy(undefined);
+say(missing());
+document.documentElement.dataset.ready = "true";

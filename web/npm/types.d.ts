@@ -1,0 +1,1316 @@
+// Written by web/npm/types.mjs from docs/calibration.schema.json and docs/commands.md.
+
+/** A value of an option, as it would be typed; of an option that may be given again, an array of them. */
+export type Value = string | number;
+
+/** Options of `poecal calibrate`, by their long names. */
+export interface CalibrateOptions {
+  /** First link of the chain, where a URDF has several */
+  baseLink?: Value | readonly Value[];
+  /** Last link of the chain, where a URDF has several */
+  tipLink?: Value | readonly Value[];
+  /**
+   * Instrument on the robot, as rows name it, and its link in a URDF (repeatable). The robot is then the tree of all joints between the
+   * base and the named links
+   */
+  instrument?: Value | readonly Value[];
+  /** Target, as rows name it, and its link in a URDF (repeatable), likewise. Without --tip-link, the first that a joint moves is the tip */
+  target?: Value | readonly Value[];
+  /** Refuse lost beams (empty or zero positions) instead of skipping them with a warning */
+  strict?: boolean;
+  /** Which rows share a frame of the measuring device: per-file if it was moved between the files */
+  frames?: "common" | "per-file";
+  /** Known distance between the two sockets of each place, like 50mm, or of pairs by name, like A-B=50mm,B-C=70mm+-0.02mm */
+  socketDistance?: Value | readonly Value[];
+  /** What rows with a plane are that do not say it in the column contact: touched by a point, or by a face that lies flush */
+  contact?: "point" | "flush";
+  /**
+   * Noise of an instrument that grows with the distance, like tracker:10um+5um/m: a standard deviation in all directions, and one across
+   * the line of sight for each metre; of all instruments without a name. For rows that state none; may be given again
+   */
+  instrumentNoise?: Value | readonly Value[];
+  /** Fit only rows whose COLUMN has one of these values, and hold out all others */
+  fitWhere?: Value | readonly Value[];
+  /** The measuring device's frame */
+  frame?: "unknown" | "base";
+  /** Standard deviation of each measured position component, like 0.05mm [default: estimated from the data] */
+  sigmaPosition?: Value | readonly Value[];
+  /** Standard deviation of each measured rotation component, like 0.01deg [default: estimated from the data] */
+  sigmaRotation?: Value | readonly Value[];
+  /**
+   * Prior: deviation of each axis from nominal, as standard deviations, or none. It decides where the measurements determine nothing. auto
+   * takes the best of 0.2deg,2mm, 0.5deg,5mm and 3deg,10mm by cross-validation. A joint of a TOML model may state its own. MOC.cfg of a
+   * controller of ABB with Absolute Accuracy tells what the maker found [default: 0.5deg,5mm]
+   */
+  tolerance?: Value | readonly Value[];
+  /**
+   * What joints do beyond geometry: auto fits the terms that predict rows best which were not fitted, all looks among more of them; groups
+   * of terms with their sizes in radians or metres, sag, tilt, ratio, harmonics, wobble, backlash, factors, payload, shift, runout
+   * [default: auto]
+   */
+  corrections?: Value | readonly Value[];
+  /** Highest order of the harmonics of a turn among these terms, 1 to 8 [default: 2] */
+  harmonics?: Value | readonly Value[];
+  /**
+   * Further columns of the measurements on which terms may depend, like temperature; approach or approach_JOINT says from which side joints
+   * came, 1 or -1, and payload which mass hangs at the tip, in kg
+   */
+  factors?: Value | readonly Value[];
+  /**
+   * Where gravity pulls, in the robot's base frame, like 0,0,1 for a robot on the ceiling; find takes the direction with which the terms
+   * leave the least noise [default: 0,0,-1]
+   */
+  gravity?: Value | readonly Value[];
+  /** Blocks to hold as in the model: joints, targets, frames, or names like joint2.axis, in which * stands for any letters */
+  fix?: Value | readonly Value[];
+  /** Blocks to fit, also those that are usually held, like joint2.offset, and after --fix: `--fix joints --free joint2` */
+  free?: Value | readonly Value[];
+  /** Share of the configurations held out, where nothing else says which rows are; 0 fits every row in any case [default: 0.3] */
+  heldOut?: Value | readonly Value[];
+  /** Seed of that choice [default: 1] */
+  seed?: Value | readonly Value[];
+  /** How to treat outliers: auto fits by least squares, and by the tukey loss where that shows outliers */
+  robust?: "auto" | "off" | "huber" | "cauchy" | "tukey";
+  /** File for the report, or `none` [default: report.html among the results] */
+  report?: Value | readonly Value[];
+  /** End with code 1 if the verdict is worse than this (results are written all the same); it also does if the verdict is `do not use` */
+  require?: "good" | "inside_sampled_range";
+  /** Parameterisation of joint errors; all but the default are for comparison */
+  formulation?: "adjoint" | "screw" | "screw-offsets" | "adjoint-offsets";
+  /** Residual of measured frames; the paper's is for comparison. Points have one residual only */
+  residual?: "tool" | "spatial";
+  /** Steps of the solver; plain Gauss-Newton may diverge [default: gauss-newton for formulations with free screws, else levenberg-marquardt] */
+  method?: "levenberg-marquardt" | "gauss-newton";
+}
+
+/** Options of `poecal validate`, by their long names. */
+export interface ValidateOptions {
+  /** Refuse lost beams (empty or zero positions) instead of skipping them with a warning */
+  strict?: boolean;
+  /** Which rows share a frame of the measuring device: per-file if it was moved between the files */
+  frames?: "common" | "per-file";
+  /** Known distance between the two sockets of each place, like 50mm, or of pairs by name, like A-B=50mm,B-C=70mm+-0.02mm */
+  socketDistance?: Value | readonly Value[];
+  /** What rows with a plane are that do not say it in the column contact: touched by a point, or by a face that lies flush */
+  contact?: "point" | "flush";
+  /**
+   * Noise of an instrument that grows with the distance, like tracker:10um+5um/m: a standard deviation in all directions, and one across
+   * the line of sight for each metre; of all instruments without a name. For rows that state none; may be given again
+   */
+  instrumentNoise?: Value | readonly Value[];
+  /** Refit the measuring device's frame to these measurements */
+  refitFrame?: boolean;
+  /** Refit the targets to these measurements */
+  refitTool?: boolean;
+  /**
+   * End with code 1 unless the measurements confirm this: `good` if 80 % of all errors are inside their own 95 % bounds and the error (RMS)
+   * is at most twice the expected one; `inside_sampled_range` if that holds of the rows inside the sampled range
+   */
+  require?: "good" | "inside_sampled_range";
+}
+
+/** Options of `poecal predict`, by their long names. */
+export interface PredictOptions {
+  /** First link of the chain, where a URDF has several */
+  baseLink?: Value | readonly Value[];
+  /** Last link of the chain, where a URDF has several */
+  tipLink?: Value | readonly Value[];
+  /** The frame of the poses */
+  frame?: "base" | "device";
+  /** Add the expected error of each prediction, and whether it lies in the sampled range (of a calibration.json) */
+  withUncertainty?: boolean;
+  /** Which model of a calibration predicts: the corrected one, if there is one, or the calibrated one, which a URDF holds */
+  model?: "corrected" | "calibrated";
+  /** Predict this target of the model instead of the tip; of a URDF, with its link */
+  target?: Value | readonly Value[];
+}
+
+/** Options of `poecal check`, by their long names. */
+export interface CheckOptions {
+  /** First link of the chain, where a URDF has several */
+  baseLink?: Value | readonly Value[];
+  /** Last link of the chain, where a URDF has several */
+  tipLink?: Value | readonly Value[];
+  /**
+   * Instrument on the robot, as rows name it, and its link in a URDF (repeatable). The robot is then the tree of all joints between the
+   * base and the named links
+   */
+  instrument?: Value | readonly Value[];
+  /** Target, as rows name it, and its link in a URDF (repeatable), likewise. Without --tip-link, the first that a joint moves is the tip */
+  target?: Value | readonly Value[];
+  /** Refuse lost beams (empty or zero positions) instead of skipping them with a warning */
+  strict?: boolean;
+  /** Which rows share a frame of the measuring device: per-file if it was moved between the files */
+  frames?: "common" | "per-file";
+  /** Known distance between the two sockets of each place, like 50mm, or of pairs by name, like A-B=50mm,B-C=70mm+-0.02mm */
+  socketDistance?: Value | readonly Value[];
+  /** What rows with a plane are that do not say it in the column contact: touched by a point, or by a face that lies flush */
+  contact?: "point" | "flush";
+  /**
+   * Noise of an instrument that grows with the distance, like tracker:10um+5um/m: a standard deviation in all directions, and one across
+   * the line of sight for each metre; of all instruments without a name. For rows that state none; may be given again
+   */
+  instrumentNoise?: Value | readonly Value[];
+  /** Fit only rows whose COLUMN has one of these values, and hold out all others */
+  fitWhere?: Value | readonly Value[];
+  /** The measuring device's frame: `base` looks for mistakes in it too */
+  frame?: "unknown" | "base";
+}
+
+/** Options of `poecal identify`, by their long names. */
+export interface IdentifyOptions {
+  /** First link of the chain, where a URDF has several */
+  baseLink?: Value | readonly Value[];
+  /** Last link of the chain, where a URDF has several */
+  tipLink?: Value | readonly Value[];
+  /**
+   * Instrument on the robot, as rows name it, and its link in a URDF (repeatable). The robot is then the tree of all joints between the
+   * base and the named links
+   */
+  instrument?: Value | readonly Value[];
+  /** Target, as rows name it, and its link in a URDF (repeatable), likewise. Without --tip-link, the first that a joint moves is the tip */
+  target?: Value | readonly Value[];
+  /** Kind of the measurements of the tip */
+  kind?: "pose" | "point" | "mixed" | "distance" | "distance-change" | "sphere" | "socket" | "plane" | "height" | "flush" | "direction" | "ball-bar" | "relative" | "component";
+  /** Standard deviation of each measured position component [default: 0.05mm] */
+  sigmaPosition?: Value | readonly Value[];
+  /** Standard deviation of each measured rotation component [default: 0.01deg] */
+  sigmaRotation?: Value | readonly Value[];
+  /** The measuring device's frame */
+  frame?: "unknown" | "base";
+}
+
+/** Options of `poecal export`, by their long names. */
+export interface ExportOptions {
+  /** First link of the chain, where a URDF has several */
+  baseLink?: Value | readonly Value[];
+  /** Last link of the chain, where a URDF has several */
+  tipLink?: Value | readonly Value[];
+  /**
+   * Instrument on the robot, as rows name it, and its link in a URDF (repeatable). The robot is then the tree of all joints between the
+   * base and the named links
+   */
+  instrument?: Value | readonly Value[];
+  /** Target, as rows name it, and its link in a URDF (repeatable), likewise. Without --tip-link, the first that a joint moves is the tip */
+  target?: Value | readonly Value[];
+  /** Which model of the calibration: geometry alone, or the corrected one, whose terms of the joints go to a file beside, FILE.joints.json */
+  model?: "corrected" | "calibrated";
+  /** The controller's checksum, which the driver compares, like calib_12788084448423163542; for --format ur */
+  hash?: Value | readonly Value[];
+}
+
+/** Options of `poecal simulate`, by their long names. */
+export interface SimulateOptions {
+  /** First link of the chain, where a URDF has several */
+  baseLink?: Value | readonly Value[];
+  /** Last link of the chain, where a URDF has several */
+  tipLink?: Value | readonly Value[];
+  /**
+   * Instrument on the robot, as rows name it, and its link in a URDF (repeatable). The robot is then the tree of all joints between the
+   * base and the named links
+   */
+  instrument?: Value | readonly Value[];
+  /** Target, as rows name it, and its link in a URDF (repeatable), likewise. Without --tip-link, the first that a joint moves is the tip */
+  target?: Value | readonly Value[];
+  /** Angle and distance by which every axis, and the tip, is off [default: 1deg,2mm] */
+  errors?: Value | readonly Value[];
+  /** Standard deviations of each measured component [default: 0.05mm,0.01deg] */
+  noise?: Value | readonly Value[];
+  /**
+   * What the joints do beyond geometry: groups of terms with the standard deviations of their random coefficients in radians or metres,
+   * sag, tilt, ratio, harmonics, wobble, backlash, factors, payload, shift, runout [default: off]
+   */
+  terms?: Value | readonly Value[];
+  /** Where gravity pulls, in the robot's base frame [default: 0,0,-1] */
+  gravity?: Value | readonly Value[];
+  /** Number of measurements [default: 50] */
+  count?: Value | readonly Value[];
+  /** Seed of everything random [default: 1] */
+  seed?: Value | readonly Value[];
+  /** Kind of the measurements */
+  kind?: "pose" | "point" | "mixed" | "distance" | "distance-change" | "sphere" | "socket" | "plane" | "height" | "flush" | "direction" | "ball-bar" | "relative" | "component";
+  /** The measuring device's frame: unknown, or the robot's base */
+  frame?: "unknown" | "base";
+  /** Number of further measurements, free of noise, to judge a calibration by [default: 0] */
+  heldOutCount?: Value | readonly Value[];
+}
+
+/** A finished calibration. */
+export type CalibrationFile = {
+  /** Errors of the nominal, registered and calibrated model on training and held-out rows. */
+  accuracy: Accuracy;
+  /** What was fitted and what held, where that is not the usual: all axes, targets and frames. */
+  blocks?: BlocksEntry | null;
+  /**
+   * How far programs for the nominal robot miss in the sampled workspace, and the corrections of the joints that mend it; absent where the
+   * calibration is not to be used, and of a robot whose tip not every joint moves.
+   */
+  compensation?: CompensationEntry | null;
+  /** The corrected model: screws and terms of the joints fitted together; absent if no terms were asked for. */
+  corrected?: CorrectedEntry | null;
+  /** Each joint's correction. */
+  corrections?: CorrectionEntry[];
+  /** Sampled part of each joint's range. */
+  coverage?: JointCoverage[];
+  /** Cross-validation: errors of rows that are predicted by a fit of the others; null if there are too few. */
+  cross_validation?: CrossValidationEntry | null;
+  /** Mistakes in the input: named, not corrected. */
+  diagnosis?: DiagnosisEntry[];
+  /** Which unknowns the measurements determine. */
+  identifiability: IdentifiabilityEntry;
+  /** Inputs. */
+  inputs: Inputs;
+  /** Instruments on the robot. */
+  instruments?: Record<string, InstrumentEntry>;
+  /** The calibrated joints from base to tip. */
+  joints: JointEntry[];
+  /** Frame of the measuring device. */
+  measurement_frame: FrameEntry;
+  /** Noise by which residuals were weighted. */
+  noise: NoiseEntry;
+  /** Suspected rows, the worst first, at most 1,000; `robust` has their number. */
+  outliers?: OutlierEntry[];
+  /** Version of the program. */
+  poecal_version: string;
+  /** Configurations that were measured several times; null if there are none. */
+  repeatability?: RepeatabilityEntry | null;
+  /** The calibrated robot's frames. */
+  robot: RobotEntry;
+  /** Treatment of outliers. */
+  robust?: RobustEntry;
+  /** Version of the file. */
+  schema: string;
+  /** The minimisation: steps, end, convergence. */
+  solver: SolverEntry;
+  /** Stations of the measuring device, if they are named or several; the first is that of `measurement_frame`. */
+  stations?: StationEntry[];
+  /** Configurations in which all targets are suspected and off alike, the worst first, at most 100: the arm or its readings are wrong there. */
+  suspected_configurations?: SuspectedConfigurationEntry[];
+  /** Named targets: in the tip frame, or on a body of their own (`on`). */
+  targets: Record<string, TargetEntry>;
+  /** Pose of the tip in the last joint's frame. */
+  tool: PoseEntry;
+  /** Expected errors of predictions; null without more residuals than unknowns. */
+  uncertainty?: UncertaintyEntry | null;
+  /** Verdict: whether the result is good to use, and where. */
+  verdict?: Verdict | null;
+  /** Warnings, a sentence each. */
+  warnings?: string[];
+};
+
+/** Errors on training and held-out rows. */
+export type Accuracy = {
+  /** On the held-out rows; null if there are none. */
+  held_out?: SetAccuracy | null;
+  /** On the training rows. */
+  training: SetAccuracy;
+};
+
+/** Whether the residuals count as the robot's or the instrument's. */
+export type Attribution = "robot" | "stated_noise" | "repeats";
+
+/** Blocks of unknowns by name: `JOINT.axis`, `JOINT.offset` and other terms, `target.NAME`, `frame.NAME`. */
+export type BlocksEntry = {
+  /** Fitted. */
+  free: string[];
+  /** Held as in the model; terms that are none are not listed. */
+  held: string[];
+};
+
+/** A body of the robot: `"base"`, or `{"link_of": "joint2"}`, the link that this joint moves. */
+export type BodyEntry = "base" | {
+  link_of: string;
+};
+
+/** Spread of predictions at measured configurations over bootstrap samples of the rows. */
+export type BootstrapEntry = {
+  /** Number of samples: neighbourhoods of rows, with replacement. */
+  drawings: number;
+  /** The same by the covariance, for white noise, millimetres. */
+  formal_sigma_position_mm: number;
+  /** Root mean square distance over these samples, millimetres. */
+  sigma_position_mm: number;
+};
+
+/** Why something is not determined. The words stand in `calibration.json` and do not change. */
+export type Cause = "own_axis" | "base_frame" | "joint_offsets" | "no_orientation" | "unseen" | "stood_still" | "too_few" | "point_on_axis" | "one_orientation" | "one_turning_direction" | "moved_together" | "small_motion" | "dependent_motion" | "no_length" | "seen_once" | "other";
+
+/**
+ * How far the actual robot's tip is from where the nominal one has it, over the sampled workspace; and the corrections of the joints that
+ * mend it. Tool and base of the nominal robot are fitted to the actual one (the base only if the device's frame was unknown), over every
+ * third configuration, as if both had been taught on it: what is displaced is displaced by the joints. The actual robot is the corrected
+ * model, if there is one.
+ */
+export type CompensationEntry = {
+  /** Joint whose axis the map is about; null if that is the base's z axis. */
+  about?: string | null;
+  /** Configurations whose corrected readings are beyond a joint's limits. */
+  beyond_limits: number;
+  /** Side of the map's cells, metres. */
+  cell_m: number;
+  /** Parts of the workspace where the sample has configurations, by height and then by distance from the axis. */
+  cells: WorkspaceCellEntry[];
+  /** Number of configurations. */
+  configurations: number;
+  /** Corrections of each reading that moves the tip; none of an arm with fewer than six, which cannot mend every displacement. */
+  joints: ReadingChangeEntry[];
+  /** Largest angle, degrees. */
+  max_deg: number;
+  /** Largest distance, millimetres. */
+  max_mm: number;
+  /** Median angle, degrees. */
+  median_deg: number;
+  /** Median distance, millimetres. */
+  median_mm: number;
+  /** Configurations whose tip is displaced by no more than is expected of the calibration itself: there is nothing to mend. */
+  needless: number;
+  /** Configurations from which no small correction leads to the pose, since a singularity is near: another branch is, or none. */
+  unmended: number;
+};
+
+/**
+ * Screws and terms of the joints, fitted together. Its entries replace those of the same name where predictions are those of the corrected
+ * model.
+ */
+export type CorrectedEntry = {
+  /** Effects that the measurements do not tell apart, a sentence each. */
+  confused?: string[];
+  /** What each group of terms does at each joint, the one that moves the target most first. */
+  effects?: EffectEntry[];
+  /** Instruments on the robot. */
+  instruments?: Record<string, InstrumentEntry>;
+  /** Error of each joint over its sampled range, before and after. */
+  joint_errors?: JointErrorsEntry[];
+  /** The joints from base to tip: those of the robot, and behind each its gives. */
+  joints: JointEntry[];
+  /** Frame of the measuring device. */
+  measurement_frame: FrameEntry;
+  /** Standard deviation of the noise, as the fit of screws and terms shows it. */
+  noise: {
+    /** Standard deviation of each component of contact, millimetres. */
+    sigma_contact_mm?: number;
+    /** Standard deviation of each component of distance, millimetres. */
+    sigma_distance_mm?: number;
+    /** Standard deviation of each component of height, millimetres. */
+    sigma_height_mm?: number;
+    /** Standard deviation of each component of position, millimetres. */
+    sigma_position_mm?: number;
+    /** Standard deviation of each component of rotation, degrees; null where none was measured. */
+    sigma_rotation_deg?: number | null;
+    /** Standard deviation of each component of tilt, degrees. */
+    sigma_tilt_deg?: number;
+  };
+  /** Why these sizes. */
+  reason: SizesReason;
+  /** The corrected robot's frames, and the weights that it carries. */
+  robot: RobotEntry;
+  /** Prior standard deviation of the terms of each group, radians, of shift and runout metres; 0 where cross-validation left a group out. */
+  sizes: Record<string, number>;
+  /** Stations of the measuring device, if they are named or several. */
+  stations?: StationEntry[];
+  /** Named targets. */
+  targets: Record<string, TargetEntry>;
+  /** Pose of the tip in the last joint's frame. */
+  tool: PoseEntry;
+  /** Sizes that cross-validation tried; none if they were given. */
+  tried?: TriedEntry[];
+  /** Expected errors of predictions; null without more residuals than the measurements determine unknowns. */
+  uncertainty?: UncertaintyEntry | null;
+};
+
+/** A joint's correction, its uncertainty, and its effect. */
+export type CorrectionEntry = {
+  /** The joint. */
+  joint: string;
+  /** Root mean square position error with this screw alone nominal, millimetres. */
+  left_nominal_rms_mm: number;
+  /** The same of the axis' place; absent of a joint that slides. */
+  shift_from_data?: number | null;
+  /** Distance of the calibrated axis from the nominal joint's origin, millimetres. */
+  shift_mm: number;
+  /** Standard deviation of the axis' place at the joint, millimetres; null where it is not determined. */
+  sigma_shift_mm?: number | null;
+  /** Standard deviation of the direction, degrees (root mean square); null where it is not determined. */
+  sigma_tilt_deg?: number | null;
+  /** Why the joint is suspicious: a correction beyond those of the others, or residuals that follow its position. */
+  suspicious?: string | null;
+  /** Angle between nominal and calibrated direction, degrees. */
+  tilt_deg: number;
+  /** The measurements' share in what is known of the direction, from 0 to 1; the rest is the tolerance's. Absent without a tolerance. */
+  tilt_from_data?: number | null;
+};
+
+/** Cross-validation on the fitted rows. */
+export type CrossValidationEntry = {
+  /** The ends of each joint's range, files, and groups of equal `id`, each predicted by a fit without it. */
+  blocked: LeftOutEntry[];
+  /** Random folds, all together. */
+  random: LeftOutEntry;
+};
+
+/** A mistake in the input. */
+export type DiagnosisEntry = {
+  /** Kind of the mistake. */
+  kind: DiagnosisKind;
+  /** Rows concerned, counted from 0 over all files; empty if all are. */
+  rows: number[];
+  /** Evidence and advice. */
+  statement: string;
+};
+
+/** Kind of a mistake. The words do not change between versions. */
+export type DiagnosisKind = "joint_unit" | "position_unit" | "joint_sign" | "joints_swapped" | "joints_coupled" | "joint_zero" | "quaternion_order" | "inverted_pose" | "euler_convention" | "left_handed" | "row_shift" | "targets_swapped" | "targets_unnamed" | "length_unit" | "distance_zero" | "known_length" | "height_sign" | "tilt_unit" | "places_swapped" | "duplicate_rows";
+
+/** Unknowns that the measurements do not determine, or only weakly. */
+export type Direction = {
+  /** Its cause. */
+  cause?: Cause;
+  /** Description. */
+  description: string;
+  /** Number of independent directions. */
+  directions?: number;
+  /** The joints concerned. */
+  joints: string[];
+};
+
+/** What one group of terms does at one joint. */
+export type EffectEntry = {
+  /** Largest deviation in the fitted rows, milliradians, of shift and runout millimetres; of a ratio the change each radian. */
+  amplitude: number;
+  /** Distance by which it moves the target in the fitted rows, but for the mean of all (root mean square), millimetres. */
+  effect_mm: number;
+  /** Whether it is more than chance and the prior make. */
+  found: boolean;
+  /** The group. */
+  group: string;
+  /** The joint. */
+  joint: string;
+  /** Its standard deviation. */
+  sigma: number;
+  /** Share of its prior variance that the measurements took away, 0 to 1. */
+  told: number;
+  /** The effect in words. */
+  words: string;
+};
+
+/** Expected errors of predicted positions, millimetres. */
+export type ExpectedEntry = {
+  /** Mean of the 95 % bounds. */
+  bound95_position_mm: number;
+  /** Root mean square distance. */
+  sigma_position_mm: number;
+  /** The largest of these. */
+  worst_bound95_position_mm: number;
+};
+
+/** Something else that is read in each configuration. */
+export type FactorReading = {
+  /** Name of its column. */
+  name: string;
+  /** Value at which its terms are zero. */
+  reference: number;
+};
+
+/** Frame of the measuring device. */
+export type FrameEntry = {
+  /** Pose of the device in the base. */
+  base_from_device: PoseEntry;
+  /** Whether the frame was unknown or the base. */
+  known: FrameWord;
+};
+
+/** Knowledge of the device frame. */
+export type FrameWord = "unknown" | "base";
+
+/** Weights that a robot carries. How heavy they are is in the coefficients. */
+export type GravityEntry = {
+  /** Where weights are pulled, base frame. */
+  direction: [number, number, number];
+  /**
+   * Longest lever of each joint, by which moments about it are divided: the path from joint to joint to the farthest weight. It follows
+   * from the other entries; 0 of a joint that carries nothing.
+   */
+  joint_levers_m?: number[];
+  /**
+   * Of each joint, the masses that it carries times their longest levers, by which the moment of all masses is divided; of a joint that
+   * slides the masses alone. It follows from the other entries; 0 of a joint that carries nothing.
+   */
+  joint_mass_levers_kg_m?: number[];
+  /** Origin of each joint of the nominal model at zero joint values, about which moments are counted, base frame. */
+  joint_origins_m: Array<[number, number, number]>;
+  /** The weights; the term `sag1` is of the first. */
+  weights: WeightEntry[];
+};
+
+/** Which unknowns the measurements determine. */
+export type IdentifiabilityEntry = {
+  /** Condition number over these directions; null if there are none. */
+  condition?: number | null;
+  /** Observability indices; null where a singular value is zero. */
+  observability?: Observability;
+  /** Unknowns in the minimal basis. */
+  parameters: number;
+  /** Directions that the data determine against the noise. */
+  rank: number;
+  /** Directions that are not observable by measurements of this kind: not among the parameters, and without effect on predictions. */
+  structural?: Direction[];
+  /** Effective number of unknowns that the measurements determine beside the prior. */
+  told?: number | null;
+  /** Directions that the configurations do not determine. */
+  unidentifiable: Direction[];
+  /** Directions that they determine weakly, little better than the nominal model. */
+  weak?: Direction[];
+};
+
+/** Inputs. */
+export type Inputs = {
+  /** The command that reproduces the calibration; null if it was not made by the program. */
+  command?: string | null;
+  /** The measurement files, as named by the user. */
+  measurements: string[];
+  /** The robot model, as named by the user. */
+  model: string;
+  /** SHA-256 of each file by its name; of input that is no regular file, such as a pipe, only for measurements. */
+  sha256?: Record<string, string>;
+  /** The URDF that was calibrated; absent if the model was none. */
+  urdf?: OriginalUrdf | null;
+};
+
+/** An instrument on the robot. */
+export type InstrumentEntry = {
+  /** Body on which it stands. Its pose is in the frame of the joint that moves the body, or in the base. */
+  on: BodyEntry;
+  /** Position, metres. */
+  position_m: [number, number, number];
+  /** Unit quaternion x, y, z, w. */
+  quaternion_xyzw: [number, number, number, number];
+};
+
+/** Sampled and allowed values of a joint (radians; metres of a prismatic joint). */
+export type JointCoverage = {
+  /** The joint. */
+  joint: string;
+  /** Largest allowed value. */
+  limit_max?: number | null;
+  /** Smallest allowed value; null without limits, or with placeholders. */
+  limit_min?: number | null;
+  /** Largest value sampled. */
+  sampled_max: number;
+  /** Smallest value sampled. */
+  sampled_min: number;
+  /**
+   * Share of that range at its ends which at most a fiftieth of the rows reach, beyond a gap of more than 15 % of the range: it does not
+   * count as sampled.
+   */
+  stragglers?: number;
+};
+
+/** A calibrated joint. */
+export type JointEntry = {
+  /** Calibrated frame of the joint and of the link that it moves, at zero. */
+  base_from_joint: PoseEntry;
+  /** The joint of which this is a give: it turns by its terms alone, whose functions are of that joint. */
+  gives?: string | null;
+  /** Kind. */
+  kind: KindWord;
+  /** Lower and upper limit, radians or metres. */
+  limits?: [number, number] | null;
+  /** Name. */
+  name: string;
+  /** Screw of the nominal model. */
+  nominal_screw: ScrewEntry;
+  /** The same of the nominal model. */
+  nominal_terms?: Record<string, number>;
+  /** Body on which the joint stands, if that is not the link of the joint before. */
+  on?: BodyEntry | null;
+  /** The joint's value as a function of a reading. */
+  reading: ReadingEntry;
+  /** Calibrated screw in the base frame at zero. */
+  screw: ScrewEntry;
+  /** Coefficients of terms of the joint's value, in radians, metres, or by value: the value is the reading's, plus these terms. */
+  terms?: Record<string, number>;
+};
+
+/** A part of a joint's range. Errors in milliradians, of a joint that slides in millimetres. */
+export type JointErrorEntry = {
+  /** By the calibrated model. */
+  calibrated: number;
+  /** By the corrected model. */
+  corrected: number;
+  /** From, radians or metres. */
+  from: number;
+  /** Number of rows. */
+  rows: number;
+  /** Its standard deviation. */
+  sigma: number;
+  /** Mean deviation by the joint's own terms. */
+  terms: number;
+  /** To. */
+  to: number;
+};
+
+/** Error of a joint over its sampled range: the motion of the joint that explains most of the residuals there. */
+export type JointErrorsEntry = {
+  /** The joint. */
+  joint: string;
+  /** Parts of its range with rows enough. */
+  parts: JointErrorEntry[];
+};
+
+/** Errors of held-out positions or rotations compared with their predicted uncertainty. */
+export type KeptEntry = {
+  /** Expected root mean square error between measured and predicted, millimetres or degrees. */
+  expected_rms: number;
+  /** Share of the errors within their own 95 % bound, 0 to 1. */
+  inside_bound95: number;
+};
+
+/** Kind of a joint. */
+export type KindWord = "revolute" | "prismatic";
+
+/** Errors of the rows of a fold or block, predicted by a fit of the others. */
+export type LeftOutEntry = {
+  /** Root mean square error of contact, millimetres. */
+  contact_rms_mm?: number;
+  /** Root mean square error of distance, millimetres. */
+  distance_rms_mm?: number;
+  /** Root mean square error of height, millimetres. */
+  height_rms_mm?: number;
+  /** Name of the block. */
+  left_out: string;
+  /** Root mean square error of position, millimetres. */
+  position_rms_mm?: number;
+  /** Root mean square error of rotation, degrees; null where none was measured. */
+  rotation_rms_deg?: number | null;
+  /** Number of rows. */
+  rows: number;
+  /** Root mean square error of tilt, degrees. */
+  tilt_rms_deg?: number;
+};
+
+/** Level of a verdict. */
+export type Level = "do_not_use" | "inside_sampled_range" | "good";
+
+/**
+ * Loss of robust estimation, a function of the length of a row's whitened residual. Its constant gives 95 % efficiency under normal noise
+ * of that many components.
+ */
+export type Loss = "huber" | "cauchy" | "tukey";
+
+/** A mass of the model. */
+export type MassEntry = {
+  /** How heavy it is, kg. */
+  mass_kg: number;
+  /** Its body. */
+  on: BodyEntry;
+  /** Its centre at zero joint values, base frame, metres. */
+  place_m: [number, number, number];
+};
+
+/** What was measured of a target. */
+export type MeasuredEntry = "pose" | "position" | "nothing";
+
+/** Of each quantity that was measured; null of a rotation that was not. */
+export type MeasuredOfKeptEntry = {
+  contact_mm?: KeptEntry;
+  distance_mm?: KeptEntry;
+  height_mm?: KeptEntry;
+  position_mm?: KeptEntry;
+  rotation_deg?: KeptEntry | null;
+  tilt_deg?: KeptEntry;
+};
+
+/** Of each quantity that was measured; null of a rotation that was not. */
+export type MeasuredOfNumber = {
+  contact_mm?: number;
+  distance_mm?: number;
+  height_mm?: number;
+  position_mm?: number;
+  rotation_deg?: number | null;
+  tilt_deg?: number;
+};
+
+/**
+ * Errors of one model on one set of rows, of each quantity: distance from measured to predicted position (millimetres), angle from measured
+ * to predicted orientation (degrees).
+ */
+export type ModelAccuracy = {
+  contact_mm?: Statistic;
+  distance_mm?: Statistic;
+  height_mm?: Statistic;
+  position_mm?: Statistic;
+  /**
+   * Of all rows that a device without a frame of its own measured, millimetres, whatever their quantity: what their constraint leaves, as
+   * the error of a distance, a ball from the middle of its socket, a height over its plane. Absent if there are none.
+   */
+  residual_mm?: Statistic | null;
+  rotation_deg?: Statistic | null;
+  tilt_deg?: Statistic;
+};
+
+/** Noise by which residuals were weighted where a row stated none. */
+export type NoiseEntry = {
+  /** Standard deviation of each component of contact, millimetres. */
+  sigma_contact_mm?: number;
+  /** Standard deviation of each component of distance, millimetres. */
+  sigma_distance_mm?: number;
+  /** Standard deviation of each component of height, millimetres. */
+  sigma_height_mm?: number;
+  /** Standard deviation of each component of position, millimetres. */
+  sigma_position_mm?: number;
+  /** Standard deviation of each component of rotation, degrees; null where none was measured. */
+  sigma_rotation_deg?: number | null;
+  /** Standard deviation of each component of tilt, degrees. */
+  sigma_tilt_deg?: number;
+  /** Source of the noise. */
+  source: NoiseSource;
+};
+
+/** Source of the noise. */
+export type NoiseSource = "given" | "rows" | "estimated" | "exact";
+
+/**
+ * The indices O1 to O5 of sun2008 over the singular values `s₁ ≥ … ≥ sₙ` of the whitened Jacobian of the scaled minimal unknowns: theory.md
+ * §7 (36b). Larger is better. `None` where a singular value is zero but for rounding.
+ */
+export type Observability = {
+  /** `(s₁ s₂ … sₙ)^(1/n) / √m`, 1/m (metre): the geometric mean of the singular values, by the number m of configurations. */
+  o1?: number | null;
+  /** `sₙ / s₁`: the inverse of the condition number. */
+  o2?: number | null;
+  /** `sₙ`, 1/m (metre): the inverse of the largest standard deviation. */
+  o3?: number | null;
+  /** `sₙ² / s₁`, 1/m (metre): how noise is amplified. */
+  o4?: number | null;
+  /** `1 / Σ 1/sₖ`, 1/m (metre). */
+  o5?: number | null;
+};
+
+/** Offset of a joint. */
+export type OffsetEntry = {
+  /** The joint. */
+  joint: string;
+  /** Of a revolute joint, degrees. */
+  offset_deg?: number | null;
+  /** Of a prismatic joint, millimetres. */
+  offset_mm?: number | null;
+};
+
+/**
+ * The URDF that was calibrated, with what of it was: every form of the result that is a URDF is this text with other numbers, so that
+ * meshes, comments and links outside the chain stay.
+ */
+export type OriginalUrdf = {
+  /** First link of the chain. */
+  base_link?: string | null;
+  /** Instruments on the robot, each with its link. */
+  instruments?: Record<string, string>;
+  /** SHA-256 of the text. */
+  sha256: string;
+  /** Targets on any link, each with it. */
+  targets?: Record<string, string>;
+  /** The whole text. */
+  text: string;
+  /** Last link of the chain. */
+  tip_link?: string | null;
+};
+
+/** A suspected outlier. */
+export type OutlierEntry = {
+  /** Its file, as named by the user. */
+  file: string;
+  /** Distance or angle from the contact that the calibrated model predicts, millimetres. */
+  residual_contact_mm?: number;
+  /** Distance or angle from the rotation that the calibrated model predicts, degrees; null where none was measured. */
+  residual_deg?: number | null;
+  /** Distance or angle from the distance that the calibrated model predicts, millimetres. */
+  residual_distance_mm?: number;
+  /** Distance or angle from the height that the calibrated model predicts, millimetres. */
+  residual_height_mm?: number;
+  /** Distance or angle from the position that the calibrated model predicts, millimetres. */
+  residual_mm?: number;
+  /** Distance or angle from the tilt that the calibrated model predicts, degrees. */
+  residual_tilt_deg?: number;
+  /** Its line in that file, from 1. */
+  row: number;
+  /** Its set. */
+  set: OutlierSet;
+  /** Studentised residual: length over its own standard deviation. */
+  studentized: number;
+  /** Weight in the fit, 0 to 1; of a held-out row the weight that it would have had. */
+  weight: number;
+};
+
+/** Set of a suspected row. */
+export type OutlierSet = "fit" | "held_out";
+
+/** A pose. */
+export type PoseEntry = {
+  /** Position, metres. */
+  position_m: [number, number, number];
+  /** Unit quaternion x, y, z, w. */
+  quaternion_xyzw: [number, number, number, number];
+};
+
+/** A part of a joint's range with the expected error there. */
+export type RangeEntry = {
+  /** From, radians or metres. */
+  from: number;
+  /** The joint. */
+  joint: string;
+  /** Root mean square distance, millimetres, with the other joints anywhere in their ranges. */
+  sigma_position_mm: number;
+  /** To. */
+  to: number;
+};
+
+/** By how much a reading is corrected. */
+export type ReadingChangeEntry = {
+  /** The largest. */
+  max_deg?: number | null;
+  /** The largest. */
+  max_mm?: number | null;
+  /** Median correction of one that turns, degrees. */
+  median_deg?: number | null;
+  /** Median correction of one that slides, millimetres. */
+  median_mm?: number | null;
+  /** The reading. */
+  reading: string;
+};
+
+/** `value = multiplier * reading + offset`. */
+export type ReadingEntry = {
+  /** Factor. */
+  multiplier: number;
+  /** Name of the reading. */
+  name: string;
+  /** Offset, radians or metres. */
+  offset: number;
+};
+
+/** Pose accuracy and repeatability of positions, after ISO 9283; of poses that were measured by other quantities theirs. */
+export type RepeatabilityEntry = {
+  /** The same of the calibrated model, millimetres. */
+  accuracy_calibrated_contact_mm?: number;
+  /** The same of the calibrated model, degrees. */
+  accuracy_calibrated_deg?: number;
+  /** The same of the calibrated model, millimetres. */
+  accuracy_calibrated_distance_mm?: number;
+  /** The same of the calibrated model, millimetres. */
+  accuracy_calibrated_height_mm?: number;
+  /** The same of the calibrated model, millimetres. */
+  accuracy_calibrated_mm?: number;
+  /** The same of the calibrated model, degrees. */
+  accuracy_calibrated_tilt_deg?: number;
+  /** Pose accuracy of the nominal model: from its prediction to the mean of the measured contact, millimetres. */
+  accuracy_nominal_contact_mm?: number;
+  /** Pose accuracy of the nominal model: from its prediction to the mean of the measured rotation, degrees. */
+  accuracy_nominal_deg?: number;
+  /** Pose accuracy of the nominal model: from its prediction to the mean of the measured distance, millimetres. */
+  accuracy_nominal_distance_mm?: number;
+  /** Pose accuracy of the nominal model: from its prediction to the mean of the measured height, millimetres. */
+  accuracy_nominal_height_mm?: number;
+  /** Pose accuracy of the nominal model: from its prediction to the mean of the measured position, millimetres. */
+  accuracy_nominal_mm?: number;
+  /** Pose accuracy of the nominal model: from its prediction to the mean of the measured tilt, degrees. */
+  accuracy_nominal_tilt_deg?: number;
+  /** The same of the registered model, millimetres. */
+  accuracy_registered_contact_mm?: number;
+  /** The same of the registered model, degrees. */
+  accuracy_registered_deg?: number;
+  /** The same of the registered model, millimetres. */
+  accuracy_registered_distance_mm?: number;
+  /** The same of the registered model, millimetres. */
+  accuracy_registered_height_mm?: number;
+  /** The same of the registered model, millimetres. */
+  accuracy_registered_mm?: number;
+  /** The same of the registered model, degrees. */
+  accuracy_registered_tilt_deg?: number;
+  /** The poses, those with most rows first, at most 100. */
+  listed: RepeatedPoseEntry[];
+  /** Number of targets in configurations with three rows or more. */
+  poses: number;
+  /** Repeatability: mean distance of the measured contact from its mean, plus three standard deviations, millimetres. */
+  repeatability_contact_mm?: number;
+  /** Repeatability: mean distance of the measured rotation from its mean, plus three standard deviations, degrees. */
+  repeatability_deg?: number;
+  /** Repeatability: mean distance of the measured distance from its mean, plus three standard deviations, millimetres. */
+  repeatability_distance_mm?: number;
+  /** Repeatability: mean distance of the measured height from its mean, plus three standard deviations, millimetres. */
+  repeatability_height_mm?: number;
+  /** Repeatability: mean distance of the measured position from its mean, plus three standard deviations, millimetres. */
+  repeatability_mm?: number;
+  /** Repeatability: mean distance of the measured tilt from its mean, plus three standard deviations, degrees. */
+  repeatability_tilt_deg?: number;
+  /** Number of their rows. */
+  rows: number;
+  /** The largest repeatability of contact, millimetres. */
+  worst_repeatability_contact_mm?: number;
+  /** The largest repeatability of rotation, degrees. */
+  worst_repeatability_deg?: number;
+  /** The largest repeatability of distance, millimetres. */
+  worst_repeatability_distance_mm?: number;
+  /** The largest repeatability of height, millimetres. */
+  worst_repeatability_height_mm?: number;
+  /** The largest repeatability of position, millimetres. */
+  worst_repeatability_mm?: number;
+  /** The largest repeatability of tilt, degrees. */
+  worst_repeatability_tilt_deg?: number;
+};
+
+/** A configuration that was measured several times. */
+export type RepeatedPoseEntry = {
+  /** The same of the calibrated model, millimetres. */
+  accuracy_calibrated_contact_mm?: number;
+  /** The same of the calibrated model, degrees. */
+  accuracy_calibrated_deg?: number;
+  /** The same of the calibrated model, millimetres. */
+  accuracy_calibrated_distance_mm?: number;
+  /** The same of the calibrated model, millimetres. */
+  accuracy_calibrated_height_mm?: number;
+  /** The same of the calibrated model, millimetres. */
+  accuracy_calibrated_mm?: number;
+  /** The same of the calibrated model, degrees. */
+  accuracy_calibrated_tilt_deg?: number;
+  /** Pose accuracy of the nominal model: from its prediction to the mean of the measured contact, millimetres. */
+  accuracy_nominal_contact_mm?: number;
+  /** Pose accuracy of the nominal model: from its prediction to the mean of the measured rotation, degrees. */
+  accuracy_nominal_deg?: number;
+  /** Pose accuracy of the nominal model: from its prediction to the mean of the measured distance, millimetres. */
+  accuracy_nominal_distance_mm?: number;
+  /** Pose accuracy of the nominal model: from its prediction to the mean of the measured height, millimetres. */
+  accuracy_nominal_height_mm?: number;
+  /** Pose accuracy of the nominal model: from its prediction to the mean of the measured position, millimetres. */
+  accuracy_nominal_mm?: number;
+  /** Pose accuracy of the nominal model: from its prediction to the mean of the measured tilt, degrees. */
+  accuracy_nominal_tilt_deg?: number;
+  /** The same of the registered model, millimetres. */
+  accuracy_registered_contact_mm?: number;
+  /** The same of the registered model, degrees. */
+  accuracy_registered_deg?: number;
+  /** The same of the registered model, millimetres. */
+  accuracy_registered_distance_mm?: number;
+  /** The same of the registered model, millimetres. */
+  accuracy_registered_height_mm?: number;
+  /** The same of the registered model, millimetres. */
+  accuracy_registered_mm?: number;
+  /** The same of the registered model, degrees. */
+  accuracy_registered_tilt_deg?: number;
+  /** File of its first row. */
+  file: string;
+  /** Repeatability: mean distance of the measured contact from its mean, plus three standard deviations, millimetres. */
+  repeatability_contact_mm?: number;
+  /** Repeatability: mean distance of the measured rotation from its mean, plus three standard deviations, degrees. */
+  repeatability_deg?: number;
+  /** Repeatability: mean distance of the measured distance from its mean, plus three standard deviations, millimetres. */
+  repeatability_distance_mm?: number;
+  /** Repeatability: mean distance of the measured height from its mean, plus three standard deviations, millimetres. */
+  repeatability_height_mm?: number;
+  /** Repeatability: mean distance of the measured position from its mean, plus three standard deviations, millimetres. */
+  repeatability_mm?: number;
+  /** Repeatability: mean distance of the measured tilt from its mean, plus three standard deviations, degrees. */
+  repeatability_tilt_deg?: number;
+  /** Line of its first row, from 1. */
+  row: number;
+  /** Number of its rows. */
+  rows: number;
+};
+
+/** The calibrated robot's frames. */
+export type RobotEntry = {
+  /** Pose of the tip in the base with all joint values zero. */
+  base_from_tip_at_zero: PoseEntry;
+  /** Name of the base frame. */
+  base_link: string;
+  /** What else is read in each configuration and terms depend on; the term `factor1` is of the first. */
+  factors?: FactorReading[];
+  /** Weights that the robot carries, if its joints sag. */
+  gravity?: GravityEntry | null;
+  /** Masses of the model's links; the term `masses` is of all of them. */
+  masses?: MassEntry[];
+  /** Name. */
+  name: string;
+  /** The same of the nominal model. */
+  nominal_base_from_tip_at_zero: PoseEntry;
+  /** Name of the tip frame. */
+  tip_link: string;
+  /** Body of the tip, if it is not the last joint's link. */
+  tip_on?: BodyEntry | null;
+};
+
+/** Treatment of outliers. */
+export type RobustEntry = {
+  /** `accuracy.held_out` without suspected rows; null if there are none. */
+  held_out_without_suspected?: SetAccuracy | null;
+  /** Loss of a robust fit; null: least squares. */
+  loss?: Loss | null;
+  /** Number of suspected training rows. */
+  suspected_fit: number;
+  /** Number of suspected held-out rows. */
+  suspected_held_out: number;
+  /** `accuracy.training` without suspected rows; null if there are none. */
+  training_without_suspected?: SetAccuracy | null;
+};
+
+/** A screw, linear part first. */
+export type ScrewEntry = {
+  /** Linear part: metres of an axis, a unit vector of a sliding direction. */
+  v_m: [number, number, number];
+  /** Angular part: a unit vector of an axis, zero of a sliding direction. */
+  w: [number, number, number];
+};
+
+/** Errors of the three models on one set of rows. */
+export type SetAccuracy = {
+  /** Screws fitted too. */
+  calibrated: ModelAccuracy;
+  /** Screws and terms of the joints fitted together; absent if no terms were asked for. */
+  corrected?: ModelAccuracy | null;
+  /** Number of measurements. */
+  count: number;
+  /** The nominal model; only an unknown device frame is fitted. */
+  nominal: ModelAccuracy;
+  /** Device frame and targets fitted, screws nominal. */
+  registered: ModelAccuracy;
+};
+
+/** Why a corrected model has terms of its sizes. */
+export type SizesReason = "given" | "predict" | "no_better" | "common" | "too_few" | "undetermined" | "led_nowhere";
+
+/** The minimisation: steps, end, convergence. */
+export type SolverEntry = {
+  /** Tolerance of the prior, if cross-validation chose it. */
+  chosen_tolerance?: ToleranceEntry | null;
+  /** Whether an optimum was reached. */
+  converged: boolean;
+  /** Parameterisation of joint errors: `adjoint`, or a formulation for comparison. */
+  formulation?: string;
+  /** Iterations of the full fit. */
+  iterations: number;
+  /**
+   * Joint offsets found: joint value minus reading, where the formulation has them. Data cannot separate them from screws; in `joints` they
+   * are part of the screws, and the readings need no correction.
+   */
+  joint_offsets?: OffsetEntry[] | null;
+  /** Method of the solver: `levenberg-marquardt`, or others for comparison. */
+  method?: string;
+  /** Effect of the formulation on the result, if it is not the usual one. */
+  note?: string | null;
+  /** Residual of measured frames: `tool`, at the target, or another for comparison. */
+  pose_residual?: string;
+  /** Number of further starts after a suspected local minimum. */
+  restarts: number;
+  /** Reason of its end. */
+  termination: Termination;
+  /** Mean square of the whitened residual by iteration, the start first; each re-weighted round of the fit starts again. */
+  trace?: number[];
+};
+
+/** A station of the measuring device. */
+export type StationEntry = {
+  /** Pose of the device in the base; of an instrument on the robot, at zero joint values. */
+  base_from_device: PoseEntry;
+  /** Name of the instrument: from the column `instrument`, or the file with `--frames per-file`. */
+  instrument?: string | null;
+  /**
+   * What it is, if it is no instrument with a frame of its own: anchor, socket, plane (z is its normal), sphere, direction (z is along it),
+   * pair (of configurations: its pose means nothing).
+   */
+  kind?: string | null;
+  /** Radius of a sphere, with that of the probe, known or found, millimetres. */
+  radius_mm?: number | null;
+  /** Growth of its readings with the distance, less 1, if it is not 0. */
+  scale?: number | null;
+  /** Standard deviation of each component of its measurements that state none, if it differs from that of the first instrument. */
+  sigma?: MeasuredOfNumber | null;
+  /** Reading of its distances at its own place, millimetres, if it is not 0; of a sphere that is touched, minus its radius. */
+  zero_mm?: number | null;
+};
+
+/** Mean, root mean square, 95th percentile (linear between ranks) and maximum of errors. */
+export type Statistic = {
+  /** Largest. */
+  max: number;
+  /** Mean. */
+  mean: number;
+  /** 95th percentile. */
+  p95: number;
+  /** Root mean square. */
+  rms: number;
+};
+
+/**
+ * A configuration in which every measured position is suspected, of two targets or more, and off by like distances: there the arm or its
+ * readings are wrong, not a target.
+ */
+export type SuspectedConfigurationEntry = {
+  /** File of its first row. */
+  file: string;
+  /** Largest residual of position, millimetres. */
+  largest_mm: number;
+  /** Smallest residual of position, millimetres. */
+  least_mm: number;
+  /** Line of its first row, from 1. */
+  row: number;
+  /** Number of its rows. */
+  rows: number;
+  /** Number of their targets. */
+  targets: number;
+};
+
+/** A target; a point has no orientation. */
+export type TargetEntry = {
+  /** What was measured of such a target; the rest of its pose is the model's. */
+  measured?: MeasuredEntry | null;
+  /** Body of a target that is not in the tip frame: its pose is in the frame of the joint that moves the body, or in the base. */
+  on?: BodyEntry | null;
+  /** Position, metres. */
+  position_m: [number, number, number];
+  /** Unit quaternion x, y, z, w, where orientation was measured; of a target on a body of its own, always. */
+  quaternion_xyzw?: [number, number, number, number] | null;
+};
+
+/** Why a minimisation ended: data, not an error string. */
+export type Termination = "optimum" | "step_vanished" | "no_progress" | "iteration_limit" | "not_finite";
+
+/** Tolerance of the prior: how far each axis may be from nominal, standard deviations. */
+export type ToleranceEntry = {
+  /** Of its direction, degrees. */
+  angle_deg: number;
+  /** Of its place, millimetres. */
+  length_mm: number;
+};
+
+/** Sizes that were tried. */
+export type TriedEntry = {
+  /** Error (RMS) of parts that were left out, over that of geometry alone: a geometric mean over the parts. */
+  left_out: number;
+  /** Logarithm of its square with the prior of the choice: the least was chosen. */
+  score: number;
+  /** The sizes. */
+  sizes: Record<string, number>;
+};
+
+/** Covariance of the unknowns, and expected errors. */
+export type UncertaintyEntry = {
+  /**
+   * Frames `base_from_axis` at zero, z along the joint, of each joint's unknowns: shifts along x and y and turns about x and y of a
+   * revolute joint, turns about x and y of a prismatic one.
+   */
+  axes: PoseEntry[];
+  /** Bootstrap at measured configurations; null with too few rows. */
+  bootstrap?: BootstrapEntry | null;
+  /**
+   * Covariance of the unknowns, square metres, turns multiplied by `length_m`: the upper triangle by rows, in the order of the fit with
+   * pure translations first.
+   */
+  covariance_m2: number[];
+  /** The same outside the sampled range; absent if no larger. */
+  covariance_outside_m2?: number[] | null;
+  /** Model error: standard deviation of each component of contact, millimetres. */
+  discrepancy_contact_mm?: number;
+  /** Model error: standard deviation of each component of distance, millimetres. */
+  discrepancy_distance_mm?: number;
+  /** Model error: standard deviation of each component of height, millimetres. */
+  discrepancy_height_mm?: number;
+  /** Model error: standard deviation of each component of position, millimetres. */
+  discrepancy_position_mm: number;
+  /** Model error: standard deviation of each component of rotation, degrees. */
+  discrepancy_rotation_deg: number;
+  /** Model error: standard deviation of each component of tilt, degrees. */
+  discrepancy_tilt_deg?: number;
+  /** The same outside the sampled range; absent if no larger. */
+  extrapolation?: number | null;
+  /** Point of the device frame about which its unknowns turn, metres, where the frame is among them. */
+  frame_about_m?: [number, number, number] | null;
+  /** Degrees of freedom of the residuals' variance, of contact. */
+  freedom_contact?: number;
+  /** Degrees of freedom of the residuals' variance, of distance. */
+  freedom_distance?: number;
+  /** Degrees of freedom of the residuals' variance, of height. */
+  freedom_height?: number;
+  /** Degrees of freedom of the residuals' variance, of position; null where their noise is stated. */
+  freedom_position?: number | null;
+  /** Degrees of freedom of the residuals' variance, of rotation; null where their noise is stated. */
+  freedom_rotation?: number | null;
+  /** Degrees of freedom of the residuals' variance, of tilt. */
+  freedom_tilt?: number;
+  /** Errors of held-out rows compared with their predicted uncertainty; null without such rows. */
+  held_out?: MeasuredOfKeptEntry | null;
+  /** Factor of the covariance over that of independent residuals. */
+  inflation: number;
+  /** Correlation of residuals of consecutive rows; null if not significant. */
+  lag_one_correlation?: number | null;
+  /** Metres that a radian counts in the covariance. */
+  length_m: number;
+  /** In the measured configurations. */
+  measured: ExpectedEntry;
+  /** Measurement noise in the residuals: standard deviation of each component of contact, millimetres. */
+  noise_contact_mm?: number;
+  /** Measurement noise in the residuals: standard deviation of each component of distance, millimetres. */
+  noise_distance_mm?: number;
+  /** Measurement noise in the residuals: standard deviation of each component of height, millimetres. */
+  noise_height_mm?: number;
+  /** Measurement noise in the residuals: standard deviation of each component of position, millimetres. */
+  noise_position_mm?: number;
+  /** Measurement noise in the residuals: standard deviation of each component of rotation, degrees. */
+  noise_rotation_deg?: number;
+  /** Measurement noise in the residuals: standard deviation of each component of tilt, degrees. */
+  noise_tilt_deg?: number;
+  /** By parts of each joint's range. */
+  parts: RangeEntry[];
+  /** Anywhere within the limits. */
+  range: ExpectedEntry;
+  /** Whether the residuals of contact count as the robot's or the instrument's. */
+  residuals_contact?: Attribution;
+  /** Whether the residuals of distance count as the robot's or the instrument's. */
+  residuals_distance?: Attribution;
+  /** Whether the residuals of height count as the robot's or the instrument's. */
+  residuals_height?: Attribution;
+  /** Whether the residuals of position count as the robot's or the instrument's. */
+  residuals_position?: Attribution;
+  /** Whether the residuals of rotation count as the robot's or the instrument's. */
+  residuals_rotation?: Attribution;
+  /** Whether the residuals of tilt count as the robot's or the instrument's. */
+  residuals_tilt?: Attribution;
+  /** Targets with unknowns, `true` for frames: shifts along their axes, and for frames turns about them. The tip has an empty name. */
+  targets: Array<[string, boolean]>;
+  /** Names of the unknowns, in the order of the covariance; missing in older files. */
+  unknowns?: string[];
+};
+
+/** A level, and the reasons against a better one; for the best level, the reasons for it. */
+export type Verdict = {
+  /** How far it may be used. */
+  level: Level;
+  /** Sentences with the deciding figures. */
+  reasons: string[];
+};
+
+/** A weight. */
+export type WeightEntry = {
+  /** What it is at: the name of a joint, or of the tip. */
+  at: string;
+  /** Its body. */
+  on: BodyEntry;
+  /** Its place at zero joint values, base frame. */
+  place_m: [number, number, number];
+};
+
+/** A part of the workspace: a ring about the axis, as wide and as high as a cell. */
+export type WorkspaceCellEntry = {
+  /** Number of configurations. */
+  configurations: number;
+  /** Its height along the axis above the base's origin, from, metres. */
+  height_m: number;
+  /** Largest angle, degrees. */
+  max_deg: number;
+  /** Largest distance, millimetres. */
+  max_mm: number;
+  /** Median angle, degrees. */
+  median_deg: number;
+  /** Median distance, millimetres. */
+  median_mm: number;
+  /** Distance of the nominal tip from the axis, from, metres. */
+  radius_m: number;
+};

@@ -1,0 +1,60 @@
+// Residuals of the rows as arrows, or as dots where they are no shift in the picture.
+import { ConeGeometry, CylinderGeometry, Group, InstancedMesh, Matrix4, Quaternion, SphereGeometry, Vector3 } from "three";
+import { scale } from "./kinematics.js";
+import { roomForArrows } from "./places.js";
+
+const UP = new Vector3(0, 1, 0);
+const NOTHING = new Matrix4().makeScale(0, 0, 0);
+
+/** Room for each arrow, metres: many are shorter, so that they stay apart. */
+export function roomOf({ rows, instruments }, size) {
+  return Math.min(0.06 * size * Math.min(1, Math.sqrt(300 / rows.count)), ...instruments.map((it) => roomForArrows(it, size)));
+}
+
+export class Arrows {
+  constructor({ rows }, size, room, material) {
+    const isArrow = (shift) => shift !== null;
+    this.rows = rows;
+    this.has = { arrows: rows.residual.some(isArrow), dots: !rows.residual.every(isArrow) };
+    const width = Math.min(size * (rows.count > 800 ? 0.0013 : 0.0024), room / 30);
+    this.dots = new InstancedMesh(new SphereGeometry(size * (rows.count > 800 ? 0.004 : 0.0075), 10, 8), material, rows.count);
+    this.shafts = new InstancedMesh(new CylinderGeometry(width, width, 1, 5), material, rows.count);
+    this.heads = new InstancedMesh(new ConeGeometry(width * 3, 1, 8), material, rows.count);
+    this.headLength = width * 8;
+    this.group = new Group();
+    this.group.add(this.shafts, this.heads);
+    if (this.has.dots) this.group.add(this.dots);
+  }
+
+  /** Puts every arrow where its target was predicted, so many times as long as it is. */
+  place(factor) {
+    if (this.placed === factor) return;
+    this.placed = factor;
+    const { rows } = this;
+    rows.predicted.forEach((from, row) => {
+      const shift = rows.residual[row];
+      this.dots.setMatrixAt(row, shift ? NOTHING : new Matrix4().makeTranslation(...from));
+      const arrow = scale(shift ?? [0, 0, 0], 1e-3 * factor);
+      const length = Math.max(Math.hypot(...arrow), 1e-6);
+      const direction = new Vector3(...arrow).divideScalar(length);
+      const turn = new Quaternion().setFromUnitVectors(UP, direction);
+      const head = Math.min(this.headLength, 0.5 * length);
+      const at = (share) => new Vector3(...from).addScaledVector(direction, share);
+      this.shafts.setMatrixAt(row, new Matrix4().compose(at((length - head) / 2), turn, new Vector3(1, length - head, 1)));
+      this.heads.setMatrixAt(row, new Matrix4().compose(at(length - head / 2), turn, new Vector3(head / this.headLength, head, head / this.headLength)));
+    });
+    for (const mesh of [this.shafts, this.heads, this.dots]) {
+      mesh.instanceMatrix.needsUpdate = true;
+      mesh.computeBoundingSphere();
+    }
+  }
+
+  /** From `least` to `most`: the larger the error, up to `largest`, the stronger. */
+  recolour(least, most, largest) {
+    this.rows.error_mm.forEach((error, row) => {
+      const shade = least.clone().lerp(most, Math.min(error / largest, 1));
+      for (const mesh of [this.shafts, this.heads, this.dots]) mesh.setColorAt(row, shade);
+    });
+    for (const mesh of [this.shafts, this.heads, this.dots]) mesh.instanceColor.needsUpdate = true;
+  }
+}
