@@ -109,6 +109,26 @@ for (const [name, make, brief] of [...CASES, ...Object.entries(TREES).map((it) =
       await page.close();
     });
 
+    test("says each joint's correction in words, and which unknowns are correlated", async () => {
+      const page = await open(browser, report);
+      const shown = (key) => page.$$eval(`[data-key^="${key}"]`, (all) => all.map((it) => it.textContent));
+      const words = await shown("corrections.");
+      const told = file.corrections.filter((it) => it.change);
+      for (const { change } of told) assert.ok(words.includes(change.words), change.words);
+      assert.ok(told.length > 0 && told.every(({ change }) => /(mm|deg|noise|determined|no )/.test(change.words)));
+      const common = await shown("common.");
+      assert.deepEqual(common, (file.common ?? []).map((it) => it.words));
+      const correlations = file.uncertainty?.correlations;
+      const cells = await shown("uncertainty.correlations.largest");
+      const blocks = correlations?.blocks.length ?? 0;
+      assert.equal(cells.length, (blocks * (blocks + 1)) / 2);
+      const legend = await page.$eval("svg.plot", (it) => it.textContent);
+      const hasTerms = Object.values(file.corrected?.sizes ?? {}).some((size) => size > 0);
+      if (!hasTerms) assert.ok(!legend.includes("corrected"), "a corrected model without terms is none");
+      console.log(`${name}: ${told.length} corrections, ${common.length} common directions, ${correlations?.strong ?? 0} strong pairs of ${blocks} blocks`);
+      await page.close();
+    });
+
     test("the sliders move the arm to where the program says", async () => {
       const page = await open(browser, report);
       const { still, values, tip } = await moveArm(page);

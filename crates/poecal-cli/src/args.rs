@@ -69,6 +69,8 @@ pub(crate) enum Command {
     /// Judge a calibration by other measurements
     Validate(Validate),
     /// Compare two calibrations of one robot: what changed, and what is noise
+    ///
+    /// Ends with code 1 if more changed than noise.
     Compare(Compare),
     /// Predict poses from joint readings
     Predict(Predict),

@@ -86,16 +86,19 @@ pub(super) fn common_directions(
     let n = finished.layout.dim();
     let is_larger = |(change, held): (&JointChange, &Option<(f64, f64)>)| {
         let Some((tilt, shift)) = held else { return false };
-        let larger = |all: Option<f64>, held: f64| all.is_none_or(|all| all > LARGER * held);
-        larger(change.sigma_tilt, *tilt) || (*shift > 0.0 && larger(change.sigma_shift, *shift))
+        let larger = |all: Option<f64>, held: f64| all.is_some_and(|all| all > LARGER * held);
+        // Of a joint that slides the tilt alone counts.
+        larger(change.sigma_tilt, *tilt) && (*shift == 0.0 || larger(change.sigma_shift, *shift))
     };
-    if n == 0 || !changes.iter().map(|(change, _)| change).zip(held).any(is_larger) {
+    // Joints that are known no better with the others held would take most of the variance.
+    let larger: Vec<bool> = changes.iter().map(|(change, _)| change).zip(held).map(is_larger).collect();
+    if n == 0 || !larger.contains(&true) {
         return Vec::new();
     }
     // Seven rows of each joint, in metres: offset, tilt, shift.
     let unit = |joint: usize| if changes[joint].0.kind == JointKind::Revolute { length_m } else { 1.0 };
     let mut rows = DMatrix::zeros(7 * changes.len(), n);
-    for (joint, (change, by_steps)) in changes.iter().enumerate() {
+    for (joint, (change, by_steps)) in changes.iter().enumerate().filter(|(joint, _)| larger[*joint]) {
         let offset = change.offset.map_or(0.0, |_| unit(joint));
         let tilts = by_steps.tilt.iter().map(|row| (row, length_m));
         let shifts = by_steps.shift.iter().map(|row| (row, 1.0));
@@ -117,7 +120,7 @@ pub(super) fn common_directions(
     let information = DMatrix::from_row_slice(n, n, &position_information(&finished.view, &sampled));
     let told = |k: usize| -> Option<CommonDirection> {
         let value = values[k];
-        if !(value > SHARE * total) {
+        if value <= SHARE * total || value <= 0.0 {
             return None;
         }
         let direction = vectors.column(k).into_owned();

@@ -1,10 +1,9 @@
 //! How well unknowns are known when others are held.
 
-use super::{View, covariance};
-use crate::linalg;
+use super::{View, inflated_by};
 
-/// Covariance (row-major) of the `kept` unknowns of a fit with all others held: `κ s² H⁻¹` with the rows and columns of `H = N + s²Λ` that
-/// were kept (theory.md §9 (39b)). From the upper triangle of N; κ is the `scatter`. `None` if a number is not finite.
+/// Covariance (row-major) of the `kept` unknowns of a fit with all others held: (39) with the rows and columns of N and Λ that were kept
+/// (theory.md §9 (39b)). From the upper triangle of N; κ is the `scatter`. `None` if a number is not finite.
 pub(crate) fn held_covariance(
     view: &View<'_>,
     gram: &[f64],
@@ -12,11 +11,10 @@ pub(crate) fn held_covariance(
     scatter: f64,
     kept: &[usize],
 ) -> Option<Vec<f64>> {
-    let all = view.prior.with(gram, view.variance);
-    let part: Vec<f64> = kept
-        .iter()
-        .flat_map(|&i| kept.iter().map(move |&j| i.min(j) * n + i.max(j)))
-        .map(|at| all[at])
-        .collect();
-    covariance(&linalg::cholesky(&part, kept.len(), 0.0)?, view.variance * scatter)
+    let part = |all: &[f64]| -> Vec<f64> {
+        let places = kept.iter().flat_map(|&i| kept.iter().map(move |&j| i.min(j) * n + i.max(j)));
+        places.map(|at| all[at]).collect()
+    };
+    let prior = (part(&view.prior.normal.gram), view.prior.is_fitted);
+    inflated_by((&part(gram), kept.len()), (&prior.0, prior.1), view.variance, scatter)
 }

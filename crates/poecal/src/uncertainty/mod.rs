@@ -198,13 +198,27 @@ fn factor(gram: &[f64], n: usize, prior: &PriorInformation, variance: f64) -> Op
 /// in the fit it is `s² H⁻¹ (κ N + s²Λ) H⁻¹`, which is `s² H⁻¹` for κ = 1. Without a prior in the fit it is `κ s² (N + κ s²Λ)⁻¹`
 /// (theory.md §9 (39)).
 fn inflated(gram: &[f64], n: usize, view: &View<'_>, inflation: f64) -> Option<Vec<f64>> {
-    if !view.prior.is_fitted || inflation == 1.0 {
-        let variance = view.variance * inflation;
-        return covariance(&factor(gram, n, view.prior, variance)?, variance);
+    let prior = (view.prior.normal.gram.as_slice(), view.prior.is_fitted);
+    inflated_by((gram, n), prior, view.variance, inflation)
+}
+
+/// The same by the upper triangles of N and Λ, and whether the fit contained the prior.
+fn inflated_by(
+    (gram, n): (&[f64], usize),
+    (prior, is_fitted): (&[f64], bool),
+    variance: f64,
+    inflation: f64,
+) -> Option<Vec<f64>> {
+    let of = |variance: f64| {
+        let both: Vec<f64> =
+            gram.iter().zip(prior).map(|(measured, prior)| measured + variance * prior).collect();
+        let largest = (0..n).map(|k| both[k * n + k]).fold(0.0, f64::max);
+        covariance(&linalg::cholesky(&both, n, ROUNDING * largest)?, variance)
+    };
+    if !is_fitted || inflation == 1.0 {
+        return of(variance * inflation);
     }
-    let formal = covariance(&factor(gram, n, view.prior, view.variance)?, view.variance)?;
-    let formal = DMatrix::from_row_slice(n, n, &formal);
-    let prior = &view.prior.normal.gram;
+    let formal = DMatrix::from_row_slice(n, n, &of(variance)?);
     let of_prior = DMatrix::from_fn(n, n, |i, j| prior[i.min(j) * n + i.max(j)]);
     let spread = &formal * inflation - &formal * of_prior * &formal * (inflation - 1.0);
     Some((&spread + spread.transpose()).scale(0.5).as_slice().to_vec())
