@@ -2,13 +2,12 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::ffi::OsString;
-use std::io::{self, ErrorKind, Read};
+use std::io::{self, ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use poecal::io::disk::{Disk, Lock, Object, ObjectKind, Output};
 
-use crate::handle::{Reader, Writer};
 use crate::names::{Names, Node, whole};
 
 #[derive(Debug)]
@@ -40,6 +39,45 @@ struct State {
 /// ```
 #[derive(Clone, Debug)]
 pub struct MemoryDisk(Arc<Mutex<State>>);
+
+/// A file that is read: its bytes when it was opened.
+struct Reader {
+    bytes: Arc<Vec<u8>>,
+    at: usize,
+}
+
+impl Read for Reader {
+    fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
+        let rest = self.bytes.get(self.at..).unwrap_or_default();
+        let count = into.len().min(rest.len());
+        into[..count].copy_from_slice(&rest[..count]);
+        self.at += count;
+        Ok(count)
+    }
+}
+
+/// A file that is written.
+struct Writer {
+    disk: MemoryDisk,
+    number: usize,
+}
+
+impl Write for Writer {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.disk.append(self.number, bytes)?;
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+impl Output for Writer {
+    fn sync(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
 
 /// A lock, until it is dropped.
 struct Held(MemoryDisk, PathBuf);
@@ -113,7 +151,7 @@ impl MemoryDisk {
     }
 
     /// Writes at the end of a file.
-    pub(crate) fn append(&self, number: usize, bytes: &[u8]) -> io::Result<()> {
+    fn append(&self, number: usize, bytes: &[u8]) -> io::Result<()> {
         let mut state = self.state();
         let file = state.files.get_mut(number).ok_or(ErrorKind::NotFound)?;
         Arc::make_mut(file).extend_from_slice(bytes);

@@ -6,7 +6,6 @@
 mod disk;
 #[cfg(target_arch = "wasm32")]
 mod exports;
-mod handle;
 mod message;
 mod names;
 
