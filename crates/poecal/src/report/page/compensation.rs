@@ -30,12 +30,14 @@ pub(super) fn sections(file: &CalibrationFile) -> Markup {
             @else { "Tool and base of the nominal one are" }
             " fitted to the actual one first, as if taught on it, so that only the joints make a difference."
         }
-        div.pair {
-            div {
+        @if let Some(expected) = expected_map(found) {
+            div.pair {
                 (plots(&[map(found)], caption))
-                @if let Some(map) = expected_map(found) { (plots(&[map], "The same cells by what corrected programs are expected to miss by (RMS).")) }
+                (plots(&[expected], "The same cells by what corrected programs are expected to miss by (RMS)."))
             }
-            div.tables { (joints(found)) (exceptions(found)) }
+            div.pair { (joints(found)) (exceptions(found)) }
+        } @else {
+            div.pair { (plots(&[map(found)], caption)) div.tables { (joints(found)) (exceptions(found)) } }
         }
         (folded("The map as numbers", &table(found)))
     };
