@@ -55,13 +55,29 @@ async function licences() {
   return (await Promise.all(names.map((name) => readFile(new URL(name, ROOT), "utf8")))).join(`\n\n${"=".repeat(80)}\n\n`);
 }
 
+/** A module without its custom sections (number 0), which are names for people and nothing that is run. */
+function withoutNames(module) {
+  const kept = [module.subarray(0, 8)];
+  for (let at = 8; at < module.length; ) {
+    const start = at;
+    let [length, shift, byte] = [0, 0, 0x80];
+    for (at += 1; byte & 0x80; at += 1, shift += 7) {
+      byte = module[at];
+      length += (byte & 0x7f) * 2 ** shift;
+    }
+    at += length;
+    if (module[start] !== 0) kept.push(module.subarray(start, at));
+  }
+  return Buffer.concat(kept);
+}
+
 /** The page around a module. */
 async function page(module) {
   const example = Object.fromEntries(await Promise.all(EXAMPLE.map(async (name) => [name, await readFile(new URL(`examples/elbow/${name}`, ROOT), "utf8")])));
   const parts = {
     VERSION: /^version = "(.*)"$/m.exec(await readFile(new URL("Cargo.toml", ROOT), "utf8"))[1],
     STYLE: await bundle("app.css"),
-    ENGINE: packed(module),
+    ENGINE: packed(withoutNames(module)),
     EXAMPLES: packed(Buffer.from(JSON.stringify(example))),
     LICENCES: packed(Buffer.from(await licences())),
     // A script ends at the first such tag, also within a text.

@@ -4,7 +4,7 @@ import assert from "node:assert/strict";
 import { execFileSync, spawnSync } from "node:child_process";
 import { mkdirSync, readFileSync, writeFileSync } from "node:fs";
 import { createRequire } from "node:module";
-import { join } from "node:path";
+import { dirname, join } from "node:path";
 import { after, before, describe, test } from "node:test";
 import { FILE, clear, drop, dropPaths, messages, open, saved, serve, skipped, status } from "./app.mjs";
 import { launch } from "./browser.mjs";
@@ -108,12 +108,24 @@ describe("the page that calibrates", { skip: skipped }, () => {
 
   for (const [place, address] of [["a file", () => FILE], ["a server", () => served]]) {
     test(`as ${place}: a folder is dropped`, async () => {
-      const there = session(`folder of ${place}`, { "poecal.toml": 'poecal_settings = 1\nmodel = "robot.urdf"\nmeasurements = ["days/monday.csv"]\n', "robot.urdf": MODEL, "README.md": "#" });
-      session(`folder of ${place}/days`, { "monday.csv": POINTS, "tuesday.csv": POINTS });
+      // A cell with settings, and a description of the robot with a mesh that it calls by the folder's name.
+      const cell = join(session(place.replace(" ", "-"), {}), "cell");
+      const mesh = "solid x\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 0.1 0 0\nvertex 0 0.1 0\nendloop\nendfacet\nendsolid x\n";
+      const shaped = MODEL.replace('<link name="link2"/>', '<link name="link2"><visual><geometry><mesh filename="package://cell/meshes/arm.stl"/></geometry></visual></link>');
+      for (const [name, text] of [["meshes/arm.stl", mesh], ["urdf/robot.urdf", shaped], ["days/monday.csv", POINTS], ["days/tuesday.csv", POINTS], ["README.md", "#"],
+        ["poecal.toml", 'poecal_settings = 1\nmodel = "urdf/robot.urdf"\nmeasurements = ["days/monday.csv"]\n']]) {
+        mkdirSync(dirname(join(cell, name)), { recursive: true });
+        writeFileSync(join(cell, name), text);
+      }
       const page = await open(browser, { address: address() });
-      await dropPaths(page, [there]);
+      await dropPaths(page, [cell]);
       await status(page, /^Calibrated/);
-      assert.deepEqual(await roles(page), { "README.md": "unused", "days/monday.csv": "measurements", "days/tuesday.csv": "unused", "poecal.toml": "settings", "robot.urdf": "model" });
+      assert.deepEqual(await roles(page), {
+        "cell/README.md": "unused", "cell/days/monday.csv": "measurements", "cell/days/tuesday.csv": "unused", "cell/meshes/arm.stl": "unused",
+        "cell/poecal.toml": "settings", "cell/urdf/robot.urdf": "model",
+      });
+      const { shapes } = await (await report(page)).evaluate(() => JSON.parse(document.getElementById("report-data").textContent));
+      assert.deepEqual(shapes.map(({ link, mesh }) => [link, mesh]), [["link2", 0]]);
       assert.deepEqual(page.complaints, []);
       await page.context().close();
     });

@@ -41,14 +41,10 @@ export function fromInput(input) {
   return read([...input.files].map((file) => ({ path: file.webkitRelativePath || file.name, file })));
 }
 
+/** The bytes of files. A folder's own name stays in their paths, since a URDF may call its meshes by it. */
 async function read(found) {
   const whole = found.some(({ path }) => path.includes("/"));
-  // A folder's own name is not a part of what its settings call their files.
-  const top = /^[^/]+\//.exec(found[0]?.path ?? "")?.[0];
-  const common = top && found.every(({ path }) => path.startsWith(top)) ? top.length : 0;
-  return Promise.all(
-    found.map(async ({ path, file }) => ({ name: plain(path.slice(common)), bytes: new Uint8Array(await file.arrayBuffer()), whole })),
-  );
+  return Promise.all(found.map(async ({ path, file }) => ({ name: plain(path), bytes: new Uint8Array(await file.arrayBuffer()), whole })));
 }
 
 /** A name that is not taken for an option, or for standard input. */
