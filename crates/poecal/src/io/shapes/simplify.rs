@@ -21,7 +21,7 @@ struct Indexed {
 
 /// All meshes as texts of so many characters together, at most. If even the coarsest are longer, the last ones stay empty.
 pub(super) fn fitted(meshes: &[Triangles], most: usize) -> Vec<Mesh> {
-    let bounds: Vec<([f32; 3], f32)> = meshes.iter().map(|mesh| bounds(mesh)).collect();
+    let bounds: Vec<([f32; 3], f32)> = meshes.iter().map(bounds).collect();
     let mut cell = 0.0;
     loop {
         let merged: Vec<Indexed> =
@@ -57,7 +57,8 @@ fn bounds(mesh: &Triangles) -> ([f32; 3], f32) {
 fn merged(mesh: &Triangles, (least, step): ([f32; 3], f32), cell: f32) -> Indexed {
     let side = cell.max(step);
     let mut known: HashMap<[u32; 3], u32> = HashMap::new();
-    let (mut sums, mut corners): (Vec<([f64; 3], f64)>, Vec<[u32; 3]>) = (Vec::new(), Vec::new());
+    let mut sums: Vec<([f64; 3], f64)> = Vec::new();
+    let mut corners: Vec<[u32; 3]> = Vec::new();
     for triangle in mesh {
         let indices = triangle.map(|corner| {
             let key = [0, 1, 2].map(|k| ((corner[k] - least[k]) / side).round() as u32);
