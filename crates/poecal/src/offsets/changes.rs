@@ -345,9 +345,9 @@ mod tests {
         println!("{words:#?}");
         assert_eq!(changes.joints[0].offset, None, "the base may turn instead");
         assert_eq!(changes.joints[5].offset, None, "the tool may turn instead");
-        for joint in 1..5 {
+        for (joint, offset) in offsets.into_iter().enumerate().take(5).skip(1) {
             let found = changes.joints[joint].offset.unwrap();
-            assert!((found - offsets[joint]).abs() < 1e-12, "{joint}: {found}");
+            assert!((found - offset).abs() < 1e-12, "{joint}: {found}");
         }
         assert_eq!(words[1], "no shift, no tilt, offset +0.573 deg");
     }

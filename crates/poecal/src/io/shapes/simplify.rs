@@ -160,7 +160,7 @@ mod tests {
                 std::f32::consts::TAU * k as f32 / rings as f32,
             );
             // Exactly one place at each pole.
-            let ring = if i % rings == 0 { 0.0 } else { radius * a.sin() };
+            let ring = if i.is_multiple_of(rings) { 0.0 } else { radius * a.sin() };
             [ring * b.cos(), ring * b.sin(), radius * a.cos()]
         };
         let cells = (0..rings).flat_map(|i| (0..rings).map(move |k| (i, k)));

@@ -150,8 +150,8 @@ fn corrections(file: &CalibrationFile) -> Markup {
              rest was said by the tolerance."
         }
         (plots(&figures::corrections(file), "Dots: corrections. Lines: two standard deviations to each side; none where a correction is not determined."))
-        (table)
         (changes(file))
+        (table)
         (common(file))
         @for (k, found) in file.corrections.iter().enumerate() {
             @if let Some(words) = &found.suspicious {
