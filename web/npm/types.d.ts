@@ -75,6 +75,18 @@ export interface CalibrateOptions {
   report?: Value | readonly Value[];
   /** End with code 1 if the verdict is worse than this (results are written all the same); it also does if the verdict is `do not use` */
   require?: "good" | "inside_sampled_range";
+  /**
+   * Limits that the errors of rows that were not fitted shall keep, like 0.2mm or 0.2mm,max:0.5mm,0.05deg: rms (the default), p95 or max of
+   * all errors in a unit. End with code 1 unless each is shown to be kept, with 95 % confidence
+   */
+  accept?: Value | readonly Value[];
+  /** Which model shall keep them: the corrected one, if there is one, or the calibrated one, which a URDF holds */
+  acceptModel?: "corrected" | "calibrated";
+  /**
+   * What the report states of the session, like serial=4711 (repeatable): certificate, laboratory, customer, robot, serial, instrument,
+   * operator, date, place, temperature or note
+   */
+  record?: Value | readonly Value[];
   /** Parameterisation of joint errors; all but the default are for comparison */
   formulation?: "adjoint" | "screw" | "screw-offsets" | "adjoint-offsets";
   /** Residual of measured frames; the paper's is for comparison. Points have one residual only */
@@ -107,6 +119,13 @@ export interface ValidateOptions {
    * is at most twice the expected one; `inside_sampled_range` if that holds of the rows inside the sampled range
    */
   require?: "good" | "inside_sampled_range";
+  /**
+   * Limits that the errors shall keep, like 0.2mm or 0.2mm,max:0.5mm,0.05deg: rms (the default), p95 or max of all errors in a unit. End
+   * with code 1 unless each is shown to be kept, with 95 % confidence
+   */
+  accept?: Value | readonly Value[];
+  /** Which model shall keep them: the corrected one, if there is one, or the calibrated one, which a URDF holds */
+  acceptModel?: "corrected" | "calibrated";
 }
 
 /** Options of `poecal predict`, by their long names. */
@@ -237,10 +256,14 @@ export interface SimulateOptions {
 
 /** A finished calibration. */
 export type CalibrationFile = {
+  /** Whether the limits that were asked for are kept; absent if none were. */
+  acceptance?: Acceptance | null;
   /** Errors of the nominal, registered and calibrated model on training and held-out rows. */
   accuracy: Accuracy;
   /** What was fitted and what held, where that is not the usual: all axes, targets and frames. */
   blocks?: BlocksEntry | null;
+  /** Directions in which corrections of several joints are known only together; absent where there is none. */
+  common?: CommonDirectionEntry[];
   /**
    * How far programs for the nominal robot miss in the sampled workspace, and the corrections of the joints that mend it; absent where the
    * calibration is not to be used, and of a robot whose tip not every joint moves.
@@ -272,6 +295,8 @@ export type CalibrationFile = {
   outliers?: OutlierEntry[];
   /** Version of the program. */
   poecal_version: string;
+  /** What is stated of the session; absent if nothing is. */
+  record?: Record;
   /** Configurations that were measured several times; null if there are none. */
   repeatability?: RepeatabilityEntry | null;
   /** The calibrated robot's frames. */
@@ -297,6 +322,51 @@ export type CalibrationFile = {
   /** Warnings, a sentence each. */
   warnings?: string[];
 };
+
+/** Whether a calibration keeps the limits that were asked for. */
+export type Acceptance = {
+  /** By which rows. */
+  by: AcceptedRows;
+  /** The worst decision of all limits. */
+  decision: Decision;
+  /** Each limit, by quantity. */
+  limits: AcceptedLimit[];
+  /** Which model was judged. */
+  model: AcceptedModel;
+};
+
+/** A limit, what was found, and the decision. Numbers are in millimetres or degrees. */
+export type AcceptedLimit = {
+  /** Number of different configurations among them, which are what counts. */
+  configurations: number;
+  /** What that says of the limit. */
+  decision: Decision;
+  /** What the rows have. */
+  found: number;
+  /** Lower bound, with 95 % confidence. */
+  from: number;
+  /** The limit. */
+  limit: number;
+  /** The measured quantity: `position`, `rotation` and so on. */
+  quantity: string;
+  /** Number of rows that measured the quantity. */
+  rows: number;
+  /** What of the errors is limited. */
+  statistic: AcceptedStatistic;
+  /** Upper bound, with 95 % confidence; null where the rows are too few for one. */
+  to?: number | null;
+  /** Unit of the numbers: `mm` or `deg`. */
+  unit: string;
+};
+
+/** Which model is judged. */
+export type AcceptedModel = "corrected" | "calibrated";
+
+/** Which rows decided. */
+export type AcceptedRows = "held_out" | "cross_validation" | "judged";
+
+/** What of the errors is limited. */
+export type AcceptedStatistic = "rms" | "p95" | "max";
 
 /** Errors on training and held-out rows. */
 export type Accuracy = {
@@ -334,6 +404,18 @@ export type BootstrapEntry = {
 
 /** Why something is not determined. The words stand in `calibration.json` and do not change. */
 export type Cause = "own_axis" | "base_frame" | "joint_offsets" | "no_orientation" | "unseen" | "stood_still" | "too_few" | "point_on_axis" | "one_orientation" | "one_turning_direction" | "moved_together" | "small_motion" | "dependent_motion" | "no_length" | "seen_once" | "other";
+
+/** A direction in which corrections of several joints are known only together. */
+export type CommonDirectionEntry = {
+  /** Root mean square change of predicted positions by one standard deviation, at the measured configurations, millimetres. */
+  effect_mm: number;
+  /** The joints. */
+  joints: string[];
+  /** Its share in the variance of all corrections, 0 to 1. */
+  share: number;
+  /** In words: one standard deviation of it, and what it does to predictions. */
+  words: string;
+};
 
 /**
  * How far the actual robot's tip is from where the nominal one has it, over the sampled workspace; and the corrections of the joints that
@@ -420,6 +502,8 @@ export type CorrectedEntry = {
 
 /** A joint's correction, its uncertainty, and its effect. */
 export type CorrectionEntry = {
+  /** The correction in parts, with directions; missing in older files. */
+  change?: JointChangeEntry | null;
   /** The joint. */
   joint: string;
   /** Root mean square position error with this screw alone nominal, millimetres. */
@@ -428,16 +512,40 @@ export type CorrectionEntry = {
   shift_from_data?: number | null;
   /** Distance of the calibrated axis from the nominal joint's origin, millimetres. */
   shift_mm: number;
+  /** The same of `sigma_shift_mm`; missing of a joint that slides. */
+  sigma_shift_held_mm?: number | null;
   /** Standard deviation of the axis' place at the joint, millimetres; null where it is not determined. */
   sigma_shift_mm?: number | null;
   /** Standard deviation of the direction, degrees (root mean square); null where it is not determined. */
   sigma_tilt_deg?: number | null;
+  /** The same as `sigma_tilt_deg` if the axes of all other joints were known; missing in older files, and where the axis was held. */
+  sigma_tilt_held_deg?: number | null;
   /** Why the joint is suspicious: a correction beyond those of the others, or residuals that follow its position. */
   suspicious?: string | null;
   /** Angle between nominal and calibrated direction, degrees. */
   tilt_deg: number;
   /** The measurements' share in what is known of the direction, from 0 to 1; the rest is the tolerance's. Absent without a tolerance. */
   tilt_from_data?: number | null;
+};
+
+/** A strong correlation of two unknowns. */
+export type CorrelatedEntry = {
+  /** Their correlation, -1 to 1. */
+  correlation: number;
+  /** The two unknowns. */
+  unknowns: [string, string];
+};
+
+/** Correlations of the unknowns, by blocks. */
+export type CorrelationsEntry = {
+  /** The blocks, in the order of their unknowns. */
+  blocks: string[];
+  /** For each block and each up to it the largest size of a correlation between unknowns of the two, 0 to 1. */
+  largest: number[][];
+  /** The strongest of these, at most 20. */
+  pairs: CorrelatedEntry[];
+  /** Number of pairs with a correlation of 0.95 and more, either way. */
+  strong: number;
 };
 
 /** Cross-validation on the fitted rows. */
@@ -447,6 +555,9 @@ export type CrossValidationEntry = {
   /** Random folds, all together. */
   random: LeftOutEntry;
 };
+
+/** What measurements say of a limit. */
+export type Decision = "pass" | "not_shown" | "fail";
 
 /** A mistake in the input. */
 export type DiagnosisEntry = {
@@ -562,6 +673,24 @@ export type IdentifiabilityEntry = {
   weak?: Direction[];
 };
 
+/** Root mean square error of the registered model over that of another, on the same rows. */
+export type Improvement = {
+  /** The factor. */
+  factor: number;
+  /** Lower end of its interval, with 95 % confidence. */
+  from: number;
+  /** Upper end. */
+  to: number;
+};
+
+/** Improvement of each quantity by the models that are fitted. */
+export type Improvements = {
+  /** Of the calibrated model. */
+  calibrated: MeasuredOfImprovement;
+  /** Of the corrected model; absent if there is none. */
+  corrected?: MeasuredOfImprovement | null;
+};
+
 /** Inputs. */
 export type Inputs = {
   /** The command that reproduces the calibration; null if it was not made by the program. */
@@ -584,6 +713,31 @@ export type InstrumentEntry = {
   position_m: [number, number, number];
   /** Unit quaternion x, y, z, w. */
   quaternion_xyzw: [number, number, number, number];
+};
+
+/**
+ * How a joint differs from the nominal one, in parts: a joint offset, and the tilt and shift of the axis that offsets and base do not
+ * explain. Directions are those of the base frame with all joints at zero.
+ */
+export type JointChangeEntry = {
+  /** The point of the axis for which the shift is stated: the nearest to the joint's origin, metres. */
+  at_m: [number, number, number];
+  /** What is to be added to the value of a joint that turns, degrees; null where base or tool can take its place. */
+  offset_deg?: number | null;
+  /** The same of a joint that slides, millimetres. */
+  offset_mm?: number | null;
+  /** Shift of the axis across itself, millimetres; null of a joint that slides. */
+  shift_mm?: [number, number, number] | null;
+  /** Standard deviation of the offset in its unit; null where it is not determined. */
+  sigma_offset?: number | null;
+  /** Its standard deviation (root mean square), millimetres. */
+  sigma_shift_mm?: number | null;
+  /** Its standard deviation (root mean square), degrees. */
+  sigma_tilt_deg?: number | null;
+  /** Tilt of the axis: a rotation vector across it, degrees. */
+  tilt_deg: [number, number, number];
+  /** In words, with standard deviations. */
+  words: string;
 };
 
 /** Sampled and allowed values of a joint (radians; metres of a prismatic joint). */
@@ -709,6 +863,16 @@ export type MassEntry = {
 
 /** What was measured of a target. */
 export type MeasuredEntry = "pose" | "position" | "nothing";
+
+/** Of each quantity that was measured; null of a rotation that was not. */
+export type MeasuredOfImprovement = {
+  contact_mm?: Improvement;
+  distance_mm?: Improvement;
+  height_mm?: Improvement;
+  position_mm?: Improvement;
+  rotation_deg?: Improvement | null;
+  tilt_deg?: Improvement;
+};
 
 /** Of each quantity that was measured; null of a rotation that was not. */
 export type MeasuredOfKeptEntry = {
@@ -886,6 +1050,32 @@ export type ReadingEntry = {
   name: string;
   /** Offset, radians or metres. */
   offset: number;
+};
+
+/** What is stated of a session, for its report: after ISO/IEC 17025:2017, 7.8.2. poecal computes nothing from it. */
+export type Record = {
+  /** Number of the report or certificate. */
+  certificate?: string | null;
+  /** For whom. */
+  customer?: string | null;
+  /** Day of the measurements, `YYYY-MM-DD`. */
+  date?: string | null;
+  /** The measuring instrument: its serial number and its own certificate. */
+  instrument?: string | null;
+  /** Who calibrated: name and address. */
+  laboratory?: string | null;
+  /** Anything else. */
+  note?: string | null;
+  /** Who measured. */
+  operator?: string | null;
+  /** Where the robot stood. */
+  place?: string | null;
+  /** The robot as its owner calls it: maker and type. */
+  robot?: string | null;
+  /** Its serial number. */
+  serial?: string | null;
+  /** Temperature there, with its unit, `21.5 °C` or `21.5 ± 0.5 °C`. */
+  temperature?: string | null;
 };
 
 /** Pose accuracy and repeatability of positions, after ISO 9283; of poses that were measured by other quantities theirs. */
@@ -1068,6 +1258,8 @@ export type SetAccuracy = {
   corrected?: ModelAccuracy | null;
   /** Number of measurements. */
   count: number;
+  /** How many times smaller than the registered model's the errors of rows held out are; absent of others. */
+  improvement?: Improvements | null;
   /** The nominal model; only an unknown device frame is fitted. */
   nominal: ModelAccuracy;
   /** Device frame and targets fitted, screws nominal. */
@@ -1200,6 +1392,8 @@ export type UncertaintyEntry = {
   axes: PoseEntry[];
   /** Bootstrap at measured configurations; null with too few rows. */
   bootstrap?: BootstrapEntry | null;
+  /** Correlations of the unknowns, by blocks; missing in older files and of the corrected model. */
+  correlations?: CorrelationsEntry | null;
   /**
    * Covariance of the unknowns, square metres, turns multiplied by `length_m`: the upper triangle by rows, in the order of the fit with
    * pure translations first.
@@ -1313,4 +1507,9 @@ export type WorkspaceCellEntry = {
   median_mm: number;
   /** Distance of the nominal tip from the axis, from, metres. */
   radius_m: number;
+  /**
+   * Expected error of predicted positions in these configurations (root mean square, millimetres): what a corrected program is expected to
+   * miss by. Missing without an uncertainty, and in files of earlier versions.
+   */
+  sigma_position_mm?: number | null;
 };
