@@ -284,7 +284,7 @@ export type CalibrationFile = {
   /** Inputs. */
   inputs: Inputs;
   /** Instruments on the robot. */
-  instruments?: Record<string, InstrumentEntry>;
+  instruments?: { [name: string]: InstrumentEntry };
   /** The calibrated joints from base to tip. */
   joints: JointEntry[];
   /** Frame of the measuring device. */
@@ -312,7 +312,7 @@ export type CalibrationFile = {
   /** Configurations in which all targets are suspected and off alike, the worst first, at most 100: the arm or its readings are wrong there. */
   suspected_configurations?: SuspectedConfigurationEntry[];
   /** Named targets: in the tip frame, or on a body of their own (`on`). */
-  targets: Record<string, TargetEntry>;
+  targets: { [name: string]: TargetEntry };
   /** Pose of the tip in the last joint's frame. */
   tool: PoseEntry;
   /** Expected errors of predictions; null without more residuals than unknowns. */
@@ -460,7 +460,7 @@ export type CorrectedEntry = {
   /** What each group of terms does at each joint, the one that moves the target most first. */
   effects?: EffectEntry[];
   /** Instruments on the robot. */
-  instruments?: Record<string, InstrumentEntry>;
+  instruments?: { [name: string]: InstrumentEntry };
   /** Error of each joint over its sampled range, before and after. */
   joint_errors?: JointErrorsEntry[];
   /** The joints from base to tip: those of the robot, and behind each its gives. */
@@ -487,11 +487,11 @@ export type CorrectedEntry = {
   /** The corrected robot's frames, and the weights that it carries. */
   robot: RobotEntry;
   /** Prior standard deviation of the terms of each group, radians, of shift and runout metres; 0 where cross-validation left a group out. */
-  sizes: Record<string, number>;
+  sizes: { [name: string]: number };
   /** Stations of the measuring device, if they are named or several. */
   stations?: StationEntry[];
   /** Named targets. */
-  targets: Record<string, TargetEntry>;
+  targets: { [name: string]: TargetEntry };
   /** Pose of the tip in the last joint's frame. */
   tool: PoseEntry;
   /** Sizes that cross-validation tried; none if they were given. */
@@ -700,7 +700,7 @@ export type Inputs = {
   /** The robot model, as named by the user. */
   model: string;
   /** SHA-256 of each file by its name; of input that is no regular file, such as a pipe, only for measurements. */
-  sha256?: Record<string, string>;
+  sha256?: { [name: string]: string };
   /** The URDF that was calibrated; absent if the model was none. */
   urdf?: OriginalUrdf | null;
 };
@@ -774,7 +774,7 @@ export type JointEntry = {
   /** Screw of the nominal model. */
   nominal_screw: ScrewEntry;
   /** The same of the nominal model. */
-  nominal_terms?: Record<string, number>;
+  nominal_terms?: { [name: string]: number };
   /** Body on which the joint stands, if that is not the link of the joint before. */
   on?: BodyEntry | null;
   /** The joint's value as a function of a reading. */
@@ -782,7 +782,7 @@ export type JointEntry = {
   /** Calibrated screw in the base frame at zero. */
   screw: ScrewEntry;
   /** Coefficients of terms of the joint's value, in radians, metres, or by value: the value is the reading's, plus these terms. */
-  terms?: Record<string, number>;
+  terms?: { [name: string]: number };
 };
 
 /** A part of a joint's range. Errors in milliradians, of a joint that slides in millimetres. */
@@ -968,11 +968,11 @@ export type OriginalUrdf = {
   /** First link of the chain. */
   base_link?: string | null;
   /** Instruments on the robot, each with its link. */
-  instruments?: Record<string, string>;
+  instruments?: { [name: string]: string };
   /** SHA-256 of the text. */
   sha256: string;
   /** Targets on any link, each with it. */
-  targets?: Record<string, string>;
+  targets?: { [name: string]: string };
   /** The whole text. */
   text: string;
   /** Last link of the chain. */
@@ -1380,7 +1380,7 @@ export type TriedEntry = {
   /** Logarithm of its square with the prior of the choice: the least was chosen. */
   score: number;
   /** The sizes. */
-  sizes: Record<string, number>;
+  sizes: { [name: string]: number };
 };
 
 /** Covariance of the unknowns, and expected errors. */

@@ -75,9 +75,9 @@ function objectOf({ properties = {}, required = [], additionalProperties, patter
     return `${comment(schema.description ?? "", inner)}${inner}${key(name)}${mark}: ${typeOf(schema, inner)};\n`;
   });
   const others = [...Object.values(patternProperties ?? {}), ...(additionalProperties ? [additionalProperties] : [])];
-  if (others.length > 0 && lines.length === 0) return `Record<string, ${others.map((one) => typeOf(one, indent)).join(" | ")}>`;
+  if (others.length > 0 && lines.length === 0) return `{ [name: string]: ${others.map((one) => typeOf(one, indent)).join(" | ")} }`;
   if (others.length > 0) lines.push(`${inner}[name: string]: unknown;\n`);
-  return lines.length === 0 ? "Record<string, never>" : `{\n${lines.join("")}${indent}}`;
+  return lines.length === 0 ? "{ [name: string]: never }" : `{\n${lines.join("")}${indent}}`;
 }
 
 /** Types of calibration.json. */
