@@ -1,6 +1,7 @@
 """`poecal compare` on sessions of the example's elbow: halves of its points, a joint that is read otherwise, another robot."""
 
 import json
+import math
 import subprocess
 
 import pytest
@@ -13,10 +14,10 @@ TURN_DEG = 0.2
 def sessions(tmp_path_factory):
     """Calibrations of two halves of the points, and of the second half with joint 3 read 0.2 degrees less."""
     folder = tmp_path_factory.mktemp("compare")
-    lines = [line for line in (ELBOW / "points.csv").read_text().splitlines() if line and not line.startswith("#")]
+    lines = [line for line in (ELBOW.parent / "points.csv").read_text().splitlines() if line and not line.startswith("#")]
     head, rows = lines[0], lines[1:]
     column = next(k for k, name in enumerate(head.split(",")) if name.startswith("joint3"))
-    factor = 1.0 if "deg" in head.split(",")[column] else 3.141592653589793 / 180
+    factor = 1.0 if "deg" in head.split(",")[column] else math.pi / 180
 
     def moved(row):
         cells = row.split(",")
@@ -25,7 +26,7 @@ def sessions(tmp_path_factory):
 
     def calibrated(name, rows):
         (folder / f"{name}.csv").write_text("\n".join([head, *rows]) + "\n")
-        words = ["calibrate", ELBOW / "robot.urdf", folder / f"{name}.csv", "--out", folder / name, "--report", "none", "--corrections", "off"]
+        words = ["calibrate", ELBOW, folder / f"{name}.csv", "--out", folder / name, "--report", "none", "--corrections", "off"]
         run = subprocess.run([program(), *map(str, words)], capture_output=True, text=True)
         assert run.returncode in (0, 1), run.stderr
         return folder / name / "calibration.json"
@@ -69,5 +70,5 @@ def test_what_is_no_pair_is_refused(sessions, tmp_path):
     code, text, error = compared(first, tmp_path / "other.json")
     print(error)
     assert code == 2 and not text and "`wrist`" in error and "`joint4`" in error
-    code, _, error = compared(first, ELBOW / "robot.urdf")
+    code, _, error = compared(first, ELBOW)
     assert code == 2 and "calibration.json" in error

@@ -29,7 +29,7 @@ QUICK = {
 }
 CRATES = ["poecal-arm", "poecal-c", "poecal", "poecal-lou2009", "poecal-cli"]
 LICENCES = ["LICENSE-APACHE", "LICENSE-MIT"]
-LARGEST_PROGRAM = 13_500_000
+LARGEST_PROGRAM = 14_500_000
 LINES = """
 import poecal
 robot = poecal.Robot.read("robot.urdf")
@@ -106,6 +106,9 @@ def test_pip_installs_the_source_package(empty, tmp_path):
     assert {"README.md", "PKG-INFO", "Cargo.lock"} <= names
     assert all(any(name.endswith(licence) for name in names) for licence in [*LICENCES, "THIRD-PARTY.txt"])
     programs = environment(tmp_path / "venv")
+    # Sources of a package are as old as each other, so that what an earlier version was built into would be taken for theirs.
+    for built in (TARGET / "install/release/.fingerprint").glob("poecal*"):
+        shutil.rmtree(built)
     installed(programs / "pip", "install", "--quiet", source, cwd=empty)
     works_in_python(programs, empty)
 
