@@ -110,10 +110,12 @@ export function messages(page) {
 /** Takes the page back to no files. */
 export async function clear(page) {
   for (;;) {
-    const buttons = await page.$$("#list .remove");
-    if (!buttons.length) return;
-    await buttons[0].click();
-    await page.waitForFunction((count) => document.querySelectorAll("#list .remove").length < count, buttons.length);
+    // The list is made anew where files are understood otherwise.
+    const buttons = page.locator("#list .remove");
+    const count = await buttons.count();
+    if (!count) return;
+    await buttons.first().click();
+    await page.waitForFunction((count) => document.querySelectorAll("#list .remove").length < count, count);
   }
 }
 

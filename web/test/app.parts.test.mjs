@@ -3,6 +3,7 @@ import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
 import { test } from "node:test";
 import { calibrateWords, checkWords, shown, validateWords, wordsOf } from "../app/src/command.js";
+import { distinct } from "../app/src/intake.js";
 import { besideUrdf, bySettings, guess } from "../app/src/roles.js";
 import { messages, placeOf } from "../app/src/sentences.js";
 import { crc32 } from "../app/src/zip.js";
@@ -20,10 +21,10 @@ test("words are those of a shell, and are shown so that it takes them apart agai
 
 test("each command gets the options that it takes", () => {
   const files = [file("robot.urdf", "<robot/>"), file("a.csv", "x"), file("b.csv", "x", "validate"), file("map.toml", "[position]"), file("calibration/old.csv", "x", "unused")];
-  const options = ["--frame", "base", "--seed", "2", "--frames=per-file", "--accept", "0.2mm"];
-  assert.equal(calibrateWords(files, options).join(" "), "calibrate robot.urdf a.csv --columns map.toml --validate b.csv --frame base --seed 2 --frames=per-file --accept 0.2mm --out calibration-2");
+  const options = ["--frame", "base", "--seed", "2", "--frames=per-file", "--accept", "0.2mm", "--accept-model", "calibrated"];
+  assert.equal(calibrateWords(files, options).join(" "), "calibrate robot.urdf a.csv --columns map.toml --validate b.csv --frame base --seed 2 --frames=per-file --accept 0.2mm --accept-model calibrated --out calibration-2");
   assert.equal(checkWords(files, options).join(" "), "check robot.urdf a.csv b.csv --columns map.toml --frame base --frames=per-file");
-  assert.equal(validateWords(files, options).join(" "), "validate robot.urdf a.csv b.csv --columns map.toml --frames=per-file --accept 0.2mm");
+  assert.equal(validateWords(files, options).join(" "), "validate robot.urdf a.csv b.csv --columns map.toml --frames=per-file --accept 0.2mm --accept-model calibrated");
 });
 
 test("files have the roles that their names and first lines say", () => {
@@ -33,9 +34,15 @@ test("files have the roles that their names and first lines say", () => {
     ["p.TXT", "a b", "measurements"], ["noname", "a b", "measurements"], ["bom.csv", "\uFEFF<robot/>", "model"],
   ];
   for (const [name, text, role] of cases) assert.equal(file(name, text).role, role, name);
-  for (const name of ["README.md", "arm.stl", "joints.csv", "out/residuals.csv", "out/.hidden"]) assert.equal(guess(name, new Uint8Array(), true), "unused", name);
+  for (const name of ["README.md", "arm.stl", "report.html", "run.log"]) assert.equal(file(name, "<html>").role, "unused", name);
+  for (const name of ["manual.pdf", "README.md", "arm.stl", "joints.csv", "out/residuals.csv", "out/.hidden"]) assert.equal(guess(name, new Uint8Array(), true), "unused", name);
   const models = [file("r.toml", "poecal_robot = 1"), file("r.urdf", "<robot/>")];
   assert.deepEqual(besideUrdf(models), [models[0]]);
+});
+
+test("files of one drop have a name each", () => {
+  const names = ["a.csv", "b/a.csv", "a.csv", "-a.csv", "_a.csv", "a.csv", "noend", "noend"];
+  assert.deepEqual(distinct(names.map((path) => ({ path }))).map((it) => it.name), ["a.csv", "b/a.csv", "a-2.csv", "_a.csv", "_a-2.csv", "a-3.csv", "noend", "noend-2"]);
 });
 
 test("settings in a folder name files beside them", () => {

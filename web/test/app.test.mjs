@@ -189,6 +189,32 @@ describe("the page that calibrates", { skip: skipped }, () => {
     await page.context().close();
   });
 
+  test("a file that comes again keeps its role, another robot's files take the place of all, and names stay apart", async () => {
+    const page = await open(browser);
+    const roles = () => page.$$eval("#list li", (all) => Object.fromEntries(all.map((it) => [it.querySelector("b").textContent, it.querySelector("select").value])));
+    const half = (odd) => POINTS.split("\n").filter((_, k) => k < 2 || k % 2 === odd).join("\n");
+    await drop(page, { "robot.urdf": MODEL, "points.csv": half(0) });
+    await status(page, /^Calibrated/);
+    await drop(page, { "judge.csv": half(1) });
+    await status(page, /^Calibrated/);
+    await page.getByLabel("Role of judge.csv").selectOption("validate");
+    await status(page, /^Understood/);
+    await drop(page, { "judge.csv": half(1) });
+    await status(page, /^Calibrated/);
+    assert.equal((await roles())["judge.csv"], "validate");
+    await page.getByLabel("Device frame").evaluate((it) => {
+      document.getElementById("options").open = true;
+      it.value = "base";
+      it.dispatchEvent(new Event("change"));
+    });
+    assert.equal(await page.locator("#result").isVisible(), false, "a result of other options is shown");
+    await drop(page, { "other.urdf": MODEL, "other.csv": POINTS, "notes.md": "# notes" });
+    await status(page, /^(Calibrated|Understood|There is no result)/);
+    assert.deepEqual(await roles(), { "robot.urdf": "unused", "points.csv": "unused", "judge.csv": "unused", "other.urdf": "model", "other.csv": "measurements", "notes.md": "unused" });
+    assert.deepEqual(page.complaints, []);
+    await page.context().close();
+  });
+
   test("what is lacking is said, and files may come one after the other", async () => {
     const page = await open(browser);
     assert.match(await status(page, /./), /^Add a robot model and measurements/);

@@ -3,7 +3,7 @@
 /** Options of `poecal calibrate` that `poecal check` and `poecal validate` take too. */
 const READING = ["--columns", "--strict", "--frames", "--socket-distance", "--contact", "--instrument-noise"];
 const CHECKING = [...READING, "--base-link", "--tip-link", "--instrument", "--target", "--fit-where", "--frame"];
-const JUDGING = [...READING, "--refit-frame", "--refit-tool", "--require", "--accept"];
+const JUDGING = [...READING, "--refit-frame", "--refit-tool", "--require", "--accept", "--accept-model"];
 
 /** Words as a shell takes them apart: blanks separate, quotes and backslashes keep together. */
 export function wordsOf(line) {
@@ -16,7 +16,7 @@ export function wordsOf(line) {
 
 /** A word as a shell needs it. */
 function quoted(word) {
-  return /^[\w@%+=:,./*-]+$/.test(word) ? word : `'${word.replaceAll("'", "'\\''")}'`;
+  return /^[\w@%+=:,./-]+$/.test(word) ? word : `'${word.replaceAll("'", "'\\''")}'`;
 }
 
 /** A command line as text to copy. */
@@ -63,7 +63,7 @@ export function calibrateWords(files, options) {
     ...mapping(files),
     ...names(files, "validate").flatMap((name) => ["--validate", name]),
     ...options,
-    ...(options.includes("--out") ? [] : ["--out", folder(files)]),
+    ...(options.some((word) => word === "--out" || word.startsWith("--out=")) ? [] : ["--out", folder(files)]),
   ];
 }
 

@@ -69,11 +69,11 @@ export class Engine {
     const worker = this.#worker;
     const result = new Promise((resolve, reject) => (this.#waiting = { resolve, reject }));
     const waiting = this.#waiting;
-    this.#module.then(
-      // A run that was ended meanwhile has another worker.
-      () => this.#waiting === waiting && worker.postMessage({ run: { words, files: Object.fromEntries(files.map(({ name, bytes }) => [name, bytes])) } }),
-      (error) => this.#waiting === waiting && this.#settle(undefined, error.message),
-    );
+    const given = { words, files: Object.fromEntries(files.map(({ name, bytes }) => [name, bytes])) };
+    // A run that was ended meanwhile has another worker. Files may be too large to be handed over.
+    this.#module
+      .then(() => this.#waiting === waiting && worker.postMessage({ run: given }))
+      .catch((error) => this.#waiting === waiting && this.#settle(undefined, error.message));
     return result;
   }
 }

@@ -33,6 +33,10 @@ export function offerExports(run) {
     const name = `${form.value === "csv" ? "origins" : `calibrated-${form.value}`}.${FORMS[form.value][1]}`;
     const words = ["export", "calibration.json", "--format", form.value, "--model", byId("of").value, "--out", name, ...wordsOf(byId("export-options").value)];
     const files = await run(words);
-    if (files) byId("exported").append(...files.map(([path, bytes]) => download(path, bytes)));
+    if (!files) return;
+    const made = files.map(([path, bytes]) => download(path, bytes));
+    const names = made.map((it) => it.querySelector("a").download);
+    for (const earlier of [...byId("exported").children]) if (names.includes(earlier.querySelector("a").download)) earlier.remove();
+    byId("exported").append(...made);
   });
 }

@@ -44,7 +44,29 @@ export function fromInput(input) {
 /** The bytes of files. A folder's own name stays in their paths, since a URDF may call its meshes by it. */
 async function read(found) {
   const whole = found.some(({ path }) => path.includes("/"));
-  return Promise.all(found.map(async ({ path, file }) => ({ name: plain(path), bytes: new Uint8Array(await file.arrayBuffer()), whole })));
+  const named = distinct(found.filter(({ path }) => !whole || !/(^|\/)\.[^/]+\//.test(path)));
+  return Promise.all(named.map(async ({ name, file }) => ({ name, bytes: await bytesOf(name, file), whole })));
+}
+
+/** The bytes of a file. */
+async function bytesOf(name, file) {
+  try {
+    return new Uint8Array(await file.arrayBuffer());
+  } catch (error) {
+    throw new Error(`${name}: ${error.message}`);
+  }
+}
+
+/** Files of one drop with a name each: a second `a.csv` is `a-2.csv`. */
+export function distinct(found) {
+  const taken = new Set();
+  return found.map(({ path, file }) => {
+    const [, stem, end] = /^(.*?)(\.[^./]*)?$/s.exec(plain(path));
+    let name = plain(path);
+    for (let k = 2; taken.has(name); k += 1) name = `${stem}-${k}${end ?? ""}`;
+    taken.add(name);
+    return { name, file };
+  });
 }
 
 /** A name that is not taken for an option, or for standard input. */

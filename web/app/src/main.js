@@ -17,7 +17,16 @@ const engine = new Engine();
 /** The files of the session: name, bytes and role. */
 let files = [];
 let calibration;
-const words = options(byId("controls"), () => look());
+/** What the program found in the files when it was last asked. */
+let found = new Map();
+const words = options(byId("controls"), () => {
+  clearResult();
+  look();
+});
+
+/** Larger files that are not used are not handed to the program; smaller ones may be a robot's meshes, or named by an option. */
+const MOST_UNUSED_BYTES = 64e6;
+const read = () => files.filter((file) => file.role !== "unused" || file.bytes.length <= MOST_UNUSED_BYTES);
 
 const having = (role) => files.filter((file) => file.role === role);
 /** Whether the model is a calibration, which other measurements can judge. */
@@ -47,7 +56,9 @@ function missing() {
     if (having(role).length > 1) return `found ${having(role).map((it) => it.name).join(" and ")} as ${role === "columns" ? "mapping of columns" : "settings"}, expected one file: remove the others, or choose “not used” for them`;
   }
   if (!models.length) return tables.length ? "Measurements are there; add a robot model: URDF, MJCF, SDF, TOML, or a calibration.json." : "Add a robot model and measurements.";
-  return tables.length ? undefined : "The robot model is there; add measurements: a CSV with a row for each configuration.";
+  if (!tables.length) return "The robot model is there; add measurements: a CSV with a row for each configuration.";
+  const fitted = having("measurements").length || having("settings").length || judges();
+  return fitted ? undefined : "Rows to judge by are there; add measurements to fit.";
 }
 
 /** Asks the program how the files are understood, and calibrates if `onwards` says so and nothing is missing. */
@@ -68,12 +79,15 @@ async function look(onwards = false) {
     busy(undefined);
     return;
   }
-  const result = await run([...checkWords(files, words()), "--json"], files, "reading");
+  // Until it is understood anew.
+  showFiles(byId("list"), files, found, change);
+  const result = await run([...checkWords(files, words()), "--json"], read(), "reading");
   if (!result) return;
   const check = result.code === 0 ? JSON.parse(result.out) : undefined;
   // A model is shown also where the tables beside it are refused.
-  const alone = check ? undefined : await run([...checkWords(having("model"), words()), "--json"], files, "reading");
-  showFiles(byId("list"), files, findings(check ?? (alone?.code === 0 ? JSON.parse(alone.out) : undefined)), change);
+  const alone = check ? undefined : await run([...checkWords(having("model"), words()), "--json"], having("model"), "reading");
+  found = findings(check ?? (alone?.code === 0 ? JSON.parse(alone.out) : undefined));
+  showFiles(byId("list"), files, found, change);
   const told = messages(result.err);
   for (const text of check?.warnings ?? []) if (!told.some((it) => it.text === text)) told.push({ kind: "warning", text });
   showMessages(told, files);
@@ -88,12 +102,13 @@ async function calibrate(asked = false) {
   const line = calibrateWords(files, words());
   byId("line").textContent = shown(line);
   const started = performance.now();
-  const result = await run(line, files, "calibrating");
+  const result = await run(line, read(), "calibrating");
   if (!result) return;
   const told = messages(result.err);
   showMessages(told, files);
   calibration = result.files.find(([path]) => path.endsWith("calibration.json"))?.[1];
   if (!calibration) {
+    if (result.out) showText("What the program prints", result.out);
     say("There is no result.");
     if (asked) byId("messages").focus();
     return;
@@ -110,7 +125,7 @@ async function judge() {
   clearResult();
   const line = validateWords(files, words());
   byId("line").textContent = shown(line);
-  const result = await run(line, files, "judging");
+  const result = await run(line, read(), "judging");
   if (!result) return;
   showMessages(messages(result.err), files);
   if (!result.out) return say("There is no result.");
@@ -122,11 +137,15 @@ async function judge() {
 /** Takes files in, in place of those of the same names. */
 function add(taken) {
   if (!taken.length) return;
-  const added = taken.map(({ name, bytes, whole }) => ({ name, bytes, role: guess(name, bytes, whole) }));
+  // A file that comes again keeps its role.
+  const roles = new Map(files.map((file) => [file.name, file.role]));
+  const added = taken.map(({ name, bytes, whole }) => ({ name, bytes, role: roles.get(name) ?? guess(name, bytes, whole) }));
   files = [...files.filter((file) => !added.some((it) => it.name === file.name)), ...added];
-  if (taken.some((it) => it.whole)) for (const file of besideUrdf(added.filter((it) => it.role === "model"))) file.role = "unused";
-  // A new model takes the place of the one before.
-  if (added.filter((it) => it.role === "model").length === 1) for (const file of having("model")) if (!added.includes(file)) file.role = "unused";
+  for (const file of besideUrdf(added.filter((it) => it.role === "model"))) file.role = "unused";
+  // A new model takes the place of the one before, and with measurements of its own that of all measurements.
+  const fresh = (role) => added.filter((it) => it.role === role && !roles.has(it.name)).length;
+  const replaced = fresh("model") === 1 ? ["model", ...(fresh("measurements") ? ["measurements", "validate"] : [])] : [];
+  for (const role of replaced) for (const file of having(role)) if (!added.includes(file)) file.role = "unused";
   for (const settings of having("settings")) for (const [file, role] of bySettings(settings, files)) file.role = role;
   clearResult();
   return look(true);
@@ -142,11 +161,17 @@ function change(file, role) {
 
 /** Reads what `reading` promises, and says so if it cannot be read. */
 async function take(reading) {
+  let taken;
+  busy("reading");
   try {
-    await add(await reading);
+    taken = await reading;
   } catch (error) {
     showMessages([{ kind: "error", text: `a file could not be read (${error.message}): choose it again` }], files);
+    return;
+  } finally {
+    if (!engine.runs) busy(undefined);
   }
+  await add(taken);
 }
 
 function wire() {
@@ -197,7 +222,8 @@ function wire() {
 }
 
 offerExports(async (line) => {
-  const result = await run(line, [{ name: "calibration.json", bytes: calibration }], "writing");
+  const others = read().filter((file) => file.name !== "calibration.json");
+  const result = await run(line, [...others, { name: "calibration.json", bytes: calibration }], "writing");
   if (!result) return undefined;
   showMessages(messages(result.err), files, byId("export-messages"));
   say(result.code === 0 ? "Written: it is in the list." : "This form was not written.");

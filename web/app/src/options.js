@@ -17,6 +17,12 @@ const CONTROLS = [
   { flag: "--tip-link", label: "Last link", note: "likewise", hint: "as the model has it" },
 ];
 
+/** A flag with its value, in one word where a value would be taken for a flag. */
+function wordsFor(flag, value) {
+  if (!value) return [];
+  return value.startsWith("-") ? [`${flag}=${value}`] : [flag, value];
+}
+
 /** Puts the controls into `place`; `changed` is called after a change, and the result gives the words of the command line. */
 export function options(place, changed) {
   const fields = CONTROLS.map(({ flag, label, note, values, hint, offers }) => {
@@ -43,5 +49,5 @@ export function options(place, changed) {
     ),
   );
   for (const field of [...fields.map(([, field]) => field), further]) field.addEventListener("change", changed);
-  return () => [...fields.flatMap(([flag, field]) => (field.value.trim() ? [flag, field.value.trim()] : [])), ...wordsOf(further.value)];
+  return () => [...fields.flatMap(([flag, field]) => wordsFor(flag, field.value.trim())), ...wordsOf(further.value)];
 }

@@ -49,6 +49,7 @@ export function showCalibration(files) {
   const report = sorted.find(([path]) => path.endsWith(".html"));
   byId("downloads").replaceChildren(...sorted.map(([path, bytes]) => download(path, bytes)), download("poecal.zip", zip(sorted.map(([path, bytes]) => [last(path), bytes]))));
   byId("exported").replaceChildren();
+  byId("export-messages").replaceChildren();
   byId("exports").hidden = false;
   byId("saved").hidden = false;
   byId("whole").hidden = !report;

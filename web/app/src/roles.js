@@ -12,14 +12,16 @@ export const ROLES = {
 
 const TABLES = /\.(csv|tsv|txt|dat|asc)$/i;
 const MODELS = /\.(urdf|xacro|xml|sdf|mjcf|world|json|ya?ml|conf)$/i;
-/** What lies in folders beside a session and is neither. */
-const BESIDE = /\.(md|html?|stl|dae|obj|ply|png|jpe?g|svg|gif|py|sh|rs|js)$|(^|\/)(residuals|joints)\.csv$|(^|\/)\./i;
+/** Files that are neither, wherever they come from. */
+const OTHERS = /\.(md|html?|stl|dae|obj|ply|png|jpe?g|svg|gif|py|sh|rs|js|log|bag|mcap|db3)$/i;
+/** What lies in folders beside a session and is neither: these, other documents, and results. */
+const BESIDE = /\.(pdf|docx?|xlsx?|zip|gz)$|(^|\/)(residuals|joints)\.csv$|(^|\/)\./i;
 /** As many characters tell enough. */
 const HEAD = 4096;
 
 /** The guess for one file of a drop; `whole` says that it came with a folder, in which not everything is meant. */
 export function guess(name, bytes, whole = false) {
-  if (whole && BESIDE.test(name)) return "unused";
+  if (OTHERS.test(name) || (whole && BESIDE.test(name))) return "unused";
   const head = new TextDecoder().decode(bytes.subarray(0, HEAD)).replace(/^\uFEFF/, "");
   if (/\.toml$/i.test(name)) {
     if (/^\s*poecal_robot\s*=/m.test(head)) return "model";

@@ -55,8 +55,16 @@ export function findings(check) {
   return found;
 }
 
+/** What each list shows. */
+const shownNow = new WeakMap();
+
 /** Shows the files in `place`; `change` is called with a file and its new role, or with none to remove it. */
 export function showFiles(place, files, found, change) {
+  // What is shown already stays, so that nobody's click meets a list that is being made.
+  const content = JSON.stringify(files.map((file) => [file.name, file.role, file.bytes.length, found.get(file.name)?.line, found.get(file.name)?.details[1].textContent]));
+  if (shownNow.get(place)?.content === content && shownNow.get(place).files.every((file, k) => file === files[k])) return;
+  shownNow.set(place, { content, files: [...files] });
+  const focused = document.activeElement?.closest("li") && document.activeElement.getAttribute("aria-label");
   const opened = new Set([...place.querySelectorAll("details[open]")].map((it) => it.dataset.of));
   place.replaceChildren(
     ...files.map((file) => {
@@ -77,4 +85,5 @@ export function showFiles(place, files, found, change) {
       );
     }),
   );
+  if (focused) [...place.querySelectorAll("select, button")].find((it) => it.getAttribute("aria-label") === focused)?.focus();
 }
