@@ -324,6 +324,8 @@ describe("the page that calibrates", { skip: skipped }, () => {
 
   test("by the keyboard alone, from start to download", async () => {
     const page = await open(browser);
+    // From now on the browser asks here for files, and not a person.
+    page.on("filechooser", () => {});
     const at = () => page.evaluate(() => document.activeElement.id || document.activeElement.textContent);
     const tabTo = async (name) => {
       for (let k = 0; k < 60; k += 1) {

@@ -15,6 +15,8 @@ use crate::robot::JointKind;
 const PARTS: usize = 7;
 /// Share of the largest eigenvalue below which a direction is none: rounding.
 const NONE: f64 = 1e-10;
+/// What was held is the same within this, metres: rounding of files and of the alignment.
+const HELD_M: f64 = 1e-7;
 
 /// Covariance of the changes of all joints, square metres, angles times a length.
 pub(super) struct Spread {
@@ -93,6 +95,10 @@ impl Spread {
                 value += direction.dot(&difference).powi(2) / variance;
                 freedom += 1;
             }
+        }
+        // What both calibrations held has no noise: a difference is one.
+        if freedom == 0 && difference.norm() > HELD_M {
+            (value, freedom) = ((difference.norm() / HELD_M).powi(2), 1);
         }
         let limit = if freedom == 0 { 0.0 } else { upper_quantile(chance, freedom) };
         ChiSquare { value, freedom, limit }

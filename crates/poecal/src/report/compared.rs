@@ -8,6 +8,7 @@ use super::summary::{expected, leading};
 use super::table::{line, number, number_or_dash};
 use crate::compare::{ChiSquare, Compared, ComparedJoint};
 use crate::io::calibration_file::{CalibrationFile, JointChangeEntry};
+use crate::report::summary::has_terms;
 use crate::robot::{ReadingKind, Robot};
 use crate::text::visible;
 
@@ -36,6 +37,8 @@ pub struct Comparison {
     test: Option<TestEntry>,
     joints: Vec<JointEntry>,
     base: &'static str,
+    /// Whether a calibration has a corrected model with terms, which are not compared: only geometry is.
+    has_terms: bool,
     tip: TipEntry,
 }
 
@@ -159,6 +162,7 @@ impl Comparison {
             changed_joints: found.changed().map(|it| it.name.clone()).collect(),
             test: found.test.map(TestEntry::from),
             joints: found.joints.iter().map(joint).collect(),
+            has_terms: [first.1, second.1].iter().any(|file| has_terms(file)),
             base: if found.base_is_free { "free" } else { "kept" },
             tip: TipEntry {
                 configurations: found.tip.configurations,
@@ -207,6 +211,9 @@ impl Comparison {
             "the base is kept, the tool of the second is fitted to the first"
         };
         line(&mut out, "compared", words);
+        if self.has_terms {
+            line(&mut out, "not compared", "what joints do beyond geometry (the corrected models)");
+        }
         out
     }
 
