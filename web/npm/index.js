@@ -1,5 +1,5 @@
 // Calibration of serial robots: the commands of the program poecal as functions, on `run` of poecal.js.
-import { bytesOf, load as loadAs, Poecal, PoecalError } from "./poecal.js";
+import { load as loadAs, Poecal, PoecalError } from "./poecal.js";
 
 export { PoecalError };
 

@@ -244,9 +244,15 @@ impl Places {
     }
 }
 
-/// The report with the shapes of the robot; of meshes that are not there, a note.
-fn page(file: &CalibrationFile, rows: &Residuals, folder: &Path, console: &Console) -> Result<Page> {
-    let shapes = Shapes::read(file, &folder.join("calibration.json"));
+/// The report with the shapes of the robot, whose meshes are looked for from the place of the calibration; of those that are not there, a
+/// note.
+pub(super) fn page(
+    file: &CalibrationFile,
+    rows: &Residuals,
+    calibration: &Path,
+    console: &Console,
+) -> Result<Page> {
+    let shapes = Shapes::read(file, calibration);
     shapes.notes.iter().for_each(|note| console.remark(note));
     report::calibration_page_with(file, rows, &shapes)
 }
@@ -262,7 +268,8 @@ fn write(
     // Without a report, rows are computed while they are written.
     let place = &arguments.report;
     let residuals = (!matches!(place, Some(ReportPlace::None))).then(|| Residuals::of(data, calibration));
-    let report = residuals.as_ref().map(|rows| page(&file, rows, &arguments.out, console)).transpose()?;
+    let own = arguments.out.join("calibration.json");
+    let report = residuals.as_ref().map(|rows| page(&file, rows, &own, console)).transpose()?;
     let residuals = residuals.as_ref().map_or(ResidualRows::Of(data, calibration), ResidualRows::AtHand);
     let results = Results { file, residuals, report };
     let written =

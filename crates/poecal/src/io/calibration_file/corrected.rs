@@ -180,6 +180,11 @@ fn of_sizes(sizes: &Sizes) -> BTreeMap<String, f64> {
 }
 
 impl CorrectedEntry {
+    /// Whether there are terms: cross-validation may have left out every group.
+    pub(crate) fn has_terms(&self) -> bool {
+        self.sizes.values().any(|size| *size > 0.0)
+    }
+
     /// Of a corrected model.
     pub(super) fn of(found: &Correction, data: &Dataset) -> Self {
         let Correction { robot, model, .. } = found;

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::{CalibrationFile, CorrectedEntry};
+use super::CalibrationFile;
 use crate::calibration::{
     Acceptance, AcceptanceLimits, AcceptedModel, CoverageCheck, JudgedModel, Judgement, PartCoverage,
     PredictedUncertainty, Refitted, Subject, accepted_by, judge,
@@ -64,9 +64,8 @@ impl CalibrationFile {
             );
             return Err(Error::new(ErrorKind::Problem, message));
         }
-        let has_terms = |file: &CorrectedEntry| file.sizes.values().any(|size| *size > 0.0);
-        let is_corrected =
-            limits.model == AcceptedModel::Corrected && self.corrected.as_deref().is_some_and(has_terms);
+        let has_terms = self.corrected.as_ref().is_some_and(|it| it.has_terms());
+        let is_corrected = limits.model == AcceptedModel::Corrected && has_terms;
         let corrected = if is_corrected { self.corrected() } else { None };
         let model = if corrected.is_some() { AcceptedModel::Corrected } else { AcceptedModel::Calibrated };
         let file = corrected.as_ref().unwrap_or(self);

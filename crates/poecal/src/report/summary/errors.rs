@@ -44,7 +44,7 @@ pub(in crate::report) fn leading(file: &CalibrationFile) -> (&SetAccuracy, Vec<M
 
 /// Whether the corrected model has terms: otherwise it is the calibrated one.
 pub(in crate::report) fn has_terms(file: &CalibrationFile) -> bool {
-    file.corrected.as_ref().is_some_and(|it| it.sizes.values().any(|size| *size > 0.0))
+    file.corrected.as_ref().is_some_and(|it| it.has_terms())
 }
 
 /// Mean, RMS, 95 % and maximum of the errors of the rows held out, or if there are none, of those fitted.
