@@ -13,6 +13,18 @@ function named(given, name) {
   return isFile ? { [name]: given } : given instanceof Map ? Object.fromEntries(given) : given;
 }
 
+/** Files of several inputs as one; two of one name that differ would be one file. */
+function together(...inputs) {
+  const all = {};
+  for (const [path, content] of inputs.flatMap((files) => Object.entries(files))) {
+    if (Object.hasOwn(all, path) && all[path] !== content) {
+      throw new PoecalError(`found two files named ${path}, expected another name for one of them`, { code: 2, file: path });
+    }
+    all[path] = content;
+  }
+  return all;
+}
+
 /** The words of options: `heldOut: 0.2` is `--held-out=0.2`. */
 function words(options = {}) {
   return Object.entries(options).flatMap(([key, value]) => {
@@ -85,7 +97,7 @@ class Api extends Poecal {
   #called(command, inputs, files, options, mapping, more = []) {
     const map = named(mapping, "columns.toml");
     const columns = Object.keys(map).map((path) => `--columns=${path}`);
-    const all = { ...files, ...map };
+    const all = together(files, map);
     // After --, a name is no option.
     const answer = this.run([command, ...more, ...columns, ...words(options), "--", ...inputs], all);
     if (answer.code >= 2) throw refused(answer, all);
@@ -98,34 +110,34 @@ class Api extends Poecal {
     const judged = named(validate, "validation.csv");
     const more = [`--out=${OUT}`, ...Object.keys(judged).map((path) => `--validate=${path}`)];
     const inputs = [...Object.keys(robot).slice(0, 1), ...Object.keys(measured)];
-    return new Calibration(this.#called("calibrate", inputs, { ...files, ...robot, ...measured, ...judged }, options, mapping, more));
+    return new Calibration(this.#called("calibrate", inputs, together(files, robot, measured, judged), options, mapping, more));
   }
 
   validate({ calibration, measurements, mapping, options }) {
     const robot = named(calibration, "calibration.json");
     const measured = named(measurements, "measurements.csv");
     const inputs = [...Object.keys(robot), ...Object.keys(measured)];
-    return JSON.parse(this.#called("validate", inputs, { ...robot, ...measured }, options, mapping, ["--json"]).out);
+    return JSON.parse(this.#called("validate", inputs, together(robot, measured), options, mapping, ["--json"]).out);
   }
 
   predict({ model, joints, mapping, options }) {
     const robot = named(model, "model");
     const readings = named(joints, "joints.csv");
-    return this.#called("predict", [...Object.keys(robot), ...Object.keys(readings)], { ...robot, ...readings }, options, mapping).out;
+    return this.#called("predict", [...Object.keys(robot), ...Object.keys(readings)], together(robot, readings), options, mapping).out;
   }
 
   check({ model, measurements, mapping, options }) {
     const robot = named(model, "model");
     const measured = named(measurements, "measurements.csv");
     const inputs = [...Object.keys(robot), ...Object.keys(measured)];
-    const { code, out, err } = this.#called("check", inputs, { ...robot, ...measured }, options, mapping);
+    const { code, out, err } = this.#called("check", inputs, together(robot, measured), options, mapping);
     return { code, table: out, warnings: sentences(err, "warning: ") };
   }
 
   identify({ model, joints, options }) {
     const robot = named(model, "model");
     const readings = named(joints, "joints.csv");
-    return JSON.parse(this.#called("identify", [...Object.keys(robot), ...Object.keys(readings)], { ...robot, ...readings }, options, undefined, ["--json"]).out);
+    return JSON.parse(this.#called("identify", [...Object.keys(robot), ...Object.keys(readings)], together(robot, readings), options, undefined, ["--json"]).out);
   }
 
   exportAs(format, { model, onto, motors, options }) {
@@ -137,7 +149,7 @@ class Api extends Poecal {
       ...Object.keys(urdf).map((path) => `--onto=${path}`),
       ...Object.keys(servos).map((path) => `--motors=${path}`),
     ];
-    return this.#called("export", Object.keys(robot), { ...robot, ...urdf, ...servos }, options, undefined, more).out;
+    return this.#called("export", Object.keys(robot), together(robot, urdf, servos), options, undefined, more).out;
   }
 
   simulate({ model, options }) {

@@ -80,7 +80,7 @@ export interface CalibrateOptions {
    * all errors in a unit. End with code 1 unless each is shown to be kept, with 95 % confidence
    */
   accept?: Value | readonly Value[];
-  /** Which model shall keep them: the corrected one, if there is one, or the calibrated one, which a URDF holds */
+  /** Which model shall keep them: the corrected one, if there is one (the default), or the calibrated one, which a URDF holds */
   acceptModel?: "corrected" | "calibrated";
   /**
    * What the report states of the session, like serial=4711 (repeatable): certificate, laboratory, customer, robot, serial, instrument,
@@ -124,7 +124,7 @@ export interface ValidateOptions {
    * with code 1 unless each is shown to be kept, with 95 % confidence
    */
   accept?: Value | readonly Value[];
-  /** Which model shall keep them: the corrected one, if there is one, or the calibrated one, which a URDF holds */
+  /** Which model shall keep them: the corrected one, if there is one (the default), or the calibrated one, which a URDF holds */
   acceptModel?: "corrected" | "calibrated";
 }
 

@@ -210,6 +210,14 @@ test("an error has its place", () => {
   );
 });
 
+test("two files of one name are refused, not one of them taken", () => {
+  const call = { model: robot, measurements: { "points.csv": good }, validate: { "points.csv": header } };
+  assert.throws(
+    () => poecal.calibrate(call),
+    (error) => error instanceof PoecalError && error.code === 2 && error.message === "found two files named points.csv, expected another name for one of them",
+  );
+});
+
 test("after a stop, the next call works; what is no module is refused", async () => {
   await assert.rejects(load(new Uint8Array([1, 2, 3])), WebAssembly.CompileError);
   const program = await load(readFileSync(join(DIST, "poecal.wasm")));

@@ -151,9 +151,9 @@ pub(crate) struct Validate {
     /// code 1 unless each is shown to be kept, with 95 % confidence
     #[arg(long, value_name = "[rms:|p95:|max:]LIMIT", value_delimiter = ',')]
     pub(crate) accept: Vec<Limit>,
-    /// Which model shall keep them: the corrected one, if there is one, or the calibrated one, which a URDF holds
-    #[arg(long, value_parser = one_of(ACCEPTED_MODEL), default_value = "corrected")]
-    pub(crate) accept_model: AcceptedModel,
+    /// Which model shall keep them: the corrected one, if there is one (the default), or the calibrated one, which a URDF holds
+    #[arg(long, value_parser = one_of(ACCEPTED_MODEL))]
+    pub(crate) accept_model: Option<AcceptedModel>,
     /// Print JSON instead of the table
     #[arg(long)]
     pub(crate) json: bool,

@@ -176,7 +176,10 @@ pub(crate) fn accept_limits(
 ) -> PyResult<Option<AcceptanceLimits>> {
     let models = [AcceptedModel::Corrected, AcceptedModel::Calibrated].map(|it| (it.word(), it));
     let model = chosen("accept_model", model, &models)?;
-    Ok(accept.map(|limits| AcceptanceLimits { model, ..limits }))
+    let limits = accept.map(|it| it.limits).unwrap_or_default();
+    // The default may have been written out, which asks for nothing.
+    let named = (model != AcceptedModel::default()).then_some(model);
+    AcceptanceLimits::chosen(limits, named).map_err(|error| argument("accept_model", error.message()))
 }
 
 /// The fit, without the interpreter's lock, and the time of the library. Warns as the program does.

@@ -105,9 +105,9 @@ pub(crate) struct Calibrate {
     /// errors in a unit. End with code 1 unless each is shown to be kept, with 95 % confidence
     #[arg(long, value_name = "[rms:|p95:|max:]LIMIT", value_delimiter = ',')]
     pub(crate) accept: Vec<Limit>,
-    /// Which model shall keep them: the corrected one, if there is one, or the calibrated one, which a URDF holds
-    #[arg(long, value_parser = one_of(ACCEPTED_MODEL), default_value = "corrected")]
-    pub(crate) accept_model: AcceptedModel,
+    /// Which model shall keep them: the corrected one, if there is one (the default), or the calibrated one, which a URDF holds
+    #[arg(long, value_parser = one_of(ACCEPTED_MODEL))]
+    pub(crate) accept_model: Option<AcceptedModel>,
     /// What the report states of the session, like serial=4711 (repeatable): certificate, laboratory, customer, robot, serial, instrument,
     /// operator, date, place, temperature or note
     #[arg(long, value_name = "KEY=TEXT", value_parser = Record::pair)]

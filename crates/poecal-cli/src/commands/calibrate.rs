@@ -4,8 +4,8 @@ use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
 use poecal::calibration::{
-    BlockChoice, Calibration, CalibrationOptions, Decision, Level, Stage, calibrate_with_progress,
-    settle_sets,
+    AcceptanceLimits, BlockChoice, Calibration, CalibrationOptions, Decision, Level, Stage,
+    calibrate_with_progress, settle_sets,
 };
 use poecal::io::abb::AbbCalibration;
 use poecal::io::calibration_file::{CalibrationFile, Inputs};
@@ -22,7 +22,6 @@ use poecal::robot::Tolerance;
 use poecal::{Error, ErrorKind, Result, report};
 use poecal_lou2009::{Residual, formulated};
 
-use super::limits::limits;
 use super::typed::command;
 use crate::args::{Calibrate, ReportPlace};
 use crate::console::Console;
@@ -193,7 +192,7 @@ fn options(arguments: &Calibrate, console: &Console) -> Result<CalibrationOption
         held_out: arguments.held_out.unwrap_or(usual.held_out),
         seed: arguments.seed.unwrap_or(usual.seed),
         robust: arguments.robust,
-        accept: limits(&arguments.accept, arguments.accept_model)?,
+        accept: AcceptanceLimits::chosen(arguments.accept.clone(), arguments.accept_model)?,
         formulation: formulated(arguments.formulation, arguments.residual, method),
         ..usual
     })

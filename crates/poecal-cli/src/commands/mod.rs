@@ -1,4 +1,4 @@
-//! The commands, one per file (and what several need: `typed`, the command line of a run, and `limits`).
+//! The commands, one per file (and `typed`, the command line of a run, which several need).
 
 mod calibrate;
 mod check;
@@ -9,7 +9,6 @@ mod convert;
 mod export;
 mod identify;
 mod init;
-mod limits;
 mod man;
 mod offsets;
 mod predict;

@@ -3,13 +3,12 @@
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
-use poecal::calibration::Decision;
+use poecal::calibration::{AcceptanceLimits, Decision};
 use poecal::io::calibration_file::CalibrationFile;
 use poecal::io::measurements::{self, ReadOptions};
 use poecal::io::named_files::{actual, refuse_repeats};
 use poecal::{ErrorKind, Result, report};
 
-use super::limits::limits;
 use crate::args::Validate;
 use crate::console::Console;
 use crate::{DONE, WORSE};
@@ -26,7 +25,7 @@ pub(crate) fn validate(arguments: &Validate, console: &Console) -> Result<u8> {
     let read = measurements::read(&arguments.measurements, &calibrated, &options)?;
     let (refit_frame, refit_tool) = (arguments.refit_frame, arguments.refit_tool);
     let mut judgement = file.judge(&read.data, refit_frame, refit_tool).map_err(in_file)?;
-    if let Some(limits) = limits(&arguments.accept, arguments.accept_model)? {
+    if let Some(limits) = AcceptanceLimits::chosen(arguments.accept.clone(), arguments.accept_model)? {
         let found = file.accept(&read.data, refit_frame, refit_tool, &limits, &read.sha256);
         judgement.acceptance = Some(found.map_err(in_file)?);
     }

@@ -104,6 +104,8 @@ fn wrong_limits_and_records_are_refused_by_one_sentence() {
         ("--accept 1mm,rms:2mm", "found two limits of one kind, rms:1mm and rms:2mm"),
         ("--accept 1deg", "measured no angle, only position"),
         ("--accept p95:1mm --held-out 0", "found limits to accept and no rows held out"),
+        ("--accept 1mrad,rms:2mrad", "rms:0.0572958deg and rms:0.114592deg"),
+        ("--accept-model calibrated", "found `calibrated` as the model that shall keep limits, but no limit"),
         ("--accept 1mm --accept-model nominal", "nominal"),
         ("--record serial", "--record: found `serial`, expected KEY=TEXT"),
         ("--record sreial=1", "found the key `sreial`, expected one of the record: the nearest is `serial`"),

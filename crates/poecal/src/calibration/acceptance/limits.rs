@@ -123,12 +123,30 @@ impl AcceptanceLimits {
         }
         Ok(AcceptanceLimits { limits, model })
     }
+
+    /// Limits for a model that was named or not; none if there are no limits.
+    ///
+    /// # Errors
+    /// As [`AcceptanceLimits::new`]; [`ErrorKind::Option`] also if a model was named that has no limit to keep.
+    pub fn chosen(limits: Vec<Limit>, model: Option<AcceptedModel>) -> Result<Option<Self>> {
+        if !limits.is_empty() {
+            return AcceptanceLimits::new(limits, model.unwrap_or_default()).map(Some);
+        }
+        let Some(model) = model else { return Ok(None) };
+        let message = format!(
+            "found `{}` as the model that shall keep limits, but no limit, expected one, like 0.2mm or max:0.5mm",
+            model.word()
+        );
+        Err(Error::new(ErrorKind::Option, message))
+    }
 }
 
 impl Limit {
-    /// As it may be typed: `max:0.5mm`.
+    /// As it may be typed, to six digits: `max:0.5mm`.
     #[must_use]
     pub fn words(&self) -> String {
-        format!("{}:{}{}", self.statistic.word(), self.unit.shown(self.most), self.unit.symbol())
+        let shown = self.unit.shown(self.most);
+        let shown: f64 = format!("{shown:.5e}").parse().unwrap_or(shown);
+        format!("{}:{shown}{}", self.statistic.word(), self.unit.symbol())
     }
 }

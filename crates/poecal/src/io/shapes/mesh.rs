@@ -36,6 +36,16 @@ pub(super) fn parsed(bytes: &[u8], ending: &str, into: Collector) -> Result<Tria
     }
 }
 
+/// The longest side of the box about triangles, metres.
+pub(super) fn longest_m(mesh: &Triangles) -> f64 {
+    let side = |k: usize| {
+        let places = mesh.iter().flatten().map(|corner| corner[k]);
+        let (least, most) = places.fold((f32::INFINITY, f32::NEG_INFINITY), |(a, b), x| (a.min(x), b.max(x)));
+        f64::from(most) - f64::from(least)
+    };
+    (0..3).map(side).fold(0.0, f64::max)
+}
+
 fn text(bytes: &[u8]) -> Result<std::borrow::Cow<'_, str>, Reason> {
     if bytes.contains(&0) {
         return Err("the file is no text".to_owned());

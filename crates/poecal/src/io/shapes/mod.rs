@@ -24,6 +24,8 @@ use crate::robot::{Body, Robot};
 pub const MOST_CHARACTERS: usize = 1_000_000;
 /// Names of meshes in a note.
 const NAMED: usize = 3;
+/// A mesh that is larger than this many arms would leave nothing of the arm to see.
+const MOST_ARMS: f64 = 20.0;
 
 /// The form of a shape, metres. Boxes, cylinders (along z) and spheres are about their middles; a mesh has the axes of its file.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -119,6 +121,7 @@ impl Shapes {
         let (mut read, mut missing, mut notes) = (Vec::<Triangles>::new(), Vec::new(), Vec::new());
         let mut known: BTreeMap<(String, [u64; 3]), Option<usize>> = BTreeMap::new();
         let mut triangles = 0;
+        let arm_m = file.robot().map_or(f64::INFINITY, |robot| robot.reach_m());
         let mut shapes = collected(file, &mut |name, scale| {
             *known.entry((name.to_owned(), scale.map(f64::to_bits))).or_insert_with(|| {
                 let Some(found) = folders.find(name) else {
@@ -126,6 +129,14 @@ impl Shapes {
                     return None;
                 };
                 match mesh::read(&found, scale, MOST_TRIANGLES.saturating_sub(triangles)) {
+                    Ok(mesh) if mesh::longest_m(&mesh) > MOST_ARMS * arm_m => {
+                        let (size, arm) = (mesh::longest_m(&mesh), arm_m);
+                        notes.push(format!(
+                            "The mesh `{name}` is not drawn: it is {size:.0} m long, the arm {arm:.2} m. If it is in millimetres, write \
+                             scale=\"0.001 0.001 0.001\" beside its name in the URDF."
+                        ));
+                        None
+                    }
                     Ok(mesh) => {
                         triangles += mesh.len();
                         read.push(mesh);
@@ -203,6 +214,7 @@ mod tests {
       <link name="upper"><visual><origin xyz="0.2 0 0"/><geometry><mesh filename="package://cell/robot/meshes/arm.STL" scale="0.001 0.001 0.001"/></geometry></visual>
         <visual><geometry><mesh filename="package://elsewhere/arm.stl"/></geometry></visual></link>
       <link name="lower"><visual><geometry><mesh filename="meshes/broken.stl"/></geometry></visual>
+        <visual><geometry><mesh filename="meshes/large.stl"/></geometry></visual>
         <visual><geometry><mesh filename="meshes/base.obj"/></geometry></visual></link>
       <joint name="a" type="continuous"><parent link="base"/><child link="upper"/><axis xyz="0 0 1"/></joint>
       <joint name="b" type="continuous"><parent link="upper"/><child link="lower"/><origin xyz="0.4 0 0.1"/><axis xyz="0 1 0"/></joint>
@@ -217,6 +229,7 @@ mod tests {
         fs::write(meshes.join("arm.STL"), stl::tests::binary(&[triangle])).unwrap();
         fs::write(meshes.join("base.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
         fs::write(meshes.join("broken.stl"), "solid nothing").unwrap();
+        fs::write(meshes.join("large.stl"), stl::tests::binary(&[triangle])).unwrap();
         fs::create_dir(meshes.join("folder.stl")).unwrap();
         let path = cell.join("robot/two.urdf");
         fs::write(&path, TEXT).unwrap();
@@ -235,10 +248,15 @@ mod tests {
             ("lower", Some(1), Form::Mesh(0)),
         ];
         assert_eq!(of, expected);
-        assert_eq!(found.notes.len(), 2, "{:?}", found.notes);
+        assert_eq!(found.notes.len(), 3, "{:?}", found.notes);
         assert!(found.notes[0].contains("`package://elsewhere/arm.stl` was not found"), "{:?}", found.notes);
         assert!(
             found.notes[1].contains("`meshes/broken.stl` is not drawn: found no triangles"),
+            "{:?}",
+            found.notes
+        );
+        assert!(
+            found.notes[2].contains("`meshes/large.stl` is not drawn: it is 100 m long, the arm 0.4"),
             "{:?}",
             found.notes
         );
@@ -264,6 +282,6 @@ mod tests {
         fs::remove_dir_all(cell.parent().unwrap()).unwrap();
         let none = Shapes::read(&file, Path::new("calibration.json"));
         assert_eq!((none.shapes.len(), none.notes.len()), (0, 1));
-        assert!(none.notes[0].starts_with("4 meshes were not found"), "{:?}", none.notes);
+        assert!(none.notes[0].starts_with("5 meshes were not found"), "{:?}", none.notes);
     }
 }
