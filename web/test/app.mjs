@@ -77,11 +77,18 @@ export async function drop(page, files) {
   for (const type of ["dragenter", "dragover", "drop"]) await page.dispatchEvent("main", type, { dataTransfer: transfer });
 }
 
-/** Drops files and folders of the machine on the page, as a user does. */
-export async function dropPaths(page, paths) {
+/** Drops files and folders of the machine on the page, or on the middle of an element, as a user does. */
+export async function dropPaths(page, paths, selector) {
+  let [x, y] = [200, 200];
+  if (selector) {
+    await page.locator(selector).scrollIntoViewIfNeeded();
+    const box = await page.locator(selector).boundingBox();
+    const { height } = page.viewportSize();
+    [x, y] = [box.x + box.width / 2, (Math.max(box.y, 0) + Math.min(box.y + box.height, height)) / 2];
+  }
   const session = await page.context().newCDPSession(page);
   for (const type of ["dragEnter", "dragOver", "drop"]) {
-    await session.send("Input.dispatchDragEvent", { type, x: 200, y: 200, data: { items: [], files: paths, dragOperationsMask: 1 } });
+    await session.send("Input.dispatchDragEvent", { type, x, y, data: { items: [], files: paths, dragOperationsMask: 1 } });
   }
   await session.detach();
 }

@@ -24,6 +24,10 @@ test("each command gets the options that it takes", () => {
   const options = ["--frame", "base", "--seed", "2", "--frames=per-file", "--accept", "0.2mm", "--accept-model", "calibrated"];
   assert.equal(calibrateWords(files, options).join(" "), "calibrate robot.urdf a.csv --columns map.toml --validate b.csv --frame base --seed 2 --frames=per-file --accept 0.2mm --accept-model calibrated --out calibration-2");
   assert.equal(checkWords(files, options).join(" "), "check robot.urdf a.csv b.csv --columns map.toml --frame base --frames=per-file");
+  const withSettings = [...files, file("cell/poecal.toml", "poecal_settings = 1", "settings")];
+  assert.equal(checkWords(withSettings, []).join(" "), "check robot.urdf a.csv b.csv --settings cell/poecal.toml --columns map.toml");
+  // Tables that settings name may not be there yet.
+  assert.equal(checkWords(withSettings.filter((it) => it.role === "model" || it.role === "settings"), []).join(" "), "check robot.urdf");
   assert.equal(validateWords(files, options).join(" "), "validate robot.urdf a.csv b.csv --columns map.toml --frames=per-file --accept 0.2mm --accept-model calibrated");
 });
 

@@ -189,6 +189,22 @@ describe("the page that calibrates", { skip: skipped }, () => {
     await page.context().close();
   });
 
+  test("what is dropped on the report is dropped on the page", async () => {
+    const half = (odd) => POINTS.split("\n").filter((_, k) => k < 2 || k % 2 === odd).join("\n");
+    const there = session("onto-report", { "robot.urdf": MODEL, "first.csv": half(0), "second.csv": half(1) });
+    const page = await open(browser);
+    await dropPaths(page, [join(there, "robot.urdf"), join(there, "first.csv")]);
+    await status(page, /^Calibrated/);
+    await report(page);
+    await dropPaths(page, [join(there, "second.csv")], "#report iframe");
+    await page.getByLabel("Role of second.csv").waitFor();
+    await status(page, /^Calibrated/);
+    assert.equal(await page.locator("html[data-over]").count(), 0, "the page still waits for a drop");
+    assert.match(await (await report(page)).locator("body").innerText(), /second\.csv/);
+    assert.deepEqual(page.complaints, []);
+    await page.context().close();
+  });
+
   test("a file that comes again keeps its role, another robot's files take the place of all, and names stay apart", async () => {
     const page = await open(browser);
     const roles = () => page.$$eval("#list li", (all) => Object.fromEntries(all.map((it) => [it.querySelector("b").textContent, it.querySelector("select").value])));

@@ -189,10 +189,13 @@ pub(crate) struct Predict {
 /// Arguments of `poecal check`.
 #[derive(Args, Debug)]
 pub(crate) struct Check {
-    /// Robot model: URDF, MJCF, SDF, TOML, a maker's YAML or conf, or calibration.json
-    pub(crate) model: PathBuf,
-    /// Measurement files (CSV)
+    /// Robot model: URDF, MJCF, SDF, TOML, a maker's YAML or conf, or calibration.json [default: from the settings]
+    pub(crate) model: Option<PathBuf>,
+    /// Measurement files (CSV) [default: from the settings]
     pub(crate) measurements: Vec<PathBuf>,
+    /// Settings (TOML), of which those count that are options here [default: poecal.toml in this folder, if no model is named]
+    #[arg(long, value_name = "FILE")]
+    pub(crate) settings: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) chain: TreeArgs,
     #[command(flatten)]

@@ -15,8 +15,10 @@ use crate::args::Arguments;
 
 /// Settings file that is read if no model is named.
 const USUAL: &str = "poecal.toml";
-/// The command with settings.
+/// The command whose options settings are.
 const COMMAND: &str = "calibrate";
+/// Commands that read settings. Each takes those that it has an option for.
+const READERS: [&str; 2] = [COMMAND, "check"];
 /// Options of a single run, which settings cannot hold.
 const NOT_KEPT: [&str; 8] =
     ["settings", "verbose", "json", "timings", "quiet", "threads", "help", "force_own"];
@@ -39,19 +41,25 @@ pub(crate) struct Completed {
 /// # Errors
 /// As [`Settings::read`], and if no model is named and there are no settings.
 pub(crate) fn complete(typed: &[OsString], matches: &ArgMatches) -> Result<Option<Completed>> {
-    let Some((COMMAND, matches)) = matches.subcommand() else { return Ok(None) };
+    let Some((name, matches)) = matches.subcommand().filter(|(name, _)| READERS.contains(name)) else {
+        return Ok(None);
+    };
     let named: Option<&PathBuf> = matches.get_one("settings");
     if named.is_none() && matches.contains_id("model") {
         return Ok(None);
     }
     let path = named.map_or(Path::new(USUAL), PathBuf::as_path);
     if named.is_none() && disk::here().follow(path).is_err() {
-        let message = "found neither a model among the arguments nor this file, expected `poecal calibrate MODEL FILES…`, or settings in \
-                       this folder: `poecal init MODEL` writes them";
+        let message = format!(
+            "found neither a model among the arguments nor this file, expected `poecal {name} MODEL FILES…`, or settings in this folder: \
+             `poecal init MODEL` writes them"
+        );
         return Err(Error::new(ErrorKind::Option, message).in_file(path));
     }
     let whole = Arguments::command();
-    let Some(command) = whole.find_subcommand(COMMAND) else { return Ok(None) };
+    let (Some(command), Some(own)) = (whole.find_subcommand(COMMAND), whole.find_subcommand(name)) else {
+        return Ok(None);
+    };
     let keys: Vec<&str> = kept(command).map(|arg| arg.get_id().as_str()).collect();
     let settings = Settings::read(path, &keys)?;
     let (mut options, mut files) = (Vec::new(), Vec::new());
@@ -59,13 +67,13 @@ pub(crate) fn complete(typed: &[OsString], matches: &ArgMatches) -> Result<Optio
         // So that the command knows its settings file.
         options.push(OsString::from(format!("--settings={USUAL}")));
     }
-    for arg in kept(command) {
-        let own = settings.entries.iter().filter(|entry| arg.get_id() == entry.key.as_str());
+    for arg in kept(own) {
+        let entries = settings.entries.iter().filter(|entry| arg.get_id() == entry.key.as_str());
         let by_key = arg.get_id() == TABLE;
         let is_kept = |entry: &&Setting| {
-            if by_key { !is_typed_in_table(entry, matches) } else { !is_replaced(arg, command, matches) }
+            if by_key { !is_typed_in_table(entry, matches) } else { !is_replaced(arg, own, matches) }
         };
-        for entry in own.filter(is_kept) {
+        for entry in entries.filter(is_kept) {
             let values = values(arg, entry, &settings)?;
             if arg.is_positional() {
                 files.extend(values.into_iter().map(not_an_option));
@@ -74,7 +82,7 @@ pub(crate) fn complete(typed: &[OsString], matches: &ArgMatches) -> Result<Optio
             }
         }
     }
-    Ok(Some(Completed { words: joined(typed, options, files), settings }))
+    Ok(Some(Completed { words: joined(typed, name, options, files), settings }))
 }
 
 impl Completed {
@@ -187,8 +195,8 @@ fn not_an_option(name: OsString) -> OsString {
 }
 
 /// Inserts options behind the command, before any `--`, and files at the end.
-fn joined(typed: &[OsString], options: Vec<OsString>, files: Vec<OsString>) -> Vec<OsString> {
-    let at = typed.iter().position(|word| word == COMMAND).map_or(typed.len(), |index| index + 1);
+fn joined(typed: &[OsString], command: &str, options: Vec<OsString>, files: Vec<OsString>) -> Vec<OsString> {
+    let at = typed.iter().position(|word| word == command).map_or(typed.len(), |index| index + 1);
     let (before, after) = typed.split_at(at);
     [before.to_vec(), options, after.to_vec(), files].concat()
 }

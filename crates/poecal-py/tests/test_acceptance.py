@@ -39,6 +39,7 @@ def test_limits_are_judged_and_a_record_is_kept(made):
         ({"accept": 0.2}, "accept: found 0.2, expected a text, like"),
         ({"accept": "0.2"}, "accept: found `0.2` as a limit, expected a unit behind the number"),
         ({"accept": "1deg"}, "measured no angle, only position"),
+        ({"accept_model": "calibrated"}, "found `calibrated` as the model that shall keep limits, but no limit"),
         ({"accept": "1mm", "accept_model": "nominal"}, "accept_model: found"),
         ({"record": "serial"}, "record: found the text `serial`, expected a dict of keys and texts"),
         ({"record": {"serial": 4711}}, 'record["serial"]: found 4711, expected a text'),

@@ -45,12 +45,13 @@ function folder(files) {
   }
 }
 
+const settings = (files) => names(files, "settings").flatMap((name) => ["--settings", name]);
 const mapping = (files) => names(files, "columns").flatMap((name) => ["--columns", name]);
 
 /** `poecal check`: how model and measurements are understood. */
 export function checkWords(files, options) {
   const tables = [...names(files, "measurements"), ...names(files, "validate")];
-  return ["check", ...names(files, "model"), ...tables, ...(tables.length ? mapping(files) : []), ...among(options, CHECKING)];
+  return ["check", ...names(files, "model"), ...tables, ...(tables.length ? [...settings(files), ...mapping(files)] : []), ...among(options, CHECKING)];
 }
 
 /** `poecal calibrate`. */
@@ -59,7 +60,7 @@ export function calibrateWords(files, options) {
     "calibrate",
     ...names(files, "model"),
     ...names(files, "measurements"),
-    ...names(files, "settings").flatMap((name) => ["--settings", name]),
+    ...settings(files),
     ...mapping(files),
     ...names(files, "validate").flatMap((name) => ["--validate", name]),
     ...options,

@@ -25,11 +25,17 @@ export function download(path, content) {
 const ORDER = ["calibrated.urdf", "calibration.json", "report.html", "residuals.csv"];
 const place = (path) => (ORDER.includes(last(path)) ? ORDER.indexOf(last(path)) : ORDER.length);
 
-/** The report in a frame. Its links to its own sections would lead to those of this page. */
+/** The report in a frame. Its links to its own sections would lead to those of this page; what is dropped on it is dropped on this page. */
 function frame(text) {
   const made = element("iframe", { title: "Report of the calibration", srcdoc: text });
   made.addEventListener("load", () => {
     const report = made.contentDocument;
+    for (const type of ["dragenter", "dragleave", "dragover", "drop"]) {
+      report.addEventListener(type, (event) => {
+        event.preventDefault();
+        made.dispatchEvent(new DragEvent(type, { bubbles: true, cancelable: true, dataTransfer: event.dataTransfer }));
+      });
+    }
     report.addEventListener("click", (event) => {
       const link = event.target.closest?.('a[href^="#"]');
       if (!link) return;

@@ -205,6 +205,46 @@ fn settings_are_seen_from_their_folder_and_give_way_to_what_is_typed() {
 }
 
 #[test]
+fn files_are_checked_as_the_settings_say() {
+    let folder = Folder::new();
+    folder.write("arms.urdf", TWO_ARMS);
+    let said = folder.run_words(&words("init arms.urdf --tip-link 'left tool' -o cell"));
+    assert_eq!(said.code, 0, "{}", said.err);
+    // The chain, the model and its measurements are those of the settings, of which the seed is none that `check` has.
+    let settings = format!("{}\nseed = 3\n", folder.read("cell/poecal.toml"));
+    folder.write("cell/poecal.toml", &settings);
+    folder.write(
+        "cell/measurements.csv",
+        "\"turn, left[deg]\",slide[mm],hand[deg],x[mm],y[mm],z[mm]\n1,2,3,4,5,6\n",
+    );
+    let by_settings = folder.done("check --settings cell/poecal.toml");
+    let typed = words("check cell/robot.urdf cell/measurements.csv --tip-link 'left tool'");
+    assert_eq!(by_settings, folder.run_words(&typed).out);
+    assert!(
+        by_settings.contains("from base to left tool") && by_settings.contains("1: 1 point"),
+        "{by_settings}"
+    );
+    // What is typed counts.
+    let run = folder.run("check --settings cell/poecal.toml --tip-link nowhere");
+    assert!(run.code == 2 && run.err.contains("nowhere"), "{}", run.err);
+    folder.write("cell/poecal.toml", settings.replace("left tool", "lost tool"));
+    let run = folder.run("check --settings cell/poecal.toml");
+    assert!(run.code == 2 && run.err.contains("lost tool"), "{}", run.err);
+    folder.write("empty.toml", "poecal_settings = 1\n");
+    let run = folder.run("check --settings empty.toml");
+    assert_eq!(
+        (run.code, run.err.as_str()),
+        (2, "error: found no model, expected `poecal check MODEL FILES…`, or settings that name it\n")
+    );
+    let run = folder.run("check");
+    assert!(
+        run.code == 2 && run.err.contains("expected `poecal check MODEL FILES…`, or settings"),
+        "{}",
+        run.err
+    );
+}
+
+#[test]
 fn an_option_that_is_typed_replaces_settings_that_it_excludes() {
     let folder = project();
     folder.done("simulate robot.urdf --kind point --count 20 --noise 0.06mm --out other");
