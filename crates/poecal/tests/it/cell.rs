@@ -357,7 +357,7 @@ fn compare(made: &Measured, estimate: &Estimate, free: Vec<Parameter>, name: &st
         let cost = |by: f64| {
             let mut step = vec![0.0; n];
             step[unknown] = by * STEP;
-            problem.normal(&problem.retract(estimate, &step)).cost
+            problem.gradient(&problem.retract(estimate, &step)).unwrap().cost
         };
         let difference = (8.0 * (cost(1.0) - cost(-1.0)) - (cost(2.0) - cost(-2.0))) / (12.0 * STEP);
         // The gradient is that of the residuals' sign: `Jᵀe` with J of the prediction.
