@@ -72,6 +72,12 @@ mod _poecal {
     #[pymodule_export]
     use crate::simulation::{Simulation, simulate};
 
+    /// A level of vector instructions that `POECAL_SIMD` names and this machine has not is refused before anything is computed.
+    #[pymodule_init]
+    fn init(_module: &Bound<'_, PyModule>) -> PyResult<()> {
+        poecal::problem::SimdLevel::stated().map(drop).map_err(crate::errors::raise)
+    }
+
     /// The version of poecal.
     ///
     /// Returns

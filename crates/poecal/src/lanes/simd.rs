@@ -1,5 +1,7 @@
 //! Run-time dispatch: the same source compiled for each set of vector instructions.
 
+use std::sync::LazyLock;
+
 use pulp::Scalar128b;
 #[cfg(target_arch = "aarch64")]
 use pulp::aarch64::Neon;
@@ -19,6 +21,7 @@ use super::sincos;
 use super::tip;
 use super::totals::Totals;
 use super::vector::Wide;
+use crate::error::{Error, ErrorKind, Result};
 
 /// Instruction set of the kernels. Who has one has found it on this machine.
 #[derive(Clone, Copy, Debug)]
@@ -42,15 +45,67 @@ pub enum SimdLevel {
     Baseline(Scalar128b),
 }
 
+/// Limits the level of a process, so that a machine has the digits of one with fewer instructions: `plain`, `avx2` or `avx512`.
+const VARIABLE: &str = "POECAL_SIMD";
+
+/// The level of this process; the error is the first use's, and the same ever after.
+static LEVEL: LazyLock<std::result::Result<SimdLevel, String>> = LazyLock::new(|| match std::env::var_os(VARIABLE) {
+    None => Ok(best_detected()),
+    Some(word) => limited_to(&word.to_string_lossy()),
+});
+
 impl SimdLevel {
     /// Instructions of every machine of the target.
     pub const BASELINE: SimdLevel = SimdLevel::Baseline(Scalar128b);
 
-    /// The best level of this machine.
+    /// The level of this process: the best of this machine, or the one that the variable `POECAL_SIMD` names (`plain`, `avx2`, `avx512`).
+    /// A name that is none, or of a level that is not here, has no effect; [`SimdLevel::stated`] refuses it.
     #[must_use]
     pub fn best() -> Self {
-        detected().unwrap_or(SimdLevel::BASELINE)
+        LEVEL.as_ref().copied().unwrap_or_else(|_| best_detected())
     }
+
+    /// [`SimdLevel::best`], or a sentence if `POECAL_SIMD` names no level of this machine. Whatever starts a process asks this first.
+    ///
+    /// # Errors
+    ///
+    /// [`ErrorKind::Option`] with the levels of this machine.
+    pub fn stated() -> Result<Self> {
+        LEVEL.clone().map_err(|sentence| Error::new(ErrorKind::Option, sentence))
+    }
+
+    /// Its name in `POECAL_SIMD`; `None` for a level that no machine is limited to.
+    #[must_use]
+    pub fn name(self) -> Option<&'static str> {
+        match self {
+            #[cfg(target_arch = "x86_64")]
+            SimdLevel::Avx512(_) => Some("avx512"),
+            #[cfg(target_arch = "x86_64")]
+            SimdLevel::Avx2(_) => Some("avx2"),
+            #[cfg(target_arch = "x86_64")]
+            SimdLevel::Avx2Wide(_) => None,
+            #[cfg(target_arch = "aarch64")]
+            SimdLevel::Neon(_) => Some("neon"),
+            #[cfg(target_arch = "wasm32")]
+            SimdLevel::Simd128(_) => Some("simd128"),
+            SimdLevel::Baseline(_) => Some("plain"),
+        }
+    }
+}
+
+/// The level of this name.
+fn limited_to(word: &str) -> std::result::Result<SimdLevel, String> {
+    let levels = simd_levels();
+    let named = levels.iter().copied().find(|level| level.name() == Some(word));
+    named.ok_or_else(|| {
+        let names: Vec<&str> = levels.iter().filter_map(|level| level.name()).collect();
+        format!("{VARIABLE}: found `{word}`, expected one of the levels of this machine ({}), or no such variable", names.join(", "))
+    })
+}
+
+/// The best level of this machine.
+fn best_detected() -> SimdLevel {
+    detected().unwrap_or(SimdLevel::BASELINE)
 }
 
 /// The best vector instructions of this machine.
@@ -77,10 +132,10 @@ fn detected() -> Option<SimdLevel> {
     None
 }
 
-/// Levels that this machine has, the best first.
+/// Levels that this machine has, the best first, whatever this process is limited to.
 #[must_use]
 pub fn simd_levels() -> Vec<SimdLevel> {
-    let mut levels = vec![SimdLevel::best()];
+    let mut levels = vec![best_detected()];
     #[cfg(target_arch = "x86_64")]
     if let Some(avx2) = V3::try_new() {
         if matches!(levels[0], SimdLevel::Avx512(_)) {
