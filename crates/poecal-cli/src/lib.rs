@@ -22,7 +22,7 @@ use args::{Arguments, Command};
 use clap::error::ContextKind;
 use clap::{CommandFactory as _, FromArgMatches as _};
 use console::Console;
-use poecal::problem::SimdLevel;
+use poecal::problem::stated_level;
 use poecal::text::visible;
 use poecal::{Error, ErrorKind};
 
@@ -122,8 +122,8 @@ fn run_to_code(arguments: impl IntoIterator<Item = OsString>) -> u8 {
         Err(code) => return code,
     };
     let console = Console::new(arguments.quiet);
-    if let Err(error) = SimdLevel::stated() {
-        console.error(&error);
+    if let Err(sentence) = stated_level() {
+        console.error(sentence);
         return REFUSED;
     }
     // Where there are no threads, the work is done by this one: a pool that cannot be built would be missed later.

@@ -72,10 +72,12 @@ mod _poecal {
     #[pymodule_export]
     use crate::simulation::{Simulation, simulate};
 
-    /// A level of vector instructions that `POECAL_SIMD` names and this machine has not is refused before anything is computed.
+    /// A level of vector instructions that `POECAL_SIMD` names and this machine does not have is refused before anything is computed.
     #[pymodule_init]
-    fn init(_module: &Bound<'_, PyModule>) -> PyResult<()> {
-        poecal::problem::SimdLevel::stated().map(drop).map_err(crate::errors::raise)
+    fn check_level(_module: &Bound<'_, PyModule>) -> PyResult<()> {
+        let refused =
+            |sentence| crate::errors::raise(poecal::Error::new(poecal::ErrorKind::Option, sentence));
+        poecal::problem::stated_level().map(drop).map_err(refused)
     }
 
     /// The version of poecal.

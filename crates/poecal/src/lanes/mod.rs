@@ -24,7 +24,7 @@ pub(crate) use influence::NUMBERS;
 pub(crate) use plan::{Along, Arm, DevicePlan, FixedMotion, JointPlan, PackedRows, Plan, RowData, TermPlan};
 pub(crate) use poses::Exponential;
 pub(crate) use rows::{Shape, ShapedRow};
-pub use simd::{SimdLevel, simd_levels};
+pub use simd::{SimdLevel, simd_levels, stated_level};
 pub(crate) use simd::{
     by_best, cholesky, cosines_and_sines, errors, influences, inverse, last_links, product_of_exponentials,
     solve, sum_gradient, sum_products, whitened_columns,

@@ -21,7 +21,6 @@ use super::sincos;
 use super::tip;
 use super::totals::Totals;
 use super::vector::Wide;
-use crate::error::{Error, ErrorKind, Result};
 
 /// Instruction set of the kernels. Who has one has found it on this machine.
 #[derive(Clone, Copy, Debug)]
@@ -49,7 +48,7 @@ pub enum SimdLevel {
 const VARIABLE: &str = "POECAL_SIMD";
 
 /// The level of this process; the error is the first use's, and the same ever after.
-static LEVEL: LazyLock<std::result::Result<SimdLevel, String>> = LazyLock::new(|| match std::env::var_os(VARIABLE) {
+static LEVEL: LazyLock<Result<SimdLevel, String>> = LazyLock::new(|| match std::env::var_os(VARIABLE) {
     None => Ok(best_detected()),
     Some(word) => limited_to(&word.to_string_lossy()),
 });
@@ -59,19 +58,10 @@ impl SimdLevel {
     pub const BASELINE: SimdLevel = SimdLevel::Baseline(Scalar128b);
 
     /// The level of this process: the best of this machine, or the one that the variable `POECAL_SIMD` names (`plain`, `avx2`, `avx512`).
-    /// A name that is none, or of a level that is not here, has no effect; [`SimdLevel::stated`] refuses it.
+    /// A name that is none, or of a level that is not here, has no effect; [`stated_level`] refuses it.
     #[must_use]
     pub fn best() -> Self {
         LEVEL.as_ref().copied().unwrap_or_else(|_| best_detected())
-    }
-
-    /// [`SimdLevel::best`], or a sentence if `POECAL_SIMD` names no level of this machine. Whatever starts a process asks this first.
-    ///
-    /// # Errors
-    ///
-    /// [`ErrorKind::Option`] with the levels of this machine.
-    pub fn stated() -> Result<Self> {
-        LEVEL.clone().map_err(|sentence| Error::new(ErrorKind::Option, sentence))
     }
 
     /// Its name in `POECAL_SIMD`; `None` for a level that no machine is limited to.
@@ -93,8 +83,17 @@ impl SimdLevel {
     }
 }
 
+/// The level of this process, [`SimdLevel::best`], which whatever starts a process asks for before it computes.
+///
+/// # Errors
+///
+/// A sentence if the variable `POECAL_SIMD` names no level of this machine.
+pub fn stated_level() -> Result<SimdLevel, &'static str> {
+    LEVEL.as_ref().copied().map_err(String::as_str)
+}
+
 /// The level of this name.
-fn limited_to(word: &str) -> std::result::Result<SimdLevel, String> {
+fn limited_to(word: &str) -> Result<SimdLevel, String> {
     let levels = simd_levels();
     let named = levels.iter().copied().find(|level| level.name() == Some(word));
     named.ok_or_else(|| {

@@ -12,7 +12,7 @@ mod row_group;
 mod scatter;
 mod without_effect;
 
-pub use crate::lanes::{SimdLevel, simd_levels};
+pub use crate::lanes::{SimdLevel, simd_levels, stated_level};
 pub use layout::Layout;
 pub use prior::{Prior, TermPrior};
 pub use refit::Refit;

@@ -1,28 +1,36 @@
-//! How many trials a test makes, which `POECAL_TRIALS` says: nothing, as many as usual; `quick`, a twentieth; `full`, a hundred times as
-//! many; or a number.
+//! How many trials a test makes of its weekly number, which `POECAL_TRIALS` says: nothing, a quarter; `quick`, a twentieth; `weekly`, all;
+//! `full`, a hundred times as many; or a number.
 
-/// A number of trials, and by how much a figure that is made of them may be off more than one of the usual number.
+/// A number of trials, and by how much a figure that is made of them may be off more than one of the weekly number.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Trials {
     pub(crate) count: usize,
-    usual: usize,
+    weekly: usize,
 }
 
 /// The fewest trials that show anything.
 const FEWEST: usize = 2;
+/// The part of the weekly number that every change is tried by. The scatter of a mean doubles, and its tolerance grows by three of the added
+/// standard errors ([`Trials::more`]): half of a fault that the weekly number just shows is hidden, one of twice its size is not. A sixteenth
+/// would double both again, and save three more minutes of five.
+const OF_A_CHANGE: usize = 4;
+/// The same of `quick`.
+const OF_A_QUICK_LOOK: usize = 20;
 
-/// So many trials as `POECAL_TRIALS` makes of the usual number.
-pub(crate) fn trials(usual: usize) -> Trials {
+/// So many trials as `POECAL_TRIALS` makes of the weekly number.
+pub(crate) fn trials(weekly: usize) -> Trials {
     let said = std::env::var("POECAL_TRIALS").ok();
+    let part = |of: usize| (weekly / of).max(FEWEST).min(weekly);
     let count = match said.as_deref() {
-        None | Some("") => usual,
-        Some("quick") => (usual / 20).max(FEWEST).min(usual),
-        Some("full") => 100 * usual,
+        None | Some("") => part(OF_A_CHANGE),
+        Some("quick") => part(OF_A_QUICK_LOOK),
+        Some("weekly") => weekly,
+        Some("full") => 100 * weekly,
         Some(number) => number.parse().ok().filter(|&count| count > 0).unwrap_or_else(|| {
-            panic!("POECAL_TRIALS: found `{number}`, expected `quick`, `full`, or a number from 1")
+            panic!("POECAL_TRIALS: found `{number}`, expected `quick`, `weekly`, `full`, or a number from 1")
         }),
     };
-    Trials { count, usual }
+    Trials { count, weekly }
 }
 
 /// Of cases that are no trials, each of which is for itself: all, or with `quick` every fifth.
@@ -32,9 +40,9 @@ pub(crate) fn some<T>(all: impl IntoIterator<Item = T>) -> Vec<T> {
 }
 
 impl Trials {
-    /// No fewer than these, if the usual number is not below it.
+    /// No fewer than these, if the weekly number is not below it.
     pub(crate) fn at_least(self, fewest: usize) -> Self {
-        Trials { count: self.count.max(fewest.min(self.usual)), ..self }
+        Trials { count: self.count.max(fewest.min(self.weekly)), ..self }
     }
 
     /// Numbers of the trials, as seeds are.
@@ -42,11 +50,11 @@ impl Trials {
         0..self.count as u64
     }
 
-    /// What a tolerance of a mean over the trials grows by: three standard errors, less those that the usual number has. Nothing for the
-    /// usual number and more. `sigma` is the standard deviation of one trial.
+    /// What a tolerance of a mean over the trials grows by: three standard errors, less those that the weekly number has. Nothing for the
+    /// weekly number and more. `sigma` is the standard deviation of one trial.
     pub(crate) fn more(self, sigma: f64) -> f64 {
         let root = |count: usize| (count as f64).sqrt();
-        3.0 * sigma * (1.0 / root(self.count) - 1.0 / root(self.usual)).max(0.0)
+        3.0 * sigma * (1.0 / root(self.count) - 1.0 / root(self.weekly)).max(0.0)
     }
 
     /// What the tolerance of a share of the trials grows by.
