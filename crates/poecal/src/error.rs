@@ -82,11 +82,6 @@ struct Inner {
 impl Error {
     /// An error without a place; `message` says what was found, what was expected and what to do. Control characters of a text that it
     /// quotes are written out, so that it is one line and moves no terminal's cursor.
-    ///
-    /// ```
-    /// use poecal::{Error, ErrorKind};
-    /// assert_eq!(Error::new(ErrorKind::Syntax, "found `a\tb\n`").message(), r"found `a\u{9}b\u{a}`");
-    /// ```
     pub fn new(kind: ErrorKind, message: impl Into<String>) -> Self {
         let message = with_names_shown(message.into());
         Error(Box::new(Inner { kind, place: None, message: visible(&message).into_owned() }))
@@ -187,11 +182,6 @@ const LONGEST_COMPARED: usize = 64;
 pub type Result<T> = std::result::Result<T, Error>;
 
 /// The candidate nearest to `word` by edit distance, for "did you mean"; none if each differs by more than half of the word.
-///
-/// ```
-/// assert_eq!(poecal::nearest("jiont1", ["joint1", "joint2", "x"]), Some("joint1"));
-/// assert_eq!(poecal::nearest("jiont1", ["x", "temperature"]), None);
-/// ```
 pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let letters = letters(word)?;
     let furthest = (letters / 2).max(1);
@@ -302,5 +292,11 @@ mod tests {
     fn an_error_is_one_line_whatever_it_quotes() {
         let error = Error::new(ErrorKind::Syntax, "found `a\r\n\u{1b}[2J\u{2028}\tµ`").at("a\nb.csv", 1, 2);
         assert_eq!(error.to_string(), r"a\u{a}b.csv:1:2: found `a\u{d}\u{a}\u{1b}[2J\u{2028}\u{9}µ`");
+    }
+
+    #[test]
+    fn a_word_too_far_from_all_has_no_nearest() {
+        assert_eq!(nearest("jiont1", ["joint1", "joint2", "x"]), Some("joint1"));
+        assert_eq!(nearest("jiont1", ["x", "temperature"]), None);
     }
 }

@@ -1,12 +1,6 @@
 //! Units of unknowns and of measured numbers.
 
 /// SI unit of a number, with the one in which people read it.
-///
-/// ```
-/// use poecal::Unit;
-/// assert_eq!((Unit::Metre.shown(0.002), Unit::Metre.symbol()), (2.0, "mm"));
-/// assert_eq!(Unit::Radian.shown(std::f64::consts::PI), 180.0);
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unit {
     /// Metres; shown in millimetres.
@@ -54,6 +48,22 @@ impl Unit {
         match self {
             Unit::Metre => 1.0,
             Unit::Radian | Unit::One => length_m,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn metres_are_shown_in_millimetres_and_radians_in_degrees() {
+        for (unit, si, shown, symbol) in [
+            (Unit::Metre, 0.002, 2.0, "mm"),
+            (Unit::Radian, std::f64::consts::PI, 180.0, "deg"),
+            (Unit::One, 0.3, 0.3, ""),
+        ] {
+            assert_eq!((unit.shown(si), unit.from_shown(shown), unit.symbol()), (shown, si, symbol));
         }
     }
 }

@@ -17,11 +17,6 @@ const NEARLY_PARALLEL: f64 = 0.1;
 const MOST_REACHES: f64 = 10.0;
 
 /// How rows are written.
-///
-/// ```
-/// use poecal::forms::DhConvention;
-/// assert_eq!(DhConvention::Standard.formula(), "Rz(theta) Tz(d) Tx(a) Rx(alpha)");
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum DhConvention {
@@ -48,10 +43,6 @@ impl DhConvention {
 }
 
 /// Which four numbers a row has.
-///
-/// ```
-/// assert_ne!(poecal::forms::RowKind::Dh, poecal::forms::RowKind::Hayati);
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum RowKind {
@@ -62,13 +53,6 @@ pub enum RowKind {
 }
 
 /// A row: the motion from one joint's frame to the next.
-///
-/// ```
-/// use poecal::forms::{DhConvention, DhTable};
-/// let table = DhTable::of(&poecal::simulate::elbow(), DhConvention::Standard)?;
-/// assert_eq!(table.rows[0].joint, "joint1");
-/// # Ok::<(), poecal::Error>(())
-/// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct DhEntry {
     /// Name of the joint.
@@ -109,16 +93,6 @@ impl DhEntry {
 }
 
 /// A serial robot by a table of rows: the way from base to tip is `B · rows · E`, with the joint values within the rows.
-///
-/// ```
-/// use poecal::forms::{DhConvention, DhTable};
-/// let robot = poecal::simulate::elbow();
-/// let table = DhTable::of(&robot, DhConvention::Standard)?;
-/// let readings = [0.1, -0.2, 0.3, 0.4, -0.5, 0.6];
-/// let place = |it: &poecal::Robot| it.forward_kinematics(&readings).translation;
-/// assert!((place(&table.frames().robot(&robot)?) - place(&robot)).norm() < 1e-12);
-/// # Ok::<(), poecal::Error>(())
-/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct DhTable {
     /// How rows are written.

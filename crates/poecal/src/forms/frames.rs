@@ -13,16 +13,6 @@ const FAR: f64 = 0.5;
 
 /// A serial robot by frames with z along each axis: the joint turns about it, or slides along it. The way from the base to the tip is
 /// `T = A₁ Z(q₁) A₂ Z(q₂) … Aₙ Z(qₙ) E`, with `Z(q) = Rz(q)` or `Tz(q)`.
-///
-/// ```
-/// use poecal::forms::AxisFrames;
-/// let robot = poecal::simulate::elbow();
-/// let frames = AxisFrames::of(&robot)?;
-/// let readings = [0.1, -0.2, 0.3, 0.4, -0.5, 0.6];
-/// let place = |it: &poecal::Robot| it.forward_kinematics(&readings).translation;
-/// assert!((place(&frames.robot(&robot)?) - place(&robot)).norm() < 1e-14);
-/// # Ok::<(), poecal::Error>(())
-/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct AxisFrames {
     /// The frame of each joint in that of the joint before, of the first in the base, at zero.

@@ -15,17 +15,6 @@ const LENGTHS: [&str; 3] = ["error_offset_x", "error_offset_y", "error_offset_z"
 const ANGLES: [&str; 3] = ["error_roll", "error_pitch", "error_jaw"];
 
 /// What a maker's calibration found.
-///
-/// ```
-/// use poecal::io::abb::AbbCalibration;
-/// let text = "ARM_CALIB:\n  -name \"rob1_1\" -error_offset_x 0.0003 \\\n  -error_roll 0.0004\n#\nJOINT_CALIB:\n  -name \"rob1_1\" -Compl 1.1E-05\n";
-/// let found = AbbCalibration::parse(text, "MOC.cfg")?;
-/// assert_eq!(found.arms[0].lengths_m, [0.0003]);
-/// assert_eq!(found.joints, [("rob1_1".to_owned(), 1.1e-5)]);
-/// let tolerance = found.tolerance("MOC.cfg")?;
-/// assert_eq!((tolerance.length_m, tolerance.angle_rad), (0.0003, 0.0004));
-/// # Ok::<(), poecal::Error>(())
-/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct AbbCalibration {
     /// Errors of each axis, as far as the file states them: its pattern.
@@ -35,11 +24,6 @@ pub struct AbbCalibration {
 }
 
 /// Errors of one axis.
-///
-/// ```
-/// let errors = poecal::io::abb::ArmErrors { name: "rob1_2".into(), lengths_m: vec![3e-5], angles_rad: vec![2e-4, 6e-4] };
-/// assert_eq!(errors.lengths_m.len() + errors.angles_rad.len(), 3);
-/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct ArmErrors {
     /// The axis, such as `rob1_2`.

@@ -106,14 +106,6 @@ impl Model {
 
     /// A robot model from its text; messages call it `path`, whose extension gives the form, as for a file.
     ///
-    /// ```
-    /// use poecal::io::model::{Model, ModelSource};
-    /// let text = poecal::io::robot_toml::write(&poecal::simulate::scara());
-    /// let model = Model::parse(&text, "a model", &Default::default())?;
-    /// assert_eq!(model.source, ModelSource::Toml);
-    /// # Ok::<(), poecal::Error>(())
-    /// ```
-    ///
     /// # Errors
     /// As [`Model::read`].
     pub fn parse(text: &str, path: impl AsRef<Path>, selection: &ChainSelection) -> Result<Self> {
@@ -239,23 +231,6 @@ fn check_mounts(path: &Path, selection: &ChainSelection, robot: &Robot) -> Resul
 }
 
 /// A model in another form.
-///
-/// ```
-/// use poecal::io::model::{Model, ModelFormat, ModelSource, convert};
-/// let text = r#"
-/// poecal_robot = 1
-/// name = "slide"
-/// length_unit = "m"
-/// angle_unit = "rad"
-/// joint = [{ name = "x", type = "prismatic", direction = [1, 0, 0], limits = [0, 0.5] }]
-/// home = { position = [0, 0, 0.1] }
-/// "#;
-/// let robot = poecal::io::robot_toml::parse(text, "slide.toml")?;
-/// let model = Model { robot, source: ModelSource::Toml, path: "slide.toml".into() };
-/// let converted = convert(&model, ModelFormat::Urdf)?;
-/// assert!(converted.text.contains("<joint name=\"x\" type=\"prismatic\">"));
-/// # Ok::<(), poecal::Error>(())
-/// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Converted {
     /// The whole text.
@@ -326,4 +301,20 @@ pub(super) fn verify(model: &Model, robot: &Robot, again: &Robot) -> Result<()> 
         "the converted model differs by {position_m:.1e} m and {rotation_rad:.1e} rad, expected at most {tolerance_m:.1e} m and 1e-12 rad"
     );
     Err(export(model, message))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::io::robot_toml;
+    use crate::simulate::scara;
+
+    #[test]
+    fn without_an_extension_the_text_shows_its_form() {
+        let read = |text: &str| Model::parse(text, "a model", &ChainSelection::default()).unwrap();
+        let model = read(&robot_toml::write(&scara()));
+        assert_eq!(model.source, ModelSource::Toml);
+        let urdf = convert(&model, ModelFormat::Urdf).unwrap().text;
+        assert!(matches!(read(&urdf).source, ModelSource::Urdf(_)));
+    }
 }

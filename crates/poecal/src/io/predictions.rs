@@ -33,22 +33,6 @@ pub enum PredictionFrame {
 ///
 /// # Errors
 /// [`ErrorKind::Option`] if the model has no such target, or no measuring device.
-///
-/// ```
-/// use nalgebra::Vector3;
-/// use poecal::io::measurements::JointsTable;
-/// use poecal::io::model::{Model, ModelSource};
-/// use poecal::io::predictions::{PredictionFrame, predict};
-/// use poecal::lie::{Pose, Screw};
-/// use poecal::robot::{Joint, Robot};
-/// let joint = Joint::prismatic("slide", Screw::prismatic(&Vector3::x()));
-/// let robot = Robot::new("slide", vec![joint], Pose::identity())?;
-/// let model = Model { robot, source: ModelSource::Toml, path: "slide.toml".into() };
-/// let joints = JointsTable { readings: vec![0.25], rows: 1, ..JointsTable::default() };
-/// let text = predict(&model, &joints, PredictionFrame::Base, None, false)?;
-/// assert_eq!(text, "x[m],y[m],z[m],qx,qy,qz,qw\n0.25,0,0,0,0,0,1\n");
-/// # Ok::<(), poecal::Error>(())
-/// ```
 pub fn predict(
     model: &Model,
     joints: &JointsTable,

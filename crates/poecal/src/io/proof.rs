@@ -10,11 +10,6 @@ use crate::robot::Robot;
 use crate::simulate::Configurations;
 
 /// Largest difference of two robots' poses: of the tip, and of instruments and targets with a body of their own.
-///
-/// ```
-/// let none = poecal::io::Difference { position_m: 0.0, rotation_rad: 0.0 };
-/// assert!(none.is_within(1e-12, 1e-12));
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Difference {
     /// Of the position, metres.

@@ -15,14 +15,6 @@ const LONGEST_NOTE: usize = 1000;
 macro_rules! record {
     ($($(#[$doc:meta])+ $key:ident = $label:literal,)+) => {
         /// What is stated of a session, for its report: after ISO/IEC 17025:2017, 7.8.2. poecal computes nothing from it.
-        ///
-        /// ```
-        /// use poecal::io::record::Record;
-        /// let record = Record::of([("serial", "IRB-4711"), ("date", "2026-03-02"), ("temperature", "21.5+-0.5C")])?;
-        /// assert_eq!(record.temperature.as_deref(), Some("21.5 ± 0.5 °C"));
-        /// assert!(Record::of([("date", "2026-02-30")]).is_err());
-        /// # Ok::<(), poecal::Error>(())
-        /// ```
         #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
         #[serde(default)]
         pub struct Record {

@@ -15,14 +15,6 @@ const VERSION_KEY: &str = "poecal_settings";
 const TABLE: &str = "record";
 
 /// Value of a setting.
-///
-/// ```
-/// use poecal::io::settings::{SettingValue, Settings};
-/// let text = "poecal_settings = 1\nmeasurements = ['monday.csv', 'tuesday.csv']\n";
-/// let settings = Settings::parse(text, "poecal.toml", &["measurements"])?;
-/// assert!(matches!(&settings.entries[0].value, SettingValue::Many(files) if files.len() == 2));
-/// # Ok::<(), poecal::Error>(())
-/// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum SettingValue {
     /// Text or number, as typed.
@@ -34,14 +26,6 @@ pub enum SettingValue {
 }
 
 /// One line of a settings file.
-///
-/// ```
-/// use poecal::io::settings::{SettingValue, Settings};
-/// let settings = Settings::parse("poecal_settings = 1\nseed = 3\n", "poecal.toml", &["seed"])?;
-/// assert_eq!(settings.entries[0].value, SettingValue::One("3".to_owned()));
-/// assert_eq!((settings.entries[0].line, settings.entries[0].column), (2, 8));
-/// # Ok::<(), poecal::Error>(())
-/// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Setting {
     /// Key.
@@ -55,16 +39,6 @@ pub struct Setting {
 }
 
 /// A settings file.
-///
-/// ```
-/// use poecal::io::settings::Settings;
-/// let known = ["model", "sigma_position"];
-/// let error = Settings::parse("poecal_settings = 1\nsigma-position = '1mm'", "poecal.toml", &known).unwrap_err();
-/// assert_eq!(
-///     error.to_string(),
-///     "poecal.toml:2:1: found the key `sigma-position`, expected a setting: the nearest is `sigma_position`"
-/// );
-/// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Settings {
     /// File name as given by the user.

@@ -23,14 +23,6 @@ use crate::text::visible;
 const WIDEST: usize = 22;
 
 /// What was understood, for a person to look over or a machine to read.
-///
-/// ```
-/// use poecal::io::model::{Model, ModelSource};
-/// use poecal::report::Check;
-/// let model = Model { robot: poecal::simulate::elbow(), source: ModelSource::Toml, path: "elbow.toml".into() };
-/// let check = Check::new(&model, None, &[]);
-/// assert!(check.text().contains("joint2: revolute about (0, 1, 0) through (150, 0, 0) mm"));
-/// ```
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Check {
     model: ModelCheck,
@@ -89,11 +81,6 @@ struct TargetCheck {
 }
 
 /// How many rows state their set.
-///
-/// ```
-/// let counts = poecal::report::SetCounts { fit: 40, held_out: 20, unstated: 0 };
-/// assert_eq!(counts.fit + counts.held_out, 60);
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct SetCounts {
     /// Measurements to be fitted.

@@ -13,19 +13,6 @@ use crate::robot::{ReadingKind, Robot};
 use crate::text::visible;
 
 /// Two calibrations compared, for a person to look over or a machine to read.
-///
-/// ```
-/// use poecal::calibration::{CalibrationOptions, calibrate};
-/// use poecal::io::calibration_file::{CalibrationFile, Inputs};
-/// use poecal::report::Comparison;
-/// use poecal::simulate::{Kind, Simulation, elbow};
-/// let made = Simulation { count: 60, ..Simulation::default() }.run(&elbow(), Kind::Pose)?;
-/// let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default())?;
-/// let file = CalibrationFile::new(&calibration, &made.data, Inputs::default());
-/// let found = Comparison::new(("a.json", &file), ("b.json", &file), &poecal::compare::compare(&file, &file)?)?;
-/// assert!(found.text().starts_with("verdict       no change beyond noise"), "{}", found.text());
-/// # Ok::<(), poecal::Error>(())
-/// ```
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Comparison {
     first: SideEntry,

@@ -16,20 +16,6 @@ use crate::text::visible;
 const MOST_DIRECTIONS: usize = 6;
 
 /// What configurations would determine, for a person to look over or a machine to read.
-///
-/// ```
-/// use poecal::analysis::{PlannedSession, identify};
-/// use poecal::io::model::{Model, ModelSource};
-/// use poecal::report::Identify;
-/// let robot = poecal::simulate::scara();
-/// // The sliding joint never moves.
-/// let readings: Vec<f64> = (0..40).flat_map(|k| [0.05 * k as f64, (k % 7) as f64 * 0.3, 0.1, (k % 5) as f64 * 0.4]).collect();
-/// let found = identify(&robot, &readings, &PlannedSession::default())?;
-/// let model = Model { robot, source: ModelSource::Toml, path: "scara.toml".into() };
-/// let report = Identify::new(&model, &["joints.csv".to_owned()], &PlannedSession::default(), &found);
-/// assert!(report.text().contains("undetermined: joint3 never moved: its screw is undetermined"), "{}", report.text());
-/// # Ok::<(), poecal::Error>(())
-/// ```
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Identify {
     model: String,

@@ -14,21 +14,6 @@ use crate::robot::JointKind;
 use crate::text::visible;
 
 /// An explanation by offsets, for a person to look over or a machine to read.
-///
-/// ```
-/// use poecal::io::model::{Model, ModelSource};
-/// use poecal::offsets::{OffsetOptions, explain, into_screws};
-/// use poecal::report::Offsets;
-/// let robot = poecal::simulate::scara();
-/// let actual = into_screws(&robot, &[0.0, 0.5f64.to_radians(), 0.0012, 0.0])?;
-/// let explanation = explain(&robot, &actual, &OffsetOptions::default())?;
-/// let model = |robot, path: &str| Model { robot, source: ModelSource::Toml, path: path.into() };
-/// let why = ["as asked", "as asked"];
-/// let offsets = Offsets::new(&model(robot, "scara.toml"), &model(actual, "actual.toml"), &explanation, why);
-/// assert!(offsets.text().contains("joint2                   0.5000 deg"), "{}", offsets.text());
-/// assert!(offsets.text().contains("joint3                   1.2000 mm"));
-/// # Ok::<(), poecal::Error>(())
-/// ```
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Offsets {
     nominal: String,

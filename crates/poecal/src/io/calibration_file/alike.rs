@@ -17,14 +17,6 @@ const LISTED: usize = 100;
 
 /// A configuration in which every measured position is suspected, of two targets or more, and off by like distances: there the arm or its
 /// readings are wrong, not a target.
-///
-/// ```
-/// use poecal::io::calibration_file::SuspectedConfigurationEntry;
-/// let text = r#"{ "file": "points.csv", "row": 4, "rows": 3, "targets": 3, "least_mm": 1.1, "largest_mm": 2.9 }"#;
-/// let entry: SuspectedConfigurationEntry = serde_json::from_str(text)?;
-/// assert_eq!(entry.targets, 3);
-/// # Ok::<(), serde_json::Error>(())
-/// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct SuspectedConfigurationEntry {
     /// File of its first row.

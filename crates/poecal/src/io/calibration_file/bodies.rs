@@ -13,13 +13,6 @@ use crate::robot::{Body, JointTerm, Mass, Mount, Robot, Sag, Term};
 use nalgebra::Vector3;
 
 /// A body of the robot: `"base"`, or `{"link_of": "joint2"}`, the link that this joint moves.
-///
-/// ```
-/// use poecal::io::calibration_file::BodyEntry;
-/// let entry: BodyEntry = serde_json::from_str(r#"{"link_of": "torso2"}"#)?;
-/// assert_eq!(entry, BodyEntry::LinkOf("torso2".into()));
-/// # Ok::<(), serde_json::Error>(())
-/// ```
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum BodyEntry {
@@ -30,14 +23,6 @@ pub enum BodyEntry {
 }
 
 /// An instrument on the robot.
-///
-/// ```
-/// use poecal::io::calibration_file::{BodyEntry, InstrumentEntry};
-/// let (on, quaternion_xyzw) = (BodyEntry::Base, [0.0, 0.0, 0.0, 1.0]);
-/// let entry = InstrumentEntry { on, position_m: [0.5, 0.0, 0.1], quaternion_xyzw };
-/// assert_eq!(serde_json::to_value(&entry)?["on"], "base");
-/// # Ok::<(), serde_json::Error>(())
-/// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct InstrumentEntry {
     /// Body on which it stands. Its pose is in the frame of the joint that moves the body, or in the base.
@@ -167,14 +152,6 @@ impl CalibrationFile {
 }
 
 /// A mass of the model.
-///
-/// ```
-/// use poecal::io::calibration_file::MassEntry;
-/// let text = r#"{ "on": { "link_of": "joint3" }, "place_m": [0.2, 0, 0.6], "mass_kg": 4.5 }"#;
-/// let entry: MassEntry = serde_json::from_str(text)?;
-/// assert_eq!(entry.mass_kg, 4.5);
-/// # Ok::<(), serde_json::Error>(())
-/// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct MassEntry {
     /// Its body.
@@ -341,5 +318,20 @@ impl TargetEntry {
     pub fn pose(&self) -> Result<Pose> {
         let quaternion_xyzw = self.quaternion_xyzw.unwrap_or([0.0, 0.0, 0.0, 1.0]);
         PoseEntry { position_m: self.position_m, quaternion_xyzw }.pose()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_body_is_the_base_or_the_link_of_a_joint() {
+        for (entry, text) in
+            [(BodyEntry::Base, r#""base""#), (BodyEntry::LinkOf("torso2".into()), r#"{"link_of":"torso2"}"#)]
+        {
+            assert_eq!(serde_json::to_string(&entry).unwrap(), text);
+            assert_eq!(serde_json::from_str::<BodyEntry>(text).unwrap(), entry);
+        }
     }
 }

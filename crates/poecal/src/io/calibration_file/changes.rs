@@ -10,24 +10,6 @@ use crate::uncertainty::Correlations;
 
 /// How a joint differs from the nominal one, in parts: a joint offset, and the tilt and shift of the axis that offsets and base do not
 /// explain. Directions are those of the base frame with all joints at zero.
-///
-/// ```
-/// use poecal::io::calibration_file::JointChangeEntry;
-/// let change = poecal::offsets::JointChange {
-///     kind: poecal::robot::JointKind::Prismatic,
-///     at: nalgebra::Vector3::zeros(),
-///     offset: Some(0.0012),
-///     tilt: nalgebra::Vector3::zeros(),
-///     shift: nalgebra::Vector3::zeros(),
-///     sigma_offset: Some(0.0001),
-///     sigma_tilt: Some(0.0001),
-///     sigma_shift: None,
-///     is_estimated: true,
-/// };
-/// let entry = JointChangeEntry::from(&change);
-/// assert_eq!(entry.words, "no tilt, offset +1.20 ± 0.10 mm");
-/// assert_eq!((entry.offset_mm, entry.shift_mm), (Some(1.2), None));
-/// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct JointChangeEntry {
     /// In words, with standard deviations.
@@ -71,14 +53,6 @@ impl From<&JointChange> for JointChangeEntry {
 }
 
 /// A direction in which corrections of several joints are known only together.
-///
-/// ```
-/// use poecal::io::calibration_file::CommonDirectionEntry;
-/// let text = r#"{ "words": "j2 by 1.3 mm toward +x, …", "joints": ["j2", "j3"], "share": 0.8, "effect_mm": 0.01 }"#;
-/// let entry: CommonDirectionEntry = serde_json::from_str(text)?;
-/// assert_eq!(entry.joints.len(), 2);
-/// # Ok::<(), serde_json::Error>(())
-/// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct CommonDirectionEntry {
     /// In words: one standard deviation of it, and what it does to predictions.
@@ -115,14 +89,6 @@ pub struct CorrelatedEntry {
 }
 
 /// Correlations of the unknowns, by blocks.
-///
-/// ```
-/// use poecal::io::calibration_file::CorrelationsEntry;
-/// let text = r#"{ "blocks": ["j1"], "largest": [[0.4]], "strong": 0, "pairs": [] }"#;
-/// let entry: CorrelationsEntry = serde_json::from_str(text)?;
-/// assert_eq!(entry.largest[0], [0.4]);
-/// # Ok::<(), serde_json::Error>(())
-/// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct CorrelationsEntry {
     /// The blocks, in the order of their unknowns.
@@ -159,5 +125,29 @@ impl CorrelationsEntry {
             strong: found.count,
             pairs: found.pairs.iter().filter_map(pair).collect(),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::Vector3;
+
+    use super::*;
+
+    #[test]
+    fn a_slide_has_an_offset_in_millimetres_and_no_shift() {
+        let entry = JointChangeEntry::from(&JointChange {
+            kind: JointKind::Prismatic,
+            at: Vector3::zeros(),
+            offset: Some(0.0012),
+            tilt: Vector3::zeros(),
+            shift: Vector3::zeros(),
+            sigma_offset: Some(0.0001),
+            sigma_tilt: Some(0.0001),
+            sigma_shift: None,
+            is_estimated: true,
+        });
+        assert_eq!(entry.words, "no tilt, offset +1.20 ± 0.10 mm");
+        assert_eq!((entry.offset_deg, entry.offset_mm, entry.shift_mm), (None, Some(1.2), None));
     }
 }

@@ -10,18 +10,6 @@ use crate::robot::JointKind;
 /// it. Tool and base of the nominal robot are fitted to the actual one (the base only if the device's frame was unknown), over every third
 /// configuration, as if both had been taught on it: what is displaced is displaced by the joints. The actual robot is the corrected model,
 /// if there is one.
-///
-/// ```
-/// use poecal::calibration::{CalibrationOptions, calibrate};
-/// use poecal::io::calibration_file::{CalibrationFile, Inputs};
-/// use poecal::simulate::{Kind, Simulation, elbow};
-/// let made = Simulation::default().run(&elbow(), Kind::Point)?;
-/// let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default())?;
-/// let file = CalibrationFile::new(&calibration, &made.data, Inputs::default());
-/// let found = file.compensation.ok_or("not to be used")?;
-/// assert!(found.all.median_mm < found.all.max_mm && found.cells.len() > 10);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct CompensationEntry {
     /// Displacements in all configurations of the sample, which is spread evenly over the sampled range of each joint.

@@ -111,14 +111,6 @@ pub struct JointErrorEntry {
 }
 
 /// Sizes that were tried.
-///
-/// ```
-/// use poecal::io::calibration_file::TriedEntry;
-/// let text = r#"{ "sizes": { "sag": 0.001 }, "left_out": 0.42, "score": -1.7 }"#;
-/// let entry: TriedEntry = serde_json::from_str(text)?;
-/// assert_eq!(entry.sizes["sag"], 1e-3);
-/// # Ok::<(), serde_json::Error>(())
-/// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct TriedEntry {
     /// The sizes.
@@ -130,14 +122,6 @@ pub struct TriedEntry {
 }
 
 /// Weights that a robot carries. How heavy they are is in the coefficients.
-///
-/// ```
-/// use poecal::io::calibration_file::GravityEntry;
-/// let text = r#"{ "direction": [0, 0, -1], "weights": [], "joint_origins_m": [] }"#;
-/// let entry: GravityEntry = serde_json::from_str(text)?;
-/// assert!(entry.weights.is_empty());
-/// # Ok::<(), serde_json::Error>(())
-/// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct GravityEntry {
     /// Where weights are pulled, base frame.
@@ -157,14 +141,6 @@ pub struct GravityEntry {
 }
 
 /// A weight.
-///
-/// ```
-/// use poecal::io::calibration_file::WeightEntry;
-/// let text = r#"{ "at": "tip", "on": "base", "place_m": [0.5, 0, 0.8] }"#;
-/// let entry: WeightEntry = serde_json::from_str(text)?;
-/// assert_eq!(entry.at, "tip");
-/// # Ok::<(), serde_json::Error>(())
-/// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct WeightEntry {
     /// What it is at: the name of a joint, or of the tip.

@@ -31,17 +31,6 @@ pub trait Keys {
 }
 
 /// A number of each measured quantity, whose keys stand beside others. It is read as [`Measured`].
-///
-/// ```
-/// use poecal::io::calibration_file::{Keyed, SigmaKeys};
-/// use poecal::{Measured, Quantity};
-/// let sigma = Measured::of(|quantity| (quantity == Quantity::Position).then_some(0.05));
-/// let sigma: Keyed<SigmaKeys> = sigma.into();
-/// assert_eq!(sigma.get(Quantity::Position), Some(0.05));
-/// let text = serde_json::to_string(&sigma).unwrap();
-/// assert_eq!(text, r#"{"sigma_position_mm":0.05,"sigma_rotation_deg":null}"#);
-/// assert_eq!(serde_json::from_str::<Keyed<SigmaKeys>>(&text).unwrap(), sigma);
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Keyed<K, T = f64> {
     values: Measured<T>,
@@ -269,5 +258,19 @@ fn beside(word: &str, quantity: Quantity) -> String {
         format!("{word}_{}", quantity.unit().symbol())
     } else {
         format!("{word}_{}", quantity.key())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_turn_that_was_not_measured_is_null() {
+        let sigma = Measured::of(|quantity| (quantity == Quantity::Position).then_some(0.05));
+        let sigma: Keyed<SigmaKeys> = sigma.into();
+        let text = serde_json::to_string(&sigma).unwrap();
+        assert_eq!(text, r#"{"sigma_position_mm":0.05,"sigma_rotation_deg":null}"#);
+        assert_eq!(serde_json::from_str::<Keyed<SigmaKeys>>(&text).unwrap(), sigma);
     }
 }

@@ -14,17 +14,6 @@ use crate::io::urdf::{ChainSelection, UrdfDocument};
 
 /// The URDF that was calibrated, with what of it was: every form of the result that is a URDF is this text with other numbers, so that meshes,
 /// comments and links outside the chain stay.
-///
-/// ```
-/// use poecal::io::calibration_file::Inputs;
-/// use poecal::io::model::Model;
-/// let text = r#"<robot name="one"> <link name="base"/> <link name="arm"/>
-///   <joint name="turn" type="continuous"><parent link="base"/><child link="arm"/></joint> </robot>"#;
-/// let model = Model::parse(text, "one.urdf", &Default::default())?;
-/// let kept = Inputs::of_model(&model).urdf.unwrap();
-/// assert_eq!((kept.text.as_str(), kept.tip_link.as_deref()), (text, Some("arm")));
-/// # Ok::<(), poecal::Error>(())
-/// ```
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct OriginalUrdf {
     /// SHA-256 of the text.

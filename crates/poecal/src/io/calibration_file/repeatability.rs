@@ -11,15 +11,6 @@ use crate::measurement::{Dataset, Measured, Quantity};
 const LISTED: usize = 100;
 
 /// Pose accuracy and repeatability of positions, after ISO 9283; of poses that were measured by other quantities theirs.
-///
-/// ```
-/// use poecal::io::calibration_file::RepeatabilityEntry;
-/// let text = r#"{ "poses": 0, "rows": 0, "accuracy_nominal_mm": 0, "accuracy_registered_mm": 0, "accuracy_calibrated_mm": 0,
-///     "repeatability_mm": 0, "worst_repeatability_mm": 0, "listed": [] }"#;
-/// let entry: RepeatabilityEntry = serde_json::from_str(text)?;
-/// assert!(entry.listed.is_empty());
-/// # Ok::<(), serde_json::Error>(())
-/// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct RepeatabilityEntry {
     /// Number of targets in configurations with three rows or more.

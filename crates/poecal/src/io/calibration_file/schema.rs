@@ -286,15 +286,6 @@ pub struct NoiseEntry {
 }
 
 /// A mistake in the input.
-///
-/// ```
-/// use poecal::forensics::DiagnosisKind;
-/// use poecal::io::calibration_file::DiagnosisEntry;
-/// let text = r#"{ "kind": "joint_sign", "statement": "counting joint4 the other way …", "rows": [] }"#;
-/// let entry: DiagnosisEntry = serde_json::from_str(text)?;
-/// assert_eq!(entry.kind, DiagnosisKind::JointSign);
-/// # Ok::<(), serde_json::Error>(())
-/// ```
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct DiagnosisEntry {
     /// Kind of the mistake.
@@ -382,13 +373,6 @@ pub struct FrameEntry {
 }
 
 /// A station of the measuring device.
-///
-/// ```
-/// use poecal::io::calibration_file::{PoseEntry, StationEntry};
-/// let base_from_device = PoseEntry { position_m: [1.0, 0.0, 0.5], quaternion_xyzw: [0.0, 0.0, 0.0, 1.0] };
-/// let station = StationEntry::instrument(Some("left".into()), base_from_device);
-/// assert!(station.base_from_device.pose().is_ok());
-/// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct StationEntry {
     /// Name of the instrument: from the column `instrument`, or the file with `--frames per-file`.

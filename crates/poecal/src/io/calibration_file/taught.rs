@@ -14,16 +14,6 @@ const UNKNOWN: f64 = 1.0;
 
 /// The nominal robot with the base and the tool of the actual one, `base_from_tip = base · nominal base_from_tip · tool`: what a program for
 /// the nominal robot means with the tip of the actual one ([`CalibrationFile::taught`]).
-///
-/// ```no_run
-/// use poecal::io::calibration_file::CalibrationFile;
-/// let file = CalibrationFile::read(std::path::Path::new("results/calibration.json"))?;
-/// let taught = file.taught(&file.robot()?)?;
-/// let q = vec![0.1; taught.robot.reading_names().len()];
-/// let tip = taught.base * file.nominal_robot()?.forward_kinematics(&q) * taught.tool;
-/// assert!((tip.translation - taught.robot.forward_kinematics(&q).translation).norm() < 1e-12);
-/// # Ok::<(), poecal::Error>(())
-/// ```
 #[derive(Clone, Debug)]
 pub struct TaughtRobot {
     /// The robot.

@@ -28,13 +28,6 @@ pub enum ObjectKind {
 }
 
 /// Object at a path.
-///
-/// ```
-/// use poecal::io::disk::{Disk as _, ObjectKind, SystemDisk};
-/// let found = SystemDisk.look(std::env::temp_dir().as_path())?;
-/// assert_ne!(found.kind, ObjectKind::File);
-/// # Ok::<(), std::io::Error>(())
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Object {
     /// What it is.
@@ -58,20 +51,6 @@ pub trait Output: Write + Send {
 }
 
 /// Atomic operations on files.
-///
-/// ```
-/// use poecal::io::disk::{Disk as _, SystemDisk};
-/// let folder = std::env::temp_dir().join(format!("poecal_disk_{}", std::process::id()));
-/// SystemDisk.create_folder(&folder)?;
-/// let mut file = SystemDisk.create(&folder.join("a"))?;
-/// file.write_all(b"text")?;
-/// file.sync()?;
-/// SystemDisk.rename_new(&folder.join("a"), &folder.join("b"))?;
-/// assert_eq!(SystemDisk.names(&folder)?, ["b"]);
-/// SystemDisk.remove_file(&folder.join("b"))?;
-/// SystemDisk.remove_folder(&folder)?;
-/// # Ok::<(), std::io::Error>(())
-/// ```
 ///
 /// # Errors
 /// Each gives the system's error.
@@ -128,12 +107,6 @@ pub fn here() -> Arc<dyn Disk> {
 }
 
 /// Runs some work on another disk, as far as this thread does it.
-///
-/// ```
-/// use std::sync::Arc;
-/// use poecal::io::disk::{SystemDisk, on};
-/// assert_eq!(on(Arc::new(SystemDisk), || 1 + 1), 2);
-/// ```
 pub fn on<T>(disk: Arc<dyn Disk>, work: impl FnOnce() -> T) -> T {
     /// Restores the disk before, also after a panic.
     struct Back(Option<Arc<dyn Disk>>);

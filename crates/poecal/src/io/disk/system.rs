@@ -11,11 +11,6 @@ use std::time::{Duration, Instant};
 use super::{Disk, Lock, Object, ObjectKind, Output};
 
 /// The machine's disk.
-///
-/// ```
-/// use poecal::io::disk::{Disk as _, SystemDisk};
-/// assert!(SystemDisk.look("no such file".as_ref()).is_err());
-/// ```
 #[derive(Clone, Copy, Debug, Default)]
 pub struct SystemDisk;
 
@@ -281,5 +276,29 @@ impl Disk for SystemDisk {
     #[cfg(not(unix))]
     fn lock_folder(&self, _: &Path) -> io::Result<Lock> {
         Ok(Box::new(()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn files_are_made_moved_and_removed() {
+        let folder = std::env::temp_dir().join(format!("poecal_system_disk_{}", std::process::id()));
+        let (one, two) = (folder.join("one"), folder.join("two"));
+        SystemDisk.create_folder(&folder).unwrap();
+        assert_eq!(SystemDisk.look(&folder).unwrap().kind, ObjectKind::Folder);
+        let mut file = SystemDisk.create(&one).unwrap();
+        file.write_all(b"text").unwrap();
+        file.sync().unwrap();
+        drop(file);
+        SystemDisk.rename_new(&one, &two).unwrap();
+        assert_eq!(SystemDisk.look(&one).unwrap_err().kind(), io::ErrorKind::NotFound);
+        assert_eq!(SystemDisk.look(&two).unwrap().kind, ObjectKind::File);
+        assert_eq!(SystemDisk.names(&folder).unwrap(), ["two"]);
+        SystemDisk.remove_file(&two).unwrap();
+        SystemDisk.remove_folder(&folder).unwrap();
+        assert!(!folder.exists());
     }
 }

@@ -25,11 +25,6 @@ use crate::robot::Robot;
 use origins::Flavour;
 
 /// A form.
-///
-/// ```
-/// use poecal::io::export::ExportFormat;
-/// assert_eq!(ExportFormat::ALL.len(), 18);
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ExportFormat {
     /// URDF: the text that was calibrated, or a new one.
@@ -120,10 +115,6 @@ impl ExportFormat {
 }
 
 /// What some forms need beside the robot.
-///
-/// ```
-/// assert!(poecal::io::export::ExportOptions::default().hash.is_none());
-/// ```
 #[derive(Clone, Debug, Default)]
 pub struct ExportOptions {
     /// The controller's checksum, which Universal Robots' driver compares.
@@ -133,15 +124,6 @@ pub struct ExportOptions {
 }
 
 /// A robot in a form.
-///
-/// ```
-/// use poecal::{Model, ModelSource, simulate::elbow};
-/// use poecal::io::export::{ExportFormat, ExportOptions, export};
-/// let model = Model { robot: elbow(), source: ModelSource::Toml, path: "elbow.toml".into() };
-/// let exported = export(&model, ExportFormat::Mjcf, &ExportOptions::default())?;
-/// assert!(exported.text.starts_with("<mujoco") && exported.remains.position_m < 1e-12);
-/// # Ok::<(), poecal::Error>(())
-/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Exported {
     /// The whole text.

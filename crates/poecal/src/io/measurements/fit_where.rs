@@ -6,14 +6,7 @@ use serde::Deserialize;
 
 use crate::error::{Error, ErrorKind, Result};
 
-/// Rows with one of `values` in `column` are fitted, all others held out. Cells compare as text or as numbers.
-///
-/// ```
-/// use poecal::io::measurements::FitWhere;
-/// let rule: FitWhere = "stage=stationing,2".parse()?;
-/// assert_eq!((rule.column.as_str(), rule.values.len()), ("stage", 2));
-/// # Ok::<(), poecal::Error>(())
-/// ```
+/// Rows with one of `values` in `column` are fitted, all others held out: `stage=stationing,2` as typed. Cells compare as text or as numbers.
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
 #[serde(deny_unknown_fields, rename = "SetSpec")]
 pub struct FitWhere {

@@ -10,13 +10,6 @@ use crate::measurement::{ComponentsMeasurement, Dataset, Measurement, NoiseShape
 
 /// Noise of an instrument that looks along a line of sight, as `tracker:10um+5um/m`: 10 µm in all directions, and across the line of sight 5 µm
 /// more for each metre of distance (added as squares), as angular encoders and air make it. Without a name it is that of all instruments.
-///
-/// ```
-/// use poecal::io::measurements::InstrumentNoise;
-/// assert!("tracker:10um+5um/m".parse::<InstrumentNoise>().is_ok());
-/// assert!("10um+5um/m".parse::<InstrumentNoise>().is_ok());
-/// assert!("tracker:10".parse::<InstrumentNoise>().is_err());
-/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct InstrumentNoise {
     name: Option<String>,

@@ -15,13 +15,6 @@ use crate::robot::Robot;
 use crate::text::visible;
 
 /// Configurations from a file.
-///
-/// ```
-/// use poecal::io::measurements::JointsTable;
-/// let table = JointsTable { readings: vec![0.1, 0.2, 0.3, 0.4], rows: 2, ..JointsTable::default() };
-/// let configurations: Vec<&[f64]> = table.readings.chunks(table.readings.len() / table.rows).collect();
-/// assert_eq!(configurations[1], [0.3, 0.4]);
-/// ```
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct JointsTable {
     /// Readings of all rows, in the order of [`Robot::reading_names`] (radians, metres).
@@ -46,14 +39,6 @@ pub fn read_joints(path: impl AsRef<Path>, robot: &Robot, options: &ReadOptions)
 }
 
 /// Reads the text of such a file; `path` is for the messages only.
-///
-/// ```
-/// use poecal::io::measurements::{ReadOptions, parse_joints};
-/// let text = "joint1,joint2,joint3,joint4\n0,0.1,0.1,0\n";
-/// let table = parse_joints(text, "a table", &poecal::simulate::scara(), &ReadOptions::default())?;
-/// assert_eq!(table.readings, [0.0, 0.1, 0.1, 0.0]);
-/// # Ok::<(), poecal::Error>(())
-/// ```
 ///
 /// # Errors
 /// As [`super::read`], of what concerns joints.

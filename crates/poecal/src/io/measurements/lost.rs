@@ -14,16 +14,6 @@ use crate::error::{Error, Result};
 pub(super) const NAMED_LINES: usize = 5;
 
 /// Measurements omitted because the device did not see the target: their position is empty, or exactly zero in all coordinates.
-///
-/// ```
-/// use poecal::io::measurements::{ReadOptions, parse};
-/// let robot = poecal::simulate::scara();
-/// let text = "joint1,joint2,joint3,joint4,x,y,z\n0,0,0,0,0.6,0.05,0.1\n0.1,0,0,0,,,\n0.2,0,0,0,0,0,0\n";
-/// let file = parse(text, "a table", &robot, &ReadOptions::default())?;
-/// assert_eq!((file.data.len(), file.understood[0].lost.count), (1, 2));
-/// assert_eq!(file.understood[0].lost.first_lines, [3, 4]);
-/// # Ok::<(), poecal::Error>(())
-/// ```
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct LostBeams {
     /// Their number.

@@ -18,14 +18,6 @@ use crate::io::source_text;
 use crate::io::urdf::ChainSelection;
 
 /// A mapping of a file's columns to ours, as TOML (docs/file-formats.md, "Mapping file").
-///
-/// ```
-/// use poecal::io::measurements::ColumnMap;
-/// let text = "[position]\ncolumns = [\"px\", \"py\", \"pz\"]\nunit = \"mm\"\n";
-/// assert!(ColumnMap::parse(text, "map.toml").is_ok());
-/// let error = ColumnMap::parse("[position]\nunit = \"deg\"\n", "map.toml").unwrap_err();
-/// assert_eq!(error.to_string(), "map.toml:2:8: found the unit `deg`, expected a length (m, cm, mm, um, nm, in)");
-/// ```
 #[derive(Clone, Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct ColumnMap {
@@ -173,14 +165,6 @@ impl ColumnMap {
     }
 
     /// A selection of a URDF's links with the mapping's `[mount.instruments]` and `[mount.targets]` added.
-    ///
-    /// ```
-    /// use poecal::{ChainSelection, io::measurements::ColumnMap};
-    /// let map = ColumnMap::parse("[mount.instruments]\ncamera = \"camera_link\"\n", "map.toml")?;
-    /// let selection = map.mounts(ChainSelection::default())?;
-    /// assert_eq!(selection.instruments, [("camera".to_owned(), "camera_link".to_owned())]);
-    /// # Ok::<(), poecal::Error>(())
-    /// ```
     ///
     /// # Errors
     /// [`ErrorKind::Option`] if an instrument or a target has another link in the selection.

@@ -83,11 +83,6 @@ pub struct ReadOptions {
 }
 
 /// How a target touches a plane.
-///
-/// ```
-/// use poecal::io::measurements::{PlaneContact, ReadOptions};
-/// assert_eq!(ReadOptions::default().contact, PlaneContact::Point);
-/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum PlaneContact {
     /// By a point: a height.
@@ -109,11 +104,6 @@ impl PlaneContact {
 }
 
 /// Rows with a common device frame.
-///
-/// ```
-/// use poecal::io::measurements::{Frames, ReadOptions};
-/// assert_eq!(ReadOptions::default().frames, Frames::Common);
-/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Frames {
     /// All rows, or those of one name in the column `instrument`.

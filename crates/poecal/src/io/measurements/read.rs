@@ -50,15 +50,6 @@ pub fn read(paths: &[impl AsRef<Path>], robot: &Robot, options: &ReadOptions) ->
 
 /// Reads the text of a measurement file; `path` is for the messages only.
 ///
-/// ```
-/// use poecal::io::measurements::{ReadOptions, parse};
-/// let robot = poecal::simulate::scara();
-/// let text = "joint1,joint2,joint3,joint4,x,y,z\n0,0.1,0.1,0,0.6,0.05,0.1\n";
-/// let file = parse(text, "a table", &robot, &ReadOptions::default())?;
-/// assert_eq!(file.data.readings(0), [0.0, 0.1, 0.1, 0.0]);
-/// # Ok::<(), poecal::Error>(())
-/// ```
-///
 /// # Errors
 /// As [`read()`].
 pub fn parse(

@@ -40,25 +40,6 @@ pub struct RewrittenTable {
 ///
 /// # Errors
 /// As [`super::read_joints`]; [`ErrorKind::Measurement`] if a reading is no column of its own; what `change` and `out` return.
-///
-/// ```
-/// use poecal::io::measurements::{JointRow, ReadOptions, rewrite_joints};
-/// let path = std::env::temp_dir().join(format!("poecal_rewrite_{}.csv", std::process::id()));
-/// std::fs::write(&path, "note,joint1[deg],joint2,joint3,joint4\nstart,90,0,0,0\n").unwrap();
-/// let mut text = String::new();
-/// let mut change = |_: &JointRow<'_>, numbers: &mut [f64]| {
-///     numbers[1] += 0.5;
-///     Ok(())
-/// };
-/// let mut out = |piece: &str| {
-///     text.push_str(piece);
-///     Ok(())
-/// };
-/// rewrite_joints(&path, &poecal::simulate::scara(), &ReadOptions::default(), &mut change, &mut out)?;
-/// assert_eq!(text, "note,joint1[deg],joint2,joint3,joint4\nstart,90,0.5,0,0\n");
-/// # std::fs::remove_file(&path).unwrap();
-/// # Ok::<(), poecal::Error>(())
-/// ```
 pub fn rewrite_joints(
     path: impl AsRef<Path>,
     robot: &Robot,
@@ -160,5 +141,32 @@ impl Rewriting {
         }
         self.text.push_str(block.get(copied..).unwrap_or_default());
         Ok(count)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fs;
+
+    use super::*;
+    use crate::simulate::scara;
+
+    #[test]
+    fn readings_that_stay_keep_their_digits() {
+        let path = std::env::temp_dir().join(format!("poecal_rewritten_{}.csv", std::process::id()));
+        fs::write(&path, "note,joint1[deg],joint2,joint3,joint4\nstart,90.0,0,0,0\n").unwrap();
+        let mut text = String::new();
+        let mut change = |_: &JointRow<'_>, numbers: &mut [f64]| {
+            numbers[1] += 0.5;
+            Ok(())
+        };
+        let mut out = |piece: &str| {
+            text.push_str(piece);
+            Ok(())
+        };
+        let table = rewrite_joints(&path, &scara(), &ReadOptions::default(), &mut change, &mut out);
+        fs::remove_file(&path).unwrap();
+        assert_eq!(table.unwrap().rows, 1);
+        assert_eq!(text, "note,joint1[deg],joint2,joint3,joint4\nstart,90.0,0.5,0,0\n");
     }
 }

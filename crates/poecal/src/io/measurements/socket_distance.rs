@@ -9,12 +9,6 @@ use crate::measurement::KnownLength;
 
 /// Known distances between the sockets of each place: `50mm` between its two, or of pairs by name, `A-B=50mm,B-C=70mm`; each may state its
 /// standard deviation, `50mm+-0.02mm`.
-///
-/// ```
-/// use poecal::io::measurements::SocketDistances;
-/// assert!("A-B=50mm,B-C=70.1mm+-0.05mm".parse::<SocketDistances>().is_ok());
-/// assert!("50".parse::<SocketDistances>().is_err());
-/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct SocketDistances {
     /// The pair as typed, none of the only pair; distance and standard deviation, metres.
@@ -113,4 +107,22 @@ fn named(pair: &str, sockets: &[(String, usize)]) -> Option<[usize; 2]> {
         let both = station(&pair[..at]).zip(station(&pair[at + 1..]));
         both.filter(|(a, b)| a != b).map(|(a, b)| [a, b])
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn distances_are_one_or_of_pairs_by_name() {
+        let pairs = |text: &str| text.parse::<SocketDistances>().unwrap().pairs;
+        assert_eq!(pairs("50mm"), [(None, 0.05, KnownLength::SIGMA_M)]);
+        let named = pairs("A-B=50mm,B-C=70.1mm+-0.05mm");
+        assert_eq!(named[0], (Some("A-B".to_owned()), 0.05, KnownLength::SIGMA_M));
+        assert_eq!(named[1].0.as_deref(), Some("B-C"));
+        assert!((named[1].1 - 0.0701).abs() < 1e-15 && (named[1].2 - 5e-5).abs() < 1e-15, "{named:?}");
+        for bad in ["50", "A=50mm", "50mm,B-C=70mm", "A-B=-50mm", ""] {
+            assert!(bad.parse::<SocketDistances>().is_err(), "{bad}");
+        }
+    }
 }

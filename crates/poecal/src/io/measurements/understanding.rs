@@ -32,13 +32,6 @@ pub struct ColumnUnderstanding {
 }
 
 /// How a file was read, as `poecal check --json` prints it.
-///
-/// ```
-/// use poecal::io::measurements::FileUnderstanding;
-/// fn ignored(file: &FileUnderstanding) -> String {
-///     format!("{}: {} rows, left alone: {}", file.path.display(), file.rows, file.ignored.join(", "))
-/// }
-/// ```
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct FileUnderstanding {
     /// File name as given by the user.

@@ -56,14 +56,6 @@ impl Dimension {
 }
 
 /// A unit: symbol, quantity, and conversion to SI.
-///
-/// ```
-/// use poecal::io::measurements::{Dimension, Unit};
-/// assert_eq!(Unit::parse("mm", Dimension::Length)?.to_si(250.0), 0.25);
-/// let error = Unit::parse("mm", Dimension::Angle).unwrap_err();
-/// assert_eq!(error.message(), "found the unit `mm`, expected an angle (rad, mrad, deg, arcmin, arcsec)");
-/// # Ok::<(), poecal::Error>(())
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Unit {
     symbol: &'static str,

@@ -9,22 +9,6 @@ use crate::io::residuals::ResidualRows;
 use crate::robot::Robot;
 
 /// Output of a calibration beside its models.
-///
-/// ```
-/// use poecal::calibration::{CalibrationOptions, calibrate};
-/// use poecal::io::calibration_file::{CalibrationFile, Inputs};
-/// use poecal::io::{output::Results, residuals::ResidualRows};
-/// use poecal::simulate::{Kind, Simulation, elbow};
-/// let made = Simulation::default().run(&elbow(), Kind::Point)?;
-/// let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default())?;
-/// let results = Results {
-///     file: CalibrationFile::new(&calibration, &made.data, Inputs::default()),
-///     residuals: ResidualRows::Of(&made.data, &calibration),
-///     report: None,
-/// };
-/// assert!(matches!(results.residuals, ResidualRows::Of(data, _) if data.len() == made.data.len()));
-/// # Ok::<(), poecal::Error>(())
-/// ```
 #[derive(Clone, Debug)]
 pub struct Results<'a> {
     /// For `calibration.json`.

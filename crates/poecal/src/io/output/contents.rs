@@ -21,11 +21,6 @@ pub(super) const PROJECT: [&str; 4] = ["measurements.csv", "joints.csv", "poecal
 const MODELS: [&str; 3] = ["robot.urdf", "robot.toml", "robot.json"];
 
 /// Contents of an output folder.
-///
-/// ```
-/// use poecal::io::output::Contents;
-/// assert!(Contents::Calibration.is_own("report.html") && !Contents::Calibration.is_own("notes.txt"));
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Contents {
     /// The results of a calibration.

@@ -14,11 +14,6 @@ pub(super) const GENERATOR: &str = "<meta name=\"generator\" content=\"poecal ";
 const HEAD: u64 = 4096;
 
 /// What may happen to existing files.
-///
-/// ```
-/// use poecal::io::output::Existing;
-/// assert_ne!(Existing::Kept, Existing::Replaced);
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Existing {
     /// They stay, and nothing is written.

@@ -23,16 +23,6 @@ fn is_stream(path: &Path) -> bool {
 }
 
 /// A reserved place for a file. Nothing has changed yet.
-///
-/// ```
-/// use poecal::io::output::{Existing, FilePlace};
-/// let path = std::env::temp_dir().join(format!("poecal_file_{}", std::process::id()));
-/// FilePlace::reserve(&path, Existing::Kept, &[], &mut |_| ())?.write(vec!["text".into()])?;
-/// assert_eq!(std::fs::read_to_string(&path).unwrap(), "text");
-/// assert!(FilePlace::reserve(&path, Existing::Kept, &[], &mut |_| ()).is_err());
-/// std::fs::remove_file(&path).unwrap();
-/// # Ok::<(), poecal::Error>(())
-/// ```
 pub struct FilePlace {
     /// As given by the user.
     named: PathBuf,

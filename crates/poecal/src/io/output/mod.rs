@@ -46,12 +46,6 @@ const CONFIGURATIONS: usize = 1000;
 const TOLERANCE: f64 = 1e-9;
 
 /// Summary of written files.
-///
-/// ```
-/// # use poecal::io::{Difference, output::Written};
-/// let written = Written { folder: "out".into(), files: vec!["calibration.json".into()], largest: Difference { position_m: 0.0, rotation_rad: 0.0 }, notes: vec![] };
-/// assert_eq!(written.files.len(), 1);
-/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Written {
     /// The folder.

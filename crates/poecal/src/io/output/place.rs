@@ -12,15 +12,6 @@ use crate::error::{Error, Result};
 use crate::io::disk::{self, Disk, ObjectKind};
 
 /// A reserved place for files. Nothing in it has changed yet, and nothing will unless all is written.
-///
-/// ```
-/// use poecal::io::output::{Contents, Existing, FolderPlace};
-/// let folder = std::env::temp_dir().join(format!("poecal_place_{}", std::process::id()));
-/// let place = FolderPlace::reserve(&folder, Contents::Calibration, Existing::Kept, &[], &mut |_| ())?;
-/// drop(place);
-/// assert!(!folder.exists());
-/// # Ok::<(), poecal::Error>(())
-/// ```
 pub struct FolderPlace {
     /// As given by the user.
     pub(super) named: PathBuf,

@@ -15,19 +15,6 @@ const SETTINGS: &str = include_str!("project/poecal.toml");
 const README: &str = include_str!("project/README.md");
 
 /// Contents of a project folder.
-///
-/// ```no_run
-/// use poecal::io::output::{Contents, Existing, FolderPlace, Project, write_project};
-/// use poecal::io::{model::Model, urdf::ChainSelection};
-/// use poecal::simulate::Kind;
-/// let chain = ChainSelection::default();
-/// let model = Model::read("robot.urdf", &chain)?;
-/// let project = Project { model: &model, chain: &chain, kind: Kind::Point, count: 60, seed: 1 };
-/// let place = FolderPlace::reserve("cell4".as_ref(), Contents::Project, Existing::Kept, &[], &mut |_| ())?;
-/// let written = write_project(place, &project)?;
-/// assert_eq!(written.files, ["robot.urdf", "measurements.csv", "joints.csv", "poecal.toml", "README.md"]);
-/// # Ok::<(), poecal::Error>(())
-/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Project<'a> {
     /// The robot's model.

@@ -28,11 +28,6 @@ const INSTRUMENT: &str = "instrument";
 
 /// Errors of one quantity in one row by the nominal, registered and calibrated model, and the calibrated model's residual by component, of
 /// vectors in the device's axes. Millimetres or degrees.
-///
-/// ```
-/// let errors = poecal::io::residuals::ModelErrors::new([11.2, 10.4, 0.1], &[0.1, 0.0, 0.0]);
-/// assert_eq!(errors.models[2], errors.residual()[0]);
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ModelErrors {
     /// Of the nominal, registered and calibrated model.
@@ -79,12 +74,6 @@ impl ModelErrors {
 
 /// Names of the columns of a quantity: errors of the three models, and of the corrected one where there is one, then the residual of the
 /// calibrated model by component.
-///
-/// ```
-/// use poecal::{Quantity, io::residuals::columns};
-/// let names: Vec<String> = columns(Quantity::Rotation, true).collect();
-/// assert_eq!((&*names[0], &*names[3], &*names[4]), ("rotation_nominal[deg]", "rotation_corrected[deg]", "rx[deg]"));
-/// ```
 pub fn columns(quantity: Quantity, has_corrected: bool) -> impl Iterator<Item = String> {
     let (name, unit) = (quantity.name(), quantity.unit().symbol());
     let models =
@@ -94,11 +83,6 @@ pub fn columns(quantity: Quantity, has_corrected: bool) -> impl Iterator<Item = 
 }
 
 /// Diagnostics of a row.
-///
-/// ```
-/// let found = poecal::io::residuals::RowDiagnostics { weight: 1.0, leverage: 0.3, studentized: 1.6, suspected: false };
-/// assert!(!found.suspected);
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RowDiagnostics {
     /// Weight in the fit; of a held-out row the weight that it would have had.
@@ -112,15 +96,6 @@ pub struct RowDiagnostics {
 }
 
 /// Residuals and diagnostics of one measurement.
-///
-/// ```
-/// use poecal::io::residuals::{ModelErrors, ResidualRow};
-/// use poecal::{Measured, Quantity};
-/// let position = ModelErrors::new([11.2, 10.4, 0.1], &[0.1, 0.0, 0.0]);
-/// let errors = Measured::of(|quantity| (quantity == Quantity::Position).then_some(position));
-/// let row = ResidualRow { file: 0, line: 3, id: String::new(), held_out: true, target: 0, station: 0, errors, judged: None };
-/// assert_eq!(row.errors.leading(), Some((Quantity::Position, position)));
-/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct ResidualRow {
     /// Index of its file.

@@ -20,18 +20,6 @@ const TOGETHER: usize = 8;
 const ROW: usize = 480;
 
 /// Rows to write.
-///
-/// ```
-/// use poecal::calibration::{CalibrationOptions, calibrate};
-/// use poecal::io::residuals::{Residuals, ResidualRows};
-/// use poecal::simulate::{Kind, Simulation, elbow};
-/// let made = Simulation::default().run(&elbow(), Kind::Point)?;
-/// let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default())?;
-/// let mut text = Vec::new();
-/// ResidualRows::Of(&made.data, &calibration).write_to(&mut text)?;
-/// assert_eq!(text, Residuals::of(&made.data, &calibration).text().into_bytes());
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 #[derive(Clone, Copy, Debug)]
 pub enum ResidualRows<'a> {
     /// Given rows.

@@ -42,25 +42,6 @@ pub fn read(path: impl AsRef<Path>) -> Result<Robot> {
 
 /// Reads a robot from a TOML text; `path` is for the messages only.
 ///
-/// ```
-/// let text = r#"
-/// poecal_robot = 1
-/// name = "puma_wrist"
-/// length_unit = "mm"
-/// angle_unit = "deg"
-/// convention = "standard_dh"
-/// joint = [
-///   { name = "joint1", a = 0, alpha = -90, d = 430, theta = 0 },
-///   { name = "joint2", a = 0, alpha = 90, d = 0, theta = 0, limits = [-100, 100] },
-/// ]
-/// [tool]
-/// position = [0, 0, 56]
-/// "#;
-/// let robot = poecal::io::robot_toml::parse(text, "wrist.toml")?;
-/// assert!((robot.home.translation.z - 0.486).abs() < 1e-15);
-/// # Ok::<(), poecal::Error>(())
-/// ```
-///
 /// # Errors
 /// [`ErrorKind::Syntax`] if the text is no TOML or has unknown keys, [`ErrorKind::Model`] if the model is invalid.
 pub fn parse(text: &str, path: impl AsRef<Path>) -> Result<Robot> {

@@ -11,17 +11,6 @@ use crate::robot::{Body, Joint, JointKind, Robot};
 /// below 1e-15.
 ///
 /// Joint frames are not part of the format: screws and home pose suffice for forward kinematics.
-///
-/// ```
-/// use nalgebra::Vector3;
-/// use poecal::io::robot_toml;
-/// use poecal::lie::{Pose, Screw};
-/// use poecal::robot::{Joint, Robot};
-/// let joint = Joint::revolute("shoulder", Screw::revolute(&Vector3::y(), &Vector3::new(0.0, 0.0, 0.4)));
-/// let robot = Robot::new("one_axis", vec![joint], Pose::from_translation(Vector3::new(0.5, 0.0, 0.4)))?;
-/// assert_eq!(robot_toml::parse(&robot_toml::write(&robot), "one_axis.toml")?, robot);
-/// # Ok::<(), poecal::Error>(())
-/// ```
 #[must_use]
 pub fn write(robot: &Robot) -> String {
     let mut text = format!(

@@ -73,29 +73,6 @@ pub struct Mesh {
 }
 
 /// What a robot looks like.
-///
-/// ```
-/// use poecal::calibration::{CalibrationOptions, calibrate};
-/// use poecal::io::calibration_file::{CalibrationFile, Inputs};
-/// use poecal::io::model::Model;
-/// use poecal::io::shapes::{Form, Shapes};
-/// use poecal::simulate::{Kind, Simulation};
-/// let text = r#"<robot name="two">
-///   <link name="base"/>
-///   <link name="upper"><visual><origin xyz="0.2 0 0"/><geometry><box size="0.4 0.05 0.05"/></geometry></visual></link>
-///   <link name="lower"/>
-///   <joint name="a" type="continuous"><parent link="base"/><child link="upper"/><axis xyz="0 0 1"/></joint>
-///   <joint name="b" type="continuous"><parent link="upper"/><child link="lower"/><origin xyz="0.4 0 0"/><axis xyz="0 1 0"/></joint>
-/// </robot>"#;
-/// let model = Model::parse(text, "two.urdf", &Default::default())?;
-/// let made = Simulation::default().run(&model.robot, Kind::Pose)?;
-/// let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default())?;
-/// let file = CalibrationFile::new(&calibration, &made.data, Inputs::of_model(&model));
-/// let shapes = Shapes::of(&file);
-/// assert_eq!((shapes.shapes.len(), shapes.shapes[0].form), (1, Form::Box([0.4, 0.05, 0.05])));
-/// assert!((shapes.shapes[0].nominal_pose.translation.x - 0.2).abs() < 1e-12);
-/// # Ok::<(), poecal::Error>(())
-/// ```
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Shapes {
     /// The shapes, in the order of the URDF.
@@ -283,5 +260,24 @@ mod tests {
         let none = Shapes::read(&file, Path::new("calibration.json"));
         assert_eq!((none.shapes.len(), none.notes.len()), (0, 1));
         assert!(none.notes[0].starts_with("5 meshes were not found"), "{:?}", none.notes);
+    }
+
+    #[test]
+    fn a_box_is_drawn_without_any_file() {
+        let box_instead = r#"<box size="0.4 0.05 0.05"/>"#;
+        let text = TEXT.replace(r#"<mesh filename="package://elsewhere/arm.stl"/>"#, box_instead);
+        let model = Model::parse(&text, "two.urdf", &Default::default()).unwrap();
+        let made = Simulation::default().run(&model.robot, Kind::Pose).unwrap();
+        let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default()).unwrap();
+        let mut file = CalibrationFile::new(&calibration, &made.data, Inputs::of_model(&model));
+        let found = Shapes::of(&file).shapes;
+        assert_eq!(
+            (found.len(), found[0].link.as_str(), found[0].form),
+            (1, "upper", Form::Box([0.4, 0.05, 0.05]))
+        );
+
+        // Of a robot that is no URDF nothing is known.
+        file.inputs.urdf = None;
+        assert_eq!(Shapes::read(&file, Path::new("calibration.json")), Shapes::default());
     }
 }

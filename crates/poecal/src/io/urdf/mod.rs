@@ -35,24 +35,6 @@ use parts::{End, Part};
 use tree::Tree;
 
 /// A URDF text with its serial chain, or its tree of the joints that move named links.
-///
-/// ```
-/// use poecal::io::urdf::{ChainSelection, UrdfDocument};
-/// let text = r#"<robot name="one_axis">
-///   <link name="base"/> <link name="arm"/> <link name="tool"/>
-///   <joint name="turn" type="continuous"><parent link="base"/><child link="arm"/><axis xyz="0 0 1"/></joint>
-///   <joint name="mount" type="fixed"><parent link="arm"/><child link="tool"/><origin xyz="0.5 0 0"/></joint>
-/// </robot>"#;
-/// let urdf = UrdfDocument::parse(text, "one_axis.urdf", &ChainSelection::default())?;
-/// assert_eq!(urdf.robot().tip_name, "tool");
-/// assert_eq!(urdf.robot().home.translation.x, 0.5);
-///
-/// // A robot with another home pose, written into the same text: one attribute changes.
-/// let mut calibrated = urdf.robot().clone();
-/// calibrated.home.translation.x = 0.501;
-/// assert_eq!(urdf.patched(&calibrated)?.text, text.replace("0.5 0 0", "0.501 0 0"));
-/// # Ok::<(), poecal::Error>(())
-/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct UrdfDocument {
     text: String,

@@ -18,21 +18,6 @@ const UNCHANGED: f64 = 1e-15;
 const AXIS_TOLERANCE: f64 = 1e-13;
 
 /// A URDF text with calibrated values.
-///
-/// ```
-/// use poecal::io::urdf::{ChainSelection, UrdfDocument};
-/// let text = r#"<robot name="one_axis">
-///   <link name="base"/> <link name="arm"/>
-///   <joint name="turn" type="continuous"><parent link="base"/><child link="arm"/></joint>
-/// </robot>"#;
-/// let urdf = UrdfDocument::parse(text, "one_axis.urdf", &ChainSelection::default())?;
-/// let mut calibrated = urdf.robot().clone();
-/// calibrated.home.translation.z = 0.1;
-/// let patched = urdf.patched(&calibrated)?;
-/// // There was no fixed joint to hold the tool's offset, so one was added.
-/// assert_eq!(patched.tip_link, "arm_calibrated");
-/// # Ok::<(), poecal::Error>(())
-/// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PatchedUrdf {
     /// The whole text.

@@ -39,19 +39,6 @@ impl ChainSelection {
 
     /// This selection with further instruments and targets, as those of a mapping file.
     ///
-    /// ```
-    /// use poecal::ChainSelection;
-    /// let on = |link: &str| vec![("camera".to_owned(), link.to_owned())];
-    /// let typed = ChainSelection { instruments: on("head"), ..ChainSelection::default() };
-    /// assert_eq!(typed.clone().joined(&on("head"), &[])?, typed);
-    /// let error = typed.joined(&on("hand"), &[]).unwrap_err();
-    /// assert_eq!(
-    ///     error.to_string(),
-    ///     "found instrument `camera` on link `head` and on link `hand`, expected one link"
-    /// );
-    /// # Ok::<(), poecal::Error>(())
-    /// ```
-    ///
     /// # Errors
     /// [`ErrorKind::Option`] if one of them has two links.
     pub fn joined(mut self, instruments: &[(String, String)], targets: &[(String, String)]) -> Result<Self> {
@@ -78,14 +65,6 @@ impl ChainSelection {
 
 /// `NAME=LINK` as it is typed.
 ///
-/// ```
-/// use poecal::io::urdf::named_link;
-/// assert_eq!(named_link("camera=head_link")?, ("camera".to_owned(), "head_link".to_owned()));
-/// let error = named_link("camera").unwrap_err();
-/// assert_eq!(error.to_string(), "found `camera`, expected a name and its link, like camera=camera_link");
-/// # Ok::<(), poecal::Error>(())
-/// ```
-///
 /// # Errors
 /// [`ErrorKind::Option`] if it is not of this form.
 pub fn named_link(text: &str) -> Result<(String, String)> {
@@ -97,5 +76,21 @@ pub fn named_link(text: &str) -> Result<(String, String)> {
             let message = format!("found `{text}`, expected a name and its link, like camera=camera_link");
             Err(Error::new(ErrorKind::Option, message))
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_link_may_be_named_twice_but_not_two_links() {
+        let on = |link: &str| vec![("camera".to_owned(), link.to_owned())];
+        let typed = ChainSelection { instruments: on("head"), ..ChainSelection::default() };
+        assert_eq!(typed.clone().joined(&on("head"), &[]).unwrap(), typed);
+        assert_eq!(
+            typed.joined(&on("hand"), &[]).unwrap_err().to_string(),
+            "found instrument `camera` on link `head` and on link `hand`, expected one link"
+        );
     }
 }

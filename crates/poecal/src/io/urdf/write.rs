@@ -17,20 +17,6 @@ pub(in crate::io) const WIDE_LIMIT_M: f64 = 1000.0;
 /// Writes a robot as a new URDF: base link, one link a joint, and the tip on a fixed joint. Instruments, and targets with a body of their own,
 /// are links on fixed joints too.
 ///
-/// ```
-/// use nalgebra::Vector3;
-/// use poecal::io::urdf::{ChainSelection, UrdfDocument, write_new};
-/// use poecal::lie::{Pose, Screw};
-/// use poecal::robot::{Joint, Robot};
-/// let joint = Joint::revolute("shoulder", Screw::revolute(&Vector3::y(), &Vector3::new(0.0, 0.0, 0.4)));
-/// let robot = Robot::new("one_axis", vec![joint], Pose::from_translation(Vector3::new(0.5, 0.0, 0.4)))?;
-/// let urdf = write_new(&robot)?;
-/// let again = UrdfDocument::parse(&urdf.text, "one_axis.urdf", &ChainSelection::default())?;
-/// let (a, b) = (robot.forward_kinematics(&[0.3]), again.robot().forward_kinematics(&[0.3]));
-/// assert!((a.translation - b.translation).norm() < 1e-15);
-/// # Ok::<(), poecal::Error>(())
-/// ```
-///
 /// # Errors
 /// [`ErrorKind::Export`] if URDF cannot express a joint's reading (a factor or offset on its own reading).
 pub fn write_new(robot: &Robot) -> Result<Converted> {

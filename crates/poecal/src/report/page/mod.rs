@@ -62,23 +62,6 @@ pub fn calibration_page(file: &CalibrationFile, residuals: &Residuals) -> Result
 
 /// [`calibration_page`] with what the robot looks like: [`Shapes::read`] reads the meshes that its URDF names.
 ///
-/// ```
-/// use poecal::calibration::{CalibrationOptions, calibrate};
-/// use poecal::io::calibration_file::{CalibrationFile, Inputs};
-/// use poecal::io::residuals::Residuals;
-/// use poecal::io::shapes::Shapes;
-/// use poecal::report::{calibration_page, calibration_page_with};
-/// use poecal::simulate::{Kind, Simulation, elbow};
-/// let made = Simulation::default().run(&elbow(), Kind::Point)?;
-/// let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default())?;
-/// let file = CalibrationFile::new(&calibration, &made.data, Inputs::default());
-/// let residuals = Residuals::of(&made.data, &calibration);
-/// // A robot that is no URDF has no shapes of its own.
-/// let shapes = Shapes::read(&file, "poecal-out/calibration.json".as_ref());
-/// assert_eq!(calibration_page_with(&file, &residuals, &shapes)?, calibration_page(&file, &residuals)?);
-/// # Ok::<(), poecal::Error>(())
-/// ```
-///
 /// # Errors
 /// As [`calibration_page`].
 pub fn calibration_page_with(file: &CalibrationFile, residuals: &Residuals, shapes: &Shapes) -> Result<Page> {
