@@ -113,16 +113,6 @@ impl Measured<Statistic> {
 }
 
 /// Root mean square error of the registered model over that of another, on the same rows.
-///
-/// ```
-/// use poecal::{CalibrationOptions, Kind, Simulation, calibrate, simulate::elbow};
-/// let made = Simulation { count: 60, ..Simulation::default() }.run(&elbow(), Kind::Point)?;
-/// let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default())?;
-/// let held_out = calibration.accuracy.held_out.expect("30 % are held out");
-/// let (_, found) = held_out.improvement.expect("rows are held out").calibrated.leading().expect("points");
-/// assert!(1.0 < found.from && found.from < found.factor && found.factor < found.to);
-/// # Ok::<(), poecal::Error>(())
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Improvement {
     /// The factor.

@@ -15,17 +15,6 @@ const LISTED: usize = 12;
 /// A word is a block's name ([`Names::of`]), in which `*` and `?` stand for any letters and any letter; a joint's name, which means its axis;
 /// or one of `joints` (all axes), `targets` and `frames`. Only by their exact names are harmonics unknown (`joint2.sin1`), and couplings:
 /// `joint3.coupled2` is what the second joint turns joint3.
-///
-/// ```
-/// use poecal::calibration::BlockChoice;
-/// use poecal::robot::Term;
-/// use poecal::simulate::{Kind, Simulation, elbow};
-/// let made = Simulation::default().run(&elbow(), Kind::Point)?;
-/// let mastering = BlockChoice { fix: vec!["joints".into()], free: vec!["*.offset".into()] };
-/// let unknowns = mastering.unknowns(&made.nominal, &made.data)?;
-/// assert_eq!((unknowns.held_axes.len(), unknowns.terms[1]), (6, (1, Term::Offset)));
-/// # Ok::<(), poecal::Error>(())
-/// ```
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct BlockChoice {
     /// Words of what is unknown.

@@ -25,30 +25,6 @@ const INSIDE: f64 = 0.8;
 const TIMES: f64 = 2.0;
 
 /// A calibration to be judged, and the parts of it to be refitted to the judging measurements.
-///
-/// ```
-/// use poecal::calibration::{CalibrationOptions, DeviceFrameKnowledge, Subject, calibrate, judge};
-/// use poecal::simulate::{Kind, Simulation, elbow};
-/// let exact = Simulation { noise_position_m: 0.0, noise_rotation_rad: 0.0, ..Simulation::default() };
-/// let made = exact.run(&elbow(), Kind::Point)?;
-/// let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default())?;
-/// let subject = Subject {
-///     calibrated: &calibration.robot,
-///     nominal: &calibration.nominal,
-///     base_from_device: calibration.base_from_device,
-///     further_base_from_device: &[],
-///     ranges: &[],
-///     frame: DeviceFrameKnowledge::Unknown,
-///     noise: calibration.noise,
-///     refit_frame: false,
-///     refit_tool: false,
-///     uncertainty: None,
-/// };
-/// let judgement = judge(&subject, &made.data)?;
-/// assert!(judgement.calibrated.position_mm().max < 1e-6);
-/// assert!(judgement.nominal.is_none());
-/// # Ok::<(), poecal::Error>(())
-/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Subject<'a> {
     /// The calibrated robot with its named targets.
@@ -116,12 +92,6 @@ pub struct Judgement {
 }
 
 /// Errors of a model, and coverage of its predicted bounds.
-///
-/// ```
-/// use poecal::{Measured, calibration::JudgedModel};
-/// let none = JudgedModel { errors: Measured::of(|_| None).into(), promised: None, in_sampled_range: None };
-/// assert!(none.errors.leading().is_none());
-/// ```
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct JudgedModel {
     /// Its errors.
@@ -138,6 +108,30 @@ pub struct JudgedModel {
 ///
 /// # Errors
 /// [`ErrorKind::Problem`] if there are fewer measured numbers than unknowns to be refitted, or none at all.
+///
+/// ```
+/// use poecal::calibration::{CalibrationOptions, DeviceFrameKnowledge, Subject, calibrate, judge};
+/// use poecal::simulate::{Kind, Simulation, elbow};
+/// let exact = Simulation { noise_position_m: 0.0, noise_rotation_rad: 0.0, ..Simulation::default() };
+/// let made = exact.run(&elbow(), Kind::Point)?;
+/// let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default())?;
+/// let subject = Subject {
+///     calibrated: &calibration.robot,
+///     nominal: &calibration.nominal,
+///     base_from_device: calibration.base_from_device,
+///     further_base_from_device: &[],
+///     ranges: &[],
+///     frame: DeviceFrameKnowledge::Unknown,
+///     noise: calibration.noise,
+///     refit_frame: false,
+///     refit_tool: false,
+///     uncertainty: None,
+/// };
+/// let judgement = judge(&subject, &made.data)?;
+/// assert!(judgement.calibrated.position_mm().max < 1e-6);
+/// assert!(judgement.nominal.is_none());
+/// # Ok::<(), poecal::Error>(())
+/// ```
 pub fn judge(subject: &Subject<'_>, data: &Dataset) -> Result<Judgement> {
     check_count(subject, data)?;
     let mut refitted = Vec::new();

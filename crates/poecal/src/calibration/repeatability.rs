@@ -14,13 +14,6 @@ const SAME: f64 = 1e-4;
 const DEVIATIONS: f64 = 3.0;
 
 /// One target in one configuration that was measured at least three times (theory.md §9 (46)).
-///
-/// ```
-/// use poecal::{Quantity, calibration::RepeatedPose};
-/// let (rows, quantity) = (vec![0, 1, 2], Quantity::Position);
-/// let pose = RepeatedPose { rows, quantity, accuracy: [2e-3, 1e-3, 2e-4], repeatability: 5e-5 };
-/// assert!(pose.repeatability < pose.accuracy[2]);
-/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct RepeatedPose {
     /// Its rows.
@@ -36,15 +29,6 @@ pub struct RepeatedPose {
 
 /// Every target and configuration with three rows or more, in the order measured: theory.md §9 (46). Readings within 0.0001 rad or 0.1 mm
 /// are one configuration; errors are from each row's own prediction, which allows for the difference.
-///
-/// ```
-/// use poecal::calibration::{CalibrationOptions, calibrate, repeatability};
-/// use poecal::simulate::{Kind, Simulation, elbow};
-/// let made = Simulation::default().run(&elbow(), Kind::Point)?;
-/// let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default())?;
-/// assert!(repeatability(&calibration, &made.data).is_empty());
-/// # Ok::<(), poecal::Error>(())
-/// ```
 #[must_use]
 pub fn repeatability(calibration: &Calibration, data: &Dataset) -> Vec<RepeatedPose> {
     let groups = groups(data);

@@ -19,16 +19,6 @@ const SHARE: f64 = 0.1;
 const MOST: usize = 3;
 
 /// A direction in which the corrections of several joints are known worst: they may change together with little effect on predictions.
-///
-/// ```
-/// # use poecal::{CalibrationOptions, Kind, Simulation, calibrate, simulate::elbow};
-/// # let made = Simulation { count: 40, ..Simulation::default() }.run(&elbow(), Kind::Point)?;
-/// # let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default())?;
-/// for common in &calibration.trust.common {
-///     println!("{}", common.words);
-/// }
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct CommonDirection {
     /// In words: the largest part of each joint, one standard deviation of the direction.

@@ -115,10 +115,6 @@ impl Diagnosis {
 }
 
 /// DiagnosisOptions of a diagnosis.
-///
-/// ```
-/// assert!(poecal::forensics::DiagnosisOptions::default().device_free);
-/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct DiagnosisOptions<'a> {
     /// Whether the device frame is unknown (otherwise it is the base frame).

@@ -8,16 +8,6 @@ use crate::lie::{Freedom, Pose};
 
 /// Measured components of a target's position, `e = (y - p)` and `S = [I 0]` of those alone: a camera that looks along z sees x and y, a
 /// gauge on a rail one of them. The device shows its frame but for its place along the others (theory.md §4 (15)).
-///
-/// ```
-/// use nalgebra::Vector3;
-/// use poecal::lie::Pose;
-/// use poecal::measurement::{ComponentsMeasurement, Observe};
-/// let seen = ComponentsMeasurement::new([Some(0.3), None, Some(0.1)]);
-/// let mut e = [0.0; 2];
-/// seen.residual(&Pose::from_translation(Vector3::new(0.3, 7.0, 0.0)), &mut e);
-/// assert_eq!((e, seen.channels()[1].name), ([0.0, 0.1], "z"));
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct ComponentsMeasurement {
     /// Position in the device's frame, metres; zero where a component was not measured.
@@ -98,5 +88,18 @@ impl Observe for ComponentsMeasurement {
 
     fn is_finite(&self) -> bool {
         self.measured.contains(&true) && self.position.iter().all(|number| number.is_finite())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn components_are_measured_minus_predicted_of_those_alone() {
+        let seen = ComponentsMeasurement::new([Some(0.3), None, Some(0.1)]);
+        let mut e = [0.0; 2];
+        seen.residual(&Pose::from_translation(Vector3::new(0.3, 7.0, 0.0)), &mut e);
+        assert_eq!((e, seen.channels()[1].name), ([0.0, 0.1], "z"));
     }
 }

@@ -7,16 +7,6 @@ use crate::lie::{Freedom, Pose, rotation, series};
 
 /// The device's z in the target's axes, `u = Rᵀ e_z`, as an inclinometer on the tool sees the upward direction. The residual is the rotation
 /// about the target's axes from the measured direction m to the predicted one, in a basis across m (theory.md §4 (16b)).
-///
-/// ```
-/// use nalgebra::Vector3;
-/// use poecal::lie::Pose;
-/// use poecal::measurement::{DirectionMeasurement, Observe};
-/// let mut e = [0.0; 2];
-/// let level = DirectionMeasurement::of_tilts([0.0, 0.0]);
-/// level.residual(&Pose::from_xyz_rpy([0.0; 3], [0.01, 0.0, 0.0]), &mut e);
-/// assert!((e[0] + 0.01).abs() < 1e-15 && e[1] == 0.0);
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct DirectionMeasurement {
     /// The direction in the target's axes, a unit vector.
@@ -118,3 +108,16 @@ impl Observe for DirectionMeasurement {
 
 /// `θ / sin θ` of directions that are opposite but for rounding.
 const OPPOSITE: f64 = 1e8;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_tilt_is_measured_minus_predicted() {
+        let mut e = [0.0; 2];
+        let level = DirectionMeasurement::of_tilts([0.0, 0.0]);
+        level.residual(&Pose::from_xyz_rpy([0.0; 3], [0.01, 0.0, 0.0]), &mut e);
+        assert!((e[0] + 0.01).abs() < 1e-15 && e[1] == 0.0);
+    }
+}

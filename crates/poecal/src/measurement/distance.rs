@@ -4,15 +4,6 @@ use super::{Channel, Channels, Observe, Quantity, Sensitivity};
 use crate::lie::{Freedom, Pose};
 
 /// Measured distance, `e = d - |p|`, `S = [pᵀ/|p| 0]`. It shows where its instrument is, and not how it is turned (theory.md §4 (15a)).
-///
-/// ```
-/// use nalgebra::Vector3;
-/// use poecal::lie::Pose;
-/// use poecal::measurement::{DistanceMeasurement, Observe};
-/// let mut e = [0.0];
-/// DistanceMeasurement::new(5.5).residual(&Pose::from_translation(Vector3::new(3.0, 0.0, 4.0)), &mut e);
-/// assert_eq!(e, [0.5]);
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct DistanceMeasurement {
     /// Distance, metres.
@@ -75,5 +66,19 @@ impl Observe for DistanceMeasurement {
 
     fn is_finite(&self) -> bool {
         self.distance.is_finite()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::Vector3;
+
+    use super::*;
+
+    #[test]
+    fn a_distance_is_measured_minus_predicted() {
+        let mut e = [0.0];
+        DistanceMeasurement::new(5.5).residual(&Pose::from_translation(Vector3::new(3.0, 0.0, 4.0)), &mut e);
+        assert_eq!(e, [0.5]);
     }
 }

@@ -8,15 +8,6 @@ use crate::lie::{Freedom, Pose};
 
 /// A face of the target, across one of its axes, flush on a plane, the device's xy: the height of the target and two tilts, all zero,
 /// theory.md §4 (15c) and (16b). Of both, height and tilts are all that shows.
-///
-/// ```
-/// use nalgebra::Vector3;
-/// use poecal::lie::Pose;
-/// use poecal::measurement::{FlushMeasurement, Observe};
-/// let mut e = [0.0; 3];
-/// FlushMeasurement::default().residual(&Pose::from_xyz_rpy([0.2, 0.1, 1e-4], [0.0, 0.0, 2.0]), &mut e);
-/// assert!(e[0] == -1e-4 && e[1].abs() + e[2].abs() < 1e-15);
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct FlushMeasurement {
     /// Height of the face, metres: zero.
@@ -82,5 +73,18 @@ impl Observe for FlushMeasurement {
     fn is_finite(&self) -> bool {
         let (height, direction) = self.parts();
         height.is_finite() && direction.is_finite()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_flush_face_may_turn_and_shift_on_its_plane() {
+        let mut e = [0.0; 3];
+        let above = Pose::from_xyz_rpy([0.2, 0.1, 1e-4], [0.0, 0.0, 2.0]);
+        FlushMeasurement::default().residual(&above, &mut e);
+        assert!(e[0] == -1e-4 && e[1].abs() + e[2].abs() < 1e-15);
     }
 }

@@ -5,15 +5,6 @@ use crate::lie::{Freedom, Pose};
 
 /// Height of a target over a plane, the device's xy, `e = h - p_z`: zero of a probe that touches, the reading of a dial gauge that looks
 /// along z. The device shows its height and its tilts alone (theory.md §4 (15c)).
-///
-/// ```
-/// use nalgebra::Vector3;
-/// use poecal::lie::Pose;
-/// use poecal::measurement::{HeightMeasurement, Observe};
-/// let mut e = [0.0];
-/// HeightMeasurement { height: 0.0 }.residual(&Pose::from_translation(Vector3::new(0.3, 0.1, 1e-4)), &mut e);
-/// assert_eq!(e, [-1e-4]);
-/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct HeightMeasurement {
     /// Height, metres.
@@ -53,5 +44,19 @@ impl Observe for HeightMeasurement {
 
     fn is_finite(&self) -> bool {
         self.height.is_finite()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::Vector3;
+
+    use super::*;
+
+    #[test]
+    fn a_height_is_measured_minus_predicted() {
+        let mut e = [0.0];
+        HeightMeasurement::default().residual(&Pose::from_translation(Vector3::new(0.3, 0.1, 1e-4)), &mut e);
+        assert_eq!(e, [-1e-4]);
     }
 }

@@ -4,14 +4,6 @@ use serde::{Deserialize, Serialize};
 
 /// Distance between the origins of two stations that is known from elsewhere: of two sockets on a plate, of the ends of a bar
 /// (theory.md §6 (27b)). It gives a length where nothing that is measured has one.
-///
-/// ```
-/// use poecal::measurement::{Dataset, KnownLength};
-/// let mut data = Dataset::default();
-/// let stations = [data.station_index(Some("left")), data.station_index(Some("right"))];
-/// data.lengths.push(KnownLength { stations, length_m: 0.05, sigma_m: KnownLength::SIGMA_M });
-/// assert_eq!(data.lengths[0].stations, [0, 1]);
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct KnownLength {
     /// Indices into [`Dataset::stations`](super::Dataset::stations).

@@ -69,13 +69,6 @@ pub enum Measurement {
 }
 
 /// What a measurement shows of the target itself: for all that moves or draws measured places and orientations.
-///
-/// ```
-/// use nalgebra::Vector3;
-/// use poecal::measurement::{Measurement, PointMeasurement, Seen};
-/// let measured = Measurement::Point(PointMeasurement { position: Vector3::x() });
-/// assert!(matches!(measured.seen(), Seen::Point(position) if position.x == 1.0));
-/// ```
 #[derive(Clone, Copy)]
 pub enum Seen<'a> {
     /// Its place.

@@ -7,15 +7,6 @@ use super::{Channels, NUMBERS, Quantity};
 
 /// Shape of the covariance Σ of a position: `σ Σ^{-1/2}`, which makes noise of one standard deviation σ in all directions of it
 /// (theory.md §4 (17a)).
-///
-/// ```
-/// use nalgebra::Vector3;
-/// use poecal::measurement::NoiseShape;
-/// // 10 µm along z, the line of sight, and 40 µm across it.
-/// let (sigma, shape) = NoiseShape::across(&Vector3::z(), 1e-5, 4e-5);
-/// assert!((sigma - (1e-5f64 * 4e-5 * 4e-5).cbrt()).abs() < 1e-18);
-/// assert!((shape.whitened(&Vector3::z()).z / sigma - 1e5).abs() < 1e-6);
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct NoiseShape(Matrix3<f64>);
 

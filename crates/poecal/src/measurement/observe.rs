@@ -11,12 +11,6 @@ use crate::lie::{Freedom, Pose};
 pub const NUMBERS: usize = 6;
 
 /// One number of a measurement.
-///
-/// ```
-/// use poecal::measurement::{Observe, PointMeasurement};
-/// let seen = PointMeasurement { position: nalgebra::Vector3::zeros() };
-/// assert_eq!(seen.channels()[2].name, "z");
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Channel {
     /// Name of the number in columns of files.
@@ -34,13 +28,6 @@ impl Channel {
 }
 
 /// The numbers of a measurement type, and where those of each quantity are.
-///
-/// ```
-/// use poecal::measurement::{Observe, PointMeasurement};
-/// use poecal::Quantity;
-/// let channels = PointMeasurement { position: nalgebra::Vector3::zeros() }.channels();
-/// assert_eq!((channels.len(), channels.of(Quantity::Position), channels.of(Quantity::Rotation)), (3, 0..3, 0..0));
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Channels {
     all: &'static [Channel],
@@ -180,5 +167,20 @@ pub trait Observe {
     /// Whether it depends on the target's orientation, so that the target is a frame and not only a point.
     fn sees_orientation(&self) -> bool {
         self.target_freedom().turns()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::measurement::{FlushMeasurement, PointMeasurement};
+
+    #[test]
+    fn channels_of_a_quantity_follow_one_another() {
+        let point = PointMeasurement { position: Vector3::zeros() }.channels();
+        assert_eq!((point.len(), point[2].name), (3, "z"));
+        assert_eq!((point.of(Quantity::Position), point.of(Quantity::Rotation)), (0..3, 0..0));
+        let flush = FlushMeasurement::default().channels();
+        assert_eq!((flush.of(Quantity::Height), flush.of(Quantity::Tilt)), (0..1, 1..3));
     }
 }

@@ -135,13 +135,6 @@ impl Quantity {
 }
 
 /// A value for each quantity.
-///
-/// ```
-/// use poecal::{ByQuantity, Quantity};
-/// let mut counts: ByQuantity<usize> = ByQuantity::default();
-/// counts[Quantity::Rotation] += 3;
-/// assert_eq!(counts.map(|count| 2 * count)[Quantity::Rotation], 6);
-/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ByQuantity<T>([T; Quantity::ALL.len()]);
 
@@ -165,12 +158,6 @@ impl<T> ByQuantity<T> {
     }
 
     /// The same with another value of one quantity.
-    ///
-    /// ```
-    /// use poecal::{ByQuantity, Quantity};
-    /// let stated = ByQuantity::default().with(Quantity::Position, Some(5e-5));
-    /// assert_eq!((stated[Quantity::Position], stated[Quantity::Rotation]), (Some(5e-5), None));
-    /// ```
     #[must_use]
     pub fn with(mut self, quantity: Quantity, value: T) -> Self {
         self[quantity] = value;
@@ -242,13 +229,6 @@ impl Noise {
 }
 
 /// A positive number for each quantity of which it is stated: kept for every row, so that it is small.
-///
-/// ```
-/// use poecal::{Quantity, measurement::Stated};
-/// let mut stated = Stated::default();
-/// stated.set(Quantity::Position, Some(5e-5));
-/// assert_eq!((stated.get(Quantity::Position), stated.get(Quantity::Rotation)), (Some(5e-5), None));
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(from = "ByQuantity<Option<f64>>", into = "ByQuantity<Option<f64>>")]
 pub struct Stated {

@@ -7,15 +7,6 @@ use crate::lie::{Freedom, Pose};
 
 /// A ball that rests in a socket, `e = y - p` with `y = 0`: the socket is a device that shows where it is and has no axes, and the ball's
 /// centre, the target, is at its origin (theory.md §4 (15b)). A fixed point that is touched in many configurations is the same.
-///
-/// ```
-/// use nalgebra::Vector3;
-/// use poecal::lie::Pose;
-/// use poecal::measurement::{Observe, SocketMeasurement};
-/// let mut e = [0.0; 3];
-/// SocketMeasurement::default().residual(&Pose::from_translation(Vector3::new(0.0, 1e-4, 0.0)), &mut e);
-/// assert_eq!(e, [0.0, -1e-4, 0.0]);
-/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct SocketMeasurement {
     /// Where the ball is, from the middle of the socket, metres: zero.
@@ -62,5 +53,17 @@ impl Observe for SocketMeasurement {
 
     fn is_finite(&self) -> bool {
         self.place.iter().all(|number| number.is_finite())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_ball_in_its_socket_is_at_the_middle() {
+        let mut e = [0.0; 3];
+        SocketMeasurement::default().residual(&Pose::from_translation(Vector3::new(0.0, 1e-4, 0.0)), &mut e);
+        assert_eq!(e, [0.0, -1e-4, 0.0]);
     }
 }

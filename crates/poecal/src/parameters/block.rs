@@ -6,11 +6,6 @@ use crate::robot::Term;
 use super::{Parameter, Subject};
 
 /// A block of unknowns, which a fit changes or holds as a whole.
-///
-/// ```
-/// use poecal::parameters::{Block, Parameter, TargetPlace};
-/// assert_eq!(Parameter::TargetPlace(TargetPlace { target: 1 }).block(), Block::Target(1));
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Block {
     /// The axis (or direction) of a joint.
@@ -26,13 +21,6 @@ pub enum Block {
 }
 
 /// Names of joints, targets and instruments, from which blocks and unknowns have theirs.
-///
-/// ```
-/// use poecal::parameters::{Block, Names};
-/// let names = Names { joints: vec!["elbow".into()], targets: vec![None], stations: vec![Some("left".into())] };
-/// assert_eq!(names.of(Block::Axis(0)), "elbow.axis");
-/// assert_eq!((names.of(Block::Target(0)), names.of(Block::Frame(0))), ("target".into(), "frame.left".into()));
-/// ```
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Names {
     /// Of the joints.
@@ -99,6 +87,31 @@ impl Parameter {
                 let zero = RangeTerm::Zero;
                 Block::Range(station, if let Parameter::RangeUnknown(it) = self { it.term } else { zero })
             }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::parameters::TargetPlace;
+
+    #[test]
+    fn blocks_have_the_names_of_what_they_are_of() {
+        let names = Names {
+            joints: vec!["elbow".to_owned()],
+            targets: vec![None, Some("ball".to_owned())],
+            stations: vec![Some("left".to_owned())],
+        };
+        let ball = Parameter::TargetPlace(TargetPlace { target: 1 });
+        assert_eq!(ball.block(), Block::Target(1));
+        for (block, name) in [
+            (Block::Axis(0), "elbow.axis"),
+            (Block::Target(0), "target"),
+            (ball.block(), "target.ball"),
+            (Block::Frame(0), "frame.left"),
+        ] {
+            assert_eq!(names.of(block), name);
         }
     }
 }

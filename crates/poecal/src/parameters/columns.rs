@@ -7,12 +7,6 @@ use crate::lie::{Freedom, TargetTwist};
 use crate::unit::Unit;
 
 /// One unknown of a parameter.
-///
-/// ```
-/// use poecal::parameters::{Column, Unit};
-/// let column = Column { name: "x", unit: Unit::Metre, shifts_only: true };
-/// assert_eq!(column, Column::shift("x"));
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Column {
     /// Name within its parameter; empty if it is the only one.
@@ -86,12 +80,6 @@ pub(super) const fn of_freedom(freedom: Freedom) -> &'static [Column] {
 
 /// Force `f` at a target's origin and torque `τ`, device axes: the whitened residual pulled back through the measurement
 /// (theory.md §6 (31a)).
-///
-/// ```
-/// use nalgebra::Vector3;
-/// let pull = poecal::parameters::Wrench { force: Vector3::x(), torque: Vector3::zeros() };
-/// assert_eq!(pull.force.x, 1.0);
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Wrench {
     /// Force.
@@ -101,11 +89,6 @@ pub struct Wrench {
 }
 
 /// What a parameter is of.
-///
-/// ```
-/// use poecal::parameters::{Columns, Subject, TargetPlace};
-/// assert_eq!(TargetPlace { target: 1 }.subject(), Subject::Target(1));
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Subject {
     /// The instrument (station) of this index.
@@ -145,4 +128,21 @@ pub trait Columns {
 
     /// Applies a step (metres, radians) to an estimate.
     fn retract(&self, estimate: &mut Estimate, step: &[f64]);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_frame_has_the_columns_of_the_motions_that_are_seen() {
+        for freedom in Freedom::ALL {
+            let seen: Vec<Column> = freedom.motions().iter().map(|&motion| FRAME[motion]).collect();
+            assert_eq!(of_freedom(freedom), seen, "{freedom:?}");
+        }
+        assert_eq!(
+            of_freedom(Freedom::PlaneZ).iter().map(|it| it.name).collect::<Vec<_>>(),
+            ["z", "rx", "ry"]
+        );
+    }
 }

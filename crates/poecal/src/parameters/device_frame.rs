@@ -9,12 +9,6 @@ use crate::lie::{Freedom, TargetTwist, rotation};
 /// The device frame, stepped about the point `about` of that frame (the middle of the data, so that rotation and translation are nearly
 /// uncorrelated): columns `(e_k; 0)` and `(e_k × (p - about); e_k)` (theory.md §5 (25)), of the motions that the device shows (25a). They are
 /// zero in rows of another station.
-///
-/// ```
-/// use poecal::{lie::Freedom, parameters::{Columns, DeviceFrame}};
-/// assert_eq!(DeviceFrame::new(0, nalgebra::Vector3::zeros()).columns().len(), 6);
-/// assert_eq!(DeviceFrame::showing(0, Freedom::PlaneZ).columns()[0].name, "z");
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DeviceFrame {
     /// Index of the station.

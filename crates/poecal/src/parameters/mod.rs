@@ -26,11 +26,6 @@ use crate::robot::JointKind;
 
 /// A group of unknowns. A list of parameters has the order of the chain: device frame, joints from base to tip, targets. A new parameter
 /// is one file with [`Columns`] and one variant here; the compiler lists the places that have to decide.
-///
-/// ```
-/// use poecal::parameters::{Parameter, TargetPlace};
-/// assert_eq!(Parameter::TargetPlace(TargetPlace { target: 0 }).model().columns().len(), 3);
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Parameter {
     /// A joint's screw in the minimal basis: a revolute axis (4 unknowns), or a prismatic direction (2).
@@ -51,15 +46,6 @@ pub enum Parameter {
 
 /// The screws of joints of these kinds as unknowns, in the minimal basis: `ξ ← Ad_exp(η) ξ` without constraints or offsets (lou2009 (16)
 /// to (18); theory.md §5 (18)).
-///
-/// ```
-/// use poecal::{parameters::screw_axes, robot::JointKind};
-/// let unknowns: Vec<usize> = screw_axes(&[JointKind::Revolute, JointKind::Prismatic])
-///     .iter()
-///     .map(|parameter| parameter.model().columns().len())
-///     .collect();
-/// assert_eq!(unknowns, [4, 2]);
-/// ```
 #[must_use]
 pub fn screw_axes(kinds: &[JointKind]) -> Vec<Parameter> {
     let axis = |(joint, &kind)| Parameter::ScrewAxis(ScrewAxis { joint, kind });

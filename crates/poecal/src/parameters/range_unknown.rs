@@ -9,12 +9,6 @@ use crate::unit::Unit;
 
 /// A term of what an instrument reads: column `(p/|p|; 0)` of its zero, `(p; 0)` of its scale, motions of the place where the target is seen
 /// (theory.md §5 (25b)). It is zero in rows of another station.
-///
-/// ```
-/// use poecal::estimate::RangeTerm;
-/// use poecal::parameters::{Columns, RangeUnknown};
-/// assert_eq!(RangeUnknown { station: 0, term: RangeTerm::Zero }.columns().len(), 1);
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RangeUnknown {
     /// Index of the station.

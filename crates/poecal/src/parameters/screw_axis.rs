@@ -14,13 +14,6 @@ use crate::robot::JointKind;
 /// `d` from the axis frame's origin to the target, the columns are `(Δx; 0), (Δy; 0), (Δx × d; Δx), (Δy × d; Δy)`:
 /// theory.md §5 (20) and (21).
 /// Prismatic, `ε = (0; rx, ry, 0)`, 2 unknowns: `(-θ y; 0), (θ x; 0)`, theory.md §5 (22).
-///
-/// ```
-/// use poecal::parameters::{Columns, ScrewAxis};
-/// use poecal::robot::JointKind;
-/// assert_eq!(ScrewAxis { joint: 0, kind: JointKind::Revolute }.columns().len(), 4);
-/// assert_eq!(ScrewAxis { joint: 0, kind: JointKind::Prismatic }.columns().len(), 2);
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ScrewAxis {
     /// Index of the joint.

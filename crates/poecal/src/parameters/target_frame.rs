@@ -8,12 +8,6 @@ use crate::lie::{Freedom, TargetTwist, rotation};
 
 /// The home pose of lou2009 (`M ← exp(Υ) M`), stepped at the target and in its own axes: columns `(R e_k; 0)` and `(0; R e_k)`
 /// (theory.md §5 (24)), of the motions that measurements show (25a): a frame has all six, a face that lies on planes three.
-///
-/// ```
-/// use poecal::{lie::Freedom, parameters::{Columns, TargetFrame}};
-/// assert_eq!(TargetFrame::new(0).columns().len(), 6);
-/// assert_eq!(TargetFrame { freedom: Freedom::PlaneZ, ..TargetFrame::new(0) }.columns()[1].name, "rx");
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TargetFrame {
     /// Index of the target.

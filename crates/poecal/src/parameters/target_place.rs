@@ -7,11 +7,6 @@ use crate::estimate::{Chain, Estimate};
 use crate::lie::TargetTwist;
 
 /// The point `P_c0` of lou2009 (19) to (26), stepped in the target's own axes: columns `(R_target e_k; 0)` (theory.md §5 (23)).
-///
-/// ```
-/// use poecal::parameters::{Columns, TargetPlace};
-/// assert_eq!(TargetPlace { target: 0 }.columns().len(), 3);
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TargetPlace {
     /// Index of the target.

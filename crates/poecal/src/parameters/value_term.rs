@@ -11,13 +11,6 @@ use crate::unit::Unit;
 /// A term of joint `joint`, `θ ← θ + c b(θ)`: the column is b times that of the joint's value, `r = Ad_T ξ` of lou2009 (8d), at the target
 /// `(z × d; z) b`, or `(z; 0) b` of a prismatic joint (theory.md §5 (26)). An offset, b = 1, adds no rank beside free screws (lou2009
 /// Proposition 1, theory.md §3 (9)).
-///
-/// ```
-/// use poecal::parameters::{Columns, ValueTerm};
-/// use poecal::robot::{JointKind, Term};
-/// let offset = ValueTerm { joint: 2, kind: JointKind::Revolute, term: Term::Offset };
-/// assert_eq!(offset.columns().len(), 1);
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ValueTerm {
     /// Index of the joint.

@@ -12,13 +12,6 @@ use crate::lie::Pose;
 const SAME: f64 = 1e-12;
 
 /// A body: the base, or the link that a joint moves.
-///
-/// ```
-/// use poecal::robot::Body;
-/// let robot = poecal::simulate::elbow();
-/// assert_eq!((robot.body_before(0), robot.body_before(3)), (Body::Base, Body::Link(2)));
-/// assert_eq!(robot.tip_body(), Body::Link(5));
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Body {
@@ -40,14 +33,6 @@ impl Body {
 }
 
 /// A frame on a body: where an instrument or a target stands.
-///
-/// ```
-/// use poecal::{lie::Pose, robot::{Body, Mount}};
-/// let on_the_wrist = Mount { name: "camera".to_owned(), body: Body::Link(4), pose: Pose::identity() };
-/// let mut robot = poecal::simulate::elbow();
-/// robot.instruments.push(on_the_wrist);
-/// assert_eq!(robot.base_from(&robot.instruments[0]), robot.joints[4].frame);
-/// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Mount {
     /// Name of the instrument or target.
@@ -98,13 +83,6 @@ impl Robot {
     }
 
     /// A frame on a body, from its pose in the base at zero joint values.
-    ///
-    /// ```
-    /// use poecal::{lie::Pose, robot::Body};
-    /// let robot = poecal::simulate::elbow();
-    /// let mount = robot.mount("tool", robot.tip_body(), &robot.home);
-    /// assert!((robot.base_from(&mount).translation - robot.home.translation).norm() < 1e-15);
-    /// ```
     #[must_use]
     pub fn mount(&self, name: &str, body: Body, base_from_mount: &Pose) -> Mount {
         let pose = match body.joint().and_then(|joint| self.joints.get(joint)) {
@@ -115,13 +93,6 @@ impl Robot {
     }
 
     /// The same robot with its tip at an instrument or a target.
-    ///
-    /// ```
-    /// use poecal::{lie::Pose, robot::Body};
-    /// let robot = poecal::simulate::elbow();
-    /// let on_the_forearm = robot.with_tip_at(&robot.mount("marker", Body::Link(2), &Pose::identity()));
-    /// assert_eq!(on_the_forearm.joints_to(on_the_forearm.tip_body()), [0, 1, 2]);
-    /// ```
     #[must_use]
     pub fn with_tip_at(&self, mount: &Mount) -> Self {
         Robot { tip: Some(mount.body), home: self.base_from(mount), ..self.clone() }
@@ -167,5 +138,29 @@ impl Robot {
             self.name
         );
         Err(Error::new(ErrorKind::Model, message))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::robot::tests::elbow;
+
+    #[test]
+    fn each_joint_of_a_serial_robot_stands_on_the_link_before() {
+        let robot = elbow();
+        assert_eq!((robot.body_before(0), robot.body_before(3)), (Body::Base, Body::Link(2)));
+        assert_eq!(robot.tip_body(), Body::Link(5));
+        let on_the_forearm = robot.with_tip_at(&robot.mount("marker", Body::Link(2), &Pose::identity()));
+        assert_eq!(on_the_forearm.joints_to(on_the_forearm.tip_body()), [0, 1, 2]);
+    }
+
+    #[test]
+    fn a_mount_is_where_it_was_put() {
+        let robot = elbow();
+        let on_the_wrist = Mount { name: "camera".to_owned(), body: Body::Link(4), pose: Pose::identity() };
+        assert_eq!(robot.base_from(&on_the_wrist), robot.joints[4].frame);
+        let tool = robot.mount("tool", robot.tip_body(), &robot.home);
+        assert!((robot.base_from(&tool).translation - robot.home.translation).norm() < 1e-15);
     }
 }

@@ -8,11 +8,6 @@ use super::{
 };
 
 /// How far the model of what joints do reaches.
-///
-/// ```
-/// use poecal::robot::{Extent, Gives};
-/// assert_eq!(Extent::default(), Extent { orders: 2, gives: Gives::Tilting });
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Extent {
     /// Highest order of the harmonics of gears and encoders.
@@ -28,14 +23,6 @@ impl Default for Extent {
 }
 
 /// A robot with gives and terms whose coefficients are zero, each term of a group.
-///
-/// ```
-/// use poecal::robot::{CorrectionModel, Extent, TermGroup};
-/// let robot = poecal::simulate::elbow();
-/// let model = CorrectionModel::new(&robot, -nalgebra::Vector3::z(), &[true; 6], Extent::default());
-/// assert_eq!((model.robot.joints.len(), model.places[1]), (18, 3));
-/// assert!(model.groups.contains(&TermGroup::Sag) && model.groups.len() == model.robot.terms.len());
-/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct CorrectionModel {
     /// The robot with its gives, its gravity and its terms.
@@ -181,5 +168,18 @@ impl CorrectionModel {
     pub fn terms_of(&self, sizes: &Sizes) -> impl Iterator<Item = (usize, Term)> {
         let used = self.terms().zip(&self.groups).filter(|(_, group)| sizes[**group] > 0.0);
         used.map(|(term, _)| term)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::robot::tests::elbow;
+
+    #[test]
+    fn each_joint_has_two_gives_and_each_term_a_group() {
+        let model = CorrectionModel::new(&elbow(), -Vector3::z(), &[true; 6], Extent::default());
+        assert_eq!((model.robot.joints.len(), model.places[1]), (18, 3));
+        assert!(model.groups.contains(&TermGroup::Sag) && model.groups.len() == model.robot.terms.len());
     }
 }

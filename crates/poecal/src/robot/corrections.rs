@@ -6,12 +6,6 @@ use super::{Gives, Sizes, TermGroup};
 use crate::error::nearest;
 
 /// Which terms a calibration fits beside the screws, and how large they may be.
-///
-/// ```
-/// use poecal::robot::{Corrections, TermGroup};
-/// let Ok(Corrections::Sizes(sizes)) = "sag,ratio=2e-4".parse() else { unreachable!() };
-/// assert_eq!((sizes[TermGroup::Sag], sizes[TermGroup::Ratio], sizes[TermGroup::Tilt]), (1e-3, 2e-4, 0.0));
-/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Corrections {
     /// Those that predict rows best which were not fitted; none if geometry alone does as well.

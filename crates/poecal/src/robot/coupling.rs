@@ -8,13 +8,6 @@ use crate::unit::Unit;
 
 /// What another joint turns or slides a joint, as a share of the other's value: `θ ← θ + c θ'`. Wrists whose gears lie in one another, and
 /// parallel links.
-///
-/// ```
-/// use poecal::robot::{Coupling, Situation, Term};
-/// let wrist = Term::Coupling(Coupling { joint: 3 });
-/// let at = Situation::of(&[0.0, 0.1, 0.2, 0.3]);
-/// assert_eq!((wrist.model().name().as_ref(), wrist.model().basis(1, &at)), ("coupled4", 0.3));
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Coupling {
     /// Index of the other joint.

@@ -16,18 +16,6 @@ pub enum DhConvention {
 }
 
 /// One row of a DH table, metres and radians.
-///
-/// ```
-/// use poecal::robot::{DhConvention, DhRow, JointKind, Robot};
-/// use poecal::lie::Pose;
-/// let row = |a_m, d_m, alpha_rad| DhRow { name: String::new(), kind: JointKind::Revolute, a_m, alpha_rad, d_m, theta_rad: 0.0,
-///     fixed: Pose::identity() };
-/// let rows: Vec<DhRow> = [(0.3, 0.0), (0.2, 0.1)].iter().enumerate()
-///     .map(|(i, &(a, d))| DhRow { name: format!("joint{}", i + 1), ..row(a, d, 0.0) }).collect();
-/// let robot = Robot::from_dh("planar", DhConvention::Standard, &rows, Pose::identity(), Pose::identity())?;
-/// assert!((robot.forward_kinematics(&[0.0, 0.0]).translation.x - 0.5).abs() < 1e-15);
-/// # Ok::<(), poecal::Error>(())
-/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct DhRow {
     /// Joint name.
@@ -78,5 +66,28 @@ impl Robot {
                 if row.fixed == Pose::identity() { base_from_row } else { base_from_row * row.fixed };
         }
         Robot::new(name, joints, base_from_frame * last_from_tip)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn links_of_a_planar_arm_add_up() {
+        let row = |(name, a_m, d_m): (&str, f64, f64)| DhRow {
+            name: name.to_owned(),
+            kind: JointKind::Revolute,
+            a_m,
+            alpha_rad: 0.0,
+            d_m,
+            theta_rad: 0.0,
+            fixed: Pose::identity(),
+        };
+        let rows = [("joint1", 0.3, 0.0), ("joint2", 0.2, 0.1)].map(row);
+        let (convention, none) = (DhConvention::Standard, Pose::identity());
+        let robot = Robot::from_dh("planar", convention, &rows, none, none).unwrap();
+        let tip = robot.forward_kinematics(&[0.0, 0.0]).translation;
+        assert!((tip - Vector3::new(0.5, 0.0, 0.1)).norm() < 1e-15);
     }
 }

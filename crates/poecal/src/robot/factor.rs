@@ -12,13 +12,6 @@ use crate::unit::Unit;
 
 /// What a joint turns or slides with each unit of a factor ([`Robot::factors`](super::Robot)) from its reference, `θ ← θ + c (f - f₀)`: warmth, or half the backlash
 /// where the factor says from which side the joint came, +1 or -1.
-///
-/// ```
-/// use poecal::robot::{Factor, Situation, Term};
-/// let warmth = Term::Factor(Factor { index: 0 });
-/// let at = Situation { factors: &[21.5], ..Situation::of(&[0.7]) };
-/// assert_eq!((warmth.model().name().as_ref(), warmth.model().basis(0, &at)), ("factor1", 21.5));
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Factor {
     /// Index among the robot's factors.
@@ -26,11 +19,6 @@ pub struct Factor {
 }
 
 /// Something else that is read in each configuration.
-///
-/// ```
-/// let warmth = poecal::robot::FactorReading::new("temperature");
-/// assert_eq!((warmth.reference, warmth.approached()), (0.0, None));
-/// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct FactorReading {
     /// Name of its column.

@@ -7,13 +7,6 @@ use super::{Body, Joint, JointKind, Mount, Reading, Robot, Weight};
 use crate::lie::{Screw, rotation};
 
 /// In which directions links and bearings give.
-///
-/// ```
-/// use poecal::robot::Gives;
-/// let robot = poecal::simulate::elbow();
-/// let count = |gives| robot.giving(&[1], gives).0.joints.len() - robot.joints.len();
-/// assert_eq!((count(Gives::Tilting), count(Gives::All)), (2, 5));
-/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Gives {
     /// They tilt.
@@ -27,14 +20,6 @@ impl Robot {
     /// The same robot whose joints and links give: behind each of these joints stand gives about two axes across its own through its pivot
     /// ([`Robot::pivots`]), of a prismatic joint also about its own; and, where asked, along three axes. A give is a joint at zero, which moves
     /// by its terms alone (theory.md §3, *Gives*). Beside the robot, the new index of each of its joints.
-    ///
-    /// ```
-    /// use poecal::robot::Gives;
-    /// let robot = poecal::simulate::elbow();
-    /// let (giving, places) = robot.giving(&[1], Gives::Tilting);
-    /// assert_eq!((giving.joints.len(), &places[..3]), (8, &[0, 1, 4][..]));
-    /// assert_eq!(giving.forward_kinematics(&[0.3; 6]), robot.forward_kinematics(&[0.3; 6]));
-    /// ```
     #[must_use]
     pub fn giving(&self, joints: &[usize], directions: Gives) -> (Robot, Vec<usize>) {
         let mut robot = self.clone();
@@ -77,11 +62,6 @@ impl Robot {
 
 impl Robot {
     /// The same robot without gives and their terms, and without weights and the terms that need them.
-    ///
-    /// ```
-    /// let robot = poecal::simulate::elbow();
-    /// assert_eq!(robot.giving(&[0, 3], poecal::robot::Gives::All).0.rigid(), robot);
-    /// ```
     #[must_use]
     pub fn rigid(&self) -> Robot {
         let mut robot = self.clone();
@@ -132,4 +112,20 @@ fn gives(joint: &Joint, index: usize, pivot: Vector3<f64>, directions: Gives) ->
         give_of: Some(index),
         ..Joint::with_screw(&format!("{name}~{direction}"), kind, screw)
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::robot::tests::elbow;
+
+    #[test]
+    fn gives_without_terms_leave_the_robot_as_it_is() {
+        let robot = elbow();
+        let (giving, places) = robot.giving(&[1], Gives::Tilting);
+        assert_eq!((giving.joints.len(), &places[..3]), (8, &[0, 1, 4][..]));
+        assert_eq!(robot.giving(&[1], Gives::All).0.joints.len(), 11);
+        assert_eq!(giving.forward_kinematics(&[0.3; 6]), robot.forward_kinematics(&[0.3; 6]));
+        assert_eq!(robot.giving(&[0, 3], Gives::All).0.rigid(), robot);
+    }
 }

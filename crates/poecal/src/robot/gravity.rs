@@ -10,13 +10,6 @@ use crate::lie::Screw;
 
 /// Direction of gravity, and the weights whose moments bend the robot. How heavy they are is not known: only products of mass, lever and
 /// give show (theory.md §3, *Sag*).
-///
-/// ```
-/// let robot = poecal::simulate::elbow();
-/// let gravity = poecal::robot::Gravity::of_unit_weights(&robot, nalgebra::Vector3::new(0.0, 0.0, -1.0));
-/// // At the pivots of joints 2 to 6, and at the tip.
-/// assert_eq!(gravity.weights.len(), 6);
-/// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Gravity {
     /// Where weights are pulled, in the base frame, of length 1.
@@ -29,12 +22,6 @@ pub struct Gravity {
 }
 
 /// Where weights are pulled.
-///
-/// ```
-/// use poecal::robot::GravityDirection;
-/// assert_eq!("0,0,-1".parse(), Ok(GravityDirection::default()));
-/// assert_eq!("find".parse(), Ok(GravityDirection::Found));
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum GravityDirection {
     /// In this direction of the base frame, of any length above 0.
@@ -76,12 +63,6 @@ impl GravityDirection {
 }
 
 /// A mass of the model.
-///
-/// ```
-/// use poecal::robot::{Body, Mass};
-/// let forearm = Mass { body: Body::Link(2), place: nalgebra::Vector3::x(), kg: 4.5 };
-/// assert_eq!(forearm.body.joint(), Some(2));
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Mass {
     /// Its body.
@@ -100,12 +81,6 @@ impl Mass {
 }
 
 /// A weight on the robot.
-///
-/// ```
-/// use poecal::robot::{Body, Weight};
-/// let tool = Weight { name: "tip".to_owned(), body: Body::Link(5), place: nalgebra::Vector3::x() };
-/// assert_eq!(tool.body.joint(), Some(5));
-/// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Weight {
     /// What it is at: the name of a joint, or of the tip.
@@ -142,12 +117,6 @@ pub(super) fn axes(robot: &Robot) -> Vec<(Screw, Vector3<f64>)> {
 impl Robot {
     /// A point of each joint's axis that is the same in whatever form the model is written: the nearest to the pivot of the joint that it
     /// carries, of the last one to the tip; of a sliding joint that pivot itself. At zero joint values, base frame, metres.
-    ///
-    /// ```
-    /// let robot = poecal::simulate::elbow();
-    /// let far = robot.pivots()[5] - robot.home.translation;
-    /// assert!(robot.joints[5].screw.direction().dot(&far).abs() < 1e-15);
-    /// ```
     #[must_use]
     pub fn pivots(&self) -> Vec<Vector3<f64>> {
         let on_the_way = self.joints_to(self.tip_body());
@@ -181,5 +150,25 @@ impl Robot {
             }
         }
         pivots
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::robot::tests::elbow;
+
+    #[test]
+    fn weights_are_at_the_pivots_but_the_first_and_at_the_tip() {
+        let robot = elbow();
+        assert_eq!(Gravity::of_unit_weights(&robot, -Vector3::z()).weights.len(), 6);
+        let to_tip = robot.pivots()[5] - robot.home.translation;
+        assert!(robot.joints[5].screw.direction().dot(&to_tip).abs() < 1e-15);
+    }
+
+    #[test]
+    fn a_direction_of_gravity_is_three_numbers_or_to_be_found() {
+        assert_eq!("0,0,-1".parse(), Ok(GravityDirection::default()));
+        assert_eq!("find".parse(), Ok(GravityDirection::Found));
     }
 }

@@ -8,13 +8,6 @@ use crate::unit::Unit;
 
 /// A harmonic of a joint's own value, `θ ← θ + c sin kθ` or `c cos kθ`: eccentric gears and encoders. Of a give
 /// ([`Joint::give_of`](super::Joint)) it is of the value of the joint that gives, whose bearing wobbles.
-///
-/// ```
-/// use poecal::robot::{Harmonic, Situation, TermModel};
-/// let eccentric = Harmonic { order: 2, cosine: false };
-/// let at = Situation::of(&[std::f64::consts::FRAC_PI_4]);
-/// assert!((eccentric.basis(0, &at) - 1.0).abs() < 1e-15 && eccentric.name() == "sin2");
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Harmonic {
     /// Periods a turn, k.

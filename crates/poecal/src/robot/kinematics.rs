@@ -85,14 +85,6 @@ impl Robot {
 
     /// Frames of the joints in the base, `exp(ξ₁θ₁) … exp(ξᵢθᵢ) base_from_joint_i`, at a configuration given as readings (radians, metres;
     /// order of [`Robot::reading_names`]), for pictures of the robot.
-    ///
-    /// ```
-    /// let robot = poecal::simulate::elbow();
-    /// let frames = robot.joint_poses(&[0.3; 6]);
-    /// // The tip is fixed to the last link.
-    /// let tip = frames[5] * robot.last_joint_from_tip();
-    /// assert!((tip.translation - robot.forward_kinematics(&[0.3; 6]).translation).norm() < 1e-14);
-    /// ```
     #[must_use]
     pub fn joint_poses(&self, readings: &[f64]) -> Vec<Pose> {
         let mut base_from_links: Vec<Pose> = Vec::with_capacity(self.joints.len());
@@ -149,4 +141,16 @@ fn exponential(screw: &Screw) -> Exponential {
     let (w, point) = (screw.w(), screw.w().cross(&screw.v()));
     let (first, second) = (hat(&w), w * w.transpose() - Matrix3::identity());
     Exponential { first: rows(&first, &-(first * point)), second: rows(&second, &-(second * point)) }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::robot::tests::elbow;
+
+    #[test]
+    fn the_tip_is_fixed_to_the_frame_of_the_last_joint() {
+        let robot = elbow();
+        let tip = robot.joint_poses(&[0.3; 6])[5] * robot.last_joint_from_tip();
+        assert!((tip.translation - robot.forward_kinematics(&[0.3; 6]).translation).norm() < 1e-14);
+    }
 }

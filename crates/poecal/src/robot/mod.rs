@@ -157,13 +157,6 @@ impl Robot {
     }
 
     /// Names of the mimic joints that follow a joint: an error of its encoder moves them too.
-    ///
-    /// ```
-    /// let mut robot = poecal::simulate::elbow();
-    /// robot.joints[2].reading.name = "joint2".to_owned();
-    /// assert_eq!(robot.followers("joint2"), ["joint3"]);
-    /// assert!(robot.followers("joint1").is_empty());
-    /// ```
     #[must_use]
     pub fn followers(&self, joint: &str) -> Vec<&str> {
         let follows = |other: &&Joint| other.name != joint && other.reading.name == joint;
@@ -174,12 +167,6 @@ impl Robot {
     ///
     /// # Errors
     /// [`ErrorKind::Option`] if two readings have one name, or a name is longer than [`LONGEST_NAME`].
-    ///
-    /// ```
-    /// let robot = poecal::simulate::elbow().with_factors(&["temperature".to_owned()])?;
-    /// assert_eq!(robot.reading_names()[6], "temperature");
-    /// # Ok::<(), poecal::Error>(())
-    /// ```
     pub fn with_factors(&self, names: &[String]) -> Result<Self> {
         let mut robot = self.clone();
         for name in names {
@@ -334,6 +321,23 @@ mod tests {
     use nalgebra::Vector3;
 
     use super::*;
+
+    /// A six-axis arm for the tests of this folder.
+    pub(super) fn elbow() -> Robot {
+        let axes = [
+            (Vector3::z(), [0.0, 0.0, 0.0]),
+            (Vector3::y(), [0.15, 0.0, 0.0]),
+            (-Vector3::y(), [0.15, 0.0, 0.57]),
+            (-Vector3::x(), [0.15, 0.0, 0.72]),
+            (Vector3::y(), [0.784, 0.0, 0.72]),
+            (-Vector3::x(), [0.784, 0.0, 0.72]),
+        ];
+        let joint = |(index, (direction, point)): (usize, (Vector3<f64>, [f64; 3]))| {
+            Joint::revolute(&format!("joint{}", index + 1), Screw::revolute(&direction, &point.into()))
+        };
+        let joints = axes.into_iter().enumerate().map(joint).collect();
+        Robot::new("elbow", joints, Pose::from_translation(Vector3::new(0.834, 0.0, 0.72))).unwrap()
+    }
 
     #[test]
     fn a_reading_is_of_the_kind_of_the_joint_of_its_name() {

@@ -8,11 +8,6 @@ use crate::unit::Unit;
 
 /// What a joint gives under the moment of all masses of its model, `θ ← θ + c Σ m z·((p - o) × ĝ)/Σ m ℓ` with the masses m at p
 /// ([`Robot::masses`](super::Robot)), the axis z through o and the longest lever ℓ of each; of a prismatic joint `c z·ĝ`.
-///
-/// ```
-/// use poecal::robot::{OwnWeight, Situation, TermModel};
-/// assert_eq!((OwnWeight.name().as_ref(), OwnWeight.basis(0, &Situation::of(&[]))), ("masses", 0.0));
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct OwnWeight;
 

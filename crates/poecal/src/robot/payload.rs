@@ -9,12 +9,6 @@ use crate::unit::Unit;
 /// What a joint gives under a payload, `θ ← θ + c f z·((p - o) × ĝ)/ℓ` with the payload f ([`Robot::factors`](super::Robot)) at the place p of
 /// the last weight, the axis z through o and the longest lever ℓ as in [`Sag`](super::Sag). How heavy the payload is being known, c is a
 /// compliance: an angle each kilogram at full lever.
-///
-/// ```
-/// use poecal::robot::{Payload, Situation, TermModel};
-/// let payload = Payload { index: 0 };
-/// assert_eq!((payload.name().as_ref(), payload.basis(0, &Situation::of(&[]))), ("payload1", 0.0));
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Payload {
     /// Index of the payload among the robot's factors.

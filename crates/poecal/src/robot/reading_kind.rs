@@ -3,12 +3,6 @@
 use super::JointKind;
 
 /// Kind of a reading.
-///
-/// ```
-/// use poecal::robot::ReadingKind;
-/// assert_eq!((ReadingKind::Angle.symbol(), ReadingKind::Angle.shown(0.5f64.to_radians())), ("deg", 0.5));
-/// assert_eq!(ReadingKind::Factor.shown(21.5), 21.5);
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ReadingKind {
     /// Of a joint that turns, radians.
@@ -50,5 +44,19 @@ impl From<JointKind> for ReadingKind {
             JointKind::Revolute => ReadingKind::Angle,
             JointKind::Prismatic => ReadingKind::Length,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn angles_are_shown_in_degrees_and_factors_as_they_are() {
+        assert_eq!(
+            (ReadingKind::Angle.symbol(), ReadingKind::Angle.shown(0.5f64.to_radians())),
+            ("deg", 0.5)
+        );
+        assert_eq!(ReadingKind::Factor.shown(21.5), 21.5);
     }
 }

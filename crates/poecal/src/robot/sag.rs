@@ -8,12 +8,6 @@ use crate::unit::Unit;
 
 /// What a joint gives under the moment of one weight about its axis: `θ ← θ + c z·((p - o) × ĝ)/ℓ` with the axis z through o, the weight at p
 /// and ℓ the longest lever of all weights of that joint; of a prismatic joint `c z·ĝ`. A weight that the joint does not carry has no moment.
-///
-/// ```
-/// use poecal::robot::{Sag, Situation, TermModel};
-/// let sag = Sag { weight: 5 };
-/// assert_eq!((sag.name().as_ref(), sag.basis(0, &Situation::of(&[]))), ("sag6", 0.0));
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Sag {
     /// Index of the weight ([`Gravity::weights`](super::Gravity)).

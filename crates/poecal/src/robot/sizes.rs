@@ -6,11 +6,6 @@ use super::Gives;
 use crate::unit::Unit;
 
 /// A group of terms whose coefficients are of one size.
-///
-/// ```
-/// use poecal::robot::TermGroup;
-/// assert_eq!(TermGroup::Sag.name(), "sag");
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum TermGroup {
     /// Gears that give about the joint's own axis under weight; radians at the largest moment.
@@ -102,13 +97,6 @@ impl TermGroup {
 }
 
 /// Prior standard deviation of the terms of each group, radians or metres ([`TermGroup::unit`]); 0 leaves a group out.
-///
-/// ```
-/// use poecal::robot::{Sizes, TermGroup};
-/// let mut sizes = Sizes::COMMON;
-/// sizes[TermGroup::Tilt] = 0.0;
-/// assert!(sizes[TermGroup::Sag] == 1e-3 && sizes != Sizes::NONE);
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sizes([f64; TermGroup::ALL.len()]);
 

@@ -10,16 +10,6 @@ use crate::lie::Pose;
 const LEAST_LEVER: f64 = 1e-2;
 
 /// Moments of the weights of a robot in any configuration, by the screws of its drawing.
-///
-/// ```
-/// use poecal::robot::{Gravity, Moments, Statics};
-/// let mut robot = poecal::simulate::elbow();
-/// robot.gravity = Some(Gravity::of_unit_weights(&robot, -nalgebra::Vector3::z()));
-/// let mut moments = Moments::default();
-/// Statics::new(&robot).unwrap().evaluate(&[0.0; 6], &mut moments);
-/// // Nothing hangs from a vertical axis.
-/// assert!(moments.of(0, 5).abs() < 1e-15);
-/// ```
 #[derive(Clone, Debug)]
 pub struct Statics<'a> {
     robot: &'a Robot,
@@ -218,4 +208,21 @@ fn longest_lever(
         at = next;
     }
     Some(lever + (place - at).norm())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::robot::tests::elbow;
+
+    #[test]
+    fn the_tip_hangs_from_the_shoulder_and_not_from_a_vertical_axis() {
+        let mut robot = elbow();
+        robot.gravity = Some(Gravity::of_unit_weights(&robot, -Vector3::z()));
+        let (statics, mut moments) = (Statics::new(&robot).unwrap(), Moments::default());
+        statics.evaluate(&[0.0; 6], &mut moments);
+        assert!(moments.of(0, 5).abs() < 1e-15);
+        // The tip at x = 0.834, the axis along y at x = 0.15.
+        assert!((moments.of(1, 5) * statics.levers_m()[1] - 0.684).abs() < 1e-14);
+    }
 }

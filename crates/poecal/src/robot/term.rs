@@ -20,13 +20,6 @@ use super::term_model::TermModel;
 
 /// A term of a joint's value, `θ ← θ + c b(q)` with a known function b of the configuration and a coefficient c (theory.md §3). A new term is
 /// one file with [`TermModel`], one variant here and its name.
-///
-/// ```
-/// use poecal::robot::{Situation, Term};
-/// let offset = Term::Offset.model();
-/// assert_eq!((offset.name().as_ref(), offset.basis(0, &Situation::of(&[0.7]))), ("offset", 1.0));
-/// assert_eq!("cos2".parse::<Term>().map(|term| term.to_string()), Ok("cos2".to_owned()));
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Term {
     /// Joint offset: 1.
@@ -159,13 +152,6 @@ impl JsonSchema for Term {
 }
 
 /// A term of a joint with its coefficient.
-///
-/// ```
-/// use poecal::robot::{JointTerm, Term};
-/// let mut robot = poecal::simulate::elbow();
-/// robot.terms.push(JointTerm { joint: 1, term: Term::Offset, coefficient: 0.02 });
-/// assert_eq!(robot.joint_values(&[0.0; 6])[1], 0.02);
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct JointTerm {
     /// Index of the joint.
@@ -174,4 +160,50 @@ pub struct JointTerm {
     pub term: Term,
     /// Its coefficient c, in [`TermModel::unit`].
     pub coefficient: f64,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::robot::Situation;
+    use crate::robot::tests::elbow;
+
+    #[test]
+    fn terms_are_parsed_from_their_names() {
+        for (name, term) in [
+            ("offset", Term::Offset),
+            ("ratio", Term::Ratio),
+            ("sin2", Term::Harmonic(Harmonic { order: 2, cosine: false })),
+            ("cos2", Term::Harmonic(Harmonic { order: 2, cosine: true })),
+            ("masses", Term::OwnWeight),
+            ("sag6", Term::Sag(Sag { weight: 5 })),
+            ("coupled4", Term::Coupling(Coupling { joint: 3 })),
+            ("factor1", Term::Factor(Factor { index: 0 })),
+            ("payload1", Term::Payload(Payload { index: 0 })),
+        ] {
+            assert_eq!((name.parse::<Term>(), term.to_string().as_str()), (Ok(term), name));
+        }
+    }
+
+    #[test]
+    fn terms_are_functions_of_the_configuration() {
+        let at = Situation { factors: &[21.5], ..Situation::of(&[0.7, 0.1, 0.2, 0.3]) };
+        for (name, expected) in [
+            ("offset", 1.0),
+            ("ratio", 0.7),
+            ("sin2", 1.4f64.sin()),
+            ("cos2", 1.4f64.cos()),
+            ("coupled4", 0.3),
+            ("factor1", 21.5),
+            // Without gravity nothing pulls.
+            ("masses", 0.0),
+            ("sag6", 0.0),
+            ("payload1", 0.0),
+        ] {
+            assert_eq!(name.parse::<Term>().unwrap().model().basis(0, &at), expected, "{name}");
+        }
+        let mut robot = elbow();
+        robot.terms.push(JointTerm { joint: 1, term: Term::Offset, coefficient: 0.02 });
+        assert_eq!(robot.joint_values(&[0.0; 6])[1], 0.02);
+    }
 }

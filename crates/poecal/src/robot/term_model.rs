@@ -7,12 +7,6 @@ use super::statics::Moments;
 use crate::unit::Unit;
 
 /// One configuration, as terms of joint values depend on it.
-///
-/// ```
-/// use poecal::robot::{Situation, Term};
-/// let at = Situation::of(&[0.7]);
-/// assert_eq!(Term::Ratio.model().basis(0, &at), 0.7);
-/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Situation<'a> {
     /// Values of all joints without terms, radians or metres.

@@ -13,18 +13,6 @@ use crate::robot::Robot;
 /// Finds, for each plane and each target that lay flush on it, the axis of the target that is nearest to the plane's normal by the model as
 /// it is: the pair of directions n (base) and m (target) with the largest `Σ nᵀ R m` over their rows. The plane's z is then up, or along
 /// the largest component of n if it is level (theory.md §6 (33a)).
-///
-/// ```
-/// use poecal::measurement::{Dataset, FlushMeasurement, Measurement};
-/// let robot = poecal::simulate::scara();
-/// let mut data = Dataset::new(robot.reading_names());
-/// let touch = Measurement::Flush(FlushMeasurement::default());
-/// data.push(&[0.0; 4], None, touch)?;
-/// poecal::start::settle_faces(&mut data, &robot);
-/// let Measurement::Flush(found) = data.observations[0].measurement else { unreachable!() };
-/// assert_eq!(found.normal.amax(), 1.0);
-/// # Ok::<(), poecal::Error>(())
-/// ```
 pub fn settle_faces(data: &mut Dataset, robot: &Robot) {
     let Some(sums) = turns_of_faces(data, robot) else { return };
     let normals: Vec<Vector3<f64>> = sums.iter().map(face_normal).collect();
@@ -89,4 +77,30 @@ fn face_normal(sum: &Matrix3<f64>) -> Vector3<f64> {
     let up = if n.z.abs() > 0.1 * n.norm() { n.z } else { n[n.iamax()] };
     let k = m.iamax();
     Vector3::ith(k, if (m[k] < 0.0) == (up < 0.0) { 1.0 } else { -1.0 })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::lie::Screw;
+    use crate::measurement::FlushMeasurement;
+    use crate::robot::Joint;
+
+    /// The target's x stays up while the joint turns.
+    #[test]
+    fn the_normal_of_a_face_is_the_axis_that_stays() {
+        let turning = Joint::revolute("turntable", Screw::revolute(&Vector3::z(), &Vector3::zeros()));
+        let home = Pose::from_xyz_rpy([0.8, 0.0, 0.7], [0.0, -std::f64::consts::FRAC_PI_2, 0.0]);
+        let robot = Robot::new("one_axis", vec![turning], home).unwrap();
+        let mut data = Dataset::new(robot.reading_names());
+        for turned in [0.0, 1.0, 2.0] {
+            let touch = Measurement::Flush(FlushMeasurement::default());
+            data.push(&[turned], None, touch).unwrap();
+        }
+        settle_faces(&mut data, &robot);
+        for row in &data.observations {
+            let Measurement::Flush(found) = row.measurement else { panic!("{row:?}") };
+            assert_eq!(found.normal, Vector3::x());
+        }
+    }
 }

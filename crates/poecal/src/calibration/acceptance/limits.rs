@@ -68,13 +68,6 @@ impl AcceptedModel {
 }
 
 /// The most that an error may be.
-///
-/// ```
-/// use poecal::calibration::{AcceptedStatistic, Limit};
-/// let limit: Limit = "max:0.5mm".parse()?;
-/// assert_eq!((limit.statistic, limit.most), (AcceptedStatistic::Max, 0.5e-3));
-/// # Ok::<(), poecal::Error>(())
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limit {
     /// What of the errors.
@@ -86,14 +79,6 @@ pub struct Limit {
 }
 
 /// Limits, and the model that they are for.
-///
-/// ```
-/// use poecal::calibration::{AcceptanceLimits, AcceptedModel};
-/// let accept: AcceptanceLimits = "0.2mm,max:0.5mm,0.05deg".parse()?;
-/// assert_eq!((accept.limits.len(), accept.model), (3, AcceptedModel::Corrected));
-/// assert!("0.2mm,rms:0.3mm".parse::<AcceptanceLimits>().is_err());
-/// # Ok::<(), poecal::Error>(())
-/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct AcceptanceLimits {
     /// At least one; no two of one statistic and unit.

@@ -47,13 +47,6 @@ impl Decision {
     }
 
     /// Of a limit and the bounds of what it is for; without an upper bound nothing is passed.
-    ///
-    /// ```
-    /// use poecal::calibration::Decision;
-    /// assert_eq!(Decision::of(0.2, 0.08, Some(0.11)), Decision::Pass);
-    /// assert_eq!(Decision::of(0.1, 0.08, Some(0.11)), Decision::NotShown);
-    /// assert_eq!(Decision::of(0.07, 0.08, None), Decision::Fail);
-    /// ```
     #[must_use]
     pub fn of(limit: f64, from: f64, to: Option<f64>) -> Self {
         if to.is_some_and(|to| to <= limit) {
@@ -116,17 +109,6 @@ pub struct AcceptedLimit {
 }
 
 /// Whether a calibration keeps the limits that were asked for.
-///
-/// ```
-/// use poecal::calibration::{AcceptanceLimits, CalibrationOptions, Decision, calibrate};
-/// use poecal::simulate::{Kind, Simulation, elbow};
-/// let made = Simulation { count: 100, ..Simulation::default() }.run(&elbow(), Kind::Point)?;
-/// let accept: AcceptanceLimits = "0.5mm,max:1mm".parse()?;
-/// let options = CalibrationOptions { accept: Some(accept), ..CalibrationOptions::default() };
-/// let acceptance = calibrate(&made.nominal, &made.data, &options)?.acceptance.expect("it was asked for");
-/// assert_eq!((acceptance.decision, acceptance.limits.len()), (Decision::Pass, 2));
-/// # Ok::<(), poecal::Error>(())
-/// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Acceptance {
     /// The worst decision of all limits.
@@ -165,5 +147,17 @@ impl AcceptedLimit {
             rows: counts[0],
             configurations: counts[1],
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Decision;
+
+    #[test]
+    fn a_limit_is_kept_above_the_bounds_and_exceeded_below() {
+        assert_eq!(Decision::of(0.2, 0.08, Some(0.11)), Decision::Pass);
+        assert_eq!(Decision::of(0.1, 0.08, Some(0.11)), Decision::NotShown);
+        assert_eq!(Decision::of(0.07, 0.08, None), Decision::Fail);
     }
 }

@@ -28,12 +28,6 @@ pub(super) fn weight_of_prior(configurations: usize) -> f64 {
 }
 
 /// Sizes that were tried.
-///
-/// ```
-/// use poecal::calibration::{Sizes, TriedSizes};
-/// let tried = TriedSizes { sizes: Sizes::COMMON, left_out: -0.1, score: -0.1 };
-/// assert_eq!(tried.left_out, tried.score);
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TriedSizes {
     /// The sizes.
@@ -45,11 +39,6 @@ pub struct TriedSizes {
 }
 
 /// Why a corrected model has terms of its sizes.
-///
-/// ```
-/// use poecal::calibration::SizesReason;
-/// assert_eq!(SizesReason::Given.words(), "the sizes were given");
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum SizesReason {

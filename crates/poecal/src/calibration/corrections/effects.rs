@@ -21,14 +21,6 @@ const VAGUE: f64 = 1e-3;
 const CONFUSED: f64 = 0.8;
 
 /// What one group of terms does at one joint.
-///
-/// ```
-/// use poecal::calibration::{JointEffect, TermGroup};
-/// let sag = JointEffect {
-///     joint: "joint2".into(), group: TermGroup::Sag, amplitude: 4e-4, sigma: 5e-5, told: 0.9, effect_m: 2e-4,
-/// };
-/// assert_eq!(sag.words(), "joint2 sags by up to 0.40 mrad under weight");
-/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct JointEffect {
     /// Name of the joint.
@@ -413,5 +405,23 @@ impl<'a> Gatherer<'a> {
             }
         }
         confused
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_effect_is_said_in_milliradians() {
+        let sag = JointEffect {
+            joint: "joint2".into(),
+            group: TermGroup::Sag,
+            amplitude: 4e-4,
+            sigma: 5e-5,
+            told: 0.9,
+            effect_m: 2e-4,
+        };
+        assert_eq!(sag.words(), "joint2 sags by up to 0.40 mrad under weight");
     }
 }

@@ -13,17 +13,6 @@ use crate::robot::{CorrectionModel, Robot, Sizes};
 use crate::uncertainty::Uncertainty;
 
 /// A fit of screws and terms: the robot that it found, with all that predicts rows.
-///
-/// ```
-/// use poecal::calibration::{CalibrationOptions, Sizes, calibrate, correct};
-/// use poecal::simulate::{Kind, Simulation, elbow};
-/// let made = Simulation::default().run(&elbow(), Kind::Pose)?;
-/// let options = CalibrationOptions::default();
-/// let calibration = calibrate(&made.nominal, &made.data, &options)?;
-/// let found = correct(&calibration, &made.data, options.gravity, Some(Sizes::COMMON), &options);
-/// assert_eq!(found.errors(&made.data, &calibration.held_out_rows).len(), calibration.held_out_rows.len());
-/// # Ok::<(), poecal::Error>(())
-/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Correction {
     /// The robot with its gives and terms, as in the model.

@@ -14,17 +14,6 @@ use crate::problem::Problem;
 use crate::solve::{LeastSquares, Normal};
 
 /// Leverage and studentised residual of these rows in a finished calibration (theory.md §6 (34d), (34e)).
-///
-/// ```
-/// use poecal::calibration::{CalibrationOptions, calibrate, row_influence};
-/// use poecal::simulate::{Kind, Simulation, elbow};
-/// let made = Simulation::default().run(&elbow(), Kind::Pose)?;
-/// let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default())?;
-/// let found = row_influence(&calibration, &made.data, &calibration.fit_rows);
-/// let sum: f64 = found.iter().map(|row| 6.0 * row.leverage).sum();
-/// assert!((sum - 30.0).abs() < 1e-3);
-/// # Ok::<(), poecal::Error>(())
-/// ```
 #[must_use]
 pub fn row_influence(calibration: &Calibration, data: &Dataset, rows: &[u32]) -> Vec<Influence> {
     if rows.is_empty() {

@@ -15,12 +15,6 @@ use crate::solve::Normal;
 const FAMILY: f64 = 1e-3;
 
 /// Judgement of one row.
-///
-/// ```
-/// use poecal::calibration::RowJudgement;
-/// let row = RowJudgement { weight: 1.0, suspected: false };
-/// assert!(!row.suspected);
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RowJudgement {
     /// Weight in the fit, 0 to 1; of a held-out row the weight that it would have had (1 without a robust loss).
@@ -30,16 +24,6 @@ pub struct RowJudgement {
 }
 
 /// Treatment of outliers, and the judgement of each row.
-///
-/// ```
-/// use poecal::calibration::{CalibrationOptions, calibrate};
-/// use poecal::simulate::{Kind, Simulation, elbow};
-/// let made = Simulation::default().run(&elbow(), Kind::Pose)?;
-/// let robustness = calibrate(&made.nominal, &made.data, &CalibrationOptions::default())?.robustness;
-/// assert_eq!(robustness.loss, None);
-/// assert_eq!(robustness.suspects().count(), 0);
-/// # Ok::<(), poecal::Error>(())
-/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Robustness {
     /// Loss of the fit; `None`: least squares.
