@@ -63,13 +63,6 @@ const PIECES: [&str; 22] = [
 ];
 
 /// Makes variations of seeds: bytes changed, put in, left out, doubled; words and numbers replaced; parts of other seeds put in.
-///
-/// ```
-/// let seeds = vec![b"x[mm],y[mm]\n1,2\n".to_vec()];
-/// let mut some = poecal_fuzz::Mutator::new(7, &seeds, &["deg"]);
-/// let mut others = poecal_fuzz::Mutator::new(7, &seeds, &["deg"]);
-/// assert_eq!(some.variation(), others.variation());
-/// ```
 #[derive(Debug)]
 pub struct Mutator<'a> {
     generator: ChaCha8Rng,

@@ -19,13 +19,6 @@ const ROWS: usize = 150;
 const JUDGING: usize = 200;
 
 /// What gross errors did to many simulated sessions.
-///
-/// ```
-/// use poecal_lou2009::{ReproductionOptions, breakdown};
-/// let found = breakdown(&ReproductionOptions { trials: 1, ..ReproductionOptions::default() })?;
-/// assert_eq!((found.sessions, found.entries.len()), (1, 4 * 11));
-/// # Ok::<(), poecal::Error>(())
-/// ```
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Breakdown {
     /// Sessions for each loss and share: the robots in turn, by poses and by points.

@@ -32,13 +32,6 @@ impl<'a> Rest<'a> {
 }
 
 /// The request in these bytes; `None` if they are none.
-///
-/// ```
-/// use poecal_wasm::{Request, decode};
-/// let none_of_each = [0; 12];
-/// assert_eq!(decode(&none_of_each), Some(Request::default()));
-/// assert_eq!(decode(&none_of_each[1..]), None);
-/// ```
 #[must_use]
 pub fn decode(bytes: &[u8]) -> Option<Request> {
     let mut rest = Rest(bytes);
@@ -64,11 +57,6 @@ fn block(out: &mut Vec<u8>, bytes: &[u8]) {
 }
 
 /// An answer as bytes.
-///
-/// ```
-/// use poecal_wasm::{Answer, encode};
-/// assert_eq!(encode(&Answer::default()), [0; 20]);
-/// ```
 #[must_use]
 pub fn encode(answer: &Answer) -> Vec<u8> {
     let mut out = Vec::new();

@@ -47,12 +47,6 @@ impl Pose {
     }
 
     /// The pose of which `number` gives each row's three parts of directions and its part of the translation (metres).
-    ///
-    /// ```
-    /// use poecal_arm::lie::Pose;
-    /// let pose = Pose::from_rows(|row, column| if row == column { 1.0 } else { 0.0 });
-    /// assert_eq!(pose, Pose::identity());
-    /// ```
     pub fn from_rows(number: impl Fn(usize, usize) -> f64) -> Self {
         let translation = Vector3::from_fn(|row, _| number(row, 3));
         Pose::new(Matrix3::from_fn(number), translation)
@@ -83,12 +77,6 @@ impl Pose {
     }
 
     /// Distance of the origins of two poses (m), and the angle between their axes (rad).
-    ///
-    /// ```
-    /// use poecal_arm::lie::Pose;
-    /// let moved = Pose::from_translation([0.0, 0.3, 0.4].into());
-    /// assert_eq!(Pose::identity().apart(&moved), (0.5, 0.0));
-    /// ```
     #[must_use]
     pub fn apart(&self, other: &Self) -> (f64, f64) {
         let turn = rotation::log(&(self.rotation.transpose() * other.rotation));

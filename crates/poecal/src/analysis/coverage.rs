@@ -10,13 +10,6 @@ use crate::threads;
 const CHUNK: usize = 8192;
 
 /// Sampled and allowed values of a joint (radians; metres of a prismatic joint).
-///
-/// ```
-/// use poecal::{analysis::JointCoverage, robot::JointKind};
-/// let joint = "elbow".to_owned();
-/// let half = JointCoverage { joint, sampled_min: 0.0, sampled_max: 1.5, stragglers: 0.0, limit_min: Some(-1.5), limit_max: Some(1.5) };
-/// assert_eq!(half.share(JointKind::Revolute), Some(0.5));
-/// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct JointCoverage {
     /// The joint.

@@ -128,16 +128,6 @@ pub fn identify(robot: &Robot, readings: &[f64], planned: &PlannedSession) -> Re
 ///
 /// # Errors
 /// As [`identify`].
-///
-/// ```
-/// use poecal::analysis::{PlannedSession, identify_touching};
-/// use poecal::simulate::{Kind, Simulation, elbow};
-/// let made = Simulation { count: 40, ..Simulation::default() }.run(&elbow(), Kind::Socket)?;
-/// let planned = PlannedSession { kind: Kind::Socket, ..PlannedSession::default() };
-/// let found = identify_touching(&elbow(), &made.data, &planned)?;
-/// assert_eq!(found.identifiability.rank, 26);
-/// # Ok::<(), poecal::Error>(())
-/// ```
 pub fn identify_touching(robot: &Robot, data: &Dataset, planned: &PlannedSession) -> Result<Foresight> {
     check_unknowns(robot, data.station_count() + data.targets.len())?;
     let packed = Packed::of(robot, data);

@@ -19,18 +19,6 @@ const STEPS: usize = 30;
 /// in random configurations, theory.md §8 (38d), from the result of [`explain`] with both ends free. It is what a controller gains that takes
 /// offsets, a base and a tool, and nothing else. `configurations` are those in which what remains is stated.
 ///
-/// ```
-/// use poecal::offsets::{End, OffsetOptions, explain, nearest_at_tip};
-/// use poecal::{lie::Pose, simulate::elbow};
-/// let mut actual = elbow();
-/// let tilt = Pose::from_xyz_rpy([0.0, 0.001, 0.0], [0.01, 0.0, 0.0]);
-/// actual.joints[2].screw = actual.joints[2].screw.transformed(&tilt);
-/// let nearest = nearest_at_tip(&elbow(), &actual, 1000, 1)?;
-/// let free = OffsetOptions { base: End::Free, tip: End::Free, ..OffsetOptions::default() };
-/// assert!(nearest.with_offsets.rms_m < explain(&elbow(), &actual, &free)?.with_offsets.rms_m);
-/// # Ok::<(), poecal::Error>(())
-/// ```
-///
 /// # Errors
 /// As [`explain`].
 pub fn nearest_at_tip(

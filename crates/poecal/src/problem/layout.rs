@@ -7,12 +7,6 @@ use nalgebra::Vector3;
 
 /// The free parameters and the place of each of their unknowns in a step: first those that only translate a target, whose rotation
 /// rows are zero, then the others. A step is in metres: radians are multiplied by the length L (theory.md §6, *Physical scaling*).
-///
-/// ```
-/// use poecal::parameters::{Parameter, TargetFrame};
-/// let layout = poecal::problem::Layout::new(vec![Parameter::TargetFrame(TargetFrame::new(0))], 0.5);
-/// assert_eq!((layout.dim(), layout.shifts()), (6, 3));
-/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Layout {
     parameters: Vec<Parameter>,

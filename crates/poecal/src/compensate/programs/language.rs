@@ -5,12 +5,6 @@ use std::path::Path;
 use serde::Serialize;
 
 /// A language of robot programs.
-///
-/// ```
-/// use poecal::compensate::Language;
-/// assert_eq!(Language::of("cell/weld.SRC"), Some(Language::Krl));
-/// assert_eq!(Language::of("rows.csv"), None);
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Language {
