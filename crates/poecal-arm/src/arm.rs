@@ -238,3 +238,17 @@ impl Arm {
         crate::small::determinant(&mut rows)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::Vector3;
+
+    #[test]
+    fn an_arm_of_one_joint_is_singular_and_bent_no_way() {
+        let axis = Screw::revolute(&Vector3::z(), &Vector3::zeros());
+        let arm = Arm::new(&[axis], &Pose::identity()).unwrap();
+        assert!(arm.smallest_singular_value(&[0.0]) < 1e-12);
+        assert_eq!(arm.handedness(&[0.0]), 0.0);
+    }
+}

@@ -62,3 +62,27 @@ pub fn wrapped(angle_rad: f64) -> f64 {
     let angle = angle_rad - turns * TAU;
     if angle <= -core::f64::consts::PI { angle + TAU } else { angle }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn cosines_and_sines_are_those_of_the_library() {
+        for k in -4000..4000 {
+            let angle = 0.37 * f64::from(k);
+            let (cosine, sine) = cosine_and_sine(angle);
+            // A unit in the last place of numbers up to 1.
+            assert!(
+                (cosine - angle.cos()).abs() < 2.3e-16 && (sine - angle.sin()).abs() < 2.3e-16,
+                "{angle}"
+            );
+        }
+    }
+
+    #[test]
+    fn angles_are_wrapped_to_half_a_turn() {
+        assert!((wrapped(7.0) - (7.0 - TAU)).abs() < 1e-15);
+        assert_eq!(wrapped(-core::f64::consts::PI), core::f64::consts::PI);
+    }
+}

@@ -181,3 +181,17 @@ impl<'a> Mutator<'a> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::Mutator;
+
+    #[test]
+    fn variations_are_the_same_in_every_run() {
+        let seeds = [b"x[mm],y[mm]\n1,2\n".to_vec()];
+        let (mut some, mut others) = (Mutator::new(7, &seeds, &["deg"]), Mutator::new(7, &seeds, &["deg"]));
+        for _ in 0..20 {
+            assert_eq!(some.variation(), others.variation());
+        }
+    }
+}

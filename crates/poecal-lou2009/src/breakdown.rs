@@ -142,3 +142,14 @@ fn entry(word: &str, share_percent: u32, outcomes: &[&Outcome]) -> BreakdownEntr
         other_rows_suspected: share(sum(|o| o.others_suspected), sum(|o| o.others)).unwrap_or(0.0),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_loss_meets_every_share_of_gross_errors() {
+        let found = breakdown(&ReproductionOptions { trials: 1, ..ReproductionOptions::default() }).unwrap();
+        assert_eq!((found.sessions, found.entries.len()), (1, 4 * 11));
+    }
+}

@@ -182,3 +182,14 @@ fn note(formulation: Formulation, method: Method) -> Option<&'static str> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_usual_formulation_is_that_of_the_library() {
+        let usual = formulated(Formulation::Adjoint, Residual::Tool, Method::LevenbergMarquardt);
+        assert_eq!(usual, calibration::Formulation::default());
+    }
+}

@@ -224,3 +224,31 @@ pub fn singular_values(matrix: &DMatrix<f64>) -> (Vec<f64>, usize) {
     let rank = values.iter().filter(|&&value| value > floor).count();
     (values, rank)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::tables;
+
+    #[test]
+    fn a_robot_without_errors_stays() {
+        let nominal = tables::nominal();
+        let same = AdjointErrors::none(&nominal).apply(&nominal);
+        for (same, joint) in same.joints.iter().zip(&nominal.joints) {
+            assert!((same.screw.twist().to_vector() - joint.screw.twist().to_vector()).norm() < 1e-15);
+        }
+    }
+
+    #[test]
+    fn a_motion_along_an_axis_does_not_move_it() {
+        let screw = tables::nominal().joints[0].screw;
+        let moved = screw_by_adjoint_error(&screw, &Twist::zero()) * screw.twist().to_vector();
+        assert!(moved.norm() < 1e-15);
+    }
+
+    #[test]
+    fn equal_columns_have_rank_1() {
+        let (values, rank) = singular_values(&DMatrix::from_row_slice(2, 2, &[3.0, 3.0, 4.0, 4.0]));
+        assert!((values[0] - 50.0_f64.sqrt()).abs() < 1e-14 && rank == 1);
+    }
+}

@@ -72,3 +72,17 @@ pub fn encode(answer: &Answer) -> Vec<u8> {
     answer.removed.iter().for_each(|path| block(&mut out, path.as_bytes()));
     out
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_answer_is_its_lengths_and_bytes() {
+        assert_eq!(encode(&Answer::default()), [0; 20]);
+        let mut answer = Answer { removed: vec!["a".to_owned()], ..Answer::default() };
+        answer.said.code = 2;
+        let expected = [[2, 0, 0, 0], [0; 4], [0; 4], [0; 4], [1, 0, 0, 0], [1, 0, 0, 0]].concat();
+        assert_eq!(encode(&answer), [expected.as_slice(), b"a"].concat());
+    }
+}

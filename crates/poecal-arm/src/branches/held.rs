@@ -186,3 +186,22 @@ impl HeldBranches {
             .find_map(|by| find(start + by).or_else(|| find(start - by)))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::Vector3;
+
+    #[test]
+    fn branches_are_turned_by_whole_turns_to_where_they_are_near() {
+        let (y, z) = (Vector3::y(), Vector3::z());
+        let axes = [z, y, z, -y, z, y, z];
+        let heights = [0.0, 0.36, 0.36, 0.78, 0.78, 1.18, 1.18];
+        let screws: [Screw; 7] = core::array::from_fn(|k| Screw::revolute(&axes[k], &(heights[k] * z)));
+        let arm = Arm::new(&screws, &Pose::from_translation(1.3 * z)).unwrap();
+        let q = [3.5, 0.5, 0.2, 1.1, -0.4, 0.8, 0.1];
+        let held = HeldBranches::new(&arm, None).unwrap();
+        let found = held.within_limits(&arm.forward_kinematics(&q), q[2], &q);
+        assert!((found.as_slice()[0][0] - 3.5).abs() < 1e-9);
+    }
+}

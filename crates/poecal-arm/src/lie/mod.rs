@@ -38,3 +38,23 @@ pub fn by_turn(matrix: &Matrix3<f64>, scale: f64) -> Matrix3x6<f64> {
     derivative.fixed_view_mut::<3, 3>(0, 3).copy_from(&(matrix * scale));
     derivative
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::Vector6;
+
+    #[test]
+    fn hats_are_cross_products() {
+        let (a, b) = (Vector3::new(1.0, 2.0, 3.0), Vector3::new(-0.5, 0.1, 2.0));
+        assert_eq!(hat(&a) * b, a.cross(&b));
+    }
+
+    #[test]
+    fn twists_and_turns_move_a_point() {
+        let twist = Vector6::new(0.0, 0.0, 0.1, 0.0, 0.0, 2.0);
+        assert_eq!(by_twist(&Vector3::x()) * twist, Vector3::new(0.0, 2.0, 0.1));
+        let twist = Vector6::new(1.0, 1.0, 1.0, 0.0, 0.0, 2.0);
+        assert_eq!(by_turn(&Matrix3::identity(), 3.0) * twist, Vector3::new(0.0, 0.0, 6.0));
+    }
+}

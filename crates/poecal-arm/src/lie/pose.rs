@@ -173,4 +173,10 @@ mod tests {
         assert!((left.rotation - right.rotation).norm() < 1e-14);
         assert!((pose.adjoint() * twist.to_vector() - pose.transform(&twist).to_vector()).norm() < 1e-15);
     }
+
+    #[test]
+    fn poses_are_apart_by_a_distance_and_an_angle() {
+        let moved = Pose::from_translation(Vector3::new(0.0, 0.3, 0.4));
+        assert_eq!(Pose::identity().apart(&moved), (0.5, 0.0));
+    }
 }

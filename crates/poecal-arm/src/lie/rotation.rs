@@ -162,4 +162,18 @@ mod tests {
         let r = shortest_arc(&a, &-a);
         assert!((r * a + a).norm() < 1e-14 && (r.determinant() - 1.0).abs() < 1e-14);
     }
+
+    #[test]
+    fn a_quarter_turn_about_z_takes_x_to_y() {
+        let half = (0.5 * FRAC_PI_2).sin_cos();
+        for r in [
+            exp(&Vector3::new(0.0, 0.0, FRAC_PI_2)),
+            shortest_arc(&Vector3::x(), &Vector3::y()),
+            // Twice as long as a unit quaternion.
+            from_quaternion_xyzw(&Vector4::new(0.0, 0.0, 2.0 * half.0, 2.0 * half.1)),
+        ] {
+            assert!((r * Vector3::x() - Vector3::y()).norm() < 1e-15);
+            assert!((r * Vector3::z() - Vector3::z()).norm() < 1e-15);
+        }
+    }
 }

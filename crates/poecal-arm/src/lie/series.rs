@@ -152,4 +152,12 @@ mod tests {
             assert!(jump < 1e-12);
         }
     }
+
+    #[test]
+    fn series_begin_with_their_first_coefficients() {
+        assert_eq!((sinc(0.0), cosc(0.0)), (1.0, 0.5));
+        assert!((sincc(0.0) - 1.0 / 6.0).abs() < 1e-16 && (cotc(0.0) - 1.0 / 12.0).abs() < 1e-16);
+        assert_eq!(left_jacobian(0.0), (1.0 / 24.0, 1.0 / 120.0));
+        assert_eq!(inverse_left_jacobian(0.0), (1.0 / 12.0, -1.0 / 720.0));
+    }
 }

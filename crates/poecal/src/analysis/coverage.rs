@@ -142,3 +142,23 @@ pub(crate) fn inside(robot: &Robot, coverage: &[JointCoverage], readings: &[f64]
         coverage.contains(joint.kind, joint.reading.value(readings[index]))
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_joint_that_moved_half_its_range_is_sampled_by_half() {
+        let mut half = JointCoverage {
+            sampled_max: 1.5,
+            limit_min: Some(-1.5),
+            limit_max: Some(1.5),
+            ..JointCoverage::of_give("elbow")
+        };
+        assert_eq!(half.share(JointKind::Revolute), Some(0.5));
+        // Without limits a joint turns once; a slide has no range.
+        (half.limit_min, half.limit_max) = (None, None);
+        assert_eq!(half.share(JointKind::Revolute), Some(1.5 / std::f64::consts::TAU));
+        assert_eq!(half.share(JointKind::Prismatic), None);
+    }
+}

@@ -40,3 +40,16 @@ impl Observability {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::Observability;
+
+    #[test]
+    fn indices_are_means_and_ratios_of_singular_values() {
+        let found = Observability::new(&[8.0, 4.0, 2.0], 4);
+        assert_eq!((found.o1, found.o2, found.o3), (Some(2.0), Some(0.25), Some(2.0)));
+        assert_eq!((found.o4, found.o5), (Some(0.5), Some(1.0 / 0.875)));
+        assert_eq!(Observability::new(&[8.0, 0.0], 4), Observability::default());
+    }
+}

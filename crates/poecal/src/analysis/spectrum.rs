@@ -93,3 +93,17 @@ impl Spectrum {
 pub(super) fn rounding(values: &[f64]) -> f64 {
     values.last().copied().unwrap_or(0.0).max(0.0) * ROUNDING * ROUNDING
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn undetermined_directions_have_no_variance() {
+        let vectors = DMatrix::identity(2, 2);
+        let found = Spectrum { values: vec![0.0, 4.0], vectors, undetermined: 1, variance: 1.0 };
+        assert_eq!(found.determined(), [false, true]);
+        assert_eq!(found.variance_along(&[0.0, 1.0]), Some(0.25));
+        assert_eq!(found.variance_along(&[1.0, 1.0]), None);
+    }
+}

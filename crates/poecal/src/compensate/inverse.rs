@@ -122,3 +122,22 @@ impl Inverse {
         all
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::Inverse;
+    use crate::simulate::elbow;
+
+    #[test]
+    fn the_nearest_configuration_of_each_pose_is_found() {
+        let robot = elbow();
+        let inverse = Inverse::new(&robot, &[]).unwrap();
+        let configurations = [[0.1, 0.2, 0.3, 0.4, 0.5, 0.6], [0.3; 6], [0.4; 6]];
+        let targets = configurations.map(|q| robot.forward_kinematics(&q));
+        let found = inverse.of_many(&targets, |inverse, _, target| inverse.nearest(target, &[0.2; 6], true));
+        assert_eq!(found.len(), 3);
+        for (q, found) in configurations.iter().zip(found) {
+            assert!(q.iter().zip(found.unwrap()).all(|(q, found)| (q - found).abs() < 1e-9));
+        }
+    }
+}

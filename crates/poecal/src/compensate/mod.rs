@@ -234,3 +234,28 @@ pub const TOGETHER: usize = 256;
 const NOTHING: f64 = 1e-11;
 /// Correction of a joint (rad, m) that is none of a robot like its drawing: another branch.
 const FAR: f64 = 0.6;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::robot::{JointTerm, Term};
+    use crate::simulate::elbow;
+
+    #[test]
+    fn an_offset_is_taken_off_the_reading() {
+        let nominal = elbow();
+        let mut actual = nominal.clone();
+        actual.terms.push(JointTerm { joint: 1, term: Term::Offset, coefficient: 0.01 });
+        let mut compensation = Compensation::new(&nominal, &actual, &[]).unwrap();
+        let found = compensation.joints(&[0.1, 0.2, 0.3, 0.4, 0.5, 0.6]);
+        assert!((found.readings[1] - 0.19).abs() < 1e-12 && found.is_reached());
+    }
+
+    #[test]
+    fn a_robot_that_is_as_drawn_is_not_moved() {
+        let mut compensation = Compensation::new(&elbow(), &elbow(), &[]).unwrap();
+        assert_eq!(compensation.joints(&[0.1; 6]).moved_m, 0.0);
+        let moved = compensation.of_many(&[0.1; 12], |_, it| Ok::<_, Error>(vec![it.moved_m])).unwrap();
+        assert_eq!(moved, [0.0, 0.0]);
+    }
+}

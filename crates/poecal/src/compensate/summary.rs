@@ -212,3 +212,26 @@ impl Summary {
         out
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_larger_value_keeps_its_line() {
+        let mut largest = Largest::default();
+        largest.include(2.0, 7);
+        largest.include(1.0, 8);
+        assert_eq!((largest.value, largest.line), (2.0, 7));
+    }
+
+    #[test]
+    fn rows_are_counted() {
+        let robot = crate::simulate::elbow();
+        let mut compensation = Compensation::new(&robot, &robot, &[]).unwrap();
+        let mut summary = Summary::new(&compensation);
+        let meant = [0.1; 6];
+        summary.include(2, &meant, &compensation.joints(&meant));
+        assert_eq!((summary.rows, summary.mean_moved_m()), (1, 0.0));
+    }
+}

@@ -253,3 +253,18 @@ pub fn sample_rows(rows: &[u32], count: usize) -> Vec<u32> {
         })
         .collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::sample_rows;
+
+    #[test]
+    fn samples_are_spread_and_not_periodic() {
+        let rows: Vec<u32> = (0..900).collect();
+        let sample = sample_rows(&rows, 60);
+        assert_eq!(sample.len(), 60);
+        assert!((0..3).all(|target| sample.iter().any(|row| row % 3 == target)));
+        let most = sample_rows(&rows, 800);
+        assert!(most.len() == 800 && most.windows(2).all(|pair| pair[0] < pair[1]));
+    }
+}

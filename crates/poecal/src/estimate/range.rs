@@ -78,3 +78,14 @@ impl Range {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_zero_moves_what_is_seen_along_the_line_of_sight() {
+        let target = Pose::from_translation(Vector3::new(0.0, 2.0, 0.0));
+        assert_eq!(Range { zero_m: 0.1, scale: 0.0 }.seen(&target).translation.y, 2.1);
+    }
+}

@@ -143,3 +143,20 @@ impl TipFit<'_> {
         Ok(Normal::new(&gram, gradient, &residuals))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::simulate::elbow;
+
+    #[test]
+    fn the_tip_comes_nearer_than_by_offsets_that_explain_the_screws() {
+        let mut actual = elbow();
+        let tilt = Pose::from_xyz_rpy([0.0, 0.001, 0.0], [0.01, 0.0, 0.0]);
+        actual.joints[2].screw = actual.joints[2].screw.transformed(&tilt);
+        let nearest = nearest_at_tip(&elbow(), &actual, 1000, 1).unwrap();
+        let free = OffsetOptions { base: End::Free, tip: End::Free, ..OffsetOptions::default() };
+        let explained = explain(&elbow(), &actual, &free).unwrap();
+        assert!(nearest.with_offsets.rms_m < explained.with_offsets.rms_m);
+    }
+}

@@ -178,3 +178,15 @@ impl Layout {
         moved
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::parameters::TargetFrame;
+
+    #[test]
+    fn a_target_has_three_shifts_among_six_unknowns() {
+        let layout = Layout::new(vec![Parameter::TargetFrame(TargetFrame::new(0))], 0.5);
+        assert_eq!((layout.dim(), layout.shifts()), (6, 3));
+    }
+}

@@ -50,3 +50,41 @@ impl<'a> Refit<'a> {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::estimate::{Packed, Session};
+    use crate::lie::{Pose, Screw};
+    use crate::measurement::{Dataset, Noise, PointMeasurement};
+    use crate::parameters::{Parameter, TargetPlace};
+    use crate::robot::{Joint, Robot};
+    use nalgebra::Vector3;
+
+    #[test]
+    fn fits_of_all_trials_are_what_each_is_alone() {
+        let joint = Joint::revolute("a", Screw::revolute(&Vector3::y(), &Vector3::x()));
+        let home = Pose::from_translation(Vector3::new(0.3, 0.2, 0.1));
+        let robot = Robot::new("r", vec![joint], home).unwrap();
+        let place = Vector3::new(0.01, 0.0, 0.0);
+        let seen = |reading, place| {
+            let position = robot.forward_kinematics(&[reading]).act(&place);
+            Measurement::Point(PointMeasurement { position })
+        };
+        let mut data = Dataset::new(robot.reading_names());
+        for reading in [0.0, 1.0, 2.0] {
+            data.push(&[reading], None, seen(reading, place)).unwrap();
+        }
+        let packed = Packed::new(&robot, data.all_readings(), 1);
+        let free = vec![Parameter::TargetPlace(TargetPlace { target: 0 })];
+        let session = Session::new(&robot, &data, &packed, false);
+        let problem = Problem::new(session, vec![0, 1, 2], free, Noise::new(1e-4, 1e-4));
+        let start = Estimate::new(&robot, vec![robot.home], Pose::identity());
+
+        let mut refit = Refit::new(problem, start, Options::default());
+        let others = [0.0, 1.0, 2.0].map(|reading| seen(reading, 2.0 * place));
+        let (found, _, _) = refit.fit(&others);
+        assert!((found.base_from_target[0].translation.x - 0.32).abs() < 1e-12);
+        assert_eq!(refit.fit_all(&[others.to_vec()], |found, _, _| found), [found]);
+    }
+}

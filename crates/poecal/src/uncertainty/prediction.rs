@@ -95,3 +95,26 @@ impl Quantile {
         bound(covariance) * growth.sqrt()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bounds_are_those_of_chi_square() {
+        let quantiles = ByQuantity::from_fn(|_| Quantile::KNOWN);
+        let position = Matrix3::identity() * 1e-8;
+        let error = PredictedError { position, rotation: Matrix3::zeros(), quantiles };
+        assert!((error.sigma_position_m() - 3f64.sqrt() * 1e-4).abs() < 1e-15);
+        // Of three equal components, the distance is below 2.7955 standard deviations in 95 % of all cases.
+        assert!((error.bound_position_m() - 2.7955e-4).abs() < 1e-6);
+    }
+
+    #[test]
+    fn bounds_of_few_residuals_are_those_of_f() {
+        let covariance = Matrix3::identity();
+        // F of 3 and 9 degrees of freedom is 3.863 at 95 %, χ² of 3 over 3 is 2.605.
+        let ratio = Quantile::new(9.0).bound(&covariance) / Quantile::KNOWN.bound(&covariance);
+        assert!((ratio - (3.863f64 / 2.605).sqrt()).abs() < 1e-3);
+    }
+}

@@ -53,3 +53,14 @@ impl Language {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::Language;
+
+    #[test]
+    fn the_end_of_a_name_tells_the_language() {
+        assert_eq!(Language::of("cell/weld.SRC"), Some(Language::Krl));
+        assert_eq!(Language::of("rows.csv"), None);
+    }
+}

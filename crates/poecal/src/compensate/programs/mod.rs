@@ -122,3 +122,18 @@ fn parse(language: Language, text: &[u8], given: &Given, axes: &Axes) -> Result<
         Language::Fanuc => Ok(fanuc::parse(text, given)),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_robot_that_is_as_drawn_leaves_every_byte() {
+        let robot = crate::simulate::elbow();
+        let options = ProgramOptions::of(Language::UrScript);
+        let program = b"movej([0, 0, 0, 0, 0.5, 0])\n";
+        let (text, summary) = compensate_program(program, (&robot, &robot), &[], &options).unwrap();
+        assert!(summary.is_whole() && summary.corrected == 1);
+        assert_eq!(text, program);
+    }
+}
