@@ -195,13 +195,6 @@ fn first<const N: usize>(q: &[f64]) -> [f64; N] {
 
 impl Arm {
     /// The smallest singular value of the Jacobian at joint values, lengths over [`Arm::reach_m`]: 0 at singularities.
-    ///
-    /// ```
-    /// use nalgebra::Vector3;
-    /// use poecal_arm::{Arm, lie::{Pose, Screw}};
-    /// let arm = Arm::new(&[Screw::revolute(&Vector3::z(), &Vector3::zeros())], &Pose::identity()).unwrap();
-    /// assert!(arm.smallest_singular_value(&[0.0]) < 1e-12);
-    /// ```
     #[must_use]
     pub fn smallest_singular_value(&self, q: &[f64]) -> f64 {
         let placed = self.placed(q);
@@ -221,13 +214,6 @@ impl Arm {
 impl Arm {
     /// How six joints are bent: the sign of the Jacobian's determinant, which changes where the arm passes through a singularity; 0 of other
     /// numbers of joints.
-    ///
-    /// ```
-    /// use nalgebra::Vector3;
-    /// use poecal_arm::{Arm, lie::{Pose, Screw}};
-    /// let arm = Arm::new(&[Screw::revolute(&Vector3::z(), &Vector3::zeros())], &Pose::identity()).unwrap();
-    /// assert_eq!(arm.handedness(&[0.0]), 0.0);
-    /// ```
     #[must_use]
     pub fn handedness(&self, q: &[f64]) -> f64 {
         if self.joints() != 6 {
@@ -250,5 +236,19 @@ impl Arm {
             }
         }
         crate::small::determinant(&mut rows)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::Vector3;
+
+    #[test]
+    fn an_arm_of_one_joint_is_singular_and_bent_no_way() {
+        let axis = Screw::revolute(&Vector3::z(), &Vector3::zeros());
+        let arm = Arm::new(&[axis], &Pose::identity()).unwrap();
+        assert!(arm.smallest_singular_value(&[0.0]) < 1e-12);
+        assert_eq!(arm.handedness(&[0.0]), 0.0);
     }
 }

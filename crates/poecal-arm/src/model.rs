@@ -9,17 +9,6 @@ use crate::placed::MOST_JOINTS;
 
 /// A serial arm as calibration finds it: `base_from_tip(q) = exp(ξ₁θ₁(q)) … exp(ξₘθₘ(q)) M` with n readings q and joint values θ that are
 /// functions of them ([`JointValue`]). Joints that no reading turns are places where links give.
-///
-/// ```
-/// use nalgebra::Vector3;
-/// use poecal_arm::{Arm, Joint, JointValue, Model, lie::{Pose, Screw}};
-/// let screw = Screw::revolute(&Vector3::z(), &Vector3::zeros());
-/// // A joint whose encoder is zeroed 0.1 rad off.
-/// let value = JointValue { constant: 0.1, ..JointValue::of(0) };
-/// let model = Model { joints: vec![Joint { screw, value }], ..Model::new(1, &Pose::from_translation(Vector3::x())) };
-/// let tip = Arm::of(&model).unwrap().forward_kinematics(&[0.2]).translation;
-/// assert!((tip - Vector3::new(0.3_f64.cos(), 0.3_f64.sin(), 0.0)).norm() < 1e-15);
-/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Model {
     /// Number of readings n.
@@ -52,13 +41,6 @@ impl Model {
 }
 
 /// A joint and its value.
-///
-/// ```
-/// use nalgebra::Vector3;
-/// use poecal_arm::{Joint, JointValue, lie::Screw};
-/// let slide = Joint { screw: Screw::prismatic(&Vector3::x()), value: JointValue::of(2) };
-/// assert!(slide.screw.is_prismatic());
-/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Joint {
     /// Its screw in the base where all joint values are 0.
@@ -68,12 +50,6 @@ pub struct Joint {
 }
 
 /// A joint's value (rad, m) as a function of the readings: `θ = c + Σ fᵢ qᵢ + Σ waves + moments`.
-///
-/// ```
-/// use poecal_arm::JointValue;
-/// let turned = JointValue::of(3);
-/// assert_eq!((turned.constant, &turned.linear[..]), (0.0, &[(3, 1.0)][..]));
-/// ```
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct JointValue {
     /// What it has where all readings are 0.
@@ -102,11 +78,6 @@ impl JointValue {
 }
 
 /// A periodic part of a joint's value, `a cos kφ + b sin kφ` with `φ = f q + φ₀`.
-///
-/// ```
-/// let wave = poecal_arm::Wave { reading: 0, factor: 1.0, offset: 0.0, order: 2.0, cosine: 1e-4, sine: 0.0 };
-/// assert_eq!(wave.order, 2.0);
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Wave {
     /// Index of the reading q.
@@ -125,12 +96,6 @@ pub struct Wave {
 
 /// What a joint gives under weights: `Σ z·((p - o) × ĝ)` with the axis z through o, where weights at p are counted by what they turn the joint
 /// per metre of lever; of a prismatic joint `Σ z·ĝ`. All places are those of the drawing.
-///
-/// ```
-/// use nalgebra::Vector3;
-/// let pull = poecal_arm::Pull { after: 1, slides: false, direction: Vector3::y(), place: Vector3::zeros(), weights: vec![] };
-/// assert!(pull.weights.is_empty());
-/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pull {
     /// Number of the drawing's joints before it.
@@ -146,11 +111,6 @@ pub struct Pull {
 }
 
 /// A weight: what it turns the joint for each metre of lever (of a prismatic joint, what it slides it), and where it is.
-///
-/// ```
-/// let weight = poecal_arm::PulledWeight { after: 6, size: 1e-4, place: nalgebra::Vector3::x() };
-/// assert_eq!(weight.after, 6);
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PulledWeight {
     /// Number of the drawing's joints that carry it.
@@ -162,13 +122,6 @@ pub struct PulledWeight {
 }
 
 /// A joint of the drawing, whose value is `f q + c`.
-///
-/// ```
-/// use nalgebra::Vector3;
-/// use poecal_arm::{Drawn, lie::Screw};
-/// let drawn = Drawn { screw: Screw::revolute(&Vector3::z(), &Vector3::zeros()), reading: 0, factor: 1.0, constant: 0.0 };
-/// assert_eq!(drawn.factor, 1.0);
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Drawn {
     /// Its screw in the base at zero.

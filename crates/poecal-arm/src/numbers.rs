@@ -22,16 +22,6 @@ impl Model {
     /// order, cosine, sine) each, and the number of its weights, before them, if there are any, (drawn joints before it, 1 if it slides,
     /// direction, place), with (drawn joints that carry it, size, place) each; of each drawn joint its axis, reading, factor and constant.
     /// An axis is 1 if it slides or 0, a direction and a point. Indices count from 0.
-    ///
-    /// ```
-    /// use nalgebra::Vector3;
-    /// use poecal_arm::{Joint, JointValue, Model, lie::{Pose, Screw}};
-    /// let screw = Screw::revolute(&Vector3::z(), &Vector3::x());
-    /// let model = Model { joints: vec![Joint { screw, value: JointValue::of(0) }], ..Model::new(1, &Pose::identity()) };
-    /// let numbers = model.numbers();
-    /// assert_eq!(numbers[..4], [1.0, 1.0, 1.0, 0.0]);
-    /// assert_eq!(Model::from_numbers(&numbers).unwrap().numbers(), numbers);
-    /// ```
     #[must_use]
     pub fn numbers(&self) -> Vec<f64> {
         let mut out = Vec::new();
@@ -177,5 +167,20 @@ impl Rest<'_> {
             1.0 => Some(Screw::prismatic(&direction)),
             _ => None,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_model_comes_back_from_its_numbers() {
+        let screw = Screw::revolute(&Vector3::z(), &Vector3::x());
+        let mut model = Model::new(1, &Pose::identity());
+        model.joints.push(Joint { screw, value: JointValue::of(0) });
+        let numbers = model.numbers();
+        assert_eq!(numbers[..4], [1.0, 1.0, 1.0, 0.0]);
+        assert_eq!(Model::from_numbers(&numbers).unwrap().numbers(), numbers);
     }
 }

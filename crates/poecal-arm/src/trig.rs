@@ -33,11 +33,6 @@ const COSINE: [f64; 6] = [
 
 /// `(cos, sin)` of an angle up to [`LARGEST`], to within about a unit in the last place; without branches, so that loops of it are made of
 /// vector instructions, and without fused products, so that the bits are the same on every machine.
-///
-/// ```
-/// let (cosine, sine) = poecal_arm::trig::cosine_and_sine(core::f64::consts::FRAC_PI_6);
-/// assert!((sine - 0.5).abs() < 1e-16 && (cosine - 0.75_f64.sqrt()).abs() < 2e-16);
-/// ```
 #[inline(always)]
 #[must_use]
 pub fn cosine_and_sine(angle_rad: f64) -> (f64, f64) {
@@ -61,13 +56,33 @@ fn polynomial(z: f64, c: &[f64; 6]) -> f64 {
 }
 
 /// The same angle in (-π, π].
-///
-/// ```
-/// assert!((poecal_arm::trig::wrapped(7.0) - (7.0 - core::f64::consts::TAU)).abs() < 1e-15);
-/// ```
 #[must_use]
 pub fn wrapped(angle_rad: f64) -> f64 {
     let turns = (angle_rad / TAU).round();
     let angle = angle_rad - turns * TAU;
     if angle <= -core::f64::consts::PI { angle + TAU } else { angle }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn cosines_and_sines_are_those_of_the_library() {
+        for k in -4000..4000 {
+            let angle = 0.37 * f64::from(k);
+            let (cosine, sine) = cosine_and_sine(angle);
+            // A unit in the last place of numbers up to 1.
+            assert!(
+                (cosine - angle.cos()).abs() < 2.3e-16 && (sine - angle.sin()).abs() < 2.3e-16,
+                "{angle}"
+            );
+        }
+    }
+
+    #[test]
+    fn angles_are_wrapped_to_half_a_turn() {
+        assert!((wrapped(7.0) - (7.0 - TAU)).abs() < 1e-15);
+        assert_eq!(wrapped(-core::f64::consts::PI), core::f64::consts::PI);
+    }
 }

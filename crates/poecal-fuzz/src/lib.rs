@@ -3,13 +3,6 @@
 //! Each of [`TARGETS`] takes bytes for the text of a file that poecal reads, and fails by panicking: if the library does, or if something
 //! does not hold that should, such as that what is written reads back the same. The programs in `fuzz/` call them with what libFuzzer
 //! makes up, the test of this crate with the seeds in `fuzz/seeds` and [`Mutator`]'s variations of them.
-//!
-//! ```
-//! let target = poecal_fuzz::TARGETS.iter().find(|target| target.name == "joints").ok_or("no such target")?;
-//! assert!((target.run)(b"joint1,joint2,joint3,joint4\n0,0.1,0.1,0\n"));
-//! assert!(!(target.run)(b"no table"));
-//! # Ok::<(), Box<dyn std::error::Error>>(())
-//! ```
 
 // Whatever does not hold is told by a panic.
 #![allow(clippy::panic, clippy::expect_used, clippy::unwrap_used)]
@@ -27,11 +20,6 @@ pub const LONGEST: usize = 1 << 16;
 pub const BETWEEN: &str = "=====";
 
 /// One of the things that are fuzzed.
-///
-/// ```
-/// let names: Vec<&str> = poecal_fuzz::TARGETS.iter().map(|target| target.name).collect();
-/// assert!(names.contains(&"urdf") && names.len() == 12);
-/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Target {
     /// Its name, that of its program in `fuzz/fuzz_targets` and of its folder in `fuzz/seeds`.

@@ -63,13 +63,6 @@ const PIECES: [&str; 22] = [
 ];
 
 /// Makes variations of seeds: bytes changed, put in, left out, doubled; words and numbers replaced; parts of other seeds put in.
-///
-/// ```
-/// let seeds = vec![b"x[mm],y[mm]\n1,2\n".to_vec()];
-/// let mut some = poecal_fuzz::Mutator::new(7, &seeds, &["deg"]);
-/// let mut others = poecal_fuzz::Mutator::new(7, &seeds, &["deg"]);
-/// assert_eq!(some.variation(), others.variation());
-/// ```
 #[derive(Debug)]
 pub struct Mutator<'a> {
     generator: ChaCha8Rng,
@@ -185,6 +178,20 @@ impl<'a> Mutator<'a> {
                 data.splice(start..start, line);
             }
             _ => data.truncate(at),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Mutator;
+
+    #[test]
+    fn variations_are_the_same_in_every_run() {
+        let seeds = [b"x[mm],y[mm]\n1,2\n".to_vec()];
+        let (mut some, mut others) = (Mutator::new(7, &seeds, &["deg"]), Mutator::new(7, &seeds, &["deg"]));
+        for _ in 0..20 {
+            assert_eq!(some.variation(), others.variation());
         }
     }
 }

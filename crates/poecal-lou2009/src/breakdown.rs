@@ -19,13 +19,6 @@ const ROWS: usize = 150;
 const JUDGING: usize = 200;
 
 /// What gross errors did to many simulated sessions.
-///
-/// ```
-/// use poecal_lou2009::{ReproductionOptions, breakdown};
-/// let found = breakdown(&ReproductionOptions { trials: 1, ..ReproductionOptions::default() })?;
-/// assert_eq!((found.sessions, found.entries.len()), (1, 4 * 11));
-/// # Ok::<(), poecal::Error>(())
-/// ```
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Breakdown {
     /// Sessions for each loss and share: the robots in turn, by poses and by points.
@@ -147,5 +140,16 @@ fn entry(word: &str, share_percent: u32, outcomes: &[&Outcome]) -> BreakdownEntr
         error_ratio_p95: at(0.95),
         gross_rows_suspected: share(sum(|o| o.gross_suspected), sum(|o| o.gross)),
         other_rows_suspected: share(sum(|o| o.others_suspected), sum(|o| o.others)).unwrap_or(0.0),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_loss_meets_every_share_of_gross_errors() {
+        let found = breakdown(&ReproductionOptions { trials: 1, ..ReproductionOptions::default() }).unwrap();
+        assert_eq!((found.sessions, found.entries.len()), (1, 4 * 11));
     }
 }

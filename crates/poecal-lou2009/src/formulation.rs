@@ -12,12 +12,6 @@ use crate::{FreeScrew, Spatial, gauss_newton};
 
 /// Parameterisation of joint errors (lou2009, sections II and III). All describe the same robots; they differ
 /// in the number of unknowns, in what becomes of constraints, and in what can be identified.
-///
-/// ```
-/// use poecal_lou2009::Formulation;
-/// assert_eq!(Formulation::ScrewOffsets.word(), "screw-offsets");
-/// assert!(Formulation::ScrewOffsets.has_offsets() && !Formulation::Adjoint.has_offsets());
-/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, serde::Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Formulation {
@@ -86,11 +80,6 @@ impl Formulation {
 }
 
 /// How the errors of measured frames are written.
-///
-/// ```
-/// use poecal_lou2009::Residual;
-/// assert_eq!(Residual::Spatial.word(), "spatial");
-/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Residual {
     /// Position and rotation at the target, as a device's data sheet states its noise.
@@ -124,11 +113,6 @@ impl Residual {
 }
 
 /// Method of the solver.
-///
-/// ```
-/// use poecal_lou2009::{Formulation, Method};
-/// assert_eq!(Formulation::Screw.usual_method(), Method::GaussNewton);
-/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Method {
     /// Damped steps, taken only if they lower the cost.
@@ -162,13 +146,6 @@ impl Method {
 }
 
 /// A formulation with its residual and method, as [`CalibrationOptions`](calibration::CalibrationOptions) take it.
-///
-/// ```
-/// use poecal::calibration;
-/// use poecal_lou2009::{Formulation, Method, Residual, formulated};
-/// let usual = formulated(Formulation::Adjoint, Residual::Tool, Method::LevenbergMarquardt);
-/// assert_eq!(usual, calibration::Formulation::default());
-/// ```
 #[must_use]
 pub fn formulated(formulation: Formulation, residual: Residual, method: Method) -> calibration::Formulation {
     let joint_parameters: fn(&[JointKind]) -> Vec<Parameter> = match formulation {
@@ -203,5 +180,16 @@ fn note(formulation: Formulation, method: Method) -> Option<&'static str> {
         (Formulation::ScrewOffsets | Formulation::AdjointOffsets, _) => {
             Some("joint offsets cannot be separated from screws, and are part of them")
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_usual_formulation_is_that_of_the_library() {
+        let usual = formulated(Formulation::Adjoint, Residual::Tool, Method::LevenbergMarquardt);
+        assert_eq!(usual, calibration::Formulation::default());
     }
 }

@@ -13,13 +13,6 @@ use poecal::robot::JointKind;
 ///
 /// Two of a revolute joint's six unknowns (the length of ω, which acts as a gear factor, and the pitch) and one of a prismatic
 /// joint's three are no screws: the retraction drops them.
-///
-/// ```
-/// use poecal::{parameters::ScrewModel, robot::JointKind};
-/// use poecal_lou2009::FreeScrew;
-/// assert_eq!(FreeScrew.columns(JointKind::Revolute).len(), 6);
-/// assert_eq!(FreeScrew.columns(JointKind::Prismatic).len(), 3);
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FreeScrew;
 

@@ -45,11 +45,6 @@ const LENGTH_M: f64 = 0.5;
 const NOISE: Noise = Noise::new(5e-5, 1.745_329_251_994_329_6e-4);
 
 /// How much to try.
-///
-/// ```
-/// let options = poecal_lou2009::ReproductionOptions { trials: 50, ..Default::default() };
-/// assert_eq!(options.seed, 1);
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ReproductionOptions {
     /// Noisy sessions for each formulation.
@@ -68,14 +63,6 @@ impl Default for ReproductionOptions {
 
 /// Repeats the experiment of lou2009: the elbow of its Tables I and II identified from poses and from points with every formulation, with
 /// and without joint offsets and noise; its claims; and the comparison of the formulations over many trials.
-///
-/// ```
-/// use poecal_lou2009::{ReproductionOptions, lou2009};
-/// let found = lou2009(&ReproductionOptions { trials: 4, starts: 2, seed: 1 })?;
-/// assert_eq!(found.runs.len(), 32);
-/// assert!(found.runs[0].converged && found.runs[0].iterations <= 5);
-/// # Ok::<(), poecal::Error>(())
-/// ```
 ///
 /// # Errors
 /// [`ErrorKind::Option`] without a trial or a start; [`ErrorKind::Problem`] if a claim lacks what it is judged by.

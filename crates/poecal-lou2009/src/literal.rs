@@ -10,13 +10,6 @@ use poecal::lie::{Pose, Screw, Twist, hat};
 use poecal::robot::Robot;
 
 /// Adjoint errors of a robot: `ξ_i = Ad_exp(η_i) ξ_i^n` and `M = exp(Υ) M^n` (lou2009 (16) to (18); theory.md §3 (10)).
-///
-/// ```
-/// use poecal_lou2009::{literal::AdjointErrors, tables};
-/// let nominal = tables::nominal();
-/// let same = AdjointErrors::none(&nominal).apply(&nominal);
-/// assert!((same.joints[2].screw.v() - nominal.joints[2].screw.v()).norm() < 1e-15);
-/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct AdjointErrors {
     /// `η_i` of each joint, base frame, metres and radians.
@@ -46,13 +39,6 @@ impl AdjointErrors {
 }
 
 /// The parts of the paper's matrix `A` at one configuration, in the base frame (theory.md §3 (8)).
-///
-/// ```
-/// use poecal_lou2009::{literal::Literal, tables};
-/// let literal = Literal::new(&tables::nominal(), &[0.0; 6]);
-/// // At zero nothing stands before a joint: r_k is the screw itself.
-/// assert!((literal.offset_columns[1] - tables::nominal().joints[1].screw.twist().to_vector()).norm() < 1e-15);
-/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Literal {
     /// `r_k`, lou2009 (8d): the screws where the joints before have carried them.
@@ -85,28 +71,12 @@ impl Literal {
 
 /// `dξ/dη` of lou2009 (18) for a nominal screw at error `η`: `-ad(Ad_exp(η) ξ^n) ∫ Ad_exp(η s) ds`
 /// (theory.md §3 (10a)).
-///
-/// ```
-/// use poecal::lie::Twist;
-/// use poecal_lou2009::{literal::screw_by_adjoint_error, tables};
-/// let screw = tables::nominal().joints[0].screw;
-/// // A motion of the axis along itself does not move it.
-/// assert!((screw_by_adjoint_error(&screw, &Twist::zero()) * screw.twist().to_vector()).norm() < 1e-15);
-/// ```
 #[must_use]
 pub fn screw_by_adjoint_error(nominal: &Screw, eta: &Twist) -> Matrix6<f64> {
     -nominal.transformed(&Pose::exp(eta)).twist().ad() * eta.left_jacobian()
 }
 
 /// `[I  -P̂]` of lou2009 (23): how a twist of the base frame moves the point `P` (metres; theory.md §3 (12a)).
-///
-/// ```
-/// use nalgebra::Vector3;
-/// use poecal::lie::Twist;
-/// use poecal_lou2009::literal::point_rows;
-/// let turn = Twist::new(Vector3::zeros(), Vector3::z());
-/// assert_eq!(point_rows(&Vector3::x()) * turn.to_vector(), Vector3::y());
-/// ```
 #[must_use]
 pub fn point_rows(point: &Vector3<f64>) -> Matrix3x6<f64> {
     let mut rows = Matrix3x6::identity();
@@ -127,12 +97,6 @@ pub fn point_rows(point: &Vector3<f64>) -> Matrix3x6<f64> {
 /// | `adjoint-offsets` | 7n + 6 | 7n + 3 |
 ///
 /// The free screw of a prismatic joint has 3 columns instead of 6: its ω is zero, "and thus left out of the calibration".
-///
-/// ```
-/// use poecal_lou2009::{Formulation, MeasurementKind, literal::jacobian, tables};
-/// let a = jacobian(&tables::nominal(), &[0.1; 6], Formulation::ScrewOffsets, MeasurementKind::Poses);
-/// assert_eq!(a.shape(), (6, 48));
-/// ```
 #[must_use]
 pub fn jacobian(
     robot: &Robot,
@@ -154,13 +118,6 @@ pub fn jacobian(
 
 /// The matrix of the adjoint formulation about errors that are not zero: (9) with (18), and (26) for points, by `dη_i` and `dΥ` of
 /// `M = exp(Υ) M^n`.
-///
-/// ```
-/// use poecal_lou2009::{MeasurementKind, literal::{AdjointErrors, adjoint_jacobian}, tables};
-/// let nominal = tables::nominal();
-/// let a = adjoint_jacobian(&nominal, &AdjointErrors::none(&nominal), &[0.1; 6], false, MeasurementKind::Points);
-/// assert_eq!(a.shape(), (3, 39));
-/// ```
 #[must_use]
 pub fn adjoint_jacobian(
     nominal: &Robot,
@@ -209,13 +166,6 @@ fn assemble(
 
 /// The matrices of several configurations one below the other, lou2009 (10), with radians counted as `length_m` metres in rows and
 /// columns, so that singular values compare. A length of 1 leaves the numbers as they are.
-///
-/// ```
-/// use poecal_lou2009::{Formulation, MeasurementKind, literal::stacked, tables};
-/// let configurations = [vec![0.1; 6], vec![0.7; 6]];
-/// let a = stacked(&tables::nominal(), &configurations, Formulation::Adjoint, MeasurementKind::Poses, 0.5);
-/// assert_eq!(a.shape(), (12, 42));
-/// ```
 #[must_use]
 pub fn stacked(
     robot: &Robot,
@@ -263,13 +213,6 @@ pub const RANK_SHARE: f64 = 1e-9;
 
 /// Singular values of a matrix of finite numbers, the largest first, and how many are above [`RANK_SHARE`] of the largest.
 /// What ranks to expect: theory.md §7 (35) and (35a).
-///
-/// ```
-/// use nalgebra::DMatrix;
-/// let matrix = DMatrix::from_row_slice(2, 2, &[3.0, 3.0, 4.0, 4.0]);
-/// let (values, rank) = poecal_lou2009::literal::singular_values(&matrix);
-/// assert!((values[0] - 50.0_f64.sqrt()).abs() < 1e-14 && rank == 1);
-/// ```
 #[must_use]
 pub fn singular_values(matrix: &DMatrix<f64>) -> (Vec<f64>, usize) {
     if matrix.is_empty() {
@@ -280,4 +223,32 @@ pub fn singular_values(matrix: &DMatrix<f64>) -> (Vec<f64>, usize) {
     let floor = RANK_SHARE * values.first().copied().unwrap_or(0.0);
     let rank = values.iter().filter(|&&value| value > floor).count();
     (values, rank)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::tables;
+
+    #[test]
+    fn a_robot_without_errors_stays() {
+        let nominal = tables::nominal();
+        let same = AdjointErrors::none(&nominal).apply(&nominal);
+        for (same, joint) in same.joints.iter().zip(&nominal.joints) {
+            assert!((same.screw.twist().to_vector() - joint.screw.twist().to_vector()).norm() < 1e-15);
+        }
+    }
+
+    #[test]
+    fn a_motion_along_an_axis_does_not_move_it() {
+        let screw = tables::nominal().joints[0].screw;
+        let moved = screw_by_adjoint_error(&screw, &Twist::zero()) * screw.twist().to_vector();
+        assert!(moved.norm() < 1e-15);
+    }
+
+    #[test]
+    fn equal_columns_have_rank_1() {
+        let (values, rank) = singular_values(&DMatrix::from_row_slice(2, 2, &[3.0, 3.0, 4.0, 4.0]));
+        assert!((values[0] - 50.0_f64.sqrt()).abs() < 1e-14 && rank == 1);
+    }
 }

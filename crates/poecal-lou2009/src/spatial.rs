@@ -10,15 +10,6 @@ use poecal::measurement::{PoseResidual, Sensitivity};
 /// Its sensitivity is `J_r(e)⁻¹ = J_l(-e)⁻¹` on the spatial twist, exact also for large residuals. To first order the linear part is
 /// `(y - p) + p × r`, so rotation noise counts as position noise times the distance: [`poecal::measurement::PoseMeasurement`] is what a device's
 /// data sheet describes, this is for comparison (docs/theory.md §4 (16a)).
-///
-/// ```
-/// use poecal::{lie::Pose, measurement::PoseResidual};
-/// use poecal_lou2009::Spatial;
-/// let pose = Pose::from_xyz_rpy([0.1, 0.2, 0.3], [0.4, 0.5, 0.6]);
-/// let mut e = [1.0; 6];
-/// Spatial.residual(&pose, &pose, &mut e);
-/// assert!(e.iter().all(|component| component.abs() < 1e-12));
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Spatial;
 

@@ -24,11 +24,6 @@ pub const PRESCRIBED_POINT_MM: [f64; 3] = [839.01, -5.03, 724.974];
 pub const PRESCRIBED_OFFSETS_DEG: [f64; 6] = [4.0, -3.0, 2.0, 6.0, -4.0, 5.0];
 
 /// The identified screws of Table II as printed, as twists in metres. Rounding has made them no screws: see [`rounding`].
-///
-/// ```
-/// let screws = poecal_lou2009::tables::printed_screws();
-/// assert_eq!(screws[1].v.z, 0.1512188);
-/// ```
 #[must_use]
 pub fn printed_screws() -> [Twist; 6] {
     PRINTED_SCREWS_MM.map(|row| {
@@ -39,11 +34,6 @@ pub fn printed_screws() -> [Twist; 6] {
 
 /// The robot before calibration: screws and point of Table II, left, and ranges of Table I. Its home pose has no rotation, and its
 /// translation is the point `P_c0`.
-///
-/// ```
-/// let robot = poecal_lou2009::tables::nominal();
-/// assert_eq!(robot.home.translation.z, 0.72);
-/// ```
 #[must_use]
 pub fn nominal() -> Robot {
     simulate::elbow()
@@ -51,13 +41,6 @@ pub fn nominal() -> Robot {
 
 /// The robot that is to be identified: the printed screws, each made a screw as by [`Screw::project`] (theory.md §5 (22c)), and the printed point
 /// as home pose without rotation.
-///
-/// ```
-/// use poecal_lou2009::tables;
-/// let screw = tables::prescribed().joints[1].screw;
-/// assert!(screw.v().dot(&screw.w()).abs() < 1e-15);
-/// assert!((screw.v() - tables::printed_screws()[1].v).norm() < 1e-5);
-/// ```
 #[must_use]
 pub fn prescribed() -> Robot {
     // The axis along ω through its point nearest to the origin.
@@ -69,11 +52,6 @@ pub fn prescribed() -> Robot {
 }
 
 /// By how much the printed screws miss the constraints of a revolute screw.
-///
-/// ```
-/// let rounding = poecal_lou2009::tables::rounding();
-/// assert!(rounding.pitch_mm < 0.05 && rounding.length < 1e-3);
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rounding {
     /// Largest `|v·ω|`, millimetres.

@@ -23,20 +23,6 @@ struct State {
 
 /// Folders and files in memory; the current folder is the root. Clones are the same disk. What was written is there at once, so that
 /// there is nothing to sync, and errors are those that a system gives.
-///
-/// ```
-/// use std::path::Path;
-/// use poecal::io::disk::Disk as _;
-/// use poecal_wasm::MemoryDisk;
-/// let disk = MemoryDisk::new(Vec::new());
-/// disk.put(Path::new("cell/robot.urdf"), b"<robot/>".to_vec())?;
-/// assert_eq!(disk.names(Path::new("cell"))?, ["robot.urdf"]);
-/// // A file in the way is not replaced.
-/// disk.create(Path::new("new"))?.write_all(b"text")?;
-/// let refused = disk.rename_new(Path::new("new"), Path::new("cell/robot.urdf"));
-/// assert_eq!(refused.unwrap_err().kind(), std::io::ErrorKind::AlreadyExists);
-/// # Ok::<(), std::io::Error>(())
-/// ```
 #[derive(Clone, Debug)]
 pub struct MemoryDisk(Arc<Mutex<State>>);
 

@@ -43,14 +43,6 @@ pub struct Answer {
 }
 
 /// Runs the program on a disk of its own.
-///
-/// ```
-/// use poecal_wasm::{Request, run};
-/// let request = Request { words: vec!["check".into(), "robot.urdf".into()], ..Request::default() };
-/// let answer = run(request);
-/// assert_eq!(answer.said.code, 2);
-/// assert!(answer.said.err.contains("no such file"), "{}", answer.said.err);
-/// ```
 #[must_use]
 pub fn run(request: Request) -> Answer {
     let disk = MemoryDisk::new(request.input);

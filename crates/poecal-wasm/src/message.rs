@@ -32,13 +32,6 @@ impl<'a> Rest<'a> {
 }
 
 /// The request in these bytes; `None` if they are none.
-///
-/// ```
-/// use poecal_wasm::{Request, decode};
-/// let none_of_each = [0; 12];
-/// assert_eq!(decode(&none_of_each), Some(Request::default()));
-/// assert_eq!(decode(&none_of_each[1..]), None);
-/// ```
 #[must_use]
 pub fn decode(bytes: &[u8]) -> Option<Request> {
     let mut rest = Rest(bytes);
@@ -64,11 +57,6 @@ fn block(out: &mut Vec<u8>, bytes: &[u8]) {
 }
 
 /// An answer as bytes.
-///
-/// ```
-/// use poecal_wasm::{Answer, encode};
-/// assert_eq!(encode(&Answer::default()), [0; 20]);
-/// ```
 #[must_use]
 pub fn encode(answer: &Answer) -> Vec<u8> {
     let mut out = Vec::new();
@@ -83,4 +71,18 @@ pub fn encode(answer: &Answer) -> Vec<u8> {
     number(&mut out, answer.removed.len());
     answer.removed.iter().for_each(|path| block(&mut out, path.as_bytes()));
     out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_answer_is_its_lengths_and_bytes() {
+        assert_eq!(encode(&Answer::default()), [0; 20]);
+        let mut answer = Answer { removed: vec!["a".to_owned()], ..Answer::default() };
+        answer.said.code = 2;
+        let expected = [[2, 0, 0, 0], [0; 4], [0; 4], [0; 4], [1, 0, 0, 0], [1, 0, 0, 0]].concat();
+        assert_eq!(encode(&answer), [expected.as_slice(), b"a"].concat());
+    }
 }

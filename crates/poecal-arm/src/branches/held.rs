@@ -117,18 +117,6 @@ impl HeldBranches {
     }
 
     /// Those within the arm's limits, turned by whole turns to where they are nearest to `near`; sorted by the joint that has to move most.
-    ///
-    /// ```
-    /// use nalgebra::Vector3;
-    /// use poecal_arm::{Arm, HeldBranches, lie::{Pose, Screw}};
-    /// let axes = [Vector3::z(), Vector3::y(), Vector3::z(), -Vector3::y(), Vector3::z(), Vector3::y(), Vector3::z()];
-    /// let points = [0.0, 0.36, 0.36, 0.78, 0.78, 1.18, 1.18].map(|z| Vector3::new(0.0, 0.0, z));
-    /// let screws: Vec<Screw> = axes.iter().zip(&points).map(|(axis, point)| Screw::revolute(axis, point)).collect();
-    /// let arm = Arm::new(&screws, &Pose::from_translation(Vector3::new(0.0, 0.0, 1.3))).unwrap();
-    /// let q = [3.5, 0.5, 0.2, 1.1, -0.4, 0.8, 0.1];
-    /// let found = HeldBranches::new(&arm, None).unwrap().within_limits(&arm.forward_kinematics(&q), q[2], &q);
-    /// assert!((found.as_slice()[0][0] - 3.5).abs() < 1e-9);
-    /// ```
     #[must_use]
     pub fn within_limits(&self, target: &Pose, value: f64, near: &[f64; 7]) -> Branches<7> {
         let mut found = Branches::EMPTY;
@@ -182,18 +170,6 @@ impl HeldBranches {
 
     /// The configuration within the arm's limits that has the tip at a pose at the redundancy angle nearest to that of `near`, in steps of
     /// 0.1 rad, and of those the one whose joints are nearest to it.
-    ///
-    /// ```
-    /// use nalgebra::Vector3;
-    /// use poecal_arm::{Arm, HeldBranches, lie::{Pose, Screw}};
-    /// let axes = [Vector3::z(), Vector3::y(), Vector3::z(), -Vector3::y(), Vector3::z(), Vector3::y(), Vector3::z()];
-    /// let points = [0.0, 0.36, 0.36, 0.78, 0.78, 1.18, 1.18].map(|z| Vector3::new(0.0, 0.0, z));
-    /// let screws: Vec<Screw> = axes.iter().zip(&points).map(|(axis, point)| Screw::revolute(axis, point)).collect();
-    /// let arm = Arm::new(&screws, &Pose::from_translation(Vector3::new(0.0, 0.0, 1.3))).unwrap();
-    /// let target = arm.forward_kinematics(&[0.3, -0.5, 0.2, 1.1, -0.4, 0.8, 0.1]);
-    /// let found = HeldBranches::new(&arm, None).unwrap().nearest_within_limits(&target, &[0.3, -0.4, 0.2, 1.0, -0.4, 0.8, 0.1]);
-    /// assert!((found.unwrap()[3] - 1.1).abs() < 1e-9);
-    /// ```
     #[must_use]
     pub fn nearest_within_limits(&self, target: &Pose, near: &[f64; 7]) -> Option<[f64; 7]> {
         let &(low, high) = self.arm.limits().get(self.joint)?;
@@ -208,5 +184,24 @@ impl HeldBranches {
         (0..=MOST_MOVES)
             .map(|it| STEP * f64::from(it))
             .find_map(|by| find(start + by).or_else(|| find(start - by)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::Vector3;
+
+    #[test]
+    fn branches_are_turned_by_whole_turns_to_where_they_are_near() {
+        let (y, z) = (Vector3::y(), Vector3::z());
+        let axes = [z, y, z, -y, z, y, z];
+        let heights = [0.0, 0.36, 0.36, 0.78, 0.78, 1.18, 1.18];
+        let screws: [Screw; 7] = core::array::from_fn(|k| Screw::revolute(&axes[k], &(heights[k] * z)));
+        let arm = Arm::new(&screws, &Pose::from_translation(1.3 * z)).unwrap();
+        let q = [3.5, 0.5, 0.2, 1.1, -0.4, 0.8, 0.1];
+        let held = HeldBranches::new(&arm, None).unwrap();
+        let found = held.within_limits(&arm.forward_kinematics(&q), q[2], &q);
+        assert!((found.as_slice()[0][0] - 3.5).abs() < 1e-9);
     }
 }

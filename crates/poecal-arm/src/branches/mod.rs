@@ -140,18 +140,6 @@ impl AllBranches {
 
     /// The configurations within the arm's limits ([`Arm::limits`]) that have the tip at a pose: of each branch that one whose joints are nearest
     /// to `near`, turned by whole turns where that keeps limits; sorted by the joint that has to move most.
-    ///
-    /// ```
-    /// use nalgebra::Vector3;
-    /// use poecal_arm::{AllBranches, Arm, lie::{Pose, Screw}};
-    /// let axes = [Vector3::z(), Vector3::y(), Vector3::y(), Vector3::x(), Vector3::y(), Vector3::x()];
-    /// let points = [0.0, 0.0, 0.4, 0.4, 0.8, 0.8].map(|z| Vector3::new(0.0, 0.0, z));
-    /// let screws: Vec<Screw> = axes.iter().zip(&points).map(|(axis, point)| Screw::revolute(axis, point)).collect();
-    /// let arm = Arm::new(&screws, &Pose::from_translation(Vector3::new(0.1, 0.0, 0.8))).unwrap();
-    /// let q = [0.3, -0.3, 0.9, 0.1, 0.6, 6.2];
-    /// let found = AllBranches::new(&arm).unwrap().within_limits(&arm.forward_kinematics(&q), &q);
-    /// assert!((found.as_slice()[0][5] - 6.2).abs() < 1e-9);
-    /// ```
     #[must_use]
     pub fn within_limits(&self, target: &Pose, near: &[f64; 6]) -> Branches {
         let mut found = Branches::EMPTY;
@@ -167,19 +155,6 @@ impl AllBranches {
     }
 
     /// As [`Arm::nearest`]; where its iteration does not reach the pose, the branch of which the joint that has to move most moves least.
-    ///
-    /// ```
-    /// use nalgebra::Vector3;
-    /// use poecal_arm::{AllBranches, Arm, lie::{Pose, Screw}};
-    /// let axes = [Vector3::z(), Vector3::y(), Vector3::y(), Vector3::x(), Vector3::y(), Vector3::x()];
-    /// let points = [0.0, 0.0, 0.4, 0.4, 0.8, 0.8].map(|z| Vector3::new(0.0, 0.0, z));
-    /// let screws: Vec<Screw> = axes.iter().zip(&points).map(|(axis, point)| Screw::revolute(axis, point)).collect();
-    /// let arm = Arm::new(&screws, &Pose::from_translation(Vector3::new(0.1, 0.0, 0.8))).unwrap();
-    /// let target = arm.forward_kinematics(&[3.2, -0.3, 0.9, 0.1, 0.6, 0.0]);
-    /// let mut q = [3.0, -0.4, 1.0, 0.0, 0.5, 0.2];
-    /// assert!(AllBranches::new(&arm).unwrap().nearest(&target, &mut q) < 1e-12);
-    /// assert!((q[0] - 3.2).abs() < 1e-9);
-    /// ```
     pub fn nearest(&self, target: &Pose, q: &mut [f64; 6]) -> f64 {
         let mut near = *q;
         let left = self.arm.nearest(target, &mut near);
@@ -199,5 +174,36 @@ impl AllBranches {
             *here += wrapped(there - *here);
         }
         newton(&Six::of(&self.arm), target, q, MOST_STEPS)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::Vector3;
+
+    /// An arm with a round wrist.
+    fn arm() -> Arm {
+        let (x, y, z) = (Vector3::x(), Vector3::y(), Vector3::z());
+        let (axes, heights) = ([z, y, y, x, y, x], [0.0, 0.0, 0.4, 0.4, 0.8, 0.8]);
+        let screws: [Screw; 6] = core::array::from_fn(|k| Screw::revolute(&axes[k], &(heights[k] * z)));
+        Arm::new(&screws, &Pose::from_translation(Vector3::new(0.1, 0.0, 0.8))).unwrap()
+    }
+
+    #[test]
+    fn branches_are_turned_by_whole_turns_to_where_they_are_near() {
+        let arm = arm();
+        let q = [0.3, -0.3, 0.9, 0.1, 0.6, 6.2];
+        let found = AllBranches::new(&arm).unwrap().within_limits(&arm.forward_kinematics(&q), &q);
+        assert!((found.as_slice()[0][5] - 6.2).abs() < 1e-9);
+    }
+
+    #[test]
+    fn the_nearest_configuration_is_on_the_same_turn() {
+        let arm = arm();
+        let target = arm.forward_kinematics(&[3.2, -0.3, 0.9, 0.1, 0.6, 0.0]);
+        let mut q = [3.0, -0.4, 1.0, 0.0, 0.5, 0.2];
+        assert!(AllBranches::new(&arm).unwrap().nearest(&target, &mut q) < 1e-12);
+        assert!((q[0] - 3.2).abs() < 1e-9);
     }
 }

@@ -18,24 +18,12 @@ pub use twist::{TargetTwist, Twist};
 use nalgebra::{Matrix3, Matrix3x6, Vector3};
 
 /// The skew-symmetric matrix `â` with `â b = a × b`: theory.md §1.
-///
-/// ```
-/// use nalgebra::Vector3;
-/// let (a, b) = (Vector3::new(1.0, 2.0, 3.0), Vector3::new(-0.5, 0.1, 2.0));
-/// assert_eq!(poecal_arm::lie::hat(&a) * b, a.cross(&b));
-/// ```
 #[must_use]
 pub fn hat(a: &Vector3<f64>) -> Matrix3<f64> {
     Matrix3::new(0.0, -a.z, a.y, a.z, 0.0, -a.x, -a.y, a.x, 0.0)
 }
 
 /// `[I, -p̂]`: a point's motion under a spatial twist.
-///
-/// ```
-/// use nalgebra::{Vector3, Vector6};
-/// let (point, turn) = (Vector3::new(1.0, 0.0, 0.0), Vector6::new(0.0, 0.0, 0.1, 0.0, 0.0, 2.0));
-/// assert_eq!(poecal_arm::lie::by_twist(&point) * turn, Vector3::new(0.0, 2.0, 0.1));
-/// ```
 #[must_use]
 pub fn by_twist(point: &Vector3<f64>) -> Matrix3x6<f64> {
     let mut derivative = by_turn(&-hat(point), 1.0);
@@ -44,15 +32,29 @@ pub fn by_twist(point: &Vector3<f64>) -> Matrix3x6<f64> {
 }
 
 /// `[0, scale · A]`: what depends on the rotation of a spatial twist only.
-///
-/// ```
-/// use nalgebra::{Matrix3, Vector3, Vector6};
-/// let turn = Vector6::new(1.0, 1.0, 1.0, 0.0, 0.0, 2.0);
-/// assert_eq!(poecal_arm::lie::by_turn(&Matrix3::identity(), 3.0) * turn, Vector3::new(0.0, 0.0, 6.0));
-/// ```
 #[must_use]
 pub fn by_turn(matrix: &Matrix3<f64>, scale: f64) -> Matrix3x6<f64> {
     let mut derivative = Matrix3x6::zeros();
     derivative.fixed_view_mut::<3, 3>(0, 3).copy_from(&(matrix * scale));
     derivative
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::Vector6;
+
+    #[test]
+    fn hats_are_cross_products() {
+        let (a, b) = (Vector3::new(1.0, 2.0, 3.0), Vector3::new(-0.5, 0.1, 2.0));
+        assert_eq!(hat(&a) * b, a.cross(&b));
+    }
+
+    #[test]
+    fn twists_and_turns_move_a_point() {
+        let twist = Vector6::new(0.0, 0.0, 0.1, 0.0, 0.0, 2.0);
+        assert_eq!(by_twist(&Vector3::x()) * twist, Vector3::new(0.0, 2.0, 0.1));
+        let twist = Vector6::new(1.0, 1.0, 1.0, 0.0, 0.0, 2.0);
+        assert_eq!(by_turn(&Matrix3::identity(), 3.0) * twist, Vector3::new(0.0, 0.0, 6.0));
+    }
 }

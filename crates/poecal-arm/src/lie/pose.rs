@@ -47,12 +47,6 @@ impl Pose {
     }
 
     /// The pose of which `number` gives each row's three parts of directions and its part of the translation (metres).
-    ///
-    /// ```
-    /// use poecal_arm::lie::Pose;
-    /// let pose = Pose::from_rows(|row, column| if row == column { 1.0 } else { 0.0 });
-    /// assert_eq!(pose, Pose::identity());
-    /// ```
     pub fn from_rows(number: impl Fn(usize, usize) -> f64) -> Self {
         let translation = Vector3::from_fn(|row, _| number(row, 3));
         Pose::new(Matrix3::from_fn(number), translation)
@@ -83,12 +77,6 @@ impl Pose {
     }
 
     /// Distance of the origins of two poses (m), and the angle between their axes (rad).
-    ///
-    /// ```
-    /// use poecal_arm::lie::Pose;
-    /// let moved = Pose::from_translation([0.0, 0.3, 0.4].into());
-    /// assert_eq!(Pose::identity().apart(&moved), (0.5, 0.0));
-    /// ```
     #[must_use]
     pub fn apart(&self, other: &Self) -> (f64, f64) {
         let turn = rotation::log(&(self.rotation.transpose() * other.rotation));
@@ -184,5 +172,11 @@ mod tests {
         assert!((left.translation - right.translation).norm() < 1e-14);
         assert!((left.rotation - right.rotation).norm() < 1e-14);
         assert!((pose.adjoint() * twist.to_vector() - pose.transform(&twist).to_vector()).norm() < 1e-15);
+    }
+
+    #[test]
+    fn poses_are_apart_by_a_distance_and_an_angle() {
+        let moved = Pose::from_translation(Vector3::new(0.0, 0.3, 0.4));
+        assert_eq!(Pose::identity().apart(&moved), (0.5, 0.0));
     }
 }

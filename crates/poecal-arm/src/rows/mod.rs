@@ -19,16 +19,6 @@ const WIDTH: usize = 8;
 impl Arm {
     /// [`Arm::forward_kinematics`] of many configurations, their readings one after the other, as many as there are in both lists: the same
     /// numbers, sooner, since eight configurations are computed side by side.
-    ///
-    /// ```
-    /// use nalgebra::Vector3;
-    /// use poecal_arm::{Arm, lie::{Pose, Screw}};
-    /// let screw = Screw::revolute(&Vector3::z(), &Vector3::zeros());
-    /// let arm = Arm::new(&[screw], &Pose::from_translation(Vector3::x())).unwrap();
-    /// let mut tips = [Pose::identity(); 3];
-    /// arm.forward_kinematics_of(&[0.0, 0.1, 0.2], &mut tips);
-    /// assert_eq!(tips[2], arm.forward_kinematics(&[0.2]));
-    /// ```
     #[inline(always)]
     pub fn forward_kinematics_of(&self, readings: &[f64], tips: &mut [Pose]) {
         let mut rows = Rows::<WIDTH>::new();
@@ -42,17 +32,6 @@ impl Arm {
 
     /// The Jacobians of many configurations, their readings one after the other: of each six rows of as many numbers as readings, the motion
     /// of the tip's point (m/rad, or m/m) and its turn (rad/rad, or rad/m), base frame, as [`Arm::jacobian`].
-    ///
-    /// ```
-    /// use nalgebra::Vector3;
-    /// use poecal_arm::{Arm, lie::{Pose, Screw}};
-    /// let screw = Screw::revolute(&Vector3::z(), &Vector3::zeros());
-    /// let arm = Arm::new(&[screw], &Pose::from_translation(Vector3::x())).unwrap();
-    /// let mut columns = [0.0; 12];
-    /// arm.jacobians_of(&[0.0, core::f64::consts::PI], &mut columns);
-    /// assert_eq!(columns[..6], [0.0, 1.0, 0.0, 0.0, 0.0, 1.0]);
-    /// assert_eq!((columns[7], columns[11]), (-1.0, 1.0));
-    /// ```
     #[inline(always)]
     pub fn jacobians_of(&self, readings: &[f64], jacobians: &mut [f64]) {
         let n = self.joints();
@@ -74,16 +53,6 @@ impl Arm {
     /// What weights move the tip in many configurations, their readings one after the other: how far its point is shifted (m), and how far it is
     /// turned as a rotation vector (rad), base frame, from where it would be without what joints give under weights
     /// ([`crate::Pull`]): `p − p₀` and `log(R R₀ᵀ)`.
-    ///
-    /// ```
-    /// use nalgebra::Vector3;
-    /// use poecal_arm::{Arm, lie::{Pose, Screw}};
-    /// let screw = Screw::revolute(&Vector3::z(), &Vector3::zeros());
-    /// let rigid = Arm::new(&[screw], &Pose::from_translation(Vector3::x())).unwrap();
-    /// let mut sag = [[1.0; 6]; 2];
-    /// rigid.sag_of(&[0.0, 0.1], &mut sag);
-    /// assert_eq!(sag, [[0.0; 6]; 2]);
-    /// ```
     #[inline(always)]
     pub fn sag_of(&self, readings: &[f64], sag: &mut [[f64; 6]]) {
         let (mut rows, mut bare) = (Rows::<WIDTH>::new(), Rows::<WIDTH>::new());
@@ -103,14 +72,6 @@ impl Arm {
 
     /// How the tip moves with each reading: of its point (m/rad, or m/m) and its turn (rad/rad, or rad/m), base frame; for the point of the
     /// tip, as the hybrid or `LOCAL_WORLD_ALIGNED` Jacobian of others. What weights add is in it.
-    ///
-    /// ```
-    /// use nalgebra::Vector3;
-    /// use poecal_arm::{Arm, lie::{Pose, Screw}};
-    /// let screw = Screw::revolute(&Vector3::z(), &Vector3::zeros());
-    /// let arm = Arm::new(&[screw], &Pose::from_translation(Vector3::x())).unwrap();
-    /// assert_eq!(arm.jacobian(&[0.0])[0], (Vector3::y(), Vector3::z()));
-    /// ```
     #[must_use]
     pub fn jacobian(&self, q: &[f64]) -> [(Vector3<f64>, Vector3<f64>); MOST_JOINTS] {
         if self.real().is_none_or(|real| real.pulls.is_empty()) {

@@ -21,20 +21,6 @@ use poecal::report::json;
 /// The files of a reproduction's report, each with its name: `report.html` (complete in itself), `report.md`, the plots that it
 /// shows (`figure-….svg`), and `results.json` (all findings).
 ///
-/// ```
-/// use poecal_lou2009::report::reproduction_files;
-/// use poecal_lou2009::{PointRow, Reproduction};
-/// let point = PointRow { nominal: [0.0; 3], prescribed: [0.0; 3], from_points: [0.0; 3] };
-/// let findings = Reproduction {
-///     version: "0.1.0".into(), command: "poecal reproduce lou2009 --out out".into(), seed: 1,
-///     noise_position_m: 5e-5, noise_rotation_rad: 1e-4, length_m: 0.5, point,
-///     runs: vec![], claims: vec![], screws: vec![], offsets: vec![], spectra: vec![], efficiency: vec![], basin: vec![],
-/// };
-/// let files = reproduction_files(&findings)?;
-/// assert!(files.iter().any(|(name, text)| name == "report.md" && text.contains("poecal reproduce lou2009 --out out")));
-/// # Ok::<(), poecal::Error>(())
-/// ```
-///
 /// # Errors
 /// [`ErrorKind::Export`](poecal::ErrorKind::Export) if the findings cannot be written as JSON.
 pub fn reproduction_files(found: &Reproduction) -> Result<Vec<(String, String)>> {

@@ -10,13 +10,6 @@ use crate::threads;
 const CHUNK: usize = 8192;
 
 /// Sampled and allowed values of a joint (radians; metres of a prismatic joint).
-///
-/// ```
-/// use poecal::{analysis::JointCoverage, robot::JointKind};
-/// let joint = "elbow".to_owned();
-/// let half = JointCoverage { joint, sampled_min: 0.0, sampled_max: 1.5, stragglers: 0.0, limit_min: Some(-1.5), limit_max: Some(1.5) };
-/// assert_eq!(half.share(JointKind::Revolute), Some(0.5));
-/// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct JointCoverage {
     /// The joint.
@@ -148,4 +141,24 @@ pub(crate) fn inside(robot: &Robot, coverage: &[JointCoverage], readings: &[f64]
     robot.joints.iter().zip(&indices).zip(coverage).all(|((joint, &index), coverage)| {
         coverage.contains(joint.kind, joint.reading.value(readings[index]))
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_joint_that_moved_half_its_range_is_sampled_by_half() {
+        let mut half = JointCoverage {
+            sampled_max: 1.5,
+            limit_min: Some(-1.5),
+            limit_max: Some(1.5),
+            ..JointCoverage::of_give("elbow")
+        };
+        assert_eq!(half.share(JointKind::Revolute), Some(0.5));
+        // Without limits a joint turns once; a slide has no range.
+        (half.limit_min, half.limit_max) = (None, None);
+        assert_eq!(half.share(JointKind::Revolute), Some(1.5 / std::f64::consts::TAU));
+        assert_eq!(half.share(JointKind::Prismatic), None);
+    }
 }

@@ -15,11 +15,6 @@ const ROUNDING: f64 = 1e-13;
 const LEAST_REDUNDANCY: f64 = 1e-3;
 
 /// Leverage and studentised residual of a row (theory.md §6 (34d), (34e)).
-///
-/// ```
-/// let row = poecal::analysis::Influence { leverage: 0.1, studentized: 1.7 };
-/// assert!(row.leverage < 1.0);
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Influence {
     /// Mean variance of the row's prediction in units of its noise: for a row fitted with weight 1 the mean diagonal of its block of

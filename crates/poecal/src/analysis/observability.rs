@@ -4,13 +4,6 @@ use serde::{Deserialize, Serialize};
 
 /// The indices O1 to O5 of sun2008 over the singular values `s₁ ≥ … ≥ sₙ` of the whitened Jacobian of the scaled minimal unknowns:
 /// theory.md §7 (36b). Larger is better. `None` where a singular value is zero but for rounding.
-///
-/// ```
-/// use poecal::analysis::Observability;
-/// let found = Observability::new(&[8.0, 4.0, 2.0], 4);
-/// assert_eq!((found.o1, found.o2, found.o3), (Some(2.0), Some(0.25), Some(2.0)));
-/// assert_eq!(Observability::new(&[8.0, 0.0], 4), Observability::default());
-/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Observability {
     /// `(s₁ s₂ … sₙ)^(1/n) / √m`, 1/m (metre): the geometric mean of the singular values, by the number m of configurations.
@@ -45,5 +38,18 @@ impl Observability {
             o4: Some(least * least / most),
             o5: Some(1.0 / singular_values.iter().map(|value| 1.0 / value).sum::<f64>()),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Observability;
+
+    #[test]
+    fn indices_are_means_and_ratios_of_singular_values() {
+        let found = Observability::new(&[8.0, 4.0, 2.0], 4);
+        assert_eq!((found.o1, found.o2, found.o3), (Some(2.0), Some(0.25), Some(2.0)));
+        assert_eq!((found.o4, found.o5), (Some(0.5), Some(1.0 / 0.875)));
+        assert_eq!(Observability::new(&[8.0, 0.0], 4), Observability::default());
     }
 }

@@ -18,15 +18,6 @@ const UNDETERMINED_SHARE: f64 = 0.01;
 
 /// Eigenvalues and eigenvectors of the scaled, whitened information `N`, and its rank (theory.md §7 (36)). Steps are in metres; a radian
 /// counts as the length in the layout.
-///
-/// ```
-/// use nalgebra::DMatrix;
-/// use poecal::analysis::Spectrum;
-/// let found = Spectrum { values: vec![0.0, 4.0], vectors: DMatrix::identity(2, 2), undetermined: 1, variance: 1.0 };
-/// assert_eq!(found.determined(), [false, true]);
-/// assert_eq!(found.variance_along(&[0.0, 1.0]), Some(0.25));
-/// assert_eq!(found.variance_along(&[1.0, 1.0]), None);
-/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Spectrum {
     /// Eigenvalues, the smallest first, 1/m².
@@ -101,4 +92,18 @@ impl Spectrum {
 /// Largest eigenvalue that is rounding of the normal equations.
 pub(super) fn rounding(values: &[f64]) -> f64 {
     values.last().copied().unwrap_or(0.0).max(0.0) * ROUNDING * ROUNDING
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn undetermined_directions_have_no_variance() {
+        let vectors = DMatrix::identity(2, 2);
+        let found = Spectrum { values: vec![0.0, 4.0], vectors, undetermined: 1, variance: 1.0 };
+        assert_eq!(found.determined(), [false, true]);
+        assert_eq!(found.variance_along(&[0.0, 1.0]), Some(0.25));
+        assert_eq!(found.variance_along(&[1.0, 1.0]), None);
+    }
 }

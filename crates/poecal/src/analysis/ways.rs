@@ -10,15 +10,6 @@ use crate::robot::{Body, Mount, Robot};
 use crate::simulate::pairs;
 
 /// The joints that move a target against an instrument: measurements of such a pair can determine them and no others.
-///
-/// ```
-/// use poecal::analysis::ways;
-/// use poecal::{lie::Pose, robot::Body, simulate::elbow};
-/// let mut robot = elbow();
-/// robot.mounted.push(robot.mount("forearm", Body::Link(2), &Pose::identity()));
-/// let [way] = &ways(&robot, None)[..] else { unreachable!() };
-/// assert_eq!((way.target.as_deref(), way.joints.len()), (Some("forearm"), 3));
-/// ```
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Way {
     /// Name of the instrument; none of a device beside the robot.

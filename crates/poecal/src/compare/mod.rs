@@ -77,24 +77,6 @@ pub struct TipDifference {
 }
 
 /// What changed between two calibrations of one robot.
-///
-/// ```
-/// use poecal::calibration::{CalibrationOptions, calibrate};
-/// use poecal::compare::compare;
-/// use poecal::io::calibration_file::{CalibrationFile, Inputs};
-/// use poecal::simulate::{Kind, Simulation, elbow};
-/// let file = |seed| {
-///     let made = Simulation { count: 60, seed, ..Simulation::default() }.run(&elbow(), Kind::Pose)?;
-///     let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default())?;
-///     Ok::<_, poecal::Error>(CalibrationFile::new(&calibration, &made.data, Inputs::default()))
-/// };
-/// // Two robots of one make, whose axes differ by their own errors.
-/// let found = compare(&file(1)?, &file(2)?)?;
-/// assert!(found.is_change() == Some(true) && found.tip.rms_m > 1e-3);
-/// let same = compare(&file(1)?, &file(1)?)?;
-/// assert!(same.is_change() == Some(false) && same.tip.max_m < 1e-9);
-/// # Ok::<(), poecal::Error>(())
-/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Compared {
     /// Each joint.

@@ -10,16 +10,6 @@ use crate::threads::concat_chunks;
 const SOME: usize = 64;
 
 /// Inverse kinematics of a robot's tip, with terms of its joints at given values of its factors.
-///
-/// ```
-/// use poecal::compensate::Inverse;
-/// let robot = poecal::simulate::elbow();
-/// let inverse = Inverse::new(&robot, &[])?;
-/// let q = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6];
-/// let found = inverse.nearest(&robot.forward_kinematics(&q), &[0.0; 6], true).unwrap();
-/// assert!((found[5] - 0.6).abs() < 1e-9);
-/// # Ok::<(), poecal::Error>(())
-/// ```
 #[derive(Clone, Debug)]
 pub struct Inverse {
     arm: Reach,
@@ -100,16 +90,6 @@ impl Inverse {
     }
 
     /// What `find` finds for each of many poses, whose index it gets too, by all threads, in their order.
-    ///
-    /// ```
-    /// use poecal::compensate::Inverse;
-    /// let robot = poecal::simulate::elbow();
-    /// let inverse = Inverse::new(&robot, &[])?;
-    /// let targets = [[0.3; 6], [0.4; 6]].map(|q| robot.forward_kinematics(&q));
-    /// let found = inverse.of_many(&targets, |inverse, _, target| inverse.nearest(target, &[0.2; 6], true));
-    /// assert!((found[1].as_ref().unwrap()[5] - 0.4).abs() < 1e-9);
-    /// # Ok::<(), poecal::Error>(())
-    /// ```
     #[must_use]
     pub fn of_many<T: Send>(
         &self,
@@ -140,5 +120,24 @@ impl Inverse {
             }
         }
         all
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Inverse;
+    use crate::simulate::elbow;
+
+    #[test]
+    fn the_nearest_configuration_of_each_pose_is_found() {
+        let robot = elbow();
+        let inverse = Inverse::new(&robot, &[]).unwrap();
+        let configurations = [[0.1, 0.2, 0.3, 0.4, 0.5, 0.6], [0.3; 6], [0.4; 6]];
+        let targets = configurations.map(|q| robot.forward_kinematics(&q));
+        let found = inverse.of_many(&targets, |inverse, _, target| inverse.nearest(target, &[0.2; 6], true));
+        assert_eq!(found.len(), 3);
+        for (q, found) in configurations.iter().zip(found) {
+            assert!(q.iter().zip(found.unwrap()).all(|(q, found)| (q - found).abs() < 1e-9));
+        }
     }
 }

@@ -15,18 +15,6 @@ const SOME: usize = 1024;
 /// its factors. Eight configurations are computed side by side, and all threads share them; results have the same bits for any number.
 ///
 /// Configurations are given one after the other, the readings of each (rad, m) in the order of [`Robot::reading_names`] without factors.
-///
-/// ```
-/// use poecal::compensate::Kinematics;
-/// let robot = poecal::simulate::elbow();
-/// let kinematics = Kinematics::new(&robot, &[])?;
-/// let two = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
-/// let tips = kinematics.forward_kinematics(&two);
-/// assert!((tips[0].translation - robot.forward_kinematics(&two[..6]).translation).norm() < 1e-14);
-/// assert_eq!(kinematics.jacobians(&two).len(), 2 * 6 * 6);
-/// assert_eq!(kinematics.sag(&two), [[0.0; 6]; 2]); // nothing gives in the model
-/// # Ok::<(), poecal::Error>(())
-/// ```
 #[derive(Clone, Debug)]
 pub struct Kinematics {
     arm: Arm,

@@ -29,18 +29,6 @@ pub const REACHED: f64 = 1e-9;
 
 /// Compensation of joint readings: those with which the actual robot has its tip where the nominal one has it,
 /// `base_from_tip(q) = nominal base_from_tip(q₀)` (theory.md §2).
-///
-/// ```
-/// use poecal::compensate::Compensation;
-/// use poecal::robot::{JointTerm, Term};
-/// let nominal = poecal::simulate::elbow();
-/// let mut actual = nominal.clone();
-/// actual.terms.push(JointTerm { joint: 1, term: Term::Offset, coefficient: 0.01 });
-/// let mut compensation = Compensation::new(&nominal, &actual, &[])?;
-/// let found = compensation.joints(&[0.1, 0.2, 0.3, 0.4, 0.5, 0.6]);
-/// assert!((found.readings[1] - 0.19).abs() < 1e-12 && found.is_reached());
-/// # Ok::<(), poecal::Error>(())
-/// ```
 #[derive(Clone, Debug)]
 pub struct Compensation {
     nominal: Arm,
@@ -59,14 +47,6 @@ pub struct Compensation {
 }
 
 /// A corrected configuration.
-///
-/// ```
-/// use poecal::compensate::Compensation;
-/// let robot = poecal::simulate::elbow();
-/// let mut same = Compensation::new(&robot, &robot, &[])?;
-/// assert_eq!(same.joints(&[0.1; 6]).moved_m, 0.0);
-/// # Ok::<(), poecal::Error>(())
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Compensated<'a> {
     /// Readings to command (rad, m), in the order of [`Robot::reading_names`].
@@ -217,15 +197,6 @@ impl Compensation {
     ///
     /// # Errors
     /// Those of `told`, which also gets the index of the configuration.
-    ///
-    /// ```
-    /// use poecal::compensate::Compensation;
-    /// let robot = poecal::simulate::elbow();
-    /// let compensation = Compensation::new(&robot, &robot, &[])?;
-    /// let moved = compensation.of_many(&[0.1; 12], |_, it| Ok::<_, poecal::Error>(vec![it.moved_m]))?;
-    /// assert_eq!(moved, [0.0, 0.0]);
-    /// # Ok::<(), poecal::Error>(())
-    /// ```
     pub fn of_many<T: Send, E: Send>(
         &self,
         readings: &[f64],
@@ -263,3 +234,28 @@ pub const TOGETHER: usize = 256;
 const NOTHING: f64 = 1e-11;
 /// Correction of a joint (rad, m) that is none of a robot like its drawing: another branch.
 const FAR: f64 = 0.6;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::robot::{JointTerm, Term};
+    use crate::simulate::elbow;
+
+    #[test]
+    fn an_offset_is_taken_off_the_reading() {
+        let nominal = elbow();
+        let mut actual = nominal.clone();
+        actual.terms.push(JointTerm { joint: 1, term: Term::Offset, coefficient: 0.01 });
+        let mut compensation = Compensation::new(&nominal, &actual, &[]).unwrap();
+        let found = compensation.joints(&[0.1, 0.2, 0.3, 0.4, 0.5, 0.6]);
+        assert!((found.readings[1] - 0.19).abs() < 1e-12 && found.is_reached());
+    }
+
+    #[test]
+    fn a_robot_that_is_as_drawn_is_not_moved() {
+        let mut compensation = Compensation::new(&elbow(), &elbow(), &[]).unwrap();
+        assert_eq!(compensation.joints(&[0.1; 6]).moved_m, 0.0);
+        let moved = compensation.of_many(&[0.1; 12], |_, it| Ok::<_, Error>(vec![it.moved_m])).unwrap();
+        assert_eq!(moved, [0.0, 0.0]);
+    }
+}

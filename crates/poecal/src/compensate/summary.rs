@@ -10,14 +10,6 @@ use super::{Compensated, Compensation, REACHED};
 const JUMP: f64 = 0.02;
 
 /// A largest value, and the line of the program where it is.
-///
-/// ```
-/// use poecal::compensate::Largest;
-/// let mut largest = Largest::default();
-/// largest.include(2.0, 7);
-/// largest.include(1.0, 8);
-/// assert_eq!((largest.value, largest.line), (2.0, 7));
-/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Largest {
     /// The value.
@@ -36,17 +28,6 @@ impl Largest {
 }
 
 /// What a compensation changes, and what is left.
-///
-/// ```
-/// use poecal::compensate::{Compensation, Summary};
-/// let robot = poecal::simulate::elbow();
-/// let mut compensation = Compensation::new(&robot, &robot, &[])?;
-/// let mut summary = Summary::new(&compensation);
-/// let meant = [0.1; 6];
-/// summary.include(2, &meant, &compensation.joints(&meant));
-/// assert_eq!((summary.rows, summary.mean_moved_m()), (1, 0.0));
-/// # Ok::<(), poecal::Error>(())
-/// ```
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Summary {
     /// Number of targets.
@@ -229,5 +210,28 @@ impl Summary {
             ));
         }
         out
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_larger_value_keeps_its_line() {
+        let mut largest = Largest::default();
+        largest.include(2.0, 7);
+        largest.include(1.0, 8);
+        assert_eq!((largest.value, largest.line), (2.0, 7));
+    }
+
+    #[test]
+    fn rows_are_counted() {
+        let robot = crate::simulate::elbow();
+        let mut compensation = Compensation::new(&robot, &robot, &[]).unwrap();
+        let mut summary = Summary::new(&compensation);
+        let meant = [0.1; 6];
+        summary.include(2, &meant, &compensation.joints(&meant));
+        assert_eq!((summary.rows, summary.mean_moved_m()), (1, 0.0));
     }
 }

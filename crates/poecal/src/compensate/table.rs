@@ -8,10 +8,6 @@ use crate::io::measurements::{ReadOptions, RewrittenTable, rewrite_joints};
 use crate::robot::Robot;
 
 /// How tables are compensated.
-///
-/// ```
-/// assert!(!poecal::compensate::TableOptions::default().check);
-/// ```
 #[derive(Clone, Debug, Default)]
 pub struct TableOptions {
     /// Columns, units and names.

@@ -12,19 +12,6 @@ use crate::robot::{JointKind, JointTerm, Term};
 
 /// An estimate as frames relative to the frame before. A row's prediction `X T_n M Z` of theory.md §4 (13) is then a product of one fixed
 /// pose and one elementary motion for each joint.
-///
-/// ```
-/// # use nalgebra::Vector3;
-/// # use poecal::{lie::{Pose, Screw}, robot::{Joint, Robot}};
-/// use poecal::estimate::{Chain, Estimate, Linkage, Packed};
-/// # let joint = Joint::revolute("a", Screw::revolute(&Vector3::y(), &Vector3::x()));
-/// # let robot = Robot::new("r", vec![joint], Pose::from_translation(Vector3::new(0.3, 0.2, 0.1)))?;
-/// let linkage = Linkage::new(&Estimate::new(&robot, vec![robot.home], Pose::identity()));
-/// let mut chain = Chain::default();
-/// chain.evaluate(&linkage, &Packed::new(&robot, &[0.7], 1), 0, 0);
-/// assert!((chain.target.translation - robot.forward_kinematics(&[0.7]).translation).norm() < 1e-15);
-/// # Ok::<(), poecal::Error>(())
-/// ```
 #[derive(Clone, Debug)]
 pub struct Linkage {
     tree: Arc<Tree>,

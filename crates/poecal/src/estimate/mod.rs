@@ -33,17 +33,6 @@ use crate::measurement::Dataset;
 use crate::robot::{Body, JointKind, JointTerm, Robot, Term};
 
 /// The current estimate of everything that may be unknown.
-///
-/// ```
-/// # use nalgebra::Vector3;
-/// # use poecal::{lie::{Pose, Screw}, robot::{Joint, Robot}};
-/// use poecal::estimate::Estimate;
-/// # let joint = Joint::revolute("a", Screw::revolute(&Vector3::y(), &Vector3::x()));
-/// # let robot = Robot::new("r", vec![joint], Pose::identity())?;
-/// let estimate = Estimate::new(&robot, vec![robot.home], Pose::identity());
-/// assert!((estimate.screws()[0].w() - Vector3::y()).norm() < 1e-15);
-/// # Ok::<(), poecal::Error>(())
-/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Estimate {
     /// Where joints, instruments and targets stand.

@@ -14,18 +14,6 @@ const CHUNK: usize = 1024;
 
 /// Joint values θ of all rows, flat: `n` joints a row, radians or metres. Beside θ, `(cos θ, sin θ)` of a revolute joint and `(θ, 0)` of a
 /// prismatic one.
-///
-/// ```
-/// # use nalgebra::Vector3;
-/// # use poecal::{lie::{Pose, Screw}, robot::{Joint, Robot}};
-/// use poecal::estimate::Packed;
-/// # let joint = Joint::revolute("a", Screw::revolute(&Vector3::y(), &Vector3::x()));
-/// # let robot = Robot::new("r", vec![joint], Pose::identity())?;
-/// let packed = Packed::new(&robot, &[0.0, std::f64::consts::FRAC_PI_2], 1);
-/// assert_eq!(packed.rows(), 2);
-/// assert_eq!(packed.joint(1, 0).1, 1.0);
-/// # Ok::<(), poecal::Error>(())
-/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Packed {
     joints: usize,
@@ -250,15 +238,6 @@ fn bases<'a>(robot: &Robot, angles: &[f64], factors: impl Fn(usize) -> &'a [f64]
 
 /// A subsample of `count` rows, or all if there are no more. The rows are spread evenly but not periodically, since a fixed stride could
 /// fall in with a rhythm of targets or grid lines in the data (theory.md §6, *End*).
-///
-/// ```
-/// let rows: Vec<u32> = (0..900).collect();
-/// let sample = poecal::estimate::sample_rows(&rows, 60);
-/// assert_eq!(sample.len(), 60);
-/// assert!((0..3).all(|target| sample.iter().any(|row| row % 3 == target)));
-/// let most = poecal::estimate::sample_rows(&rows, 800);
-/// assert!(most.len() == 800 && most.windows(2).all(|pair| pair[0] < pair[1]));
-/// ```
 #[must_use]
 pub fn sample_rows(rows: &[u32], count: usize) -> Vec<u32> {
     if rows.len() <= count {
@@ -273,4 +252,19 @@ pub fn sample_rows(rows: &[u32], count: usize) -> Vec<u32> {
             rows.get(first + place as usize).copied()
         })
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::sample_rows;
+
+    #[test]
+    fn samples_are_spread_and_not_periodic() {
+        let rows: Vec<u32> = (0..900).collect();
+        let sample = sample_rows(&rows, 60);
+        assert_eq!(sample.len(), 60);
+        assert!((0..3).all(|target| sample.iter().any(|row| row % 3 == target)));
+        let most = sample_rows(&rows, 800);
+        assert!(most.len() == 800 && most.windows(2).all(|pair| pair[0] < pair[1]));
+    }
 }

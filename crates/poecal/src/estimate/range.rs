@@ -7,12 +7,6 @@ use crate::measurement::Sensitivity;
 
 /// Zero and scale of an instrument's distances: it reads `(1 + s) |p| + o` where a target is at p (theory.md §4 (15d)). Of a sphere that is
 /// touched, the zero is minus its radius.
-///
-/// ```
-/// use poecal::{estimate::Range, lie::Pose};
-/// let seen = Range { zero_m: 0.1, scale: 0.0 }.seen(&Pose::from_translation(nalgebra::Vector3::new(0.0, 2.0, 0.0)));
-/// assert_eq!(seen.translation.y, 2.1);
-/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Range {
     /// Reading at the instrument itself, metres.
@@ -22,10 +16,6 @@ pub struct Range {
 }
 
 /// One of the two, as an unknown.
-///
-/// ```
-/// assert_eq!(poecal::estimate::RangeTerm::Zero.name(), "zero");
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum RangeTerm {
     /// The zero, metres.
@@ -86,5 +76,16 @@ impl Range {
             RangeTerm::Zero => target.translation.try_normalize(0.0).unwrap_or_default(),
             RangeTerm::Scale => target.translation,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_zero_moves_what_is_seen_along_the_line_of_sight() {
+        let target = Pose::from_translation(Vector3::new(0.0, 2.0, 0.0));
+        assert_eq!(Range { zero_m: 0.1, scale: 0.0 }.seen(&target).translation.y, 2.1);
     }
 }

@@ -10,13 +10,6 @@ use crate::unit::Unit;
 
 /// Error of one row: measured minus predicted, in the device's axes; `y - p` and `log(Y Rᵀ)` of theory.md §4 (16). One number for each
 /// channel of the measurement, metres and radians.
-///
-/// ```
-/// use nalgebra::{Matrix3, Vector3};
-/// use poecal::{Quantity, estimate::RowError};
-/// let error = RowError::of_position(Vector3::x() * 2.0);
-/// assert_eq!((error.part(Quantity::Position), error.length(Quantity::Rotation)), (&[2.0, 0.0, 0.0][..], None));
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RowError {
     channels: &'static Channels,

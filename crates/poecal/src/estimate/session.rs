@@ -7,19 +7,6 @@ use crate::robot::{JointKind, Robot};
 use crate::unit::Unit;
 
 /// A robot and its measurements: what every fit of them, and every judgement of a fit, begins with.
-///
-/// ```
-/// use poecal::estimate::{Packed, Session, delivered};
-/// use poecal::simulate::{Kind, Simulation, elbow};
-/// let exact = Simulation { noise_position_m: 0.0, noise_rotation_rad: 0.0, device_anywhere: false, ..Simulation::default() };
-/// let made = exact.run(&elbow(), Kind::Point)?;
-/// let packed = Packed::of(&made.nominal, &made.data);
-/// let session = Session::new(&made.nominal, &made.data, &packed, false);
-/// let errors = session.errors(&made.data.all_rows(), &delivered(&made.nominal, &made.data));
-/// assert_eq!(errors.len(), made.data.len());
-/// assert!(session.length_m < made.nominal.reach_m() && session.with_length(0.5).length_m == 0.5);
-/// # Ok::<(), poecal::Error>(())
-/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Session<'a> {
     /// The nominal robot; the calibrated one where a finished calibration is judged.

@@ -3,11 +3,6 @@
 use crate::measurement::Observation;
 
 /// A target as an instrument sees it. A target alone is measured from the first station.
-///
-/// ```
-/// use poecal::estimate::Sight;
-/// assert_eq!(Sight::from(2), Sight { station: 0, target: 2, from: None });
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Sight {
     /// Index into [`Dataset::stations`](crate::measurement::Dataset::stations).

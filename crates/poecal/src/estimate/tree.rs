@@ -5,12 +5,6 @@ use crate::measurement::Dataset;
 use crate::robot::{Body, JointKind, Robot};
 
 /// Where an instrument's frame is.
-///
-/// ```
-/// use poecal::estimate::Stand;
-/// use poecal::robot::Body;
-/// assert_ne!(Stand::On(Body::Base), Stand::Target(0));
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stand {
     /// On a body, with a frame of its own.
@@ -20,11 +14,6 @@ pub enum Stand {
 }
 
 /// A joint on the way from an instrument to a target.
-///
-/// ```
-/// use poecal::estimate::Passed;
-/// assert!(!Passed { joint: 0, backward: false }.backward);
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Passed {
     /// Index of the joint.
@@ -38,15 +27,6 @@ pub struct Passed {
 ///
 /// The way from an instrument on body a to a target on body b is `(T_a)⁻¹ T_b`, with T the product of exponentials from the base to the
 /// body. Joints that are on both ways cancel, unless instrument and target were in different configurations.
-///
-/// ```
-/// use poecal::estimate::{Sight, Stand, Tree};
-/// use poecal::robot::Body;
-/// let robot = poecal::simulate::elbow();
-/// let in_hand = Tree::new(&robot, vec![Stand::On(Body::Link(5))], vec![Body::Base]);
-/// let passed = in_hand.route(Sight::from(0));
-/// assert!(passed.len() == 6 && passed[0].joint == 5 && passed.iter().all(|it| it.backward));
-/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tree {
     kinds: Vec<JointKind>,
@@ -218,5 +198,18 @@ impl Tree {
                 }
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_camera_in_the_hand_passes_the_joints_backward() {
+        let robot = crate::simulate::elbow();
+        let in_hand = Tree::new(&robot, vec![Stand::On(Body::Link(5))], vec![Body::Base]);
+        let passed = in_hand.route(Sight::from(0));
+        assert!(passed.len() == 6 && passed[0].joint == 5 && passed.iter().all(|it| it.backward));
     }
 }

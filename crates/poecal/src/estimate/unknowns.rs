@@ -5,13 +5,6 @@ use crate::robot::Term;
 
 /// What a fit changes: the axes of all joints, all targets and all frames of instruments, but for what is held as in the model; and terms of
 /// joint values, of which none is unknown without being named.
-///
-/// ```
-/// use poecal::estimate::Unknowns;
-/// use poecal::robot::Term;
-/// let mastering = Unknowns { held_axes: vec![0, 1], terms: vec![(0, Term::Offset), (1, Term::Offset)], ..Unknowns::USUAL };
-/// assert!(!mastering.moves_axis(1) && mastering.moves_target(0) && !mastering.base_is_free());
-/// ```
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Unknowns {
     /// Joints whose axes are held.

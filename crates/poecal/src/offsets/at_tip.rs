@@ -19,18 +19,6 @@ const STEPS: usize = 30;
 /// in random configurations, theory.md §8 (38d), from the result of [`explain`] with both ends free. It is what a controller gains that takes
 /// offsets, a base and a tool, and nothing else. `configurations` are those in which what remains is stated.
 ///
-/// ```
-/// use poecal::offsets::{End, OffsetOptions, explain, nearest_at_tip};
-/// use poecal::{lie::Pose, simulate::elbow};
-/// let mut actual = elbow();
-/// let tilt = Pose::from_xyz_rpy([0.0, 0.001, 0.0], [0.01, 0.0, 0.0]);
-/// actual.joints[2].screw = actual.joints[2].screw.transformed(&tilt);
-/// let nearest = nearest_at_tip(&elbow(), &actual, 1000, 1)?;
-/// let free = OffsetOptions { base: End::Free, tip: End::Free, ..OffsetOptions::default() };
-/// assert!(nearest.with_offsets.rms_m < explain(&elbow(), &actual, &free)?.with_offsets.rms_m);
-/// # Ok::<(), poecal::Error>(())
-/// ```
-///
 /// # Errors
 /// As [`explain`].
 pub fn nearest_at_tip(
@@ -153,5 +141,22 @@ impl TipFit<'_> {
         linalg::add_gram(&mut gram, n, &rows, 0);
         linalg::add_gradient(&mut gradient, &rows, &residuals);
         Ok(Normal::new(&gram, gradient, &residuals))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::simulate::elbow;
+
+    #[test]
+    fn the_tip_comes_nearer_than_by_offsets_that_explain_the_screws() {
+        let mut actual = elbow();
+        let tilt = Pose::from_xyz_rpy([0.0, 0.001, 0.0], [0.01, 0.0, 0.0]);
+        actual.joints[2].screw = actual.joints[2].screw.transformed(&tilt);
+        let nearest = nearest_at_tip(&elbow(), &actual, 1000, 1).unwrap();
+        let free = OffsetOptions { base: End::Free, tip: End::Free, ..OffsetOptions::default() };
+        let explained = explain(&elbow(), &actual, &free).unwrap();
+        assert!(nearest.with_offsets.rms_m < explained.with_offsets.rms_m);
     }
 }

@@ -17,23 +17,6 @@ const NONE: f64 = 1e-9;
 
 /// How a joint differs from another model's, in three parts (theory.md §8 (38e)): the joint offset, and the tilt and shift of its axis that
 /// offsets and base do not explain. In the base frame at zero joint values.
-///
-/// ```
-/// use nalgebra::Vector3;
-/// use poecal::{offsets::JointChange, robot::JointKind};
-/// let change = JointChange {
-///     kind: JointKind::Revolute,
-///     at: Vector3::zeros(),
-///     offset: Some(-0.9f64.to_radians()),
-///     tilt: Vector3::y() * 0.7f64.to_radians(),
-///     shift: Vector3::new(0.002, 0.0001, 0.0),
-///     sigma_offset: None,
-///     sigma_tilt: None,
-///     sigma_shift: None,
-///     is_estimated: false,
-/// };
-/// assert_eq!(change.words(), "2.002 mm toward +x, tilt 0.700 deg about +y, offset −0.900 deg");
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct JointChange {
     /// Kind of the joint.
@@ -364,5 +347,21 @@ mod tests {
             change.words(),
             "1.41 ± 0.31 mm (+1.00, +1.00, 0.00), tilt within noise (0.0057 ± 0.0057 deg), offset not determined"
         );
+    }
+
+    #[test]
+    fn what_is_not_estimated_is_said_without_doubt() {
+        let change = JointChange {
+            kind: JointKind::Revolute,
+            at: Vector3::zeros(),
+            offset: Some(-0.9f64.to_radians()),
+            tilt: Vector3::y() * 0.7f64.to_radians(),
+            shift: Vector3::new(0.002, 0.0001, 0.0),
+            sigma_offset: None,
+            sigma_tilt: None,
+            sigma_shift: None,
+            is_estimated: false,
+        };
+        assert_eq!(change.words(), "2.002 mm toward +x, tilt 0.700 deg about +y, offset −0.900 deg");
     }
 }

@@ -26,17 +26,6 @@ use prediction::Predictions;
 /// A joint's frame is fixed to the link that the joint moves and moves by `Gᵢ`, its own rotation included. Limits stay, since they bound
 /// readings. The offset of a mimic joint is that of its own value.
 ///
-/// ```
-/// use poecal::offsets::into_screws;
-/// use poecal::simulate::elbow;
-/// let robot = elbow();
-/// let equivalent = into_screws(&robot, &[0.0, 0.5, 0.0, 0.0, -0.2, 0.0])?;
-/// let difference = equivalent.forward_kinematics(&[0.1; 6]).translation
-///     - robot.forward_kinematics(&[0.1, 0.6, 0.1, 0.1, -0.1, 0.1]).translation;
-/// assert!(difference.norm() < 1e-15);
-/// # Ok::<(), poecal::Error>(())
-/// ```
-///
 /// # Errors
 /// [`ErrorKind::Option`] if there is not one finite offset for each joint.
 pub fn into_screws(robot: &Robot, offsets: &[f64]) -> Result<Robot> {
@@ -93,12 +82,6 @@ impl End {
 }
 
 /// Options of [`explain`].
-///
-/// ```
-/// use poecal::offsets::{End, OffsetOptions};
-/// let options = OffsetOptions { tip: End::Free, ..OffsetOptions::default() };
-/// assert_eq!((options.base, options.configurations), (End::Kept, 1000));
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct OffsetOptions {
     /// The base frame: free where the actual robot's is a choice.
@@ -118,15 +101,6 @@ impl Default for OffsetOptions {
 }
 
 /// Difference of a joint's screw that offsets do not explain.
-///
-/// ```
-/// use poecal::offsets::{OffsetOptions, explain};
-/// let robot = poecal::simulate::scara();
-/// let explanation = explain(&robot, &robot, &OffsetOptions::default())?;
-/// // A sliding joint has a direction and no place.
-/// assert!(explanation.joints[2].shift_m.is_none() && explanation.joints[2].tilt_rad < 1e-15);
-/// # Ok::<(), poecal::Error>(())
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct JointRemainder {
     /// Angle between the directions, radians.
@@ -136,14 +110,6 @@ pub struct JointRemainder {
 }
 
 /// Difference of the home pose that offsets do not explain.
-///
-/// ```
-/// use poecal::offsets::{OffsetOptions, explain};
-/// let robot = poecal::simulate::scara();
-/// let home = explain(&robot, &robot, &OffsetOptions::default())?.home.ok_or("the tip is kept")?;
-/// assert!(home.position_m < 1e-15 && home.rotation_rad < 1e-15);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HomeRemainder {
     /// Distance of the tips at zero, metres.
@@ -153,16 +119,6 @@ pub struct HomeRemainder {
 }
 
 /// The offsets with which one robot comes nearest to another, and the remaining differences.
-///
-/// ```
-/// use poecal::offsets::{OffsetOptions, explain, into_screws};
-/// use poecal::simulate::elbow;
-/// let offsets = [0.1, -0.2, 3.0, 0.0, 0.4, -2.5];
-/// let explanation = explain(&elbow(), &into_screws(&elbow(), &offsets)?, &OffsetOptions::default())?;
-/// assert!(explanation.offsets.iter().zip(&offsets).all(|(found, put_in)| (found - put_in).abs() < 1e-12));
-/// assert!(explanation.without_offsets.rms_m > 0.1 && explanation.with_offsets.rms_m < 1e-12);
-/// # Ok::<(), poecal::Error>(())
-/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Explanation {
     /// How the robots were compared.

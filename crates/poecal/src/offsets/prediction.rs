@@ -11,14 +11,6 @@ use crate::robot::Robot;
 use crate::simulate::random_configuration;
 
 /// Distance and angle between the tips of two robots, over random configurations.
-///
-/// ```
-/// use poecal::offsets::{OffsetOptions, explain};
-/// let robot = poecal::simulate::scara();
-/// let error = explain(&robot, &robot, &OffsetOptions::default())?.without_offsets;
-/// assert!(error.max_m < 1e-15 && error.max_rad < 1e-15);
-/// # Ok::<(), poecal::Error>(())
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TipError {
     /// Root mean square of the distance, metres.

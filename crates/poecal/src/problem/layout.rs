@@ -7,12 +7,6 @@ use nalgebra::Vector3;
 
 /// The free parameters and the place of each of their unknowns in a step: first those that only translate a target, whose rotation
 /// rows are zero, then the others. A step is in metres: radians are multiplied by the length L (theory.md §6, *Physical scaling*).
-///
-/// ```
-/// use poecal::parameters::{Parameter, TargetFrame};
-/// let layout = poecal::problem::Layout::new(vec![Parameter::TargetFrame(TargetFrame::new(0))], 0.5);
-/// assert_eq!((layout.dim(), layout.shifts()), (6, 3));
-/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Layout {
     parameters: Vec<Parameter>,
@@ -182,5 +176,17 @@ impl Layout {
             parameter.model().retract(&mut moved, &own[..places.len()]);
         }
         moved
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::parameters::TargetFrame;
+
+    #[test]
+    fn a_target_has_three_shifts_among_six_unknowns() {
+        let layout = Layout::new(vec![Parameter::TargetFrame(TargetFrame::new(0))], 0.5);
+        assert_eq!((layout.dim(), layout.shifts()), (6, 3));
     }
 }

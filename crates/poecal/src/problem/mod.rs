@@ -35,28 +35,6 @@ pub const MOST_UNKNOWNS: usize = 1000;
 const SEEN: usize = 500;
 
 /// A calibration problem: rows of the data, free parameters, and the noise that whitens residuals (theory.md §6 (27) and (28)).
-///
-/// ```
-/// # use nalgebra::Vector3;
-/// # use poecal::{lie::{Pose, Screw}, robot::{Joint, Robot, JointKind}, measurement::*};
-/// use poecal::{estimate::{Estimate, Packed, Session}, parameters::*, problem::Problem, solve::{minimize, Options}};
-/// # let joint = Joint::revolute("a", Screw::revolute(&Vector3::y(), &Vector3::x()));
-/// # let robot = Robot::new("r", vec![joint], Pose::from_translation(Vector3::new(0.3, 0.2, 0.1)))?;
-/// # let mut data = Dataset::new(robot.reading_names());
-/// # for reading in [0.0, 1.0, 2.0] {
-/// #     let position = robot.forward_kinematics(&[reading]).act(&Vector3::new(0.01, 0.0, 0.0));
-/// #     data.push(&[reading], None, Measurement::Point(PointMeasurement { position }))?;
-/// # }
-/// let packed = Packed::new(&robot, data.all_readings(), 1);
-/// let free = vec![Parameter::TargetPlace(TargetPlace { target: 0 })];
-/// let noise = Noise::new(1e-4, 1e-4);
-/// let session = Session::new(&robot, &data, &packed, false);
-/// let problem = Problem::new(session, vec![0, 1, 2], free, noise);
-/// let start = Estimate::new(&robot, vec![robot.home], Pose::identity());
-/// let (found, _, _) = minimize(&problem, start, &Options::default());
-/// assert!((found.base_from_target[0].translation.x - 0.31).abs() < 1e-12);
-/// # Ok::<(), poecal::Error>(())
-/// ```
 #[derive(Clone, Debug)]
 pub struct Problem<'a> {
     session: Session<'a>,

@@ -21,22 +21,6 @@ const ROUNDING: f64 = 1e-12;
 /// axis, the nominal one d⁰, and the point q of the axis nearest to the nominal joint's origin o (base frame), the deviation is
 /// `u = ((d - d⁰) / σ_angle; (q - o) / σ_length)`, of a prismatic joint its first part alone. The cost is `½ Σ |u|²`. With an unknown
 /// device frame the base frame is a choice, and the cost is minimal over motions of all axes (theory.md §6 (27a)).
-///
-/// ```
-/// use nalgebra::Vector3;
-/// use poecal::estimate::Estimate;
-/// use poecal::lie::{Pose, Screw};
-/// use poecal::problem::Prior;
-/// use poecal::robot::{Joint, Robot, Tolerance};
-/// let joint = |name: &str, x: f64| Joint::revolute(name, Screw::revolute(&Vector3::z(), &(x * Vector3::x())));
-/// let robot = Robot::new("r", vec![joint("a", 0.0), joint("b", 0.5)], Pose::identity())?;
-/// let prior = Prior::new(&robot, Tolerance::default(), true);
-/// let mut estimate = Estimate::new(&robot, vec![robot.home], Pose::identity());
-/// // Both axes 10 mm farther apart: half of it each, two standard deviations in all.
-/// estimate.base_from_axis[1].translation.x += 0.01;
-/// assert!((prior.cost(&estimate) - 2.0 * 0.5 * (0.005f64 / 0.005).powi(2)).abs() < 1e-9);
-/// # Ok::<(), poecal::Error>(())
-/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Prior {
     axes: Vec<Nominal>,
@@ -48,12 +32,6 @@ pub struct Prior {
 }
 
 /// Prior standard deviation of a term of a joint's value, in the unit of its coefficient.
-///
-/// ```
-/// use poecal::{problem::TermPrior, robot::Term};
-/// let zeros = TermPrior { joint: 0, term: Term::Offset, deviation: 0.01 };
-/// assert!(zeros.deviation > 0.0);
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TermPrior {
     /// Index of the joint.
@@ -272,4 +250,23 @@ fn base_factor(deviations: &[Deviation]) -> Option<Factor6> {
         place += block;
     }
     linalg::cholesky_6(gram)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::lie::Screw;
+    use crate::robot::Joint;
+
+    #[test]
+    fn two_axes_share_their_distance() {
+        let joint =
+            |name: &str, x: f64| Joint::revolute(name, Screw::revolute(&Vector3::z(), &(x * Vector3::x())));
+        let robot = Robot::new("r", vec![joint("a", 0.0), joint("b", 0.5)], Pose::identity()).unwrap();
+        let prior = Prior::new(&robot, Tolerance::default(), true);
+        let mut estimate = Estimate::new(&robot, vec![robot.home], Pose::identity());
+        // Both axes 10 mm farther apart: half of it each, two standard deviations in all.
+        estimate.base_from_axis[1].translation.x += 0.01;
+        assert!((prior.cost(&estimate) - 2.0 * 0.5 * (0.005f64 / 0.005).powi(2)).abs() < 1e-9);
+    }
 }

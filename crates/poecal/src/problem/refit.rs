@@ -12,37 +12,6 @@ const TOGETHER: usize = 25;
 /// A problem at its optimum, for repeated fits to other measurements in the same configurations (Monte Carlo, bootstrap). All fits share
 /// the packed rows and the factorised `JᵀJ` of the first optimum, so that most of them need residuals and gradients alone. A fit that
 /// does not converge fast computes `JᵀJ` as usual, and reaches the same optimum (theory.md §6, *Few passes*).
-///
-/// ```
-/// # use nalgebra::Vector3;
-/// # use poecal::{lie::{Pose, Screw}, robot::{Joint, Robot}, measurement::*};
-/// use poecal::{estimate::{Estimate, Packed, Session}, parameters::*, problem::{Problem, Refit}, solve::Options};
-/// # let joint = Joint::revolute("a", Screw::revolute(&Vector3::y(), &Vector3::x()));
-/// # let robot = Robot::new("r", vec![joint], Pose::from_translation(Vector3::new(0.3, 0.2, 0.1)))?;
-/// let place = Vector3::new(0.01, 0.0, 0.0);
-/// let seen = |reading, place| {
-///     let position = robot.forward_kinematics(&[reading]).act(&place);
-///     Measurement::Point(PointMeasurement { position })
-/// };
-/// let mut data = Dataset::new(robot.reading_names());
-/// for reading in [0.0, 1.0, 2.0] {
-///     data.push(&[reading], None, seen(reading, place))?;
-/// }
-/// let packed = Packed::new(&robot, data.all_readings(), 1);
-/// let free = vec![Parameter::TargetPlace(TargetPlace { target: 0 })];
-/// let noise = Noise::new(1e-4, 1e-4);
-/// let session = Session::new(&robot, &data, &packed, false);
-/// let problem = Problem::new(session, vec![0, 1, 2], free, noise);
-/// let start = Estimate::new(&robot, vec![robot.home], Pose::identity());
-///
-/// let mut refit = Refit::new(problem, start, Options::default());
-/// let others = [0.0, 1.0, 2.0].map(|reading| seen(reading, 2.0 * place));
-/// let (found, _, _) = refit.fit(&others);
-/// assert!((found.base_from_target[0].translation.x - 0.32).abs() < 1e-12);
-/// let same = refit.fit_all(&[others.to_vec()], |found, _, _| found);
-/// assert_eq!(same, [found]);
-/// # Ok::<(), poecal::Error>(())
-/// ```
 #[derive(Clone, Debug)]
 pub struct Refit<'a> {
     problem: Problem<'a>,
@@ -79,5 +48,43 @@ impl<'a> Refit<'a> {
             };
             trials.iter().map(fit).collect()
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::estimate::{Packed, Session};
+    use crate::lie::{Pose, Screw};
+    use crate::measurement::{Dataset, Noise, PointMeasurement};
+    use crate::parameters::{Parameter, TargetPlace};
+    use crate::robot::{Joint, Robot};
+    use nalgebra::Vector3;
+
+    #[test]
+    fn fits_of_all_trials_are_what_each_is_alone() {
+        let joint = Joint::revolute("a", Screw::revolute(&Vector3::y(), &Vector3::x()));
+        let home = Pose::from_translation(Vector3::new(0.3, 0.2, 0.1));
+        let robot = Robot::new("r", vec![joint], home).unwrap();
+        let place = Vector3::new(0.01, 0.0, 0.0);
+        let seen = |reading, place| {
+            let position = robot.forward_kinematics(&[reading]).act(&place);
+            Measurement::Point(PointMeasurement { position })
+        };
+        let mut data = Dataset::new(robot.reading_names());
+        for reading in [0.0, 1.0, 2.0] {
+            data.push(&[reading], None, seen(reading, place)).unwrap();
+        }
+        let packed = Packed::new(&robot, data.all_readings(), 1);
+        let free = vec![Parameter::TargetPlace(TargetPlace { target: 0 })];
+        let session = Session::new(&robot, &data, &packed, false);
+        let problem = Problem::new(session, vec![0, 1, 2], free, Noise::new(1e-4, 1e-4));
+        let start = Estimate::new(&robot, vec![robot.home], Pose::identity());
+
+        let mut refit = Refit::new(problem, start, Options::default());
+        let others = [0.0, 1.0, 2.0].map(|reading| seen(reading, 2.0 * place));
+        let (found, _, _) = refit.fit(&others);
+        assert!((found.base_from_target[0].translation.x - 0.32).abs() < 1e-12);
+        assert_eq!(refit.fit_all(&[others.to_vec()], |found, _, _| found), [found]);
     }
 }

@@ -22,11 +22,6 @@ const LEAST: usize = 10;
 const DRAWINGS: usize = 400;
 
 /// Scatter of predictions at the measured configurations, root mean square distance in metres (theory.md §9 (45)).
-///
-/// ```
-/// let found = poecal::uncertainty::Bootstrap { drawings: 400, sigma_m: 2.1e-5, formal_sigma_m: 2.0e-5 };
-/// assert!(found.sigma_m < 1.2 * found.formal_sigma_m);
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bootstrap {
     /// Number of drawings.

@@ -18,13 +18,6 @@ pub struct Correlations {
 
 impl Correlations {
     /// Of a covariance (row-major), of whose unknowns each belongs to a block.
-    ///
-    /// ```
-    /// use poecal::uncertainty::Correlations;
-    /// let found = Correlations::of(&[4.0, 1.94, 1.94, 1.0], &[0, 1]);
-    /// assert_eq!((found.pairs[0].0, found.pairs[0].1, found.count), (0, 1, 1));
-    /// assert!((found.largest[1][0] - 0.97).abs() < 1e-12);
-    /// ```
     #[must_use]
     pub fn of(covariance: &[f64], blocks: &[usize]) -> Self {
         let n = blocks.len();
@@ -46,5 +39,17 @@ impl Correlations {
         let count = pairs.len();
         pairs.truncate(MOST);
         Correlations { largest, pairs, count }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Correlations;
+
+    #[test]
+    fn what_is_known_only_together_is_a_pair() {
+        let found = Correlations::of(&[4.0, 1.94, 1.94, 1.0], &[0, 1]);
+        assert_eq!((found.pairs[0].0, found.pairs[0].1, found.count), (0, 1, 1));
+        assert!((found.largest[1][0] - 0.97).abs() < 1e-12);
     }
 }

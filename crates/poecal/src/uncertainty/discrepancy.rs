@@ -8,11 +8,6 @@ use crate::measurement::{ByQuantity, Noise, Quantity};
 use crate::solve::Normal;
 
 /// Model error and noise, as the residuals show them (theory.md §9 (40) and (41)).
-///
-/// ```
-/// let none = poecal::uncertainty::Discrepancy::none();
-/// assert_eq!((none.scatter, none.standard_deviation[poecal::Quantity::Position]), (1.0, 0.0));
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Discrepancy {
     /// Factor κ of the covariance of the unknowns over that of independent residuals, at least 1.

@@ -37,13 +37,6 @@ pub(super) struct Fold {
 }
 
 /// Errors of the rows of a fold or block, predicted by the fit of the others.
-///
-/// ```
-/// use poecal::{Measured, Quantity, uncertainty::LeftOut};
-/// let rms = Measured::of(|quantity| (quantity == Quantity::Position).then_some(1e-4));
-/// let fold = LeftOut { name: "the low end of joint2".into(), rows: 40, rms, growth: 1.0 };
-/// assert_eq!(fold.rms.lead(), 1e-4);
-/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct LeftOut {
     /// Name of the block.

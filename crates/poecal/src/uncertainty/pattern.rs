@@ -22,11 +22,6 @@ const ROUNDING_M: f64 = 1e-9;
 const CHANCE: f64 = 25.7;
 
 /// Errors that follow a joint's position, as errors of that position.
-///
-/// ```
-/// let pattern = poecal::uncertainty::Pattern { share: 0.4, rms: 1e-4 };
-/// assert!(pattern.share > 0.1);
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pattern {
     /// Share of the squared whitened position errors.

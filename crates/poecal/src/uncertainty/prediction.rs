@@ -6,16 +6,6 @@ use crate::distributions::f_quantile;
 use crate::measurement::{ByQuantity, Quantity};
 
 /// Covariances of a predicted target's place (square metres) and turn (square radians), device axes (theory.md §9 (40)).
-///
-/// ```
-/// use nalgebra::Matrix3;
-/// use poecal::uncertainty::PredictedError;
-/// let quantiles = poecal::ByQuantity::from_fn(|_| poecal::uncertainty::Quantile::KNOWN);
-/// let error = PredictedError { position: Matrix3::identity() * 1e-8, rotation: Matrix3::zeros(), quantiles };
-/// assert!((error.sigma_position_m() - 3f64.sqrt() * 1e-4).abs() < 1e-15);
-/// // Of three equal components, the distance is below 2.7955 standard deviations in 95 % of all cases.
-/// assert!((error.bound_position_m() - 2.7955e-4).abs() < 1e-6);
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PredictedError {
     /// Of the place, square metres.
@@ -69,15 +59,6 @@ pub fn bound(covariance: &Matrix3<f64>) -> f64 {
 }
 
 /// Growth of 95 % bounds where the variance was estimated from few residuals: quantiles of F instead of χ² (abramowitz1964).
-///
-/// ```
-/// use poecal::uncertainty::Quantile;
-/// use nalgebra::Matrix3;
-/// let covariance = Matrix3::identity();
-/// // F of 3 and 9 degrees of freedom is 3.863 at 95 %, χ² of 3 over 3 is 2.605.
-/// let ratio = Quantile::new(9.0).bound(&covariance) / Quantile::KNOWN.bound(&covariance);
-/// assert!((ratio - (3.863f64 / 2.605).sqrt()).abs() < 1e-3);
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Quantile {
     /// Squares of the factors for distributions of 1, 2 and 3 degrees of freedom.
@@ -112,5 +93,28 @@ impl Quantile {
         let t = freedom - 2.0;
         let growth = two + 0.5 * t * (three - one) + 0.5 * t * t * (three - 2.0 * two + one);
         bound(covariance) * growth.sqrt()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bounds_are_those_of_chi_square() {
+        let quantiles = ByQuantity::from_fn(|_| Quantile::KNOWN);
+        let position = Matrix3::identity() * 1e-8;
+        let error = PredictedError { position, rotation: Matrix3::zeros(), quantiles };
+        assert!((error.sigma_position_m() - 3f64.sqrt() * 1e-4).abs() < 1e-15);
+        // Of three equal components, the distance is below 2.7955 standard deviations in 95 % of all cases.
+        assert!((error.bound_position_m() - 2.7955e-4).abs() < 1e-6);
+    }
+
+    #[test]
+    fn bounds_of_few_residuals_are_those_of_f() {
+        let covariance = Matrix3::identity();
+        // F of 3 and 9 degrees of freedom is 3.863 at 95 %, χ² of 3 over 3 is 2.605.
+        let ratio = Quantile::new(9.0).bound(&covariance) / Quantile::KNOWN.bound(&covariance);
+        assert!((ratio - (3.863f64 / 2.605).sqrt()).abs() < 1e-3);
     }
 }

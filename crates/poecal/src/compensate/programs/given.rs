@@ -7,16 +7,6 @@ use crate::io::calibration_file::TaughtRobot;
 use crate::lie::Pose;
 
 /// Tools and frames that the user states, as the controller has them.
-///
-/// ```
-/// use poecal::compensate::{Given, Language};
-/// let mut given = Given::default();
-/// given.add_tool("2=0,0,150,0,0,0", Language::Krl)?;
-/// given.add_tool("0,0,0.1,0,0,0", Language::UrScript)?;
-/// assert!((given.tool(Some("2")).unwrap().translation.z - 0.15).abs() < 1e-15);
-/// assert!((given.tool(None).unwrap().translation.z - 0.1).abs() < 1e-15);
-/// # Ok::<(), poecal::Error>(())
-/// ```
 #[derive(Clone, Debug)]
 pub struct Given {
     /// Tools by number or name, `flange_from_tcp`; without one, the tool of programs that set none.
@@ -38,16 +28,6 @@ impl Default for Given {
 
 impl Given {
     /// The same in base and tip of a taught robot, which takes the nominal one's place.
-    ///
-    /// ```
-    /// use poecal::compensate::Given;
-    /// use poecal::io::calibration_file::TaughtRobot;
-    /// use poecal::lie::Pose;
-    /// let tool = Pose::from_translation([0.0, 0.0, 0.1].into());
-    /// let taught = TaughtRobot { robot: poecal::simulate::elbow(), base: Pose::identity(), tool };
-    /// // The flange is behind the reflector.
-    /// assert_eq!(Given::default().taught(&taught).flange.translation.z, -0.1);
-    /// ```
     #[must_use]
     pub fn taught(self, taught: &TaughtRobot) -> Self {
         Given { base: taught.base * self.base, flange: taught.tool.inverse() * self.flange, ..self }
@@ -152,4 +132,16 @@ fn named_pose(words: &str, language: Language, option: &str) -> Result<Named> {
         Some(_) | None => (None, words),
     };
     Ok((name, plain_pose(numbers, language, option)?))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_flange_of_a_taught_robot_is_behind_its_tool() {
+        let tool = Pose::from_translation([0.0, 0.0, 0.1].into());
+        let taught = TaughtRobot { robot: crate::simulate::elbow(), base: Pose::identity(), tool };
+        assert_eq!(Given::default().taught(&taught).flange.translation.z, -0.1);
+    }
 }

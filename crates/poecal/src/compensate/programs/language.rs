@@ -5,12 +5,6 @@ use std::path::Path;
 use serde::Serialize;
 
 /// A language of robot programs.
-///
-/// ```
-/// use poecal::compensate::Language;
-/// assert_eq!(Language::of("cell/weld.SRC"), Some(Language::Krl));
-/// assert_eq!(Language::of("rows.csv"), None);
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Language {
@@ -57,5 +51,16 @@ impl Language {
             Language::Rapid => "millimetres, and a quaternion with its real part first",
             Language::Krl | Language::Fanuc => "millimetres and degrees",
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Language;
+
+    #[test]
+    fn the_end_of_a_name_tells_the_language() {
+        assert_eq!(Language::of("cell/weld.SRC"), Some(Language::Krl));
+        assert_eq!(Language::of("rows.csv"), None);
     }
 }

@@ -38,12 +38,6 @@ pub use summary::ProgramSummary;
 pub const LARGEST_PROGRAM: usize = 64 << 20;
 
 /// How programs are compensated.
-///
-/// ```
-/// use poecal::compensate::{Language, ProgramOptions};
-/// let options = ProgramOptions::of(Language::Krl);
-/// assert!(!options.check && options.given.tools.is_empty());
-/// ```
 #[derive(Clone, Debug)]
 pub struct ProgramOptions {
     /// The language.
@@ -67,20 +61,6 @@ impl ProgramOptions {
 /// Corrects the targets of a program for the robot `actual` at these values of its factors, where it is written for `nominal`
 /// (theory.md §2). Joint targets become those of [`Compensation`](super::Compensation), poses those of [`PoseCompensation`]; what cannot
 /// be corrected for sure stays as it is and is listed. All bytes but those of the changed numbers stay.
-///
-/// ```
-/// use poecal::compensate::{Language, ProgramOptions, compensate_program};
-/// use poecal::robot::{JointTerm, Term};
-/// let nominal = poecal::simulate::elbow();
-/// let mut actual = nominal.clone();
-/// actual.terms.push(JointTerm { joint: 1, term: Term::Offset, coefficient: 0.01 });
-/// let text = b"movej([0.1, 0.2, 0.3, 0.4, 0.5, 0.6], a=1.4) # start\n";
-/// let options = ProgramOptions::of(Language::UrScript);
-/// let (out, summary) = compensate_program(text, (&nominal, &actual), &[], &options)?;
-/// assert_eq!(out, b"movej([0.1, 0.190000000, 0.3, 0.4, 0.5, 0.6], a=1.4) # start\n");
-/// assert_eq!((summary.corrected, summary.listed.len()), (1, 0));
-/// # Ok::<(), poecal::Error>(())
-/// ```
 ///
 /// # Errors
 /// [`ErrorKind::Syntax`] if the text is larger than [`LARGEST_PROGRAM`] or is no program, and as
@@ -140,5 +120,20 @@ fn parse(language: Language, text: &[u8], given: &Given, axes: &Axes) -> Result<
         Language::Krl => krl::parse(text, given, axes),
         Language::Rapid => Ok(rapid::parse(text, given)),
         Language::Fanuc => Ok(fanuc::parse(text, given)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_robot_that_is_as_drawn_leaves_every_byte() {
+        let robot = crate::simulate::elbow();
+        let options = ProgramOptions::of(Language::UrScript);
+        let program = b"movej([0, 0, 0, 0, 0.5, 0])\n";
+        let (text, summary) = compensate_program(program, (&robot, &robot), &[], &options).unwrap();
+        assert!(summary.is_whole() && summary.corrected == 1);
+        assert_eq!(text, program);
     }
 }

@@ -9,16 +9,6 @@ use super::stated::Stated;
 use crate::lie::Pose;
 
 /// A place of a program that stays as it is, and why.
-///
-/// ```
-/// use poecal::compensate::{Given, Language, ProgramOptions, compensate_program};
-/// let robot = poecal::simulate::elbow();
-/// let text = b"def p():\n  movej(home)\nend\n";
-/// let options = ProgramOptions { language: Language::UrScript, given: Given::default(), check: false, nearest: false };
-/// let (_, summary) = compensate_program(text, (&robot, &robot), &[], &options)?;
-/// assert_eq!((summary.listed[0].line, summary.listed[0].name.as_str()), (2, "home"));
-/// # Ok::<(), poecal::Error>(())
-/// ```
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 pub struct Listed {
     /// Line of the program, from 1.

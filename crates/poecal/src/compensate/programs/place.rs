@@ -13,23 +13,6 @@ use crate::robot::Robot;
 /// Compensation of poses for a controller that computes with the nominal robot: where the program means a pose T, reached in the nominal
 /// configuration q (`nominal(q) = T`), the controller is told `T' = nominal(q')` with `actual(q') = T`. It then goes to q', and the tip of
 /// the actual robot is at T (theory.md §2).
-///
-/// ```
-/// use poecal::compensate::PoseCompensation;
-/// use poecal::robot::{JointTerm, Term};
-/// let nominal = poecal::simulate::elbow();
-/// let mut actual = nominal.clone();
-/// actual.terms.push(JointTerm { joint: 1, term: Term::Offset, coefficient: 0.01 });
-/// let mut poses = PoseCompensation::new(&nominal, &actual, &[])?;
-/// let target = nominal.forward_kinematics(&[0.1, 0.2, 0.3, 0.4, 0.5, 0.6]);
-/// let q = poses.nearest(&target, &[0.0; 6]).unwrap();
-/// let (told, found) = poses.at(&q);
-/// assert!((found.readings[1] - 0.19).abs() < 1e-9);
-/// // The controller believes the nominal robot; the actual one is where the program meant it to be.
-/// let believed = nominal.forward_kinematics(&[0.1, 0.19, 0.3, 0.4, 0.5, 0.6]);
-/// assert!((told.translation - believed.translation).norm() < 1e-9);
-/// # Ok::<(), poecal::Error>(())
-/// ```
 #[derive(Clone, Debug)]
 pub struct PoseCompensation {
     compensation: Compensation,

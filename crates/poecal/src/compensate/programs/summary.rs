@@ -12,16 +12,6 @@ use crate::lie::Pose;
 use crate::robot::Robot;
 
 /// What the compensation of a program changes, and what stays as it is.
-///
-/// ```
-/// use poecal::compensate::{Language, ProgramOptions, compensate_program};
-/// let robot = poecal::simulate::elbow();
-/// let options = ProgramOptions::of(Language::UrScript);
-/// let (text, summary) = compensate_program(b"movej([0, 0, 0, 0, 0.5, 0])\n", (&robot, &robot), &[], &options)?;
-/// assert!(summary.is_whole() && summary.corrected == 1);
-/// assert_eq!(text, b"movej([0, 0, 0, 0, 0.5, 0])\n");
-/// # Ok::<(), poecal::Error>(())
-/// ```
 #[derive(Clone, Debug, Serialize)]
 pub struct ProgramSummary {
     /// The language.
