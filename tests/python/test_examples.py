@@ -29,8 +29,8 @@ def test_every_example_has_its_twin():
 
 @pytest.mark.parametrize("name", TWINS)
 def test_twins_print_the_same(name, tmp_path):
-    # `cargo test` builds the examples.
-    folder = Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target")) / "debug/examples"
+    # Built beside the program: scripts/rust_tests.py --build, or cargo build --release --examples.
+    folder = Path(program()).parent / "examples"
     rust = subprocess.run([folder / name], capture_output=True, text=True)
     assert rust.returncode == 0, rust.stderr
     print(rust.stdout)

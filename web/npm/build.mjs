@@ -3,6 +3,8 @@
 //   node web/npm/build.mjs                 with vector instructions
 //   node web/npm/build.mjs --plain FILE    the module without them, to that file: for comparisons
 //
+// POECAL_PROFILE is the profile of cargo: `web`, what is shipped; or `tested`, which ./test builds in less time and is larger.
+//
 // Exit code 4: Rust lacks the standard library of the target.
 import { execFileSync, spawnSync } from "node:child_process";
 import { copyFileSync, existsSync, mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
@@ -18,6 +20,7 @@ const DIST = join(HERE, "dist");
 // Fits with many unknowns and the command line need more than the linker's megabyte.
 const STACK = 8 << 20;
 
+const profile = process.env.POECAL_PROFILE ?? "web";
 const plain = process.argv[2] === "--plain" ? process.argv[3] : undefined;
 
 const sysroot = execFileSync("rustc", ["--print", "sysroot"], { encoding: "utf8", cwd: ROOT }).trim();
@@ -30,14 +33,16 @@ if (!existsSync(join(sysroot, "lib/rustlib", TARGET, "lib"))) {
 }
 
 const flags = [...(plain ? [] : ["-Ctarget-feature=+simd128"]), `-Clink-arg=-zstack-size=${STACK}`];
-const words = ["rustc", "--locked", "--profile", "web", "--target", TARGET, "-p", "poecal-wasm", "--lib", "--crate-type", "cdylib"];
+const words = ["rustc", "--locked", "--profile", profile, "--target", TARGET, "-p", "poecal-wasm", "--lib", "--crate-type", "cdylib"];
 // As a cdylib alone: with a library of Rust beside it, cargo would not optimise across crates.
 const config = `target.${TARGET}.rustflags=${JSON.stringify(flags)}`;
-const built = spawnSync("cargo", [...words, "--config", config], { stdio: ["ignore", "inherit", "inherit"], cwd: ROOT });
+// Tests run it for a moment.
+const quick = profile === "web" ? [] : ["--config", `profile.${profile}.opt-level=1`];
+const built = spawnSync("cargo", [...words, "--config", config, ...quick], { stdio: ["ignore", "inherit", "inherit"], cwd: ROOT });
 if (built.status !== 0) process.exit(1);
 
 const folder = process.env.CARGO_TARGET_DIR ?? join(ROOT, "target");
-const bytes = readFileSync(join(folder, TARGET, "web/poecal_wasm.wasm"));
+const bytes = readFileSync(join(folder, TARGET, profile, "poecal_wasm.wasm"));
 const imports = WebAssembly.Module.imports(new WebAssembly.Module(bytes));
 if (imports.length > 0) {
   const names = imports.map(({ module, name }) => `${module}.${name}`).join(", ");

@@ -10,6 +10,7 @@ import { FILE, clear, drop, dropPaths, messages, open, saved, serve, skipped, st
 import { launch } from "./browser.mjs";
 import { PROGRAM, ROOT, folder } from "./cases.mjs";
 import { messages as told } from "../app/src/sentences.js";
+import { LEVELS } from "./levels.mjs";
 import { difference } from "./numbers.mjs";
 import { WRONG } from "./wrong.mjs";
 
@@ -41,9 +42,9 @@ function session(name, files) {
   return there;
 }
 
-/** The program's own run in a folder. */
-function native(there, ...words) {
-  return spawnSync(PROGRAM, words, { cwd: there, encoding: "utf8" });
+/** The program's own run in a folder, with variables of its own. */
+function native(there, env, ...words) {
+  return spawnSync(PROGRAM, words, { cwd: there, encoding: "utf8", env: { ...process.env, ...env } });
 }
 
 /** What the program says of a session: the sentences of its errors, by `check` and by `calibrate`. */
@@ -51,7 +52,7 @@ function sentences(there, files, further) {
   const options = [...("map.toml" in files ? ["--columns", "map.toml"] : []), ...(further?.split(" ") ?? [])];
   const settings = "poecal.toml" in files ? ["--settings", "poecal.toml"] : [];
   const runs = [["check", "robot.urdf", "points.csv", ...options], ["calibrate", "robot.urdf", "points.csv", ...settings, ...options, "--out", "calibration"]];
-  return runs.flatMap((words) => told(native(there, ...words).stderr)).filter(({ kind }) => kind === "error").map(({ text }) => text);
+  return runs.flatMap((words) => told(native(there, {}, ...words).stderr)).filter(({ kind }) => kind === "error").map(({ text }) => text);
 }
 
 /** Names of the files in an archive, whose checksums Python's reader finds right. */
@@ -133,15 +134,18 @@ describe("the page that calibrates", { skip: skipped }, () => {
 
   test("what is saved is what the program writes", async () => {
     const there = session("same", ELBOW);
-    native(there, "calibrate", "robot.urdf", "points.csv", "--out", "calibration");
+    for (const level of LEVELS) native(there, { POECAL_SIMD: level }, "calibrate", "robot.urdf", "points.csv", "--out", level);
     const page = await open(browser);
     await drop(page, ELBOW);
     await status(page, /^Calibrated/);
     const link = (name) => page.locator("#downloads a", { hasText: new RegExp(`^${name}$`) });
     for (const name of ["calibrated.urdf", "calibration.json", "residuals.csv"]) {
-      const most = difference((await saved(page, link(name))).toString(), readFileSync(join(there, "calibration", name), "utf8"), name);
-      console.log(`${name}: numbers differ by up to ${most.toExponential(1)}`);
-      assert.ok(most < SAME, `${name}: ${most}`);
+      const found = (await saved(page, link(name))).toString();
+      for (const level of LEVELS) {
+        const most = difference(found, readFileSync(join(there, level, name), "utf8"), `${name}, ${level}`);
+        console.log(`${name}: numbers differ by up to ${most.toExponential(1)} from ${level}`);
+        assert.ok(most < SAME, `${name}, ${level}: ${most}`);
+      }
     }
     assert.match((await saved(page, link("report.html"))).toString(), /<title>Calibration of elbow<\/title>/);
     const archive = join(there, "poecal.zip");
@@ -151,10 +155,12 @@ describe("the page that calibrates", { skip: skipped }, () => {
     await page.click("#exports summary");
     await page.selectOption("#form", "hayati");
     await page.click("#export");
-    native(there, "export", "calibration/calibration.json", "--format", "hayati", "--out", "hayati.json");
     const written = (await saved(page, page.locator("#exported a"))).toString();
-    const most = difference(written, readFileSync(join(there, "hayati.json"), "utf8"), "hayati.json");
-    assert.ok(most < SAME, `hayati.json: ${most}`);
+    for (const level of LEVELS) {
+      native(there, { POECAL_SIMD: level }, "export", `${level}/calibration.json`, "--format", "hayati", "--out", `${level}.json`);
+      const most = difference(written, readFileSync(join(there, `${level}.json`), "utf8"), `hayati.json, ${level}`);
+      assert.ok(most < SAME, `hayati.json, ${level}: ${most}`);
+    }
     // A form that this arm does not have.
     await page.selectOption("#form", "franka");
     await page.click("#export");

@@ -3,14 +3,11 @@ import { execFileSync } from "node:child_process";
 import { existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
-import { fileURLToPath } from "node:url";
 import { complete } from "../src/data.js";
+import { PROGRAM, ROOT } from "./program.mjs";
 
-export const ROOT = fileURLToPath(new URL("../..", import.meta.url));
-export const PROGRAM = process.env.POECAL_PROGRAM ?? join(ROOT, "target/release/poecal");
+export { PROGRAM, ROOT };
 const ELBOW = join(ROOT, "examples/elbow");
-
-if (!existsSync(PROGRAM)) throw new Error(`found no program at ${PROGRAM}; build it (cargo build --release -p poecal-cli), or name it: POECAL_PROGRAM=/path`);
 
 export const folder = mkdtempSync(join(tmpdir(), "poecal-report-"));
 process.on("exit", () => rmSync(folder, { recursive: true, force: true }));

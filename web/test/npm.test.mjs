@@ -7,14 +7,13 @@ import { cpSync, existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync, write
 import { tmpdir } from "node:os";
 import { dirname, join } from "node:path";
 import { test } from "node:test";
-import { fileURLToPath } from "node:url";
 import { gzipSync } from "node:zlib";
+import { LEVELS, limited } from "./levels.mjs";
 import { difference } from "./numbers.mjs";
+import { PROGRAM, ROOT } from "./program.mjs";
 
-const ROOT = fileURLToPath(new URL("../..", import.meta.url));
 const NPM = join(ROOT, "web/npm");
 const DIST = join(NPM, "dist");
-const PROGRAM = process.env.POECAL_PROGRAM ?? join(ROOT, "target/release/poecal");
 if (!existsSync(join(DIST, "poecal.wasm"))) throw new Error("found no web/npm/dist/poecal.wasm; build it: node web/npm/build.mjs");
 const { load, PoecalError } = await import(join(DIST, "index.js"));
 const poecal = await load();
@@ -33,8 +32,8 @@ const folder = mkdtempSync(join(tmpdir(), "poecal-npm-"));
 process.on("exit", () => rmSync(folder, { recursive: true, force: true }));
 let runs = 0;
 
-/** The same run by the program, in a folder of its own. */
-function native(words, files) {
+/** The same run by the program at a level of vector instructions, in a folder of its own. */
+function native(words, files, level = LEVELS[0]) {
   const cwd = join(folder, String(runs++));
   mkdirSync(cwd);
   for (const [path, content] of Object.entries(files)) {
@@ -42,7 +41,7 @@ function native(words, files) {
     if (!path.endsWith("/")) writeFileSync(join(cwd, path), content);
     else mkdirSync(join(cwd, path), { recursive: true });
   }
-  const { status, stdout, stderr } = spawnSync(PROGRAM, words, { cwd, encoding: "utf8", maxBuffer: 1 << 28 });
+  const { status, stdout, stderr } = spawnSync(PROGRAM, words, { cwd, encoding: "utf8", maxBuffer: 1 << 28, env: limited(level) });
   return { code: status, out: stdout, err: stderr, read: (path) => readFileSync(join(cwd, path), "utf8") };
 }
 
@@ -65,16 +64,19 @@ for (const [name, [words, inputs]] of Object.entries(cases)) {
   test(`${name}: the numbers of the program`, (t) => {
     const files = { "robot.urdf": robot, ...inputs };
     const all = ["calibrate", "robot.urdf", ...words, "--out", "out", "--threads", "1"];
-    const [here, there] = [poecal.run(all, files), native(all, files)];
-    assert.equal(there.code, 0, there.err);
+    const here = poecal.run(all, files);
     assert.equal(here.code, 0, here.err);
     assert.deepEqual(Object.keys(here.files).sort(), ["out/calibrated.urdf", "out/calibration.json", "out/report.html", "out/residuals.csv"]);
-    for (const file of ["calibration.json", "calibrated.urdf", "residuals.csv"]) {
-      const most = difference(text(here.files[`out/${file}`]), there.read(`out/${file}`), `${name}, ${file}`);
-      t.diagnostic(`${name}: ${file} differs by ${most.toExponential(1)}`);
-      assert.ok(most <= NEAR, `${file}: ${most}`);
+    for (const level of LEVELS) {
+      const there = native(all, files, level);
+      assert.equal(there.code, 0, there.err);
+      for (const file of ["calibration.json", "calibrated.urdf", "residuals.csv"]) {
+        const most = difference(text(here.files[`out/${file}`]), there.read(`out/${file}`), `${name}, ${file}, ${level}`);
+        t.diagnostic(`${name}: ${file} differs by ${most.toExponential(1)} from ${level}`);
+        assert.ok(most <= NEAR, `${file}, ${level}: ${most}`);
+      }
+      assert.equal(here.err, there.err);
     }
-    assert.equal(here.err, there.err);
   });
 }
 
@@ -83,12 +85,15 @@ test("distances: the errors of the program", (t) => {
   // which. Uncertainties of such directions differ in their fourth digit; errors, which all these fits share, agree.
   const files = { "robot.urdf": robot, "distances.csv": simulated("--kind", "distance", "--count", "120") };
   const words = ["calibrate", "robot.urdf", "distances.csv", "--out", "out", "--report", "none"];
-  const [here, there] = [poecal.run(words, files), native(words, files)];
+  const here = poecal.run(words, files);
   const errors = (json) => JSON.stringify(JSON.parse(json).accuracy);
-  const most = difference(errors(text(here.files["out/calibration.json"])), errors(there.read("out/calibration.json")), "accuracy");
-  t.diagnostic(`distances: errors differ by ${most.toExponential(1)}`);
-  assert.ok(most <= 1e-6, String(most));
-  assert.deepEqual([here.code, here.err], [there.code, there.err]);
+  for (const level of LEVELS) {
+    const there = native(words, files, level);
+    const most = difference(errors(text(here.files["out/calibration.json"])), errors(there.read("out/calibration.json")), `accuracy, ${level}`);
+    t.diagnostic(`distances: errors differ by ${most.toExponential(1)} from ${level}`);
+    assert.ok(most <= 1e-6, `${level}: ${most}`);
+    assert.deepEqual([here.code, here.err], [there.code, there.err]);
+  }
 });
 
 test("50,000 poses: the numbers of the program, and the time", (t) => {
@@ -98,11 +103,13 @@ test("50,000 poses: the numbers of the program, and the time", (t) => {
   const here = poecal.run(all, files);
   const { user, system } = process.cpuUsage(begin);
   t.diagnostic(`50,000 poses: ${((user + system) / 1e6).toFixed(2)} s of processor time, files included`);
-  const there = native(all, files);
-  for (const file of ["calibration.json", "calibrated.urdf", "residuals.csv"]) {
-    const most = difference(text(here.files[`out/${file}`]), there.read(`out/${file}`), file);
-    t.diagnostic(`50,000 poses: ${file} differs by ${most.toExponential(1)}`);
-    assert.ok(most <= NEAR, `${file}: ${most}`);
+  for (const level of LEVELS) {
+    const there = native(all, files, level);
+    for (const file of ["calibration.json", "calibrated.urdf", "residuals.csv"]) {
+      const most = difference(text(here.files[`out/${file}`]), there.read(`out/${file}`), `${file}, ${level}`);
+      t.diagnostic(`50,000 poses: ${file} differs by ${most.toExponential(1)} from ${level}`);
+      assert.ok(most <= NEAR, `${file}, ${level}: ${most}`);
+    }
   }
 });
 

@@ -215,10 +215,8 @@ fn trial(case: &Case, faults: &Faults, chance: &mut Chance) -> &'static str {
     }
 }
 
-/// Trials; ten times as many where they cost nobody's time.
-fn usual() -> usize {
-    if std::env::var("CI").as_deref() == Ok("true") { 10_000 } else { 1000 }
-}
+/// Trials of a week: `./test` makes a quarter, 1,000, and `./test packages` 10,000.
+const WEEKLY: usize = 4000;
 
 /// What is done for each number up to `count`, on two threads. Not by rayon, which would begin one trial while another waits, on
 /// that one's disk.
@@ -237,7 +235,7 @@ fn on_two_threads<T: Send>(count: usize, work: impl Fn(usize) -> T + Sync) -> Ve
 #[test]
 fn whatever_fails_a_place_is_old_or_new_or_completed_by_the_next_run() {
     let cases = cases();
-    let trials = trials(usual()).count;
+    let trials = trials(WEEKLY).count;
     let ends = on_two_threads(trials, |seed| {
         let mut chance = Chance(seed as u64);
         let case = &cases[chance.below(cases.len())];
@@ -257,7 +255,7 @@ fn whatever_fails_a_place_is_old_or_new_or_completed_by_the_next_run() {
 
 #[test]
 fn a_stop_before_every_single_operation() {
-    // Before every one, or where few trials are required before one in so many.
+    // Before every one weekly and in `./test packages`, before one in so many where fewer trials are required.
     let apart = 1000_usize.div_ceil(trials(1000).count);
     let cases = cases();
     let stops = on_two_threads(2 * cases.len(), |number| {

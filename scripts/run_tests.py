@@ -1,0 +1,182 @@
+#!/usr/bin/env python3
+"""The steps of `./test` and of `./test packages`; scripts/steps.py runs them. `./test quick` is scripts/quick."""
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+from rust_tests import ROOT, target
+from steps import Run, Step
+
+PYTHON = ".venv/bin/python"
+PYTEST = [PYTHON, "-m", "pytest", "-rs", "--rootdir", ".", "-p", "no:cacheprovider", "--durations=5"]
+# Lines of pytest, and of Node's test runner, that say what was done.
+PYTEST_SHOWS = r"^=+ .* in [0-9.]+s|^documentation: \d|^SKIPPED |^(FAILED|ERROR) "
+NODE_SHOWS = r"^# (tests|pass|fail|skipped) |^# .*(bytes|differs? by|processor time|MB)|^# real robots|^# .* s after the drop|^[^ ].*# SKIP|^ *not ok"
+CARGO_SHOWS = r"^ *Finished|^(error|warning):"
+# What only ./test packages needs.
+INSTALL = "tests/python/test_install.py"
+SITE = "tests/python/test_site.py"
+WASM = "wasm32-unknown-unknown"
+# Levels of vector instructions, the best first (crates/poecal/src/lanes/simd.rs), and what compares digits: programs of Rust tests, Python
+# files, and what web/ compares with the program.
+LEVELS = ["avx512", "avx2", "neon", "plain"]
+DIGITS_OF_RUST = ["poecal-cli it ", "poecal-lou2009 it ", "it determinism", "-simulated_disk", "-hostile"]
+DIGITS_OF_PYTHON = ["tests/python/test_package_and_program.py", "tests/python/test_docs.py", "tests/python/test_examples.py"]
+
+
+def has(*command: str) -> bool:
+    """Whether a command is there and ends well."""
+    return shutil.which(command[0]) is not None and subprocess.run(command, cwd=ROOT, capture_output=True, check=False).returncode == 0
+
+
+def lack(tool: str, is_there: bool) -> str | None:
+    return None if is_there else tool
+
+
+def has_chromium() -> bool:
+    """Whether there is a browser, where web/test/browser.mjs looks for it."""
+    names = ["/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome", "/usr/bin/google-chrome-stable"]
+    given = os.environ.get("CHROMIUM")
+    return any(os.access(name, os.X_OK) for name in ([given] if given else names))
+
+
+def has_node() -> bool:
+    return shutil.which("npm") is not None and has("node", "-e", "process.exit(process.versions.node.split('.')[0] < 20 ? 1 : 0)")
+
+
+def has_standard_library(name: str) -> bool:
+    sysroot = subprocess.run(["rustc", "--print", "sysroot"], cwd=ROOT, capture_output=True, text=True, check=True).stdout.strip()
+    return (Path(sysroot) / "lib/rustlib" / name / "lib").is_dir()
+
+
+def tools() -> list[Step]:
+    """What is tested with: Python packages and, where Node.js is, npm packages."""
+    installed = ROOT / "web/node_modules/package-lock.json"
+    is_current = installed.is_file() and installed.read_bytes() == (ROOT / "web/package-lock.json").read_bytes()
+    install = [["npm", "ci", "--prefix", "web", "--ignore-scripts", "--no-audit", "--no-fund"], ["cp", "web/package-lock.json", "web/node_modules/"]]
+    return [
+        Step("Python tools", [["scripts/python-env"]]),
+        Step("web tools", [] if is_current else install, shows=r"^npm (error|ERR)", lacks=lack("Node.js 20 or newer with npm", has_node())),
+    ]
+
+
+def levels() -> list[str]:
+    """The levels of this machine, by the program, which refuses others."""
+    program = os.environ["POECAL_PROGRAM"]
+    found = []
+    for level in LEVELS:
+        done = subprocess.run([program, "schema"], env={**os.environ, "POECAL_SIMD": level}, capture_output=True, check=False)
+        found += [level] if done.returncode == 0 else []
+    return found
+
+
+def change() -> list[Step]:
+    """All that a change of the product can break."""
+    clippy = has("cargo", "clippy", "--version")
+    folder = target()
+    wheels = folder / "wheels"
+    node, chromium = has_node(), has_chromium()
+    pages = sorted(str(path.relative_to(ROOT / "web")) for path in (ROOT / "web/test").glob("*.test.mjs") if path.name not in ("npm.test.mjs", "site.test.mjs"))
+    tests = ["node", "--test", "--test-concurrency=1", "--test-reporter", "tap"]
+    return [
+        Step("format", [["cargo", "fmt", "--all", "--check"]], shows="^Diff in", lacks=lack("rustfmt", has("cargo", "fmt", "--version"))),
+        Step("imports", [["scripts/check-imports"]], shows="^imports go| may name |^only "),
+        Step("Rust build", [["scripts/rust_tests.py", "--build"]], shows=CARGO_SHOWS),
+        *tools(),
+        Step(
+            "package build",
+            [
+                ["rm", "-rf", str(wheels)],
+                [".venv/bin/maturin", "build", "--locked", "--profile", "tested", "--compatibility", "linux", "--interpreter", PYTHON,
+                 "--manifest-path", "crates/poecal-py/Cargo.toml", "--out", str(wheels)],
+                [PYTHON, "-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--force-reinstall", "--no-deps", "--no-index",
+                 "--find-links", str(wheels), "poecal"],
+            ],
+            after=["Rust build", "Python tools"], shows="^installed |rror:",
+        ),
+        Step("licences of others", [[PYTHON, "scripts/third_party.py", "--check"]], after=["Python tools"], shows="^THIRD-PARTY"),
+        Step("dependencies", [[PYTHON, "scripts/check_dependencies.py"]], after=["Python tools"], shows="^dependencies: |: (found|is|comes|takes) "),
+        Step("Python packages", [[PYTHON, "scripts/check_python_lock.py"]], after=["Python tools"], shows="^requirements|: is "),
+        Step("Python tests", [[*PYTEST, "--ignore", INSTALL, "--ignore", SITE, "tests/python", "crates/poecal-py/tests"]],
+             after=["package build", "web tools"] if node else ["package build"], shows=PYTEST_SHOWS),
+        Step("page build", [["node", "web/app/build.mjs"]], after=["package build", "web tools"], shows="^poecal.html: ",
+             lacks=lack(f"standard library of {WASM} (rustup target add {WASM})", has_standard_library(WASM))),
+        Step("lints", [["cargo", "clippy", "--locked", "--workspace", "--all-targets", "--", "-D", "warnings"]], shows=CARGO_SHOWS, lacks=lack("clippy", clippy)),
+        Step("Rust tests", [["scripts/rust_tests.py"]], after=["Rust build"], shows=r"^FAILED |^\d+ passed, |^fuzz "),
+        Step("doc examples", [["cargo", "test", "--locked", "--profile", "tested", "--workspace", "--doc"]], after=["package build"], shows="^test result: .* [1-9][0-9]* passed"),
+        Step("report script", [["node", "web/build.mjs", "--check"]], after=["web tools"], shows="^report.(js|css): "),
+        Step("report and page in a browser", [["sh", "-c", f"cd web && exec {' '.join(tests + pages)}"]], after=["page build", "report script"], shows=NODE_SHOWS,
+             lacks=lack("Chromium", chromium)),
+        Step("digits at every level", [[sys.executable, "scripts/run_tests.py", "levels"]], after=["package build", "Rust tests"], shows=r"^level |" + PYTEST_SHOWS + r"|^FAILED |^\d+ passed, "),
+    ]  # fmt: skip
+
+
+def packages() -> list[Step]:
+    """What only a release can break: other machines, the oldest Rust, every way to install, npm and the whole site."""
+    oldest = next(line.split('"')[1] for line in (ROOT / "Cargo.toml").read_text().splitlines() if line.startswith("rust-version"))
+    clippy = has("cargo", "clippy", "--version")
+    others = ["aarch64-unknown-linux-gnu", WASM]
+    missing = [name for name in others if not has_standard_library(name)]
+    node, chromium = has_node(), has_chromium()
+    wasm = lack(f"standard library of {WASM} (rustup target add {WASM})", has_standard_library(WASM))
+    tests = "cd web && exec node --test --test-concurrency=1 --test-reporter tap test/"
+    shipped = {"POECAL_PROFILE": "web"}
+    return [
+        *tools(),
+        Step("release build", [["cargo", "build", "--locked", "--release", "-p", "poecal-cli", "--bin", "poecal"]], shows=CARGO_SHOWS),
+        Step("npm build", [["node", "web/app/build.mjs"]], after=["web tools"], shows="^poecal.html: |^web/npm", lacks=wasm, env=shipped),
+        Step(
+            "wheel",
+            [[".venv/bin/maturin", "build", "--locked", "--release", "--compatibility", "linux", "--interpreter", PYTHON,
+              "--manifest-path", "crates/poecal-py/Cargo.toml", "--out", str(target() / "wheels-release")]],
+            after=["release build", "Python tools"], shows="rror:",
+        ),
+        Step("installation", [[*PYTEST, INSTALL]], after=["wheel"], shows=PYTEST_SHOWS + "|^static program"),
+        Step("npm package", [["sh", "-c", tests + "npm.test.mjs"]], after=["npm build", "release build"], shows=NODE_SHOWS,
+             env={"POECAL_PROGRAM": str(target() / "release/poecal")}),
+        Step("lints of other machines",
+             [["cargo", "clippy", "--locked", "-p", "poecal", "-p", "poecal-wasm", *(word for name in others for word in ("--target", name)), "--", "-D", "warnings"]],
+             shows=CARGO_SHOWS, lacks=lack("clippy", clippy) or lack(f"standard library of {', '.join(missing)} (rustup target add)", not missing)),
+        Step(f"oldest Rust ({oldest})", [["cargo", f"+{oldest}", "check", "--locked", "--workspace"]], shows=CARGO_SHOWS, may_lack=True,
+             lacks=lack(f"Rust {oldest} (rustup toolchain install {oldest} --profile minimal)", has("cargo", f"+{oldest}", "--version"))),
+        Step("Rust build", [["scripts/rust_tests.py", "--build"]], after=["wheel"], shows=CARGO_SHOWS),
+        Step("simulated disk", [["scripts/rust_tests.py", "simulated_disk"]], after=["Rust build"], shows=r"^\d+ passed, |^\d+ (trials|stops)", env={"POECAL_TRIALS": "10000"}),
+        Step("documentation site", [["scripts/build-docs"], [*PYTEST, SITE]], after=["Python tools", "npm build"] if node and not wasm else ["Python tools"],
+             shows="^site: |^(WARNING|ERROR) |" + PYTEST_SHOWS, env={**shipped, "POECAL_PAGE": "web/app/dist/poecal.html"} if node and not wasm else shipped),
+        Step("site in a browser", [["sh", "-c", tests + "site.test.mjs"]], after=["documentation site", "web tools"], shows=NODE_SHOWS, lacks=lack("Chromium", chromium),
+             env={"POECAL_PROGRAM": str(target() / "release/poecal")}),
+    ]  # fmt: skip
+
+
+def at_every_level() -> int:
+    """What compares digits, at each level but the best, at which everything else runs."""
+    here = levels()
+    print(f"level {here[0]}: the best of this machine, at which all tests run", flush=True)
+    codes = []
+    for level in here[1:]:
+        print(f"level {level}", flush=True)
+        for command in [["scripts/rust_tests.py", *DIGITS_OF_RUST], [*PYTEST, *DIGITS_OF_PYTHON]]:
+            codes.append(subprocess.run(command, cwd=ROOT, env={**os.environ, "POECAL_SIMD": level}, check=False).returncode)
+            sys.stdout.flush()
+    return int(any(codes))
+
+
+def main() -> int:
+    # One profile and one folder of what Rust tests, program and package are made of.
+    os.environ.setdefault("POECAL_PROFILE", "tested")
+    os.environ["CARGO_TARGET_DIR"] = str(target().absolute())
+    os.environ.setdefault("CARGO_TERM_COLOR", "never")
+    os.environ["POECAL_PROGRAM"] = str(target() / "tested/poecal")
+    datasets = ROOT.parent / "shared/datasets"
+    if "POECAL_DATASETS" not in os.environ and datasets.is_dir():
+        os.environ["POECAL_DATASETS"] = str(datasets.resolve())
+    kind = sys.argv[1] if len(sys.argv) > 1 else "change"
+    if kind == "levels":
+        return at_every_level()
+    return Run({"change": change, "packages": packages}[kind]()).whole()
+
+
+sys.exit(main())

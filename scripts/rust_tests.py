@@ -1,0 +1,139 @@
+#!/usr/bin/env python3
+"""Builds the Rust tests of the workspace, and runs each in a process of its own, as many at once as there are processors.
+
+    scripts/rust_tests.py --build              builds the tests, the program and the examples that tests run
+    scripts/rust_tests.py [--build] [WORD…]    runs the tests whose names contain one of these words, and none of the words with - before;
+                                               without a word all
+
+Each test has its time so; the slowest are printed. `./test` calls it, with POECAL_PROFILE=tested; the profile is `test` if that is not set.
+Needs only Python 3.10 and cargo.
+"""
+
+import json
+import os
+import subprocess
+import sys
+import threading
+import time
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+# Without libtest, so without a list of tests: one test as a whole.
+WHOLE = {"fuzz"}
+SLOWEST = 10
+
+
+def profile():
+    return os.environ.get("POECAL_PROFILE", "test")
+
+
+def target():
+    """The folder of what cargo builds."""
+    return Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target"))
+
+
+def build(options):
+    """Builds tests; gives the programs of those as crate, name, path and folder, or None.
+
+    `options` choose packages and what is built of them, in the words of `cargo test`.
+    """
+    command = ["cargo", "test", "--locked", "--profile", profile(), "--no-run", "--message-format", "json-render-diagnostics"]
+    done = subprocess.run([*command, *options], cwd=ROOT, stdout=subprocess.PIPE, text=True, check=False)
+    if done.returncode:
+        return None
+    programs = []
+    for line in done.stdout.splitlines():
+        message = json.loads(line)
+        if message["reason"] == "compiler-artifact" and message["executable"] and message["profile"]["test"]:
+            folder = Path(message["manifest_path"]).parent
+            programs.append((folder.name, message["target"]["name"], message["executable"], str(folder)))
+    return programs
+
+
+def all_options():
+    """What `./test` builds: all tests, and the examples that tests/python/test_examples.py runs."""
+    examples = sorted(path.stem for path in (ROOT / "crates/poecal/examples").glob("*.rs"))
+    return ["--workspace", "--tests", *(word for name in examples for word in ("--example", name))]
+
+
+def tests_of(program):
+    """The tests of a program: its words for a person, the command, and the folder."""
+    crate, name, executable, folder = program
+    if name in WHOLE:
+        return [(f"{crate} {name}", [executable], folder)]
+    said = subprocess.run([executable, "--list", "--format", "terse"], cwd=folder, capture_output=True, text=True, check=True).stdout
+    tests = [line.removesuffix(": test") for line in said.splitlines() if line.endswith(": test")]
+    return [(f"{crate} {name} {test}", [executable, "--exact", test, "--nocapture"], folder) for test in tests]
+
+
+def run(tests):
+    """Runs all, as many at once as there are processors; gives seconds, whether it passed, and what it printed, by name."""
+    waiting, results, lock = list(reversed(tests)), {}, threading.Lock()
+
+    def work():
+        while True:
+            with lock:
+                if not waiting:
+                    return
+                name, command, folder = waiting.pop()
+            start = time.monotonic()
+            done = subprocess.run(command, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, errors="replace", check=False)
+            seconds = time.monotonic() - start
+            with lock:
+                results[name] = (seconds, done.returncode == 0, done.stdout)
+                if done.returncode:
+                    print(f"\n--- FAILED {name}\n{done.stdout}", flush=True)
+
+    threads = [threading.Thread(target=work) for _ in range(os.cpu_count() or 1)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    return results
+
+
+def report(results):
+    """Prints the slowest tests and those that failed; gives the number that failed."""
+    slowest = sorted(results.items(), key=lambda item: -item[1][0])[:SLOWEST]
+    if slowest:
+        print(f"\nslowest tests ({os.cpu_count()} at once, POECAL_TRIALS={os.environ.get('POECAL_TRIALS') or 'not set'})")
+    for name, (seconds, *_) in slowest:
+        print(f"{seconds:6.2f} s  {name}")
+    bad = sorted(name for name, (_, passed, _) in results.items() if not passed)
+    for name in bad:
+        print(f"FAILED {name}")
+    return len(bad)
+
+
+def main():
+    words = sys.argv[1:]
+    kept = target() / profile() / "tests.json"
+    if "--build" in words:
+        programs = build(all_options())
+        if programs is None:
+            sys.exit(1)
+        kept.write_text(json.dumps(programs))
+        words.remove("--build")
+        if not words:
+            return
+    if not kept.is_file():
+        sys.exit(f"found no {kept}, expected what `scripts/rust_tests.py --build` writes")
+    tests = [test for program in json.loads(kept.read_text()) for test in tests_of(program)]
+    wanted, unwanted = [word for word in words if not word.startswith("-")], [word[1:] for word in words if word.startswith("-")]
+    chosen = [test for test in tests if not wanted or any(word in test[0] for word in wanted)]
+    chosen = [test for test in chosen if not any(word in test[0] for word in unwanted)]
+    if not chosen:
+        sys.exit(f"found no test with one of {', '.join(words)} in its name")
+    results = run(chosen)
+    # What a test prints is what it measured.
+    for name in sorted(results):
+        figures = [line for line in results[name][2].splitlines() if line and not line.startswith(("running ", "test result:", f"test {name.split()[-1]} ..."))]
+        if results[name][1] and figures:
+            print(f"\n--- {name}\n" + "\n".join(figures))
+    bad = report(results)
+    print(f"\n{len(results) - bad} passed, {bad} failed")
+    sys.exit(bad > 0)
+
+
+if __name__ == "__main__":
+    main()

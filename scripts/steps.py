@@ -1,0 +1,158 @@
+"""Steps of ./test: commands that need each other, run as many at once as there are processors, with their times."""
+
+import dataclasses
+import os
+import re
+import shlex
+import signal
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+SLOWEST = 10
+# Of a step that failed, at the end; all that it printed stands above.
+LAST_LINES = 40
+
+
+@dataclasses.dataclass
+class Step:
+    """One step: commands, one after the other, up to the first that fails."""
+
+    name: str
+    commands: list[list[str]]
+    # Names of steps that must have passed.
+    after: list[str] = dataclasses.field(default_factory=list)
+    # Lines of its output that the summary shows.
+    shows: str = r"$^"
+    # The tool that it needs and that is not here. With CI=true, where everything has to be here, the step has failed then.
+    lacks: str | None = None
+    # The same for a tool that no other step brings: left out, also with CI=true.
+    may_lack: bool = False
+    # Variables of its own.
+    env: dict[str, str] = dataclasses.field(default_factory=dict)
+    # A test of what it printed, beside the exit code; gives a complaint.
+    check: Callable[[str], str | None] = lambda _: None
+
+
+class Run:
+    """All steps: each begins when those that it needs have passed and a processor is free, in the order of the list."""
+
+    def __init__(self, steps: list[Step]):
+        for at, step in enumerate(steps):
+            unknown = set(step.after) - {earlier.name for earlier in steps[:at]}
+            assert not unknown, f"{step.name} is listed before {unknown}, which it needs"
+        self.steps = steps
+        self.state = {step.name: "waiting" for step in steps}
+        self.seconds: dict[str, float] = {}
+        self.output: dict[str, str] = {}
+        self.shown: dict[str, list[str]] = {}
+        self.changed = threading.Condition()
+        self.children: set[subprocess.Popen[str]] = set()
+        self.start = time.monotonic()
+
+    def ready(self) -> Step | None:
+        """The next step that can begin; ends steps that cannot."""
+        for step in self.steps:
+            if self.state[step.name] != "waiting":
+                continue
+            needed = [self.state[name] for name in step.after]
+            if any(state in ("failed", "skipped") for state in needed):
+                missing = next(name for name, state in zip(step.after, needed, strict=True) if state in ("failed", "skipped"))
+                self.end(step, "skipped", f"skipped, it needs `{missing}`")
+            elif step.lacks:
+                is_failure = os.environ.get("CI") == "true" and not step.may_lack
+                self.end(step, "failed" if is_failure else "skipped", f"{'FAILED' if is_failure else 'skipped'}, found no {step.lacks}")
+            elif all(state == "passed" for state in needed):
+                return step
+        return None
+
+    def end(self, step: Step, state: str, words: str) -> None:
+        self.state[step.name] = state
+        self.shown[step.name] = [f"{step.name}: {words}"]
+        print(f"\n=== {step.name}: {words}", flush=True)
+
+    def work(self) -> None:
+        while True:
+            with self.changed:
+                step = self.ready()
+                while step is None:
+                    if "waiting" not in self.state.values():
+                        self.changed.notify_all()
+                        return
+                    if "running" not in self.state.values():
+                        raise RuntimeError("steps need each other")
+                    self.changed.wait()
+                    step = self.ready()
+                self.state[step.name] = "running"
+                print(f"[{self.clock()}] {step.name}: begun", flush=True)
+            self.carry_out(step)
+            with self.changed:
+                self.changed.notify_all()
+
+    def clock(self) -> str:
+        seconds = round(time.monotonic() - self.start)
+        return f"{seconds // 60:2d}:{seconds % 60:02d}"
+
+    def carry_out(self, step: Step) -> None:
+        begin, output, complaint = time.monotonic(), [], None
+        for command in step.commands:
+            output.append(f"$ {shlex.join(command)}\n")
+            # With a process group of its own, which ends with this one.
+            child = subprocess.Popen(
+                command, cwd=ROOT, env={**os.environ, **step.env}, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                text=True, errors="replace", start_new_session=True,
+            )  # fmt: skip
+            self.children.add(child)
+            said, _ = child.communicate()
+            self.children.discard(child)
+            output.append(said)
+            complaint = f"exit code {child.returncode}" if child.returncode else step.check(said)
+            if complaint:
+                break
+        text = "".join(output)
+        seconds = time.monotonic() - begin
+        with self.changed:
+            self.seconds[step.name], self.output[step.name] = seconds, text
+            self.state[step.name] = "failed" if complaint else "passed"
+            words = f"FAILED ({complaint})" if complaint else "ok"
+            self.shown[step.name] = [f"{step.name}: {words}, {seconds:.1f} s"]
+            self.shown[step.name] += [f"    {line}" for line in text.splitlines() if re.search(step.shows, line)]
+            print(f"\n=== {step.name}: {words}, {seconds:.1f} s\n{text}\n[{self.clock()}] {step.name}: {words}", flush=True)
+
+    def stop(self) -> None:
+        """Ends what still runs."""
+        for child in list(self.children):
+            try:
+                os.killpg(child.pid, signal.SIGKILL)
+            except ProcessLookupError:
+                continue
+
+    def whole(self) -> int:
+        """Runs everything; gives the exit code."""
+        signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))
+        try:
+            threads = [threading.Thread(target=self.work, daemon=True) for _ in range(max(2, os.cpu_count() or 1))]
+            for thread in threads:
+                thread.start()
+            for thread in threads:
+                while thread.is_alive():
+                    thread.join(1)
+        finally:
+            self.stop()
+        failed = [step.name for step in self.steps if self.state[step.name] == "failed"]
+        for name in failed:
+            last = "\n".join(self.output.get(name, self.shown[name][0]).rstrip().splitlines()[-LAST_LINES:])
+            print(f"\n=== FAILED: {name}\n{last}")
+        print("\n=== summary")
+        for step in self.steps:
+            print("\n".join(self.shown[step.name]))
+        print("\nslowest steps")
+        for name, seconds in sorted(self.seconds.items(), key=lambda item: -item[1])[:SLOWEST]:
+            print(f"{seconds:7.1f} s  {name}")
+        whole = f"{(time.monotonic() - self.start) / 60:.1f} minutes"
+        print(f"\nFAILED: {', '.join(failed)} ({whole})" if failed else f"\nall passed ({whole})", flush=True)
+        return 1 if failed else 0
