@@ -107,7 +107,8 @@ def report(results):
 
 def main():
     words = sys.argv[1:]
-    kept = target() / profile() / "tests.json"
+    # Cargo keeps the profile of tests with that of development.
+    kept = target() / ("debug" if profile() == "test" else profile()) / "tests.json"
     if "--build" in words:
         programs = build(all_options())
         if programs is None:
