@@ -126,7 +126,7 @@ impl Inverse {
 #[cfg(test)]
 mod tests {
     use super::Inverse;
-    use crate::simulate::elbow;
+    use crate::robot::tests::elbow;
 
     #[test]
     fn the_nearest_configuration_of_each_pose_is_found() {

@@ -238,8 +238,8 @@ const FAR: f64 = 0.6;
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::robot::tests::elbow;
     use crate::robot::{JointTerm, Term};
-    use crate::simulate::elbow;
 
     #[test]
     fn an_offset_is_taken_off_the_reading() {

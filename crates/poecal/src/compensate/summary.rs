@@ -227,7 +227,7 @@ mod tests {
 
     #[test]
     fn rows_are_counted() {
-        let robot = crate::simulate::elbow();
+        let robot = crate::robot::tests::elbow();
         let mut compensation = Compensation::new(&robot, &robot, &[]).unwrap();
         let mut summary = Summary::new(&compensation);
         let meant = [0.1; 6];

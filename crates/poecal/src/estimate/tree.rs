@@ -207,7 +207,7 @@ mod tests {
 
     #[test]
     fn a_camera_in_the_hand_passes_the_joints_backward() {
-        let robot = crate::simulate::elbow();
+        let robot = crate::robot::tests::elbow();
         let in_hand = Tree::new(&robot, vec![Stand::On(Body::Link(5))], vec![Body::Base]);
         let passed = in_hand.route(Sight::from(0));
         assert!(passed.len() == 6 && passed[0].joint == 5 && passed.iter().all(|it| it.backward));

@@ -317,13 +317,13 @@ pub(crate) fn check_name(name: &str, of: &str) -> Result<()> {
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use nalgebra::Vector3;
 
     use super::*;
 
-    /// A six-axis arm for the tests of this folder.
-    pub(super) fn elbow() -> Robot {
+    /// The elbow of [`simulate`](crate::simulate) without limits, for tests of modules that may not name that one.
+    pub(crate) fn elbow() -> Robot {
         let axes = [
             (Vector3::z(), [0.0, 0.0, 0.0]),
             (Vector3::y(), [0.15, 0.0, 0.0]),

@@ -141,7 +141,7 @@ mod tests {
     #[test]
     fn the_flange_of_a_taught_robot_is_behind_its_tool() {
         let tool = Pose::from_translation([0.0, 0.0, 0.1].into());
-        let taught = TaughtRobot { robot: crate::simulate::elbow(), base: Pose::identity(), tool };
+        let taught = TaughtRobot { robot: crate::robot::tests::elbow(), base: Pose::identity(), tool };
         assert_eq!(Given::default().taught(&taught).flange.translation.z, -0.1);
     }
 }

@@ -129,7 +129,7 @@ mod tests {
 
     #[test]
     fn a_robot_that_is_as_drawn_leaves_every_byte() {
-        let robot = crate::simulate::elbow();
+        let robot = crate::robot::tests::elbow();
         let options = ProgramOptions::of(Language::UrScript);
         let program = b"movej([0, 0, 0, 0, 0.5, 0])\n";
         let (text, summary) = compensate_program(program, (&robot, &robot), &[], &options).unwrap();
