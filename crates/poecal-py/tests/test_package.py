@@ -3,6 +3,7 @@
 import ast
 import doctest
 import inspect
+import os
 import re
 import subprocess
 import sys
@@ -133,3 +134,11 @@ def test_a_project_folder_is_made_once(tmp_path):
     with pytest.raises(poecal.OptionError, match=r"measure: found `point`, .* did you mean `points`\?"):
         poecal.init(model, tmp_path / "other", measure="point")
     assert not (tmp_path / "other").exists()
+
+
+def test_a_level_of_vector_instructions_that_is_not_here_is_refused():
+    code = "import poecal"
+    run = subprocess.run([sys.executable, "-c", code], env={**os.environ, "POECAL_SIMD": "avx1024"}, capture_output=True, text=True)
+    assert run.returncode == 1
+    assert "OptionError: POECAL_SIMD: found `avx1024`, expected one of the levels of this machine (" in run.stderr.splitlines()[-1]
+    assert subprocess.run([sys.executable, "-c", code], env={**os.environ, "POECAL_SIMD": "plain"}).returncode == 0

@@ -45,6 +45,11 @@ impl Folder {
         Run::new(child.wait_with_output().unwrap())
     }
 
+    /// As [`Folder::run`], with a variable.
+    pub(crate) fn run_with_variable(&self, arguments: &str, name: &str, value: &str) -> Run {
+        Run::new(self.command(arguments).env(name, value).output().unwrap())
+    }
+
     /// As [`Folder::run`], for arguments with blanks in them.
     pub(crate) fn run_words(&self, arguments: &[String]) -> Run {
         let mut command = self.command("");

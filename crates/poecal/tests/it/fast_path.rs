@@ -11,7 +11,7 @@ use poecal::estimate::{self, Estimate, Packed, delivered};
 use poecal::lie::{Pose, rotation};
 use poecal::measurement::{Dataset, Measurement, Noise, PointMeasurement, PoseMeasurement, Quantity, Seen};
 use poecal::parameters::{DeviceFrame, Parameter, ScrewAxis, TargetFrame, TargetPlace, ValueTerm};
-use poecal::problem::{Problem, Refit, SimdLevel, simd_levels};
+use poecal::problem::{Problem, Refit, SimdLevel, simd_levels, stated_level};
 use poecal::robot::Robot;
 use poecal::robot::Term;
 use poecal::simulate::{Kind, Simulation, elbow, gantry, random, random_chain, scara, seven_axis};
@@ -189,6 +189,17 @@ fn difference(fast: &Normal, general: &Normal) -> f64 {
     }
     assert_eq!(fast.residuals, general.residuals);
     worst
+}
+
+#[test]
+fn a_process_works_at_the_level_that_is_stated() {
+    let name = stated_level().unwrap().name();
+    println!("level {}", name.unwrap());
+    assert_eq!(SimdLevel::best().name(), name);
+    match std::env::var("POECAL_SIMD") {
+        Ok(stated) => assert_eq!(name, Some(stated.as_str())),
+        Err(_) => assert_eq!(name, simd_levels()[0].name()),
+    }
 }
 
 #[test]
