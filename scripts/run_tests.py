@@ -5,6 +5,7 @@ import os
 import shutil
 import subprocess
 import sys
+from collections.abc import Iterable
 from pathlib import Path
 
 from rust_tests import ROOT, target
@@ -73,19 +74,26 @@ def levels() -> list[str]:
     return found
 
 
+def in_browser(files: Iterable[str]) -> list[str]:
+    """The command of some files of web/test."""
+    return ["sh", "-c", "cd web && exec node --test --test-concurrency=1 --test-reporter tap " + " ".join(f"test/{name}" for name in files)]
+
+
 def change() -> list[Step]:
     """All that a change of the product can break."""
     clippy = has("cargo", "clippy", "--version")
     folder = target()
     wheels = folder / "wheels"
-    node, chromium = has_node(), has_chromium()
-    pages = sorted(str(path.relative_to(ROOT / "web")) for path in (ROOT / "web/test").glob("*.test.mjs") if path.name not in ("npm.test.mjs", "site.test.mjs"))
-    tests = ["node", "--test", "--test-concurrency=1", "--test-reporter", "tap"]
+    node, browser = has_node(), lack("Chromium", has_chromium())
+    pages = sorted(path.name for path in (ROOT / "web/test").glob("*.test.mjs") if path.name not in ("npm.test.mjs", "site.test.mjs"))
     return [
         Step("format", [["cargo", "fmt", "--all", "--check"]], shows="^Diff in", lacks=lack("rustfmt", has("cargo", "fmt", "--version"))),
         Step("imports", [["scripts/check-imports"]], shows="^imports go| may name |^only "),
         Step("Rust build", [["scripts/rust_tests.py", "--build"]], shows=CARGO_SHOWS),
         *tools(),
+        Step("lints", [["cargo", "clippy", "--locked", "--workspace", "--all-targets", "--", "-D", "warnings"]], shows=CARGO_SHOWS, lacks=lack("clippy", clippy)),
+        Step("page build", [["node", "web/app/build.mjs"]], after=["web tools"], shows="^poecal.html: ", env={"POECAL_WEB_PROFILE": "tested-web"},
+             lacks=lack(f"standard library of {WASM} (rustup target add {WASM})", has_standard_library(WASM))),
         Step(
             "package build",
             [
@@ -102,15 +110,12 @@ def change() -> list[Step]:
         Step("Python packages", [[PYTHON, "scripts/check_python_lock.py"]], after=["Python tools"], shows="^requirements|: is "),
         Step("Python tests", [[*PYTEST, "--ignore", INSTALL, "--ignore", SITE, "tests/python", "crates/poecal-py/tests"]],
              after=["package build", "web tools"] if node else ["package build"], shows=PYTEST_SHOWS),
-        Step("page build", [["node", "web/app/build.mjs"]], after=["package build", "web tools"], shows="^poecal.html: ",
-             lacks=lack(f"standard library of {WASM} (rustup target add {WASM})", has_standard_library(WASM))),
-        Step("lints", [["cargo", "clippy", "--locked", "--workspace", "--all-targets", "--", "-D", "warnings"]], shows=CARGO_SHOWS, lacks=lack("clippy", clippy)),
         Step("Rust tests", [["scripts/rust_tests.py"]], after=["Rust build"], shows=r"^FAILED |^\d+ passed, |^fuzz "),
         Step("doc examples", [["cargo", "test", "--locked", "--profile", "tested", "--workspace", "--doc"]], after=["package build"], shows="^test result: .* [1-9][0-9]* passed"),
         Step("report script", [["node", "web/build.mjs", "--check"]], after=["web tools"], shows="^report.(js|css): "),
-        Step("report and page in a browser", [["sh", "-c", f"cd web && exec {' '.join(tests + pages)}"]], after=["page build", "report script"], shows=NODE_SHOWS,
-             lacks=lack("Chromium", chromium)),
-        Step("digits at every level", [[sys.executable, "scripts/run_tests.py", "levels"]], after=["package build", "Rust tests"], shows=r"^level |" + PYTEST_SHOWS + r"|^FAILED |^\d+ passed, "),
+        Step("report in a browser", [in_browser(name for name in pages if "app." not in name)], after=["Rust build", "report script"], shows=NODE_SHOWS, lacks=browser),
+        Step("page in a browser", [in_browser(name for name in pages if "app." in name)], after=["Rust build", "page build"], shows=NODE_SHOWS, lacks=browser),
+        Step("digits at every level", [[sys.executable, "scripts/run_tests.py", "levels"]], after=["package build"], shows=r"^level |" + PYTEST_SHOWS + r"|^FAILED |^\d+ passed, "),
     ]  # fmt: skip
 
 
@@ -120,14 +125,12 @@ def packages() -> list[Step]:
     clippy = has("cargo", "clippy", "--version")
     others = ["aarch64-unknown-linux-gnu", WASM]
     missing = [name for name in others if not has_standard_library(name)]
-    node, chromium = has_node(), has_chromium()
+    node, browser = has_node(), lack("Chromium", has_chromium())
     wasm = lack(f"standard library of {WASM} (rustup target add {WASM})", has_standard_library(WASM))
-    tests = "cd web && exec node --test --test-concurrency=1 --test-reporter tap test/"
-    shipped = {"POECAL_PROFILE": "web"}
     return [
         *tools(),
         Step("release build", [["cargo", "build", "--locked", "--release", "-p", "poecal-cli", "--bin", "poecal"]], shows=CARGO_SHOWS),
-        Step("npm build", [["node", "web/app/build.mjs"]], after=["web tools"], shows="^poecal.html: |^web/npm", lacks=wasm, env=shipped),
+        Step("npm build", [["node", "web/app/build.mjs"]], after=["web tools"], shows="^poecal.html: |^web/npm", lacks=wasm),
         Step(
             "wheel",
             [[".venv/bin/maturin", "build", "--locked", "--release", "--compatibility", "linux", "--interpreter", PYTHON,
@@ -135,18 +138,18 @@ def packages() -> list[Step]:
             after=["release build", "Python tools"], shows="rror:",
         ),
         Step("installation", [[*PYTEST, INSTALL]], after=["wheel"], shows=PYTEST_SHOWS + "|^static program"),
-        Step("npm package", [["sh", "-c", tests + "npm.test.mjs"]], after=["npm build", "release build"], shows=NODE_SHOWS,
+        Step("npm package", [in_browser(["npm.test.mjs"])], after=["npm build", "release build"], shows=NODE_SHOWS,
              env={"POECAL_PROGRAM": str(target() / "release/poecal")}),
         Step("lints of other machines",
              [["cargo", "clippy", "--locked", "-p", "poecal", "-p", "poecal-wasm", *(word for name in others for word in ("--target", name)), "--", "-D", "warnings"]],
              shows=CARGO_SHOWS, lacks=lack("clippy", clippy) or lack(f"standard library of {', '.join(missing)} (rustup target add)", not missing)),
         Step(f"oldest Rust ({oldest})", [["cargo", f"+{oldest}", "check", "--locked", "--workspace"]], shows=CARGO_SHOWS, may_lack=True,
              lacks=lack(f"Rust {oldest} (rustup toolchain install {oldest} --profile minimal)", has("cargo", f"+{oldest}", "--version"))),
-        Step("Rust build", [["scripts/rust_tests.py", "--build"]], after=["wheel"], shows=CARGO_SHOWS),
-        Step("simulated disk", [["scripts/rust_tests.py", "simulated_disk"]], after=["Rust build"], shows=r"^\d+ passed, |^\d+ (trials|stops)", env={"POECAL_TRIALS": "10000"}),
+        Step("simulated disk", [["cargo", "test", "--locked", "--profile", "tested", "-p", "poecal-cli", "--test", "it", "--", "simulated_disk", "--nocapture"]],
+             shows=r"^test result|^\d+ (trials|stops)", env={"POECAL_TRIALS": "10000"}),
         Step("documentation site", [["scripts/build-docs"], [*PYTEST, SITE]], after=["Python tools", "npm build"] if node and not wasm else ["Python tools"],
-             shows="^site: |^(WARNING|ERROR) |" + PYTEST_SHOWS, env={**shipped, "POECAL_PAGE": "web/app/dist/poecal.html"} if node and not wasm else shipped),
-        Step("site in a browser", [["sh", "-c", tests + "site.test.mjs"]], after=["documentation site", "web tools"], shows=NODE_SHOWS, lacks=lack("Chromium", chromium),
+             shows="^site: |^(WARNING|ERROR) |" + PYTEST_SHOWS, env={"POECAL_PAGE": "web/app/dist/poecal.html"} if node and not wasm else {}),
+        Step("site in a browser", [in_browser(["site.test.mjs"])], after=["documentation site", "web tools"], shows=NODE_SHOWS, lacks=browser,
              env={"POECAL_PROGRAM": str(target() / "release/poecal")}),
     ]  # fmt: skip
 

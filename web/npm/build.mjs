@@ -3,7 +3,7 @@
 //   node web/npm/build.mjs                 with vector instructions
 //   node web/npm/build.mjs --plain FILE    the module without them, to that file: for comparisons
 //
-// POECAL_PROFILE is the profile of cargo: `web`, what is shipped; or `tested`, which ./test builds in less time and is larger.
+// POECAL_WEB_PROFILE is the profile of cargo: `web`, what is shipped; or `tested-web`, which ./test builds in less time and is larger.
 //
 // Exit code 4: Rust lacks the standard library of the target.
 import { execFileSync, spawnSync } from "node:child_process";
@@ -20,7 +20,7 @@ const DIST = join(HERE, "dist");
 // Fits with many unknowns and the command line need more than the linker's megabyte.
 const STACK = 8 << 20;
 
-const profile = process.env.POECAL_PROFILE ?? "web";
+const profile = process.env.POECAL_WEB_PROFILE ?? "web";
 const plain = process.argv[2] === "--plain" ? process.argv[3] : undefined;
 
 const sysroot = execFileSync("rustc", ["--print", "sysroot"], { encoding: "utf8", cwd: ROOT }).trim();
@@ -36,9 +36,7 @@ const flags = [...(plain ? [] : ["-Ctarget-feature=+simd128"]), `-Clink-arg=-zst
 const words = ["rustc", "--locked", "--profile", profile, "--target", TARGET, "-p", "poecal-wasm", "--lib", "--crate-type", "cdylib"];
 // As a cdylib alone: with a library of Rust beside it, cargo would not optimise across crates.
 const config = `target.${TARGET}.rustflags=${JSON.stringify(flags)}`;
-// Tests run it for a moment.
-const quick = profile === "web" ? [] : ["--config", `profile.${profile}.opt-level=1`];
-const built = spawnSync("cargo", [...words, "--config", config, ...quick], { stdio: ["ignore", "inherit", "inherit"], cwd: ROOT });
+const built = spawnSync("cargo", [...words, "--config", config], { stdio: ["ignore", "inherit", "inherit"], cwd: ROOT });
 if (built.status !== 0) process.exit(1);
 
 const folder = process.env.CARGO_TARGET_DIR ?? join(ROOT, "target");
