@@ -112,8 +112,8 @@ def change() -> list[Step]:
              after=["package build", "web tools"] if node else ["package build"], shows=PYTEST_SHOWS),
         Step("Rust tests", [["scripts/rust_tests.py"]], after=["Rust build"], shows=r"^FAILED |^\d+ passed, |^fuzz "),
         Step("doc examples", [["cargo", "test", "--locked", "--profile", "tested", "--workspace", "--doc"]], after=["package build"], shows="^test result: .* [1-9][0-9]* passed"),
-        Step("report script", [["node", "web/build.mjs", "--check"]], after=["web tools"], shows="^report.(js|css): "),
-        Step("report in a browser", [in_browser(name for name in pages if "app." not in name)], after=["Rust build", "report script"], shows=NODE_SHOWS, lacks=browser),
+        Step("scripts and types", [["node", "web/build.mjs", "--check"], ["node", "web/npm/types.mjs", "--check"]], after=["web tools"], shows="^report.(js|css): |^types"),
+        Step("report in a browser", [in_browser(name for name in pages if "app." not in name)], after=["Rust build", "scripts and types"], shows=NODE_SHOWS, lacks=browser),
         Step("page in a browser", [in_browser(name for name in pages if "app." in name)], after=["Rust build", "page build"], shows=NODE_SHOWS, lacks=browser),
         Step("digits at every level", [[sys.executable, "scripts/run_tests.py", "levels"]], after=["package build"], shows=r"^level |" + PYTEST_SHOWS + r"|^FAILED |^\d+ passed, "),
     ]  # fmt: skip

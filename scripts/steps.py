@@ -98,7 +98,7 @@ class Run:
         return f"{seconds // 60:2d}:{seconds % 60:02d}"
 
     def carry_out(self, step: Step) -> None:
-        begin, output, complaint = time.monotonic(), [], None
+        begin, processor, output, complaint = time.monotonic(), 0.0, [], None
         for command in step.commands:
             output.append(f"$ {shlex.join(command)}\n")
             # With a process group of its own, which ends with this one.
@@ -107,8 +107,12 @@ class Run:
                 text=True, errors="replace", start_new_session=True,
             )  # fmt: skip
             self.children.add(child)
-            said, _ = child.communicate()
+            said = child.stdout.read() if child.stdout else ""
+            # With what its own children took.
+            _, status, usage = os.wait4(child.pid, 0)
+            child.returncode = os.waitstatus_to_exitcode(status)
             self.children.discard(child)
+            processor += usage.ru_utime + usage.ru_stime
             output.append(said)
             complaint = f"exit code {child.returncode}" if child.returncode else step.check(said)
             if complaint:
@@ -119,9 +123,10 @@ class Run:
             self.seconds[step.name], self.output[step.name] = seconds, text
             self.state[step.name] = "failed" if complaint else "passed"
             words = f"FAILED ({complaint})" if complaint else "ok"
-            self.shown[step.name] = [f"{step.name}: {words}, {seconds:.1f} s"]
+            words += f", {seconds:.1f} s, {processor:.1f} s of processors"
+            self.shown[step.name] = [f"{step.name}: {words}"]
             self.shown[step.name] += [f"    {line}" for line in text.splitlines() if re.search(step.shows, line)]
-            print(f"\n=== {step.name}: {words}, {seconds:.1f} s\n{text}\n[{self.clock()}] {step.name}: {words}", flush=True)
+            print(f"\n=== {step.name}: {words}\n{text}\n[{self.clock()}] {step.name}: {words}", flush=True)
 
     def stop(self) -> None:
         """Ends what still runs."""

@@ -1375,9 +1375,9 @@ export type ToleranceEntry = {
 
 /** Sizes that were tried. */
 export type TriedEntry = {
-  /** Error (RMS) of parts that were left out, over that of geometry alone: a geometric mean over the parts. */
+  /** Error (RMS) of parts that were left out, over that of geometry alone: a geometric mean over the parts. Six decimals. */
   left_out: number;
-  /** Logarithm of its square with the prior of the choice: the least was chosen. */
+  /** Logarithm of its square with the prior of the choice: the least was chosen. Six decimals. */
   score: number;
   /** The sizes. */
   sizes: { [name: string]: number };
