@@ -34,7 +34,7 @@ def expected(arms) -> np.ndarray:
 
 
 def build(*options: str) -> None:
-    subprocess.run(["cargo", "build", "-q", "-p", "poecal-c", *options], cwd=ROOT, check=True, env=os.environ | {"CARGO_TARGET_DIR": str(TARGET)})
+    subprocess.run(["cargo", "build", "--locked", "-q", "-p", "poecal-c", *options], cwd=ROOT, check=True, env=os.environ | {"CARGO_TARGET_DIR": str(TARGET)})
 
 
 def check(command: list, expected: np.ndarray) -> None:

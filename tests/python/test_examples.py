@@ -2,14 +2,13 @@
 
 import ast
 import json
-import os
 import re
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
-from program import ROOT
+from program import ROOT, program
 
 EXAMPLES = ROOT / "examples/python"
 TWINS = sorted(path.stem for path in (ROOT / "crates/poecal/examples").glob("*.rs"))
