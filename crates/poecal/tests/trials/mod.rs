@@ -11,8 +11,8 @@ pub(crate) struct Trials {
 /// The fewest trials that show anything.
 const FEWEST: usize = 2;
 /// The part of the weekly number that every change is tried by. The scatter of a mean doubles, and its tolerance grows by three of the added
-/// standard errors ([`Trials::more`]): half of a fault that the weekly number just shows is hidden, one of twice its size is not. A sixteenth
-/// would double both again, and save three more minutes of five.
+/// standard errors ([`Trials::more`]): a fault shows if it is twice as large as one that the weekly number just shows. All trials of all tests
+/// take nine minutes of a processor.
 const OF_A_CHANGE: usize = 4;
 /// The same of `quick`.
 const OF_A_QUICK_LOOK: usize = 20;
