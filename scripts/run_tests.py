@@ -1,5 +1,8 @@
 #!/usr/bin/env python3
-"""The steps of `./test` and of `./test packages`; scripts/steps.py runs them. `./test quick` is scripts/quick."""
+"""The steps of `./test` and of `./test packages`; scripts/steps.py runs them. `./test quick` is scripts/quick.
+
+    scripts/run_tests.py change|packages [STEP…]    all steps, or those of these names, on what the others have built before
+"""
 
 import os
 import shutil
@@ -179,7 +182,14 @@ def main() -> int:
     kind = sys.argv[1] if len(sys.argv) > 1 else "change"
     if kind == "levels":
         return at_every_level()
-    return Run({"change": change, "packages": packages}[kind]()).whole()
+    steps, names = {"change": change, "packages": packages}[kind](), sys.argv[2:]
+    unknown = set(names) - {step.name for step in steps}
+    if unknown:
+        sys.exit(f"found no step {', '.join(sorted(unknown))}, expected one of {', '.join(step.name for step in steps)}")
+    chosen = [step for step in steps if not names or step.name in names]
+    for step in chosen:
+        step.after = [name for name in step.after if any(other.name == name for other in chosen)]
+    return Run(chosen).whole()
 
 
 sys.exit(main())
