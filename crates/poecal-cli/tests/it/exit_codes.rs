@@ -83,10 +83,10 @@ fn a_level_of_vector_instructions_that_is_not_here_is_refused() {
     let folder = session(Kind::Point);
     let before = folder.listing();
     for level in ["avx1024", "", "AVX2"] {
-        let run =
-            folder.run_with_variable("calibrate robot.urdf measurements.csv", "POECAL_SIMD", level);
+        let run = folder.run_with_variable("calibrate robot.urdf measurements.csv", "POECAL_SIMD", level);
         assert_eq!(run.code, 2, "{level}: {}{}", run.out, run.err);
-        let start = format!("error: POECAL_SIMD: found `{level}`, expected one of the levels of this machine (");
+        let start =
+            format!("error: POECAL_SIMD: found `{level}`, expected one of the levels of this machine (");
         assert!(run.err.starts_with(&start) && run.err.contains("plain"), "{}", run.err);
     }
     assert_eq!(folder.listing(), before);
