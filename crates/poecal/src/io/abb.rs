@@ -49,7 +49,11 @@ impl AbbCalibration {
     /// # Errors
     /// [`ErrorKind::Model`] if a number is none.
     pub fn parse(text: &str, path: impl AsRef<Path>) -> Result<Self> {
-        let path = path.as_ref();
+        Self::parse_at(text, path.as_ref())
+    }
+
+    /// Compiled once, and not for each kind of path.
+    fn parse_at(text: &str, path: &Path) -> Result<Self> {
         let (mut arms, mut joints) = (Vec::new(), Vec::new());
         for entry in entries(text) {
             let name = entry.text("name").unwrap_or_default().to_owned();

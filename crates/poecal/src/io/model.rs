@@ -93,7 +93,11 @@ impl Model {
     /// [`ErrorKind::File`] if the file cannot be read; [`ErrorKind::Option`] if a chain is selected in a model that has only one, or an instrument or a target that it does not have;
     /// otherwise as the reader of its form.
     pub fn read(path: impl AsRef<Path>, selection: &ChainSelection) -> Result<Self> {
-        let path = path.as_ref();
+        Model::read_at(path.as_ref(), selection)
+    }
+
+    /// Compiled once, and not for each kind of path.
+    fn read_at(path: &Path, selection: &ChainSelection) -> Result<Self> {
         let text = source_text::read(path, MODEL)?;
         let beside = Form::of(&text, path).and_then(|form| form.sibling(&text, path));
         let Some(beside) = beside else { return Model::parse(&text, path, selection) };

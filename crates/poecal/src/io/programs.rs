@@ -15,7 +15,11 @@ const LARGEST: u64 = 64 << 20;
 /// [`ErrorKind::File`] if it is a directory, missing, unreadable, larger than 64 MiB, or empty; [`ErrorKind::Syntax`] if it is text of two
 /// bytes a letter.
 pub fn read_program(path: impl AsRef<Path>) -> Result<Vec<u8>> {
-    let path = path.as_ref();
+    read_at(path.as_ref())
+}
+
+/// Compiled once, and not for each kind of path.
+fn read_at(path: &Path) -> Result<Vec<u8>> {
     let expected = "a robot program";
     let mut bytes = Vec::new();
     source::open(path, expected, LARGEST)?

@@ -67,7 +67,11 @@ impl Settings {
     /// [`ErrorKind::Syntax`], with line and column, if the text is no TOML, is not of this version, or has a key that is not known
     /// or a value of a wrong kind.
     pub fn parse(text: &str, path: impl AsRef<Path>, keys: &[&str]) -> Result<Self> {
-        let path = path.as_ref();
+        Settings::parse_at(text, path.as_ref(), keys)
+    }
+
+    /// Compiled once, and not for each kind of path.
+    fn parse_at(text: &str, path: &Path, keys: &[&str]) -> Result<Self> {
         let at = |offset: usize, message: String| {
             Error::new(ErrorKind::Syntax, message).at_offset(path, text, offset)
         };

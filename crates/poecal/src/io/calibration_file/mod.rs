@@ -139,11 +139,16 @@ impl CalibrationFile {
     /// # Errors
     /// [`ErrorKind::Syntax`] if it is no calibration of a version that can be read.
     pub fn parse(text: &str, path: impl AsRef<Path>) -> Result<Self> {
+        Self::parse_at(text, path.as_ref())
+    }
+
+    /// Compiled once, and not for each kind of path.
+    fn parse_at(text: &str, path: &Path) -> Result<Self> {
         match serde_json::from_str::<Self>(text) {
             Ok(file) if [SCHEMA, EARLIER].contains(&&*file.schema) => {
                 Ok(CalibrationFile { schema: SCHEMA.to_owned(), ..file })
             }
-            other => Err(refusal(text, other.err(), path.as_ref())),
+            other => Err(refusal(text, other.err(), path)),
         }
     }
 

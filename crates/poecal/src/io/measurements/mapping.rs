@@ -145,7 +145,11 @@ impl ColumnMap {
     /// # Errors
     /// [`ErrorKind::Syntax`], with line and column, if the text is no TOML, or has an unknown key or value.
     pub fn parse(text: &str, path: impl AsRef<Path>) -> Result<Self> {
-        let path = path.as_ref();
+        ColumnMap::parse_at(text, path.as_ref())
+    }
+
+    /// Compiled once, and not for each kind of path.
+    fn parse_at(text: &str, path: &Path) -> Result<Self> {
         let mut map: ColumnMap = toml::from_str(text).map_err(|error| {
             let mut message = error.message().replace('\n', "; ");
             if message.starts_with("unknown field `direction`") {

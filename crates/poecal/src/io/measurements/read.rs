@@ -36,13 +36,18 @@ use crate::text::visible;
 /// ([`ErrorKind::Unit`]), or has wrong columns or cells ([`ErrorKind::Measurement`]); a [`ReadOptions::fit_where`] that fits no file
 /// ([`ErrorKind::Option`]).
 pub fn read(paths: &[impl AsRef<Path>], robot: &Robot, options: &ReadOptions) -> Result<MeasurementFile> {
+    let paths: Vec<&Path> = paths.iter().map(AsRef::as_ref).collect();
+    read_all(&paths, robot, options)
+}
+
+/// Compiled once, and not for each kind of path.
+fn read_all(paths: &[&Path], robot: &Robot, options: &ReadOptions) -> Result<MeasurementFile> {
     if paths.is_empty() {
         return Err(Error::new(ErrorKind::Option, "found no measurement file, expected at least one"));
     }
     let no_map = ColumnMap::default();
     let mut reader = Reader::new(robot, options, &no_map);
     for path in paths {
-        let path = path.as_ref();
         reader.file(path, Blocks::open(path, "a measurement file (CSV)")?)?;
     }
     reader.finish()
@@ -58,9 +63,14 @@ pub fn parse(
     robot: &Robot,
     options: &ReadOptions,
 ) -> Result<MeasurementFile> {
+    parse_at(text, path.as_ref(), robot, options)
+}
+
+/// Compiled once, and not for each kind of path.
+fn parse_at(text: &str, path: &Path, robot: &Robot, options: &ReadOptions) -> Result<MeasurementFile> {
     let no_map = ColumnMap::default();
     let mut reader = Reader::new(robot, options, &no_map);
-    reader.file(path.as_ref(), Blocks::new(path.as_ref(), text.as_bytes()))?;
+    reader.file(path, Blocks::new(path, text.as_bytes()))?;
     reader.finish()
 }
 

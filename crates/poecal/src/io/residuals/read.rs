@@ -31,6 +31,11 @@ impl Residuals {
     /// # Errors
     /// [`ErrorKind::Syntax`] if it is no `residuals.csv` of this version.
     pub fn parse(text: &str, path: impl AsRef<Path>) -> Result<Self> {
+        Self::parse_at(text, path.as_ref())
+    }
+
+    /// Compiled once, and not for each kind of path.
+    fn parse_at(text: &str, path: &Path) -> Result<Self> {
         let mut found = Residuals::default();
         let (mut named, mut is_head) = (false, true);
         let mut cells = Vec::new();
@@ -46,7 +51,7 @@ impl Residuals {
             });
             is_head = false;
             done.map_err(|(offset, message)| {
-                Error::new(ErrorKind::Syntax, message).at_offset(path.as_ref(), text, start + offset)
+                Error::new(ErrorKind::Syntax, message).at_offset(path, text, start + offset)
             })?;
         }
         Ok(found)

@@ -45,7 +45,11 @@ pub fn read(path: impl AsRef<Path>) -> Result<Robot> {
 /// # Errors
 /// [`ErrorKind::Syntax`] if the text is no TOML or has unknown keys, [`ErrorKind::Model`] if the model is invalid.
 pub fn parse(text: &str, path: impl AsRef<Path>) -> Result<Robot> {
-    let path = path.as_ref();
+    parse_at(text, path.as_ref())
+}
+
+/// Compiled once, and not for each kind of path.
+fn parse_at(text: &str, path: &Path) -> Result<Robot> {
     let file: file::File = toml::from_str(text).map_err(|error| syntax_error(&error, text, path))?;
     let context = Context { text, path, length: file.length_unit, angle: file.angle_unit };
     build::robot(&context, &file)

@@ -62,7 +62,11 @@ impl UrdfDocument {
     /// [`ErrorKind::Syntax`] if the text is no XML or no URDF, [`ErrorKind::Model`] if it is not a tree of links, the chain is not unique
     /// or missing, or a joint of it is invalid.
     pub fn parse(text: &str, path: impl AsRef<Path>, selection: &ChainSelection) -> Result<Self> {
-        let path = path.as_ref();
+        Self::parse_at(text, path.as_ref(), selection)
+    }
+
+    /// Compiled once, and not for each kind of path.
+    fn parse_at(text: &str, path: &Path, selection: &ChainSelection) -> Result<Self> {
         let document = parsed(text, path, EXPECTED)?;
         let source = XmlSource { document: &document, path };
         let robot_element = document.root_element();
