@@ -17,6 +17,8 @@ import threading
 import time
 from pathlib import Path
 
+from steps import PROCESSORS
+
 ROOT = Path(__file__).resolve().parent.parent
 # Without libtest, so without a list of tests: one test as a whole.
 WHOLE = {"fuzz"}
@@ -77,14 +79,18 @@ def run(tests):
                     return
                 name, command, folder = waiting.pop()
             start = time.monotonic()
-            done = subprocess.run(command, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, errors="replace", check=False)
+            try:
+                done = subprocess.run(command, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, errors="replace", check=False)
+                passed, said = done.returncode == 0, done.stdout
+            except OSError as error:
+                passed, said = False, f"it could not be run: {error}"
             seconds = time.monotonic() - start
             with lock:
-                results[name] = (seconds, done.returncode == 0, done.stdout)
-                if done.returncode:
-                    print(f"\n--- FAILED {name}\n{done.stdout}", flush=True)
+                results[name] = (seconds, passed, said)
+                if not passed:
+                    print(f"\n--- FAILED {name}\n{said}", flush=True)
 
-    threads = [threading.Thread(target=work) for _ in range(os.cpu_count() or 1)]
+    threads = [threading.Thread(target=work) for _ in range(PROCESSORS)]
     for thread in threads:
         thread.start()
     for thread in threads:
@@ -96,7 +102,7 @@ def report(results):
     """Prints the slowest tests and those that failed; gives the number that failed."""
     slowest = sorted(results.items(), key=lambda item: -item[1][0])[:SLOWEST]
     if slowest:
-        print(f"\nslowest tests ({os.cpu_count()} at once, POECAL_TRIALS={os.environ.get('POECAL_TRIALS') or 'not set'})")
+        print(f"\nslowest tests ({PROCESSORS} at once, POECAL_TRIALS={os.environ.get('POECAL_TRIALS') or 'not set'})")
     for name, (seconds, *_) in slowest:
         print(f"{seconds:6.2f} s  {name}")
     bad = sorted(name for name, (_, passed, _) in results.items() if not passed)
@@ -123,9 +129,11 @@ def main():
     wanted, unwanted = [word for word in words if not word.startswith("-")], [word[1:] for word in words if word.startswith("-")]
     chosen = [test for test in tests if not wanted or any(word in test[0] for word in wanted)]
     chosen = [test for test in chosen if not any(word in test[0] for word in unwanted)]
-    if not chosen:
-        sys.exit(f"found no test with one of {', '.join(words)} in its name")
+    lost = [word for word in words if not any(word.removeprefix("-") in test[0] for test in tests)]
+    if lost or not chosen:
+        sys.exit(f"found no test with {' or '.join(lost or words)} in its name")
     results = run(chosen)
+    assert len(results) == len(chosen), "a test has no result"
     # What a test prints is what it measured.
     for name in sorted(results):
         figures = [line for line in results[name][2].splitlines() if line and not line.startswith(("running ", "test result:", f"test {name.split()[-1]} ..."))]

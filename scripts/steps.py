@@ -9,11 +9,12 @@ import subprocess
 import sys
 import threading
 import time
-from collections.abc import Callable
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 SLOWEST = 10
+# Processors that this process may use: a container may have some of a machine's.
+PROCESSORS = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 # Of a step that failed, at the end; all that it printed stands above.
 LAST_LINES = 40
 
@@ -27,15 +28,13 @@ class Step:
     # Names of steps that must have passed.
     after: list[str] = dataclasses.field(default_factory=list)
     # Lines of its output that the summary shows.
-    shows: str = r"$^"
+    shows: str = "(?!)"
     # The tool that it needs and that is not here. With CI=true, where everything has to be here, the step has failed then.
     lacks: str | None = None
     # The same for a tool that no other step brings: left out, also with CI=true.
     may_lack: bool = False
     # Variables of its own.
     env: dict[str, str] = dataclasses.field(default_factory=dict)
-    # A test of what it printed, beside the exit code; gives a complaint.
-    check: Callable[[str], str | None] = lambda _: None
 
 
 class Run:
@@ -51,6 +50,7 @@ class Run:
         self.output: dict[str, str] = {}
         self.shown: dict[str, list[str]] = {}
         self.changed = threading.Condition()
+        self.is_stopping = False
         self.children: set[subprocess.Popen[str]] = set()
         self.start = time.monotonic()
 
@@ -88,8 +88,14 @@ class Run:
                     self.changed.wait()
                     step = self.ready()
                 self.state[step.name] = "running"
+            try:
                 print(f"[{self.clock()}] {step.name}: begun", flush=True)
-            self.carry_out(step)
+                self.carry_out(step)
+            except Exception as error:  # noqa: BLE001: whatever happens here, the step has failed, and others wait for it.
+                with self.changed:
+                    self.state[step.name], self.seconds[step.name] = "failed", 0.0
+                    self.output[step.name] = f"{type(error).__name__}: {error}"
+                    self.shown[step.name] = [f"{step.name}: FAILED ({self.output[step.name]})"]
             with self.changed:
                 self.changed.notify_all()
 
@@ -101,20 +107,24 @@ class Run:
         begin, processor, output, complaint = time.monotonic(), 0.0, [], None
         for command in step.commands:
             output.append(f"$ {shlex.join(command)}\n")
-            # With a process group of its own, which ends with this one.
-            child = subprocess.Popen(
-                command, cwd=ROOT, env={**os.environ, **step.env}, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
-                text=True, errors="replace", start_new_session=True,
-            )  # fmt: skip
-            self.children.add(child)
+            with self.changed:
+                if self.is_stopping:
+                    return
+                # With a process group of its own, which ends with this one.
+                child = subprocess.Popen(
+                    command, cwd=ROOT, env={**os.environ, **step.env}, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                    stderr=subprocess.STDOUT, text=True, errors="replace", start_new_session=True,
+                )  # fmt: skip
+                self.children.add(child)
             said = child.stdout.read() if child.stdout else ""
             # With what its own children took.
             _, status, usage = os.wait4(child.pid, 0)
             child.returncode = os.waitstatus_to_exitcode(status)
-            self.children.discard(child)
+            with self.changed:
+                self.children.discard(child)
             processor += usage.ru_utime + usage.ru_stime
             output.append(said)
-            complaint = f"exit code {child.returncode}" if child.returncode else step.check(said)
+            complaint = f"exit code {child.returncode}" if child.returncode else None
             if complaint:
                 break
         text = "".join(output)
@@ -129,8 +139,10 @@ class Run:
             print(f"\n=== {step.name}: {words}\n{text}\n[{self.clock()}] {step.name}: {words}", flush=True)
 
     def stop(self) -> None:
-        """Ends what still runs."""
-        for child in list(self.children):
+        """Ends what still runs; nothing begins after it."""
+        with self.changed:
+            self.is_stopping, children = True, list(self.children)
+        for child in children:
             try:
                 os.killpg(child.pid, signal.SIGKILL)
             except ProcessLookupError:
@@ -138,9 +150,10 @@ class Run:
 
     def whole(self) -> int:
         """Runs everything; gives the exit code."""
-        signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))
+        for number in (signal.SIGTERM, signal.SIGHUP):
+            signal.signal(number, lambda number, _: sys.exit(128 + number))
         try:
-            threads = [threading.Thread(target=self.work, daemon=True) for _ in range(max(2, os.cpu_count() or 1))]
+            threads = [threading.Thread(target=self.work, daemon=True) for _ in range(max(2, PROCESSORS))]
             for thread in threads:
                 thread.start()
             for thread in threads:

@@ -84,8 +84,8 @@ def works_in_python(programs: Path, folder: Path) -> None:
 def test_pip_installs_the_wheel(empty, tmp_path):
     found = list((TARGET / "wheels-release").glob("poecal-*.whl"))
     if not found and os.environ.get("CI") != "true":
-        pytest.skip(f"found no wheel in {TARGET / 'wheels'}, where ./test packages builds one")
-    assert len(found) == 1, f"found {found}, expected the wheel that ./test packages builds into {TARGET / 'wheels'}"
+        pytest.skip(f"found no wheel in {TARGET / 'wheels-release'}, where ./test packages builds one")
+    assert len(found) == 1, f"found {found}, expected the wheel that ./test packages builds into {TARGET / 'wheels-release'}"
     names = zipfile.ZipFile(found[0]).namelist()
     licences = sorted(name.split("/licenses/")[1] for name in names if "/licenses/" in name)
     assert licences == [*LICENCES, "THIRD-PARTY.txt"]

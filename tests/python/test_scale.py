@@ -1,7 +1,7 @@
 """The examples of docs/scale.md: the same bytes in one process and by several, also if one of these is killed.
 
 Ray and Dask run on this machine, on 127.0.0.1 alone. `POECAL_TRIALS=weekly` is 100,000 fits and 1,000 robots, which take ten
-minutes; without it a fiftieth is made, which shows the same faults of bytes, and of the spread those of more than a tenth.
+minutes; without it a fiftieth is made, whose bytes are compared alike, and whose spread is judged with the larger scatter of fewer fits.
 """
 
 import csv

@@ -1,4 +1,4 @@
-// Builds the WebAssembly module and the npm package around it into web/npm/dist.
+// Builds the WebAssembly module and the npm package around it into web/npm/dist (of another profile, dist-PROFILE).
 //
 //   node web/npm/build.mjs                 with vector instructions
 //   node web/npm/build.mjs --plain FILE    the module without them, to that file: for comparisons
@@ -16,11 +16,12 @@ const TARGET = "wasm32-unknown-unknown";
 const LACKING = 4;
 const HERE = fileURLToPath(new URL(".", import.meta.url));
 const ROOT = join(HERE, "../..");
-const DIST = join(HERE, "dist");
+const profile = process.env.POECAL_WEB_PROFILE ?? "web";
+/** What is not shipped has another folder, so that nobody hands it out. */
+const DIST = join(HERE, profile === "web" ? "dist" : `dist-${profile}`);
 // Fits with many unknowns and the command line need more than the linker's megabyte.
 const STACK = 8 << 20;
 
-const profile = process.env.POECAL_WEB_PROFILE ?? "web";
 const plain = process.argv[2] === "--plain" ? process.argv[3] : undefined;
 
 const sysroot = execFileSync("rustc", ["--print", "sysroot"], { encoding: "utf8", cwd: ROOT }).trim();
@@ -56,5 +57,5 @@ if (plain) {
   writeFileSync(join(DIST, "poecal.wasm"), bytes);
   for (const name of ["poecal.js", "index.js", "index.d.ts", "types.d.ts", "package.json", "README.md"]) copyFileSync(join(HERE, name), join(DIST, name));
   for (const name of ["LICENSE-MIT", "LICENSE-APACHE", "THIRD-PARTY.txt"]) copyFileSync(join(ROOT, name), join(DIST, name));
-  console.log(`web/npm/dist/poecal.wasm: ${size}`);
+  console.log(`${join(DIST, "poecal.wasm")}: ${size}`);
 }

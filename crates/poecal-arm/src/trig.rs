@@ -72,7 +72,7 @@ mod tests {
         for k in -4000..4000 {
             let angle = 0.37 * f64::from(k);
             let (cosine, sine) = cosine_and_sine(angle);
-            // A unit in the last place of numbers up to 1.
+            // Two units in the last place of numbers up to 1.
             assert!(
                 (cosine - angle.cos()).abs() < 2.3e-16 && (sine - angle.sin()).abs() < 2.3e-16,
                 "{angle}"

@@ -26,7 +26,7 @@ pub struct Target {
     pub name: &'static str,
     /// Takes an input; tells whether it was understood, and not refused with an error.
     pub run: fn(&[u8]) -> bool,
-    /// How many inputs `./test` tries of it: about as many as take two seconds.
+    /// How many inputs are tried of it weekly, about as many as take two seconds; `./test` tries a quarter.
     pub trials: usize,
 }
 

@@ -44,14 +44,16 @@ pub enum SimdLevel {
     Baseline(Scalar128b),
 }
 
-/// Limits the level of a process, so that a machine has the digits of one with fewer instructions: `plain`, `avx2` or `avx512`.
+/// Limits the level of a process to `plain`, `avx2` or `avx512`, so that the kernels have the digits of a machine with fewer instructions.
+/// Products of large matrices (matrixmultiply, by nalgebra) and functions of the C library choose for themselves.
 const VARIABLE: &str = "POECAL_SIMD";
 
 /// The level of this process; the error is the first use's, and the same ever after.
-static LEVEL: LazyLock<Result<SimdLevel, String>> = LazyLock::new(|| match std::env::var_os(VARIABLE) {
-    None => Ok(best_detected()),
-    Some(word) => limited_to(&word.to_string_lossy()),
-});
+static LEVEL: LazyLock<Result<SimdLevel, String>> =
+    LazyLock::new(|| match std::env::var_os(VARIABLE).filter(|word| !word.is_empty()) {
+        None => Ok(best_detected()),
+        Some(word) => limited_to(&word.to_string_lossy()),
+    });
 
 impl SimdLevel {
     /// Instructions of every machine of the target.

@@ -263,10 +263,11 @@ mod tests {
         let joint =
             |name: &str, x: f64| Joint::revolute(name, Screw::revolute(&Vector3::z(), &(x * Vector3::x())));
         let robot = Robot::new("r", vec![joint("a", 0.0), joint("b", 0.5)], Pose::identity()).unwrap();
-        let prior = Prior::new(&robot, Tolerance::default(), true);
+        let tolerance = Tolerance { length_m: 0.004, ..Tolerance::default() };
+        let prior = Prior::new(&robot, tolerance, true);
         let mut estimate = Estimate::new(&robot, vec![robot.home], Pose::identity());
-        // Both axes 10 mm farther apart: half of it each, two standard deviations in all.
+        // Both axes 10 mm farther apart: 5 mm each, of 4 mm.
         estimate.base_from_axis[1].translation.x += 0.01;
-        assert!((prior.cost(&estimate) - 2.0 * 0.5 * (0.005f64 / 0.005).powi(2)).abs() < 1e-9);
+        assert!((prior.cost(&estimate) - 2.0 * 0.5 * (0.005_f64 / 0.004).powi(2)).abs() < 1e-9);
     }
 }

@@ -292,3 +292,15 @@ impl GravityEntry {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn figures_of_a_choice_have_six_decimals() {
+        assert_eq!(with_six_decimals(0.277_971_625_198_774_7), 0.277_972);
+        assert_eq!(with_six_decimals(-1.000_000_4), -1.0);
+        assert_eq!(with_six_decimals(f64::INFINITY), f64::INFINITY);
+    }
+}
