@@ -148,6 +148,8 @@ def packages() -> list[Step]:
         Step("installation", [[*PYTEST, INSTALL]], after=["wheel"], shows=PYTEST_SHOWS + "|^static program"),
         Step("npm package", [in_browser(["npm.test.mjs"])], after=["npm build", "release build"], shows=NODE_SHOWS,
              env={"POECAL_PROGRAM": str(target() / "release/poecal")}),
+        Step("report of every real robot", [in_browser(["report.test.mjs"])], after=["release build", "web tools"], shows=NODE_SHOWS, lacks=browser,
+             env={"POECAL_PROGRAM": str(target() / "release/poecal"), "POECAL_REPORTS": "all"}),
         Step("page in a browser", [in_browser(["app.test.mjs"])], after=["npm build", "release build"], shows=NODE_SHOWS, lacks=browser,
              env={"POECAL_PROGRAM": str(target() / "release/poecal"), "POECAL_REPORT_S": "6"}),
         *(Step(f"lints of {name}", [["cargo", "clippy", "--locked", "-p", "poecal", "-p", "poecal-wasm", "--target", name, "--", "-D", "warnings"]], shows=CARGO_SHOWS,

@@ -52,10 +52,10 @@ def build(options):
     return programs
 
 
-def all_options():
-    """What `./test` builds: all tests, and the examples that tests/python/test_examples.py runs."""
-    examples = sorted(path.stem for path in (ROOT / "crates/poecal/examples").glob("*.rs"))
-    return ["--workspace", "--tests", *(word for name in examples for word in ("--example", name))]
+def build_examples():
+    """Builds the examples that tests/python/test_examples.py runs, beside the program; whether that succeeded."""
+    command = ["cargo", "build", "--locked", "--profile", profile(), "-p", "poecal", "--examples"]
+    return subprocess.run(command, cwd=ROOT, check=False).returncode == 0
 
 
 def tests_of(program):
@@ -116,8 +116,8 @@ def main():
     # Cargo keeps the profile of tests with that of development.
     kept = target() / ("debug" if profile() == "test" else profile()) / "tests.json"
     if "--build" in words:
-        programs = build(all_options())
-        if programs is None:
+        programs = build(["--workspace", "--tests"])
+        if programs is None or not build_examples():
             sys.exit(1)
         kept.write_text(json.dumps(programs))
         words.remove("--build")
