@@ -306,19 +306,3 @@ pub(super) fn verify(model: &Model, robot: &Robot, again: &Robot) -> Result<()> 
     );
     Err(export(model, message))
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::io::robot_toml;
-    use crate::simulate::scara;
-
-    #[test]
-    fn without_an_extension_the_text_shows_its_form() {
-        let read = |text: &str| Model::parse(text, "a model", &ChainSelection::default()).unwrap();
-        let model = read(&robot_toml::write(&scara()));
-        assert_eq!(model.source, ModelSource::Toml);
-        let urdf = convert(&model, ModelFormat::Urdf).unwrap().text;
-        assert!(matches!(read(&urdf).source, ModelSource::Urdf(_)));
-    }
-}

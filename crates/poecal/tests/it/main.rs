@@ -7,6 +7,7 @@
 mod arms;
 mod basin;
 mod blocks;
+mod calibration_file;
 mod cell;
 mod common;
 mod compared;
@@ -57,6 +58,7 @@ mod refit_promise;
 mod report_page;
 mod report_places;
 mod robust;
+mod shapes;
 mod shop;
 mod starts;
 mod stations;

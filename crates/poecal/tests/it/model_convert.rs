@@ -7,6 +7,7 @@ use poecal::io::robot_toml;
 use poecal::io::urdf::{ChainSelection, UrdfDocument};
 use poecal::lie::{Pose, Screw};
 use poecal::robot::{Joint, Reading, Robot};
+use poecal::simulate::scara;
 
 fn toml_model(robot: Robot) -> Model {
     Model { robot, source: ModelSource::Toml, path: "robot.toml".into() }
@@ -172,4 +173,13 @@ fn what_a_form_cannot_hold_is_an_error() {
         error.to_string(),
         "robot.toml: the converted model differs by 0.0e0 m and 5.0e-1 rad, expected at most 1.0e-12 m and 1e-12 rad"
     );
+}
+
+#[test]
+fn without_an_extension_the_text_shows_its_form() {
+    let read = |text: &str| Model::parse(text, "a model", &ChainSelection::default()).unwrap();
+    let model = read(&robot_toml::write(&scara()));
+    assert_eq!(model.source, ModelSource::Toml);
+    let urdf = convert(&model, ModelFormat::Urdf).unwrap().text;
+    assert!(matches!(read(&urdf).source, ModelSource::Urdf(_)));
 }

@@ -384,17 +384,3 @@ impl From<&Screw> for ScrewEntry {
         ScrewEntry { v_m: screw.v().into(), w: screw.w().into() }
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn limits_that_are_none_are_refused() {
-        let seed = include_str!("../../../../../fuzz/seeds/calibration/scara");
-        let mut file = CalibrationFile::parse(seed, "c.json").unwrap();
-        file.joints[0].limits = Some([1.0, -1.0]);
-        let error = file.robot().unwrap_err().to_string();
-        assert_eq!(error, "found limits from 1 to -1 of joint `joint1`, expected the lower one first");
-    }
-}

@@ -35,15 +35,3 @@ pub(super) fn refusal(text: &str, error: Option<serde_json::Error>, path: &Path)
     };
     Error::new(ErrorKind::Syntax, message).in_file(path)
 }
-
-#[cfg(test)]
-mod tests {
-    use super::super::CalibrationFile;
-
-    #[test]
-    fn columns_count_characters() {
-        let error = CalibrationFile::parse("{\n\"µµ\": \"µ\" x}", "c.json").unwrap_err();
-        let place = error.place().unwrap();
-        assert_eq!((place.line, place.column), (Some(2), Some(11)), "{error}");
-    }
-}
