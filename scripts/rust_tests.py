@@ -54,7 +54,8 @@ def build(options):
 
 def build_examples():
     """Builds the examples that tests/python/test_examples.py runs, beside the program; whether that succeeded."""
-    command = ["cargo", "build", "--locked", "--profile", profile(), "-p", "poecal", "--examples"]
+    # Of the workspace, as the tests: with other packages the features would be others, and everything compiled again.
+    command = ["cargo", "build", "--locked", "--profile", profile(), "--workspace", "--examples"]
     return subprocess.run(command, cwd=ROOT, check=False).returncode == 0
 
 
