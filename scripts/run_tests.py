@@ -136,7 +136,8 @@ def packages() -> list[Step]:
     wasm = lack(f"standard library of {WASM} (rustup target add {WASM})", has_standard_library(WASM))
     return [
         *tools(),
-        Step("release build", [["cargo", "build", "--locked", "--release", "-p", "poecal-cli", "--bin", "poecal"]], shows=CARGO_SHOWS),
+        # With the features that the package needs, which is made of the same crates next.
+        Step("release build", [["cargo", "build", "--locked", "--release", "-p", "poecal-cli", "-p", "poecal-py", "--bin", "poecal"]], shows=CARGO_SHOWS),
         Step("npm build", [["node", "web/app/build.mjs"]], after=["web tools"], shows="^poecal.html: |^web/npm", lacks=wasm),
         Step(
             "wheel",
