@@ -152,7 +152,7 @@ def packages() -> list[Step]:
         Step("report of every real robot", [in_browser(["report.test.mjs"])], after=["release build", "web tools"], shows=NODE_SHOWS, lacks=browser,
              env={"POECAL_PROGRAM": str(target() / "release/poecal"), "POECAL_REPORTS": "all"}),
         Step("page in a browser", [in_browser(["app.test.mjs"])], after=["npm build", "release build"], shows=NODE_SHOWS, lacks=browser,
-             env={"POECAL_PROGRAM": str(target() / "release/poecal"), "POECAL_REPORT_S": "6"}),
+             env={"POECAL_PROGRAM": str(target() / "release/poecal")}),
         *(Step(f"lints of {name}", [["cargo", "clippy", "--locked", "-p", "poecal", "-p", "poecal-wasm", "--target", name, "--", "-D", "warnings"]], shows=CARGO_SHOWS,
                lacks=lack("clippy", clippy) or lack(f"standard library of {name} (rustup target add {name})", has_standard_library(name)))
           for name in ("aarch64-unknown-linux-gnu", WASM)),

@@ -17,9 +17,8 @@ import threading
 import time
 from pathlib import Path
 
-from steps import PROCESSORS
+from steps import PROCESSORS, ROOT
 
-ROOT = Path(__file__).resolve().parent.parent
 # Without libtest, so without a list of tests: one test as a whole.
 WHOLE = {"fuzz"}
 SLOWEST = 10
