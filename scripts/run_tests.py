@@ -98,7 +98,6 @@ def change() -> list[Step]:
         Step("imports", [[sys.executable, "scripts/check-imports"]], shows="^imports go| may name |^only "),
         Step("Rust build", [[sys.executable, "scripts/rust_tests.py", "--build"]], shows=CARGO_SHOWS),
         *tools(),
-        Step("lints", [["cargo", "clippy", "--locked", "--workspace", "--all-targets", "--", "-D", "warnings"]], shows=CARGO_SHOWS, lacks=lack("clippy", clippy)),
         Step("page build", [["node", "web/app/build.mjs"]], after=["web tools"], shows="^poecal.html: ", env={"POECAL_WEB_PROFILE": "tested-web"},
              lacks=lack(f"standard library of {WASM} (rustup target add {WASM})", has_standard_library(WASM))),
         Step(
@@ -112,6 +111,9 @@ def change() -> list[Step]:
             ],
             after=["Rust build", "Python tools"], shows="rror:",
         ),
+        # With the macros and build scripts of the tests, which are compiled by then.
+        Step("lints", [["cargo", "clippy", "--locked", "--profile", "tested", "--workspace", "--all-targets", "--", "-D", "warnings"]], after=["Rust build"],
+             shows=CARGO_SHOWS, lacks=lack("clippy", clippy)),
         Step("licences of others", [[PYTHON, "scripts/third_party.py", "--check"]], after=["Python tools"], shows="^THIRD-PARTY"),
         Step("dependencies", [[PYTHON, "scripts/check_dependencies.py"]], after=["Python tools"], shows="^dependencies: |: (found|is|comes|takes) "),
         Step("Python packages", [[PYTHON, "scripts/check_python_lock.py"]], after=["Python tools"], shows="^requirements|: is "),
@@ -153,7 +155,7 @@ def packages() -> list[Step]:
              env={"POECAL_PROGRAM": str(target() / "release/poecal"), "POECAL_REPORTS": "all"}),
         Step("page in a browser", [in_browser(["app.test.mjs"])], after=["npm build", "release build"], shows=NODE_SHOWS, lacks=browser,
              env={"POECAL_PROGRAM": str(target() / "release/poecal")}),
-        *(Step(f"lints of {name}", [["cargo", "clippy", "--locked", "-p", "poecal", "-p", "poecal-wasm", "--target", name, "--", "-D", "warnings"]], shows=CARGO_SHOWS,
+        *(Step(f"lints of {name}", [["cargo", "clippy", "--locked", "--profile", "tested", "-p", "poecal", "-p", "poecal-wasm", "--target", name, "--", "-D", "warnings"]], shows=CARGO_SHOWS,
                lacks=lack("clippy", clippy) or lack(f"standard library of {name} (rustup target add {name})", has_standard_library(name)))
           for name in ("aarch64-unknown-linux-gnu", WASM)),
         Step(f"oldest Rust ({oldest})", [["cargo", f"+{oldest}", "check", "--locked", "--workspace"]], shows=CARGO_SHOWS, may_lack=True,

@@ -85,15 +85,17 @@ const LOOKS = [[400, "light"], [900, "dark"], [1300, "light"]];
 
 for (const [name, make, brief] of [...CASES, ...Object.entries(TREES).map((it) => [...it, true])]) {
   describe(name, { skip }, () => {
-    let out, file, report;
-    before(() => {
+    // One page for all that is read of it: to open and draw it takes longer than to look. Its sliders are moved last.
+    let out, file, report, page;
+    before(async () => {
       out = make();
       report = join(out, "report.html");
       file = JSON.parse(readFileSync(join(out, "calibration.json"), "utf8"));
+      page = await open(browser, report);
     });
+    after(() => page?.close());
 
     test("is drawn, quiet, and says what calibration.json says", async () => {
-      const page = await open(browser, report);
       const figures = await page.$$eval("[data-key]", (all) =>
         all.map((it) => ({ key: it.dataset.key, factor: Number(it.dataset.factor ?? 1), text: it.textContent })),
       );
@@ -106,11 +108,9 @@ for (const [name, make, brief] of [...CASES, ...Object.entries(TREES).map((it) =
       for (const [marks, width] of plots) assert.ok(marks > 1 && width > 100, `a plot has ${marks} marks, ${width} px wide`);
       assert.deepEqual(page.complaints, []);
       console.log(`${name}: ${count} figures, ${shares.length} canvases, ${plots.length} plots, ${readFileSync(report).length} bytes`);
-      await page.close();
     });
 
     test("says each joint's correction in words, and which unknowns are correlated", async () => {
-      const page = await open(browser, report);
       const shown = (key) => page.$$eval(`[data-key^="${key}"]`, (all) => all.map((it) => it.textContent));
       const words = await shown("corrections.");
       const told = file.corrections.filter((it) => it.change);
@@ -126,11 +126,9 @@ for (const [name, make, brief] of [...CASES, ...Object.entries(TREES).map((it) =
       const hasTerms = Object.values(file.corrected?.sizes ?? {}).some((size) => size > 0);
       if (!hasTerms) assert.ok(!legend.includes("corrected"), "a corrected model without terms is none");
       console.log(`${name}: ${told.length} corrections, ${common.length} common directions, ${correlations?.strong ?? 0} strong pairs of ${blocks} blocks`);
-      await page.close();
     });
 
     test("the sliders move the arm to where the program says", async () => {
-      const page = await open(browser, report);
       const { still, values, tip } = await moveArm(page);
       assert.deepEqual(still, [], "these sliders move nothing");
       const readings = await page.evaluate(() => JSON.parse(document.getElementById("report-data").textContent).readings);
@@ -143,7 +141,6 @@ for (const [name, make, brief] of [...CASES, ...Object.entries(TREES).map((it) =
       const shown = Number(told.match(/off by ([\d.]+) mm/)?.[1]);
       assert.ok(Math.abs(shown / worst - 1) < 5e-3 || Math.abs(shown - worst) < 5e-4, `${told}; the worst is ${worst}`);
       assert.deepEqual(page.complaints, []);
-      await page.close();
     });
 
     for (const [width, colours] of brief ? [[400, "dark"]] : LOOKS) {
