@@ -98,6 +98,8 @@ def change() -> list[Step]:
         Step("imports", [[sys.executable, "scripts/check-imports"]], shows="^imports go| may name |^only "),
         Step("Rust build", [[sys.executable, "scripts/rust_tests.py", "--build"]], shows=CARGO_SHOWS),
         *tools(),
+        # Beside the long compilation of the library, in a folder of its own: it would wait there, and a processor with it.
+        Step("lints", [["cargo", "clippy", "--locked", "--workspace", "--all-targets", "--", "-D", "warnings"]], shows=CARGO_SHOWS, lacks=lack("clippy", clippy)),
         Step("page build", [["node", "web/app/build.mjs"]], after=["web tools"], shows="^poecal.html: ", env={"POECAL_WEB_PROFILE": "tested-web"},
              lacks=lack(f"standard library of {WASM} (rustup target add {WASM})", has_standard_library(WASM))),
         Step(
@@ -111,9 +113,6 @@ def change() -> list[Step]:
             ],
             after=["Rust build", "Python tools"], shows="rror:",
         ),
-        # With the macros and build scripts of the tests, which are compiled by then.
-        Step("lints", [["cargo", "clippy", "--locked", "--profile", "tested", "--workspace", "--all-targets", "--", "-D", "warnings"]], after=["Rust build"],
-             shows=CARGO_SHOWS, lacks=lack("clippy", clippy)),
         Step("licences of others", [[PYTHON, "scripts/third_party.py", "--check"]], after=["Python tools"], shows="^THIRD-PARTY"),
         Step("dependencies", [[PYTHON, "scripts/check_dependencies.py"]], after=["Python tools"], shows="^dependencies: |: (found|is|comes|takes) "),
         Step("Python packages", [[PYTHON, "scripts/check_python_lock.py"]], after=["Python tools"], shows="^requirements|: is "),
@@ -149,6 +148,8 @@ def packages() -> list[Step]:
             after=["release build", "Python tools"], shows="rror:",
         ),
         Step("installation", [[*PYTEST, INSTALL]], after=["wheel"], shows=PYTEST_SHOWS + "|^static program"),
+        Step("C on a controller", [[*PYTEST, "tests/python/test_c.py"]], after=["release build", "Python tools"], shows=PYTEST_SHOWS,
+             env={"POECAL_PROGRAM": str(target() / "release/poecal"), "POECAL_CONTROLLER": "controller"}),
         Step("npm package", [in_browser(["npm.test.mjs"])], after=["npm build", "release build"], shows=NODE_SHOWS,
              env={"POECAL_PROGRAM": str(target() / "release/poecal")}),
         Step("report of every real robot", [in_browser(["report.test.mjs"])], after=["release build", "web tools"], shows=NODE_SHOWS, lacks=browser,

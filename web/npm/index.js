@@ -1,4 +1,4 @@
-// Calibration of serial robots: the commands of the program poecal as functions, on `run` of poecal.js.
+// Calibration of robot arms: the commands of the program poecal as functions, on `run` of poecal.js.
 import { load as loadAs, Poecal, PoecalError } from "./poecal.js";
 
 export { PoecalError };

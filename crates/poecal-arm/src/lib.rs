@@ -9,6 +9,7 @@
 //! | have joints that turn more than their readings say | [`Model`], [`Arm::of`] |
 //! | have many poses, Jacobians, or what weights do, in many configurations | [`Arm::forward_kinematics_of`], [`Arm::jacobians_of`], [`Arm::sag_of`] |
 //! | move the tip to a pose, from where the arm is | [`Arm::nearest`] |
+//! | correct readings of a program for the drawing | [`Corrections`] |
 //! | know all configurations for a pose | [`AllBranches`]; of seven axes by one that is held, [`HeldBranches`] |
 //! | compute with poses | [`lie`]: poses, twists, screws |
 //!
@@ -25,6 +26,7 @@ extern crate std;
 mod arm;
 mod branches;
 mod chain;
+mod correction;
 pub mod lie;
 mod model;
 mod newton;
@@ -37,5 +39,6 @@ pub mod trig;
 
 pub use arm::Arm;
 pub use branches::{AllBranches, Branches, HeldBranches, MOST_BRANCHES};
+pub use correction::{Correction, Corrections, MostChange, Outcome};
 pub use model::{Drawn, Joint, JointValue, Model, Pull, PulledWeight, Wave};
 pub use placed::MOST_JOINTS;

@@ -22,16 +22,19 @@ int main(int count, char **arguments) {
   double meant[POECAL_MOST_JOINTS], q[POECAL_MOST_JOINTS], pose[16];
   for (size_t i = 0; i < joints; i++) meant[i] = strtod(arguments[i + 1], NULL);
 
-  PoecalLeft left = poecal_compensate(nominal, actual, meant, q);
+  // No joint moves by more than 2 degrees, or 2 mm, beyond its zero.
+  PoecalCorrections *corrections = poecal_corrections_new(nominal, actual, 0.0349, 0.002);
+  PoecalCorrected left = poecal_compensate(corrections, meant, q);
   for (size_t i = 0; i < joints; i++) printf("%.15g\n", q[i]);
-  fprintf(stderr, "left: %.1e m, %.1e rad\n", left.position_m, left.rotation_rad);
+  fprintf(stderr, "outcome %d, left: %.1e m, %.1e rad\n", left.outcome, left.position_m, left.rotation_rad);
 
   // All ways to have the tip there, of an arm of six turning joints.
   double branches[6 * POECAL_MOST_BRANCHES];
   poecal_forward(nominal, meant, pose);
   fprintf(stderr, "branches: %d\n", poecal_branches(actual, pose, branches));
 
+  poecal_corrections_free(corrections);
   poecal_arm_free(actual);
   poecal_arm_free(nominal);
-  return left.position_m < 1e-9 && left.rotation_rad < 1e-9 ? 0 : 1;
+  return left.outcome == POECAL_REACHED || left.outcome == POECAL_TURNED ? 0 : 1;
 }

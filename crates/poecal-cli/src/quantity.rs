@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 use std::str::FromStr;
 
+use poecal::compensate::MostChange;
 use poecal::io::measurements::{Dimension, Unit};
 use poecal::robot::{Corrections, GravityDirection, Sizes, Tolerance};
 use poecal::{Error, ErrorKind, MOST_THREADS, Result};
@@ -64,6 +65,8 @@ pub(crate) struct LengthAndAngle {
     pub(crate) text: String,
     pub(crate) length_m: f64,
     pub(crate) angle_rad: f64,
+    pub(crate) has_length: bool,
+    pub(crate) has_angle: bool,
 }
 
 impl FromStr for LengthAndAngle {
@@ -84,6 +87,8 @@ impl FromStr for LengthAndAngle {
             text: text.to_owned(),
             length_m: length_m.unwrap_or(0.0),
             angle_rad: angle_rad.unwrap_or(0.0),
+            has_length: length_m.is_some(),
+            has_angle: angle_rad.is_some(),
         })
     }
 }
@@ -147,6 +152,21 @@ pub(crate) fn share(text: &str) -> std::result::Result<f64, String> {
     }
 }
 
+/// Parser of how far joints may move, for clap: what is omitted is the default.
+pub(crate) fn most_change(text: &str) -> std::result::Result<MostChange, String> {
+    let found: LengthAndAngle = text.parse().map_err(|error: Error| error.to_string())?;
+    let default = MostChange::default();
+    let or = |value: f64, is_stated: bool, default: f64| if is_stated { value } else { default };
+    let most = MostChange {
+        turning_rad: or(found.angle_rad, found.has_angle, default.turning_rad),
+        sliding_m: or(found.length_m, found.has_length, default.sliding_m),
+    };
+    if most.turning_rad > 0.0 && most.sliding_m > 0.0 {
+        return Ok(most);
+    }
+    Err(format!("found `{text}`, expected an angle and a length above 0, like 2deg,2mm"))
+}
+
 /// Parser of a direction for clap: three numbers, not all of them 0.
 pub(crate) fn direction(text: &str) -> std::result::Result<[f64; 3], String> {
     match text.parse()? {
@@ -189,6 +209,12 @@ mod tests {
         assert_eq!(both("1deg,2mm"), Ok((0.002, 1f64.to_radians())));
         assert_eq!(both("2mm, 1deg"), both("1deg,2mm"));
         assert_eq!(both("0.05mm"), Ok((5e-5, 0.0)));
+        let most = |text: &str| most_change(text).map(|it| (it.turning_rad, it.sliding_m));
+        assert_eq!(most("3deg"), Ok((3f64.to_radians(), 0.002)));
+        assert_eq!(most("1mm,1deg"), Ok((1f64.to_radians(), 0.001)));
+        assert!(
+            most("0deg").unwrap_err().starts_with("found `0deg`, expected an angle and a length above 0")
+        );
         let message = |text: &str| both(text).unwrap_err().to_string();
         assert_eq!(message("1mm,2mm"), "found `1mm,2mm`, expected one length and one angle, like 2mm,1deg");
         assert_eq!(message("1"), "found `1` without a unit, expected a number with a unit, like 2mm or 1deg");

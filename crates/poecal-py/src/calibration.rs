@@ -521,27 +521,37 @@ impl Calibration {
     /// factors
     ///     Values of the corrected model's factors by their names, default their references.
     /// nearest
-    ///     Whether to give the nearest configuration where a pose cannot be reached, instead of refusing.
+    ///     Whether to give the nearest configuration where a pose cannot be reached, instead of leaving the row as it is.
+    /// most_turn_rad, most_slide_m
+    ///     How far a joint that turns, or slides, may be moved beyond its zero, default 2 degrees and 2 mm. A row that takes more, at a singularity, stays as it is.
+    /// summary
+    ///     Whether to give the summary as well.
     /// model
     ///     Which model is the robot as it is: "corrected", where there is one, or "calibrated", geometry alone.
     ///
     /// Returns
     /// -------
     /// numpy.ndarray
-    ///     Readings to command, of the same shape.
-    #[pyo3(signature = (joints, *, factors=None, nearest=false, model="corrected"))]
+    ///     Readings to command, of the same shape. Rows that stay as they are are named by a PoecalWarning. With summary=True a tuple of these and a
+    ///     dict: `targets` has every row that is corrected, by its index (`line`), `listed` every other one and why.
+    #[pyo3(signature = (joints, *, factors=None, nearest=false, most_turn_rad=None, most_slide_m=None, summary=false, model="corrected"))]
+    #[expect(clippy::too_many_arguments, reason = "the options of a Python function")]
     fn compensate<'py>(
         &self,
         py: Python<'py>,
         joints: &Bound<'py, PyAny>,
         factors: Option<&Bound<'py, PyAny>>,
         #[pyo3(from_py_with = arg::nearest)] nearest: bool,
+        #[pyo3(from_py_with = arg::most_turn_rad)] most_turn_rad: Option<f64>,
+        #[pyo3(from_py_with = arg::most_slide_m)] most_slide_m: Option<f64>,
+        #[pyo3(from_py_with = arg::summary)] summary: bool,
         #[pyo3(from_py_with = arg::model)] model: &str,
     ) -> PyResult<Bound<'py, PyAny>> {
         let actual = self.actual(model)?;
         let taught = self.file().taught(&actual.model.robot).map_err(raise)?;
         let factors = reach::factors(&actual.model.robot, factors)?;
-        reach::compensate(py, (&taught.robot, &actual.model.robot), joints, &factors, nearest)
+        let options = reach::change(nearest, most_turn_rad, most_slide_m)?;
+        reach::compensate(py, (&taught.robot, &actual.model.robot), joints, &factors, &options, summary)
     }
 
     /// The nominal robot with base and tool of the actual one: corrected programs take the actual robot to where this one would be.
@@ -578,10 +588,14 @@ impl Calibration {
     ///     The controller's base in the model's, default the same.
     /// flange
     ///     The controller's flange in the model's tip, default the same.
+    /// start
+    ///     Readings where the robot is before the first motion, "J1,J2,…" as the language writes joints: of programs that begin with a pose and state no configuration.
     /// factors
     ///     Values of the corrected model's factors by their names, default their references.
     /// nearest
     ///     Whether to write the nearest configuration where the robot cannot reach a target, instead of leaving it as it is.
+    /// most_turn_rad, most_slide_m
+    ///     How far a joint that turns, or slides, may be moved beyond its zero, default 2 degrees and 2 mm. A target that takes more, at a singularity, stays as it is and is listed.
     /// check
     ///     Whether to compute what is left once more, from the written text.
     /// model
@@ -591,7 +605,7 @@ impl Calibration {
     /// -------
     /// tuple of bytes and dict
     ///     The program, and the summary: how many targets are corrected, which are listed as they are and why, the largest corrections, and what is left.
-    #[pyo3(signature = (path, *, language=None, tools=None, frames=None, base=None, flange=None, factors=None, nearest=false, check=false, model="corrected"))]
+    #[pyo3(signature = (path, *, language=None, tools=None, frames=None, base=None, flange=None, start=None, factors=None, nearest=false, most_turn_rad=None, most_slide_m=None, check=false, model="corrected"))]
     #[expect(clippy::too_many_arguments, reason = "the options of a Python function")]
     fn compensate_program<'py>(
         &self,
@@ -602,8 +616,11 @@ impl Calibration {
         #[pyo3(from_py_with = arg::frames)] frames: Option<Vec<String>>,
         #[pyo3(from_py_with = arg::base)] base: Option<String>,
         #[pyo3(from_py_with = arg::flange)] flange: Option<String>,
+        #[pyo3(from_py_with = arg::start)] start: Option<String>,
         factors: Option<&Bound<'py, PyAny>>,
         #[pyo3(from_py_with = arg::nearest)] nearest: bool,
+        #[pyo3(from_py_with = arg::most_turn_rad)] most_turn_rad: Option<f64>,
+        #[pyo3(from_py_with = arg::most_slide_m)] most_slide_m: Option<f64>,
         #[pyo3(from_py_with = arg::check)] check: bool,
         #[pyo3(from_py_with = arg::model)] model: &str,
     ) -> PyResult<(Bound<'py, PyBytes>, Bound<'py, PyAny>)> {
@@ -611,7 +628,8 @@ impl Calibration {
         let taught = self.file().taught(&actual.model.robot).map_err(raise)?;
         let factors = reach::factors(&actual.model.robot, factors)?;
         let language = reach::language(&path, language.as_deref())?;
-        let mut options = ProgramOptions { nearest, check, ..ProgramOptions::of(language) };
+        let change = reach::change(nearest, most_turn_rad, most_slide_m)?;
+        let mut options = ProgramOptions { change, check, each: true, ..ProgramOptions::of(language) };
         for words in tools.iter().flatten() {
             options.given.add_tool(words, language).map_err(raise)?;
         }
@@ -623,6 +641,9 @@ impl Calibration {
         }
         if let Some(words) = flange {
             options.given.set_flange(&words, language).map_err(raise)?;
+        }
+        if let Some(words) = start {
+            options.given.set_start(&words, language).map_err(raise)?;
         }
         options.given = options.given.taught(&taught);
         reach::program(py, (&taught.robot, &actual.model.robot), &path, &factors, &options)

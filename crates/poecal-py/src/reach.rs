@@ -4,7 +4,9 @@ use std::path::Path;
 
 use numpy::{PyArray1, PyArrayMethods as _};
 use poecal::Robot;
-use poecal::compensate::{Compensation, Inverse, Kinematics, Language, ProgramOptions, compensate_file};
+use poecal::compensate::{
+    ChangeOptions, Compensation, Inverse, Kinematics, Language, MostChange, ProgramOptions, compensate_file,
+};
 use poecal::lie::Pose;
 use pyo3::IntoPyObjectExt as _;
 use pyo3::prelude::*;
@@ -66,36 +68,46 @@ fn rows<'py>(
     }
 }
 
-/// Readings to command for those of a nominal program.
+/// How far readings may be changed.
+pub(crate) fn change(
+    nearest: bool,
+    most_turn_rad: Option<f64>,
+    most_slide_m: Option<f64>,
+) -> PyResult<ChangeOptions> {
+    let default = MostChange::default();
+    let most_change = MostChange {
+        turning_rad: most_turn_rad.unwrap_or(default.turning_rad),
+        sliding_m: most_slide_m.unwrap_or(default.sliding_m),
+    };
+    for (name, value) in [("most_turn_rad", most_change.turning_rad), ("most_slide_m", most_change.sliding_m)]
+    {
+        if value.is_nan() || value <= 0.0 || value.is_infinite() {
+            return Err(argument(name, format!("found {value}, expected a number above 0")));
+        }
+    }
+    Ok(ChangeOptions { most_change, nearest })
+}
+
+/// Readings to command for those of a nominal program; with their summary, if that is asked for.
 pub(crate) fn compensate<'py>(
     py: Python<'py>,
     (nominal, actual): (&Robot, &Robot),
     joints: &Bound<'py, PyAny>,
     factors: &[f64],
-    nearest: bool,
+    options: &ChangeOptions,
+    summary: bool,
 ) -> PyResult<Bound<'py, PyAny>> {
     let (numbers, is_single) = configurations(joints, "joints", actual)?;
     let n = actual.joint_reading_names().len();
-    let compensation = Compensation::new(nominal, actual, factors).map_err(raise)?;
-    let must_be_reached = !nearest && compensation.readings().len() >= 6;
-    let made = py.detach(|| {
-        compensation.of_many(&numbers.values, |row, found| {
-            if must_be_reached && !found.is_reached() {
-                return Err((row, found.left_m, found.left_rad));
-            }
-            Ok(found.readings.to_vec())
-        })
-    });
-    let made = made.map_err(|(row, metres, radians)| {
-        let message = format!(
-            "found a configuration in row {row} whose pose the actual robot cannot reach: {:.3} mm and {:.4} degrees are left, expected poses in \
-             reach: leave it out, or take nearest=True",
-            metres * 1e3,
-            radians.to_degrees()
-        );
-        argument("joints", message)
-    })?;
-    rows(py, made, n, is_single)
+    let compensation = Compensation::new(nominal, actual, factors, options).map_err(raise)?;
+    let (made, found) = py.detach(|| compensation.of_many(&numbers.values, summary));
+    crate::warn(py, &found.warnings())?;
+    let made = rows(py, made, n, is_single)?;
+    if !summary {
+        return Ok(made);
+    }
+    let json = poecal::report::json(&found).map_err(raise)?;
+    (made, py.import("json")?.call_method1("loads", (json,))?).into_bound_py_any(py)
 }
 
 /// The language of a robot program, by its name or the end of the file's.
@@ -108,7 +120,7 @@ pub(crate) fn language(path: &Path, named: Option<&str>) -> PyResult<Language> {
     ];
     match named {
         Some(word) => chosen("language", word, &words),
-        None => Language::of(path).ok_or_else(|| {
+        None => Language::of_name(path).map_err(raise)?.ok_or_else(|| {
             let message = format!(
                 "found no language for {}, expected one of urscript, rapid, krl, fanuc where the end of the file's name does not tell",
                 path.display()
@@ -127,6 +139,7 @@ pub(crate) fn program<'py>(
     options: &ProgramOptions,
 ) -> PyResult<(Bound<'py, PyBytes>, Bound<'py, PyAny>)> {
     let (text, summary) = py.detach(|| compensate_file(path, robots, factors, options)).map_err(raise)?;
+    crate::warn(py, &summary.changes.warnings())?;
     let json = poecal::report::json(&summary).map_err(raise)?;
     Ok((PyBytes::new(py, &text), py.import("json")?.call_method1("loads", (json,))?))
 }

@@ -27,14 +27,31 @@ def test_compensated_joints_reach_what_the_nominal_robot_means(calibration):
     generator = np.random.default_rng(1)
     joints = generator.uniform(-1, 1, (200, 6)) + [0, 0.3, 0.3, 0, 1.5, 0]
     meant = calibration.taught().forward_kinematics(joints)
-    commanded = calibration.compensate(joints)
+    # Errors of a degree take more than two of some joints.
+    commanded = calibration.compensate(joints, most_turn_rad=1.0)
     assert commanded.shape == joints.shape
     reached = poses_of(calibration, commanded)
     print(f"without correction {np.linalg.norm((poses_of(calibration, joints) - reached)[:, :3, 3], axis=1).max() * 1e3:.2f} mm")
     assert apart(reached, meant) < 1e-10
     assert 1e-4 < np.median(np.abs(commanded - joints)) < 0.05
-    assert apart(calibration.compensate(joints[3]), commanded[3]) < 1e-10
-    assert calibration.compensate(joints[3]).shape == (6,)
+    assert apart(calibration.compensate(joints[3], most_turn_rad=1.0), commanded[3]) < 1e-10
+    assert calibration.compensate(joints[3], most_turn_rad=1.0).shape == (6,)
+
+
+def test_rows_that_stay_as_they_are_are_named(calibration):
+    joints = np.random.default_rng(1).uniform(-1, 1, (200, 6)) + [0, 0.3, 0.3, 0, 1.5, 0]
+    with pytest.warns(poecal.PoecalWarning, match=r"targets are left as the program has them.*the first on row \d+: joint `joint\d` would have to move by"):
+        commanded, summary = calibration.compensate(joints, summary=True)
+    listed = [it["line"] for it in summary["listed"]]
+    print(f"{len(listed)} of 200 rows stay as they are, by at most {np.degrees(0.035):.1f} deg")
+    assert len(listed) + summary["rows"] == 200 and [it["line"] for it in summary["targets"]] == sorted(set(range(200)) - set(listed))
+    assert (commanded[listed] == joints[listed]).all()
+    others = sorted(set(range(200)) - set(listed))
+    assert np.abs(commanded - joints)[others].max(axis=1) == pytest.approx([it["change"] for it in summary["targets"]], abs=1e-15)
+    for name in ("most_turn_rad", "most_slide_m"):
+        for value in (0, -1.0, float("nan"), float("inf")):
+            with pytest.raises(ValueError, match=f"{name}: found .*, expected a number above 0"):
+                calibration.compensate(joints, **{name: value})
 
 
 def test_taught_is_the_nominal_robot_with_another_base_and_tool(calibration):

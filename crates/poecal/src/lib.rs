@@ -1,4 +1,4 @@
-//! Kinematic calibration of serial robots by the product of exponentials.
+//! Kinematic calibration of robot arms, and of trees of them, by the product of exponentials.
 //!
 //! A robot is a screw `ξᵢ` for every joint and a home pose `M`. With joint values `θ`, its tip stands in the base frame at
 //!

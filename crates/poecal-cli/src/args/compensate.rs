@@ -3,9 +3,11 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use poecal::compensate::MostChange;
 
 use super::shared::{ColumnArgs, OutFile};
 use super::words::{LANGUAGE, PREDICTED_MODEL, PredictedModel, ProgramLanguage, one_of};
+use crate::quantity::most_change;
 
 /// Arguments of `poecal compensate`.
 #[derive(Args, Debug)]
@@ -33,6 +35,10 @@ pub(crate) struct Compensate {
     /// The controller's flange in the model's tip [default: the same]
     #[arg(long, value_name = "NUMBERS", allow_hyphen_values = true)]
     pub(crate) flange: Option<String>,
+    /// Readings where the robot is before the program's first motion, as the language writes joints (J1,J2,...): of programs that begin with a pose and
+    /// state no configuration (ConfL\Off, movej)
+    #[arg(long, value_name = "READINGS", allow_hyphen_values = true)]
+    pub(crate) start: Option<String>,
     /// Which model of the calibration is the actual robot: the corrected one, if there is one, or the calibrated one
     #[arg(long = "model", value_parser = one_of(PREDICTED_MODEL), default_value = "corrected")]
     pub(crate) of: PredictedModel,
@@ -42,10 +48,16 @@ pub(crate) struct Compensate {
     /// Compute what is left once more, from the written numbers and by the models' own forward kinematics
     #[arg(long)]
     pub(crate) check: bool,
-    /// Where the actual robot cannot reach a pose, write the nearest configuration instead of refusing
+    /// Where the actual robot cannot reach a pose, write the nearest configuration instead of leaving the target as it is
     #[arg(long)]
     pub(crate) nearest: bool,
-    /// Print the summary as JSON
+    /// How far a joint may be moved beyond its zero, like 2deg,2mm; a target that takes more, at a singularity, stays as it is and is listed
+    #[arg(long, value_name = "SIZES", value_parser = most_change, default_value = "2deg,2mm")]
+    pub(crate) most_change: MostChange,
+    /// Write nothing, only print what would be changed
+    #[arg(long)]
+    pub(crate) dry_run: bool,
+    /// Print the summary as JSON, with every target
     #[arg(long)]
     pub(crate) json: bool,
     #[command(flatten)]

@@ -2,7 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use poecal::compensate::{Given, Language, ProgramOptions, TableOptions, compensate_file, compensate_table};
+use poecal::compensate::{
+    ChangeOptions, Given, Language, ProgramOptions, TableOptions, compensate_file, compensate_table,
+};
 use poecal::io::calibration_file::TaughtRobot;
 use poecal::io::model::{Model, ModelSource};
 use poecal::io::output::FilePlace;
@@ -18,7 +20,7 @@ pub(crate) fn compensate(arguments: &Compensate, console: &Console) -> Result<u8
     let mapping = arguments.columns.columns.iter();
     let inputs = [&arguments.calibration, &arguments.program];
     let inputs: Vec<&Path> = inputs.into_iter().chain(mapping).map(PathBuf::as_path).collect();
-    let place = arguments.place.reserve(&inputs, console)?;
+    let place = if arguments.dry_run { None } else { arguments.place.reserve(&inputs, console)? };
     let model = Model::read(&arguments.calibration, &ChainSelection::default())?;
     let model = match arguments.of {
         PredictedModel::Corrected => model.corrected()?,
@@ -31,30 +33,37 @@ pub(crate) fn compensate(arguments: &Compensate, console: &Console) -> Result<u8
     let taught = file.taught(&model.robot)?;
     let factors = factors(&model.robot, &arguments.factors, console)?;
     let robots = (&taught.robot, &model.robot);
-    if let Some(language) = language(arguments) {
+    if let Some(language) = language(arguments)? {
         return robot_program(arguments, language, (&taught, &model.robot), &factors, place, console);
     }
     let options = TableOptions {
         read: arguments.columns.options()?,
         check: arguments.check,
-        nearest: arguments.nearest,
+        change: change(arguments),
+        each: arguments.json,
     };
-    let is_file = place.is_some();
+    let is_told = place.is_some() || arguments.dry_run;
     let (summary, table) = match place {
         Some(place) => {
             place.write_by(|out| compensate_table(&arguments.program, robots, &factors, &options, out))?
         }
         None => compensate_table(&arguments.program, robots, &factors, &options, &mut |piece| {
-            console.data(piece)
+            if arguments.dry_run { Ok(()) } else { console.data(piece) }
         })?,
     };
     console.warnings(&table.warnings);
     console.warnings(&summary.warnings());
-    if is_file {
+    if is_told {
         let slides = |name: &str| is_sliding(&taught.robot, name);
-        console.json_or_table(arguments.json, || report::json(&summary), || summary.text(&slides, "rows"))?;
+        let what = if summary.rows == 1 { "row corrected" } else { "rows corrected" };
+        console.json_or_table(arguments.json, || report::json(&summary), || summary.text(&slides, what))?;
     }
-    Ok(DONE)
+    Ok(if summary.is_whole() { DONE } else { WORSE })
+}
+
+/// How far readings may be changed.
+fn change(arguments: &Compensate) -> ChangeOptions {
+    ChangeOptions { most_change: arguments.most_change, nearest: arguments.nearest }
 }
 
 fn is_sliding(robot: &Robot, name: &str) -> bool {
@@ -63,11 +72,11 @@ fn is_sliding(robot: &Robot, name: &str) -> bool {
 }
 
 /// The language of a robot program; `None` of a table.
-fn language(arguments: &Compensate) -> Option<Language> {
+fn language(arguments: &Compensate) -> Result<Option<Language>> {
     match arguments.language {
-        Some(ProgramLanguage::Table) => None,
-        Some(ProgramLanguage::Robot(language)) => Some(language),
-        None => Language::of(&arguments.program),
+        Some(ProgramLanguage::Table) => Ok(None),
+        Some(ProgramLanguage::Robot(language)) => Ok(Some(language)),
+        None => Language::of_name(&arguments.program),
     }
 }
 
@@ -90,16 +99,18 @@ fn robot_program(
         language,
         given: given(arguments, language)?.taught(taught),
         check: arguments.check,
-        nearest: arguments.nearest,
+        change: change(arguments),
+        each: arguments.json,
     };
     let (out, summary) = compensate_file(&arguments.program, (&taught.robot, actual), factors, &options)?;
-    let is_file = place.is_some();
+    let is_told = place.is_some() || arguments.dry_run;
     match place {
         Some(place) => place.write_bytes(&out)?,
+        None if arguments.dry_run => {}
         None => console.bytes(&out)?,
     }
-    console.warnings(&summary.warnings());
-    if is_file {
+    console.warnings(&summary.changes.warnings());
+    if is_told {
         let slides = |name: &str| is_sliding(&taught.robot, name);
         console.json_or_table(arguments.json, || report::json(&summary), || summary.text(&slides))?;
     }
@@ -120,6 +131,9 @@ fn given(arguments: &Compensate, language: Language) -> Result<Given> {
     }
     if let Some(words) = &arguments.flange {
         given.set_flange(words, language)?;
+    }
+    if let Some(words) = &arguments.start {
+        given.set_start(words, language)?;
     }
     Ok(given)
 }

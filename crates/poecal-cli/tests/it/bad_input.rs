@@ -287,12 +287,12 @@ fn bad_use_gets_one_sentence_each() {
 #[test]
 fn what_is_odd_but_usable_gets_a_warning() {
     let folder = folder();
-    folder.write("odd.csv", "a,lift,b,colour,sigma_positon\n0.1,0.2,0.3,red,1\n3.3,0.2,0.3,blue,1\n");
+    folder.write("odd.csv", "a,lift,b,colour,sigma_positon\n0.1,0.2,0.3,red,1\n0.1,0.6,0.3,blue,1\n");
     let run = folder.run("predict robot.urdf odd.csv");
     assert_eq!((run.code, run.out.lines().count()), (0, 3));
     assert_eq!(
         run.err,
-        "warning: odd.csv: joint `a` lies beyond its limits -3.15 to 3.15 rad in 1 row (line 3)\n"
+        "warning: odd.csv: joint `lift` lies beyond its limits 0 to 0.5 m in 1 row (line 3)\n"
     );
     assert_eq!(folder.run("predict robot.urdf odd.csv --quiet").err, "");
     folder.write(

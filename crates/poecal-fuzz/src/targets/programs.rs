@@ -31,8 +31,8 @@ pub fn programs(data: &[u8]) -> bool {
     let nominal = elbow();
     let mut actual = nominal.clone();
     actual.terms.push(JointTerm { joint: 1, term: Term::Offset, coefficient: 0.003 });
-    let mut options =
-        ProgramOptions { nearest: text.len().is_multiple_of(2), ..ProgramOptions::of(language) };
+    let mut options = ProgramOptions::of(language);
+    options.change.nearest = text.len().is_multiple_of(2);
     options.given.tools.push((None, Pose::from_translation([0.0, 0.0, 0.1].into())));
     options.given.frames.push((None, Pose::identity()));
     options.given.frames.push((Some("1".to_owned()), Pose::from_translation([0.1, 0.0, 0.0].into())));
@@ -43,6 +43,6 @@ pub fn programs(data: &[u8]) -> bool {
     let bare = |text: &[u8]| text.iter().copied().filter(|byte| !is_of_number(*byte)).collect::<Vec<u8>>();
     assert_eq!(bare(&out), bare(text));
     assert!(summary.corrected > 0 || out == text);
-    summary.listed.iter().for_each(|it| one_line(&it.reason));
+    summary.changes.listed.iter().for_each(|it| one_line(&it.reason));
     true
 }

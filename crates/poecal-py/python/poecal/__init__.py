@@ -1,4 +1,4 @@
-"""Kinematic calibration of serial robots by the product of exponentials.
+"""Kinematic calibration of robot arms by the product of exponentials.
 
 Lengths are in metres and angles in radians, unless a name ends in a unit. Poses are arrays of shape (4, 4), named ``a_from_b``.
 

@@ -1206,12 +1206,16 @@ class Calibration:
         numpy.ndarray
             Shape (m, 6), or (6,) for one configuration: the shift in metres, then the turn as a rotation vector in radians.
         """
+    @overload
     def compensate(
         self,
         joints: ArrayLike,
         *,
         factors: Mapping[str, float] | None = None,
         nearest: bool = False,
+        most_turn_rad: float | None = None,
+        most_slide_m: float | None = None,
+        summary: Literal[False] = False,
         model: Literal["corrected", "calibrated"] = "corrected",
     ) -> _Array:
         """Joint readings to command so that the robot as it is has its tip where a program for the nominal robot meant it.
@@ -1223,15 +1227,32 @@ class Calibration:
         factors
             Values of the corrected model's factors by their names, default their references.
         nearest
-            Whether to give the nearest configuration where a pose cannot be reached, instead of refusing.
+            Whether to give the nearest configuration where a pose cannot be reached, instead of leaving the row as it is.
+        most_turn_rad, most_slide_m
+            How far a joint that turns, or slides, may be moved beyond its zero, default 2 degrees and 2 mm. A row that takes more, at a singularity, stays as it is.
+        summary
+            Whether to give the summary as well.
         model
             Which model is the robot as it is: "corrected", where there is one, or "calibrated", geometry alone.
 
         Returns
         -------
         numpy.ndarray
-            Readings to command, of the same shape.
+            Readings to command, of the same shape. Rows that stay as they are are named by a PoecalWarning. With summary=True a tuple of these and a
+            dict: `targets` has every row that is corrected, by its index (`line`), `listed` every other one and why.
         """
+    @overload
+    def compensate(
+        self,
+        joints: ArrayLike,
+        *,
+        factors: Mapping[str, float] | None = None,
+        nearest: bool = False,
+        most_turn_rad: float | None = None,
+        most_slide_m: float | None = None,
+        summary: Literal[True],
+        model: Literal["corrected", "calibrated"] = "corrected",
+    ) -> tuple[_Array, dict[str, Any]]: ...
     def taught(self, *, model: Literal["corrected", "calibrated"] = "corrected") -> Robot:
         """The nominal robot with base and tool of the actual one: corrected programs take the actual robot to where this one would be.
 
@@ -1254,8 +1275,11 @@ class Calibration:
         frames: Sequence[str] | None = None,
         base: str | None = None,
         flange: str | None = None,
+        start: str | None = None,
         factors: Mapping[str, float] | None = None,
         nearest: bool = False,
+        most_turn_rad: float | None = None,
+        most_slide_m: float | None = None,
         check: bool = False,
         model: Literal["corrected", "calibrated"] = "corrected",
     ) -> tuple[bytes, dict[str, Any]]:
@@ -1275,10 +1299,14 @@ class Calibration:
             The controller's base in the model's, default the same.
         flange
             The controller's flange in the model's tip, default the same.
+        start
+            Readings where the robot is before the first motion, "J1,J2,…" as the language writes joints: of programs that begin with a pose and state no configuration.
         factors
             Values of the corrected model's factors by their names, default their references.
         nearest
             Whether to write the nearest configuration where the robot cannot reach a target, instead of leaving it as it is.
+        most_turn_rad, most_slide_m
+            How far a joint that turns, or slides, may be moved beyond its zero, default 2 degrees and 2 mm. A target that takes more, at a singularity, stays as it is and is listed.
         check
             Whether to compute what is left once more, from the written text.
         model

@@ -76,10 +76,14 @@ pub fn coverage(session: &Session<'_>, rows: &[u32]) -> Vec<JointCoverage> {
         .zip(ranges)
         .filter(|(_, (least, most))| least <= most)
         .enumerate()
-        .map(|(index, (joint, (sampled_min, sampled_max)))| {
+        .map(|(index, (joint, sampled))| {
             let limits = joint.limits.filter(|limits| {
                 joint.kind == JointKind::Revolute || limits.upper - limits.lower < Limits::PLACEHOLDER_M
             });
+            let turns_on = joint.kind == JointKind::Revolute
+                && limits.is_none_or(|it| it.upper - it.lower > std::f64::consts::TAU);
+            let (sampled_min, sampled_max) =
+                if turns_on { on_circle(session.packed, rows, index, sampled) } else { sampled };
             JointCoverage {
                 joint: joint.name.clone(),
                 sampled_min,
@@ -90,6 +94,48 @@ pub fn coverage(session: &Session<'_>, rows: &[u32]) -> Vec<JointCoverage> {
             }
         })
         .collect()
+}
+
+/// Parts of a turn by which values on a circle are told apart.
+const PARTS: usize = 3600;
+/// Gap on the circle (rad) from which it counts: smaller ones are those of random samples.
+const GAP_ON_CIRCLE: f64 = std::f64::consts::FRAC_PI_2;
+
+/// Smallest and largest value of a joint that turns on without end, where 350° and 10° are 20° apart: if a gap on the circle is larger than a
+/// right angle and than what the values leave of a turn, the range begins behind it.
+fn on_circle(packed: &Packed, rows: &[u32], joint: usize, (least, most): (f64, f64)) -> (f64, f64) {
+    use std::f64::consts::TAU;
+    let outside = (TAU - (most - least)).max(0.0);
+    if outside > TAU / 2.0 {
+        return (least, most);
+    }
+    let part = TAU / PARTS as f64;
+    let place = |value: f64| ((value / part).floor().rem_euclid(PARTS as f64) as usize).min(PARTS - 1);
+    // The smallest and largest value in each part, within one turn.
+    let mut found: Vec<Option<(f64, f64)>> = vec![None; PARTS];
+    for &row in rows {
+        let value = packed.joint_values(row as usize)[joint];
+        let value = value - TAU * (value / TAU).floor();
+        let it = &mut found[place(value)];
+        *it = Some(it.map_or((value, value), |(low, high)| (low.min(value), high.max(value))));
+    }
+    let all: Vec<(f64, f64)> = found.into_iter().flatten().collect();
+    let (Some(first), Some(last)) = (all.first(), all.last()) else { return (least, most) };
+    // From the end of the gap, around the circle, to its beginning.
+    let mut widest = (first.0 + TAU - last.1, first.0, last.1);
+    for pair in all.windows(2) {
+        let gap = pair[1].0 - pair[0].1;
+        if gap > widest.0 {
+            widest = (gap, pair[1].0, pair[0].1 + TAU);
+        }
+    }
+    let (gap, from, to) = widest;
+    if gap < GAP_ON_CIRCLE || gap < outside + part {
+        return (least, most);
+    }
+    // On the turn that is nearest to 0.
+    let turns = (0.5 * (from + to) / TAU).round() * TAU;
+    (from - turns, to - turns)
 }
 
 /// Share of a joint's sampled range that only stragglers reach: at each end at most a fiftieth of the rows, beyond a gap.

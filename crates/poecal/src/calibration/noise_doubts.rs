@@ -2,6 +2,7 @@
 
 use std::cmp::Ordering;
 
+use super::noise::ROUNDING;
 use crate::measurement::Quantity;
 use crate::uncertainty::{Part, Remainder};
 
@@ -39,8 +40,8 @@ fn of_part(quantity: Quantity, part: &Part) -> Option<NoiseDoubt> {
     let (what, name) = (quantity.name(), quantity.unit().symbol());
     let (variance, square) = part.stated?;
     let (stated, ratio) = (variance.sqrt(), square.sqrt());
-    // Exact data with a stated noise are a test, not a mistake.
-    if ratio < 1e-6 {
+    // Exact data with a stated noise are a test, not a mistake; a noise of 100 m is one.
+    if ratio * stated < ROUNDING {
         return None;
     }
     let number = |value: f64| {

@@ -4,8 +4,10 @@ use std::sync::{Arc, OnceLock};
 
 use poecal_arm::{AllBranches, Arm, HeldBranches};
 
-use super::NOTHING;
 use crate::lie::Pose;
+
+/// Remainder (m, rad) of which it does not matter where it is.
+const NOTHING: f64 = 1e-11;
 
 /// An arm, and all its branches once they are asked for: what is computed once for them takes as long as thousands of searches.
 #[derive(Clone, Debug)]

@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use super::{Compensation, Summary};
-use crate::error::{Error, ErrorKind, Result};
+use super::{ChangeOptions, Checked, Compensation, Summary};
+use crate::error::Result;
 use crate::io::measurements::{ReadOptions, RewrittenTable, rewrite_joints};
 use crate::robot::Robot;
 
@@ -14,16 +14,17 @@ pub struct TableOptions {
     pub read: ReadOptions,
     /// Compute what is left once more, from the written numbers by the robots' own forward kinematics.
     pub check: bool,
-    /// Write the nearest configuration where a pose cannot be reached.
-    pub nearest: bool,
+    /// How far readings may be changed.
+    pub change: ChangeOptions,
+    /// Keep what became of every row.
+    pub each: bool,
 }
 
 /// Corrects the joint columns of a CSV row by row ([`rewrite_joints`]), for readings of `nominal` and the robot `actual` at these values of
-/// its factors.
+/// its factors. Rows that cannot be corrected stay as they are and are listed.
 ///
 /// # Errors
-/// As [`rewrite_joints`] and [`Compensation::new`]; [`ErrorKind::Problem`] if a pose cannot be reached by an arm of six or more joints
-/// and `nearest` is not set.
+/// As [`rewrite_joints`] and [`Compensation::new`].
 pub fn compensate_table(
     path: impl AsRef<Path>,
     (nominal, actual): (&Robot, &Robot),
@@ -32,36 +33,34 @@ pub fn compensate_table(
     out: &mut dyn FnMut(&str) -> Result<()>,
 ) -> Result<(Summary, RewrittenTable)> {
     let path = path.as_ref();
-    let mut compensation = Compensation::new(nominal, actual, factors)?;
+    let mut compensation = Compensation::new(nominal, actual, factors, &options.change)?;
     let mut summary = Summary::new(&compensation);
+    summary.targets = options.each.then(Vec::new);
     let mut plain = actual.clone();
     // Factors are values of this compensation, no columns of the program.
     plain.factors.clear();
     plain.terms.clear();
-    let is_free = compensation.readings().len() >= 6;
     let mut with_factors: Vec<f64> = Vec::new();
-    let mut checked = options.check.then(Default::default);
+    let mut checked = options.check.then(Checked::default);
     let mut change = |row: &crate::io::measurements::JointRow<'_>, numbers: &mut [f64]| -> Result<()> {
         let found = compensation.joints(row.readings);
-        if is_free && !options.nearest && !found.is_reached() {
-            let message = format!(
-                "the actual robot cannot reach the pose of this row: {:.3} mm and {:.4} degrees are left at the nearest configuration, expected \
-                 poses in reach: leave out the row, or take --nearest",
-                found.left_m * 1e3,
-                found.left_rad.to_degrees()
-            );
-            return Err(Error::new(ErrorKind::Problem, message).at_line(path, row.line));
+        numbers.copy_from_slice(found.readings);
+        if !found.is_corrected {
+            let kept = found.outcome;
+            let (left_m, left_rad) = (found.left_m, found.left_rad);
+            let reason = compensation.reason(kept, (left_m, left_rad));
+            summary.list(row.line, "row", reason);
+            return Ok(());
         }
         summary.include(row.line, row.readings, &found);
-        numbers.copy_from_slice(found.readings);
-        if let Some((metres, radians)) = &mut checked {
+        if let Some(checked) = &mut checked {
             with_factors.clear();
-            with_factors.extend_from_slice(found.readings);
+            with_factors.extend_from_slice(numbers);
             with_factors.extend_from_slice(factors);
-            let (m, rad): (f64, f64) =
+            let left =
                 actual.forward_kinematics(&with_factors).apart(&nominal.forward_kinematics(row.readings));
-            super::Largest::include(metres, m, row.line);
-            super::Largest::include(radians, rad, row.line);
+            checked.include(left, row.line);
+            checked.change.include(compensation.share_of_most(row.readings, numbers), row.line);
         }
         Ok(())
     };

@@ -1,5 +1,6 @@
 //! XML texts and the attributes of their elements, with errors that know their line and column.
 
+use std::borrow::Cow;
 use std::collections::BTreeSet;
 use std::ops::Range;
 use std::path::Path;
@@ -36,6 +37,74 @@ fn crowded_element(text: &str) -> Option<usize> {
     None
 }
 
+/// A text whose prefixes are all declared: the colon of a prefix that the text declares nowhere (`<sensor:camera>` in a `<gazebo>` of old) is
+/// written as `_`, so that the names are those of elements that nobody knows, and every byte is where it was.
+pub(super) fn readable(text: &str) -> Cow<'_, str> {
+    let colons = undeclared(text);
+    if colons.is_empty() {
+        return Cow::Borrowed(text);
+    }
+    let mut bytes = text.as_bytes().to_vec();
+    for at in colons {
+        if let Some(byte) = bytes.get_mut(at) {
+            *byte = b'_';
+        }
+    }
+    // A colon and a low line are of one byte each.
+    String::from_utf8(bytes).map_or(Cow::Borrowed(text), Cow::Owned)
+}
+
+/// Byte offsets of the colons behind prefixes of elements and attributes that no `xmlns:` of the text declares.
+fn undeclared(text: &str) -> Vec<usize> {
+    let bytes = text.as_bytes();
+    let is_name = |byte: u8| byte.is_ascii_alphanumeric() || b"_-.".contains(&byte) || byte >= 0x80;
+    let (mut declared, mut used) = (BTreeSet::from(["xml", "xmlns"]), Vec::new());
+    let mut at = 0;
+    while let Some(open) = memchr::memchr(b'<', bytes.get(at..).unwrap_or_default()).map(|it| at + it) {
+        let rest = text.get(open..).unwrap_or("");
+        let skipped = [("<!--", "-->"), ("<![CDATA[", "]]>"), ("<?", "?>"), ("<!", ">")];
+        if let Some((_, end)) = skipped.into_iter().find(|(start, _)| rest.starts_with(start)) {
+            let Some(length) = rest.find(end) else { break };
+            at = open + length + end.len();
+            continue;
+        }
+        // Names of the tag, up to its end; what is in quotes has none.
+        at = open + 1;
+        let mut quote = None;
+        while let Some(&byte) = bytes.get(at) {
+            match quote {
+                Some(sign) => {
+                    quote = (byte != sign).then_some(sign);
+                    at += 1;
+                }
+                None if byte == b'>' || byte == b'<' => break,
+                None if byte == b'"' || byte == b'\'' => {
+                    quote = Some(byte);
+                    at += 1;
+                }
+                None if is_name(byte) => {
+                    let length = |from: usize| bytes.iter().skip(from).take_while(|it| is_name(**it)).count();
+                    let end = at + length(at);
+                    let prefix = text.get(at..end).unwrap_or("");
+                    let name = end + 1 + length(end + 1);
+                    if bytes.get(end) == Some(&b':') && name > end + 1 {
+                        if prefix == "xmlns" {
+                            declared.insert(text.get(end + 1..name).unwrap_or(""));
+                        }
+                        used.push((prefix, end));
+                        at = name;
+                    } else {
+                        at = end;
+                    }
+                }
+                None => at += 1,
+            }
+        }
+    }
+    used.retain(|(prefix, _)| !declared.contains(prefix));
+    used.into_iter().map(|(_, at)| at).collect()
+}
+
 /// An XML text, parsed; `expected` describes it in messages.
 pub(super) fn parsed<'a>(text: &'a str, path: &Path, expected: &str) -> Result<Document<'a>> {
     if let Some(offset) = crowded_element(text) {
@@ -68,10 +137,10 @@ pub(super) fn root_name(text: &str) -> Option<&str> {
 fn broken(error: &roxmltree::Error, path: &Path, expected: &str) -> Error {
     let place = error.pos();
     let (line, column) = (place.row as usize, place.col as usize);
-    let message = if let roxmltree::Error::UnknownNamespace(prefix, _) = error
-        && prefix == "xacro"
-    {
-        XACRO.to_owned()
+    let message = if let roxmltree::Error::UnknownNamespace(prefix, _) = error {
+        format!(
+            "found the prefix `{prefix}`, which is declared in another element alone, expected xmlns:{prefix}=\"…\" in the first element too"
+        )
     } else if let roxmltree::Error::DtdDetected = error {
         format!("found a document type definition, expected {expected} without one")
     } else {
@@ -80,10 +149,6 @@ fn broken(error: &roxmltree::Error, path: &Path, expected: &str) -> Error {
     };
     Error::new(ErrorKind::Syntax, message).at(path, line, column)
 }
-
-/// What a text with elements of xacro is.
-pub(super) const XACRO: &str =
-    "found a xacro element, expected plain URDF: expand the file first with `xacro robot.xacro > robot.urdf`";
 
 /// A parsed XML text and the name of its file.
 #[derive(Clone, Copy)]
@@ -169,6 +234,26 @@ impl<'a> XmlSource<'a> {
         name: &str,
         of: &str,
     ) -> Result<Option<[f64; N]>> {
+        self.numbers_up_to(node, name, of, LARGEST_NUMBER)
+    }
+
+    /// The numbers of an attribute that states limits, if present: these may be infinite, or as large as they like.
+    pub(super) fn bounds<const N: usize>(
+        &self,
+        node: Node<'a, 'a>,
+        name: &str,
+        of: &str,
+    ) -> Result<Option<[f64; N]>> {
+        self.numbers_up_to(node, name, of, f64::INFINITY)
+    }
+
+    fn numbers_up_to<const N: usize>(
+        &self,
+        node: Node<'a, 'a>,
+        name: &str,
+        of: &str,
+        largest: f64,
+    ) -> Result<Option<[f64; N]>> {
         let Some(attribute) = node.attribute_node(name) else { return Ok(None) };
         let range = attribute.range_value();
         let raw = self.document.input_text().get(range.clone()).unwrap_or("");
@@ -177,7 +262,7 @@ impl<'a> XmlSource<'a> {
         let mut offset = range.start;
         for word in raw.split(|character: char| character.is_ascii_whitespace()) {
             if !word.is_empty() {
-                let number = self.number(word, offset, name, of)?;
+                let number = self.number(word, offset, (name, of), largest)?;
                 if let Some(slot) = numbers.get_mut(count) {
                     *slot = number;
                 }
@@ -195,7 +280,7 @@ impl<'a> XmlSource<'a> {
         ))
     }
 
-    fn number(&self, word: &str, offset: usize, name: &str, of: &str) -> Result<f64> {
+    fn number(&self, word: &str, offset: usize, (name, of): (&str, &str), largest: f64) -> Result<f64> {
         let found = |expected: &str| {
             self.error_at(offset, format!("found `{word}` in `{name}` of {of}, expected {expected}"))
         };
@@ -205,10 +290,10 @@ impl<'a> XmlSource<'a> {
             ));
         }
         let number: f64 = word.parse().map_err(|_| found("a number"))?;
-        if !number.is_finite() {
+        if number.is_nan() || number.is_infinite() && largest.is_finite() {
             return Err(found("a finite number"));
         }
-        if number.abs() > LARGEST_NUMBER {
+        if number.abs() > largest {
             return Err(found("a number of metres or radians below 1e6"));
         }
         Ok(number)
@@ -232,7 +317,25 @@ pub(super) fn value_range(node: Node, name: &str) -> Option<Range<usize>> {
 
 #[cfg(test)]
 mod tests {
-    use super::crowded_element;
+    use super::*;
+
+    #[test]
+    fn prefixes_that_are_declared_nowhere_become_names_of_the_same_length() {
+        let text = "<robot xmlns:a=\"u\"><a:b/><!-- <s:x/> --><s:camera t:size='s:1'>s:text</s:camera>\u{b5}</robot>";
+        let readable = readable(text);
+        assert_eq!(
+            readable,
+            text.replace("<s:camera", "<s_camera")
+                .replace("/s:camera", "/s_camera")
+                .replace("t:size", "t_size")
+        );
+        assert!(
+            parsed(&readable, Path::new("r"), "XML").is_ok() && parsed(text, Path::new("r"), "XML").is_err()
+        );
+        for broken in ["<a:", "<a b:c=\"", "<!-- <a:b>", "<a:b<c:d>", "", "<:a/>", "<a:/>"] {
+            assert_eq!(super::readable(broken).len(), broken.len());
+        }
+    }
 
     #[test]
     fn only_an_element_of_very_many_attributes_is_crowded() {

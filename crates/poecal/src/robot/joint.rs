@@ -60,6 +60,15 @@ pub struct Limits {
 impl Limits {
     /// Stroke of a prismatic joint beyond which its limits are placeholders: files demand limits where none are known.
     pub const PLACEHOLDER_M: f64 = 100.0;
+    /// Number (rad, m) beyond which a limit is none: files write 1e16 or infinity where there is none.
+    pub const NONE_BEYOND: f64 = 1e5;
+
+    /// Limits as files state them; `None` of an empty range, as exporters write unknown ones, and of numbers that are no limits.
+    #[must_use]
+    pub fn between(lower: f64, upper: f64) -> Option<Self> {
+        let is_limit = |it: f64| it.abs() < Self::NONE_BEYOND;
+        (lower < upper && is_limit(lower) && is_limit(upper)).then_some(Limits { lower, upper })
+    }
 }
 
 /// A joint's value as a function of a reading: `θ = multiplier · reading + offset`, with multiplier 1 and offset 0 but for mimic joints

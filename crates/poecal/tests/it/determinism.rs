@@ -1,6 +1,6 @@
 //! The same input gives the same bits, whatever the number of threads.
 
-use poecal::compensate::{Compensated, Compensation, Inverse, Kinematics};
+use poecal::compensate::{ChangeOptions, Compensation, Inverse, Kinematics};
 use poecal::robot::{JointTerm, Term};
 
 use crate::common::with_threads;
@@ -51,9 +51,8 @@ fn kinematics_do_not_depend_on_threads() {
             let inverse = Inverse::new(&actual, &[]).unwrap();
             let near = inverse
                 .of_many(&tips[..300], |it, row, tip| it.nearest(tip, &readings[6 * row..][..6], false));
-            let compensation = Compensation::new(&nominal, &actual, &[]).unwrap();
-            let told = |_: usize, it: &Compensated<'_>| Ok::<_, poecal::Error>(it.readings.to_vec());
-            (tips, jacobians, near, compensation.of_many(&readings, told).unwrap())
+            let compensation = Compensation::new(&nominal, &actual, &[], &ChangeOptions::default()).unwrap();
+            (tips, jacobians, near, compensation.of_many(&readings, false).0)
         })
     };
     let one = found(1);
@@ -62,7 +61,7 @@ fn kinematics_do_not_depend_on_threads() {
         assert!(found(threads) == one, "{threads} threads");
     }
     // Nor do many corrections differ from one after the other.
-    let mut compensation = Compensation::new(&nominal, &actual, &[]).unwrap();
+    let mut compensation = Compensation::new(&nominal, &actual, &[], &ChangeOptions::default()).unwrap();
     let each: Vec<f64> =
         readings.chunks_exact(6).flat_map(|row| compensation.joints(row).readings.to_vec()).collect();
     assert!(each == one.3);

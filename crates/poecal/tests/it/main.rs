@@ -60,6 +60,7 @@ mod report_places;
 mod robust;
 mod shapes;
 mod shop;
+mod singular;
 mod starts;
 mod stations;
 mod statistics;

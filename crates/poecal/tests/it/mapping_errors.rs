@@ -79,7 +79,7 @@ const MAPPINGS: &[(&str, &str)] = &[
     ),
     (
         "[orientation]\nform = \"intrinsic_xxy\"\ncolumns = [\"x\", \"y\", \"z\"]",
-        "map.toml:2:8: found the orientation form `intrinsic_xxy`, expected quaternion_xyzw, quaternion_wxyz, rotation_vector, roll_pitch_yaw, or intrinsic_ or extrinsic_ and three axes such as intrinsic_xyz",
+        "map.toml:2:8: found the orientation form `intrinsic_xxy`, expected quaternion_xyzw, quaternion_wxyz, rotation_vector, rotation_matrix, rotation_matrix_by_columns, roll_pitch_yaw, or intrinsic_ or extrinsic_ and three axes such as intrinsic_xyz",
     ),
     (
         "[orientation]\nform = \"quaternion_wxyz\"\ncolumns = [\"x\", \"y\", \"z\"]",

@@ -243,16 +243,40 @@ fn other_columns_are_listed_and_left_alone() {
 
 #[test]
 fn joints_beyond_their_limits_are_a_warning_with_rows() {
-    let rows = "3.3,0,0,1,2,3\n".repeat(2) + "0,0,0,1,2,3\n" + &"-3.2,0,0,1,2,3\n".repeat(4);
+    let rows = "0,0.6,0,1,2,3\n".repeat(2) + "0,0,0,1,2,3\n" + &"0,-0.1,0,1,2,3\n".repeat(4);
     let file = plain(&format!("a,lift,b,x,y,z\n{rows}"));
     assert_eq!(file.warnings.len(), 1);
     assert!(
+        file.warnings[0]
+            .ends_with(": joint `lift` lies beyond its limits 0 to 0.5 m in 6 rows (lines 2, 3, 5, 6, 7, …)"),
+        "{}",
+        file.warnings[0]
+    );
+}
+
+#[test]
+fn whole_turns_are_taken_off_where_that_brings_readings_inside_the_limits() {
+    let text = "a[deg],lift,b[deg],x,y,z\n350,0,350,1,2,3\n190,0,0,1,2,3\n-350,0,0,1,2,3\n20,0,0,1,2,3\n";
+    let file = plain(text);
+    let degrees = |row: usize| file.data.readings(row)[0].to_degrees();
+    for (row, expected) in [-10.0, -170.0, 10.0, 20.0].into_iter().enumerate() {
+        assert!((degrees(row) - expected).abs() < 1e-12, "{row}: {}", degrees(row));
+    }
+    // Without limits a joint may count on.
+    assert!((file.data.readings(0)[2].to_degrees() - 350.0).abs() < 1e-12);
+    assert_eq!(file.warnings.len(), 1);
+    assert!(
         file.warnings[0].ends_with(
-            ": joint `a` lies beyond its limits -3.15 to 3.15 rad in 6 rows (lines 2, 3, 5, 6, 7, …)"
+            ": whole turns are taken off the readings of joint `a` in 3 rows (lines 2, 3, 4), which brings them inside its limits"
         ),
         "{}",
         file.warnings[0]
     );
+    // Readings alone, for predictions, are taken so too.
+    let folder = Folder::new();
+    let path = folder.write("q.csv", "a[deg],lift,b\n350,0,0\n");
+    let joints = read_joints(&path, &lifting_robot(), &ReadOptions::default()).unwrap();
+    assert!((joints.readings[0].to_degrees() + 10.0).abs() < 1e-12);
 }
 
 #[test]

@@ -38,6 +38,66 @@ fn what_is_said_twice_alike_counts_once() {
 }
 
 #[test]
+fn what_is_not_read_is_not_judged() {
+    let plain = urdf("<limit lower='-1' upper='1' effort='0'/>", "");
+    let read = |text: &str| UrdfDocument::parse(text, "r.urdf", &ChainSelection::default());
+    let expected = read(&plain).unwrap();
+    for more in [
+        "<gazebo reference='b'><sensor:camera s:size='1'/><xacro:sensor/></gazebo>",
+        "<transmission><xacro:motor joint='j'/></transmission>",
+        "<ros2_control><xacro:include filename='x'/></ros2_control>",
+        "<!-- <xacro:if value='1'> --><gazebo><![CDATA[<a:b>]]></gazebo>",
+    ] {
+        let text = urdf("<limit lower='-1' upper='1' effort='0'/>", more);
+        let found = read(&text).unwrap_or_else(|error| panic!("{more}: {error}"));
+        assert_eq!(found.robot(), expected.robot());
+        // What is written keeps every byte of it.
+        assert_eq!(found.text(), text);
+    }
+    let visual = plain.replace(
+        "<link name='b'/>",
+        "<link name='b'><visual><xacro:grey/></visual><collision><a:b/></collision></link>",
+    );
+    assert_eq!(read(&visual).unwrap().robot(), expected.robot());
+    let error = urdf_error(&urdf("", "<xacro:arm/>"), None, None);
+    println!("{error}");
+    assert!(error.contains("if it is expanded and this element adds no joints, delete it"), "{error}");
+}
+
+#[test]
+fn numbers_that_are_no_limits_are_none() {
+    let read = |limit: &str| {
+        let text = urdf(&format!("<limit {limit} effort='0'/>"), "");
+        let urdf = UrdfDocument::parse(&text, "r.urdf", &ChainSelection::default());
+        urdf.unwrap_or_else(|error| panic!("{limit}: {error}")).robot().joints[0].limits
+    };
+    for limit in [
+        "lower='-1e16' upper='1e16'",
+        "lower='-inf' upper='inf'",
+        "lower='-Infinity' upper='+inf'",
+        "lower='-1e300' upper='1'",
+    ] {
+        assert_eq!(read(limit), None, "{limit}");
+    }
+    assert_eq!(read("lower='-1' upper='2'").map(|it| (it.lower, it.upper)), Some((-1.0, 2.0)));
+    let error = urdf_error(&urdf("<limit lower='nan' upper='1' effort='0'/>", ""), None, None);
+    assert!(error.contains("found `nan` in `lower`"), "{error}");
+    let mjcf = |range: &str| {
+        let text = format!(
+            "<mujoco><compiler angle='radian'/><worldbody><body name='a'><joint name='j' axis='0 0 1' range='{range}'/><geom size='1'/></body></worldbody></mujoco>"
+        );
+        let path = std::env::temp_dir().join(format!("poecal-limits-{}.xml", std::process::id()));
+        std::fs::write(&path, text).unwrap();
+        let model = Model::read(&path, &ChainSelection::default());
+        std::fs::remove_file(&path).unwrap();
+        model.unwrap_or_else(|error| panic!("{range}: {error}")).robot.joints[0].limits
+    };
+    assert_eq!(mjcf("-1e16 1e16"), None);
+    assert_eq!(mjcf("-inf inf"), None);
+    assert_eq!(mjcf("-1 2").map(|it| (it.lower, it.upper)), Some((-1.0, 2.0)));
+}
+
+#[test]
 fn bad_urdfs_get_one_sentence_each() {
     let two = urdf("", &joint("k", "revolute", "a", "c"));
     #[rustfmt::skip]
@@ -58,7 +118,7 @@ fn bad_urdfs_get_one_sentence_each() {
         ("<robot xmlns:xacro='http://www.ros.org/wiki/xacro'>\n <xacro:arm/></robot>".into(),
          "r.urdf:2:2: found a xacro element, expected plain URDF: expand the file first with `xacro robot.xacro > robot.urdf`"),
         ("<robot>\n <xacro:arm/></robot>".into(),
-         "r.urdf:2:3: found a xacro element, expected plain URDF: expand the file first with `xacro robot.xacro > robot.urdf`"),
+         "r.urdf:2:2: found a xacro element, expected plain URDF: expand the file first with `xacro robot.xacro > robot.urdf`"),
         (urdf("<origin xyz='0 0 ${h}'/>", ""),
          "r.urdf:4:18: found `${h}` in `xyz` of <origin> of joint `j`, expected a number: this is a xacro file, expand it first with `xacro robot.xacro > robot.urdf`"),
         (urdf("<origin xyz='0 0'/>", ""),

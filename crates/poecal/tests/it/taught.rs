@@ -1,7 +1,7 @@
 //! Compensation of robots whose measured target is not the flange of their model, and whose base is not known.
 
 use poecal::calibration::{CalibrationOptions, DeviceFrameKnowledge, calibrate};
-use poecal::compensate::Compensation;
+use poecal::compensate::{ChangeOptions, Compensation, MostChange};
 use poecal::io::calibration_file::{CalibrationFile, Inputs};
 use poecal::lie::Pose;
 use poecal::robot::Robot;
@@ -49,7 +49,10 @@ fn configurations() -> impl Iterator<Item = [f64; 6]> {
 /// The median of the largest corrections of a joint, rad (near singularities they are large), and what is left of where the tip was meant,
 /// metres.
 fn corrections(nominal: &Robot, actual: &Robot, meant: impl Fn(&Robot, &[f64]) -> Pose) -> (f64, f64) {
-    let mut compensation = Compensation::new(nominal, actual, &[]).unwrap();
+    // Whatever it takes.
+    let most_change = MostChange { turning_rad: 1.5, sliding_m: 1.0 };
+    let options = ChangeOptions { most_change, nearest: false };
+    let mut compensation = Compensation::new(nominal, actual, &[], &options).unwrap();
     let (mut largest, mut left) = (Vec::new(), 0.0_f64);
     for q in configurations() {
         let found = compensation.joints(&q);

@@ -4,10 +4,10 @@ use std::borrow::Cow;
 use std::f64::consts::TAU;
 use std::ops::Range;
 
-use super::super::{Compensated, REACHED, Summary};
+use super::super::{ChangeOptions, Compensated, Outcome, Summary};
 use super::forms::PoseForm;
 use super::given::Given;
-use super::parsed::{Listed, Meant, Motion, Number, Parsed, Target};
+use super::parsed::{Meant, Motion, Number, Parsed, Target};
 use super::place::PoseCompensation;
 use super::stated::Stated;
 use crate::error::Result;
@@ -18,37 +18,48 @@ use crate::robot::Robot;
 mod reason {
     use std::borrow::Cow;
 
-    pub(super) const NO_MOTION: Cow<'static, str> =
-        Cow::Borrowed("no motion of this file goes there: its tool and frame are not known");
+    pub(super) const NO_MOTION: Cow<'static, str> = Cow::Borrowed(
+        "no motion of this file goes there: its tool and frame are not known, so correct it with the file that moves to it",
+    );
     pub(super) const NO_TOOL: Cow<'static, str> = Cow::Borrowed("the tool is not known: state it by --tool");
     pub(super) const NO_FRAME: Cow<'static, str> =
         Cow::Borrowed("the frame is not known: state it by --frame");
-    pub(super) const TWO_PLACES: Cow<'static, str> = Cow::Borrowed("it is used with several tools or frames");
-    pub(super) const TWO_WAYS: Cow<'static, str> = Cow::Borrowed("it is reached in several configurations");
-    pub(super) const NOTHING_STATED: Cow<'static, str> =
-        Cow::Borrowed("the program states no configuration, and the one before is not known");
-    pub(super) const WAY: Cow<'static, str> =
-        Cow::Borrowed("the way to it passes a singularity, or leaves the nominal robot's reach or limits");
-    pub(super) const UNREACHABLE: Cow<'static, str> = Cow::Borrowed("the nominal robot does not reach it");
-    pub(super) const NONE_FITS: Cow<'static, str> =
-        Cow::Borrowed("no configuration of the nominal robot fits the one that is stated");
-    pub(super) const SEVERAL_FIT: Cow<'static, str> =
-        Cow::Borrowed("several configurations of the nominal robot fit the one that is stated");
-    pub(super) const NOT_SURE: Cow<'static, str> =
-        Cow::Borrowed("it is not sure which configuration is the nearest to the one before");
-    pub(super) const OTHER: Cow<'static, str> =
-        Cow::Borrowed("the configuration that is stated is not the one to which the motion before leads");
-    pub(super) const SINGULAR: Cow<'static, str> = Cow::Borrowed("it is at a singularity");
-    pub(super) const OTHER_BRANCH: Cow<'static, str> =
-        Cow::Borrowed("a singularity lies between the nominal and the actual robot");
-    pub(super) const OUT_OF_REACH: Cow<'static, str> = Cow::Borrowed("the actual robot does not reach it");
-    pub(super) const LIMITS: Cow<'static, str> = Cow::Borrowed("it is beyond the limits once corrected");
-    pub(super) const WORDS: Cow<'static, str> =
-        Cow::Borrowed("the corrected target is in a configuration that the program states otherwise");
+    pub(super) const TWO_PLACES: Cow<'static, str> =
+        Cow::Borrowed("it is used with several tools or frames: make a target for each");
+    pub(super) const TWO_WAYS: Cow<'static, str> =
+        Cow::Borrowed("it is reached in several configurations: make a target for each");
+    pub(super) const NOTHING_STATED: Cow<'static, str> = Cow::Borrowed(
+        "the program states no configuration, and the one before is not known: state where the robot starts by --start, or begin with a joint target",
+    );
+    pub(super) const WAY: Cow<'static, str> = Cow::Borrowed(
+        "the way to it passes a singularity, or leaves the nominal robot's reach or limits: make it a joint target",
+    );
+    pub(super) const UNREACHABLE: Cow<'static, str> =
+        Cow::Borrowed("the nominal robot does not reach it: check --tool, --frame, --base and --flange");
+    pub(super) const NONE_FITS: Cow<'static, str> = Cow::Borrowed(
+        "no configuration of the nominal robot fits the one that is stated: check it, --base and --flange",
+    );
+    pub(super) const SEVERAL_FIT: Cow<'static, str> = Cow::Borrowed(
+        "several configurations of the nominal robot fit the one that is stated: make it a joint target",
+    );
+    pub(super) const NOT_SURE: Cow<'static, str> = Cow::Borrowed(
+        "it is not sure which configuration is the nearest to the one before: make it a joint target",
+    );
+    pub(super) const OTHER: Cow<'static, str> = Cow::Borrowed(
+        "the configuration that is stated is not the one to which the motion before leads: check both",
+    );
+    pub(super) const SINGULAR: Cow<'static, str> =
+        Cow::Borrowed("it is at a singularity: make it a joint target");
+    pub(super) const LIMITS: Cow<'static, str> =
+        Cow::Borrowed("it is beyond the limits once corrected: move it");
+    pub(super) const WORDS: Cow<'static, str> = Cow::Borrowed(
+        "the corrected target is in a configuration that the program states otherwise: make it a joint target",
+    );
     pub(super) const JOINTS: Cow<'static, str> =
-        Cow::Borrowed("poses are corrected of robots with six joints or fewer");
-    pub(super) const NO_BRANCHES: Cow<'static, str> =
-        Cow::Borrowed("all configurations of a pose are known of robots with six turning joints alone");
+        Cow::Borrowed("poses are corrected of robots with six joints or fewer: make it a joint target");
+    pub(super) const NO_BRANCHES: Cow<'static, str> = Cow::Borrowed(
+        "all configurations of a pose are known of robots with six turning joints alone: make it a joint target",
+    );
     pub(super) const NOT_A_POSE: Cow<'static, str> = Cow::Borrowed("its numbers are no pose");
 }
 
@@ -80,9 +91,7 @@ pub(crate) struct Corrected {
     pub(crate) text: Vec<u8>,
     /// Targets that were corrected, and the configurations that they mean.
     pub(crate) meant: Vec<(usize, Vec<f64>)>,
-    /// What stays as it is.
-    pub(crate) listed: Vec<Listed>,
-    /// What changes.
+    /// What changes, and what stays as it is.
     pub(crate) summary: Summary,
 }
 
@@ -90,7 +99,6 @@ pub(crate) struct Corrected {
 pub(crate) struct Engine<'e> {
     pub(crate) poses: PoseCompensation,
     pub(crate) given: &'e Given,
-    pub(crate) nearest: bool,
 }
 
 impl<'e> Engine<'e> {
@@ -98,16 +106,17 @@ impl<'e> Engine<'e> {
         robots: (&Robot, &Robot),
         factors: &[f64],
         given: &'e Given,
-        nearest: bool,
+        options: &ChangeOptions,
     ) -> Result<Self> {
-        Ok(Engine { poses: PoseCompensation::new(robots.0, robots.1, factors)?, given, nearest })
+        Ok(Engine { poses: PoseCompensation::new(robots.0, robots.1, factors, options)?, given })
     }
 
     /// Corrects all targets of a text.
-    pub(crate) fn correct(&mut self, text: &[u8], parsed: Parsed) -> Corrected {
-        let mut listed = parsed.listed.clone();
+    pub(crate) fn correct(&mut self, text: &[u8], parsed: Parsed, each: bool) -> Corrected {
         let fates = self.fates(&parsed);
         let mut summary = Summary::new(self.poses.compensation());
+        summary.listed.clone_from(&parsed.listed);
+        summary.targets = each.then(Vec::new);
         let mut changes: Vec<(Range<usize>, String)> = Vec::new();
         let mut meant = Vec::new();
         for (index, (target, fate)) in parsed.targets.iter().zip(fates).enumerate() {
@@ -126,32 +135,29 @@ impl<'e> Engine<'e> {
                     changes.extend(made.into_iter().map(signed));
                     meant.push((index, q));
                 }
-                Err(reason) => {
-                    listed.push(Listed {
-                        line: target.line,
-                        name: target.name.clone(),
-                        reason: reason.into_owned(),
-                    });
-                }
+                Err(reason) => summary.list(target.line, &target.name, reason),
             }
         }
-        listed.sort();
-        listed.dedup();
-        Corrected { text: replaced(text, changes), meant, listed, summary }
+        summary.listed.sort();
+        summary.listed.dedup();
+        Corrected { text: replaced(text, changes), meant, summary }
     }
 
     /// What the motions make of each target.
     fn fates(&self, parsed: &Parsed) -> Vec<Fate> {
         let mut fates: Vec<Fate> = parsed.targets.iter().map(|it| self.alone(it)).collect();
         let mut reached: Vec<Option<Vec<f64>>> = Vec::with_capacity(parsed.motions.len());
-        for motion in &parsed.motions {
+        for (number, motion) in parsed.motions.iter().enumerate() {
             let (Some(target), Some(fate)) =
                 (parsed.targets.get(motion.target), fates.get_mut(motion.target))
             else {
                 reached.push(None);
                 continue;
             };
-            let before = motion.after.and_then(|it| reached.get(it)).and_then(Option::as_deref);
+            let before = match motion.after {
+                Some(before) => reached.get(before).and_then(Option::as_deref),
+                None => self.given.start.as_deref().filter(|_| number == 0),
+            };
             let placed = match (&target.meant, &*fate) {
                 (Meant::Joints, _) if motion.refused.is_some() => {
                     Err(motion.refused.clone().unwrap_or_default().into())
@@ -259,21 +265,16 @@ impl<'e> Engine<'e> {
         placed: &Placed,
         summary: &mut Summary,
     ) -> std::result::Result<Vec<(Range<usize>, String)>, Reason> {
-        let is_free = self.poses.compensation().readings().len() >= 6;
-        let nearest = self.nearest;
         let (told, found) = self.poses.at(&placed.q);
-        if is_free && !nearest && !found.is_reached() {
-            return Err(reason::OUT_OF_REACH);
-        }
-        let (moved, is_other_branch) = ((found.moved_m, found.turned_rad), found.is_other_branch);
-        let left = (found.left_m, found.left_rad);
+        let (outcome, left) = (found.outcome, (found.left_m, found.left_rad));
+        let (is_corrected, moved) = (found.is_corrected, (found.moved_m, found.turned_rad));
         let readings = found.readings.to_vec();
+        if !is_corrected {
+            return Err(self.poses.compensation().reason(outcome, left));
+        }
         let numbers = match target.meant {
             Meant::Joints => readings.clone(),
             Meant::Pose(form) => {
-                if is_other_branch {
-                    return Err(reason::OTHER_BRANCH);
-                }
                 if self.poses.compensation().is_beyond_limits(&readings) {
                     return Err(reason::LIMITS);
                 }
@@ -295,20 +296,22 @@ impl<'e> Engine<'e> {
             .enumerate()
             .map(|(at, it)| number(at, it, target.meant))
             .collect();
-        let left = self.left(target, placed, &readings, &texts, left);
-        if matches!(target.meant, Meant::Pose(_)) && (left.0 > ROUNDING || left.1 > ROUNDING) {
+        let written = self.left(target, placed, &readings, &texts, left);
+        let is_exact = outcome == Outcome::Reached;
+        let most = if is_exact { (ROUNDING, ROUNDING) } else { (left.0 + ROUNDING, left.1 + ROUNDING) };
+        if matches!(target.meant, Meant::Pose(_)) && (written.0 > most.0 || written.1 > most.1) {
             return Err(reason::SINGULAR);
         }
         let told = Compensated {
             readings: &readings,
             moved_m: moved.0,
             turned_rad: moved.1,
-            left_m: 0.0,
-            left_rad: 0.0,
-            is_other_branch,
+            left_m: written.0,
+            left_rad: written.1,
+            outcome,
+            is_corrected,
         };
         summary.include(target.line, &placed.q, &told);
-        summary.include_left(target.line, left, !found_in_reach(left));
         let changed = target.numbers.iter().zip(texts).filter(|(_, text)| !text.is_empty());
         Ok(changed.map(|(number, text)| (number.range.clone(), text)).collect())
     }
@@ -345,10 +348,6 @@ impl<'e> Engine<'e> {
         };
         compensation.actual().forward_kinematics(&commanded).apart(&meant)
     }
-}
-
-fn found_in_reach((metres, radians): (f64, f64)) -> bool {
-    metres <= ROUNDING.max(REACHED) && radians <= ROUNDING.max(REACHED)
 }
 
 /// What another motion, on this line, makes of a target.

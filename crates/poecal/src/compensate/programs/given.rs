@@ -17,12 +17,14 @@ pub struct Given {
     pub base: Pose,
     /// `tip_from_flange`: the controller's flange in the tip of the model.
     pub flange: Pose,
+    /// Readings (rad, m) where the robot is before the program's first motion.
+    pub start: Option<Vec<f64>>,
 }
 
 impl Default for Given {
     fn default() -> Self {
         let (base, flange) = (Pose::identity(), Pose::identity());
-        Given { tools: Vec::new(), frames: Vec::new(), base, flange }
+        Given { tools: Vec::new(), frames: Vec::new(), base, flange, start: None }
     }
 }
 
@@ -94,6 +96,28 @@ impl Given {
 }
 
 type Named = (Option<String>, Pose);
+
+impl Given {
+    /// Sets where the robot is before the first motion, by numbers as the language writes joints.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Option`].
+    pub fn set_start(&mut self, words: &str, language: Language) -> Result<()> {
+        let number = |it: &str| it.trim().parse().ok().filter(|it: &f64| it.is_finite());
+        let numbers: Option<Vec<f64>> = words.split(',').map(number).collect();
+        let (scale, unit) = match language {
+            Language::UrScript => (1.0, "radians"),
+            Language::Rapid | Language::Krl | Language::Fanuc => (1_f64.to_radians(), "degrees"),
+        };
+        let Some(numbers) = numbers else {
+            let message =
+                format!("found --start {words}, expected the readings of all joints, J1,J2,… in {unit}");
+            return Err(Error::new(ErrorKind::Option, message));
+        };
+        self.start = Some(numbers.iter().map(|it| it * scale).collect());
+        Ok(())
+    }
+}
 
 fn add(poses: &mut Vec<Named>, found: Named, words: &str, option: &str) -> Result<()> {
     let is_same = |it: &Named| match (&it.0, &found.0) {

@@ -21,6 +21,7 @@ mod urscript;
 
 use std::path::Path;
 
+use super::ChangeOptions;
 use crate::error::{Error, ErrorKind, Result};
 use crate::io::programs::read_program;
 use crate::robot::Robot;
@@ -30,7 +31,6 @@ use parsed::Parsed;
 
 pub use given::Given;
 pub use language::Language;
-pub use parsed::Listed;
 pub use place::PoseCompensation;
 pub use summary::ProgramSummary;
 
@@ -46,15 +46,23 @@ pub struct ProgramOptions {
     pub given: Given,
     /// Compute what is left once more, from the written text by the robots' own forward kinematics.
     pub check: bool,
-    /// Write the nearest configuration where the actual robot does not reach a target.
-    pub nearest: bool,
+    /// How far readings may be changed.
+    pub change: ChangeOptions,
+    /// Keep what became of every target.
+    pub each: bool,
 }
 
 impl ProgramOptions {
     /// Of a language, nothing else stated.
     #[must_use]
     pub fn of(language: Language) -> Self {
-        ProgramOptions { language, given: Given::default(), check: false, nearest: false }
+        ProgramOptions {
+            language,
+            given: Given::default(),
+            check: false,
+            change: ChangeOptions::default(),
+            each: false,
+        }
     }
 }
 
@@ -79,18 +87,25 @@ pub fn compensate_program(
         );
         return Err(Error::new(ErrorKind::Syntax, message));
     }
-    let mut engine = Engine::new((nominal, actual), factors, &options.given, options.nearest)?;
+    let mut engine = Engine::new((nominal, actual), factors, &options.given, &options.change)?;
     let axes = Axes::of(nominal, engine.poses.compensation());
+    if let Some(start) = options.given.start.as_ref().filter(|it| it.len() != axes.count()) {
+        let message = format!(
+            "found {} readings as the start, expected one of each joint: {}",
+            start.len(),
+            axes.names.join(", ")
+        );
+        return Err(Error::new(ErrorKind::Option, message));
+    }
     let parsed = parse(options.language, text, &options.given, &axes)?;
-    let mut made = engine.correct(text, parsed);
+    let mut made = engine.correct(text, parsed, options.each);
     if options.check {
         let again = parse(options.language, &made.text, &options.given, &axes)?;
         made.summary.checked =
             Some(summary::checked(&engine, (nominal, actual), factors, &again, &made.meant));
     }
     let corrected = made.meant.len();
-    let summary =
-        ProgramSummary { language: options.language, corrected, listed: made.listed, changes: made.summary };
+    let summary = ProgramSummary { language: options.language, corrected, changes: made.summary };
     Ok((made.text, summary))
 }
 

@@ -2,22 +2,10 @@
 
 use std::ops::Range;
 
-use serde::Serialize;
-
+pub(crate) use super::super::Listed;
 use super::forms::PoseForm;
 use super::stated::Stated;
 use crate::lie::Pose;
-
-/// A place of a program that stays as it is, and why.
-#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
-pub struct Listed {
-    /// Line of the program, from 1.
-    pub line: usize,
-    /// The target's name or text.
-    pub name: String,
-    /// Why it stays as it is.
-    pub reason: String,
-}
 
 /// A program as its language understands it.
 #[derive(Clone, Debug, Default)]

@@ -5,7 +5,7 @@ use std::f64::consts::{PI, TAU};
 use nalgebra::Vector3;
 use poecal_arm::{AllBranches, Arm};
 
-use super::super::{Compensated, Compensation};
+use super::super::{ChangeOptions, Compensated, Compensation};
 use crate::error::Result;
 use crate::lie::{Pose, rotation};
 use crate::robot::Robot;
@@ -33,8 +33,8 @@ impl PoseCompensation {
     ///
     /// # Errors
     /// As [`Compensation::new`].
-    pub fn new(nominal: &Robot, actual: &Robot, factors: &[f64]) -> Result<Self> {
-        let compensation = Compensation::new(nominal, actual, factors)?;
+    pub fn new(nominal: &Robot, actual: &Robot, factors: &[f64], options: &ChangeOptions) -> Result<Self> {
+        let compensation = Compensation::new(nominal, actual, factors, options)?;
         let branches = AllBranches::new(compensation.nominal());
         Ok(PoseCompensation { compensation, branches })
     }

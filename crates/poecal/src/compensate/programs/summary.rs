@@ -1,13 +1,11 @@
 //! What the compensation of a program changes.
 
-use std::fmt::Write as _;
-
 use serde::Serialize;
 
-use super::super::{Largest, Summary};
+use super::super::{Checked, Summary};
 use super::Language;
 use super::engine::Engine;
-use super::parsed::{Listed, Meant, Number, Parsed};
+use super::parsed::{Meant, Number, Parsed};
 use crate::lie::Pose;
 use crate::robot::Robot;
 
@@ -18,9 +16,7 @@ pub struct ProgramSummary {
     pub language: Language,
     /// Number of targets that are corrected.
     pub corrected: usize,
-    /// What stays as it is, in the order of the lines.
-    pub listed: Vec<Listed>,
-    /// Corrections and what is left of the targets that are corrected.
+    /// Corrections, what is left of the targets that are corrected, and what stays as it is.
     #[serde(flatten)]
     pub changes: Summary,
 }
@@ -29,53 +25,24 @@ impl ProgramSummary {
     /// Whether every target that was found is corrected.
     #[must_use]
     pub fn is_whole(&self) -> bool {
-        self.listed.is_empty()
-    }
-
-    /// What a user has to look at, a sentence each.
-    #[must_use]
-    pub fn warnings(&self) -> Vec<String> {
-        let mut out = self.changes.warnings();
-        if !self.listed.is_empty() {
-            let (count, first) = (self.listed.len(), self.listed.first().map_or(0, |it| it.line));
-            let are = if count == 1 { "1 target is".to_owned() } else { format!("{count} targets are") };
-            out.push(format!(
-                "{are} left as the program has them, the first on line {first}: the robot will miss them"
-            ));
-        }
-        out
+        self.changes.is_whole()
     }
 
     /// The summary in words, for the terminal; joints that slide are told by their names.
     #[must_use]
     pub fn text(&self, slides: &dyn Fn(&str) -> bool) -> String {
-        let mut out = String::new();
-        let what = if self.corrected == 1 { "target" } else { "targets" };
-        if self.corrected > 0 {
-            out = self.changes.text(slides, &format!("{what} corrected"));
-        } else {
-            let _ = writeln!(out, "0 targets corrected");
-        }
-        if !self.listed.is_empty() {
-            let count = self.listed.len();
-            let what = if count == 1 { "target is left as it is" } else { "targets are left as they are" };
-            let _ = writeln!(out, "{count} {what}:");
-        }
-        for it in &self.listed {
-            let _ = writeln!(out, "  line {}: {}: {}", it.line, crate::text::visible(&it.name), it.reason);
-        }
-        out
+        self.changes.text(slides, if self.corrected == 1 { "target corrected" } else { "targets corrected" })
     }
 }
 
-/// Distance and angle that are left of a written program, by the robots' own forward kinematics.
+/// What a written program leaves, by the robots' own forward kinematics.
 pub(super) fn checked(
     engine: &Engine<'_>,
     (nominal, actual): (&Robot, &Robot),
     factors: &[f64],
     written: &Parsed,
     meant: &[(usize, Vec<f64>)],
-) -> (Largest, Largest) {
+) -> Checked {
     let mut places: Vec<Option<(Pose, Pose)>> = vec![None; written.targets.len()];
     for motion in &written.motions {
         if let (Some(place), Some(tool), Some(frame)) =
@@ -84,7 +51,7 @@ pub(super) fn checked(
             *place = Some((tool, frame));
         }
     }
-    let mut largest = (Largest::default(), Largest::default());
+    let mut largest = Checked::default();
     for (index, q) in meant {
         let Some(target) = written.targets.get(*index) else { continue };
         let numbers: Vec<f64> = target.numbers.iter().map(Number::scaled).collect();
@@ -102,10 +69,10 @@ pub(super) fn checked(
                 engine.poses.of_robot(&own, q)
             }
         };
+        let share = engine.poses.compensation().share_of_most(q, &commanded);
+        largest.change.include(share, target.line);
         commanded.extend_from_slice(factors);
-        let (metres, radians) = actual.forward_kinematics(&commanded).apart(&wanted);
-        largest.0.include(metres, target.line);
-        largest.1.include(radians, target.line);
+        largest.include(actual.forward_kinematics(&commanded).apart(&wanted), target.line);
     }
     largest
 }

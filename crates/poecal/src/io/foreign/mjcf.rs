@@ -9,7 +9,7 @@ use roxmltree::Node;
 
 use super::links::{Inertial, LinkJoint, LinkJointKind, Links, Mimic};
 use crate::error::Result;
-use crate::io::xml::{XmlSource, parsed};
+use crate::io::xml::{XmlSource, parsed, readable};
 use crate::lie::{Pose, rotation};
 use crate::robot::{Limits, Mass};
 
@@ -24,7 +24,8 @@ const MADE_BY_MUJOCO: [&str; 4] = ["include", "replicate", "attach", "composite"
 
 /// The links; sites of these names are links too.
 pub(super) fn read(text: &str, path: &Path, named: &[&str]) -> Result<Links> {
-    let document = parsed(text, path, EXPECTED)?;
+    let text = readable(text);
+    let document = parsed(&text, path, EXPECTED)?;
     let source = XmlSource { document: &document, path };
     let root = document.root_element();
     if root.has_tag_name("mujocoinclude") {
@@ -454,10 +455,13 @@ impl<'a> Reader<'a, '_> {
                 return Err(self.source.error(node, message));
             }
         };
-        let range = self.numbers::<2>(node, class, "range")?.map(|range| range.map(angle));
+        let range = match self.stating(node, class, "range")? {
+            Some(stating) => self.source.bounds::<2>(stating, "range", &described(node))?,
+            None => None,
+        };
         let counts = limited.unwrap_or(self.settings.limits_alone);
-        let limits = range.filter(|[lower, upper]| counts && lower < upper);
-        let limits = limits.map(|[lower, upper]| Limits { lower, upper });
+        let range = range.filter(|_| counts).map(|range| range.map(angle));
+        let limits = range.and_then(|[lower, upper]| Limits::between(lower, upper));
         let body_from_joint = Pose::from_translation(place);
         // The bodies are stated in the pose in which the joint has its reference.
         let back = match kind {

@@ -10,7 +10,7 @@ use roxmltree::Node;
 use super::links::{Inertial, LinkJoint, LinkJointKind, Links, Mimic};
 use crate::error::Result;
 use crate::io::numbers::LARGEST_NUMBER;
-use crate::io::xml::{XmlSource, parsed};
+use crate::io::xml::{XmlSource, parsed, readable};
 use crate::lie::Pose;
 use crate::robot::{Limits, Mass};
 
@@ -24,12 +24,11 @@ const MODEL: &str = "__model__";
 const DEEPEST: usize = 64;
 /// Rounding of poses over the frames in between.
 const ROUNDING: f64 = 1e-12;
-/// Limits beyond are none: files write 1e16.
-const NO_LIMIT: f64 = 1e5;
 
 /// The links; frames of these names are links too.
 pub(super) fn read(text: &str, path: &Path, named: &[&str]) -> Result<Links> {
-    let document = parsed(text, path, EXPECTED)?;
+    let text = readable(text);
+    let document = parsed(&text, path, EXPECTED)?;
     let source = XmlSource { document: &document, path };
     let root = document.root_element();
     let model = the_model(source, root)?;
@@ -476,8 +475,7 @@ impl<'a> Frames<'a> {
         let Some(limit) = self.source.children(axis, "limit").next() else { return Ok(None) };
         let bounds = (self.number(limit, "lower", of)?, self.number(limit, "upper", of)?);
         let (Some(lower), Some(upper)) = bounds else { return Ok(None) };
-        Ok((lower < upper && lower.abs() < NO_LIMIT && upper.abs() < NO_LIMIT)
-            .then_some(Limits { lower, upper }))
+        Ok(Limits::between(lower, upper))
     }
 
     /// `q = multiplier (q' − reference) + offset`.

@@ -56,6 +56,8 @@ pub(super) struct InputReader<'a> {
     inputs: &'a [Input],
     values: Vec<Option<f64>>,
     readings: Vec<f64>,
+    /// Of each joint reading of the current row, the whole turns that were taken off.
+    turns: Vec<f64>,
     /// Number of joint readings, which come first.
     joints: usize,
 }
@@ -70,6 +72,7 @@ impl<'a> InputReader<'a> {
             inputs,
             values: Vec::with_capacity(inputs.len()),
             readings: Vec::new(),
+            turns: vec![0.0; joints],
         }
     }
 
@@ -88,6 +91,7 @@ impl<'a> InputReader<'a> {
     /// Reads a row's numbers; an empty cell is `None`.
     pub(super) fn read(&mut self, row: &Row<'_>) -> Result<()> {
         self.values.clear();
+        self.turns.fill(0.0);
         for (index, input) in self.inputs.iter().enumerate() {
             let value = match input.source {
                 InputSource::Constant(value) => Some(value),
@@ -150,6 +154,19 @@ impl<'a> InputReader<'a> {
             self.readings.push(*value);
         }
         Ok(())
+    }
+
+    /// Takes whole turns off a joint reading of the current row.
+    pub(super) fn unwind(&mut self, input: usize, turns: f64) {
+        if let (Some(Some(value)), Some(taken)) = (self.values.get_mut(input), self.turns.get_mut(input)) {
+            *value -= turns * std::f64::consts::TAU;
+            *taken += turns;
+        }
+    }
+
+    /// The whole turns that were taken off each joint reading of the current row.
+    pub(super) fn turns(&self) -> &[f64] {
+        &self.turns
     }
 
     /// Joint readings of the current row.

@@ -68,6 +68,7 @@ fn of_blocks<'p>(
     while let Some(mut rows) = table.next_block()? {
         while let Some(row) = rows.next()? {
             inputs.read(&row)?;
+            watch.unwind(&row, &mut inputs);
             inputs.include_in_ranges();
             watch.observe(&row, &inputs);
             inputs.take_readings(&row)?;

@@ -7,6 +7,7 @@ use serde::Serialize;
 
 use super::builder::TargetLayout;
 use super::inputs::InputReader;
+use super::orientation::MOST_PARTS;
 use super::table::Row;
 use crate::error::{Error, Result};
 
@@ -126,12 +127,12 @@ fn beam(row: &Row<'_>, target: &TargetLayout, inputs: &InputReader<'_>) -> Beam 
     }
     let is_none = orientation().all(|part| part.is_none_or(|part| part == 0.0));
     let is_identity = || {
-        let mut values = [0.0; 4];
+        let mut values = [0.0; MOST_PARTS];
         for (value, part) in values.iter_mut().zip(orientation()) {
             *value = part.unwrap_or(f64::NAN);
         }
         let form = target.orientation.as_ref().map(|(form, _)| form);
-        form.and_then(|form| form.rotation(values).ok()) == Some(Matrix3::identity())
+        form.and_then(|form| form.rotation(&values).ok()) == Some(Matrix3::identity())
     };
     if is_none || is_identity() { Beam::Zero } else { Beam::Seen }
 }

@@ -228,7 +228,7 @@ impl TryFrom<OrientationFields> for OrientationSpec {
             return error(format!("found {} `columns`, expected {} ({form})", columns.len(), form.len()));
         }
         if fields.unit.is_some() && form.quantity() == Dimension::Number {
-            return error("found a unit for a quaternion, expected none".to_owned());
+            return error("found a unit for numbers without one, expected none".to_owned());
         }
         Ok(OrientationSpec { form, columns, unit: fields.unit })
     }

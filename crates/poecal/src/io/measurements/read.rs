@@ -161,6 +161,7 @@ impl<'a> Reader<'a> {
             while let Some(row) = some.next()? {
                 rows += 1;
                 inputs.read(&row)?;
+                watch.unwind(&row, &mut inputs);
                 inputs.take_readings(&row)?;
                 if self.begins_pair(&row, &layout, &inputs)? {
                     continue;

@@ -1,5 +1,6 @@
 //! Tables whose joint readings are replaced, row by row; all else stays as it is.
 
+use std::f64::consts::TAU;
 use std::path::Path;
 
 use super::ReadOptions;
@@ -114,6 +115,7 @@ impl Rewriting {
         order.sort_by_key(|&at| self.columns[at].0);
         while let Some(row) = rows.next()? {
             inputs.read(&row)?;
+            watch.unwind(&row, inputs);
             inputs.include_in_ranges();
             watch.observe(&row, inputs);
             inputs.take_readings(&row)?;
@@ -130,6 +132,8 @@ impl Rewriting {
                 let from = start + (cell.raw.as_ptr() as usize - row.text.as_ptr() as usize);
                 self.text.push_str(block.get(copied..from).unwrap_or_default());
                 let digits = self.text.len();
+                // The controller counts on with the turns that were taken off.
+                let number = number + inputs.turns()[at] * TAU;
                 push_number(&mut self.text, unit.from_si(number));
                 if inputs.numbers.sign() == DecimalSign::Comma {
                     let with_comma = self.text.split_off(digits).replace('.', ",");

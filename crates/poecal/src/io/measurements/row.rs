@@ -5,6 +5,7 @@ use nalgebra::{Matrix3, Vector3};
 use super::builder::TargetLayout;
 use super::inputs::InputReader;
 use super::mapping::PoseDirection;
+use super::orientation::MOST_PARTS;
 use super::table::Row;
 use crate::error::Result;
 use crate::lie::Pose;
@@ -62,7 +63,7 @@ fn orientation(
     inputs: &InputReader<'_>,
 ) -> Result<Option<Matrix3<f64>>> {
     let Some((form, columns)) = &target.orientation else { return Ok(None) };
-    let mut values = [0.0; 4];
+    let mut values = [0.0; MOST_PARTS];
     let mut empty = None;
     let mut given = false;
     for (slot, &input) in values.iter_mut().zip(columns) {
@@ -81,7 +82,7 @@ fn orientation(
         }
         (true, None) => {
             let first = columns.first().map_or(0, |&input| inputs.column(input));
-            form.rotation(values).map(Some).map_err(|message| row.error(first, message))
+            form.rotation(&values).map(Some).map_err(|message| row.error(first, message))
         }
     }
 }

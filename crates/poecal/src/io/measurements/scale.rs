@@ -1,5 +1,6 @@
 //! Joint values in a wrong unit or beyond their limits.
 
+use std::f64::consts::TAU;
 use std::path::Path;
 
 use nalgebra::Vector3;
@@ -34,6 +35,10 @@ pub(super) struct JointWatch<'a> {
 struct OneJoint<'a> {
     joint: &'a Joint,
     reading: usize,
+    /// Whether a whole turn of its reading is one of the joint, and of no other.
+    is_periodic: bool,
+    turned: usize,
+    turned_lines: Vec<usize>,
     beyond: usize,
     first_lines: Vec<usize>,
     extreme: f64,
@@ -46,12 +51,31 @@ impl<'a> JointWatch<'a> {
         let joints = joints.map(|(joint, reading)| OneJoint {
             joint,
             reading,
+            is_periodic: joint.kind == JointKind::Revolute
+                && joint.reading.multiplier.abs() == 1.0
+                && robot.reading_indices().iter().filter(|it| **it == reading).count() == 1,
+            turned: 0,
+            turned_lines: Vec::new(),
             beyond: 0,
             first_lines: Vec::new(),
             extreme: 0.0,
             extreme_place: (0, 0),
         });
         JointWatch { joints: joints.collect(), rows: 0 }
+    }
+
+    /// Takes whole turns off the readings of a row that are inside the limits without, as 0 to 360° of a joint from -180 to 180°.
+    pub(super) fn unwind(&mut self, row: &Row<'_>, inputs: &mut InputReader<'_>) {
+        for one in &mut self.joints {
+            let Some(turns) = inputs.value(one.reading).and_then(|reading| one.turns(reading)) else {
+                continue;
+            };
+            inputs.unwind(one.reading, turns);
+            one.turned += 1;
+            if one.turned_lines.len() < NAMED_LINES {
+                one.turned_lines.push(row.line);
+            }
+        }
     }
 
     /// Adds the readings of a row.
@@ -79,6 +103,8 @@ impl<'a> JointWatch<'a> {
     /// [`ErrorKind::Unit`] if only another unit explains the readings.
     pub(super) fn finish(&self, path: &Path, layout: &ColumnLayout, ranges: &[Range]) -> Result<Vec<String>> {
         let mut warnings = Vec::new();
+        let turned = self.joints.iter().filter(|one| one.turned > 0);
+        warnings.extend(turned.map(|one| one.turn_warning(path)));
         for one in self.joints.iter().filter(|one| one.beyond > 0) {
             let (Some(input), Some(range)) = (layout.inputs.get(one.reading), ranges.get(one.reading)) else {
                 continue;
@@ -120,6 +146,30 @@ impl OneJoint<'_> {
             Some(limits) => value >= limits.lower - slack && value <= limits.upper + slack,
             None => reading.abs() <= LARGEST_UNLIMITED,
         }
+    }
+
+    /// Whole turns without which a reading is inside the limits, where it is beyond them with these.
+    fn turns(&self, reading: f64) -> Option<f64> {
+        let limits = self.joint.limits.filter(|_| self.is_periodic && !self.allows(reading, ROUNDING))?;
+        // More would rather be another unit.
+        if reading.abs() > LARGEST_OTHERWISE {
+            return None;
+        }
+        let middle = 0.5 * (limits.lower + limits.upper);
+        let turns =
+            ((self.joint.reading.value(reading) - middle) / TAU).round() * self.joint.reading.multiplier;
+        (turns != 0.0 && self.allows(reading - turns * TAU, ROUNDING)).then_some(turns)
+    }
+
+    fn turn_warning(&self, path: &Path) -> String {
+        format!(
+            "{}: whole turns are taken off the readings of joint `{}` in {} {} ({}), which brings them inside its limits",
+            path.display(),
+            self.joint.name,
+            self.turned,
+            if self.turned == 1 { "row" } else { "rows" },
+            named_lines(self.turned, &self.turned_lines)
+        )
     }
 
     /// The unit that explains readings far outside.

@@ -42,7 +42,10 @@ impl TurnWatch {
             let of_radians =
                 |&input: &usize| layout.inputs.get(input).is_some_and(|it| it.unit.symbol() == "rad");
             let (is_vector, most) = match form {
-                OrientationForm::QuaternionXyzw | OrientationForm::QuaternionWxyz => continue,
+                OrientationForm::QuaternionXyzw
+                | OrientationForm::QuaternionWxyz
+                | OrientationForm::MatrixByRows
+                | OrientationForm::MatrixByColumns => continue,
                 OrientationForm::RotationVector => (true, TAU + ROUNDING),
                 // Angles that count on over many turns are in no other unit.
                 OrientationForm::Intrinsic(_) | OrientationForm::Extrinsic(_) => (false, 2.0 * TAU),

@@ -29,7 +29,7 @@ pub(super) use write::{WIDE_LIMIT_M, written_new};
 
 use crate::error::Result;
 use crate::io::source_text;
-use crate::io::xml::{XACRO, XmlSource, parsed};
+use crate::io::xml::{XmlSource, parsed, readable};
 use crate::robot::Robot;
 use parts::{End, Part};
 use tree::Tree;
@@ -67,7 +67,8 @@ impl UrdfDocument {
 
     /// Compiled once, and not for each kind of path.
     fn parse_at(text: &str, path: &Path, selection: &ChainSelection) -> Result<Self> {
-        let document = parsed(text, path, EXPECTED)?;
+        let readable = readable(text);
+        let document = parsed(&readable, path, EXPECTED)?;
         let source = XmlSource { document: &document, path };
         let robot_element = document.root_element();
         if robot_element.tag_name().name() != "robot" {
@@ -129,12 +130,27 @@ impl UrdfDocument {
 }
 
 const EXPECTED: &str = "a URDF robot description";
-/// An expanded file may still declare the prefix, but has no elements of it.
+/// Where an element would be read: it may make links and joints there. What a visual, a sensor or an unknown element has in it is not read.
+const READ_IN: [&str; 3] = ["robot", "link", "joint"];
+
+/// An expanded file may still declare the prefix, and have elements of it where nothing is read.
 fn refuse_xacro(source: &XmlSource) -> Result<()> {
-    let is_xacro =
-        |node: &roxmltree::Node| node.tag_name().namespace().is_some_and(|uri| uri.contains("xacro"));
-    match source.document.descendants().find(is_xacro) {
-        Some(node) => Err(source.syntax_error(node, XACRO.to_owned())),
-        None => Ok(()),
-    }
+    let is_xacro = |node: &roxmltree::Node| {
+        let name = node.tag_name();
+        name.namespace().is_some_and(|uri| uri.contains("xacro")) || name.name().starts_with("xacro_")
+    };
+    let is_read = |node: &roxmltree::Node| {
+        let mut above = node.ancestors().skip(1).filter(roxmltree::Node::is_element);
+        above.all(|it| READ_IN.contains(&it.tag_name().name()))
+    };
+    let found =
+        source.document.descendants().find(|node| node.is_element() && is_xacro(node) && is_read(node));
+    let Some(node) = found else { return Ok(()) };
+    let message = if source.document.descendants().any(|it| it.has_tag_name("joint")) {
+        "found a xacro element beside joints, expected plain URDF: expand the file with `xacro robot.xacro > robot.urdf`, or, if it is expanded \
+         and this element adds no joints, delete it"
+    } else {
+        "found a xacro element, expected plain URDF: expand the file first with `xacro robot.xacro > robot.urdf`"
+    };
+    Err(source.syntax_error(node, message.to_owned()))
 }

@@ -235,14 +235,13 @@ fn read_limits<'a>(source: &XmlSource<'a>, joint: &TreeJoint<'a>) -> Result<Opti
         return Ok(None);
     }
     let of = format!("<limit> of joint `{}`", joint.name);
-    let number = |name| source.numbers::<1>(node, name, &of).map(|number| number.map_or(0.0, |[only]| only));
-    let limits = Limits { lower: number("lower")?, upper: number("upper")? };
-    if limits.lower > limits.upper {
-        let message =
-            format!("{of} has lower {} above upper {}, expected lower < upper", limits.lower, limits.upper);
+    let number = |name| source.bounds::<1>(node, name, &of).map(|number| number.map_or(0.0, |[only]| only));
+    let (lower, upper) = (number("lower")?, number("upper")?);
+    if lower > upper {
+        let message = format!("{of} has lower {lower} above upper {upper}, expected lower < upper");
         return Err(source.error(node, message));
     }
-    Ok(Some(limits).filter(|limits| limits.lower < limits.upper))
+    Ok(Limits::between(lower, upper))
 }
 
 /// The reading that gives a joint its value, through all mimic relations.

@@ -8,7 +8,7 @@ use roxmltree::Node;
 use super::parts::fixed_pose;
 use super::tree::Tree;
 use super::{EXPECTED, UrdfDocument};
-use crate::io::xml::{XmlSource, parsed};
+use crate::io::xml::{XmlSource, parsed, readable};
 use crate::lie::Pose;
 use crate::robot::Body;
 
@@ -38,7 +38,8 @@ impl UrdfDocument {
     /// zero. Nothing else needs them: what cannot be read is no shape.
     pub(in crate::io) fn visuals(&self) -> Vec<Visual> {
         let path = Path::new(&self.path);
-        let Ok(document) = parsed(&self.text, path, EXPECTED) else { return Vec::new() };
+        let text = readable(&self.text);
+        let Ok(document) = parsed(&text, path, EXPECTED) else { return Vec::new() };
         let source = XmlSource { document: &document, path };
         let Ok(tree) = Tree::read(source) else { return Vec::new() };
         let links = self.links(&tree);

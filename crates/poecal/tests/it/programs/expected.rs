@@ -180,8 +180,12 @@ pub(super) fn check(
     let expected = rows(&std::fs::read_to_string(path.with_extension("expected")).unwrap());
     let actual = actual(nominal);
     let (out, summary) = compensate_program(&text, (nominal, &actual), &[], options).unwrap();
-    let found: Vec<String> =
-        summary.listed.iter().map(|it| format!("{} | {} | {}", it.line, it.name, it.reason)).collect();
+    let found: Vec<String> = summary
+        .changes
+        .listed
+        .iter()
+        .map(|it| format!("{} | {} | {}", it.line, it.name, it.reason))
+        .collect();
     let mut listed: Vec<String> = expected
         .iter()
         .filter_map(|(line, name, row)| match row {

@@ -181,7 +181,11 @@ const CASES: [Case; 20] = [
         text: "DEFDAT D\r\nDECL POS A1POS={@S{10 -70 80 20 40 -30|t|f}}\r\nDECL E6POS P[3]\r\nP[1]={@S{5 -65 75 10 45 -20|t|f}}\r\nP[2]={@p{5 -65 75 10 \
                45 -20|t|f}}\r\nENDDAT\r\n",
         options: &["tool 10,-20,150,10,20,30", "frame 400,100,50,90,0,0"],
-        listed: &[(5, "P[2]", "the program states no configuration, and the one before is not known")],
+        listed: &[(
+            5,
+            "P[2]",
+            "the program states no configuration, and the one before is not known: state where the robot starts by --start, or begin with a joint target",
+        )],
     },
     Case {
         name: "points in another file, each told once",
@@ -281,11 +285,15 @@ const CASES: [Case; 20] = [
         ),
         options: &[],
         listed: &[
-            (4, "XA", "no configuration of the nominal robot fits the one that is stated (motion on line 5)"),
+            (
+                4,
+                "XA",
+                "no configuration of the nominal robot fits the one that is stated: check it, --base and --flange (motion on line 5)",
+            ),
             (
                 7,
                 "XB",
-                "the configuration that is stated is not the one to which the motion before leads (motion on line 8)",
+                "the configuration that is stated is not the one to which the motion before leads: check both (motion on line 8)",
             ),
         ],
     },
@@ -314,7 +322,7 @@ const CASES: [Case; 20] = [
         listed: &[(
             12,
             "XA",
-            "the program states no configuration, and the one before is not known (motion on line 13)",
+            "the program states no configuration, and the one before is not known: state where the robot starts by --start, or begin with a joint target (motion on line 13)",
         )],
     },
     Case {
@@ -342,7 +350,7 @@ const CASES: [Case; 20] = [
         ),
         options: &[],
         listed: &[
-            (5, "XC", "it is used with several tools or frames (motion on line 9)"),
+            (5, "XC", "it is used with several tools or frames: make a target for each (motion on line 9)"),
             (15, "XB", "the tool is not known: state it by --tool (motion on line 16)"),
         ],
     },
@@ -362,7 +370,7 @@ const CASES: [Case; 20] = [
             "PTP {@P{5 -65 75 10 45 -20|t}}",
         ),
         options: &[],
-        listed: &[(4, "XA", "it is at a singularity (motion on line 5)")],
+        listed: &[(4, "XA", "it is at a singularity: make it a joint target (motion on line 5)")],
     },
 ];
 
@@ -391,6 +399,6 @@ fn the_status_of_the_home_position_is_that_of_the_manual() {
         let text = format!("DEF p()\n$TOOL=$NULLFRAME\n$BASE=$NULLFRAME\nPTP {{{pose},{words}}}\nEND\n");
         let options = ProgramOptions::of(Language::Krl);
         let (_, summary) = compensate_program(text.as_bytes(), (&nominal, &nominal), &[], &options).unwrap();
-        assert_eq!(summary.corrected == 1, is_taken, "{words}: {:?}", summary.listed);
+        assert_eq!(summary.corrected == 1, is_taken, "{words}: {:?}", summary.changes.listed);
     }
 }

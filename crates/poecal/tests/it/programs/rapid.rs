@@ -93,13 +93,13 @@ fn targets_without_moves_have_what_the_user_states() {
         compensate_program(text.as_bytes(), (&nominal, &actual(&nominal)), &[], options).unwrap()
     };
     let (out, summary) = run(&options);
-    assert_eq!((out.as_slice(), summary.corrected, summary.listed.len()), (text.as_bytes(), 0, 1));
+    assert_eq!((out.as_slice(), summary.corrected, summary.changes.listed.len()), (text.as_bytes(), 0, 1));
     options.given.add_tool("0,0,100,1,0,0,0", Language::Rapid).unwrap();
     assert_eq!(run(&options).1.corrected, 0);
     options.given.add_frame("-100,0,50,1,0,0,0", Language::Rapid).unwrap();
     let (out, summary) = run(&options);
     println!("{}", String::from_utf8_lossy(&out));
-    assert_eq!((summary.corrected, summary.listed.len()), (1, 0), "{:?}", summary.listed);
+    assert_eq!((summary.corrected, summary.changes.listed.len()), (1, 0), "{:?}", summary.changes.listed);
     let pose = |text: &[u8]| {
         let numbers: Vec<f64> = read(text, 2, 0, false).iter().map(|it| it.1).collect();
         let frame = Pose::from_translation(Vector3::new(-0.1, 0.0, 0.05));

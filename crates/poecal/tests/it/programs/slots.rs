@@ -142,11 +142,12 @@ pub(super) fn check(
     }
     let (written, summary) = compensate_program(&text, robots, &[], options).unwrap();
     let listed: Vec<(usize, &str, &str)> =
-        summary.listed.iter().map(|it| (it.line, it.name.as_str(), it.reason.as_str())).collect();
+        summary.changes.listed.iter().map(|it| (it.line, it.name.as_str(), it.reason.as_str())).collect();
     assert_eq!(listed, case.listed, "{}", case.name);
     let corrected = slots.iter().filter(|it| !it.is_kept()).count();
-    assert_eq!(summary.corrected, corrected, "{}: {:?}", case.name, summary.listed);
-    let (checked_m, checked_rad) = summary.changes.checked.unwrap();
+    assert_eq!(summary.corrected, corrected, "{}: {:?}", case.name, summary.changes.listed);
+    let checked = summary.changes.checked.unwrap();
+    let (checked_m, checked_rad) = (checked.left_m, checked.left_rad);
     assert!(checked_m.value < ROUNDING && checked_rad.value < ROUNDING, "{}", case.name);
     let inverse = Inverse::new(nominal, &[]).unwrap();
     let mut worst = (0.0_f64, 0.0_f64);

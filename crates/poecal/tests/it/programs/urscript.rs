@@ -128,12 +128,12 @@ const CASES: [Case; 20] = [
             (
                 1,
                 "zero",
-                "the program states no configuration, and the one before is not known (motion on line 2)",
+                "the program states no configuration, and the one before is not known: state where the robot starts by --start, or begin with a joint target (motion on line 2)",
             ),
             (
                 7,
                 "first",
-                "the program states no configuration, and the one before is not known (motion on line 8)",
+                "the program states no configuration, and the one before is not known: state where the robot starts by --start, or begin with a joint target (motion on line 8)",
             ),
         ],
     },
@@ -193,7 +193,11 @@ const CASES: [Case; 20] = [
         text: "wp = p[@p{15 -65 75 -90 -85 25|u}]\nset_tcp(p[0,0,0.2,0,0,0])\nmovej([@J{10 -70 80 -100 -80 \
                20}])\nmovel(wp)\nset_tcp(p[0,0,0.25,0,0,0])\nmovel(wp)\nset_tcp(computed())\nmovel(wp)\n",
         options: &[],
-        listed: &[(1, "wp", "it is used with several tools or frames (motion on line 6)")],
+        listed: &[(
+            1,
+            "wp",
+            "it is used with several tools or frames: make a target for each (motion on line 6)",
+        )],
     },
     Case {
         name: "a thread that sets the tool",
@@ -213,7 +217,7 @@ const CASES: [Case; 20] = [
             (
                 5,
                 "wp",
-                "the program states no configuration, and the one before is not known (motion on line 6)",
+                "the program states no configuration, and the one before is not known: state where the robot starts by --start, or begin with a joint target (motion on line 6)",
             ),
         ],
     },
@@ -261,7 +265,7 @@ fn degrees_signs_and_spaces_are_those_of_the_program() {
     let options = ProgramOptions::of(Language::UrScript);
     let (written, summary) = compensate_program(text.as_bytes(), (&nominal, &actual), &[], &options).unwrap();
     let written = String::from_utf8(written).unwrap();
-    assert!(summary.is_whole() && summary.corrected == 1, "{:?}", summary.listed);
+    assert!(summary.is_whole() && summary.corrected == 1, "{:?}", summary.changes.listed);
     let bare = |text: &str| text.replace(|c: char| c.is_ascii_digit() || ".+-".contains(c), "");
     assert_eq!(bare(&written), bare(text));
     assert!(written.contains(", - 1.2") && written.contains(" +1.3"), "{written}");

@@ -35,6 +35,9 @@ fn tokens(text: &[u8], part: Range<usize>, line: usize) -> impl Iterator<Item = 
     })
 }
 
+/// The group of axes that is the arm.
+const ARM: u32 = 1;
+
 /// A number without a sign and without decimals, and nothing else.
 fn whole(tokens: &[Token]) -> Option<u32> {
     let number = signed(tokens).filter(|it| it.decimals == 0 && (0.0..1e6).contains(&it.value))?;
@@ -164,7 +167,15 @@ impl Maker<'_> {
             numbers,
             meant,
         };
-        let [group] = &position.groups[..] else { return Err("it is of several groups".to_owned()) };
+        // What other groups have in it moves without this arm, but for motions with COORD.
+        let mut own = position.groups.iter().filter(|(number, _)| [0, ARM].contains(number));
+        let group = match (own.next(), own.next()) {
+            (Some((_, group)), None) => group,
+            (None, _) => {
+                return Err("it is not of group 1, the arm: correct the group's own robot".to_owned());
+            }
+            (Some(_), Some(_)) => return Err("it states group 1 more than once: leave one out".to_owned()),
+        };
         if let Some(of) = moves.iter().find(|it| it.is_incremental) {
             return Err(format!("moved to by INC on line {}: it is a distance, not a place", of.line));
         }
@@ -187,7 +198,7 @@ impl Maker<'_> {
             ));
         }
         if pose.is_extended {
-            return Err("external axes are used".to_owned());
+            return Err("external axes are used: make it a joint target".to_owned());
         }
         let (Some(frame), Some(tool)) = (pose.frame, pose.tool) else {
             return Err("its user frame or its tool is not a number".to_owned());

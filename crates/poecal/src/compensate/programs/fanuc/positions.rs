@@ -11,8 +11,8 @@ pub(super) struct Position {
     pub(super) line: usize,
     /// As it is written: `P[3:above]`.
     pub(super) name: String,
-    /// Its groups of axes.
-    pub(super) groups: Vec<Group>,
+    /// Its groups of axes, with their numbers; 0 of what is in none.
+    pub(super) groups: Vec<(u32, Group)>,
 }
 
 /// What a position says of a group.
@@ -75,9 +75,11 @@ fn position<'t>(text: &[u8], word: &Token, after: &'t [Token]) -> Option<(Positi
         let part = inner.get(at..next).unwrap_or_default();
         // `GP1 :`
         if part.first().is_some_and(is_head) {
-            groups.push(group(text, part.get(2..).unwrap_or_default()));
+            let head = part.first().map_or("", |it| it.text(text));
+            let number = head.get(2..).and_then(|it| it.parse().ok()).unwrap_or(0);
+            groups.push((number, group(text, part.get(2..).unwrap_or_default())));
         } else {
-            groups.push(Group::Unknown("not understood: no group of axes is named"));
+            groups.push((0, Group::Unknown("not understood: no group of axes is named")));
         }
         at = next;
     }

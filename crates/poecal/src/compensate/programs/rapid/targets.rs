@@ -172,7 +172,7 @@ impl Maker<'_> {
         }
         // An axis that is not there has 9E9; one at 0 leaves the arm where it is.
         if external.iter().any(|it| it.value != 0.0 && it.value < 8.9e9) {
-            return Err("external axes are used".to_owned());
+            return Err("external axes are used: make it a joint target".to_owned());
         }
         if configuration.iter().any(|it| it.value.fract() != 0.0 || it.value.abs() > 100.0) {
             return Err("its configuration is not written in whole numbers".to_owned());
