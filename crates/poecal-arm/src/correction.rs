@@ -188,7 +188,8 @@ impl Corrections {
             let change = (q - meant - self.zeros[joint]).abs();
             let over = change / self.most_of(joint);
             // Not a number is too far as well.
-            if !(over <= 1.0 + 1e-9) && worst.is_none_or(|(other, it)| over > it / self.most_of(other)) {
+            let is_too_far = over.is_nan() || over > 1.0 + 1e-9;
+            if is_too_far && worst.is_none_or(|(other, it)| over > it / self.most_of(other)) {
                 worst = Some((joint, change));
             }
         }
