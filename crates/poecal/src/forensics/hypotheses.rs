@@ -302,3 +302,29 @@ fn mirrored(mirror: Matrix3<f64>, turns: bool, action: String) -> Hypothesis {
             .to_owned(),
     )
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lengths_are_resized_by_the_ratio_of_the_units_that_the_words_name() {
+        let metres = |word: &str| match word {
+            "metres" => 1.0,
+            "centimetres" => 0.01,
+            "millimetres" => 0.001,
+            "inches" => 0.0254,
+            other => panic!("found the unit {other}"),
+        };
+        let all = length_units(Lengths::Positions, true);
+        for hypothesis in &all {
+            let words: Vec<&str> =
+                hypothesis.advice.split(|it: char| !it.is_alphabetic()).filter(|it| !it.is_empty()).collect();
+            let at = words.windows(4).position(|it| it == ["had", "been", "read", "as"]).unwrap();
+            let ratio = metres(words[at - 1]) / metres(words[at + 4]);
+            println!("{} read as {}: {ratio}", words[at - 1], words[at + 4]);
+            assert!((hypothesis.resized() / ratio - 1.0).abs() < 1e-12, "{}", hypothesis.advice);
+        }
+        assert_eq!(all.len(), 10);
+    }
+}

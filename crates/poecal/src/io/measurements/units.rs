@@ -198,6 +198,30 @@ mod tests {
     }
 
     #[test]
+    fn every_unit_is_what_it_is_elsewhere() {
+        // A turn has 360 degrees of 60 minutes of 60 seconds; an inch is 25.4 mm.
+        let turn = |parts: f64| 2.0 * PI / parts;
+        for (symbol, si) in [
+            ("m", 1.0),
+            ("cm", 0.01),
+            ("mm", 0.001),
+            ("um", 1e-6),
+            ("nm", 1e-9),
+            ("in", 0.0254),
+            ("rad", 1.0),
+            ("mrad", 0.001),
+            ("deg", turn(360.0)),
+            ("arcmin", turn(360.0 * 60.0)),
+            ("arcsec", turn(360.0 * 3600.0)),
+            ("1", 1.0),
+        ] {
+            let unit = UNITS.into_iter().find(|unit| unit.symbol == symbol).unwrap();
+            assert!((unit.to_si(1.0) / si - 1.0).abs() < 1e-15, "{symbol}");
+        }
+        assert_eq!(UNITS.len(), 12);
+    }
+
+    #[test]
     fn units_have_other_names() {
         for unit in UNITS {
             for name in unit.names.split_whitespace() {
