@@ -258,10 +258,13 @@ impl Corrections {
             core::array::from_fn(
                 |joint| if joint < n { MARGIN * self.most_of(joint) / unit(joint) } else { 0.0 },
             );
-        for step in 0..MOST_STEPS {
-            let placed: Placed<MOST_JOINTS> = self.actual.placed(q);
-            let left = Left::new(&placed.tip, target);
+        let at = |q: &[f64]| {
+            let placed = self.actual.placed(q);
             let ways = Ways::of(&placed, n, |joint| if slides[joint] { 1.0 } else { 1.0 / reach });
+            (Left::new(&placed.tip, target), ways)
+        };
+        for step in 0..MOST_STEPS {
+            let (left, ways) = at(q);
             let mut from = [0.0; MOST_JOINTS];
             for joint in 0..n {
                 from[joint] = (q[joint] - meant[joint] - self.zeros[joint]) / unit(joint);
@@ -279,12 +282,10 @@ impl Corrections {
         }
         // The point to the last digits, by the least motion.
         for _ in 0..6 {
-            let placed: Placed<MOST_JOINTS> = self.actual.placed(q);
-            let left = Left::new(&placed.tip, target);
+            let (left, ways) = at(q);
             if left.position.norm() < POINT * reach {
                 break;
             }
-            let ways = Ways::of(&placed, n, |joint| if slides[joint] { 1.0 } else { 1.0 / reach });
             let by = ways.to_point(&(left.position / reach))?;
             for joint in 0..n {
                 q[joint] += by[joint] * unit(joint);
@@ -319,12 +320,18 @@ impl Ways {
             let (v, w) = placed.column(joint);
             if joint < n { (v * scale(joint), w) } else { (Vector3::zeros(), Vector3::zeros()) }
         });
+        let mut ways = Ways { n, columns, inverse: None };
+        ways.invert();
+        ways
+    }
+
+    /// Computes (Jₚ Jₚᵀ)⁻¹ of the columns.
+    fn invert(&mut self) {
         let mut moves = Matrix3::zeros();
-        for (v, _) in &columns[..n] {
+        for (v, _) in &self.columns[..self.n] {
             moves += v * v.transpose();
         }
-        let inverse = moves.try_inverse().filter(|it| it.iter().all(|it| it.is_finite()));
-        Ways { n, columns, inverse }
+        self.inverse = moves.try_inverse().filter(|it| it.iter().all(|it| it.is_finite()));
     }
 
     /// The least motion of the joints that are free that moves the point.
@@ -336,11 +343,7 @@ impl Ways {
     /// A joint that does not move.
     fn hold(&mut self, joint: usize) {
         self.columns[joint] = (Vector3::zeros(), Vector3::zeros());
-        let mut moves = Matrix3::zeros();
-        for (v, _) in &self.columns[..self.n] {
-            moves += v * v.transpose();
-        }
-        self.inverse = moves.try_inverse().filter(|it| it.iter().all(|it| it.is_finite()));
+        self.invert();
     }
 
     /// Changes from the zeros that take away what is left, from the changes that there are. What a joint cannot do the others do, as far as
