@@ -67,6 +67,27 @@ def tools() -> list[Step]:
     ]
 
 
+def rust_build() -> Step:
+    """The one build of Rust tests, program and examples."""
+    return Step("Rust build", [[sys.executable, "scripts/rust_tests.py", "--build"]], shows=CARGO_SHOWS)
+
+
+def package_build() -> Step:
+    """The wheel, of the same build, and the package in the environment of the tests."""
+    wheels = target() / "wheels"
+    return Step(
+        "package build",
+        [
+            ["rm", "-rf", str(wheels)],
+            [".venv/bin/maturin", "build", "--locked", "--profile", "tested", "--compatibility", "linux", "--interpreter", PYTHON,
+             "--manifest-path", "crates/poecal-py/Cargo.toml", "--out", str(wheels)],
+            [PYTHON, "-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--force-reinstall", "--no-deps", "--no-index",
+             "--find-links", str(wheels), "poecal"],
+        ],
+        after=["Rust build", "Python tools"], shows="rror:",
+    )  # fmt: skip
+
+
 def levels() -> list[str]:
     """The levels of this machine, by the program, which refuses others."""
     program = os.environ["POECAL_PROGRAM"]
@@ -88,31 +109,19 @@ def in_browser(files: Iterable[str]) -> list[str]:
 def change() -> list[Step]:
     """All that a change of the product can break."""
     clippy = has("cargo", "clippy", "--version")
-    folder = target()
-    wheels = folder / "wheels"
     node, browser = has_node(), lack("Chromium", has_chromium())
     alone = ["app.parts.test.mjs", "workflows.test.mjs"]
     pages = sorted(path.name for path in (ROOT / "web/test").glob("*.test.mjs") if path.name not in ("npm.test.mjs", "site.test.mjs", *alone))
     return [
         Step("format", [["cargo", "fmt", "--all", "--check"]], shows="^Diff in", lacks=lack("rustfmt", has("cargo", "fmt", "--version"))),
         Step("imports", [[sys.executable, "scripts/check-imports"]], shows="^imports go| may name |^only "),
-        Step("Rust build", [[sys.executable, "scripts/rust_tests.py", "--build"]], shows=CARGO_SHOWS),
+        rust_build(),
         *tools(),
         # Beside the long compilation of the library, in a folder of its own: it would wait there, and a processor with it.
         Step("lints", [["cargo", "clippy", "--locked", "--workspace", "--all-targets", "--", "-D", "warnings"]], shows=CARGO_SHOWS, lacks=lack("clippy", clippy)),
         Step("page build", [["node", "web/app/build.mjs"]], after=["web tools"], shows="^poecal.html: ", env={"POECAL_WEB_PROFILE": "tested-web"},
              lacks=lack(f"standard library of {WASM} (rustup target add {WASM})", has_standard_library(WASM))),
-        Step(
-            "package build",
-            [
-                ["rm", "-rf", str(wheels)],
-                [".venv/bin/maturin", "build", "--locked", "--profile", "tested", "--compatibility", "linux", "--interpreter", PYTHON,
-                 "--manifest-path", "crates/poecal-py/Cargo.toml", "--out", str(wheels)],
-                [PYTHON, "-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--force-reinstall", "--no-deps", "--no-index",
-                 "--find-links", str(wheels), "poecal"],
-            ],
-            after=["Rust build", "Python tools"], shows="rror:",
-        ),
+        package_build(),
         Step("licences of others", [[PYTHON, "scripts/third_party.py", "--check"]], after=["Python tools"], shows="^THIRD-PARTY"),
         Step("dependencies", [[PYTHON, "scripts/check_dependencies.py"]], after=["Python tools"], shows="^dependencies: |: (found|is|comes|takes) "),
         Step("Python packages", [[PYTHON, "scripts/check_python_lock.py"]], after=["Python tools"], shows="^requirements|: is "),
@@ -136,37 +145,25 @@ def packages() -> list[Step]:
     node, browser = has_node(), lack("Chromium", has_chromium())
     wasm = lack(f"standard library of {WASM} (rustup target add {WASM})", has_standard_library(WASM))
     return [
+        # What ./test has built, or the same.
+        rust_build(),
         *tools(),
-        # With the features that the package needs, which is made of the same crates next.
-        Step("release build", [["cargo", "build", "--locked", "--release", "-p", "poecal-cli", "-p", "poecal-py", "--bin", "poecal"]], shows=CARGO_SHOWS),
         Step("npm build", [["node", "web/app/build.mjs"]], after=["web tools"], shows="^poecal.html: |^web/npm", lacks=wasm),
-        Step(
-            "wheel",
-            [["rm", "-rf", str(target() / "wheels-release")],
-             [".venv/bin/maturin", "build", "--locked", "--release", "--compatibility", "linux", "--interpreter", PYTHON,
-              "--manifest-path", "crates/poecal-py/Cargo.toml", "--out", str(target() / "wheels-release")]],
-            after=["release build", "Python tools"], shows="rror:",
-        ),
-        Step("installation", [[*PYTEST, INSTALL]], after=["wheel"], shows=PYTEST_SHOWS + "|^static program"),
-        Step("C on a controller", [[*PYTEST, "tests/python/test_c.py"]], after=["release build", "Python tools"], shows=PYTEST_SHOWS,
-             env={"POECAL_PROGRAM": str(target() / "release/poecal"), "POECAL_CONTROLLER": "controller"}),
-        Step("npm package", [in_browser(["npm.test.mjs"])], after=["npm build", "release build"], shows=NODE_SHOWS,
-             env={"POECAL_PROGRAM": str(target() / "release/poecal")}),
-        Step("report of every real robot", [in_browser(["report.test.mjs"])], after=["release build", "web tools"], shows=NODE_SHOWS, lacks=browser,
-             env={"POECAL_PROGRAM": str(target() / "release/poecal"), "POECAL_REPORTS": "all"}),
-        Step("page in a browser", [in_browser(["app.test.mjs"])], after=["npm build", "release build"], shows=NODE_SHOWS, lacks=browser,
-             env={"POECAL_PROGRAM": str(target() / "release/poecal")}),
+        package_build(),
+        Step("installation", [[*PYTEST, INSTALL]], after=["package build"], shows=PYTEST_SHOWS + "|^static program"),
+        Step("C on a controller", [[*PYTEST, "tests/python/test_c.py"]], after=["package build"], shows=PYTEST_SHOWS, env={"POECAL_CONTROLLER": "controller"}),
+        Step("npm package", [in_browser(["npm.test.mjs"])], after=["npm build", "Rust build"], shows=NODE_SHOWS),
+        Step("report of every real robot", [in_browser(["report.test.mjs"])], after=["Rust build", "web tools"], shows=NODE_SHOWS, lacks=browser, env={"POECAL_REPORTS": "all"}),
+        Step("page in a browser", [in_browser(["app.test.mjs"])], after=["npm build", "Rust build"], shows=NODE_SHOWS, lacks=browser),
         *(Step(f"lints of {name}", [["cargo", "clippy", "--locked", "--profile", "tested", "-p", "poecal", "-p", "poecal-wasm", "--target", name, "--", "-D", "warnings"]], shows=CARGO_SHOWS,
                lacks=lack("clippy", clippy) or lack(f"standard library of {name} (rustup target add {name})", has_standard_library(name)))
           for name in ("aarch64-unknown-linux-gnu", WASM)),
         Step(f"oldest Rust ({oldest})", [["cargo", f"+{oldest}", "check", "--locked", "--workspace"]], shows=CARGO_SHOWS, may_lack=True,
              lacks=lack(f"Rust {oldest} (rustup toolchain install {oldest} --profile minimal)", has("cargo", f"+{oldest}", "--version"))),
-        Step("simulated disk", [["cargo", "test", "--locked", "--profile", "tested", "--workspace", "--test", "it", "--", "simulated_disk", "--nocapture"]],
-             shows=r"^test result|^\d+ (trials|stops)", env={"POECAL_TRIALS": "10000"}),
+        Step("simulated disk", [[sys.executable, "scripts/rust_tests.py", "simulated_disk"]], after=["Rust build"], shows=r"^FAILED |^\d+ passed, |^\d+ (trials|stops)", env={"POECAL_TRIALS": "10000"}),
         Step("documentation site", [["scripts/build-docs"], [*PYTEST, SITE]], after=["Python tools", "npm build"] if node and not wasm else ["Python tools", "web tools"] if node else ["Python tools"],
              shows="^site: |^(WARNING|ERROR) |" + PYTEST_SHOWS, env={"POECAL_PAGE": "web/app/dist/poecal.html"} if node and not wasm else {}),
-        Step("site in a browser", [in_browser(["site.test.mjs"])], after=["documentation site", "web tools"], shows=NODE_SHOWS, lacks=browser,
-             env={"POECAL_PROGRAM": str(target() / "release/poecal")}),
+        Step("site in a browser", [in_browser(["site.test.mjs"])], after=["documentation site", "web tools", "Rust build"], shows=NODE_SHOWS, lacks=browser),
     ]  # fmt: skip
 
 

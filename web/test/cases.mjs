@@ -109,7 +109,7 @@ export function ofKind(kind, ...words) {
   return calibrate(kind, model, simulated(kind, model, "--kind", kind, "--count", "120", "--noise", "1mm,0.1deg"), ...words);
 }
 
-/** Every case: its name, a function that gives the folder with its results, and whether it is looked at in one width only. */
+/** Every case: its name, and a function that gives the folder with its results. */
 export const CASES = [
   ["the paper's elbow", () => calibrate("elbow", join(ELBOW, "robot.urdf"), join(ELBOW, "points.csv"))],
   ["a broken calibration", () => calibrate("broken", join(ELBOW, "robot.urdf"), broken())],
@@ -139,7 +139,7 @@ if (existsSync(datasets)) {
   console.log(`real robots: ${looked.length} of ${real.length}`);
   for (const { name, model, measurements, options } of looked) {
     const words = options.map((word) => (word.startsWith("validation/") ? join(ROOT, word) : word));
-    CASES.push([name, () => calibrate(name.replace(/\W+/g, "-"), join(datasets, model), join(datasets, measurements), ...words), true]);
+    CASES.push([name, () => calibrate(name.replace(/\W+/g, "-"), join(datasets, model), join(datasets, measurements), ...words)]);
   }
 } else {
   console.log(`real robots skipped: no folder of data sets at ${datasets}; set POECAL_DATASETS`);

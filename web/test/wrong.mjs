@@ -37,7 +37,7 @@ export const WRONG = [
   ["beams that are all lost", table(LINES.slice(1).filter(Boolean).map((line, k) => (k ? `${line.split(",").slice(0, 6)},0,0,0` : line)).join("\n")), /found no position in any row/],
   ["too few rows", table(LINES.slice(0, 6).join("\n")), /measure more configurations/],
   ["broken XML", model(MODEL.slice(0, 900)), /^robot\.urdf:1:1: found broken XML/, "1"],
-  ["macros", model(MODEL.replace('name="elbow">', 'name="elbow" xmlns:xacro="http://www.ros.org/wiki/xacro"><xacro:macro name="a"/>')), /expand the file first/, "3"],
+  ["macros", model(MODEL.replace('name="elbow">', 'name="elbow" xmlns:xacro="http://www.ros.org/wiki/xacro"><xacro:macro name="a"/>')), /^robot\.urdf:3:\d+: found a xacro element beside joints/, "3"],
   ["an expression for a number", model(MODEL.replace('xyz="0 0 1"', 'xyz="0 0 ${one}"')), /found `\$\{one\}`/, "16"],
   ["a web page as a model", model("<!DOCTYPE html><html></html>"), /document type definition/, "1"],
   ["a robot without joints", model('<robot name="x"><link name="a"/></robot>'), /^robot\.urdf: found no end link/],
