@@ -9,8 +9,8 @@ use std::path::{Path, PathBuf};
 
 use numpy::PyArray2;
 use poecal::calibration::{AcceptanceLimits, Judgement};
-use poecal::compensate::ProgramOptions;
-use poecal::io::calibration_file::CalibrationFile;
+use poecal::compensate::{Language, ProgramOptions};
+use poecal::io::calibration_file::{CalibrationFile, Counted};
 use poecal::io::export::{ExportFormat, ExportOptions, export};
 use poecal::io::model::{Model, ModelSource};
 use poecal::io::output::{self, Contents, Existing, Results};
@@ -18,6 +18,7 @@ use poecal::io::predictions::{PredictionFrame, predicted};
 use poecal::io::residuals::{ResidualRows, Residuals as Rows};
 use poecal::io::shapes::Shapes;
 use poecal::report::{self, table::number};
+use poecal::robot::ThirdAxis;
 use pyo3::IntoPyObjectExt as _;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyTuple};
@@ -27,7 +28,7 @@ use crate::arguments::{self as arg, Argument, unexpected};
 use crate::arrays::{Joints, pose_array};
 use crate::calibrate::accept_limits;
 use crate::covariance::Covariance;
-use crate::errors::{python_words, raise};
+use crate::errors::{argument, python_words, raise};
 use crate::findings::{self, Findings};
 use crate::measurements::Measurements;
 use crate::notebook;
@@ -401,12 +402,16 @@ impl Calibration {
     ///     Name of a target, default the tip.
     /// model
     ///     Which model predicts: "corrected", where there is one, or "calibrated", geometry alone.
+    /// readings
+    ///     What the arrays are: "model", readings of the model, or "controller", what the controller counts, as the calibration's mapping said; needed where
+    ///     these differ.
     ///
     /// Returns
     /// -------
     /// numpy.ndarray or Prediction
     ///     Poses of shape (m, 4, 4), or (4, 4) for one configuration; with `with_uncertainty` a `Prediction`, always of m poses.
-    #[pyo3(signature = (joints, *, with_uncertainty=false, frame="base", target=None, model="corrected"))]
+    #[pyo3(signature = (joints, *, with_uncertainty=false, frame="base", target=None, model="corrected", readings=None))]
+    #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
     fn predict<'py>(
         &self,
         py: Python<'py>,
@@ -415,13 +420,19 @@ impl Calibration {
         #[pyo3(from_py_with = arg::frame)] frame: &str,
         #[pyo3(from_py_with = arg::target)] target: Option<&str>,
         #[pyo3(from_py_with = arg::model)] model: &str,
+        #[pyo3(from_py_with = arg::readings)] readings: Option<&str>,
     ) -> PyResult<Bound<'py, PyAny>> {
+        let counting = reach::counting(self.file(), readings)?;
         let frame =
             chosen("frame", frame, &[("base", PredictionFrame::Base), ("device", PredictionFrame::Device)])?;
         let model = &self.actual(model)?.model;
         let joints = Joints::of(joints, &model.robot)?;
+        let width = model.robot.reading_names().len();
         let found = py
-            .detach(|| predicted(model, &joints.readings, frame, target, with_uncertainty))
+            .detach(|| {
+                let readings = reach::to_model(counting.as_ref(), &joints.readings, width);
+                predicted(model, &readings, frame, target, with_uncertainty)
+            })
             .map_err(raise)?;
         match found.doubts {
             Some(doubts) => Prediction { poses: found.poses, doubts }.into_bound_py_any(py),
@@ -439,21 +450,26 @@ impl Calibration {
     ///     Values of the corrected model's factors by their names, default their references.
     /// model
     ///     Which model is the robot as it is: "corrected", where there is one, or "calibrated", geometry alone.
+    /// readings
+    ///     What the arrays are: "model", readings of the model, or "controller", what the controller counts, as the calibration's mapping said; needed where
+    ///     these differ.
     ///
     /// Returns
     /// -------
     /// numpy.ndarray
     ///     Poses of shape (m, 4, 4), or (4, 4) for one configuration.
-    #[pyo3(signature = (joints, *, factors=None, model="corrected"))]
+    #[pyo3(signature = (joints, *, factors=None, model="corrected", readings=None))]
     fn forward_kinematics<'py>(
         &self,
         py: Python<'py>,
         joints: &Bound<'py, PyAny>,
         factors: Option<&Bound<'py, PyAny>>,
         #[pyo3(from_py_with = arg::model)] model: &str,
+        #[pyo3(from_py_with = arg::readings)] readings: Option<&str>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let robot = &self.actual(model)?.model.robot;
-        reach::forward(py, robot, joints, &reach::factors(robot, factors)?)
+        let counting = reach::counting(self.file(), readings)?;
+        reach::forward(py, robot, (joints, counting.as_ref()), &reach::factors(robot, factors)?)
     }
 
     /// How the tip moves with each reading: the motion of its point, then its turn, in the axes of the base. What weights add is in it.
@@ -528,13 +544,16 @@ impl Calibration {
     ///     Whether to give the summary as well.
     /// model
     ///     Which model is the robot as it is: "corrected", where there is one, or "calibrated", geometry alone.
+    /// readings
+    ///     What the arrays are: "model", readings of the model, or "controller", what the controller counts, as the calibration's mapping said; needed where
+    ///     these differ.
     ///
     /// Returns
     /// -------
     /// numpy.ndarray
     ///     Readings to command, of the same shape. Rows that stay as they are are named by a PoecalWarning. With summary=True a tuple of these and a
     ///     dict: `targets` has every row that is corrected, by its index (`line`), `listed` every other one and why.
-    #[pyo3(signature = (joints, *, factors=None, nearest=false, most_turn_rad=None, most_slide_m=None, summary=false, model="corrected"))]
+    #[pyo3(signature = (joints, *, factors=None, nearest=false, most_turn_rad=None, most_slide_m=None, summary=false, model="corrected", readings=None))]
     #[expect(clippy::too_many_arguments, reason = "the options of a Python function")]
     fn compensate<'py>(
         &self,
@@ -546,11 +565,14 @@ impl Calibration {
         #[pyo3(from_py_with = arg::most_slide_m)] most_slide_m: Option<f64>,
         #[pyo3(from_py_with = arg::summary)] summary: bool,
         #[pyo3(from_py_with = arg::model)] model: &str,
+        #[pyo3(from_py_with = arg::readings)] readings: Option<&str>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let actual = self.actual(model)?;
         let taught = self.file().taught(&actual.model.robot).map_err(raise)?;
         let factors = reach::factors(&actual.model.robot, factors)?;
         let options = reach::change(nearest, most_turn_rad, most_slide_m)?;
+        let counting = reach::counting(self.file(), readings)?;
+        let joints = (joints, counting.as_ref());
         reach::compensate(py, (&taught.robot, &actual.model.robot), joints, &factors, &options, summary)
     }
 
@@ -596,6 +618,8 @@ impl Calibration {
     ///     Whether to write the nearest configuration where the robot cannot reach a target, instead of leaving it as it is.
     /// most_turn_rad, most_slide_m
     ///     How far a joint that turns, or slides, may be moved beyond its zero, default 2 degrees and 2 mm. A target that takes more, at a singularity, stays as it is and is listed.
+    /// third_axis
+    ///     From where J3 of a program of FANUC counts: "level" or "arm"; default as the calibration's mapping says and its rows show.
     /// check
     ///     Whether to compute what is left once more, from the written text.
     /// model
@@ -605,7 +629,7 @@ impl Calibration {
     /// -------
     /// tuple of bytes and dict
     ///     The program, and the summary: how many targets are corrected, which are listed as they are and why, the largest corrections, and what is left.
-    #[pyo3(signature = (path, *, language=None, tools=None, frames=None, base=None, flange=None, start=None, factors=None, nearest=false, most_turn_rad=None, most_slide_m=None, check=false, model="corrected"))]
+    #[pyo3(signature = (path, *, language=None, tools=None, frames=None, base=None, flange=None, start=None, factors=None, nearest=false, most_turn_rad=None, most_slide_m=None, third_axis=None, check=false, model="corrected"))]
     #[expect(clippy::too_many_arguments, reason = "the options of a Python function")]
     fn compensate_program<'py>(
         &self,
@@ -621,6 +645,7 @@ impl Calibration {
         #[pyo3(from_py_with = arg::nearest)] nearest: bool,
         #[pyo3(from_py_with = arg::most_turn_rad)] most_turn_rad: Option<f64>,
         #[pyo3(from_py_with = arg::most_slide_m)] most_slide_m: Option<f64>,
+        #[pyo3(from_py_with = arg::third_axis)] third_axis: Option<&str>,
         #[pyo3(from_py_with = arg::check)] check: bool,
         #[pyo3(from_py_with = arg::model)] model: &str,
     ) -> PyResult<(Bound<'py, PyBytes>, Bound<'py, PyAny>)> {
@@ -629,7 +654,25 @@ impl Calibration {
         let factors = reach::factors(&actual.model.robot, factors)?;
         let language = reach::language(&path, language.as_deref())?;
         let change = reach::change(nearest, most_turn_rad, most_slide_m)?;
-        let mut options = ProgramOptions { change, check, each: true, ..ProgramOptions::of(language) };
+        let third_axis = third_axis
+            .map(|word| chosen("third_axis", word, &[("level", ThirdAxis::Level), ("arm", ThirdAxis::Arm)]))
+            .transpose()?;
+        if third_axis.is_some() && language != Language::Fanuc {
+            return Err(argument(
+                "third_axis",
+                format!("found it for {}, expected a program of FANUC", language.title()),
+            ));
+        }
+        let Counted { controller, is_third_axis_open } =
+            self.file().counted(&taught.robot, third_axis).map_err(raise)?;
+        let mut options = ProgramOptions {
+            change,
+            check,
+            each: true,
+            controller,
+            is_third_axis_open,
+            ..ProgramOptions::of(language)
+        };
         for words in tools.iter().flatten() {
             options.given.add_tool(words, language).map_err(raise)?;
         }

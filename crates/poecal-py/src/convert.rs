@@ -127,10 +127,15 @@ pub(crate) fn read_joints<'py>(
     #[pyo3(from_py_with = arg::robot)] robot: &Robot,
     #[pyo3(from_py_with = arg::columns)] columns: Option<PathBuf>,
 ) -> PyResult<Bound<'py, PyArray2<f64>>> {
-    let robot = &robot.model.robot;
+    let model = &robot.model;
+    let robot = &model.robot;
     let read = || {
         let mapping = columns.as_ref().map(ColumnMap::read).transpose()?;
-        measurements::read_joints(&path, robot, &ReadOptions { mapping, ..ReadOptions::default() })
+        measurements::read_joints(
+            &path,
+            robot,
+            &model.reads(ReadOptions { mapping, ..ReadOptions::default() }),
+        )
     };
     let joints = py.detach(read).map_err(raise)?;
     crate::warn(py, &joints.warnings)?;

@@ -52,6 +52,7 @@ fn options(
             .flatten()
             .map(|it| it.parse())
             .collect::<Result<_, _>>()?,
+        ..ReadOptions::default()
     })
 }
 
@@ -126,7 +127,7 @@ impl Measurements {
                 (socket_distance, contact),
                 instrument_noise.as_deref(),
             )?;
-            let file = measurements::read(&paths, &robot.model.robot, &options)?;
+            let file = measurements::read(&paths, &robot.model.robot, &robot.model.reads(options))?;
             let mut sha256 = Inputs::checksums(columns.iter().map(PathBuf::as_path))?;
             sha256.extend(file.sha256.clone());
             Ok((file, sha256))

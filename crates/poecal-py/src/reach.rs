@@ -3,11 +3,12 @@
 use std::path::Path;
 
 use numpy::{PyArray1, PyArrayMethods as _};
-use poecal::Robot;
 use poecal::compensate::{
     ChangeOptions, Compensation, Inverse, Kinematics, Language, MostChange, ProgramOptions, compensate_file,
 };
 use poecal::lie::Pose;
+use poecal::robot::Counting;
+use poecal::{CalibrationFile, Robot};
 use pyo3::IntoPyObjectExt as _;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyList};
@@ -54,6 +55,39 @@ fn configurations(value: &Bound<'_, PyAny>, name: &str, robot: &Robot) -> PyResu
     Ok((numbers.shaped(wanted, name, &expected)?, is_single))
 }
 
+/// The way from what a calibration's controller counts to the model's readings, if arrays are of that; `None` if they are the model's, or the
+/// same.
+pub(crate) fn counting(file: &CalibrationFile, readings: Option<&str>) -> PyResult<Option<Counting>> {
+    let is_counted = match readings {
+        None => None,
+        Some(word) => Some(chosen("readings", word, &[("controller", true), ("model", false)])?),
+    };
+    let Some(sums) = file.controller.as_ref().filter(|it| !it.is_plain()) else { return Ok(None) };
+    match is_counted {
+        Some(true) => sums.counting().map(Some).map_err(raise),
+        Some(false) => Ok(None),
+        None => Err(argument(
+            "readings",
+            format!(
+                "found none, and a calibration whose mapping made readings of others ({}), expected \"controller\" for arrays of what the \
+                 controller counts, or \"model\"",
+                sums.words()
+            ),
+        )),
+    }
+}
+
+/// The model's readings for rows of counted ones; numbers beyond those of the joints stay.
+pub(crate) fn to_model(counting: Option<&Counting>, rows: &[f64], width: usize) -> Vec<f64> {
+    let Some(counting) = counting else { return rows.to_vec() };
+    let row = |row: &[f64]| {
+        let mut made = counting.readings(row);
+        made.extend(row.iter().skip(made.len()));
+        made
+    };
+    rows.chunks_exact(width.max(1)).flat_map(row).collect()
+}
+
 /// Rows of numbers as an array of as many dimensions as were given.
 fn rows<'py>(
     py: Python<'py>,
@@ -92,7 +126,7 @@ pub(crate) fn change(
 pub(crate) fn compensate<'py>(
     py: Python<'py>,
     (nominal, actual): (&Robot, &Robot),
-    joints: &Bound<'py, PyAny>,
+    (joints, counting): (&Bound<'py, PyAny>, Option<&Counting>),
     factors: &[f64],
     options: &ChangeOptions,
     summary: bool,
@@ -100,7 +134,21 @@ pub(crate) fn compensate<'py>(
     let (numbers, is_single) = configurations(joints, "joints", actual)?;
     let n = actual.joint_reading_names().len();
     let compensation = Compensation::new(nominal, actual, factors, options).map_err(raise)?;
-    let (made, found) = py.detach(|| compensation.of_many(&numbers.values, summary));
+    let (made, found) = py.detach(|| {
+        let meant = to_model(counting, &numbers.values, n);
+        let (mut made, found) = compensation.of_many(&meant, summary);
+        if let Some(counting) = counting {
+            let rows = meant.chunks_exact(n).zip(numbers.values.chunks_exact(n));
+            for (to, (from, counted)) in made.chunks_exact_mut(n).zip(rows) {
+                let change: Vec<f64> = to.iter().zip(from).map(|(to, from)| to - from).collect();
+                for (to, (counted, change)) in to.iter_mut().zip(counted.iter().zip(counting.change(&change)))
+                {
+                    *to = counted + change;
+                }
+            }
+        }
+        (made, found)
+    });
     crate::warn(py, &found.warnings())?;
     let made = rows(py, made, n, is_single)?;
     if !summary {
@@ -269,12 +317,13 @@ fn held_reading(
 pub(crate) fn forward<'py>(
     py: Python<'py>,
     robot: &Robot,
-    joints: &Bound<'py, PyAny>,
+    (joints, counting): (&Bound<'py, PyAny>, Option<&Counting>),
     factors: &[f64],
 ) -> PyResult<Bound<'py, PyAny>> {
     let (numbers, is_single) = configurations(joints, "joints", robot)?;
     let kinematics = Kinematics::new(robot, factors).map_err(raise)?;
-    let found = py.detach(|| kinematics.forward_kinematics(&numbers.values));
+    let n = robot.joint_reading_names().len();
+    let found = py.detach(|| kinematics.forward_kinematics(&to_model(counting, &numbers.values, n)));
     poses(py, &found, is_single)
 }
 

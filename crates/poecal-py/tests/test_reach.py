@@ -205,3 +205,55 @@ def test_mistakes_are_told(calibration):
     for ask in (calibration.forward_kinematics, calibration.jacobian, calibration.sag):
         with pytest.raises(ValueError, match=r"joints: found an array of shape \(2, 3\), expected shape \(m, 6\)"):
             ask(np.zeros((2, 3)))
+
+
+def test_arrays_are_of_what_the_controller_counts_where_that_is_said(tmp_path):
+    model, made = elbow(), session(count=60, seed=4, error_rotation_deg=0.1, error_position_mm=0.3)
+    joints, poses = made.measurements.joints, made.measurements.poses
+    # Axes 2 and 3 of this arm point alike: from the level, the third counts the second too.
+    level = np.array([0, 0, 1, 0, 0, 0])
+    columns = ",".join([f"J{k}" for k in range(1, 7)] + ["x", "y", "z"] + [f"r{k}" for k in range(9)])
+    rows = np.hstack([joints + joints[:, [1]] * level, poses[:, :3, 3], poses[:, :3, :3].reshape(-1, 9)])
+    np.savetxt(tmp_path / "session.csv", rows, delimiter=",", header=columns, comments="", fmt="%.15g")
+    names = ", ".join(f'"r{k}"' for k in range(9))
+    (tmp_path / "map.toml").write_text(f'third_axis = "level"\n[orientation]\nform = "rotation_matrix"\ncolumns = [{names}]\n')
+    with pytest.warns(poecal.PoecalWarning, match="took `J1` to `J6`"):
+        read = poecal.Measurements.from_csv(tmp_path / "session.csv", model, columns=tmp_path / "map.toml")
+    assert apart(read.joints, joints) < 1e-12
+    calibration = poecal.calibrate(model, read)
+    program = np.random.default_rng(2).uniform(-1, 1, (20, 6)) + [0, 0.3, 0.3, 0, 1.5, 0]
+    for call in (calibration.predict, calibration.forward_kinematics, calibration.compensate):
+        with pytest.raises(ValueError, match=r'readings: found none, .*joint3 = .*, expected "controller" .* or "model"'):
+            call(program)
+    as_model = program - program[:, [1]] * level
+    assert apart(calibration.predict(program, readings="controller"), calibration.predict(as_model, readings="model")) < 1e-12
+    commanded = calibration.compensate(program, readings="controller")
+    wanted = calibration.compensate(as_model, readings="model")
+    print(f"commands change by up to {np.degrees(apart(commanded, program)):.3f} deg")
+    assert apart(commanded - commanded[:, [1]] * level, wanted) < 1e-12 and apart(commanded, program) > 1e-4
+    reached = calibration.forward_kinematics(commanded, readings="controller")
+    assert apart(reached, calibration.taught().forward_kinematics(as_model)) < 1e-9
+    calibration.write(tmp_path / "out")
+    again = poecal.Calibration.read(tmp_path / "out/calibration.json")
+    assert apart(again.compensate(program, readings="controller"), commanded) < 1e-12
+
+
+def test_programs_of_fanuc_take_the_third_axis_as_it_is_stated(tmp_path):
+    calibration = poecal.calibrate(elbow(), session(count=60, seed=4, error_rotation_deg=0.1, error_position_mm=0.3).measurements)
+    start = np.array([10, 20, 30, -20, 40, 15.0])
+    numbers = ",".join(f" J{k} = {value:.6f} deg" for k, value in enumerate(start, 1))
+    (tmp_path / "job.ls").write_text(f"/PROG JOB\n/MN\n1:J P[1] 100% FINE ;\n/POS\nP[1]{{\n GP1:\n UF : 0, UT : 1,\n{numbers}\n}};\n/END\n")
+
+    def made(**options):
+        text, summary = calibration.compensate_program(tmp_path / "job.ls", **options)
+        assert summary["corrected"] == 1
+        row = text.decode().split("UT : 1,")[1].split("}")[0]
+        return np.array([float(it.split("=")[1].split()[0]) for it in row.split(",")])
+
+    level = np.array([0, 0, 1, 0, 0, 0])
+    for options, counts in (({}, 0 * level), ({"third_axis": "arm"}, 0 * level), ({"third_axis": "level"}, level)):
+        wanted = np.degrees(calibration.compensate(np.radians(start - start[1] * counts)))
+        found = made(**options)
+        assert apart(found - found[1] * counts, wanted) < 1e-6, options
+    with pytest.raises(ValueError, match="third_axis"):
+        calibration.compensate_program(tmp_path / "job.ls", language="krl", third_axis="arm")

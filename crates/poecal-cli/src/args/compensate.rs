@@ -4,9 +4,10 @@ use std::path::PathBuf;
 
 use clap::Args;
 use poecal::compensate::MostChange;
+use poecal::robot::ThirdAxis;
 
 use super::shared::{ColumnArgs, OutFile};
-use super::words::{LANGUAGE, PREDICTED_MODEL, PredictedModel, ProgramLanguage, one_of};
+use super::words::{LANGUAGE, PREDICTED_MODEL, PredictedModel, ProgramLanguage, THIRD_AXIS, one_of};
 use crate::quantity::most_change;
 
 /// Arguments of `poecal compensate`.
@@ -39,6 +40,10 @@ pub(crate) struct Compensate {
     /// state no configuration (ConfL\Off, movej)
     #[arg(long, value_name = "READINGS", allow_hyphen_values = true)]
     pub(crate) start: Option<String>,
+    /// From where J3 of a program of FANUC counts: the level, as its controllers do by themselves, or the arm [default: as the calibration's mapping
+    /// says and its rows show]
+    #[arg(long, value_parser = one_of(THIRD_AXIS))]
+    pub(crate) third_axis: Option<ThirdAxis>,
     /// Which model of the calibration is the actual robot: the corrected one, if there is one, or the calibrated one
     #[arg(long = "model", value_parser = one_of(PREDICTED_MODEL), default_value = "corrected")]
     pub(crate) of: PredictedModel,

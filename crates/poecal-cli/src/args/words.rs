@@ -8,6 +8,7 @@ use poecal::io::measurements::{Frames, PlaneContact};
 use poecal::io::model::ModelFormat;
 use poecal::io::predictions::PredictionFrame;
 use poecal::offsets::End;
+use poecal::robot::ThirdAxis;
 use poecal::simulate::Kind;
 use poecal_lou2009::{Formulation, Method, Residual};
 
@@ -24,6 +25,12 @@ pub(super) const FRAME: Words<DeviceFrameKnowledge> = &[
 pub(super) const FRAMES: Words<Frames> = &[
     ("common", "All, or those of one name in the column `instrument`", Frames::Common),
     ("per-file", "Those of a file", Frames::PerFile),
+];
+
+/// From where third axes count.
+pub(super) const THIRD_AXIS: Words<ThirdAxis> = &[
+    ("level", "From the level: where J2 turns alone, the forearm keeps its direction", ThirdAxis::Level),
+    ("arm", "From the lower arm, as joint 3 of a model", ThirdAxis::Arm),
 ];
 
 /// How planes are touched.

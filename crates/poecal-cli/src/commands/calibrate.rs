@@ -140,7 +140,7 @@ fn read_measurements(
     refuse_fitted(&arguments.validate, &arguments.measurements)?;
     // With --validate the sets are given by the files' roles.
     let ignore_sets = !arguments.validate.is_empty();
-    let options = ReadOptions { ignore_sets, ..reading? };
+    let options = model.reads(ReadOptions { ignore_sets, ..reading? });
     let mapping = arguments.reading.meaning.columns.columns.iter();
     let mut inputs = Inputs {
         sha256: Inputs::checksums(std::iter::once(&model.path).chain(mapping).map(PathBuf::as_path))?,

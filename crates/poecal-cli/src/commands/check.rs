@@ -17,7 +17,7 @@ pub(crate) fn check(arguments: &Check, console: &Console) -> Result<u8> {
         return Err(Error::new(ErrorKind::Option, message));
     };
     let model = Model::read(path, &arguments.chain.selection(options.as_ref().ok())?)?;
-    let options = options?;
+    let options = model.reads(options?);
     let measurements = if arguments.measurements.is_empty() {
         None
     } else {

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use poecal::compensate::{
     ChangeOptions, Given, Language, ProgramOptions, TableOptions, compensate_file, compensate_table,
 };
-use poecal::io::calibration_file::TaughtRobot;
+use poecal::io::calibration_file::{Counted, TaughtRobot};
 use poecal::io::model::{Model, ModelSource};
 use poecal::io::output::FilePlace;
 use poecal::io::urdf::ChainSelection;
@@ -34,14 +34,28 @@ pub(crate) fn compensate(arguments: &Compensate, console: &Console) -> Result<u8
     let factors = factors(&model.robot, &arguments.factors, console)?;
     let robots = (&taught.robot, &model.robot);
     if let Some(language) = language(arguments)? {
-        return robot_program(arguments, language, (&taught, &model.robot), &factors, place, console);
+        let counted = file.counted(&taught.robot, arguments.third_axis)?;
+        return robot_program(
+            arguments,
+            language,
+            (&taught, &model.robot),
+            &factors,
+            counted,
+            place,
+            console,
+        );
     }
-    let options = TableOptions {
-        read: arguments.columns.options()?,
-        check: arguments.check,
-        change: change(arguments),
-        each: arguments.json,
-    };
+    if let Some(stated) = arguments.third_axis {
+        let message = format!(
+            "found --third-axis {0} for a table, expected it for programs of FANUC (.ls): write `third_axis = \"{0}\"` into a mapping \
+             (--columns)",
+            stated.word()
+        );
+        return Err(Error::new(ErrorKind::Option, message));
+    }
+    let read = model.reads(arguments.columns.options()?);
+    let options =
+        TableOptions { read, check: arguments.check, change: change(arguments), each: arguments.json };
     let is_told = place.is_some() || arguments.dry_run;
     let (summary, table) = match place {
         Some(place) => {
@@ -85,14 +99,21 @@ fn robot_program(
     language: Language,
     (taught, actual): (&TaughtRobot, &Robot),
     factors: &[f64],
+    counted: Counted,
     place: Option<FilePlace>,
     console: &Console,
 ) -> Result<u8> {
     if arguments.columns.columns.is_some() {
         let message = format!(
-            "found --columns for a program in {}, expected it for tables (CSV) alone",
+            "found --columns for a program in {}, expected it for tables (CSV) alone: programs state what the controller counted in the \
+             calibration's mapping",
             language.title()
         );
+        return Err(Error::new(ErrorKind::Option, message));
+    }
+    if arguments.third_axis.is_some() && language != Language::Fanuc {
+        let message =
+            format!("found --third-axis for a program in {}, expected one of FANUC", language.title());
         return Err(Error::new(ErrorKind::Option, message));
     }
     let options = ProgramOptions {
@@ -101,6 +122,8 @@ fn robot_program(
         check: arguments.check,
         change: change(arguments),
         each: arguments.json,
+        controller: counted.controller,
+        is_third_axis_open: counted.is_third_axis_open,
     };
     let (out, summary) = compensate_file(&arguments.program, (&taught.robot, actual), factors, &options)?;
     let is_told = place.is_some() || arguments.dry_run;

@@ -16,7 +16,7 @@ pub(crate) fn identify(arguments: &Identify, console: &Console) -> Result<u8> {
     refuse_repeats(&arguments.joints)?;
     let options = arguments.columns.options();
     let model = Model::read(&arguments.model, &arguments.chain.selection(options.as_ref().ok())?)?;
-    let options = options?;
+    let options = model.reads(options?);
     let usual = PlannedSession::default();
     let session = PlannedSession {
         kind: arguments.kind,

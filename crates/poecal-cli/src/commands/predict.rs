@@ -39,7 +39,7 @@ pub(crate) fn predict(arguments: &Predict, console: &Console) -> Result<u8> {
         }
         PredictedModel::Calibrated => model,
     };
-    let joints = measurements::read_joints(&arguments.joints, &model.robot, &options?)?;
+    let joints = measurements::read_joints(&arguments.joints, &model.robot, &model.reads(options?))?;
     console.warnings(&joints.warnings);
     let (frame, target) = (arguments.frame, mounted.as_ref().map(|(name, _)| name.as_str()).or(target));
     let text = predictions::predict(&model, &joints, frame, target, arguments.with_uncertainty)?;

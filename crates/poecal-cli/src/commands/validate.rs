@@ -21,7 +21,8 @@ pub(crate) fn validate(arguments: &Validate, console: &Console) -> Result<u8> {
     };
     let calibrated = file.robot().map_err(in_file)?;
     // Every row counts, whatever its set.
-    let options = ReadOptions { ignore_sets: true, ..arguments.meaning.options()? };
+    let controller = file.controller.clone();
+    let options = ReadOptions { ignore_sets: true, controller, ..arguments.meaning.options()? };
     let read = measurements::read(&arguments.measurements, &calibrated, &options)?;
     let (refit_frame, refit_tool) = (arguments.refit_frame, arguments.refit_tool);
     let mut judgement = file.judge(&read.data, refit_frame, refit_tool).map_err(in_file)?;

@@ -90,7 +90,7 @@ fn what_cannot_be_corrected_is_told_and_nothing_is_written() {
     let folder = folder();
     folder.write("short.csv", "joint1,joint2\n0,0\n");
     folder.write("word.csv", "joint1,joint2,joint3,joint4,joint5,joint6\n0,0,0,0,0.5,0\n0,0,x,0,0,0\n");
-    folder.write("sum.toml", "[joints]\njoint3 = { columns = { joint2 = 1, joint3 = 1 } }\n");
+    folder.write("sum.toml", "[joints]\njoint3 = { value = 0.1 }\n");
     let before = folder.listing();
     for (arguments, sentence) in [
         ("robot.urdf program.csv", "error: robot.urdf: found a robot model, expected a calibration.json"),
@@ -116,7 +116,7 @@ fn what_cannot_be_corrected_is_told_and_nothing_is_written() {
     let run = folder.run(
         "compensate --most-change 20deg results/calibration.json word.csv --columns sum.toml --out out.csv",
     );
-    assert!(run.code == 2 && run.err.contains("`joint3` is a sum of columns"), "{}", run.err);
+    assert!(run.code == 2 && run.err.contains("`joint3` is a constant by the mapping"), "{}", run.err);
     assert_eq!(folder.listing(), before);
 }
 

@@ -142,3 +142,45 @@ fn targets_without_names_are_told_to_be_named() {
     assert!(words.starts_with("verdict do not use: ") && run.code == 1, "{}", run.out);
     assert!(!words.contains("check which is right"), "{}", run.out);
 }
+
+#[test]
+fn readings_in_per_cent_of_the_range_are_named_with_the_mapping_that_reads_them() {
+    let folder = session(Kind::Pose);
+    let text = folder.read("measurements.csv");
+    let mut rows = text.lines();
+    let mut made = rows.next().unwrap().to_owned();
+    // Half the ranges of the joints' limits, degrees.
+    let half = [180.0, 140.0, 160.0, 180.0, 130.0, 360.0];
+    for row in rows {
+        let mut cells: Vec<String> = row.split(',').map(str::to_owned).collect();
+        for (cell, half) in cells[3..9].iter_mut().zip(half) {
+            *cell = format!("{:.6}", cell.parse::<f64>().unwrap().to_degrees() / half * 100.0);
+        }
+        made.push('\n');
+        made.push_str(&cells.join(","));
+    }
+    folder.write("percent.csv", &made);
+    let run = folder.run("calibrate robot.urdf percent.csv --out results");
+    println!("{}", run.err);
+    assert_eq!(run.code, 2);
+    // As the sentence says.
+    let mut called = made;
+    for joint in 1..=6 {
+        called = called.replacen(&format!("joint{joint}"), &format!("joint{joint}[deg]"), 1);
+    }
+    folder.write("called.csv", called);
+    let run = folder.run("check robot.urdf called.csv --json");
+    let found: serde_json::Value = serde_json::from_str(&run.out).unwrap();
+    let statement = found["diagnosis"][0]["statement"].as_str().unwrap();
+    println!("{statement}");
+    assert!(statement.contains("per cent of the joints' ranges, -100 to 100"), "{statement}");
+    // The lines that it names, in a mapping.
+    let lines = statement
+        .split('`')
+        .filter(|it| it.starts_with("joint") || it.starts_with('['))
+        .collect::<Vec<_>>()
+        .join("\n");
+    folder.write("map.toml", lines);
+    let told = folder.done("calibrate robot.urdf called.csv --columns map.toml --out results");
+    assert!(told.starts_with("verdict       good"), "{told}");
+}

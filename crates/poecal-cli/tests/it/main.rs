@@ -6,6 +6,7 @@ mod acceptance;
 mod bad_input;
 mod commands;
 mod compensate;
+mod counted;
 mod diagnosis;
 mod example;
 mod exit_codes;

@@ -1094,6 +1094,7 @@ class Calibration:
         frame: Literal["base", "device"] = "base",
         target: str | None = None,
         model: Literal["corrected", "calibrated"] = "corrected",
+        readings: Literal["model", "controller"] | None = None,
     ) -> _Array:
         """Poses of the tip, or of a target.
 
@@ -1124,6 +1125,7 @@ class Calibration:
         frame: Literal["base", "device"] = "base",
         target: str | None = None,
         model: Literal["corrected", "calibrated"] = "corrected",
+        readings: Literal["model", "controller"] | None = None,
     ) -> Prediction: ...
     @overload
     def predict(
@@ -1134,6 +1136,7 @@ class Calibration:
         frame: Literal["base", "device"] = "base",
         target: str | None = None,
         model: Literal["corrected", "calibrated"] = "corrected",
+        readings: Literal["model", "controller"] | None = None,
     ) -> _Array | Prediction: ...
     def forward_kinematics(
         self,
@@ -1141,6 +1144,7 @@ class Calibration:
         *,
         factors: Mapping[str, float] | None = None,
         model: Literal["corrected", "calibrated"] = "corrected",
+        readings: Literal["model", "controller"] | None = None,
     ) -> _Array:
         """Poses of the tip in the base, by all threads: those of `predict`, at chosen values of factors.
 
@@ -1217,6 +1221,7 @@ class Calibration:
         most_slide_m: float | None = None,
         summary: Literal[False] = False,
         model: Literal["corrected", "calibrated"] = "corrected",
+        readings: Literal["model", "controller"] | None = None,
     ) -> _Array:
         """Joint readings to command so that the robot as it is has its tip where a program for the nominal robot meant it.
 
@@ -1252,6 +1257,7 @@ class Calibration:
         most_slide_m: float | None = None,
         summary: Literal[True],
         model: Literal["corrected", "calibrated"] = "corrected",
+        readings: Literal["model", "controller"] | None = None,
     ) -> tuple[_Array, dict[str, Any]]: ...
     def taught(self, *, model: Literal["corrected", "calibrated"] = "corrected") -> Robot:
         """The nominal robot with base and tool of the actual one: corrected programs take the actual robot to where this one would be.
@@ -1280,6 +1286,7 @@ class Calibration:
         nearest: bool = False,
         most_turn_rad: float | None = None,
         most_slide_m: float | None = None,
+        third_axis: Literal["level", "arm"] | None = None,
         check: bool = False,
         model: Literal["corrected", "calibrated"] = "corrected",
     ) -> tuple[bytes, dict[str, Any]]:

@@ -15,6 +15,8 @@ use crate::measurement::{
 pub(super) enum Change {
     /// Readings of some columns times a factor.
     Scale(Vec<usize>, f64),
+    /// Each column times a factor of its own.
+    Scales(Vec<f64>),
     /// Two columns exchanged.
     Exchange(usize, usize),
     /// A column times the first factor, plus another times the second.
@@ -64,6 +66,9 @@ impl Change {
         match self {
             Change::Scale(columns, factor) => {
                 columns.iter().for_each(|&column| readings[column] *= factor);
+            }
+            Change::Scales(factors) => {
+                readings.iter_mut().zip(factors).for_each(|(reading, factor)| *reading *= factor);
             }
             Change::Exchange(a, b) => readings.swap(*a, *b),
             Change::Combine { column, own, other, factor } => {
@@ -126,6 +131,7 @@ impl Change {
         match self {
             Change::Resize(factor, Lengths::Positions, _) => Pose::new(turned, translation * *factor),
             Change::Scale(..)
+            | Change::Scales(_)
             | Change::Exchange(..)
             | Change::Combine { .. }
             | Change::Add(..)

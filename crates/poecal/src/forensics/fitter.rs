@@ -204,6 +204,23 @@ impl<'a> Fitter<'a> {
         (estimate.coefficient(joint, Term::Offset), misfit)
     }
 
+    /// Fits ratios of some joints from a registration, with an unknown device frame refitted.
+    pub(super) fn ratios(
+        &self,
+        data: &Dataset,
+        registered: &Estimate,
+        joints: &[usize],
+    ) -> (Vec<f64>, Misfit) {
+        let kinds = registered.kinds();
+        let term = |&joint: &usize| {
+            kinds.get(joint).map(|&kind| Parameter::ValueTerm(ValueTerm { joint, kind, term: Term::Ratio }))
+        };
+        let mut free: Vec<Parameter> = joints.iter().filter_map(term).collect();
+        free.extend(self.devices(data, None));
+        let (estimate, misfit) = self.fit(data, registered, free, LONG);
+        (joints.iter().map(|&joint| estimate.coefficient(joint, Term::Ratio)).collect(), misfit)
+    }
+
     /// The unknown device frames, but for one that stays.
     fn devices(&self, data: &Dataset, held: Option<usize>) -> Vec<Parameter> {
         let rows = data.all_rows();

@@ -6,7 +6,7 @@ use std::f64::consts::PI;
 use super::DiagnosisKind;
 use super::change::{Change, Lengths, Stream};
 use crate::measurement::Dataset;
-use crate::robot::{ReadingKind, Robot};
+use crate::robot::{ReadingKind, Robot, level};
 
 /// A hypothetical mistake.
 #[derive(Clone, Debug, PartialEq)]
@@ -44,6 +44,8 @@ impl Hypothesis {
 pub(super) struct ReadingColumns {
     pub(super) names: Vec<String>,
     pub(super) kinds: Vec<ReadingKind>,
+    /// Of a third axis that counts from the level: the second and third reading, and the factor of the second.
+    level: Option<(usize, usize, f64)>,
 }
 
 impl ReadingColumns {
@@ -52,7 +54,10 @@ impl ReadingColumns {
         let of_joints = |name: &String| robot.reading_kind(name) != ReadingKind::Factor;
         let names: Vec<String> = robot.reading_names().into_iter().filter(of_joints).collect();
         let kinds = names.iter().map(|name| robot.reading_kind(name)).collect();
-        ReadingColumns { names, kinds }
+        let at = |name: &String| names.iter().position(|it| it == name);
+        let level =
+            level(robot).and_then(|(second, third, factor)| Some((at(&second)?, at(&third)?, -factor)));
+        ReadingColumns { kinds, level, names }
     }
 
     fn of(&self, kind: ReadingKind) -> Vec<usize> {
@@ -133,16 +138,28 @@ pub(super) fn joint_couplings(columns: &ReadingColumns) -> Vec<Hypothesis> {
     all
 }
 
+/// A key of TOML, in quotes if it is not plain letters and digits.
+pub(super) fn toml_key(name: &str) -> String {
+    let is_plain =
+        name.chars().all(|letter| letter.is_ascii_alphanumeric() || letter == '_' || letter == '-');
+    if is_plain { name.to_owned() } else { format!("{name:?}") }
+}
+
 fn coupling(columns: &ReadingColumns, column: usize, other: usize, own: f64, factor: f64) -> Hypothesis {
     let (name, before) = (columns.names[column].as_str(), columns.names[other].as_str());
+    if columns.level == Some((other, column, factor)) && own == 1.0 {
+        return Hypothesis::new(
+            DiagnosisKind::JointsCoupled,
+            Change::Combine { column, own, other, factor },
+            format!("counting {name} from the level instead of from the arm"),
+            format!(
+                "check whether the controller states {name} so, as those of FANUC do: then write `third_axis = \"level\"` into a mapping file \
+                 (--columns)"
+            ),
+        );
+    }
     let signed = |value: f64| if value < 0.0 { "-" } else { "" };
     let joined = if factor < 0.0 { "less" } else { "plus" };
-    // A TOML key that is not plain letters and digits is quoted.
-    let key = |name: &str| {
-        let is_plain =
-            name.chars().all(|letter| letter.is_ascii_alphanumeric() || letter == '_' || letter == '-');
-        if is_plain { name.to_owned() } else { format!("{name:?}") }
-    };
     Hypothesis::new(
         DiagnosisKind::JointsCoupled,
         Change::Combine { column, own, other, factor },
@@ -153,9 +170,9 @@ fn coupling(columns: &ReadingColumns, column: usize, other: usize, own: f64, fac
         format!(
             "check whether the controller states {name} together with {before}, as relative to the horizontal; in a mapping \
              file: `[joints]` and below it `{0} = {{ columns = {{ {0} = {1}1, {2} = {3}1 }} }}`",
-            key(name),
+            toml_key(name),
             signed(own),
-            key(before),
+            toml_key(before),
             signed(factor)
         ),
     )

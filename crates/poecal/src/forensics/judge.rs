@@ -10,6 +10,7 @@ use super::hypotheses::{
     Hypothesis, ReadingColumns, joint_couplings, joint_exchanges, joint_signs, joint_units, length_units,
     mirrors, pose_forms, row_shifts, tilt_units, zeros,
 };
+use super::scales::joint_scales;
 use super::zero::joint_zeros;
 use super::{Diagnosis, DiagnosisKind};
 use crate::measurement::{Dataset, Measurement, Observation};
@@ -61,6 +62,11 @@ pub(super) fn diagnose(few: &FewTargets<'_, '_>, all: &Dataset, base: &Score) ->
         .or_else(|| {
             let pairs = sign_pairs(&columns);
             best_of(few, all, &sample, base, &pairs).map(|(index, score)| (pairs[index].clone(), score))
+        })
+        .or_else(|| {
+            let scales = joint_scales(fitter, &columns, &sample)?;
+            let (_, score) = best_of(few, all, &sample, base, std::slice::from_ref(&scales))?;
+            Some((scales, score))
         })?;
     Some(diagnosis(&best, base, &score))
 }

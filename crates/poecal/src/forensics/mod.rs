@@ -13,6 +13,7 @@ mod hypotheses;
 mod judge;
 mod places;
 mod repeats;
+mod scales;
 mod targets;
 mod unnamed;
 mod zero;
@@ -57,6 +58,8 @@ pub enum DiagnosisKind {
     TargetsSwapped,
     /// Several targets were measured under one name.
     TargetsUnnamed,
+    /// Joint readings that are too large or too small by a factor of each joint.
+    JointScale,
     /// Distances or heights in another unit than stated.
     LengthUnit,
     /// Distances that do not count from their anchor, or a radius that is another.

@@ -6,11 +6,12 @@ use std::path::{Path, PathBuf};
 
 use super::calibration_file::CalibrationFile;
 use super::foreign::Form;
+use super::measurements::ReadOptions;
 use super::proof::Difference;
 use super::urdf::{self, ChainSelection, UrdfDocument};
 use super::{looks_like, robot_toml, source_text};
 use crate::error::{Error, ErrorKind, Result, first_few};
-use crate::robot::Robot;
+use crate::robot::{Controller, Robot};
 
 /// What a model's file is.
 const MODEL: &str = "a robot model (URDF, MJCF, SDF, TOML or calibration.json)";
@@ -159,6 +160,30 @@ impl Model {
 }
 
 impl Model {
+    /// How the readings of a calibration are made of those that its controller counts; `None` of other models, and where they are the same.
+    #[must_use]
+    pub fn controller(&self) -> Option<&Controller> {
+        match &self.source {
+            ModelSource::Calibration(file) => file.controller.as_ref(),
+            ModelSource::Urdf(_) | ModelSource::Toml => None,
+        }
+    }
+
+    /// What looks like other units than those of its form, a sentence each.
+    #[must_use]
+    pub fn doubts(&self) -> Vec<String> {
+        match &self.source {
+            ModelSource::Urdf(document) => urdf::doubts(document, &self.robot),
+            ModelSource::Toml | ModelSource::Calibration(_) => Vec::new(),
+        }
+    }
+
+    /// Options that read files for this robot with what its controller counts.
+    #[must_use]
+    pub fn reads(&self, options: ReadOptions) -> ReadOptions {
+        ReadOptions { controller: self.controller().cloned(), ..options }
+    }
+
     /// The URDF that was read, or calibrated; none of other models.
     pub(super) fn document(&self) -> Result<Option<Cow<'_, UrdfDocument>>> {
         match &self.source {

@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::{ByQuantity, KnownLength, Measurement, Noise, NoiseShape, PoseResidual, Quantity, Stated};
 use crate::error::{Error, ErrorKind, Result};
 use crate::lie::Freedom;
+use crate::robot::Controller;
 
 /// Set of a row: training or held out.
 ///
@@ -124,6 +125,9 @@ pub struct Dataset {
     /// Shapes of the noise of positions.
     #[serde(default)]
     pub noise_shapes: Vec<NoiseShape>,
+    /// How the readings are made of those that the controller counts, where they are not one by one.
+    #[serde(default)]
+    pub controller: Option<Controller>,
     /// The rows.
     pub observations: Vec<Observation>,
     /// The rows' `id`, empty if there is no such column.
@@ -523,6 +527,7 @@ impl Dataset {
             stations: self.stations.clone(),
             lengths: self.lengths.clone(),
             files: self.files.clone(),
+            controller: self.controller.clone(),
             pose_residual: self.pose_residual,
         };
         for row in rows.iter().map(|&row| row as usize) {
@@ -563,6 +568,9 @@ impl Dataset {
                 })
             })
             .collect::<Result<_>>()?;
+        if self.controller.is_none() {
+            self.controller.clone_from(&other.controller);
+        }
         let first_file = u32::try_from(self.files.len()).unwrap_or(u32::MAX);
         let first_further = self.further_readings.len() / self.reading_names.len().max(1);
         let first_further = u32::try_from(first_further).unwrap_or(u32::MAX);

@@ -121,7 +121,10 @@ impl Check {
             files: measurements.map_or_else(Vec::new, |file| file.understood.clone()),
             sets: measurements.map(SetCounts::of),
             sight: SightCheck::of(robot, measurements.map(|file| &file.data)),
-            warnings: measurements.map_or_else(Vec::new, |file| file.warnings.clone()),
+            warnings: {
+                let of_model = model.doubts().into_iter().map(|it| format!("{}: {it}", model.path.display()));
+                of_model.chain(measurements.map_or_else(Vec::new, |file| file.warnings.clone())).collect()
+            },
             diagnosis: diagnosis.to_vec(),
             robot_words: robot_words(robot),
         }

@@ -2,6 +2,7 @@
 
 mod arm;
 mod body;
+mod controller;
 mod correction_model;
 mod corrections;
 mod coupling;
@@ -26,6 +27,7 @@ mod term_model;
 mod zeros;
 
 pub use body::{Body, Mount};
+pub use controller::{Controller, ControllerColumn, ControllerReading, Counting, ThirdAxis, level};
 pub use correction_model::{CorrectionModel, Extent};
 pub use corrections::Corrections;
 pub use coupling::Coupling;

@@ -10,6 +10,7 @@ use poecal::calibration::{CalibrationOptions, DeviceFrameKnowledge, calibrate, d
 use poecal::estimate::{self, Packed};
 use poecal::forensics::{Diagnosis, DiagnosisKind, DiagnosisOptions, diagnose};
 use poecal::measurement::{Dataset, Measurement, Noise, PointMeasurement};
+use poecal::robot::JointKind;
 use poecal::simulate::{Kind, Simulation, elbow};
 use poecal::start::{Registration, register};
 
@@ -103,9 +104,64 @@ fn readings_that_are_sums_of_two_joints_are_named() {
         assert_eq!(kinds, [DiagnosisKind::JointsCoupled], "{}: {found:?}", session.words);
         // joint3 = (reading - factor joint2) / own
         let (own, factor) = (own as i32, (-factor / own) as i32);
-        let line = format!("`joint3 = {{ columns = {{ joint3 = {own}, joint2 = {factor} }} }}`");
+        let line = if (own, factor) == (1, 1) {
+            "counting joint3 from the level".to_owned()
+        } else {
+            format!("`joint3 = {{ columns = {{ joint3 = {own}, joint2 = {factor} }} }}`")
+        };
         assert!(found[0].statement.contains(&line), "{line}: {}", found[0].statement);
     }
+}
+
+#[test]
+fn readings_in_per_cent_and_of_other_gears_are_named_with_their_factors() {
+    let sessions = trials(32);
+    let (mut named, mut wrong) = (0, Vec::new());
+    for seed in sessions.seeds() {
+        let session = Session::drawn(500 + seed);
+        let joints = &session.robot.joints;
+        let is_per_cent = seed % 2 == 0 && joints.iter().all(|it| it.limits.is_some());
+        // Of per cent read as degrees, or of one gear.
+        let factors: Vec<f64> = joints
+            .iter()
+            .enumerate()
+            .map(|(at, joint)| match joint.limits {
+                Some(limits) if is_per_cent && joint.kind == JointKind::Revolute => {
+                    1_f64.to_radians() * 200.0 / (limits.upper - limits.lower)
+                }
+                _ if !is_per_cent && at == 1 => 0.7,
+                _ => 1.0,
+            })
+            .collect();
+        let data = scaled(&session, &factors);
+        let found = found(&session, &data);
+        let (kinds, words) = (found.iter().map(|it| it.kind).collect::<Vec<_>>(), &session.words);
+        let is_right = kinds == [DiagnosisKind::JointScale]
+            && joints.iter().zip(&factors).all(|(joint, factor)| {
+                // Of nominal screws: two figures of the factor.
+                *factor == 1.0 || {
+                    let text =
+                        found[0].statement.split(&format!("{}: ", joint.name)).nth(1).unwrap_or_default();
+                    let number = text.split([',', ')']).next().and_then(|it| it.parse::<f64>().ok());
+                    number.is_some_and(|it| (it * factor - 1.0).abs() < 0.05)
+                }
+            });
+        if is_right { named += 1 } else { wrong.push(format!("{is_per_cent} {words}: {kinds:?}")) }
+    }
+    println!("{named} of {} named: {wrong:#?}", sessions.count);
+    assert!(named as f64 >= 0.7 * sessions.count as f64, "{wrong:#?}");
+}
+
+/// A session whose readings are of other sizes.
+fn scaled(session: &Session, factors: &[f64]) -> Dataset {
+    let mut data = Dataset::new(session.data.reading_names().to_vec());
+    data.targets.clone_from(&session.data.targets);
+    for row in 0..session.data.len() {
+        let readings: Vec<f64> =
+            session.data.readings(row).iter().zip(factors).map(|(it, by)| it * by).collect();
+        data.push_observation(&readings, session.data.observations[row]).unwrap();
+    }
+    data
 }
 
 /// What `poecal calibrate` names.

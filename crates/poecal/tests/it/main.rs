@@ -21,6 +21,7 @@ mod export;
 mod facade;
 mod fast_path;
 // Each crate uses what it needs of it.
+mod field;
 #[allow(dead_code)]
 #[path = "../files/mod.rs"]
 mod files;

@@ -265,6 +265,13 @@ impl Session {
                 }
                 Some((data, format!("by {by}, later: {later}")))
             }
+            DiagnosisKind::JointScale => {
+                let factors: Vec<f64> = (0..n).map(|_| between(g, 0.5, 0.9)).collect();
+                let data = self.changed(|_, readings, _| {
+                    readings.iter_mut().zip(&factors).for_each(|(reading, factor)| *reading *= factor);
+                });
+                Some((data, format!("times {factors:?}")))
+            }
             DiagnosisKind::JointsCoupled => {
                 let couples = column > 0 && !slides && kinds[column - 1] == JointKind::Revolute;
                 let factor = if uniform(g) < 0.5 { 1.0 } else { -1.0 };

@@ -169,6 +169,7 @@ fn mistaken(session: &Session, kind: DiagnosisKind, seed: u64) -> (Dataset, Stri
         | DiagnosisKind::JointSign
         | DiagnosisKind::JointsSwapped
         | DiagnosisKind::JointsCoupled
+        | DiagnosisKind::JointScale
         | DiagnosisKind::JointZero
         | DiagnosisKind::QuaternionOrder
         | DiagnosisKind::EulerConvention

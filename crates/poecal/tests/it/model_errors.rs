@@ -200,7 +200,7 @@ fn a_selection_that_does_not_fit_gets_one_sentence() {
         (Some("c"), Some("a"),
          "r.urdf: tip link `a` is not below base link `c`, expected a base link above the tip (there is none)"),
         (Some("c"), Some("b"),
-         "r.urdf: tip link `b` is not below base link `c`, expected a base link above the tip (`a`)"),
+         "r.urdf: found no moving joint between base link `c` and tip link `b`, expected at least one: choose others with --base-link and --tip-link"),
         (Some("b"), Some("c"),
          "r.urdf: found no moving joint between base link `b` and tip link `c`, expected at least one: choose others with --base-link and --tip-link"),
         (Some("b"), None,

@@ -114,7 +114,7 @@ fn the_tip_is_the_first_target_that_moves_and_mistakes_get_one_sentence() {
     };
     assert_eq!(
         refused(&above),
-        "torso.urdf: instrument `plate`: its link `torso_lift` is not below base link `torso`, expected a base link above it (`base_link`)"
+        "torso.urdf: instrument `plate`: its link `torso_lift` is not below base link `torso`, expected a base link above it (`base_link`), or one that fixed joints join to these"
     );
     let still = ChainSelection { targets: pairs(&[("plate", "base_link")]), ..ChainSelection::default() };
     assert!(

@@ -12,7 +12,7 @@ use super::place::PoseCompensation;
 use super::stated::Stated;
 use crate::error::Result;
 use crate::lie::Pose;
-use crate::robot::Robot;
+use crate::robot::{Counting, Robot};
 
 /// Reasons for which a target stays as it is.
 mod reason {
@@ -99,6 +99,8 @@ pub(crate) struct Corrected {
 pub(crate) struct Engine<'e> {
     pub(crate) poses: PoseCompensation,
     pub(crate) given: &'e Given,
+    /// Where the controller counts other readings than the model has.
+    pub(crate) counting: Option<Counting>,
 }
 
 impl<'e> Engine<'e> {
@@ -108,7 +110,23 @@ impl<'e> Engine<'e> {
         given: &'e Given,
         options: &ChangeOptions,
     ) -> Result<Self> {
-        Ok(Engine { poses: PoseCompensation::new(robots.0, robots.1, factors, options)?, given })
+        let poses = PoseCompensation::new(robots.0, robots.1, factors, options)?;
+        Ok(Engine { poses, given, counting: None })
+    }
+
+    /// The model's readings for those that a program states.
+    pub(crate) fn readings(&self, stated: Vec<f64>) -> Vec<f64> {
+        self.counting.as_ref().map_or(stated.clone(), |it| it.readings(&stated))
+    }
+
+    /// What the controller counts at readings of the model.
+    fn counted(&self, readings: &[f64]) -> Vec<f64> {
+        self.counting.as_ref().map_or_else(|| readings.to_vec(), |it| it.counted(readings))
+    }
+
+    /// The arm's readings at a configuration, and the same as they are counted.
+    fn both(&self, q: &[f64]) -> (Vec<f64>, Vec<f64>) {
+        (self.poses.of_arm(q), self.poses.of_arm(&self.counted(q)))
     }
 
     /// Corrects all targets of a text.
@@ -147,6 +165,7 @@ impl<'e> Engine<'e> {
     fn fates(&self, parsed: &Parsed) -> Vec<Fate> {
         let mut fates: Vec<Fate> = parsed.targets.iter().map(|it| self.alone(it)).collect();
         let mut reached: Vec<Option<Vec<f64>>> = Vec::with_capacity(parsed.motions.len());
+        let start = self.given.start.clone().map(|it| self.readings(it));
         for (number, motion) in parsed.motions.iter().enumerate() {
             let (Some(target), Some(fate)) =
                 (parsed.targets.get(motion.target), fates.get_mut(motion.target))
@@ -156,7 +175,7 @@ impl<'e> Engine<'e> {
             };
             let before = match motion.after {
                 Some(before) => reached.get(before).and_then(Option::as_deref),
-                None => self.given.start.as_deref().filter(|_| number == 0),
+                None => start.as_deref().filter(|_| number == 0),
             };
             let placed = match (&target.meant, &*fate) {
                 (Meant::Joints, _) if motion.refused.is_some() => {
@@ -179,7 +198,7 @@ impl<'e> Engine<'e> {
             Meant::Joints => Fate::Placed(Box::new(Placed {
                 tool: Pose::identity(),
                 frame: Pose::identity(),
-                q: target.numbers.iter().map(Number::scaled).collect(),
+                q: self.readings(target.numbers.iter().map(Number::scaled).collect()),
                 stated: Stated::Nothing,
             })),
         }
@@ -222,12 +241,12 @@ impl<'e> Engine<'e> {
     ) -> std::result::Result<Vec<f64>, Reason> {
         let nominal = self.poses.compensation().nominal();
         match (&motion.stated, before) {
-            (Stated::Near(near), _) => self.nearest(target, near),
+            (Stated::Near(near), _) => self.nearest(target, &self.readings(near.clone())),
             (Stated::Nothing, None) => Err(reason::NOTHING_STATED),
             (Stated::Nothing, Some(before)) if !motion.is_straight => self.nearest(target, before),
             (stated, Some(before)) if motion.is_straight => {
                 let found = self.poses.follow(before, target, tip_from_tool).ok_or(reason::WAY)?;
-                let fits = stated.fits(nominal, &self.poses.of_arm(&found));
+                let fits = stated.fits(nominal, &self.both(&found));
                 if fits { Ok(found) } else { Err(reason::OTHER) }
             }
             _ if !self.poses.has_branches() => Err(reason::NO_BRANCHES),
@@ -236,7 +255,7 @@ impl<'e> Engine<'e> {
                 if all.is_empty() {
                     return Err(reason::UNREACHABLE);
                 }
-                all.retain(|q| stated.fits(nominal, &self.poses.of_arm(q)));
+                all.retain(|q| stated.fits(nominal, &self.both(q)));
                 if all.len() > 1 {
                     all.retain(|q| stated.fits_best(nominal, &self.poses.of_arm(q)));
                 }
@@ -273,7 +292,7 @@ impl<'e> Engine<'e> {
             return Err(self.poses.compensation().reason(outcome, left));
         }
         let numbers = match target.meant {
-            Meant::Joints => readings.clone(),
+            Meant::Joints => self.commanded(target, &placed.q, &readings),
             Meant::Pose(form) => {
                 if self.poses.compensation().is_beyond_limits(&readings) {
                     return Err(reason::LIMITS);
@@ -284,7 +303,7 @@ impl<'e> Engine<'e> {
                 let before: Vec<f64> = target.numbers.iter().map(Number::scaled).collect();
                 let count = form.names().len();
                 let mut numbers = form.numbers(&pose, before.get(..count).unwrap_or(&[]));
-                let words = placed.stated.words(nominal, &self.poses.of_arm(&readings));
+                let words = placed.stated.words(nominal, &self.both(&readings));
                 numbers.extend(words.ok_or(reason::WORDS)?);
                 numbers
             }
@@ -316,6 +335,13 @@ impl<'e> Engine<'e> {
         Ok(changed.map(|(number, text)| (number.range.clone(), text)).collect())
     }
 
+    /// The numbers of a joint target once its readings are changed.
+    fn commanded(&self, target: &Target, from: &[f64], to: &[f64]) -> Vec<f64> {
+        let Some(counting) = &self.counting else { return to.to_vec() };
+        let change: Vec<f64> = to.iter().zip(from).map(|(to, from)| to - from).collect();
+        target.numbers.iter().zip(counting.change(&change)).map(|(it, change)| it.scaled() + change).collect()
+    }
+
     /// Distance and angle that are left with the numbers as they are written.
     fn left(
         &self,
@@ -334,7 +360,7 @@ impl<'e> Engine<'e> {
         let compensation = self.poses.compensation();
         let meant = compensation.nominal().forward_kinematics(&self.poses.of_arm(&placed.q));
         let commanded = match target.meant {
-            Meant::Joints => self.poses.of_arm(&written),
+            Meant::Joints => self.poses.of_arm(&self.readings(written)),
             Meant::Pose(form) => {
                 let Some(pose) = form.pose(written.get(..form.names().len()).unwrap_or(&[])) else {
                     return unrounded;

@@ -24,10 +24,10 @@ use std::path::Path;
 use super::ChangeOptions;
 use crate::error::{Error, ErrorKind, Result};
 use crate::io::programs::read_program;
-use crate::robot::Robot;
+use crate::robot::{Controller, Robot};
 use axes::Axes;
 use engine::Engine;
-use parsed::Parsed;
+use parsed::{Meant, Parsed};
 
 pub use given::Given;
 pub use language::Language;
@@ -50,6 +50,10 @@ pub struct ProgramOptions {
     pub change: ChangeOptions,
     /// Keep what became of every target.
     pub each: bool,
+    /// How the readings of the nominal robot are made of those that the controller counts and programs state; `None` where they are the same.
+    pub controller: Option<Controller>,
+    /// Whether it is not known from where the third axis counts: joint targets of FANUC are refused then.
+    pub is_third_axis_open: bool,
 }
 
 impl ProgramOptions {
@@ -62,6 +66,8 @@ impl ProgramOptions {
             check: false,
             change: ChangeOptions::default(),
             each: false,
+            controller: None,
+            is_third_axis_open: false,
         }
     }
 }
@@ -87,7 +93,10 @@ pub fn compensate_program(
         );
         return Err(Error::new(ErrorKind::Syntax, message));
     }
+    let counting = options.controller.as_ref().filter(|it| !it.is_plain());
+    let counting = counting.map(Controller::counting).transpose()?;
     let mut engine = Engine::new((nominal, actual), factors, &options.given, &options.change)?;
+    engine.counting.clone_from(&counting);
     let axes = Axes::of(nominal, engine.poses.compensation());
     if let Some(start) = options.given.start.as_ref().filter(|it| it.len() != axes.count()) {
         let message = format!(
@@ -98,6 +107,12 @@ pub fn compensate_program(
         return Err(Error::new(ErrorKind::Option, message));
     }
     let parsed = parse(options.language, text, &options.given, &axes)?;
+    let joints = parsed.targets.iter().find(|it| it.meant == Meant::Joints);
+    if let (Language::Fanuc, true, Some(target)) = (options.language, options.is_third_axis_open, joints) {
+        let message = "found a joint target, and a calibration whose rows do not show from where the third axis counts, expected \
+                       `--third-axis level` where J3 counts from the level, as controllers of FANUC do by themselves, or `--third-axis arm`";
+        return Err(Error::new(ErrorKind::Option, message).at_line("", target.line));
+    }
     let mut made = engine.correct(text, parsed, options.each);
     if options.check {
         let again = parse(options.language, &made.text, &options.given, &axes)?;

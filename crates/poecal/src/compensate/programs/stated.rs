@@ -21,13 +21,13 @@ pub(crate) enum Stated {
 }
 
 impl Stated {
-    /// Whether a configuration of the nominal arm fits the words, borders included.
-    pub(crate) fn fits(&self, nominal: &Arm, q: &[f64]) -> bool {
+    /// Whether a configuration of the nominal arm (the model's readings, and the counted ones) fits the words, borders included.
+    pub(crate) fn fits(&self, nominal: &Arm, (q, counted): &(Vec<f64>, Vec<f64>)) -> bool {
         match self {
             Stated::Nothing | Stated::Near(_) => true,
-            Stated::Krl(status) => status.fits(nominal, q),
-            Stated::Rapid(configuration) => configuration.fits(q),
-            Stated::Fanuc(configuration) => configuration.fits(nominal, q),
+            Stated::Krl(status) => status.fits(nominal, q, counted),
+            Stated::Rapid(configuration) => configuration.fits(counted),
+            Stated::Fanuc(configuration) => configuration.fits(nominal, q, counted),
         }
     }
 
@@ -41,12 +41,12 @@ impl Stated {
 
     /// The words' numbers for a configuration of the nominal arm, in the order of the target's numbers behind its pose; `None` if words would
     /// have to change that are no numbers.
-    pub(crate) fn words(&self, nominal: &Arm, q: &[f64]) -> Option<Vec<f64>> {
+    pub(crate) fn words(&self, nominal: &Arm, (q, counted): &(Vec<f64>, Vec<f64>)) -> Option<Vec<f64>> {
         match self {
             Stated::Nothing | Stated::Near(_) => Some(Vec::new()),
-            Stated::Krl(status) => Some(status.words(nominal, q)),
-            Stated::Rapid(configuration) => Some(configuration.words(q)),
-            Stated::Fanuc(configuration) => configuration.words(nominal, q),
+            Stated::Krl(status) => Some(status.words(nominal, q, counted)),
+            Stated::Rapid(configuration) => Some(configuration.words(counted)),
+            Stated::Fanuc(configuration) => configuration.words(nominal, q, counted),
         }
     }
 }

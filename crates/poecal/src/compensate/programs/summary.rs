@@ -57,7 +57,7 @@ pub(super) fn checked(
         let numbers: Vec<f64> = target.numbers.iter().map(Number::scaled).collect();
         let wanted = nominal.forward_kinematics(q);
         let mut commanded = match target.meant {
-            Meant::Joints => numbers,
+            Meant::Joints => engine.readings(numbers),
             Meant::Pose(form) => {
                 let pose = |it: &[f64]| form.pose(it.get(..form.names().len()).unwrap_or(&[]));
                 let place = places.get(*index).copied().flatten();

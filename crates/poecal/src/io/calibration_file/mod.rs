@@ -4,6 +4,7 @@ mod alike;
 mod bodies;
 mod changes;
 mod compensation;
+mod controller;
 mod corrected;
 mod judging;
 mod keyed;
@@ -20,6 +21,7 @@ pub use alike::SuspectedConfigurationEntry;
 pub use bodies::{BodyEntry, InstrumentEntry, MassEntry, MeasuredEntry};
 pub use changes::{CommonDirectionEntry, CorrelatedEntry, CorrelationsEntry, JointChangeEntry};
 pub use compensation::{CompensationEntry, DisplacementEntry, ReadingChangeEntry, WorkspaceCellEntry};
+pub use controller::Counted;
 pub use corrected::{
     CorrectedEntry, EffectEntry, GravityEntry, JointErrorEntry, JointErrorsEntry, TriedEntry, WeightEntry,
 };
@@ -112,6 +114,7 @@ impl CalibrationFile {
             },
             robot: RobotEntry::new(robot, &calibration.nominal),
             joints,
+            controller: data.controller.clone(),
             measurement_frame: FrameEntry {
                 known: calibration.frame,
                 base_from_device: (&calibration.base_from_device).into(),

@@ -24,7 +24,7 @@ use crate::forensics::DiagnosisKind;
 use crate::io::hashes::sha256;
 use crate::io::record::Record;
 use crate::measurement::Measured;
-use crate::robot::{FactorReading, JointKind, Reading, Term};
+use crate::robot::{Controller, FactorReading, JointKind, Reading, Term};
 use crate::solve::Termination;
 
 /// A finished calibration.
@@ -100,6 +100,9 @@ pub struct CalibrationFile {
     pub robot: RobotEntry,
     /// The calibrated joints from base to tip.
     pub joints: Vec<JointEntry>,
+    /// How the readings of the joints are made of those that the controller counts; absent where they are the same.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub controller: Option<Controller>,
     /// Frame of the measuring device.
     pub measurement_frame: FrameEntry,
     /// Stations of the measuring device, if they are named or several; the first is that of `measurement_frame`.

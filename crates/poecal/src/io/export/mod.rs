@@ -163,10 +163,20 @@ enum Proof {
 /// though the form can carry it.
 pub fn export(model: &Model, format: ExportFormat, options: &ExportOptions) -> Result<Exported> {
     let mut notes = Vec::new();
+    notes.extend(model.controller().filter(|it| !it.is_plain()).map(|it| {
+        format!(
+            "readings of this form are the model's, which the mapping made of what the controller counts: {}",
+            it.words()
+        )
+    }));
     let plain = geometry(&model.robot, format, &mut notes);
     let robot = plain.as_ref();
     let written = match format {
-        ExportFormat::C => return numbers::write(model).map_err(|error| error.in_file(&model.path)),
+        ExportFormat::C => {
+            let mut exported = numbers::write(model).map_err(|error| error.in_file(&model.path))?;
+            exported.notes.splice(0..0, notes);
+            return Ok(exported);
+        }
         ExportFormat::Urdf => return converted(model, robot, ModelFormat::Urdf, notes),
         ExportFormat::Toml => return converted(model, robot, ModelFormat::Toml, notes),
         ExportFormat::Poe => screws::write(robot),

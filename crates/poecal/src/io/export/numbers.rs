@@ -2,6 +2,7 @@
 
 use std::fmt::Write as _;
 
+use nalgebra::DMatrix;
 use poecal_arm::Arm;
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
@@ -12,7 +13,7 @@ use crate::io::model::{Model, ModelSource};
 use crate::io::numbers::shortest;
 use crate::io::proof::Difference;
 use crate::lie::rotation;
-use crate::robot::{JointKind, Robot};
+use crate::robot::{Counting, JointKind, Robot};
 use crate::simulate::Configurations;
 
 /// Distance (m) and angle (rad) below which two computations of a pose are the same but for rounding.
@@ -28,6 +29,10 @@ pub(super) fn write(model: &Model) -> Result<Exported> {
         notes.push(format!("the factors {} are at their references in this form", names.join(", ")));
     }
     let mut text = header(actual);
+    if let Some(controller) = model.controller().filter(|it| !it.is_plain()) {
+        let (_, readings) = actual.arm_model(&factors)?;
+        text.push_str(&counted(&controller.counting()?, &readings));
+    }
     let nominal = match &model.source {
         ModelSource::Calibration(file) => Some(file.taught(actual)?.robot),
         ModelSource::Urdf(_) | ModelSource::Toml => None,
@@ -66,6 +71,45 @@ fn header(robot: &Robot) -> String {
     format!(
         "/* Arms for poecal_arm_new() of poecal.h, in the order that poecal-arm documents (Model::numbers).\n   Readings: {}. */\n",
         readings.join(", ")
+    )
+}
+
+/// Functions from what the controller counts to the readings of the arms, and back.
+fn counted(counting: &Counting, readings: &[usize]) -> String {
+    let function = |name: &str, (from, to): (&str, &str), row: &dyn Fn(usize) -> String| {
+        let lines = (0..readings.len()).map(|at| format!("  {to}[{at}] = {};\n", row(at)));
+        format!(
+            "static inline void {name}(const double *{from}, double *{to}) {{\n{}}}\n",
+            lines.collect::<String>()
+        )
+    };
+    let term = |factor: f64, of: String| match factor {
+        0.0 => String::new(),
+        1.0 => format!(" + {of}"),
+        -1.0 => format!(" - {of}"),
+        _ => format!(" + {} * {of}", shortest(factor)),
+    };
+    let sum = |matrix: &DMatrix<f64>, row: usize, of: &dyn Fn(usize) -> String| -> String {
+        let terms = readings.iter().enumerate().map(|(at, &it)| term(matrix[(readings[row], it)], of(at)));
+        let words: String = terms.collect();
+        words.strip_prefix(" + ").map_or(format!("0.0{words}"), str::to_owned)
+    };
+    let offset = |at: usize| counting.offsets()[readings[at]];
+    let to = |row: usize| {
+        sum(counting.matrix(), row, &|at| format!("counted[{at}]")) + &term(1.0, shortest(offset(row)))
+    };
+    let back = |row: usize| {
+        sum(counting.inverse(), row, &|at| match offset(at) {
+            0.0 => format!("readings[{at}]"),
+            offset => format!("(readings[{at}] - {})", shortest(offset)),
+        })
+    };
+    let names: Vec<String> = readings.iter().map(|&at| counting.names()[at].replace("*/", "* /")).collect();
+    format!(
+        "/* The controller counts, in rad and m: {}. */\n{}{}",
+        names.join(", "),
+        function("poecal_readings", ("counted", "readings"), &to),
+        function("poecal_counted", ("readings", "counted"), &back)
     )
 }
 

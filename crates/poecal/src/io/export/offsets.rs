@@ -26,6 +26,9 @@ struct File<'a> {
     formula: &'static str,
     robot: &'a str,
     joints: Vec<JointOffset>,
+    /// The same as what the controller counts, where its readings are not the model's.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    counted: Vec<JointOffset>,
     base_motion: PoseEntry,
     tool_motion: PoseEntry,
     without_offsets: Left,
@@ -91,11 +94,13 @@ pub(super) fn write(model: &Model, robot: &Robot) -> Result<Written> {
         offset_mm: (joint.kind == JointKind::Prismatic).then_some(offset * 1e3),
         determined: !found.undetermined.contains(&at),
     };
+    let counted = counted(model, robot, &found)?;
     let file = File {
         form: "offsets",
         formula: "value of a joint = its reading + offset; T(q) = base_motion * T_nominal(q + offsets) * tool_motion, nearly: remains",
         robot: &robot.name,
         joints: joints.map(joint).collect(),
+        counted,
         base_motion: (&found.base_motion).into(),
         tool_motion: (&found.tip_motion).into(),
         without_offsets: left(&found.without_offsets),
@@ -106,6 +111,32 @@ pub(super) fn write(model: &Model, robot: &Robot) -> Result<Written> {
     let left = &found.with_offsets;
     let remains = Difference { position_m: left.max_m, rotation_rad: left.max_rad };
     Ok(Written { text, notes, proof: Proof::Remains(remains) })
+}
+
+/// Offsets of what the controller counts; none where that is what the model has.
+fn counted(model: &Model, robot: &Robot, found: &Explanation) -> Result<Vec<JointOffset>> {
+    let Some(controller) = model.controller().filter(|it| !it.is_plain()) else { return Ok(Vec::new()) };
+    let counting = controller.counting()?;
+    let mut of_readings = vec![0.0; counting.names().len()];
+    let mut slides = vec![false; of_readings.len()];
+    let mut is_known = vec![true; of_readings.len()];
+    let joints = robot.joints.iter().zip(robot.reading_indices()).zip(&found.offsets).enumerate();
+    for (at, ((joint, reading), offset)) in joints {
+        let own = robot.reading_indices().iter().filter(|it| **it == reading).count() == 1;
+        if let Some(it) = of_readings.get_mut(reading) {
+            *it = offset / joint.reading.multiplier;
+            slides[reading] = joint.kind == JointKind::Prismatic;
+            is_known[reading] &= own && !found.undetermined.contains(&at);
+        }
+    }
+    let change = counting.change(&of_readings);
+    let offset = |(at, offset): (usize, &f64)| JointOffset {
+        joint: counting.names()[at].clone(),
+        offset_deg: (!slides[at]).then(|| offset.to_degrees()),
+        offset_mm: slides[at].then_some(offset * 1e3),
+        determined: (0..is_known.len()).all(|of| is_known[of] || counting.inverse()[(at, of)] == 0.0),
+    };
+    Ok(change.iter().enumerate().map(offset).collect())
 }
 
 fn words(found: &Explanation) -> String {
@@ -140,6 +171,12 @@ pub(super) fn write_ticks(model: &Model, robot: &Robot, motors: Option<&str>) ->
         return Err(export_error(format!(
             "found joint `{}`, which slides, expected joints that motors turn",
             joint.name
+        )));
+    }
+    if let Some(controller) = model.controller().filter(|it| !it.is_plain()) {
+        return Err(export_error(format!(
+            "found readings that the mapping made of others ({}), expected those of the motors",
+            controller.words()
         )));
     }
     let mut file: BTreeMap<String, Motor> = match motors {

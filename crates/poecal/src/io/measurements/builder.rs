@@ -10,7 +10,9 @@ use super::orientation::OrientationForm;
 use super::units::{Dimension, Unit, UnitSource};
 use crate::error::{Error, ErrorKind, Result, distance_within, first_few};
 use crate::io::numbers::LARGEST_NUMBER;
-use crate::robot::{Factor, ReadingKind, Robot};
+use crate::robot::{
+    Controller, ControllerColumn, ControllerReading, Factor, ReadingKind, Robot, ThirdAxis, level,
+};
 
 const DEFAULT_FORMS: [OrientationForm; 3] =
     [OrientationForm::QuaternionXyzw, OrientationForm::RotationVector, OrientationForm::ROLL_PITCH_YAW];
@@ -47,7 +49,7 @@ const EXPANDED: &str = "U95_";
 const COVERAGE_FACTOR: f64 = 2.0;
 
 /// Names of columns that number joints from base to tip.
-const NUMBERED: [&str; 5] = ["q", "joint", "j", "a", "joint_"];
+const NUMBERED: [&str; 8] = ["q", "joint", "j", "a", "joint_", "J", "A", "Q"];
 
 /// Joints with their numbered columns, if the file names no joint and has a column `q1` (or [`NUMBERED`]) and so on for each, and no more.
 fn numbered(
@@ -102,11 +104,18 @@ pub(super) struct Builder<'a> {
     used: Vec<bool>,
     /// Joints with the numbered columns that are taken for them, where no column has the name of a joint.
     pub(super) numbered: Option<Vec<(String, String)>>,
+    /// Sums that the calibration kept, of a file that has not all of their columns.
+    pub(super) missed: Option<String>,
 }
 
 impl<'a> Builder<'a> {
     /// Finds the columns of the joints.
-    pub(super) fn new(header: &'a Header<'a>, robot: &Robot, map: &'a ColumnMap) -> Result<Self> {
+    pub(super) fn new(
+        header: &'a Header<'a>,
+        robot: &Robot,
+        map: &'a ColumnMap,
+        kept: Option<&Controller>,
+    ) -> Result<Self> {
         let names = robot.reading_names();
         let readings: BTreeSet<String> = names.iter().cloned().collect();
         if let Some(name) = map.joints.keys().find(|name| !readings.contains(*name)) {
@@ -114,8 +123,14 @@ impl<'a> Builder<'a> {
             return Err(Error::new(ErrorKind::Measurement, message).in_file(&map.path));
         }
         let used = vec![false; header.cells.len()];
-        let numbered = numbered(header, robot, map, &names);
-        let mut builder = Builder { header, map, readings, inputs: Vec::new(), used, numbered };
+        let has_all = |kept: &&Controller| {
+            let mut columns = kept.readings.iter().flat_map(|it| it.columns.keys());
+            columns.all(|column| header.count(column) > 0)
+        };
+        let missed = kept.filter(|kept| map.joints.is_empty() && !has_all(kept)).map(Controller::words);
+        let kept = kept.filter(|kept| map.joints.is_empty() && has_all(kept));
+        let numbered = if kept.is_some() { None } else { numbered(header, robot, map, &names) };
+        let mut builder = Builder { header, map, readings, inputs: Vec::new(), used, numbered, missed };
         let default = ColumnSpec::default();
         let numbers = builder.numbered.clone().into_iter().flatten();
         let numbers: BTreeMap<String, ColumnSpec> = numbers
@@ -126,11 +141,122 @@ impl<'a> Builder<'a> {
                 builder.factor_input(name)?;
                 continue;
             }
-            let spec = map.joints.get(name).or_else(|| numbers.get(name)).unwrap_or(&default);
             let purpose = format!("for joint `{name}`");
+            if let Some(reading) = kept.and_then(|kept| kept.readings.iter().find(|it| it.reading == *name)) {
+                builder.kept_input(reading, reading_quantity(robot, name), &purpose)?;
+                continue;
+            }
+            let spec = map.joints.get(name).or_else(|| numbers.get(name)).unwrap_or(&default);
             builder.spec_input(name, spec, reading_quantity(robot, name), &purpose)?;
         }
+        if let Some(counts) = map.third_axis {
+            builder.third_axis(robot, &names, counts)?;
+        }
         Ok(builder)
+    }
+
+    /// Takes the third axis as it counts.
+    fn third_axis(&mut self, robot: &Robot, names: &[String], counts: ThirdAxis) -> Result<()> {
+        let in_map =
+            |message: String| Err(Error::new(ErrorKind::Measurement, message).in_file(&self.map.path));
+        let at = |name: &String| names.iter().position(|it| it == name);
+        let found =
+            level(robot).and_then(|(second, third, factor)| Some((at(&second)?, at(&third)?, factor)));
+        let Some((second, third, factor)) = found else {
+            return in_map(format!(
+                "found `third_axis = \"{}\"`, expected a robot whose second and third axes are parallel",
+                counts.word()
+            ));
+        };
+        let (Some(of_second), Some(of_third)) = (self.inputs.get(second), self.inputs.get(third)) else {
+            return Ok(());
+        };
+        if !of_third.sum.is_empty() {
+            return in_map(format!(
+                "found `third_axis` beside a sum of columns for joint `{}`, expected one of the two",
+                of_third.name
+            ));
+        }
+        if counts == ThirdAxis::Arm {
+            return Ok(());
+        }
+        let mut sum = of_third.terms();
+        let offset = -factor * of_second.added();
+        sum.extend(of_second.terms().into_iter().map(|it| Term { factor: -factor * it.factor, ..it }));
+        let label = self.label(&sum);
+        if let Some(input) = self.inputs.get_mut(third) {
+            (input.sum, input.offset, input.label) = (sum, offset, label);
+        }
+        Ok(())
+    }
+
+    /// A sum of columns in words.
+    fn label(&self, sum: &[Term]) -> String {
+        let mut label = String::new();
+        for term in sum {
+            let column = self.header.cells.get(term.column).map_or("", |cell| cell.name.as_str());
+            let size =
+                if term.factor.abs() == 1.0 { String::new() } else { format!("{} ", term.factor.abs()) };
+            let sign = if term.factor < 0.0 { "- " } else { "+ " };
+            let sign = if label.is_empty() && term.factor > 0.0 { "" } else { sign };
+            label.push_str(&format!("{}{sign}{size}{column}", if label.is_empty() { "" } else { " " }));
+        }
+        label
+    }
+
+    /// Adds a joint's reading as the calibration kept it; units of the file precede those that were kept.
+    fn kept_input(&mut self, kept: &ControllerReading, quantity: Dimension, purpose: &str) -> Result<()> {
+        let name = kept.reading.as_str();
+        let at = self.inputs.len();
+        let mut sum = Vec::with_capacity(kept.columns.len());
+        for (column, it) in &kept.columns {
+            let index = self.text_column(column, purpose)?;
+            let known = Unit::parse_for(&it.unit, quantity, &format!(" {purpose}"))?;
+            let stated = self.header.unit(index, quantity, purpose)?;
+            let (unit, unit_from) = stated.unwrap_or((known, UnitSource::Mapping));
+            sum.push(Term { column: index, unit, factor: it.factor });
+            if self.inputs.len() == at {
+                let (name, label, source) = (name.to_owned(), column.clone(), InputSource::Column(index));
+                self.inputs.push(Input {
+                    name,
+                    label,
+                    source,
+                    unit,
+                    unit_from,
+                    sum: Vec::new(),
+                    offset: 0.0,
+                });
+            }
+        }
+        if sum.is_empty() {
+            let (unit, unit_from) = (quantity.si_unit(), UnitSource::Mapping);
+            let (name, label) = (name.to_owned(), name.to_owned());
+            let source = InputSource::Constant(kept.offset);
+            self.inputs.push(Input { name, label, source, unit, unit_from, sum, offset: 0.0 });
+        } else if sum.len() > 1 || kept.offset != 0.0 || sum.iter().any(|it| it.factor != 1.0) {
+            let label = self.label(&sum);
+            if let Some(input) = self.inputs.get_mut(at) {
+                (input.sum, input.offset, input.label) = (sum, kept.offset, label);
+            }
+        }
+        Ok(())
+    }
+
+    /// How the readings of the joints, the first inputs, are made of columns; `None` where each is one column and nothing is stated.
+    pub(super) fn controller(&self, robot: &Robot) -> Option<Controller> {
+        let column = |term: &Term| {
+            let name = self.header.cells.get(term.column).map(|cell| cell.name.clone())?;
+            Some((name, ControllerColumn { factor: term.factor, unit: term.unit.symbol().to_owned() }))
+        };
+        let reading = |input: &Input| ControllerReading {
+            reading: input.name.clone(),
+            columns: input.terms().iter().filter_map(column).collect(),
+            offset: input.added(),
+        };
+        let count = robot.joint_reading_names().len();
+        let readings = self.inputs.iter().take(count).map(reading).collect();
+        let found = Controller { third_axis: self.map.third_axis, readings };
+        (found.third_axis.is_some() || !found.is_plain()).then_some(found)
     }
 
     /// Adds the number of a factor, in whatever unit its column is.
@@ -147,7 +273,7 @@ impl<'a> Builder<'a> {
         }
         let (name, label, source) = (name.to_owned(), name.to_owned(), InputSource::Column(column));
         let (unit, unit_from) = (Dimension::Number.si_unit(), UnitSource::Si);
-        self.inputs.push(Input { name, label, source, unit, unit_from, sum: Vec::new() });
+        self.inputs.push(Input { name, label, source, unit, unit_from, sum: Vec::new(), offset: 0.0 });
         Ok(())
     }
 
@@ -164,11 +290,15 @@ impl<'a> Builder<'a> {
                 .map_err(|error| error.in_file(&self.map.path))?;
         }
         if let Some(columns) = &spec.columns {
-            return self.sum_input(name, columns, quantity, spec.unit, purpose);
+            let at = self.sum_input(name, columns, quantity, spec.unit, purpose)?;
+            self.add_offset(at, spec.offset, purpose)?;
+            return Ok(at);
         }
         let Some(value) = spec.value else {
             let column = spec.column.as_deref().unwrap_or(name);
-            return self.column_input(name, column, quantity, spec.unit, purpose);
+            let at = self.column_input(name, column, quantity, spec.unit, purpose)?;
+            self.add_offset(at, spec.offset, purpose)?;
+            return Ok(at);
         };
         let stated = spec.unit.or(self.map.units.of(quantity));
         let unit = stated.unwrap_or(quantity.si_unit());
@@ -181,8 +311,23 @@ impl<'a> Builder<'a> {
         }
         let source = InputSource::Constant(unit.to_si(value));
         let (name, label) = (name.to_owned(), name.to_owned());
-        self.inputs.push(Input { name, label, source, unit, unit_from, sum: Vec::new() });
+        self.inputs.push(Input { name, label, source, unit, unit_from, sum: Vec::new(), offset: 0.0 });
         Ok(self.inputs.len() - 1)
+    }
+
+    /// What the mapping adds to a joint's columns, in the unit of the first.
+    fn add_offset(&mut self, at: usize, offset: Option<f64>, purpose: &str) -> Result<()> {
+        let Some(offset) = offset else { return Ok(()) };
+        let Some(input) = self.inputs.get_mut(at) else { return Ok(()) };
+        let added = input.unit.to_si(offset);
+        if !self.readings.contains(&input.name) || added.abs() > LARGEST_NUMBER {
+            let message = format!(
+                "found the offset {offset:?} {purpose}, expected one of a joint's reading, of at most {LARGEST_NUMBER:e}"
+            );
+            return Err(Error::new(ErrorKind::Measurement, message).in_file(&self.map.path));
+        }
+        (input.sum, input.offset) = (input.terms(), added);
+        Ok(())
     }
 
     /// Adds a number from a column.
@@ -209,7 +354,7 @@ impl<'a> Builder<'a> {
             (None, _) => (quantity.si_unit(), UnitSource::Si),
         };
         let (name, label, source) = (name.to_owned(), column.to_owned(), InputSource::Column(index));
-        self.inputs.push(Input { name, label, source, unit, unit_from, sum: Vec::new() });
+        self.inputs.push(Input { name, label, source, unit, unit_from, sum: Vec::new(), offset: 0.0 });
         Ok(self.inputs.len() - 1)
     }
 
@@ -228,14 +373,9 @@ impl<'a> Builder<'a> {
             return Err(Error::new(ErrorKind::Measurement, message).in_file(&self.map.path));
         }
         let mut sum: Vec<Term> = Vec::with_capacity(columns.len());
-        let mut label = String::new();
         let at = self.inputs.len();
-        for (column, &factor) in columns {
+        for column in columns.keys() {
             self.column_input(name, column, quantity, unit, purpose)?;
-            let size = if factor.abs() == 1.0 { String::new() } else { format!("{} ", factor.abs()) };
-            let sign = if factor < 0.0 { "- " } else { "+ " };
-            let sign = if label.is_empty() && factor > 0.0 { "" } else { sign };
-            label.push_str(&format!("{}{sign}{size}{column}", if label.is_empty() { "" } else { " " }));
         }
         let parts = self.inputs.split_off(at);
         for (part, &factor) in parts.iter().zip(columns.values()) {
@@ -243,6 +383,7 @@ impl<'a> Builder<'a> {
                 sum.push(Term { column, unit: part.unit, factor });
             }
         }
+        let label = self.label(&sum);
         // If unit and place are unique, the first column represents all.
         self.inputs.extend(parts.into_iter().next().map(|first| Input { label, sum, ..first }));
         Ok(at)

@@ -32,6 +32,8 @@ pub(super) struct Header<'a> {
     pub(super) units_line: Option<usize>,
     /// The first lines below, for the message if this is no header.
     below: Vec<(usize, String)>,
+    /// Columns whose cells name the joint of another column, with the name.
+    pub(super) names: Vec<(usize, String)>,
 }
 
 impl HeaderCell {
@@ -81,6 +83,19 @@ fn bare(text: &str) -> &str {
     inside('[', ']').or_else(|| inside('(', ')')).unwrap_or(text).trim()
 }
 
+/// The column of a joint's position beside one of its name: `field.position0` of `field.name0`, and `position[0]` of `name[0]`.
+fn beside_name(text: &str) -> Option<String> {
+    let end = text.strip_suffix(']').unwrap_or(text);
+    let digits = end.len() - end.trim_end_matches(|it: char| it.is_ascii_digit()).len();
+    let (start, number) = (text.get(..end.len() - digits)?, text.get(end.len() - digits..)?);
+    let stem = start
+        .strip_suffix("name")
+        .map(|stem| (stem, ""))
+        .or(start.strip_suffix("name[").map(|stem| (stem, "[")));
+    let (stem, bracket) = stem.filter(|_| digits > 0)?;
+    Some(format!("{stem}position{bracket}{number}"))
+}
+
 fn is_number(text: &str) -> bool {
     text.replace(',', ".").parse::<f64>().is_ok()
 }
@@ -103,7 +118,7 @@ impl<'a> Header<'a> {
                 places.and_modify(|(_, second)| *second = second.or(Some(index))).or_insert((index, None));
             }
         }
-        Ok(Header { path, line, cells, named, units_line: None, below: Vec::new() })
+        Ok(Header { path, line, cells, named, units_line: None, below: Vec::new(), names: Vec::new() })
     }
 
     /// Adds the line of units.
@@ -116,9 +131,39 @@ impl<'a> Header<'a> {
         }
     }
 
+    /// Columns `…position0` whose joint's name is in the cells of `…name0`, as a recorded `JointState` has them, get these names; of the first
+    /// row, with which all others must agree.
+    pub(super) fn take_names(&mut self, cells: &[Cell<'_>]) {
+        let mut taken = Vec::new();
+        for (index, (header, cell)) in self.cells.iter().zip(cells).enumerate() {
+            let Some(position) = beside_name(&header.text) else { continue };
+            let at = self.cells.iter().position(|other| other.text == position);
+            let name = cell.text().trim().to_owned();
+            if let Some(at) = at.filter(|_| !name.is_empty() && !is_number(&name)) {
+                taken.push((index, at, name));
+            }
+        }
+        for (_, at, name) in &taken {
+            if let Some(cell) = self.cells.get_mut(*at) {
+                (cell.name, cell.unit) = (name.clone(), None);
+            }
+            self.named
+                .entry(name.clone())
+                .and_modify(|(_, second)| *second = second.or(Some(*at)))
+                .or_insert((*at, None));
+        }
+        self.names = taken.into_iter().map(|(index, _, name)| (index, name)).collect();
+    }
+
     /// Stores the first lines below, for the message if this is no header.
     pub(super) fn look_below(&mut self, lines: impl Iterator<Item = (usize, String)>) {
         self.below = lines.collect();
+    }
+
+    /// The first row, if it is near.
+    pub(super) fn first_row(&self) -> Option<String> {
+        let row = self.below.iter().find(|(line, _)| *line > self.last_line());
+        row.map(|(_, text)| text.clone())
     }
 
     /// The last line of the header.

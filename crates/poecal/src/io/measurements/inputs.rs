@@ -18,6 +18,29 @@ pub(super) struct Input {
     pub(super) unit_from: UnitSource,
     /// Columns of a sum; `source` is the first of them.
     pub(super) sum: Vec<Term>,
+    /// What is added to a sum (metres, radians).
+    pub(super) offset: f64,
+}
+
+impl Input {
+    /// The columns, each with its factor; none of a constant.
+    pub(super) fn terms(&self) -> Vec<Term> {
+        match self.source {
+            InputSource::Column(column) if self.sum.is_empty() => {
+                vec![Term { column, unit: self.unit, factor: 1.0 }]
+            }
+            InputSource::Column(_) => self.sum.clone(),
+            InputSource::Constant(_) => Vec::new(),
+        }
+    }
+
+    /// What is added to the columns (metres, radians): of a constant, it itself.
+    pub(super) fn added(&self) -> f64 {
+        match self.source {
+            InputSource::Column(_) => self.offset,
+            InputSource::Constant(value) => value,
+        }
+    }
 }
 
 /// A column of a sum.
@@ -191,7 +214,7 @@ impl<'a> InputReader<'a> {
 
 /// Sum of an input's columns; `None` if a cell is empty.
 fn sum(numbers: &mut Numbers, row: &Row<'_>, input: &Input) -> Result<Option<f64>> {
-    let mut sum = 0.0;
+    let mut sum = input.offset;
     for term in &input.sum {
         let text = row.cells.get(term.column).map_or("", |cell| cell.raw);
         if text.is_empty() {

@@ -61,7 +61,7 @@ fn of_blocks<'p>(
     let no_map = ColumnMap::default();
     let map = options.mapping.as_ref().unwrap_or(&no_map);
     let mut table = Table::open(path, blocks, map)?;
-    let layout = ColumnLayout::joints(&table.header, robot, map)?;
+    let layout = ColumnLayout::joints(&table.header, robot, options, map)?;
     let mut inputs = InputReader::new(&layout.inputs, layout.inputs.len(), Numbers::new(map.decimal));
     let mut watch = JointWatch::new(robot);
     let mut joints = JointsTable::default();
@@ -86,7 +86,7 @@ fn of_blocks<'p>(
         return Err(Error::new(ErrorKind::Measurement, message).at_line(path, table.header.line));
     }
     let mut warnings = watch.finish(path, &layout, &inputs.ranges)?;
-    warnings.extend(layout.numbered_words().map(|words| format!("{}: {words}", path.display())));
+    warnings.extend(layout.joint_words().into_iter().map(|words| format!("{}: {words}", path.display())));
     joints.warnings = warnings.iter().map(|warning| visible(warning).into_owned()).collect();
     Ok(joints)
 }

@@ -6,7 +6,7 @@ use super::inputs::Input;
 use super::mapping::{ColumnMap, PoseDirection};
 use super::{FitWhere, ReadOptions};
 use crate::error::Result;
-use crate::robot::Robot;
+use crate::robot::{Controller, Robot};
 
 /// Source of a row's set; numbers are columns of the file.
 #[derive(Clone, Debug, Default)]
@@ -36,6 +36,10 @@ pub(super) struct ColumnLayout {
     pub(super) ignored: Vec<(String, Option<String>)>,
     /// Joints with the numbered columns that were taken for them.
     pub(super) numbered: Option<Vec<(String, String)>>,
+    /// How the joints' readings are made of columns, where they are not one by one.
+    pub(super) controller: Option<Controller>,
+    /// Sums that the calibration kept, of a file that has not all of their columns.
+    missed: Option<String>,
 }
 
 impl ColumnLayout {
@@ -46,7 +50,7 @@ impl ColumnLayout {
         options: &ReadOptions,
         map: &ColumnMap,
     ) -> Result<Self> {
-        let mut builder = Builder::new(header, robot, map)?;
+        let mut builder = Builder::new(header, robot, map, options.controller.as_ref())?;
         let targets = builder.targets()?;
         builder.check_distinct()?;
         let target_column = match &map.target {
@@ -77,6 +81,7 @@ impl ColumnLayout {
             (None, None) => SetRule::Unstated,
         };
         let (ignored, numbered) = (builder.ignored(), builder.numbered.clone());
+        let (controller, missed) = (builder.controller(robot), builder.missed.clone());
         let (inputs, pose) = (builder.inputs, map.pose);
         Ok(ColumnLayout {
             inputs,
@@ -89,11 +94,24 @@ impl ColumnLayout {
             pose,
             ignored,
             numbered,
+            controller,
+            missed,
         })
     }
 
+    /// What was understood of the joints' columns that a user should know, a sentence each.
+    pub(super) fn joint_words(&self) -> Vec<String> {
+        let missed = self.missed.as_ref().map(|sums| {
+            format!(
+                "the readings of the calibration were made of columns ({sums}), which are not all here: took these for the joint values of the \
+                 model; a mapping (--columns) says otherwise"
+            )
+        });
+        self.numbered_words().into_iter().chain(missed).collect()
+    }
+
     /// Which numbered columns were taken for the joints, in words.
-    pub(super) fn numbered_words(&self) -> Option<String> {
+    fn numbered_words(&self) -> Option<String> {
         let (first, last) = (self.numbered.as_ref()?.first()?, self.numbered.as_ref()?.last()?);
         Some(format!(
             "no column has the name of a joint; took `{}` to `{}` for the joints from `{}` to `{}`, in the order of the chain",
@@ -102,11 +120,24 @@ impl ColumnLayout {
     }
 
     /// The layout of a file that is read for its joints alone.
-    pub(super) fn joints(header: &Header<'_>, robot: &Robot, map: &ColumnMap) -> Result<Self> {
-        let mut builder = Builder::new(header, robot, map)?;
+    pub(super) fn joints(
+        header: &Header<'_>,
+        robot: &Robot,
+        options: &ReadOptions,
+        map: &ColumnMap,
+    ) -> Result<Self> {
+        let mut builder = Builder::new(header, robot, map, options.controller.as_ref())?;
         builder.check_distinct()?;
         let id = builder.id_column()?;
-        let numbered = builder.numbered.clone();
-        Ok(ColumnLayout { inputs: builder.inputs, id, numbered, ..ColumnLayout::default() })
+        let (numbered, missed) = (builder.numbered.clone(), builder.missed.clone());
+        let controller = builder.controller(robot);
+        Ok(ColumnLayout {
+            inputs: builder.inputs,
+            id,
+            numbered,
+            controller,
+            missed,
+            ..ColumnLayout::default()
+        })
     }
 }

@@ -16,6 +16,7 @@ use super::units::{Dimension, Unit};
 use crate::error::{Error, ErrorKind, Result};
 use crate::io::source_text;
 use crate::io::urdf::ChainSelection;
+use crate::robot::ThirdAxis;
 
 /// A mapping of a file's columns to ours, as TOML (docs/file-formats.md, "Mapping file").
 #[derive(Clone, Debug, Default, Deserialize)]
@@ -34,6 +35,8 @@ pub struct ColumnMap {
     pub(super) target_name: Option<String>,
     pub(super) instrument: Option<String>,
     pub(super) set: Option<FitWhere>,
+    #[serde(deserialize_with = "third_axis")]
+    pub(super) third_axis: Option<ThirdAxis>,
     pub(super) units: UnitDefaults,
     pub(super) joints: BTreeMap<String, ColumnSpec>,
     pub(super) position: Option<PositionSpec>,
@@ -89,6 +92,8 @@ pub(super) struct ColumnSpec {
     /// Columns with their factors.
     pub(super) columns: Option<BTreeMap<String, f64>>,
     pub(super) value: Option<f64>,
+    /// What is added to the columns, in the unit.
+    pub(super) offset: Option<f64>,
     #[serde(default, deserialize_with = "any_unit")]
     pub(super) unit: Option<Unit>,
 }
@@ -246,7 +251,7 @@ impl<'de> Visitor<'de> for ColumnSpecVisitor {
     type Value = ColumnSpec;
 
     fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("a column name, or a table with `column`, `columns` or `value`, and `unit`")
+        f.write_str("a column name, or a table with `column`, `columns` or `value`, and `offset` and `unit`")
     }
 
     fn visit_str<E: serde::de::Error>(self, column: &str) -> std::result::Result<ColumnSpec, E> {
@@ -267,8 +272,11 @@ impl<'de> Visitor<'de> for ColumnSpecVisitor {
             )));
         }
         spec.columns.as_ref().map_or(Ok(()), check_columns)?;
-        if spec.value.is_some_and(|value| !value.is_finite()) {
+        if [spec.value, spec.offset].into_iter().flatten().any(|value| !value.is_finite()) {
             return Err(A::Error::custom("found a value that is not finite, expected a finite number"));
+        }
+        if spec.value.is_some() && spec.offset.is_some() {
+            return Err(A::Error::custom("found `offset` beside `value`, expected their sum as `value`"));
         }
         Ok(spec)
     }
@@ -315,6 +323,19 @@ fn orientation_form<'de, D: Deserializer<'de>>(
     deserializer: D,
 ) -> std::result::Result<OrientationForm, D::Error> {
     String::deserialize(deserializer)?.parse().map_err(D::Error::custom)
+}
+
+fn third_axis<'de, D: Deserializer<'de>>(
+    deserializer: D,
+) -> std::result::Result<Option<ThirdAxis>, D::Error> {
+    parsed(deserializer, |text| match text {
+        "arm" => Ok(ThirdAxis::Arm),
+        "level" => Ok(ThirdAxis::Level),
+        _ => Err(Error::new(
+            ErrorKind::Syntax,
+            format!("found the third axis `{text}`, expected `arm` or `level`, from which it counts"),
+        )),
+    })
 }
 
 fn separator<'de, D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Option<Separator>, D::Error> {

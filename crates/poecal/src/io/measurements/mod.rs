@@ -52,6 +52,7 @@ pub(in crate::io) use write::text;
 use std::collections::BTreeMap;
 
 use crate::measurement::Dataset;
+use crate::robot::Controller;
 
 /// Options for reading measurement files.
 ///
@@ -65,6 +66,9 @@ use crate::measurement::Dataset;
 pub struct ReadOptions {
     /// Mapping of columns with other names than ours; applies to every file.
     pub mapping: Option<ColumnMap>,
+    /// How the joint readings are made of columns, as the calibration of this robot kept it, for files that have these columns; a mapping with
+    /// joints precedes it.
+    pub controller: Option<Controller>,
     /// Training rows; precedes the `set` column and the mapping's `set`.
     pub fit_where: Option<FitWhere>,
     /// Whether sets are ignored ([`ReadOptions::fit_where`], the mapping's `set`, the `set` column), as for files that only judge a

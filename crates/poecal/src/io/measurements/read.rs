@@ -25,7 +25,7 @@ use crate::error::{Error, ErrorKind, Result, shown};
 use crate::measurement::{
     Dataset, Measurement, NoiseShape, Observation, Quantity, Seen, Set, Source, Stated,
 };
-use crate::robot::{Robot, check_name};
+use crate::robot::{Controller, Robot, check_name};
 use crate::start::settle_faces;
 use crate::text::visible;
 
@@ -48,9 +48,35 @@ fn read_all(paths: &[&Path], robot: &Robot, options: &ReadOptions) -> Result<Mea
     let no_map = ColumnMap::default();
     let mut reader = Reader::new(robot, options, &no_map);
     for path in paths {
-        reader.file(path, Blocks::open(path, "a measurement file (CSV)")?)?;
+        let blocks = Blocks::open(path, "a measurement file (CSV)")?;
+        reader.file(path, blocks).map_err(|error| beside(error, path, paths, reader.map))?;
     }
     reader.finish()
+}
+
+/// An error of a column that is in another of the files: tables that stand side by side, and not one below the other.
+fn beside(error: Error, path: &Path, paths: &[&Path], map: &ColumnMap) -> Error {
+    let missing = error.message().strip_prefix("found no column `").and_then(|rest| rest.split_once('`'));
+    let Some((name, _)) = missing else { return error };
+    let has = |other: &&&Path| {
+        let blocks = Blocks::open(other, "a measurement file (CSV)");
+        let table = blocks
+            .and_then(|blocks| Table::open(other, blocks, map).map(|table| table.header.count(name) > 0));
+        **other != path && table.unwrap_or(false)
+    };
+    let Some(other) = paths.iter().find(has) else { return error };
+    let message = format!(
+        "found no column `{name}`, expected it beside the others: {} has it, so the two are parts of one table; join them row by row into one file \
+         (`paste -d, {} {}`)",
+        other.display(),
+        path.display(),
+        other.display()
+    );
+    let moved = Error::new(error.kind(), message);
+    match error.place().and_then(|place| place.line) {
+        Some(line) => moved.at_line(path, line),
+        None => moved.in_file(path),
+    }
 }
 
 /// Reads the text of a measurement file; `path` is for the messages only.
@@ -224,7 +250,8 @@ impl<'a> Reader<'a> {
         self.warn_of_ignored(path, &layout);
         self.found
             .warnings
-            .extend(layout.numbered_words().map(|words| format!("{}: {words}", path.display())));
+            .extend(layout.joint_words().into_iter().map(|words| format!("{}: {words}", path.display())));
+        self.take_controller(path, &layout)?;
         let turns = turns::warning(&table.header, &layout, self.map);
         self.found.warnings.extend(turns.map(|warning| format!("{}: {warning}", path.display())));
         self.found.understood.push(FileUnderstanding {
@@ -243,6 +270,24 @@ impl<'a> Reader<'a> {
             pose: understanding::pose_word(layout.pose),
             ignored: layout.ignored.into_iter().map(|(name, _)| name).collect(),
         });
+        Ok(())
+    }
+
+    /// How the files' readings are made of columns, which must be the same in all.
+    fn take_controller(&mut self, path: &Path, layout: &ColumnLayout) -> Result<()> {
+        let words = |it: &Option<Controller>| it.as_ref().map(|it| (it.third_axis, it.words()));
+        let is_first = self.found.understood.is_empty();
+        if !is_first && words(&self.found.data.controller) != words(&layout.controller) {
+            let shown =
+                |it: &Option<Controller>| it.as_ref().map_or("one by one".to_owned(), Controller::words);
+            let message = format!(
+                "found joint readings of columns {} after a file with {}, expected the same in all files",
+                shown(&layout.controller),
+                shown(&self.found.data.controller)
+            );
+            return Err(Error::new(ErrorKind::Measurement, message).in_file(path));
+        }
+        self.found.data.controller.clone_from(&layout.controller);
         Ok(())
     }
 

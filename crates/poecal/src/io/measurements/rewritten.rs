@@ -4,7 +4,8 @@ use std::f64::consts::TAU;
 use std::path::Path;
 
 use super::ReadOptions;
-use super::inputs::{InputReader, InputSource};
+use super::header::Header;
+use super::inputs::{Input, InputReader, InputSource, Term};
 use super::layout::ColumnLayout;
 use super::mapping::ColumnMap;
 use super::number::{DecimalSign, Numbers};
@@ -14,7 +15,7 @@ use super::text::Blocks;
 use super::units::Unit;
 use crate::error::{Error, ErrorKind, Result};
 use crate::io::numbers::push_number;
-use crate::robot::Robot;
+use crate::robot::{Counting, Robot};
 use crate::text::visible;
 
 /// A row of joint readings, and what stands in their place.
@@ -40,7 +41,8 @@ pub struct RewrittenTable {
 /// decimal sign. Nothing is held but a few hundred kilobytes.
 ///
 /// # Errors
-/// As [`super::read_joints`]; [`ErrorKind::Measurement`] if a reading is no column of its own; what `change` and `out` return.
+/// As [`super::read_joints`]; [`ErrorKind::Measurement`] if a reading is a constant, [`ErrorKind::Option`] if sums of columns
+/// cannot be taken apart again; what `change` and `out` return.
 pub fn rewrite_joints(
     path: impl AsRef<Path>,
     robot: &Robot,
@@ -53,8 +55,9 @@ pub fn rewrite_joints(
     let map = options.mapping.as_ref().unwrap_or(&no_map);
     let blocks = Blocks::open(path, "a file of joint readings (CSV)")?;
     let mut table = Table::open(path, blocks.keeping(), map)?;
-    let layout = ColumnLayout::joints(&table.header, robot, map)?;
-    let columns = columns(&layout, path)?;
+    let layout = ColumnLayout::joints(&table.header, robot, options, map)?;
+    let counting = counting(&layout, path)?;
+    let columns = columns(&layout, counting.as_ref(), &table.header)?;
     let mut inputs = InputReader::new(&layout.inputs, layout.inputs.len(), Numbers::new(map.decimal));
     let mut watch = JointWatch::new(robot);
     let mut rewritten = RewrittenTable::default();
@@ -62,7 +65,7 @@ pub fn rewrite_joints(
         out("\u{feff}")?;
     }
     out(&table.passed())?;
-    let mut row_of = Rewriting { columns, numbers: Vec::new(), text: String::new() };
+    let mut row_of = Rewriting { columns, counting, numbers: Vec::new(), text: String::new() };
     while let Some(rows) = table.next_block()? {
         rewritten.rows += row_of.block(rows, &mut inputs, &mut watch, change)?;
         out(&row_of.text)?;
@@ -72,29 +75,55 @@ pub fn rewrite_joints(
         return Err(Error::new(ErrorKind::Measurement, message).at_line(path, table.header.line));
     }
     let mut warnings = watch.finish(path, &layout, &inputs.ranges)?;
-    warnings.extend(layout.numbered_words().map(|words| format!("{}: {words}", path.display())));
+    warnings.extend(layout.joint_words().into_iter().map(|words| format!("{}: {words}", path.display())));
     rewritten.warnings = warnings.iter().map(|warning| visible(warning).into_owned()).collect();
     Ok(rewritten)
 }
 
-/// Column and unit of each reading.
-fn columns(layout: &ColumnLayout, path: &Path) -> Result<Vec<(usize, Unit)>> {
-    let column = |input: &super::inputs::Input| match input.source {
-        InputSource::Column(column) if input.sum.is_empty() => Ok((column, input.unit)),
-        InputSource::Column(_) | InputSource::Constant(_) => {
+/// Column and unit of each number that is counted: of each reading, or, where these are sums, of the columns in the order of
+/// [`Counting::names`].
+fn columns(
+    layout: &ColumnLayout,
+    counting: Option<&Counting>,
+    header: &Header<'_>,
+) -> Result<Vec<(usize, Unit)>> {
+    let terms: Vec<Term> = layout.inputs.iter().flat_map(Input::terms).collect();
+    let Some(counting) = counting else { return Ok(terms.iter().map(|it| (it.column, it.unit)).collect()) };
+    let mut columns = Vec::with_capacity(terms.len());
+    for name in counting.names() {
+        let mut own =
+            terms.iter().filter(|it| header.cells.get(it.column).is_some_and(|cell| cell.name == *name));
+        let Some(first) = own.next() else { continue };
+        if let Some(other) = own.find(|it| it.unit.symbol() != first.unit.symbol()) {
             let message = format!(
-                "joint `{}` is a sum of columns or a constant by the mapping, expected a column of its own, which can be corrected",
-                input.name
+                "found column `{name}` in {} and in {} by the mapping, expected one unit",
+                first.unit.symbol(),
+                other.unit.symbol()
             );
-            Err(Error::new(ErrorKind::Measurement, message).in_file(path))
+            return Err(Error::new(ErrorKind::Measurement, message).in_file(header.path));
         }
-    };
-    layout.inputs.iter().map(column).collect()
+        columns.push((first.column, first.unit));
+    }
+    Ok(columns)
+}
+
+/// The way back from readings that are sums to their columns; `None` where each reading is a column.
+fn counting(layout: &ColumnLayout, path: &Path) -> Result<Option<Counting>> {
+    if let Some(input) = layout.inputs.iter().find(|it| matches!(it.source, InputSource::Constant(_))) {
+        let message = format!(
+            "joint `{}` is a constant by the mapping, expected a column of its own, which can be corrected",
+            input.name
+        );
+        return Err(Error::new(ErrorKind::Measurement, message).in_file(path));
+    }
+    let sums = layout.controller.as_ref().filter(|it| !it.is_plain());
+    sums.map(|it| it.counting().map_err(|error| error.in_file(path))).transpose()
 }
 
 /// The current block with its new numbers.
 struct Rewriting {
     columns: Vec<(usize, Unit)>,
+    counting: Option<Counting>,
     numbers: Vec<f64>,
     text: String,
 }
@@ -123,17 +152,28 @@ impl Rewriting {
             self.numbers.extend_from_slice(inputs.readings());
             change(&JointRow { line: row.line, readings: inputs.readings() }, &mut self.numbers)?;
             let start = row.text.as_ptr() as usize - block.as_ptr() as usize;
+            // Of sums the columns change, by what makes the change of the readings.
+            let changes = self.counting.as_ref().map(|counting| {
+                let of = self.numbers.iter().zip(inputs.readings());
+                counting.change(&of.map(|(new, old)| new - old).collect::<Vec<f64>>())
+            });
             for &at in &order {
-                let ((column, unit), number) = (self.columns[at], self.numbers[at]);
-                if number.to_bits() == inputs.readings()[at].to_bits() {
-                    continue;
-                }
+                let (column, unit) = self.columns[at];
                 let Some(cell) = row.cells.get(column) else { continue };
+                let number = match &changes {
+                    None if self.numbers[at].to_bits() == inputs.readings()[at].to_bits() => continue,
+                    // The controller counts on with the turns that were taken off.
+                    None => self.numbers[at] + inputs.turns()[at] * TAU,
+                    Some(changes) if changes[at] == 0.0 => continue,
+                    Some(changes) => {
+                        // It was read before, as a part of a sum.
+                        let counted = inputs.numbers.parse(cell.raw, row.line);
+                        unit.to_si(counted.map_err(|error| row.error(column, error))?) + changes[at]
+                    }
+                };
                 let from = start + (cell.raw.as_ptr() as usize - row.text.as_ptr() as usize);
                 self.text.push_str(block.get(copied..from).unwrap_or_default());
                 let digits = self.text.len();
-                // The controller counts on with the turns that were taken off.
-                let number = number + inputs.turns()[at] * TAU;
                 push_number(&mut self.text, unit.from_si(number));
                 if inputs.numbers.sign() == DecimalSign::Comma {
                     let with_comma = self.text.split_off(digits).replace('.', ",");

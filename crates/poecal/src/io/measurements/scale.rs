@@ -23,6 +23,8 @@ const LARGEST_OTHERWISE: f64 = 4.0 * std::f64::consts::PI;
 const SHARE: f64 = 0.1;
 /// Positions with a spread of more than this many reaches are in a wrong unit.
 const REACHES: f64 = 20.0;
+/// The largest of all readings where they are per cent of the joints' ranges, from -100 to 100 and a little beyond.
+const PER_CENT: std::ops::RangeInclusive<f64> = 92.0..=102.0;
 /// Rounding allowed beyond a limit.
 const ROUNDING: f64 = 1e-6;
 
@@ -112,7 +114,12 @@ impl<'a> JointWatch<'a> {
             let Some((lowest, highest)) = range.0 else { continue };
             if let Some(likely) = one.other_unit(input, [lowest, highest], self.rows) {
                 let (line, column) = one.extreme_place;
-                let message = one.unit_message(input, likely);
+                let of_joints = layout.inputs.iter().zip(ranges).take(self.joints.len());
+                let extremes = of_joints.filter_map(|(input, range)| {
+                    range.0.map(|(low, high)| input.unit.from_si(low.abs().max(high.abs())))
+                });
+                let is_per_cent = PER_CENT.contains(&extremes.fold(0.0, f64::max));
+                let message = one.unit_message(input, likely, is_per_cent);
                 return Err(Error::new(ErrorKind::Unit, message).at(path, line, column));
             }
             if let Some(limits) = one.joint.limits {
@@ -216,7 +223,7 @@ impl OneJoint<'_> {
         }
     }
 
-    fn unit_message(&self, input: &Input, likely: Unit) -> String {
+    fn unit_message(&self, input: &Input, likely: Unit, is_per_cent: bool) -> String {
         let stated = input.unit.symbol();
         let symbol = likely.symbol();
         let outside = match self.joint.limits {
@@ -231,10 +238,16 @@ impl OneJoint<'_> {
             }
             None => format!("too far for joint `{}`", self.joint.name),
         };
+        let extreme = input.unit.from_si(self.extreme);
+        let per_cent = if symbol == "deg" && is_per_cent {
+            " (per cent of the range are read as deg too: `poecal check` then names the factors)"
+        } else {
+            ""
+        };
         format!(
             "found readings of up to {} {stated}, {outside}, expected another unit, most likely {symbol}; \
-             write `{}[{symbol}]` in the header, or the unit in the mapping",
-            short(input.unit.from_si(self.extreme)),
+             write `{}[{symbol}]` in the header, or the unit in the mapping{per_cent}",
+            short(extreme),
             input.name
         )
     }

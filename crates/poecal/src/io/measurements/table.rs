@@ -69,6 +69,12 @@ impl<'a> Table<'a> {
         }
         let below = blocks.lines(line).take(LINES_BELOW);
         header.look_below(below.map(|(line, text)| (line, text.to_owned())));
+        if let Some(text) = header.first_row() {
+            let mut cells = Vec::new();
+            if split(&text, separator, &mut cells).is_ok() && cells.len() == header.cells.len() {
+                header.take_names(&cells);
+            }
+        }
         Ok(Table { header, separator, separator_line, blocks, unread: true })
     }
 
@@ -121,6 +127,17 @@ impl TableRows<'_> {
                     self.count_hint(text)
                 );
                 return Err(Error::new(ErrorKind::Syntax, message).at(path, line, place));
+            }
+            for (at, name) in &self.header.names {
+                if let Some(cell) = self.cells.get(*at).filter(|cell| cell.text().trim() != name) {
+                    let message = format!(
+                        "found the joint `{}` in column `{}`, expected `{name}` as in the first row: write the rows of each order into a file of their own",
+                        cell.text(),
+                        self.header.cells.get(*at).map_or("", |it| it.text.as_str())
+                    );
+                    let place = character_column(text, cell.offset);
+                    return Err(Error::new(ErrorKind::Measurement, message).at(path, line, place));
+                }
             }
             return Ok(Some(Row { path, line, text, cells: &self.cells }));
         }

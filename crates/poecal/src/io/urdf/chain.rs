@@ -11,6 +11,8 @@ use crate::io::xml::XmlSource;
 /// first.
 pub(super) struct UrdfChain {
     pub(super) base: usize,
+    /// Fixed joints from the base up to the link from which the others lead down, where the base is beside the chain.
+    pub(super) up: Vec<usize>,
     pub(super) tip: usize,
     pub(super) joints: Vec<usize>,
     /// Links of named instruments and targets.
@@ -27,10 +29,18 @@ pub(super) fn select(tree: &Tree, selection: &ChainSelection) -> Result<UrdfChai
         };
         mounts.iter().map(found).collect()
     };
-    let mut base = find(&selection.base_link, "--base-link")?;
+    let stated = find(&selection.base_link, "--base-link")?;
+    let tip = find(&selection.tip_link, "--tip-link")?;
+    let (mut base, up) = match stated {
+        Some(base) => {
+            let (top, up) = beside(tree, base, tip);
+            (Some(top), up)
+        }
+        None => (None, Vec::new()),
+    };
     let instruments = named(&selection.instruments, "instrument")?;
     let targets = named(&selection.targets, "target")?;
-    let tip = match find(&selection.tip_link, "--tip-link")? {
+    let tip = match tip {
         Some(tip) => tip,
         None if targets.is_empty() => only_tip(tree, base)?,
         None => first_moved(tree, base, targets.iter().chain(&instruments)),
@@ -45,8 +55,30 @@ pub(super) fn select(tree: &Tree, selection: &ChainSelection) -> Result<UrdfChai
         }
     }
     (chain.instruments, chain.targets) = (instruments, targets);
+    (chain.base, chain.up) = (stated.unwrap_or(chain.base), up);
     check_joints(tree, &chain)?;
     Ok(chain)
+}
+
+/// The link from which the chain leads down, and the fixed joints from the base up to it: the base itself where the tip, or something that
+/// moves, is below it; else the nearest link above it, by fixed joints alone, of which that is so.
+fn beside(tree: &Tree, base: usize, tip: Option<usize>) -> (usize, Vec<usize>) {
+    let leads = |link: usize| match tip {
+        Some(tip) => tip == link || tree.ancestors(tip).any(|(_, joint)| joint.parent == link),
+        None => !ends::ends(tree, Some(link)).is_empty(),
+    };
+    let (mut at, mut up) = (base, Vec::new());
+    while !leads(at) {
+        match tree.above(at) {
+            Some((index, joint)) if joint.kind == super::tree::JointType::Fixed => {
+                up.push(index);
+                at = joint.parent;
+            }
+            // Not by fixed joints: what is wrong is said of the base that was stated.
+            Some(_) | None => return (base, Vec::new()),
+        }
+    }
+    (at, up)
 }
 
 /// The first of some links that a joint moves, else the first of all.
@@ -113,16 +145,26 @@ fn way_up(tree: &Tree, base: Option<usize>, tip: usize, what: &str) -> Result<Ur
     match base {
         Some(base) if base != at => {
             let above: Vec<_> = tree.ancestors(tip).map(|(_, joint)| tree.link_name(joint.parent)).collect();
+            let (known, or) = match above.is_empty() {
+                true => ("there is none".to_owned(), ""),
+                false => (list(above), ", or one that fixed joints join to these"),
+            };
             let message = format!(
-                "{what} link `{}` is not below base link `{}`, expected a base link above {} ({})",
+                "{what} link `{}` is not below base link `{}`, expected a base link above {} ({known}){or}",
                 tree.link_name(tip),
                 tree.link_name(base),
                 if what == "tip" { "the tip" } else { "it" },
-                if above.is_empty() { "there is none".to_owned() } else { list(above) }
             );
             Err(error(&tree.source, message))
         }
-        _ => Ok(UrdfChain { base: at, tip, joints, instruments: Vec::new(), targets: Vec::new() }),
+        _ => Ok(UrdfChain {
+            base: at,
+            up: Vec::new(),
+            tip,
+            joints,
+            instruments: Vec::new(),
+            targets: Vec::new(),
+        }),
     }
 }
 

@@ -4,6 +4,7 @@
 //! file (meshes, inertias, controllers, comments) is ignored and stays.
 
 mod chain;
+mod doubts;
 mod ends;
 mod origins;
 mod parts;
@@ -17,6 +18,7 @@ mod write;
 
 use std::path::{Path, PathBuf};
 
+pub(super) use doubts::doubts;
 pub(super) use origins::Origin;
 pub use patch::PatchedUrdf;
 pub(super) use patch::origin_values;
@@ -30,6 +32,7 @@ pub(super) use write::{WIDE_LIMIT_M, written_new};
 use crate::error::Result;
 use crate::io::source_text;
 use crate::io::xml::{XmlSource, parsed, readable};
+use crate::lie::Pose;
 use crate::robot::Robot;
 use parts::{End, Part};
 use tree::Tree;
@@ -43,6 +46,8 @@ pub struct UrdfDocument {
     parts: Vec<Part>,
     /// The tip's link, then those of instruments and targets, in the robot's order.
     ends: Vec<End>,
+    /// Pose in the base of the link from which the chain leads down: the base itself, or one that it is joined to by fixed joints.
+    base_from_top: Pose,
     made_from: Option<&'static str>,
 }
 
@@ -87,13 +92,14 @@ impl UrdfDocument {
         let tree = Tree::read(source)?;
         let chain = chain::select(&tree, selection)?;
         let name = robot_element.attribute("name").filter(|name| !name.trim().is_empty()).unwrap_or("robot");
-        let (parts, ends, robot) = parts::read(&tree, &chain, name)?;
+        let (parts, ends, robot, base_from_top) = parts::read(&tree, &chain, name)?;
         Ok(UrdfDocument {
             text: text.to_owned(),
             path: path.to_path_buf(),
             robot,
             parts,
             ends,
+            base_from_top,
             made_from: None,
         })
     }

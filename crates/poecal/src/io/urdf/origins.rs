@@ -34,7 +34,7 @@ impl UrdfDocument {
     pub(in crate::io) fn base_from_first_parent(&self) -> Pose {
         let mut links: Vec<Pose> = Vec::new();
         for part in &self.parts {
-            let parent = part.parent.and_then(|at| links.get(at)).copied().unwrap_or_else(Pose::identity);
+            let parent = part.parent.and_then(|at| links.get(at)).copied().unwrap_or(self.base_from_top);
             if part.axis.is_some() {
                 return parent;
             }
@@ -48,7 +48,7 @@ impl UrdfDocument {
         let mut robot = self.robot.clone();
         let mut links: Vec<Pose> = Vec::with_capacity(self.parts.len());
         let at = |links: &[Pose], part: Option<usize>| {
-            part.and_then(|part| links.get(part)).copied().unwrap_or_else(Pose::identity)
+            part.and_then(|part| links.get(part)).copied().unwrap_or(self.base_from_top)
         };
         let mut joints = robot.joints.iter_mut();
         for (part, origin) in self.parts.iter().zip(origins) {

@@ -61,10 +61,18 @@ struct At {
     body: Body,
 }
 
-/// The joints in their order, the ends, and the robot of the moving joints with frames and screws in the base link.
-pub(super) fn read(tree: &Tree, chain: &UrdfChain, name: &str) -> Result<(Vec<Part>, Vec<End>, Robot)> {
-    let base = At { base_from_link: Pose::identity(), part: None, body: Body::Base };
-    let mut links = BTreeMap::from([(chain.base, base)]);
+/// The joints in their order, the ends, the robot of the moving joints with frames and screws in the base link, and the pose in it of the link
+/// from which the chain leads down.
+pub(super) fn read(tree: &Tree, chain: &UrdfChain, name: &str) -> Result<(Vec<Part>, Vec<End>, Robot, Pose)> {
+    // From the base up to the link from which the chain leads down.
+    let (mut base_from_top, mut top) = (Pose::identity(), chain.base);
+    for joint in chain.up.iter().filter_map(|&joint| tree.joints.get(joint)) {
+        base_from_top = base_from_top * read_part(&tree.source, joint)?.parent_from_joint.inverse();
+        top = joint.parent;
+    }
+    let base = At { base_from_link: base_from_top, part: None, body: Body::Base };
+    let mut links = BTreeMap::from([(top, base)]);
+    links.entry(chain.base).or_insert(At { base_from_link: Pose::identity(), ..base });
     let (mut parts, mut joints) = (Vec::new(), Vec::new());
     for joint in chain.joints.iter().filter_map(|&joint| tree.joints.get(joint)) {
         let parent = links.get(&joint.parent).copied().unwrap_or(base);
@@ -100,7 +108,7 @@ pub(super) fn read(tree: &Tree, chain: &UrdfChain, name: &str) -> Result<(Vec<Pa
     let named = chain.instruments.iter().chain(&chain.targets).map(|(_, link)| *link);
     let end = |link: usize| End { link: tree.link_name(link).to_owned(), part: at(link).part };
     let ends = std::iter::once(chain.tip).chain(named).map(end).collect();
-    Ok((parts, ends, robot))
+    Ok((parts, ends, robot, base_from_top))
 }
 
 /// Masses of the links of the chain and of what they carry, other joints at zero. Nothing else needs them: what cannot be read is no mass.

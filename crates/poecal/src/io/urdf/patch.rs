@@ -48,7 +48,7 @@ impl UrdfDocument {
         // Values as the new text has them, so that rounding does not add up along the chain.
         let mut base_from_links: Vec<Pose> = Vec::with_capacity(self.parts.len());
         let at = |links: &[Pose], part: Option<usize>| {
-            part.and_then(|part| links.get(part)).copied().unwrap_or_else(Pose::identity)
+            part.and_then(|part| links.get(part)).copied().unwrap_or(self.base_from_top)
         };
         for (part, carried) in self.parts.iter().zip(carried) {
             let base_from_parent = at(&base_from_links, part.parent);
@@ -62,7 +62,9 @@ impl UrdfDocument {
         let mut added = Added { names: BTreeSet::new(), links: Vec::new() };
         let (mut links, mut notes) = (Vec::new(), Vec::new());
         for (index, (end, wanted)) in self.ends.iter().zip(&wanted).enumerate() {
-            let base_from_link = at(&base_from_links, end.part);
+            // What is on the base itself, and not on a link that it is joined to, is where it is.
+            let is_base = end.part.is_none() && end.link == self.robot.base_name;
+            let base_from_link = if is_base { Pose::identity() } else { at(&base_from_links, end.part) };
             if close(&base_from_link, wanted) {
                 links.push(end.link.clone());
                 continue;

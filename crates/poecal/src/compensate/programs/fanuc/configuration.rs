@@ -55,8 +55,8 @@ impl Configuration {
     }
 
     /// Whether a configuration of the nominal arm (rad) fits, borders included; none of an arm that is built otherwise.
-    pub(crate) fn fits(&self, nominal: &Arm, q: &[f64]) -> bool {
-        self.letters(nominal, q) && self.orders(nominal).any(|order| self.turns_off(order, q) < MARGIN)
+    pub(crate) fn fits(&self, nominal: &Arm, q: &[f64], counted: &[f64]) -> bool {
+        self.letters(nominal, q) && self.orders(nominal).any(|order| self.turns_off(order, counted) < MARGIN)
     }
 
     /// Whether letters fit.
@@ -92,11 +92,11 @@ impl Configuration {
     }
 
     /// The turn numbers at a configuration of the nominal arm (rad); `None` if letters change, or if it is not plain which number would.
-    pub(crate) fn words(&self, nominal: &Arm, q: &[f64]) -> Option<Vec<f64>> {
+    pub(crate) fn words(&self, nominal: &Arm, q: &[f64], counted: &[f64]) -> Option<Vec<f64>> {
         let mut is_possible = false;
         for order in self.orders(nominal) {
             is_possible = true;
-            if self.turns_off(order, q) > 0.0 {
+            if self.turns_off(order, counted) > 0.0 {
                 return None;
             }
         }

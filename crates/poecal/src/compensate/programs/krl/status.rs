@@ -27,17 +27,17 @@ fn sided(value: f64, border: f64) -> Bit {
 
 impl Status {
     /// Whether a configuration of the nominal arm is what is stated; at borders either bit is.
-    pub(crate) fn fits(&self, nominal: &Arm, q: &[f64]) -> bool {
+    pub(crate) fn fits(&self, nominal: &Arm, q: &[f64], counted: &[f64]) -> bool {
         let fit = |stated: Option<u32>, bits: &[Bit]| {
             let Some(stated) = stated else { return true };
             bits.iter().enumerate().all(|(at, bit)| bit.is_none_or(|it| it == (stated >> at & 1 == 1)))
         };
-        let turns: Vec<Bit> = q.iter().take(6).map(|it| sided(-it, BORDER)).collect();
+        let turns: Vec<Bit> = counted.iter().take(6).map(|it| sided(-it, BORDER)).collect();
         fit(self.turn, &turns) && fit(self.status, &status(nominal, q, BORDER))
     }
 
     /// What is stated, for another configuration: bits that the program has beside these stay.
-    pub(crate) fn words(&self, nominal: &Arm, q: &[f64]) -> Vec<f64> {
+    pub(crate) fn words(&self, nominal: &Arm, q: &[f64], counted: &[f64]) -> Vec<f64> {
         let with = |stated: u32, bits: &[Bit]| {
             let put = |all: u32, (at, bit): (usize, &Bit)| match bit {
                 Some(true) => all | 1 << at,
@@ -46,7 +46,7 @@ impl Status {
             };
             f64::from(bits.iter().enumerate().fold(stated, put))
         };
-        let turns: Vec<Bit> = q.iter().take(6).map(|it| Some(*it < 0.0)).collect();
+        let turns: Vec<Bit> = counted.iter().take(6).map(|it| Some(*it < 0.0)).collect();
         let status = self.status.map(|it| with(it, &status(nominal, q, 0.0)));
         status.into_iter().chain(self.turn.map(|it| with(it, &turns))).collect()
     }

@@ -1,0 +1,353 @@
+//! What a controller counts: readings of which those of the model are sums.
+
+use std::collections::BTreeMap;
+
+use nalgebra::{DMatrix, DVector};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::{JointKind, Robot};
+use crate::error::{Error, ErrorKind, Result};
+
+/// How the readings of a controller make those of the model, `reading = Σ factor · counted + offset`: as where the third axis counts from the
+/// level. Kept in `calibration.json` where they are not the same one by one.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Controller {
+    /// From where the third axis counts, where that was stated; absent where it was not.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub third_axis: Option<ThirdAxis>,
+    /// The readings of the model's joints, in their order.
+    pub readings: Vec<ControllerReading>,
+}
+
+/// How a reading of the model is made.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct ControllerReading {
+    /// Its name.
+    pub reading: String,
+    /// Columns of the measurement files that were summed; none for a constant.
+    pub columns: BTreeMap<String, ControllerColumn>,
+    /// What is added, radians or metres.
+    #[serde(default)]
+    pub offset: f64,
+}
+
+/// A column of the controller's readings.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct ControllerColumn {
+    /// What it is multiplied with.
+    pub factor: f64,
+    /// Unit of its numbers in the measurement files.
+    pub unit: String,
+}
+
+/// From where a third axis counts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+#[schemars(rename = "ThirdAxisWord")]
+pub enum ThirdAxis {
+    /// From the lower arm, as joints of models do.
+    Arm,
+    /// From the level: the second axis turns it with it.
+    Level,
+}
+
+impl ThirdAxis {
+    /// Its word.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            ThirdAxis::Arm => "arm",
+            ThirdAxis::Level => "level",
+        }
+    }
+}
+
+/// Cosine of the angle between two axes that count as parallel (25°).
+const PARALLEL: f64 = 0.9;
+
+/// What the second axis adds to a reading of the third that counts from the level: the readings (their names) of both, and the factor with
+/// which `third = counted - factor · second`. `None` of robots whose second and third axes are not parallel.
+#[must_use]
+pub fn level(robot: &Robot) -> Option<(String, String, f64)> {
+    let own: Vec<_> = robot.joints.iter().filter(|joint| joint.give_of.is_none()).take(3).collect();
+    let [first, second, third] = own[..] else { return None };
+    let names = [first, second, third].map(|joint| joint.reading.name.as_str());
+    let are_apart = names[0] != names[1] && names[1] != names[2] && names[0] != names[2];
+    let turn = [first, second, third].iter().all(|joint| joint.kind == JointKind::Revolute);
+    let along = second.screw.direction().dot(&third.screw.direction());
+    if !are_apart || !turn || along.abs() < PARALLEL || third.reading.multiplier == 0.0 {
+        return None;
+    }
+    let factor = along.signum() * second.reading.multiplier / third.reading.multiplier;
+    Some((names[1].to_owned(), names[2].to_owned(), factor))
+}
+
+impl Controller {
+    /// Of a controller that counts as the model does.
+    #[must_use]
+    pub fn plain(robot: &Robot) -> Self {
+        let reading = |name: String| {
+            let slides =
+                robot.joints.iter().any(|it| it.reading.name == name && it.kind == JointKind::Prismatic);
+            let unit = if slides { "m" } else { "rad" }.to_owned();
+            let columns = BTreeMap::from([(name.clone(), ControllerColumn { factor: 1.0, unit })]);
+            ControllerReading { reading: name, columns, offset: 0.0 }
+        };
+        let readings = robot.joint_reading_names().into_iter().map(reading).collect();
+        Controller { third_axis: None, readings }
+    }
+
+    /// Whether each reading is one the controller counts, of whatever name.
+    #[must_use]
+    pub fn is_plain(&self) -> bool {
+        self.readings.iter().all(ControllerReading::is_plain)
+    }
+
+    /// The same with a third axis that counts so.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Option`] of a robot whose second and third axes are not parallel; as [`Controller::counting`].
+    pub fn with_third_axis(mut self, robot: &Robot, counts: ThirdAxis) -> Result<Self> {
+        let Some((second, third, factor)) = level(robot) else {
+            let message = format!(
+                "found a third axis that counts from the {}, expected a robot whose second and third axes are parallel",
+                counts.word()
+            );
+            return Err(Error::new(ErrorKind::Option, message));
+        };
+        let own = self.axes()?;
+        let Some(at) = self.readings.iter().position(|it| it.reading == third) else { return Ok(self) };
+        let of_second = self.readings.iter().find(|it| it.reading == second).cloned();
+        let (Some(reading), Some(name)) = (self.readings.get_mut(at), own.get(at)) else { return Ok(self) };
+        reading.columns.retain(|column, _| column == name);
+        if let (ThirdAxis::Level, Some(of_second)) = (counts, of_second) {
+            for (column, it) in of_second.columns {
+                let unit = it.unit;
+                let added = reading.columns.entry(column).or_insert(ControllerColumn { factor: 0.0, unit });
+                added.factor -= factor * it.factor;
+            }
+            reading.offset -= factor * of_second.offset;
+        }
+        self.third_axis = Some(counts);
+        Ok(self)
+    }
+
+    /// Of each reading, the column that the controller counts for this axis: readings and columns are paired one by one, where only one is left.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Option`] if they cannot be paired.
+    pub fn axes(&self) -> Result<Vec<String>> {
+        let mut found: Vec<Option<&String>> = vec![None; self.readings.len()];
+        let mut taken: Vec<&String> = Vec::new();
+        while taken.len() < self.readings.len() {
+            let mut next = None;
+            for (at, reading) in self.readings.iter().enumerate().filter(|(at, _)| found[*at].is_none()) {
+                let mut left = reading.columns.keys().filter(|it| !taken.contains(it));
+                if let (Some(column), None) = (left.next(), left.next()) {
+                    next = Some((at, column));
+                    break;
+                }
+            }
+            let Some((at, column)) = next else {
+                return Err(self.not_apart());
+            };
+            found[at] = Some(column);
+            taken.push(column);
+        }
+        Ok(found.into_iter().flatten().cloned().collect())
+    }
+
+    fn not_apart(&self) -> Error {
+        let sums: Vec<String> =
+            self.readings.iter().filter(|it| !it.is_plain()).map(ControllerReading::words).collect();
+        let message = format!(
+            "the readings are made of columns ({}) that cannot be taken apart again, expected a column of its own in each: correct by a calibration \
+             whose mapping has one",
+            sums.join("; ")
+        );
+        Error::new(ErrorKind::Option, message)
+    }
+
+    /// The way from counted readings to those of the model, and back.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Option`] if the sums cannot be taken apart again.
+    pub fn counting(&self) -> Result<Counting> {
+        let names = self.axes()?;
+        let count = names.len();
+        let forward = DMatrix::from_fn(count, count, |row, column| {
+            self.readings[row].columns.get(&names[column]).map_or(0.0, |it| it.factor)
+        });
+        let offsets = DVector::from_iterator(count, self.readings.iter().map(|it| it.offset));
+        let back = forward.clone().try_inverse().ok_or_else(|| self.not_apart())?;
+        Ok(Counting { names, forward, offsets, back })
+    }
+
+    /// The sums in words; empty where each reading is counted by itself.
+    #[must_use]
+    pub fn words(&self) -> String {
+        let sums = self.readings.iter().filter(|it| !it.is_plain()).map(ControllerReading::words);
+        sums.collect::<Vec<_>>().join(", ")
+    }
+}
+
+impl ControllerReading {
+    fn is_plain(&self) -> bool {
+        self.offset == 0.0 && self.columns.len() == 1 && self.columns.values().all(|it| it.factor == 1.0)
+    }
+
+    fn words(&self) -> String {
+        let mut words = format!("{} =", self.reading);
+        for (at, (column, it)) in self.columns.iter().enumerate() {
+            let sign = match (it.factor < 0.0, at) {
+                (true, _) => " -",
+                (false, 0) => "",
+                (false, _) => " +",
+            };
+            let size = if it.factor.abs() == 1.0 { String::new() } else { format!("{} ", it.factor.abs()) };
+            words.push_str(&format!("{sign} {size}{column}"));
+        }
+        if self.offset != 0.0 || self.columns.is_empty() {
+            words.push_str(&format!(
+                " {} {:.6}",
+                if self.offset < 0.0 { "-" } else { "+" },
+                self.offset.abs()
+            ));
+        }
+        words
+    }
+}
+
+/// Readings that a controller counts, and those of the model that they make: `r = A·c + b`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Counting {
+    names: Vec<String>,
+    forward: DMatrix<f64>,
+    offsets: DVector<f64>,
+    back: DMatrix<f64>,
+}
+
+impl Counting {
+    /// Names of the counted readings, in the order of the model's whose axes they are.
+    #[must_use]
+    pub fn names(&self) -> &[String] {
+        &self.names
+    }
+
+    /// `A`, by rows.
+    #[must_use]
+    pub fn matrix(&self) -> &DMatrix<f64> {
+        &self.forward
+    }
+
+    /// `A⁻¹`, by rows.
+    #[must_use]
+    pub fn inverse(&self) -> &DMatrix<f64> {
+        &self.back
+    }
+
+    /// `b`, radians and metres.
+    #[must_use]
+    pub fn offsets(&self) -> &DVector<f64> {
+        &self.offsets
+    }
+
+    /// The model's readings for counted ones (rad, m).
+    #[must_use]
+    pub fn readings(&self, counted: &[f64]) -> Vec<f64> {
+        let row = |(row, offset): (usize, &f64)| {
+            counted
+                .iter()
+                .take(self.names.len())
+                .enumerate()
+                .map(|(at, it)| self.forward[(row, at)] * it)
+                .sum::<f64>()
+                + offset
+        };
+        self.offsets.iter().enumerate().map(row).collect()
+    }
+
+    /// What the controller counts at the model's readings (rad, m).
+    #[must_use]
+    pub fn counted(&self, readings: &[f64]) -> Vec<f64> {
+        let from: Vec<f64> =
+            readings.iter().zip(self.offsets.iter()).map(|(it, offset)| it - offset).collect();
+        self.change(&from)
+    }
+
+    /// By how much counted readings change where those of the model change by so much: where these do not change, not at all.
+    #[must_use]
+    pub fn change(&self, of_readings: &[f64]) -> Vec<f64> {
+        let count = self.names.len();
+        let row = |row: usize| {
+            of_readings.iter().take(count).enumerate().map(|(at, it)| self.back[(row, at)] * it).sum()
+        };
+        (0..count).map(row).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::robot::tests::elbow;
+
+    fn of(rows: &[(&str, &[(&str, f64)], f64)]) -> Controller {
+        let column = |(name, factor): &(&str, f64)| {
+            ((*name).to_owned(), ControllerColumn { factor: *factor, unit: "deg".to_owned() })
+        };
+        let reading = |(name, columns, offset): &(&str, &[(&str, f64)], f64)| ControllerReading {
+            reading: (*name).to_owned(),
+            columns: columns.iter().map(column).collect(),
+            offset: *offset,
+        };
+        Controller { third_axis: None, readings: rows.iter().map(reading).collect() }
+    }
+
+    #[test]
+    fn sums_signs_factors_and_zeros_go_and_come_back() {
+        let all = of(&[
+            ("a", &[("J1", -1.0)], 0.5),
+            ("b", &[("J2", 2.0), ("J3", 1.0)], 0.0),
+            ("c", &[("J3", 1.0)], -0.25),
+        ]);
+        let counting = all.counting().unwrap();
+        assert_eq!(counting.names(), ["J1", "J2", "J3"]);
+        assert_eq!(counting.readings(&[0.1, 0.2, 0.3]), [0.4, 0.7, 0.3 - 0.25]);
+        for (found, wanted) in counting.counted(&[0.4, 0.7, 0.05]).iter().zip([0.1, 0.2, 0.3]) {
+            assert!((found - wanted).abs() < 1e-15);
+        }
+        assert_eq!(counting.change(&[0.0, 0.0, 1.0]), [0.0, -0.5, 1.0]);
+        assert_eq!(all.words(), "a = - J1 + 0.500000, b = 2 J2 + J3, c = J3 - 0.250000");
+    }
+
+    #[test]
+    fn what_cannot_be_taken_apart_is_refused() {
+        for readings in [
+            of(&[("a", &[("J1", 1.0), ("J2", 1.0)], 0.0), ("b", &[("J1", 1.0), ("J2", -1.0)], 0.0)]),
+            of(&[("a", &[("J1", 1.0)], 0.0), ("b", &[("J1", 1.0)], 0.0)]),
+            of(&[("a", &[], 0.3)]),
+        ] {
+            let error = readings.counting().unwrap_err().to_string();
+            assert!(error.contains("cannot be taken apart again"), "{error}");
+        }
+    }
+
+    #[test]
+    fn a_third_axis_from_the_level_turns_with_the_second() {
+        let robot = elbow();
+        let (second, third, factor) = level(&robot).unwrap();
+        let level = Controller::plain(&robot).with_third_axis(&robot, ThirdAxis::Level).unwrap();
+        let counting = level.counting().unwrap();
+        let at = |name: &str| robot.joint_reading_names().iter().position(|it| it == name).unwrap();
+        let mut counted = vec![0.0; 6];
+        counted[at(&second)] = 0.3;
+        let readings = counting.readings(&counted);
+        assert_eq!(readings[at(&third)], -factor * 0.3);
+        // The forearm keeps its direction.
+        let flat = robot.forward_kinematics(&[0.0; 6]).rotation;
+        assert!((robot.forward_kinematics(&readings).rotation - flat).norm() < 1e-12);
+        let again = level.with_third_axis(&robot, ThirdAxis::Arm).unwrap();
+        assert!(again.is_plain());
+    }
+}
