@@ -162,6 +162,26 @@ def motion_capture(robot, log, take):
     write(take, rows)
 
 
+def hand_eye(robot, path):
+    """What a controller says of its flange (X, Y, Z and KUKA's A, B, C), and where a camera on it sees a board: no joint readings."""
+    flange_from_camera = pose([0, 0, 0.8], [0.04, -0.06, 0.09])
+    base_from_board = pose([0.02, -0.01, 0.5], [0.6, 0.1, 0.05])
+    rows = []
+    while len(rows) < 25:
+        turn = rotation(robot.noise(0.3, 0.3, 0.6)) @ rotation([np.pi, 0, 0])
+        flange = np.eye(4)
+        flange[:3, :3], flange[:3, 3] = turn, np.array([0.6, 0.1, 0.55]) + robot.noise(0.12, 0.12, 0.08)
+        camera_from_board = np.linalg.inv(flange @ flange_from_camera) @ base_from_board
+        if camera_from_board[2, 3] < 0.8 * np.linalg.norm(camera_from_board[:3, 3]):
+            continue
+        abc = np.degrees([np.arctan2(turn[1, 0], turn[0, 0]), np.arcsin(-turn[2, 0]), np.arctan2(turn[2, 1], turn[2, 2])])
+        place = camera_from_board[:3, 3] + robot.noise(0.0002, 0.0002, 0.0004)
+        seen = rotation_vector(rotation(robot.noise(0.001, 0.001, 0.0003)) @ camera_from_board[:3, :3])
+        cells = [*(f"{1e3 * value:.3f}" for value in flange[:3, 3]), *(f"{value:.4f}" for value in abc)]
+        rows.append([*cells, *(f"{value:.6f}" for value in seen), *(f"{1e3 * value:.3f}" for value in place)])
+    write(path, [["X", "Y", "Z", "A", "B", "C", "rvec_x", "rvec_y", "rvec_z", "tvec_x", "tvec_y", "tvec_z"], *rows])
+
+
 def write(path, rows):
     with path.open("w", encoding="utf-8", newline="") as file:
         csv.writer(file, lineterminator="\n").writerows(rows)
@@ -175,6 +195,7 @@ def main(poecal, folder):
         reflectors(robot, folder / "reflectors.csv")
         hand_camera(robot, folder / "camera.csv")
         motion_capture(robot, folder / "joints.csv", folder / "take.csv")
+        hand_eye(robot, folder / "hand_eye.csv")
 
 
 if __name__ == "__main__":

@@ -269,6 +269,8 @@ export type CalibrationFile = {
    * calibration is not to be used, and of a robot whose tip not every joint moves.
    */
   compensation?: CompensationEntry | null;
+  /** How the readings of the joints are made of those that the controller counts; absent where they are the same. */
+  controller?: Controller | null;
   /** The corrected model: screws and terms of the joints fitted together; absent if no terms were asked for. */
   corrected?: CorrectedEntry | null;
   /** Each joint's correction. */
@@ -451,6 +453,35 @@ export type CompensationEntry = {
 };
 
 /**
+ * How the readings of a controller make those of the model, `reading = Σ factor · counted + offset`: as where the third axis counts from
+ * the level. Kept in `calibration.json` where they are not the same one by one.
+ */
+export type Controller = {
+  /** The readings of the model's joints, in their order. */
+  readings: ControllerReading[];
+  /** From where the third axis counts, where that was stated; absent where it was not. */
+  third_axis?: ThirdAxisWord | null;
+};
+
+/** A column of the controller's readings. */
+export type ControllerColumn = {
+  /** What it is multiplied with. */
+  factor: number;
+  /** Unit of its numbers in the measurement files. */
+  unit: string;
+};
+
+/** How a reading of the model is made. */
+export type ControllerReading = {
+  /** Columns of the measurement files that were summed; none for a constant. */
+  columns: { [name: string]: ControllerColumn };
+  /** What is added, radians or metres. */
+  offset?: number;
+  /** Its name. */
+  reading: string;
+};
+
+/**
  * Screws and terms of the joints, fitted together. Its entries replace those of the same name where predictions are those of the corrected
  * model.
  */
@@ -570,7 +601,7 @@ export type DiagnosisEntry = {
 };
 
 /** Kind of a mistake. The words do not change between versions. */
-export type DiagnosisKind = "joint_unit" | "position_unit" | "joint_sign" | "joints_swapped" | "joints_coupled" | "joint_zero" | "quaternion_order" | "inverted_pose" | "euler_convention" | "left_handed" | "row_shift" | "targets_swapped" | "targets_unnamed" | "length_unit" | "distance_zero" | "known_length" | "height_sign" | "tilt_unit" | "places_swapped" | "duplicate_rows";
+export type DiagnosisKind = "joint_unit" | "position_unit" | "joint_sign" | "joints_swapped" | "joints_coupled" | "joint_zero" | "quaternion_order" | "inverted_pose" | "euler_convention" | "left_handed" | "row_shift" | "targets_swapped" | "targets_unnamed" | "joint_scale" | "length_unit" | "distance_zero" | "known_length" | "height_sign" | "tilt_unit" | "places_swapped" | "duplicate_rows";
 
 /** Unknowns that the measurements do not determine, or only weakly. */
 export type Direction = {
@@ -1364,6 +1395,9 @@ export type TargetEntry = {
 
 /** Why a minimisation ended: data, not an error string. */
 export type Termination = "optimum" | "step_vanished" | "no_progress" | "iteration_limit" | "not_finite";
+
+/** From where a third axis counts. */
+export type ThirdAxisWord = "arm" | "level";
 
 /** Tolerance of the prior: how far each axis may be from nominal, standard deviations. */
 export type ToleranceEntry = {

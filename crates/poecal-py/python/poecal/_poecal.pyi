@@ -1110,6 +1110,9 @@ class Calibration:
             Name of a target, default the tip.
         model
             Which model predicts: "corrected", where there is one, or "calibrated", geometry alone.
+        readings
+            What the arrays are: "model", readings of the model, or "controller", what the controller counts, as the calibration's mapping said; needed where
+            these differ.
 
         Returns
         -------
@@ -1156,6 +1159,9 @@ class Calibration:
             Values of the corrected model's factors by their names, default their references.
         model
             Which model is the robot as it is: "corrected", where there is one, or "calibrated", geometry alone.
+        readings
+            What the arrays are: "model", readings of the model, or "controller", what the controller counts, as the calibration's mapping said; needed where
+            these differ.
 
         Returns
         -------
@@ -1239,6 +1245,9 @@ class Calibration:
             Whether to give the summary as well.
         model
             Which model is the robot as it is: "corrected", where there is one, or "calibrated", geometry alone.
+        readings
+            What the arrays are: "model", readings of the model, or "controller", what the controller counts, as the calibration's mapping said; needed where
+            these differ.
 
         Returns
         -------
@@ -1314,6 +1323,8 @@ class Calibration:
             Whether to write the nearest configuration where the robot cannot reach a target, instead of leaving it as it is.
         most_turn_rad, most_slide_m
             How far a joint that turns, or slides, may be moved beyond its zero, default 2 degrees and 2 mm. A target that takes more, at a singularity, stays as it is and is listed.
+        third_axis
+            From where J3 of a program of FANUC counts: "level" or "arm"; default as the calibration's mapping says and its rows show.
         check
             Whether to compute what is left once more, from the written text.
         model
