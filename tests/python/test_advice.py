@@ -55,6 +55,8 @@ FOLLOWED = {
     "state where the robot starts by --start": HERE + "test_options_of_programs",
     "do not show from where the third axis counts": "crates/poecal-cli/tests/it/counted.rs::a_third_axis_is_stated_where_rows_do_not_show_it",
     "which are not all here: took these": "crates/poecal-cli/tests/it/counted.rs::tables_are_read_and_written_as_the_controller_counts",
+    "they are ignored and the rows read as points: a mapping (--columns) with {} reads them as poses": HERE + "test_angles_of_makers",
+    "they are these, a mapping (--columns) with {} has them read so": HERE + "test_angles_of_makers",
     "(`paste -d,": HERE + "test_two_tables_side_by_side",
 }
 
@@ -265,9 +267,28 @@ def test_angles_in_another_unit(here):
     calibrates(here)
 
 
+@pytest.mark.parametrize(("names", "unit"), [(("A", "B", "C"), "[deg]"), (("A", "B", "C"), ""), (("rz", "ry", "rx"), "[deg]")])
+def test_angles_of_makers(here, names, unit):
+    import numpy as np
+
+    header, *rows = poses(here)
+    first = next(k for k, name in enumerate(header) if name.startswith("qx"))
+    made = []
+    for row in rows:
+        x, y, z, w = (float(it) for it in row[first : first + 4])
+        zyx = np.degrees([np.arctan2(2 * (x * y + z * w), 1 - 2 * (y * y + z * z)), np.arcsin(2 * (y * w - x * z)), np.arctan2(2 * (y * z + x * w), 1 - 2 * (x * x + y * y))])
+        made.append(",".join([*row[:first], *(repr(float(it)) for it in zyx), *row[first + 4 :]]))
+    table(here, ",".join([*header[:first], *(name + unit for name in names), *header[first + 4 :]]), made)
+    said = run(here, "check", "robot.urdf", "points.csv")
+    line = re.search(r"a mapping \(--columns\) with `(orientation = [^`]+)` (?:reads|has) them", said)[1]
+    (here / "map.toml").write_text(line + "\n")
+    calibrates(here, "--columns", "map.toml")
+    assert "60: 60 poses" in run(here, "check", "robot.urdf", "points.csv", "--columns", "map.toml")
+
+
 def test_a_form_that_is_closed(here):
     calibrates(here)
-    said = run(here, "export", "out/calibration.json", "--format", "rosetta", code=2) if False else run(here, "export", "out/calibration.json", "--format", "fanuc", code=2)
+    said = run(here, "export", "out/calibration.json", "--format", "fanuc", code=2)
     form = re.search(r"take `(\w+)`", said)[1]
     assert json.loads(subprocess.run([program(), "export", "out/calibration.json", "--format", form], cwd=here, capture_output=True, text=True, check=True).stdout)["form"] == form
 
