@@ -127,6 +127,7 @@ impl Controller {
                 let added = reading.columns.entry(column).or_insert(ControllerColumn { factor: 0.0, unit });
                 added.factor -= factor * it.factor;
             }
+            reading.columns.retain(|_, it| it.factor != 0.0);
             reading.offset -= factor * of_second.offset;
         }
         self.third_axis = Some(counts);
@@ -138,24 +139,28 @@ impl Controller {
     /// # Errors
     /// [`ErrorKind::Option`] if they cannot be paired.
     pub fn axes(&self) -> Result<Vec<String>> {
-        let mut found: Vec<Option<&String>> = vec![None; self.readings.len()];
-        let mut taken: Vec<&String> = Vec::new();
-        while taken.len() < self.readings.len() {
-            let mut next = None;
-            for (at, reading) in self.readings.iter().enumerate().filter(|(at, _)| found[*at].is_none()) {
-                let mut left = reading.columns.keys().filter(|it| !taken.contains(it));
-                if let (Some(column), None) = (left.next(), left.next()) {
-                    next = Some((at, column));
-                    break;
-                }
-            }
-            let Some((at, column)) = next else {
+        let mut pairs = self.pairs()?;
+        pairs.sort_unstable();
+        Ok(pairs.into_iter().map(|(_, column)| column.to_owned()).collect())
+    }
+
+    /// Readings with their columns, in an order in which each has one column that those before have not.
+    fn pairs(&self) -> Result<Vec<(usize, &str)>> {
+        let mut pairs: Vec<(usize, &str)> = Vec::with_capacity(self.readings.len());
+        while pairs.len() < self.readings.len() {
+            let only_new = |(at, reading): (usize, &'_ ControllerReading)| {
+                let is_new = |column: &&String| pairs.iter().all(|(_, known)| known != column);
+                let mut left = reading.columns.keys().filter(is_new);
+                let is_open = pairs.iter().all(|(known, _)| *known != at);
+                left.next().filter(|_| is_open && left.next().is_none()).map(|column| (at, column.clone()))
+            };
+            let Some((at, column)) = self.readings.iter().enumerate().find_map(only_new) else {
                 return Err(self.not_apart());
             };
-            found[at] = Some(column);
-            taken.push(column);
+            let own = self.readings.get(at).and_then(|reading| reading.columns.get_key_value(&column));
+            pairs.extend(own.map(|(column, _)| (at, column.as_str())));
         }
-        Ok(found.into_iter().flatten().cloned().collect())
+        Ok(pairs)
     }
 
     fn not_apart(&self) -> Error {
@@ -174,13 +179,22 @@ impl Controller {
     /// # Errors
     /// [`ErrorKind::Option`] if the sums cannot be taken apart again.
     pub fn counting(&self) -> Result<Counting> {
-        let names = self.axes()?;
+        let (names, pairs) = (self.axes()?, self.pairs()?);
         let count = names.len();
         let forward = DMatrix::from_fn(count, count, |row, column| {
             self.readings[row].columns.get(&names[column]).map_or(0.0, |it| it.factor)
         });
         let offsets = DVector::from_iterator(count, self.readings.iter().map(|it| it.offset));
-        let back = forward.clone().try_inverse().ok_or_else(|| self.not_apart())?;
+        // In the order of the pairs each reading has one unknown.
+        let mut back = DMatrix::zeros(count, count);
+        for &(at, _) in &pairs {
+            for reading in 0..count {
+                let known: f64 =
+                    (0..count).filter(|&it| it != at).map(|it| forward[(at, it)] * back[(it, reading)]).sum();
+                let is_own = if reading == at { 1.0 } else { 0.0 };
+                back[(at, reading)] = (is_own - known) / forward[(at, at)];
+            }
+        }
         Ok(Counting { names, forward, offsets, back })
     }
 
@@ -292,11 +306,14 @@ mod tests {
     use super::*;
     use crate::robot::tests::elbow;
 
-    fn of(rows: &[(&str, &[(&str, f64)], f64)]) -> Controller {
+    /// A reading, its columns with factors, and its offset.
+    type Row = (&'static str, &'static [(&'static str, f64)], f64);
+
+    fn of(rows: &[Row]) -> Controller {
         let column = |(name, factor): &(&str, f64)| {
             ((*name).to_owned(), ControllerColumn { factor: *factor, unit: "deg".to_owned() })
         };
-        let reading = |(name, columns, offset): &(&str, &[(&str, f64)], f64)| ControllerReading {
+        let reading = |(name, columns, offset): &Row| ControllerReading {
             reading: (*name).to_owned(),
             columns: columns.iter().map(column).collect(),
             offset: *offset,

@@ -14,7 +14,7 @@ const MAPPINGS: &[(&str, &str)] = &[
     ("decimal = \"'\"", "map.toml:1:11: found the decimal sign `'`, expected `.` or `,`"),
     (
         "\n\nseparater = \";\"",
-        "map.toml:3:1: unknown field `separater`, expected one of `separator`, `decimal`, `skip_lines`, `pose`, `id`, `target`, `target_name`, `instrument`, `set`, `units`, `joints`, `position`, `orientation`, `sigma_position`, `sigma_rotation`, `targets`, `mount`",
+        "map.toml:3:1: unknown field `separater`, expected one of `separator`, `decimal`, `skip_lines`, `pose`, `id`, `target`, `target_name`, `instrument`, `set`, `third_axis`, `units`, `joints`, `position`, `orientation`, `sigma_position`, `sigma_rotation`, `targets`, `mount`",
     ),
     (
         "[position]\nunit = \"furlong\"",
@@ -34,11 +34,11 @@ const MAPPINGS: &[(&str, &str)] = &[
     ),
     (
         "[joints]\na = { colum = \"x\" }",
-        "map.toml:2:7: unknown field `colum`, expected one of `column`, `columns`, `value`, `unit`",
+        "map.toml:2:7: unknown field `colum`, expected one of `column`, `columns`, `value`, `offset`, `unit`",
     ),
     (
         "[joints]\na = 3",
-        "map.toml:2:5: invalid type: integer `3`, expected a column name, or a table with `column`, `columns` or `value`, and `unit`",
+        "map.toml:2:5: invalid type: integer `3`, expected a column name, or a table with `column`, `columns` or `value`, and `offset` and `unit`",
     ),
     (
         "[joints]\na = { column = \"a\", value = 0.0 }",

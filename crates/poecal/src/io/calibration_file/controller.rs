@@ -44,6 +44,6 @@ impl CalibrationFile {
         let covered = self.coverage.iter().find(|it| Some(it.joint.as_str()) == joint);
         let shows = covered.is_some_and(|it| it.sampled_max - it.sampled_min >= SHOWS);
         let is_good = self.verdict.as_ref().is_none_or(|it| it.level != Level::DoNotUse);
-        !is_stated && !(shows && is_good)
+        !(is_stated || shows && is_good)
     }
 }

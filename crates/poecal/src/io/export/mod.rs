@@ -162,19 +162,19 @@ enum Proof {
 /// [`ErrorKind::Export`] if the form cannot hold the robot, or the text read back differs by more than 1e-9 m (of a robot of a metre) or rad
 /// though the form can carry it.
 pub fn export(model: &Model, format: ExportFormat, options: &ExportOptions) -> Result<Exported> {
-    let mut notes = Vec::new();
-    notes.extend(model.controller().filter(|it| !it.is_plain()).map(|it| {
+    let counted = model.controller().filter(|it| !it.is_plain()).map(|it| {
         format!(
             "readings of this form are the model's, which the mapping made of what the controller counts: {}",
             it.words()
         )
-    }));
+    });
+    let mut notes: Vec<String> = counted.clone().into_iter().collect();
     let plain = geometry(&model.robot, format, &mut notes);
     let robot = plain.as_ref();
     let written = match format {
         ExportFormat::C => {
             let mut exported = numbers::write(model).map_err(|error| error.in_file(&model.path))?;
-            exported.notes.splice(0..0, notes);
+            exported.notes.splice(0..0, counted);
             return Ok(exported);
         }
         ExportFormat::Urdf => return converted(model, robot, ModelFormat::Urdf, notes),
