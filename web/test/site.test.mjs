@@ -74,9 +74,12 @@ describe("documentation site", { skip: skipped() }, () => {
       await page.evaluate(AXE);
       // Browsers let the keyboard reach what scrolls; axe asks for an attribute, with which every wide formula would be a stop.
       const rules = { "scrollable-region-focusable": { enabled: false } };
-      const { violations } = await page.evaluate((rules) => window.axe.run("article", { resultTypes: ["violations"], rules }), rules);
-      const serious = violations.filter(({ impact }) => impact === "serious" || impact === "critical");
-      assert.deepEqual(serious.map(({ id, nodes }) => `${id}: ${nodes[0].html}`), []);
+      for (const colours of ["default", "slate"]) {
+        await page.evaluate((colours) => (document.body.dataset.mdColorScheme = colours), colours);
+        const { violations } = await page.evaluate((rules) => window.axe.run("article", { resultTypes: ["violations"], rules }), rules);
+        const serious = violations.filter(({ impact }) => impact === "serious" || impact === "critical");
+        assert.deepEqual(serious.map(({ id, nodes }) => `${colours}: ${id}: ${nodes[0].html}`), []);
+      }
       assert.deepEqual(page.complaints, []);
       await page.close();
     });

@@ -237,6 +237,9 @@ fn a_third_axis_is_stated_where_rows_do_not_show_it() {
     let by_map = folder.done("compensate --most-change 20deg results/calibration.json job.ls");
     let apart = largest(&joints("ls", &stated), &joints("ls", &by_map));
     assert!(apart < 3e-6, "{apart}");
+    // The same mapping again says the same.
+    let again = folder.done("validate results/calibration.json controller.csv --columns map.toml --json");
+    assert_eq!(again, folder.done("validate results/calibration.json controller.csv --json"));
     // Rows in which joint 2 hardly moves do not show it.
     let file = folder.read("plain/calibration.json");
     let mut found: serde_json::Value = serde_json::from_str(&file).unwrap();

@@ -86,8 +86,23 @@ impl Compensation {
     /// # Errors
     /// [`ErrorKind::Model`] if their joints differ, or as [`Robot::arm`].
     pub fn new(nominal: &Robot, actual: &Robot, factors: &[f64], options: &ChangeOptions) -> Result<Self> {
-        let (nominal_arm, own) = nominal.arm(&[])?;
-        let (actual_arm, readings) = actual.arm(factors)?;
+        Compensation::holding(nominal, actual, factors, &[], options)
+    }
+
+    /// The same where some readings (each by its index among the robot's, with its value in rad or m) stay as they are: the others are
+    /// corrected for them.
+    ///
+    /// # Errors
+    /// As [`Compensation::new`].
+    pub fn holding(
+        nominal: &Robot,
+        actual: &Robot,
+        factors: &[f64],
+        held: &[(usize, f64)],
+        options: &ChangeOptions,
+    ) -> Result<Self> {
+        let (nominal_arm, own) = nominal.arm_holding(&[], held)?;
+        let (actual_arm, readings) = actual.arm_holding(factors, held)?;
         let names = actual.joint_reading_names();
         let corrections = Corrections::new(&nominal_arm, &actual_arm, options.most_change);
         let Some(corrections) =

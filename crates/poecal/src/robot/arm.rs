@@ -22,7 +22,21 @@ impl Robot {
     /// assert!(apart.norm() < 1e-14);
     /// ```
     pub fn arm(&self, factors: &[f64]) -> Result<(Arm, Vec<usize>)> {
-        let (model, readings) = self.arm_model(factors)?;
+        self.arm_holding(factors, &[])
+    }
+
+    /// The same where some readings, each by its index among the robot's, stay at a value (rad, m): they are none of the arm's.
+    ///
+    /// # Errors
+    /// As [`Robot::arm`].
+    pub fn arm_holding(&self, factors: &[f64], held: &[(usize, f64)]) -> Result<(Arm, Vec<usize>)> {
+        let (mut model, mut readings) = self.arm_model(factors)?;
+        for &(reading, value) in held {
+            if let Some(at) = readings.iter().position(|it| *it == reading) {
+                model = model.held(at, value);
+                readings.remove(at);
+            }
+        }
         let names = self.reading_names();
         let arm = Arm::of(&model).ok_or_else(|| {
             let names: Vec<&str> =

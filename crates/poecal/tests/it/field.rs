@@ -1,11 +1,15 @@
-//! Models and tables as people of the trade have them: a base beside the chain, names in cells, two tables side by side.
+//! Models, tables and programs as people of the trade have them: a base beside the chain, names in cells, two tables side by side, an arm on
+//! a track.
 
 use crate::common::lifting_robot;
 use crate::files::Folder;
 use nalgebra::Vector3;
+use poecal::compensate::{Language, ProgramOptions, compensate_program};
 use poecal::io::measurements::{ReadOptions, parse, read};
 use poecal::io::urdf::{ChainSelection, UrdfDocument};
-use poecal::lie::{Pose, Screw};
+use poecal::lie::{Pose, Screw, rotation};
+use poecal::robot::{Joint, Robot};
+use poecal::simulate::{Kind, Simulation, elbow};
 
 /// As Universal Robots' description has it: the controller's base beside the chain, turned by half a turn, here shifted too.
 const BESIDE: &str = r#"<robot name="arm"><link name="base_link"/><link name="base"/><link name="plate"/><link name="upper"/><link name="fore"/><link name="tool0"/>
@@ -137,5 +141,90 @@ fn of_two_tables_side_by_side_the_other_is_named() {
     assert_eq!(
         (both.data.len(), both.data.observations[0].measurement.pose().translation),
         (1, Vector3::new(1.0, 2.0, 3.0))
+    );
+}
+
+/// An arm of six axes on a track, which is the first joint of the model.
+fn on_a_track() -> Robot {
+    let arm = elbow();
+    let mut joints = vec![Joint::prismatic("track", Screw::prismatic(&Vector3::x()))];
+    joints.extend(arm.joints.iter().cloned());
+    Robot::new("track", joints, arm.home).unwrap()
+}
+
+#[test]
+fn external_axes_that_are_slides_of_the_model_hold_and_the_arm_is_corrected_for_them() {
+    let nominal = on_a_track();
+    let simulation = Simulation {
+        count: 1,
+        error_rotation_rad: 0.02_f64.to_radians(),
+        error_position_m: 0.2e-3,
+        ..Simulation::default()
+    };
+    let actual = simulation.run(&nominal, Kind::Pose).unwrap().actual;
+    let degrees = [10.0, 20.0, -15.0, 40.0, 50.0, 60.0];
+    let at = |track_m: f64, by: f64| {
+        let mut q = vec![track_m];
+        q.extend(degrees.iter().map(|it: &f64| (it + by).to_radians()));
+        nominal.forward_kinematics(&q)
+    };
+    let (one, other) = (at(1.054_423, 3.0), at(0.8, 5.0));
+    let millimetres = |pose: &Pose| {
+        pose.translation.iter().map(|it| format!("{:.9}", 1e3 * it)).collect::<Vec<_>>().join(",")
+    };
+    let quaternion = |pose: &Pose| {
+        let [x, y, z, w] = pose.quaternion_xyzw();
+        format!("{w:.12},{x:.12},{y:.12},{z:.12}")
+    };
+    let none = "9E9,9E9,9E9,9E9,9E9";
+    let target = |pose: &Pose, track: &str| {
+        format!("[[{}],[{}],[0,0,0,0],[{track},{none}]]", millimetres(pose), quaternion(pose))
+    };
+    let rapid = format!(
+        "MODULE M\nPROC main()\nConfL\\Off;\nConfJ\\Off;\nMoveAbsJ [[10,20,-15,40,50,60],[1054.423,{none}]]\\NoEOffs,v100,fine,tool0;\n\
+         MoveL {},v100,fine,tool0;\nMoveJ {},v100,fine,tool0;\nENDPROC\nENDMODULE\n",
+        target(&one, "1054.423"),
+        target(&other, "800")
+    );
+    let abc = |pose: &Pose| {
+        let [c, b, a] = rotation::to_rpy(&pose.rotation).map(f64::to_degrees);
+        let [x, y, z]: [f64; 3] = pose.translation.into();
+        format!("X {:.9},Y {:.9},Z {:.9},A {a:.9},B {b:.9},C {c:.9}", 1e3 * x, 1e3 * y, 1e3 * z)
+    };
+    let krl = format!(
+        "DEF job()\nPTP {{A1 10,A2 20,A3 -15,A4 40,A5 50,A6 60,E1 1054.423}}\nLIN {{{},E1 1054.423}}\nEND\n",
+        abc(&one)
+    );
+    let joints = "J1= 10 deg,J2= 20 deg,J3= -15 deg,J4= 40 deg,J5= 50 deg,J6= 60 deg";
+    let fanuc = format!(
+        "/PROG P\n/MN\n1:J P[1] 100% FINE ;\n/POS\nP[1]{{\n GP1:\n UF : 0, UT : 1, {joints}, E1= 1054.423 mm\n}};\n/END\n"
+    );
+    for (language, text, count) in
+        [(Language::Rapid, rapid, 3), (Language::Krl, krl, 2), (Language::Fanuc, fanuc, 1)]
+    {
+        let mut options = ProgramOptions { check: true, ..ProgramOptions::of(language) };
+        if language == Language::Krl {
+            options.given.add_tool("0,0,0,0,0,0", language).unwrap();
+            options.given.add_frame("0,0,0,0,0,0", language).unwrap();
+        }
+        let (made, summary) =
+            compensate_program(text.as_bytes(), (&nominal, &actual), &[], &options).unwrap();
+        let checked = summary.changes.checked.clone().unwrap();
+        println!("{language:?}: {} corrected, {:?}", summary.corrected, checked);
+        assert!(summary.is_whole() && summary.corrected == count, "{:#?}", summary.changes.listed);
+        assert!(checked.left_m.value < 2e-9 && summary.changes.moved_m.value > 1e-4);
+        // The track is where the program has it.
+        let made = String::from_utf8(made).unwrap();
+        let tracks = |text: &str| text.matches("1054.423").count() + text.matches("[800,").count();
+        assert!(tracks(&made) == tracks(&text) && made != text);
+    }
+    // Without a value there is no place.
+    let lacking = "MODULE M\nPROC main()\nMoveAbsJ [[10,20,-15,40,50,60],[9E9,9E9,9E9,9E9,9E9,9E9]]\\NoEOffs,v100,fine,tool0;\nENDPROC\nENDMODULE\n";
+    let options = ProgramOptions::of(Language::Rapid);
+    let (_, summary) = compensate_program(lacking.as_bytes(), (&nominal, &actual), &[], &options).unwrap();
+    assert!(
+        summary.changes.listed[0]
+            .reason
+            .contains("it states no value of an external axis that the model has")
     );
 }

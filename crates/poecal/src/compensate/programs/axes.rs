@@ -10,6 +10,8 @@ pub(crate) struct Axes {
     pub(crate) names: Vec<String>,
     /// Of each, whether it slides.
     pub(crate) slides: Vec<bool>,
+    /// Slides of a robot with six turning joints beside: external axes, E1, E2 and so on, in the order of the chain. None of other robots.
+    pub(crate) external: Vec<usize>,
 }
 
 impl Axes {
@@ -19,12 +21,25 @@ impl Axes {
             joint.is_some_and(|it| it.kind == JointKind::Prismatic)
         };
         let names = compensation.names().to_vec();
-        Axes { slides: names.iter().map(slides).collect(), names }
+        let slides: Vec<bool> = names.iter().map(slides).collect();
+        let sliding: Vec<usize> = (0..names.len()).filter(|&it| slides[it]).collect();
+        let is_arm = names.len() - sliding.len() == 6;
+        Axes { names, slides, external: if is_arm { sliding } else { Vec::new() } }
     }
 
     /// Number of the readings.
     pub(crate) fn count(&self) -> usize {
         self.names.len()
+    }
+
+    /// The six readings of the arm, and after them those of external axes, in the order of the robot's readings; `None` if there are too few.
+    pub(crate) fn joined<T: Clone>(&self, arm: &[T], external: &[T]) -> Option<Vec<T>> {
+        let mut arm = arm.iter();
+        let number = |at: usize| match self.external.iter().position(|it| *it == at) {
+            Some(place) => external.get(place).cloned(),
+            None => arm.next().cloned(),
+        };
+        (0..self.count()).map(number).collect()
     }
 
     /// What a number of a reading is multiplied with to be in rad or m, where it is written in these units for joints that turn and slide.

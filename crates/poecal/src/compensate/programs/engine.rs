@@ -101,17 +101,86 @@ pub(crate) struct Engine<'e> {
     pub(crate) given: &'e Given,
     /// Where the controller counts other readings than the model has.
     pub(crate) counting: Option<Counting>,
+    robots: (&'e Robot, &'e Robot),
+    factors: &'e [f64],
+    options: &'e ChangeOptions,
+    /// Readings that programs state as external axes: they stay as they are, and the others are corrected for them.
+    external: Vec<usize>,
+    /// The compensation at each of their values.
+    held: Vec<(Vec<u64>, PoseCompensation)>,
 }
 
 impl<'e> Engine<'e> {
     pub(crate) fn new(
-        robots: (&Robot, &Robot),
-        factors: &[f64],
+        robots: (&'e Robot, &'e Robot),
+        factors: &'e [f64],
         given: &'e Given,
-        options: &ChangeOptions,
+        options: &'e ChangeOptions,
     ) -> Result<Self> {
         let poses = PoseCompensation::new(robots.0, robots.1, factors, options)?;
-        Ok(Engine { poses, given, counting: None })
+        let (external, held) = (Vec::new(), Vec::new());
+        Ok(Engine { poses, given, counting: None, robots, factors, options, external, held })
+    }
+
+    /// Holds external axes at the values of each target.
+    pub(crate) fn hold(&mut self, external: Vec<usize>, parsed: &Parsed) -> Result<()> {
+        self.external = external;
+        if self.external.is_empty() {
+            return Ok(());
+        }
+        for target in &parsed.targets {
+            let values = self.stated(target);
+            let key: Vec<u64> = values.iter().map(|it| it.to_bits()).collect();
+            if self.held.iter().all(|(known, _)| *known != key) {
+                let held: Vec<(usize, f64)> = self.external.iter().copied().zip(values).collect();
+                let (nominal, actual) = self.robots;
+                let poses = PoseCompensation::holding(nominal, actual, self.factors, &held, self.options)?;
+                self.held.push((key, poses));
+            }
+        }
+        Ok(())
+    }
+
+    /// Values of the external axes at a target (rad, m).
+    fn stated(&self, target: &Target) -> Vec<f64> {
+        let numbers: Vec<f64> = target.numbers.iter().map(Number::scaled).collect();
+        match target.meant {
+            Meant::Joints => self.external_of(&self.readings(numbers)),
+            // The last ones.
+            Meant::Pose(_) => {
+                numbers.get(numbers.len().saturating_sub(self.external.len())..).unwrap_or_default().to_vec()
+            }
+        }
+    }
+
+    fn external_of(&self, q: &[f64]) -> Vec<f64> {
+        self.external.iter().map(|&it| q.get(it).copied().unwrap_or(0.0)).collect()
+    }
+
+    fn place_of(&self, external: &[f64]) -> Option<usize> {
+        let is = |known: &[u64]| known.iter().copied().eq(external.iter().map(|it| it.to_bits()));
+        self.held.iter().position(|(known, _)| is(known))
+    }
+
+    /// The compensation at these values of the external axes.
+    fn holding(&self, external: &[f64]) -> &PoseCompensation {
+        let held = self.place_of(external).and_then(|at| self.held.get(at));
+        held.map_or(&self.poses, |(_, poses)| poses)
+    }
+
+    /// The compensation at a configuration.
+    pub(crate) fn at(&self, q: &[f64]) -> &PoseCompensation {
+        self.holding(&self.external_of(q))
+    }
+
+    /// A configuration with these values of the external axes.
+    fn with_external(&self, mut q: Vec<f64>, external: &[f64]) -> Vec<f64> {
+        for (&at, value) in self.external.iter().zip(external) {
+            if let Some(it) = q.get_mut(at) {
+                *it = *value;
+            }
+        }
+        q
     }
 
     /// The model's readings for those that a program states.
@@ -126,7 +195,8 @@ impl<'e> Engine<'e> {
 
     /// The arm's readings at a configuration, and the same as they are counted.
     fn both(&self, q: &[f64]) -> (Vec<f64>, Vec<f64>) {
-        (self.poses.of_arm(q), self.poses.of_arm(&self.counted(q)))
+        let poses = self.at(q);
+        (poses.of_arm(q), poses.of_arm(&self.counted(q)))
     }
 
     /// Corrects all targets of a text.
@@ -212,7 +282,8 @@ impl<'e> Engine<'e> {
         motion: &Motion,
         before: Option<&[f64]>,
     ) -> std::result::Result<Placed, Reason> {
-        let joints = self.poses.compensation().readings().len();
+        let external = self.stated(target);
+        let joints = self.holding(&external).compensation().readings().len();
         if joints > 6 {
             return Err(reason::JOINTS);
         }
@@ -225,8 +296,8 @@ impl<'e> Engine<'e> {
         let pose = form.pose(numbers.get(..form.names().len()).unwrap_or(&[])).ok_or(reason::NOT_A_POSE)?;
         let tip_from_tool = self.given.flange * tool;
         let base_from_tip = self.given.base * frame * pose * tip_from_tool.inverse();
-        let q = self.configuration(motion, &base_from_tip, &tip_from_tool, before)?;
-        if self.poses.is_singular(&q) {
+        let q = self.configuration(motion, &base_from_tip, &tip_from_tool, (before, &external))?;
+        if self.at(&q).is_singular(&q) {
             return Err(reason::SINGULAR);
         }
         Ok(Placed { tool, frame, q, stated: motion.stated.clone() })
@@ -237,27 +308,31 @@ impl<'e> Engine<'e> {
         motion: &Motion,
         target: &Pose,
         tip_from_tool: &Pose,
-        before: Option<&[f64]>,
+        (before, external): (Option<&[f64]>, &[f64]),
     ) -> std::result::Result<Vec<f64>, Reason> {
-        let nominal = self.poses.compensation().nominal();
+        let poses = self.holding(external);
+        let nominal = poses.compensation().nominal();
+        // Where external axes move on the way too, it is none of the arm alone.
+        let is_straight = motion.is_straight && before.is_none_or(|it| self.external_of(it) == external);
         match (&motion.stated, before) {
-            (Stated::Near(near), _) => self.nearest(target, &self.readings(near.clone())),
+            (Stated::Near(near), _) => self.nearest(target, &self.readings(near.clone()), external),
             (Stated::Nothing, None) => Err(reason::NOTHING_STATED),
-            (Stated::Nothing, Some(before)) if !motion.is_straight => self.nearest(target, before),
-            (stated, Some(before)) if motion.is_straight => {
-                let found = self.poses.follow(before, target, tip_from_tool).ok_or(reason::WAY)?;
+            (Stated::Nothing, Some(before)) if !is_straight => self.nearest(target, before, external),
+            (stated, Some(before)) if is_straight => {
+                let found = poses.follow(before, target, tip_from_tool).ok_or(reason::WAY)?;
                 let fits = stated.fits(nominal, &self.both(&found));
                 if fits { Ok(found) } else { Err(reason::OTHER) }
             }
-            _ if !self.poses.has_branches() => Err(reason::NO_BRANCHES),
+            _ if !poses.has_branches() => Err(reason::NO_BRANCHES),
             (stated, _) => {
-                let mut all = self.poses.all(target);
+                let all = poses.all(target).into_iter();
+                let mut all: Vec<Vec<f64>> = all.map(|q| self.with_external(q, external)).collect();
                 if all.is_empty() {
                     return Err(reason::UNREACHABLE);
                 }
                 all.retain(|q| stated.fits(nominal, &self.both(q)));
                 if all.len() > 1 {
-                    all.retain(|q| stated.fits_best(nominal, &self.poses.of_arm(q)));
+                    all.retain(|q| stated.fits_best(nominal, &poses.of_arm(q)));
                 }
                 match all.len() {
                     0 => Err(reason::NONE_FITS),
@@ -268,13 +343,18 @@ impl<'e> Engine<'e> {
         }
     }
 
-    fn nearest(&self, target: &Pose, near: &[f64]) -> std::result::Result<Vec<f64>, Reason> {
-        if !self.poses.has_branches() {
+    fn nearest(
+        &self,
+        target: &Pose,
+        near: &[f64],
+        external: &[f64],
+    ) -> std::result::Result<Vec<f64>, Reason> {
+        let poses = self.holding(external);
+        if !poses.has_branches() {
             return Err(reason::NO_BRANCHES);
         }
-        self.poses.nearest(target, near).ok_or_else(|| {
-            if self.poses.all(target).is_empty() { reason::UNREACHABLE } else { reason::NOT_SURE }
-        })
+        let found = poses.nearest(target, near).map(|q| self.with_external(q, external));
+        found.ok_or_else(|| if poses.all(target).is_empty() { reason::UNREACHABLE } else { reason::NOT_SURE })
     }
 
     /// The changed numbers of a target that is placed, each with its bytes.
@@ -284,20 +364,24 @@ impl<'e> Engine<'e> {
         placed: &Placed,
         summary: &mut Summary,
     ) -> std::result::Result<Vec<(Range<usize>, String)>, Reason> {
-        let (told, found) = self.poses.at(&placed.q);
+        let held = self.place_of(&self.external_of(&placed.q));
+        let (told, found) = match held.and_then(|at| self.held.get_mut(at)) {
+            Some((_, poses)) => poses.at(&placed.q),
+            None => self.poses.at(&placed.q),
+        };
         let (outcome, left) = (found.outcome, (found.left_m, found.left_rad));
         let (is_corrected, moved) = (found.is_corrected, (found.moved_m, found.turned_rad));
         let readings = found.readings.to_vec();
         if !is_corrected {
-            return Err(self.poses.compensation().reason(outcome, left));
+            return Err(self.at(&placed.q).compensation().reason(outcome, left));
         }
         let numbers = match target.meant {
             Meant::Joints => self.commanded(target, &placed.q, &readings),
             Meant::Pose(form) => {
-                if self.poses.compensation().is_beyond_limits(&readings) {
+                if self.at(&placed.q).compensation().is_beyond_limits(&readings) {
                     return Err(reason::LIMITS);
                 }
-                let nominal = self.poses.compensation().nominal();
+                let nominal = self.at(&placed.q).compensation().nominal();
                 let tip_from_tool = self.given.flange * placed.tool;
                 let pose = (self.given.base * placed.frame).inverse() * told * tip_from_tool;
                 let before: Vec<f64> = target.numbers.iter().map(Number::scaled).collect();
@@ -357,17 +441,18 @@ impl<'e> Engine<'e> {
             .zip(texts)
             .map(|(number, text)| text.parse().map_or(number.value, |it: f64| it) * number.scale)
             .collect();
-        let compensation = self.poses.compensation();
-        let meant = compensation.nominal().forward_kinematics(&self.poses.of_arm(&placed.q));
+        let poses = self.at(&placed.q);
+        let compensation = poses.compensation();
+        let meant = compensation.nominal().forward_kinematics(&poses.of_arm(&placed.q));
         let commanded = match target.meant {
-            Meant::Joints => self.poses.of_arm(&self.readings(written)),
+            Meant::Joints => poses.of_arm(&self.readings(written)),
             Meant::Pose(form) => {
                 let Some(pose) = form.pose(written.get(..form.names().len()).unwrap_or(&[])) else {
                     return unrounded;
                 };
                 let tip_from_tool = self.given.flange * placed.tool;
                 let told = self.given.base * placed.frame * pose * tip_from_tool.inverse();
-                let mut q = self.poses.of_arm(readings);
+                let mut q = poses.of_arm(readings);
                 compensation.nominal().nearest(&told, &mut q);
                 q
             }

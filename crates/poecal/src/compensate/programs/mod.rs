@@ -113,6 +113,7 @@ pub fn compensate_program(
                        `--third-axis level` where J3 counts from the level, as controllers of FANUC do by themselves, or `--third-axis arm`";
         return Err(Error::new(ErrorKind::Option, message).at_line("", target.line));
     }
+    engine.hold(axes.external.clone(), &parsed)?;
     let mut made = engine.correct(text, parsed, options.each);
     if options.check {
         let again = parse(options.language, &made.text, &options.given, &axes)?;
@@ -148,8 +149,8 @@ fn parse(language: Language, text: &[u8], given: &Given, axes: &Axes) -> Result<
     match language {
         Language::UrScript => urscript::parse(text, given, axes),
         Language::Krl => krl::parse(text, given, axes),
-        Language::Rapid => Ok(rapid::parse(text, given)),
-        Language::Fanuc => Ok(fanuc::parse(text, given)),
+        Language::Rapid => Ok(rapid::parse(text, given, axes)),
+        Language::Fanuc => Ok(fanuc::parse(text, given, axes)),
     }
 }
 

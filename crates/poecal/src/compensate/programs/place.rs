@@ -34,7 +34,21 @@ impl PoseCompensation {
     /// # Errors
     /// As [`Compensation::new`].
     pub fn new(nominal: &Robot, actual: &Robot, factors: &[f64], options: &ChangeOptions) -> Result<Self> {
-        let compensation = Compensation::new(nominal, actual, factors, options)?;
+        PoseCompensation::holding(nominal, actual, factors, &[], options)
+    }
+
+    /// The same where some readings (each by its index among the robot's, with its value in rad or m) stay as they are.
+    ///
+    /// # Errors
+    /// As [`Compensation::new`].
+    pub fn holding(
+        nominal: &Robot,
+        actual: &Robot,
+        factors: &[f64],
+        held: &[(usize, f64)],
+        options: &ChangeOptions,
+    ) -> Result<Self> {
+        let compensation = Compensation::holding(nominal, actual, factors, held, options)?;
         let branches = AllBranches::new(compensation.nominal());
         Ok(PoseCompensation { compensation, branches })
     }

@@ -64,12 +64,13 @@ pub(super) fn checked(
                 let (Some(new), Some((tool, frame))) = (pose(&numbers), place) else { continue };
                 let base_from_tip: Pose =
                     engine.given.base * frame * new * (engine.given.flange * tool).inverse();
-                let mut own = engine.poses.of_arm(q);
-                engine.poses.compensation().nominal().nearest(&base_from_tip, &mut own);
-                engine.poses.of_robot(&own, q)
+                let poses = engine.at(q);
+                let mut own = poses.of_arm(q);
+                poses.compensation().nominal().nearest(&base_from_tip, &mut own);
+                poses.of_robot(&own, q)
             }
         };
-        let share = engine.poses.compensation().share_of_most(q, &commanded);
+        let share = engine.at(q).compensation().share_of_most(q, &commanded);
         largest.change.include(share, target.line);
         commanded.extend_from_slice(factors);
         largest.include(actual.forward_kinematics(&commanded).apart(&wanted), target.line);

@@ -127,8 +127,10 @@ impl<'a> Builder<'a> {
             let mut columns = kept.readings.iter().flat_map(|it| it.columns.keys());
             columns.all(|column| header.count(column) > 0)
         };
-        let missed = kept.filter(|kept| map.joints.is_empty() && !has_all(kept)).map(Controller::words);
-        let kept = kept.filter(|kept| map.joints.is_empty() && has_all(kept));
+        // A mapping that says something of the joints precedes what was kept.
+        let kept = kept.filter(|_| map.joints.is_empty() && map.third_axis.is_none());
+        let missed = kept.filter(|kept| !kept.is_plain() && !has_all(kept)).map(Controller::words);
+        let kept = kept.filter(has_all);
         let numbered = if kept.is_some() { None } else { numbered(header, robot, map, &names) };
         let mut builder = Builder { header, map, readings, inputs: Vec::new(), used, numbered, missed };
         let default = ColumnSpec::default();

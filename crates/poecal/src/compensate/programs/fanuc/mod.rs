@@ -15,6 +15,7 @@ pub(crate) use configuration::Configuration;
 use instructions::{Instructions, Move};
 use positions::{Group, Position, positions};
 
+use super::axes::Axes;
 use super::forms::PoseForm;
 use super::given::Given;
 use super::parsed::{Listed, Meant, Motion, Number, Parsed, Target};
@@ -35,6 +36,8 @@ fn tokens(text: &[u8], part: Range<usize>, line: usize) -> impl Iterator<Item = 
     })
 }
 
+const NO_EXTERNAL: &str = "it states no value of an external axis that the model has";
+
 /// The group of axes that is the arm.
 const ARM: u32 = 1;
 
@@ -52,7 +55,7 @@ fn section(line: &[u8]) -> Option<String> {
 }
 
 /// The positions and motions of a program.
-pub(crate) fn parse(text: &[u8], given: &Given) -> Parsed {
+pub(crate) fn parse(text: &[u8], given: &Given, axes: &Axes) -> Parsed {
     let mut instructions = Instructions::new(text);
     let mut name = String::new();
     let mut all = Vec::new();
@@ -74,7 +77,7 @@ pub(crate) fn parse(text: &[u8], given: &Given) -> Parsed {
             tracked = Some(number + 1);
         }
     }
-    Maker { given, tracked, out: Parsed::default(), targets: HashMap::new() }.all(all, &instructions)
+    Maker { given, axes, tracked, out: Parsed::default(), targets: HashMap::new() }.all(all, &instructions)
 }
 
 /// Whether a line of the section `/APPL` says that the program follows a moving line.
@@ -88,6 +91,7 @@ fn follows_line(line: &[u8]) -> bool {
 
 struct Maker<'a> {
     given: &'a Given,
+    axes: &'a Axes,
     /// Line that says that the program follows a moving line.
     tracked: Option<usize>,
     out: Parsed,
@@ -155,6 +159,13 @@ impl Maker<'_> {
         self.out.motions.extend(rest.into_iter().map(|(_, motion)| motion.clone()));
     }
 
+    /// The external axes that the model has, and the others.
+    fn external<'o>(&self, all: &'o [Option<Number>]) -> Result<(Vec<Number>, &'o [Option<Number>]), String> {
+        let (own, others) = all.split_at_checked(self.axes.external.len()).ok_or(NO_EXTERNAL)?;
+        let own: Option<Vec<Number>> = own.iter().cloned().collect();
+        Ok((own.ok_or(NO_EXTERNAL)?, others))
+    }
+
     #[allow(clippy::type_complexity)]
     fn target(
         &self,
@@ -181,8 +192,15 @@ impl Maker<'_> {
         }
         let Group::Pose(pose) = group else {
             return match group {
-                Group::Joints(numbers) => {
-                    Ok((made(numbers.clone(), Meant::Joints), None, None, Stated::Nothing))
+                Group::Joints(numbers, external) => {
+                    let (external, _) = self.external(external)?;
+                    let numbers = match self.axes.external.is_empty() {
+                        true => numbers.clone(),
+                        false => {
+                            self.axes.joined(numbers, &external).ok_or("it has other axes than the robot")?
+                        }
+                    };
+                    Ok((made(numbers, Meant::Joints), None, None, Stated::Nothing))
                 }
                 Group::Pose(_) => Err(String::new()),
                 Group::Unknown(reason) => Err((*reason).to_owned()),
@@ -197,8 +215,11 @@ impl Maker<'_> {
                 of.line
             ));
         }
-        if pose.is_extended {
-            return Err("external axes are used: make it a joint target".to_owned());
+        let (external, others) = self.external(&pose.external)?;
+        if others.iter().any(|it| it.as_ref().is_none_or(|it| it.value != 0.0)) {
+            return Err(
+                "external axes are used that the model does not have: make it a joint target".to_owned()
+            );
         }
         let (Some(frame), Some(tool)) = (pose.frame, pose.tool) else {
             return Err("its user frame or its tool is not a number".to_owned());
@@ -226,7 +247,8 @@ impl Maker<'_> {
         let frame = known(self.given.frame(Some(&frame.to_string())), frame, "user frame", "--frame")?;
         let tool = known(self.given.tool(Some(&tool.to_string())), tool, "tool", "--tool")?;
         let configuration = pose.configuration.clone().ok_or("its configuration is not understood")?;
-        let target = made(pose.numbers.clone(), Meant::Pose(PoseForm::Wpr));
+        let numbers = pose.numbers.iter().chain(&external).cloned().collect();
+        let target = made(numbers, Meant::Pose(PoseForm::Wpr));
         Ok((target, Some(tool), Some(frame), Stated::Fanuc(configuration)))
     }
 }

@@ -18,7 +18,7 @@ pub(super) struct Position {
 /// What a position says of a group.
 #[derive(Clone, Debug)]
 pub(super) enum Group {
-    Joints(Vec<Number>),
+    Joints(Vec<Number>, Vec<Option<Number>>),
     Pose(Box<PoseOf>),
     /// Neither, and why.
     Unknown(&'static str),
@@ -33,8 +33,8 @@ pub(super) struct PoseOf {
     pub(super) configuration: Option<Configuration>,
     /// X, Y, Z, W, P, R, and the turn numbers of the configuration.
     pub(super) numbers: Vec<Number>,
-    /// Whether there are external axes that are not at 0.
-    pub(super) is_extended: bool,
+    /// External axes, in rad and m; `None` of those without a number.
+    pub(super) external: Vec<Option<Number>>,
 }
 
 /// Positions from a byte on, which is on a line.
@@ -143,8 +143,7 @@ fn group(text: &[u8], tokens: &[Token]) -> Group {
                 _ => return Group::Unknown("it has no numbers: not taught"),
             }
         } else if name.strip_prefix('E').is_some_and(|it| it.parse::<usize>().is_ok()) {
-            let is_zero = number(&[ANGLE, LENGTH]).is_some_and(|it| it.value == 0.0);
-            pose.is_extended |= !is_zero;
+            pose.external.push(number(&[("deg", 1_f64.to_radians()), ("mm", 1e-3)]));
         } else {
             return Group::Unknown(SHAPE);
         }
@@ -156,7 +155,7 @@ fn group(text: &[u8], tokens: &[Token]) -> Group {
             pose.numbers = place.into_iter().chain(turns).collect();
             Group::Pose(Box::new(pose))
         }
-        (None, false) => Group::Joints(joints),
+        (None, false) => Group::Joints(joints, pose.external),
         _ => Group::Unknown(SHAPE),
     }
 }

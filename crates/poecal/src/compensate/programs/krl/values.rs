@@ -221,7 +221,7 @@ fn aggregate(text: &[u8], inside: &[Token], axes: &Axes) -> Value {
     let is_pose = ["X", "Y", "Z", "A", "B", "C"].iter().any(|it| has(it));
     let is_joints = fields.iter().any(|it| is_axis(&it.0, b'A'));
     if is_pose {
-        pose(&fields)
+        pose(&fields, axes)
     } else if is_joints {
         joints(&fields, axes)
     } else {
@@ -261,11 +261,23 @@ fn place(text: &[u8], fields: &[Field<'_>]) -> Place {
 /// Whether fields of external axes are other than zero.
 fn has_external(fields: &[Field<'_>], axes: &Axes) -> bool {
     let is_known = |name: &str| axes.names.iter().any(|it| it.eq_ignore_ascii_case(name));
-    let external = fields.iter().filter(|it| is_axis(&it.0, b'E') && !is_known(&it.0));
+    let is_of_model =
+        |name: &str| (1..=axes.external.len()).any(|it| name.eq_ignore_ascii_case(&format!("E{it}")));
+    let external = fields.iter().filter(|it| is_axis(&it.0, b'E') && !is_known(&it.0) && !is_of_model(&it.0));
     external.into_iter().any(|it| it.1.as_ref().is_none_or(|number| number.value != 0.0))
 }
 
-fn pose(fields: &[Field<'_>]) -> Value {
+/// The external axes that the model has, mm.
+fn external(fields: &[Field<'_>], axes: &Axes) -> Result<Vec<Number>, &'static str> {
+    let one = |it: usize| match fields.iter().find(|field| field.0 == format!("E{it}")) {
+        Some((_, Some(number), _)) => Ok(Number { scale: 1e-3, ..number.clone() }),
+        Some(_) => Err(reason::EXPRESSIONS),
+        None => Err(reason::NO_EXTERNAL),
+    };
+    (1..=axes.external.len()).map(one).collect()
+}
+
+fn pose(fields: &[Field<'_>], axes: &Axes) -> Value {
     let mut numbers = Vec::new();
     for name in ["X", "Y", "Z", "A", "B", "C"] {
         match fields.iter().find(|it| it.0 == name) {
@@ -274,7 +286,8 @@ fn pose(fields: &[Field<'_>]) -> Value {
             Some((_, Some(number), _)) => numbers.push(number.clone()),
         }
     }
-    if has_external(fields, &Axes::default()) {
+    let of_model = Axes { names: Vec::new(), ..axes.clone() };
+    if has_external(fields, &of_model) {
         return Value::Broken(reason::EXTERNAL);
     }
     let mut words = [None, None];
@@ -288,6 +301,14 @@ fn pose(fields: &[Field<'_>]) -> Value {
             Some(_) => return Value::Broken(reason::EXPRESSIONS),
         }
     }
+    // A frame has none.
+    let has_some = fields.iter().any(|it| is_axis(&it.0, b'E'));
+    if has_some || words.iter().any(Option::is_some) {
+        match external(fields, axes) {
+            Ok(external) => numbers.extend(external),
+            Err(reason) => return Value::Broken(reason),
+        }
+    }
     Value::Pose(numbers, Status { status: words[0], turn: words[1] })
 }
 
@@ -299,12 +320,19 @@ fn joints(fields: &[Field<'_>], axes: &Axes) -> Value {
         .names
         .iter()
         .all(|it| is_axis(&it.to_ascii_uppercase(), b'A') || is_axis(&it.to_ascii_uppercase(), b'E'));
-    if !is_named && axes.count() != 6 {
+    let is_beside = !is_named && !axes.external.is_empty();
+    if !is_named && !is_beside && axes.count() != 6 {
         return Value::Broken(reason::COUNT);
     }
     let mut numbers = Vec::new();
     for index in 0..axes.count() {
-        let name = if is_named { axes.names[index].to_ascii_uppercase() } else { format!("A{}", index + 1) };
+        let external = axes.external.iter().position(|it| *it == index);
+        let before = axes.external.iter().filter(|it| **it < index).count();
+        let name = match external {
+            _ if is_named => axes.names[index].to_ascii_uppercase(),
+            Some(external) => format!("E{}", external + 1),
+            None => format!("A{}", index + 1 - before),
+        };
         match fields.iter().find(|it| it.0 == name) {
             None => return Value::Broken(reason::PARTIAL),
             Some((_, None, _)) => return Value::Broken(reason::EXPRESSIONS),
@@ -316,6 +344,7 @@ fn joints(fields: &[Field<'_>], axes: &Axes) -> Value {
     }
     let others = fields.iter().filter(|it| is_axis(&it.0, b'A')).count();
     let own = (0..axes.count())
+        .filter(|it| is_named || !axes.external.contains(it))
         .filter(|&it| !is_named || is_axis(&axes.names[it].to_ascii_uppercase(), b'A'))
         .count();
     if others == own { Value::Joints(numbers) } else { Value::Broken(reason::COUNT) }

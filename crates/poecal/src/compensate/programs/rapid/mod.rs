@@ -22,12 +22,13 @@ use moves::{Argument, Instruction, Layout, ToolAt, argument, layout};
 use outline::Statement;
 use tokens::tokens;
 
+use super::axes::Axes;
 use super::given::Given;
 use super::parsed::{Listed, Parsed};
 use super::scan::{Kind, Token, shown};
 
 /// The targets and motions of a program.
-pub(crate) fn parse(text: &[u8], given: &Given) -> Parsed {
+pub(crate) fn parse(text: &[u8], given: &Given, axes: &Axes) -> Parsed {
     let tokens = tokens(text);
     let outline = outline::outline(&tokens, text);
     let mut declared = Declared::read(&outline, &tokens, text);
@@ -37,7 +38,7 @@ pub(crate) fn parse(text: &[u8], given: &Given) -> Parsed {
     for (index, statement) in outline.statements.iter().enumerate() {
         reader.statement(index, statement, &tokens, &mut declared);
     }
-    let mut out = targets::parsed(&reader.moves, &declared, &outline, given, text);
+    let mut out = targets::parsed(&reader.moves, &declared, &outline, (given, axes), text);
     out.listed.append(&mut reader.listed);
     out.listed.sort();
     out.listed.dedup();

@@ -2,6 +2,7 @@
 
 use std::collections::HashMap;
 
+use super::super::axes::Axes;
 use super::super::forms::PoseForm;
 use super::super::given::Given;
 use super::super::parsed::{Listed, Meant, Motion, Number, Parsed, Target};
@@ -19,7 +20,7 @@ pub(super) fn parsed(
     moves: &Moves,
     declared: &Declared,
     outline: &Outline,
-    given: &Given,
+    (given, axes): (&Given, &Axes),
     text: &[u8],
 ) -> Parsed {
     let lines = text.iter().enumerate().filter(|(_, it)| **it == b'\n').map(|(at, _)| at).collect();
@@ -33,6 +34,7 @@ pub(super) fn parsed(
         declared,
         outline,
         given,
+        axes,
         lines,
         targets: Vec::new(),
         motions: vec![None; moves.going.len()],
@@ -61,6 +63,7 @@ struct Maker<'a> {
     declared: &'a Declared,
     outline: &'a Outline,
     given: &'a Given,
+    axes: &'a Axes,
     /// Ends of lines.
     lines: Vec<usize>,
     targets: Vec<Target>,
@@ -112,7 +115,7 @@ impl Maker<'_> {
         let moves: Vec<&Move> =
             own.iter().filter_map(|&it| Some(&self.moves.going.get(it)?.of)).chain(any).collect();
         let made = if is_joints {
-            joints(value).map(|it| (it, Meant::Joints, Vec::new()))
+            joints(value, self.axes).map(|it| (it, Meant::Joints, Vec::new()))
         } else {
             self.pose(value, &moves)
         };
@@ -121,7 +124,7 @@ impl Maker<'_> {
             Err(reason) => return self.list(line, &name, reason),
         };
         let target = self.targets.len();
-        let stated = configuration(numbers.get(7..).unwrap_or_default());
+        let stated = configuration(numbers.get(7..11).unwrap_or_default());
         if let (true, Some((tool, frame))) = (moves.is_empty(), known.first().copied()) {
             let (after, is_straight, refused) = (None, false, None);
             let (tool, frame, stated) = (Some(tool), Some(frame), stated.clone());
@@ -170,10 +173,7 @@ impl Maker<'_> {
         if let Some(line) = moves.iter().find_map(|it| it.displaced) {
             return Err(format!("a program displacement may be active: switched on on line {line}"));
         }
-        // An axis that is not there has 9E9; one at 0 leaves the arm where it is.
-        if external.iter().any(|it| it.value != 0.0 && it.value < 8.9e9) {
-            return Err("external axes are used: make it a joint target".to_owned());
-        }
+        let external = external_axes(external, self.axes)?;
         if configuration.iter().any(|it| it.value.fract() != 0.0 || it.value.abs() > 100.0) {
             return Err("its configuration is not written in whole numbers".to_owned());
         }
@@ -199,6 +199,7 @@ impl Maker<'_> {
         }
         all.extend(quaternion);
         all.extend(configuration);
+        all.extend(external);
         Ok((all, Meant::Pose(PoseForm::Quaternion), known))
     }
 
@@ -293,18 +294,39 @@ fn configuration(numbers: &[Number]) -> Stated {
     }
 }
 
-/// `[[six angles in degrees],[external axes]]`: these do not change where the arm's joints are.
-fn joints(value: &Value) -> Result<Vec<Number>, String> {
+/// Value from which on an axis is not there: `9E9`.
+const NONE: f64 = 8.9e9;
+
+/// The external axes that the model has, mm; others must not be there, or be at 0, where they leave the arm.
+fn external_axes(mut numbers: Vec<Number>, axes: &Axes) -> Result<Vec<Number>, String> {
+    let others = numbers.split_off(axes.external.len().min(numbers.len()));
+    if others.iter().any(|it| it.value != 0.0 && it.value < NONE) {
+        return Err("external axes are used that the model does not have: make it a joint target".to_owned());
+    }
+    if numbers.iter().any(|it| it.value >= NONE) {
+        return Err("it states no value of an external axis that the model has".to_owned());
+    }
+    numbers.iter_mut().for_each(|it| it.scale = 1e-3);
+    Ok(numbers)
+}
+
+/// `[[six angles in degrees],[external axes]]`: those that the model does not have do not change where the arm's joints are.
+fn joints(value: &Value, axes: &Axes) -> Result<Vec<Number>, String> {
     const SHAPE: &str = "not written as [[six angles],[external axes]] with numbers";
     let Value::List(parts) = value else { return Err(SHAPE.to_owned()) };
     let [arm, external] = &parts[..] else { return Err(SHAPE.to_owned()) };
     let mut arm = numbers(arm, 6).ok_or(SHAPE)?;
-    numbers(external, 6).ok_or(SHAPE)?;
+    let mut external = numbers(external, 6).ok_or(SHAPE)?;
+    external.truncate(axes.external.len());
+    let external = external_axes(external, axes)?;
     if arm.iter().any(|it| it.value.abs() > 1e6) {
         return Err("has no angles of the arm".to_owned());
     }
     arm.iter_mut().for_each(|it| it.scale = 1_f64.to_radians());
-    Ok(arm)
+    if axes.external.is_empty() {
+        return Ok(arm);
+    }
+    axes.joined(&arm, &external).ok_or_else(|| SHAPE.to_owned())
 }
 
 /// The elements of an array of so many dimensions.
