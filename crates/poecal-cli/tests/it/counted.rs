@@ -294,6 +294,36 @@ fn a_third_axis_that_counts_from_the_level_is_named_with_the_line_that_reads_it(
 }
 
 #[test]
+fn a_file_whose_controller_is_of_another_robot_is_refused() {
+    let folder = both(MAP, counted);
+    let kept: serde_json::Value = serde_json::from_str(&folder.read("results/calibration.json")).unwrap();
+    folder.write("counted.csv", format!("A1,A2,A3,A4,A5,A6\n{}\n", line(&counted(&targets()[0]))));
+    let changed: [(&str, &dyn Fn(&mut serde_json::Value)); 3] = [
+        ("expected those of the joints", &|it| drop(it["readings"].as_array_mut().unwrap().pop())),
+        ("expected factors other than 0", &|it| it["readings"][2]["columns"]["A3"]["factor"] = 0.0.into()),
+        ("cubit", &|it| it["readings"][2]["columns"]["A3"]["unit"] = "cubit".into()),
+    ];
+    for (sentence, change) in changed {
+        let mut file = kept.clone();
+        change(&mut file["controller"]);
+        folder.write("changed.json", file.to_string());
+        for command in [
+            "predict changed.json counted.csv",
+            "compensate changed.json counted.csv",
+            "export changed.json --format c",
+        ] {
+            let run = folder.run(command);
+            println!("{command}: {}", run.err.trim_end());
+            // An export needs no units.
+            assert!(
+                run.err.contains(sentence) && run.code == 2 || sentence == "cubit" && run.code == 0,
+                "{command}"
+            );
+        }
+    }
+}
+
+#[test]
 fn exports_say_what_the_controller_counts() {
     let folder = both(MAP, counted);
     let c = folder.run("export results/calibration.json --format c");

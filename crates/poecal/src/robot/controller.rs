@@ -98,6 +98,35 @@ impl Controller {
         Controller { third_axis: None, readings }
     }
 
+    /// Checks that it is of a robot's readings, with numbers that make sense.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Model`].
+    pub fn check(&self, robot: &Robot) -> Result<()> {
+        let names: Vec<&str> = self.readings.iter().map(|it| it.reading.as_str()).collect();
+        if names != robot.joint_reading_names() {
+            let message = format!(
+                "found the readings {} of the controller, expected those of the joints, {}",
+                names.join(", "),
+                robot.joint_reading_names().join(", ")
+            );
+            return Err(Error::new(ErrorKind::Model, message));
+        }
+        let is_sound = |it: &&ControllerReading| {
+            it.offset.is_finite() && it.columns.values().all(|column| column.factor.is_normal())
+        };
+        match self.readings.iter().find(|it| !is_sound(it)) {
+            None => Ok(()),
+            Some(reading) => Err(Error::new(
+                ErrorKind::Model,
+                format!(
+                    "found a factor or an offset of the reading `{}` that is no number, expected factors other than 0",
+                    reading.reading
+                ),
+            )),
+        }
+    }
+
     /// Whether each reading is one the controller counts, of whatever name.
     #[must_use]
     pub fn is_plain(&self) -> bool {
@@ -336,6 +365,21 @@ mod tests {
         }
         assert_eq!(counting.change(&[0.0, 0.0, 1.0]), [0.0, -0.5, 1.0]);
         assert_eq!(all.words(), "a = - J1 + 0.500000, b = 2 J2 + J3, c = J3 - 0.250000");
+    }
+
+    #[test]
+    fn what_is_of_another_robot_or_no_number_is_refused() {
+        let robot = elbow();
+        let plain = Controller::plain(&robot);
+        assert!(plain.check(&robot).is_ok());
+        let mut short = plain.clone();
+        short.readings.pop();
+        assert!(short.check(&robot).unwrap_err().to_string().contains("expected those of the joints"));
+        for factor in [0.0, f64::NAN, f64::INFINITY] {
+            let mut wrong = plain.clone();
+            wrong.readings[2].columns.values_mut().for_each(|it| it.factor = factor);
+            assert!(wrong.check(&robot).unwrap_err().to_string().contains("expected factors other than 0"));
+        }
     }
 
     #[test]

@@ -147,6 +147,7 @@ impl CalibrationFile {
             robot.instruments.push(Mount { name: name.clone(), body, pose });
         }
         robot.check_tree()?;
+        self.controller.iter().try_for_each(|it| it.check(&robot))?;
         Ok(robot)
     }
 }
