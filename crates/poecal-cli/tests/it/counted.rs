@@ -298,14 +298,21 @@ fn a_file_whose_controller_is_of_another_robot_is_refused() {
     let folder = both(MAP, counted);
     let kept: serde_json::Value = serde_json::from_str(&folder.read("results/calibration.json")).unwrap();
     folder.write("counted.csv", format!("A1,A2,A3,A4,A5,A6\n{}\n", line(&counted(&targets()[0]))));
-    let changed: [(&str, &dyn Fn(&mut serde_json::Value)); 3] = [
-        ("expected those of the joints", &|it| drop(it["readings"].as_array_mut().unwrap().pop())),
-        ("expected factors other than 0", &|it| it["readings"][2]["columns"]["A3"]["factor"] = 0.0.into()),
-        ("cubit", &|it| it["readings"][2]["columns"]["A3"]["unit"] = "cubit".into()),
-    ];
-    for (sentence, change) in changed {
+    let shorter = {
         let mut file = kept.clone();
-        change(&mut file["controller"]);
+        file["controller"]["readings"].as_array_mut().unwrap().pop();
+        file
+    };
+    let with = |key: &str, value: serde_json::Value| {
+        let mut file = kept.clone();
+        file["controller"]["readings"][2]["columns"]["A3"][key] = value;
+        file
+    };
+    for (sentence, file) in [
+        ("expected those of the joints", shorter),
+        ("expected factors other than 0", with("factor", 0.0.into())),
+        ("cubit", with("unit", "cubit".into())),
+    ] {
         folder.write("changed.json", file.to_string());
         for command in [
             "predict changed.json counted.csv",

@@ -234,6 +234,7 @@ impl Counted {
 #[test]
 fn no_row_is_sent_to_another_branch() {
     let mut all = Counted::default();
+    let percent = |(all, corrected): (usize, usize)| 100.0 * corrected as f64 / all.max(1) as f64;
     // Weekly of 40 arms; of a change, of the published ones.
     let count = if trials(40).count < 40 { ARMS.len() } else { 40 };
     for (at, (name, nominal, homes)) in arms(count).into_iter().enumerate() {
@@ -264,7 +265,6 @@ fn no_row_is_sent_to_another_branch() {
                 }
             }
         }
-        let percent = |(all, corrected): (usize, usize)| 100.0 * corrected as f64 / all.max(1) as f64;
         println!(
             "{name}: corrected {:.3} % of {} rows, {:.2} % of {} within 1 deg of a singularity, {} of {} homes; left at most {:.1e} m, {:.2e} deg; \
              changes up to {:.2} of what is allowed, steps up to {:.2} of twice the correction longer",
@@ -286,7 +286,9 @@ fn no_row_is_sent_to_another_branch() {
         assert!(counted.worst.0 < 1e-9 && counted.worst.2 < 1.0 + 1e-6 && counted.worst.3 <= 1.0, "{name}");
     }
     let share = |(all, corrected): (usize, usize)| corrected as f64 / all as f64;
-    assert!(share(all.regular) > 0.999 && share(all.singular) > 0.95 && share(all.homes) == 1.0);
+    println!("all: {:.3} %, {:.2} %", percent(all.regular), percent(all.singular));
+    // With errors of 0.05° a joint has to move by 2° where it is some 1.5° from a singularity: one or two rows of a thousand.
+    assert!(share(all.regular) > 0.998 && share(all.singular) > 0.95 && share(all.homes) == 1.0);
 }
 
 #[test]
