@@ -209,7 +209,7 @@ fn external_axes_that_are_slides_of_the_model_hold_and_the_arm_is_corrected_for_
         }
         let (made, summary) =
             compensate_program(text.as_bytes(), (&nominal, &actual), &[], &options).unwrap();
-        let checked = summary.changes.checked.clone().unwrap();
+        let checked = summary.changes.checked.unwrap();
         println!("{language:?}: {} corrected, {:?}", summary.corrected, checked);
         assert!(summary.is_whole() && summary.corrected == count, "{:#?}", summary.changes.listed);
         assert!(checked.left_m.value < 2e-9 && summary.changes.moved_m.value > 1e-4);
