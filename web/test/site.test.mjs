@@ -74,6 +74,8 @@ describe("documentation site", { skip: skipped() }, () => {
       await page.evaluate(AXE);
       // Browsers let the keyboard reach what scrolls; axe asks for an attribute, with which every wide formula would be a stop.
       const rules = { "scrollable-region-focusable": { enabled: false } };
+      // Colours change at once, and not while they are looked at.
+      await page.addStyleTag({ content: "* { transition: none !important; animation: none !important; }" });
       for (const colours of ["default", "slate"]) {
         await page.evaluate((colours) => (document.body.dataset.mdColorScheme = colours), colours);
         const { violations } = await page.evaluate((rules) => window.axe.run("article", { resultTypes: ["violations"], rules }), rules);
