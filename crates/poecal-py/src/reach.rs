@@ -1,5 +1,6 @@
 //! Kinematics and compensation of many configurations.
 
+use std::borrow::Cow;
 use std::path::Path;
 
 use numpy::{PyArray1, PyArrayMethods as _};
@@ -78,8 +79,8 @@ pub(crate) fn counting(file: &CalibrationFile, readings: Option<&str>) -> PyResu
 }
 
 /// The model's readings for rows of counted ones; numbers beyond those of the joints stay.
-pub(crate) fn to_model(counting: Option<&Counting>, rows: &[f64], width: usize) -> Vec<f64> {
-    let Some(counting) = counting else { return rows.to_vec() };
+pub(crate) fn to_model<'r>(counting: Option<&Counting>, rows: &'r [f64], width: usize) -> Cow<'r, [f64]> {
+    let Some(counting) = counting else { return Cow::Borrowed(rows) };
     let row = |row: &[f64]| {
         let mut made = counting.readings(row);
         made.extend(row.iter().skip(made.len()));
@@ -140,11 +141,8 @@ pub(crate) fn compensate<'py>(
         if let Some(counting) = counting {
             let rows = meant.chunks_exact(n).zip(numbers.values.chunks_exact(n));
             for (to, (from, counted)) in made.chunks_exact_mut(n).zip(rows) {
-                let change: Vec<f64> = to.iter().zip(from).map(|(to, from)| to - from).collect();
-                for (to, (counted, change)) in to.iter_mut().zip(counted.iter().zip(counting.change(&change)))
-                {
-                    *to = counted + change;
-                }
+                let moved = counting.moved(counted, from, to);
+                to.copy_from_slice(&moved);
             }
         }
         (made, found)

@@ -32,7 +32,7 @@ const WEAK: f64 = 1e-3;
 /// Weight of a prior by which gross errors are not taken in.
 const STRONG: f64 = 100.0;
 /// Iterations of a calibration to the optimum.
-const LONG: usize = 60;
+pub(super) const LONG: usize = 60;
 /// Iterations of a calibration for comparison.
 pub(super) const SHORT: usize = 12;
 
@@ -190,35 +190,20 @@ impl<'a> Fitter<'a> {
         Fitter { weight: STRONG, ..self.clone() }
     }
 
-    /// Fits one joint's offset from a registration, with an unknown device frame refitted.
-    pub(super) fn offset(&self, data: &Dataset, registered: &Estimate, joint: usize) -> (f64, Misfit) {
-        let mut free: Vec<Parameter> = Vec::new();
-        free.extend(
-            registered
-                .kinds()
-                .get(joint)
-                .map(|&kind| Parameter::ValueTerm(ValueTerm { joint, kind, term: Term::Offset })),
-        );
-        free.extend(self.devices(data, None));
-        let (estimate, misfit) = self.fit(data, registered, free, 30);
-        (estimate.coefficient(joint, Term::Offset), misfit)
-    }
-
-    /// Fits ratios of some joints from a registration, with an unknown device frame refitted.
-    pub(super) fn ratios(
+    /// Fits a term of some joints from a registration, with an unknown device frame refitted.
+    pub(super) fn with_term(
         &self,
         data: &Dataset,
         registered: &Estimate,
-        joints: &[usize],
-    ) -> (Vec<f64>, Misfit) {
+        (joints, term): (&[usize], Term),
+        iterations: usize,
+    ) -> (Estimate, Misfit) {
         let kinds = registered.kinds();
-        let term = |&joint: &usize| {
-            kinds.get(joint).map(|&kind| Parameter::ValueTerm(ValueTerm { joint, kind, term: Term::Ratio }))
+        let free = |&joint: &usize| {
+            kinds.get(joint).map(|&kind| Parameter::ValueTerm(ValueTerm { joint, kind, term }))
         };
-        let mut free: Vec<Parameter> = joints.iter().filter_map(term).collect();
-        free.extend(self.devices(data, None));
-        let (estimate, misfit) = self.fit(data, registered, free, LONG);
-        (joints.iter().map(|&joint| estimate.coefficient(joint, Term::Ratio)).collect(), misfit)
+        let free = joints.iter().filter_map(free).chain(self.devices(data, None)).collect();
+        self.fit(data, registered, free, iterations)
     }
 
     /// The unknown device frames, but for one that stays.

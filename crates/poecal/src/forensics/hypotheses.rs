@@ -6,7 +6,7 @@ use std::f64::consts::PI;
 use super::DiagnosisKind;
 use super::change::{Change, Lengths, Stream};
 use crate::measurement::Dataset;
-use crate::robot::{ReadingKind, Robot, level};
+use crate::robot::{Joint, ReadingKind, Robot, level};
 
 /// A hypothetical mistake.
 #[derive(Clone, Debug, PartialEq)]
@@ -58,6 +58,13 @@ impl ReadingColumns {
         let level =
             level(robot).and_then(|(second, third, factor)| Some((at(&second)?, at(&third)?, -factor)));
         ReadingColumns { kinds, level, names }
+    }
+
+    /// The joint of a reading that no other joint has, with its index.
+    pub(super) fn only_joint<'r>(&self, robot: &'r Robot, column: usize) -> Option<(usize, &'r Joint)> {
+        let name = self.names.get(column)?;
+        let mut users = robot.joints.iter().enumerate().filter(|(_, joint)| joint.reading.name == *name);
+        users.next().filter(|_| users.next().is_none())
     }
 
     fn of(&self, kind: ReadingKind) -> Vec<usize> {

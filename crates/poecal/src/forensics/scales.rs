@@ -2,10 +2,10 @@
 
 use super::DiagnosisKind;
 use super::change::Change;
-use super::fitter::Fitter;
+use super::fitter::{Fitter, LONG};
 use super::hypotheses::{Hypothesis, ReadingColumns, toml_key};
 use crate::measurement::Dataset;
-use crate::robot::ReadingKind;
+use crate::robot::{ReadingKind, Term};
 
 /// Least difference of a factor from 1 that is a mistake: a calibration finds smaller errors of gears.
 const LEAST: f64 = 0.03;
@@ -21,11 +21,7 @@ pub(super) fn joint_scales(
     data: &Dataset,
 ) -> Option<Hypothesis> {
     let count = columns.names.len();
-    let own = |column: usize| {
-        let mut users =
-            fitter.robot.joints.iter().enumerate().filter(|(_, it)| it.reading.name == columns.names[column]);
-        users.next().filter(|_| users.next().is_none())
-    };
+    let own = |column: usize| columns.only_joint(fitter.robot, column);
     // Per cent of the range, read as degrees or as radians.
     let of_range = |unit: f64| -> Vec<f64> {
         let factor = |column: usize| {
@@ -37,28 +33,23 @@ pub(super) fn joint_scales(
     };
     let (degrees, radians) = (of_range(1_f64.to_radians()), of_range(1.0));
     let joints: Vec<usize> = (0..count).filter_map(|column| Some(own(column)?.0)).collect();
-    let fitted = [vec![1.0; count], degrees.clone(), radians.clone()].into_iter().map(|start| {
-        let scaled = Change::Scales(start.clone()).apply(data);
+    let fitted = [vec![1.0; count], degrees.clone(), radians.clone()].into_iter().map(|mut factors| {
+        let scaled = Change::Scales(factors.clone()).apply(data);
         let (estimate, _) = fitter.roughly_registered(&scaled);
-        let (ratios, misfit) = fitter.ratios(&scaled, &estimate, &joints);
-        let mut factors = start;
+        let (estimate, misfit) = fitter.with_term(&scaled, &estimate, (&joints, Term::Ratio), LONG);
         for (column, factor) in factors.iter_mut().enumerate() {
-            let at = own(column).and_then(|(joint, _)| joints.iter().position(|it| *it == joint));
-            *factor *= 1.0 + at.and_then(|at| ratios.get(at)).copied().unwrap_or(0.0);
+            *factor *= 1.0 + own(column).map_or(0.0, |(joint, _)| estimate.coefficient(joint, Term::Ratio));
         }
         (misfit.total_m, factors)
     });
     let (_, mut factors) = fitted.min_by(|a, b| a.0.total_cmp(&b.0))?;
-    let is_of = |range: &[f64]| {
+    let is_of = |range: &Vec<f64>| {
         range.iter().any(|it| *it != 1.0)
             && factors.iter().zip(range).all(|(it, of)| (it / of - 1.0).abs() < SAME)
     };
-    let is_per_cent = is_of(&degrees) || is_of(&radians);
-    if is_of(&degrees) {
-        factors.clone_from(&degrees);
-    } else if is_of(&radians) {
-        factors.clone_from(&radians);
-    }
+    let per_cent = [degrees, radians].into_iter().find(is_of);
+    let is_per_cent = per_cent.is_some();
+    factors = per_cent.unwrap_or(factors);
     for factor in &mut factors {
         if (*factor - 1.0).abs() < LEAST || !factor.is_finite() {
             *factor = 1.0;

@@ -8,21 +8,19 @@ use super::fitter::Fitter;
 use super::hypotheses::{Hypothesis, ReadingColumns};
 use crate::estimate::Sight;
 use crate::measurement::{Dataset, Observation};
-use crate::robot::ReadingKind;
+use crate::robot::{ReadingKind, Term};
 
 /// Smallest gross offset: radians, and share of the reach for prismatic joints. A calibration corrects smaller ones.
 const LEAST_RAD: f64 = 0.052;
 const LEAST_SHARE: f64 = 0.01;
 /// Number of starts, the best of eight, from which an offset is fitted.
 const FITTED_STARTS: usize = 3;
+const FITTED_ITERATIONS: usize = 30;
 
 /// The best offset of each joint, if it is gross.
 pub(super) fn joint_zeros(fitter: &Fitter<'_>, columns: &ReadingColumns, data: &Dataset) -> Vec<Hypothesis> {
     let robot = fitter.robot;
-    let own = |column: &usize| {
-        let name = &columns.names[*column];
-        robot.joints.iter().filter(|joint| joint.reading.name == *name).count() == 1
-    };
+    let own = |column: &usize| columns.only_joint(robot, *column).is_some();
     // An unknown device frame takes in the zero of a joint that is before all others.
     let is_taken_in = |column: &usize| {
         let before_all = |row: &Observation| {
@@ -47,8 +45,8 @@ fn joint_zero(
     column: usize,
 ) -> Option<Hypothesis> {
     let name = columns.names.get(column)?;
-    let joint = fitter.robot.joints.iter().position(|joint| joint.reading.name == *name)?;
-    let multiplier = fitter.robot.joints.get(joint)?.reading.multiplier;
+    let (joint, of) = columns.only_joint(fitter.robot, column)?;
+    let multiplier = of.reading.multiplier;
     let turns = columns.kinds.get(column) == Some(&ReadingKind::Angle);
     let starts: Vec<f64> =
         if turns { (-3..=4).map(|k| f64::from(k) * FRAC_PI_4).collect() } else { vec![0.0] };
@@ -59,8 +57,10 @@ fn joint_zero(
     let mut rough: Vec<_> = starts.into_iter().map(rough).collect();
     rough.sort_by(|a, b| a.0.total_cmp(&b.0));
     let fitted = rough.into_iter().take(FITTED_STARTS).map(|(_, start, estimate)| {
-        let (rest, misfit) = fitter.offset(&Change::Add(column, start).apply(data), &estimate, joint);
-        (misfit.total_m, start + rest / multiplier)
+        let data = Change::Add(column, start).apply(data);
+        let (fitted, misfit) =
+            fitter.with_term(&data, &estimate, (&[joint], Term::Offset), FITTED_ITERATIONS);
+        (misfit.total_m, start + fitted.coefficient(joint, Term::Offset) / multiplier)
     });
     let (_, by) = fitted.min_by(|a, b| a.0.total_cmp(&b.0))?;
     let (gross, words) = if turns {

@@ -235,22 +235,30 @@ impl Controller {
     }
 }
 
+/// A sum of columns, each with its factor, in words.
+pub(crate) fn sum_words<'a>(columns: impl Iterator<Item = (&'a str, f64)>) -> String {
+    let mut words = String::new();
+    for (column, factor) in columns {
+        let sign = match (factor < 0.0, words.is_empty()) {
+            (true, true) => "- ",
+            (true, false) => " - ",
+            (false, true) => "",
+            (false, false) => " + ",
+        };
+        let size = if factor.abs() == 1.0 { String::new() } else { format!("{} ", factor.abs()) };
+        words.push_str(&format!("{sign}{size}{column}"));
+    }
+    words
+}
+
 impl ControllerReading {
     fn is_plain(&self) -> bool {
         self.offset == 0.0 && self.columns.len() == 1 && self.columns.values().all(|it| it.factor == 1.0)
     }
 
     fn words(&self) -> String {
-        let mut words = format!("{} =", self.reading);
-        for (at, (column, it)) in self.columns.iter().enumerate() {
-            let sign = match (it.factor < 0.0, at) {
-                (true, _) => " -",
-                (false, 0) => "",
-                (false, _) => " +",
-            };
-            let size = if it.factor.abs() == 1.0 { String::new() } else { format!("{} ", it.factor.abs()) };
-            words.push_str(&format!("{sign} {size}{column}"));
-        }
+        let columns = self.columns.iter().map(|(column, it)| (column.as_str(), it.factor));
+        let mut words = format!("{} = {}", self.reading, sum_words(columns)).trim_end().to_owned();
         if self.offset != 0.0 || self.columns.is_empty() {
             words.push_str(&format!(
                 " {} {:.6}",
@@ -317,6 +325,13 @@ impl Counting {
         let from: Vec<f64> =
             readings.iter().zip(self.offsets.iter()).map(|(it, offset)| it - offset).collect();
         self.change(&from)
+    }
+
+    /// Counted readings once those of the model go from some to others.
+    #[must_use]
+    pub fn moved(&self, counted: &[f64], from: &[f64], to: &[f64]) -> Vec<f64> {
+        let change: Vec<f64> = to.iter().zip(from).map(|(to, from)| to - from).collect();
+        counted.iter().zip(self.change(&change)).map(|(it, change)| it + change).collect()
     }
 
     /// By how much counted readings change where those of the model change by so much: where these do not change, not at all.

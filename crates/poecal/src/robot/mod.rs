@@ -27,6 +27,7 @@ mod term_model;
 mod zeros;
 
 pub use body::{Body, Mount};
+pub(crate) use controller::sum_words;
 pub use controller::{Controller, ControllerColumn, ControllerReading, Counting, ThirdAxis, level};
 pub use correction_model::{CorrectionModel, Extent};
 pub use corrections::Corrections;

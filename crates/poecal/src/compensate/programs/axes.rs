@@ -3,6 +3,11 @@
 use super::super::Compensation;
 use crate::robot::{JointKind, Robot};
 
+/// Why a target stays as it is.
+pub(crate) const NO_EXTERNAL: &str = "it states no value of an external axis that the model has";
+pub(crate) const OTHER_EXTERNAL: &str =
+    "external axes are used that the model does not have: make it a joint target";
+
 /// The readings of the robot, as languages count axes.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Axes {
@@ -32,8 +37,12 @@ impl Axes {
         self.names.len()
     }
 
-    /// The six readings of the arm, and after them those of external axes, in the order of the robot's readings; `None` if there are too few.
+    /// The six readings of the arm, and those of external axes, in the order of the robot's readings; `None` if there are too few. Of a robot
+    /// without external axes those of the arm as they are.
     pub(crate) fn joined<T: Clone>(&self, arm: &[T], external: &[T]) -> Option<Vec<T>> {
+        if self.external.is_empty() {
+            return Some(arm.to_vec());
+        }
         let mut arm = arm.iter();
         let number = |at: usize| match self.external.iter().position(|it| *it == at) {
             Some(place) => external.get(place).cloned(),

@@ -1,10 +1,12 @@
 //! Corrects the targets of a program.
 
 use std::borrow::Cow;
+use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 use std::f64::consts::TAU;
 use std::ops::Range;
 
-use super::super::{ChangeOptions, Compensated, Outcome, Summary};
+use super::super::{ChangeOptions, Compensated, Compensation, Outcome, Summary};
 use super::forms::PoseForm;
 use super::given::Given;
 use super::parsed::{Meant, Motion, Number, Parsed, Target};
@@ -106,8 +108,8 @@ pub(crate) struct Engine<'e> {
     options: &'e ChangeOptions,
     /// Readings that programs state as external axes: they stay as they are, and the others are corrected for them.
     external: Vec<usize>,
-    /// The compensation at each of their values.
-    held: Vec<(Vec<u64>, PoseCompensation)>,
+    /// The compensation at each of their values, by the bits of these.
+    held: BTreeMap<Vec<u64>, PoseCompensation>,
 }
 
 impl<'e> Engine<'e> {
@@ -118,7 +120,7 @@ impl<'e> Engine<'e> {
         options: &'e ChangeOptions,
     ) -> Result<Self> {
         let poses = PoseCompensation::new(robots.0, robots.1, factors, options)?;
-        let (external, held) = (Vec::new(), Vec::new());
+        let (external, held) = (Vec::new(), BTreeMap::new());
         Ok(Engine { poses, given, counting: None, robots, factors, options, external, held })
     }
 
@@ -130,12 +132,11 @@ impl<'e> Engine<'e> {
         }
         for target in &parsed.targets {
             let values = self.stated(target);
-            let key: Vec<u64> = values.iter().map(|it| it.to_bits()).collect();
-            if self.held.iter().all(|(known, _)| *known != key) {
+            if let Entry::Vacant(place) = self.held.entry(bits(&values)) {
                 let held: Vec<(usize, f64)> = self.external.iter().copied().zip(values).collect();
                 let (nominal, actual) = self.robots;
-                let poses = PoseCompensation::holding(nominal, actual, self.factors, &held, self.options)?;
-                self.held.push((key, poses));
+                let readings = Compensation::holding(nominal, actual, self.factors, &held, self.options)?;
+                place.insert(PoseCompensation::of(readings));
             }
         }
         Ok(())
@@ -157,15 +158,9 @@ impl<'e> Engine<'e> {
         self.external.iter().map(|&it| q.get(it).copied().unwrap_or(0.0)).collect()
     }
 
-    fn place_of(&self, external: &[f64]) -> Option<usize> {
-        let is = |known: &[u64]| known.iter().copied().eq(external.iter().map(|it| it.to_bits()));
-        self.held.iter().position(|(known, _)| is(known))
-    }
-
     /// The compensation at these values of the external axes.
     fn holding(&self, external: &[f64]) -> &PoseCompensation {
-        let held = self.place_of(external).and_then(|at| self.held.get(at));
-        held.map_or(&self.poses, |(_, poses)| poses)
+        self.held.get(&bits(external)).unwrap_or(&self.poses)
     }
 
     /// The compensation at a configuration.
@@ -185,7 +180,10 @@ impl<'e> Engine<'e> {
 
     /// The model's readings for those that a program states.
     pub(crate) fn readings(&self, stated: Vec<f64>) -> Vec<f64> {
-        self.counting.as_ref().map_or(stated.clone(), |it| it.readings(&stated))
+        match &self.counting {
+            Some(counting) => counting.readings(&stated),
+            None => stated,
+        }
     }
 
     /// What the controller counts at readings of the model.
@@ -364,11 +362,8 @@ impl<'e> Engine<'e> {
         placed: &Placed,
         summary: &mut Summary,
     ) -> std::result::Result<Vec<(Range<usize>, String)>, Reason> {
-        let held = self.place_of(&self.external_of(&placed.q));
-        let (told, found) = match held.and_then(|at| self.held.get_mut(at)) {
-            Some((_, poses)) => poses.at(&placed.q),
-            None => self.poses.at(&placed.q),
-        };
+        let held = bits(&self.external_of(&placed.q));
+        let (told, found) = self.held.get_mut(&held).unwrap_or(&mut self.poses).at(&placed.q);
         let (outcome, left) = (found.outcome, (found.left_m, found.left_rad));
         let (is_corrected, moved) = (found.is_corrected, (found.moved_m, found.turned_rad));
         let readings = found.readings.to_vec();
@@ -422,8 +417,8 @@ impl<'e> Engine<'e> {
     /// The numbers of a joint target once its readings are changed.
     fn commanded(&self, target: &Target, from: &[f64], to: &[f64]) -> Vec<f64> {
         let Some(counting) = &self.counting else { return to.to_vec() };
-        let change: Vec<f64> = to.iter().zip(from).map(|(to, from)| to - from).collect();
-        target.numbers.iter().zip(counting.change(&change)).map(|(it, change)| it.scaled() + change).collect()
+        let stated: Vec<f64> = target.numbers.iter().map(Number::scaled).collect();
+        counting.moved(&stated, from, to)
     }
 
     /// Distance and angle that are left with the numbers as they are written.
@@ -459,6 +454,10 @@ impl<'e> Engine<'e> {
         };
         compensation.actual().forward_kinematics(&commanded).apart(&meant)
     }
+}
+
+fn bits(values: &[f64]) -> Vec<u64> {
+    values.iter().map(|it| it.to_bits()).collect()
 }
 
 /// What another motion, on this line, makes of a target.

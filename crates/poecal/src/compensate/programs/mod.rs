@@ -96,7 +96,7 @@ pub fn compensate_program(
     let counting = options.controller.as_ref().filter(|it| !it.is_plain());
     let counting = counting.map(Controller::counting).transpose()?;
     let mut engine = Engine::new((nominal, actual), factors, &options.given, &options.change)?;
-    engine.counting.clone_from(&counting);
+    engine.counting = counting;
     let axes = Axes::of(nominal, engine.poses.compensation());
     if let Some(start) = options.given.start.as_ref().filter(|it| it.len() != axes.count()) {
         let message = format!(

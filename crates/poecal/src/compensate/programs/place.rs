@@ -34,23 +34,14 @@ impl PoseCompensation {
     /// # Errors
     /// As [`Compensation::new`].
     pub fn new(nominal: &Robot, actual: &Robot, factors: &[f64], options: &ChangeOptions) -> Result<Self> {
-        PoseCompensation::holding(nominal, actual, factors, &[], options)
+        Ok(PoseCompensation::of(Compensation::new(nominal, actual, factors, options)?))
     }
 
-    /// The same where some readings (each by its index among the robot's, with its value in rad or m) stay as they are.
-    ///
-    /// # Errors
-    /// As [`Compensation::new`].
-    pub fn holding(
-        nominal: &Robot,
-        actual: &Robot,
-        factors: &[f64],
-        held: &[(usize, f64)],
-        options: &ChangeOptions,
-    ) -> Result<Self> {
-        let compensation = Compensation::holding(nominal, actual, factors, held, options)?;
+    /// By a compensation of readings.
+    #[must_use]
+    pub fn of(compensation: Compensation) -> Self {
         let branches = AllBranches::new(compensation.nominal());
-        Ok(PoseCompensation { compensation, branches })
+        PoseCompensation { compensation, branches }
     }
 
     /// The compensation of readings.

@@ -11,7 +11,7 @@ use super::units::{Dimension, Unit, UnitSource};
 use crate::error::{Error, ErrorKind, Result, distance_within, first_few};
 use crate::io::numbers::LARGEST_NUMBER;
 use crate::robot::{
-    Controller, ControllerColumn, ControllerReading, Factor, ReadingKind, Robot, ThirdAxis, level,
+    Controller, ControllerColumn, ControllerReading, Factor, ReadingKind, Robot, ThirdAxis, level, sum_words,
 };
 
 const DEFAULT_FORMS: [OrientationForm; 3] =
@@ -194,16 +194,8 @@ impl<'a> Builder<'a> {
 
     /// A sum of columns in words.
     fn label(&self, sum: &[Term]) -> String {
-        let mut label = String::new();
-        for term in sum {
-            let column = self.header.cells.get(term.column).map_or("", |cell| cell.name.as_str());
-            let size =
-                if term.factor.abs() == 1.0 { String::new() } else { format!("{} ", term.factor.abs()) };
-            let sign = if term.factor < 0.0 { "- " } else { "+ " };
-            let sign = if label.is_empty() && term.factor > 0.0 { "" } else { sign };
-            label.push_str(&format!("{}{sign}{size}{column}", if label.is_empty() { "" } else { " " }));
-        }
-        label
+        let name = |term: &Term| self.header.cells.get(term.column).map_or("", |cell| cell.name.as_str());
+        sum_words(sum.iter().map(|term| (name(term), term.factor)))
     }
 
     /// Adds a joint's reading as the calibration kept it; units of the file precede those that were kept.

@@ -80,9 +80,8 @@ impl ColumnLayout {
             (None, Some(column)) => SetRule::Words(column),
             (None, None) => SetRule::Unstated,
         };
-        let (ignored, numbered) = (builder.ignored(), builder.numbered.clone());
-        let (controller, missed) = (builder.controller(robot), builder.missed.clone());
-        let (inputs, pose) = (builder.inputs, map.pose);
+        let (ignored, controller, pose) = (builder.ignored(), builder.controller(robot), map.pose);
+        let Builder { inputs, numbered, missed, .. } = builder;
         Ok(ColumnLayout {
             inputs,
             targets,
@@ -129,15 +128,8 @@ impl ColumnLayout {
         let mut builder = Builder::new(header, robot, map, options.controller.as_ref())?;
         builder.check_distinct()?;
         let id = builder.id_column()?;
-        let (numbered, missed) = (builder.numbered.clone(), builder.missed.clone());
         let controller = builder.controller(robot);
-        Ok(ColumnLayout {
-            inputs: builder.inputs,
-            id,
-            numbered,
-            controller,
-            missed,
-            ..ColumnLayout::default()
-        })
+        let Builder { inputs, numbered, missed, .. } = builder;
+        Ok(ColumnLayout { inputs, id, numbered, controller, missed, ..ColumnLayout::default() })
     }
 }

@@ -15,7 +15,7 @@ pub(crate) use configuration::Configuration;
 use instructions::{Instructions, Move};
 use positions::{Group, Position, positions};
 
-use super::axes::Axes;
+use super::axes::{Axes, NO_EXTERNAL, OTHER_EXTERNAL};
 use super::forms::PoseForm;
 use super::given::Given;
 use super::parsed::{Listed, Meant, Motion, Number, Parsed, Target};
@@ -35,8 +35,6 @@ fn tokens(text: &[u8], part: Range<usize>, line: usize) -> impl Iterator<Item = 
         token
     })
 }
-
-const NO_EXTERNAL: &str = "it states no value of an external axis that the model has";
 
 /// The group of axes that is the arm.
 const ARM: u32 = 1;
@@ -194,12 +192,8 @@ impl Maker<'_> {
             return match group {
                 Group::Joints(numbers, external) => {
                     let (external, _) = self.external(external)?;
-                    let numbers = match self.axes.external.is_empty() {
-                        true => numbers.clone(),
-                        false => {
-                            self.axes.joined(numbers, &external).ok_or("it has other axes than the robot")?
-                        }
-                    };
+                    let numbers =
+                        self.axes.joined(numbers, &external).ok_or("it has other axes than the robot")?;
                     Ok((made(numbers, Meant::Joints), None, None, Stated::Nothing))
                 }
                 Group::Pose(_) => Err(String::new()),
@@ -217,9 +211,7 @@ impl Maker<'_> {
         }
         let (external, others) = self.external(&pose.external)?;
         if others.iter().any(|it| it.as_ref().is_none_or(|it| it.value != 0.0)) {
-            return Err(
-                "external axes are used that the model does not have: make it a joint target".to_owned()
-            );
+            return Err(OTHER_EXTERNAL.to_owned());
         }
         let (Some(frame), Some(tool)) = (pose.frame, pose.tool) else {
             return Err("its user frame or its tool is not a number".to_owned());

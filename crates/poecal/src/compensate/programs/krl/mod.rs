@@ -50,7 +50,7 @@ mod reason {
     pub(super) const EXPRESSIONS: &str = "it has words or expressions instead of numbers";
     pub(super) const PARTIAL: &str =
         "it does not state all values: the others are those of the position before";
-    pub(super) const NO_EXTERNAL: &str = "it states no value of an external axis that the model has";
+    pub(super) use super::super::axes::NO_EXTERNAL;
     pub(super) const EXTERNAL: &str = "external axes that the model does not have are not at zero";
     pub(super) const COUNT: &str = "it has other axes than the robot";
     pub(super) const RELATIVE: &str = "the motion is by an amount from where the robot is, which is corrected: a small error of the amount stays";

@@ -258,9 +258,9 @@ fn place(text: &[u8], fields: &[Field<'_>]) -> Place {
     Place { tool: number("TOOL_NO"), base: number("BASE_NO"), is_external }
 }
 
-/// Whether fields of external axes are other than zero.
-fn has_external(fields: &[Field<'_>], axes: &Axes) -> bool {
-    let is_known = |name: &str| axes.names.iter().any(|it| it.eq_ignore_ascii_case(name));
+/// Whether fields of external axes that are none of the model's, nor of these names, are other than zero.
+fn has_external(fields: &[Field<'_>], axes: &Axes, names: &[String]) -> bool {
+    let is_known = |name: &str| names.iter().any(|it| it.eq_ignore_ascii_case(name));
     let is_of_model =
         |name: &str| (1..=axes.external.len()).any(|it| name.eq_ignore_ascii_case(&format!("E{it}")));
     let external = fields.iter().filter(|it| is_axis(&it.0, b'E') && !is_known(&it.0) && !is_of_model(&it.0));
@@ -286,8 +286,7 @@ fn pose(fields: &[Field<'_>], axes: &Axes) -> Value {
             Some((_, Some(number), _)) => numbers.push(number.clone()),
         }
     }
-    let of_model = Axes { names: Vec::new(), ..axes.clone() };
-    if has_external(fields, &of_model) {
+    if has_external(fields, axes, &[]) {
         return Value::Broken(reason::EXTERNAL);
     }
     let mut words = [None, None];
@@ -313,15 +312,14 @@ fn pose(fields: &[Field<'_>], axes: &Axes) -> Value {
 }
 
 fn joints(fields: &[Field<'_>], axes: &Axes) -> Value {
-    if has_external(fields, axes) {
+    if has_external(fields, axes, &axes.names) {
         return Value::Broken(reason::EXTERNAL);
     }
     let is_named = axes
         .names
         .iter()
         .all(|it| is_axis(&it.to_ascii_uppercase(), b'A') || is_axis(&it.to_ascii_uppercase(), b'E'));
-    let is_beside = !is_named && !axes.external.is_empty();
-    if !is_named && !is_beside && axes.count() != 6 {
+    if !is_named && axes.external.is_empty() && axes.count() != 6 {
         return Value::Broken(reason::COUNT);
     }
     let mut numbers = Vec::new();

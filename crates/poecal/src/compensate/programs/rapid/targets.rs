@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use super::super::axes::Axes;
+use super::super::axes::{Axes, NO_EXTERNAL, OTHER_EXTERNAL};
 use super::super::forms::PoseForm;
 use super::super::given::Given;
 use super::super::parsed::{Listed, Meant, Motion, Number, Parsed, Target};
@@ -301,10 +301,10 @@ const NONE: f64 = 8.9e9;
 fn external_axes(mut numbers: Vec<Number>, axes: &Axes) -> Result<Vec<Number>, String> {
     let others = numbers.split_off(axes.external.len().min(numbers.len()));
     if others.iter().any(|it| it.value != 0.0 && it.value < NONE) {
-        return Err("external axes are used that the model does not have: make it a joint target".to_owned());
+        return Err(OTHER_EXTERNAL.to_owned());
     }
     if numbers.iter().any(|it| it.value >= NONE) {
-        return Err("it states no value of an external axis that the model has".to_owned());
+        return Err(NO_EXTERNAL.to_owned());
     }
     numbers.iter_mut().for_each(|it| it.scale = 1e-3);
     Ok(numbers)
@@ -323,9 +323,6 @@ fn joints(value: &Value, axes: &Axes) -> Result<Vec<Number>, String> {
         return Err("has no angles of the arm".to_owned());
     }
     arm.iter_mut().for_each(|it| it.scale = 1_f64.to_radians());
-    if axes.external.is_empty() {
-        return Ok(arm);
-    }
     axes.joined(&arm, &external).ok_or_else(|| SHAPE.to_owned())
 }
 
