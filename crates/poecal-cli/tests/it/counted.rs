@@ -279,6 +279,40 @@ fn a_third_axis_is_stated_where_rows_do_not_show_it() {
 }
 
 #[test]
+fn a_third_axis_from_the_level_may_have_a_sign_and_an_offset() {
+    let folder = both("[units]\nangle = \"deg\"\n", <[f64]>::to_vec);
+    let numbered = "joint1 = \"A1\"\njoint4 = \"A4\"\njoint5 = \"A5\"\njoint6 = \"A6\"\n";
+    let axes = "joint2 = { column = \"A2\", offset = 7 }\njoint3 = { columns = { A3 = -1 }, offset = 5 }\n";
+    folder.write("level.toml", format!("{LEVEL}[joints]\n{numbered}{axes}"));
+    let sums =
+        "joint2 = { column = \"A2\", offset = 7 }\njoint3 = { columns = { A2 = 1, A3 = -1 }, offset = 12 }\n";
+    folder.write("sums.toml", format!("[units]\nangle = \"deg\"\n[joints]\n{numbered}{sums}"));
+    let plain = folder.read("controller.csv");
+    let turned = plain.lines().enumerate().map(|(at, row)| {
+        let mut cells: Vec<String> = row.split(',').map(str::to_owned).collect();
+        if at > 0 {
+            let (q2, q3): (f64, f64) = (cells[4].parse().unwrap(), cells[5].parse().unwrap());
+            (cells[4], cells[5]) = (format!("{:.12}", q2 - 7.0), format!("{:.12}", 5.0 - (q3 - q2)));
+        }
+        cells.join(",")
+    });
+    folder.write("turned.csv", turned.collect::<Vec<_>>().join("\n"));
+    let kept = |map: &str| -> serde_json::Value {
+        folder.done(&format!("calibrate robot.urdf turned.csv --columns {map}.toml --out {map}"));
+        serde_json::from_str(&folder.read(&format!("{map}/calibration.json"))).unwrap()
+    };
+    let (level, sums) = (kept("level"), kept("sums"));
+    assert_eq!(level["controller"]["readings"], sums["controller"]["readings"]);
+    let rms =
+        |it: &serde_json::Value| it["accuracy"]["training"]["calibrated"]["position_mm"]["rms"].as_f64();
+    println!("{:?} {:?} mm", rms(&level), rms(&sums));
+    // The columns are summed in another order, which rounds otherwise.
+    assert!((rms(&level).unwrap() - rms(&sums).unwrap()).abs() < 1e-9);
+    let by_model: serde_json::Value = serde_json::from_str(&folder.read("results/calibration.json")).unwrap();
+    assert!((rms(&level).unwrap() - rms(&by_model).unwrap()).abs() < 1e-6);
+}
+
+#[test]
 fn a_third_axis_that_counts_from_the_level_is_named_with_the_line_that_reads_it() {
     let folder = both(LEVEL, from_level);
     folder.write("without.toml", "[units]\nangle = \"deg\"\n");
@@ -369,6 +403,11 @@ fn sums_that_cannot_be_taken_apart_are_predicted_and_not_corrected() {
     for (map, sentence) in [
         (LEVEL.replace("level", "floor"), "found the third axis `floor`, expected `arm` or `level`"),
         (format!("third_axis = \"level\"\n{MAP}"), "beside a sum of columns for joint `joint3`"),
+        (
+            MAP.replace("joint3 = { columns = { A2 = 1, A3 = 1 } }", "joint3 = { value = 1 }")
+                .replace("[units]", "third_axis = \"level\"\n[units]"),
+            "beside a constant for joint `joint3`",
+        ),
         (
             MAP.replace("joint4 = \"A4\"", "joint4 = { value = 1, offset = 2 }"),
             "found `offset` beside `value`",

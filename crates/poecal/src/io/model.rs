@@ -169,6 +169,12 @@ impl Model {
         }
     }
 
+    /// The same where some reading is made of others than one by itself.
+    #[must_use]
+    pub fn sums(&self) -> Option<&Controller> {
+        self.controller().filter(|it| !it.is_plain())
+    }
+
     /// What looks like other units than those of its form, a sentence each.
     #[must_use]
     pub fn doubts(&self) -> Vec<String> {

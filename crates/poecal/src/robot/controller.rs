@@ -150,6 +150,9 @@ impl Controller {
         let of_second = self.readings.iter().find(|it| it.reading == second).cloned();
         let (Some(reading), Some(name)) = (self.readings.get_mut(at), own.get(at)) else { return Ok(self) };
         reading.columns.retain(|column, _| column == name);
+        if let (Some(ThirdAxis::Level), Some(of_second)) = (self.third_axis, &of_second) {
+            reading.offset += factor * of_second.offset;
+        }
         if let (ThirdAxis::Level, Some(of_second)) = (counts, of_second) {
             for (column, it) in of_second.columns {
                 let unit = it.unit;
@@ -425,5 +428,15 @@ mod tests {
         assert!((robot.forward_kinematics(&readings).rotation - flat).norm() < 1e-12);
         let again = level.with_third_axis(&robot, ThirdAxis::Arm).unwrap();
         assert!(again.is_plain());
+        // Also where the second and the third start elsewhere; stated twice it is the same.
+        let mut shifted = Controller::plain(&robot);
+        for reading in &mut shifted.readings {
+            reading.offset = if reading.reading == second { 0.2 } else { 0.0 };
+        }
+        let level = shifted.clone().with_third_axis(&robot, ThirdAxis::Level).unwrap();
+        assert_eq!(level.readings[at(&third)].offset, -factor * 0.2);
+        assert_eq!(level.clone().with_third_axis(&robot, ThirdAxis::Level).unwrap(), level);
+        let back = level.with_third_axis(&robot, ThirdAxis::Arm).unwrap();
+        assert_eq!(back.readings, shifted.readings);
     }
 }

@@ -162,7 +162,7 @@ enum Proof {
 /// [`ErrorKind::Export`] if the form cannot hold the robot, or the text read back differs by more than 1e-9 m (of a robot of a metre) or rad
 /// though the form can carry it.
 pub fn export(model: &Model, format: ExportFormat, options: &ExportOptions) -> Result<Exported> {
-    let counted = model.controller().filter(|it| !it.is_plain()).map(|it| {
+    let counted = model.sums().map(|it| {
         format!(
             "readings of this form are the model's, which the mapping made of what the controller counts: {}",
             it.words()

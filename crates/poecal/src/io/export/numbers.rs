@@ -29,7 +29,7 @@ pub(super) fn write(model: &Model) -> Result<Exported> {
         notes.push(format!("the factors {} are at their references in this form", names.join(", ")));
     }
     let mut text = header(actual);
-    if let Some(controller) = model.controller().filter(|it| !it.is_plain()) {
+    if let Some(controller) = model.sums() {
         let (_, readings) = actual.arm_model(&factors)?;
         text.push_str(&counted(&controller.counting()?, &readings));
     }

@@ -115,7 +115,7 @@ pub(super) fn write(model: &Model, robot: &Robot) -> Result<Written> {
 
 /// Offsets of what the controller counts; none where that is what the model has.
 fn counted(model: &Model, robot: &Robot, found: &Explanation) -> Result<Vec<JointOffset>> {
-    let Some(controller) = model.controller().filter(|it| !it.is_plain()) else { return Ok(Vec::new()) };
+    let Some(controller) = model.sums() else { return Ok(Vec::new()) };
     let counting = controller.counting()?;
     let mut of_readings = vec![0.0; counting.names().len()];
     let mut slides = vec![false; of_readings.len()];
@@ -173,7 +173,7 @@ pub(super) fn write_ticks(model: &Model, robot: &Robot, motors: Option<&str>) ->
             joint.name
         )));
     }
-    if let Some(controller) = model.controller().filter(|it| !it.is_plain()) {
+    if let Some(controller) = model.sums() {
         return Err(export_error(format!(
             "found readings that the mapping made of others ({}), expected those of the motors",
             controller.words()

@@ -10,9 +10,7 @@ use super::orientation::OrientationForm;
 use super::units::{Dimension, Unit, UnitSource};
 use crate::error::{Error, ErrorKind, Result, distance_within, first_few};
 use crate::io::numbers::LARGEST_NUMBER;
-use crate::robot::{
-    Controller, ControllerColumn, ControllerReading, Factor, ReadingKind, Robot, ThirdAxis, level, sum_words,
-};
+use crate::robot::{Controller, Factor, ReadingKind, Robot, sum_words};
 
 const DEFAULT_FORMS: [OrientationForm; 3] =
     [OrientationForm::QuaternionXyzw, OrientationForm::RotationVector, OrientationForm::ROLL_PITCH_YAW];
@@ -97,8 +95,8 @@ pub(super) struct TargetLayout {
 
 /// Finds columns in a header, and records which are used.
 pub(super) struct Builder<'a> {
-    header: &'a Header<'a>,
-    map: &'a ColumnMap,
+    pub(super) header: &'a Header<'a>,
+    pub(super) map: &'a ColumnMap,
     readings: BTreeSet<String>,
     pub(super) inputs: Vec<Input>,
     used: Vec<bool>,
@@ -157,100 +155,10 @@ impl<'a> Builder<'a> {
         Ok(builder)
     }
 
-    /// Takes the third axis as it counts.
-    fn third_axis(&mut self, robot: &Robot, names: &[String], counts: ThirdAxis) -> Result<()> {
-        let in_map =
-            |message: String| Err(Error::new(ErrorKind::Measurement, message).in_file(&self.map.path));
-        let at = |name: &String| names.iter().position(|it| it == name);
-        let found =
-            level(robot).and_then(|(second, third, factor)| Some((at(&second)?, at(&third)?, factor)));
-        let Some((second, third, factor)) = found else {
-            return in_map(format!(
-                "found `third_axis = \"{}\"`, expected a robot whose second and third axes are parallel",
-                counts.word()
-            ));
-        };
-        let (Some(of_second), Some(of_third)) = (self.inputs.get(second), self.inputs.get(third)) else {
-            return Ok(());
-        };
-        if !of_third.sum.is_empty() {
-            return in_map(format!(
-                "found `third_axis` beside a sum of columns for joint `{}`, expected one of the two",
-                of_third.name
-            ));
-        }
-        if counts == ThirdAxis::Arm {
-            return Ok(());
-        }
-        let mut sum = of_third.terms();
-        let offset = -factor * of_second.added();
-        sum.extend(of_second.terms().into_iter().map(|it| Term { factor: -factor * it.factor, ..it }));
-        let label = self.label(&sum);
-        if let Some(input) = self.inputs.get_mut(third) {
-            (input.sum, input.offset, input.label) = (sum, offset, label);
-        }
-        Ok(())
-    }
-
     /// A sum of columns in words.
-    fn label(&self, sum: &[Term]) -> String {
+    pub(super) fn label(&self, sum: &[Term]) -> String {
         let name = |term: &Term| self.header.cells.get(term.column).map_or("", |cell| cell.name.as_str());
         sum_words(sum.iter().map(|term| (name(term), term.factor)))
-    }
-
-    /// Adds a joint's reading as the calibration kept it; units of the file precede those that were kept.
-    fn kept_input(&mut self, kept: &ControllerReading, quantity: Dimension, purpose: &str) -> Result<()> {
-        let name = kept.reading.as_str();
-        let at = self.inputs.len();
-        let mut sum = Vec::with_capacity(kept.columns.len());
-        for (column, it) in &kept.columns {
-            let index = self.text_column(column, purpose)?;
-            let known = Unit::parse_for(&it.unit, quantity, &format!(" {purpose}"))?;
-            let stated = self.header.unit(index, quantity, purpose)?;
-            let (unit, unit_from) = stated.unwrap_or((known, UnitSource::Mapping));
-            sum.push(Term { column: index, unit, factor: it.factor });
-            if self.inputs.len() == at {
-                let (name, label, source) = (name.to_owned(), column.clone(), InputSource::Column(index));
-                self.inputs.push(Input {
-                    name,
-                    label,
-                    source,
-                    unit,
-                    unit_from,
-                    sum: Vec::new(),
-                    offset: 0.0,
-                });
-            }
-        }
-        if sum.is_empty() {
-            let (unit, unit_from) = (quantity.si_unit(), UnitSource::Mapping);
-            let (name, label) = (name.to_owned(), name.to_owned());
-            let source = InputSource::Constant(kept.offset);
-            self.inputs.push(Input { name, label, source, unit, unit_from, sum, offset: 0.0 });
-        } else if sum.len() > 1 || kept.offset != 0.0 || sum.iter().any(|it| it.factor != 1.0) {
-            let label = self.label(&sum);
-            if let Some(input) = self.inputs.get_mut(at) {
-                (input.sum, input.offset, input.label) = (sum, kept.offset, label);
-            }
-        }
-        Ok(())
-    }
-
-    /// How the readings of the joints, the first inputs, are made of columns; `None` where each is one column and nothing is stated.
-    pub(super) fn controller(&self, robot: &Robot) -> Option<Controller> {
-        let column = |term: &Term| {
-            let name = self.header.cells.get(term.column).map(|cell| cell.name.clone())?;
-            Some((name, ControllerColumn { factor: term.factor, unit: term.unit.symbol().to_owned() }))
-        };
-        let reading = |input: &Input| ControllerReading {
-            reading: input.name.clone(),
-            columns: input.terms().iter().filter_map(column).collect(),
-            offset: input.added(),
-        };
-        let count = robot.joint_reading_names().len();
-        let readings = self.inputs.iter().take(count).map(reading).collect();
-        let found = Controller { third_axis: self.map.third_axis, readings };
-        (found.third_axis.is_some() || !found.is_plain()).then_some(found)
     }
 
     /// Adds the number of a factor, in whatever unit its column is.
@@ -303,10 +211,19 @@ impl<'a> Builder<'a> {
                 format!("found the value {value:?} {purpose}, expected at most {LARGEST_NUMBER:e} {si}");
             return Err(Error::new(ErrorKind::Measurement, message).in_file(&self.map.path));
         }
-        let source = InputSource::Constant(unit.to_si(value));
-        let (name, label) = (name.to_owned(), name.to_owned());
+        Ok(self.constant_input(name, unit.to_si(value), (unit, unit_from)))
+    }
+
+    /// Adds a number that is the same in all rows (metres, radians).
+    pub(super) fn constant_input(
+        &mut self,
+        name: &str,
+        value: f64,
+        (unit, unit_from): (Unit, UnitSource),
+    ) -> usize {
+        let (name, label, source) = (name.to_owned(), name.to_owned(), InputSource::Constant(value));
         self.inputs.push(Input { name, label, source, unit, unit_from, sum: Vec::new(), offset: 0.0 });
-        Ok(self.inputs.len() - 1)
+        self.inputs.len() - 1
     }
 
     /// What the mapping adds to a joint's columns, in the unit of the first.
@@ -333,12 +250,24 @@ impl<'a> Builder<'a> {
         mapped: Option<Unit>,
         purpose: &str,
     ) -> Result<usize> {
+        self.column_or(name, column, quantity, (mapped, None), purpose)
+    }
+
+    /// The same with a unit of columns that state none.
+    pub(super) fn column_or(
+        &mut self,
+        name: &str,
+        column: &str,
+        quantity: Dimension,
+        (mapped, unstated): (Option<Unit>, Option<Unit>),
+        purpose: &str,
+    ) -> Result<usize> {
         let index = self.text_column(column, purpose)?;
         let stated = match mapped {
             Some(unit) => Some((unit, UnitSource::Mapping)),
             None => self.header.unit(index, quantity, purpose)?,
         };
-        let default = self.map.units.of(quantity).map(|unit| (unit, UnitSource::Mapping));
+        let default = unstated.or(self.map.units.of(quantity)).map(|unit| (unit, UnitSource::Mapping));
         let (unit, unit_from) = match (stated.or(default), self.header.units_line) {
             (Some(known), _) => known,
             // With a line of units, an empty cell in it may have been forgotten or merged.
@@ -366,15 +295,29 @@ impl<'a> Builder<'a> {
                 format!("found `columns` {purpose}, expected one column: only joints are sums of columns");
             return Err(Error::new(ErrorKind::Measurement, message).in_file(&self.map.path));
         }
+        let columns: Vec<_> =
+            columns.iter().map(|(column, &factor)| (column.clone(), factor, None)).collect();
+        self.joined_input(name, &columns, quantity, unit, purpose)
+    }
+
+    /// Adds a sum of columns, each with its factor, and its unit where it states none.
+    pub(super) fn joined_input(
+        &mut self,
+        name: &str,
+        columns: &[(String, f64, Option<Unit>)],
+        quantity: Dimension,
+        unit: Option<Unit>,
+        purpose: &str,
+    ) -> Result<usize> {
         let mut sum: Vec<Term> = Vec::with_capacity(columns.len());
         let at = self.inputs.len();
-        for column in columns.keys() {
-            self.column_input(name, column, quantity, unit, purpose)?;
+        for (column, _, unstated) in columns {
+            self.column_or(name, column, quantity, (unit, *unstated), purpose)?;
         }
         let parts = self.inputs.split_off(at);
-        for (part, &factor) in parts.iter().zip(columns.values()) {
+        for (part, (_, factor, _)) in parts.iter().zip(columns) {
             if let InputSource::Column(column) = part.source {
-                sum.push(Term { column, unit: part.unit, factor });
+                sum.push(Term { column, unit: part.unit, factor: *factor });
             }
         }
         let label = self.label(&sum);

@@ -6,6 +6,7 @@
 
 mod builder;
 mod cells;
+mod counted;
 mod fit_where;
 mod header;
 mod inputs;
