@@ -85,6 +85,7 @@ def fits(plan: dict[str, Any], first: int) -> engines.Row:
                 sigma_rotation_deg=plan["noise_deg"],
                 corrections="off",
                 held_out=0,
+                move_tip=True,
             )
             covariance, tip = calibration.covariance, calibration.predict(other_joints, with_uncertainty=True)
         except poecal.Error as error:

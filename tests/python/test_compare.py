@@ -44,8 +44,13 @@ def test_one_robot_is_told_as_such(sessions):
     first, second, _ = sessions
     code, text, _ = compared(first, second)
     print(text)
-    assert code == 0 and text.startswith("verdict       no change beyond noise")
+    assert code == 0 and text.startswith("verdict       still good: the tip moved by 0.")
+    assert "no change beyond noise" in poecal("compare", first, second, "--verbose") and "χ²" not in text
     found = json.loads(poecal("compare", first, second, "--json"))
+    assert found["moved"] is False and found["tip"]["rms_mm"] < found["tip"]["limit_mm"]
+    # A limit that is stated decides.
+    code, text, _ = compared(first, second, "--limit", "0.01mm")
+    assert code == 1 and text.startswith("verdict       no longer good") and "(limit 0.0100 mm)" in text
     assert found["changed"] is False and found["test"]["chi_square"] < found["test"]["limit"]
     assert [joint["name"] for joint in found["joints"]] == [f"joint{k}" for k in range(1, 7)]
     corrections = json.loads(first.read_text())["corrections"]

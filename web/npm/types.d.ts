@@ -65,6 +65,11 @@ export interface CalibrateOptions {
   fix?: Value | readonly Value[];
   /** Blocks to fit, also those that are usually held, like joint2.offset, and after --fix: `--fix joints --free joint2` */
   free?: Value | readonly Value[];
+  /**
+   * Put the tip where the measured point is, for a model that ends in its reflector. Otherwise the links beyond the last joint stay as in
+   * the model, and the point is the target `measured`
+   */
+  moveTip?: boolean;
   /** Share of the configurations held out, where nothing else says which rows are; 0 fits every row in any case [default: 0.3] */
   heldOut?: Value | readonly Value[];
   /** Seed of that choice [default: 1] */
@@ -291,6 +296,8 @@ export type CalibrationFile = {
   joints: JointEntry[];
   /** Frame of the measuring device. */
   measurement_frame: FrameEntry;
+  /** Whether the point that was measured became the tip (`--move-tip`); otherwise the tip is where the model has it on the last link. */
+  move_tip?: boolean;
   /** Noise by which residuals were weighted. */
   noise: NoiseEntry;
   /** Suspected rows, the worst first, at most 1,000; `robust` has their number. */
@@ -313,7 +320,10 @@ export type CalibrationFile = {
   stations?: StationEntry[];
   /** Configurations in which all targets are suspected and off alike, the worst first, at most 100: the arm or its readings are wrong there. */
   suspected_configurations?: SuspectedConfigurationEntry[];
-  /** Named targets: in the tip frame, or on a body of their own (`on`). */
+  /**
+   * Targets by their names, `measured` where no row names one: in the tip frame, or on a body of their own (`on`). None where `move_tip` is
+   * true.
+   */
   targets: { [name: string]: TargetEntry };
   /** Pose of the tip in the last joint's frame. */
   tool: PoseEntry;
@@ -496,6 +506,11 @@ export type CorrectedEntry = {
   joint_errors?: JointErrorsEntry[];
   /** The joints from base to tip: those of the robot, and behind each its gives. */
   joints: JointEntry[];
+  /**
+   * Error of positions in cross-validation, millimetres (RMS): that of geometry alone times the share that terms leave; absent if sizes
+   * were given.
+   */
+  left_out_position_mm?: number | null;
   /** Frame of the measuring device. */
   measurement_frame: FrameEntry;
   /** Standard deviation of the noise, as the fit of screws and terms shows it. */
@@ -1501,16 +1516,31 @@ export type UncertaintyEntry = {
   residuals_rotation?: Attribution;
   /** Whether the residuals of tilt count as the robot's or the instrument's. */
   residuals_tilt?: Attribution;
-  /** Targets with unknowns, `true` for frames: shifts along their axes, and for frames turns about them. The tip has an empty name. */
+  /**
+   * Targets with unknowns, `true` for frames: shifts along their axes, and for frames turns about them. One that is the tip has an empty
+   * name.
+   */
   targets: Array<[string, boolean]>;
   /** Names of the unknowns, in the order of the covariance; missing in older files. */
   unknowns?: string[];
 };
 
-/** A level, and the reasons against a better one; for the best level, the reasons for it. */
+/**
+ * A level, and the reasons against a better one; for the best level, the reasons for it. And the one figure: what to expect of the model
+ * that is delivered.
+ */
 export type Verdict = {
+  /** Mean of the distances that 95 % of its errors do not exceed there, millimetres. */
+  bound95_mm?: number | null;
+  /**
+   * Expected error of its predictions in configurations like those that were measured, millimetres (RMS); absent where no use is advised,
+   * or nothing is known.
+   */
+  expected_error_mm?: number | null;
   /** How far it may be used. */
   level: Level;
+  /** The model that is delivered: the corrected one where it has terms. Missing in older files. */
+  model?: AcceptedModel | null;
   /** Sentences with the deciding figures. */
   reasons: string[];
 };

@@ -29,7 +29,7 @@ use poecal::calibration::{AcceptedModel, DeviceFrameKnowledge, Level, Limit};
 use poecal::io::model::ModelFormat;
 use poecal::io::predictions::PredictionFrame;
 
-use crate::quantity::threads;
+use crate::quantity::{sigma_m, threads};
 use shared::{ChainArgs, ColumnArgs, Meaning, OutFile, Reading};
 use words::{
     ACCEPTED_MODEL, EXPORT_FORMAT, FORM, FRAME, PREDICT_IN, PREDICTED_MODEL, REQUIRED_LEVEL, one_of,
@@ -120,6 +120,12 @@ pub(crate) struct Compare {
     pub(crate) first: PathBuf,
     /// The second calibration of the same robot (calibration.json)
     pub(crate) second: PathBuf,
+    /// How far the tip may have moved (RMS), like 0.5mm; end with code 1 where it moved further [default: the expected errors of both together]
+    #[arg(long, value_name = "LENGTH", value_parser = sigma_m, allow_hyphen_values = true)]
+    pub(crate) limit: Option<f64>,
+    /// Print each joint with its test against noise, and the errors of both
+    #[arg(long)]
+    pub(crate) verbose: bool,
     /// Print JSON instead of the table
     #[arg(long)]
     pub(crate) json: bool,

@@ -187,6 +187,24 @@ impl Verdict {
         self.0.reasons.clone()
     }
 
+    /// The model that is delivered: "corrected" where it has terms, else "calibrated".
+    #[getter]
+    fn model(&self) -> Option<&'static str> {
+        self.0.model.map(poecal::calibration::AcceptedModel::word)
+    }
+
+    /// Expected error of that model in configurations like those that were measured, millimetres (RMS); None where no use is advised.
+    #[getter]
+    fn expected_error_mm(&self) -> Option<f64> {
+        self.0.expected_error_mm
+    }
+
+    /// The distance that 95 % of its errors do not exceed there, millimetres.
+    #[getter]
+    fn bound95_mm(&self) -> Option<f64> {
+        self.0.bound95_mm
+    }
+
     /// Whether a calibration may be used as far as this.
     ///
     /// Parameters

@@ -53,6 +53,9 @@ use crate::words::{chosen, frame as frame_word, from_mm, robust as robust_word, 
 ///     Blocks to hold as in the model: "joints", "targets", "frames", or names like "joint2.axis", in which * stands for any letters.
 /// free
 ///     Blocks to fit, also those that are usually held, like "joint2.offset", and after `fix`.
+/// move_tip
+///     Whether to put the tip where the measured point is, for a model that ends in its reflector. Otherwise the links beyond the last joint stay
+///     as in the model, and the point is the target "measured".
 /// held_out
 ///     Share of the configurations held out, where nothing else says which rows are (default 0.3); 0 fits every row.
 /// seed
@@ -93,8 +96,8 @@ use crate::words::{chosen, frame as frame_word, from_mm, robust as robust_word, 
 ///     No finite result is reached.
 #[pyfunction]
 #[pyo3(signature = (robot, measurements, *, frame="unknown", sigma_position_mm=None, sigma_rotation_deg=None, tolerance_deg_mm=Believed::Given((0.5, 5.0)),
-                    corrections=None, harmonics=2, gravity=None, fix=None, free=None, held_out=None, seed=None, robust="auto", formulation="adjoint", residual="tool", method=None, validate=None, accept=None, accept_model="corrected", record=None, progress=None),
-        text_signature = "(robot, measurements, *, frame='unknown', sigma_position_mm=None, sigma_rotation_deg=None, tolerance_deg_mm=(0.5, 5.0), corrections='auto', harmonics=2, gravity=(0, 0, -1), fix=None, free=None, held_out=None, seed=None, robust='auto', formulation='adjoint', residual='tool', method=None, validate=None, accept=None, accept_model='corrected', record=None, progress=None)")]
+                    corrections=None, harmonics=2, gravity=None, fix=None, free=None, move_tip=false, held_out=None, seed=None, robust="auto", formulation="adjoint", residual="tool", method=None, validate=None, accept=None, accept_model="corrected", record=None, progress=None),
+        text_signature = "(robot, measurements, *, frame='unknown', sigma_position_mm=None, sigma_rotation_deg=None, tolerance_deg_mm=(0.5, 5.0), corrections='auto', harmonics=2, gravity=(0, 0, -1), fix=None, free=None, move_tip=False, held_out=None, seed=None, robust='auto', formulation='adjoint', residual='tool', method=None, validate=None, accept=None, accept_model='corrected', record=None, progress=None)")]
 #[expect(clippy::too_many_arguments, reason = "the options of a Python function")]
 pub(crate) fn calibrate(
     py: Python<'_>,
@@ -109,6 +112,7 @@ pub(crate) fn calibrate(
     #[pyo3(from_py_with = arg::gravity)] gravity: Option<GravityDirection>,
     #[pyo3(from_py_with = arg::fix)] fix: Option<Vec<String>>,
     #[pyo3(from_py_with = arg::free)] free: Option<Vec<String>>,
+    #[pyo3(from_py_with = arg::move_tip)] move_tip: bool,
     #[pyo3(from_py_with = arg::held_out)] held_out: Option<f64>,
     #[pyo3(from_py_with = arg::seed)] seed: Option<u64>,
     #[pyo3(from_py_with = arg::robust)] robust: &str,
@@ -152,6 +156,7 @@ pub(crate) fn calibrate(
         held_out: held_out.unwrap_or(usual.held_out),
         seed: seed.unwrap_or(usual.seed),
         robust: robust_word(robust)?,
+        move_tip,
         accept: accept_limits(accept, accept_model)?,
         formulation: formulated(formulation, residual, method),
         ..usual

@@ -4,9 +4,11 @@ use std::path::PathBuf;
 
 use poecal::analysis::{self, PlannedSession};
 use poecal::calibration::DeviceFrameKnowledge;
+use poecal::io::offsets::ModelOffsets;
 use poecal::io::output::{self, Contents, Existing};
 use poecal::measurement::{Noise, Quantity};
-use poecal::{compare as compared, forensics, offsets as explanations, report};
+use poecal::report::Detail;
+use poecal::{compare as compared, forensics, report};
 use poecal_lou2009::{self as experiments, report as reproduced};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
@@ -190,7 +192,7 @@ impl<'a, 'py> Argument<'a, 'py> for RobotOrCalibration<'a> {
     }
 }
 
-/// The joint offsets that explain best how a robot differs from its model, and the remaining errors.
+/// The joint offsets with which the tip of a model comes nearest to that of a robot, and the remaining errors.
 ///
 /// Parameters
 /// ----------
@@ -222,11 +224,8 @@ pub(crate) fn offsets(
     let (nominal, actual) = (&nominal.model, &actual.model);
     let base = base.map(|word| end("base", word)).transpose()?;
     let tip = tip.map(|word| end("tip", word)).transpose()?;
-    let [(base, base_reason), (tip, tip_reason)] = report::offset_ends(base, tip, actual);
-    let options = explanations::OffsetOptions { base, tip, ..explanations::OffsetOptions::default() };
-    let explained =
-        py.detach(|| explanations::explain(&nominal.robot, &actual.robot, &options)).map_err(raise)?;
-    let found = report::Offsets::new(nominal, actual, &explained, [base_reason, tip_reason]);
+    let explained = py.detach(|| ModelOffsets::between(nominal, actual, [base, tip])).map_err(raise)?;
+    let found = report::Offsets::new(nominal, actual, &explained);
     let mut warnings = Vec::new();
     for joint in &nominal.robot.joints {
         let followers = nominal.robot.followers(&joint.name);
@@ -248,17 +247,27 @@ pub(crate) fn offsets(
 /// ----------
 /// first, second
 ///     The calibrations.
+/// limit_mm
+///     How far the tip may have moved (RMS), default the expected errors of both together.
 ///
 /// Returns
 /// -------
 /// Findings
-///     Whether more changed than noise makes (`changed`), each joint's change with its test, and how far the predictions are apart.
+///     Whether the tip moved by more than the limit (`moved`), by how much (`tip`), whether more changed than noise makes (`changed`), and each joint's
+///     change with its test.
 #[pyfunction]
-pub(crate) fn compare(py: Python<'_>, first: &Calibration, second: &Calibration) -> PyResult<Findings> {
+#[pyo3(signature = (first, second, *, limit_mm=None))]
+pub(crate) fn compare(
+    py: Python<'_>,
+    first: &Calibration,
+    second: &Calibration,
+    #[pyo3(from_py_with = arg::limit_mm)] limit_mm: Option<f64>,
+) -> PyResult<Findings> {
+    let limit_m = limit_mm.map(|it| sigma("limit_mm", it, from_mm)).transpose()?;
     let (one, other) = (first.file(), second.file());
-    let found = py.detach(|| compared::compare(one, other)).map_err(raise)?;
+    let found = py.detach(|| compared::compare(one, other, limit_m)).map_err(raise)?;
     let told = report::Comparison::new(("first", one), ("second", other), &found).map_err(raise)?;
-    Findings::new(told.text(), &told, Vec::new())
+    Findings::new(told.text(Detail::Full), &told, Vec::new())
 }
 
 /// Repeats the experiment of a paper and checks its claims, or shows the effect of gross errors.

@@ -46,7 +46,9 @@ def test_a_prediction_is_forward_kinematics(calibration):
     assert (poses == calibration.robot.forward_kinematics(joints)).all()
     assert calibration.predict(joints[0]).shape == (4, 4)
     device = calibration.predict(joints, frame="device")
-    assert np.allclose(calibration.base_from_device @ device, poses, atol=1e-12)
+    # The device sees the target, which is not the tip.
+    target = calibration.predict(joints, target="measured")
+    assert np.allclose(calibration.base_from_device @ device, target, atol=1e-12) and not np.allclose(target, poses, atol=1e-4)
 
 
 def test_a_prediction_says_what_to_expect(made, calibration):
@@ -137,7 +139,9 @@ def test_parts_are_those_of_the_file(calibration):
 
 
 def test_a_calibration_shows_itself(calibration):
-    assert str(calibration).startswith("verdict       good: expected error ")
+    assert str(calibration).startswith("verdict       good\nbefore ")
+    verdict = calibration.verdict
+    assert f"after         {verdict.expected_error_mm:.4f} mm (RMS) expected, 95 % below {verdict.bound95_mm:.4f} mm: {verdict.model} model" in str(calibration)
     assert "mm RMS on 15 held-out rows" in repr(calibration)
     html = calibration._repr_html_()
     assert html.startswith("<div>") and "held out" in html and "mm" in html

@@ -70,7 +70,7 @@ SENTENCES = [
     (lambda: poecal.calibrate(elbow(), arrays(joints=JOINTS[:2], positions=POSITIONS[:2])), None),
     (lambda: screws(lambda it: it.__setitem__((2, 3), 5.0)), None),
     (lambda: poecal.reproduce("lou2010"), "experiment: found `lou2010`, expected one of lou2009, breakdown; did you mean `lou2009`?"),
-    (lambda: calibrate().predict(JOINTS, target="ball"), "calibration.json: found no target `ball`, expected none: the model has no targets, leave out target to predict the tip"),
+    (lambda: calibrate().predict(JOINTS, target="ball"), "calibration.json: found no target `ball`, expected one of measured"),
     (lambda: calibrate(validate=SEEN[:0]), "validate: found no rows, expected at least one that judges the fit"),
     (lambda: calibrate(seed=-1), "seed: found -1, expected a whole number from 0 to 18446744073709551615"),
     (lambda: calibrate(seed=2**70), "seed: found 1180591620717411303424, expected a whole number from 0 to 18446744073709551615"),

@@ -64,6 +64,10 @@ pub(crate) struct Calibrate {
     /// Blocks to fit, also those that are usually held, like joint2.offset, and after --fix: `--fix joints --free joint2`
     #[arg(long, value_name = "NAME", value_delimiter = ',')]
     pub(crate) free: Vec<String>,
+    /// Put the tip where the measured point is, for a model that ends in its reflector. Otherwise the links beyond the last joint stay as in the
+    /// model, and the point is the target `measured`
+    #[arg(long)]
+    pub(crate) move_tip: bool,
     /// Share of the configurations held out, where nothing else says which rows are; 0 fits every row in any case [default: 0.3]
     #[arg(long, value_name = "SHARE", value_parser = share, allow_hyphen_values = true)]
     pub(crate) held_out: Option<f64>,

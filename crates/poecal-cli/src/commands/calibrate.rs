@@ -192,6 +192,7 @@ fn options(arguments: &Calibrate, console: &Console) -> Result<CalibrationOption
         held_out: arguments.held_out.unwrap_or(usual.held_out),
         seed: arguments.seed.unwrap_or(usual.seed),
         robust: arguments.robust,
+        move_tip: arguments.move_tip,
         accept: AcceptanceLimits::chosen(arguments.accept.clone(), arguments.accept_model)?,
         formulation: formulated(arguments.formulation, arguments.residual, method),
         ..usual

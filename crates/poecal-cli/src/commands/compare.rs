@@ -2,6 +2,7 @@
 
 use poecal::compare;
 use poecal::io::calibration_file::CalibrationFile;
+use poecal::report::Detail;
 use poecal::{ErrorKind, Result, report};
 
 use crate::args::Compare;
@@ -17,14 +18,18 @@ pub(crate) fn compare(arguments: &Compare, console: &Console) -> Result<u8> {
     };
     first.robot().map_err(|error| error.in_file(&arguments.first))?;
     second.robot().map_err(|error| error.in_file(&arguments.second))?;
-    let found = compare::compare(&first, &second).map_err(in_file)?;
+    let found = compare::compare(&first, &second, arguments.limit).map_err(in_file)?;
     let [one, other] = [&arguments.first, &arguments.second].map(|path| path.display().to_string());
     let told = report::Comparison::new((&one, &first), (&other, &second), &found)?;
-    let text = if arguments.json { report::json(&told)? } else { told.text() };
+    let text = if arguments.json {
+        report::json(&told)?
+    } else {
+        told.text(if arguments.verbose { Detail::Full } else { Detail::Short })
+    };
     if arguments.json || place.is_some() {
         console.deliver(text, place)?;
     } else {
         console.say(&text)?;
     }
-    Ok(if found.is_change() == Some(true) { WORSE } else { DONE })
+    Ok(if found.is_moved() == Some(true) { WORSE } else { DONE })
 }

@@ -3,8 +3,8 @@
 use std::ffi::OsStr;
 
 use poecal::io::model::Model;
+use poecal::io::offsets::ModelOffsets;
 use poecal::io::urdf::ChainSelection;
-use poecal::offsets::{OffsetOptions, explain};
 use poecal::{Result, report};
 
 use super::convert::quoted;
@@ -21,11 +21,8 @@ pub(crate) fn offsets(arguments: &Offsets, console: &Console) -> Result<u8> {
         ["toml", "json"].map(OsStr::new).contains(&arguments.actual.extension().unwrap_or_default());
     let whole = ChainSelection::default();
     let actual = Model::read(&arguments.actual, if one_chain { &whole } else { &selection })?;
-    let [(base, base_reason), (tip, tip_reason)] =
-        report::offset_ends(arguments.base, arguments.tip, &actual);
-    let options = OffsetOptions { base, tip, ..OffsetOptions::default() };
-    let explanation =
-        explain(&nominal.robot, &actual.robot, &options).map_err(|error| error.in_file(&arguments.actual))?;
+    let explanation = ModelOffsets::between(&nominal, &actual, [arguments.base, arguments.tip])
+        .map_err(|error| error.in_file(&arguments.actual))?;
     for joint in &nominal.robot.joints {
         let followers = nominal.robot.followers(&joint.name);
         if !followers.is_empty() {
@@ -37,7 +34,7 @@ pub(crate) fn offsets(arguments: &Offsets, console: &Console) -> Result<u8> {
             ));
         }
     }
-    let found = report::Offsets::new(&nominal, &actual, &explanation, [base_reason, tip_reason]);
+    let found = report::Offsets::new(&nominal, &actual, &explanation);
     let text = if arguments.json { report::json(&found)? } else { found.text() };
     if arguments.json || place.is_some() {
         console.deliver(text, place)?;

@@ -148,7 +148,7 @@ fn bad_cells_get_one_sentence_each() {
         case(CALIBRATE, "a,lift,b,x,y,z,sigma_position[mm]\n0.1,0.2,0.3,0.7,0.1,0.5,0\n",
              "bad.csv:2:25: found `0` in column `sigma_position`, expected…"),
         case(CALIBRATE, "a,lift,b,x,y,z,target\n0.1,0.2,0.3,0.7,0.1,0.5,one\n0.1,0.2,0.3,0.7,0.1,0.5,\n",
-             "bad.csv:3:25: found no target name, expected one as in bad.csv:2; all rows name their target or none does (an unnamed target is the tip itself)"),
+             "bad.csv:3:25: found no target name, expected one as in bad.csv:2; all rows name their target or none does"),
     ]);
 }
 

@@ -80,7 +80,8 @@ fn training_figures_are_never_shown_without_the_word() {
                     set = name;
                 }
             }
-            let is_figure = ["mean ", "RMS ", "95 % ", "max "].iter().any(|row| line.contains(row));
+            let is_row = |row: &&str| line.trim_start().starts_with(*row);
+            let is_figure = ["mean ", "RMS ", "95 % ", "max "].iter().any(is_row);
             assert!(!is_figure || !set.is_empty(), "figures without their set:\n{out}");
         }
     }
@@ -102,7 +103,7 @@ fn what_is_held_out_can_be_said() {
     assert_eq!(json["accuracy"]["training"]["count"], 60);
 
     let out = folder.done("calibrate robot.urdf measurements.csv --fit-where stage=1 --out stage");
-    assert!(out.contains("from 40 of 60 rows") && out.contains("held out (20)"), "{out}");
+    assert!(out.contains("from 40 of 60 rows") && out.contains("\nheld out      20 rows: "), "{out}");
 
     let simulation = Simulation { count: 60, seed: 1, ..Simulation::default() };
     write_measurements(
@@ -113,13 +114,14 @@ fn what_is_held_out_can_be_said() {
         &Simulation { count: 25, noise_position_m: 6e-5, ..simulation },
     );
     let out = folder.done("calibrate robot.urdf measurements.csv --validate other.csv --out other");
-    assert!(out.contains("from 60 of 85 rows") && out.contains("held out (25)"), "{out}");
+    assert!(out.contains("from 60 of 85 rows") && out.contains("\nheld out      25 rows: "), "{out}");
 
     for stated in ["--fit-where stage=1", "--validate other.csv"] {
         let run = folder.run(&format!("calibrate robot.urdf measurements.csv --force {stated} --held-out 0"));
         assert_eq!(run.code, 0, "{}", run.err);
         // Beside --validate no more is held out than that file.
-        let rows = if stated.starts_with("--validate") { "held out (25)" } else { "no row was held out" };
+        let rows =
+            if stated.starts_with("--validate") { "\nheld out      25 rows" } else { "no row was held out" };
         assert!(run.out.contains(rows), "{}", run.out);
         let run = folder.run(&format!("calibrate robot.urdf measurements.csv --force {stated} --seed 2"));
         let seed = "warning: --seed has no effect on which rows are held out: that is stated\n";
@@ -198,7 +200,7 @@ fn the_device_is_the_base_where_that_was_given() {
     folder.done("calibrate robot.urdf base.csv --frame base");
     assert_eq!(
         folder.done("predict poecal-out/calibration.json base.csv --frame device"),
-        folder.done("predict poecal-out/calibration.json base.csv --frame base")
+        folder.done("predict poecal-out/calibration.json base.csv --frame base --target measured")
     );
 }
 

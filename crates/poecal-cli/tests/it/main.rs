@@ -32,6 +32,7 @@ mod simulated_disk;
 mod stations;
 mod table;
 mod targets_and_validation;
+mod tip;
 // Each crate uses what it needs of it.
 mod trees;
 #[allow(dead_code)]

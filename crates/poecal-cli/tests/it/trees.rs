@@ -63,7 +63,7 @@ fn two_cameras_calibrate_a_torso_with_two_arms() {
         let rms = calibration(&folder, out).accuracy.held_out.unwrap().calibrated.position_mm().rms;
         assert!((rms - held_out).abs() < 1e-3 * held_out, "{out}: {rms} {held_out}");
     }
-    let device = folder.run("predict out/calibration.json sim/held_out.csv --frame device");
+    let device = folder.run("predict out/calibration.json sim/held_out.csv --frame device --target left");
     assert_eq!(device.code, 2);
     assert!(device.err.contains("found the instrument `eyes` on the robot"), "{}", device.err);
 }

@@ -142,6 +142,7 @@ fn spatial_residual_costs_accuracy() {
                 formulation: with(residual),
                 sigma: noise.map(Some),
                 held_out: 0.0,
+                move_tip: true,
                 ..CalibrationOptions::default()
             };
             let robot = calibrate(&made.nominal, &made.data, &options).unwrap().robot;

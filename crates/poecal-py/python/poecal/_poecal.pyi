@@ -670,6 +670,15 @@ class Verdict:
     @property
     def reasons(self) -> list[str]:
         """Sentences with the deciding figures."""
+    @property
+    def model(self) -> str | None:
+        """The model that is delivered: "corrected" where it has terms, else "calibrated"."""
+    @property
+    def expected_error_mm(self) -> float | None:
+        """Expected error of that model in configurations like those that were measured, millimetres (RMS); None where no use is advised."""
+    @property
+    def bound95_mm(self) -> float | None:
+        """The distance that 95 % of its errors do not exceed there, millimetres."""
     def is_at_least(self, level: _Level) -> bool:
         """Whether a calibration may be used as far as this.
 
@@ -1492,6 +1501,7 @@ def calibrate(
     gravity: Sequence[float] | Literal["find"] = ...,
     fix: Sequence[str] | None = None,
     free: Sequence[str] | None = None,
+    move_tip: bool = False,
     held_out: float | None = None,
     seed: int | None = None,
     robust: Literal["auto", "off", "huber", "cauchy", "tukey"] = "auto",
@@ -1532,6 +1542,9 @@ def calibrate(
         Blocks to hold as in the model: "joints", "targets", "frames", or names like "joint2.axis", in which * stands for any letters.
     free
         Blocks to fit, also those that are usually held, like "joint2.offset", and after `fix`.
+    move_tip
+        Whether to put the tip where the measured point is, for a model that ends in its reflector. Otherwise the links beyond the last joint stay
+        as in the model, and the point is the target "measured".
     held_out
         Share of the configurations held out, where nothing else says which rows are (default 0.3); 0 fits every row.
     seed
@@ -1588,18 +1601,21 @@ def check(robot: Robot, measurements: Measurements | None = None, *, frame: _Fra
     Findings
         What is understood, with mistakes under "diagnosis".
     """
-def compare(first: Calibration, second: Calibration) -> Findings:
+def compare(first: Calibration, second: Calibration, *, limit_mm: float | None = None) -> Findings:
     """Two calibrations of one robot: what changed, and what is noise.
 
     Parameters
     ----------
     first, second
         The calibrations.
+    limit_mm
+        How far the tip may have moved (RMS), default the expected errors of both together.
 
     Returns
     -------
     Findings
-        Whether more changed than noise makes (`changed`), each joint's change with its test, and how far the predictions are apart.
+        Whether the tip moved by more than the limit (`moved`), by how much (`tip`), whether more changed than noise makes (`changed`), and each joint's
+        change with its test.
     """
 def convert(
     robot: Robot,
@@ -1715,7 +1731,7 @@ def init(
 def offsets(
     nominal: Robot, actual: Robot | Calibration, *, base: _End | None = None, tip: _End | None = None
 ) -> Findings:
-    """The joint offsets that explain best how a robot differs from its model, and the remaining errors.
+    """The joint offsets with which the tip of a model comes nearest to that of a robot, and the remaining errors.
 
     Parameters
     ----------

@@ -5,7 +5,7 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::estimate::Session;
 use crate::measurement::Dataset;
 use crate::problem::MOST_UNKNOWNS;
-use crate::robot::JointKind;
+use crate::robot::{JointKind, MEASURED};
 use crate::start::device_parameter;
 
 /// Refuses problems with fewer measured numbers than unknowns that data of this kind can determine.
@@ -19,7 +19,7 @@ pub(super) fn check_count(session: &Session<'_>, fit_rows: &[u32]) -> Result<()>
     fit_rows.iter().for_each(|&row| is_seen[data.observations[row as usize].target] = true);
     for (is_seen, name) in is_seen.into_iter().zip(&data.targets) {
         if !is_seen {
-            let name = name.as_deref().unwrap_or("the tip");
+            let name = name.as_deref().unwrap_or(MEASURED);
             return Err(Error::new(
                 ErrorKind::Problem,
                 format!(

@@ -9,7 +9,7 @@ use crate::estimate::{Packed, Session, sample_rows};
 use crate::measurement::Quantity;
 use crate::robot::{Joint, JointKind, Robot};
 use crate::simulate::random;
-use crate::uncertainty::{Quantile, Uncertainty};
+use crate::uncertainty::{Attribution, Quantile, Uncertainty};
 
 /// Number of random configurations within the joint range.
 const CONFIGURATIONS: usize = 400;
@@ -66,8 +66,48 @@ pub struct Expectations {
     pub parts: Vec<RangePart>,
 }
 
+/// Least share of the error in cross-validation, but for stated noise, that is expected.
+const LEAST: f64 = 0.9;
+
+/// Raises the model error of positions where cross-validation errs by more than is expected in the measured configurations: theory.md §9 (43b).
+/// Whether it did.
+fn raise(uncertainty: &mut Uncertainty, measured: Expected, left_out_m: f64) -> bool {
+    let found = &mut uncertainty.discrepancy;
+    // Residuals that stated noise or repeats explain are not the robot's.
+    if found.attribution[Quantity::Position] != Attribution::Robot {
+        return false;
+    }
+    let noise = found.noise[Quantity::Position];
+    raise_to(uncertainty, measured, (LEAST * left_out_m).powi(2) - 3.0 * noise * noise)
+}
+
+/// Raises the model error of positions until so much is expected in the measured configurations (mean square, m²). Whether it did.
+fn raise_to(uncertainty: &mut Uncertainty, measured: Expected, square_m2: f64) -> bool {
+    let missing = square_m2 - measured.sigma_m.powi(2);
+    if !missing.is_finite() || missing <= 0.0 {
+        return false;
+    }
+    let sigma = &mut uncertainty.discrepancy.standard_deviation[Quantity::Position];
+    *sigma = (*sigma * *sigma + missing / 3.0).sqrt();
+    true
+}
+
+/// The expectations of geometry alone where terms that may be there were looked for and not taken: as much as with these is expected in the measured
+/// configurations.
+pub(super) fn expectations_with_terms(
+    session: &Session<'_>,
+    rows: &[u32],
+    coverage: &[JointCoverage],
+    (uncertainty, found, with_terms): (&mut Uncertainty, &Expectations, &Expectations),
+    seed: u64,
+) -> Option<Expectations> {
+    let (measured, other) = (found.measured?, with_terms.measured?);
+    raise_to(uncertainty, measured, other.sigma_m.powi(2))
+        .then(|| expectations(session, rows, coverage, uncertainty, seed))
+}
+
 /// Expected errors of the predictions of some targets, from the rows that were fitted and from random configurations.
-pub(super) fn expectations(
+fn expectations(
     session: &Session<'_>,
     rows: &[u32],
     coverage: &[JointCoverage],
@@ -92,6 +132,23 @@ pub(super) fn expectations(
         measured: Some(Expected::of(&of(&sampled).concat(), quantile)),
         range: Some(Expected::of(&errors.concat(), quantile)),
         parts: range_parts(robot, &ranges, &anywhere, &errors),
+    }
+}
+
+/// [`expectations`], with the model error raised to what cross-validation shows of positions (metres, RMS).
+pub(super) fn expectations_beside(
+    session: &Session<'_>,
+    rows: &[u32],
+    coverage: &[JointCoverage],
+    (uncertainty, left_out_m): (&mut Uncertainty, Option<f64>),
+    seed: u64,
+) -> Expectations {
+    let found = expectations(session, rows, coverage, uncertainty, seed);
+    match found.measured.zip(left_out_m) {
+        Some((measured, left_out_m)) if raise(uncertainty, measured, left_out_m) => {
+            expectations(session, rows, coverage, uncertainty, seed)
+        }
+        _ => found,
     }
 }
 

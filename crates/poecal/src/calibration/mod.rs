@@ -139,6 +139,12 @@ pub fn calibrate_with_progress(
         let message = "found a gravity without direction, expected three numbers, not all of them 0";
         return Err(Error::new(ErrorKind::Option, message));
     }
+    if let Some(name) = data.targets.iter().flatten().next().filter(|_| options.move_tip) {
+        let message = format!(
+            "found --move-tip beside rows of the target `{name}`, expected rows without a name: leave the column `target` out, or the option"
+        );
+        return Err(Error::new(ErrorKind::Option, message));
+    }
     if options.formulation != Formulation::default() {
         refuse_beside_formulation(options)?;
     }
@@ -204,7 +210,7 @@ pub fn calibrate_with_progress(
             calibration = threads::in_pool(rows, || assess(again.suspecting(&suspected)));
             found = correct(&calibration);
         }
-        Ok(calibration.with_correction(found))
+        Ok(threads::in_pool(rows, || prepared.beside(calibration, &found)).with_correction(found))
     })?;
     if let Some(improvement) = improvement::improvements(&found, data)
         && let Some(set) = &mut found.accuracy.held_out

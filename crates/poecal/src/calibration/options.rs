@@ -65,6 +65,9 @@ pub struct CalibrationOptions {
     pub gravity: GravityDirection,
     /// How to treat outliers.
     pub robust: Robust,
+    /// Whether the one target, which no row names, becomes the tip: the model ends in its reflector. Otherwise the tip stays where the model has
+    /// it on the last link, and what was measured is the target [`MEASURED`](crate::robot::MEASURED).
+    pub move_tip: bool,
     /// Limits that the errors of rows that were not fitted shall keep.
     pub accept: Option<AcceptanceLimits>,
     /// Options of the solver.
@@ -90,6 +93,7 @@ impl Default for CalibrationOptions {
             harmonics: Extent::default().orders,
             gravity: GravityDirection::default(),
             robust: Robust::default(),
+            move_tip: false,
             accept: None,
             solver: solve::Options::default(),
             diagnose: true,

@@ -3,7 +3,7 @@
 use crate::estimate::{Estimate, Range, Session};
 use crate::lie::Pose;
 use crate::measurement::{Dataset, Noise};
-use crate::robot::{Mount, Robot};
+use crate::robot::{MEASURED, Mount, Robot};
 
 /// A target as calibrated.
 ///
@@ -11,13 +11,13 @@ use crate::robot::{Mount, Robot};
 /// # use poecal::{CalibrationOptions, Kind, Simulation, calibrate, simulate::elbow};
 /// # let made = Simulation { count: 40, ..Simulation::default() }.run(&elbow(), Kind::Pose)?;
 /// # let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default())?;
-/// let [tip] = &calibration.targets[..] else { unreachable!() };
-/// assert!(tip.name.is_none() && tip.is_frame && tip.tip_from_target.translation.norm() < 1e-12);
+/// let [measured] = &calibration.targets[..] else { unreachable!() };
+/// assert!(measured.name.as_deref() == Some("measured") && measured.is_frame);
 /// # Ok::<(), poecal::Error>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct CalibratedTarget {
-    /// Its name; `None` is the tip itself.
+    /// Its name; `None` is the tip itself ([`CalibrationOptions::move_tip`](super::CalibrationOptions::move_tip)).
     pub name: Option<String>,
     /// Whether its orientation was measured; otherwise only the position means something.
     pub is_frame: bool,
@@ -56,14 +56,15 @@ pub(super) fn stations(session: &Session<'_>, estimate: &Estimate, noise: Noise)
     (0..data.station_count()).map(of).collect()
 }
 
-/// The calibrated robot with its tip, and the targets in that tip. A single unnamed target becomes the tip (measured as points, with its
-/// nominal orientation to the last joint), and so does a target, or an instrument, of the model at its very place; otherwise the tip keeps its nominal pose on
-/// the last joint. Targets and instruments of the model with bodies of their own stay on these.
+/// The calibrated robot with its tip, and the targets in that tip. The tip keeps its nominal pose on the last joint, but for a target, or an
+/// instrument, of the model at its very place, and, with `move_tip`, for the target that no row names (measured as points, with its nominal
+/// orientation to the last joint). Targets and instruments of the model with bodies of their own stay on these.
 pub(super) fn place_tip(
     robot: &Robot,
     data: &Dataset,
     frames: &[bool],
     estimate: &Estimate,
+    move_tip: bool,
 ) -> (Robot, Vec<CalibratedTarget>) {
     let mut calibrated = robot.with_screws(&estimate.screws());
     calibrated.terms.clone_from(&estimate.terms);
@@ -71,9 +72,11 @@ pub(super) fn place_tip(
     let last_joint = calibrated.tip_body().joint().and_then(|joint| calibrated.joints.get(joint));
     calibrated.home =
         last_joint.map_or_else(Pose::identity, |joint| joint.frame) * robot.last_joint_from_tip();
-    place_mounts(robot, &mut calibrated, data, frames, estimate);
+    let is_tip = |name: &Option<String>| move_tip && name.is_none();
+    let is_placed = data.targets.iter().any(is_tip);
+    place_mounts(robot, &mut calibrated, (data, frames), estimate, is_placed);
     for (target, name) in data.targets.iter().enumerate() {
-        if name.is_none() {
+        if is_tip(name) {
             let seen = estimate.base_from_target[target];
             let rotation = if frames[target] { seen.rotation } else { calibrated.home.rotation };
             calibrated.home = Pose::new(rotation, seen.translation);
@@ -89,7 +92,7 @@ pub(super) fn place_tip(
             let tip_from_target = tip_from_base * estimate.base_from_target[target];
             let rotation = if is_frame { tip_from_target.rotation } else { nalgebra::Matrix3::identity() };
             CalibratedTarget {
-                name: name.clone(),
+                name: name.clone().or_else(|| (!move_tip).then(|| MEASURED.to_owned())),
                 is_frame,
                 tip_from_target: Pose::new(rotation, tip_from_target.translation),
             }
@@ -99,12 +102,18 @@ pub(super) fn place_tip(
 }
 
 /// Puts the measured targets and the instruments of the model to their calibrated places. A target at the tip moves it too, or else an
-/// instrument there.
-fn place_mounts(robot: &Robot, calibrated: &mut Robot, data: &Dataset, frames: &[bool], estimate: &Estimate) {
-    // The unnamed target is the tip.
-    let mut is_placed = data.targets.iter().any(Option::is_none);
+/// instrument there, unless the tip `is_placed`.
+fn place_mounts(
+    robot: &Robot,
+    calibrated: &mut Robot,
+    (data, frames): (&Dataset, &[bool]),
+    estimate: &Estimate,
+    is_placed: bool,
+) {
+    let mut is_placed = is_placed;
     for (target, name) in data.targets.iter().enumerate() {
-        let known = calibrated.mounted.iter().position(|mount| Some(&mount.name) == name.as_ref());
+        let name = name.as_deref().unwrap_or(MEASURED);
+        let known = calibrated.mounted.iter().position(|mount| mount.name == name);
         if let Some(index) = known {
             let Mount { name, body, .. } = calibrated.mounted[index].clone();
             let seen = estimate.base_from_target[target];

@@ -3,9 +3,10 @@
 use std::sync::Arc;
 
 use super::placed::{CalibratedStation, CalibratedTarget};
+use super::verdict::Judged;
 use super::{
-    Acceptance, Accuracy, CalibrationOptions, Correction, DeviceFrameKnowledge, Formulation, JointEffect,
-    Models, NoiseSource, Robustness, SolverReport, Trust, Verdict, fit_screws,
+    Acceptance, AcceptedModel, Accuracy, CalibrationOptions, Correction, DeviceFrameKnowledge, Formulation,
+    JointEffect, Models, NoiseSource, Robustness, SolverReport, Trust, Verdict, fit_screws,
 };
 use crate::analysis::Identifiability;
 use crate::estimate::{Packed, Session, Unknowns};
@@ -33,8 +34,7 @@ use crate::threads;
 pub struct Calibration {
     /// The nominal robot.
     pub nominal: Robot,
-    /// The calibrated robot. The single unnamed target is its tip; targets and instruments of the model that were used are at their
-    /// calibrated places.
+    /// The calibrated robot; targets and instruments of the model that were used are at their calibrated places.
     pub robot: Robot,
     /// The targets.
     pub targets: Vec<CalibratedTarget>,
@@ -62,8 +62,10 @@ pub struct Calibration {
     pub trust: Trust,
     /// Whether the limits that were asked for are kept; none if none were.
     pub acceptance: Option<Acceptance>,
-    /// Verdict with its reasons.
+    /// Verdict with its reasons, on the model that is delivered.
     pub verdict: Verdict,
+    /// The same before expected errors are looked at.
+    pub(super) judged: Judged,
     /// Noise by which residuals were whitened where a row stated none; of the first of several instruments.
     pub noise: Noise,
     /// Noise of each instrument in units of the first one's; empty if all are alike.
@@ -107,6 +109,9 @@ impl Calibration {
             if let Some(words) = correction.suspicious.as_mut().filter(|_| !told.is_empty()) {
                 *words = format!("{words}. By the corrected model {}", told.join(", and "));
             }
+        }
+        if found.has_terms() {
+            self.verdict = self.judged.of_model(AcceptedModel::Corrected, &found.expected);
         }
         self.correction = Some(Box::new(found));
         self

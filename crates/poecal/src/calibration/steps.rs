@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use super::count::check_count;
 use super::doubts::doubts;
+use super::expected::expectations_with_terms;
 use super::finished::Finished;
 use super::fit::{self, Task};
 use super::found::Fitted;
@@ -15,11 +16,11 @@ use super::placed::{place_tip, stations};
 use super::robust::{self, RobustFit};
 use super::stations::{check_length, check_stations};
 use super::trust::trust;
-use super::verdict::{Grounds, verdict};
+use super::verdict::{Grounds, judged};
 use super::{
-    Accuracy, Calibration, CalibrationOptions, CoverageCheck, Formulation, Level, Models, NoiseSource,
-    PredictedUncertainty, Robust, Robustness, Trust, delivered, estimate_noise, noise, set_accuracy,
-    split_rows,
+    AcceptedModel, Accuracy, Calibration, CalibrationOptions, Correction, CoverageCheck, Formulation, Level,
+    Models, NoiseSource, PredictedUncertainty, Robust, Robustness, Trust, delivered, estimate_noise, noise,
+    set_accuracy, split_rows,
 };
 use crate::analysis::{Identifiability, Setup, identifiability};
 use crate::error::Result;
@@ -133,10 +134,10 @@ impl<'a> Prepared<'a> {
 
     /// Judges a fit. The calibration keeps the packed joint values of the session.
     pub(super) fn assess(self, packed: Arc<Packed>, registered: Estimate, fit: RobustFit) -> Calibration {
-        let RobustFit { fitted, loss, judged } = fit;
+        let RobustFit { fitted, loss, judged: rows } = fit;
         let Session { robot: nominal, data, length_m, .. } = self.session;
         let kept = if loss.is_some() {
-            robust::registrable(&judged.rows, &self.fit_rows)
+            robust::registrable(&rows.rows, &self.fit_rows)
         } else {
             self.fit_rows.clone()
         };
@@ -151,7 +152,7 @@ impl<'a> Prepared<'a> {
             Some(apart) => self.diagnosis(&apart.data, &apart.estimate, None),
             None => self.diagnosis(data, &models.calibrated, loss.is_some().then_some(&kept[..])),
         };
-        let robustness = Robustness::new(loss, judged, [&self.fit_rows, &self.held_out_rows], |rows| {
+        let robustness = Robustness::new(loss, rows, [&self.fit_rows, &self.held_out_rows], |rows| {
             set_accuracy(&self.session, rows, &models)
         });
         let moved = apart
@@ -173,7 +174,7 @@ impl<'a> Prepared<'a> {
         if !moved.as_ref().is_some_and(|it| it.explains(&robustness)) {
             warnings.extend(robustness.warning(&self.fit_rows, &self.held_out_rows));
         }
-        let verdict = verdict(&Grounds {
+        let judged = judged(&Grounds {
             accuracy: &accuracy,
             solver: &fitted.report,
             identifiability: &identifiability,
@@ -188,12 +189,13 @@ impl<'a> Prepared<'a> {
             mistakes: &mistakes,
             moves_joints: self.session.unknowns.moves_joints(nominal.joints.len()),
         });
+        let verdict = judged.of_model(AcceptedModel::Calibrated, &trust.expected);
         if verdict.level == Level::DoNotUse || diagnosis.iter().any(Diagnosis::is_of_input) {
             // Mistakes in the input are not the fault of a joint.
             trust.joints.iter_mut().for_each(|joint| joint.suspicious = None);
         }
         let frames = data.frames(&self.fit_rows);
-        let (robot, targets) = place_tip(nominal, data, &frames, &models.calibrated);
+        let (robot, targets) = place_tip(nominal, data, &frames, &models.calibrated, self.options.move_tip);
         Calibration {
             nominal: nominal.clone(),
             robot,
@@ -210,6 +212,7 @@ impl<'a> Prepared<'a> {
             identifiability,
             trust,
             acceptance: None,
+            judged,
             verdict,
             noise: fitted.noise,
             noise_ratios: self.session.noise_ratios.to_vec(),
@@ -342,6 +345,27 @@ impl<'a> Prepared<'a> {
         let rows = promised_rows(self.session.data, &self.fit_rows, &self.held_out_rows);
         let errors = self.session.errors(&rows, calibrated);
         (!rows.is_empty()).then(|| predicted.check(&self.session, calibrated, &rows, &errors))
+    }
+
+    /// The calibration beside a corrected model without terms: what terms might be there stays a part of its uncertainty, so that both are one.
+    pub(super) fn beside(&self, mut calibration: Calibration, found: &Correction) -> Calibration {
+        if found.has_terms() {
+            return calibration;
+        }
+        let trust = &mut calibration.trust;
+        let Some(uncertainty) = trust.uncertainty.as_mut() else { return calibration };
+        let of = (uncertainty, &trust.expected, &found.expected);
+        let seed = self.options.seed;
+        if let Some(expected) =
+            expectations_with_terms(&self.session, &self.fit_rows, &trust.coverage, of, seed)
+        {
+            trust.expected = expected;
+            calibration.trust.held_out =
+                self.held_out_coverage(&calibration.trust, &calibration.models.calibrated);
+            calibration.verdict =
+                calibration.judged.of_model(AcceptedModel::Calibrated, &calibration.trust.expected);
+        }
+        calibration
     }
 
     /// Doubts about the input, by the rows that are not suspected.

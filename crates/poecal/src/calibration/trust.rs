@@ -2,13 +2,14 @@
 
 use super::CoverageCheck;
 use super::changes::{joint_changes, sigmas};
-use super::expected::{Expectations, expectations};
+use super::expected::{Expectations, expectations_beside};
 use super::finished::Finished;
 use super::suspicion::{JointCorrection, suspicions};
 use super::together::{CommonDirection, common_directions, held_sigmas};
 use crate::analysis::{JointCoverage, coverage};
 use crate::estimate::{Estimate, Session, rms_m, sample_rows};
 use crate::gauge::screw_deviations;
+use crate::measurement::Quantity;
 use crate::start::{Registration, register_again};
 use crate::uncertainty::{
     Bootstrap, CrossValidation, Discrepancy, Shares, Uncertainty, bootstrap, cross_validate, discrepancy,
@@ -52,10 +53,11 @@ pub(super) fn trust(finished: &Finished<'_>) -> Trust {
     let view = &finished.view;
     let cross_validation = cross_validate(view, finished.seed);
     let found = discrepancy(view, finished.normal, finished.remainder, cross_validation.as_ref());
-    let uncertainty = uncertainty(finished, &found);
+    let mut uncertainty = uncertainty(finished, &found);
     let coverage = coverage(&view.session, view.rows);
-    let expected = uncertainty.as_ref().map_or_else(Expectations::default, |uncertainty| {
-        expectations(&view.session, view.rows, &coverage, uncertainty, finished.seed)
+    let left_out_m = cross_validation.as_ref().and_then(|found| found.random.rms.get(Quantity::Position));
+    let expected = uncertainty.as_mut().map_or_else(Expectations::default, |uncertainty| {
+        expectations_beside(&view.session, view.rows, &coverage, (uncertainty, left_out_m), finished.seed)
     });
     let (joints, common) = joints(finished, uncertainty.as_ref());
     Trust {

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::noise_doubts::NoiseDoubt;
 use super::trust::Trust;
-use super::{Accuracy, ModelAccuracy, Robustness, SolverReport};
+use super::{AcceptedModel, Accuracy, Expectations, ModelAccuracy, Robustness, SolverReport};
 use crate::analysis::{Direction, Identifiability};
 use crate::measurement::Quantity;
 use crate::robot::Robot;
@@ -45,19 +45,67 @@ impl Level {
     }
 }
 
-/// A level, and the reasons against a better one; for the best level, the reasons for it.
+/// A level, and the reasons against a better one; for the best level, the reasons for it. And the one figure: what to expect of the model that is
+/// delivered.
 ///
 /// ```
 /// use poecal::calibration::{Level, Verdict};
-/// let verdict = Verdict { level: Level::InsideSampledRange, reasons: vec!["joint2 was moved through 27 % of its range".into()] };
+/// let reasons = vec!["joint2 was moved through 27 % of its range".into()];
+/// let verdict = Verdict { level: Level::InsideSampledRange, reasons, model: None, expected_error_mm: None, bound95_mm: None };
 /// assert!(verdict.level < Level::Good);
 /// ```
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Verdict {
     /// How far it may be used.
     pub level: Level,
     /// Sentences with the deciding figures.
     pub reasons: Vec<String>,
+    /// The model that is delivered: the corrected one where it has terms. Missing in older files.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub model: Option<AcceptedModel>,
+    /// Expected error of its predictions in configurations like those that were measured, millimetres (RMS); absent where no use is advised, or
+    /// nothing is known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub expected_error_mm: Option<f64>,
+    /// Mean of the distances that 95 % of its errors do not exceed there, millimetres.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub bound95_mm: Option<f64>,
+}
+
+/// What speaks against a level, before the expected errors of a model do.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Judged {
+    level: Level,
+    reasons: Vec<String>,
+}
+
+impl Judged {
+    /// The verdict on a model with these expected errors.
+    pub(super) fn of_model(&self, model: AcceptedModel, expected: &Expectations) -> Verdict {
+        let Judged { mut level, mut reasons } = self.clone();
+        if let (Some(measured), Some(range)) = (expected.measured, expected.range)
+            && level != Level::DoNotUse
+            && range.sigma_m > RANGE * measured.sigma_m
+        {
+            level = Level::InsideSampledRange;
+            reasons.push(format!(
+                "the expected error anywhere within the limits is {:.3} mm, {:.1} times that at the measured configurations",
+                1e3 * range.sigma_m,
+                range.sigma_m / measured.sigma_m
+            ));
+        }
+        if level == Level::Good {
+            reasons = vec![in_favour(expected)];
+        }
+        let expected = expected.measured.filter(|_| level != Level::DoNotUse);
+        Verdict {
+            level,
+            reasons,
+            model: Some(model),
+            expected_error_mm: expected.map(|it| 1e3 * it.sigma_m),
+            bound95_mm: expected.map(|it| 1e3 * it.bound_m),
+        }
+    }
 }
 
 /// Least relative reduction of the error on held-out rows.
@@ -102,17 +150,14 @@ pub(super) struct Grounds<'a> {
     pub(super) moves_joints: bool,
 }
 
-/// The verdict.
-pub(super) fn verdict(grounds: &Grounds<'_>) -> Verdict {
+/// The verdict, but for the expected errors of the model.
+pub(super) fn judged(grounds: &Grounds<'_>) -> Judged {
     let against_all = against_use(grounds);
     if !against_all.is_empty() {
-        return Verdict { level: Level::DoNotUse, reasons: against_all };
+        return Judged { level: Level::DoNotUse, reasons: against_all };
     }
-    let against_everywhere = against_use_everywhere(grounds);
-    if !against_everywhere.is_empty() {
-        return Verdict { level: Level::InsideSampledRange, reasons: against_everywhere };
-    }
-    Verdict { level: Level::Good, reasons: vec![in_favour(grounds)] }
+    let reasons = against_use_everywhere(grounds);
+    Judged { level: if reasons.is_empty() { Level::Good } else { Level::InsideSampledRange }, reasons }
 }
 
 fn against_use(grounds: &Grounds<'_>) -> Vec<String> {
@@ -236,20 +281,11 @@ fn against_use_everywhere(grounds: &Grounds<'_>) -> Vec<String> {
             rms / of_random
         ));
     }
-    if let (Some(measured), Some(range)) = (trust.expected.measured, trust.expected.range)
-        && range.sigma_m > RANGE * measured.sigma_m
-    {
-        reasons.push(format!(
-            "the expected error anywhere within the limits is {:.3} mm, {:.1} times that at the measured configurations",
-            1e3 * range.sigma_m,
-            range.sigma_m / measured.sigma_m
-        ));
-    }
     reasons
 }
 
-fn in_favour(grounds: &Grounds<'_>) -> String {
-    let expected = grounds.trust.expected.range.map_or(String::new(), |range| {
+fn in_favour(expected: &Expectations) -> String {
+    let expected = expected.range.map_or(String::new(), |range| {
         format!(", and the expected error anywhere within the limits is {:.3} mm (RMS)", 1e3 * range.sigma_m)
     });
     format!("all unknowns are determined, every joint was moved through half of its range or more{expected}")

@@ -9,12 +9,13 @@ use nalgebra::Vector3;
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 
+use crate::analysis::JointCoverage;
 use crate::calibration::DeviceFrameKnowledge;
 use crate::error::{Error, ErrorKind, Result};
 use crate::io::calibration_file::CalibrationFile;
 use crate::lie::{Pose, rotation};
 use crate::offsets::{Changes, End, JointChange, Taught, with_tool_of};
-use crate::robot::{JointKind, Robot};
+use crate::robot::{JointKind, Limits, Robot};
 use crate::simulate::random_configuration;
 use spread::Spread;
 
@@ -57,11 +58,13 @@ pub struct ComparedJoint {
     pub test: Option<ChiSquare>,
 }
 
-/// Difference of the tips, with base and tool as they fit best.
+/// Difference of the tips, with base and tool as they fit best, by the models that the calibrations deliver: corrected where both have terms.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TipDifference {
-    /// Number of random configurations within the limits.
+    /// Number of random configurations in the range that both sampled.
     pub configurations: usize,
+    /// Whether they are by the corrected models.
+    pub is_corrected: bool,
     /// Root mean square distance, metres.
     pub rms_m: f64,
     /// Largest distance, metres.
@@ -72,8 +75,10 @@ pub struct TipDifference {
     pub max_at: Vec<(String, f64)>,
     /// Where the tip of the first robot is there, base frame, metres.
     pub max_place: Vector3<f64>,
-    /// The distance (RMS) that the uncertainties of both let expect, metres; `None` without them.
-    pub expected_m: Option<f64>,
+    /// The distance (RMS) up to which the robot is as it was, metres: as stated, or the expected errors of both together; `None` without either.
+    pub limit_m: Option<f64>,
+    /// Whether it was stated.
+    pub limit_is_stated: bool,
 }
 
 /// What changed between two calibrations of one robot.
@@ -90,6 +95,12 @@ pub struct Compared {
 }
 
 impl Compared {
+    /// Whether the tip moved by more than the limit; `None` where there is none.
+    #[must_use]
+    pub fn is_moved(&self) -> Option<bool> {
+        self.tip.limit_m.map(|limit_m| self.tip.rms_m > limit_m)
+    }
+
     /// Whether the joints changed by more than noise; `None` without the uncertainty of both.
     #[must_use]
     pub fn is_change(&self) -> Option<bool> {
@@ -103,11 +114,12 @@ impl Compared {
 }
 
 /// Compares two calibrations of one robot, from `first` to `second`: offset, tilt and shift of each joint with base and tool as they fit
-/// best, these against the covariances of both, and the predictions of both over the limits.
+/// best, these against the covariances of both, and the predictions of both over the range that both sampled, against a limit (metres, RMS), or
+/// else the expected errors of both together.
 ///
 /// # Errors
 /// [`ErrorKind::Option`] if they are of different robots; [`ErrorKind::Model`] if a file holds no valid robot.
-pub fn compare(first: &CalibrationFile, second: &CalibrationFile) -> Result<Compared> {
+pub fn compare(first: &CalibrationFile, second: &CalibrationFile, limit_m: Option<f64>) -> Result<Compared> {
     let (a, b) = (first.robot()?, second.robot()?);
     let is_known = |file: &CalibrationFile| file.frame() == DeviceFrameKnowledge::Base;
     let base_is_free = !(is_known(first) && is_known(second));
@@ -124,13 +136,22 @@ pub fn compare(first: &CalibrationFile, second: &CalibrationFile) -> Result<Comp
     });
     let joints: Vec<ComparedJoint> = joints.collect();
     let all: Vec<usize> = (0..joints.len()).collect();
+    let corrected = first.corrected().zip(second.corrected());
+    let (one, other) = corrected.as_ref().map_or((first, second), |(one, other)| (one, other));
     let expected =
-        |file: &CalibrationFile| file.uncertainty.as_ref().map(|it| it.range.sigma_position_mm / 1e3);
-    let expected_m = expected(first).zip(expected(second)).map(|(one, other)| one.hypot(other));
+        |file: &CalibrationFile| file.uncertainty.as_ref().map(|it| it.measured.sigma_position_mm / 1e3);
+    let expected_m = expected(one).zip(expected(other)).map(|(one, other)| one.hypot(other));
+    let sampled = within(&a, [&first.coverage, &second.coverage]);
+    let tip = tips(&sampled, &one.robot()?, &other.robot()?, base_is_free);
     Ok(Compared {
         joints,
         test: spread.as_ref().map(|spread| spread.test(&all, &changes, CHANCE)),
-        tip: TipDifference { expected_m, ..tips(&a, &b, base_is_free) },
+        tip: TipDifference {
+            is_corrected: corrected.is_some(),
+            limit_m: limit_m.or(expected_m),
+            limit_is_stated: limit_m.is_some(),
+            ..tip
+        },
         base_is_free,
     })
 }
@@ -193,19 +214,38 @@ fn check_nominal(a: &Robot, b: &Robot) -> Result<()> {
     Ok(())
 }
 
-/// Difference of the tips over random configurations, base and tool of the second as they fit the first best.
-fn tips(a: &Robot, b: &Robot, base_is_free: bool) -> TipDifference {
+/// A robot whose joints are limited to the range that both sampled; where there is none, to that of the first.
+fn within(robot: &Robot, coverage: [&[JointCoverage]; 2]) -> Robot {
+    let mut robot = robot.clone();
+    for joint in &mut robot.joints {
+        let sampled = coverage.map(|of| {
+            let own = of.iter().find(|it| it.joint == joint.name);
+            own.map(|it| [it.sampled_min, it.sampled_max])
+        });
+        let [Some(one), Some(other)] = sampled else { continue };
+        let both = [one[0].max(other[0]), one[1].min(other[1])];
+        let [lower, upper] = if both[0] <= both[1] { both } else { one };
+        if lower <= upper {
+            joint.limits = Some(Limits { lower, upper });
+        }
+    }
+    robot
+}
+
+/// Difference of the tips over random configurations of the sampled range, base and tool of the second as they fit the first best.
+fn tips(sampled: &Robot, a: &Robot, b: &Robot, base_is_free: bool) -> TipDifference {
     let mut generator = ChaCha8Rng::seed_from_u64(SEED);
     let b = with_tool_of(a, b).unwrap_or_else(|| b.clone());
     let readings: Vec<Vec<f64>> =
-        (0..CONFIGURATIONS).map(|_| random_configuration(a, &mut generator)).collect();
+        (0..CONFIGURATIONS).map(|_| random_configuration(sampled, &mut generator)).collect();
     let pairs: Vec<(Pose, Pose)> =
         readings.iter().map(|q| (b.forward_kinematics(q), a.forward_kinematics(q))).collect();
-    let taught = Taught::of(&pairs, a.arm_m() / 3.0, !base_is_free);
+    // Points do not show how a tip is turned: its place alone decides the base and where the tool is.
+    let (placed, taught) =
+        (Taught::of_places(&pairs, !base_is_free), Taught::of(&pairs, a.arm_m() / 3.0, !base_is_free));
     let differences = pairs.iter().map(|(b, a)| {
-        let b = taught.tip(b);
-        let turn = rotation::log(&(b.rotation * a.rotation.transpose())).norm();
-        ((b.translation - a.translation).norm(), turn)
+        let turn = rotation::log(&(taught.tip(b).rotation * a.rotation.transpose())).norm();
+        ((placed.tip(b).translation - a.translation).norm(), turn)
     });
     let differences: Vec<(f64, f64)> = differences.collect();
     let rms = |of: fn(&(f64, f64)) -> f64| {
@@ -221,6 +261,8 @@ fn tips(a: &Robot, b: &Robot, base_is_free: bool) -> TipDifference {
         rms_rad: rms(|it| it.1),
         max_at: a.reading_names().into_iter().zip(at).collect(),
         max_place: pairs.get(worst).map_or_else(Vector3::zeros, |(_, a)| a.translation),
-        expected_m: None,
+        is_corrected: false,
+        limit_m: None,
+        limit_is_stated: false,
     }
 }

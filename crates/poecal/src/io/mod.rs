@@ -14,6 +14,7 @@ mod mimic;
 pub mod model;
 pub mod named_files;
 mod numbers;
+pub mod offsets;
 pub mod output;
 pub mod predictions;
 pub mod programs;

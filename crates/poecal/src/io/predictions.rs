@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use super::calibration_file::BodyEntry;
+use super::calibration_file::{BodyEntry, MeasuredEntry, TargetEntry};
 use super::csv_text::cell;
 use super::measurements::JointsTable;
 use super::model::{Model, ModelSource};
@@ -28,11 +28,12 @@ pub enum PredictionFrame {
     Device,
 }
 
-/// Predicts the pose of the tip, or of a named target, in each configuration: a header and `x[m],y[m],z[m],qx,qy,qz,qw` a row, after
+/// Predicts the pose of the tip, or of a named target, in each configuration; in the device's frame without a name that of the only target,
+/// which the device sees: a header and `x[m],y[m],z[m],qx,qy,qz,qw` a row, after
 /// the rows' `id` if they have one. Numbers read back exactly; `qw ≥ 0`.
 ///
 /// # Errors
-/// [`ErrorKind::Option`] if the model has no such target, or no measuring device.
+/// [`ErrorKind::Option`] if the model has no such target, no measuring device, or several targets that it may see.
 pub fn predict(
     model: &Model,
     joints: &JointsTable,
@@ -100,6 +101,10 @@ pub fn predicted(
     target: Option<&str>,
     with_uncertainty: bool,
 ) -> Result<Predicted> {
+    let target = match frame {
+        PredictionFrame::Device => target.map_or_else(|| seen(model), |name| Ok(Some(name)))?,
+        PredictionFrame::Base => target,
+    };
     let (robot, tip_from_target) = match target {
         None => (Cow::Borrowed(&model.robot), Pose::identity()),
         Some(name) => robot_with_target(model, name)?,
@@ -112,6 +117,26 @@ pub fn predicted(
     let poses = robot.forward_kinematics_of(readings);
     let poses = poses.map(|base_from_tip| frame_from_base * base_from_tip * tip_from_target).collect();
     Ok(Predicted { poses, doubts })
+}
+
+/// The only target that a calibration measured; `None` where that is the tip.
+fn seen(model: &Model) -> Result<Option<&str>> {
+    let ModelSource::Calibration(file) = &model.source else { return Ok(None) };
+    let is_measured = |it: &TargetEntry| it.measured() != MeasuredEntry::Nothing;
+    let names = file.targets.iter().filter(|(_, it)| is_measured(it)).map(|(name, _)| name.as_str());
+    match names.collect::<Vec<_>>().as_slice() {
+        [] => Ok(None),
+        [only] => Ok(Some(only)),
+        several => {
+            let message = format!(
+                "found {} targets that the device may see ({}), expected the name of one for --frame device: write --target {}",
+                several.len(),
+                first_few(several),
+                several[0]
+            );
+            Err(Error::new(ErrorKind::Option, message).in_file(&model.path))
+        }
+    }
 }
 
 /// Expected root mean square distance and angle, 95 % bound of the distance, and whether every joint is inside the sampled range.

@@ -114,7 +114,7 @@ pub struct Dataset {
     /// How many of the readings, the last ones, are of no joint.
     #[serde(default)]
     factors: usize,
-    /// Names of the targets; `None` is the single unnamed target, which is the tip itself.
+    /// Names of the targets; `None` is the only one, which no row names ([`MEASURED`](crate::robot::MEASURED)).
     pub targets: Vec<Option<String>>,
     /// Names of the stations of the device, each with a frame of its own; empty for a single station without a name.
     #[serde(default)]
@@ -164,7 +164,7 @@ impl Dataset {
         &self.reading_names
     }
 
-    /// Adds a measurement of a target (`None`: the tip) in a configuration (radians, metres).
+    /// Adds a measurement of a target (`None`: the only one) in a configuration (radians, metres).
     ///
     /// # Errors
     /// [`ErrorKind::Measurement`] if the number of readings is wrong, or a number is not finite.

@@ -1,63 +1,60 @@
-//! The offsets, base and tool with which the tip itself comes nearest.
+//! The offsets, base and tool with which the tip itself comes nearest, in place and turn.
 
-use nalgebra::{Vector3, Vector6};
+use nalgebra::Vector6;
+use nalgebra::{Matrix3, Vector3};
 
 use super::fit::{Normal, OffsetState, wrapped};
-use super::prediction::Predictions;
-use super::{End, Explanation, OffsetOptions, explain, into_screws};
+use super::prediction::{Predictions, TipError};
+use super::{End, OffsetOptions, into_screws};
 use crate::error::Result;
-use crate::lie::{Pose, Twist, hat};
+use crate::lie::{Pose, Twist, hat, rotation};
 use crate::linalg;
 use crate::robot::{JointKind, Robot};
 
-/// Configurations that are fitted, of those in which what remains is stated: more change nothing that is seen.
-const FITTED: usize = 5000;
 /// Most steps; five do where the robots differ by degrees.
 const STEPS: usize = 30;
 
-/// The offsets, base motion and tip motion with which the tip of `nominal` comes nearest to that of `actual`: least squares of its positions
-/// in random configurations, theory.md §8 (38d), from the result of [`explain`] with both ends free. It is what a controller gains that takes
-/// offsets, a base and a tool, and nothing else. `configurations` are those in which what remains is stated.
-///
-/// # Errors
-/// As [`explain`].
-pub fn nearest_at_tip(
-    nominal: &Robot,
-    actual: &Robot,
-    configurations: usize,
-    seed: u64,
-) -> Result<Explanation> {
-    let options = OffsetOptions { base: End::Free, tip: End::Free, configurations, seed };
-    let mut found = explain(nominal, actual, &options)?;
-    let (nominal, actual) = (&nominal.without_offsets(), &actual.without_offsets());
-    let fit = TipFit {
-        nominal,
-        predictions: Predictions::new(nominal, actual, &options),
-        length_m: nominal.arm_m() / 3.0,
-    };
-    let start = OffsetState { offsets: found.offsets.clone(), base: found.base_motion };
-    let state = fit.descend((start, found.tip_motion.translation))?.0;
-    let (tip_motion, with_offsets) =
-        fit.predictions.compare(&into_screws(nominal, &state.offsets)?, &state.base);
-    // Where nothing decides, the screws have.
-    if with_offsets.rms_m < found.with_offsets.rms_m {
-        (found.offsets, found.base_motion) = (state.offsets, state.base);
-        (found.tip_motion, found.with_offsets) = (tip_motion, with_offsets);
-    }
-    Ok(found)
-}
+/// Distance that is rounding, over a length of the arm.
+const EXACT_M: f64 = 1e-12;
 
-/// Offsets and base motion, and the tip's shift.
-type State = (OffsetState, Vector3<f64>);
+/// Length (m) at which a turn of the tip counts: that of a tool beyond it. By the tip's place alone the joints of a wrist, whose axes pass near it,
+/// would be turned by degrees for tenths of a millimetre.
+const TOOL_M: f64 = 0.1;
 
-struct TipFit<'a> {
-    nominal: &'a Robot,
-    predictions: Predictions,
+/// Offsets and base motion, and the tip's motion.
+type State = (OffsetState, Pose);
+
+/// Least squares of the tip's places and turns in the configurations in which predictions are compared, theory.md §8 (38d).
+pub(super) struct TipFit<'a> {
+    pub(super) nominal: &'a Robot,
+    pub(super) predictions: &'a Predictions,
+    pub(super) options: &'a OffsetOptions,
+    /// Whether the offsets move, or the ends that are free alone.
+    pub(super) moves_offsets: bool,
+    /// Whether anything moves: otherwise the start is the result.
+    pub(super) moves: bool,
     /// Metres that a radian counts.
-    length_m: f64,
+    pub(super) length_m: f64,
 }
 
 impl TipFit<'_> {
+    /// The state with the tip nearest to the actual one, from one with the screws nearest, the tip's motion and what is left. Where no tip
+    /// decides, the screws have.
+    pub(super) fn nearest(&self, start: OffsetState) -> Result<(OffsetState, Pose, TipError)> {
+        let compared = |state: &OffsetState| -> Result<(Pose, TipError)> {
+            Ok(self.predictions.compare(&into_screws(self.nominal, &state.offsets)?, &state.base))
+        };
+        let (tip, left) = compared(&start)?;
+        // Robots that differ by offsets alone: the start is exact.
+        if !self.moves || self.scales().is_empty() || left.rms_m <= EXACT_M * self.length_m {
+            return Ok((start, tip, left));
+        }
+        let (state, _) = self.descend((start.clone(), tip))?;
+        let (nearer, less) = compared(&state)?;
+        let cost = |it: &TipError| it.rms_m.powi(2) + (TOOL_M * it.rms_rad).powi(2);
+        Ok(if cost(&less) < cost(&left) { (state, nearer, less) } else { (start, tip, left) })
+    }
+
     /// Gauss-Newton, with steps halved while they do not descend.
     fn descend(&self, start: State) -> Result<State> {
         let mut state = start;
@@ -86,37 +83,62 @@ impl TipFit<'_> {
         Ok(state)
     }
 
+    /// Metres that a unit of each unknown counts: of offsets, base and tip, as far as they move.
     fn scales(&self) -> Vec<f64> {
         let joint = |kind| match kind {
             JointKind::Revolute => self.length_m,
             JointKind::Prismatic => 1.0,
         };
-        let joints = self.nominal.joints.iter().map(|it| joint(it.kind));
-        joints.chain([1.0; 3]).chain([self.length_m; 3]).chain([1.0; 3]).collect()
+        let mut scales = Vec::new();
+        if self.moves_offsets {
+            scales.extend(self.nominal.joints.iter().map(|it| joint(it.kind)));
+        }
+        if self.options.base == End::Free {
+            scales.extend([1.0, 1.0, 1.0, self.length_m, self.length_m, self.length_m]);
+        }
+        if self.options.tip == End::Free {
+            scales.extend([1.0, 1.0, 1.0, self.length_m, self.length_m, self.length_m]);
+        }
+        scales
     }
 
     fn retract(&self, (state, tip): &State, step: &[f64], share: f64) -> State {
         let units: Vec<f64> =
             step.iter().zip(self.scales()).map(|(step, scale)| share * step / scale).collect();
-        let (offsets, rest) = units.split_at(state.offsets.len());
-        let (base, shift) = rest.split_at(6);
-        let moved = state.offsets.iter().zip(offsets).zip(&self.nominal.joints);
-        let offsets = moved.map(|((offset, step), joint)| match joint.kind {
-            JointKind::Revolute => wrapped(offset + step),
-            JointKind::Prismatic => offset + step,
-        });
-        let twist = Twist::from_vector(&Vector6::from_column_slice(base));
-        let base = (Pose::exp(&twist) * state.base).orthonormalized();
-        (OffsetState { offsets: offsets.collect(), base }, tip + Vector3::from_column_slice(shift))
+        let mut rest = units.as_slice();
+        let mut take = |is_free: bool, count: usize| {
+            let (own, others) = rest.split_at(if is_free { count } else { 0 });
+            rest = others;
+            own
+        };
+        let offsets = take(self.moves_offsets, state.offsets.len());
+        let base = take(self.options.base == End::Free, 6);
+        let tool = take(self.options.tip == End::Free, 6);
+        let mut next = (state.clone(), *tip);
+        for ((offset, step), joint) in next.0.offsets.iter_mut().zip(offsets).zip(&self.nominal.joints) {
+            *offset += step;
+            if joint.kind == JointKind::Revolute {
+                *offset = wrapped(*offset);
+            }
+        }
+        if base.len() == 6 {
+            let twist = Twist::from_vector(&Vector6::from_column_slice(base));
+            next.0.base = (Pose::exp(&twist) * state.base).orthonormalized();
+        }
+        if tool.len() == 6 {
+            let twist = Twist::from_vector(&Vector6::from_column_slice(tool));
+            next.1 = (*tip * Pose::exp(&twist)).orthonormalized();
+        }
+        next
     }
 
-    /// Normal equations of the tip's positions.
+    /// Normal equations of the tip's places and turns.
     fn normal(&self, (state, tip): &State) -> Result<Normal> {
         let robot = into_screws(self.nominal, &state.offsets)?;
         let scales = self.scales();
         let n = scales.len();
         let (mut rows, mut residuals) = (Vec::new(), Vec::new());
-        for (readings, actual) in self.predictions.pairs().take(FITTED) {
+        for (readings, actual) in self.predictions.pairs() {
             let mut motion = state.base;
             let mut twists = Vec::with_capacity(robot.joints.len());
             for (joint, value) in robot.joints.iter().zip(robot.joint_values(readings)) {
@@ -124,39 +146,37 @@ impl TipFit<'_> {
                 motion = screw.exp(value) * motion;
                 twists.push(screw.twist());
             }
-            let pose = motion * robot.home;
-            let place = pose.act(tip);
-            let residual = place - actual.translation;
+            let pose = motion * robot.home * *tip;
+            let place = pose.translation;
+            let turn = rotation::log(&(pose.rotation * actual.rotation.transpose()));
+            let residual = [place - actual.translation, turn * TOOL_M];
             // The tip's motion by that of a joint, of the base, and of the tip in its own frame.
-            let mut columns: Vec<Vector3<f64>> = twists.iter().map(|it| it.v + it.w.cross(&place)).collect();
-            columns.extend([Vector3::x(), Vector3::y(), Vector3::z()]);
-            columns.extend((-hat(&place)).column_iter().map(|column| column.into_owned()));
-            columns.extend(pose.rotation.column_iter().map(|column| column.into_owned()));
-            for (coordinate, value) in residual.iter().enumerate() {
-                rows.extend(columns.iter().zip(&scales).map(|(column, scale)| column[coordinate] / scale));
-                residuals.push(*value);
+            let mut columns: Vec<[Vector3<f64>; 2]> = Vec::with_capacity(n);
+            let zero = Vector3::zeros();
+            if self.moves_offsets {
+                columns.extend(twists.iter().map(|it| [it.v + it.w.cross(&place), it.w * TOOL_M]));
+            }
+            if self.options.base == End::Free {
+                let (turned, axes) = (-hat(&place), Matrix3::<f64>::identity() * TOOL_M);
+                columns.extend([Vector3::x(), Vector3::y(), Vector3::z()].map(|it| [it, zero]));
+                columns.extend((0..3).map(|k| [turned.column(k).into_owned(), axes.column(k).into_owned()]));
+            }
+            if self.options.tip == End::Free {
+                let axes = pose.rotation;
+                columns.extend((0..3).map(|k| [axes.column(k).into_owned(), zero]));
+                columns.extend((0..3).map(|k| [zero, axes.column(k) * TOOL_M]));
+            }
+            for (part, residual) in residual.iter().enumerate() {
+                for (coordinate, value) in residual.iter().enumerate() {
+                    let own = columns.iter().zip(&scales);
+                    rows.extend(own.map(|(column, scale)| column[part][coordinate] / scale));
+                    residuals.push(*value);
+                }
             }
         }
         let (mut gram, mut gradient) = (vec![0.0; n * n], vec![0.0; n]);
         linalg::add_gram(&mut gram, n, &rows, 0);
         linalg::add_gradient(&mut gradient, &rows, &residuals);
         Ok(Normal::new(&gram, gradient, &residuals))
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::simulate::elbow;
-
-    #[test]
-    fn the_tip_comes_nearer_than_by_offsets_that_explain_the_screws() {
-        let mut actual = elbow();
-        let tilt = Pose::from_xyz_rpy([0.0, 0.001, 0.0], [0.01, 0.0, 0.0]);
-        actual.joints[2].screw = actual.joints[2].screw.transformed(&tilt);
-        let nearest = nearest_at_tip(&elbow(), &actual, 1000, 1).unwrap();
-        let free = OffsetOptions { base: End::Free, tip: End::Free, ..OffsetOptions::default() };
-        let explained = explain(&elbow(), &actual, &free).unwrap();
-        assert!(nearest.with_offsets.rms_m < explained.with_offsets.rms_m);
     }
 }

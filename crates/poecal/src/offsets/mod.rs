@@ -8,7 +8,6 @@ mod prediction;
 mod start;
 mod taught;
 
-pub use at_tip::nearest_at_tip;
 pub use changes::JointChange;
 pub(crate) use changes::{ChangeBySteps, Changes, direction};
 pub use prediction::TipError;
@@ -17,6 +16,7 @@ pub(crate) use taught::{Taught, with_tool_of};
 use crate::error::{Error, ErrorKind, Result};
 use crate::lie::{Pose, rotation};
 use crate::robot::{Body, JointKind, Robot};
+use at_tip::TipFit;
 use fit::{Comparison, OffsetState};
 use prediction::Predictions;
 
@@ -81,6 +81,9 @@ impl End {
     }
 }
 
+/// Configurations in which the tips are compared: what remains is within 1 %.
+const CONFIGURATIONS: usize = 10_000;
+
 /// Options of [`explain`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct OffsetOptions {
@@ -88,7 +91,7 @@ pub struct OffsetOptions {
     pub base: End,
     /// The tip frame: free where the tool was changed or refitted.
     pub tip: End,
-    /// Number of random configurations on which predictions are compared.
+    /// Number of random configurations in which the tips are compared.
     pub configurations: usize,
     /// Seed of these.
     pub seed: u64,
@@ -96,7 +99,7 @@ pub struct OffsetOptions {
 
 impl Default for OffsetOptions {
     fn default() -> Self {
-        OffsetOptions { base: End::Kept, tip: End::Kept, configurations: 1000, seed: 1 }
+        OffsetOptions { base: End::Kept, tip: End::Kept, configurations: CONFIGURATIONS, seed: 1 }
     }
 }
 
@@ -141,25 +144,47 @@ pub struct Explanation {
     pub with_offsets: TipError,
 }
 
-/// The offsets, and the motions of base and tip where these are free, with which `nominal` comes nearest to `actual`: least squares
-/// over tilts (counted with a third of the arm's length) and shifts of all screws, and over the home pose unless the tip is free
-/// (theory.md §8 (38b)). Offsets may be of any size.
+/// The offsets, and the motions of base and tip where these are free, with which the tip of `nominal` comes nearest to that of `actual`: least
+/// squares of its places and of its turns, at a tenth of a metre, in random configurations within the limits of `nominal` (theory.md §8 (38d)), from
+/// those with which the screws and the home pose come nearest (38b), which also decide where no tip does. Offsets may be of any size. It is what a controller gains that takes
+/// offsets, a base and a tool, and nothing else.
 ///
 /// # Errors
 /// [`ErrorKind::Option`] if the robots do not have the same joints (number, names in order, kinds and readings), or have branches.
 pub fn explain(nominal: &Robot, actual: &Robot, options: &OffsetOptions) -> Result<Explanation> {
+    explained(nominal, actual, options, true)
+}
+
+/// The same by the screws alone, (38b): where [`explain`] starts.
+///
+/// # Errors
+/// As [`explain`].
+pub fn explain_screws(nominal: &Robot, actual: &Robot, options: &OffsetOptions) -> Result<Explanation> {
+    explained(nominal, actual, options, false)
+}
+
+fn explained(nominal: &Robot, actual: &Robot, options: &OffsetOptions, at_tip: bool) -> Result<Explanation> {
     check_same_joints(nominal, actual)?;
     let (nominal, actual) = (&nominal.without_offsets(), &actual.without_offsets());
     let comparison = Comparison::new(nominal, actual, options);
     let found = comparison.best();
     let unmoved = comparison.best_without_offsets();
+    let undetermined = comparison.undetermined(&found);
     let predictions = Predictions::new(nominal, actual, options);
-    let (_, without_offsets) = predictions.compare(nominal, &unmoved.base);
-    let (tip_motion, with_offsets) = predictions.compare(&into_screws(nominal, &found.offsets)?, &found.base);
+    let fit = |moves_offsets: bool| TipFit {
+        nominal,
+        predictions: &predictions,
+        options,
+        moves_offsets,
+        moves: at_tip,
+        length_m: comparison.length_m,
+    };
+    let (found, tip_motion, with_offsets) = fit(true).nearest(found)?;
+    let (_, _, without_offsets) = fit(false).nearest(unmoved)?;
     let (joints, home) = remainder(&comparison, &found);
     Ok(Explanation {
         options: *options,
-        undetermined: comparison.undetermined(&found),
+        undetermined,
         offsets: found.offsets,
         base_motion: found.base,
         tip_motion,

@@ -1,8 +1,8 @@
 //! Base and tool of the nominal robot, as if they were taught on the actual one.
 
-use nalgebra::Vector6;
+use nalgebra::{Vector3, Vector6};
 
-use crate::lie::{Pose, Twist};
+use crate::lie::{Pose, Twist, hat};
 use crate::linalg::combination;
 use crate::robot::Robot;
 
@@ -44,6 +44,33 @@ impl Taught {
             };
             taught.tool = taught.tool * motion(0);
             taught.base = motion(6) * taught.base;
+        }
+        taught
+    }
+
+    /// The same by the places of the tips alone: least squares of their distances over base and the tool's shift.
+    pub(crate) fn of_places(tips: &[(Pose, Pose)], base_is_known: bool) -> Self {
+        let mut taught = Taught { base: Pose::identity(), tool: Pose::identity() };
+        for _ in 0..STEPS {
+            let motions = if base_is_known { 3 } else { 9 };
+            let mut columns = vec![Vec::with_capacity(3 * tips.len()); motions];
+            let mut opposite = Vec::with_capacity(3 * tips.len());
+            for (nominal, actual) in tips {
+                let at = taught.tip(nominal);
+                opposite.extend((at.translation - actual.translation).iter());
+                let by_turn = -hat(&at.translation);
+                for (motion, column) in columns.iter_mut().enumerate() {
+                    match motion {
+                        0..3 => column.extend(at.rotation.column(motion).iter()),
+                        3..6 => column.extend((0..3).map(|k| if k == motion - 3 { 1.0 } else { 0.0 })),
+                        _ => column.extend(by_turn.column(motion - 6).iter()),
+                    }
+                }
+            }
+            let Some(step) = combination(&columns, &opposite) else { break };
+            let part = |from: usize| Vector3::from_fn(|k, _| step.get(from + k).copied().unwrap_or(0.0));
+            taught.tool.translation += taught.tool.rotation * part(0);
+            taught.base = Pose::exp(&Twist::new(part(3), part(6))) * taught.base;
         }
         taught
     }

@@ -1,7 +1,7 @@
 //! Blocks of unknowns and their names.
 
 use crate::estimate::RangeTerm;
-use crate::robot::Term;
+use crate::robot::{MEASURED, Term};
 
 use super::{Parameter, Subject};
 
@@ -25,7 +25,7 @@ pub enum Block {
 pub struct Names {
     /// Of the joints.
     pub joints: Vec<String>,
-    /// Of the targets; the tip has none.
+    /// Of the targets; the only one may have none.
     pub targets: Vec<Option<String>>,
     /// Of the instruments; a single one may have none.
     pub stations: Vec<Option<String>>,
@@ -46,7 +46,7 @@ impl Names {
         joints.chain(targets).chain(frames).chain(ranges).collect()
     }
 
-    /// Name of a block: `JOINT.axis`, `JOINT.TERM`, `target.NAME`, `frame.NAME`, `zero.NAME`, `scale.NAME`; `target` of the tip, `frame`,
+    /// Name of a block: `JOINT.axis`, `JOINT.TERM`, `target.NAME`, `frame.NAME`, `zero.NAME`, `scale.NAME`; `target` of [`MEASURED`], `frame`,
     /// `zero`, `scale` of a single instrument.
     #[must_use]
     pub fn of(&self, block: Block) -> String {
@@ -58,6 +58,9 @@ impl Names {
         match block {
             Block::Axis(at) => format!("{}.axis", joint(at)),
             Block::Term(at, term) => format!("{}.{}", joint(at), term.model().name()),
+            Block::Target(at) if self.targets.get(at).is_some_and(|it| it.as_deref() == Some(MEASURED)) => {
+                "target".to_owned()
+            }
             Block::Target(at) => among("target", &self.targets, at),
             Block::Frame(at) => among("frame", &self.stations, at),
             Block::Range(at, term) => among(term.name(), &self.stations, at),
@@ -100,7 +103,7 @@ mod tests {
     fn blocks_have_the_names_of_what_they_are_of() {
         let names = Names {
             joints: vec!["elbow".to_owned()],
-            targets: vec![None, Some("ball".to_owned())],
+            targets: vec![None, Some("ball".to_owned()), Some(MEASURED.to_owned())],
             stations: vec![Some("left".to_owned())],
         };
         let ball = Parameter::TargetPlace(TargetPlace { target: 1 });
@@ -108,6 +111,7 @@ mod tests {
         for (block, name) in [
             (Block::Axis(0), "elbow.axis"),
             (Block::Target(0), "target"),
+            (Block::Target(2), "target"),
             (ball.block(), "target.ball"),
             (Block::Frame(0), "frame.left"),
         ] {

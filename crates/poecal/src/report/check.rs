@@ -6,7 +6,7 @@ use std::fmt::Write as _;
 use serde::Serialize;
 
 use super::sight::SightCheck;
-use super::table::{kinds_words, line, lines, robot_words};
+use super::table::{kinds_words, line, lines, robot_words, rounded, short};
 use crate::error::first_few;
 use crate::forensics::Diagnosis;
 use crate::io::calibration_file::{BodyEntry, MassEntry, PoseEntry};
@@ -359,20 +359,4 @@ fn range_words(column: &ColumnUnderstanding) -> String {
     };
     let (min, max) = (short(min * factor, 3), short(max * factor, 3));
     if min == max { format!("{min}{unit}") } else { format!("{min} to {max}{unit}") }
-}
-
-/// `(x, y, z)` in another unit.
-fn rounded(values: [f64; 3], factor: f64, digits: usize) -> String {
-    format!("({})", values.map(|value| short(value * factor, digits)).join(", "))
-}
-
-/// Up to `digits` decimals, without zeros at the end; digits of their own for what would else become nothing.
-fn short(value: f64, digits: usize) -> String {
-    let text = format!("{value:.digits$}");
-    let text = text.trim_end_matches('0').trim_end_matches('.');
-    match text {
-        "0" | "-0" if value.abs() > 1e-12 => format!("{value:.1e}"),
-        "-0" => "0".to_owned(),
-        text => text.to_owned(),
-    }
 }

@@ -4,11 +4,10 @@ use std::fmt::Write as _;
 
 use serde::Serialize;
 
-use super::summary::{expected, leading};
+use super::summary::{Detail, expected, leading};
 use super::table::{line, number, number_or_dash};
 use crate::compare::{ChiSquare, Compared, ComparedJoint};
 use crate::io::calibration_file::{CalibrationFile, JointChangeEntry};
-use crate::report::summary::has_terms;
 use crate::robot::{ReadingKind, Robot};
 use crate::text::visible;
 
@@ -17,6 +16,8 @@ use crate::text::visible;
 pub struct Comparison {
     first: SideEntry,
     second: SideEntry,
+    /// Whether the tip moved by more than the limit; null where there is none.
+    moved: Option<bool>,
     /// Whether more changed than noise makes; null without the uncertainty of both.
     changed: Option<bool>,
     /// Names of the joints that did.
@@ -24,8 +25,6 @@ pub struct Comparison {
     test: Option<TestEntry>,
     joints: Vec<JointEntry>,
     base: &'static str,
-    /// Whether a calibration has a corrected model with terms, which are not compared: only geometry is.
-    has_terms: bool,
     tip: TipEntry,
 }
 
@@ -75,12 +74,17 @@ struct JointEntry {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 struct TipEntry {
     configurations: usize,
+    /// The model by which tips are compared.
+    model: &'static str,
     rms_mm: f64,
     max_mm: f64,
     rms_deg: f64,
     max_at: Vec<ReadingEntry>,
     max_place_mm: [f64; 3],
-    expected_mm: Option<f64>,
+    /// Up to which RMS the robot is as it was.
+    limit_mm: Option<f64>,
+    /// Whether the limit was stated, or else is the expected errors of both together.
+    limit_is_stated: bool,
 }
 
 /// A reading of the configuration of the largest difference: degrees or millimetres.
@@ -118,8 +122,16 @@ impl SideEntry {
             quantity: quantity.map_or("", |it| it.name()),
             unit: quantity.map_or("", |it| it.unit().symbol()),
             rms: rms.collect(),
-            expected_mm: expected(file).map(|(sigma, ..)| sigma),
+            expected_mm: expected(file).map(|it| it.error_mm),
         }
+    }
+}
+
+impl SideEntry {
+    fn words(&self) -> String {
+        let expected =
+            self.expected_mm.map_or_else(String::new, |it| format!(": expected error {} mm", number(it)));
+        format!("{}{expected}", self.calibration)
     }
 }
 
@@ -145,14 +157,15 @@ impl Comparison {
             test: it.test.map(TestEntry::from),
         };
         Ok(Comparison {
+            moved: found.is_moved(),
             changed: found.is_change(),
             changed_joints: found.changed().map(|it| it.name.clone()).collect(),
             test: found.test.map(TestEntry::from),
             joints: found.joints.iter().map(joint).collect(),
-            has_terms: [first.1, second.1].iter().any(|file| has_terms(file)),
             base: if found.base_is_free { "free" } else { "kept" },
             tip: TipEntry {
                 configurations: found.tip.configurations,
+                model: if found.tip.is_corrected { "corrected" } else { "calibrated" },
                 rms_mm: 1e3 * found.tip.rms_m,
                 max_mm: 1e3 * found.tip.max_m,
                 rms_deg: found.tip.rms_rad.to_degrees(),
@@ -163,20 +176,28 @@ impl Comparison {
                     .map(|(name, value)| ReadingEntry::new(&robot, name, *value))
                     .collect(),
                 max_place_mm: (1e3 * found.tip.max_place).into(),
-                expected_mm: found.tip.expected_m.map(|it| 1e3 * it),
+                limit_mm: found.tip.limit_m.map(|it| 1e3 * it),
+                limit_is_stated: found.tip.limit_is_stated,
             },
             first: SideEntry::new(first),
             second: SideEntry::new(second),
         })
     }
 
-    /// As text of lines up to 80 characters (but for names that are longer).
+    /// As text of lines up to 80 characters (but for names that are longer): the answer, and in full each joint with its test.
     #[must_use]
-    pub fn text(&self) -> String {
+    pub fn text(&self, detail: Detail) -> String {
         let mut out = String::new();
         line(&mut out, "verdict", &self.verdict());
-        line(&mut out, "first", &self.first.calibration);
-        line(&mut out, "second", &self.second.calibration);
+        line(&mut out, "largest", &self.tip.words());
+        line(&mut out, "first", &self.first.words());
+        line(&mut out, "second", &self.second.words());
+        if detail == Detail::Short {
+            line(&mut out, "more", "--verbose: each joint, its test against noise, the errors of both");
+            return out;
+        }
+        out.push('\n');
+        line(&mut out, "noise", &self.noise());
         out.push('\n');
         self.accuracy(&mut out);
         out.push('\n');
@@ -191,20 +212,32 @@ impl Comparison {
             line(&mut out, "  change", &joint.change.words);
         }
         out.push('\n');
-        line(&mut out, "tip", &self.tip.words());
         let words = if self.base == "free" {
             "base and tool of the second are fitted to the first, since calibrations choose them"
         } else {
             "the base is kept, the tool of the second is fitted to the first"
         };
         line(&mut out, "compared", words);
-        if self.has_terms {
-            line(&mut out, "not compared", "what joints do beyond geometry (the corrected models)");
-        }
         out
     }
 
+    /// The answer: by how much the tip moved, and whether that is within the limit.
     fn verdict(&self) -> String {
+        let rms = number(self.tip.rms_mm);
+        let moved = format!("the tip moved by {rms} mm (RMS) in the range that both sampled");
+        match (self.moved, self.tip.limit_mm) {
+            (Some(moves), Some(limit)) => {
+                let answer = if moves { "no longer good" } else { "still good" };
+                let which =
+                    if self.tip.limit_is_stated { "" } else { ", the expected errors of both together" };
+                format!("{answer}: {moved} (limit {} mm{which})", number(limit))
+            }
+            _ => format!("unknown: {moved}, and a calibration has no expected error: state a --limit"),
+        }
+    }
+
+    /// Whether what changed is more than noise.
+    fn noise(&self) -> String {
         let Some(test) = self.test else {
             return "unknown: a calibration has no uncertainty, so that noise is not told from change"
                 .to_owned();
@@ -274,16 +307,13 @@ impl TipEntry {
     fn words(&self) -> String {
         let at = self.max_at.iter().map(|it| format!("{} {:.1} {}", it.reading, it.value, it.unit));
         let at: Vec<String> = at.map(|it| it.trim_end().to_owned()).collect();
-        let expected = self.expected_mm.map_or_else(String::new, |expected| {
-            format!("; the expected errors of both together are {} mm", number(expected))
-        });
         format!(
-            "the models' tips differ by {} mm and {} deg (RMS) on {} random configurations within the limits, at most by {} mm at {}{expected}",
-            number(self.rms_mm),
-            number(self.rms_deg),
-            self.configurations,
+            "{} mm at {}, by the {} models in {} random configurations; {} deg (RMS)",
             number(self.max_mm),
-            at.join(", ")
+            at.join(", "),
+            self.model,
+            self.configurations,
+            number(self.rms_deg)
         )
     }
 }

@@ -19,7 +19,7 @@ pub use check::{Check, SetCounts};
 pub use compared::Comparison;
 pub use identify::Identify;
 pub use judgement::judgement;
-pub use offsets::{Offsets, offset_ends};
+pub use offsets::Offsets;
 pub use page::{calibration_page, calibration_page_with};
 pub use summary::{Detail, summary, unsaid};
 

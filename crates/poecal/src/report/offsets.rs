@@ -5,11 +5,11 @@ use std::fmt::Write as _;
 use serde::Serialize;
 
 use super::table::{line, number, robot_words};
-use crate::calibration::DeviceFrameKnowledge;
 use crate::io::calibration_file::PoseEntry;
-use crate::io::model::{Model, ModelSource};
+use crate::io::model::Model;
+use crate::io::offsets::ModelOffsets;
 use crate::lie::{Pose, rotation};
-use crate::offsets::{End, Explanation, TipError};
+use crate::offsets::{End, TipError};
 use crate::robot::JointKind;
 use crate::text::visible;
 
@@ -39,7 +39,7 @@ struct EndEntry {
 
 #[derive(Clone, Debug, PartialEq, Serialize)]
 struct JointEntry {
-    name: String,
+    joint: String,
     kind: &'static str,
     /// Null for a sliding joint.
     offset_deg: Option<f64>,
@@ -60,6 +60,8 @@ struct HomeEntry {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 struct Predictions {
     configurations: usize,
+    /// Over which range of the joints they are.
+    range: &'static str,
     without_offsets: Errors,
     with_offsets: Errors,
 }
@@ -72,36 +74,16 @@ struct Errors {
     rotation_max_deg: f64,
 }
 
-/// Which ends are free where nothing else is asked, each with the reason: those that the actual model, a calibration, found anew.
-#[must_use]
-pub fn offset_ends(base: Option<End>, tip: Option<End>, actual: &Model) -> [(End, &'static str); 2] {
-    let both = (End::Kept, "both models state it");
-    let (usual_base, usual_tip) = match &actual.source {
-        ModelSource::Calibration(file) => {
-            let base = match file.frame() {
-                DeviceFrameKnowledge::Unknown => (
-                    End::Free,
-                    "the calibration did not know the device's place, so its base frame is a matter of choice",
-                ),
-                DeviceFrameKnowledge::Base => (End::Kept, "the calibration was measured in it"),
-            };
-            (base, (End::Free, "the calibration fitted the tool"))
-        }
-        ModelSource::Urdf(_) | ModelSource::Toml => (both, both),
-    };
-    let asked = |end: Option<End>, usual| end.map_or(usual, |end| (end, "as asked"));
-    [asked(base, usual_base), asked(tip, usual_tip)]
-}
-
 impl Offsets {
-    /// An explanation of how `actual` differs from `nominal`. `reasons` say why the base and the tip are kept or free.
+    /// An explanation of how `actual` differs from `nominal`.
     #[must_use]
-    pub fn new(nominal: &Model, actual: &Model, explanation: &Explanation, reasons: [&str; 2]) -> Self {
+    pub fn new(nominal: &Model, actual: &Model, found: &ModelOffsets) -> Self {
+        let ModelOffsets { explanation, reasons, is_sampled } = found;
         let joints = nominal.robot.joints.iter().enumerate();
         let joints: Vec<JointEntry> = joints
             .zip(explanation.offsets.iter().zip(&explanation.joints))
             .map(|((index, joint), (&offset, left))| JointEntry {
-                name: joint.name.clone(),
+                joint: joint.name.clone(),
                 kind: joint.kind.word(),
                 offset_deg: (joint.kind == JointKind::Revolute).then(|| offset.to_degrees()),
                 offset_mm: (joint.kind == JointKind::Prismatic).then_some(offset * 1e3),
@@ -110,7 +92,7 @@ impl Offsets {
                 shift_mm: left.shift_m.map(|shift| shift * 1e3),
             })
             .collect();
-        let [base, tip] = reasons;
+        let [base, tip] = *reasons;
         Offsets {
             nominal: nominal.path.display().to_string(),
             actual: actual.path.display().to_string(),
@@ -123,11 +105,12 @@ impl Offsets {
             undetermined: joints
                 .iter()
                 .filter(|joint| !joint.determined)
-                .map(|joint| joint.name.clone())
+                .map(|joint| joint.joint.clone())
                 .collect(),
             joints,
             predictions: Predictions {
                 configurations: explanation.options.configurations,
+                range: if *is_sampled { "sampled" } else { "limits" },
                 without_offsets: Errors::new(&explanation.without_offsets),
                 with_offsets: Errors::new(&explanation.with_offsets),
             },
@@ -192,7 +175,7 @@ impl JointEntry {
         let mark = if self.determined { "" } else { "*" };
         let shift = self.shift_mm.map_or_else(String::new, |shift| format!("{:>11} mm", fixed(shift)));
         let tilt = fixed(self.tilt_deg);
-        format!("  {:<18}{offset:>13} {unit:<3} {mark:<1}{tilt:>14} deg{shift}", visible(&self.name))
+        format!("  {:<18}{offset:>13} {unit:<3} {mark:<1}{tilt:>14} deg{shift}", visible(&self.joint))
     }
 }
 
@@ -211,9 +194,10 @@ impl Predictions {
     fn words(&self) -> String {
         let (before, after) = (&self.without_offsets, &self.with_offsets);
         format!(
-            "on {} random configurations, offsets alone change the tip's error from {} mm to {} mm (RMS; largest {} to {} mm), \
+            "on {} random configurations {}, offsets change the tip's error from {} mm to {} mm (RMS; largest {} to {} mm), \
              and from {} deg to {} deg (largest {} to {} deg)",
             self.configurations,
+            if self.range == "sampled" { "over the sampled range" } else { "within the limits" },
             number(before.position_rms_mm),
             number(after.position_rms_mm),
             number(before.position_max_mm),

@@ -108,6 +108,22 @@ pub fn number(value: f64) -> String {
     format!("{value:.digits$}")
 }
 
+/// `(x, y, z)` in another unit.
+pub(super) fn rounded(values: [f64; 3], factor: f64, digits: usize) -> String {
+    format!("({})", values.map(|value| short(value * factor, digits)).join(", "))
+}
+
+/// Up to `digits` decimals, without zeros at the end; digits of their own for what would else become nothing.
+pub(super) fn short(value: f64, digits: usize) -> String {
+    let text = format!("{value:.digits$}");
+    let text = text.trim_end_matches('0').trim_end_matches('.');
+    match text {
+        "0" | "-0" if value.abs() > 1e-12 => format!("{value:.1e}"),
+        "-0" => "0".to_owned(),
+        text => text.to_owned(),
+    }
+}
+
 /// A number of the leading quantity with its unit, or a dash if nothing was measured.
 pub(super) fn leading_words(numbers: &Measured<f64>) -> String {
     let words = |(quantity, it): (Quantity, f64)| format!("{} {}", number(it), quantity.unit().symbol());

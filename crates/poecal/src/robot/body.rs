@@ -8,6 +8,9 @@ use super::Robot;
 use crate::error::{Error, ErrorKind, Result};
 use crate::lie::Pose;
 
+/// Name of the only target where no row names it.
+pub const MEASURED: &str = "measured";
+
 /// Frames that differ by less (metres, or of rotation matrices) are one.
 const SAME: f64 = 1e-12;
 
@@ -106,8 +109,8 @@ impl Robot {
         mount.body == self.tip_body() && apart < SAME && turned < SAME
     }
 
-    /// Where a target stands, by its name: its body, and `base_from_target` at zero joint values. A target that the model does not name is at
-    /// the tip.
+    /// Where a target stands, by its name, without one [`MEASURED`]: its body, and `base_from_target` at zero joint values. A target that the
+    /// model does not name is at the tip.
     pub fn places_of_targets(&self) -> impl Fn(Option<&str>) -> (Body, Pose) {
         let tip = self.tip_body();
         let at_tip = self.targets.iter().map(|(name, pose)| (name.as_str(), (tip, self.home * *pose)));
@@ -117,7 +120,7 @@ impl Robot {
         for (name, place) in mounted.chain(at_tip) {
             known.entry(name).or_insert(place);
         }
-        move |name| name.and_then(|name| known.get(name)).copied().unwrap_or((tip, self.home))
+        move |name| known.get(name.unwrap_or(MEASURED)).copied().unwrap_or((tip, self.home))
     }
 
     /// Checks that every joint stands on a body before it, and that tip and mounts stand on bodies of this robot.

@@ -26,7 +26,7 @@ mod term_functions;
 mod term_model;
 mod zeros;
 
-pub use body::{Body, Mount};
+pub use body::{Body, MEASURED, Mount};
 pub(crate) use controller::sum_words;
 pub use controller::{Controller, ControllerColumn, ControllerReading, Counting, ThirdAxis, level};
 pub use correction_model::{CorrectionModel, Extent};

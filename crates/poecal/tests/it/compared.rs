@@ -1,12 +1,13 @@
 //! Corrections in parts, and two calibrations compared: the same robot is told as such, a joint that moved is named.
 
+use nalgebra::{DMatrix, DVector, Vector3};
 use poecal::calibration::{CalibrationOptions, calibrate};
 use poecal::compare::compare;
 use poecal::io::calibration_file::{CalibrationFile, Inputs};
 use poecal::offsets::into_screws;
 use poecal::report::Comparison;
 use poecal::robot::Robot;
-use poecal::simulate::{Kind, Simulation, elbow, scara};
+use poecal::simulate::{Kind, Simulation, elbow, random_configuration, scara};
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 
@@ -45,23 +46,49 @@ fn joint3_moved(robot: &Robot, deg: f64) -> Robot {
     into_screws(robot, &[0.0, 0.0, deg.to_radians(), 0.0, 0.0, 0.0]).unwrap()
 }
 
+/// Distance (RMS, m) between the tips of two robots in random configurations, with base and tool fitted to first order: by linear least squares,
+/// apart from the library's own.
+fn apart(a: &Robot, b: &Robot) -> f64 {
+    let mut generator = ChaCha8Rng::seed_from_u64(77);
+    let (mut rows, mut differences) = (Vec::new(), Vec::new());
+    for _ in 0..2000 {
+        let q = random_configuration(&elbow(), &mut generator);
+        let (one, other) = (a.forward_kinematics(&q), b.forward_kinematics(&q));
+        differences.push(other.translation - one.translation);
+        let by_turn = (0..3).map(|k| Vector3::ith(k, 1.0).cross(&one.translation));
+        let by_shift = (0..3).map(|k| Vector3::ith(k, 1.0));
+        let by_tool = one.rotation.column_iter().map(|it| it.into_owned());
+        let columns: Vec<Vector3<f64>> = by_shift.chain(by_turn).chain(by_tool).collect();
+        rows.extend((0..3).map(|k| columns.iter().map(|it| it[k]).collect::<Vec<f64>>()));
+    }
+    let matrix = DMatrix::from_fn(rows.len(), 9, |i, j| rows[i][j]);
+    let right = DVector::from_iterator(rows.len(), differences.iter().flat_map(|it| [it.x, it.y, it.z]));
+    let found = matrix.clone().svd(true, true).solve(&right, 1e-12).unwrap();
+    ((right - matrix * found).norm_squared() / differences.len() as f64).sqrt()
+}
+
 #[test]
 fn two_sessions_of_one_robot_are_told_as_one() {
     for kind in [Kind::Pose, Kind::Point] {
         let trials = trials(60).at_least(10);
-        let (mut alarms, mut share) = (0, 0.0);
+        let (mut alarms, mut share, mut moved, mut largest) = (0, 0.0, 0, 0f64);
         for seed in trials.seeds() {
             let actual = made(seed);
             let [first, second] = [2 * seed, 2 * seed + 1].map(|it| session(&elbow(), &actual, kind, it));
-            let found = compare(&first, &second).unwrap();
+            let found = compare(&first, &second, None).unwrap();
             let test = found.test.unwrap();
             alarms += usize::from(found.is_change() == Some(true));
+            moved += usize::from(found.is_moved() == Some(true));
+            largest = largest.max(found.tip.rms_m / found.tip.limit_m.unwrap());
             share += test.value / test.freedom as f64;
         }
         let (count, share) = (trials.count, share / trials.count as f64);
         println!(
-            "{kind:?}: {alarms} of {count} trials call noise a change; mean χ² over its degrees of freedom {share:.2}"
+            "{kind:?}: {alarms} of {count} trials call noise a change; mean χ² over its degrees of freedom {share:.2}; {moved} are said to have \
+             moved, the largest distance is {largest:.2} of the limit"
         );
+        // Both errors together are what two sessions differ by at most, since each counts its residuals as the robot's.
+        assert_eq!(moved, 0);
         // 1 % for all joints and 1 % for each: 95 % of trials and more are quiet. The tolerance shrinks both sessions alike, and the noise is
         // estimated from few rows: the mean is near 1 and no larger than 1.3.
         assert!(alarms as f64 <= (0.05 + trials.more_of_a_share(0.05)) * count as f64, "{alarms} of {count}");
@@ -72,25 +99,45 @@ fn two_sessions_of_one_robot_are_told_as_one() {
 #[test]
 fn a_joint_that_moved_is_named() {
     let trials = trials(20);
-    let (mut named, mut alone, mut worst) = (0, 0, 0f64);
+    let (mut named, mut alone, mut worst, mut off) = (0, 0, 0f64, 0f64);
     for seed in trials.seeds() {
         let actual = made(seed);
         let first = session(&elbow(), &actual, Kind::Pose, 2 * seed);
         let second = session(&elbow(), &joint3_moved(&actual, 0.1), Kind::Pose, 2 * seed + 1);
-        let found = compare(&first, &second).unwrap();
+        let found = compare(&first, &second, None).unwrap();
         let names: Vec<&str> = found.changed().map(|it| it.name.as_str()).collect();
         named += usize::from(names.contains(&"joint3"));
         alone += usize::from(names == ["joint3"]);
+        let tip = &found.tip;
+        let truth = apart(&actual, &joint3_moved(&actual, 0.1));
+        off = off.max((tip.rms_m - truth).abs() / truth);
+        assert_eq!(
+            found.is_moved(),
+            Some(true),
+            "{:.4} of {:.4} mm",
+            1e3 * tip.rms_m,
+            1e3 * tip.limit_m.unwrap()
+        );
+        assert_eq!(compare(&first, &second, Some(2.0 * truth)).unwrap().is_moved(), Some(false));
         let offset = found.joints[2].change.offset.unwrap().to_degrees();
         worst = worst.max((offset - 0.1).abs());
         if seed == 0 {
-            println!("{}", Comparison::new(("first", &first), ("second", &second), &found).unwrap().text());
+            println!(
+                "{}",
+                Comparison::new(("first", &first), ("second", &second), &found)
+                    .unwrap()
+                    .text(poecal::report::Detail::Full)
+            );
         }
     }
     let count = trials.count;
     println!(
-        "joint 3 moved by 0.1 deg: named in {named} of {count} trials, alone in {alone}; its offset is off by {worst:.4} deg at most"
+        "joint 3 moved by 0.1 deg: named in {named} of {count} trials, alone in {alone}; its offset is off by {worst:.4} deg at most, \
+         the tip's distance by {:.0} %",
+        100.0 * off
     );
+    // Noise of both sessions adds to the distance; rotations count in the fit of the tool.
+    assert!(off < 0.3, "{off}");
     assert_eq!(named, count);
     // Others by the 1 % of the test at most.
     assert!(alone as f64 >= (0.9 - trials.more_of_a_share(0.1)) * count as f64, "{alone} of {count}");
@@ -102,7 +149,7 @@ fn a_joint_that_moved_is_named() {
 fn another_robot_is_refused() {
     let first = session(&elbow(), &made(1), Kind::Pose, 1);
     let second = session(&scara(), &scara(), Kind::Pose, 2);
-    let error = compare(&first, &second).unwrap_err().to_string();
+    let error = compare(&first, &second, None).unwrap_err().to_string();
     println!("{error}");
     assert!(error.contains("`joint3`") || error.contains("joints in the second"), "{error}");
     // The same names, another arm: longer by 80 mm beyond joint 3.
@@ -113,7 +160,7 @@ fn another_robot_is_refused() {
         joint.frame = by * joint.frame;
     }
     let second = session(&longer, &longer, Kind::Pose, 3);
-    let error = compare(&first, &second).unwrap_err().to_string();
+    let error = compare(&first, &second, None).unwrap_err().to_string();
     println!("{error}");
     assert!(error.contains("nominal axis of joint `joint"), "{error}");
 }

@@ -242,11 +242,11 @@ const FILES: &[(&[u8], &str)] = &[
     ),
     (
         b"a,lift,b,x,y,z,target\n0,0,0,1,2,3,smr1\n0,0,0,1,2,3,\n",
-        "points.csv:3:13: found no target name, expected one as in points.csv:2; all rows name their target or none does (an unnamed target is the tip itself)",
+        "points.csv:3:13: found no target name, expected one as in points.csv:2; all rows name their target or none does",
     ),
     (
         b"a,lift,b,x,y,z,target\n0,0,0,1,2,3,\n0,0,0,1,2,3,smr1\n",
-        "points.csv:3:13: found the target `smr1`, expected no name as in points.csv:2; all rows name their target or none does (an unnamed target is the tip itself)",
+        "points.csv:3:13: found the target `smr1`, expected no name as in points.csv:2; all rows name their target or none does",
     ),
     (
         b"a,lift,b,x,y,z\n90,0,0,1,2,3\n-45.5,0,0,1,2,3\n",
@@ -335,8 +335,7 @@ fn several_files_must_agree_on_target_names() {
     let error = read(&paths, &lifting_robot(), &ReadOptions::default()).unwrap_err();
     assert_eq!(
         folder.without_path(&error.to_string()),
-        "b.csv:2:19: found the target `smr1`, expected no name as in a.csv:2; all rows name their target or none does \
-         (an unnamed target is the tip itself)"
+        "b.csv:2:19: found the target `smr1`, expected no name as in a.csv:2; all rows name their target or none does"
     );
 }
 

@@ -59,7 +59,7 @@ fn a_long_file_is_read_row_by_row_and_its_first_mistake_named() {
             18_000,
             "row,fit,,0,0,0,0,0,0,1,2,3",
             "rows.csv:18000:9: found no target name, expected one as in rows.csv:2; all rows \
-          name their target or none does (an unnamed target is the tip itself)",
+          name their target or none does",
         ),
         (
             9_000,

@@ -70,7 +70,8 @@ fn points_distances_and_poses_are_calibrated_together_with_a_noise_of_each_instr
         parse(&text(&actual, 450, &mut generator), "cell.csv", &nominal, &ReadOptions::default()).unwrap();
     // No row is refused: every one is in the fit or held out, and the sums over rows have only one way, that of the kernels.
     assert_eq!(file.data.len(), 450);
-    let found = calibrate(&nominal, &file.data, &geometry()).unwrap();
+    let found =
+        calibrate(&nominal, &file.data, &CalibrationOptions { move_tip: true, ..geometry() }).unwrap();
     assert_eq!(found.fit_rows.len() + found.held_out_rows.len(), 450);
     let held_out = found.accuracy.held_out.unwrap();
     assert_eq!(held_out.count, found.held_out_rows.len());

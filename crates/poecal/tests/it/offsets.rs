@@ -8,7 +8,7 @@ use crate::trials::trials;
 use nalgebra::Vector3;
 use poecal::ErrorKind;
 use poecal::lie::{Pose, Screw, rotation};
-use poecal::offsets::{End, Explanation, OffsetOptions, explain, into_screws};
+use poecal::offsets::{End, Explanation, OffsetOptions, explain, explain_screws, into_screws};
 use poecal::robot::{Joint, JointKind, Reading, Robot};
 use poecal::simulate::{
     Simulation, elbow, gantry, random, random_chain, random_configuration, scara, seven_axis,
@@ -186,7 +186,7 @@ fn screw_errors_remain_and_hardly_move_the_offsets() {
             let mut generator = ChaCha8Rng::seed_from_u64(seed);
             let offsets = random_offsets(&robot, 2.0, &mut generator);
             let actual = error.perturbed(&into_screws(&robot, &offsets).unwrap(), &mut generator);
-            let found = explain(&robot, &actual, &OffsetOptions::default()).unwrap();
+            let found = explain_screws(&robot, &actual, &OffsetOptions::default()).unwrap();
             worst = larger(worst, offset_error(&found, &offsets));
             let tilts = found.joints.iter().map(|joint| joint.tilt_rad);
             let rms = (tilts.map(|tilt| tilt * tilt).sum::<f64>() / offsets.len() as f64).sqrt();
@@ -214,7 +214,7 @@ fn the_least_minimum_is_found_beside_screw_errors_of_one_degree() {
             let actual = error.perturbed(&into_screws(&robot, &offsets).unwrap(), &mut generator);
             let options =
                 OffsetOptions { base: end, tip: end, configurations: 1, ..OffsetOptions::default() };
-            let found = explain(&robot, &actual, &options).unwrap();
+            let found = explain_screws(&robot, &actual, &options).unwrap();
             let joints = found.joints.iter().map(|joint| (joint.tilt_rad, joint.shift_m.unwrap_or(0.0)));
             let home = found.home.iter().map(|home| (home.rotation_rad, home.position_m));
             let left_m2: f64 =
@@ -233,7 +233,7 @@ fn a_screw_error_that_no_offset_can_make_is_the_remainder() {
     let mut actual = elbow();
     let tilt = Pose::from_xyz_rpy([0.0; 3], [0.001, 0.0, 0.0]);
     actual.joints[0].screw = actual.joints[0].screw.transformed(&tilt);
-    let found = explain(&elbow(), &actual, &OffsetOptions::default()).unwrap();
+    let found = explain_screws(&elbow(), &actual, &OffsetOptions::default()).unwrap();
     assert!((found.joints[0].tilt_rad - 0.001).abs() < 1e-9, "{:?}", found.joints[0]);
     assert!(found.offsets.iter().all(|offset| offset.abs() < 1e-9));
     assert!(found.joints[1..].iter().all(|joint| joint.tilt_rad < 1e-9));

@@ -194,7 +194,7 @@ fn session(seed: u64) -> (String, bool, Option<Outcome>) {
     let mut fitted = rows[..one(&mut generator, &[40, 60, 100, 200])].to_vec();
     let wrong = fault(&mut fitted, &mut generator);
     let is_stated = seed.is_multiple_of(2);
-    let usual = CalibrationOptions { diagnose: true, ..geometry() };
+    let usual = CalibrationOptions { diagnose: true, move_tip: true, ..geometry() };
     let options = match below(&mut generator, 4) {
         0 => CalibrationOptions { held_out: 0.0, ..usual },
         1 => CalibrationOptions { held_out: 0.5, ..usual },

@@ -24,7 +24,7 @@ fn calibrated(off: (f64, f64), kind: Kind, frame: DeviceFrameKnowledge) -> (Cali
     let made = simulation.run(&elbow(), kind).unwrap();
     let flange = Pose::from_translation(REFLECTOR.into()).inverse();
     let model = Robot { home: made.nominal.home * flange, ..made.nominal.clone() };
-    let options = CalibrationOptions { frame, ..CalibrationOptions::default() };
+    let options = CalibrationOptions { frame, move_tip: true, ..CalibrationOptions::default() };
     let calibration = calibrate(&model, &made.data, &options).unwrap();
     let file = CalibrationFile::new(&calibration, &made.data, Inputs::default());
     let file = CalibrationFile::parse(&file.to_text().unwrap(), "calibration.json").unwrap();

@@ -17,6 +17,8 @@ const LEFT_OUT: f64 = 0.1;
 const TAKEN_IN: f64 = 0.02;
 /// What geometry alone may lose and is taken still.
 const GEOMETRY: f64 = 0.07;
+/// Share of geometry's error below which what terms gain is no gain.
+const GAIN: f64 = 0.02;
 /// Fewest configurations from which sizes are chosen.
 const FEWEST: usize = 8;
 /// Configurations of which the information of all counts half: what rows share beyond the terms does not average out.
@@ -122,7 +124,10 @@ pub(super) fn choose(linear: &Linear, parts: &[LeftOutPart], configurations: usi
     // Terms that visibly harm where nothing is to be found, and are not missed. Measurements without noise leave nothing to choose by.
     let loses_little = geometry.left_out <= best.left_out + GEOMETRY.max(1.5 * few);
     let is_harmed = common.left_out > geometry.left_out + 3.0 * few;
-    if best.score.is_finite() && loses_little && is_harmed {
+    // Logarithms are of squares.
+    let gains_nothing = 0.5 * (best.left_out - geometry.left_out) > (1.0 - GAIN).ln();
+    if best.score.is_finite() && geometry.left_out.is_finite() && (loses_little && is_harmed || gains_nothing)
+    {
         best = geometry;
     }
     let reason = if best.sizes == Sizes::NONE { SizesReason::NoBetter } else { SizesReason::Predict };

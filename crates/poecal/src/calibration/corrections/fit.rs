@@ -14,7 +14,7 @@ use super::promise::uncertainty;
 use super::unknowns::{estimate, moving, priors, unknowns, weights};
 use crate::analysis::coverage;
 use crate::calibration::accuracy::model_accuracy;
-use crate::calibration::expected::{Expectations, expectations};
+use crate::calibration::expected::{Expectations, expectations_beside};
 use crate::calibration::fit::Task;
 use crate::calibration::found::OngoingFit;
 use crate::calibration::located::{located, promised_rows};
@@ -24,7 +24,7 @@ use crate::calibration::{Calibration, CalibrationOptions, PredictedUncertainty, 
 use crate::estimate::{Estimate, Packed, Session, Unknowns, sample_rows};
 use crate::gauge;
 use crate::lie::rotation;
-use crate::measurement::{ByQuantity, Dataset, Noise};
+use crate::measurement::{ByQuantity, Dataset, Noise, Quantity};
 use crate::problem::Prior;
 use crate::robot::{
     CorrectionModel, Extent, GravityDirection, JointTerm, Robot, Sizes, TermGroup, Tolerance,
@@ -315,13 +315,14 @@ impl Geometry<'_> {
         let every = unknowns(&model, of_geometry.unknowns, possible);
         let prior = self.prior(&session).with_terms(priors(&model, possible));
         let whole = self.task(Session { unknowns: &every, ..session }, (&prior, weight));
-        let uncertainty = uncertainty(&whole, (&estimate, noise), (&prior, [weight, variance]), growth);
+        let mut uncertainty = uncertainty(&whole, (&estimate, noise), (&prior, [weight, variance]), growth);
         if sizes != Sizes::NONE && uncertainty.is_none() {
             return self.end_without(model, possible, tried);
         }
         let coverage = coverage(&session, rows);
-        let expected = uncertainty.as_ref().map_or_else(Expectations::default, |uncertainty| {
-            expectations(&session, rows, &coverage, uncertainty, options.seed)
+        let left_out_m = self.left_out_m(&sizes, &tried);
+        let expected = uncertainty.as_mut().map_or_else(Expectations::default, |uncertainty| {
+            expectations_beside(&session, rows, &coverage, (uncertainty, left_out_m), options.seed)
         });
         let found = uncertainty.as_ref().filter(|_| sizes != Sizes::NONE).map(|uncertainty| {
             let deviations: Vec<f64> = model.deviations(possible).collect();
@@ -339,7 +340,7 @@ impl Geometry<'_> {
             let some = sample_rows(&promised, JUDGED);
             predicted.check(&session, &estimate, &some, &session.errors(&some, &estimate))
         });
-        let (robot, targets) = place_tip(&model.robot, data, &data.frames(rows), &estimate);
+        let (robot, targets) = place_tip(&model.robot, data, &data.frames(rows), &estimate, options.move_tip);
         Correction {
             sizes,
             reason,
@@ -352,6 +353,7 @@ impl Geometry<'_> {
             uncertainty,
             effects: found.unwrap_or_default(),
             expected,
+            left_out_m,
             kept,
             noise,
             frame: calibration.frame,
@@ -361,6 +363,15 @@ impl Geometry<'_> {
             estimate,
             packed,
         }
+    }
+
+    /// Error of positions in cross-validation (metres, RMS): that of geometry alone times the share that terms leave on rows that are left out.
+    fn left_out_m(&self, sizes: &Sizes, tried: &[TriedSizes]) -> Option<f64> {
+        let of = |sizes: &Sizes| tried.iter().find(|it| it.sizes == *sizes).map(|it| it.left_out);
+        let geometry_m =
+            self.calibration.trust.cross_validation.as_ref()?.random.rms.get(Quantity::Position)?;
+        let left = (0.5 * (of(sizes)? - of(&Sizes::NONE)?)).exp();
+        Some(geometry_m * left).filter(|it| it.is_finite())
     }
 
     /// Geometry alone where terms lead nowhere.

@@ -48,6 +48,9 @@ pub struct Correction {
     pub effects: Effects,
     /// Expected errors.
     pub expected: Expectations,
+    /// Error of positions in cross-validation (metres, RMS): that of geometry alone times the share that terms leave; `None` if no sizes were
+    /// tried.
+    pub left_out_m: Option<f64>,
     /// Coverage on the held-out rows.
     pub kept: Option<CoverageCheck>,
     /// Weight of the priors in the fit.

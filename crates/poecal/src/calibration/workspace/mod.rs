@@ -103,7 +103,8 @@ pub(crate) fn workspace(calibration: &Calibration) -> Option<Workspace> {
         return None;
     }
     let trust = &calibration.trust;
-    let (actual, expected, uncertainty) = match calibration.correction.as_deref() {
+    let (actual, expected, uncertainty) = match calibration.correction.as_deref().filter(|it| it.has_terms())
+    {
         Some(found) => (&found.robot, &found.expected, found.uncertainty.as_ref()),
         None => (&calibration.robot, &trust.expected, trust.uncertainty.as_ref()),
     };

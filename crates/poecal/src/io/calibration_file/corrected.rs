@@ -30,6 +30,10 @@ pub struct CorrectedEntry {
     /// Sizes that cross-validation tried; none if they were given.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub tried: Vec<TriedEntry>,
+    /// Error of positions in cross-validation, millimetres (RMS): that of geometry alone times the share that terms leave; absent if sizes were
+    /// given.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub left_out_position_mm: Option<f64>,
     /// What each group of terms does at each joint, the one that moves the target most first.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub effects: Vec<EffectEntry>,
@@ -201,6 +205,7 @@ impl CorrectedEntry {
             sizes: of_sizes(&found.sizes),
             reason: found.reason,
             tried: found.tried.iter().filter(|it| it.left_out.is_finite()).map(tried).collect(),
+            left_out_position_mm: found.left_out_m.map(|it| with_six_decimals(1e3 * it)),
             noise: super::measured(&found.training, found.noise).into(),
             uncertainty: UncertaintyEntry::of_correction(found, data),
             robot: RobotEntry::new(robot, &model.robot),
@@ -221,10 +226,11 @@ fn with_six_decimals(figure: f64) -> f64 {
 }
 
 impl CalibrationFile {
-    /// The file as if its corrected model were the calibrated one; none if it has no corrected model.
+    /// The file as if its corrected model were the calibrated one; none if it has no corrected model, or one without terms, which is the
+    /// calibrated one.
     #[must_use]
     pub fn corrected(&self) -> Option<CalibrationFile> {
-        let found = self.corrected.as_deref()?.clone();
+        let found = self.corrected.as_deref().filter(|it| it.has_terms())?.clone();
         let of = |entry: &JointEntry| {
             let own = self.coverage.iter().find(|it| it.joint == entry.name).cloned();
             own.unwrap_or_else(|| JointCoverage::of_give(&entry.name))

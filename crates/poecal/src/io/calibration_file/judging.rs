@@ -5,6 +5,7 @@ use crate::calibration::DeviceFrameKnowledge;
 use crate::error::{Error, ErrorKind, Result, first_few, nearest};
 use crate::lie::Pose;
 use crate::measurement::{ByQuantity, Dataset, Noise, Quantity};
+use crate::robot::MEASURED;
 
 /// Noise of a quantity if the calibration measured none of its unit, millimetres or degrees.
 const UNSEEN: f64 = 0.05;
@@ -97,7 +98,8 @@ impl CalibrationFile {
         let frames = data.frames(&data.all_rows());
         let known = first_few(&names().collect::<Vec<_>>());
         for (is_frame, name) in frames.into_iter().zip(&data.targets) {
-            let message = match name.as_deref() {
+            let unnamed = self.targets.contains_key(MEASURED).then_some(MEASURED);
+            let message = match name.as_deref().or(unnamed) {
                 None if self.targets.is_empty() => continue,
                 None => format!(
                     "found measurements without a target's name, expected one of {known} as in the calibration: add a \

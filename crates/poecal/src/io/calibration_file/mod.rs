@@ -121,6 +121,7 @@ impl CalibrationFile {
             },
             stations: StationEntry::of(&calibration.stations, calibration.noise, measured_kinds),
             tool: (&robot.last_joint_from_tip()).into(),
+            move_tip: calibration.targets.iter().any(|it| it.name.is_none()),
             targets: bodies::targets(robot, &calibration.targets),
             instruments: InstrumentEntry::of(robot, &robot.instruments),
             compensation: CompensationEntry::of(calibration).map(Box::new),

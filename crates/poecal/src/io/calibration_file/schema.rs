@@ -110,7 +110,11 @@ pub struct CalibrationFile {
     pub stations: Vec<StationEntry>,
     /// Pose of the tip in the last joint's frame.
     pub tool: PoseEntry,
-    /// Named targets: in the tip frame, or on a body of their own (`on`).
+    /// Whether the point that was measured became the tip (`--move-tip`); otherwise the tip is where the model has it on the last link.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub move_tip: bool,
+    /// Targets by their names, `measured` where no row names one: in the tip frame, or on a body of their own (`on`). None where `move_tip` is
+    /// true.
     pub targets: BTreeMap<String, TargetEntry>,
     /// Instruments on the robot.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]

@@ -14,7 +14,9 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::estimate::{Estimate, Stand, Tree};
 use crate::lie::Freedom;
 use crate::measurement::{ByQuantity, Dataset, Measured, Quantity};
-use crate::parameters::{DeviceFrame, Names, Parameter, TargetFrame, TargetPlace, ValueTerm, screw_axes};
+use crate::parameters::{
+    Block, DeviceFrame, Names, Parameter, TargetFrame, TargetPlace, ValueTerm, screw_axes,
+};
 use crate::problem::Layout;
 use crate::robot::{Body, JointKind, Robot, Term};
 use crate::uncertainty::{Attribution, Bootstrap, Discrepancy, LeftOut, Uncertainty};
@@ -170,7 +172,7 @@ pub struct UncertaintyEntry {
     /// Frames `base_from_axis` at zero, z along the joint, of each joint's unknowns: shifts along x and y and turns about x and y of a
     /// revolute joint, turns about x and y of a prismatic one.
     pub axes: Vec<PoseEntry>,
-    /// Targets with unknowns, `true` for frames: shifts along their axes, and for frames turns about them. The tip has an empty name.
+    /// Targets with unknowns, `true` for frames: shifts along their axes, and for frames turns about them. One that is the tip has an empty name.
     pub targets: Vec<(String, bool)>,
     /// Names of the unknowns, in the order of the covariance; missing in older files.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -491,6 +493,7 @@ impl CalibrationFile {
         let mut free = entry.joint_parameters(robot, self.first_station());
         let is_known = |name: &str| self.targets.contains_key(name);
         let place = robot.places_of_targets();
+        let names = entry.names(robot, self.first_station());
         for (index, (name, is_frame)) in entry.targets.iter().enumerate() {
             if !name.is_empty() && !is_known(name) {
                 return Err(bad("the uncertainty of an unknown target"));
@@ -498,8 +501,7 @@ impl CalibrationFile {
             let (body, pose) = place(Some(name));
             estimate = estimate.with_target(body, pose);
             let usual = if *is_frame { Freedom::Frame } else { Freedom::Place };
-            let block = if name.is_empty() { "target".to_owned() } else { format!("target.{name}") };
-            let freedom = entry.freedom(&block).unwrap_or(usual);
+            let freedom = entry.freedom(&names.of(Block::Target(index))).unwrap_or(usual);
             free.push(if freedom == Freedom::Place {
                 Parameter::TargetPlace(TargetPlace { target: index })
             } else {
@@ -507,7 +509,6 @@ impl CalibrationFile {
             });
         }
         if !entry.unknowns.is_empty() {
-            let names = entry.names(robot, self.first_station());
             let is_unknown = |parameter: &Parameter| {
                 names.of_unknowns(parameter).iter().all(|name| entry.unknowns.contains(name))
             };

@@ -10,7 +10,7 @@ use crate::calibration::{
 use crate::error::{Error, ErrorKind, Result};
 use crate::estimate::Range;
 use crate::measurement::{Dataset, Quantity};
-use crate::robot::Body;
+use crate::robot::{Body, MEASURED};
 use crate::start::faces_on_known_planes;
 use crate::uncertainty::Uncertainty;
 
@@ -64,9 +64,7 @@ impl CalibrationFile {
             );
             return Err(Error::new(ErrorKind::Problem, message));
         }
-        let has_terms = self.corrected.as_ref().is_some_and(|it| it.has_terms());
-        let is_corrected = limits.model == AcceptedModel::Corrected && has_terms;
-        let corrected = if is_corrected { self.corrected() } else { None };
+        let corrected = if limits.model == AcceptedModel::Corrected { self.corrected() } else { None };
         let model = if corrected.is_some() { AcceptedModel::Corrected } else { AcceptedModel::Calibrated };
         let file = corrected.as_ref().unwrap_or(self);
         file.with_subject(data, refit_frame, refit_tool, |subject, data| {
@@ -104,7 +102,8 @@ impl CalibrationFile {
         let data = &*turned;
         let noise = self.noise()?;
         // Refitted targets are not those of the calibration.
-        let known = data.targets.iter().map(Option::as_deref).filter(|_| !refit_tool);
+        let only = self.targets.contains_key(MEASURED).then_some(MEASURED);
+        let known = data.targets.iter().map(|name| name.as_deref().or(only)).filter(|_| !refit_tool);
         let names: Vec<Option<&str>> = known.collect();
         let found = if self.uncertainty.is_some() { Some(self.uncertainty_as_seen(&names)?) } else { None };
         let predicted = found.as_ref().map(|(uncertainty, targets)| PredictedUncertainty {

@@ -21,7 +21,7 @@ use super::proof::Difference;
 use super::urdf::ChainSelection;
 use crate::error::{Error, ErrorKind, Result};
 use crate::forms::DhConvention;
-use crate::robot::Robot;
+use crate::robot::{MEASURED, Robot};
 use origins::Flavour;
 
 /// A form.
@@ -266,9 +266,10 @@ fn converted(model: &Model, robot: &Robot, to: ModelFormat, mut said: Vec<String
     Ok(Exported { text, notes, remains: Difference { position_m: 0.0, rotation_rad: 0.0 }, beside })
 }
 
-/// A note on targets that the form does not name.
+/// A note on targets that the form does not name; of what was measured without a name, every table of a calibration says where it is.
 fn left_out(robot: &Robot) -> Option<String> {
-    let names: Vec<&str> = robot.targets.iter().map(|(name, _)| name.as_str()).collect();
+    let names = robot.targets.iter().map(|(name, _)| name.as_str());
+    let names: Vec<&str> = names.filter(|name| *name != MEASURED).collect();
     (!names.is_empty()).then(|| {
         format!(
             "the targets {} are not in this form; calibration.json has them in the tip's frame",

@@ -10,13 +10,12 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::io::calibration_file::PoseEntry;
 use crate::io::json_text;
 use crate::io::model::{Model, ModelSource};
+use crate::io::offsets::ModelOffsets;
 use crate::io::proof::Difference;
 use crate::lie::Pose;
-use crate::offsets::{Explanation, OffsetOptions, into_screws, nearest_at_tip};
+use crate::offsets::{Explanation, into_screws};
 use crate::robot::{Joint, JointKind, Robot};
 
-/// Configurations in which what remains is stated: its root mean square is within 1 %.
-const CONFIGURATIONS: usize = 100_000;
 /// Ticks of a turn of Feetech's motors.
 const TICKS: f64 = 4096.0;
 
@@ -64,8 +63,8 @@ fn explained(model: &Model, robot: &Robot) -> Result<(Robot, Explanation)> {
     };
     let mut nominal = file.nominal_robot()?.without_offsets().rigid();
     nominal.terms.clear();
-    let found = nearest_at_tip(&nominal, robot, CONFIGURATIONS, OffsetOptions::default().seed)?;
-    Ok((nominal, found))
+    let found = ModelOffsets::of_robots(&nominal, robot, model, [None, None])?;
+    Ok((nominal, found.explanation))
 }
 
 /// The nominal robot with offsets, another base and another tool.
@@ -141,7 +140,7 @@ fn counted(model: &Model, robot: &Robot, found: &Explanation) -> Result<Vec<Join
 
 fn words(found: &Explanation) -> String {
     format!(
-        "offsets, base and tool are all that this form says: the tip is off by {:.4} mm (RMS), up to {:.4} mm and {:.5} deg; without offsets by \
+        "offsets, base and tool are all that this form says: over the sampled range the tip is off by {:.4} mm (RMS), up to {:.4} mm and {:.5} deg; without offsets by \
          {:.4} mm (RMS)",
         found.with_offsets.rms_m * 1e3,
         found.with_offsets.max_m * 1e3,

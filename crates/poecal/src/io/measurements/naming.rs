@@ -14,12 +14,12 @@ pub(super) struct Names {
 }
 
 impl Names {
-    /// Index of a row's name, the next one for a name that is new. `what` is named, with what to say of none.
+    /// Index of a row's name, the next one for a name that is new; `what` is named.
     pub(super) fn index(
         &mut self,
         row: &Row<'_>,
         column: Option<usize>,
-        what: (&'static str, &str),
+        what: &'static str,
         name: Option<&str>,
     ) -> Result<usize> {
         self.check(row, column, what, name)?;
@@ -37,7 +37,7 @@ impl Names {
         &mut self,
         row: &Row<'_>,
         column: Option<usize>,
-        (what, unnamed): (&'static str, &str),
+        what: &'static str,
         name: Option<&str>,
     ) -> Result<()> {
         let (named, path, line) =
@@ -50,7 +50,7 @@ impl Names {
             None => (format!("no {what} name"), "one"),
         };
         let message = format!(
-            "found {found}, expected {expected} as in {}:{line}; all rows name their {what} or none does{unnamed}",
+            "found {found}, expected {expected} as in {}:{line}; all rows name their {what} or none does",
             path.display()
         );
         Err(row.error(column.unwrap_or(0), message))

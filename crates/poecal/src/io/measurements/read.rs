@@ -425,8 +425,7 @@ impl<'a> Reader<'a> {
         let cell = layout.target_column.and_then(|column| row.cells.get(column)).map(|cell| cell.text());
         let name = cell.as_deref().or(target.name.as_deref()).filter(|name| !name.is_empty());
         let column = layout.target_column;
-        let what = ("target", " (an unnamed target is the tip itself)");
-        let index = self.targets.index(row, column, what, name)?;
+        let index = self.targets.index(row, column, "target", name)?;
         if index == self.found.data.targets.len() {
             check_name(name.unwrap_or_default(), "target")
                 .map_err(|error| row.error(column.unwrap_or(0), error.message()))?;
@@ -478,7 +477,7 @@ impl<'a> Reader<'a> {
         if let Some(name) = name {
             self.refuse_other_place(row, column, what, name)?;
         }
-        let index = self.stations.index(row, column, (what, ""), name)?;
+        let index = self.stations.index(row, column, what, name)?;
         let known = &mut self.found.data.stations;
         if index >= known.len() && (name.is_some() || index > 0) {
             if let Some(name) = name.filter(|_| self.options.frames == Frames::Common) {

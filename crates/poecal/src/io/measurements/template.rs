@@ -60,8 +60,7 @@ pub(in crate::io) fn template(robot: &Robot, kind: Kind) -> Result<String> {
         "#\n\
          # Columns to add if you have them, in any place:\n\
          #   id                   name of the row, kept in the results\n\
-         #   target               name of the measured tool point; several in one configuration are several rows. Without this\n\
-         #                        column, the measured point becomes the tip of the calibrated model\n\
+         #   target               name of the measured tool point; several in one configuration are several rows\n\
          #   set                  fit, or held_out for rows to judge by [default: a random 30 % of the configurations]\n",
     );
     if kind.has_device() {

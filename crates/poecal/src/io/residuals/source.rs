@@ -26,7 +26,7 @@ impl<'a> RowSource<'a> {
         let readings = data.reading_names().iter();
         let names = Residuals {
             files: data.files.iter().map(|path| path.display().to_string()).collect(),
-            targets: data.targets.iter().map(|name| name.clone().unwrap_or_default()).collect(),
+            targets: calibration.targets.iter().map(|it| it.name.clone().unwrap_or_default()).collect(),
             stations: stations(data),
             readings: readings.map(|name| (name.clone(), calibration.nominal.reading_kind(name))).collect(),
             has_corrected: calibration.correction.is_some(),

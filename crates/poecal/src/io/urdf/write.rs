@@ -9,7 +9,7 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::io::model::Converted;
 use crate::io::numbers::{shortest, tidy};
 use crate::lie::Pose;
-use crate::robot::{Body, Joint, JointKind, Robot};
+use crate::robot::{Body, Joint, JointKind, MEASURED, Robot};
 
 /// Limit for a prismatic joint without limits, metres: URDF requires one.
 pub(in crate::io) const WIDE_LIMIT_M: f64 = 1000.0;
@@ -71,7 +71,7 @@ pub(in crate::io) fn written_new(robot: &Robot) -> Result<(Converted, ChainSelec
         ends.push(link);
     }
     writer.line(0, "</robot>");
-    if !robot.targets.is_empty() {
+    if robot.targets.iter().any(|(name, _)| name != MEASURED) {
         writer.notes.push("targets are not part of a URDF and were left out".to_owned());
     }
     if !robot.masses.is_empty() {

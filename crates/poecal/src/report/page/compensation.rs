@@ -6,6 +6,7 @@ use super::html::{HtmlTable, count, decimal, figure, figure_or, folded, plots, q
 use crate::calibration::DeviceFrameKnowledge;
 use crate::io::calibration_file::{CalibrationFile, CompensationEntry, WorkspaceCellEntry};
 use crate::report::plot::{HeatCell, HeatMap};
+use crate::report::summary::uncertainty;
 use crate::report::table::number;
 
 /// Largest displacement (mm) of a map in micrometres.
@@ -46,14 +47,8 @@ pub(super) fn sections(file: &CalibrationFile) -> Markup {
 
 /// The gain in a sentence.
 pub(super) fn gain(file: &CalibrationFile, found: &CompensationEntry) -> Markup {
-    let corrected = file.corrected.as_ref().and_then(|it| it.uncertainty.as_ref());
-    let expected = match (corrected, &file.uncertainty) {
-        (Some(own), _) => {
-            Some((own.measured.sigma_position_mm, "corrected.uncertainty.measured.sigma_position_mm"))
-        }
-        (None, Some(own)) => Some((own.measured.sigma_position_mm, "uncertainty.measured.sigma_position_mm")),
-        (None, None) => None,
-    };
+    let expected = uncertainty(file)
+        .map(|(own, key)| (own.measured.sigma_position_mm, format!("{key}.measured.sigma_position_mm")));
     html! {
         "A program made for the nominal robot, with its frames taught on this one, misses by " (figure(found.all.median_mm, "compensation.median_mm")) " mm in the median, and by up to "
         (figure(found.all.max_mm, "compensation.max_mm")) " mm, within the measured part of the workspace. "

@@ -189,8 +189,14 @@ fn verdict(file: &CalibrationFile) -> Markup {
     html! {
         section class={ "verdict " (class) } aria-labelledby="verdict-title" {
             h2 #verdict-title { span.sign aria-hidden="true" {} (words) }
-            @if let Some((sigma, key, place)) = expected(file) {
-                p { "Expected error " (figure(sigma, key)) " mm (RMS) " (place) "." }
+            @if let Some(found) = expected(file) {
+                p {
+                    "Expected error of the " (if has_terms(file) { "corrected" } else { "calibrated" }) " model: "
+                    (figure(found.error_mm, "verdict.expected_error_mm")) " mm (RMS), 95 % below "
+                    (figure(found.bound_mm, "verdict.bound95_mm")) " mm"
+                    @if let Some((sigma, key)) = found.anywhere { "; " (figure(sigma, key)) " mm (RMS) anywhere within the limits" }
+                    "."
+                }
             }
             (list(&reasons))
         }
@@ -260,21 +266,12 @@ fn the_facts(file: &CalibrationFile, residuals: &Residuals) -> Vec<(&'static str
         @if let Some(set) = &file.accuracy.held_out { (count(set.count, "accuracy.held_out.count")) } @else { "none" }
         " held out"
     };
-    let mut facts = vec![
+    vec![
         ("Model", path(&file.inputs.model, "inputs.model")),
         ("Measurements", files),
         ("Rows", rows),
         ("Noise", noise(file)),
-    ];
-    facts.extend(file.uncertainty.as_ref().map(|found| {
-        let expected = html! {
-            (figure(found.measured.sigma_position_mm, "uncertainty.measured.sigma_position_mm"))
-            " mm (RMS) at the measured configurations, "
-            (figure(found.range.sigma_position_mm, "uncertainty.range.sigma_position_mm")) " mm anywhere within the limits"
-        };
-        ("Expected error", expected)
-    }));
-    facts
+    ]
 }
 
 fn noise(file: &CalibrationFile) -> Markup {

@@ -37,6 +37,7 @@ fn view(file: &CalibrationFile, shapes: &Shapes) -> Markup {
         @if !shapes.notes.is_empty() { p.note { (shapes.notes.join(" ").replace('`', "")) } }
         noscript { p.note { "The picture needs JavaScript. All figures are in the tables." } }
         (folded("The axes as numbers", &table))
+        @if let Some(table) = targets(file) { (table) }
         @if let Some(table) = stands(file) { (folded("What stands where", &table)) }
     };
     section("view", "In 3D", &content)
@@ -56,6 +57,18 @@ fn axis(
     let point = point.map(|it| if turns { decimal(1e3 * it, 3) } else { "–".to_owned() });
     let name = quoted(&joint.name, format_args!("joints.{k}.name"));
     table.row(&[&name, &joint.kind.word(), &model, &x, &y, &z, &point[0], &point[1], &point[2]]);
+}
+
+/// Where the targets on the link of the tip are.
+fn targets(file: &CalibrationFile) -> Option<HtmlTable> {
+    let link = if file.robot.tip_link.is_empty() { "the tip" } else { &file.robot.tip_link };
+    let title = format!("Targets in the frame of {link}");
+    let mut table = HtmlTable::new(&title, 1, &["target", "x, mm", "y, mm", "z, mm"]);
+    for (name, target) in file.targets.iter().filter(|(_, target)| target.on.is_none()) {
+        let [x, y, z] = target.position_m.map(|it| decimal(1e3 * it, 3));
+        table.row(&[&name, &x, &y, &z]);
+    }
+    file.targets.values().any(|target| target.on.is_none()).then_some(table)
 }
 
 /// On which body instruments, targets and the first joints of branches stand, where the picture has them.

@@ -10,15 +10,16 @@ use crate::io::calibration_file::{
     CalibrationFile, CorrelatedEntry, CrossValidationEntry, LeftOutEntry, RangeEntry, UncertaintyEntry,
 };
 use crate::measurement::Quantity;
+use crate::report::summary::{has_terms, uncertainty};
 use crate::robot::JointKind;
 use crate::uncertainty::Attribution;
 
 pub(super) fn sections(file: &CalibrationFile) -> Markup {
     let content = html! {
-        @if let Some(uncertainty) = &file.uncertainty { (expected(file, uncertainty)) }
+        @if let Some((found, key)) = uncertainty(file) { (expected(file, found, key)) }
         @if let Some(found) = &file.cross_validation { (cross_validation(found)) }
         @if !file.coverage.is_empty() { (coverage(file)) }
-        @if let Some(uncertainty) = file.uncertainty.as_ref().filter(|it| !it.parts.is_empty()) { (parts(file, uncertainty)) }
+        @if let Some((found, key)) = uncertainty(file).filter(|(it, _)| !it.parts.is_empty()) { (parts(file, found, key)) }
     };
     html! { (section("trust", "How far to trust it", &content)) (told(file)) }
 }
@@ -29,13 +30,15 @@ fn unit_of(file: &CalibrationFile, joint: &str) -> (f64, &'static str) {
     if slides { (1e3, " mm") } else { (1f64.to_degrees(), "°") }
 }
 
-fn expected(file: &CalibrationFile, found: &UncertaintyEntry) -> Markup {
+fn expected(file: &CalibrationFile, found: &UncertaintyEntry, of: &str) -> Markup {
     let head = ["configurations", "RMS", "95 % bound, mean", "95 % bound, worst"];
-    let mut table = HtmlTable::new("Expected errors of predicted positions, mm", 1, &head);
+    let model = if has_terms(file) { "corrected" } else { "calibrated" };
+    let title = format!("Expected errors of positions that the {model} model predicts, mm");
+    let mut table = HtmlTable::new(&title, 1, &head);
     for (words, set, key) in
         [("measured", &found.measured, "measured"), ("anywhere within the limits", &found.range, "range")]
     {
-        let figure = |value, name| figure(value, format_args!("uncertainty.{key}.{name}"));
+        let figure = |value, name| figure(value, format_args!("{of}.{key}.{name}"));
         table.row(&[
             &words,
             &figure(set.sigma_position_mm, "sigma_position_mm"),
@@ -50,7 +53,7 @@ fn expected(file: &CalibrationFile, found: &UncertaintyEntry) -> Markup {
         @if let Some((leading, source)) = source { p {
             @match source {
                 Attribution::Robot => {
-                    (figure_or(found.discrepancy.get(leading), format_args!("uncertainty.discrepancy_{}", leading.key()), "–"))
+                    (figure_or(found.discrepancy.get(leading), format_args!("{of}.discrepancy_{}", leading.key()), "–"))
                     (spaced(leading.unit()))
                     " per component of the residuals count as robot error in the figures above: nothing shows that they are \
                      measurement noise. A stated noise that explains them, or repeated measurements, would."
@@ -66,11 +69,11 @@ fn expected(file: &CalibrationFile, found: &UncertaintyEntry) -> Markup {
         } }
         @if let Some(drawn) = &found.bootstrap {
             p {
-                "Block bootstrap, " (count(drawn.drawings, "uncertainty.bootstrap.drawings"))
+                "Block bootstrap, " (count(drawn.drawings, format_args!("{of}.bootstrap.drawings")))
                 " samples: predictions scatter by "
-                (figure(drawn.sigma_position_mm, "uncertainty.bootstrap.sigma_position_mm"))
+                (figure(drawn.sigma_position_mm, format_args!("{of}.bootstrap.sigma_position_mm")))
                 " mm (RMS). The covariance, for independent and equally noisy rows, gives "
-                (figure(drawn.formal_sigma_position_mm, "uncertainty.bootstrap.formal_sigma_position_mm")) " mm."
+                (figure(drawn.formal_sigma_position_mm, format_args!("{of}.bootstrap.formal_sigma_position_mm"))) " mm."
             }
         }
     }
@@ -84,7 +87,7 @@ fn cross_validation(found: &CrossValidationEntry) -> Markup {
     let errors: Vec<String> = measured.iter().map(rms).collect();
     let head: Vec<&str> =
         ["rows predicted", "rows"].into_iter().chain(errors.iter().map(String::as_str)).collect();
-    let mut table = HtmlTable::new("Fitted rows, predicted by fits of the others", 1, &head);
+    let mut table = HtmlTable::new("Fitted rows, predicted by calibrated models of the others", 1, &head);
     let mut add = |entry: &LeftOutEntry, key: &str| {
         let mut cells = vec![
             quoted(&entry.left_out, format_args!("{key}.left_out")),
@@ -133,7 +136,7 @@ fn coverage(file: &CalibrationFile) -> Markup {
 }
 
 /// The map of expected errors: a row a joint, a cell a part of its range.
-fn parts(file: &CalibrationFile, found: &UncertaintyEntry) -> Markup {
+fn parts(file: &CalibrationFile, found: &UncertaintyEntry, key: &str) -> Markup {
     let worst = found.parts.iter().map(|part| part.sigma_position_mm).fold(0.0, f64::max);
     let least = found.parts.iter().map(|part| part.sigma_position_mm).fold(f64::INFINITY, f64::min);
     let of = |joint: &str| {
@@ -149,7 +152,7 @@ fn parts(file: &CalibrationFile, found: &UncertaintyEntry) -> Markup {
         table.marked(&html! {
             tr {
                 th scope="row" { (joint.name) }
-                @for (k, part) in of(&joint.name) { (map_cell(k, part, (least, worst), unit)) }
+                @for (k, part) in of(&joint.name) { (map_cell((k, key), part, (least, worst), unit)) }
             }
         });
     }
@@ -163,13 +166,18 @@ fn parts(file: &CalibrationFile, found: &UncertaintyEntry) -> Markup {
     }
 }
 
-fn map_cell(k: usize, part: &RangeEntry, (least, worst): (f64, f64), (factor, unit): (f64, &str)) -> Markup {
+fn map_cell(
+    (k, key): (usize, &str),
+    part: &RangeEntry,
+    (least, worst): (f64, f64),
+    (factor, unit): (f64, &str),
+) -> Markup {
     let span = worst - least;
     let level = if span > 0.0 { (10.0 * (part.sigma_position_mm - least) / span).round() } else { 0.0 };
     let [from, to] = [part.from, part.to].map(|end| decimal(end * factor, 0));
     html! {
         td class=(format_args!("heat h{level:.0}")) {
-            (figure(part.sigma_position_mm, format_args!("uncertainty.parts.{k}.sigma_position_mm")))
+            (figure(part.sigma_position_mm, format_args!("{key}.parts.{k}.sigma_position_mm")))
             small { (from) " to " (to) (unit) }
         }
     }

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use super::super::identify::coverage_table;
 use super::super::outliers;
 use super::super::table::{self, accuracy_table, joints_words, leading_words, line, lines, number};
+use super::{has_terms, uncertainty};
 use crate::calibration::{FormulationWords, NoiseSource};
 use crate::error::shown;
 use crate::io::calibration_file::CalibrationFile;
@@ -145,11 +146,12 @@ fn corrected(out: &mut String, file: &CalibrationFile) {
 
 /// Expected errors, cross-validation, and what each joint's correction is worth.
 fn trust(out: &mut String, file: &CalibrationFile) {
-    if let Some(expected) = &file.uncertainty {
+    if let Some((expected, _)) = uncertainty(file) {
         let words = format!(
-            "{} mm (RMS) at the measured configurations, {} mm anywhere within the limits",
+            "{} mm (RMS) at the measured configurations, {} mm anywhere within the limits, by the {} model",
             number(expected.measured.sigma_position_mm),
-            number(expected.range.sigma_position_mm)
+            number(expected.range.sigma_position_mm),
+            if has_terms(file) { "corrected" } else { "calibrated" }
         );
         line(out, "expected", &words);
     }
@@ -159,7 +161,7 @@ fn trust(out: &mut String, file: &CalibrationFile) {
             format!("; worst block: {}, {}", worst.left_out, leading_words(&worst.rms))
         });
         let words = format!("{} (RMS) on random rows{worst}", leading_words(&found.random.rms));
-        line(out, "predicted", &format!("in cross-validation {words}"));
+        line(out, "predicted", &format!("in cross-validation by calibrated models {words}"));
     }
     let mut joints: Vec<_> = file.corrections.iter().collect();
     joints.sort_by(|a, b| b.left_nominal_rms_mm.total_cmp(&a.left_nominal_rms_mm));

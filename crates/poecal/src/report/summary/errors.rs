@@ -1,6 +1,8 @@
 //! The errors that count: of rows that were not fitted, before and after.
 
-use super::super::table::{STATISTICS, leading_words, line, number_or_dash, row};
+use super::super::table::{STATISTICS, further_words, leading_words, line, number, number_or_dash, row};
+use super::look::reasons;
+use super::{Expectation, expected};
 use crate::calibration::{DeviceFrameKnowledge, ModelAccuracy, SetAccuracy};
 use crate::io::calibration_file::CalibrationFile;
 
@@ -47,11 +49,59 @@ pub(in crate::report) fn has_terms(file: &CalibrationFile) -> bool {
     file.corrected.as_ref().is_some_and(|it| it.has_terms())
 }
 
+/// Before and after, where that is valid, and the rows that show it.
+pub(super) fn figures(out: &mut String, file: &CalibrationFile) {
+    let (set, rows) = leading(file);
+    let mut models = rows.iter().filter(|(.., key)| key.starts_with("accuracy"));
+    let (Some(before), Some(after)) = (models.next(), models.next_back()) else { return };
+    let held_out = file.accuracy.held_out.is_some();
+    let judging = if held_out { "held out" } else { "fitted" };
+    let words = |model: &ModelAccuracy| {
+        let each = model.iter().map(|(quantity, error)| {
+            format!("{} {}{}", number(error.rms), quantity.unit().symbol(), further_words(quantity))
+        });
+        each.collect::<Vec<_>>().join(", ")
+    };
+    line(out, "before", &format!("{} (RMS): {}", words(before.1), before.0));
+    match expected(file) {
+        Some(Expectation { error_mm, bound_mm, anywhere }) => {
+            let (error, bound) = (number(error_mm), number(bound_mm));
+            line(
+                out,
+                "after",
+                &format!("{error} mm (RMS) expected, 95 % below {bound} mm: {} model", after.0),
+            );
+            let valid = match (anywhere, reasons(file).into_iter().next()) {
+                (Some((sigma, _)), _) => {
+                    format!("anywhere within the limits, {} mm (RMS) there", number(sigma))
+                }
+                (None, Some(reason)) => format!("inside the sampled range: {reason}"),
+                (None, None) => "inside the sampled range".to_owned(),
+            };
+            line(out, "valid", &valid);
+        }
+        None => line(out, "after", &format!("{} (RMS): {} model", words(after.1), after.0)),
+    }
+    let largest = after
+        .1
+        .leading()
+        .map(|(quantity, error)| format!(", at most {} {}", number(error.max), quantity.unit().symbol()));
+    let rest = rows.iter().find(|(.., key)| key.starts_with("robust")).map(|(name, model, _)| {
+        format!("; {}: {}", name.split_once(", ").map_or(name.as_str(), |it| it.1), words(model))
+    });
+    let (largest, rest) = (largest.unwrap_or_default(), rest.unwrap_or_default());
+    line(out, judging, &format!("{} rows: {} (RMS){largest}{rest}", set.count, words(after.1)));
+    if !held_out {
+        let validated = file.cross_validation.as_ref().map(|it| leading_words(&it.random.rms));
+        let validated = validated.map_or_else(String::new, |rms| format!("; cross-validation {rms} (RMS)"));
+        line(out, "", &format!("no row was held out{validated}"));
+    }
+}
+
 /// Mean, RMS, 95 % and maximum of the errors of the rows held out, or if there are none, of those fitted.
 pub(super) fn table(out: &mut String, file: &CalibrationFile) {
     let (set, rows) = leading(file);
-    let held_out = file.accuracy.held_out.is_some();
-    let name = if held_out { "held out" } else { "fitted" };
+    let name = if file.accuracy.held_out.is_some() { "held out" } else { "fitted" };
     for (quantity, _) in set.calibrated.iter() {
         let title = format!("{name} ({}), {} in {}", set.count, quantity.name(), quantity.unit().symbol());
         row(out, &title, WIDTHS, STATISTICS.map(|(label, ..)| label));
@@ -60,11 +110,7 @@ pub(super) fn table(out: &mut String, file: &CalibrationFile) {
             row(out, &format!("  {label}"), WIDTHS, cells);
         }
     }
-    if !held_out {
+    if file.accuracy.held_out.is_none() {
         line(out, "", "no row was held out: these errors are of fitted rows");
-        if let Some(found) = &file.cross_validation {
-            let rms = leading_words(&found.random.rms);
-            line(out, "", &format!("cross-validation: {rms} (RMS) on rows that were not fitted"));
-        }
     }
 }

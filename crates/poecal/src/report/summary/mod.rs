@@ -11,10 +11,11 @@ use look::reasons;
 pub(super) use look::{Place, Point, SEE_ROBUST, look_at};
 
 use super::acceptance;
-use super::table::{line, lines, number};
+use super::table::{line, lines, number, rounded};
 use crate::analysis::{Cause, Direction};
 use crate::calibration::{Level, TermGroup};
-use crate::io::calibration_file::{CalibrationFile, CorrectedEntry};
+use crate::error::shown as name_shown;
+use crate::io::calibration_file::{CalibrationFile, CorrectedEntry, UncertaintyEntry};
 
 /// Angle of gravity from -z of the base below which it is not told, radians.
 const UPRIGHT: f64 = 1e-4;
@@ -49,15 +50,15 @@ pub enum Detail {
 pub fn summary(file: &CalibrationFile, detail: Detail) -> String {
     let mut out = String::new();
     verdict(&mut out, file);
+    errors::figures(&mut out, file);
     if let Some(acceptance) = &file.acceptance {
         acceptance::lines(&mut out, acceptance);
     }
     points(&mut out, file, detail);
-    out.push('\n');
-    errors::table(&mut out, file);
-    out.push('\n');
     known(&mut out, file);
     if detail == Detail::Full {
+        out.push('\n');
+        errors::table(&mut out, file);
         out.push('\n');
         details::all(&mut out, file);
     }
@@ -72,20 +73,34 @@ pub fn unsaid(file: &CalibrationFile, detail: Detail) -> Vec<String> {
     rest.iter().filter(is_warning).map(|point| point.text.clone()).collect()
 }
 
-/// The expected error that the verdict states, its key and where it holds; nothing where no use is advised or nothing is known.
-pub(super) fn expected(file: &CalibrationFile) -> Option<(f64, &'static str, &'static str)> {
-    let level = file.verdict.as_ref()?.level;
-    let expected = file.uncertainty.as_ref()?;
-    match level {
-        Level::DoNotUse => None,
-        Level::InsideSampledRange => {
-            Some((expected.measured.sigma_position_mm, "uncertainty.measured.sigma_position_mm", "there"))
-        }
-        Level::Good => Some((
-            expected.range.sigma_position_mm,
-            "uncertainty.range.sigma_position_mm",
-            "anywhere within the limits",
-        )),
+/// What to expect of the model that is delivered.
+pub(super) struct Expectation {
+    /// Millimetres (RMS), in configurations like those that were measured.
+    pub(super) error_mm: f64,
+    /// The distance that 95 % of the errors do not exceed.
+    pub(super) bound_mm: f64,
+    /// The same error anywhere within the limits, with its key, where the verdict is good.
+    pub(super) anywhere: Option<(f64, String)>,
+}
+
+/// What the verdict lets expect; nothing where no use is advised or nothing is known.
+pub(super) fn expected(file: &CalibrationFile) -> Option<Expectation> {
+    let verdict = file.verdict.as_ref().filter(|it| it.level != Level::DoNotUse)?;
+    let (own, key) = uncertainty(file)?;
+    Some(Expectation {
+        error_mm: verdict.expected_error_mm.unwrap_or(own.measured.sigma_position_mm),
+        bound_mm: verdict.bound95_mm.unwrap_or(own.measured.bound95_position_mm),
+        anywhere: (verdict.level == Level::Good)
+            .then(|| (own.range.sigma_position_mm, format!("{key}.range.sigma_position_mm"))),
+    })
+}
+
+/// Uncertainty of the model that is delivered, and its key.
+pub(in crate::report) fn uncertainty(file: &CalibrationFile) -> Option<(&UncertaintyEntry, &'static str)> {
+    let corrected = file.corrected.as_deref().filter(|it| it.has_terms());
+    match corrected.and_then(|it| it.uncertainty.as_ref()) {
+        Some(own) => Some((own, "corrected.uncertainty")),
+        None => Some((file.uncertainty.as_ref()?, "uncertainty")),
     }
 }
 
@@ -95,15 +110,11 @@ fn verdict(out: &mut String, file: &CalibrationFile) {
         return;
     };
     let level = verdict.level.words();
-    let reason = reasons(file).into_iter().next();
-    match (expected(file), reason) {
-        (Some((sigma, _, place)), reason) => {
-            let sigma = number(sigma);
-            line(out, "verdict", &format!("{level}: expected error {sigma} mm (RMS) {place}"));
-            reason.into_iter().for_each(|reason| line(out, "", &reason));
+    match reasons(file).into_iter().next() {
+        Some(reason) if verdict.level == Level::DoNotUse => {
+            line(out, "verdict", &format!("{level}: {reason}"))
         }
-        (None, Some(reason)) => line(out, "verdict", &format!("{level}: {reason}")),
-        (None, None) => line(out, "verdict", level),
+        _ => line(out, "verdict", level),
     }
 }
 
@@ -167,6 +178,10 @@ fn known(out: &mut String, file: &CalibrationFile) {
     let structural = found.structural.iter().filter(|it| it.cause == Cause::NoOrientation);
     undetermined.extend(structural.map(|direction| direction.description.clone()));
     lines(out, "undetermined", undetermined);
+    lines(out, "target", targets(file));
+    if file.move_tip {
+        line(out, "tip", "the point that was measured, by --move-tip");
+    }
     if let Some(blocks) = &file.blocks {
         lines(out, "held", (!blocks.held.is_empty()).then(|| blocks.held.join(", ")));
     }
@@ -184,6 +199,23 @@ fn known(out: &mut String, file: &CalibrationFile) {
     }) {
         line(out, "corrected", "not fitted: beside axes that are held, only groups of terms that are named");
     }
+}
+
+/// Where each target is on the link of the tip, the first few of many.
+fn targets(file: &CalibrationFile) -> Vec<String> {
+    let link = if file.robot.tip_link.is_empty() { "the tip" } else { &file.robot.tip_link };
+    let on_tip = file.targets.iter().filter(|(_, target)| target.on.is_none());
+    let told = on_tip.map(|(name, target)| {
+        let place = rounded(target.position_m, 1e3, 2);
+        format!("{}: at {place} mm in the frame of {}", name_shown(name), name_shown(link))
+    });
+    let mut told: Vec<String> = told.collect();
+    if told.len() > MOST {
+        let rest = told.len() - (MOST - 1);
+        told.truncate(MOST - 1);
+        told.push(format!("… and {rest} more, in calibration.json"));
+    }
+    told
 }
 
 /// Which groups of terms the corrected model has, and what speaks for them.
