@@ -275,8 +275,7 @@ fn write(
     let written =
         output::write(places.folder, places.report, model, &calibration.robot_with_targets(), results)?;
     console.warnings(&written.notes);
-    let others: Vec<String> = written.files.iter().filter(|name| *name != output::REPORT).cloned().collect();
-    let mut words = style::written(&written.folder, &others);
+    let mut words = style::written(&written.folder, &written.files);
     if arguments.verbose {
         let text = format!(
             "read back within {:.1e} m and {:.1e} rad in 1,000 configurations",
@@ -284,13 +283,10 @@ fn write(
         );
         words.push_str(&labelled("", &text));
     }
-    let among = written.files.iter().find(|name| *name == output::REPORT);
-    let report = match place {
-        Some(ReportPlace::File(path)) => Some(path.clone()),
-        Some(ReportPlace::None) | None => among.map(|name| written.folder.join(name)),
-    };
-    if let Some(path) = report {
-        words.push_str(&labelled("report", &shown(&path)));
+    if let Some(ReportPlace::File(path)) = place
+        && !written.files.iter().any(|name| *name == output::REPORT)
+    {
+        words.push_str(&labelled("report", &shown(path)));
     }
     Ok(words)
 }

@@ -68,6 +68,7 @@ mod statistics;
 mod suspicion;
 mod taught;
 mod theory;
+mod tip_bounds;
 mod tree_models;
 #[allow(dead_code)]
 #[path = "../trials/mod.rs"]

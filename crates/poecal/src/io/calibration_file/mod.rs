@@ -8,6 +8,7 @@ mod controller;
 mod corrected;
 mod judging;
 mod keyed;
+mod link;
 mod original;
 mod outliers;
 mod refusal;

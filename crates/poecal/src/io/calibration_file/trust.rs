@@ -1,9 +1,11 @@
 //! Verdict, coverage, cross-validation and uncertainty in `calibration.json`.
 
+use nalgebra::Matrix3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::keyed::{AttributionKeys, DiscrepancyKeys, FreedomKeys, Keyed, NoiseKeys, RmsKeys, shown};
+use super::link::{self, LinkPoints};
 use super::{CalibrationFile, CorrelationsEntry, JointChangeEntry, PoseEntry};
 use crate::analysis::JointCoverage;
 use crate::calibration::{
@@ -199,6 +201,8 @@ struct Predicting<'a> {
     held_out: Option<&'a CoverageCheck>,
     bootstrap: Option<&'a Bootstrap>,
     robot: &'a Robot,
+    /// The robot with its tip and its mounted targets, as it was found.
+    placed: &'a Robot,
     targets: &'a [CalibratedTarget],
     /// Errors of the fitted rows.
     measured: &'a ModelAccuracy,
@@ -275,6 +279,7 @@ impl UncertaintyEntry {
                 held_out: trust.held_out.as_ref(),
                 bootstrap: trust.bootstrap.as_ref(),
                 robot: &calibration.nominal,
+                placed: &calibration.robot,
                 targets: &calibration.targets,
                 measured: &calibration.accuracy.training.calibrated,
                 tells_correlations: true,
@@ -292,6 +297,7 @@ impl UncertaintyEntry {
                 held_out: correction.kept.as_ref(),
                 bootstrap: None,
                 robot: &correction.robot,
+                placed: &correction.robot,
                 targets: &correction.targets,
                 measured: &correction.training,
                 tells_correlations: false,
@@ -307,6 +313,7 @@ impl UncertaintyEntry {
             held_out: judged,
             bootstrap,
             robot,
+            placed,
             targets,
             measured,
             tells_correlations,
@@ -342,6 +349,22 @@ impl UncertaintyEntry {
             | Parameter::TargetFrame(_)
             | Parameter::RangeUnknown(_) => None,
         });
+        // Places of points are along axes that the file does not have: of the fit, and not of the tip.
+        let turns = found.layout.parameters().filter_map(|(parameter, places)| {
+            let Parameter::TargetPlace(TargetPlace { target }) = parameter else { return None };
+            let own = targets.get(*target)?;
+            let mount = placed.mounted.iter().find(|mount| Some(&mount.name) == own.name.as_ref());
+            let rotation = mount.map_or(placed.home.rotation, |mount| placed.base_from(mount).rotation);
+            let turn = rotation.transpose() * found.estimate.base_from_target.get(*target)?.rotation;
+            Some((places.iter().map(|(place, _)| *place).collect::<Vec<_>>(), turn))
+        });
+        let turns: Vec<(Vec<usize>, Matrix3<f64>)> = turns.collect();
+        let turned = |matrix: &[f64]| -> Vec<f64> {
+            let mut matrix = matrix.to_vec();
+            turns.iter().for_each(|(places, turn)| link::turn(&mut matrix, n, places, turn));
+            matrix
+        };
+        let covariance = turned(&found.covariance);
         let upper = |matrix: &[f64]| -> Vec<f64> {
             let rows = kept.iter().enumerate();
             rows.flat_map(|(at, &i)| kept[at..].iter().map(move |&j| i * n + j))
@@ -381,14 +404,14 @@ impl UncertaintyEntry {
             correlations: tells_correlations.then(|| {
                 let covariance: Vec<f64> = kept
                     .iter()
-                    .flat_map(|&i| kept.iter().map(move |&j| found.covariance[i * n + j]))
+                    .flat_map(|&i| kept.iter().map(|&j| covariance[i * n + j]).collect::<Vec<_>>())
                     .collect();
                 CorrelationsEntry::of(&covariance, &unknowns)
             }),
             unknowns,
             frame_about_m: about,
-            covariance_m2: upper(&found.covariance),
-            covariance_outside_m2: found.covariance_outside.as_deref().map(upper),
+            covariance_m2: upper(&covariance),
+            covariance_outside_m2: found.covariance_outside.as_deref().map(|it| upper(&turned(it))),
         })
     }
 }
@@ -514,13 +537,17 @@ impl CalibrationFile {
             };
             free.retain(is_unknown);
         }
+        let mut points = Vec::new();
         let mut index = |wanted: &Option<&str>| {
             let wanted = wanted.unwrap_or_default();
             entry.targets.iter().position(|(name, _)| name == wanted).unwrap_or_else(|| {
-                // A point on the last link that was not measured itself is as certain as the link.
+                // A point on a link that was not measured itself is as certain as the link.
                 let (body, pose) = place(Some(wanted));
                 estimate = estimate.with_target(body, pose);
-                estimate.base_from_target.len() - 1
+                let target = estimate.base_from_target.len() - 1;
+                let joint = body.joint().map(|joint| robot.joints[joint].give_of.unwrap_or(joint));
+                points.extend(joint.map(|joint| (target, joint)));
+                target
             })
         };
         let indices = targets.iter().map(&mut index).collect();
@@ -538,11 +565,18 @@ impl CalibrationFile {
         if !is_covariance(&entry.covariance_m2) || !outside.is_none_or(is_covariance) {
             return Err(bad("a negative variance, or one that is no number"));
         }
+        let mut covariances = (symmetric(&entry.covariance_m2, n), outside.map(|upper| symmetric(upper, n)));
+        let mut layout = layout;
+        if let Some(found) = LinkPoints::new(&estimate, &layout, &points) {
+            covariances =
+                (found.covariance(&covariances.0), covariances.1.map(|outside| found.covariance(&outside)));
+            layout = found.layout;
+        }
         let uncertainty = Uncertainty {
             estimate,
             layout,
-            covariance: symmetric(&entry.covariance_m2, n),
-            covariance_outside: outside.map(|upper| symmetric(upper, n)),
+            covariance: covariances.0,
+            covariance_outside: covariances.1,
             sampled: self.coverage.iter().map(|it| [it.sampled_min, it.sampled_max]).collect(),
             discrepancy: entry.model_error(),
             length_m: entry.length_m,
