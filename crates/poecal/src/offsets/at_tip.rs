@@ -1,7 +1,6 @@
 //! The offsets, base and tool with which the tip itself comes nearest, in place and turn.
 
-use nalgebra::Vector6;
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{Matrix3, Vector3, Vector6};
 
 use super::fit::{Normal, OffsetState, wrapped};
 use super::prediction::{Predictions, TipError};
