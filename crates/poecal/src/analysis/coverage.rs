@@ -189,6 +189,25 @@ pub(crate) fn inside(robot: &Robot, coverage: &[JointCoverage], readings: &[f64]
     })
 }
 
+/// A robot whose joints are limited to the range that all of these coverages sampled; where that is none, to that of the first. A joint that one of
+/// them does not have keeps its limits.
+pub(crate) fn within_sampled(robot: &Robot, coverages: &[&[JointCoverage]]) -> Robot {
+    let mut robot = robot.clone();
+    for joint in &mut robot.joints {
+        let own = coverages.iter().map(|of| of.iter().find(|it| it.joint == joint.name));
+        let own: Option<Vec<&JointCoverage>> = own.collect();
+        let Some((first, others)) = own.as_deref().and_then(<[_]>::split_first) else { continue };
+        let one = (first.sampled_min, first.sampled_max);
+        let both =
+            others.iter().fold(one, |(min, max), it| (min.max(it.sampled_min), max.min(it.sampled_max)));
+        let (lower, upper) = if both.0 <= both.1 { both } else { one };
+        if lower <= upper {
+            joint.limits = Some(Limits { lower, upper });
+        }
+    }
+    robot
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -16,7 +16,7 @@ mod unseen;
 mod ways;
 
 pub use coverage::{JointCoverage, coverage};
-pub(crate) use coverage::{inside, ranges};
+pub(crate) use coverage::{inside, ranges, within_sampled};
 pub use direction::{Cause, Direction};
 pub use identifiability::{Identifiability, effective_unknowns, identifiability, residual_variance};
 pub use identify::{ExpectedError, Foresight, PlannedSession, identify, identify_touching};

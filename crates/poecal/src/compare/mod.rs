@@ -9,13 +9,13 @@ use nalgebra::Vector3;
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 
-use crate::analysis::JointCoverage;
+use crate::analysis::within_sampled;
 use crate::calibration::DeviceFrameKnowledge;
 use crate::error::{Error, ErrorKind, Result};
 use crate::io::calibration_file::CalibrationFile;
 use crate::lie::{Pose, rotation};
 use crate::offsets::{Changes, End, JointChange, Taught, with_tool_of};
-use crate::robot::{JointKind, Limits, Robot};
+use crate::robot::{JointKind, Robot};
 use crate::simulate::random_configuration;
 use spread::Spread;
 
@@ -141,7 +141,7 @@ pub fn compare(first: &CalibrationFile, second: &CalibrationFile, limit_m: Optio
     let expected =
         |file: &CalibrationFile| file.uncertainty.as_ref().map(|it| it.measured.sigma_position_mm / 1e3);
     let expected_m = expected(one).zip(expected(other)).map(|(one, other)| one.hypot(other));
-    let sampled = within(&a, [&first.coverage, &second.coverage]);
+    let sampled = within_sampled(&a, &[&first.coverage, &second.coverage]);
     let tip = tips(&sampled, &one.robot()?, &other.robot()?, base_is_free);
     Ok(Compared {
         joints,
@@ -212,24 +212,6 @@ fn check_nominal(a: &Robot, b: &Robot) -> Result<()> {
         }
     }
     Ok(())
-}
-
-/// A robot whose joints are limited to the range that both sampled; where there is none, to that of the first.
-fn within(robot: &Robot, coverage: [&[JointCoverage]; 2]) -> Robot {
-    let mut robot = robot.clone();
-    for joint in &mut robot.joints {
-        let sampled = coverage.map(|of| {
-            let own = of.iter().find(|it| it.joint == joint.name);
-            own.map(|it| [it.sampled_min, it.sampled_max])
-        });
-        let [Some(one), Some(other)] = sampled else { continue };
-        let both = [one[0].max(other[0]), one[1].min(other[1])];
-        let [lower, upper] = if both[0] <= both[1] { both } else { one };
-        if lower <= upper {
-            joint.limits = Some(Limits { lower, upper });
-        }
-    }
-    robot
 }
 
 /// Difference of the tips over random configurations of the sampled range, base and tool of the second as they fit the first best.

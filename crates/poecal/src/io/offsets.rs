@@ -1,11 +1,11 @@
 //! The joint offsets with which one model comes nearest to another, as every command states them.
 
 use super::model::{Model, ModelSource};
-use crate::analysis::JointCoverage;
+use crate::analysis::within_sampled;
 use crate::calibration::DeviceFrameKnowledge;
 use crate::error::Result;
 use crate::offsets::{End, Explanation, OffsetOptions, explain};
-use crate::robot::{Limits, Robot};
+use crate::robot::Robot;
 
 /// The offsets between two models, and how they were found.
 ///
@@ -49,7 +49,7 @@ impl ModelOffsets {
         };
         let [(base, base_reason), (tip, tip_reason)] = Self::ends(ends, source);
         let options = OffsetOptions { base, tip, ..OffsetOptions::default() };
-        let explanation = explain(&within(nominal, coverage), actual, &options)?;
+        let explanation = explain(&within_sampled(nominal, &[coverage]), actual, &options)?;
         Ok(ModelOffsets { explanation, reasons: [base_reason, tip_reason], is_sampled: !coverage.is_empty() })
     }
 
@@ -72,16 +72,4 @@ impl ModelOffsets {
         let asked = |end: Option<End>, usual| end.map_or(usual, |end| (end, "as asked"));
         [asked(base, usual_base), asked(tip, usual_tip)]
     }
-}
-
-/// A robot whose joints are limited to the range that was sampled.
-fn within(robot: &Robot, coverage: &[JointCoverage]) -> Robot {
-    let mut robot = robot.clone();
-    for joint in &mut robot.joints {
-        let own = coverage.iter().find(|it| it.joint == joint.name);
-        if let Some(own) = own.filter(|it| it.sampled_min <= it.sampled_max) {
-            joint.limits = Some(Limits { lower: own.sampled_min, upper: own.sampled_max });
-        }
-    }
-    robot
 }

@@ -30,8 +30,6 @@ pub(super) struct TipFit<'a> {
     pub(super) options: &'a OffsetOptions,
     /// Whether the offsets move, or the ends that are free alone.
     pub(super) moves_offsets: bool,
-    /// Whether anything moves: otherwise the start is the result.
-    pub(super) moves: bool,
     /// Metres that a radian counts.
     pub(super) length_m: f64,
 }
@@ -40,18 +38,20 @@ impl TipFit<'_> {
     /// The state with the tip nearest to the actual one, from one with the screws nearest, the tip's motion and what is left. Where no tip
     /// decides, the screws have.
     pub(super) fn nearest(&self, start: OffsetState) -> Result<(OffsetState, Pose, TipError)> {
-        let compared = |state: &OffsetState| -> Result<(Pose, TipError)> {
-            Ok(self.predictions.compare(&into_screws(self.nominal, &state.offsets)?, &state.base))
-        };
-        let (tip, left) = compared(&start)?;
+        let (tip, left) = self.compared(&start)?;
         // Robots that differ by offsets alone: the start is exact.
-        if !self.moves || self.scales().is_empty() || left.rms_m <= EXACT_M * self.length_m {
+        if self.scales().is_empty() || left.rms_m <= EXACT_M * self.length_m {
             return Ok((start, tip, left));
         }
         let (state, _) = self.descend((start.clone(), tip))?;
-        let (nearer, less) = compared(&state)?;
+        let (nearer, less) = self.compared(&state)?;
         let cost = |it: &TipError| it.rms_m.powi(2) + (TOOL_M * it.rms_rad).powi(2);
         Ok(if cost(&less) < cost(&left) { (state, nearer, less) } else { (start, tip, left) })
+    }
+
+    /// The best motion of the tip at a state, and what it leaves.
+    pub(super) fn compared(&self, state: &OffsetState) -> Result<(Pose, TipError)> {
+        Ok(self.predictions.compare(&into_screws(self.nominal, &state.offsets)?, &state.base))
     }
 
     /// Gauss-Newton, with steps halved while they do not descend.

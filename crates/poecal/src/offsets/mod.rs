@@ -171,16 +171,16 @@ fn explained(nominal: &Robot, actual: &Robot, options: &OffsetOptions, at_tip: b
     let unmoved = comparison.best_without_offsets();
     let undetermined = comparison.undetermined(&found);
     let predictions = Predictions::new(nominal, actual, options);
-    let fit = |moves_offsets: bool| TipFit {
-        nominal,
-        predictions: &predictions,
-        options,
-        moves_offsets,
-        moves: at_tip,
-        length_m: comparison.length_m,
+    let nearest = |moves_offsets: bool, state: OffsetState| {
+        let length_m = comparison.length_m;
+        let fit = TipFit { nominal, predictions: &predictions, options, moves_offsets, length_m };
+        if at_tip {
+            return fit.nearest(state);
+        }
+        fit.compared(&state).map(|(tip_motion, left)| (state, tip_motion, left))
     };
-    let (found, tip_motion, with_offsets) = fit(true).nearest(found)?;
-    let (_, _, without_offsets) = fit(false).nearest(unmoved)?;
+    let (found, tip_motion, with_offsets) = nearest(true, found)?;
+    let (_, _, without_offsets) = nearest(false, unmoved)?;
     let (joints, home) = remainder(&comparison, &found);
     Ok(Explanation {
         options: *options,

@@ -88,6 +88,11 @@ impl CalibrationFile {
             .collect()
     }
 
+    /// The target of rows that name none; `None` where that is the tip, or where rows must name theirs.
+    pub(super) fn unnamed(&self) -> Option<&'static str> {
+        self.targets.contains_key(MEASURED).then_some(MEASURED)
+    }
+
     /// Refuses measurements of unknown targets, or of orientations of targets that were calibrated as points.
     ///
     /// # Errors
@@ -98,8 +103,7 @@ impl CalibrationFile {
         let frames = data.frames(&data.all_rows());
         let known = first_few(&names().collect::<Vec<_>>());
         for (is_frame, name) in frames.into_iter().zip(&data.targets) {
-            let unnamed = self.targets.contains_key(MEASURED).then_some(MEASURED);
-            let message = match name.as_deref().or(unnamed) {
+            let message = match name.as_deref().or(self.unnamed()) {
                 None if self.targets.is_empty() => continue,
                 None => format!(
                     "found measurements without a target's name, expected one of {known} as in the calibration: add a \

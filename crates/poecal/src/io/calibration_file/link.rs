@@ -3,10 +3,10 @@
 use nalgebra::{DMatrix, Matrix3, Vector3};
 
 use crate::estimate::Estimate;
+use crate::gauge::screw_motions;
 use crate::lie::Twist;
 use crate::parameters::{Parameter, TargetFrame};
 use crate::problem::Layout;
-use crate::robot::JointKind;
 
 /// A covariance of `n` unknowns, row by row, of which three are along axes that are turned: `x' = R x`.
 pub(super) fn turn(covariance: &mut [f64], n: usize, places: &[usize], rotation: &Matrix3<f64>) {
@@ -32,15 +32,15 @@ impl LinkPoints {
     pub(super) fn new(estimate: &Estimate, known: &Layout, points: &[(usize, usize)]) -> Option<Self> {
         let axis_of = |joint: usize| {
             let is_own = |parameter: &Parameter| parameter.screw_axis().is_some_and(|it| it.joint == joint);
-            known.parameters().find(|(parameter, _)| is_own(parameter))
+            known.parameters().find(|(parameter, _)| is_own(parameter)).map(|(_, places)| places)
         };
         let points: Vec<_> =
-            points.iter().filter_map(|&(target, joint)| Some((target, axis_of(joint)?))).collect();
+            points.iter().filter_map(|&(target, joint)| Some((target, joint, axis_of(joint)?))).collect();
         if points.is_empty() {
             return None;
         }
         let mut free: Vec<Parameter> = known.parameters().map(|(parameter, _)| *parameter).collect();
-        free.extend(points.iter().map(|(target, _)| Parameter::TargetFrame(TargetFrame::new(*target))));
+        free.extend(points.iter().map(|(target, ..)| Parameter::TargetFrame(TargetFrame::new(*target))));
         let layout = Layout::new(free, known.length_m());
         let mut by_known = DMatrix::zeros(layout.dim(), known.dim());
         let count = known.parameters().count();
@@ -49,21 +49,15 @@ impl LinkPoints {
                 by_known[(to, from)] = 1.0;
             }
         }
-        for ((target, (axis, places)), (_, own)) in points.iter().zip(layout.parameters().skip(count)) {
-            let Some(axis) = axis.screw_axis() else { continue };
-            let (frame, place) = (estimate.base_from_axis[axis.joint], estimate.base_from_target[*target]);
-            for (k, &(from, metres)) in places.iter().enumerate() {
-                let zero = Vector3::zeros();
-                let local = match (axis.kind, k) {
-                    (JointKind::Revolute, 0 | 1) => Twist::new(Vector3::ith(k, 1.0), zero),
-                    (JointKind::Revolute, _) => Twist::new(zero, Vector3::ith(k - 2, 1.0)),
-                    (JointKind::Prismatic, _) => Twist::new(zero, Vector3::ith(k, 1.0)),
-                };
-                let moved = frame.transform(&local);
+        let motions = screw_motions(estimate, known);
+        for ((target, joint, places), (_, own)) in points.iter().zip(layout.parameters().skip(count)) {
+            let place = estimate.base_from_target[*target];
+            for &(from, _) in *places {
+                let moved = Twist::from_vector(&motions[from][*joint]);
                 let shift = place.rotation.transpose() * (moved.v + moved.w.cross(&place.translation));
                 let turn = place.rotation.transpose() * moved.w;
                 for (part, &(to, scale)) in shift.iter().chain(turn.iter()).zip(own) {
-                    by_known[(to, from)] = part * scale / metres;
+                    by_known[(to, from)] = part * scale;
                 }
             }
         }

@@ -10,7 +10,7 @@ use crate::calibration::{
 use crate::error::{Error, ErrorKind, Result};
 use crate::estimate::Range;
 use crate::measurement::{Dataset, Quantity};
-use crate::robot::{Body, MEASURED};
+use crate::robot::Body;
 use crate::start::faces_on_known_planes;
 use crate::uncertainty::Uncertainty;
 
@@ -102,8 +102,8 @@ impl CalibrationFile {
         let data = &*turned;
         let noise = self.noise()?;
         // Refitted targets are not those of the calibration.
-        let only = self.targets.contains_key(MEASURED).then_some(MEASURED);
-        let known = data.targets.iter().map(|name| name.as_deref().or(only)).filter(|_| !refit_tool);
+        let unnamed = self.unnamed();
+        let known = data.targets.iter().map(|name| name.as_deref().or(unnamed)).filter(|_| !refit_tool);
         let names: Vec<Option<&str>> = known.collect();
         let found = if self.uncertainty.is_some() { Some(self.uncertainty_as_seen(&names)?) } else { None };
         let predicted = found.as_ref().map(|(uncertainty, targets)| PredictedUncertainty {

@@ -14,7 +14,9 @@ use crate::calibration::{Improvements, Level, NoiseSource, SetAccuracy};
 use crate::io::calibration_file::CalibrationFile;
 use crate::io::residuals::Residuals;
 use crate::measurement::Quantity;
-use crate::report::summary::{ModelRow, Place, Point, SEE_ROBUST, expected, has_terms, leading, look_at};
+use crate::report::summary::{
+    ModelRow, Place, Point, SEE_ROBUST, delivered, expected, has_terms, leading, look_at,
+};
 use crate::report::table::{STATISTICS, further_words, joints_words, models};
 use crate::unit::Unit;
 
@@ -191,7 +193,7 @@ fn verdict(file: &CalibrationFile) -> Markup {
             h2 #verdict-title { span.sign aria-hidden="true" {} (words) }
             @if let Some(found) = expected(file) {
                 p {
-                    "Expected error of the " (if has_terms(file) { "corrected" } else { "calibrated" }) " model: "
+                    "Expected error of the " (delivered(file)) " model: "
                     (figure(found.error_mm, "verdict.expected_error_mm")) " mm (RMS), 95 % below "
                     (figure(found.bound_mm, "verdict.bound95_mm")) " mm"
                     @if let Some((sigma, key)) = found.anywhere { "; " (figure(sigma, key)) " mm (RMS) anywhere within the limits" }

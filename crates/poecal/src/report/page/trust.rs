@@ -10,7 +10,7 @@ use crate::io::calibration_file::{
     CalibrationFile, CorrelatedEntry, CrossValidationEntry, LeftOutEntry, RangeEntry, UncertaintyEntry,
 };
 use crate::measurement::Quantity;
-use crate::report::summary::{has_terms, uncertainty};
+use crate::report::summary::{delivered, uncertainty};
 use crate::robot::JointKind;
 use crate::uncertainty::Attribution;
 
@@ -32,8 +32,7 @@ fn unit_of(file: &CalibrationFile, joint: &str) -> (f64, &'static str) {
 
 fn expected(file: &CalibrationFile, found: &UncertaintyEntry, of: &str) -> Markup {
     let head = ["configurations", "RMS", "95 % bound, mean", "95 % bound, worst"];
-    let model = if has_terms(file) { "corrected" } else { "calibrated" };
-    let title = format!("Expected errors of positions that the {model} model predicts, mm");
+    let title = format!("Expected errors of positions that the {} model predicts, mm", delivered(file));
     let mut table = HtmlTable::new(&title, 1, &head);
     for (words, set, key) in
         [("measured", &found.measured, "measured"), ("anywhere within the limits", &found.range, "range")]

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::super::identify::coverage_table;
 use super::super::outliers;
 use super::super::table::{self, accuracy_table, joints_words, leading_words, line, lines, number};
-use super::{has_terms, uncertainty};
+use super::{delivered, uncertainty};
 use crate::calibration::{FormulationWords, NoiseSource};
 use crate::error::shown;
 use crate::io::calibration_file::CalibrationFile;
@@ -151,7 +151,7 @@ fn trust(out: &mut String, file: &CalibrationFile) {
             "{} mm (RMS) at the measured configurations, {} mm anywhere within the limits, by the {} model",
             number(expected.measured.sigma_position_mm),
             number(expected.range.sigma_position_mm),
-            if has_terms(file) { "corrected" } else { "calibrated" }
+            delivered(file)
         );
         line(out, "expected", &words);
     }

@@ -95,6 +95,11 @@ pub(super) fn expected(file: &CalibrationFile) -> Option<Expectation> {
     })
 }
 
+/// The model that is delivered.
+pub(in crate::report) fn delivered(file: &CalibrationFile) -> &'static str {
+    if has_terms(file) { "corrected" } else { "calibrated" }
+}
+
 /// Uncertainty of the model that is delivered, and its key.
 pub(in crate::report) fn uncertainty(file: &CalibrationFile) -> Option<(&UncertaintyEntry, &'static str)> {
     let corrected = file.corrected.as_deref().filter(|it| it.has_terms());
