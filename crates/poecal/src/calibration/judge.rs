@@ -115,8 +115,9 @@ pub struct JudgedModel {
 /// let exact = Simulation { noise_position_m: 0.0, noise_rotation_rad: 0.0, ..Simulation::default() };
 /// let made = exact.run(&elbow(), Kind::Point)?;
 /// let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default())?;
+/// let calibrated = calibration.robot_with_targets();
 /// let subject = Subject {
-///     calibrated: &calibration.robot,
+///     calibrated: &calibrated,
 ///     nominal: &calibration.nominal,
 ///     base_from_device: calibration.base_from_device,
 ///     further_base_from_device: &[],

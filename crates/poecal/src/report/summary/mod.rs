@@ -42,7 +42,8 @@ pub enum Detail {
 /// let made = Simulation { count: 100, ..Simulation::default() }.run(&elbow(), Kind::Point)?;
 /// let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default())?;
 /// let file = CalibrationFile::new(&calibration, &made.data, Inputs::default());
-/// assert!(summary(&file, Detail::Short).starts_with("verdict       good: expected error "));
+/// let short = summary(&file, Detail::Short);
+/// assert!(short.starts_with("verdict       good\nbefore        ") && short.contains(" mm (RMS) expected, 95 % below "));
 /// assert!(summary(&file, Detail::Full).contains("solver"));
 /// # Ok::<(), poecal::Error>(())
 /// ```
