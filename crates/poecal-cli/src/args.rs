@@ -32,7 +32,7 @@ use poecal::io::predictions::PredictionFrame;
 use crate::quantity::{sigma_m, threads};
 use shared::{ChainArgs, ColumnArgs, Meaning, OutFile, Reading};
 use words::{
-    ACCEPTED_MODEL, EXPORT_FORMAT, FORM, FRAME, PREDICT_IN, PREDICTED_MODEL, REQUIRED_LEVEL, one_of,
+    ACCEPTED_MODEL, EXPORT_FORMAT, FORM, FRAME, PREDICT_IN, PREDICTED_MODEL, REFIT, REQUIRED_LEVEL, one_of,
 };
 
 /// What the program ends with.
@@ -149,6 +149,9 @@ pub(crate) struct Validate {
     /// Refit the targets to these measurements
     #[arg(long)]
     pub(crate) refit_tool: bool,
+    /// Refit the device's frame where these measurements show that the device stands elsewhere; without, that is said
+    #[arg(long, value_parser = one_of(REFIT), value_name = "WHEN", default_value = "never", conflicts_with = "refit_frame")]
+    pub(crate) refit: bool,
     /// End with code 1 unless the measurements confirm this: `good` if 80 % of all errors are inside their own 95 % bounds and the error
     /// (RMS) is at most twice the expected one; `inside_sampled_range` if that holds of the rows inside the sampled range
     #[arg(long, value_parser = one_of(REQUIRED_LEVEL), value_name = "VERDICT")]

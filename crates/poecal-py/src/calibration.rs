@@ -8,7 +8,7 @@ use content::part;
 use std::path::{Path, PathBuf};
 
 use numpy::PyArray2;
-use poecal::calibration::{AcceptanceLimits, Judgement};
+use poecal::calibration::{AcceptanceLimits, Judgement, Refitted};
 use poecal::compensate::{Language, ProgramOptions};
 use poecal::io::calibration_file::{CalibrationFile, Counted};
 use poecal::io::export::{ExportFormat, ExportOptions, export};
@@ -742,6 +742,8 @@ impl Calibration {
     ///     Whether to refit the device's frame to them.
     /// refit_tool
     ///     Whether to refit the targets to them.
+    /// refit
+    ///     "auto" refits the device's frame where the measurements show that the device stands elsewhere; "never" says it.
     /// accept
     ///     Limits that the errors shall keep, like "0.2mm" or "0.2mm,max:0.5mm,0.05deg"; see `poecal.calibrate`.
     /// accept_model
@@ -751,13 +753,14 @@ impl Calibration {
     /// -------
     /// Findings
     ///     Errors of the nominal and the calibrated robot, their share inside the predicted bounds, and `acceptance`.
-    #[pyo3(signature = (measurements, *, refit_frame=false, refit_tool=false, accept=None, accept_model="corrected"))]
+    #[pyo3(signature = (measurements, *, refit_frame=false, refit_tool=false, refit="never", accept=None, accept_model="corrected"))]
     fn validate(
         &self,
         py: Python<'_>,
         #[pyo3(from_py_with = arg::measurements)] measurements: &Measurements,
         #[pyo3(from_py_with = arg::refit_frame)] refit_frame: bool,
         #[pyo3(from_py_with = arg::refit_tool)] refit_tool: bool,
+        #[pyo3(from_py_with = arg::refit)] refit: &str,
         #[pyo3(from_py_with = arg::accept)] accept: Option<AcceptanceLimits>,
         #[pyo3(from_py_with = arg::accept_model)] accept_model: &str,
     ) -> PyResult<Findings> {
@@ -766,8 +769,14 @@ impl Calibration {
         let data = measurements.data();
         let limits = accept_limits(accept, accept_model)?;
         let sha256 = &measurements.source.sha256;
+        let refits = chosen("refit", refit, &[("never", false), ("auto", true)])?;
         let judged = py.detach(|| {
-            let judgement = file.judge(data, refit_frame, refit_tool)?;
+            let judgement = if refit_frame {
+                file.judge(data, true, refit_tool)?
+            } else {
+                file.judge_wherever(data, refit_tool, refits)?
+            };
+            let refit_frame = judgement.refitted.contains(&Refitted::DeviceFrame);
             let accept = |limits| file.accept(data, refit_frame, refit_tool, limits, sha256);
             let acceptance = limits.as_ref().map(accept).transpose()?;
             Ok(Judgement { acceptance, ..judgement })

@@ -205,6 +205,10 @@ pub(super) const MEASURED: Words<Kind> = &[
     ("components", "Some of x, y and z, as of a camera or a gauge on a rail", Kind::Component),
 ];
 
+/// When the device's frame is refitted by itself.
+pub(super) const REFIT: Words<bool> =
+    &[("never", "Only by --refit-frame", false), ("auto", "Where the device stands elsewhere", true)];
+
 /// Whether a frame is the same in both models.
 pub(super) const END: Words<End> =
     &[("free", "It is fitted with the offsets", End::Free), ("kept", "It is the same in both", End::Kept)];

@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
-use poecal::calibration::{AcceptanceLimits, Decision};
+use poecal::calibration::{AcceptanceLimits, Decision, Refitted};
 use poecal::io::calibration_file::CalibrationFile;
 use poecal::io::measurements::{self, ReadOptions};
 use poecal::io::named_files::{actual, refuse_repeats};
@@ -24,8 +24,14 @@ pub(crate) fn validate(arguments: &Validate, console: &Console) -> Result<u8> {
     let controller = file.controller.clone();
     let options = ReadOptions { ignore_sets: true, controller, ..arguments.meaning.options()? };
     let read = measurements::read(&arguments.measurements, &calibrated, &options)?;
-    let (refit_frame, refit_tool) = (arguments.refit_frame, arguments.refit_tool);
-    let mut judgement = file.judge(&read.data, refit_frame, refit_tool).map_err(in_file)?;
+    let refit_tool = arguments.refit_tool;
+    let judged = if arguments.refit_frame {
+        file.judge(&read.data, true, refit_tool)
+    } else {
+        file.judge_wherever(&read.data, refit_tool, arguments.refit)
+    };
+    let mut judgement = judged.map_err(in_file)?;
+    let refit_frame = judgement.refitted.contains(&Refitted::DeviceFrame);
     if let Some(limits) = AcceptanceLimits::chosen(arguments.accept.clone(), arguments.accept_model)? {
         let found = file.accept(&read.data, refit_frame, refit_tool, &limits, &read.sha256);
         judgement.acceptance = Some(found.map_err(in_file)?);

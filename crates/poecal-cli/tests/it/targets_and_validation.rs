@@ -86,7 +86,27 @@ fn validation_judges_other_sessions() {
     write_measurements(&folder, "moved.csv", Kind::Pose, "", &Simulation { device_anywhere: false, ..more });
     let run = folder.run("validate poecal-out/calibration.json moved.csv");
     assert_eq!(run.code, 0);
-    assert!(run.err.contains("refit its frame with --refit-frame"), "{}", run.err);
+    println!("{}", run.err.trim_end());
+    assert!(
+        run.err
+            .contains("from where the calibration has it: with its frame refitted the position error is 0."),
+        "{}",
+        run.err
+    );
+    assert!(run.err.contains("judge the robot by --refit-frame, or let --refit auto do so"), "{}", run.err);
+    // By itself it does the same, and says so.
+    let found = json("moved.csv --refit auto");
+    assert_eq!(found["calibrated"], json("moved.csv --refit-frame")["calibrated"]);
+    let moved = &found["moved_device"];
+    assert!(moved["refitted"] == true && moved["after_rms"].as_f64() < moved["before_rms"].as_f64());
+    assert!(
+        folder
+            .done("validate poecal-out/calibration.json moved.csv --refit auto")
+            .contains("the device stands ")
+    );
+    // Where it stands as it stood, nothing is refitted.
+    let found = json("more.csv --refit auto");
+    assert!(found["moved_device"].is_null() && found["refitted"] == serde_json::json!([]), "{found}");
     let found = json("moved.csv --refit-frame");
     println!("moved.csv, frame refitted: {} mm", rms(&found["calibrated"]));
     assert!(rms(&found["calibrated"]) < 1.5 * own_rms);

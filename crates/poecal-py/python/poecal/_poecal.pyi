@@ -1396,6 +1396,7 @@ class Calibration:
         *,
         refit_frame: bool = False,
         refit_tool: bool = False,
+        refit: Literal["never", "auto"] = "never",
         accept: str | None = None,
         accept_model: Literal["corrected", "calibrated"] = "corrected",
     ) -> Findings:

@@ -66,7 +66,7 @@ pub enum Refitted {
 /// let errors = Statistic { mean: 0.1, rms: 0.11, p95: 0.2, max: 0.25 };
 /// let calibrated = Measured::of(|quantity| (quantity == Quantity::Position).then_some(errors));
 /// let judgement = Judgement { count: 20, refitted: vec![], calibrated: calibrated.into(), corrected: None, nominal: None, promised: None,
-///     in_sampled_range: None, acceptance: None };
+///     in_sampled_range: None, acceptance: None, moved_device: None, base_from_device: poecal::Pose::identity() };
 /// assert_eq!(judgement.calibrated.position_mm().max, 0.25);
 /// ```
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -89,6 +89,27 @@ pub struct Judgement {
     /// Whether the limits that were asked for are kept; `None` if none were.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub acceptance: Option<Acceptance>,
+    /// That the device stands elsewhere than at the calibration, where the rows show it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub moved_device: Option<MovedDevice>,
+    /// Where the first device stands: as in the calibration, or as it was refitted.
+    #[serde(skip)]
+    pub base_from_device: Pose,
+}
+
+/// How far a device stands from where the calibration has it.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct MovedDevice {
+    /// Distance, millimetres.
+    pub shift_mm: f64,
+    /// Angle, degrees.
+    pub turn_deg: f64,
+    /// Error of the calibrated model (RMS of the leading quantity, millimetres or degrees) with the frame of the calibration.
+    pub before_rms: f64,
+    /// The same with the frame refitted.
+    pub after_rms: f64,
+    /// Whether it was refitted for that.
+    pub refitted: bool,
 }
 
 /// Errors of a model, and coverage of its predicted bounds.
@@ -162,6 +183,8 @@ pub fn judge(subject: &Subject<'_>, data: &Dataset) -> Result<Judgement> {
         promised,
         in_sampled_range,
         acceptance: None,
+        moved_device: None,
+        base_from_device: rows.estimate.device_from_base.inverse(),
     })
 }
 

@@ -57,7 +57,7 @@ pub use expected::{Expectations, Expected, RangePart};
 pub use fit::fit_screws;
 pub use formulation::{Formulation, FormulationWords, Minimize, Minimum};
 pub use found::SolverReport;
-pub use judge::{JudgedModel, Judgement, Refitted, Subject, judge};
+pub use judge::{JudgedModel, Judgement, MovedDevice, Refitted, Subject, judge};
 pub use noise::{NoiseSource, estimate_noise};
 pub use options::{CalibrationOptions, DeviceFrameKnowledge};
 pub use placed::{CalibratedStation, CalibratedTarget};

@@ -16,6 +16,11 @@ pub fn judgement(calibration: &str, measurements: &str, judgement: &Judgement) -
     line(&mut out, "calibration", calibration);
     line(&mut out, "measurements", &format!("{} in {measurements}", judgement.count));
     line(&mut out, "refitted", &refitted_words(judgement));
+    if let Some(moved) = judgement.moved_device.filter(|it| it.refitted) {
+        let (shift, turn) = (number(moved.shift_mm), number(moved.turn_deg));
+        let words = format!("the device stands {shift} mm and {turn} deg from where the calibration has it");
+        line(&mut out, "", &words);
+    }
     out.push('\n');
     for (k, (quantity, _)) in judgement.calibrated.iter().enumerate() {
         if k > 0 {

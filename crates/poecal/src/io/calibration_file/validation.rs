@@ -4,11 +4,13 @@ use std::collections::BTreeMap;
 
 use super::CalibrationFile;
 use crate::calibration::{
-    Acceptance, AcceptanceLimits, AcceptedModel, CoverageCheck, JudgedModel, Judgement, PartCoverage,
-    PredictedUncertainty, Refitted, Subject, accepted_by, judge,
+    Acceptance, AcceptanceLimits, AcceptedModel, CoverageCheck, JudgedModel, Judgement, MovedDevice,
+    PartCoverage, PredictedUncertainty, Refitted, Subject, accepted_by, judge,
 };
+use crate::distributions::f_quantile;
 use crate::error::{Error, ErrorKind, Result};
 use crate::estimate::Range;
+use crate::lie::rotation;
 use crate::measurement::{Dataset, Quantity};
 use crate::robot::Body;
 use crate::start::faces_on_known_planes;
@@ -16,6 +18,9 @@ use crate::uncertainty::Uncertainty;
 
 /// Ratio to the calibration's own error above which a device frame that is not refitted must have moved.
 const MOVED_DEVICE: f64 = 20.0;
+/// Share of the error that is left at most where a refitted frame explains it, and the chance that the frame's unknowns do.
+const MUCH: f64 = 0.7;
+const CHANCE: f64 = 1e-4;
 /// Share of errors inside their 95 % bound below which the bounds do not hold.
 const BROKEN: f64 = 0.75;
 /// Errors of exact data below this are rounding: a nanometre, in millimetres; of angles in degrees.
@@ -39,6 +44,42 @@ impl CalibrationFile {
             in_sampled_range: it.in_sampled_range,
         });
         Ok(Judgement { corrected, ..judgement })
+    }
+
+    /// [`CalibrationFile::judge`] with the device's frame refitted where that stands elsewhere than at the calibration, and the rows show it: the
+    /// error with the frame refitted is smaller by much and by more than six unknowns explain (F, 1 in 10,000), and the bounds hold then. With
+    /// `refits` it is judged so; otherwise it is said.
+    ///
+    /// # Errors
+    /// As [`CalibrationFile::judge`].
+    pub fn judge_wherever(&self, data: &Dataset, refit_tool: bool, refits: bool) -> Result<Judgement> {
+        let found = self.judge(data, false, refit_tool)?;
+        // Too few rows for a frame show none.
+        let Ok(again) = self.judge(data, true, refit_tool) else { return Ok(found) };
+        let (Some((_, before)), Some((_, after))) = (found.calibrated.leading(), again.calibrated.leading())
+        else {
+            return Ok(found);
+        };
+        let numbers: usize = data.observations.iter().map(|row| row.measurement.observe().dim()).sum();
+        let frames = 6.0 * data.station_count() as f64;
+        let freedom = numbers as f64 - frames;
+        let (square, less) = (before.rms.powi(2), after.rms.powi(2));
+        let is_plain = freedom > 0.0 && before.rms > ROUNDING;
+        let ratio = freedom / frames * (square - less) / less.max(f64::MIN_POSITIVE);
+        let holds = again.promised.is_none_or(|it| it.least_inside() >= BROKEN);
+        let is_certain = is_plain && holds && ratio >= f_quantile(CHANCE, frames, freedom);
+        if !is_certain || after.rms > MUCH * before.rms {
+            return Ok(found);
+        }
+        let apart = found.base_from_device.inverse() * again.base_from_device;
+        let moved_device = Some(MovedDevice {
+            shift_mm: 1e3 * (again.base_from_device.translation - found.base_from_device.translation).norm(),
+            turn_deg: rotation::log(&apart.rotation).norm().to_degrees(),
+            before_rms: before.rms,
+            after_rms: after.rms,
+            refitted: refits,
+        });
+        Ok(Judgement { moved_device, ..if refits { again } else { found } })
     }
 
     /// Judges limits by all rows of some measurements, with device frame and targets refitted as asked: theory.md §9, *Acceptance*. `sha256`
@@ -138,6 +179,15 @@ impl CalibrationFile {
     /// Contradiction between a judgement and the calibration, as a sentence.
     #[must_use]
     pub fn doubt(&self, judgement: &Judgement) -> Option<String> {
+        if let Some(moved) = judgement.moved_device.as_ref().filter(|it| !it.refitted) {
+            let (quantity, _) = judgement.calibrated.leading()?;
+            let (name, unit) = (quantity.name(), quantity.unit().symbol());
+            return Some(format!(
+                "the device stands {:.3} mm and {:.4} deg from where the calibration has it: with its frame refitted the {name} error is {:.4} {unit} \
+                 instead of {:.4} {unit} (RMS); judge the robot by --refit-frame, or let --refit auto do so",
+                moved.shift_mm, moved.turn_deg, moved.after_rms, moved.before_rms
+            ));
+        }
         let own = self.own_rms().max(ROUNDING);
         let (leading, found) = judgement.calibrated.leading()?;
         let (rms, unit) = (found.rms, leading.unit().symbol());
