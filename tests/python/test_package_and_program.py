@@ -111,7 +111,20 @@ def test_predictions_judgements_and_foresight_are_the_same(poses, tmp_path):
     measured = poecal.Measurements.from_csv(POINTS, calibration.robot)
     for flags, arguments in [([], {}), (["--refit-frame", "--refit-tool"], {"refit_frame": True, "refit_tool": True})]:
         judged = json.loads(program("validate", path, POINTS, "--json", *flags))
+        # Which command it was, the package does not know.
+        del judged["inputs"]["command"]
         assert calibration.validate(measured, **arguments).to_dict() == judged
+    checked = ["--refit-frame", "--record", "operator=Mia"]
+    program("validate", path, POINTS, *checked, "--out", tmp_path / "program", "--history", tmp_path / "program.jsonl")
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", poecal.PoecalWarning)
+        calibration.validate(measured, refit_frame=True, record={"operator": "Mia"}, out=tmp_path / "package", history=tmp_path / "package.jsonl")
+    assert (tmp_path / "package/errors.csv").read_bytes() == (tmp_path / "program/errors.csv").read_bytes()
+    lines = [json.loads((tmp_path / f"{name}.jsonl").read_text()) for name in ["program", "package"]]
+    del lines[0]["inputs"]["command"]
+    assert lines[0].pop("time") <= lines[1].pop("time") and lines[0] == lines[1]
+    with pytest.raises(poecal.FileError, match="output folder exists"):
+        calibration.validate(measured, out=tmp_path / "package")
 
     foreseen = json.loads(program("identify", path, table, "--kind", "point", "--json"))
     found = calibration.identify(joints, kind="point").to_dict()

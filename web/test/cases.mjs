@@ -123,6 +123,15 @@ export const CASES = [
   ],
 ];
 
+/** Two checks of a calibration by other rows; the folder of the second. */
+export function checked(out) {
+  const rows = simulated("checked", join(ELBOW, "robot.urdf"), "--kind", "point", "--count", "60");
+  const check = (name, ...words) => poecal("validate", join(out, "calibration.json"), ...words, "--refit-frame", "--out", join(folder, name), "--quiet");
+  check("first check", join(ELBOW, "points.csv"));
+  check("second check", rows, "--accept", "1mm", "--record", "operator=Mia", "--record", "serial=4711");
+  return join(folder, "second check");
+}
+
 /** A session of 50,000 rows. */
 export function long() {
   const model = join(ELBOW, "robot.urdf");

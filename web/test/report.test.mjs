@@ -6,7 +6,7 @@ import { createRequire } from "node:module";
 import { join } from "node:path";
 import { after, before, describe, test } from "node:test";
 import { launch, open, skip } from "./browser.mjs";
-import { CASES, TREES, folder, long, predicted } from "./cases.mjs";
+import { CASES, TREES, checked, folder, long, predicted } from "./cases.mjs";
 
 const AXE = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
 /** Share of a canvas' pixels that must differ from its background: axes alone are less. */
@@ -168,6 +168,32 @@ describe("the page", { skip }, () => {
   before(() => {
     // The first case has written it.
     report = join(folder, "elbow", "report.html");
+  });
+
+  test("a check has a page of its own, without a script, which says what validation.json says", async () => {
+    const out = checked(join(folder, "elbow"));
+    const file = JSON.parse(readFileSync(join(out, "validation.json"), "utf8"));
+    const page = await browser.newPage();
+    const asked = [];
+    page.on("request", (request) => asked.push(request.url()));
+    await page.goto(`file://${join(out, "report.html")}`);
+    assert.equal(asked.length, 1);
+    assert.equal(await page.locator("script").count(), 0);
+    const figures = await page.$$eval("[data-key]", (all) =>
+      all.map((it) => ({ key: it.dataset.key, factor: Number(it.dataset.factor ?? 1), text: it.textContent })),
+    );
+    const count = checkText(figures, file);
+    const text = await page.locator("main").innerText();
+    for (const words of ["Check of the calibration of", "Mia", "4711", "Checks of this calibration", "this one"]) assert.ok(text.includes(words), words);
+    for (const [width, colorScheme] of LOOKS) {
+      await page.setViewportSize({ width, height: 900 });
+      await page.emulateMedia({ colorScheme });
+      assert.deepEqual(await faults(page), []);
+      const cut = await page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
+      assert.ok(cut <= 0, `the page is ${cut} px too wide at ${width} px`);
+    }
+    console.log(`${count} figures of a check`);
+    await page.close();
   });
 
   test("colours can be chosen, and are redrawn", async () => {

@@ -22,12 +22,13 @@ pub(crate) use shared::{TreeArgs, with_mapping};
 pub(crate) use simulate::Simulate;
 pub(crate) use words::{ExportForm, PredictedModel, ProgramLanguage};
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::{Args, Parser, Subcommand};
 use poecal::calibration::{AcceptedModel, DeviceFrameKnowledge, Level, Limit};
 use poecal::io::model::ModelFormat;
 use poecal::io::predictions::PredictionFrame;
+use poecal::io::record::Record;
 
 use crate::quantity::{sigma_m, threads};
 use shared::{ChainArgs, ColumnArgs, Meaning, OutFile, Reading};
@@ -150,7 +151,7 @@ pub(crate) struct Validate {
     #[arg(long)]
     pub(crate) refit_tool: bool,
     /// Refit the device's frame where these measurements show that the device stands elsewhere; without, that is said
-    #[arg(long, value_parser = one_of(REFIT), value_name = "WHEN", default_value = "never", conflicts_with = "refit_frame")]
+    #[arg(long, value_parser = one_of(REFIT), value_name = "WHEN", default_value = "never", action = clap::ArgAction::Set, conflicts_with = "refit_frame")]
     pub(crate) refit: bool,
     /// End with code 1 unless the measurements confirm this: `good` if 80 % of all errors are inside their own 95 % bounds and the error
     /// (RMS) is at most twice the expected one; `inside_sampled_range` if that holds of the rows inside the sampled range
@@ -163,9 +164,32 @@ pub(crate) struct Validate {
     /// Which model shall keep them: the corrected one, if there is one (the default), or the calibrated one, which a URDF holds
     #[arg(long, value_parser = one_of(ACCEPTED_MODEL))]
     pub(crate) accept_model: Option<AcceptedModel>,
+    /// Folder for the results of the check: validation.json, errors.csv with each row beside its bound, and a report
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    /// Overwrite results of a check in an existing folder, and a report that exists
+    #[arg(long)]
+    pub(crate) force: bool,
+    /// File for the report, or `none` [default: report.html among the results]
+    #[arg(long, value_name = "FILE|none")]
+    pub(crate) report: Option<ReportPlace>,
+    /// What the report states of this session, like operator=Mia (repeatable): the keys of `poecal calibrate`
+    #[arg(long, value_name = "KEY=TEXT", value_parser = Record::pair)]
+    pub(crate) record: Vec<(String, String)>,
+    /// File to which the check is appended as a line, or `none` [default: history.jsonl beside the calibration]
+    #[arg(long, value_name = "FILE|none")]
+    pub(crate) history: Option<ReportPlace>,
     /// Print JSON instead of the table
     #[arg(long)]
     pub(crate) json: bool,
+}
+
+impl Validate {
+    /// All input files.
+    pub(crate) fn inputs(&self) -> Vec<&Path> {
+        let files = std::iter::once(&self.calibration).chain(&self.measurements);
+        files.chain(&self.meaning.columns.columns).map(PathBuf::as_path).collect()
+    }
 }
 
 /// Arguments of `poecal predict`.

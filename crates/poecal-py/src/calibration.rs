@@ -1,6 +1,7 @@
 //! A finished calibration.
 
 mod content;
+mod validated;
 
 pub(crate) use content::Calibration;
 use content::part;
@@ -8,15 +9,17 @@ use content::part;
 use std::path::{Path, PathBuf};
 
 use numpy::PyArray2;
-use poecal::calibration::{AcceptanceLimits, Judgement, Refitted};
+use poecal::calibration::AcceptanceLimits;
 use poecal::compensate::{Language, ProgramOptions};
 use poecal::io::calibration_file::{CalibrationFile, Counted};
 use poecal::io::export::{ExportFormat, ExportOptions, export};
 use poecal::io::model::{Model, ModelSource};
 use poecal::io::output::{self, Contents, Existing, Results};
 use poecal::io::predictions::{PredictionFrame, predicted};
+use poecal::io::record::Record;
 use poecal::io::residuals::{ResidualRows, Residuals as Rows};
 use poecal::io::shapes::Shapes;
+use poecal::io::validation::Judging;
 use poecal::report::{self, table::number};
 use poecal::robot::ThirdAxis;
 use pyo3::IntoPyObjectExt as _;
@@ -748,12 +751,24 @@ impl Calibration {
     ///     Limits that the errors shall keep, like "0.2mm" or "0.2mm,max:0.5mm,0.05deg"; see `poecal.calibrate`.
     /// accept_model
     ///     Which model shall keep them: "corrected", if there is one, or "calibrated".
+    /// out
+    ///     Folder for the results of the check: validation.json, errors.csv with each row beside its bound, and a report.
+    /// force
+    ///     Whether to write over results of a check and a report that exist.
+    /// report
+    ///     Whether to write a report among the results, or the path of another file for it.
+    /// record
+    ///     What the report states of this session, by key; see `poecal.calibrate`.
+    /// history
+    ///     File to which the check is appended as a line, like the history.jsonl that the program keeps beside a calibration.
     ///
     /// Returns
     /// -------
     /// Findings
     ///     Errors of the nominal and the calibrated robot, their share inside the predicted bounds, and `acceptance`.
-    #[pyo3(signature = (measurements, *, refit_frame=false, refit_tool=false, refit="never", accept=None, accept_model="corrected"))]
+    #[pyo3(signature = (measurements, *, refit_frame=false, refit_tool=false, refit="never", accept=None, accept_model="corrected", out=None, force=false, report=None,
+                        record=None, history=None),
+           text_signature = "($self, measurements, *, refit_frame=False, refit_tool=False, refit='never', accept=None, accept_model='corrected', out=None, force=False, report=True, record=None, history=None)")]
     fn validate(
         &self,
         py: Python<'_>,
@@ -763,31 +778,19 @@ impl Calibration {
         #[pyo3(from_py_with = arg::refit)] refit: &str,
         #[pyo3(from_py_with = arg::accept)] accept: Option<AcceptanceLimits>,
         #[pyo3(from_py_with = arg::accept_model)] accept_model: &str,
+        #[pyo3(from_py_with = arg::out)] out: Option<PathBuf>,
+        #[pyo3(from_py_with = arg::force)] force: bool,
+        #[pyo3(from_py_with = arg::report)] report: Option<ReportPlace>,
+        #[pyo3(from_py_with = arg::record)] record: Option<Record>,
+        #[pyo3(from_py_with = arg::history)] history: Option<PathBuf>,
     ) -> PyResult<Findings> {
         measurements.check_robot(self.calibrated()?)?;
-        let file = self.file();
-        let data = measurements.data();
         let limits = accept_limits(accept, accept_model)?;
-        let sha256 = &measurements.source.sha256;
-        let refits = chosen("refit", refit, &[("never", false), ("auto", true)])?;
-        let judged = py.detach(|| {
-            let judgement = if refit_frame {
-                file.judge(data, true, refit_tool)?
-            } else {
-                file.judge_wherever(data, refit_tool, refits)?
-            };
-            let refit_frame = judgement.refitted.contains(&Refitted::DeviceFrame);
-            let accept = |limits| file.accept(data, refit_frame, refit_tool, limits, sha256);
-            let acceptance = limits.as_ref().map(accept).transpose()?;
-            Ok(Judgement { acceptance, ..judgement })
-        });
-        let judgement = judged.map_err(raise)?;
-        let names = measurements.source.names.join(", ");
-        let text =
-            report::judgement(&self.calibrated()?.model.path.display().to_string(), &names, &judgement);
-        let doubts: Vec<String> = file.doubt(&judgement).into_iter().collect();
-        crate::warn(py, &doubts)?;
-        Findings::new(text, &judgement, doubts)
+        let refit_moved = chosen("refit", refit, &[("never", false), ("auto", true)])?;
+        let judging = Judging { refit_frame, refit_moved, refit_tool, accept: limits.as_ref() };
+        let places =
+            validated::Places::reserve(py, (self, measurements), (out.as_deref(), force), report, history)?;
+        places.judge(py, (self, measurements), &judging, record.unwrap_or_default())
     }
 
     /// Which unknowns measurements of the calibrated robot in given configurations would determine; see `poecal.identify`.

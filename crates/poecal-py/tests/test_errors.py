@@ -174,7 +174,7 @@ CALLS = {
     "results": (poecal.Calibration.read, ["path", "residuals"], {"path": "nowhere.json"}),
     "plot": (poecal.calibrate(elbow(), SEEN).plot, ["axes"], {}),
     "check": (poecal.check, ["robot", "measurements", "frame"], {"robot": elbow()}),
-    "validate": (poecal.calibrate(elbow(), SEEN).validate, ["measurements", "refit_frame", "refit_tool"], {"measurements": SEEN}),
+    "validate": (poecal.calibrate(elbow(), SEEN).validate, ["measurements", "refit_frame", "refit_tool", "refit", "force", "record"], {"measurements": SEEN}),
     "readings": (poecal.read_joints, ["path", "robot", "columns"], {"path": "nowhere.csv", "robot": elbow()}),
     "simulate": (poecal.simulate, ["kind", "seed", "error_position_mm", "error_rotation_deg", "noise_position_mm", "noise_rotation_deg", "frame"], {"robot": elbow(), "count": 3}),
 }  # fmt: skip

@@ -191,6 +191,15 @@ impl Disk for MemoryDisk {
         Ok(Box::new(Writer { disk: self.clone(), number }))
     }
 
+    fn append(&self, path: &Path) -> io::Result<Box<dyn Output>> {
+        let found = self.state().names.file(&whole(path));
+        match found {
+            Ok(number) => Ok(Box::new(Writer { disk: self.clone(), number })),
+            Err(error) if error.kind() == ErrorKind::NotFound => self.create(path),
+            Err(error) => Err(error),
+        }
+    }
+
     fn stream(&self, _: &Path) -> io::Result<Box<dyn Output>> {
         Err(ErrorKind::Unsupported.into())
     }

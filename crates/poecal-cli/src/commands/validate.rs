@@ -1,21 +1,31 @@
 //! `poecal validate`: a calibration judged by other measurements.
 
 use std::collections::HashSet;
+use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
-use poecal::calibration::{AcceptanceLimits, Decision, Refitted};
-use poecal::io::calibration_file::CalibrationFile;
+use poecal::calibration::{AcceptanceLimits, Decision};
+use poecal::io::calibration_file::{CalibrationFile, Inputs};
 use poecal::io::measurements::{self, ReadOptions};
 use poecal::io::named_files::{actual, refuse_repeats};
+use poecal::io::output::{
+    Contents, Existing, FilePlace, FolderPlace, Page, ValidationResults, write_validation,
+};
+use poecal::io::record::Record;
+use poecal::io::validation::{HISTORY, History, JudgedRows, Judging, Validation, ValidationInputs, now};
 use poecal::{ErrorKind, Result, report};
 
-use crate::args::Validate;
+use super::typed::command;
+use crate::args::{ReportPlace, Validate};
 use crate::console::Console;
+use crate::style::{self, labelled, shown};
 use crate::{DONE, WORSE};
 
-pub(crate) fn validate(arguments: &Validate, console: &Console) -> Result<u8> {
+pub(crate) fn validate(arguments: &Validate, typed: &[OsString], console: &Console) -> Result<u8> {
     refuse_repeats(&arguments.measurements)?;
+    let places = Places::reserve(arguments, console)?;
     let file = CalibrationFile::read(&arguments.calibration)?;
+    let mut history = Kept::read(arguments)?;
     let in_file = |error: poecal::Error| {
         if error.kind() == ErrorKind::Model { error.in_file(&arguments.calibration) } else { error }
     };
@@ -24,33 +34,49 @@ pub(crate) fn validate(arguments: &Validate, console: &Console) -> Result<u8> {
     let controller = file.controller.clone();
     let options = ReadOptions { ignore_sets: true, controller, ..arguments.meaning.options()? };
     let read = measurements::read(&arguments.measurements, &calibrated, &options)?;
-    let refit_tool = arguments.refit_tool;
-    let judged = if arguments.refit_frame {
-        file.judge(&read.data, true, refit_tool)
-    } else {
-        file.judge_wherever(&read.data, refit_tool, arguments.refit)
+    let limits = AcceptanceLimits::chosen(arguments.accept.clone(), arguments.accept_model)?;
+    let judging = Judging {
+        refit_frame: arguments.refit_frame,
+        refit_moved: arguments.refit,
+        refit_tool: arguments.refit_tool,
+        accept: limits.as_ref(),
     };
-    let mut judgement = judged.map_err(in_file)?;
-    let refit_frame = judgement.refitted.contains(&Refitted::DeviceFrame);
-    if let Some(limits) = AcceptanceLimits::chosen(arguments.accept.clone(), arguments.accept_model)? {
-        let found = file.accept(&read.data, refit_frame, refit_tool, &limits, &read.sha256);
-        judgement.acceptance = Some(found.map_err(in_file)?);
-    }
+    let sha256 = Inputs::checksums(std::iter::once(arguments.calibration.as_path()))?;
+    let own = sha256.get(&arguments.calibration.display().to_string()).cloned();
+    let inputs = ValidationInputs {
+        calibration: arguments.calibration.display().to_string(),
+        measurements: arguments.measurements.iter().map(|path| path.display().to_string()).collect(),
+        sha256: sha256.into_iter().chain(read.sha256).collect(),
+        command: Some(command(typed)),
+    };
+    let record = Record::of(arguments.record.iter().map(|(key, text)| (key.as_str(), text.as_str())))?;
+    let found = Validation::of(&file, &read.data, &judging, inputs).map_err(in_file)?;
+    let found = Validation { record, ..found };
     console.warnings(&read.warnings);
+    let rows = JudgedRows { data: &read.data, robot: &calibrated, rows: &found.judgement.rows };
+    let earlier: Vec<_> = own.iter().flat_map(|own| history.checks.before(&found, own)).collect();
+    let (written, place) = places.write(&found, rows, || report::validation_page(&found, &rows, &earlier))?;
+    history.append(&found, console)?;
     let table = || {
         let calibration = arguments.calibration.display().to_string();
-        report::judgement(&calibration, &named(arguments, &file), &judgement)
+        report::judgement(&calibration, &named(arguments, &file), &found.judgement) + &written
     };
-    console.json_or_table(arguments.json, || report::json(&judgement), table)?;
-    if let Some(doubt) = file.doubt(&judgement) {
+    let text = if arguments.json { found.to_text()? } else { table() };
+    let told = match (place, arguments.json) {
+        (Some(place), true) => console.data_of(&text, &place),
+        (Some(place), false) => console.say_of(&text, &place),
+        (None, true) => console.data(&text).map(|()| DONE)?,
+        (None, false) => console.say(&text).map(|()| DONE)?,
+    };
+    if let Some(doubt) = &found.doubt {
         console.warning(doubt);
     }
-    let refused = judgement.acceptance.as_ref().is_some_and(|it| it.decision != Decision::Pass);
-    let code = if refused { WORSE } else { DONE };
+    let refused = found.judgement.acceptance.as_ref().is_some_and(|it| it.decision != Decision::Pass);
+    let code = if refused { WORSE } else { told };
     let Some(required) = arguments.require else { return Ok(code) };
-    let Some(reason) = judgement.falls_short(required) else { return Ok(code) };
+    let Some(reason) = found.judgement.falls_short(required) else { return Ok(code) };
     console.warning(format!("not what --require {} asks for: {reason}", required.word()));
-    Ok(WORSE)
+    Ok(WORSE.max(told))
 }
 
 /// The measurement files; those of the calibration are marked.
@@ -63,4 +89,96 @@ fn named(arguments: &Validate, file: &CalibrationFile) -> String {
         name + mark
     });
     names.collect::<Vec<_>>().join(", ")
+}
+
+/// Places of the results.
+struct Places<'a> {
+    folder: Option<FolderPlace>,
+    /// A report outside the results.
+    report: Option<(FilePlace, &'a Path)>,
+    /// Whether a report is wanted among them.
+    is_among: bool,
+}
+
+impl<'a> Places<'a> {
+    fn reserve(arguments: &'a Validate, console: &Console) -> Result<Self> {
+        let (existing, inputs) = (Existing::forced(arguments.force), arguments.inputs());
+        let reserve = |out: &PathBuf| {
+            FolderPlace::reserve(out, Contents::Validation, existing, &inputs, &mut console.warner())
+        };
+        let folder = arguments.out.as_ref().map(reserve).transpose()?;
+        let elsewhere = match (&arguments.report, &folder) {
+            (Some(ReportPlace::File(path)), Some(folder)) => {
+                folder.reserve_report(path, &inputs, &mut console.warner())?.map(|place| (place, path))
+            }
+            (Some(ReportPlace::File(path)), None) => {
+                Some((FilePlace::reserve(path, existing, &inputs, &mut console.warner())?, path))
+            }
+            (Some(ReportPlace::None) | None, _) => None,
+        };
+        let report = elsewhere.map(|(place, path)| (place, path.as_path()));
+        let is_among = report.is_none() && arguments.report != Some(ReportPlace::None);
+        Ok(Places { folder, report, is_among })
+    }
+
+    /// Writes the results; returns what to say of that, and the place.
+    fn write(
+        self,
+        found: &Validation,
+        rows: JudgedRows<'_>,
+        page: impl FnOnce() -> Page,
+    ) -> Result<(String, Option<PathBuf>)> {
+        let Some(folder) = self.folder else {
+            let Some((place, path)) = self.report else { return Ok(Default::default()) };
+            place.write(page())?;
+            return Ok((labelled("report", &shown(path)), Some(path.to_owned())));
+        };
+        let (elsewhere, path) = self.report.unzip();
+        let report = (self.is_among || elsewhere.is_some()).then(page);
+        let written = write_validation(folder, elsewhere, ValidationResults { found, rows, report })?;
+        let mut words = style::written(&written.folder, &written.files);
+        words.extend(path.map(|path| labelled("report", &shown(path))));
+        Ok((words, Some(written.folder)))
+    }
+}
+
+/// The history that a check is appended to.
+struct Kept {
+    checks: History,
+    /// Whether it was asked for: then it must be written.
+    is_asked: bool,
+    /// Whether it is written at all, or why not.
+    is_kept: std::result::Result<bool, poecal::Error>,
+}
+
+impl Kept {
+    fn read(arguments: &Validate) -> Result<Self> {
+        let nothing = |is_kept| Kept { checks: History::default(), is_asked: false, is_kept };
+        match &arguments.history {
+            Some(ReportPlace::None) => Ok(nothing(Ok(false))),
+            Some(ReportPlace::File(path)) => {
+                Ok(Kept { checks: History::read(path)?, is_asked: true, is_kept: Ok(true) })
+            }
+            // Beside a calibration that is no file there is no place.
+            None if !arguments.calibration.is_file() => Ok(nothing(Ok(false))),
+            None => Ok(match History::read(&arguments.calibration.with_file_name(HISTORY)) {
+                Ok(checks) => Kept { checks, is_asked: false, is_kept: Ok(true) },
+                Err(error) => nothing(Err(error)),
+            }),
+        }
+    }
+
+    fn append(&mut self, found: &Validation, console: &Console) -> Result<()> {
+        let Some(time) = now() else { return Ok(()) };
+        let is_kept = std::mem::replace(&mut self.is_kept, Ok(false));
+        let done =
+            is_kept.and_then(|is_kept| if is_kept { self.checks.append(found, &time) } else { Ok(()) });
+        match done {
+            Err(error) if !self.is_asked => {
+                console.remark(format!("the check is not in the history: {error}"));
+                Ok(())
+            }
+            done => done,
+        }
+    }
 }

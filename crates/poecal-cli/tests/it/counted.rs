@@ -239,7 +239,8 @@ fn a_third_axis_is_stated_where_rows_do_not_show_it() {
     assert!(apart < 3e-6, "{apart}");
     // The same mapping again says the same.
     let again = folder.done("validate results/calibration.json controller.csv --columns map.toml --json");
-    assert_eq!(again, folder.done("validate results/calibration.json controller.csv --json"));
+    let without = folder.done("validate results/calibration.json controller.csv --json");
+    assert_eq!(again.replace(" --columns map.toml", ""), without);
     // Rows in which joint 2 hardly moves do not show it.
     let file = folder.read("plain/calibration.json");
     let mut found: serde_json::Value = serde_json::from_str(&file).unwrap();

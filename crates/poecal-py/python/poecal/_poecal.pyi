@@ -1399,6 +1399,11 @@ class Calibration:
         refit: Literal["never", "auto"] = "never",
         accept: str | None = None,
         accept_model: Literal["corrected", "calibrated"] = "corrected",
+        out: _Path | None = None,
+        force: bool = False,
+        report: bool | _Path = True,
+        record: Mapping[str, str] | None = None,
+        history: _Path | None = None,
     ) -> Findings:
         """Judges the calibration by measurements that it did not see; every row counts.
 
@@ -1410,10 +1415,22 @@ class Calibration:
             Whether to refit the device's frame to them.
         refit_tool
             Whether to refit the targets to them.
+        refit
+            "auto" refits the device's frame where the measurements show that the device stands elsewhere; "never" says it.
         accept
             Limits that the errors shall keep, like "0.2mm" or "0.2mm,max:0.5mm,0.05deg"; see `poecal.calibrate`.
         accept_model
             Which model shall keep them: "corrected", if there is one, or "calibrated".
+        out
+            Folder for the results of the check: validation.json, errors.csv with each row beside its bound, and a report.
+        force
+            Whether to write over results of a check and a report that exist.
+        report
+            Whether to write a report among the results, or the path of another file for it.
+        record
+            What the report states of this session, by key; see `poecal.calibrate`.
+        history
+            File to which the check is appended as a line, like the history.jsonl that the program keeps beside a calibration.
 
         Returns
         -------

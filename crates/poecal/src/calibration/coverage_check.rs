@@ -8,7 +8,7 @@ use crate::analysis::{JointCoverage, inside};
 use crate::estimate::{Chain, Estimate, Linkage, RowError, Session};
 use crate::measurement::{ByQuantity, Measured, NUMBERS, Noise, Quantity};
 use crate::parameters::Parameter;
-use crate::uncertainty::{Discrepancy, PredictedError, Quantile, Refit, Uncertainty};
+use crate::uncertainty::{Discrepancy, PredictedError, Refit, Uncertainty};
 use crate::unit::Unit;
 
 /// Floor of the scatter of exact data: rounding.
@@ -79,9 +79,10 @@ struct CoverageSums {
 }
 
 impl CoverageSums {
-    fn add(&mut self, predicted: &Matrix3<f64>, quantile: &Quantile, length: f64) {
-        self.squares += predicted.trace();
-        self.within += usize::from(length <= quantile.bound(predicted));
+    fn add(&mut self, found: &JudgedError) {
+        let Some(promise) = &found.promised else { return };
+        self.squares += promise.variance;
+        self.within += usize::from(found.length <= promise.bound);
         self.count += 1;
     }
 
@@ -91,6 +92,59 @@ impl CoverageSums {
             expected_rms: unit.shown(1.0) * (self.squares / count).sqrt(),
             inside_bound95: self.within as f64 / count,
         })
+    }
+}
+
+/// Error of one quantity in a row of other measurements, metres or radians, and what was promised of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct JudgedError {
+    /// Length of measured minus predicted.
+    pub length: f64,
+    /// What was promised; `None` without uncertainty.
+    pub promised: Option<Promise>,
+}
+
+/// What a calibration promises of an error, measurement noise included.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Promise {
+    /// Expected square of the error.
+    pub variance: f64,
+    /// Bound below which 95 % of such errors lie.
+    pub bound: f64,
+}
+
+/// Errors of a row of other measurements.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct JudgedRow {
+    /// Of each measured quantity.
+    pub errors: Measured<JudgedError>,
+    /// Whether every joint was inside the sampled range; `true` if none was stated.
+    pub inside_sampled_range: bool,
+}
+
+impl JudgedRow {
+    /// A row of which nothing was promised.
+    pub(super) fn of(error: &RowError) -> Self {
+        let errors =
+            Measured::of(|quantity| Some(JudgedError { length: error.length(quantity)?, promised: None }));
+        JudgedRow { errors, inside_sampled_range: true }
+    }
+}
+
+impl CoverageCheck {
+    /// Of some rows.
+    fn of<'a>(rows: impl Iterator<Item = &'a JudgedRow>) -> Self {
+        let mut sums: ByQuantity<CoverageSums> = ByQuantity::default();
+        let (mut count, mut sampled) = (0_usize, 0_usize);
+        for row in rows {
+            row.errors.iter().for_each(|(quantity, found)| sums[quantity].add(&found));
+            count += 1;
+            sampled += usize::from(row.inside_sampled_range);
+        }
+        CoverageCheck {
+            parts: Measured::of(|quantity| sums[quantity].part(quantity.unit())),
+            inside_sampled_range: sampled as f64 / count.max(1) as f64,
+        }
     }
 }
 
@@ -104,6 +158,17 @@ impl PredictedUncertainty<'_> {
         rows: &[u32],
         errors: &[RowError],
     ) -> CoverageCheck {
+        CoverageCheck::of(self.rows(session, estimate, rows, errors).iter())
+    }
+
+    /// The errors of some rows with what was promised of each.
+    fn rows(
+        &self,
+        session: &Session<'_>,
+        estimate: &Estimate,
+        rows: &[u32],
+        errors: &[RowError],
+    ) -> Vec<JudgedRow> {
         let Session { robot, data, packed, .. } = *session;
         let target = |row: &u32| data.observations[*row as usize].target;
         let places = rows
@@ -112,26 +177,25 @@ impl PredictedUncertainty<'_> {
         let predicted = self.uncertainty.predictions_of(places, packed);
         // The model error contains the noise, unless the two were separated.
         let noise = self.uncertainty.discrepancy.noise;
-        let mut sums: ByQuantity<CoverageSums> = ByQuantity::default();
         let mut observed =
             Observed { session, estimate, linkage: Linkage::new(estimate), chain: Chain::default() };
-        for ((predicted, error), &row) in predicted.into_iter().zip(errors).zip(rows) {
+        let all = predicted.into_iter().zip(errors).zip(rows).map(|((predicted, error), &row)| {
             let own = session.noise_of(session.observation(row), noise);
-            for (quantity, sums) in sums.values_mut() {
-                let Some(length) = error.length(quantity) else { continue };
+            let errors = Measured::of(|quantity| {
+                let length = error.length(quantity)?;
                 let of_robot = observed.covariance(&predicted, row, quantity);
                 // As many components as there are numbers.
                 let mut of_noise = Matrix3::zeros();
                 (0..error.part(quantity).len()).for_each(|k| of_noise[(k, k)] = own[quantity].powi(2));
-                sums.add(&(of_robot + of_noise), &predicted.quantiles[quantity], length);
-            }
-        }
-        let is_inside = |row: &&u32| inside(robot, self.coverage, data.readings(**row as usize));
-        let sampled = rows.iter().filter(is_inside).count();
-        CoverageCheck {
-            parts: Measured::of(|quantity| sums[quantity].part(quantity.unit())),
-            inside_sampled_range: sampled as f64 / rows.len().max(1) as f64,
-        }
+                let covariance = of_robot + of_noise;
+                let bound = predicted.quantiles[quantity].bound(&covariance);
+                let promised = Some(Promise { variance: covariance.trace(), bound });
+                Some(JudgedError { length, promised })
+            });
+            let inside_sampled_range = inside(robot, self.coverage, data.readings(row as usize));
+            JudgedRow { errors, inside_sampled_range }
+        });
+        all.collect()
     }
 }
 
@@ -198,30 +262,35 @@ pub(super) struct JudgedRows<'a> {
     pub(super) free: Vec<Parameter>,
 }
 
-/// Coverage over all rows, and over those inside the sampled range, if there are any. `None` if the rows do not determine the refitted
-/// unknowns.
-pub(super) fn coverage_checks(
+/// All rows with what was promised of each. `None` if they do not determine the refitted unknowns.
+pub(super) fn promised_rows(
     predicted: &PredictedUncertainty<'_>,
     refit_tool: bool,
     seen: &JudgedRows<'_>,
-) -> Option<(CoverageCheck, Option<InSampledRange>)> {
-    let Session { robot, data, .. } = seen.session;
+) -> Option<Vec<JudgedRow>> {
+    let data = seen.session.data;
     let refitted = if seen.free.is_empty() { None } else { Some(refitted(predicted, refit_tool, seen)?) };
     let own: Vec<usize> = (0..data.targets.len()).collect();
     let predicted = match &refitted {
         Some(uncertainty) => PredictedUncertainty { uncertainty, targets: &own, ..*predicted },
         None => *predicted,
     };
-    let mut rows = data.all_rows();
-    let all = predicted.check(&seen.session, &seen.estimate, &rows, &seen.errors);
-    rows.retain(|&row| inside(robot, predicted.coverage, data.readings(row as usize)));
-    if rows.is_empty() {
-        return Some((all, None));
-    }
-    let errors: Vec<_> = rows.iter().map(|&row| seen.errors[row as usize]).collect();
-    let promised = predicted.check(&seen.session, &seen.estimate, &rows, &errors);
-    let calibrated = model_accuracy(&errors);
-    Some((all, Some(InSampledRange { count: rows.len(), calibrated, promised })))
+    Some(predicted.rows(&seen.session, &seen.estimate, &data.all_rows(), &seen.errors))
+}
+
+/// Coverage over all rows, and over those inside the sampled range, if there are any.
+pub(super) fn coverage_checks(
+    rows: &[JudgedRow],
+    errors: &[RowError],
+) -> (CoverageCheck, Option<InSampledRange>) {
+    let inside = || rows.iter().zip(errors).filter(|(row, _)| row.inside_sampled_range);
+    let errors: Vec<RowError> = inside().map(|(_, error)| *error).collect();
+    let some = (!errors.is_empty()).then(|| InSampledRange {
+        count: errors.len(),
+        calibrated: model_accuracy(&errors),
+        promised: CoverageCheck::of(inside().map(|(row, _)| row)),
+    });
+    (CoverageCheck::of(rows.iter()), some)
 }
 
 /// Uncertainty of the errors that remain after device frame or targets were refitted: theory.md §9, *Coverage*.

@@ -2,11 +2,12 @@
 
 use serde::Serialize;
 
-use super::acceptance::Acceptance;
+use super::acceptance::{Acceptance, AcceptedModel};
 use super::accuracy::{ModelAccuracy, model_accuracy};
 use super::count::of_device;
 use super::coverage_check::{
-    CoverageCheck, InSampledRange, JudgedRows, PartCoverage, PredictedUncertainty, ROUNDING, coverage_checks,
+    CoverageCheck, InSampledRange, JudgedRow, JudgedRows, PartCoverage, PredictedUncertainty, ROUNDING,
+    coverage_checks, promised_rows,
 };
 use super::verdict::Level;
 use super::{DeviceFrameKnowledge, delivered, measurements_words};
@@ -66,7 +67,8 @@ pub enum Refitted {
 /// let errors = Statistic { mean: 0.1, rms: 0.11, p95: 0.2, max: 0.25 };
 /// let calibrated = Measured::of(|quantity| (quantity == Quantity::Position).then_some(errors));
 /// let judgement = Judgement { count: 20, refitted: vec![], calibrated: calibrated.into(), corrected: None, nominal: None, promised: None,
-///     in_sampled_range: None, acceptance: None, moved_device: None, base_from_device: poecal::Pose::identity() };
+///     in_sampled_range: None, acceptance: None, moved_device: None, base_from_device: poecal::Pose::identity(),
+///     rows: vec![] };
 /// assert_eq!(judgement.calibrated.position_mm().max, 0.25);
 /// ```
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -95,6 +97,9 @@ pub struct Judgement {
     /// Where the first device stands: as in the calibration, or as it was refitted.
     #[serde(skip)]
     pub base_from_device: Pose,
+    /// Errors of each row by the model that is delivered, in the order read: the corrected one, if there is one.
+    #[serde(skip)]
+    pub rows: Vec<JudgedRow>,
 }
 
 /// How far a device stands from where the calibration has it.
@@ -104,7 +109,7 @@ pub struct MovedDevice {
     pub shift_mm: f64,
     /// Angle, degrees.
     pub turn_deg: f64,
-    /// Error of the calibrated model (RMS of the leading quantity, millimetres or degrees) with the frame of the calibration.
+    /// Error of the delivered model (RMS of the leading quantity, millimetres or degrees) with the frame of the calibration.
     pub before_rms: f64,
     /// The same with the frame refitted.
     pub after_rms: f64,
@@ -171,8 +176,14 @@ pub fn judge(subject: &Subject<'_>, data: &Dataset) -> Result<Judgement> {
     let packed = Packed::of(subject.calibrated, data);
     let rows = judged_rows(subject, subject.calibrated, data, &packed);
     let promised =
-        subject.uncertainty.and_then(|predicted| coverage_checks(&predicted, subject.refit_tool, &rows));
-    let (promised, in_sampled_range) = promised.map_or((None, None), |(all, some)| (Some(all), some));
+        subject.uncertainty.and_then(|predicted| promised_rows(&predicted, subject.refit_tool, &rows));
+    let (promised, in_sampled_range, each) = match promised {
+        None => (None, None, rows.errors.iter().map(JudgedRow::of).collect()),
+        Some(each) => {
+            let (all, some) = coverage_checks(&each, &rows.errors);
+            (Some(all), some, each)
+        }
+    };
     let calibrated = model_accuracy(&rows.errors);
     Ok(Judgement {
         count: data.len(),
@@ -185,6 +196,7 @@ pub fn judge(subject: &Subject<'_>, data: &Dataset) -> Result<Judgement> {
         acceptance: None,
         moved_device: None,
         base_from_device: rows.estimate.device_from_base.inverse(),
+        rows: each,
     })
 }
 
@@ -245,21 +257,81 @@ pub(super) fn check_count(subject: &Subject<'_>, data: &Dataset) -> Result<()> {
     ))
 }
 
+/// Difference of two errors that are one, as a share: rounding of two fits of a frame.
+const SAME: f64 = 1e-6;
+
+/// What was found of the model that is delivered.
+#[derive(Clone, Copy, Debug)]
+pub struct DeliveredModel<'a> {
+    /// Which it is.
+    pub model: AcceptedModel,
+    /// Its errors.
+    pub errors: &'a ModelAccuracy,
+    /// Coverage of its predicted bounds, if there are any.
+    pub promised: Option<&'a CoverageCheck>,
+    /// The same for rows inside the sampled range.
+    pub in_sampled_range: Option<&'a InSampledRange>,
+}
+
 impl Judgement {
-    /// Why the measurements do not confirm this level; `None` if they do. *Good* requires it of all rows, *use inside the sampled range* of
+    /// The corrected model, unless it is the calibrated one but for rounding: without terms.
+    #[must_use]
+    pub fn with_terms(&self) -> Option<&JudgedModel> {
+        let other = self.calibrated.lead().rms;
+        self.corrected.as_ref().filter(|model| (model.errors.lead().rms - other).abs() > SAME * other)
+    }
+
+    /// The model that is delivered: the corrected one where there is one with terms, otherwise the calibrated one.
+    #[must_use]
+    pub fn delivered(&self) -> DeliveredModel<'_> {
+        match self.with_terms() {
+            Some(found) => DeliveredModel {
+                model: AcceptedModel::Corrected,
+                errors: &found.errors,
+                promised: found.promised.as_ref(),
+                in_sampled_range: found.in_sampled_range.as_ref(),
+            },
+            None => DeliveredModel {
+                model: AcceptedModel::Calibrated,
+                errors: &self.calibrated,
+                promised: self.promised.as_ref(),
+                in_sampled_range: self.in_sampled_range.as_ref(),
+            },
+        }
+    }
+
+    /// The best level that the measurements confirm of the model that is delivered, and why not a better one, a sentence each; no level if the
+    /// calibration has no bounds to test.
+    #[must_use]
+    pub fn confirmed(&self) -> (Option<Level>, Vec<String>) {
+        if self.delivered().promised.is_none() {
+            return (None, Vec::new());
+        }
+        let mut reasons = Vec::new();
+        for asked in [Level::Good, Level::InsideSampledRange] {
+            match self.falls_short(asked) {
+                Some(reason) => reasons.push(reason),
+                None => return (Some(asked), reasons),
+            }
+        }
+        (Some(Level::DoNotUse), reasons)
+    }
+
+    /// Why the measurements do not confirm this level of the model that is delivered; `None` if they do. *Good* requires it of all rows, *use inside the sampled range* of
     /// the rows inside it: at least 80 % of the errors inside their 95 % bounds, and the error (RMS) at most twice the expected one.
     #[must_use]
     pub fn falls_short(&self, required: Level) -> Option<String> {
+        let own = self.delivered();
         let (which, found) = match required {
             Level::DoNotUse => return None,
-            Level::InsideSampledRange => {
-                let some = self.in_sampled_range.as_ref();
-                ("inside the sampled range", some.map(|some| (&some.calibrated, &some.promised)))
-            }
-            Level::Good => ("of these rows", self.promised.as_ref().map(|kept| (&self.calibrated, kept))),
+            Level::InsideSampledRange => (
+                "inside the sampled range",
+                own.in_sampled_range.map(|some| (&some.calibrated, &some.promised)),
+            ),
+            Level::Good => ("of these rows", own.promised.map(|kept| (own.errors, kept))),
         };
         let Some((errors, kept)) = found else {
-            return Some(match self.promised {
+            return Some(match own.promised {
                 None => "the calibration has no uncertainty, so there are no bounds to test".to_owned(),
                 Some(_) => "no row lies inside the sampled range".to_owned(),
             });

@@ -52,12 +52,14 @@ use corrections::suspected;
 pub use corrections::{
     Correction, Effects, JointEffect, JointErrorPart, JointErrors, SizesReason, TriedSizes, correct,
 };
-pub use coverage_check::{CoverageCheck, InSampledRange, PartCoverage, PredictedUncertainty};
+pub use coverage_check::{
+    CoverageCheck, InSampledRange, JudgedError, JudgedRow, PartCoverage, PredictedUncertainty, Promise,
+};
 pub use expected::{Expectations, Expected, RangePart};
 pub use fit::fit_screws;
 pub use formulation::{Formulation, FormulationWords, Minimize, Minimum};
 pub use found::SolverReport;
-pub use judge::{JudgedModel, Judgement, MovedDevice, Refitted, Subject, judge};
+pub use judge::{DeliveredModel, JudgedModel, Judgement, MovedDevice, Refitted, Subject, judge};
 pub use noise::{NoiseSource, estimate_noise};
 pub use options::{CalibrationOptions, DeviceFrameKnowledge};
 pub use placed::{CalibratedStation, CalibratedTarget};

@@ -27,6 +27,7 @@ pub mod shapes;
 mod source;
 mod source_text;
 pub mod urdf;
+pub mod validation;
 mod xml;
 mod yaml;
 

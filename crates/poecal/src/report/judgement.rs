@@ -1,18 +1,16 @@
 //! The table of a calibration judged on other measurements.
 
 use super::acceptance;
-use super::table::{STATISTICS, WIDTHS, line, number, number_or_dash, row};
-use crate::calibration::{JudgedModel, Judgement, ModelAccuracy, PartCoverage, Refitted, Statistic};
+use super::table::{STATISTICS, WIDTHS, line, lines, number, number_or_dash, row};
+use crate::calibration::{Judgement, Level, ModelAccuracy, PartCoverage, Refitted, Statistic};
 use crate::measurement::Quantity;
-
-/// Difference of two errors that are one, as a share: rounding of two fits of a frame.
-const SAME: f64 = 1e-6;
 
 /// How good a calibration is on measurements that it did not see, as text of lines up to 80 characters. `calibration` and
 /// `measurements` name the files.
 #[must_use]
 pub fn judgement(calibration: &str, measurements: &str, judgement: &Judgement) -> String {
     let mut out = String::new();
+    lines(&mut out, "verdict", verdict(judgement));
     line(&mut out, "calibration", calibration);
     line(&mut out, "measurements", &format!("{} in {measurements}", judgement.count));
     line(&mut out, "refitted", &refitted_words(judgement));
@@ -41,7 +39,7 @@ pub fn judgement(calibration: &str, measurements: &str, judgement: &Judgement) -
     if let Some(found) = &judgement.acceptance {
         acceptance::lines(&mut out, found);
     }
-    if let Some(model) = with_terms(judgement)
+    if let Some(model) = judgement.with_terms()
         && let Some(check) = &model.promised
     {
         for (quantity, part) in check.parts.iter() {
@@ -53,13 +51,28 @@ pub fn judgement(calibration: &str, measurements: &str, judgement: &Judgement) -
     out
 }
 
-/// The corrected model, unless it is the calibrated one but for rounding: without terms.
-fn with_terms(judgement: &Judgement) -> Option<&JudgedModel> {
-    let is_same = |model: &&JudgedModel| {
-        let (own, other) = (model.errors.lead().rms, judgement.calibrated.lead().rms);
-        (own - other).abs() <= SAME * other
-    };
-    judgement.corrected.as_ref().filter(|model| !is_same(model))
+/// What the measurements confirm, in words.
+pub(super) fn confirmed_words(level: Option<Level>) -> &'static str {
+    match level {
+        Some(Level::Good) => "the calibration holds for these measurements",
+        Some(Level::InsideSampledRange) => "the calibration holds inside the sampled range only",
+        Some(Level::DoNotUse) => "the calibration does not hold for these measurements",
+        None => "the calibration has no bounds to test",
+    }
+}
+
+/// The verdict with its one figure, and why it is no better.
+fn verdict(judgement: &Judgement) -> Vec<String> {
+    let (level, reasons) = judgement.confirmed();
+    let delivered = judgement.delivered();
+    let figure = delivered.errors.leading().map(|(quantity, found)| {
+        let part = delivered.promised.and_then(|it| it.parts.get(quantity));
+        let expected = part.map(|it| format!(", expected {}", number(it.expected_rms)));
+        let (rms, unit, model) = (number(found.rms), quantity.unit().symbol(), delivered.model.word());
+        format!(": {rms} {unit} (RMS) of the {model} model{}", expected.unwrap_or_default())
+    });
+    let first = format!("{}{}", confirmed_words(level), figure.unwrap_or_default());
+    std::iter::once(first).chain(reasons).collect()
 }
 
 fn coverage(out: &mut String, label: &str, quantity: Quantity, check: &PartCoverage, found: f64) {
@@ -110,7 +123,7 @@ fn block(
     of: impl Fn(&ModelAccuracy) -> Option<Statistic>,
 ) {
     let nominal = judgement.nominal.as_ref().map(|model| ("nominal", model));
-    let corrected = with_terms(judgement).map(|model| ("corrected", &model.errors));
+    let corrected = judgement.with_terms().map(|model| ("corrected", &model.errors));
     let columns: Vec<_> =
         nominal.into_iter().chain([("calibrated", &judgement.calibrated)]).chain(corrected).collect();
     row(out, title, WIDTHS, columns.iter().map(|(head, _)| head));

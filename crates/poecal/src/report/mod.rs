@@ -20,7 +20,7 @@ pub use compared::Comparison;
 pub use identify::Identify;
 pub use judgement::judgement;
 pub use offsets::Offsets;
-pub use page::{calibration_page, calibration_page_with};
+pub use page::{calibration_page, calibration_page_with, validation_page};
 pub use summary::{Detail, summary, unsaid};
 
 use serde::Serialize;

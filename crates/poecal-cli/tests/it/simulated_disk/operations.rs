@@ -135,6 +135,10 @@ impl Disk for SimulatedDisk {
         Ok(Box::new(Handle { disk: self.clone(), number, at: 0 }))
     }
 
+    fn append(&self, _: &Path) -> io::Result<Box<dyn Output>> {
+        Err(error(ErrorKind::Unsupported))
+    }
+
     fn stream(&self, _: &Path) -> io::Result<Box<dyn Output>> {
         Err(error(ErrorKind::Unsupported))
     }

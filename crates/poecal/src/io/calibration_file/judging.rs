@@ -1,7 +1,7 @@
 //! Data of a calibration file that its judgement needs.
 
 use super::{CalibrationFile, MeasuredEntry};
-use crate::calibration::DeviceFrameKnowledge;
+use crate::calibration::{AcceptedModel, DeviceFrameKnowledge};
 use crate::error::{Error, ErrorKind, Result, first_few, nearest};
 use crate::lie::Pose;
 use crate::measurement::{ByQuantity, Dataset, Noise, Quantity};
@@ -36,12 +36,14 @@ impl CalibrationFile {
         Ok(ByQuantity::from_fn(|quantity| quantity.unit().from_shown(shown(quantity).unwrap_or(UNSEEN))))
     }
 
-    /// Root mean square error of the leading quantity, of poses and points the position, on held-out rows, otherwise on training rows;
+    /// Root mean square error of a model's leading quantity, of poses and points the position, on held-out rows, otherwise on training rows;
     /// millimetres or degrees.
     #[must_use]
-    pub fn own_rms(&self) -> f64 {
+    pub fn own_rms(&self, model: AcceptedModel) -> f64 {
         let accuracy = &self.accuracy;
-        accuracy.held_out.as_ref().unwrap_or(&accuracy.training).calibrated.lead().rms
+        let set = accuracy.held_out.as_ref().unwrap_or(&accuracy.training);
+        let corrected = set.corrected.as_ref().filter(|_| model == AcceptedModel::Corrected);
+        corrected.unwrap_or(&set.calibrated).lead().rms
     }
 
     /// `base_from_device` of each station of some measurements, by the names of the instruments.

@@ -23,6 +23,8 @@ const MUCH: f64 = 0.7;
 const CHANCE: f64 = 1e-4;
 /// Share of errors inside their 95 % bound below which the bounds do not hold.
 const BROKEN: f64 = 0.75;
+/// Rows inside the sampled range from which on they say whether the robot is as it was calibrated.
+const FEW: usize = 5;
 /// Errors of exact data below this are rounding: a nanometre, in millimetres; of angles in degrees.
 const ROUNDING: f64 = 1e-6;
 
@@ -34,16 +36,11 @@ impl CalibrationFile {
     /// [`ErrorKind::Model`](crate::ErrorKind::Model) if the file holds no valid calibration.
     pub fn judge(&self, data: &Dataset, refit_frame: bool, refit_tool: bool) -> Result<Judgement> {
         let judgement = self.judged(data, refit_frame, refit_tool)?;
-        let corrected = match self.corrected() {
-            Some(file) => Some(file.judged(data, refit_frame, refit_tool)?),
-            None => None,
-        };
-        let corrected = corrected.map(|it| JudgedModel {
-            errors: it.calibrated,
-            promised: it.promised,
-            in_sampled_range: it.in_sampled_range,
-        });
-        Ok(Judgement { corrected, ..judgement })
+        let Some(file) = self.corrected() else { return Ok(judgement) };
+        let Judgement { calibrated: errors, promised, in_sampled_range, rows, .. } =
+            file.judged(data, refit_frame, refit_tool)?;
+        let corrected = Some(JudgedModel { errors, promised, in_sampled_range });
+        Ok(Judgement { corrected, rows, ..judgement })
     }
 
     /// [`CalibrationFile::judge`] with the device's frame refitted where that stands elsewhere than at the calibration, and the rows show it: the
@@ -56,17 +53,15 @@ impl CalibrationFile {
         let found = self.judge(data, false, refit_tool)?;
         // Too few rows for a frame show none.
         let Ok(again) = self.judge(data, true, refit_tool) else { return Ok(found) };
-        let (Some((_, before)), Some((_, after))) = (found.calibrated.leading(), again.calibrated.leading())
-        else {
-            return Ok(found);
-        };
+        let [before, after] = [&found, &again].map(|it| it.delivered().errors.leading());
+        let (Some((_, before)), Some((_, after))) = (before, after) else { return Ok(found) };
         let numbers: usize = data.observations.iter().map(|row| row.measurement.observe().dim()).sum();
         let frames = 6.0 * data.station_count() as f64;
         let freedom = numbers as f64 - frames;
         let (square, less) = (before.rms.powi(2), after.rms.powi(2));
         let is_plain = freedom > 0.0 && before.rms > ROUNDING;
         let ratio = freedom / frames * (square - less) / less.max(f64::MIN_POSITIVE);
-        let holds = again.promised.is_none_or(|it| it.least_inside() >= BROKEN);
+        let holds = again.delivered().promised.is_none_or(|it| it.least_inside() >= BROKEN);
         let is_certain = is_plain && holds && ratio >= f_quantile(CHANCE, frames, freedom);
         if !is_certain || after.rms > MUCH * before.rms {
             return Ok(found);
@@ -180,7 +175,7 @@ impl CalibrationFile {
     #[must_use]
     pub fn doubt(&self, judgement: &Judgement) -> Option<String> {
         if let Some(moved) = judgement.moved_device.as_ref().filter(|it| !it.refitted) {
-            let (quantity, _) = judgement.calibrated.leading()?;
+            let (quantity, _) = judgement.delivered().errors.leading()?;
             let (name, unit) = (quantity.name(), quantity.unit().symbol());
             return Some(format!(
                 "the device stands {:.3} mm and {:.4} deg from where the calibration has it: with its frame refitted the {name} error is {:.4} {unit} \
@@ -188,10 +183,11 @@ impl CalibrationFile {
                 moved.shift_mm, moved.turn_deg, moved.after_rms, moved.before_rms
             ));
         }
-        let own = self.own_rms().max(ROUNDING);
-        let (leading, found) = judgement.calibrated.leading()?;
+        let delivered = judgement.delivered();
+        let own = self.own_rms(delivered.model).max(ROUNDING);
+        let (leading, found) = delivered.errors.leading()?;
         let (rms, unit) = (found.rms, leading.unit().symbol());
-        let check = judgement.promised.filter(|_| rms > ROUNDING);
+        let check = delivered.promised.filter(|_| rms > ROUNDING);
         // Where most errors are inside their bounds, single rows are wrong, not the device.
         let mostly = check.is_some_and(|it| it.parts.lead().inside_bound95 > 0.5);
         let is_far = rms > MOVED_DEVICE * own;
@@ -206,11 +202,17 @@ impl CalibrationFile {
         let Some(check) = broken else {
             return (check.is_none() && is_far && !refit_frame).then(|| moved_words(leading, rms, own));
         };
-        let exceeding = exceeding(&check);
-        let Some(some) = &judgement.in_sampled_range else {
+        let exceeding = exceeding(check);
+        let inside = delivered.in_sampled_range;
+        let Some(some) = inside.filter(|some| some.count >= FEW.min(judgement.count)) else {
             let moved = if refit_frame { "" } else { ", and whether the measuring device was moved" };
+            let lie = match inside.map_or(0, |some| some.count) {
+                0 => "no row lies".to_owned(),
+                1 => "only 1 row lies".to_owned(),
+                count => format!("only {count} rows lie"),
+            };
             return Some(format!(
-                "no row lies inside the range that was sampled for the calibration, and {exceeding} exceed their 95 % bound: these rows \
+                "{lie} inside the range that was sampled for the calibration, and {exceeding} exceed their 95 % bound: these rows \
                  show that it does not hold where they are, but neither whether it holds where it was made{moved}"
             ));
         };

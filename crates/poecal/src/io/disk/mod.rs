@@ -70,6 +70,8 @@ pub trait Disk: Send + Sync {
     fn standard_input(&self) -> io::Result<Box<dyn Read + Send>>;
     /// Creates a new file.
     fn create(&self, path: &Path) -> io::Result<Box<dyn Output>>;
+    /// Opens a file for writing at its end, creating it if necessary.
+    fn append(&self, path: &Path) -> io::Result<Box<dyn Output>>;
     /// Opens a device or pipe for writing.
     fn stream(&self, path: &Path) -> io::Result<Box<dyn Output>>;
     /// Creates a new folder.

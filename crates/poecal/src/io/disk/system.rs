@@ -164,6 +164,10 @@ impl Disk for SystemDisk {
         Ok(Box::new(File::create_new(path)?))
     }
 
+    fn append(&self, path: &Path) -> io::Result<Box<dyn Output>> {
+        Ok(Box::new(OpenOptions::new().append(true).create(true).open(path)?))
+    }
+
     fn stream(&self, path: &Path) -> io::Result<Box<dyn Output>> {
         // Reopening a file that standard output goes to would overwrite it from its beginning.
         if ["/dev/stdout", "/dev/fd/1", "/proc/self/fd/1"].iter().any(|name| path == Path::new(name)) {

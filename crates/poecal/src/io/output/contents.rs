@@ -5,6 +5,8 @@ pub const REPORT: &str = "report.html";
 /// File names of a calibration.
 const CALIBRATION: [&str; 5] =
     ["calibration.json", "calibrated.urdf", "calibrated.toml", "residuals.csv", REPORT];
+/// File names of a check.
+const VALIDATION: [&str; 3] = ["validation.json", "errors.csv", REPORT];
 /// File names of a simulated session.
 const SIMULATION: [&str; 7] = [
     "nominal.urdf",
@@ -25,6 +27,8 @@ const MODELS: [&str; 3] = ["robot.urdf", "robot.toml", "robot.json"];
 pub enum Contents {
     /// The results of a calibration.
     Calibration,
+    /// A check of a calibration.
+    Validation,
     /// A simulated session.
     Simulation,
     /// The report of a reproduction.
@@ -36,8 +40,23 @@ pub enum Contents {
 impl Contents {
     /// Whether any kind of run writes files of this name.
     pub(super) fn is_of_any(name: &str) -> bool {
-        let all = [Contents::Calibration, Contents::Simulation, Contents::Reproduction, Contents::Project];
+        let all = [
+            Contents::Calibration,
+            Contents::Validation,
+            Contents::Simulation,
+            Contents::Reproduction,
+            Contents::Project,
+        ];
         all.into_iter().any(|contents| contents.is_own(name)) || MODELS.contains(&name)
+    }
+
+    /// The file by which a folder of other contents, whose report would be replaced, is known.
+    pub(super) fn of_others(self) -> Option<&'static str> {
+        match self {
+            Contents::Calibration => Some(VALIDATION[0]),
+            Contents::Validation => Some(CALIBRATION[0]),
+            Contents::Simulation | Contents::Reproduction | Contents::Project => None,
+        }
     }
 
     /// Whether these contents may have a file of this name; one of an earlier run is removed.
@@ -45,6 +64,7 @@ impl Contents {
     pub fn is_own(self, name: &str) -> bool {
         match self {
             Contents::Calibration => CALIBRATION.contains(&name),
+            Contents::Validation => VALIDATION.contains(&name),
             Contents::Simulation => SIMULATION.contains(&name),
             Contents::Reproduction => is_of_reproduction(name),
             Contents::Project => PROJECT.contains(&name),

@@ -17,6 +17,7 @@ mod project;
 mod reproduction;
 mod simulation;
 mod staging;
+mod validation;
 
 pub use calibration::{Results, write};
 pub use contents::{Contents, REPORT};
@@ -27,6 +28,7 @@ pub use place::FolderPlace;
 pub use project::{Project, write_project};
 pub use reproduction::write_reproduction;
 pub use simulation::{SimulatedSession, write_simulation};
+pub use validation::{ValidationResults, write_validation};
 
 use std::borrow::Cow;
 use std::io::Write;

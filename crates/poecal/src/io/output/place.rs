@@ -139,6 +139,13 @@ pub(super) fn check_existing(
             None => Ok(()),
         };
     }
+    if let Some(name) = contents.of_others()
+        && disk.look(&actual.join(name)).is_ok()
+    {
+        let what = if contents == Contents::Validation { "a calibration" } else { "a check" };
+        let message = format!("found the results of {what}, expected another folder: choose one with --out");
+        return Err(refused(folder, message));
+    }
     let is_staging = |name: &OsStr| staging::is_staging(name, &staging::prefix(None));
     let all = staging::names(disk, actual).map_err(|error| unwritable(folder, &error))?;
     if all.iter().all(|name| is_staging(name)) {

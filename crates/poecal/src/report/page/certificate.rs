@@ -1,19 +1,22 @@
 //! What makes the page a certificate: what is stated of the session, whether limits are kept, and where it is signed.
 
+use std::collections::BTreeMap;
+
 use maud::{Markup, PreEscaped, html};
 
 use super::html::{HtmlTable, count, facts, figure, quoted};
 use super::short as shorter;
 use crate::calibration::{Acceptance, AcceptedLimit, Decision};
 use crate::io::calibration_file::CalibrationFile;
+use crate::io::record::Record;
 use crate::report::acceptance::{counts, plain};
 
 /// Letters of a checksum that tell files apart.
 const SHORT: usize = 16;
 
 /// What is stated of the session; nothing where nothing is.
-pub(super) fn record(file: &CalibrationFile) -> Markup {
-    let entries = file.record.entries();
+pub(super) fn stated(record: &Record) -> Markup {
+    let entries = record.entries();
     let entry = |&(key, label, text): &(&'static str, &'static str, &str)| {
         (label, quoted(text, format_args!("record.{key}")))
     };
@@ -22,8 +25,7 @@ pub(super) fn record(file: &CalibrationFile) -> Markup {
 }
 
 /// Whether the limits are kept, each with what was found.
-pub(super) fn acceptance(file: &CalibrationFile) -> Markup {
-    let Some(found) = &file.acceptance else { return Markup::default() };
+pub(super) fn limits(found: &Acceptance) -> Markup {
     let head = ["error", "decision", "limit", "found", "lower bound", "upper bound", "rows"];
     let mut table = HtmlTable::new("Errors and their limits", 2, &head);
     for (k, limit) in found.limits.iter().enumerate() {
@@ -72,24 +74,38 @@ fn row(table: &mut HtmlTable, k: usize, limit: &AcceptedLimit) {
     table.cells([name, decision, most, found, from, to, rows]);
 }
 
-/// Where it is signed, on paper alone: what is certified, of which files, and lines for two hands.
+/// Where a calibration is signed, on paper alone: what is certified, of which files, and lines for two hands.
 pub(super) fn signature(file: &CalibrationFile) -> Markup {
     let inputs = &file.inputs;
-    let all_names: Vec<String> =
-        std::iter::once(&inputs.model).chain(&inputs.measurements).cloned().collect();
-    let short = |name: &String| {
-        let hash = inputs.sha256.get(name)?;
+    let names: Vec<&String> = std::iter::once(&inputs.model).chain(&inputs.measurements).collect();
+    let of = html! { (file.robot.name) @if let Some(serial) = &file.record.serial { ", serial number " (serial) } };
+    hands(
+        ("Robot", of),
+        &file.record,
+        file.acceptance.as_ref(),
+        (&names, &inputs.sha256),
+        ("Calibrated by", &file.poecal_version),
+    )
+}
+
+/// Where something is signed: what it is, whether limits are kept, the files with their checksums, and lines for two hands.
+pub(super) fn hands(
+    of: (&'static str, Markup),
+    record: &Record,
+    acceptance: Option<&Acceptance>,
+    (names, sha256): (&[&String], &BTreeMap<String, String>),
+    (role, version): (&str, &str),
+) -> Markup {
+    let all_names: Vec<String> = names.iter().map(|name| (*name).clone()).collect();
+    let short = |name: &&String| {
+        let hash = sha256.get(*name)?;
         Some(html! { (shorter(&all_names, name)) " " code { (hash.get(..SHORT).unwrap_or(hash)) "…" } })
     };
-    let files: Vec<Markup> =
-        std::iter::once(&inputs.model).chain(&inputs.measurements).filter_map(short).collect();
-    let mut all = vec![(
-        "Robot",
-        html! { (file.robot.name) @if let Some(serial) = &file.record.serial { ", serial number " (serial) } },
-    )];
-    all.extend(file.record.certificate.as_ref().map(|number| ("Certificate", html! { (number) })));
-    all.extend(file.acceptance.as_ref().map(|found| ("Acceptance", html! { (title(found)) })));
-    all.push(("Made by", html! { "poecal " (file.poecal_version) }));
+    let files: Vec<Markup> = names.iter().filter_map(short).collect();
+    let mut all = vec![of];
+    all.extend(record.certificate.as_ref().map(|number| ("Certificate", html! { (number) })));
+    all.extend(acceptance.map(|found| ("Acceptance", html! { (title(found)) })));
+    all.push(("Made by", html! { "poecal " (version) }));
     if !files.is_empty() {
         all.push((
             "SHA-256 of",
@@ -106,7 +122,7 @@ pub(super) fn signature(file: &CalibrationFile) -> Markup {
             h2 { "Signatures" }
             (facts(&all))
             div.hands {
-                (hand("Calibrated by", file.record.operator.as_deref().unwrap_or("")))
+                (hand(role, record.operator.as_deref().unwrap_or("")))
                 (hand("Approved by", ""))
             }
         }
@@ -114,10 +130,10 @@ pub(super) fn signature(file: &CalibrationFile) -> Markup {
 }
 
 /// Head and foot of printed pages, where the browser has them.
-pub(super) fn pages(file: &CalibrationFile) -> Markup {
-    let number = file.record.certificate.as_ref().map(|number| format!(" · {number}"));
-    let title = format!("Calibration of {}{}", file.robot.name, number.unwrap_or_default());
-    let right = format!("poecal {}", file.poecal_version);
+pub(super) fn pages(title: &str, record: &Record, version: &str) -> Markup {
+    let number = record.certificate.as_ref().map(|number| format!(" · {number}"));
+    let title = format!("{title}{}", number.unwrap_or_default());
+    let right = format!("poecal {version}");
     html! {
         style {
             (PreEscaped(format!(

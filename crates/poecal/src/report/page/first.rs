@@ -3,7 +3,7 @@
 use maud::{Markup, Render, html};
 
 use super::advice::told;
-use super::certificate::{acceptance, record};
+use super::certificate::{limits, stated};
 use super::devices::Device;
 use super::figures;
 use super::html::{HtmlTable, count, facts, figure, figure_or, list, path, plots, quoted};
@@ -63,8 +63,8 @@ pub(super) fn screen(file: &CalibrationFile, residuals: &Residuals) -> Markup {
             p.made { (kinds(file)) " · made by poecal " (quoted(&file.poecal_version, "poecal_version")) }
             div.theme hidden role="group" aria-label="Colours" {}
         }
-        (record(file))
-        (acceptance(file))
+        (stated(&file.record))
+        @if let Some(found) = &file.acceptance { (limits(found)) }
         (verdict(file))
         div.first {
             div {

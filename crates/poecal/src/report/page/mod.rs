@@ -16,6 +16,9 @@ mod method;
 mod rows;
 mod shapes;
 mod trust;
+mod validation;
+
+pub use validation::validation_page;
 
 use maud::{DOCTYPE, PreEscaped, html};
 
@@ -67,6 +70,7 @@ pub fn calibration_page(file: &CalibrationFile, residuals: &Residuals) -> Result
 pub fn calibration_page_with(file: &CalibrationFile, residuals: &Residuals, shapes: &Shapes) -> Result<Page> {
     check(file, residuals)?;
     let data = data::json(file, residuals, shapes)?;
+    let title = format!("Calibration of {}", file.robot.name);
     let head = html! {
         (DOCTYPE) "\n" (PreEscaped("<html lang=\"en\">")) "\n"
         head {
@@ -75,9 +79,9 @@ pub fn calibration_page_with(file: &CalibrationFile, residuals: &Residuals, shap
             meta name="viewport" content="width=device-width, initial-scale=1";
             meta name="color-scheme" content="light dark";
             meta name="generator" content={ "poecal " (file.poecal_version) };
-            title { "Calibration of " (file.robot.name) }
+            title { (title) }
             style { (PreEscaped(STYLE)) }
-            (certificate::pages(file))
+            (certificate::pages(&title, &file.record, &file.poecal_version))
         }
         "\n" (PreEscaped("<body>")) "\n"
     };

@@ -1,0 +1,136 @@
+//! Results of `poecal validate`: the record and report of a repeat measurement, and the history of checks.
+
+use poecal::simulate::{Kind, Simulation};
+use serde_json::Value;
+
+use crate::folder::Folder;
+use crate::session::{session, write_measurements};
+
+/// A calibration in `poecal-out`, and other sessions of the same robot.
+fn checked() -> Folder {
+    let folder = session(Kind::Point);
+    folder.done("calibrate robot.urdf measurements.csv");
+    // The same robot and device, in configurations that follow on those of the calibration.
+    write_measurements(
+        &folder,
+        "all.csv",
+        Kind::Point,
+        "",
+        &Simulation { count: 160, ..Simulation::default() },
+    );
+    let all = folder.read("all.csv");
+    for (name, first) in [("spring.csv", 61), ("autumn.csv", 101)] {
+        let is_of = |(line, _): &(usize, &str)| *line == 0 || (first..first + 40).contains(line);
+        let rows: Vec<&str> = all.lines().enumerate().filter(is_of).map(|(_, line)| line).collect();
+        folder.write(name, rows.join("\n"));
+    }
+    folder
+}
+
+fn history(folder: &Folder, name: &str) -> Vec<Value> {
+    folder.read(name).lines().map(|line| serde_json::from_str(line).unwrap()).collect()
+}
+
+#[test]
+fn a_repeat_measurement_has_its_own_record_and_report() {
+    let folder = checked();
+    let command = "validate poecal-out/calibration.json spring.csv --refit-frame --out spring --record operator=Mia --record serial=4711";
+    let out = folder.done(command);
+    println!("{out}");
+    assert!(out.starts_with("verdict       the calibration "), "{out}");
+    assert!(
+        out.contains("written       spring\n") && out.contains("validation.json, errors.csv, report.html")
+    );
+    let found: Value = serde_json::from_str(&folder.read("spring/validation.json")).unwrap();
+    assert_eq!((&found["schema"], &found["count"]), (&"poecal-validation-1".into(), &40.into()));
+    assert_eq!((&found["record"]["operator"], &found["record"]["serial"]), (&"Mia".into(), &"4711".into()));
+    assert_eq!(found["inputs"]["sha256"].as_object().unwrap().len(), 2);
+    // Each row beside its bound: their share is the one that is stated.
+    let rows = folder.read("spring/errors.csv");
+    let head: Vec<&str> = rows.lines().next().unwrap().split(',').collect();
+    let column = |name: &str| head.iter().position(|it| *it == name).unwrap();
+    let (error, bound) = (column("position_error[mm]"), column("position_bound95[mm]"));
+    let number = |line: &str, at: usize| line.split(',').nth(at).unwrap().parse::<f64>().unwrap();
+    let all: Vec<(f64, f64)> =
+        rows.lines().skip(1).map(|line| (number(line, error), number(line, bound))).collect();
+    let inside = all.iter().filter(|(error, bound)| error <= bound).count() as f64 / all.len() as f64;
+    let rms = (all.iter().map(|(error, _)| error * error).sum::<f64>() / all.len() as f64).sqrt();
+    let own = &found["verdict"]["position_mm"];
+    println!("{} rows, {inside} inside, {rms} mm; {own}", all.len());
+    assert_eq!((all.len(), inside), (40, own["inside_bound95"].as_f64().unwrap()));
+    assert!((rms - own["rms"].as_f64().unwrap()).abs() < 1e-9);
+    let page = folder.read("spring/report.html");
+    for words in ["Check of the calibration of", "Mia", "4711", "spring.csv", "Signatures"] {
+        assert!(page.contains(words), "{words}");
+    }
+    assert!(!page.contains("<script"));
+    // The same command again refuses; with --force it gives the same bytes.
+    let run = folder.run(command);
+    assert_eq!(run.code, 2, "{}", run.err);
+    folder.done(&format!("{command} --force"));
+    assert!(folder.read("spring/report.html") == page, "another page");
+    // The results of the calibration are never replaced by those of a check, nor the other way round.
+    let own = folder.read("poecal-out/report.html");
+    let run =
+        folder.run("validate poecal-out/calibration.json spring.csv --refit-frame --out poecal-out --force");
+    assert_eq!(
+        run.err,
+        "error: poecal-out: found the results of a calibration, expected another folder: choose one with --out\n"
+    );
+    assert!(run.code == 2 && folder.read("poecal-out/report.html") == own);
+    let run = folder.run("calibrate robot.urdf measurements.csv --out spring --force");
+    assert_eq!(
+        run.err,
+        "error: spring: found the results of a check, expected another folder: choose one with --out\n"
+    );
+    assert!(run.code == 2 && folder.read("spring/report.html") == page);
+}
+
+#[test]
+fn the_history_gets_a_line_a_check() {
+    let folder = checked();
+    let check = "validate poecal-out/calibration.json";
+    folder.done(&format!("{check} spring.csv --refit-frame --quiet"));
+    folder.done(&format!("{check} spring.csv --refit-frame --quiet --json"));
+    assert_eq!(history(&folder, "poecal-out/history.jsonl").len(), 1, "the same check is there once");
+    // A run that was killed left half a line.
+    let cut = folder.read("poecal-out/history.jsonl") + "{\"time\": \"2026-";
+    folder.write("poecal-out/history.jsonl", cut);
+    folder.done(&format!("{check} autumn.csv --refit-frame --quiet --report autumn.html"));
+    let lines: Vec<Value> = folder
+        .read("poecal-out/history.jsonl")
+        .lines()
+        .filter_map(|line| serde_json::from_str(line).ok())
+        .collect();
+    println!("{}", lines[1]);
+    assert_eq!(lines.len(), 2);
+    assert_eq!(lines[1]["inputs"]["measurements"], serde_json::json!(["autumn.csv"]));
+    assert!(lines[0]["time"].as_str().unwrap() <= lines[1]["time"].as_str().unwrap());
+    // The report of the second has the first.
+    let page = folder.read("autumn.html");
+    assert!(page.contains("Checks of this calibration") && page.contains(lines[0]["time"].as_str().unwrap()));
+    // A calibration again into the same folder keeps the history, which is none of the new calibration.
+    folder.done("calibrate robot.urdf measurements.csv spring.csv --frames per-file --force --quiet");
+    assert_eq!(folder.read("poecal-out/history.jsonl").lines().count(), 3);
+    folder.done(&format!("{check} autumn.csv --refit-frame --quiet --report again.html"));
+    assert!(!folder.read("again.html").contains("Checks of this calibration"));
+    // Elsewhere, or nowhere.
+    let before = folder.read("poecal-out/history.jsonl");
+    folder.done(&format!("{check} spring.csv --refit-frame --quiet --history cell.jsonl"));
+    folder.done(&format!("{check} spring.csv --refit-frame --quiet --refit-tool --history none"));
+    assert_eq!((history(&folder, "cell.jsonl").len(), folder.read("poecal-out/history.jsonl")), (1, before));
+    // A file that is none is not written to.
+    let rows = folder.read("spring.csv");
+    let run = folder.run(&format!("{check} spring.csv --refit-frame --history spring.csv"));
+    assert_eq!(
+        run.err,
+        "error: spring.csv: found a file without a check, expected the history of checks or nothing\n"
+    );
+    assert_eq!((run.code, folder.read("spring.csv")), (2, rows));
+    // Where the usual one cannot be kept, the check is done all the same, and that is said.
+    std::fs::remove_file(folder.path("poecal-out/history.jsonl")).unwrap();
+    std::fs::create_dir(folder.path("poecal-out/history.jsonl")).unwrap();
+    let run = folder.run(&format!("{check} spring.csv --refit-frame"));
+    println!("{}", run.err);
+    assert!(run.code == 0 && run.err.contains("the check is not in the history"), "{}", run.err);
+}

@@ -1,0 +1,102 @@
+//! A check of a calibration: where its results go, and what they are.
+
+use std::path::{Path, PathBuf};
+
+use poecal::io::calibration_file::Inputs;
+use poecal::io::output::{Contents, Existing, FilePlace, FolderPlace, ValidationResults, write_validation};
+use poecal::io::record::Record;
+use poecal::io::validation::{Earlier, History, JudgedRows, Judging, Validation, ValidationInputs, now};
+use poecal::report;
+use pyo3::prelude::*;
+
+use super::{Calibration, ReportPlace};
+use crate::errors::raise;
+use crate::findings::Findings;
+use crate::measurements::Measurements;
+use crate::places::{reserved_file, reserved_folder, said};
+
+/// Places of the results.
+pub(super) struct Places {
+    folder: Option<FolderPlace>,
+    /// A report outside the results.
+    report: Option<FilePlace>,
+    /// Whether a report is wanted among them.
+    is_among: bool,
+    history: Option<History>,
+}
+
+impl Places {
+    pub(super) fn reserve(
+        py: Python<'_>,
+        (calibration, measurements): (&Calibration, &Measurements),
+        (out, force): (Option<&Path>, bool),
+        report: Option<ReportPlace>,
+        history: Option<PathBuf>,
+    ) -> PyResult<Self> {
+        let existing = Existing::forced(force);
+        let own = calibration.calibrated()?.model.path.as_path();
+        let inputs: Vec<&Path> =
+            std::iter::once(own).chain(measurements.source.names.iter().map(Path::new)).collect();
+        let folder =
+            out.map(|out| reserved_folder(py, out, Contents::Validation, existing, &inputs)).transpose()?;
+        let (is_among, elsewhere) = match (report, &folder) {
+            (Some(ReportPlace::File(path)), Some(folder)) => {
+                let place = said(py, |say| folder.reserve_report(&path, &inputs, say))?;
+                (place.is_none(), place)
+            }
+            (Some(ReportPlace::File(path)), None) => {
+                (false, Some(reserved_file(py, &path, existing, &inputs)?))
+            }
+            (Some(ReportPlace::Among(among)), _) => (among, None),
+            (None, _) => (true, None),
+        };
+        let history = history.map(|path| History::read(&path)).transpose().map_err(raise)?;
+        Ok(Places { folder, report: elsewhere, is_among, history })
+    }
+
+    pub(super) fn judge(
+        mut self,
+        py: Python<'_>,
+        (calibration, measurements): (&Calibration, &Measurements),
+        judging: &Judging<'_>,
+        record: Record,
+    ) -> PyResult<Findings> {
+        let (file, data) = (calibration.file(), measurements.data());
+        let model = &calibration.calibrated()?.model;
+        // One that was just fitted has no file.
+        let own = Inputs::checksums(std::iter::once(model.path.as_path()).filter(|path| path.is_file()));
+        let own = own.map_err(raise)?;
+        let inputs = ValidationInputs {
+            calibration: model.path.display().to_string(),
+            measurements: measurements.source.names.clone(),
+            sha256: own.clone().into_iter().chain(measurements.source.sha256.clone()).collect(),
+            command: None,
+        };
+        let found = py.detach(|| {
+            let found = Validation { record, ..Validation::of(file, data, judging, inputs)? };
+            let rows = JudgedRows { data, robot: &model.robot, rows: &found.judgement.rows };
+            let before = self.history.as_ref().zip(own.values().next());
+            let earlier: Vec<Earlier> =
+                before.into_iter().flat_map(|(kept, own)| kept.before(&found, own)).collect();
+            let page = || report::validation_page(&found, &rows, &earlier);
+            match (self.folder, self.report) {
+                (Some(folder), elsewhere) => {
+                    let report = (self.is_among || elsewhere.is_some()).then(page);
+                    write_validation(folder, elsewhere, ValidationResults { found: &found, rows, report })?;
+                }
+                (None, Some(place)) => place.write(page())?,
+                (None, None) => {}
+            }
+            if let (Some(history), Some(time)) = (&mut self.history, now()) {
+                history.append(&found, &time)?;
+            }
+            Ok(found)
+        });
+        let found: Validation = found.map_err(raise)?;
+        let names = measurements.source.names.join(", ");
+        let text = report::judgement(&model.path.display().to_string(), &names, &found.judgement);
+        let doubts: Vec<String> = found.doubt.iter().cloned().collect();
+        crate::warn(py, &doubts)?;
+        Findings::new(text, &found, doubts)
+    }
+}

@@ -1,0 +1,188 @@
+//! `validation.json`: a calibration judged by other measurements, with what was judged by what; and the history of such checks.
+
+mod history;
+mod rows;
+
+pub use history::{Earlier, HISTORY, History, now};
+pub use rows::JudgedRows;
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+
+use super::calibration_file::CalibrationFile;
+use super::record::Record;
+use crate::calibration::{AcceptanceLimits, AcceptedModel, JudgedError, Judgement, Level, Promise, Refitted};
+use crate::error::Result;
+use crate::measurement::{Dataset, Measured, Quantity};
+
+/// Name of the schema.
+const SCHEMA: &str = "poecal-validation-1";
+
+/// What was judged, and by what.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct ValidationInputs {
+    /// The calibration's file.
+    pub calibration: String,
+    /// Files of the measurements.
+    pub measurements: Vec<String>,
+    /// SHA-256 of each, by name.
+    pub sha256: BTreeMap<String, String>,
+    /// The command, if the program did it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub command: Option<String>,
+}
+
+/// What the measurements say of the model that is delivered.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ValidationVerdict {
+    /// The best level that they confirm; `None` if the calibration has no bounds to test.
+    pub level: Option<Level>,
+    /// Why not a better one, a sentence each.
+    #[serde(default)]
+    pub reasons: Vec<String>,
+    /// The model that is delivered.
+    pub model: AcceptedModel,
+    /// Its errors.
+    #[serde(flatten)]
+    pub errors: Measured<VerdictError>,
+}
+
+/// Errors of a quantity, millimetres or degrees.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct VerdictError {
+    /// Root mean square.
+    pub rms: f64,
+    /// Largest.
+    pub max: f64,
+    /// Expected root mean square, measurement noise included.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub expected_rms: Option<f64>,
+    /// Share of the errors within their own 95 % bound.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub inside_bound95: Option<f64>,
+}
+
+/// A calibration judged by other measurements.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Validation {
+    /// Name and version of this schema.
+    pub schema: &'static str,
+    /// Version that judged.
+    pub poecal_version: &'static str,
+    /// The robot's name.
+    pub robot: String,
+    /// What was judged, and by what.
+    pub inputs: ValidationInputs,
+    /// What is stated of this session, not of the calibration's.
+    #[serde(skip_serializing_if = "Record::is_empty")]
+    pub record: Record,
+    /// What the measurements say of the model that is delivered.
+    pub verdict: ValidationVerdict,
+    /// What contradicts the calibration, as a sentence.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub doubt: Option<String>,
+    /// The errors.
+    #[serde(flatten)]
+    pub judgement: Judgement,
+}
+
+/// How measurements judge a calibration.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Judging<'a> {
+    /// Refit the device's frame.
+    pub refit_frame: bool,
+    /// Refit it where the measurements show that the device stands elsewhere.
+    pub refit_moved: bool,
+    /// Refit the targets.
+    pub refit_tool: bool,
+    /// Limits that the errors shall keep.
+    pub accept: Option<&'a AcceptanceLimits>,
+}
+
+impl Validation {
+    /// Judges a calibration by all rows of some measurements.
+    ///
+    /// # Errors
+    /// As [`CalibrationFile::judge`] and [`CalibrationFile::accept`].
+    pub fn of(
+        file: &CalibrationFile,
+        data: &Dataset,
+        judging: &Judging<'_>,
+        inputs: ValidationInputs,
+    ) -> Result<Self> {
+        let Judging { refit_frame, refit_moved, refit_tool, accept } = *judging;
+        let judgement = if refit_frame {
+            file.judge(data, true, refit_tool)?
+        } else {
+            file.judge_wherever(data, refit_tool, refit_moved)?
+        };
+        let refit_frame = judgement.refitted.contains(&Refitted::DeviceFrame);
+        let accept = accept.map(|limits| file.accept(data, refit_frame, refit_tool, limits, &inputs.sha256));
+        let acceptance = accept.transpose()?;
+        Ok(Validation::new(file, Judgement { acceptance, ..judgement }, inputs))
+    }
+
+    /// Of a finished judgement.
+    ///
+    /// ```
+    /// use poecal::calibration::{CalibrationOptions, calibrate};
+    /// use poecal::io::calibration_file::{CalibrationFile, Inputs};
+    /// use poecal::io::validation::{Validation, ValidationInputs};
+    /// use poecal::simulate::{Kind, Simulation, elbow};
+    /// let made = Simulation { count: 60, ..Simulation::default() }.run(&elbow(), Kind::Point)?;
+    /// let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default())?;
+    /// let file = CalibrationFile::new(&calibration, &made.data, Inputs::default());
+    /// let judgement = file.judge(&made.data, false, false)?;
+    /// let validation = Validation::new(&file, judgement, ValidationInputs::default());
+    /// assert_eq!(validation.verdict.level, Some(poecal::calibration::Level::Good));
+    /// # Ok::<(), poecal::Error>(())
+    /// ```
+    #[must_use]
+    pub fn new(file: &CalibrationFile, judgement: Judgement, inputs: ValidationInputs) -> Self {
+        Validation {
+            schema: SCHEMA,
+            poecal_version: env!("CARGO_PKG_VERSION"),
+            robot: file.robot.name.clone(),
+            inputs,
+            record: Record::default(),
+            verdict: ValidationVerdict::of(&judgement),
+            doubt: file.doubt(&judgement),
+            judgement,
+        }
+    }
+
+    /// The text of `validation.json`.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Export`](crate::ErrorKind::Export) if it cannot be written as JSON.
+    pub fn to_text(&self) -> Result<String> {
+        super::json_text(self, "validation")
+    }
+}
+
+impl ValidationVerdict {
+    fn of(judgement: &Judgement) -> Self {
+        let found = judgement.delivered();
+        let (level, reasons) = judgement.confirmed();
+        let errors = Measured::of(|quantity: Quantity| {
+            let own = found.errors.get(quantity)?;
+            let part = found.promised.and_then(|it| it.parts.get(quantity));
+            let (rms, max) = (own.rms, own.max);
+            Some(VerdictError {
+                rms,
+                max,
+                expected_rms: part.map(|it| it.expected_rms),
+                inside_bound95: part.map(|it| it.inside_bound95),
+            })
+        });
+        ValidationVerdict { level, reasons, model: found.model, errors }
+    }
+}
+
+/// A quantity's error, expectation and bound, millimetres or degrees.
+fn shown(quantity: Quantity, found: JudgedError) -> [Option<f64>; 3] {
+    let shown = |value: f64| quantity.unit().shown(value);
+    let promised = |of: fn(&Promise) -> f64| found.promised.as_ref().map(|it| shown(of(it)));
+    [Some(shown(found.length)), promised(|it| it.variance.sqrt()), promised(|it| it.bound)]
+}
