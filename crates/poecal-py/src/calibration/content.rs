@@ -1,5 +1,6 @@
 //! Contents of a calibration, converted on demand.
 
+use std::path::Path;
 use std::sync::{Arc, OnceLock};
 use std::time::Duration;
 
@@ -114,6 +115,13 @@ impl Calibration {
             calibrated: OnceLock::new(),
             corrected: OnceLock::new(),
         }
+    }
+
+    /// The file that it was read from; `None` of one that was made in a process.
+    pub(super) fn source(&self) -> Option<&Path> {
+        let path = self.nominal.model.path.as_path();
+        let is_file = path.extension().is_some_and(|it| it.eq_ignore_ascii_case("json"));
+        matches!(self.found, Found::Written(_)).then_some(path).filter(|_| is_file)
     }
 
     /// The calibration as a state.

@@ -34,9 +34,8 @@ impl Places {
         history: Option<PathBuf>,
     ) -> PyResult<Self> {
         let existing = Existing::forced(force);
-        let own = calibration.calibrated()?.model.path.as_path();
-        let inputs: Vec<&Path> =
-            std::iter::once(own).chain(measurements.source.names.iter().map(Path::new)).collect();
+        let own = calibration.source().into_iter();
+        let inputs: Vec<&Path> = own.chain(measurements.source.names.iter().map(Path::new)).collect();
         let folder =
             out.map(|out| reserved_folder(py, out, Contents::Validation, existing, &inputs)).transpose()?;
         let (is_among, elsewhere) = match (report, &folder) {
@@ -64,10 +63,11 @@ impl Places {
         let (file, data) = (calibration.file(), measurements.data());
         let model = &calibration.calibrated()?.model;
         // One that was just fitted has no file.
-        let own = Inputs::checksums(std::iter::once(model.path.as_path()).filter(|path| path.is_file()));
+        let path = calibration.source().unwrap_or(&model.path);
+        let own = Inputs::checksums(calibration.source().filter(|path| path.is_file()).into_iter());
         let own = own.map_err(raise)?;
         let inputs = ValidationInputs {
-            calibration: model.path.display().to_string(),
+            calibration: path.display().to_string(),
             measurements: measurements.source.names.clone(),
             sha256: own.clone().into_iter().chain(measurements.source.sha256.clone()).collect(),
             command: None,
