@@ -5,8 +5,8 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use poecal::calibration::{
-    AcceptanceLimits, AcceptedModel, BlockChoice, CalibrationOptions, Corrections, Stage,
-    calibrate_with_progress, settle_sets,
+    AcceptanceLimits, AcceptedModel, BlockChoice, CalibrationOptions, Corrections, Repaired, Repairs, Stage,
+    calibrate_repairing, settle_sets,
 };
 use poecal::io::abb::AbbCalibration;
 use poecal::io::calibration_file::Inputs;
@@ -62,6 +62,9 @@ use crate::words::{chosen, frame as frame_word, from_mm, robust as robust_word, 
 ///     Seed of that choice (default 1).
 /// robust
 ///     How to treat outliers: "auto", "off", "huber", "cauchy" or "tukey".
+/// repair
+///     "auto" repairs a session in which a device, a target, a nest or a joint's zero evidently moved, or configurations are wrong as a whole, if
+///     other rows are predicted better then; "off" only says it. `Calibration.to_dict()` has `repairs` and `suspicions`.
 /// formulation
 ///     Parameterisation of joint errors: "adjoint", "screw", "screw-offsets" or "adjoint-offsets".
 /// residual
@@ -96,8 +99,8 @@ use crate::words::{chosen, frame as frame_word, from_mm, robust as robust_word, 
 ///     No finite result is reached.
 #[pyfunction]
 #[pyo3(signature = (robot, measurements, *, frame="unknown", sigma_position_mm=None, sigma_rotation_deg=None, tolerance_deg_mm=Believed::Given((0.5, 5.0)),
-                    corrections=None, harmonics=2, gravity=None, fix=None, free=None, move_tip=false, held_out=None, seed=None, robust="auto", formulation="adjoint", residual="tool", method=None, validate=None, accept=None, accept_model="corrected", record=None, progress=None),
-        text_signature = "(robot, measurements, *, frame='unknown', sigma_position_mm=None, sigma_rotation_deg=None, tolerance_deg_mm=(0.5, 5.0), corrections='auto', harmonics=2, gravity=(0, 0, -1), fix=None, free=None, move_tip=False, held_out=None, seed=None, robust='auto', formulation='adjoint', residual='tool', method=None, validate=None, accept=None, accept_model='corrected', record=None, progress=None)")]
+                    corrections=None, harmonics=2, gravity=None, fix=None, free=None, move_tip=false, held_out=None, seed=None, robust="auto", repair="auto", formulation="adjoint", residual="tool", method=None, validate=None, accept=None, accept_model="corrected", record=None, progress=None),
+        text_signature = "(robot, measurements, *, frame='unknown', sigma_position_mm=None, sigma_rotation_deg=None, tolerance_deg_mm=(0.5, 5.0), corrections='auto', harmonics=2, gravity=(0, 0, -1), fix=None, free=None, move_tip=False, held_out=None, seed=None, robust='auto', repair='auto', formulation='adjoint', residual='tool', method=None, validate=None, accept=None, accept_model='corrected', record=None, progress=None)")]
 #[expect(clippy::too_many_arguments, reason = "the options of a Python function")]
 pub(crate) fn calibrate(
     py: Python<'_>,
@@ -116,6 +119,7 @@ pub(crate) fn calibrate(
     #[pyo3(from_py_with = arg::held_out)] held_out: Option<f64>,
     #[pyo3(from_py_with = arg::seed)] seed: Option<u64>,
     #[pyo3(from_py_with = arg::robust)] robust: &str,
+    #[pyo3(from_py_with = arg::repair)] repair: &str,
     #[pyo3(from_py_with = arg::formulation)] formulation: &str,
     #[pyo3(from_py_with = arg::residual)] residual: &str,
     #[pyo3(from_py_with = arg::method)] method: Option<&str>,
@@ -156,6 +160,7 @@ pub(crate) fn calibrate(
         held_out: held_out.unwrap_or(usual.held_out),
         seed: seed.unwrap_or(usual.seed),
         robust: robust_word(robust)?,
+        repair: chosen("repair", repair, &[("auto", Repairs::Auto), ("off", Repairs::Off)])?,
         move_tip,
         accept: accept_limits(accept, accept_model)?,
         formulation: formulated(formulation, residual, method),
@@ -164,10 +169,10 @@ pub(crate) fn calibrate(
     let data = rows(py, robot, measurements, validate, held_out, seed)?;
     warn_of_residual(py, &data, residual)?;
     let inputs = inputs(robot, measurements, validate);
-    let (found, took) = fit(py, &robot.model.robot, &data, &options, progress)?;
-    let data = match data {
-        Cow::Borrowed(_) => Arc::clone(&measurements.file),
-        Cow::Owned(data) => {
+    let (found, repaired, took) = fit(py, &robot.model.robot, &data, &options, progress)?;
+    let data = match (repaired, data) {
+        (None, Cow::Borrowed(_)) => Arc::clone(&measurements.file),
+        (Some(data), _) | (None, Cow::Owned(data)) => {
             Arc::new(poecal::io::measurements::MeasurementFile { data, ..Default::default() })
         }
     };
@@ -194,7 +199,7 @@ fn fit(
     data: &Dataset,
     options: &CalibrationOptions,
     progress: Option<Function>,
-) -> PyResult<(poecal::calibration::Calibration, Duration)> {
+) -> PyResult<(poecal::calibration::Calibration, Option<Dataset>, Duration)> {
     let mut raised = None;
     let mut tell = |stage: Stage| {
         if let (Some(Function(progress)), None) = (&progress, &raised) {
@@ -203,16 +208,21 @@ fn fit(
     };
     let (found, took) = py.detach(|| {
         let start = Instant::now();
-        (calibrate_with_progress(nominal, data, options, &mut tell), start.elapsed())
+        (calibrate_repairing(nominal, data, options, &mut tell), start.elapsed())
     });
     if let Some(raised) = raised {
         return Err(raised);
     }
-    let found = found.map_err(raise)?;
+    let Repaired { calibration: found, data } = found.map_err(raise)?;
+    let repaired = match data {
+        Cow::Borrowed(_) => None,
+        Cow::Owned(data) => Some(data),
+    };
+    let events = found.repairs.iter().chain(&found.suspicions).map(|event| &event.statement);
     let statements = found.diagnosis.iter().map(|diagnosis| &diagnosis.statement);
-    let warnings: Vec<String> = found.warnings.iter().chain(statements).cloned().collect();
+    let warnings: Vec<String> = found.warnings.iter().chain(statements).chain(events).cloned().collect();
     crate::warn(py, &warnings)?;
-    Ok((found, took))
+    Ok((found, repaired, took))
 }
 
 /// Training and held-out rows, joined.

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use poecal::calibration::{AcceptedModel, Corrections, DeviceFrameKnowledge, Level, Limit, Robust};
+use poecal::calibration::{AcceptedModel, Corrections, DeviceFrameKnowledge, Level, Limit, Repairs, Robust};
 use poecal::io::output::Existing;
 use poecal::io::record::Record;
 use poecal::robot::GravityDirection;
@@ -11,7 +11,9 @@ use poecal_lou2009::{Formulation, Method, Residual};
 
 use super::report::ReportPlace;
 use super::shared::{Reading, TreeArgs};
-use super::words::{ACCEPTED_MODEL, FORMULATION, FRAME, METHOD, REQUIRED_LEVEL, RESIDUAL, ROBUST, one_of};
+use super::words::{
+    ACCEPTED_MODEL, FORMULATION, FRAME, METHOD, REPAIR, REQUIRED_LEVEL, RESIDUAL, ROBUST, one_of,
+};
 use crate::quantity::{BelievedTolerance, share, sigma_m, sigma_rad, whole};
 
 /// Arguments of `poecal calibrate`.
@@ -77,6 +79,9 @@ pub(crate) struct Calibrate {
     /// How to treat outliers: auto fits by least squares, and by the tukey loss where that shows outliers
     #[arg(long, value_parser = one_of(ROBUST), default_value = "auto")]
     pub(crate) robust: Robust,
+    /// What to do where a device, a target, a nest or a joint's zero moved during the session, or configurations are wrong as a whole
+    #[arg(long, value_parser = one_of(REPAIR), default_value = "auto")]
+    pub(crate) repair: Repairs,
     /// Parameterisation of joint errors; all but the default are for comparison
     #[arg(long, value_parser = one_of(FORMULATION), default_value = "adjoint", help_heading = "Comparison")]
     pub(crate) formulation: Formulation,

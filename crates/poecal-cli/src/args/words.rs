@@ -1,7 +1,7 @@
 //! Options that are one of a few words: of each its help and what it means to the library.
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
-use poecal::calibration::{AcceptedModel, DeviceFrameKnowledge, Level, Loss, Robust};
+use poecal::calibration::{AcceptedModel, DeviceFrameKnowledge, Level, Loss, Repairs, Robust};
 use poecal::compensate::Language;
 use poecal::io::export::ExportFormat;
 use poecal::io::measurements::{Frames, PlaneContact};
@@ -66,6 +66,12 @@ pub(super) const ROBUST: Words<Robust> = &[
     ("huber", "The influence of a residual is bounded", Robust::Loss(Loss::Huber)),
     ("cauchy", "The influence of a large residual decreases with its size", Robust::Loss(Loss::Cauchy)),
     ("tukey", "Large residuals have no influence", Robust::Loss(Loss::Tukey)),
+];
+
+/// Whether a session is repaired.
+pub(super) const REPAIR: Words<Repairs> = &[
+    ("auto", "What evidently happened is repaired, if other rows are predicted better then", Repairs::Auto),
+    ("off", "It is said only", Repairs::Off),
 ];
 
 /// The verdicts that can be asked for.

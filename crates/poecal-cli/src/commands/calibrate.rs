@@ -4,8 +4,8 @@ use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
 use poecal::calibration::{
-    AcceptanceLimits, BlockChoice, Calibration, CalibrationOptions, Decision, Level, Stage,
-    calibrate_with_progress, settle_sets,
+    AcceptanceLimits, BlockChoice, Calibration, CalibrationOptions, Decision, Level, Repaired, Stage,
+    calibrate_repairing, settle_sets,
 };
 use poecal::io::abb::AbbCalibration;
 use poecal::io::calibration_file::{CalibrationFile, Inputs};
@@ -53,7 +53,7 @@ pub(crate) fn calibrate(arguments: &Calibrate, typed: &[OsString], console: &Con
     }
     timings.end("read");
     let bar = console.progress(Stage::ALL.len() as u64);
-    let calibration = calibrate_with_progress(&model.robot, &data, &options, &mut |stage| {
+    let repaired = calibrate_repairing(&model.robot, &data, &options, &mut |stage| {
         let step = Stage::ALL.iter().position(|&other| other == stage).unwrap_or(0);
         bar.set(step as u64, stage.words());
         if stage == Stage::Analysis {
@@ -62,7 +62,7 @@ pub(crate) fn calibrate(arguments: &Calibrate, typed: &[OsString], console: &Con
     });
     timings.end("analysis");
     bar.finish();
-    let calibration = calibration?;
+    let Repaired { calibration, data } = repaired?;
     let file = CalibrationFile { record, ..CalibrationFile::new(&calibration, &data, inputs) };
     let detail = if arguments.verbose { Detail::Full } else { Detail::Short };
     let (text, unsaid) = if arguments.json {
@@ -193,6 +193,7 @@ fn options(arguments: &Calibrate, console: &Console) -> Result<CalibrationOption
         seed: arguments.seed.unwrap_or(usual.seed),
         robust: arguments.robust,
         move_tip: arguments.move_tip,
+        repair: arguments.repair,
         accept: AcceptanceLimits::chosen(arguments.accept.clone(), arguments.accept_model)?,
         formulation: formulated(arguments.formulation, arguments.residual, method),
         ..usual

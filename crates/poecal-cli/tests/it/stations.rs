@@ -75,7 +75,16 @@ fn each_file_or_instrument_has_a_frame_of_its_own() {
 #[test]
 fn files_that_were_measured_from_two_places_are_named_without_the_option() {
     let folder = moved();
-    let run = folder.run("calibrate robot.urdf monday.csv tuesday.csv --out out");
+    let run = folder.run("calibrate robot.urdf monday.csv tuesday.csv --out repaired");
+    let said = run.out.split_whitespace().collect::<Vec<_>>().join(" ");
+    println!("{said}");
+    assert!(
+        run.code == 0
+            && said.contains("repaired the files monday.csv and tuesday.csv do not share one device frame"),
+        "{said}"
+    );
+    assert!(said.contains("--frames per-file"), "{said}");
+    let run = folder.run("calibrate robot.urdf monday.csv tuesday.csv --repair off --out out");
     // What the table says is not said again on standard error.
     let said = run.out.split_whitespace().collect::<Vec<_>>().join(" ");
     assert!(said.contains("the files monday.csv and tuesday.csv do not share one device frame"), "{said}");

@@ -1523,6 +1523,7 @@ def calibrate(
     held_out: float | None = None,
     seed: int | None = None,
     robust: Literal["auto", "off", "huber", "cauchy", "tukey"] = "auto",
+    repair: Literal["auto", "off"] = "auto",
     formulation: Literal["adjoint", "screw", "screw-offsets", "adjoint-offsets"] = "adjoint",
     residual: Literal["tool", "spatial"] = "tool",
     method: Literal["levenberg-marquardt", "gauss-newton"] | None = None,

@@ -9,6 +9,7 @@ mod corrections;
 mod count;
 mod coverage_check;
 mod doubts;
+mod events;
 mod expected;
 mod finished;
 mod fit;
@@ -55,6 +56,8 @@ pub use corrections::{
 pub use coverage_check::{
     CoverageCheck, InSampledRange, JudgedError, JudgedRow, PartCoverage, PredictedUncertainty, Promise,
 };
+pub(crate) use events::family;
+pub use events::{Event, EventKind, Repaired, Repairs, calibrate_repairing};
 pub use expected::{Expectations, Expected, RangePart};
 pub use fit::fit_screws;
 pub use formulation::{Formulation, FormulationWords, Minimize, Minimum};
@@ -135,6 +138,26 @@ pub fn calibrate_with_progress(
     options: &CalibrationOptions,
     progress: &mut dyn FnMut(Stage),
 ) -> Result<Calibration> {
+    fitted(robot, data, options, Searched::Plainly, progress)
+}
+
+/// How a session is searched for what happened in it.
+#[derive(Clone, Copy)]
+enum Searched<'a> {
+    /// By the residuals of geometry alone.
+    Plainly,
+    /// By the corrected model, afterwards; these rows, in order, are left out as suspected ones.
+    Afterwards(&'a [u32]),
+}
+
+/// [`calibrate_with_progress`], with the session searched so.
+fn fitted(
+    robot: &Robot,
+    data: &Dataset,
+    options: &CalibrationOptions,
+    searched: Searched<'_>,
+    progress: &mut dyn FnMut(Stage),
+) -> Result<Calibration> {
     if let GravityDirection::Known(direction) = options.gravity
         && !GravityDirection::is_direction(&direction)
     {
@@ -154,9 +177,13 @@ pub fn calibrate_with_progress(
         let tolerance = tolerance::chosen(options, |options| calibrate(robot, data, options))?;
         let options =
             CalibrationOptions { tolerance: Some(tolerance), chooses_tolerance: false, ..options.clone() };
-        let found = calibrate_with_progress(robot, data, &options, progress)?;
+        let found = fitted(robot, data, &options, searched, progress)?;
         return Ok(Calibration { chosen_tolerance: Some(tolerance), ..found });
     }
+    let left_out = match searched {
+        Searched::Plainly => &[][..],
+        Searched::Afterwards(left_out) => left_out,
+    };
     let (data, rows) = (&written(data, options.formulation.pose_residual), data.len());
     let robot = &*about_mean_factors(robot, data);
     let packed = Arc::new(threads::in_pool(rows, || Packed::of(robot, data)));
@@ -171,7 +198,7 @@ pub fn calibrate_with_progress(
     progress(Stage::Registration);
     let (registered, noise, source) = threads::in_pool(rows, || prepared.register());
     progress(Stage::Fit);
-    let fit = threads::in_pool(rows, || prepared.fit(&registered, noise, source))?;
+    let fit = threads::in_pool(rows, || prepared.fit(&registered, noise, source, left_out))?;
     refuse_without_factors(robot, options)?;
     // Terms beside screws that are held or written otherwise would do what the screws do not.
     let moves_all = (0..robot.joints.len()).all(|joint| unknowns.moves_axis(joint));
@@ -185,35 +212,41 @@ pub fn calibrate_with_progress(
         Corrections::Auto | Corrections::Off => None,
     };
     let sizes = sizes.filter(|_| options.formulation == Formulation::default());
-    let mut found = prepared.with_instruments(&registered, fit, source, &mut |prepared, fit| {
-        progress(Stage::Analysis);
-        let assess = |fit| prepared.clone().assess(Arc::clone(&packed), registered.clone(), fit);
-        let mut calibration = threads::in_pool(rows, || assess(fit.clone()));
-        let Some(sizes) = sizes else { return Ok(calibration) };
-        progress(Stage::Corrections);
-        let correct = |calibration: &Calibration| {
-            threads::in_pool(rows, || correct(calibration, data, options.gravity, sizes, options))
-        };
-        let mut found = correct(&calibration);
-        // What joints do beyond geometry makes no outliers.
-        for _ in 0..JUDGEMENTS {
-            if options.robust != Robust::Auto || calibration.robustness.suspects().next().is_none() {
-                break;
-            }
-            let suspected = suspected(&found, &calibration, data, options);
-            if !calibration.robustness.differs(&suspected) {
-                break;
-            }
-            let again = if suspected.contains(&true) {
-                fit.clone()
-            } else {
-                threads::in_pool(rows, || prepared.fit_all(&registered, noise, source))?
+    let finds_moves = sizes.is_none() || matches!(searched, Searched::Plainly);
+    let mut found =
+        prepared.with_instruments(&registered, fit, (source, left_out), &mut |prepared, fit| {
+            progress(Stage::Analysis);
+            let assess =
+                |fit| prepared.clone().assess(Arc::clone(&packed), registered.clone(), fit, finds_moves);
+            let mut calibration = threads::in_pool(rows, || assess(fit.clone()));
+            let Some(sizes) = sizes else { return Ok(calibration) };
+            progress(Stage::Corrections);
+            let correct = |calibration: &Calibration| {
+                threads::in_pool(rows, || correct(calibration, data, options.gravity, sizes, options))
             };
-            calibration = threads::in_pool(rows, || assess(again.suspecting(&suspected)));
-            found = correct(&calibration);
-        }
-        Ok(threads::in_pool(rows, || prepared.beside(calibration, &found)).with_correction(found))
-    })?;
+            let mut found = correct(&calibration);
+            // What joints do beyond geometry makes no outliers.
+            for _ in 0..JUDGEMENTS {
+                if options.robust != Robust::Auto
+                    || !left_out.is_empty()
+                    || calibration.robustness.suspects().next().is_none()
+                {
+                    break;
+                }
+                let suspected = suspected(&found, &calibration, data, options);
+                if !calibration.robustness.differs(&suspected) {
+                    break;
+                }
+                let again = if suspected.contains(&true) {
+                    fit.clone()
+                } else {
+                    threads::in_pool(rows, || prepared.fit_all(&registered, noise, source))?
+                };
+                calibration = threads::in_pool(rows, || assess(again.suspecting(&suspected)));
+                found = correct(&calibration);
+            }
+            Ok(threads::in_pool(rows, || prepared.beside(calibration, &found)).with_correction(found))
+        })?;
     if let Some(improvement) = improvement::improvements(&found, data)
         && let Some(set) = &mut found.accuracy.held_out
     {

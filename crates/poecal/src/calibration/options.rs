@@ -9,7 +9,7 @@ use crate::problem::Prior;
 use crate::robot::{Extent, GravityDirection, Tolerance};
 use crate::solve;
 
-use super::{AcceptanceLimits, BlockChoice, Corrections, Formulation, Robust};
+use super::{AcceptanceLimits, BlockChoice, Corrections, Formulation, Repairs, Robust};
 
 /// What is known of the measuring device's frame.
 ///
@@ -68,6 +68,8 @@ pub struct CalibrationOptions {
     /// Whether the one target, which no row names, becomes the tip: the model ends in its reflector. Otherwise the tip stays where the model has
     /// it on the last link, and what was measured is the target [`MEASURED`](crate::robot::MEASURED).
     pub move_tip: bool,
+    /// Whether [`calibrate_repairing`](super::calibrate_repairing) repairs a session in which something evidently happened.
+    pub repair: Repairs,
     /// Limits that the errors of rows that were not fitted shall keep.
     pub accept: Option<AcceptanceLimits>,
     /// Options of the solver.
@@ -94,6 +96,7 @@ impl Default for CalibrationOptions {
             gravity: GravityDirection::default(),
             robust: Robust::default(),
             move_tip: false,
+            repair: Repairs::default(),
             accept: None,
             solver: solve::Options::default(),
             diagnose: true,

@@ -5,8 +5,8 @@ use std::sync::Arc;
 use super::placed::{CalibratedStation, CalibratedTarget};
 use super::verdict::Judged;
 use super::{
-    Acceptance, AcceptedModel, Accuracy, CalibrationOptions, Correction, DeviceFrameKnowledge, Formulation,
-    JointEffect, Models, NoiseSource, Robustness, SolverReport, Trust, Verdict, fit_screws,
+    Acceptance, AcceptedModel, Accuracy, CalibrationOptions, Correction, DeviceFrameKnowledge, Event,
+    Formulation, JointEffect, Models, NoiseSource, Robustness, SolverReport, Trust, Verdict, fit_screws,
 };
 use crate::analysis::Identifiability;
 use crate::estimate::{Packed, Session, Unknowns};
@@ -78,6 +78,10 @@ pub struct Calibration {
     pub warnings: Vec<String>,
     /// Mistakes found in all rows: named, not corrected.
     pub diagnosis: Vec<Diagnosis>,
+    /// What happened during the session and was repaired ([`calibrate_repairing`](super::calibrate_repairing)).
+    pub repairs: Vec<Event>,
+    /// What seems to have happened and was not.
+    pub suspicions: Vec<Event>,
     /// Rows fitted.
     pub fit_rows: Vec<u32>,
     /// Rows held out.
@@ -95,6 +99,16 @@ impl Calibration {
             return Arc::clone(&self.packed);
         }
         Arc::new(Packed::of(&self.nominal, data))
+    }
+
+    /// The same with this against any use.
+    pub(super) fn against(mut self, reason: String) -> Self {
+        self.judged = self.judged.against(reason);
+        self.verdict = match self.correction.as_deref().filter(|it| it.has_terms()) {
+            Some(found) => self.judged.of_model(AcceptedModel::Corrected, &found.expected),
+            None => self.judged.of_model(AcceptedModel::Calibrated, &self.trust.expected),
+        };
+        self
     }
 
     /// The calibration with a corrected model.

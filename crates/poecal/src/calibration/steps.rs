@@ -89,11 +89,17 @@ impl<'a> Prepared<'a> {
         source: NoiseSource,
     ) -> Result<RobustFit> {
         let options = CalibrationOptions { robust: Robust::Off, ..self.options.clone() };
-        Prepared { options: &options, ..self.clone() }.fit(registered, noise, source)
+        Prepared { options: &options, ..self.clone() }.fit(registered, noise, source, &[])
     }
 
-    /// Fits the screws.
-    pub(super) fn fit(&self, registered: &Estimate, noise: Noise, source: NoiseSource) -> Result<RobustFit> {
+    /// Fits the screws; these rows, in order, are left out.
+    pub(super) fn fit(
+        &self,
+        registered: &Estimate,
+        noise: Noise,
+        source: NoiseSource,
+        left_out: &[u32],
+    ) -> Result<RobustFit> {
         let task = Task {
             session: self.session,
             rows: &self.fit_rows,
@@ -101,6 +107,9 @@ impl<'a> Prepared<'a> {
             prior: self.prior.as_ref().map(|prior| (prior, 1.0)),
             options: self.options,
         };
+        if !left_out.is_empty() {
+            return robust::fit_without(&task, registered, (noise, source), left_out);
+        }
         robust::fit(&task, &self.registration(&self.fit_rows, noise, true), registered, source)
     }
 
@@ -109,31 +118,39 @@ impl<'a> Prepared<'a> {
         self,
         registered: &Estimate,
         fit: RobustFit,
-        source: NoiseSource,
+        of: (NoiseSource, &[u32]),
         end: &mut dyn FnMut(Prepared<'_>, RobustFit) -> Result<Calibration>,
     ) -> Result<Calibration> {
-        self.after(registered, fit, source, end, ROUNDS)
+        self.after(registered, fit, of, end, ROUNDS)
     }
 
     fn after(
         self,
         registered: &Estimate,
         fit: RobustFit,
-        source: NoiseSource,
+        of: (NoiseSource, &[u32]),
         end: &mut dyn FnMut(Prepared<'_>, RobustFit) -> Result<Calibration>,
         rounds: usize,
     ) -> Result<Calibration> {
+        let (source, left_out) = of;
         let is_open = source == NoiseSource::Estimated && self.session.data.station_count() > 1 && rounds > 0;
         let ratios = is_open.then(|| noise_ratios(&self.session, &self.fit_rows, &fit)).flatten();
         let Some(ratios) = ratios else { return end(self, fit) };
         let again = Prepared { session: self.session.with_noise_ratios(&ratios), ..self };
         let rows = self.session.data.len();
-        let fit = threads::in_pool(rows, || again.fit(registered, fit.fitted.noise, source))?;
-        again.after(registered, fit, source, end, rounds - 1)
+        let fit = threads::in_pool(rows, || again.fit(registered, fit.fitted.noise, source, left_out))?;
+        again.after(registered, fit, of, end, rounds - 1)
     }
 
-    /// Judges a fit. The calibration keeps the packed joint values of the session.
-    pub(super) fn assess(self, packed: Arc<Packed>, registered: Estimate, fit: RobustFit) -> Calibration {
+    /// Judges a fit. The calibration keeps the packed joint values of the session. `finds_moves` if steps and drifts are searched for by its own
+    /// residuals.
+    pub(super) fn assess(
+        self,
+        packed: Arc<Packed>,
+        registered: Estimate,
+        fit: RobustFit,
+        finds_moves: bool,
+    ) -> Calibration {
         let RobustFit { fitted, loss, judged: rows } = fit;
         let Session { robot: nominal, data, length_m, .. } = self.session;
         let kept = if loss.is_some() {
@@ -155,10 +172,10 @@ impl<'a> Prepared<'a> {
         let robustness = Robustness::new(loss, rows, [&self.fit_rows, &self.held_out_rows], |rows| {
             set_accuracy(&self.session, rows, &models)
         });
-        let moved = apart
-            .as_ref()
-            .map(FramesApart::moved)
-            .or_else(|| self.moved(&models.calibrated, &fitted, robustness.loss.is_some()));
+        let of_steps = || {
+            finds_moves.then(|| self.moved(&models.calibrated, &fitted, robustness.loss.is_some())).flatten()
+        };
+        let moved = apart.as_ref().map(FramesApart::moved).or_else(of_steps);
         let input = self.input_doubts(&accuracy, &robustness, moved.as_ref());
         let lag_one = trust.uncertainty.as_ref().and_then(|it| it.discrepancy.lag_one);
         let noise_doubts = noise_doubts(&remainder, lag_one);
@@ -221,6 +238,8 @@ impl<'a> Prepared<'a> {
             warnings,
             diagnosis,
             correction: None,
+            repairs: Vec::new(),
+            suspicions: Vec::new(),
             fit_rows: self.fit_rows,
             held_out_rows: self.held_out_rows,
             packed,

@@ -80,6 +80,12 @@ pub(super) struct Judged {
 }
 
 impl Judged {
+    /// The same with this against any use.
+    pub(super) fn against(self, reason: String) -> Self {
+        let others = if self.level == Level::DoNotUse { self.reasons } else { Vec::new() };
+        Judged { level: Level::DoNotUse, reasons: std::iter::once(reason).chain(others).collect() }
+    }
+
     /// The verdict on a model with these expected errors.
     pub(super) fn of_model(&self, model: AcceptedModel, expected: &Expectations) -> Verdict {
         let Judged { mut level, mut reasons } = self.clone();

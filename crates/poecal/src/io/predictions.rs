@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use super::calibration_file::{BodyEntry, MeasuredEntry, TargetEntry};
+use super::calibration_file::{BodyEntry, MeasuredEntry, TargetEntry, only_target};
 use super::csv_text::cell;
 use super::measurements::JointsTable;
 use super::model::{Model, ModelSource};
@@ -124,10 +124,11 @@ fn seen(model: &Model) -> Result<Option<&str>> {
     let ModelSource::Calibration(file) = &model.source else { return Ok(None) };
     let is_measured = |it: &TargetEntry| it.measured() != MeasuredEntry::Nothing;
     let names = file.targets.iter().filter(|(_, it)| is_measured(it)).map(|(name, _)| name.as_str());
-    match names.collect::<Vec<_>>().as_slice() {
-        [] => Ok(None),
-        [only] => Ok(Some(only)),
-        several => {
+    let names: Vec<&str> = names.collect();
+    match (names.as_slice(), only_target(&names)) {
+        ([], _) => Ok(None),
+        (_, Some(only)) => Ok(Some(only)),
+        (several, None) => {
             let message = format!(
                 "found {} targets that the device may see ({}), expected the name of one for --frame device: write --target {}",
                 several.len(),
@@ -191,7 +192,11 @@ fn device_from_base(model: &Model) -> Result<Pose> {
                 );
                 return Err(Error::new(ErrorKind::Option, message).in_file(&model.path));
             }
-            let base_from_device = file.base_from_device().map_err(|error| error.in_file(&model.path))?;
+            let found = match file.last_station() {
+                Some(station) => station.base_from_device.pose(),
+                None => file.base_from_device(),
+            };
+            let base_from_device = found.map_err(|error| error.in_file(&model.path))?;
             Ok(base_from_device.inverse())
         }
         ModelSource::Urdf(_) | ModelSource::Toml => {

@@ -385,6 +385,12 @@ impl Dataset {
         &self.readings
     }
 
+    /// Changes the readings of the rows before one.
+    pub(crate) fn change_readings(&mut self, before: u32, change: impl FnMut(&mut [f64])) {
+        let width = self.reading_names.len().max(1);
+        self.readings.chunks_exact_mut(width).take(before as usize).for_each(change);
+    }
+
     /// Whether some row measured this target's orientation.
     #[must_use]
     pub fn target_is_frame(&self, target: usize) -> bool {

@@ -17,6 +17,7 @@ mod corrections;
 mod determinism;
 mod documented_files;
 mod drawing;
+mod events;
 mod export;
 mod facade;
 mod fast_path;

@@ -25,7 +25,7 @@ const FEWEST: usize = 8;
 const HALF: f64 = 500.0;
 
 /// Weight of the priors of a fit of so many configurations: the data's information is divided by it.
-pub(super) fn weight_of_prior(configurations: usize) -> f64 {
+pub(in crate::calibration) fn weight_of_prior(configurations: usize) -> f64 {
     1.0 + configurations as f64 / HALF
 }
 

@@ -59,8 +59,12 @@ pub fn correct(
 ) -> Correction {
     let own = calibration.packed(data);
     let session = calibration.session(data, &own).with_noise_ratios(&calibration.noise_ratios);
-    let rows = &calibration.fit_rows;
     let weights = weights(calibration, options);
+    // Rows without weight say nothing of the noise either.
+    let counts = |row: &u32| {
+        weights.as_deref().is_none_or(|it| it.get(*row as usize).is_none_or(|weight| *weight > 0.0))
+    };
+    let rows: Vec<u32> = calibration.fit_rows.iter().copied().filter(counts).collect();
     // Terms that geometry has are of no group.
     let mut nominal = calibration.nominal.clone();
     for &(joint, term) in &session.unknowns.terms {
@@ -68,8 +72,9 @@ pub fn correct(
             nominal.terms.push(JointTerm { joint, term, coefficient: 0.0 });
         }
     }
-    let geometry = Geometry { calibration, nominal, session, options, weights: weights.as_deref() };
-    let moves = moving(&session, rows);
+    let moves = moving(&session, &rows);
+    let weights = weights.as_deref();
+    let geometry = Geometry { calibration, nominal, session, options, rows, weights };
     let gravity = match gravity {
         GravityDirection::Known(direction) => direction,
         GravityDirection::Found => geometry.gravity(&moves, sizes.unwrap_or(Sizes::COMMON)),
@@ -88,6 +93,8 @@ struct Geometry<'a> {
     nominal: Robot,
     session: Session<'a>,
     options: &'a CalibrationOptions,
+    /// The fitted rows that have a weight.
+    rows: Vec<u32>,
     /// Weights of all rows of the data.
     weights: Option<&'a [f64]>,
 }
@@ -171,8 +178,8 @@ impl Geometry<'_> {
     }
 
     fn task<'a>(&'a self, session: Session<'a>, prior: (&'a Prior, f64)) -> Task<'a> {
-        let Geometry { calibration, options, weights, .. } = self;
-        Task { session, rows: &calibration.fit_rows, weights: *weights, prior: Some(prior), options }
+        let Geometry { rows, options, weights, .. } = self;
+        Task { session, rows, weights: *weights, prior: Some(prior), options }
     }
 
     fn prior(&self, session: &Session<'_>) -> Prior {
@@ -187,7 +194,7 @@ impl Geometry<'_> {
         let none = PriorInformation::none(0);
         let view = View {
             session: self.session,
-            rows: &calibration.fit_rows,
+            rows: &self.rows,
             free: &[],
             noise,
             noise_is_stated: ByQuantity::default(),
@@ -268,7 +275,7 @@ impl Geometry<'_> {
     fn is_no_worse(&self, session: &Session<'_>, estimate: &Estimate) -> bool {
         let counts =
             |row: &&u32| self.weights.is_none_or(|it| it.get(**row as usize).is_none_or(|it| *it > 0.5));
-        let rows: Vec<u32> = self.calibration.fit_rows.iter().filter(counts).copied().collect();
+        let rows: Vec<u32> = self.rows.iter().filter(counts).copied().collect();
         let squares = |session: &Session<'_>, estimate: &Estimate| -> f64 {
             let errors = session.errors(&rows, estimate);
             errors.iter().map(|error| error.lead().norm_squared()).sum()
@@ -286,7 +293,7 @@ impl Geometry<'_> {
         let packed = Packed::of(&model.robot, data);
         let fitted_unknowns = unknowns(&model, of_geometry.unknowns, &sizes);
         let session = self.session(&model, &packed, &fitted_unknowns);
-        let rows = &calibration.fit_rows;
+        let rows = &self.rows;
         let weight = weight_of_prior(data.configurations(rows).len());
         let (estimate, noise) = if sizes == Sizes::NONE {
             (start, calibration.noise)
@@ -330,7 +337,7 @@ impl Geometry<'_> {
             effects(&model, (&session, &estimate), before, rows, (uncertainty, &deviations), noise)
         });
         let estimate = located(&session, rows, &estimate, noise).into_owned();
-        let training = session.errors(rows, &estimate);
+        let training = session.errors(&calibration.fit_rows, &estimate);
         let judged = &calibration.held_out_rows;
         let held_out = session.errors(judged, &estimate);
         let targets: Vec<usize> = (0..data.targets.len()).collect();

@@ -54,8 +54,8 @@ pub struct Correction {
     /// Coverage on the held-out rows.
     pub kept: Option<CoverageCheck>,
     /// Weight of the priors in the fit.
-    pub(super) prior_weight: f64,
-    pub(super) packed: Packed,
+    pub(in crate::calibration) prior_weight: f64,
+    pub(in crate::calibration) packed: Packed,
 }
 
 impl Correction {

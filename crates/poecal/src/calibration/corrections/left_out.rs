@@ -51,6 +51,11 @@ impl Linear {
         };
         let places: Vec<usize> = rows.iter().filter_map(of_row).flatten().collect();
         let own = self.jacobian.select_rows(&places);
+        // A part that its own device frames explain whatever it is says nothing.
+        let frames = self.devices.iter().filter(|&&column| own.column(column).amax() > 0.0).count();
+        if places.len() <= frames {
+            return None;
+        }
         let residuals = self.residuals.select_rows(&places);
         let fitted = own.columns(0, k + m).into_owned();
         let rest = gram - square(&fitted);

@@ -270,6 +270,17 @@ impl Linear {
     }
 }
 
+/// Where the numbers of each row of a problem begin, and the whitened Jacobian and residuals of all.
+pub(in crate::calibration) fn whitened_rows(
+    problem: &Problem<'_>,
+    estimate: &Estimate,
+    sample: &[u32],
+) -> (Vec<usize>, DMatrix<f64>, DVector<f64>) {
+    let (starts, quantities) = numbers(problem, sample);
+    let (jacobian, residuals) = rows(problem, estimate, sample, &starts, quantities.len());
+    (starts, jacobian, residuals)
+}
+
 /// Where the numbers of each row begin, and the quantity of each number.
 fn numbers(problem: &Problem<'_>, sample: &[u32]) -> (Vec<usize>, Vec<Quantity>) {
     let (mut starts, mut quantities) = (vec![0], Vec::new());

@@ -13,8 +13,11 @@ mod promise;
 mod suspects;
 mod unknowns;
 
+pub(super) use choice::weight_of_prior;
 pub use choice::{SizesReason, TriedSizes};
 pub use effects::{Effects, JointEffect, JointErrorPart, JointErrors};
 pub use fit::correct;
 pub use found::Correction;
+pub(super) use linear::whitened_rows;
 pub(super) use suspects::suspected;
+pub(super) use unknowns::{priors, unknowns};

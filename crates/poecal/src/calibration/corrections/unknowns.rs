@@ -11,13 +11,17 @@ use crate::robot::{CorrectionModel, Sizes};
 const LEAST_RANGE_RAD: f64 = 0.02;
 
 /// Prior standard deviation of each term of the groups.
-pub(super) fn priors(model: &CorrectionModel, sizes: &Sizes) -> Vec<TermPrior> {
+pub(in crate::calibration) fn priors(model: &CorrectionModel, sizes: &Sizes) -> Vec<TermPrior> {
     let each = model.terms().zip(model.deviations(sizes));
     each.map(|((joint, term), deviation)| TermPrior { joint, term, deviation }).collect()
 }
 
 /// What a fit changes: what it changes of the robot without gives, and the terms of a size above 0.
-pub(super) fn unknowns(model: &CorrectionModel, of_geometry: &Unknowns, sizes: &Sizes) -> Unknowns {
+pub(in crate::calibration) fn unknowns(
+    model: &CorrectionModel,
+    of_geometry: &Unknowns,
+    sizes: &Sizes,
+) -> Unknowns {
     let place = |joint: usize| model.places.get(joint).copied().unwrap_or(joint);
     let own = of_geometry.terms.iter().map(|&(joint, term)| (place(joint), term.moved(place)));
     let held = of_geometry.held_axes.iter().map(|&joint| place(joint));

@@ -91,6 +91,27 @@ pub(super) fn fit(
     }
 }
 
+/// Fits by least squares without some rows, which are suspected then, and only they.
+pub(super) fn fit_without(
+    task: &Task<'_>,
+    registered: &Estimate,
+    (noise, source): (Noise, NoiseSource),
+    left_out: &[u32],
+) -> Result<RobustFit> {
+    let is_left_out = |row: &u32| left_out.binary_search(row).is_ok();
+    let kept: Vec<u32> = task.rows.iter().copied().filter(|row| !is_left_out(row)).collect();
+    let of_kept = Task { rows: &kept, ..*task };
+    let found = of_kept.with_first_prior_weight(noise, source).first_fit(registered, noise);
+    let fitted = of_kept.with_first_prior_weight(noise, source).complete(found, registered, noise, source)?;
+    let count = u32::try_from(task.session.data.len()).unwrap_or(u32::MAX);
+    let weights: Vec<f64> = (0..count).map(|row| f64::from(u8::from(!is_left_out(&row)))).collect();
+    let weighted = Task { weights: Some(&weights), ..*task };
+    let configurations = Configurations::new(task.session.data, task.rows);
+    let judged = judge_rows(&weighted, &configurations, judging(&fitted), &weights, Some(Loss::Tukey));
+    let suspected: Vec<bool> = (0..count).map(|row| is_left_out(&row)).collect();
+    Ok(RobustFit { fitted, loss: Some(Loss::Tukey), judged }.suspecting(&suspected))
+}
+
 impl RobustFit {
     /// The same with these rows suspected.
     pub(super) fn suspecting(mut self, suspected: &[bool]) -> Self {

@@ -5,7 +5,6 @@ use crate::calibration::{AcceptedModel, DeviceFrameKnowledge};
 use crate::error::{Error, ErrorKind, Result, first_few, nearest};
 use crate::lie::Pose;
 use crate::measurement::{ByQuantity, Dataset, Noise, Quantity};
-use crate::robot::MEASURED;
 
 /// Noise of a quantity if the calibration measured none of its unit, millimetres or degrees.
 const UNSEEN: f64 = 0.05;
@@ -70,6 +69,7 @@ impl CalibrationFile {
                 let name = data.stations.get(station).and_then(Option::as_deref);
                 let found = match (self.stations.as_slice(), name) {
                     ([only], None) => Some(only),
+                    (_, None) if self.last_station().is_some() => self.last_station(),
                     (several, name) => several.iter().find(|it| it.instrument.as_deref() == name),
                 };
                 if let Some(found) = found {
@@ -88,11 +88,6 @@ impl CalibrationFile {
                 Err(Error::new(ErrorKind::Problem, message))
             })
             .collect()
-    }
-
-    /// The target of rows that name none; `None` where that is the tip, or where rows must name theirs.
-    pub(super) fn unnamed(&self) -> Option<&'static str> {
-        self.targets.contains_key(MEASURED).then_some(MEASURED)
     }
 
     /// Refuses measurements of unknown targets, or of orientations of targets that were calibrated as points.

@@ -14,6 +14,7 @@ mod outliers;
 mod refusal;
 mod repeatability;
 mod schema;
+mod stages;
 mod taught;
 mod trust;
 mod validation;
@@ -31,6 +32,7 @@ pub use original::OriginalUrdf;
 pub use outliers::{OutlierEntry, OutlierSet, RobustEntry};
 pub use repeatability::{RepeatabilityEntry, RepeatedPoseEntry};
 pub use schema::*;
+pub(crate) use stages::only_target;
 pub use taught::TaughtRobot;
 pub use trust::*;
 
@@ -109,6 +111,8 @@ impl CalibrationFile {
             repeatability: RepeatabilityEntry::of(calibration, data),
             warnings: calibration.warnings.clone(),
             diagnosis: calibration.diagnosis.iter().map(DiagnosisEntry::from).collect(),
+            repairs: calibration.repairs.clone(),
+            suspicions: calibration.suspicions.clone(),
             noise: NoiseEntry {
                 sigma: measured(measured_kinds, calibration.noise).into(),
                 source: calibration.noise_source,

@@ -17,7 +17,7 @@ use super::trust::{CorrectionEntry, CrossValidationEntry, UncertaintyEntry};
 use super::{OutlierEntry, RepeatabilityEntry, RobustEntry};
 use crate::analysis::{Direction, Identifiability, JointCoverage, Observability};
 use crate::calibration::{
-    Acceptance, Accuracy, DeviceFrameKnowledge, FormulationWords, NoiseSource, Verdict,
+    Acceptance, Accuracy, DeviceFrameKnowledge, Event, FormulationWords, NoiseSource, Verdict,
 };
 use crate::error::Result;
 use crate::forensics::DiagnosisKind;
@@ -96,6 +96,12 @@ pub struct CalibrationFile {
     /// Mistakes in the input: named, not corrected.
     #[serde(default)]
     pub diagnosis: Vec<DiagnosisEntry>,
+    /// What happened during the session and was repaired; all else in this file is of the repaired session.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub repairs: Vec<Event>,
+    /// What seems to have happened and was not repaired.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub suspicions: Vec<Event>,
     /// The calibrated robot's frames.
     pub robot: RobotEntry,
     /// The calibrated joints from base to tip.

@@ -16,6 +16,8 @@ use crate::calibration::{AcceptanceLimits, AcceptedModel, JudgedError, Judgement
 use crate::error::Result;
 use crate::measurement::{Dataset, Measured, Quantity};
 
+/// Share of the error of a later state below which an earlier one fits better.
+const FITS: f64 = 0.8;
 /// Name of the schema.
 const SCHEMA: &str = "poecal-validation-1";
 
@@ -79,6 +81,9 @@ pub struct Validation {
     pub record: Record,
     /// What the measurements say of the model that is delivered.
     pub verdict: ValidationVerdict,
+    /// Which state of a repaired session the measurements were judged by, from 1: targets and devices before the first move, or after it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub stage: Option<usize>,
     /// What contradicts the calibration, as a sentence.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub doubt: Option<String>,
@@ -107,20 +112,37 @@ impl Validation {
     /// As [`CalibrationFile::judge`] and [`CalibrationFile::accept`].
     pub fn of(
         file: &CalibrationFile,
-        data: &Dataset,
+        original: &Dataset,
         judging: &Judging<'_>,
         inputs: ValidationInputs,
     ) -> Result<Self> {
         let Judging { refit_frame, refit_moved, refit_tool, accept } = *judging;
-        let judgement = if refit_frame {
-            file.judge(data, true, refit_tool)?
-        } else {
-            file.judge_wherever(data, refit_tool, refit_moved)?
+        let judge = |data: &Dataset| {
+            if refit_frame {
+                file.judge(data, true, refit_tool)
+            } else {
+                file.judge_wherever(data, refit_tool, refit_moved)
+            }
         };
+        // Of a session that was repaired, the state that fits; the last one where several fit alike.
+        let stages = file.stages();
+        let mut data = file.at_stage(original, stages);
+        let mut judgement = judge(&data)?;
+        let mut stage = stages;
+        for earlier in (1..stages).rev() {
+            let other = file.at_stage(original, earlier);
+            let Ok(found) = judge(&other) else { continue };
+            if found.delivered().errors.lead().rms < FITS * judgement.delivered().errors.lead().rms {
+                (data, judgement, stage) = (other, found, earlier);
+            }
+        }
+        let data = &*data;
         let refit_frame = judgement.refitted.contains(&Refitted::DeviceFrame);
         let accept = accept.map(|limits| file.accept(data, refit_frame, refit_tool, limits, &inputs.sha256));
         let acceptance = accept.transpose()?;
-        Ok(Validation::new(file, Judgement { acceptance, ..judgement }, inputs))
+        let judged_at = (stages > 1).then_some(stage);
+        let found = Validation::new(file, Judgement { acceptance, ..judgement }, inputs);
+        Ok(Validation { stage: judged_at, ..found })
     }
 
     /// Of a finished judgement.
@@ -147,6 +169,7 @@ impl Validation {
             inputs,
             record: Record::default(),
             verdict: ValidationVerdict::of(&judgement),
+            stage: None,
             doubt: file.doubt(&judgement),
             judgement,
         }

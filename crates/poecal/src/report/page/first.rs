@@ -10,7 +10,7 @@ use super::html::{HtmlTable, count, facts, figure, figure_or, list, path, plots,
 use super::lead::{kinds_words, sign, spaced};
 use super::trust::direction_words;
 use crate::analysis::Direction;
-use crate::calibration::{Improvements, Level, NoiseSource, SetAccuracy};
+use crate::calibration::{Event, Improvements, Level, NoiseSource, SetAccuracy};
 use crate::io::calibration_file::CalibrationFile;
 use crate::io::residuals::Residuals;
 use crate::measurement::Quantity;
@@ -202,10 +202,28 @@ fn verdict(file: &CalibrationFile) -> Markup {
             }
             (list(&reasons))
         }
+        @if !file.repairs.is_empty() {
+            section.doubts aria-labelledby="repaired-title" { h2 #repaired-title { "Repaired" } (list(&repaired(file))) }
+        }
         @if !points.is_empty() {
             section.doubts aria-labelledby="doubts-title" { h2 #doubts-title { "Look at" } (list(&points)) }
         }
     }
+}
+
+/// What was repaired, in words, with what that gains.
+fn repaired(file: &CalibrationFile) -> Vec<Markup> {
+    let one = |(k, found): (usize, &Event)| {
+        let key = |name: &str| format!("repairs.{k}.{name}");
+        let gain = found.error_before_mm.zip(found.error_after_mm);
+        html! {
+            (told(&found.statement, key("statement")))
+            @if let Some((before, after)) = gain {
+                "; cross-validation " (figure(after, key("error_after_mm"))) " mm (RMS) instead of " (figure(before, key("error_before_mm")))
+            }
+        }
+    };
+    file.repairs.iter().enumerate().map(one).collect()
 }
 
 /// A point with the keys of what it quotes; nothing of reasons, which stand above.
@@ -217,6 +235,7 @@ fn point_words(file: &CalibrationFile, point: &Point) -> Option<Markup> {
     let known = &file.identifiability;
     match point.place {
         Place::Reason => None,
+        Place::Suspicion(k) => Some(told(&point.text, format_args!("suspicions.{k}.statement"))),
         Place::Diagnosis(k) => Some(told(&point.text, format_args!("diagnosis.{k}.statement"))),
         Place::Warning(k) => Some(told(&point.text, format_args!("warnings.{k}"))),
         Place::Suspects => Some(html! { a href="#suspects" { (point.text.replace(SEE_ROBUST, "")) } }),
@@ -298,7 +317,9 @@ fn contents(file: &CalibrationFile) -> Markup {
     let repeated = file.repeatability.as_ref().map(|_| ("repeatability", "Repeatability"));
     let corrected = file.corrected.as_ref().map(|_| ("corrected", "What the joints do"));
     let gain = file.compensation.as_ref().map(|_| ("compensation", "Corrected programs"));
-    let sections = [("view", "In 3D"), ("joints", "Joints")].into_iter().chain(corrected).chain(gain);
+    let repairs = (!file.repairs.is_empty()).then_some(("repairs", "Repairs"));
+    let sections =
+        repairs.into_iter().chain([("view", "In 3D"), ("joints", "Joints")]).chain(corrected).chain(gain);
     let rows = [("errors", "Errors of the rows"), ("suspects", "Suspected rows")];
     let rest = [("trust", "How far to trust it"), ("told", "Unknowns"), ("method", "Method and inputs")];
     html! {

@@ -13,6 +13,7 @@ mod html;
 mod joints;
 mod lead;
 mod method;
+mod repairs;
 mod rows;
 mod shapes;
 mod trust;
@@ -89,6 +90,7 @@ pub fn calibration_page_with(file: &CalibrationFile, residuals: &Residuals, shap
         a.skip href="#main" { "Skip to the verdict" }
         main #main {
             (first::screen(file, residuals))
+            (repairs::sections(file))
             (joints::sections(file, shapes))
             (corrected::sections(file))
             (compensation::sections(file))

@@ -3,7 +3,7 @@
 use super::super::table::number;
 use super::names;
 use crate::analysis::{Cause, Direction};
-use crate::calibration::{Level, Loss};
+use crate::calibration::{EventKind, Level, Loss};
 use crate::io::calibration_file::{CalibrationFile, OutlierEntry};
 
 /// Suspected rows that are named.
@@ -19,6 +19,7 @@ pub(in crate::report) const SEE_ROBUST: &str = ", see --robust";
 /// Where in `calibration.json` a point comes from, with its index there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::report) enum Place {
+    Suspicion(usize),
     Diagnosis(usize),
     Warning(usize),
     Reason,
@@ -38,18 +39,22 @@ pub(in crate::report) struct Point {
 /// What needs attention, the gravest first. The verdict's first reason stands beside the verdict.
 pub(in crate::report) fn look_at(file: &CalibrationFile) -> Vec<Point> {
     let stated = file.verdict.as_ref().map_or(&[][..], |verdict| &verdict.reasons);
+    // Rows that a repair left out are told with it.
+    let is_told = file.repairs.iter().any(|it| it.kind == EventKind::Rows);
     let suspects = file.robust.suspected_fit + file.robust.suspected_held_out;
     let point = |place: Place, text: &str| Point { text: text.to_owned(), place };
     let is_new = |text: &str| !stated.iter().any(|reason| reason == text);
 
-    let mut points = Vec::new();
+    let suspicions = file.suspicions.iter().enumerate();
+    let mut points: Vec<Point> =
+        suspicions.map(|(k, found)| point(Place::Suspicion(k), &found.statement)).collect();
     let found = file.diagnosis.iter().enumerate().filter(|(_, found)| is_new(&found.statement));
     points.extend(found.map(|(k, found)| point(Place::Diagnosis(k), &found.statement)));
     let warnings = file.warnings.iter().enumerate().filter(|(_, text)| is_new(text));
     let warnings = warnings.filter(|(_, text)| suspects == 0 || !text.contains(SUSPECTS));
     points.extend(warnings.map(|(k, text)| point(Place::Warning(k), text)));
     points.extend(reasons(file).iter().skip(1).map(|text| point(Place::Reason, text)));
-    if suspects > 0 {
+    if suspects > 0 && !is_told {
         points.push(point(Place::Suspects, &suspects_words(file)));
     }
     for (k, joint) in file.corrections.iter().enumerate() {

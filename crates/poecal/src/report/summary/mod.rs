@@ -13,7 +13,7 @@ pub(super) use look::{Place, Point, SEE_ROBUST, look_at};
 use super::acceptance;
 use super::table::{line, lines, number, rounded};
 use crate::analysis::{Cause, Direction};
-use crate::calibration::{Level, TermGroup};
+use crate::calibration::{Event, Level, TermGroup};
 use crate::error::shown as name_shown;
 use crate::io::calibration_file::{CalibrationFile, CorrectedEntry, UncertaintyEntry};
 
@@ -122,6 +122,16 @@ fn verdict(out: &mut String, file: &CalibrationFile) {
         }
         _ => line(out, "verdict", level),
     }
+    lines(out, "repaired", file.repairs.iter().map(repaired_words));
+}
+
+/// What a repair is, and what it gains.
+pub(in crate::report) fn repaired_words(found: &Event) -> String {
+    let gain = found.error_before_mm.zip(found.error_after_mm);
+    let gain = gain.map(|(before, after)| {
+        format!("; cross-validation {} mm (RMS) instead of {}", number(after), number(before))
+    });
+    format!("{}{}", found.statement, gain.unwrap_or_default())
 }
 
 /// What needs attention.

@@ -1,0 +1,13 @@
+//! What happened during a session: a device or a target that was moved, a joint's zero that slipped, configurations that are wrong as a
+//! whole; and the session as it would have been without (theory.md §9, *Events*).
+
+mod hypotheses;
+mod repair;
+mod rows;
+mod search;
+mod told;
+mod wrong;
+
+pub(crate) use repair::family;
+pub use repair::{Repaired, calibrate_repairing};
+pub use told::{Event, EventKind, Repairs};

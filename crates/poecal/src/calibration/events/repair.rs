@@ -1,0 +1,534 @@
+//! A session as it would have been without what happened: rows left out, another device frame, another target, readings of before as those
+//! of after.
+
+use std::borrow::Cow;
+use std::collections::BTreeSet;
+
+use nalgebra::Vector3;
+
+use super::hypotheses::Moved;
+use super::search::{Events, Search, Step, search};
+use super::told::{Event, EventKind, Repairs};
+use crate::calibration::{
+    Calibration, CalibrationOptions, DeviceFrameKnowledge, Robust, Searched, Stage, Statistic, fitted,
+};
+use crate::error::Result;
+use crate::estimate::RowError;
+use crate::lie::rotation;
+use crate::measurement::{Dataset, Measurement, Quantity};
+use crate::robot::{Body, MEASURED, Robot};
+
+/// Most repairs of one session.
+const MOST: usize = 4;
+/// Largest share of the error before that a repair leaves.
+const BETTER: f64 = 0.8;
+/// The same of the error of the other rows, where some are left out.
+const OTHERS_BETTER: f64 = 0.95;
+/// Rows of the picture of a repair.
+const DRAWN: usize = 200;
+/// Files and lines that a sentence lists.
+const LISTED: usize = 3;
+/// Ratio of the gain of the next best explanation to that of the best above which it is named too.
+const NEARLY: f64 = 0.9;
+
+/// A calibration, and the session that it is of.
+#[derive(Clone, Debug)]
+pub struct Repaired<'a> {
+    /// The calibration, with what was repaired and what is suspected.
+    pub calibration: Calibration,
+    /// The measurements as they were fitted: those given where nothing was repaired but rows left out.
+    pub data: Cow<'a, Dataset>,
+}
+
+/// [`calibrate`](crate::calibrate) with the session repaired where something evidently happened in it and the repaired one predicts rows better
+/// that are left out ([`CalibrationOptions::repair`]). All that belongs to the calibration belongs to [`Repaired::data`].
+///
+/// ```
+/// use poecal::calibration::{CalibrationOptions, EventKind, calibrate_repairing};
+/// use poecal::measurement::Measurement;
+/// use poecal::simulate::{Kind, Simulation, elbow};
+/// let mut made = Simulation { count: 80, noise_position_m: 5e-5, ..Simulation::default() }.run(&elbow(), Kind::Point)?;
+/// // Somebody leans on the tracker.
+/// for row in &mut made.data.observations[40..] {
+///     if let Measurement::Point(seen) = &mut row.measurement {
+///         seen.position.x += 2e-3;
+///     }
+/// }
+/// let found = calibrate_repairing(&made.nominal, &made.data, &CalibrationOptions::default(), &mut |_| {})?;
+/// let [moved] = &found.calibration.repairs[..] else { panic!("{:?}", found.calibration.suspicions) };
+/// assert!(moved.kind == EventKind::Device && moved.from_row == 41);
+/// assert!((moved.size_mm.unwrap_or(0.0) - 2.0).abs() < 0.3);
+/// # Ok::<(), poecal::Error>(())
+/// ```
+///
+/// # Errors
+/// As [`calibrate`](crate::calibrate).
+pub fn calibrate_repairing<'a>(
+    robot: &Robot,
+    data: &'a Dataset,
+    options: &CalibrationOptions,
+    progress: &mut dyn FnMut(Stage),
+) -> Result<Repaired<'a>> {
+    let mut best = fitted(robot, data, options, Searched::Afterwards(&[]), progress)?;
+    let mut session = Session { data: Cow::Borrowed(data), left_out: Vec::new() };
+    // A tolerance is chosen once.
+    let chosen = best.chosen_tolerance;
+    let options = &CalibrationOptions {
+        tolerance: chosen.or(options.tolerance),
+        chooses_tolerance: false,
+        ..options.clone()
+    };
+    let (mut repairs, mut suspicions) = (Vec::new(), Vec::new());
+    for _ in 0..MOST {
+        let Some(happened) = session.next(&best, options) else { break };
+        let before = error_of(&best, &session);
+        let event = session.event(&happened, robot);
+        let repaired = match options.repair {
+            Repairs::Auto => session.without(&happened, robot, options),
+            Repairs::Off => None,
+        };
+        let Some(repaired) = repaired else {
+            let event = event.suspected(before, None);
+            if event.is_grave(before) {
+                best = best.against(event.statement.clone());
+            }
+            suspicions.push(event);
+            break;
+        };
+        // Where the other session cannot be fitted, that is no reason to have no calibration of this one.
+        let Ok(other) =
+            fitted(robot, &repaired.data, options, Searched::Afterwards(&repaired.left_out), &mut |_| {})
+        else {
+            suspicions.push(event.suspected(before, None));
+            break;
+        };
+        let after = error_of(&other, &repaired);
+        let is_better = match happened {
+            // Rows that are wrong have errors of their own in any case: they matter by what they do to the others.
+            Happened::Wrong(_) => {
+                kept_error(&other, &repaired) <= OTHERS_BETTER * kept_error(&best, &repaired)
+            }
+            Happened::Step(_) => after <= BETTER * before,
+        };
+        if !is_better {
+            suspicions.push(event.suspected(before, Some(after)));
+            break;
+        }
+        let residuals = picture((&best, &session.data), (&other, &repaired.data));
+        repairs.push(Event {
+            error_before_mm: Some(before),
+            error_after_mm: Some(after),
+            residuals,
+            ..event.0
+        });
+        (best, session) = (other, repaired);
+    }
+    let calibration = Calibration { repairs, suspicions, chosen_tolerance: chosen, ..best };
+    Ok(Repaired { calibration, data: session.data })
+}
+
+/// What a session's search ended with.
+enum Happened {
+    Wrong(Vec<u32>),
+    Step(Step),
+}
+
+/// A session, and the rows of it that are left out.
+struct Session<'a> {
+    data: Cow<'a, Dataset>,
+    left_out: Vec<u32>,
+}
+
+/// An event with the sentence of it where it is repaired, and where it is only suspected.
+struct Said(Event, String);
+
+impl Said {
+    fn suspected(self, before: f64, after: Option<f64>) -> Event {
+        let Said(event, statement) = self;
+        Event { statement, error_before_mm: Some(before), error_after_mm: after, ..event }
+    }
+}
+
+impl<'a> Session<'a> {
+    /// What happened that is not repaired yet.
+    fn next(&self, best: &Calibration, options: &CalibrationOptions) -> Option<Happened> {
+        let found = best.correction.as_deref()?;
+        let data = &*self.data;
+        // Rows with a stated set may belong to another session.
+        let is_stated = data.observations.iter().any(|row| row.set.is_some());
+        let mut rows = if is_stated { best.fit_rows.clone() } else { data.all_rows() };
+        rows.sort_unstable();
+        rows.retain(|row| self.left_out.binary_search(row).is_err());
+        let Events { wrong, step } =
+            search(&Search { calibration: best, found, data, options, rows: &rows })?;
+        let is_known = |row: &u32| best.robustness.rows.get(*row as usize).is_some_and(|it| it.suspected);
+        let are_known = best.robustness.loss.is_some()
+            && wrong.iter().all(is_known)
+            && best.robustness.suspects().count() == wrong.len();
+        if !wrong.is_empty() && !are_known && options.robust == Robust::Auto {
+            return Some(Happened::Wrong(wrong));
+        }
+        step.map(Happened::Step)
+    }
+
+    /// The session without what happened; `None` where that is not possible.
+    fn without(
+        &self,
+        happened: &Happened,
+        robot: &Robot,
+        options: &CalibrationOptions,
+    ) -> Option<Session<'a>> {
+        let left_out = self.left_out.clone();
+        let step = match happened {
+            Happened::Wrong(rows) => {
+                let mut left_out: Vec<u32> = left_out.into_iter().chain(rows.iter().copied()).collect();
+                left_out.sort_unstable();
+                left_out.dedup();
+                return Some(Session { data: self.data.clone(), left_out });
+            }
+            Happened::Step(step) => step,
+        };
+        let mut data = self.data.clone().into_owned();
+        match step.moved {
+            Moved::Device(station) => {
+                let is_free = options.frame == DeviceFrameKnowledge::Unknown;
+                let name = data.stations.get(station).cloned().flatten();
+                let is_mounted = robot.instruments.iter().any(|it| Some(&it.name) == name.as_ref());
+                let is_plain =
+                    data.lengths.is_empty() && !data.is_ranging(station) && sees_places(&data, station);
+                if !is_free || is_mounted || !is_plain {
+                    return None;
+                }
+                if data.stations.is_empty() {
+                    data.stations = vec![None];
+                }
+                let name = name.unwrap_or_else(|| DEVICE.to_owned());
+                let next = next_of(&name, data.stations.iter().flatten());
+                data.stations[station] = Some(name);
+                data.stations.push(Some(next));
+                let other = data.stations.len() - 1;
+                let moved = data.observations.iter_mut().skip(step.first as usize);
+                moved.filter(|row| row.station == station).for_each(|row| row.station = other);
+            }
+            Moved::Target(target) => move_targets(&mut data, &[target], step.first, robot, options)?,
+            Moved::Tool => {
+                let all: Vec<usize> = (0..data.targets.len()).collect();
+                move_targets(&mut data, &all, step.first, robot, options)?;
+            }
+            Moved::Zero(joint) => {
+                // The robot is what it is now: readings of before are as those of after would have been.
+                let name = robot.joints.get(joint)?.reading.name.clone();
+                let at = data.reading_names().iter().position(|it| *it == name)?;
+                let factor = robot.joints.get(joint)?.reading.multiplier;
+                let is_own = robot.joints.iter().filter(|it| it.reading.name == name).count() == 1;
+                if !is_own
+                    || data.controller.is_some()
+                    || !data.further_readings().is_empty()
+                    || factor == 0.0
+                {
+                    return None;
+                }
+                let shift = *step.size.first()? / factor;
+                data.change_readings(step.first, |readings| {
+                    if let Some(value) = readings.get_mut(at) {
+                        *value -= shift;
+                    }
+                });
+            }
+            Moved::Drift(station) => still(&mut data, step, station)?,
+        }
+        Some(Session { data: Cow::Owned(data), left_out })
+    }
+
+    /// What happened, in words.
+    fn event(&self, happened: &Happened, robot: &Robot) -> Said {
+        let data = &*self.data;
+        let step = match happened {
+            Happened::Wrong(rows) => return wrong_words(data, rows),
+            Happened::Step(step) => step,
+        };
+        let from = data.place(step.first);
+        let number = step.first as usize + 1;
+        let length = |turns: bool| {
+            let own = step.size.iter().zip(&step.turns).filter(|(_, it)| **it == turns);
+            own.map(|(value, _)| value * value).sum::<f64>().sqrt()
+        };
+        let (shift_mm, turn_deg) = (1e3 * length(false), length(true).to_degrees());
+        let has = |turns: bool| step.turns.contains(&turns);
+        let far = far_words(has(false).then_some(shift_mm), has(true).then_some(turn_deg));
+        let count = data.len();
+        let again = format!(
+            "measure the {} rows before it again, or the {} from it on",
+            number - 1,
+            count + 1 - number
+        );
+        let name_of = |target: usize| data.targets.get(target).cloned().flatten();
+        let or = other_words(step, robot, data)
+            .map_or_else(String::new, |or| format!(" ({or} explains it nearly as well)"));
+        let (kind, name, is, taken) = match step.moved {
+            Moved::Device(station) => {
+                let name = data.stations.get(station).cloned().flatten().unwrap_or_default();
+                let next =
+                    next_of(if name.is_empty() { DEVICE } else { &name }, data.stations.iter().flatten());
+                let is = match files_apart(data, step.first) {
+                    Some((before, after)) if name.is_empty() => format!(
+                        "the files {before} and {after} do not share one device frame, as --frames per-file says: the measuring device is {far} \
+                         from where it was{or}"
+                    ),
+                    _ => format!(
+                        "from {from} on the measuring device{} is {far} from where it was{or}",
+                        quoted(&name)
+                    ),
+                };
+                (EventKind::Device, name, is, format!("taken as set up anew there, `{next}`"))
+            }
+            Moved::Target(target) => {
+                let name = name_of(target).unwrap_or_default();
+                let bases: BTreeSet<&str> =
+                    data.targets.iter().map(|it| family(it.as_deref().unwrap_or(MEASURED)).0).collect();
+                let several = bases.len() > 1;
+                let kind = if several { EventKind::Nest } else { EventKind::Target };
+                let next =
+                    next_of(if name.is_empty() { MEASURED } else { &name }, data.targets.iter().flatten());
+                let what = if several { "nest of target" } else { "target" };
+                let is = format!(
+                    "from {from} on the {what}{} is {far} from where it was on the arm{or}",
+                    quoted(&name)
+                );
+                (kind, name, is, format!("taken as another target, `{next}`"))
+            }
+            Moved::Tool => {
+                let is = format!(
+                    "from {from} on the tool with all targets is {far} from where it was on the arm{or}"
+                );
+                (EventKind::Target, String::new(), is, "taken as other targets from there on".to_owned())
+            }
+            Moved::Zero(joint) => {
+                let joint = robot.joints.get(joint);
+                let name = joint.map(|joint| joint.name.clone()).unwrap_or_default();
+                let is = format!("from {from} on the zero of joint `{name}` is {far} from where it was{or}");
+                (EventKind::Zero, name, is, "readings before it are taken as those after it".to_owned())
+            }
+            Moved::Drift(station) => {
+                let name = data.stations.get(station).cloned().flatten().unwrap_or_default();
+                let is = format!(
+                    "the measuring device{} drifts by {far} from the first row to the last{or}",
+                    quoted(&name)
+                );
+                (EventKind::Drift, name, is, "measurements are taken as without the drift".to_owned())
+            }
+        };
+        let remedy = if kind == EventKind::Drift {
+            "wait until it has settled, and measure again".to_owned()
+        } else {
+            again
+        };
+        let event = Event {
+            kind,
+            name,
+            from_row: number,
+            from,
+            rows: Vec::new(),
+            size_mm: has(false).then_some(shift_mm),
+            size_deg: has(true).then_some(turn_deg),
+            error_before_mm: None,
+            error_after_mm: None,
+            statement: format!("{is}: {taken}"),
+            residuals: Vec::new(),
+        };
+        Said(event, format!("{is}: {remedy}"))
+    }
+}
+
+/// The files before and after a row with which one begins.
+fn files_apart(data: &Dataset, first: u32) -> Option<(String, String)> {
+    let file = |row: u32| {
+        let at = data.observations.get(row as usize)?.source.file as usize;
+        Some((at, data.files.get(at)?.display().to_string()))
+    };
+    let (before, after) = (file(first.checked_sub(1)?)?, file(first)?);
+    (before.0 != after.0).then_some((before.1, after.1))
+}
+
+/// Name of the only device where no row names it.
+pub(crate) const DEVICE: &str = "device";
+
+/// The next name of the same thing: `tool.2`, `tool.3`.
+fn next_of<'n>(name: &str, known: impl Iterator<Item = &'n String>) -> String {
+    let (base, _) = family(name);
+    let own = known.map(|it| family(it)).filter(|(other, _)| *other == base);
+    let last = own.map(|(_, number)| number).max().unwrap_or(1);
+    format!("{base}.{}", last + 1)
+}
+
+/// The name of a thing before anything happened to it, and which it is in the order of time: `tool.2` is `tool` and 2.
+pub(crate) fn family(name: &str) -> (&str, usize) {
+    let parts = name.rsplit_once('.').and_then(|(base, number)| Some((base, number.parse().ok()?)));
+    parts.filter(|(base, number)| *number > 1 && !base.is_empty()).unwrap_or((name, 1))
+}
+
+/// Whether all rows of a station measured places.
+fn sees_places(data: &Dataset, station: usize) -> bool {
+    let mut own = data.observations.iter().filter(|row| row.station == station);
+    own.all(|row| matches!(row.measurement, Measurement::Point(_) | Measurement::Pose(_)))
+}
+
+/// Gives targets another name from a row on; `None` where they are of the model.
+fn move_targets(
+    data: &mut Dataset,
+    targets: &[usize],
+    first: u32,
+    robot: &Robot,
+    options: &CalibrationOptions,
+) -> Option<()> {
+    if options.move_tip {
+        return None;
+    }
+    for &target in targets {
+        let name = data.targets.get(target)?.clone().unwrap_or_else(|| MEASURED.to_owned());
+        let is_elsewhere = robot.mounted.iter().any(|it| it.name == name && it.body == Body::Base);
+        let is_shared = data.stations.iter().flatten().any(|it| *it == name);
+        let on_other = robot.mounted.iter().any(|it| it.name == name && it.body != robot.tip_body());
+        if is_elsewhere || is_shared || on_other {
+            return None;
+        }
+        let next = next_of(&name, data.targets.iter().flatten());
+        data.targets[target] = Some(name);
+        data.targets.push(Some(next));
+        let other = data.targets.len() - 1;
+        let moved = data.observations.iter_mut().skip(first as usize);
+        moved.filter(|row| row.target == target).for_each(|row| row.target = other);
+    }
+    Some(())
+}
+
+/// Takes a drift of a device out of its measurements.
+fn still(data: &mut Dataset, step: &Step, station: usize) -> Option<()> {
+    let [x, y, z, rx, ry, rz] = *<&[f64; 6]>::try_from(step.size.as_slice()).ok()?;
+    if !sees_places(data, station) {
+        return None;
+    }
+    let rows = data.seen_from(station, &data.all_rows());
+    let about = data.mean_position(&rows);
+    let last = (rows.len().max(2) - 1) as f64;
+    for (place, &row) in rows.iter().enumerate() {
+        let share = place as f64 / last - 0.5;
+        let back = rotation::exp(&(Vector3::new(rx, ry, rz) * -share));
+        let shift = Vector3::new(x, y, z) * share;
+        let of = |position: &Vector3<f64>| back * (position - shift - about) + about;
+        match &mut data.observations.get_mut(row as usize)?.measurement {
+            Measurement::Point(seen) => seen.position = of(&seen.position),
+            Measurement::Pose(seen) => {
+                seen.pose.translation = of(&seen.pose.translation);
+                seen.pose.rotation = back * seen.pose.rotation;
+            }
+            Measurement::Components(_)
+            | Measurement::Distance(_)
+            | Measurement::Socket(_)
+            | Measurement::Height(_)
+            | Measurement::Flush(_)
+            | Measurement::Direction(_) => return None,
+        }
+    }
+    Some(())
+}
+
+/// Error of the delivered model in cross-validation, millimetres or degrees; at least that of the fitted rows that are not left out.
+fn error_of(found: &Calibration, session: &Session<'_>) -> f64 {
+    let corrected = found.correction.as_deref().filter(|it| it.has_terms());
+    let left_out = corrected.and_then(|it| it.left_out_m).map(|metres| 1e3 * metres);
+    let random = found.trust.cross_validation.as_ref().and_then(|it| it.random.rms.leading());
+    let left_out = left_out.or_else(|| random.map(|(_, rms)| rms)).filter(|it| it.is_finite());
+    left_out.unwrap_or(0.0).max(kept_error(found, session))
+}
+
+/// Root mean square error of the delivered model on the fitted rows that a session does not leave out, millimetres or degrees.
+fn kept_error(found: &Calibration, session: &Session<'_>) -> f64 {
+    let kept = found.fit_rows.iter().copied().filter(|row| session.left_out.binary_search(row).is_err());
+    let kept: Vec<u32> = kept.collect();
+    let errors = errors_of(found, &session.data, &kept);
+    Statistic::of(errors).map_or(f64::INFINITY, |it| it.rms)
+}
+
+/// Errors of the delivered model on some rows, millimetres or degrees.
+fn errors_of(found: &Calibration, data: &Dataset, rows: &[u32]) -> Vec<f64> {
+    let errors: Vec<RowError> = match found.correction.as_deref().filter(|it| it.has_terms()) {
+        Some(corrected) => corrected.errors(data, rows),
+        None => {
+            let packed = found.packed(data);
+            found.session(data, &packed).errors(rows, &found.models.calibrated)
+        }
+    };
+    let shown = |error: &RowError| {
+        let quantity = error.leading().unwrap_or(Quantity::Position);
+        error.length(quantity).map_or(0.0, |length| quantity.unit().shown(length))
+    };
+    errors.iter().map(shown).collect()
+}
+
+/// Row numbers with the errors of two models, of some rows.
+fn picture(before: (&Calibration, &Dataset), after: (&Calibration, &Dataset)) -> Vec<[f64; 3]> {
+    let rows: Vec<u32> = after.1.all_rows();
+    let step = rows.len().div_ceil(DRAWN).max(1);
+    let some: Vec<u32> = rows.into_iter().step_by(step).collect();
+    let errors = |(found, data): (&Calibration, &Dataset)| errors_of(found, data, &some);
+    let both = errors(before).into_iter().zip(errors(after)).zip(&some);
+    both.map(|((before, after), row)| [f64::from(*row) + 1.0, before, after]).collect()
+}
+
+fn wrong_words(data: &Dataset, rows: &[u32]) -> Said {
+    let configurations = data.configurations(rows);
+    let places: Vec<String> =
+        configurations.iter().filter_map(|it| it.first()).take(LISTED).map(|row| data.place(*row)).collect();
+    let more = configurations.len().saturating_sub(LISTED);
+    let and = if more > 0 { format!(" and {more} more") } else { String::new() };
+    let (is, it) = if configurations.len() == 1 {
+        ("1 configuration is wrong as a whole".to_owned(), "it")
+    } else {
+        (format!("{} configurations are wrong as a whole", configurations.len()), "them")
+    };
+    let is = format!("{is} ({}{and}), as if read before the arm had settled", places.join(", "));
+    let event = Event {
+        kind: EventKind::Rows,
+        name: String::new(),
+        from_row: rows.first().map_or(0, |row| *row as usize + 1),
+        from: rows.first().map(|row| data.place(*row)).unwrap_or_default(),
+        rows: rows.iter().map(|row| *row as usize + 1).collect(),
+        size_mm: None,
+        size_deg: None,
+        error_before_mm: None,
+        error_after_mm: None,
+        statement: format!("{is}: left out; measure {it} again"),
+        residuals: Vec::new(),
+    };
+    Said(event, format!("{is}: measure {it} again, or leave {it} out"))
+}
+
+/// What else explains a step nearly as well.
+fn other_words(step: &Step, robot: &Robot, data: &Dataset) -> Option<String> {
+    let (moved, less) = step.other?;
+    if less > (1.0 - NEARLY) * step.gain {
+        return None;
+    }
+    let target = |at: usize| data.targets.get(at).cloned().flatten().unwrap_or_default();
+    Some(match moved {
+        Moved::Device(_) => "the measuring device".to_owned(),
+        Moved::Target(at) => format!("the target{}", quoted(&target(at))),
+        Moved::Tool => "the tool".to_owned(),
+        Moved::Zero(joint) => format!("the zero of `{}`", robot.joints.get(joint)?.name),
+        Moved::Drift(_) => "a drift".to_owned(),
+    })
+}
+
+fn quoted(name: &str) -> String {
+    if name.is_empty() { String::new() } else { format!(" `{name}`") }
+}
+
+fn far_words(mm: Option<f64>, deg: Option<f64>) -> String {
+    match (mm, deg) {
+        (Some(mm), Some(deg)) => format!("{mm:.2} mm and {deg:.3} deg"),
+        (Some(mm), None) => format!("{mm:.2} mm"),
+        (None, Some(deg)) => format!("{deg:.3} deg"),
+        (None, None) => String::new(),
+    }
+}
