@@ -25,6 +25,7 @@ RUNS = {
     "held out": (["--held-out", "0.2", "--seed", "7"], {"held_out": 0.2, "seed": 7}),
     "every row": (["--held-out", "0"], {"held_out": 0}),
     "robust": (["--robust", "cauchy"], {"robust": "cauchy"}),
+    "not repaired": (["--repair", "off"], {"repair": "off"}),
     "free screws": (["--formulation", "screw-offsets"], {"formulation": "screw-offsets"}),
     "method": (["--method", "gauss-newton"], {"method": "gauss-newton"}),
 }  # fmt: skip

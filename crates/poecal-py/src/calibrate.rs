@@ -39,7 +39,7 @@ use crate::words::{chosen, frame as frame_word, from_mm, robust as robust_word, 
 ///     Standard deviation of each measured component, default estimated from the data.
 /// tolerance_deg_mm
 ///     Prior: deviation of each axis from nominal, standard deviations of angle and place (default 0.5 deg and 5 mm), or None; it
-///     decides where the measurements determine nothing. "auto" takes the best of (0.2, 2), (0.5, 5) and (3, 10) by cross-validation. The
+///     decides where the measurements determine nothing. "auto" takes the best of (0.05, 0.5), (0.2, 2), (0.5, 5), (1, 10) and (3, 10) by cross-validation. The
 ///     path of a MOC.cfg of a controller of ABB stands for what the maker found.
 /// corrections
 ///     What joints do beyond geometry: "auto" fits the terms that predict rows best which were not fitted, "all" looks among more of them,

@@ -40,7 +40,7 @@ pub(crate) struct Calibrate {
     #[arg(long, value_name = "ANGLE", value_parser = sigma_rad, allow_hyphen_values = true)]
     pub(crate) sigma_rotation: Option<f64>,
     /// Prior: deviation of each axis from nominal, as standard deviations, or none. It decides where the measurements determine
-    /// nothing. auto takes the best of 0.2deg,2mm, 0.5deg,5mm and 3deg,10mm by cross-validation. A joint of a TOML model may state its own.
+    /// nothing. auto takes the best of 0.05deg,0.5mm, 0.2deg,2mm, 0.5deg,5mm, 1deg,10mm and 3deg,10mm by cross-validation. A joint of a TOML model may state its own.
     /// MOC.cfg of a controller of ABB with Absolute Accuracy tells what the maker found
     #[arg(long, value_name = "ANGLE,LENGTH|none|auto|MOC.cfg", default_value = "0.5deg,5mm")]
     pub(crate) tolerance: BelievedTolerance,

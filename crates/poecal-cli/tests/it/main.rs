@@ -26,6 +26,7 @@ mod original_urdf;
 mod places;
 mod project;
 mod readme;
+mod repaired;
 mod report;
 mod reproduce;
 mod session;

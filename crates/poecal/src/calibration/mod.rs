@@ -27,6 +27,7 @@ mod placed;
 mod repeatability;
 mod result;
 mod robust;
+mod rounding;
 mod split;
 mod stations;
 mod steps;

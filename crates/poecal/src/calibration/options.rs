@@ -55,7 +55,7 @@ pub struct CalibrationOptions {
     /// Prior: standard deviations of the axes from nominal; a joint's own tolerance precedes. It decides where the measurements determine
     /// little. `None` is no prior. Formulations other than the default have none.
     pub tolerance: Option<Tolerance>,
-    /// Whether, instead, the best of (0.2°, 2 mm), (0.5°, 5 mm) and (3°, 10 mm) is taken: that whose fit predicts rows best which are left out.
+    /// Whether, instead, the best of (0.05°, 0.5 mm), (0.2°, 2 mm), (0.5°, 5 mm), (1°, 10 mm) and (3°, 10 mm) is taken: that whose fit predicts rows best which are left out.
     pub chooses_tolerance: bool,
     /// Which terms are fitted beside the screws, for the corrected model; with the default formulation only.
     pub corrections: Corrections,

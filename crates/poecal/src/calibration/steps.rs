@@ -14,13 +14,14 @@ use super::moves::{ChangeSearch, FrameSearch, FramesApart, Moved, frames_apart, 
 use super::noise_doubts::noise_doubts;
 use super::placed::{place_tip, stations};
 use super::robust::{self, RobustFit};
+use super::rounding::rounded;
 use super::stations::{check_length, check_stations};
 use super::trust::trust;
 use super::verdict::{Grounds, judged};
 use super::{
-    AcceptedModel, Accuracy, Calibration, CalibrationOptions, Correction, CoverageCheck, Formulation, Level,
-    Models, NoiseSource, PredictedUncertainty, Robust, Robustness, Trust, delivered, estimate_noise, noise,
-    set_accuracy, split_rows,
+    AcceptedModel, Accuracy, CalibratedTarget, Calibration, CalibrationOptions, Correction, CoverageCheck,
+    Formulation, Level, Models, NoiseSource, PredictedUncertainty, Robust, Robustness, Trust, delivered,
+    estimate_noise, noise, set_accuracy, split_rows,
 };
 use crate::analysis::{Identifiability, Setup, identifiability};
 use crate::error::Result;
@@ -37,6 +38,8 @@ use crate::unit::Unit;
 
 /// Factor on the noise of rotations where tool and frame are registered for the best positions.
 const POSITIONS_FIRST: f64 = 100.0;
+/// Distance of a target from the tip, in reaches, that no tool has.
+const FAR_TARGET: f64 = 3.0;
 /// Efficiency of the robust losses under normal noise.
 const EFFICIENCY: f64 = 0.95;
 
@@ -181,13 +184,21 @@ impl<'a> Prepared<'a> {
         let noise_doubts = noise_doubts(&remainder, lag_one);
         let grave = diagnosis.iter().filter(|it| it.is_of_input() && it.kind != DiagnosisKind::JointZero);
         let grave_move = moved.iter().filter(|it| it.is_grave).map(|it| it.statement.clone());
-        let mistakes: Vec<String> =
-            grave.map(|it| it.statement.clone()).chain(input.iter().cloned()).chain(grave_move).collect();
+        let frames = data.frames(&self.fit_rows);
+        let (robot, targets) = place_tip(nominal, data, &frames, &models.calibrated, self.options.move_tip);
+        let far = far_targets(&targets, 3.0 * length_m);
+        let mistakes: Vec<String> = grave
+            .map(|it| it.statement.clone())
+            .chain(input.iter().cloned())
+            .chain(grave_move)
+            .chain(far)
+            .collect();
         let mut warnings: Vec<String> = input
             .into_iter()
             .chain(noise_doubts.iter().map(|doubt| doubt.statement.clone()))
             .chain(moved.iter().map(|it| it.statement.clone()))
             .collect();
+        warnings.extend(rounded(&self.session, accuracy.training.calibrated.leading_m()));
         if !moved.as_ref().is_some_and(|it| it.explains(&robustness)) {
             warnings.extend(robustness.warning(&self.fit_rows, &self.held_out_rows));
         }
@@ -211,8 +222,6 @@ impl<'a> Prepared<'a> {
             // Mistakes in the input are not the fault of a joint.
             trust.joints.iter_mut().for_each(|joint| joint.suspicious = None);
         }
-        let frames = data.frames(&self.fit_rows);
-        let (robot, targets) = place_tip(nominal, data, &frames, &models.calibrated, self.options.move_tip);
         Calibration {
             nominal: nominal.clone(),
             robot,
@@ -438,4 +447,18 @@ impl<'a> Prepared<'a> {
             again: again.as_ref(),
         })
     }
+}
+
+/// Targets that ended farther from the tip than any tool is long: nothing determines them.
+fn far_targets(targets: &[CalibratedTarget], reach_m: f64) -> Vec<String> {
+    let far = targets.iter().filter(|it| it.tip_from_target.translation.norm() > FAR_TARGET * reach_m);
+    let words = far.map(|it| {
+        format!(
+            "the target{} ended {:.2} m from the tip, more than {FAR_TARGET:.0} times the robot's reach: these rows do not determine it; measure more \
+             configurations that turn the last joints",
+            it.name.as_ref().map_or_else(String::new, |name| format!(" `{name}`")),
+            it.tip_from_target.translation.norm()
+        )
+    });
+    words.collect()
 }

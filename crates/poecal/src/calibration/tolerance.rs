@@ -7,10 +7,10 @@ use crate::robot::Tolerance;
 /// What the usual tolerance may lose, of the mean logarithm of the errors of rows that are left out, and is taken still.
 const USUAL: f64 = 0.01;
 
-/// Tolerances that are tried: of a precise robot, the usual one, and of one that is hardly like its drawing.
-fn tried() -> [Tolerance; 3] {
+/// Tolerances that are tried: the usual one, of more and more precise robots, and of ones that are hardly like their drawing.
+fn tried() -> [Tolerance; 5] {
     let of = |angle_deg: f64, length_m| Tolerance { angle_rad: angle_deg.to_radians(), length_m };
-    [Tolerance::default(), of(0.2, 2e-3), of(3.0, 1e-2)]
+    [Tolerance::default(), of(0.2, 2e-3), of(0.05, 5e-4), of(1.0, 1e-2), of(3.0, 1e-2)]
 }
 
 /// The tolerance whose fit predicts rows best which are left out: random folds, ends of the joints' ranges, files, ids.
