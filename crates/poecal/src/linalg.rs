@@ -4,7 +4,7 @@
 
 pub(crate) use crate::lanes::Factor;
 use crate::lanes::{self, SimdLevel};
-use nalgebra::{Cholesky, DMatrix, Matrix4, Matrix6, U6, Vector3, Vector4};
+use nalgebra::{Cholesky, DMatrix, DVector, Matrix4, Matrix6, U6, Vector3, Vector4};
 
 /// Adds `Σ rᵀ r` over rows r to the upper triangle of a row-major `n × n` Gram matrix (theory.md §6 (28)). `rows` holds rows of `n`
 /// numbers, of which those before `start` are zero and are skipped.
@@ -83,6 +83,22 @@ pub(crate) fn trace_of_quotient(factor: &Factor, part: &[f64], n: usize) -> f64 
 /// The inverse (row-major) of the matrix that was factorised.
 pub(crate) fn inverse(factor: &Factor) -> Vec<f64> {
     lanes::inverse(SimdLevel::best(), factor)
+}
+
+/// `A⁻¹ b` of a symmetric matrix; `None` unless it is positive definite.
+pub(crate) fn solved(matrix: DMatrix<f64>, right: &DVector<f64>) -> Option<DVector<f64>> {
+    Some(Cholesky::new(matrix)?.solve(right))
+}
+
+/// `A⁻¹ b`, and `R L⁻ᵀ` of rows, with `A = L Lᵀ`: rows in units in which `A` is 1.
+pub(crate) fn solved_and_whitened(
+    matrix: DMatrix<f64>,
+    right: &DVector<f64>,
+    rows: &DMatrix<f64>,
+) -> Option<(DVector<f64>, DMatrix<f64>)> {
+    let factor = Cholesky::new(matrix)?;
+    let whitened = factor.l_dirty().solve_lower_triangular(&rows.transpose())?.transpose();
+    Some((factor.solve(right), whitened))
 }
 
 /// `aᵀb`.

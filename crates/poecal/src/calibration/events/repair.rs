@@ -24,6 +24,8 @@ const MOST: usize = 4;
 const BETTER: f64 = 0.8;
 /// The same of the error of the other rows, where some are left out.
 const OTHERS_BETTER: f64 = 0.95;
+/// Share of the residuals that a step leaves above which its repair cannot gain as much.
+const LITTLE: f64 = 0.8;
 /// Rows of the picture of a repair.
 const DRAWN: usize = 200;
 /// Files and lines that a sentence lists.
@@ -83,13 +85,14 @@ pub fn calibrate_repairing<'a>(
         let Some(happened) = session.next(&best, options) else { break };
         let before = error_of(&best, &session);
         let event = session.event(&happened, robot);
+        let matters = happened.matters();
         let repaired = match options.repair {
-            Repairs::Auto => session.without(&happened, robot, options),
-            Repairs::Off => None,
+            Repairs::Auto if matters => session.without(&happened, robot, options),
+            Repairs::Auto | Repairs::Off => None,
         };
         let Some(repaired) = repaired else {
             let event = event.suspected(before, None);
-            if event.is_grave(before) {
+            if matters && event.is_grave(before) {
                 best = best.against(event.statement.clone());
             }
             suspicions.push(event);
@@ -111,7 +114,9 @@ pub fn calibrate_repairing<'a>(
             Happened::Step(_) => after <= BETTER * before,
         };
         if !is_better {
-            suspicions.push(event.suspected(before, Some(after)));
+            if !happened.is_suspected(&best) {
+                suspicions.push(event.suspected(before, Some(after)));
+            }
             break;
         }
         let residuals = picture((&best, &session.data), (&other, &repaired.data));
@@ -131,6 +136,22 @@ pub fn calibrate_repairing<'a>(
 enum Happened {
     Wrong(Vec<u32>),
     Step(Step),
+}
+
+impl Happened {
+    /// Whether all rows of it are suspected as outliers anyway.
+    fn is_suspected(&self, best: &Calibration) -> bool {
+        let is_known = |row: &u32| best.robustness.rows.get(*row as usize).is_some_and(|it| it.suspected);
+        matches!(self, Happened::Wrong(rows) if rows.iter().all(is_known))
+    }
+
+    /// Whether the session without it can be better by much.
+    fn matters(&self) -> bool {
+        match self {
+            Happened::Wrong(_) => true,
+            Happened::Step(step) => step.leaves <= LITTLE,
+        }
+    }
 }
 
 /// A session, and the rows of it that are left out.
@@ -162,10 +183,12 @@ impl<'a> Session<'a> {
         let Events { wrong, step } =
             search(&Search { calibration: best, found, data, options, rows: &rows })?;
         let is_known = |row: &u32| best.robustness.rows.get(*row as usize).is_some_and(|it| it.suspected);
-        let are_known = best.robustness.loss.is_some()
-            && wrong.iter().all(is_known)
-            && best.robustness.suspects().count() == wrong.len();
-        if !wrong.is_empty() && !are_known && options.robust == Robust::Auto {
+        let is_fitted = |row: &u32| best.fit_rows.binary_search(row).is_ok();
+        // Rows that are suspected already and have no part in the fit need no other one.
+        let is_done = wrong.iter().all(is_known)
+            && (!wrong.iter().any(is_fitted)
+                || best.robustness.loss.is_some() && best.robustness.suspects().count() == wrong.len());
+        if !wrong.is_empty() && !is_done && options.robust == Robust::Auto {
             return Some(Happened::Wrong(wrong));
         }
         step.map(Happened::Step)

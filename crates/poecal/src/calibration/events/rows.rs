@@ -2,21 +2,22 @@
 
 use std::ops::Range;
 
-use nalgebra::{Cholesky, DMatrix, DVector};
+use nalgebra::{DMatrix, DVector};
 
 use super::hypotheses::{Columns, hypotheses};
 use crate::calibration::corrections::{priors, unknowns, weight_of_prior, whitened_rows};
 use crate::calibration::fit::Task;
 use crate::calibration::{Calibration, CalibrationOptions, Correction};
 use crate::estimate::{Session, sample_rows};
+use crate::linalg;
 use crate::measurement::Dataset;
 use crate::parameters::Parameter;
 use crate::problem::{Prior, Problem};
 use crate::robot::{Sizes, Tolerance};
 use crate::solve::Normal;
 
-/// Most rows: with fewer an event still shows, and its place is known to a few rows.
-const MOST_ROWS: usize = 2000;
+/// Most measured numbers: with fewer an event still shows, and its place is known to a few rows.
+const MOST_NUMBERS: usize = 6000;
 /// Largest difference of readings within one run of rows, radians or metres.
 const SAME: f64 = 1e-3;
 /// Least share of the numbers that counts as left beyond what is fitted.
@@ -67,7 +68,9 @@ impl Rows {
         let known = unknowns(&found.model, session.unknowns, &sizes);
         let session =
             Session { robot: &found.model.robot, packed: &found.packed, unknowns: &known, ..session };
-        let rows = sample_rows(rows, MOST_ROWS);
+        let numbers = |row: &u32| data.observations[*row as usize].measurement.observe().dim();
+        let all: usize = rows.iter().map(numbers).sum();
+        let rows = sample_rows(rows, rows.len() * MOST_NUMBERS / all.max(MOST_NUMBERS));
         let prior =
             Prior::new(session.robot, options.tolerance.unwrap_or(Tolerance::WIDE), session.base_free());
         let prior = prior.with_terms(priors(&found.model, &sizes));
@@ -114,10 +117,9 @@ impl Rows {
         let mut gram = self.fitted.tr_mul(&weighted) + &self.prior.0;
         let largest = gram.diagonal().amax();
         (0..p).for_each(|at| gram[(at, at)] += RIDGE * largest);
-        let factor = Cholesky::new(gram)?;
-        let step = factor.solve(&(weighted.tr_mul(&self.residual) + &self.prior.1));
+        let pull = weighted.tr_mul(&self.residual) + &self.prior.1;
+        let (step, whitened) = linalg::solved_and_whitened(gram, &pull, &self.fitted)?;
         let residual = &self.residual - &self.fitted * step;
-        let whitened = factor.l().solve_lower_triangular(&self.fitted.transpose())?.transpose();
         let numbers: f64 = each.sum();
         let determined: f64 =
             whitened.row_iter().zip(each.iter()).map(|(row, weight)| weight * row.norm_squared()).sum();

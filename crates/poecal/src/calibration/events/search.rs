@@ -1,11 +1,12 @@
 //! The search for a step along the order of the rows (theory.md §9, *Events*).
 
-use nalgebra::{Cholesky, DMatrix, DVector};
+use nalgebra::{DMatrix, DVector};
 
 use super::hypotheses::{Columns, Moved};
 use super::rows::{Optimum, Rows};
 use super::wrong::without_wrong;
 use crate::calibration::{Calibration, CalibrationOptions, Correction};
+use crate::linalg;
 use crate::measurement::Dataset;
 
 /// Fewest runs of a search, and on each side of a step.
@@ -45,7 +46,9 @@ pub(super) struct Step {
     pub(super) turns: Vec<bool>,
     /// How many variances of a number it explains, in units of how much the numbers of a configuration share.
     pub(super) gain: f64,
-    /// The same less what its unknowns explain of any rows: hypotheses compare by it.
+    /// Share of the residuals (RMS) that it leaves.
+    pub(super) leaves: f64,
+    /// Its gain less what its unknowns explain of any rows: hypotheses compare by it.
     score: f64,
     /// The same of the next best hypothesis of another kind at most, and which it is.
     pub(super) other: Option<(Moved, f64)>,
@@ -163,8 +166,7 @@ fn strongest(
         }
         let mut left = &gram - mixed.tr_mul(&mixed);
         prior.iter().enumerate().for_each(|(at, prior)| left[(at, at)] += prior);
-        let Some(factor) = Cholesky::new(left) else { continue };
-        let step = factor.solve(&pull);
+        let Some(step) = linalg::solved(left, &pull) else { continue };
         let gain = step.dot(&pull) / optimum.variance;
         if best.as_ref().is_none_or(|best| gain > best.1) {
             best = Some((place, gain, step));
@@ -177,11 +179,21 @@ fn strongest(
         let of_step = columns.of.rows(numbers.start, numbers.len()) * &step * share(own);
         moved.rows_mut(numbers.start, numbers.len()).copy_from(&of_step);
     }
+    let leaves = (1.0 - gain / optimum.freedom.max(1.0)).max(0.0).sqrt();
     let gain = gain / shared(rows, optimum, weights, &moved);
     let first = *rows.rows.get(rows.runs.get(*seen.get(place)?)?.start)?;
     let size = step.iter().copied().collect();
     let score = gain - k as f64 * (rows.runs.len() as f64).ln();
-    Some(Step { moved: columns.moved, first, size, turns: columns.turns.clone(), gain, score, other: None })
+    Some(Step {
+        moved: columns.moved,
+        first,
+        size,
+        turns: columns.turns.clone(),
+        gain,
+        leaves,
+        score,
+        other: None,
+    })
 }
 
 /// How much the numbers of a run share along a step: the variance of its size by runs, over that by numbers; at least 1.

@@ -2,15 +2,18 @@
 
 use std::ops::Range;
 
-use nalgebra::{Cholesky, DMatrix};
+use nalgebra::DMatrix;
 
 use super::rows::{Optimum, Rows};
 use crate::distributions::median;
+use crate::linalg;
 
 /// Errors beyond so many times their median are wrong; a configuration of several rows if most of them are beyond half of that. Of fewer numbers
 /// than a pose has, twice as many times: single ones are far off more often, and are judged as rows too.
 const WRONG: f64 = 5.0;
 const FEW_NUMBERS: usize = 6;
+/// Share of that bound below which all errors are where nothing is wrong.
+const NEAR: f64 = 0.6;
 /// Rounds of weighing configurations, and how many of them only draw the weights down.
 const ROUNDS: usize = 12;
 const GENTLE: usize = 4;
@@ -27,20 +30,24 @@ pub(super) fn without_wrong(rows: &Rows) -> Option<(Vec<f64>, Optimum)> {
         let usual = median(sizes.iter().copied())?.max(f64::MIN_POSITIVE);
         let bound =
             |run: &Range<usize>| if rows.numbers(run).len() < FEW_NUMBERS { 2.0 * WRONG } else { WRONG };
-        let ratios = sizes.iter().zip(&rows.runs).map(|(size, run)| size / usual / bound(run));
+        let ratios: Vec<f64> =
+            sizes.iter().zip(&rows.runs).map(|(size, run)| size / usual / bound(run)).collect();
+        // Where nothing comes near the bound, nothing is wrong.
+        if round == 0 && ratios.iter().all(|ratio| *ratio < NEAR) {
+            return Some((all, whole));
+        }
         let next: Vec<f64> = if round < GENTLE {
-            ratios.map(|ratio| (0.5 / ratio).min(1.0)).collect()
+            ratios.iter().map(|ratio| (0.5 / ratio).min(1.0)).collect()
         } else {
-            ratios.map(|ratio| f64::from(u8::from(ratio <= 1.0))).collect()
+            ratios.iter().map(|ratio| f64::from(u8::from(*ratio <= 1.0))).collect()
         };
-        let is_settled = next == weights;
-        weights = next;
-        optimum = Some(rows.optimum(&weights)?);
-        if is_settled {
+        if next == weights {
             break;
         }
+        weights = next;
+        optimum = Some(rows.optimum(&weights)?);
     }
-    let optimum = optimum?;
+    let Some(optimum) = optimum else { return Some((all, whole)) };
     let lengths = lengths(rows, &optimum);
     let usual = median(lengths.iter().copied())?;
     for (run, weight) in rows.runs.iter().zip(&mut weights).filter(|(_, weight)| **weight == 0.0) {
@@ -80,7 +87,7 @@ fn sizes(rows: &Rows, optimum: &Optimum, weights: &[f64]) -> Vec<f64> {
         } else {
             DMatrix::identity(n, n) + fitted
         };
-        let square = Cholesky::new(expected).map_or(0.0, |factor| own.dot(&factor.solve(&own)));
+        let square = linalg::solved(expected, &own).map_or(0.0, |it| own.dot(&it));
         (square / n.max(1) as f64).sqrt()
     });
     each.collect()
