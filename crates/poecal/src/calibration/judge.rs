@@ -67,7 +67,7 @@ pub enum Refitted {
 /// let errors = Statistic { mean: 0.1, rms: 0.11, p95: 0.2, max: 0.25 };
 /// let calibrated = Measured::of(|quantity| (quantity == Quantity::Position).then_some(errors));
 /// let judgement = Judgement { count: 20, refitted: vec![], calibrated: calibrated.into(), corrected: None, nominal: None, promised: None,
-///     in_sampled_range: None, acceptance: None, moved_device: None, base_from_device: poecal::Pose::identity(),
+///     in_sampled_range: None, acceptance: None, moved_device: None, base_from_device: poecal::lie::Pose::identity(),
 ///     rows: vec![] };
 /// assert_eq!(judgement.calibrated.position_mm().max, 0.25);
 /// ```
