@@ -1570,6 +1570,9 @@ def calibrate(
         Seed of that choice (default 1).
     robust
         How to treat outliers: "auto", "off", "huber", "cauchy" or "tukey".
+    repair
+        "auto" repairs a session in which a device, a target, a nest or a joint's zero evidently moved, or configurations are wrong as a whole, if
+        other rows are predicted better then; "off" only says it. `Calibration.to_dict()` has `repairs` and `suspicions`.
     formulation
         Parameterisation of joint errors: "adjoint", "screw", "screw-offsets" or "adjoint-offsets".
     residual
