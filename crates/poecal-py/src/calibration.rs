@@ -769,6 +769,7 @@ impl Calibration {
     #[pyo3(signature = (measurements, *, refit_frame=false, refit_tool=false, refit="never", accept=None, accept_model="corrected", out=None, force=false, report=None,
                         record=None, history=None),
            text_signature = "($self, measurements, *, refit_frame=False, refit_tool=False, refit='never', accept=None, accept_model='corrected', out=None, force=False, report=True, record=None, history=None)")]
+    #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
     fn validate(
         &self,
         py: Python<'_>,

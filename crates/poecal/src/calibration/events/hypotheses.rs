@@ -93,7 +93,11 @@ pub(super) fn hypotheses(
             let motions = match &free[at] {
                 Parameter::TargetPlace(_) => vec![0, 1, 2],
                 Parameter::TargetFrame(it) => it.freedom.motions().to_vec(),
-                _ => return None,
+                Parameter::ScrewAxis(_)
+                | Parameter::OtherScrew(_)
+                | Parameter::ValueTerm(_)
+                | Parameter::DeviceFrame(_)
+                | Parameter::RangeUnknown(_) => return None,
             };
             let turn = pose.rotation;
             Some((at, Part::Carried(turn, pose.translation - middle, motions)))
@@ -131,9 +135,9 @@ impl Hypothesis {
                     }
                 }
                 Part::Carried(turn, arm, motions) => {
-                    for k in 0..6 {
+                    for (k, is_turn) in turns.iter_mut().enumerate() {
                         let axis = Vector3::ith(k % 3, 1.0);
-                        turns[k] = k >= 3;
+                        *is_turn = k >= 3;
                         let (shift, angle) =
                             if k < 3 { (axis, Vector3::zeros()) } else { (axis.cross(arm), axis) };
                         let (shift, angle) = (turn.transpose() * shift, turn.transpose() * angle);

@@ -80,7 +80,7 @@ fn sizes(rows: &Rows, optimum: &Optimum, weights: &[f64]) -> Vec<f64> {
         let n = numbers.len();
         let own = optimum.residual.rows(numbers.start, n).into_owned();
         let whitened = optimum.whitened.rows(numbers.start, n);
-        let fitted = &whitened * whitened.transpose();
+        let fitted = whitened * whitened.transpose();
         // Of a run that was fitted, what is left of its variance; of another, what the fit adds.
         let expected = if *weight > 0.0 {
             DMatrix::identity(n, n) - fitted * *weight
