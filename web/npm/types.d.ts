@@ -39,8 +39,8 @@ export interface CalibrateOptions {
   sigmaRotation?: Value | readonly Value[];
   /**
    * Prior: deviation of each axis from nominal, as standard deviations, or none. It decides where the measurements determine nothing. auto
-   * takes the best of 0.2deg,2mm, 0.5deg,5mm and 3deg,10mm by cross-validation. A joint of a TOML model may state its own. MOC.cfg of a
-   * controller of ABB with Absolute Accuracy tells what the maker found [default: 0.5deg,5mm]
+   * takes the best of 0.05deg,0.5mm, 0.2deg,2mm, 0.5deg,5mm, 1deg,10mm and 3deg,10mm by cross-validation. A joint of a TOML model may state
+   * its own. MOC.cfg of a controller of ABB with Absolute Accuracy tells what the maker found [default: 0.5deg,5mm]
    */
   tolerance?: Value | readonly Value[];
   /**
@@ -76,6 +76,8 @@ export interface CalibrateOptions {
   seed?: Value | readonly Value[];
   /** How to treat outliers: auto fits by least squares, and by the tukey loss where that shows outliers */
   robust?: "auto" | "off" | "huber" | "cauchy" | "tukey";
+  /** What to do where a device, a target, a nest or a joint's zero moved during the session, or configurations are wrong as a whole */
+  repair?: "auto" | "off";
   /** File for the report, or `none` [default: report.html among the results] */
   report?: Value | readonly Value[];
   /** End with code 1 if the verdict is worse than this (results are written all the same); it also does if the verdict is `do not use` */
@@ -119,6 +121,8 @@ export interface ValidateOptions {
   refitFrame?: boolean;
   /** Refit the targets to these measurements */
   refitTool?: boolean;
+  /** Refit the device's frame where these measurements show that the device stands elsewhere; without, that is said */
+  refit?: "never" | "auto";
   /**
    * End with code 1 unless the measurements confirm this: `good` if 80 % of all errors are inside their own 95 % bounds and the error (RMS)
    * is at most twice the expected one; `inside_sampled_range` if that holds of the rows inside the sampled range
@@ -131,6 +135,12 @@ export interface ValidateOptions {
   accept?: Value | readonly Value[];
   /** Which model shall keep them: the corrected one, if there is one (the default), or the calibrated one, which a URDF holds */
   acceptModel?: "corrected" | "calibrated";
+  /** File for the report, or `none` [default: report.html among the results] */
+  report?: Value | readonly Value[];
+  /** What the report states of this session, like operator=Mia (repeatable): the keys of `poecal calibrate` */
+  record?: Value | readonly Value[];
+  /** File to which the check is appended as a line, or `none` [default: history.jsonl beside the calibration] */
+  history?: Value | readonly Value[];
 }
 
 /** Options of `poecal predict`, by their long names. */
@@ -306,6 +316,8 @@ export type CalibrationFile = {
   poecal_version: string;
   /** What is stated of the session; absent if nothing is. */
   record?: Record;
+  /** What happened during the session and was repaired; all else in this file is of the repaired session. */
+  repairs?: Event[];
   /** Configurations that were measured several times; null if there are none. */
   repeatability?: RepeatabilityEntry | null;
   /** The calibrated robot's frames. */
@@ -320,6 +332,8 @@ export type CalibrationFile = {
   stations?: StationEntry[];
   /** Configurations in which all targets are suspected and off alike, the worst first, at most 100: the arm or its readings are wrong there. */
   suspected_configurations?: SuspectedConfigurationEntry[];
+  /** What seems to have happened and was not repaired. */
+  suspicions?: Event[];
   /**
    * Targets by their names, `measured` where no row names one: in the tip frame, or on a body of their own (`on`). None where `move_tip` is
    * true.
@@ -649,6 +663,35 @@ export type EffectEntry = {
   /** The effect in words. */
   words: string;
 };
+
+/** Something that happened during a session. */
+export type Event = {
+  /** The same after it; absent where it was not tried. */
+  error_after_mm?: number | null;
+  /** Error of the delivered model in cross-validation (RMS, millimetres, or degrees without positions) before the repair. */
+  error_before_mm?: number | null;
+  /** Where that is: its file and line. */
+  from: string;
+  /** Number of the first measurement after it, from 1; of wrong configurations the first of them. */
+  from_row: number;
+  /** What it is. */
+  kind: EventKind;
+  /** What was moved: the instrument, the target, the joint; empty without a name. */
+  name: string;
+  /** Errors of some rows in their order, by the models before and after the repair, millimetres or degrees; not of what was not repaired. */
+  residuals?: Array<[number, number, number]>;
+  /** Numbers of the measurements of wrong configurations. */
+  rows?: number[];
+  /** How far it turned, degrees. */
+  size_deg?: number | null;
+  /** How far, millimetres; of a drift from the first measurement to the last. */
+  size_mm?: number | null;
+  /** What it is taken as, or what to do, a sentence. */
+  statement: string;
+};
+
+/** What happened. The words do not change between versions. */
+export type EventKind = "device" | "target" | "nest" | "zero" | "drift" | "rows";
 
 /** Expected errors of predicted positions, millimetres. */
 export type ExpectedEntry = {
