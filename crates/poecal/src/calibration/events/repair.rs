@@ -141,8 +141,7 @@ enum Happened {
 impl Happened {
     /// Whether all rows of it are suspected as outliers anyway.
     fn is_suspected(&self, best: &Calibration) -> bool {
-        let is_known = |row: &u32| best.robustness.rows.get(*row as usize).is_some_and(|it| it.suspected);
-        matches!(self, Happened::Wrong(rows) if rows.iter().all(is_known))
+        matches!(self, Happened::Wrong(rows) if rows.iter().all(|row| best.robustness.suspects_row(*row)))
     }
 
     /// Whether the session without it can be better by much.
@@ -182,10 +181,9 @@ impl<'a> Session<'a> {
         rows.retain(|row| self.left_out.binary_search(row).is_err());
         let Events { wrong, step } =
             search(&Search { calibration: best, found, data, options, rows: &rows })?;
-        let is_known = |row: &u32| best.robustness.rows.get(*row as usize).is_some_and(|it| it.suspected);
         let is_fitted = |row: &u32| best.fit_rows.binary_search(row).is_ok();
         // Rows that are suspected already and have no part in the fit need no other one.
-        let is_done = wrong.iter().all(is_known)
+        let is_done = wrong.iter().all(|row| best.robustness.suspects_row(*row))
             && (!wrong.iter().any(is_fitted)
                 || best.robustness.loss.is_some() && best.robustness.suspects().count() == wrong.len());
         if !wrong.is_empty() && !is_done && options.robust == Robust::Auto {

@@ -63,6 +63,11 @@ impl Robustness {
         self.rows.iter().zip(suspected).any(|(row, suspected)| row.suspected != *suspected)
     }
 
+    /// Whether a row is suspected.
+    pub(in crate::calibration) fn suspects_row(&self, row: u32) -> bool {
+        self.rows.get(row as usize).is_some_and(|it| it.suspected)
+    }
+
     /// The suspected rows, in the order of the data.
     pub fn suspects(&self) -> impl Iterator<Item = u32> {
         let rows = self.rows.iter().enumerate().filter(|(_, row)| row.suspected);

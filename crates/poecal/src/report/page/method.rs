@@ -1,5 +1,7 @@
 //! How the calibration was made, of which files, and how to make it again.
 
+use std::collections::BTreeMap;
+
 use maud::{Markup, html};
 
 use super::devices::found_words;
@@ -91,22 +93,34 @@ fn convergence(file: &CalibrationFile) -> Markup {
     }
 }
 
-fn inputs(file: &CalibrationFile) -> Markup {
-    let inputs = &file.inputs;
+/// Files with their checksums: one with its key and what it is, the measurements, and mappings.
+pub(super) fn files(
+    (first, key, what): (&String, &str, &str),
+    measurements: &[String],
+    sha256: &BTreeMap<String, String>,
+    mappings: &[&String],
+) -> HtmlTable {
     let mut table = HtmlTable::new("Files that were read", 3, &["file", "what", "SHA-256"]);
     let mut add = |name: &String, shown: Markup, what: &str| {
-        let hash = inputs.sha256.get(name).map_or("not recorded", String::as_str);
+        let hash = sha256.get(name).map_or("not recorded", String::as_str);
         table.row(&[&shown, &what, &html! { code.hash { (hash) } }]);
     };
-    add(&inputs.model, path(&inputs.model, "inputs.model"), "model");
-    for (k, name) in inputs.measurements.iter().enumerate() {
+    add(first, path(first, key), what);
+    for (k, name) in measurements.iter().enumerate() {
         add(name, path(name, format_args!("inputs.measurements.{k}")), "measurements");
     }
-    for name in inputs.sha256.keys() {
-        if *name != inputs.model && !inputs.measurements.contains(name) {
-            add(name, html! { (name) }, "mapping");
-        }
+    for name in mappings {
+        add(name, html! { (name) }, "mapping");
     }
+    table
+}
+
+fn inputs(file: &CalibrationFile) -> Markup {
+    let inputs = &file.inputs;
+    let is_further = |name: &&String| **name != inputs.model && !inputs.measurements.contains(name);
+    let further: Vec<&String> = inputs.sha256.keys().filter(is_further).collect();
+    let own = (&inputs.model, "inputs.model", "model");
+    let table = files(own, &inputs.measurements, &inputs.sha256, &further);
     html! {
         h3 { "Inputs" }
         (table)

@@ -21,12 +21,13 @@ mod validation;
 
 pub use validation::validation_page;
 
-use maud::{DOCTYPE, PreEscaped, html};
+use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use crate::calibration::Statistic;
 use crate::error::{Error, ErrorKind, Result};
 use crate::io::calibration_file::CalibrationFile;
 use crate::io::output::Page;
+use crate::io::record::Record;
 use crate::io::residuals::Residuals;
 use crate::io::shapes::Shapes;
 use crate::robot::ReadingKind;
@@ -72,20 +73,7 @@ pub fn calibration_page_with(file: &CalibrationFile, residuals: &Residuals, shap
     check(file, residuals)?;
     let data = data::json(file, residuals, shapes)?;
     let title = format!("Calibration of {}", file.robot.name);
-    let head = html! {
-        (DOCTYPE) "\n" (PreEscaped("<html lang=\"en\">")) "\n"
-        head {
-            meta charset="utf-8";
-            meta http-equiv="Content-Security-Policy" content=(POLICY);
-            meta name="viewport" content="width=device-width, initial-scale=1";
-            meta name="color-scheme" content="light dark";
-            meta name="generator" content={ "poecal " (file.poecal_version) };
-            title { (title) }
-            style { (PreEscaped(STYLE)) }
-            (certificate::pages(&title, &file.record, &file.poecal_version))
-        }
-        "\n" (PreEscaped("<body>")) "\n"
-    };
+    let head = head(&title, &file.record, &file.poecal_version);
     let body = html! {
         a.skip href="#main" { "Skip to the verdict" }
         main #main {
@@ -109,6 +97,24 @@ pub fn calibration_page_with(file: &CalibrationFile, residuals: &Residuals, shap
         SCRIPT.into(),
         "</script>\n</body>\n</html>\n".into(),
     ])
+}
+
+/// A page up to its body: title, policy, style, and what is printed beside it.
+fn head(title: &str, record: &Record, version: &str) -> Markup {
+    html! {
+        (DOCTYPE) "\n" (PreEscaped("<html lang=\"en\">")) "\n"
+        head {
+            meta charset="utf-8";
+            meta http-equiv="Content-Security-Policy" content=(POLICY);
+            meta name="viewport" content="width=device-width, initial-scale=1";
+            meta name="color-scheme" content="light dark";
+            meta name="generator" content={ "poecal " (version) };
+            title { (title) }
+            style { (PreEscaped(STYLE)) }
+            (certificate::pages(title, record, version))
+        }
+        "\n" (PreEscaped("<body>")) "\n"
+    }
 }
 
 /// Refuses residuals of another calibration.

@@ -1,12 +1,12 @@
 //! The page of a check: whether a calibration holds for measurements that it did not see.
 
-use maud::{DOCTYPE, Markup, PreEscaped, Render, html};
+use maud::{Markup, PreEscaped, Render, html};
 
 use super::certificate::{self, limits, stated};
 use super::first::{capital, error_words};
-use super::html::{HtmlTable, count, facts, figure, figure_or, list, path, plots, quoted, section};
+use super::html::{HtmlTable, count, facts, figure, figure_or, list, plots, quoted, section};
 use super::lead::{sign, spaced};
-use super::{POLICY, STYLE};
+use super::{head, method};
 use crate::calibration::{Level, ModelAccuracy, Refitted};
 use crate::io::output::Page;
 use crate::io::validation::{Earlier, JudgedRows, Validation, VerdictError};
@@ -42,20 +42,7 @@ const DRAWN: usize = 200;
 #[must_use]
 pub fn validation_page(found: &Validation, rows: &JudgedRows<'_>, earlier: &[Earlier]) -> Page {
     let title = format!("Check of the calibration of {}", found.robot);
-    let head = html! {
-        (DOCTYPE) "\n" (PreEscaped("<html lang=\"en\">")) "\n"
-        head {
-            meta charset="utf-8";
-            meta http-equiv="Content-Security-Policy" content=(POLICY);
-            meta name="viewport" content="width=device-width, initial-scale=1";
-            meta name="color-scheme" content="light dark";
-            meta name="generator" content={ "poecal " (found.poecal_version) };
-            title { (title) }
-            style { (PreEscaped(STYLE)) }
-            (certificate::pages(&title, &found.record, found.poecal_version))
-        }
-        "\n" (PreEscaped("<body>")) "\n"
-    };
+    let head = head(&title, &found.record, found.poecal_version);
     let body = html! {
         a.skip href="#main" { "Skip to the verdict" }
         main #main {
@@ -265,15 +252,8 @@ fn checks(found: &Validation, earlier: &[Earlier]) -> Markup {
 
 fn inputs(found: &Validation) -> Markup {
     let inputs = &found.inputs;
-    let mut table = HtmlTable::new("Files that were read", 3, &["file", "what", "SHA-256"]);
-    let mut add = |name: &String, shown: Markup, what: &str| {
-        let hash = inputs.sha256.get(name).map_or("not recorded", String::as_str);
-        table.row(&[&shown, &what, &html! { code.hash { (hash) } }]);
-    };
-    add(&inputs.calibration, path(&inputs.calibration, "inputs.calibration"), "calibration");
-    for (k, name) in inputs.measurements.iter().enumerate() {
-        add(name, path(name, format_args!("inputs.measurements.{k}")), "measurements");
-    }
+    let own = (&inputs.calibration, "inputs.calibration", "calibration");
+    let table = method::files(own, &inputs.measurements, &inputs.sha256, &[]);
     let content = html! {
         (table)
         @if let Some(command) = &inputs.command {
