@@ -19,6 +19,7 @@ import re
 import shutil
 import subprocess
 from dataclasses import dataclass, field
+from decimal import Decimal
 from pathlib import Path
 
 from program import ROOT, program
@@ -26,6 +27,8 @@ from program import ROOT, program
 FENCE = re.compile(r"^(?P<indent> *)```(?P<info>[^\n`]*)\n(?P<text>.*?)^(?P=indent)```$", re.M | re.S)
 NOTES = re.compile(r"(?:<!-- *(?:output|(?:file|given|exit|shorter|not run):[^\n]*?) *-->\s*)+\Z")
 NOTE = re.compile(r"<!-- *(?P<word>output|file|given|exit|shorter|not run)(?:: *(?P<value>.*?))? *-->")
+# Figures with decimals and three digits or more, not parts of words, versions or powers of ten.
+ROUNDED = re.compile(r"(?<![\w.-])((?=[\d.]{4,})\d+\.\d+)(?![\w.])")
 # Languages that are not run: what is shown, not done.
 SHOWN = {"", "text", "math"}
 # Files that are shown there are read by crates/poecal/tests/it/documented_files.rs.
@@ -160,11 +163,27 @@ def plain(text: str) -> str:
 
 
 def matches(expected: str, found: str) -> bool:
-    """Whether a text is as it is shown, … standing for anything within a line, or for lines where it stands alone."""
+    """Whether a text is as it is shown, … standing for anything within a line, or for lines where it stands alone.
+
+    A rounded figure of three digits or more may differ by one in its last: a sum in another order (another vector unit) rounds it otherwise.
+    """
     pattern = ""
     for line in expected.splitlines():
         if line.strip() == "…":
             pattern += r"(?:[^\n]*\n)*?"
         else:
-            pattern += r"[^\n]*".join(re.escape(part) for part in line.split("…")) + r"\n"
+            pattern += r"[^\n]*".join(map(part_pattern, line.split("…"))) + r"\n"
     return re.fullmatch(pattern, found + "\n") is not None
+
+
+def part_pattern(part: str) -> str:
+    """A pattern of a part of a line: its words as they are, its rounded figures to one in the last digit."""
+    pieces = ROUNDED.split(part)
+    return "".join(re.escape(piece) if k % 2 == 0 else rounded_pattern(piece) for k, piece in enumerate(pieces))
+
+
+def rounded_pattern(figure: str) -> str:
+    """A pattern of a figure and its two neighbours of as many decimals."""
+    decimals = len(figure.partition(".")[2])
+    unit = Decimal(1).scaleb(-decimals)
+    return "(?:" + "|".join(re.escape(str(Decimal(figure) + k * unit)) for k in (-1, 0, 1)) + ")"

@@ -57,5 +57,8 @@ def test_the_page_of_commands_is_what_the_program_says():
 
 def test_dots_stand_for_anything():
     assert matches("a … c\n…\nz", "a b c\n1\n2\nz") and matches("a\n…\nz", "a\nz")
+    # Rounded figures to one in the last digit; counts, and what is not rounded, exactly.
+    assert matches("held out 0.1577 mm", "held out 0.1576 mm") and matches("9.99 mm…", "10.00 mm (RMS)")
+    assert not matches("0.1577 mm", "0.1575 mm") and not matches("180 rows", "181 rows") and not matches("1.5 mm", "1.6 mm")
     assert not matches("a … c", "a b d") and not matches("a", "a\nb")
     assert plain("within 2.1e-15 m  \n") == "within # m" and plain("4.9e3 1.2e-3") == "4.9e3 1.2e-3"
