@@ -133,7 +133,8 @@ pub fn identify_touching(robot: &Robot, data: &Dataset, planned: &PlannedSession
     let packed = Packed::of(robot, data);
     let rows: Vec<u32> = data.all_rows();
     let session = Session::new(robot, data, &packed, planned.device_free);
-    let registration = Registration { session, rows: &rows, noise: planned.noise, targets_free: false };
+    let registration =
+        Registration { session, rows: &rows, noise: planned.noise, targets_free: false, prior: None };
     let estimate = register(&registration, &delivered(robot, data)).0;
     foresee(robot, data, estimate, planned)
 }

@@ -57,6 +57,16 @@ impl BlockChoice {
             }
         }
         let mut unknowns = Unknowns::default();
+        // A target that is named is unknown, whatever the model says of its place; a star that means everything means targets by the way.
+        for word in &self.free {
+            let meant = || blocks.iter().zip(chosen(&names, &blocks, word)).filter(|it| it.1);
+            if meant().all(|(block, _)| matches!(block, Block::Target(_))) {
+                unknowns.open_targets.extend(meant().filter_map(|(block, _)| match block {
+                    Block::Target(target) => Some(*target),
+                    Block::Axis(_) | Block::Frame(_) | Block::Term(..) | Block::Range(..) => None,
+                }));
+            }
+        }
         for (block, is_free) in blocks.into_iter().zip(&is_free) {
             match block {
                 Block::Axis(joint) if !is_free => unknowns.held_axes.push(joint),

@@ -219,8 +219,13 @@ pub(super) fn judged_rows<'a>(
     }
     estimate.ranges = subject.ranges.to_vec();
     if subject.refit_frame || subject.refit_tool {
-        let registration =
-            Registration { session, rows: &rows, noise: subject.noise, targets_free: subject.refit_tool };
+        let registration = Registration {
+            session,
+            rows: &rows,
+            noise: subject.noise,
+            targets_free: subject.refit_tool,
+            prior: None,
+        };
         estimate = register(&registration, &estimate).0;
         free = free_parameters(&registration, &rows);
     }

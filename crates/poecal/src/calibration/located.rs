@@ -45,6 +45,6 @@ pub(super) fn located<'e>(
     let mut data = session.data.clone();
     data.lengths.clear();
     let session = Session { data: &data, ..*session };
-    let registration = Registration { session, rows: &rows, noise, targets_free: false };
+    let registration = Registration { session, rows: &rows, noise, targets_free: false, prior: None };
     Cow::Owned(register(&registration, estimate).0)
 }

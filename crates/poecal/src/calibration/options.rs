@@ -110,6 +110,6 @@ impl CalibrationOptions {
     #[must_use]
     pub(in crate::calibration) fn prior(&self, session: &Session<'_>) -> Option<Prior> {
         let tolerance = self.tolerance.filter(|_| self.formulation == Formulation::default());
-        tolerance.map(|tolerance| Prior::new(session.robot, tolerance, session.base_free()))
+        tolerance.map(|tolerance| Prior::of(session, tolerance))
     }
 }

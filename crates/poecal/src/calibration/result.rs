@@ -127,6 +127,7 @@ impl Calibration {
         if found.has_terms() {
             self.verdict = self.judged.of_model(AcceptedModel::Corrected, &found.expected);
         }
+        self.warnings.extend(found.doubt.clone());
         self.correction = Some(Box::new(found));
         self
     }

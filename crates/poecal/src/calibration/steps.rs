@@ -68,7 +68,7 @@ impl<'a> Prepared<'a> {
     }
 
     fn registration<'b>(&'b self, rows: &'b [u32], noise: Noise, targets_free: bool) -> Registration<'b> {
-        Registration { session: self.session, rows, noise, targets_free }
+        Registration { session: self.session, rows, noise, targets_free, prior: self.prior.as_ref() }
     }
 
     /// Device frame and targets with nominal screws, and the noise estimated from their residuals unless stated.

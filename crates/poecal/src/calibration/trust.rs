@@ -129,6 +129,7 @@ fn joints(
 /// An estimate with tool and device frame refitted.
 fn registered_again(finished: &Finished<'_>, rows: &[u32], start: &Estimate) -> Estimate {
     let view = &finished.view;
-    let registration = Registration { session: view.session, rows, noise: view.noise, targets_free: true };
+    let registration =
+        Registration { session: view.session, rows, noise: view.noise, targets_free: true, prior: None };
     register_again(&registration, start)
 }

@@ -11,6 +11,8 @@ pub struct Unknowns {
     pub held_axes: Vec<usize>,
     /// Targets that are held.
     pub held_targets: Vec<usize>,
+    /// Targets of whose places nothing is known before: no prior (theory.md §6 (27b)).
+    pub open_targets: Vec<usize>,
     /// Stations whose frames are held.
     pub held_frames: Vec<usize>,
     /// Terms of joint values that are unknown.
@@ -24,15 +26,16 @@ impl Unknowns {
     pub const USUAL: Unknowns = Unknowns {
         held_axes: Vec::new(),
         held_targets: Vec::new(),
+        open_targets: Vec::new(),
         held_frames: Vec::new(),
         terms: Vec::new(),
         ranges: Vec::new(),
     };
 
-    /// Whether they are the usual ones.
+    /// Whether they are the usual ones; what is known of them before is another question.
     #[must_use]
     pub fn are_usual(&self) -> bool {
-        *self == Unknowns::USUAL
+        Unknowns { open_targets: Vec::new(), ..self.clone() } == Unknowns::USUAL
     }
 
     /// Whether the axis of a joint is unknown.

@@ -159,6 +159,7 @@ impl<'a> Fitter<'a> {
             rows: &rows,
             noise: self.noise,
             targets_free: true,
+            prior: None,
         };
         let estimate = by(&registration);
         let misfit = self.misfit(&registration.session, &estimate);

@@ -92,4 +92,17 @@ impl Parameter {
             | Parameter::RangeUnknown(_) => None,
         }
     }
+
+    /// The target that a parameter moves, and by which motions in its own axes: 0 to 2 are shifts, 3 to 5 turns.
+    pub(crate) fn target_motions(&self) -> Option<(usize, &'static [usize])> {
+        match self {
+            Parameter::TargetPlace(place) => Some((place.target, &[0, 1, 2])),
+            Parameter::TargetFrame(frame) => Some((frame.target, frame.freedom.motions())),
+            Parameter::ScrewAxis(_)
+            | Parameter::OtherScrew(_)
+            | Parameter::ValueTerm(_)
+            | Parameter::DeviceFrame(_)
+            | Parameter::RangeUnknown(_) => None,
+        }
+    }
 }

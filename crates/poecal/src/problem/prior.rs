@@ -1,10 +1,10 @@
-//! Gaussian prior: the axes are near nominal (theory.md §6 (27a)).
+//! Gaussian prior: the axes are near nominal, and weakly the targets too (theory.md §6 (27a), (27b)).
 
-use nalgebra::{Matrix3, Matrix6, Vector3, Vector6};
+use nalgebra::{Matrix3, Matrix3x6, Matrix6, SVector, Vector3, Vector6};
 
 use super::Layout;
-use crate::estimate::Estimate;
-use crate::lie::{Pose, Twist};
+use crate::estimate::{Estimate, Session, delivered};
+use crate::lie::{Pose, Twist, hat};
 use crate::linalg::{self, Factor6};
 use crate::parameters::ValueTerm;
 use crate::robot::{JointTerm, Robot, Term, Tolerance};
@@ -17,13 +17,20 @@ const FOUND: f64 = 1e-8;
 /// Rounding of the base's information, as a share of its trace: axes that are all parallel leave directions undetermined.
 const ROUNDING: f64 = 1e-12;
 
+/// Standard deviation of a target's place from its place in the model: a share of the robot's reach, and at least so many metres. A reflector
+/// on any gripper or pointer is within it; it only decides where the measurements do not.
+const TARGET_SHARE: f64 = 0.25;
+const TARGET_LEAST_M: f64 = 0.3;
+
 /// A Gaussian prior: each axis is near its nominal place, with the standard deviations of a [`Tolerance`]. With the direction d of an
 /// axis, the nominal one d⁰, and the point q of the axis nearest to the nominal joint's origin o (base frame), the deviation is
 /// `u = ((d - d⁰) / σ_angle; (q - o) / σ_length)`, of a prismatic joint its first part alone. The cost is `½ Σ |u|²`. With an unknown
-/// device frame the base frame is a choice, and the cost is minimal over motions of all axes (theory.md §6 (27a)).
+/// device frame the base frame is a choice, and the cost is minimal over motions of all axes (theory.md §6 (27a)). A target that moves with
+/// the robot has its place t in the model at home too, `u = (t - t⁰) / max(0.3 m, reach / 4)`, but no orientation (27b).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Prior {
     axes: Vec<Nominal>,
+    targets: Vec<NominalTarget>,
     base_free: bool,
     terms: Vec<JointTerm>,
     term_priors: Vec<TermPrior>,
@@ -49,6 +56,31 @@ struct Nominal {
     origin: Vector3<f64>,
     turns: bool,
     tolerance: Tolerance,
+}
+
+/// Nominal place of a target at home.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct NominalTarget {
+    /// Index of the target.
+    target: usize,
+    place: Vector3<f64>,
+    sigma_m: f64,
+}
+
+/// Deviation of a target, over its standard deviation.
+struct TargetDeviation {
+    target: usize,
+    value: Vector3<f64>,
+    /// Derivative by shifts along the target's own axes.
+    own: Matrix3<f64>,
+    /// Derivative by a motion of the base, a twist.
+    base: Matrix3x6<f64>,
+}
+
+/// Deviations after the best motion of the base.
+struct Deviations {
+    axes: Vec<Deviation>,
+    targets: Vec<TargetDeviation>,
 }
 
 /// Deviation of an axis with its derivatives by motions; tilts before shifts, each over its standard deviation.
@@ -92,8 +124,88 @@ impl Nominal {
     }
 }
 
+impl NominalTarget {
+    /// Deviation of a target with this `base_from_target`.
+    fn deviation(&self, frame: &Pose) -> TargetDeviation {
+        let mut base = Matrix3x6::zeros();
+        base.fixed_view_mut::<3, 3>(0, 0).fill_diagonal(1.0);
+        base.fixed_view_mut::<3, 3>(0, 3).copy_from(&-hat(&frame.translation));
+        TargetDeviation {
+            target: self.target,
+            value: (frame.translation - self.place) / self.sigma_m,
+            own: frame.rotation / self.sigma_m,
+            base: base / self.sigma_m,
+        }
+    }
+}
+
+impl Deviations {
+    /// `½ |u|²` of the axes.
+    fn cost_of_axes(&self) -> f64 {
+        self.axes.iter().map(|it| 0.5 * it.value.norm_squared()).sum()
+    }
+
+    /// `½ |u|²` of axes and targets.
+    fn cost(&self) -> f64 {
+        self.cost_of_axes() + self.targets.iter().map(|it| 0.5 * it.value.norm_squared()).sum::<f64>()
+    }
+
+    /// Gradient by a motion of the base.
+    fn pull_of_base(&self) -> Vector6<f64> {
+        let axes: Vector6<f64> = self.axes.iter().map(|it| it.base.tr_mul(&it.value)).sum();
+        axes + self.targets.iter().map(|it| it.base.tr_mul(&it.value)).sum::<Vector6<f64>>()
+    }
+
+    /// Factor of the information of a motion of the base, `BᵀB` with `B = (0 T; A S)` for an axis: a shift tilts no axis.
+    fn base_factor(&self) -> Option<Factor6> {
+        let (mut shifts, mut mixed, mut turns) = (Matrix3::zeros(), Matrix3::zeros(), Matrix3::zeros());
+        for Deviation { base, .. } in &self.axes {
+            let [tilted, across, moved] =
+                [(0, 3), (3, 0), (3, 3)].map(|at| base.fixed_view::<3, 3>(at.0, at.1).into_owned());
+            shifts += across.tr_mul(&across);
+            mixed += across.tr_mul(&moved);
+            turns += tilted.tr_mul(&tilted) + moved.tr_mul(&moved);
+        }
+        for TargetDeviation { base, .. } in &self.targets {
+            let [across, moved] = [0, 3].map(|at| base.fixed_view::<3, 3>(0, at).into_owned());
+            shifts += across.tr_mul(&across);
+            mixed += across.tr_mul(&moved);
+            turns += moved.tr_mul(&moved);
+        }
+        let least = ROUNDING * (shifts.trace() + turns.trace());
+        let mut gram = Matrix6::identity() * least;
+        for (at, block) in [((0, 0), shifts), ((0, 3), mixed), ((3, 0), mixed.transpose()), ((3, 3), turns)] {
+            let mut place = gram.fixed_view_mut::<3, 3>(at.0, at.1);
+            place += block;
+        }
+        linalg::cholesky_6(gram)
+    }
+}
+
 impl Prior {
-    /// The prior of a robot's axes; a joint's own tolerance comes before the common one. `base_free` if the device frame is unknown.
+    /// The prior of a session's fit: of the robot's axes, and of the targets that move with it and are not open
+    /// ([`Unknowns::open_targets`](crate::estimate::Unknowns::open_targets)).
+    #[must_use]
+    pub fn of(session: &Session<'_>, common: Tolerance) -> Self {
+        let Session { robot, data, unknowns, .. } = *session;
+        let nominal = delivered(robot, data);
+        let is_shared = |target: usize| {
+            (0..nominal.tree.instruments().len()).any(|station| nominal.tree.shared(station) == Some(target))
+        };
+        let bodies = nominal.tree.targets().iter().enumerate();
+        let moving = bodies.filter(|(target, body)| body.joint().is_some() && !is_shared(*target));
+        let sigma_m = (TARGET_SHARE * robot.reach_m()).max(TARGET_LEAST_M);
+        let targets = moving
+            .filter(|(target, _)| !unknowns.open_targets.contains(target))
+            .filter_map(|(target, _)| {
+                let place = nominal.base_from_target.get(target)?.translation;
+                Some(NominalTarget { target, place, sigma_m })
+            })
+            .collect();
+        Prior { targets, ..Prior::new(robot, common, session.base_free()) }
+    }
+
+    /// The prior of a robot's axes alone; a joint's own tolerance comes before the common one. `base_free` if the device frame is unknown.
     #[must_use]
     pub fn new(robot: &Robot, common: Tolerance, base_free: bool) -> Self {
         let axes = robot.joints.iter().map(|joint| Nominal {
@@ -109,6 +221,7 @@ impl Prior {
         });
         Prior {
             axes: axes.collect(),
+            targets: Vec::new(),
             base_free,
             terms: robot.terms.clone(),
             term_priors: Vec::new(),
@@ -133,8 +246,7 @@ impl Prior {
     /// `½ min_G Σ |u|²`: theory.md §6 (27a) for weight 1.
     #[must_use]
     pub fn cost(&self, estimate: &Estimate) -> f64 {
-        let (deviations, _) = self.at_best_base(estimate);
-        deviations.iter().map(|deviation| 0.5 * deviation.value.norm_squared()).sum()
+        self.at_best_base(estimate).0.cost()
     }
 
     /// Mean of `|u|²` for each unknown of the screws, at least 1, which divides the prior's weight (theory.md §6, below (27a)). The prior of
@@ -144,14 +256,22 @@ impl Prior {
         let counted = self.axes.iter().filter(|axis| axis.tolerance != Tolerance::NONE);
         let screws: usize = counted.map(|axis| if axis.turns { 4 } else { 2 }).sum();
         let free = screws.saturating_sub(if self.base_free { 6 } else { 0 }).max(1);
-        (2.0 * self.cost(estimate) / free as f64).max(1.0)
+        (2.0 * self.at_best_base(estimate).0.cost_of_axes() / free as f64).max(1.0)
     }
 
     /// Deviations after the best motion of the base, and the factor of that motion's information.
-    fn at_best_base(&self, estimate: &Estimate) -> (Vec<Deviation>, Option<Factor6>) {
-        let deviations = |motion: &Pose| -> Vec<Deviation> {
+    fn at_best_base(&self, estimate: &Estimate) -> (Deviations, Option<Factor6>) {
+        let deviations = |motion: &Pose| -> Deviations {
             let frames = estimate.base_from_axis.iter().map(|frame| *motion * *frame);
-            self.axes.iter().zip(frames).map(|(nominal, frame)| nominal.deviation(&frame)).collect()
+            let axes =
+                self.axes.iter().zip(frames).map(|(nominal, frame)| nominal.deviation(&frame)).collect();
+            let target = |nominal: &NominalTarget| {
+                estimate
+                    .base_from_target
+                    .get(nominal.target)
+                    .map(|frame| nominal.deviation(&(*motion * *frame)))
+            };
+            Deviations { axes, targets: self.targets.iter().filter_map(target).collect() }
         };
         let mut motion = Pose::identity();
         let mut found = deviations(&motion);
@@ -159,16 +279,15 @@ impl Prior {
             return (found, None);
         }
         for _ in 0..ITERATIONS {
-            let Some(factor) = base_factor(&found) else { return (found, None) };
-            let pull: Vector6<f64> = found.iter().map(|it| it.base.tr_mul(&it.value)).sum();
-            let step = factor.solve(&-pull);
+            let Some(factor) = found.base_factor() else { return (found, None) };
+            let step = factor.solve(&-found.pull_of_base());
             if step.amax() < FOUND || !step.amax().is_finite() {
                 return (found, Some(factor));
             }
             motion = (Pose::exp(&Twist::from_vector(&step)) * motion).orthonormalized();
             found = deviations(&motion);
         }
-        let factor = base_factor(&found);
+        let factor = found.base_factor();
         (found, factor)
     }
 
@@ -204,22 +323,29 @@ impl Prior {
         // Products of each unknown's column with those of the base.
         let mut shared: Vec<(usize, Vector6<f64>)> = Vec::with_capacity(n);
         for (parameter, places) in layout.parameters() {
-            let Some(axis) = parameter.screw_axis() else { continue };
-            let Some(deviation) = deviations.get(axis.joint) else { continue };
-            let own = &deviation.own[4 - places.len()..];
-            for (k, (&(place, scale), column)) in places.iter().zip(own).enumerate() {
-                normal.gradient[place] -= weight / scale * column.dot(&deviation.value);
-                if !is_wanted {
+            if let Some(axis) = parameter.screw_axis() {
+                let Some(deviation) = deviations.axes.get(axis.joint) else { continue };
+                let own = &deviation.own[4 - places.len()..];
+                add_columns((places, own), &deviation.value, weight, n, normal);
+                let follows = |column: &Vector6<f64>| deviation.base.tr_mul(column);
+                shared.extend(places.iter().zip(own).map(|((at, scale), own)| (*at, follows(own) / *scale)));
+            } else if let Some((target, motions)) = parameter.target_motions() {
+                let Some(deviation) = deviations.targets.iter().find(|it| it.target == target) else {
                     continue;
-                }
-                shared.push((place, deviation.base.tr_mul(column) / scale));
-                for (&(other, other_scale), other_column) in places.iter().zip(own).skip(k) {
-                    normal.gram[place.min(other) * n + place.max(other)] +=
-                        weight / (scale * other_scale) * column.dot(other_column);
-                }
+                };
+                let shifts = motions.iter().zip(places).filter(|(motion, _)| **motion < 3);
+                let (own, places): (Vec<Vector3<f64>>, Vec<(usize, f64)>) = shifts
+                    .map(|(&motion, place)| (deviation.own.column(motion).into_owned(), *place))
+                    .unzip();
+                add_columns((&places, &own), &deviation.value, weight, n, normal);
+                let follows = |column: &Vector3<f64>| deviation.base.tr_mul(column);
+                shared.extend(places.iter().zip(&own).map(|((at, scale), own)| (*at, follows(own) / *scale)));
             }
         }
-        normal.cost += deviations.iter().map(|it| 0.5 * weight * it.value.norm_squared()).sum::<f64>();
+        normal.cost += weight * deviations.cost();
+        if !is_wanted {
+            return;
+        }
         let Some(base) = base else { return };
         let lower = base.l_dirty();
         for (_, pull) in &mut shared {
@@ -233,23 +359,23 @@ impl Prior {
     }
 }
 
-/// Factor of the information of a motion of the base, `BᵀB` with `B = (0 T; A S)`: a shift tilts no axis.
-fn base_factor(deviations: &[Deviation]) -> Option<Factor6> {
-    let (mut shifts, mut mixed, mut turns) = (Matrix3::zeros(), Matrix3::zeros(), Matrix3::zeros());
-    for Deviation { base, .. } in deviations {
-        let [tilted, across, moved] =
-            [(0, 3), (3, 0), (3, 3)].map(|at| base.fixed_view::<3, 3>(at.0, at.1).into_owned());
-        shifts += across.tr_mul(&across);
-        mixed += across.tr_mul(&moved);
-        turns += tilted.tr_mul(&tilted) + moved.tr_mul(&moved);
+/// Adds `weight` times the products of a deviation's columns, each over the scale of its place in a step, with each other to the upper triangle
+/// of `JᵀJ` (unless that is empty) and with the deviation to the gradient.
+fn add_columns<const N: usize>(
+    (places, own): (&[(usize, f64)], &[SVector<f64, N>]),
+    value: &SVector<f64, N>,
+    weight: f64,
+    n: usize,
+    normal: &mut Normal,
+) {
+    for (k, (&(place, scale), column)) in places.iter().zip(own).enumerate() {
+        normal.gradient[place] -= weight / scale * column.dot(value);
+        for (&(other, other_scale), other_column) in places.iter().zip(own).skip(k) {
+            if let Some(information) = normal.gram.get_mut(place.min(other) * n + place.max(other)) {
+                *information += weight / (scale * other_scale) * column.dot(other_column);
+            }
+        }
     }
-    let least = ROUNDING * (shifts.trace() + turns.trace());
-    let mut gram = Matrix6::identity() * least;
-    for (at, block) in [((0, 0), shifts), ((0, 3), mixed), ((3, 0), mixed.transpose()), ((3, 3), turns)] {
-        let mut place = gram.fixed_view_mut::<3, 3>(at.0, at.1);
-        place += block;
-    }
-    linalg::cholesky_6(gram)
 }
 
 #[cfg(test)]

@@ -10,7 +10,7 @@ use crate::estimate::{Chain, Estimate, Linkage, RangeTerm, Session, Unknowns, sa
 use crate::lie::{Freedom, Pose, rotation};
 use crate::measurement::{Dataset, Measurement, Noise};
 use crate::parameters::{DeviceFrame, Parameter, RangeUnknown, TargetFrame, TargetPlace};
-use crate::problem::Problem;
+use crate::problem::{Prior, Problem};
 use crate::solve::{Options, minimize};
 
 /// Rows of the search for a start; the polish afterwards uses all.
@@ -35,6 +35,8 @@ pub struct Registration<'a> {
     pub noise: Noise,
     /// Whether the targets are unknown (otherwise they stay as in the start).
     pub targets_free: bool,
+    /// What is known of the targets before (theory.md §6 (27b)).
+    pub prior: Option<&'a Prior>,
 }
 
 /// Registers the data to an estimate's screws as if they were measured from one station. Returns the cost of theory.md §6 (27) with it.
@@ -80,7 +82,7 @@ pub fn register_again(problem: &Registration<'_>, start: &Estimate) -> Estimate 
 
 impl<'a> Registration<'a> {
     pub(super) fn least_squares(&self, rows: Vec<u32>, free: Vec<Parameter>) -> Problem<'a> {
-        Problem::new(self.session, rows, free, self.noise)
+        Problem::new(self.session, rows, free, self.noise).with_prior(self.prior.map(|prior| (prior, 1.0)))
     }
 }
 

@@ -60,7 +60,7 @@ fn one_by_one(problem: &Registration<'_>, start: &Estimate) -> Estimate {
         let session =
             Session { data: &alone, noise_ratios: &[], device_free, unknowns: &of_one, ..problem.session };
         let noise = problem.session.usual_noise(station, problem.noise);
-        let one = Registration { noise, session, rows: &rows, targets_free: !by_known };
+        let one = Registration { noise, session, rows: &rows, targets_free: !by_known, prior: problem.prior };
         let (seen, _) = at_one_station(&one, &found.seen_from(station));
         *found.device_mut(station) = seen.device_from_base;
         let range = seen.range(0);

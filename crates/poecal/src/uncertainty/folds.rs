@@ -143,7 +143,9 @@ fn blocks(view: &View<'_>, sample: &[u32]) -> Vec<Fold> {
 fn leaves_all_stations(view: &View<'_>, sample: &[u32], fold: &[u32]) -> bool {
     let stations = view.session.data.station_count();
     let count = |rows: &[u32], station| view.session.data.seen_from(station, rows).len();
-    stations == 1 || (0..stations).all(|it| count(sample, it) >= count(fold, it) + FEWEST_OF_STATION)
+    // Of others no row was fitted.
+    let fitted = || (0..stations).filter(|it| count(sample, *it) > 0);
+    fitted().count() == 1 || fitted().all(|it| count(sample, it) >= count(fold, it) + FEWEST_OF_STATION)
 }
 
 /// Rows grouped by name, if the names define groups.

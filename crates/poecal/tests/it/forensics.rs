@@ -48,6 +48,7 @@ fn registered_m(session: &Session, data: &Dataset) -> f64 {
         rows: &rows,
         noise: Noise::new(1e-3, 3e-3),
         targets_free: true,
+        prior: None,
     };
     let (_, cost) = register(&registration, &delivered(&session.robot, data));
     1e-3 * (2.0 * cost / data.len() as f64).sqrt()

@@ -184,6 +184,7 @@ fn registration_survives_three_tenths_of_the_rows_wrong() {
                     rows: &rows,
                     noise: Noise::new(1e-3, 1e-3),
                     targets_free: true,
+                    prior: None,
                 };
                 let start = delivered(&robot, &data);
                 let found = [register(&registration, &start).0, register_robustly(&registration, &start)];

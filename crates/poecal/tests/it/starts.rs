@@ -190,7 +190,7 @@ fn excess(session: &Session, seed: u64) -> f64 {
     let packed = Packed::of(&robot, &data);
     let rows: Vec<u32> = (0..ROWS as u32).collect();
     let session = estimate::Session::new(&robot, &data, &packed, true).with_length(LENGTH_M);
-    let problem = Registration { session, rows: &rows, noise: NOISE, targets_free: true };
+    let problem = Registration { session, rows: &rows, noise: NOISE, targets_free: true, prior: None };
     let (_, cost) = register(&problem, &delivered(&robot, &data));
     cost / cost_from_truth(session, &rows, truth)
 }

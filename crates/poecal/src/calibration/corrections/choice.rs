@@ -10,8 +10,10 @@ use crate::robot::{Sizes, TermGroup};
 
 /// Rounds of choosing each group's size in turn.
 const SWEEPS: usize = 2;
-/// Weight of the squared distance of a size from the common one, in decades: the prior of the choice.
+/// Weight of the squared distance of a size from the common one, in decades: the prior of the choice. The fewer configurations, the less they
+/// say of a size: it is at least so many times the inverse of their number.
 const PULL: f64 = 0.1;
+const PULL_OF_FEW: f64 = 4.0;
 /// What leaving a group out counts at most, and what taking in one counts that is commonly left out.
 const LEFT_OUT: f64 = 0.1;
 const TAKEN_IN: f64 = 0.02;
@@ -50,14 +52,16 @@ pub enum SizesReason {
     Predict,
     /// No terms predict them better.
     NoBetter,
-    /// Rows cannot be left out: the common sizes.
-    Common,
+    /// Rows cannot be left out: the small sizes.
+    Small,
     /// Too few configurations to choose by.
     TooFew,
     /// The rows say nothing of the terms.
     Undetermined,
     /// The fit of the terms explains the rows worse, or has no uncertainty.
     LedNowhere,
+    /// The fit of the terms predicts the rows worse that were held out.
+    WorseHeldOut,
 }
 
 impl SizesReason {
@@ -68,7 +72,8 @@ impl SizesReason {
             SizesReason::Given => "the sizes were given",
             SizesReason::Predict => "they predict rows better that were left out",
             SizesReason::NoBetter => "no terms of the joints predict other rows better",
-            SizesReason::Common => "no rows could be left out, so the sizes are common ones",
+            SizesReason::Small => "no rows could be left out, so the sizes are small ones",
+            SizesReason::WorseHeldOut => "the joints' terms predict the rows worse that were held out",
             SizesReason::TooFew => "too few configurations to tell what the joints do",
             SizesReason::Undetermined => "the rows do not say what the joints do",
             SizesReason::LedNowhere => "the fit of the joints' terms explains the rows no better",
@@ -90,7 +95,7 @@ pub(super) fn choose(linear: &Linear, parts: &[LeftOutPart], configurations: usi
         return Choice { sizes: Sizes::NONE, reason: SizesReason::TooFew, tried: Vec::new() };
     }
     if parts.is_empty() {
-        return Choice { sizes: Sizes::COMMON, reason: SizesReason::Common, tried: Vec::new() };
+        return Choice { sizes: Sizes::SMALL, reason: SizesReason::Small, tried: Vec::new() };
     }
     let few = 1.0 / configurations as f64;
     let mut tried: Vec<TriedSizes> = Vec::new();
@@ -98,7 +103,7 @@ pub(super) fn choose(linear: &Linear, parts: &[LeftOutPart], configurations: usi
         Some(known) => *known,
         None => {
             let left_out = linear.left_out(parts, &sizes);
-            tried.push(TriedSizes { sizes, left_out, score: left_out + distance(&sizes, 6.0 * few) });
+            tried.push(TriedSizes { sizes, left_out, score: left_out + distance(&sizes, few) });
             tried[tried.len() - 1]
         }
     };
@@ -134,13 +139,14 @@ pub(super) fn choose(linear: &Linear, parts: &[LeftOutPart], configurations: usi
     Choice { sizes: best.sizes, reason, tried }
 }
 
-/// Prior of the choice.
-fn distance(sizes: &Sizes, of_none: f64) -> f64 {
+/// Prior of the choice by so many configurations, of which `few` is the inverse.
+fn distance(sizes: &Sizes, few: f64) -> f64 {
+    let pull = PULL.max(PULL_OF_FEW * few);
     let of = |group: TermGroup| match (sizes[group], Sizes::COMMON[group]) {
         (0.0, 0.0) => 0.0,
-        (0.0, _) => PULL * LEFT_OUT.min(of_none),
-        (size, 0.0) => TAKEN_IN + PULL * (size / Sizes::ALL[group]).log10().powi(2),
-        (size, common) => PULL * (size / common).log10().powi(2),
+        (0.0, _) => PULL * LEFT_OUT.min(6.0 * few),
+        (size, 0.0) => TAKEN_IN + pull * (size / Sizes::ALL[group]).log10().powi(2),
+        (size, common) => pull * (size / common).log10().powi(2),
     };
     TermGroup::ALL.into_iter().map(of).sum()
 }

@@ -2,8 +2,6 @@
 
 use std::slice;
 
-use nalgebra::Vector3;
-
 use super::choice::{Choice, SizesReason, TriedSizes, choose, weight_of_prior};
 use super::effects::effects;
 use super::found::Correction;
@@ -23,7 +21,6 @@ use crate::calibration::placed::{place_tip, stations};
 use crate::calibration::{Calibration, CalibrationOptions, PredictedUncertainty, delivered, estimate_noise};
 use crate::estimate::{Estimate, Packed, Session, Unknowns, sample_rows};
 use crate::gauge;
-use crate::lie::rotation;
 use crate::measurement::{ByQuantity, Dataset, Noise, Quantity};
 use crate::problem::Prior;
 use crate::robot::{
@@ -37,9 +34,6 @@ const ROUNDS: usize = 4;
 const SAMPLE: usize = 2000;
 /// Change of the noise below which it stays, as a share.
 const SETTLED: f64 = 0.02;
-/// Angles by which a direction of gravity is tilted in turn, radians, and how often by each at most.
-const TILTS: [f64; 6] = [0.35, 0.17, 0.09, 0.04, 0.02, 0.01];
-const MOST_TILTS: usize = 8;
 /// Most held-out rows whose bounds are checked.
 const JUDGED: usize = 4000;
 /// Factor of the first trust region.
@@ -75,8 +69,8 @@ pub fn correct(
     let moves = moving(&session, &rows);
     let weights = weights.as_deref();
     let geometry = Geometry { calibration, nominal, session, options, rows, weights };
-    let gravity = match gravity {
-        GravityDirection::Known(direction) => direction,
+    let (gravity, doubt) = match gravity {
+        GravityDirection::Known(direction) => (direction, None),
         GravityDirection::Found => geometry.gravity(&moves, sizes.unwrap_or(Sizes::COMMON)),
     };
     let all = CorrectionModel::new(&geometry.nominal, gravity, &moves, geometry.extent(sizes));
@@ -84,19 +78,19 @@ pub fn correct(
     let begun = geometry.begin(&all, sizes);
     // Terms that may be there keep their part of the uncertainty.
     let possible = if sizes.is_some() { begun.sizes } else { begun.sizes.max(&Sizes::COMMON) };
-    geometry.end(all.with_sizes(&possible), &possible, begun)
+    Correction { doubt, ..geometry.end(all.with_sizes(&possible), &possible, begun) }
 }
 
 /// A finished calibration, from which corrections are fitted.
-struct Geometry<'a> {
-    calibration: &'a Calibration,
-    nominal: Robot,
-    session: Session<'a>,
+pub(super) struct Geometry<'a> {
+    pub(super) calibration: &'a Calibration,
+    pub(super) nominal: Robot,
+    pub(super) session: Session<'a>,
     options: &'a CalibrationOptions,
     /// The fitted rows that have a weight.
-    rows: Vec<u32>,
+    pub(super) rows: Vec<u32>,
     /// Weights of all rows of the data.
-    weights: Option<&'a [f64]>,
+    pub(super) weights: Option<&'a [f64]>,
 }
 
 /// Sizes, and the optimum with them as far as rows are linear.
@@ -113,59 +107,17 @@ struct Begun {
 }
 
 /// Rows of a sample as linear functions, and the parts of them that are left out in turn.
-struct Sampled {
-    linear: Linear,
+pub(super) struct Sampled {
+    pub(super) linear: Linear,
     parts: Vec<Vec<u32>>,
-    configurations: usize,
+    pub(super) configurations: usize,
 }
 
 impl Geometry<'_> {
     /// How far the model reaches; for terms of these sizes as far as they do.
-    fn extent(&self, sizes: Option<Sizes>) -> Extent {
+    pub(super) fn extent(&self, sizes: Option<Sizes>) -> Extent {
         let gives = sizes.map_or(self.options.corrections.gives(), |sizes| sizes.gives());
         Extent { orders: self.options.harmonics, gives }
-    }
-
-    /// The direction of gravity with which terms leave the least noise: the best of three, tilted until it gets no better.
-    fn gravity(&self, moves: &[bool], sizes: Sizes) -> Vector3<f64> {
-        let along = |direction: &Vector3<f64>| {
-            let model = CorrectionModel::new(&self.nominal, *direction, moves, self.extent(Some(sizes)));
-            self.sampled(&model.with_sizes(&sizes), Some(sizes)).map(|it| it.linear)
-        };
-        let score = |direction: &Vector3<f64>| {
-            along(direction).map_or(f64::INFINITY, |linear| linear.logarithm_of_noise(&sizes))
-        };
-        let mut best = -Vector3::z();
-        let mut least = score(&best);
-        for direction in [-Vector3::x(), -Vector3::y()] {
-            let found = score(&direction);
-            if found < least {
-                (best, least) = (direction, found);
-            }
-        }
-        for step in TILTS {
-            for _ in 0..MOST_TILTS {
-                let x = rotation::perpendicular(&best);
-                let y = best.cross(&x);
-                let before = least;
-                for turn in [x, -x, y, -y] {
-                    let tilted = rotation::exp(&(turn * step)) * best;
-                    let found = score(&tilted);
-                    if found < least {
-                        (best, least) = (tilted.normalize(), found);
-                    }
-                }
-                if least == before {
-                    break;
-                }
-            }
-        }
-        // Against gravity all coefficients have the other sign and the fit is the same; but joints give the way they are pulled.
-        let given = along(&best).and_then(|linear| linear.solution(&sizes, &linear.whole())).map(|found| {
-            let sags = found.terms.iter().filter(|it| it.term.needs_gravity());
-            sags.map(|it| it.coefficient).sum::<f64>()
-        });
-        if given.is_some_and(|given| given < 0.0) { -best } else { best }
     }
 
     fn session<'a>(
@@ -184,11 +136,11 @@ impl Geometry<'_> {
 
     fn prior(&self, session: &Session<'_>) -> Prior {
         let tolerance = self.options.tolerance.unwrap_or(Tolerance::WIDE);
-        Prior::new(session.robot, tolerance, session.base_free())
+        Prior::of(session, tolerance)
     }
 
     /// A sample of the rows, linear about the calibrated model; none if that determines nothing.
-    fn sampled(&self, model: &CorrectionModel, sizes: Option<Sizes>) -> Option<Sampled> {
+    pub(super) fn sampled(&self, model: &CorrectionModel, sizes: Option<Sizes>) -> Option<Sampled> {
         let Geometry { calibration, options, .. } = *self;
         let noise = calibration.noise;
         let none = PriorInformation::none(0);
@@ -271,18 +223,6 @@ impl Geometry<'_> {
         Begun { sizes, reason, tried, estimate, noise, variance, growth }
     }
 
-    /// Whether a fit with terms explains the fitted rows no worse than geometry alone.
-    fn is_no_worse(&self, session: &Session<'_>, estimate: &Estimate) -> bool {
-        let counts =
-            |row: &&u32| self.weights.is_none_or(|it| it.get(**row as usize).is_none_or(|it| *it > 0.5));
-        let rows: Vec<u32> = self.rows.iter().filter(counts).copied().collect();
-        let squares = |session: &Session<'_>, estimate: &Estimate| -> f64 {
-            let errors = session.errors(&rows, estimate);
-            errors.iter().map(|error| error.lead().norm_squared()).sum()
-        };
-        squares(session, estimate) <= squares(&self.session, &self.calibration.models.calibrated)
-    }
-
     /// The fit of a model with the sizes of a beginning, and what it promises with all terms that are possible.
     fn end(&self, model: CorrectionModel, possible: &Sizes, begun: Begun) -> Correction {
         let Geometry { calibration, options, .. } = *self;
@@ -317,14 +257,18 @@ impl Geometry<'_> {
         };
         // Where rows are far from linear, terms may lead nowhere.
         if sizes != Sizes::NONE && !self.is_no_worse(&session, &estimate) {
-            return self.end_without(model, possible, tried);
+            return self.end_without(model, possible, tried, SizesReason::LedNowhere);
+        }
+        if sizes != Sizes::NONE && reason != SizesReason::Given && self.is_worse_held_out(&session, &estimate)
+        {
+            return self.end_without(model, possible, tried, SizesReason::WorseHeldOut);
         }
         let every = unknowns(&model, of_geometry.unknowns, possible);
         let prior = self.prior(&session).with_terms(priors(&model, possible));
         let whole = self.task(Session { unknowns: &every, ..session }, (&prior, weight));
         let mut uncertainty = uncertainty(&whole, (&estimate, noise), (&prior, [weight, variance]), growth);
         if sizes != Sizes::NONE && uncertainty.is_none() {
-            return self.end_without(model, possible, tried);
+            return self.end_without(model, possible, tried, SizesReason::LedNowhere);
         }
         let coverage = coverage(&session, rows);
         let left_out_m = self.left_out_m(&sizes, &tried);
@@ -364,6 +308,7 @@ impl Geometry<'_> {
             kept,
             noise,
             frame: calibration.frame,
+            doubt: None,
             prior_weight: weight * variance,
             unknowns: fitted_unknowns,
             model,
@@ -382,9 +327,15 @@ impl Geometry<'_> {
     }
 
     /// Geometry alone where terms lead nowhere.
-    fn end_without(&self, model: CorrectionModel, possible: &Sizes, tried: Vec<TriedSizes>) -> Correction {
+    fn end_without(
+        &self,
+        model: CorrectionModel,
+        possible: &Sizes,
+        tried: Vec<TriedSizes>,
+        reason: SizesReason,
+    ) -> Correction {
         let none = self.begin(&model, Some(Sizes::NONE));
-        self.end(model, possible, Begun { reason: SizesReason::LedNowhere, tried, ..none })
+        self.end(model, possible, Begun { reason, tried, ..none })
     }
 }
 

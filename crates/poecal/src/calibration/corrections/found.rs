@@ -53,6 +53,8 @@ pub struct Correction {
     pub left_out_m: Option<f64>,
     /// Coverage on the held-out rows.
     pub kept: Option<CoverageCheck>,
+    /// What is said of a direction of gravity that was not found.
+    pub doubt: Option<String>,
     /// Weight of the priors in the fit.
     pub(in crate::calibration) prior_weight: f64,
     pub(in crate::calibration) packed: Packed,

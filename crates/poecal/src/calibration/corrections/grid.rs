@@ -2,9 +2,9 @@
 
 use crate::robot::TermGroup;
 
-/// Sizes that are tried, radians or metres; those of moments reach farther.
-const OF_MOMENTS: &[f64] = &[0.0, 3e-4, 1e-3, 3e-3, 1e-2];
-const OF_VALUES: &[f64] = &[0.0, 3e-5, 1e-4, 3e-4, 1e-3];
+/// Sizes that are tried, radians or metres, in order: from a precise robot's to those of plastic gears.
+const OF_MOMENTS: &[f64] = &[0.0, 3e-5, 1e-4, 3e-4, 1e-3, 3e-3, 1e-2, 3e-2];
+const OF_VALUES: &[f64] = &[0.0, 3e-5, 1e-4, 3e-4, 1e-3, 3e-3, 1e-2, 3e-2];
 const OF_FACTORS: &[f64] = &[0.0, 1e-6, 1e-5, 1e-4, 1e-3];
 const OF_PAYLOADS: &[f64] = &[0.0, 1e-5, 3e-5, 1e-4, 3e-4];
 const OF_LENGTHS: &[f64] = &[0.0, 1e-5, 3e-5, 1e-4, 3e-4];

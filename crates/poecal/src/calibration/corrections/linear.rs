@@ -161,6 +161,11 @@ impl Linear {
         self.quantities.iter().filter(|it| **it == quantity).count() as f64
     }
 
+    /// Numbers of all rows.
+    pub(super) fn numbers(&self) -> f64 {
+        self.quantities.len() as f64
+    }
+
     /// Noise of each quantity in units of that by which rows are whitened, from the residuals of a fit with terms of these sizes; drawn to
     /// those units if they are the noise of geometry alone.
     fn noise_factors(&self, sizes: &Sizes, is_of_geometry: bool) -> Vec<(Quantity, f64)> {

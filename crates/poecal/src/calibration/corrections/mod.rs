@@ -4,6 +4,7 @@ mod choice;
 mod effects;
 mod fit;
 mod found;
+mod gravity;
 mod grid;
 mod left_out;
 mod linear;
@@ -12,6 +13,7 @@ mod modes;
 mod promise;
 mod suspects;
 mod unknowns;
+mod worse;
 
 pub(super) use choice::weight_of_prior;
 pub use choice::{SizesReason, TriedSizes};

@@ -28,7 +28,7 @@ pub(in crate::calibration) fn suspected(
         Session { robot: &found.model.robot, packed: &found.packed, unknowns: &found.unknowns, ..session };
     let rows = &calibration.fit_rows;
     let tolerance = options.tolerance.unwrap_or(Tolerance::WIDE);
-    let prior = Prior::new(session.robot, tolerance, session.base_free());
+    let prior = Prior::of(&session, tolerance);
     let prior = prior.with_terms(priors(&found.model, &found.sizes));
     let weight = found.prior_weight;
     let counted = weights(calibration, options);

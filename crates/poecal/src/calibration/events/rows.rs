@@ -71,8 +71,7 @@ impl Rows {
         let numbers = |row: &u32| data.observations[*row as usize].measurement.observe().dim();
         let all: usize = rows.iter().map(numbers).sum();
         let rows = sample_rows(rows, rows.len() * MOST_NUMBERS / all.max(MOST_NUMBERS));
-        let prior =
-            Prior::new(session.robot, options.tolerance.unwrap_or(Tolerance::WIDE), session.base_free());
+        let prior = Prior::of(&session, options.tolerance.unwrap_or(Tolerance::WIDE));
         let prior = prior.with_terms(priors(&found.model, &sizes));
         let task = Task { session, rows: &rows, weights: None, prior: None, options };
         let mut free: Vec<Parameter> = task.free(&found.estimate);

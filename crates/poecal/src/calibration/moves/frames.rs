@@ -156,7 +156,9 @@ impl FrameSearch<'_> {
 
     fn registered(&self, data: &Dataset, rows: &[u32]) -> Estimate {
         let session = Session { data, noise_ratios: &[], ..self.session };
-        let registration = Registration { session, rows, noise: self.noise, targets_free: true };
+        let prior = self.options.prior(&session);
+        let registration =
+            Registration { session, rows, noise: self.noise, targets_free: true, prior: prior.as_ref() };
         register(&registration, &delivered(session.robot, data)).0
     }
 
