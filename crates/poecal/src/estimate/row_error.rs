@@ -37,6 +37,13 @@ impl RowError {
         RowError::new(seen.observe(), &Pose::identity())
     }
 
+    /// This error plus `times` its change to another one of the same row.
+    pub(crate) fn towards(&self, other: &RowError, times: f64) -> Self {
+        let mut values = self.values;
+        values.iter_mut().zip(other.values).for_each(|(value, other)| *value += times * (other - *value));
+        RowError { channels: self.channels, values }
+    }
+
     /// The numbers with their channels.
     pub fn numbers(&self) -> impl Iterator<Item = (&'static Channel, f64)> {
         self.channels.iter().zip(self.values)

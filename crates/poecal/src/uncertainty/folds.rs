@@ -12,7 +12,7 @@ use super::{TOGETHER, covariance, factor, motions};
 use crate::estimate::{Estimate, Linkage, RowError, sample_rows};
 use crate::linalg;
 use crate::measurement::{ByQuantity, Measured};
-use crate::problem::Layout;
+use crate::problem::{Layout, Problem};
 use crate::simulate::random;
 use crate::solve::LeastSquares;
 
@@ -28,6 +28,9 @@ const MOST_GROUPS: usize = 30;
 const LEAST_ROWS: usize = 4;
 /// Fewest rows of each station outside a block.
 const FEWEST_OF_STATION: usize = 6;
+
+/// Step over which errors change as to first order, metres.
+const SMALL_M: f64 = 1e-6;
 
 /// Rows that are left out together.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -243,19 +246,20 @@ impl<'a> Downdated<'a> {
         let gradient: Vec<f64> = part.gradient.iter().map(|g| -g).collect();
         let n = gradient.len();
         let factor = factor(&rest, n, self.view.prior, self.variance)?;
-        let without = problem.retract(&self.estimate, &linalg::cholesky_solve(&factor, &gradient));
+        let step = linalg::cholesky_solve(&factor, &gradient);
+        let before = self.view.session.errors(rows, &self.estimate);
+        let without = moved_errors(&problem, &self.estimate, rows, &step, &before);
         let covariance = covariance(&factor, self.variance)?;
         let both = DMatrix::from_iterator(n, n, covariance.iter().zip(&self.covariance).map(|(a, b)| a + b));
         let expected = self.position_variance(problem.layout(), rows, &both);
         let mut sums = ErrorSums { rows: rows.len(), expected, ..ErrorSums::default() };
-        for error in self.view.session.errors(rows, &without) {
+        for error in without {
             for (quantity, (squares, count)) in sums.parts.values_mut() {
                 *squares += error.square(quantity);
                 *count += usize::from(!error.part(quantity).is_empty());
             }
             sums.lengths += error.square_m2();
         }
-        let before = self.view.session.errors(rows, &self.estimate);
         sums.before = before.iter().map(RowError::square_m2).sum();
         Some(sums)
     }
@@ -270,6 +274,22 @@ impl<'a> Downdated<'a> {
         };
         rows.chunks(TOGETHER).map(of).sum()
     }
+}
+
+/// Errors of some rows after a step, to first order. Directions that the rows hardly determine lead far, along which a fit follows a curved
+/// valley: at the end of the straight step are errors that no fit has.
+fn moved_errors(
+    problem: &Problem<'_>,
+    estimate: &Estimate,
+    rows: &[u32],
+    step: &[f64],
+    before: &[RowError],
+) -> Vec<RowError> {
+    let far = step.iter().fold(0.0, |far: f64, it| far.max(it.abs()));
+    let share = (SMALL_M / far).min(1.0);
+    let part: Vec<f64> = step.iter().map(|it| share * it).collect();
+    let after = problem.session().errors(rows, &problem.retract(estimate, &part));
+    after.iter().zip(before).map(|(after, before)| before.towards(after, 1.0 / share)).collect()
 }
 
 /// Number of clusters of configurations that are left out in turn when fits are compared.
@@ -294,8 +314,9 @@ pub fn leave_clusters_out(
         let rest: Vec<f64> = whole.gram.iter().zip(&part.gram).map(|(all, part)| all - part).collect();
         let factor = factor(&rest, n, view.prior, view.variance)?;
         let gradient: Vec<f64> = part.gradient.iter().map(|g| -g).collect();
-        let without = problem.retract(view.estimate, &linalg::cholesky_solve(&factor, &gradient));
-        let errors = view.session.errors(&cluster, &without);
+        let step = linalg::cholesky_solve(&factor, &gradient);
+        let before = view.session.errors(&cluster, view.estimate);
+        let errors = moved_errors(&problem, view.estimate, &cluster, &step, &before);
         sum += cluster.iter().zip(&errors).map(|(&row, error)| loss(row, error)).sum::<f64>();
     }
     Some(sum / rows.len().max(1) as f64)
