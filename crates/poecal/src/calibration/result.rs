@@ -5,8 +5,8 @@ use std::sync::Arc;
 use super::placed::{CalibratedStation, CalibratedTarget};
 use super::verdict::Judged;
 use super::{
-    Acceptance, AcceptedModel, Accuracy, CalibrationOptions, Correction, DeviceFrameKnowledge, Event,
-    Formulation, JointEffect, Models, NoiseSource, Robustness, SolverReport, Trust, Verdict, fit_screws,
+    Acceptance, Accuracy, CalibrationOptions, Correction, DeviceFrameKnowledge, Event, Formulation,
+    JointEffect, Models, NoiseSource, Robustness, SolverReport, Trust, Verdict, fit_screws,
 };
 use crate::analysis::Identifiability;
 use crate::estimate::{Packed, Session, Unknowns};
@@ -105,8 +105,8 @@ impl Calibration {
     pub(super) fn against(mut self, reason: String) -> Self {
         self.judged = self.judged.against(reason);
         self.verdict = match self.correction.as_deref().filter(|it| it.has_terms()) {
-            Some(found) => self.judged.of_model(AcceptedModel::Corrected, &found.expected),
-            None => self.judged.of_model(AcceptedModel::Calibrated, &self.trust.expected),
+            Some(found) => self.judged.of_corrected(found.judging_errors(), &found.expected),
+            None => self.judged.of_calibrated(&self.trust.expected),
         };
         self
     }
@@ -125,7 +125,7 @@ impl Calibration {
             }
         }
         if found.has_terms() {
-            self.verdict = self.judged.of_model(AcceptedModel::Corrected, &found.expected);
+            self.verdict = self.judged.of_corrected(found.judging_errors(), &found.expected);
         }
         self.warnings.extend(found.doubt.clone());
         self.correction = Some(Box::new(found));

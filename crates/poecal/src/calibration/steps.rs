@@ -19,9 +19,9 @@ use super::stations::{check_length, check_stations};
 use super::trust::trust;
 use super::verdict::{Grounds, judged};
 use super::{
-    AcceptedModel, Accuracy, CalibratedTarget, Calibration, CalibrationOptions, Correction, CoverageCheck,
-    Formulation, Level, Models, NoiseSource, PredictedUncertainty, Robust, Robustness, Trust, delivered,
-    estimate_noise, noise, set_accuracy, split_rows,
+    Accuracy, CalibratedTarget, Calibration, CalibrationOptions, Correction, CoverageCheck, Formulation,
+    Level, Models, NoiseSource, PredictedUncertainty, Robust, Robustness, Trust, delivered, estimate_noise,
+    noise, set_accuracy, split_rows,
 };
 use crate::analysis::{Identifiability, Setup, identifiability};
 use crate::error::Result;
@@ -217,7 +217,7 @@ impl<'a> Prepared<'a> {
             mistakes: &mistakes,
             moves_joints: self.session.unknowns.moves_joints(nominal.joints.len()),
         });
-        let verdict = judged.of_model(AcceptedModel::Calibrated, &trust.expected);
+        let verdict = judged.of_calibrated(&trust.expected);
         if verdict.level == Level::DoNotUse || diagnosis.iter().any(Diagnosis::is_of_input) {
             // Mistakes in the input are not the fault of a joint.
             trust.joints.iter_mut().for_each(|joint| joint.suspicious = None);
@@ -390,8 +390,7 @@ impl<'a> Prepared<'a> {
             trust.expected = expected;
             calibration.trust.held_out =
                 self.held_out_coverage(&calibration.trust, &calibration.models.calibrated);
-            calibration.verdict =
-                calibration.judged.of_model(AcceptedModel::Calibrated, &calibration.trust.expected);
+            calibration.verdict = calibration.judged.of_calibrated(&calibration.trust.expected);
         }
         calibration
     }

@@ -73,22 +73,76 @@ pub struct Verdict {
 }
 
 /// What speaks against a level, before the expected errors of a model do.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Judged {
-    level: Level,
-    reasons: Vec<String>,
+    /// Against any use, of whatever model.
+    against: Vec<String>,
+    /// What the errors of the calibrated model say against any use of it.
+    of_errors: Vec<String>,
+    /// Axes that ended where none of this robot is; said where nothing else speaks against use.
+    drifted: Vec<String>,
+    /// Against use outside the sampled range.
+    everywhere: Vec<String>,
+    /// What the errors of another model are judged by.
+    measure: Measure,
+}
+
+/// What errors are judged by.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Measure {
+    /// Error of the registered model, in the unit of the leading quantity.
+    registered: f64,
+    reach_m: f64,
+    moves_joints: bool,
+}
+
+impl Measure {
+    fn is_no_better(&self, error: f64) -> bool {
+        self.moves_joints && error > (1.0 - WORTH) * self.registered
+    }
+
+    fn is_too_large(&self, set: &ModelAccuracy) -> bool {
+        set.leading_m() > TOO_LARGE * self.reach_m
+    }
+
+    /// Whether nothing speaks against a model with these errors.
+    fn allows(&self, set: &ModelAccuracy) -> bool {
+        let error = set.leading().map_or(0.0, |(_, error)| error.rms);
+        !self.is_no_better(error) && !self.is_too_large(set)
+    }
 }
 
 impl Judged {
     /// The same with this against any use.
-    pub(super) fn against(self, reason: String) -> Self {
-        let others = if self.level == Level::DoNotUse { self.reasons } else { Vec::new() };
-        Judged { level: Level::DoNotUse, reasons: std::iter::once(reason).chain(others).collect() }
+    pub(super) fn against(mut self, reason: String) -> Self {
+        self.against.insert(0, reason);
+        self
     }
 
-    /// The verdict on a model with these expected errors.
-    pub(super) fn of_model(&self, model: AcceptedModel, expected: &Expectations) -> Verdict {
-        let Judged { mut level, mut reasons } = self.clone();
+    /// The verdict on the calibrated model, with these expected errors.
+    pub(super) fn of_calibrated(&self, expected: &Expectations) -> Verdict {
+        self.verdict(AcceptedModel::Calibrated, &self.of_errors, expected)
+    }
+
+    /// The verdict on the corrected model, with these errors of rows that were not fitted (or of those that were, without such) and these
+    /// expected errors.
+    pub(super) fn of_corrected(&self, errors: &ModelAccuracy, expected: &Expectations) -> Verdict {
+        let of_errors = if self.measure.allows(errors) { &[][..] } else { &self.of_errors };
+        self.verdict(AcceptedModel::Corrected, of_errors, expected)
+    }
+
+    fn verdict(&self, model: AcceptedModel, of_errors: &[String], expected: &Expectations) -> Verdict {
+        let mut against: Vec<String> = self.against.iter().chain(of_errors).cloned().collect();
+        if against.is_empty() {
+            against.clone_from(&self.drifted);
+        }
+        let (mut level, mut reasons) = if !against.is_empty() {
+            (Level::DoNotUse, against)
+        } else if self.everywhere.is_empty() {
+            (Level::Good, Vec::new())
+        } else {
+            (Level::InsideSampledRange, self.everywhere.clone())
+        };
         if let (Some(measured), Some(range)) = (expected.measured, expected.range)
             && level != Level::DoNotUse
             && range.sigma_m > RANGE * measured.sigma_m
@@ -158,12 +212,35 @@ pub(super) struct Grounds<'a> {
 
 /// The verdict, but for the expected errors of the model.
 pub(super) fn judged(grounds: &Grounds<'_>) -> Judged {
-    let against_all = against_use(grounds);
-    if !against_all.is_empty() {
-        return Judged { level: Level::DoNotUse, reasons: against_all };
+    // Suspected rows do not count.
+    let (accuracy, robustness) = (grounds.accuracy, grounds.robustness);
+    let (set, name) = match &accuracy.held_out {
+        Some(set) => (robustness.held_out_rest.as_ref().unwrap_or(set), "held-out"),
+        None => (robustness.training_rest.as_ref().unwrap_or(&accuracy.training), "fitted"),
+    };
+    let leading = set.calibrated.leading().map(|(quantity, _)| quantity).unwrap_or(Quantity::Position);
+    let of = |model: &ModelAccuracy| model.get(leading).unwrap_or_default().rms;
+    let (registered, calibrated) = (of(&set.registered), of(&set.calibrated));
+    let (what, unit) = (leading.name(), leading.unit().symbol());
+    let measure = Measure { registered, reach_m: grounds.reach_m, moves_joints: grounds.moves_joints };
+    let mut of_errors = Vec::new();
+    if measure.is_no_better(calibrated) {
+        of_errors.push(format!(
+            "on {name} rows the calibrated screws are no better than the nominal ones ({calibrated:.3} {unit} against {registered:.3} {unit})"
+        ));
     }
-    let reasons = against_use_everywhere(grounds);
-    Judged { level: if reasons.is_empty() { Level::Good } else { Level::InsideSampledRange }, reasons }
+    if measure.is_too_large(&set.calibrated) {
+        of_errors.push(format!(
+            "the {what} error of the calibrated model on {name} rows is {calibrated:.1} {unit} (RMS), more than 1 % of the robot's reach"
+        ));
+    }
+    Judged {
+        against: against_use(grounds),
+        of_errors,
+        drifted: drifted(grounds),
+        everywhere: against_use_everywhere(grounds),
+        measure,
+    }
 }
 
 fn against_use(grounds: &Grounds<'_>) -> Vec<String> {
@@ -177,29 +254,6 @@ fn against_use(grounds: &Grounds<'_>) -> Vec<String> {
             "{} numbers measured in different configurations for {unknowns} unknowns are too few to judge the fit",
             grounds.numbers
         ));
-    }
-    // Suspected rows do not count.
-    let (accuracy, robustness) = (grounds.accuracy, grounds.robustness);
-    let (set, name) = match &accuracy.held_out {
-        Some(set) => (robustness.held_out_rest.as_ref().unwrap_or(set), "held-out"),
-        None => (robustness.training_rest.as_ref().unwrap_or(&accuracy.training), "fitted"),
-    };
-    let leading = set.calibrated.leading().map(|(quantity, _)| quantity).unwrap_or(Quantity::Position);
-    let of = |model: &ModelAccuracy| model.get(leading).unwrap_or_default().rms;
-    let (registered, calibrated) = (of(&set.registered), of(&set.calibrated));
-    let (what, unit) = (leading.name(), leading.unit().symbol());
-    if grounds.moves_joints && calibrated > (1.0 - WORTH) * registered {
-        reasons.push(format!(
-            "on {name} rows the calibrated screws are no better than the nominal ones ({calibrated:.3} {unit} against {registered:.3} {unit})"
-        ));
-    }
-    if set.calibrated.leading_m() > TOO_LARGE * grounds.reach_m {
-        reasons.push(format!(
-            "the {what} error of the calibrated model on {name} rows is {calibrated:.1} {unit} (RMS), more than 1 % of the robot's reach"
-        ));
-    }
-    if reasons.is_empty() {
-        reasons = drifted(grounds);
     }
     reasons
 }

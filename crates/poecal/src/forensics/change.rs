@@ -27,6 +27,8 @@ pub(super) enum Change {
     Shift(i32, Stream),
     /// Lengths of a kind times a factor; the last says whether no other kind is measured.
     Resize(f64, Lengths, bool),
+    /// One coordinate of positions times a factor.
+    ResizeAxis(usize, f64),
     /// The zero of all distances unknown.
     FreeZero,
     /// Tilts of directions times a factor.
@@ -77,6 +79,7 @@ impl Change {
             Change::Add(column, offset) => readings[*column] += offset,
             Change::Shift(..)
             | Change::Resize(..)
+            | Change::ResizeAxis(..)
             | Change::FreeZero
             | Change::ScaleTilts(_)
             | Change::Quaternion(_)
@@ -93,6 +96,8 @@ impl Change {
             Measurement::Point(PointMeasurement { position }) => {
                 if let Change::Resize(factor, Lengths::Positions, _) = self {
                     *position *= *factor;
+                } else if let Change::ResizeAxis(axis, factor) = self {
+                    position[*axis] *= *factor;
                 } else if let Change::Mirror(mirror, _) = self {
                     *position = mirror * *position;
                 }
@@ -100,6 +105,8 @@ impl Change {
             Measurement::Components(seen) => {
                 if let Change::Resize(factor, Lengths::Positions, _) = self {
                     seen.position *= *factor;
+                } else if let Change::ResizeAxis(axis, factor) = self {
+                    seen.position[*axis] *= *factor;
                 }
             }
             Measurement::Pose(PoseMeasurement { pose }) => *pose = self.pose(row, pose),
@@ -130,6 +137,11 @@ impl Change {
         let Pose { rotation: turned, translation } = *seen;
         match self {
             Change::Resize(factor, Lengths::Positions, _) => Pose::new(turned, translation * *factor),
+            Change::ResizeAxis(axis, factor) => {
+                let mut place = translation;
+                place[*axis] *= *factor;
+                Pose::new(turned, place)
+            }
             Change::Scale(..)
             | Change::Scales(_)
             | Change::Exchange(..)

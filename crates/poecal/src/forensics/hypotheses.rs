@@ -240,6 +240,23 @@ pub(super) fn length_units(lengths: Lengths, is_all: bool) -> Vec<Hypothesis> {
     .collect()
 }
 
+/// One coordinate of positions in another unit than the other two.
+pub(super) fn axis_units() -> Vec<Hypothesis> {
+    let one = |(axis, (factor, words)): (usize, (f64, &str))| {
+        let name = ["x", "y", "z"][axis];
+        Hypothesis::new(
+            DiagnosisKind::PositionUnit,
+            Change::ResizeAxis(axis, factor),
+            format!("multiplying {name} alone by {factor}"),
+            format!(
+                "state the unit of `{name}` in the header, since it looks as if {words} there, and not in the other two columns"
+            ),
+        )
+    };
+    let units = [(1e-3, "millimetres had been read as metres"), (1e3, "metres had been read as millimetres")];
+    (0..3).flat_map(|axis| units.map(|unit| (axis, unit))).map(one).collect()
+}
+
 /// Distances that do not count from their anchor, or radii of other spheres.
 pub(super) fn zeros() -> Hypothesis {
     Hypothesis::new(

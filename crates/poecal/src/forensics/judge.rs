@@ -7,8 +7,8 @@ use super::conventions::conventions;
 use super::few::FewTargets;
 use super::fitter::{Fitter, SHORT, Score, sampled};
 use super::hypotheses::{
-    Hypothesis, ReadingColumns, joint_couplings, joint_exchanges, joint_signs, joint_units, length_units,
-    mirrors, pose_forms, row_shifts, tilt_units, zeros,
+    Hypothesis, ReadingColumns, axis_units, joint_couplings, joint_exchanges, joint_signs, joint_units,
+    length_units, mirrors, pose_forms, row_shifts, tilt_units, zeros,
 };
 use super::scales::joint_scales;
 use super::zero::joint_zeros;
@@ -82,6 +82,9 @@ fn single_mistakes(fitter: &Fitter<'_>, columns: &ReadingColumns, sample: &Datas
             let is_all = lengths != Lengths::Heights && sample.observations.iter().all(is_of);
             all.extend(length_units(lengths, is_all));
         }
+    }
+    if placed {
+        all.extend(axis_units());
     }
     all.extend(of_zeros(sample));
     if sample.observations.iter().any(|row| matches!(row.measurement, Measurement::Direction(_))) {

@@ -67,6 +67,11 @@ impl Correction {
         Session::new(&self.model.robot, data, &self.packed, true).errors(rows, &self.estimate)
     }
 
+    /// Errors of the rows that were held out, or of those that were fitted where there are no such.
+    pub(in crate::calibration) fn judging_errors(&self) -> &ModelAccuracy {
+        self.held_out.as_ref().unwrap_or(&self.training)
+    }
+
     /// Whether it has terms at all, rather than geometry alone.
     #[must_use]
     pub fn has_terms(&self) -> bool {

@@ -1,6 +1,7 @@
 //! What happened during a session: a device or a target that was moved, a joint's zero that slipped, configurations that are wrong as a
 //! whole; and the session as it would have been without (theory.md §9, *Events*).
 
+mod early;
 mod hypotheses;
 mod repair;
 mod rows;

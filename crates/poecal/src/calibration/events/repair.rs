@@ -80,9 +80,11 @@ pub fn calibrate_repairing<'a>(
         chooses_tolerance: false,
         ..options.clone()
     };
-    let (mut repairs, mut suspicions) = (Vec::new(), Vec::new());
+    let (mut repairs, mut suspicions, mut early) = (Vec::new(), Vec::new(), None);
     for _ in 0..MOST {
-        let Some(happened) = session.next(&best, options) else { break };
+        let (happened, doubt) = session.next(&best, options);
+        early = doubt;
+        let Some(happened) = happened else { break };
         let before = error_of(&best, &session);
         let event = session.event(&happened, robot);
         let matters = happened.matters();
@@ -128,6 +130,7 @@ pub fn calibrate_repairing<'a>(
         });
         (best, session) = (other, repaired);
     }
+    best.warnings.extend(early);
     let calibration = Calibration { repairs, suspicions, chosen_tolerance: chosen, ..best };
     Ok(Repaired { calibration, data: session.data })
 }
@@ -170,26 +173,26 @@ impl Said {
 }
 
 impl<'a> Session<'a> {
-    /// What happened that is not repaired yet.
-    fn next(&self, best: &Calibration, options: &CalibrationOptions) -> Option<Happened> {
-        let found = best.correction.as_deref()?;
+    /// What happened that is not repaired yet, and a doubt about all readings where nothing did.
+    fn next(&self, best: &Calibration, options: &CalibrationOptions) -> (Option<Happened>, Option<String>) {
+        let Some(found) = best.correction.as_deref() else { return (None, None) };
         let data = &*self.data;
         // Rows with a stated set may belong to another session.
         let is_stated = data.observations.iter().any(|row| row.set.is_some());
         let mut rows = if is_stated { best.fit_rows.clone() } else { data.all_rows() };
         rows.sort_unstable();
         rows.retain(|row| self.left_out.binary_search(row).is_err());
-        let Events { wrong, step } =
-            search(&Search { calibration: best, found, data, options, rows: &rows })?;
+        let all = Search { calibration: best, found, data, options, rows: &rows };
+        let Some(Events { wrong, step, early }) = search(&all) else { return (None, None) };
         let is_fitted = |row: &u32| best.fit_rows.binary_search(row).is_ok();
         // Rows that are suspected already and have no part in the fit need no other one.
         let is_done = wrong.iter().all(|row| best.robustness.suspects_row(*row))
             && (!wrong.iter().any(is_fitted)
                 || best.robustness.loss.is_some() && best.robustness.suspects().count() == wrong.len());
         if !wrong.is_empty() && !is_done && options.robust == Robust::Auto {
-            return Some(Happened::Wrong(wrong));
+            return (Some(Happened::Wrong(wrong)), early);
         }
-        step.map(Happened::Step)
+        (step.map(Happened::Step), early)
     }
 
     /// The session without what happened; `None` where that is not possible.

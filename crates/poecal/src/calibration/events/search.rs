@@ -2,6 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
+use super::early::early;
 use super::hypotheses::{Columns, Moved};
 use super::rows::{Optimum, Rows};
 use super::wrong::without_wrong;
@@ -61,6 +62,8 @@ pub(super) struct Events {
     pub(super) wrong: Vec<u32>,
     /// An evident step.
     pub(super) step: Option<Step>,
+    /// That readings were early in every configuration, where nothing else was found.
+    pub(super) early: Option<String>,
 }
 
 /// Searches a session.
@@ -85,7 +88,8 @@ pub(super) fn search(search: &Search<'_>) -> Option<Events> {
     };
     let wrong = if step.is_some() { isolated(&is_wrong) } else { is_wrong };
     let wrong = of_rows(&wrong);
-    Some(Events { wrong, step })
+    let early = step.is_none().then(|| early(&rows, &optimum, &single, data, &calibration.nominal)).flatten();
+    Some(Events { wrong, step, early })
 }
 
 /// Those that are wrong without being one of several in a row.
@@ -197,7 +201,7 @@ fn strongest(
 }
 
 /// How much the numbers of a run share along a step: the variance of its size by runs, over that by numbers; at least 1.
-fn shared(rows: &Rows, optimum: &Optimum, weights: &[f64], moved: &DVector<f64>) -> f64 {
+pub(super) fn shared(rows: &Rows, optimum: &Optimum, weights: &[f64], moved: &DVector<f64>) -> f64 {
     let mut weighted = moved.clone();
     for (run, weight) in rows.runs.iter().zip(weights) {
         rows.numbers(run).for_each(|at| weighted[at] *= *weight);

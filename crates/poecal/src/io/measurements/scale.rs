@@ -296,14 +296,12 @@ pub(super) fn check_positions(
     slides_m: f64,
     rows: &[Observation],
 ) -> Result<()> {
-    let Some(input) = layout.targets.first().and_then(|target| layout.inputs.get(target.position?[0])) else {
+    let columns = layout.targets.first().and_then(|target| target.position);
+    let Some(inputs) = columns.and_then(|at| {
+        let [x, y, z] = at.map(|at| layout.inputs.get(at));
+        Some([x?, y?, z?])
+    }) else {
         return Ok(());
-    };
-    let smaller = match input.unit.symbol() {
-        "m" => "mm",
-        "mm" => "um",
-        "um" => "nm",
-        _ => return Ok(()),
     };
     // The reach does not contain prismatic joints without limits.
     let reach = robot.reach_m() + slides_m;
@@ -312,22 +310,55 @@ pub(super) fn check_positions(
     let middle = median_point(&positions);
     let far = positions.iter().filter(|position| (*position - middle).norm() > 2.0 * reach).count();
     let furthest = placed()
-        .map(|(position, row)| ((position - middle).norm(), row.source.line))
-        .max_by(|a, b| a.0.total_cmp(&b.0));
-    let Some((spread, line)) = furthest else { return Ok(()) };
+        .map(|(position, row)| (position - middle, row.source.line))
+        .max_by(|a, b| a.0.norm().total_cmp(&b.0.norm()));
+    let Some((apart, line)) = furthest else { return Ok(()) };
+    let spread = apart.norm();
     if spread <= REACHES * reach
         || spread > 1e3 * REACHES * reach
         || (far as f64) < SHARE * positions.len() as f64
     {
         return Ok(());
     }
+    // The columns of which that is so: a header may state the unit of one of three wrongly.
+    let is_far = |axis: usize| positions.iter().any(|it| (it[axis] - middle[axis]).abs() > REACHES * reach);
+    let own: Vec<usize> = (0..3).filter(|axis| is_far(*axis)).collect();
+    let own = if own.is_empty() { vec![0, 1, 2] } else { own };
+    let mut headers = Vec::new();
+    for input in own.iter().map(|axis| inputs[*axis]) {
+        let smaller = match input.unit.symbol() {
+            "m" => "mm",
+            "mm" => "um",
+            "um" => "nm",
+            _ => return Ok(()),
+        };
+        headers.push((input.name.as_str(), smaller));
+    }
+    let Some((first, smaller)) = headers.first() else { return Ok(()) };
+    let unit = inputs[own[0]].unit;
+    let what = match own.len() {
+        3 => "positions".to_owned(),
+        1 => format!("values of `{first}`"),
+        _ => format!(
+            "values of {}",
+            headers.iter().map(|(name, _)| format!("`{name}`")).collect::<Vec<_>>().join(" and ")
+        ),
+    };
+    let others: Vec<&str> =
+        (0..3).filter(|axis| !own.contains(axis)).map(|axis| inputs[axis].name.as_str()).collect();
+    let others = match others.as_slice() {
+        [] => String::new(),
+        [one] => format!(", beside `{one}`, which it can reach"),
+        several => format!(", beside `{}`, which it can reach", several.join("` and `")),
+    };
+    let written: Vec<String> = headers.iter().map(|(name, unit)| format!("{name}[{unit}]")).collect();
     let message = format!(
-        "found positions up to {} {stated} from their middle, where the robot reaches {} {stated}, expected another \
-         unit, most likely {smaller}; write `x[{smaller}],y[{smaller}],z[{smaller}]` in the header, or the unit in \
-         the mapping",
-        short(input.unit.from_si(spread)),
-        short(input.unit.from_si(reach)),
-        stated = input.unit.symbol(),
+        "found {what} up to {} {stated} from their middle, where the robot reaches {} {stated}{others}, expected another \
+         unit, most likely {smaller}; write `{}` in the header, or the unit in the mapping",
+        short(unit.from_si(if own.len() == 3 { spread } else { apart[own[0]].abs() })),
+        short(unit.from_si(reach)),
+        written.join(","),
+        stated = unit.symbol(),
     );
     Err(Error::new(ErrorKind::Unit, message).at_line(path, line as usize))
 }
