@@ -4,7 +4,8 @@ use crate::trials::trials;
 use nalgebra::Vector3;
 use poecal::Quantity;
 use poecal::calibration::{
-    BlockChoice, CalibrationOptions, CorrectionModel, Corrections, Sizes, TermGroup, calibrate, correct,
+    AcceptedModel, BlockChoice, CalibrationOptions, CorrectionModel, Corrections, Level, Sizes, TermGroup,
+    calibrate, correct,
 };
 use poecal::estimate::{Estimate, Packed, RowError, Session};
 use poecal::io::calibration_file::{CalibrationFile, Inputs};
@@ -243,6 +244,37 @@ fn the_direction_of_gravity_is_found() {
         // A tilt of 3° changes moments of 3 mrad by 0.16 mrad, as much as the noise of a pose.
         assert!(off < 4.0 && corrected < 0.15, "{off}");
     }
+}
+
+/// Where nothing gives, no direction of gravity is better than another: -z is taken, and that is said.
+#[test]
+fn a_direction_of_gravity_that_does_not_show_is_said_and_not_taken() {
+    for seed in trials(5).seeds() {
+        let made = Simulation { count: 60, seed, ..Simulation::default() }.run(&elbow(), Kind::Pose).unwrap();
+        let options =
+            CalibrationOptions { gravity: GravityDirection::Found, ..CalibrationOptions::default() };
+        let found = calibrate(&made.nominal, &made.data, &options).unwrap();
+        let correction = found.correction.as_ref().unwrap();
+        println!("{:?}", correction.doubt);
+        assert!(correction.doubt.as_ref().is_some_and(|it| found.warnings.contains(it)));
+        let gravity = correction.robot.gravity.as_ref();
+        assert!(gravity.is_none_or(|it| it.direction.angle(&-Vector3::z()) < 1e-12));
+    }
+}
+
+/// A robot that sags by more than 1 % of its reach is judged by the corrected model, which describes it.
+#[test]
+fn the_verdict_is_of_the_model_that_is_delivered() {
+    let Ok(Corrections::Sizes(terms)) = "sag=2e-2,tilt=2e-2".parse() else { panic!("no sizes") };
+    let drawn = Simulation { terms, count: 150, seed: 3, ..Simulation::default() };
+    let made = drawn.run(&elbow(), Kind::Pose).unwrap();
+    let options = CalibrationOptions { corrections: Corrections::Off, ..CalibrationOptions::default() };
+    let rigid = calibrate(&made.nominal, &made.data, &options).unwrap();
+    let whole = calibrate(&made.nominal, &made.data, &CalibrationOptions::default()).unwrap();
+    println!("{:?}\n{:?}", rigid.verdict, whole.verdict);
+    assert_eq!(rigid.verdict.level, Level::DoNotUse);
+    assert!(rigid.verdict.reasons[0].contains("of the calibrated model"), "{:?}", rigid.verdict.reasons);
+    assert!(whole.verdict.level > Level::DoNotUse && whole.verdict.model == Some(AcceptedModel::Corrected));
 }
 
 /// The tolerance is chosen that fits how far the robot is from its drawing.

@@ -12,6 +12,8 @@ use poecal::simulate::{Kind, Simulated, Simulation, elbow};
 use crate::trials::trials;
 
 const COUNT: usize = 80;
+/// What is said of readings that were all early.
+const EARLY: &str = "before they came to rest";
 
 fn session(seed: u64, kind: Kind) -> Simulated {
     // Gears that give, so that the robot has errors of its own beside the noise.
@@ -65,6 +67,7 @@ fn a_move_of_the_device_of_a_target_of_a_zero_and_a_drift_are_repaired() {
             "{:?}",
             calibration.repairs
         );
+        assert!(!calibration.warnings.iter().any(|it| it.contains(EARLY)), "{:?}", calibration.warnings);
         let usual = error_mm(&clean, &calibration, 0.0);
         let mut lines = vec![format!("seed {seed}: clean {usual:.4} mm")];
         let mut check =
@@ -167,4 +170,37 @@ fn without_repairs_an_evident_move_is_a_reason_not_to_use_the_result() {
         "{:?}",
         plain.warnings
     );
+}
+
+/// Joints that turn at one speed and are read a constant time before they are there.
+#[test]
+fn readings_that_are_all_early_are_named_with_their_angle() {
+    for (seed, early_deg) in [(1, 0.05), (2, 0.2), (3, 0.1)] {
+        let made = session(seed, Kind::Point);
+        let data = with_readings(&made.data, |row, readings| {
+            let Some(before) = row.checked_sub(1).map(|row| made.data.readings(row)) else { return };
+            let way: Vec<f64> = readings.iter().zip(before).map(|(own, before)| own - before).collect();
+            let largest = way.iter().fold(0.0, |most: f64, it| most.max(it.abs()));
+            readings
+                .iter_mut()
+                .zip(&way)
+                .for_each(|(own, way)| *own -= f64::to_radians(early_deg) * way / largest);
+        });
+        let (calibration, _) = found(&made.nominal, &data, &CalibrationOptions::default());
+        let said: Vec<&String> = calibration.warnings.iter().filter(|it| it.contains(EARLY)).collect();
+        println!("{early_deg} deg: {said:?} {:?}", calibration.repairs);
+        let [said] = said[..] else { panic!("{:?}", calibration.warnings) };
+        assert!(said.contains(&format!("{early_deg:.2} deg")), "{said}");
+        // The other way round nothing was early.
+        let data = with_readings(&made.data, |row, readings| {
+            if row + 1 < COUNT {
+                let after = made.data.readings(row + 1);
+                let way: Vec<f64> = after.iter().zip(&*readings).map(|(after, own)| after - own).collect();
+                let largest = way.iter().fold(0.0, |most: f64, it| most.max(it.abs()));
+                readings.iter_mut().zip(&way).for_each(|(own, way)| *own += 1e-3 * way / largest);
+            }
+        });
+        let (calibration, _) = found(&made.nominal, &data, &CalibrationOptions::default());
+        assert!(!calibration.warnings.iter().any(|it| it.contains(EARLY)), "{:?}", calibration.warnings);
+    }
 }

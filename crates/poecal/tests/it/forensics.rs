@@ -84,6 +84,29 @@ fn mistakes_are_named() {
     });
 }
 
+/// A header that states the unit of one of three columns wrongly.
+#[test]
+fn a_column_in_another_unit_is_named_alone() {
+    for seed in trials(12).seeds() {
+        let session = Session::drawn(700 + seed);
+        let axis = seed as usize % 3;
+        let mut data = session.data.clone();
+        for row in &mut data.observations {
+            match &mut row.measurement {
+                Measurement::Point(seen) => seen.position[axis] *= 1e-3,
+                Measurement::Pose(seen) => seen.pose.translation[axis] *= 1e-3,
+                other => panic!("{other:?}"),
+            }
+        }
+        let found = found(&session, &data);
+        let name = ["x", "y", "z"][axis];
+        println!("{}: {found:?}", session.words);
+        let [only] = &found[..] else { panic!("{name}, {}: {found:?}", session.words) };
+        assert_eq!(only.kind, DiagnosisKind::PositionUnit);
+        assert!(only.statement.contains(&format!("multiplying {name} alone by 1000")), "{}", only.statement);
+    }
+}
+
 /// An elbow of which each reading of a joint is that of the data plus so many times that of the joint before.
 fn coupled(session: &Session, column: usize, own: f64, factor: f64) -> Dataset {
     let mut data = Dataset::new(session.data.reading_names().to_vec());

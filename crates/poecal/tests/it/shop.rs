@@ -5,7 +5,7 @@ use crate::common::geometry;
 use crate::largest::larger;
 use crate::trials::trials;
 use poecal::analysis::Cause;
-use poecal::calibration::{Calibration, CalibrationOptions, Corrections, Robust, calibrate};
+use poecal::calibration::{Calibration, CalibrationOptions, Corrections, ModelAccuracy, Robust, calibrate};
 use poecal::estimate::{Packed, Session};
 use poecal::io::measurements::{ReadOptions, parse};
 use poecal::measurement::{Dataset, KnownLength, Noise, Quantity, Set};
@@ -234,6 +234,24 @@ fn held_out_sockets_are_judged_by_their_own_mean() {
         println!("expected error {expected_m:e} m");
         assert!(expected_m < 0.01);
     }
+}
+
+/// Sizes of terms are chosen by the rows of the socket that is fitted, whatever others are held out.
+#[test]
+fn sizes_are_chosen_where_other_sockets_are_held_out() {
+    let Ok(Corrections::Sizes(terms)) = "sag=2e-3,tilt=1e-3".parse() else { panic!("no sizes") };
+    let made = Simulation { terms, count: 160, seed: 4, ..Simulation::default() };
+    let mut made = made.run(&elbow(), Kind::Socket).unwrap();
+    for row in &mut made.data.observations {
+        row.set = Some(if row.station == 0 { Set::Fit } else { Set::HeldOut });
+    }
+    let found = calibrate(&made.nominal, &made.data, &CalibrationOptions::default()).unwrap();
+    let correction = found.correction.as_ref().unwrap();
+    let error = |of: &ModelAccuracy| of.residual_mm.unwrap().rms;
+    let held_out = found.accuracy.held_out.as_ref().unwrap();
+    let (before, after) = (error(&held_out.calibrated), error(held_out.corrected.as_ref().unwrap()));
+    println!("{:?} of {} sizes: {before:.3} mm to {after:.3} mm", correction.reason, correction.tried.len());
+    assert!(correction.tried.len() > 3 && after <= 1.02 * before);
 }
 
 /// Corrections are fitted for these too.
