@@ -11,7 +11,7 @@ pub struct Unknowns {
     pub held_axes: Vec<usize>,
     /// Targets that are held.
     pub held_targets: Vec<usize>,
-    /// Targets of whose places nothing is known before: no prior (theory.md §6 (27b)).
+    /// Targets of whose places nothing is known before: no prior (theory.md §6 (27c)).
     pub open_targets: Vec<usize>,
     /// Stations whose frames are held.
     pub held_frames: Vec<usize>,

@@ -1,4 +1,4 @@
-//! Gaussian prior: the axes are near nominal, and weakly the targets too (theory.md §6 (27a), (27b)).
+//! Gaussian prior: the axes are near nominal, and weakly the targets too (theory.md §6 (27a), (27c)).
 
 use nalgebra::{Matrix3, Matrix3x6, Matrix6, SVector, Vector3, Vector6};
 
@@ -26,7 +26,7 @@ const TARGET_LEAST_M: f64 = 0.3;
 /// axis, the nominal one d⁰, and the point q of the axis nearest to the nominal joint's origin o (base frame), the deviation is
 /// `u = ((d - d⁰) / σ_angle; (q - o) / σ_length)`, of a prismatic joint its first part alone. The cost is `½ Σ |u|²`. With an unknown
 /// device frame the base frame is a choice, and the cost is minimal over motions of all axes (theory.md §6 (27a)). A target that moves with
-/// the robot has its place t in the model at home too, `u = (t - t⁰) / max(0.3 m, reach / 4)`, but no orientation (27b).
+/// the robot has its place t in the model at home too, `u = (t - t⁰) / max(0.3 m, reach / 4)`, but no orientation (27c).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Prior {
     axes: Vec<Nominal>,

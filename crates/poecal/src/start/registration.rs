@@ -35,7 +35,7 @@ pub struct Registration<'a> {
     pub noise: Noise,
     /// Whether the targets are unknown (otherwise they stay as in the start).
     pub targets_free: bool,
-    /// What is known of the targets before (theory.md §6 (27b)).
+    /// What is known of the targets before (theory.md §6 (27c)).
     pub prior: Option<&'a Prior>,
 }
 
