@@ -2,13 +2,15 @@
 //! whole; and the session as it would have been without (theory.md §9, *Events*).
 
 mod early;
+mod happened;
 mod hypotheses;
+mod names;
 mod repair;
 mod rows;
 mod search;
 mod told;
 mod wrong;
 
-pub(crate) use repair::family;
+pub(crate) use names::family;
 pub use repair::{Repaired, calibrate_repairing};
 pub use told::{Event, EventKind, Repairs};

@@ -2,13 +2,14 @@
 //! of after.
 
 use std::borrow::Cow;
-use std::collections::BTreeSet;
 
 use nalgebra::Vector3;
 
+use super::happened::{Happened, event};
 use super::hypotheses::Moved;
+use super::names::{DEVICE, next_of};
 use super::search::{Events, Search, Step, search};
-use super::told::{Event, EventKind, Repairs};
+use super::told::{Event, Repairs};
 use crate::calibration::{
     Calibration, CalibrationOptions, DeviceFrameKnowledge, Robust, Searched, Stage, Statistic, fitted,
 };
@@ -24,14 +25,8 @@ const MOST: usize = 4;
 const BETTER: f64 = 0.8;
 /// The same of the error of the other rows, where some are left out.
 const OTHERS_BETTER: f64 = 0.95;
-/// Share of the residuals that a step leaves above which its repair cannot gain as much.
-const LITTLE: f64 = 0.8;
 /// Rows of the picture of a repair.
 const DRAWN: usize = 200;
-/// Files and lines that a sentence lists.
-const LISTED: usize = 3;
-/// Ratio of the gain of the next best explanation to that of the best above which it is named too.
-const NEARLY: f64 = 0.9;
 
 /// A calibration, and the session that it is of.
 #[derive(Clone, Debug)]
@@ -86,7 +81,7 @@ pub fn calibrate_repairing<'a>(
         early = doubt;
         let Some(happened) = happened else { break };
         let before = error_of(&best, &session);
-        let event = session.event(&happened, robot);
+        let event = event(&happened, &session.data, robot);
         let matters = happened.matters();
         let repaired = match options.repair {
             Repairs::Auto if matters => session.without(&happened, robot, options),
@@ -135,41 +130,10 @@ pub fn calibrate_repairing<'a>(
     Ok(Repaired { calibration, data: session.data })
 }
 
-/// What a session's search ended with.
-enum Happened {
-    Wrong(Vec<u32>),
-    Step(Step),
-}
-
-impl Happened {
-    /// Whether all rows of it are suspected as outliers anyway.
-    fn is_suspected(&self, best: &Calibration) -> bool {
-        matches!(self, Happened::Wrong(rows) if rows.iter().all(|row| best.robustness.suspects_row(*row)))
-    }
-
-    /// Whether the session without it can be better by much.
-    fn matters(&self) -> bool {
-        match self {
-            Happened::Wrong(_) => true,
-            Happened::Step(step) => step.leaves <= LITTLE,
-        }
-    }
-}
-
 /// A session, and the rows of it that are left out.
 struct Session<'a> {
     data: Cow<'a, Dataset>,
     left_out: Vec<u32>,
-}
-
-/// An event with the sentence of it where it is repaired, and where it is only suspected.
-struct Said(Event, String);
-
-impl Said {
-    fn suspected(self, before: f64, after: Option<f64>) -> Event {
-        let Said(event, statement) = self;
-        Event { statement, error_before_mm: Some(before), error_after_mm: after, ..event }
-    }
 }
 
 impl<'a> Session<'a> {
@@ -263,132 +227,6 @@ impl<'a> Session<'a> {
         }
         Some(Session { data: Cow::Owned(data), left_out })
     }
-
-    /// What happened, in words.
-    fn event(&self, happened: &Happened, robot: &Robot) -> Said {
-        let data = &*self.data;
-        let step = match happened {
-            Happened::Wrong(rows) => return wrong_words(data, rows),
-            Happened::Step(step) => step,
-        };
-        let from = data.place(step.first);
-        let number = step.first as usize + 1;
-        let length = |turns: bool| {
-            let own = step.size.iter().zip(&step.turns).filter(|(_, it)| **it == turns);
-            own.map(|(value, _)| value * value).sum::<f64>().sqrt()
-        };
-        let (shift_mm, turn_deg) = (1e3 * length(false), length(true).to_degrees());
-        let has = |turns: bool| step.turns.contains(&turns);
-        let far = far_words(has(false).then_some(shift_mm), has(true).then_some(turn_deg));
-        let count = data.len();
-        let again = format!(
-            "measure the {} rows before it again, or the {} from it on",
-            number - 1,
-            count + 1 - number
-        );
-        let name_of = |target: usize| data.targets.get(target).cloned().flatten();
-        let or = other_words(step, robot, data)
-            .map_or_else(String::new, |or| format!(" ({or} explains it nearly as well)"));
-        let (kind, name, is, taken) = match step.moved {
-            Moved::Device(station) => {
-                let name = data.stations.get(station).cloned().flatten().unwrap_or_default();
-                let next =
-                    next_of(if name.is_empty() { DEVICE } else { &name }, data.stations.iter().flatten());
-                let is = match files_apart(data, step.first) {
-                    Some((before, after)) if name.is_empty() => format!(
-                        "the files {before} and {after} do not share one device frame, as --frames per-file says: the measuring device is {far} \
-                         from where it was{or}"
-                    ),
-                    _ => format!(
-                        "from {from} on the measuring device{} is {far} from where it was{or}",
-                        quoted(&name)
-                    ),
-                };
-                (EventKind::Device, name, is, format!("taken as set up anew there, `{next}`"))
-            }
-            Moved::Target(target) => {
-                let name = name_of(target).unwrap_or_default();
-                let bases: BTreeSet<&str> =
-                    data.targets.iter().map(|it| family(it.as_deref().unwrap_or(MEASURED)).0).collect();
-                let several = bases.len() > 1;
-                let kind = if several { EventKind::Nest } else { EventKind::Target };
-                let next =
-                    next_of(if name.is_empty() { MEASURED } else { &name }, data.targets.iter().flatten());
-                let what = if several { "nest of target" } else { "target" };
-                let is = format!(
-                    "from {from} on the {what}{} is {far} from where it was on the arm{or}",
-                    quoted(&name)
-                );
-                (kind, name, is, format!("taken as another target, `{next}`"))
-            }
-            Moved::Tool => {
-                let is = format!(
-                    "from {from} on the tool with all targets is {far} from where it was on the arm{or}"
-                );
-                (EventKind::Target, String::new(), is, "taken as other targets from there on".to_owned())
-            }
-            Moved::Zero(joint) => {
-                let joint = robot.joints.get(joint);
-                let name = joint.map(|joint| joint.name.clone()).unwrap_or_default();
-                let is = format!("from {from} on the zero of joint `{name}` is {far} from where it was{or}");
-                (EventKind::Zero, name, is, "readings before it are taken as those after it".to_owned())
-            }
-            Moved::Drift(station) => {
-                let name = data.stations.get(station).cloned().flatten().unwrap_or_default();
-                let is = format!(
-                    "the measuring device{} drifts by {far} from the first row to the last{or}",
-                    quoted(&name)
-                );
-                (EventKind::Drift, name, is, "measurements are taken as without the drift".to_owned())
-            }
-        };
-        let remedy = if kind == EventKind::Drift {
-            "wait until it has settled, and measure again".to_owned()
-        } else {
-            again
-        };
-        let event = Event {
-            kind,
-            name,
-            from_row: number,
-            from,
-            rows: Vec::new(),
-            size_mm: has(false).then_some(shift_mm),
-            size_deg: has(true).then_some(turn_deg),
-            error_before_mm: None,
-            error_after_mm: None,
-            statement: format!("{is}: {taken}"),
-            residuals: Vec::new(),
-        };
-        Said(event, format!("{is}: {remedy}"))
-    }
-}
-
-/// The files before and after a row with which one begins.
-fn files_apart(data: &Dataset, first: u32) -> Option<(String, String)> {
-    let file = |row: u32| {
-        let at = data.observations.get(row as usize)?.source.file as usize;
-        Some((at, data.files.get(at)?.display().to_string()))
-    };
-    let (before, after) = (file(first.checked_sub(1)?)?, file(first)?);
-    (before.0 != after.0).then_some((before.1, after.1))
-}
-
-/// Name of the only device where no row names it.
-pub(crate) const DEVICE: &str = "device";
-
-/// The next name of the same thing: `tool.2`, `tool.3`.
-fn next_of<'n>(name: &str, known: impl Iterator<Item = &'n String>) -> String {
-    let (base, _) = family(name);
-    let own = known.map(|it| family(it)).filter(|(other, _)| *other == base);
-    let last = own.map(|(_, number)| number).max().unwrap_or(1);
-    format!("{base}.{}", last + 1)
-}
-
-/// The name of a thing before anything happened to it, and which it is in the order of time: `tool.2` is `tool` and 2.
-pub(crate) fn family(name: &str) -> (&str, usize) {
-    let parts = name.rsplit_once('.').and_then(|(base, number)| Some((base, number.parse().ok()?)));
-    parts.filter(|(base, number)| *number > 1 && !base.is_empty()).unwrap_or((name, 1))
 }
 
 /// Whether all rows of a station measured places.
@@ -498,61 +336,4 @@ fn picture(before: (&Calibration, &Dataset), after: (&Calibration, &Dataset)) ->
     let errors = |(found, data): (&Calibration, &Dataset)| errors_of(found, data, &some);
     let both = errors(before).into_iter().zip(errors(after)).zip(&some);
     both.map(|((before, after), row)| [f64::from(*row) + 1.0, before, after]).collect()
-}
-
-fn wrong_words(data: &Dataset, rows: &[u32]) -> Said {
-    let configurations = data.configurations(rows);
-    let places: Vec<String> =
-        configurations.iter().filter_map(|it| it.first()).take(LISTED).map(|row| data.place(*row)).collect();
-    let more = configurations.len().saturating_sub(LISTED);
-    let and = if more > 0 { format!(" and {more} more") } else { String::new() };
-    let (is, it) = if configurations.len() == 1 {
-        ("1 configuration is wrong as a whole".to_owned(), "it")
-    } else {
-        (format!("{} configurations are wrong as a whole", configurations.len()), "them")
-    };
-    let is = format!("{is} ({}{and}), as if read before the arm had settled", places.join(", "));
-    let event = Event {
-        kind: EventKind::Rows,
-        name: String::new(),
-        from_row: rows.first().map_or(0, |row| *row as usize + 1),
-        from: rows.first().map(|row| data.place(*row)).unwrap_or_default(),
-        rows: rows.iter().map(|row| *row as usize + 1).collect(),
-        size_mm: None,
-        size_deg: None,
-        error_before_mm: None,
-        error_after_mm: None,
-        statement: format!("{is}: left out; measure {it} again"),
-        residuals: Vec::new(),
-    };
-    Said(event, format!("{is}: measure {it} again, or leave {it} out"))
-}
-
-/// What else explains a step nearly as well.
-fn other_words(step: &Step, robot: &Robot, data: &Dataset) -> Option<String> {
-    let (moved, less) = step.other?;
-    if less > (1.0 - NEARLY) * step.gain {
-        return None;
-    }
-    let target = |at: usize| data.targets.get(at).cloned().flatten().unwrap_or_default();
-    Some(match moved {
-        Moved::Device(_) => "the measuring device".to_owned(),
-        Moved::Target(at) => format!("the target{}", quoted(&target(at))),
-        Moved::Tool => "the tool".to_owned(),
-        Moved::Zero(joint) => format!("the zero of `{}`", robot.joints.get(joint)?.name),
-        Moved::Drift(_) => "a drift".to_owned(),
-    })
-}
-
-fn quoted(name: &str) -> String {
-    if name.is_empty() { String::new() } else { format!(" `{name}`") }
-}
-
-fn far_words(mm: Option<f64>, deg: Option<f64>) -> String {
-    match (mm, deg) {
-        (Some(mm), Some(deg)) => format!("{mm:.2} mm and {deg:.3} deg"),
-        (Some(mm), None) => format!("{mm:.2} mm"),
-        (None, Some(deg)) => format!("{deg:.3} deg"),
-        (None, None) => String::new(),
-    }
 }
