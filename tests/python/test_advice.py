@@ -28,7 +28,7 @@ FOLLOWED = {
     "spread over {} mm, expected about the same: most likely they are in rad": HERE + "test_radians_that_are_called_degrees",
     "most likely they are in {likely}, not {}": HERE + "test_millimetres_that_are_called_metres",
     "write `{}[{symbol}]` in the header": HERE + "test_degrees_without_a_unit",
-    "write `x[{smaller}],y[{smaller}],z[{smaller}]`": HERE + "test_millimetres_that_are_called_metres",
+    "most likely {smaller}; write `{}` in the header": HERE + "test_millimetres_that_are_called_metres",
     "rename or add a column, or name the right one in a mapping file (--columns)": HERE + "test_a_column_of_another_name",
     "name them in a mapping file (--columns)": "crates/poecal/tests/it/measurement_errors.rs",
     "and say so with `joints": HERE + "test_a_joint_that_is_called_x",
@@ -176,6 +176,16 @@ def test_millimetres_that_are_called_metres(here, scale):
     for name in written:
         header = re.sub(rf"{name[0]}\[\w+\]", name, header)
     table(here, header, POINTS[1:])
+    calibrates(here)
+
+
+@pytest.mark.parametrize("name", ["x", "y", "z"])
+def test_one_column_that_is_called_metres(here, name):
+    table(here, POINTS[0].replace(f"{name}[mm]", f"{name}[m]"), POINTS[1:])
+    said = run(here, "calibrate", "robot.urdf", "points.csv", "--out", "out", code=2)
+    (written,) = re.search(r"write `(\w\[\w+\])` in", said).groups()
+    assert written == f"{name}[mm]" and f"found values of `{name}`" in said
+    table(here, POINTS[0].replace(f"{name}[mm]", written), POINTS[1:])
     calibrates(here)
 
 

@@ -1356,7 +1356,7 @@ export type SetAccuracy = {
 };
 
 /** Why a corrected model has terms of its sizes. */
-export type SizesReason = "given" | "predict" | "no_better" | "common" | "too_few" | "undetermined" | "led_nowhere";
+export type SizesReason = "given" | "predict" | "no_better" | "small" | "too_few" | "undetermined" | "led_nowhere" | "worse_held_out";
 
 /** The minimisation: steps, end, convergence. */
 export type SolverEntry = {
