@@ -163,7 +163,7 @@ fn values_of_another_scale_name_the_likely_unit() {
         case(CALIBRATE, format!("{HEADER}0.5,0.2,0.3,700,100,500\n0.1,0.3,0.3,-700,0,300\n"),
              "bad.csv:3: found positions up to 1418 m from their middle, where the robot reaches 1.583 m, expected another unit, most likely mm; write `x[mm],y[mm],z[mm]` in the header, or the unit in the mapping"),
         case(CALIBRATE, format!("{HEADER}0.5,0.2,0.3,0.7,0.1,500\n0.1,0.3,0.3,-0.7,0,-300\n"),
-             "bad.csv:2: found values of `z` up to 400 m from their middle, where the robot reaches 1.583 m, beside `x` and `y`, which it can reach, expected another unit, most likely mm; write `z[mm]` in the header, or the unit in the mapping"),
+             "bad.csv:3: found values of `z` up to 800 m from their middle, where the robot reaches 1.583 m, beside `x` and `y`, which it can reach, expected another unit, most likely mm; write `z[mm]` in the header, or the unit in the mapping"),
     ]);
 }
 

@@ -407,7 +407,13 @@ fn a_target_stays_near_the_tip_where_the_measurements_do_not_say_where_it_is() {
     let robot = scara();
     let mut far = [0.0f64; 2];
     for seed in trials(10).seeds() {
-        let simulation = Simulation { count: 25, seed, noise_position_m: 2e-3, ..Simulation::default() };
+        let simulation = Simulation {
+            count: 25,
+            seed,
+            error_rotation_rad: 1e-4,
+            noise_position_m: 2e-3,
+            ..Simulation::default()
+        };
         let made = simulation.run(&robot, Kind::Point).unwrap();
         for (open, far) in far.iter_mut().enumerate() {
             let free = if open == 1 { vec!["targets".to_owned()] } else { Vec::new() };

@@ -5,6 +5,7 @@ use std::slice;
 use super::choice::{Choice, SizesReason, TriedSizes, choose, weight_of_prior};
 use super::effects::effects;
 use super::found::Correction;
+use super::gravity::of_no_use;
 use super::grid::CHOSEN;
 use super::linear::{Linear, between};
 use super::modes::Class;
@@ -69,6 +70,7 @@ pub fn correct(
     let moves = moving(&session, &rows);
     let weights = weights.as_deref();
     let geometry = Geometry { calibration, nominal, session, options, rows, weights };
+    let is_found = gravity == GravityDirection::Found;
     let (gravity, doubt) = match gravity {
         GravityDirection::Known(direction) => (direction, None),
         GravityDirection::Found => geometry.gravity(&moves, sizes.unwrap_or(Sizes::COMMON)),
@@ -78,7 +80,9 @@ pub fn correct(
     let begun = geometry.begin(&all, sizes);
     // Terms that may be there keep their part of the uncertainty.
     let possible = if sizes.is_some() { begun.sizes } else { begun.sizes.max(&Sizes::COMMON) };
-    Correction { doubt, ..geometry.end(all.with_sizes(&possible), &possible, begun) }
+    let found = geometry.end(all.with_sizes(&possible), &possible, begun);
+    let is_of_no_use = is_found && !found.has_terms();
+    Correction { doubt: doubt.or_else(|| is_of_no_use.then(of_no_use)), ..found }
 }
 
 /// A finished calibration, from which corrections are fitted.

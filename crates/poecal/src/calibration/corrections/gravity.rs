@@ -9,9 +9,9 @@ use crate::robot::{CorrectionModel, Sizes};
 /// Angles by which a direction of gravity is tilted in turn, radians, and how often by each at most.
 const TILTS: [f64; 6] = [0.35, 0.17, 0.09, 0.04, 0.02, 0.01];
 const MOST_TILTS: usize = 8;
-/// Gain of the logarithm of the likelihood with which a direction is evidently another than -z: two angles that say nothing gain more in one
-/// of 400 sessions.
-const EVIDENT: f64 = 6.0;
+/// Gain of the logarithm of the likelihood with which a direction is evidently another than -z: where nothing sags, the best of all directions
+/// gains up to 9.
+const EVIDENT: f64 = 12.0;
 /// Numbers of a configuration that count.
 const NUMBERS_OF_A_CONFIGURATION: f64 = 3.0;
 /// Least share by which the noise becomes less.
@@ -73,6 +73,13 @@ impl Geometry<'_> {
         });
         (if given.is_some_and(|given| given < 0.0) { -best } else { best }, None)
     }
+}
+
+/// What is said where terms are of no use, whatever the direction.
+pub(super) fn of_no_use() -> String {
+    "the direction of gravity was not found: no terms of the joints predict other rows better; if the robot does not stand upright, state it (--gravity \
+     X,Y,Z)"
+        .to_owned()
 }
 
 /// What is said of a direction that is not taken.

@@ -21,6 +21,8 @@ const LARGEST_UNLIMITED: f64 = 50.0;
 const LARGEST_OTHERWISE: f64 = 4.0 * std::f64::consts::PI;
 /// Least share of rows with implausible values: a few corrupt rows are no wrong unit.
 const SHARE: f64 = 0.1;
+/// Motion below which a coordinate did not move, as a share of the reach.
+const STILL: f64 = 1e-2;
 /// Positions with a spread of more than this many reaches are in a wrong unit.
 const REACHES: f64 = 20.0;
 /// The largest of all readings where they are per cent of the joints' ranges, from -100 to 100 and a little beyond.
@@ -321,8 +323,11 @@ pub(super) fn check_positions(
         return Ok(());
     }
     // The columns of which that is so: a header may state the unit of one of three wrongly.
-    let is_far = |axis: usize| positions.iter().any(|it| (it[axis] - middle[axis]).abs() > REACHES * reach);
-    let own: Vec<usize> = (0..3).filter(|axis| is_far(*axis)).collect();
+    // One in which nothing moved shows nothing.
+    let far_of =
+        |axis: usize| positions.iter().fold(0.0, |most: f64, it| most.max((it[axis] - middle[axis]).abs()));
+    let is_right = |axis: usize| (STILL * reach..=REACHES * reach).contains(&far_of(axis));
+    let own: Vec<usize> = (0..3).filter(|axis| !is_right(*axis)).collect();
     let own = if own.is_empty() { vec![0, 1, 2] } else { own };
     let mut headers = Vec::new();
     for input in own.iter().map(|axis| inputs[*axis]) {
