@@ -68,7 +68,13 @@ impl<'a> Prepared<'a> {
     }
 
     fn registration<'b>(&'b self, rows: &'b [u32], noise: Noise, targets_free: bool) -> Registration<'b> {
-        Registration { session: self.session, rows, noise, targets_free, prior: self.prior.as_ref() }
+        Registration {
+            session: self.session,
+            rows,
+            noise,
+            targets_free,
+            prior: self.prior.as_ref().map(|it| (it, 1.0)),
+        }
     }
 
     /// Device frame and targets with nominal screws, and the noise estimated from their residuals unless stated.
@@ -79,8 +85,9 @@ impl<'a> Prepared<'a> {
             && let Some(found) = estimate_noise(&self.session, &self.fit_rows, &registered, 6.0, None, noise)
         {
             noise = noise::stated(self.options, found);
-            registered = register_again(&self.registration(&self.fit_rows, noise, true), &registered);
         }
+        let again = self.registration(&self.fit_rows, noise, true).weighed_by(&registered);
+        registered = register_again(&again, &registered);
         (registered, noise, source)
     }
 
@@ -262,8 +269,9 @@ impl<'a> Prepared<'a> {
             Unit::Metre => fitted.noise[quantity],
             Unit::Radian | Unit::One => POSITIONS_FIRST * fitted.noise[quantity],
         });
-        let again =
-            |targets_free| register(&self.registration(kept, positions, targets_free), &self.delivered).0;
+        let registration =
+            |targets_free| self.registration(kept, positions, targets_free).weighed_by(&registered);
+        let again = |targets_free| register(&registration(targets_free), &self.delivered).0;
         // Offsets that were asked for stay; those of a formulation are a way to write the screws.
         let found = if self.options.formulation == Formulation::default() {
             fitted.estimate.clone()
@@ -282,7 +290,7 @@ impl<'a> Prepared<'a> {
             registered: if is_robust {
                 again(true)
             } else {
-                register_again(&self.registration(kept, positions, true), &registered)
+                register_again(&registration(true), &registered)
             },
             calibrated,
         }

@@ -35,8 +35,8 @@ pub struct Registration<'a> {
     pub noise: Noise,
     /// Whether the targets are unknown (otherwise they stay as in the start).
     pub targets_free: bool,
-    /// What is known of the targets before (theory.md §6 (27c)).
-    pub prior: Option<&'a Prior>,
+    /// What is known of the targets before (theory.md §6 (27c)), and its weight: the variance of the whitened residuals.
+    pub prior: Option<(&'a Prior, f64)>,
 }
 
 /// Registers the data to an estimate's screws as if they were measured from one station. Returns the cost of theory.md §6 (27) with it.
@@ -81,8 +81,24 @@ pub fn register_again(problem: &Registration<'_>, start: &Estimate) -> Estimate 
 }
 
 impl<'a> Registration<'a> {
+    /// The same with the weight of the prior that the residuals of an estimate show.
+    #[must_use]
+    pub fn weighed_by(self, estimate: &Estimate) -> Self {
+        let Registration { session, rows, noise, .. } = self;
+        let (mut squares, mut numbers) = (0.0, 0.0);
+        for (row, error) in rows.iter().zip(session.errors(rows, estimate)) {
+            let sigma = session.noise_of(session.observation(*row), noise);
+            for (channel, value) in error.numbers() {
+                squares += (value / sigma[channel.quantity]).powi(2);
+                numbers += 1.0;
+            }
+        }
+        let weight = if numbers > 0.0 && squares.is_finite() { squares / numbers } else { 1.0 };
+        Registration { prior: self.prior.map(|(prior, _)| (prior, weight)), ..self }
+    }
+
     pub(super) fn least_squares(&self, rows: Vec<u32>, free: Vec<Parameter>) -> Problem<'a> {
-        Problem::new(self.session, rows, free, self.noise).with_prior(self.prior.map(|prior| (prior, 1.0)))
+        Problem::new(self.session, rows, free, self.noise).with_prior(self.prior)
     }
 }
 

@@ -157,8 +157,13 @@ impl FrameSearch<'_> {
     fn registered(&self, data: &Dataset, rows: &[u32]) -> Estimate {
         let session = Session { data, noise_ratios: &[], ..self.session };
         let prior = self.options.prior(&session);
-        let registration =
-            Registration { session, rows, noise: self.noise, targets_free: true, prior: prior.as_ref() };
+        let registration = Registration {
+            session,
+            rows,
+            noise: self.noise,
+            targets_free: true,
+            prior: prior.as_ref().map(|it| (it, 1.0)),
+        };
         register(&registration, &delivered(session.robot, data)).0
     }
 
