@@ -401,32 +401,36 @@ fn a_joint_may_state_its_own_tolerance() {
     assert!((cost(&robot) / usual - 0.01).abs() < 1e-6);
 }
 
-/// A tool that hardly turns shows the height of its target only by a milliradian of tilt, and errors of millimetres put it metres away: it stays
-/// near the tip, unless it is open.
+/// A tool that hardly turns shows the height of its target only by a tilt of 0.2 mrad, and noise of millimetres puts it metres away: it stays near
+/// the tip, unless it is open.
 #[test]
 fn a_target_stays_near_the_tip_where_the_measurements_do_not_say_where_it_is() {
     let mut far = [[0.0f64; 2]; 2];
-    let errors = |error_rotation_rad: f64, error_position_m: f64, robot: &Robot, seed: u64| {
-        let errors = Simulation { error_rotation_rad, error_position_m, ..Simulation::default() };
-        errors.perturbed(robot, &mut ChaCha8Rng::seed_from_u64(seed))
-    };
     for seed in trials(10).seeds() {
-        let robot = errors(1e-3, 0.0, &scara(), seed);
-        let rows = configurations(&robot, 25, seed, |_, _| {});
-        let data = observed(&robot, &errors(3e-3, 3e-3, &robot, seed ^ 0xac), Kind::Point, &rows, seed);
+        let tilted = Simulation { error_rotation_rad: 2e-4, error_position_m: 0.0, ..Simulation::default() };
+        let robot = tilted.perturbed(&scara(), &mut ChaCha8Rng::seed_from_u64(seed));
+        let as_drawn = Simulation {
+            error_rotation_rad: 0.0,
+            error_position_m: 0.0,
+            noise_position_m: 2e-3,
+            count: 25,
+            seed,
+            ..Simulation::default()
+        };
+        let made = as_drawn.run(&robot, Kind::Point).unwrap();
         for (open, far) in far.iter_mut().enumerate() {
             let free = if open == 1 { vec!["targets".to_owned()] } else { Vec::new() };
             let blocks = BlockChoice { free, fix: Vec::new() };
             let options = CalibrationOptions { blocks, held_out: 0.0, ..geometry() };
-            let found = calibrate(&robot, &data, &options).unwrap();
+            let found = calibrate(&robot, &made.data, &options).unwrap();
             let registered = found.models.registered.base_from_target[0].translation - robot.home.translation;
             far[0] = far[0].max(registered.norm());
             far[1] = far[1].max(found.targets[0].tip_from_target.translation.norm());
         }
     }
     println!("registered and calibrated at most {:.3?} m from the tip, open {:.3?} m", far[0], far[1]);
-    // Three times its standard deviation of 0.3 m; nothing holds the other.
-    assert!(far[0].iter().all(|far| *far < 0.9) && far[1][0] > 2.0 * far[0][0]);
+    // Twice its standard deviation of 0.3 m; nothing holds the other.
+    assert!(far[0].iter().all(|far| *far < 0.6) && far[1][0] > 2.0 * far[0][0]);
 }
 
 /// In a small cube, with a joint that only jitters, unknowns follow a curved valley far; the errors of other rows do not.
