@@ -16,6 +16,7 @@ use poecal::solve::Normal;
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 use rayon::prelude::*;
+use std::f64::consts::FRAC_PI_2;
 
 const NOISE_M: f64 = 5e-5;
 const NOISE_RAD: f64 = 1e-4;
@@ -413,8 +414,8 @@ fn a_target_stays_near_the_tip_where_the_measurements_do_not_say_where_it_is() {
     for seed in trials(10).seeds() {
         let rows = configurations(&robot, 25, seed, |readings, generator| {
             readings[3] = 0.0;
-            let tilt = 2e-4 * random::normal(generator);
-            readings[4] = tilt - (pitch(1) * readings[1] + pitch(2) * readings[2]) / pitch(4);
+            let down = FRAC_PI_2 + 2e-4 * random::normal(generator);
+            readings[4] = (down - pitch(1) * readings[1] - pitch(2) * readings[2]) / pitch(4);
         });
         let data = observed(&robot, &robot, Kind::Point, &rows, seed);
         for (open, far) in far.iter_mut().enumerate() {
