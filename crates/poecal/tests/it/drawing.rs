@@ -402,7 +402,7 @@ fn a_joint_may_state_its_own_tolerance() {
     assert!((cost(&robot) / usual - 0.01).abs() < 1e-6);
 }
 
-/// A tool that points down in all configurations but for 0.2 mrad shows the height of its target only by that, and noise of a tenth of a
+/// A tool that points down in all configurations but for 5 microradians shows the height of its target only by that, and noise of a twentieth of a
 /// millimetre puts it metres away: it stays near the tip, unless it is open.
 #[test]
 fn a_target_stays_near_the_tip_where_the_measurements_do_not_say_where_it_is() {
@@ -414,7 +414,7 @@ fn a_target_stays_near_the_tip_where_the_measurements_do_not_say_where_it_is() {
     for seed in trials(10).seeds() {
         let rows = configurations(&robot, 25, seed, |readings, generator| {
             readings[3] = 0.0;
-            let down = FRAC_PI_2 + 2e-4 * random::normal(generator);
+            let down = FRAC_PI_2 + 5e-6 * random::normal(generator);
             readings[4] = (down - pitch(1) * readings[1] - pitch(2) * readings[2]) / pitch(4);
         });
         let data = observed(&robot, &robot, Kind::Point, &rows, seed);
@@ -429,7 +429,8 @@ fn a_target_stays_near_the_tip_where_the_measurements_do_not_say_where_it_is() {
         }
     }
     println!("registered and calibrated at most {:.3?} m from the tip, open {:.3?} m", far[0], far[1]);
-    assert!(far[0].iter().all(|far| *far < 0.3));
+    // Twice its standard deviation of 0.39 m; nothing holds the other.
+    assert!(far[0].iter().all(|far| *far < 0.8) && far[1].iter().all(|far| *far > 1.0));
 }
 
 /// In a small cube, with a joint that only jitters, unknowns follow a curved valley far; the errors of other rows do not.
