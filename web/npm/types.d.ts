@@ -63,7 +63,10 @@ export interface CalibrateOptions {
   gravity?: Value | readonly Value[];
   /** Blocks to hold as in the model: joints, targets, frames, or names like joint2.axis, in which * stands for any letters */
   fix?: Value | readonly Value[];
-  /** Blocks to fit, also those that are usually held, like joint2.offset, and after --fix: `--fix joints --free joint2` */
+  /**
+   * Blocks to fit, also those that are usually held, like joint2.offset, and after --fix: `--fix joints --free joint2`. A target that is
+   * named may be anywhere, not only near the tip: `--free targets`
+   */
   free?: Value | readonly Value[];
   /**
    * Put the tip where the measured point is, for a model that ends in its reflector. Otherwise the links beyond the last joint stay as in

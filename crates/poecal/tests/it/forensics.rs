@@ -92,10 +92,12 @@ fn a_column_in_another_unit_is_named_alone() {
         let axis = seed as usize % 3;
         let mut data = session.data.clone();
         for row in &mut data.observations {
-            match &mut row.measurement {
-                Measurement::Point(seen) => seen.position[axis] *= 1e-3,
-                Measurement::Pose(seen) => seen.pose.translation[axis] *= 1e-3,
-                other => panic!("{other:?}"),
+            if let Measurement::Point(seen) = &mut row.measurement {
+                seen.position[axis] *= 1e-3;
+            } else if let Measurement::Pose(seen) = &mut row.measurement {
+                seen.pose.translation[axis] *= 1e-3;
+            } else {
+                panic!("{:?}", row.measurement);
             }
         }
         let found = found(&session, &data);

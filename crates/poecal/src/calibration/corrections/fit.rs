@@ -1,14 +1,11 @@
 //! The fit of screws and terms together.
 
-use std::slice;
-
 use super::choice::{Choice, SizesReason, TriedSizes, choose, weight_of_prior};
 use super::effects::effects;
 use super::found::Correction;
+use super::geometry::{Geometry, Sampled};
 use super::gravity::of_no_use;
-use super::grid::CHOSEN;
-use super::linear::{Linear, between};
-use super::modes::Class;
+use super::linear::between;
 use super::promise::uncertainty;
 use super::unknowns::{estimate, moving, priors, unknowns, weights};
 use crate::analysis::coverage;
@@ -20,19 +17,13 @@ use crate::calibration::located::{located, promised_rows};
 use crate::calibration::noise::{NoiseSource, stated};
 use crate::calibration::placed::{place_tip, stations};
 use crate::calibration::{Calibration, CalibrationOptions, PredictedUncertainty, delivered, estimate_noise};
-use crate::estimate::{Estimate, Packed, Session, Unknowns, sample_rows};
+use crate::estimate::{Estimate, Packed, Session, sample_rows};
 use crate::gauge;
 use crate::measurement::{ByQuantity, Dataset, Noise, Quantity};
-use crate::problem::Prior;
-use crate::robot::{
-    CorrectionModel, Extent, GravityDirection, JointTerm, Robot, Sizes, TermGroup, Tolerance,
-};
-use crate::uncertainty::{PriorInformation, View, parts_to_leave_out};
+use crate::robot::{CorrectionModel, GravityDirection, JointTerm, Robot, Sizes};
 
 /// Most rounds of re-estimating the noise.
 const ROUNDS: usize = 4;
-/// Most rows from which sizes are chosen.
-const SAMPLE: usize = 2000;
 /// Change of the noise below which it stays, as a share.
 const SETTLED: f64 = 0.02;
 /// Most held-out rows whose bounds are checked.
@@ -85,18 +76,6 @@ pub fn correct(
     Correction { doubt: doubt.or_else(|| is_of_no_use.then(of_no_use)), ..found }
 }
 
-/// A finished calibration, from which corrections are fitted.
-pub(super) struct Geometry<'a> {
-    pub(super) calibration: &'a Calibration,
-    pub(super) nominal: Robot,
-    pub(super) session: Session<'a>,
-    options: &'a CalibrationOptions,
-    /// The fitted rows that have a weight.
-    pub(super) rows: Vec<u32>,
-    /// Weights of all rows of the data.
-    pub(super) weights: Option<&'a [f64]>,
-}
-
 /// Sizes, and the optimum with them as far as rows are linear.
 struct Begun {
     sizes: Sizes,
@@ -110,90 +89,7 @@ struct Begun {
     growth: f64,
 }
 
-/// Rows of a sample as linear functions, and the parts of them that are left out in turn.
-pub(super) struct Sampled {
-    pub(super) linear: Linear,
-    parts: Vec<Vec<u32>>,
-    pub(super) configurations: usize,
-}
-
 impl Geometry<'_> {
-    /// How far the model reaches; for terms of these sizes as far as they do.
-    pub(super) fn extent(&self, sizes: Option<Sizes>) -> Extent {
-        let gives = sizes.map_or(self.options.corrections.gives(), |sizes| sizes.gives());
-        Extent { orders: self.options.harmonics, gives }
-    }
-
-    fn session<'a>(
-        &'a self,
-        model: &'a CorrectionModel,
-        packed: &'a Packed,
-        unknowns: &'a Unknowns,
-    ) -> Session<'a> {
-        Session { robot: &model.robot, packed, unknowns, ..self.session }
-    }
-
-    fn task<'a>(&'a self, session: Session<'a>, prior: (&'a Prior, f64)) -> Task<'a> {
-        let Geometry { rows, options, weights, .. } = self;
-        Task { session, rows, weights: *weights, prior: Some(prior), options }
-    }
-
-    fn prior(&self, session: &Session<'_>) -> Prior {
-        let tolerance = self.options.tolerance.unwrap_or(Tolerance::WIDE);
-        Prior::of(session, tolerance)
-    }
-
-    /// A sample of the rows, linear about the calibrated model; none if that determines nothing.
-    pub(super) fn sampled(&self, model: &CorrectionModel, sizes: Option<Sizes>) -> Option<Sampled> {
-        let Geometry { calibration, options, .. } = *self;
-        let noise = calibration.noise;
-        let none = PriorInformation::none(0);
-        let view = View {
-            session: self.session,
-            rows: &self.rows,
-            free: &[],
-            noise,
-            noise_is_stated: ByQuantity::default(),
-            prior: &none,
-            variance: 1.0,
-            estimate: &calibration.models.calibrated,
-        };
-        let (sample, parts) = parts_to_leave_out(&view, SAMPLE, options.seed);
-        // The rows of the sample alone, so that terms are evaluated at no others.
-        let data = self.session.data.only(&sample);
-        let rows = data.all_rows();
-        let among = |row: &u32| sample.binary_search(row).ok().and_then(|at| u32::try_from(at).ok());
-        let parts: Vec<Vec<u32>> = parts.iter().map(|part| part.iter().filter_map(among).collect()).collect();
-        let weights: Option<Vec<f64>> = self.weights.map(|weights| {
-            sample.iter().map(|&row| weights.get(row as usize).copied().unwrap_or(1.0)).collect()
-        });
-        let start = estimate(model, &calibration.models.calibrated, &data);
-        let packed = Packed::of(&model.robot, &data);
-        let unknowns = unknowns(model, self.session.unknowns, &sizes.unwrap_or(Sizes::ALL));
-        let session = Session {
-            data: &data,
-            robot: &model.robot,
-            packed: &packed,
-            unknowns: &unknowns,
-            ..self.session
-        };
-        let prior = self.prior(&session);
-        let prior = Some((&prior, 1.0));
-        let task = Task { session, rows: &rows, weights: weights.as_deref(), prior, options };
-        let configurations = data.configurations(&rows).len();
-        let weight = weight_of_prior(configurations);
-        let classes: Vec<Class> = match sizes {
-            None => {
-                CHOSEN.map(|(groups, sizes)| (groups, sizes.iter().copied().fold(0.0, f64::max))).to_vec()
-            }
-            Some(sizes) => {
-                TermGroup::ALL.iter().map(|group| (slice::from_ref(group), sizes[*group])).collect()
-            }
-        };
-        let linear = Linear::new(&task, model, (&start, noise), (&rows, weight), &classes)?;
-        Some(Sampled { linear, parts, configurations })
-    }
-
     /// Chooses sizes, unless they are given.
     fn begin(&self, model: &CorrectionModel, sizes: Option<Sizes>) -> Begun {
         let Geometry { calibration, .. } = *self;

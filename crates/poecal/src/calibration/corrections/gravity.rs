@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::fit::Geometry;
+use super::geometry::Geometry;
 use crate::lie::rotation;
 use crate::robot::{CorrectionModel, Sizes};
 

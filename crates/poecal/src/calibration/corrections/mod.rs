@@ -4,6 +4,7 @@ mod choice;
 mod effects;
 mod fit;
 mod found;
+mod geometry;
 mod gravity;
 mod grid;
 mod left_out;

@@ -1,6 +1,6 @@
 //! Whether terms are worse than geometry alone, after their fit.
 
-use super::fit::Geometry;
+use super::geometry::Geometry;
 use crate::calibration::located::located;
 use crate::estimate::{Estimate, RowError, Session};
 

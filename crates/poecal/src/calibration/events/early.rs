@@ -4,7 +4,6 @@ use nalgebra::{DMatrix, DVector};
 
 use super::hypotheses::Moved;
 use super::rows::{Optimum, Rows};
-use super::search::shared;
 use crate::measurement::Dataset;
 use crate::robot::{JointKind, Robot};
 
@@ -93,6 +92,6 @@ fn part(
     let moved = &column * angle_rad;
     Some(Part {
         angle_rad,
-        gain: angle_rad * pull / optimum.variance / shared(rows, optimum, weights, &moved),
+        gain: angle_rad * pull / optimum.variance / rows.shared(optimum, weights, &moved),
     })
 }

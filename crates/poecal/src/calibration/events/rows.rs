@@ -128,6 +128,25 @@ impl Rows {
         let variance = squares / freedom.max(LEAST_FREEDOM * numbers).max(1.0);
         (variance > 0.0).then_some(Optimum { residual, whitened, variance, freedom })
     }
+
+    /// How much the numbers of a run share along a step: the variance of its size by runs, over that by numbers; at least 1.
+    pub(super) fn shared(&self, optimum: &Optimum, weights: &[f64], moved: &DVector<f64>) -> f64 {
+        let mut weighted = moved.clone();
+        for (run, weight) in self.runs.iter().zip(weights) {
+            self.numbers(run).for_each(|at| weighted[at] *= *weight);
+        }
+        // What is left of the step beside all that is fitted, and of the residuals beside the step.
+        let left = moved - &optimum.whitened * optimum.whitened.tr_mul(&weighted);
+        let residual = &optimum.residual - &left;
+        let (mut scatter, mut information) = (0.0, 0.0);
+        for (run, weight) in self.runs.iter().zip(weights) {
+            let numbers = self.numbers(run);
+            let own = left.rows(numbers.start, numbers.len());
+            scatter += weight * own.dot(&residual.rows(numbers.start, numbers.len())).powi(2);
+            information += weight * own.norm_squared();
+        }
+        (scatter / (information * optimum.variance).max(f64::MIN_POSITIVE)).max(1.0)
+    }
 }
 
 /// Consecutive rows of one configuration.

@@ -184,7 +184,7 @@ fn strongest(
         moved.rows_mut(numbers.start, numbers.len()).copy_from(&of_step);
     }
     let leaves = (1.0 - gain / optimum.freedom.max(1.0)).max(0.0).sqrt();
-    let gain = gain / shared(rows, optimum, weights, &moved);
+    let gain = gain / rows.shared(optimum, weights, &moved);
     let first = *rows.rows.get(rows.runs.get(*seen.get(place)?)?.start)?;
     let size = step.iter().copied().collect();
     let score = gain - k as f64 * (rows.runs.len() as f64).ln();
@@ -198,23 +198,4 @@ fn strongest(
         score,
         other: None,
     })
-}
-
-/// How much the numbers of a run share along a step: the variance of its size by runs, over that by numbers; at least 1.
-pub(super) fn shared(rows: &Rows, optimum: &Optimum, weights: &[f64], moved: &DVector<f64>) -> f64 {
-    let mut weighted = moved.clone();
-    for (run, weight) in rows.runs.iter().zip(weights) {
-        rows.numbers(run).for_each(|at| weighted[at] *= *weight);
-    }
-    // What is left of the step beside all that is fitted, and of the residuals beside the step.
-    let left = moved - &optimum.whitened * optimum.whitened.tr_mul(&weighted);
-    let residual = &optimum.residual - &left;
-    let (mut scatter, mut information) = (0.0, 0.0);
-    for (run, weight) in rows.runs.iter().zip(weights) {
-        let numbers = rows.numbers(run);
-        let own = left.rows(numbers.start, numbers.len());
-        scatter += weight * own.dot(&residual.rows(numbers.start, numbers.len())).powi(2);
-        information += weight * own.norm_squared();
-    }
-    (scatter / (information * optimum.variance).max(f64::MIN_POSITIVE)).max(1.0)
 }
