@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use super::factor;
 use super::view::View;
 use crate::distributions::{f_quantile, is_within_band};
-use crate::estimate::{RowError, sample_rows};
+use crate::estimate::{Rounding, RowError, sample_rows};
 use crate::linalg;
 use crate::measurement::{ByQuantity, MANY_ROWS, Noise, Quantity};
 use crate::problem::Layout;
@@ -21,6 +21,8 @@ const CHANCE: f64 = 0.01;
 const FEW: usize = 300;
 /// Noise of positions that count as not measured.
 const UNMEASURED_M: f64 = 1e9;
+/// Largest share of what is left that counts as the rounding of the readings.
+const ROUNDED: f64 = 0.5;
 /// Residuals below this (metres, radians) are rounding.
 const ROUNDING: f64 = 1e-9;
 
@@ -37,6 +39,8 @@ pub struct Part {
     pub repeats: f64,
     /// Mean stated variance of a component, and the mean square over it, if the noise of all rows is stated.
     pub stated: Option<(f64, f64)>,
+    /// Variance of a component that the rounding of the readings makes.
+    pub rounded: f64,
 }
 
 /// Whether the residuals count as the robot's or the instrument's.
@@ -83,11 +87,15 @@ impl Part {
     /// Attributes the residuals to robot or instrument, by whether they show structure (theory.md §9, between (40) and (41)).
     #[must_use]
     pub fn settled(&self, structured: bool) -> Settled {
-        let robot = |variance: f64, instrument: f64| Settled {
-            robot: variance.max(0.0).sqrt(),
-            instrument: instrument.sqrt(),
-            attribution: Attribution::Robot,
-            freedom: self.freedom,
+        // Rounding is no error of the robot; but for half of what is left it may be that exact readings only look rounded.
+        let robot = |variance: f64, instrument: f64| {
+            let rounded = self.rounded.min(ROUNDED * variance.max(0.0));
+            Settled {
+                robot: (variance - rounded).max(0.0).sqrt(),
+                instrument: (instrument + rounded).sqrt(),
+                attribution: Attribution::Robot,
+                freedom: self.freedom,
+            }
         };
         if self.mean_square.sqrt() < ROUNDING {
             return Settled {
@@ -205,6 +213,7 @@ impl ResidualSums {
             // Of all rows: noise alone explains those within configurations as well as the others.
             stated: (stated && self.components > 0)
                 .then(|| (variance, if is_repeated { self.between(freedom) } else { self.whitened / whole })),
+            rounded: 0.0,
         }
     }
 
@@ -241,6 +250,8 @@ pub fn remainder(view: &View<'_>, normal: &Normal, layout: &Layout) -> Remainder
     let effective_unknowns = effective_unknowns(view, normal);
     let angles = total_of(&sums, Unit::Radian);
     let lengths = total_of(&sums, Unit::Metre);
+    let left_m = (3.0 * lengths.squares / lengths.components.max(1) as f64).sqrt();
+    let rounding = Rounding::of(&view.session, left_m);
     let by_rotations =
         share * determined_by_rotations(view, normal, layout, effective_unknowns, &angles, total);
     let in_sample = share * effective_unknowns;
@@ -258,7 +269,13 @@ pub fn remainder(view: &View<'_>, normal: &Normal, layout: &Layout) -> Remainder
             Unit::Metre => (in_sample - by_rotations) * of_all(&lengths),
             Unit::Radian | Unit::One => by_rotations * of_all(&angles),
         };
-        own.part(determined, view.noise_is_stated[quantity])
+        let part = own.part(determined, view.noise_is_stated[quantity]);
+        let rounded = rounding.as_ref().map_or(0.0, |it| match quantity.unit() {
+            Unit::Metre => it.place_m2 / 3.0,
+            Unit::Radian => it.turn_rad2 / 3.0,
+            Unit::One => 0.0,
+        });
+        Part { rounded, ..part }
     });
     let is_explained = |(quantity, part): (Quantity, &Part)| {
         sums[quantity].components == 0 || part.against_stated() == Some(std::cmp::Ordering::Equal)
@@ -267,10 +284,11 @@ pub fn remainder(view: &View<'_>, normal: &Normal, layout: &Layout) -> Remainder
     Remainder { parts, variance, effective_unknowns, numbers }
 }
 
-/// Counts of all quantities of a unit.
+/// Counts and squares of all quantities of a unit.
 fn total_of(sums: &ByQuantity<ResidualSums>, unit: Unit) -> ResidualSums {
     let own = sums.iter().filter(|(quantity, _)| quantity.unit() == unit);
     own.fold(ResidualSums::default(), |total, (_, sums)| ResidualSums {
+        squares: total.squares + sums.squares,
         components: total.components + sums.components,
         groups: total.groups + sums.groups,
         ..total

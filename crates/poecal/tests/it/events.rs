@@ -204,3 +204,23 @@ fn readings_that_are_all_early_are_named_with_their_angle() {
         assert!(!calibration.warnings.iter().any(|it| it.contains(EARLY)), "{:?}", calibration.warnings);
     }
 }
+
+/// What rounding makes is noise, up to half of what is left: the robot is better than the rows say.
+#[test]
+fn the_rounding_of_readings_is_noise_and_no_error_of_the_robot() {
+    for seed in trials(6).at_least(3).seeds() {
+        let made = session(seed, Kind::Point);
+        let step = 0.1_f64.to_radians();
+        let data = with_readings(&made.data, |_, readings| {
+            readings.iter_mut().for_each(|value| *value = (*value / step).round() * step);
+        });
+        let (calibration, _) = found(&made.nominal, &data, &CalibrationOptions::default());
+        assert!(calibration.warnings.iter().any(|it| it.contains("are rounded to 0.1 deg")));
+        let left_mm = calibration.accuracy.held_out.unwrap().calibrated.position_mm().rms;
+        let expected_mm = calibration.verdict.expected_error_mm.unwrap();
+        // The truth is of points of the tip, which no row shows exactly: of distances of two.
+        let error_mm = error_mm(&made, &calibration, 0.0);
+        println!("seed {seed}: {left_mm:.3} mm left, {expected_mm:.3} mm expected, {error_mm:.3} mm of distances");
+        assert!(error_mm < 1.5 * expected_mm && expected_mm < 0.95 * left_mm);
+    }
+}

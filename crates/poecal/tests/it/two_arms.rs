@@ -3,7 +3,8 @@
 
 use crate::common::geometry;
 use crate::largest::larger;
-use poecal::calibration::{Calibration, CalibrationOptions, Robust, calibrate};
+use poecal::calibration::{Calibration, CalibrationOptions, Corrections, Robust, calibrate};
+use poecal::estimate::{Packed, Session};
 use poecal::io::urdf::{ChainSelection, UrdfDocument};
 use poecal::measurement::{Dataset, Observation, Quantity};
 use poecal::robot::Robot;
@@ -166,4 +167,52 @@ fn with_noise_held_out_rows_are_as_good_as_the_noise() {
         // n unknowns add n / m to the variance of m numbers, some 15 %; 90 rows or more scatter by 7 %.
         assert!((0.8..1.3).contains(&(rms / expected)), "{name}: {rms} mm");
     }
+}
+
+/// The rows of the left hand, with the readings of its chain alone.
+fn of_left(chain: &Robot, data: &Dataset) -> Dataset {
+    let mut own = Dataset::new(chain.reading_names());
+    let at: Vec<usize> = own
+        .reading_names()
+        .iter()
+        .map(|name| data.reading_names().iter().position(|it| it == name).unwrap())
+        .collect();
+    for (row, observation) in data.observations.iter().enumerate() {
+        if data.targets[observation.target].as_deref() == Some("left") {
+            let readings: Vec<f64> = at.iter().map(|&at| data.readings(row)[at]).collect();
+            own.push(&readings, None, observation.measurement).unwrap();
+        }
+    }
+    own
+}
+
+/// Error of the corrected model on other rows, metres (RMS).
+fn corrected_m(calibration: &Calibration, unseen: &Dataset, target: Option<&str>) -> f64 {
+    let found = calibration.correction.as_ref().unwrap();
+    let packed = Packed::of(&found.model.robot, unseen);
+    let session = Session::new(&found.model.robot, unseen, &packed, true);
+    let is_own = |row: &u32| unseen.targets[unseen.observations[*row as usize].target].as_deref() == target;
+    let rows: Vec<u32> = unseen.all_rows().into_iter().filter(is_own).collect();
+    let squares: f64 =
+        session.errors(&rows, &found.estimate).iter().map(|it| it.position_m().norm_squared()).sum();
+    (squares / rows.len() as f64).sqrt()
+}
+
+/// What hangs on the torso bends it. One tree of both arms knows where the other arm is; a chain of one arm does not.
+#[test]
+fn a_tree_of_two_soft_arms_has_half_the_error_of_a_chain() {
+    let Ok(Corrections::Sizes(terms)) = "sag=2e-2,tilt=2e-2".parse() else { panic!("no sizes") };
+    let tree = both_hands("base_link");
+    let selection = ChainSelection { tip_link: Some("left_hand".to_owned()), ..ChainSelection::default() };
+    let text = include_str!("../data/torso.urdf");
+    let chain = UrdfDocument::parse(text, "torso.urdf", &selection).unwrap().robot().clone();
+    let drawn = Simulation { terms, count: 200, seed: 3, ..Simulation::default() };
+    let made = drawn.run(&tree, Kind::Point).unwrap();
+    let unseen = drawn.held_out(&made, Kind::Point, 100).unwrap();
+    let options = CalibrationOptions::default();
+    let whole = corrected_m(&calibrate(&tree, &made.data, &options).unwrap(), &unseen, Some("left"));
+    let left = of_left(&chain, &made.data);
+    let alone = corrected_m(&calibrate(&chain, &left, &options).unwrap(), &of_left(&chain, &unseen), None);
+    println!("tree {:.3} mm, chain {:.3} mm", 1e3 * whole, 1e3 * alone);
+    assert!(whole < 0.5 * alone);
 }
