@@ -88,7 +88,7 @@ fn pass(bencher: Bencher<'_, '_>, kind: Kind) {
         Parameter::DeviceFrame(DeviceFrame::showing(station, data.device_freedom(station, &rows)))
     }));
     free.push(if kind == Kind::Pose {
-        Parameter::TargetFrame(TargetFrame { target: 0, freedom: Freedom::Frame })
+        Parameter::TargetFrame(TargetFrame { target: 0, freedom: Freedom::FRAME })
     } else {
         Parameter::TargetPlace(TargetPlace { target: 0 })
     });

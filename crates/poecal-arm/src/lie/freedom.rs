@@ -1,119 +1,102 @@
 //! Which motions of a frame are seen.
 
-/// The motions of a frame, along and about its own axes, that some measurements show; of the others nothing can be known, and a fit leaves
-/// them as they are (theory.md §5 (25a)).
+/// The motions of a frame, along and about its own axes, that some measurements show, a bit each; of the others nothing can be known, and a fit
+/// leaves them as they are (theory.md §5 (25a)).
 ///
 /// ```
 /// use poecal_arm::lie::Freedom;
-/// assert_eq!((Freedom::Place.motions(), Freedom::PlaneZ.motions()), (&[0, 1, 2][..], &[2, 3, 4][..]));
-/// assert_eq!(Freedom::Place.with(Freedom::Direction), Freedom::Frame);
+/// assert_eq!((Freedom::PLACE.motions(), Freedom::plane(2).motions()), (&[0, 1, 2][..], &[2, 3, 4][..]));
+/// assert_eq!(Freedom::PLACE.with(Freedom::tilt(2)).count(), 5);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Freedom {
-    /// All six: a place and the axes there.
-    Frame,
-    /// Where it is: a point.
-    Place,
-    /// A plane across x: its height along x, and its tilts about y and z.
-    PlaneX,
-    /// A plane across y.
-    PlaneY,
-    /// A plane across z.
-    PlaneZ,
-    /// All but its place along x.
-    AcrossX,
-    /// All but its place along y.
-    AcrossY,
-    /// All but its place along z.
-    AcrossZ,
-    /// How it is turned.
-    Turn,
-    /// The direction of x: the tilts of a face across x.
-    TiltX,
-    /// The direction of y.
-    TiltY,
-    /// The direction of z.
-    Direction,
-}
+pub struct Freedom(u8);
+
+/// The motions of every set of them.
+const MOTIONS: [[usize; 6]; Freedom::SETS] = {
+    let mut all = [[0; 6]; Freedom::SETS];
+    let mut set = 0;
+    while set < Freedom::SETS {
+        let (mut motion, mut count) = (0, 0);
+        while motion < 6 {
+            if set >> motion & 1 == 1 {
+                all[set][count] = motion;
+                count += 1;
+            }
+            motion += 1;
+        }
+        set += 1;
+    }
+    all
+};
 
 impl Freedom {
-    /// All of them, the one of fewest motions first.
-    pub const ALL: [Freedom; 12] = [
-        Freedom::Direction,
-        Freedom::TiltX,
-        Freedom::TiltY,
-        Freedom::Place,
-        Freedom::PlaneX,
-        Freedom::PlaneY,
-        Freedom::PlaneZ,
-        Freedom::Turn,
-        Freedom::AcrossX,
-        Freedom::AcrossY,
-        Freedom::AcrossZ,
-        Freedom::Frame,
-    ];
+    /// Number of sets of motions.
+    pub const SETS: usize = 64;
+    /// All six: a place and the axes there.
+    pub const FRAME: Freedom = Freedom(0b11_1111);
+    /// Where it is: a point.
+    pub const PLACE: Freedom = Freedom(0b00_0111);
+    /// How it is turned.
+    pub const TURN: Freedom = Freedom(0b11_1000);
+
+    /// A face across an axis (0 to 2): its height along it, and its tilts about the other two.
+    #[must_use]
+    pub const fn plane(axis: usize) -> Freedom {
+        Freedom(1 << axis | Freedom::tilt(axis).0)
+    }
+
+    /// The direction of an axis: the tilts of a face across it.
+    #[must_use]
+    pub const fn tilt(axis: usize) -> Freedom {
+        Freedom(Freedom::TURN.0 & !(1 << (3 + axis)))
+    }
+
+    /// All but the place along an axis.
+    #[must_use]
+    pub const fn across(axis: usize) -> Freedom {
+        Freedom(Freedom::FRAME.0 & !(1 << axis))
+    }
+
+    /// Of these motions.
+    #[must_use]
+    pub fn of(motions: impl IntoIterator<Item = usize>) -> Freedom {
+        Freedom(motions.into_iter().fold(0, |all, motion| all | 1 << motion))
+    }
 
     /// The motions, as indices: three translations along x, y, z, three rotations about them.
     #[must_use]
     pub const fn motions(self) -> &'static [usize] {
-        match self {
-            Freedom::Frame => &[0, 1, 2, 3, 4, 5],
-            Freedom::Place => &[0, 1, 2],
-            Freedom::PlaneX => &[0, 4, 5],
-            Freedom::PlaneY => &[1, 3, 5],
-            Freedom::PlaneZ => &[2, 3, 4],
-            Freedom::AcrossX => &[1, 2, 3, 4, 5],
-            Freedom::AcrossY => &[0, 2, 3, 4, 5],
-            Freedom::AcrossZ => &[0, 1, 3, 4, 5],
-            Freedom::Turn => &[3, 4, 5],
-            Freedom::TiltX => &[4, 5],
-            Freedom::TiltY => &[3, 5],
-            Freedom::Direction => &[3, 4],
-        }
+        MOTIONS[self.index()].split_at(self.count()).0
+    }
+
+    /// Its place among all sets of motions.
+    #[must_use]
+    pub const fn index(self) -> usize {
+        self.0 as usize
     }
 
     /// Their number.
     #[must_use]
     pub const fn count(self) -> usize {
-        self.motions().len()
-    }
-
-    /// Whether a motion, by its index, is one of them.
-    #[must_use]
-    pub fn has(self, motion: usize) -> bool {
-        self.motions().contains(&motion)
+        self.0.count_ones() as usize
     }
 
     /// Whether some are rotations.
     #[must_use]
-    pub fn turns(self) -> bool {
-        self != Freedom::Place
+    pub const fn turns(self) -> bool {
+        self.0 & Freedom::TURN.0 != 0
     }
 
     /// The same without the height of a plane.
     #[must_use]
     pub fn without_height(self) -> Freedom {
-        match self {
-            Freedom::PlaneX => Freedom::TiltX,
-            Freedom::PlaneY => Freedom::TiltY,
-            Freedom::PlaneZ => Freedom::Direction,
-            Freedom::Frame
-            | Freedom::Place
-            | Freedom::AcrossX
-            | Freedom::AcrossY
-            | Freedom::AcrossZ
-            | Freedom::Turn
-            | Freedom::TiltX
-            | Freedom::TiltY
-            | Freedom::Direction => self,
-        }
+        let plane = (0..3).find(|axis| self == Freedom::plane(*axis));
+        plane.map_or(self, Freedom::tilt)
     }
 
-    /// What shows these motions and others: the least that has both.
+    /// These motions and others.
     #[must_use]
-    pub fn with(self, other: Freedom) -> Freedom {
-        let has_all =
-            |it: &Freedom| self.motions().iter().chain(other.motions()).all(|&motion| it.has(motion));
-        Freedom::ALL.into_iter().find(has_all).unwrap_or(Freedom::Frame)
+    pub const fn with(self, other: Freedom) -> Freedom {
+        Freedom(self.0 | other.0)
     }
 }

@@ -61,7 +61,7 @@ impl Rules<'_> {
                     vec![moved.x, moved.y, 0.0, 0.0]
                 }
                 Parameter::TargetPlace(TargetPlace { target }) => {
-                    shown(Freedom::Place, local(&estimate.base_from_target[*target]))
+                    shown(Freedom::PLACE, local(&estimate.base_from_target[*target]))
                 }
                 Parameter::TargetFrame(it) => shown(it.freedom, local(&estimate.base_from_target[it.target])),
                 Parameter::DeviceFrame(it) => {

@@ -13,7 +13,7 @@ const FEWEST_ROWS: usize = 3;
 fn fewest(data: &Dataset, station: usize, rows: &[u32]) -> usize {
     let numbers = rows.iter().map(|&row| data.observations[row as usize].measurement.observe().dim()).max();
     let freedom = data.device_freedom(station, rows);
-    if freedom == Freedom::Frame { FEWEST_ROWS } else { freedom.count().div_ceil(numbers.unwrap_or(1)) }
+    if freedom == Freedom::FRAME { FEWEST_ROWS } else { freedom.count().div_ceil(numbers.unwrap_or(1)) }
 }
 
 /// Refuses stations whose frame cannot be determined, and several stations if measurements are in the base frame.

@@ -88,7 +88,7 @@ impl<'a> Fitter<'a> {
         let weight = if has_lengths.iter().any(|&quantity| data.has(quantity)) { 1.0 } else { WEAK };
         let mut fitter = Fitter { robot, device_free, length_m, start, noise, constrained: None, weight };
         let rows = data.all_rows();
-        let is_constrained = |station: usize| data.device_freedom(station, &rows) != Freedom::Frame;
+        let is_constrained = |station: usize| data.device_freedom(station, &rows) != Freedom::FRAME;
         if (0..data.station_count()).any(is_constrained) {
             let prior = Prior::new(robot, Tolerance::default(), device_free);
             fitter.constrained = Some((prior, fitter.spread_m(data)));

@@ -76,13 +76,13 @@ impl Observe for ComponentsMeasurement {
 
     fn device_freedom(&self) -> Freedom {
         match self.measured {
-            [true, false, false] => Freedom::PlaneX,
-            [false, true, false] => Freedom::PlaneY,
-            [false, false, true] => Freedom::PlaneZ,
-            [false, true, true] => Freedom::AcrossX,
-            [true, false, true] => Freedom::AcrossY,
-            [true, true, false] => Freedom::AcrossZ,
-            [true, true, true] | [false, false, false] => Freedom::Frame,
+            [true, false, false] => Freedom::plane(0),
+            [false, true, false] => Freedom::plane(1),
+            [false, false, true] => Freedom::plane(2),
+            [false, true, true] => Freedom::across(0),
+            [true, false, true] => Freedom::across(1),
+            [true, true, false] => Freedom::across(2),
+            [true, true, true] | [false, false, false] => Freedom::FRAME,
         }
     }
 

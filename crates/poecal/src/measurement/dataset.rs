@@ -419,7 +419,9 @@ impl Dataset {
     #[must_use]
     pub fn device_freedom(&self, station: usize, rows: &[u32]) -> Freedom {
         let own = rows.iter().map(|&row| &self.observations[row as usize]).filter(|it| it.station == station);
-        shown(own.map(|it| it.measurement.observe().device_freedom())).unwrap_or(Freedom::Frame)
+        own.map(|it| it.measurement.observe().device_freedom())
+            .reduce(Freedom::with)
+            .unwrap_or(Freedom::FRAME)
     }
 
     /// Whether some of these rows are readings of a station whose zero is unknown.
@@ -444,11 +446,10 @@ impl Dataset {
         for &row in rows {
             let observation = &self.observations[row as usize];
             let known = &mut found[observation.target];
-            if *known != Some(Freedom::Frame) {
-                *known = shown(known.iter().copied().chain([observation.measurement.target_freedom()]));
-            }
+            let own = observation.measurement.target_freedom();
+            *known = Some(known.map_or(own, |known| known.with(own)));
         }
-        found.into_iter().map(|it| it.unwrap_or(Freedom::Place)).collect()
+        found.into_iter().map(|it| it.unwrap_or(Freedom::PLACE)).collect()
     }
 
     /// Number of rotations of targets that some of these rows show.
@@ -624,15 +625,6 @@ impl Dataset {
         }
         Ok(())
     }
-}
-
-/// What measurements show together.
-fn shown(mut parts: impl Iterator<Item = Freedom>) -> Option<Freedom> {
-    let first = parts.next()?;
-    Some(
-        parts
-            .fold(first, |all, part| if all == Freedom::Frame || all == part { all } else { all.with(part) }),
-    )
 }
 
 fn is_finite(numbers: &[f64]) -> bool {

@@ -94,11 +94,11 @@ impl Observe for DirectionMeasurement {
     }
 
     fn device_freedom(&self) -> Freedom {
-        Freedom::Direction
+        Freedom::tilt(2)
     }
 
     fn target_freedom(&self) -> Freedom {
-        Freedom::Turn
+        Freedom::TURN
     }
 
     fn is_finite(&self) -> bool {

@@ -61,7 +61,7 @@ impl Observe for DistanceMeasurement {
     }
 
     fn device_freedom(&self) -> Freedom {
-        Freedom::Place
+        Freedom::PLACE
     }
 
     fn is_finite(&self) -> bool {

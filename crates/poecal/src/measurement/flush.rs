@@ -57,16 +57,16 @@ impl Observe for FlushMeasurement {
     }
 
     fn device_freedom(&self) -> Freedom {
-        Freedom::PlaneZ
+        Freedom::plane(2)
     }
 
     fn target_freedom(&self) -> Freedom {
         let is_axis = |k: usize| self.normal[k].abs() == 1.0;
         match [0, 1, 2].map(is_axis) {
-            [true, ..] => Freedom::PlaneX,
-            [_, true, _] => Freedom::PlaneY,
-            [.., true] => Freedom::PlaneZ,
-            _ => Freedom::Frame,
+            [true, ..] => Freedom::plane(0),
+            [_, true, _] => Freedom::plane(1),
+            [.., true] => Freedom::plane(2),
+            _ => Freedom::FRAME,
         }
     }
 

@@ -39,7 +39,7 @@ impl Observe for HeightMeasurement {
     }
 
     fn device_freedom(&self) -> Freedom {
-        Freedom::PlaneZ
+        Freedom::plane(2)
     }
 
     fn is_finite(&self) -> bool {

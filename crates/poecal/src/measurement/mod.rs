@@ -164,8 +164,8 @@ impl Measurement {
     #[inline]
     pub fn target_freedom(&self) -> Freedom {
         match self.seen() {
-            Seen::Point(_) => Freedom::Place,
-            Seen::Frame(_) => Freedom::Frame,
+            Seen::Point(_) => Freedom::PLACE,
+            Seen::Frame(_) => Freedom::FRAME,
             Seen::Other(model) => model.target_freedom(),
         }
     }

@@ -148,12 +148,12 @@ pub trait Observe {
 
     /// What it shows of the device: its frame, or only where it is.
     fn device_freedom(&self) -> Freedom {
-        Freedom::Frame
+        Freedom::FRAME
     }
 
     /// What it shows of the target: its frame where an orientation is measured, else its place.
     fn target_freedom(&self) -> Freedom {
-        if self.orientation().is_some() { Freedom::Frame } else { Freedom::Place }
+        if self.orientation().is_some() { Freedom::FRAME } else { Freedom::PLACE }
     }
 
     /// Whether all measured numbers are finite.

@@ -48,7 +48,7 @@ impl Observe for SocketMeasurement {
     }
 
     fn device_freedom(&self) -> Freedom {
-        Freedom::Place
+        Freedom::PLACE
     }
 
     fn is_finite(&self) -> bool {

@@ -23,7 +23,7 @@ impl DeviceFrame {
     /// A device with axes, stepped about a point.
     #[must_use]
     pub fn new(station: usize, about: Vector3<f64>) -> Self {
-        DeviceFrame { station, about, freedom: Freedom::Frame }
+        DeviceFrame { station, about, freedom: Freedom::FRAME }
     }
 
     /// A device of which measurements show only these motions of its frame: the anchor of a wire, a plane that is touched.

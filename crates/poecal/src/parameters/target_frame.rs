@@ -20,7 +20,7 @@ impl TargetFrame {
     /// A target of which all is seen.
     #[must_use]
     pub fn new(target: usize) -> Self {
-        TargetFrame { target, freedom: Freedom::Frame }
+        TargetFrame { target, freedom: Freedom::FRAME }
     }
 }
 

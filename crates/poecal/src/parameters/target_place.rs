@@ -2,9 +2,9 @@
 
 use nalgebra::Vector3;
 
-use super::columns::{Column, Columns, PLACE, Subject};
+use super::columns::{Column, Columns, Subject, of_freedom};
 use crate::estimate::{Chain, Estimate};
-use crate::lie::TargetTwist;
+use crate::lie::{Freedom, TargetTwist};
 
 /// The point `P_c0` of lou2009 (19) to (26), stepped in the target's own axes: columns `(R_target e_k; 0)` (theory.md §5 (23)).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -19,7 +19,7 @@ impl Columns for TargetPlace {
     }
 
     fn columns(&self) -> &'static [Column] {
-        &PLACE
+        of_freedom(Freedom::PLACE)
     }
 
     fn target_twists(&self, chain: &Chain, target: usize, out: &mut [TargetTwist]) {

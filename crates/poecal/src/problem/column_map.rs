@@ -125,7 +125,7 @@ impl ColumnMap {
             let (about, freedom, sign) = match parameter {
                 Parameter::DeviceFrame(device) => (device.about.into(), device.freedom, 1.0),
                 Parameter::TargetFrame(frame) => ([0.0; 3], frame.freedom, -1.0),
-                Parameter::TargetPlace(_) => ([0.0; 3], Freedom::Place, -1.0),
+                Parameter::TargetPlace(_) => ([0.0; 3], Freedom::PLACE, -1.0),
                 Parameter::ScrewAxis(_)
                 | Parameter::OtherScrew(_)
                 | Parameter::ValueTerm(_)
@@ -223,7 +223,7 @@ impl ColumnMap {
                 | Parameter::ScrewAxis(_)
                 | Parameter::OtherScrew(_)
                 | Parameter::ValueTerm(_)
-                | Parameter::RangeUnknown(_) => Freedom::Place,
+                | Parameter::RangeUnknown(_) => Freedom::PLACE,
             };
             let turns = freedom.turns() && self.plan.framed;
             self.plan.place = Some(self.shift_places.len());

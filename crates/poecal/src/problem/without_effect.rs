@@ -49,7 +49,7 @@ impl Layout {
                 |(parameter, _): (&Parameter, _)| parameter.model().subject() == Subject::Instrument(station);
             !self.parameters().any(of_it)
         };
-        let sees_axes = |station: usize| data.device_freedom(station, rows) == Freedom::Frame;
+        let sees_axes = |station: usize| data.device_freedom(station, rows) == Freedom::FRAME;
         let first = data.first_station(rows);
         let of_base = if is_held(first) && estimate.tree.shared(first).is_none() && sees_axes(first) {
             // The first device frame holds the base.
@@ -132,7 +132,7 @@ impl Layout {
                 | Parameter::DeviceFrame(_)
                 | Parameter::RangeUnknown(_) => None,
             });
-            let freedom = own.or(freedoms.get(target).copied()).unwrap_or(Freedom::Place);
+            let freedom = own.or(freedoms.get(target).copied()).unwrap_or(Freedom::PLACE);
             add(Subject::Target(target), body, &|twist| seen_of(freedom, &local(frame, twist)));
         }
         for station in 0..=estimate.further_devices.len() {

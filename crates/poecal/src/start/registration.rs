@@ -138,7 +138,7 @@ pub(crate) fn free_parameters(problem: &Registration<'_>, rows: &[u32]) -> Vec<P
 pub(crate) fn device_parameter(data: &Dataset, station: usize, rows: &[u32]) -> Parameter {
     let own = data.seen_from(station, rows);
     let freedom = data.device_freedom(station, &own);
-    Parameter::DeviceFrame(if freedom == Freedom::Frame {
+    Parameter::DeviceFrame(if freedom == Freedom::FRAME {
         DeviceFrame::new(station, data.mean_position(&own))
     } else {
         DeviceFrame::showing(station, freedom)
@@ -176,7 +176,7 @@ pub(crate) fn target_parameters(session: &Session<'_>, rows: &[u32]) -> impl Ite
 
 /// The parameter of a target of which these motions show.
 fn target_parameter(target: usize, freedom: Freedom) -> Parameter {
-    if freedom == Freedom::Place {
+    if freedom == Freedom::PLACE {
         Parameter::TargetPlace(TargetPlace { target })
     } else {
         Parameter::TargetFrame(TargetFrame { target, freedom })

@@ -42,7 +42,7 @@ fn one_by_one(problem: &Registration<'_>, start: &Estimate) -> Estimate {
     stations.sort_by_key(|(station, rows)| {
         Reverse((
             !unknowns.moves_frame(*station),
-            problem.session.data.device_freedom(*station, rows) == Freedom::Frame,
+            problem.session.data.device_freedom(*station, rows) == Freedom::FRAME,
             rows.len(),
         ))
     });

@@ -179,7 +179,7 @@ fn cells() -> Vec<Cell> {
 /// The frame of a station, or its place if no row sees its axes.
 fn device(data: &Dataset, station: usize, about: Vector3<f64>) -> Parameter {
     let freedom = data.device_freedom(station, &data.all_rows());
-    Parameter::DeviceFrame(if freedom == Freedom::Frame {
+    Parameter::DeviceFrame(if freedom == Freedom::FRAME {
         DeviceFrame::new(station, about)
     } else {
         DeviceFrame::showing(station, freedom)
@@ -236,7 +236,7 @@ impl Measured {
         free.extend(screw_axes(estimate.kinds()));
         let targets = data.target_freedoms(&data.all_rows()).into_iter().enumerate();
         free.extend(targets.map(|(target, freedom)| {
-            if freedom == Freedom::Place {
+            if freedom == Freedom::PLACE {
                 Parameter::TargetPlace(TargetPlace { target })
             } else {
                 Parameter::TargetFrame(TargetFrame { target, freedom })

@@ -220,7 +220,9 @@ fn the_rounding_of_readings_is_noise_and_no_error_of_the_robot() {
         let expected_mm = calibration.verdict.expected_error_mm.unwrap();
         // The truth is of points of the tip, which no row shows exactly: of distances of two.
         let error_mm = error_mm(&made, &calibration, 0.0);
-        println!("seed {seed}: {left_mm:.3} mm left, {expected_mm:.3} mm expected, {error_mm:.3} mm of distances");
+        println!(
+            "seed {seed}: {left_mm:.3} mm left, {expected_mm:.3} mm expected, {error_mm:.3} mm of distances"
+        );
         assert!(error_mm < 1.5 * expected_mm && expected_mm < 0.95 * left_mm);
     }
 }

@@ -523,9 +523,9 @@ impl CalibrationFile {
             }
             let (body, pose) = place(Some(name));
             estimate = estimate.with_target(body, pose);
-            let usual = if *is_frame { Freedom::Frame } else { Freedom::Place };
+            let usual = if *is_frame { Freedom::FRAME } else { Freedom::PLACE };
             let freedom = entry.freedom(&names.of(Block::Target(index))).unwrap_or(usual);
-            free.push(if freedom == Freedom::Place {
+            free.push(if freedom == Freedom::PLACE {
                 Parameter::TargetPlace(TargetPlace { target: index })
             } else {
                 Parameter::TargetFrame(TargetFrame { target: index, freedom })
@@ -589,7 +589,7 @@ impl UncertaintyEntry {
     /// Parameters of the first device frame and the joints that may be among the unknowns, in the order of a fit.
     fn joint_parameters(&self, robot: &Robot, first_station: Option<&str>) -> Vec<Parameter> {
         let block = first_station.map_or_else(|| "frame".to_owned(), |name| format!("frame.{name}"));
-        let freedom = self.freedom(&block).unwrap_or(Freedom::Frame);
+        let freedom = self.freedom(&block).unwrap_or(Freedom::FRAME);
         let of = |about: [f64; 3]| DeviceFrame { station: 0, about: about.into(), freedom };
         let frame = self.frame_about_m.map(|about| Parameter::DeviceFrame(of(about)));
         let kinds: Vec<JointKind> = robot.joints.iter().map(|joint| joint.kind).collect();
@@ -607,8 +607,7 @@ impl UncertaintyEntry {
         let has = |motion: usize| {
             NAMES.get(motion).is_some_and(|name| self.unknowns.contains(&format!("{block}.{name}")))
         };
-        let motions: Vec<usize> = (0..NAMES.len()).filter(|&motion| has(motion)).collect();
-        Freedom::ALL.into_iter().find(|freedom| freedom.motions() == motions)
+        Some(Freedom::of((0..NAMES.len()).filter(|&motion| has(motion)))).filter(|it| it.count() > 0)
     }
 
     /// The names by which unknowns are called.
