@@ -30,7 +30,7 @@ const LEAST_ROWS: usize = 4;
 const FEWEST_OF_STATION: usize = 6;
 
 /// Step over which errors change as to first order, metres.
-const SMALL_M: f64 = 1e-6;
+const SMALL_M: f64 = 1e-4;
 
 /// Rows that are left out together.
 #[derive(Clone, Debug, PartialEq, Eq)]
