@@ -77,39 +77,20 @@ pub struct Verdict {
 pub(super) struct Judged {
     /// Against any use, of whatever model.
     against: Vec<String>,
-    /// What the errors of the calibrated model say against any use of it.
-    of_errors: Vec<String>,
+    /// That the screws are no better than nominal: nothing was shown of this robot.
+    no_better: Option<String>,
+    /// That the errors of the calibrated model are too large.
+    too_large: Option<String>,
     /// Axes that ended where none of this robot is; said where nothing else speaks against use.
     drifted: Vec<String>,
     /// Against use outside the sampled range.
     everywhere: Vec<String>,
-    /// What the errors of another model are judged by.
-    measure: Measure,
-}
-
-/// What errors are judged by.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-struct Measure {
-    /// Error of the registered model, in the unit of the leading quantity.
-    registered: f64,
     reach_m: f64,
-    moves_joints: bool,
 }
 
-impl Measure {
-    fn is_no_better(&self, error: f64) -> bool {
-        self.moves_joints && error > (1.0 - WORTH) * self.registered
-    }
-
-    fn is_too_large(&self, set: &ModelAccuracy) -> bool {
-        set.leading_m() > TOO_LARGE * self.reach_m
-    }
-
-    /// Whether nothing speaks against a model with these errors.
-    fn allows(&self, set: &ModelAccuracy) -> bool {
-        let error = set.leading().map_or(0.0, |(_, error)| error.rms);
-        !self.is_no_better(error) && !self.is_too_large(set)
-    }
+/// Whether errors are larger than those of any rigid robot of this reach.
+fn is_too_large(set: &ModelAccuracy, reach_m: f64) -> bool {
+    set.leading_m() > TOO_LARGE * reach_m
 }
 
 impl Judged {
@@ -121,18 +102,20 @@ impl Judged {
 
     /// The verdict on the calibrated model, with these expected errors.
     pub(super) fn of_calibrated(&self, expected: &Expectations) -> Verdict {
-        self.verdict(AcceptedModel::Calibrated, &self.of_errors, expected)
+        self.verdict(AcceptedModel::Calibrated, self.too_large.as_ref(), expected)
     }
 
     /// The verdict on the corrected model, with these errors of rows that were not fitted (or of those that were, without such) and these
     /// expected errors.
     pub(super) fn of_corrected(&self, errors: &ModelAccuracy, expected: &Expectations) -> Verdict {
-        let of_errors = if self.measure.allows(errors) { &[][..] } else { &self.of_errors };
-        self.verdict(AcceptedModel::Corrected, of_errors, expected)
+        // Terms may describe what no rigid robot does.
+        let too_large = self.too_large.as_ref().filter(|_| is_too_large(errors, self.reach_m));
+        self.verdict(AcceptedModel::Corrected, too_large, expected)
     }
 
-    fn verdict(&self, model: AcceptedModel, of_errors: &[String], expected: &Expectations) -> Verdict {
-        let mut against: Vec<String> = self.against.iter().chain(of_errors).cloned().collect();
+    fn verdict(&self, model: AcceptedModel, too_large: Option<&String>, expected: &Expectations) -> Verdict {
+        let all = self.against.iter().chain(&self.no_better).chain(too_large);
+        let mut against: Vec<String> = all.cloned().collect();
         if against.is_empty() {
             against.clone_from(&self.drifted);
         }
@@ -222,24 +205,24 @@ pub(super) fn judged(grounds: &Grounds<'_>) -> Judged {
     let of = |model: &ModelAccuracy| model.get(leading).unwrap_or_default().rms;
     let (registered, calibrated) = (of(&set.registered), of(&set.calibrated));
     let (what, unit) = (leading.name(), leading.unit().symbol());
-    let measure = Measure { registered, reach_m: grounds.reach_m, moves_joints: grounds.moves_joints };
-    let mut of_errors = Vec::new();
-    if measure.is_no_better(calibrated) {
-        of_errors.push(format!(
+    let is_no_better = grounds.moves_joints && calibrated > (1.0 - WORTH) * registered;
+    let no_better = is_no_better.then(|| {
+        format!(
             "on {name} rows the calibrated screws are no better than the nominal ones ({calibrated:.3} {unit} against {registered:.3} {unit})"
-        ));
-    }
-    if measure.is_too_large(&set.calibrated) {
-        of_errors.push(format!(
+        )
+    });
+    let too_large = is_too_large(&set.calibrated, grounds.reach_m).then(|| {
+        format!(
             "the {what} error of the calibrated model on {name} rows is {calibrated:.1} {unit} (RMS), more than 1 % of the robot's reach"
-        ));
-    }
+        )
+    });
     Judged {
         against: against_use(grounds),
-        of_errors,
+        no_better,
+        too_large,
         drifted: drifted(grounds),
         everywhere: against_use_everywhere(grounds),
-        measure,
+        reach_m: grounds.reach_m,
     }
 }
 
