@@ -112,4 +112,10 @@ impl CalibrationOptions {
         let tolerance = self.tolerance.filter(|_| self.formulation == Formulation::default());
         tolerance.map(|tolerance| Prior::of(session, tolerance))
     }
+
+    /// Prior of a fit with terms, which has one in any case.
+    #[must_use]
+    pub(in crate::calibration) fn prior_with_terms(&self, session: &Session<'_>) -> Prior {
+        Prior::of(session, self.tolerance.unwrap_or(Tolerance::WIDE))
+    }
 }

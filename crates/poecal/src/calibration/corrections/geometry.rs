@@ -12,7 +12,7 @@ use crate::calibration::{Calibration, CalibrationOptions};
 use crate::estimate::{Packed, Session, Unknowns};
 use crate::measurement::ByQuantity;
 use crate::problem::Prior;
-use crate::robot::{CorrectionModel, Extent, Robot, Sizes, TermGroup, Tolerance};
+use crate::robot::{CorrectionModel, Extent, Robot, Sizes, TermGroup};
 use crate::uncertainty::{PriorInformation, View, parts_to_leave_out};
 
 /// Most rows from which sizes are chosen.
@@ -59,8 +59,7 @@ impl Geometry<'_> {
     }
 
     pub(super) fn prior(&self, session: &Session<'_>) -> Prior {
-        let tolerance = self.options.tolerance.unwrap_or(Tolerance::WIDE);
-        Prior::of(session, tolerance)
+        self.options.prior_with_terms(session)
     }
 
     /// A sample of the rows, linear about the calibrated model; none if that determines nothing.

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::geometry::Geometry;
+use super::geometry::{Geometry, Sampled};
 use crate::lie::rotation;
 use crate::robot::{CorrectionModel, Sizes};
 
@@ -23,10 +23,10 @@ impl Geometry<'_> {
     pub(super) fn gravity(&self, moves: &[bool], sizes: Sizes) -> (Vector3<f64>, Option<String>) {
         let along = |direction: &Vector3<f64>| {
             let model = CorrectionModel::new(&self.nominal, *direction, moves, self.extent(Some(sizes)));
-            self.sampled(&model.with_sizes(&sizes), Some(sizes)).map(|it| it.linear)
+            self.sampled(&model.with_sizes(&sizes), Some(sizes))
         };
         let score = |direction: &Vector3<f64>| {
-            along(direction).map_or(f64::INFINITY, |linear| linear.logarithm_of_noise(&sizes))
+            along(direction).map_or(f64::INFINITY, |it| it.linear.logarithm_of_noise(&sizes))
         };
         let down = -Vector3::z();
         let of_down = score(&down);
@@ -54,20 +54,16 @@ impl Geometry<'_> {
                 }
             }
         }
-        let sampled = self.sampled(
-            &CorrectionModel::new(&self.nominal, best, moves, self.extent(Some(sizes))).with_sizes(&sizes),
-            Some(sizes),
-        );
-        let Some(sampled) = sampled else { return (down, None) };
+        let Some(Sampled { linear, configurations, .. }) = along(&best) else { return (down, None) };
         // What rows of a configuration share counts once.
-        let numbers = sampled.linear.numbers();
-        let counted = numbers.min(NUMBERS_OF_A_CONFIGURATION * sampled.configurations as f64);
+        let numbers = linear.numbers();
+        let counted = numbers.min(NUMBERS_OF_A_CONFIGURATION * configurations as f64);
         let gained = if of_down.is_finite() { (of_down - least) / numbers } else { f64::INFINITY };
         if gained * counted < EVIDENT || gained < LEAST_GAIN {
             return (down, Some(not_found(&best, gained)));
         }
         // Against gravity all coefficients have the other sign and the fit is the same; but joints give the way they are pulled.
-        let given = along(&best).and_then(|linear| linear.solution(&sizes, &linear.whole())).map(|found| {
+        let given = linear.solution(&sizes, &linear.whole()).map(|found| {
             let sags = found.terms.iter().filter(|it| it.term.needs_gravity());
             sags.map(|it| it.coefficient).sum::<f64>()
         });

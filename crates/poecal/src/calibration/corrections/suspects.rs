@@ -8,8 +8,7 @@ use crate::calibration::robust::{Configurations, JudgingFit, judge_rows};
 use crate::calibration::{Calibration, CalibrationOptions};
 use crate::estimate::Session;
 use crate::measurement::Dataset;
-use crate::problem::Prior;
-use crate::robot::{Sizes, Tolerance};
+use crate::robot::Sizes;
 use crate::solve::{LeastSquares as _, Normal};
 
 /// Whether each row is suspected of a gross error, by a corrected model; of one without terms as the calibration has it.
@@ -27,9 +26,7 @@ pub(in crate::calibration) fn suspected(
     let session =
         Session { robot: &found.model.robot, packed: &found.packed, unknowns: &found.unknowns, ..session };
     let rows = &calibration.fit_rows;
-    let tolerance = options.tolerance.unwrap_or(Tolerance::WIDE);
-    let prior = Prior::of(&session, tolerance);
-    let prior = prior.with_terms(priors(&found.model, &found.sizes));
+    let prior = options.prior_with_terms(&session).with_terms(priors(&found.model, &found.sizes));
     let weight = found.prior_weight;
     let counted = weights(calibration, options);
     let task = Task { session, rows, weights: counted.as_deref(), prior: Some((&prior, weight)), options };

@@ -37,7 +37,7 @@ enum Part {
     Own,
     /// A target that follows a motion of the tool: its orientation with all joints at zero, where it is from the middle, and what motions
     /// its unknowns are.
-    Carried(Matrix3<f64>, Vector3<f64>, Vec<usize>),
+    Carried(Matrix3<f64>, Vector3<f64>, &'static [usize]),
 }
 
 /// The derivatives of all numbers by the unknowns of a hypothesis, metres and radians.
@@ -90,15 +90,7 @@ pub(super) fn hypotheses(
         let middle = sum.sum::<Vector3<f64>>() / targets.len() as f64;
         let parts = targets.iter().filter_map(|&(target, at)| {
             let pose = poses.get(target)?;
-            let motions = match &free[at] {
-                Parameter::TargetPlace(_) => vec![0, 1, 2],
-                Parameter::TargetFrame(it) => it.freedom.motions().to_vec(),
-                Parameter::ScrewAxis(_)
-                | Parameter::OtherScrew(_)
-                | Parameter::ValueTerm(_)
-                | Parameter::DeviceFrame(_)
-                | Parameter::RangeUnknown(_) => return None,
-            };
+            let (_, motions) = free[at].target_motions()?;
             let turn = pose.rotation;
             Some((at, Part::Carried(turn, pose.translation - middle, motions)))
         });

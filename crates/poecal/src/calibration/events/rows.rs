@@ -12,8 +12,8 @@ use crate::estimate::{Session, sample_rows};
 use crate::linalg;
 use crate::measurement::Dataset;
 use crate::parameters::Parameter;
-use crate::problem::{Prior, Problem};
-use crate::robot::{Sizes, Tolerance};
+use crate::problem::Problem;
+use crate::robot::Sizes;
 use crate::solve::Normal;
 
 /// Most measured numbers: with fewer an event still shows, and its place is known to a few rows.
@@ -71,8 +71,7 @@ impl Rows {
         let numbers = |row: &u32| data.observations[*row as usize].measurement.observe().dim();
         let all: usize = rows.iter().map(numbers).sum();
         let rows = sample_rows(rows, rows.len() * MOST_NUMBERS / all.max(MOST_NUMBERS));
-        let prior = Prior::of(&session, options.tolerance.unwrap_or(Tolerance::WIDE));
-        let prior = prior.with_terms(priors(&found.model, &sizes));
+        let prior = options.prior_with_terms(&session).with_terms(priors(&found.model, &sizes));
         let task = Task { session, rows: &rows, weights: None, prior: None, options };
         let mut free: Vec<Parameter> = task.free(&found.estimate);
         let fitted = free.len();
