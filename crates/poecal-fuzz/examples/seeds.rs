@@ -107,9 +107,9 @@ fn main() {
     put("joints", "points", &points);
     put("joints", "ids", "id,joint1,joint2,joint3,joint4\na,0.1,0.2,0.1,1\n\"b,c\",0.2,0.1,0,-1\n");
     for (name, robot, kind, count) in [
-        ("scara", scara(), Kind::Pose, 20),
-        ("gantry", gantry(), Kind::Point, 20),
-        ("elbow", elbow(), Kind::Mixed, 26),
+        ("scara", scara(), Kind::POSE, 20),
+        ("gantry", gantry(), Kind::POINT, 20),
+        ("elbow", elbow(), Kind::MIXED, 26),
     ] {
         let made = Simulation { count, ..Simulation::default() }.run(&robot, kind).unwrap();
         let table = table(&made.data);
@@ -165,7 +165,7 @@ fn table(data: &Dataset) -> String {
 
 /// Points of two tools, in turn.
 fn two_targets(robot: &Robot) -> String {
-    let made = Simulation { count: 30, ..Simulation::default() }.run(robot, Kind::Point).unwrap();
+    let made = Simulation { count: 30, ..Simulation::default() }.run(robot, Kind::POINT).unwrap();
     let mut text = robot.reading_names().join(",") + ",x,y,z,target\n";
     for (row, seen) in made.data.observations.iter().enumerate() {
         let values: Vec<String> = made.data.readings(row).iter().map(|value| format!("{value:.6}")).collect();

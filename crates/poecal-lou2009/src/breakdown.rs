@@ -58,7 +58,7 @@ pub fn breakdown(options: &ReproductionOptions) -> Result<Breakdown> {
     let outcomes: Vec<Vec<Outcome>> = (0..options.trials)
         .into_par_iter()
         .map(|trial| {
-            let kind = if (trial / robots.len()).is_multiple_of(2) { Kind::Pose } else { Kind::Point };
+            let kind = if (trial / robots.len()).is_multiple_of(2) { Kind::POSE } else { Kind::POINT };
             session(&robots[trial % robots.len()], kind, options.seed.wrapping_add(trial as u64))
         })
         .collect::<Result<_>>()?;

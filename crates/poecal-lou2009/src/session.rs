@@ -9,7 +9,7 @@ use nalgebra::Vector3;
 use poecal::error::Result;
 use poecal::estimate::{Chain, Estimate, Linkage, Packed, Session};
 use poecal::lie::{Pose, rotation};
-use poecal::measurement::{Dataset, Measurement, Noise, PointMeasurement, PoseMeasurement, Quantity};
+use poecal::measurement::{Dataset, Measurement, Noise, Quantity};
 use poecal::parameters::{Parameter, TargetFrame, TargetPlace};
 use poecal::robot::Robot;
 use poecal::simulate::{random, random_configuration};
@@ -76,10 +76,8 @@ impl PaperSession {
         let mut data = Dataset::new(self.nominal.reading_names());
         for (readings, &pose) in self.readings.chunks_exact(self.nominal.joints.len()).zip(measured) {
             let measurement = match self.seen {
-                MeasurementKind::Poses => Measurement::Pose(PoseMeasurement { pose }),
-                MeasurementKind::Points => {
-                    Measurement::Point(PointMeasurement { position: pose.translation })
-                }
+                MeasurementKind::Poses => Measurement::of_pose(&pose),
+                MeasurementKind::Points => Measurement::point(pose.translation),
             };
             data.push(readings, None, measurement)?;
         }

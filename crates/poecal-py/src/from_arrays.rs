@@ -6,9 +6,7 @@ use nalgebra::Vector3;
 use poecal::Error;
 use poecal::io::measurements::{Dimension, LARGEST_NUMBER, Unit};
 use poecal::lie::Pose;
-use poecal::measurement::{
-    ByQuantity, Dataset, Measurement, Observation, PointMeasurement, PoseMeasurement, Quantity, Set,
-};
+use poecal::measurement::{ByQuantity, Dataset, Measurement, Observation, Quantity, Set};
 use poecal::robot::{JointKind, Robot};
 use pyo3::prelude::*;
 
@@ -148,7 +146,7 @@ fn frames(poses: &Bound<'_, PyAny>, m: usize, length: Unit) -> PyResult<Vec<Meas
         let pose = pose_of(numbers).map_err(|message| argument("poses", format!("row {row}: {message}")))?;
         let pose = Pose::new(pose.rotation, pose.translation.map(|value| length.to_si(value)));
         check_size("poses", row, pose.translation.as_slice())?;
-        Ok(Measurement::Pose(PoseMeasurement { pose }))
+        Ok(Measurement::of_pose(&pose))
     })
     .collect()
 }
@@ -174,7 +172,7 @@ fn points(
             .as_ref()
             .and_then(|it| <[f64; 4]>::try_from(it.values.get(4 * row..4 * row + 4)?).ok());
         let Some(quaternion) = quaternion.filter(|parts| !parts.iter().all(|part| part.is_nan())) else {
-            return Ok(Measurement::Point(PointMeasurement { position }));
+            return Ok(Measurement::point(position));
         };
         let norm = quaternion.iter().map(|part| part * part).sum::<f64>().sqrt();
         if norm.is_nan() || (norm - 1.0).abs() > QUATERNION_TOLERANCE {
@@ -184,7 +182,7 @@ fn points(
             return Err(argument(name, message));
         }
         let pose = Pose::from_position_quaternion(position.into(), quaternion);
-        Ok(Measurement::Pose(PoseMeasurement { pose }))
+        Ok(Measurement::of_pose(&pose))
     })
     .collect()
 }

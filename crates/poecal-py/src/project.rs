@@ -56,22 +56,8 @@ pub(crate) fn init(
     #[pyo3(from_py_with = arg::instruments)] instruments: Option<Links>,
     #[pyo3(from_py_with = arg::targets)] targets: Option<Links>,
 ) -> PyResult<Vec<String>> {
-    let words = [
-        ("points", Kind::Point),
-        ("poses", Kind::Pose),
-        ("distances", Kind::Distance),
-        ("distance-changes", Kind::Change),
-        ("spheres", Kind::Sphere),
-        ("sockets", Kind::Socket),
-        ("planes", Kind::Plane),
-        ("heights", Kind::Height),
-        ("flush", Kind::Flush),
-        ("directions", Kind::Direction),
-        ("ball-bars", Kind::BallBar),
-        ("relative", Kind::Relative),
-        ("components", Kind::Component),
-    ];
-    let kind = chosen("measure", measure, &words)?;
+    let words = Kind::all().into_iter().filter_map(|kind| Some((kind.session().plural?, kind)));
+    let kind = chosen("measure", measure, &words.collect::<Vec<_>>())?;
     if !(1..=MOST).contains(&count) {
         return Err(argument("count", format!("found {count}, expected a number from 1 to {MOST}")));
     }

@@ -26,7 +26,8 @@ pub(crate) fn frame(word: &str) -> PyResult<DeviceFrameKnowledge> {
 }
 
 pub(crate) fn kind(word: &str) -> PyResult<Kind> {
-    chosen("kind", word, &Kind::ALL.map(|kind| (kind.word(), kind)))
+    let words: Vec<(&str, Kind)> = Kind::all().into_iter().map(|kind| (kind.word(), kind)).collect();
+    chosen("kind", word, &words)
 }
 
 pub(crate) fn quantity(word: &str) -> PyResult<Quantity> {

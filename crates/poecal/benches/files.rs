@@ -20,7 +20,7 @@ const ROWS: usize = 50_000;
 
 fn session() -> Simulated {
     let simulation = Simulation { count: ROWS, device_anywhere: false, ..Simulation::default() };
-    simulation.run(&elbow(), Kind::Pose).expect("a simulation of a finite robot")
+    simulation.run(&elbow(), Kind::POSE).expect("a simulation of a finite robot")
 }
 
 /// The rows as a file of our own form, every number with so many decimals, or else to its last digit.

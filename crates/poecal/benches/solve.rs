@@ -63,19 +63,19 @@ fn solve_session(bencher: Bencher<'_, '_>, made: &Simulated) {
 
 #[divan::bench(args = ROWS)]
 fn solve_poses(bencher: Bencher<'_, '_>, rows: usize) {
-    solve(bencher, rows, Kind::Pose);
+    solve(bencher, rows, Kind::POSE);
 }
 
 #[divan::bench(args = ROWS)]
 fn solve_points(bencher: Bencher<'_, '_>, rows: usize) {
-    solve(bencher, rows, Kind::Point);
+    solve(bencher, rows, Kind::POINT);
 }
 
 /// Rows of a pass.
 const PASS: usize = 5_000;
 
 /// One pass over the rows: residuals, columns and their products, with axes, target and all device frames but the first unknown.
-#[divan::bench(args = [Kind::Pose, Kind::Point, Kind::Distance, Kind::Height, Kind::Plane, Kind::Socket])]
+#[divan::bench(args = [Kind::POSE, Kind::POINT, Kind::DISTANCE, Kind::HEIGHT, Kind::PLANE, Kind::SOCKET])]
 fn pass(bencher: Bencher<'_, '_>, kind: Kind) {
     let made = session(PASS, kind);
     let (data, rows) = (&made.data, made.data.all_rows());
@@ -87,7 +87,7 @@ fn pass(bencher: Bencher<'_, '_>, kind: Kind) {
     free.extend((1..data.station_count()).map(|station| {
         Parameter::DeviceFrame(DeviceFrame::showing(station, data.device_freedom(station, &rows)))
     }));
-    free.push(if kind == Kind::Pose {
+    free.push(if kind == Kind::POSE {
         Parameter::TargetFrame(TargetFrame { target: 0, freedom: Freedom::FRAME })
     } else {
         Parameter::TargetPlace(TargetPlace { target: 0 })
@@ -104,18 +104,18 @@ fn solve_thirty_joints(bencher: Bencher<'_, '_>, kind: Kind) {
 
 #[divan::bench]
 fn solve_thirty_joints_poses(bencher: Bencher<'_, '_>) {
-    solve_thirty_joints(bencher, Kind::Pose);
+    solve_thirty_joints(bencher, Kind::POSE);
 }
 
 #[divan::bench]
 fn solve_thirty_joints_points(bencher: Bencher<'_, '_>) {
-    solve_thirty_joints(bencher, Kind::Point);
+    solve_thirty_joints(bencher, Kind::POINT);
 }
 
 /// 1,000 fits of 50 poses each: the same configurations, other noise. Packing, the first fit and the sharing of its factor included.
 #[divan::bench]
 fn monte_carlo(bencher: Bencher<'_, '_>) {
-    let made = session(50, Kind::Pose);
+    let made = session(50, Kind::POSE);
     let start = delivered(&made.nominal, &made.data);
     let rows: Vec<u32> = (0..50).collect();
     let mut free = screw_axes(start.kinds());
@@ -152,7 +152,7 @@ fn calibrated(bencher: Bencher<'_, '_>, rows: usize, corrections: Corrections) {
         _ => Sizes::NONE,
     };
     let simulation = Simulation { terms, ..simulation(rows) };
-    let made = simulation.run(&elbow(), Kind::Pose).expect("a simulation of a finite robot");
+    let made = simulation.run(&elbow(), Kind::POSE).expect("a simulation of a finite robot");
     let frame = DeviceFrameKnowledge::Unknown;
     let options = CalibrationOptions { held_out: 0.0, frame, corrections, ..Default::default() };
     bencher.bench_local(|| black_box(calibrate(&made.nominal, &made.data, &options)));
@@ -161,7 +161,7 @@ fn calibrated(bencher: Bencher<'_, '_>, rows: usize, corrections: Corrections) {
 /// What is clean must cost next to nothing, since it is looked at after every calibration: far less than a fit.
 #[divan::bench]
 fn diagnose_what_is_clean(bencher: Bencher<'_, '_>) {
-    let made = Simulation::default().run(&elbow(), Kind::Point).expect("a simulation of a finite robot");
+    let made = Simulation::default().run(&elbow(), Kind::POINT).expect("a simulation of a finite robot");
     let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default()).expect("a fit");
     let options = forensics::DiagnosisOptions {
         calibrated: Some(&calibration.models.calibrated),

@@ -26,7 +26,7 @@ const ELBOW: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/elbow/r
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let model = Model::read(ELBOW, &Default::default())?;
     let simulation = Simulation { count: 50, seed: 1, ..Simulation::default() };
-    let made = simulation.run(&model.robot, Kind::Pose)?;
+    let made = simulation.run(&model.robot, Kind::POSE)?;
 
     let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default())?;
     let held_out = calibration.accuracy.held_out.ok_or("no rows were held out")?;

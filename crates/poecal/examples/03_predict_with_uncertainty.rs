@@ -29,8 +29,8 @@ const ELBOW: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/elbow/r
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let nominal = Model::read(ELBOW, &Default::default())?.robot;
     let simulation = Simulation { count: 50, seed: 3, ..Simulation::default() };
-    let made = simulation.run(&nominal, Kind::Pose)?;
-    let truth = simulation.held_out(&made, Kind::Pose, 1000)?;
+    let made = simulation.run(&nominal, Kind::POSE)?;
+    let truth = simulation.held_out(&made, Kind::POSE, 1000)?;
     let calibration = calibrate(&nominal, &made.data, &CalibrationOptions::default())?;
 
     // A calibration as its file says it: robot, device and covariance, those of the corrected model.

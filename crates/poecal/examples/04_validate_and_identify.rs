@@ -27,10 +27,10 @@ const ELBOW: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/elbow/r
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let nominal = Model::read(ELBOW, &Default::default())?.robot;
     let simulation = Simulation { count: 40, seed: 5, ..Simulation::default() };
-    let made = simulation.run(&nominal, Kind::Point)?;
-    let others = simulation.held_out(&made, Kind::Point, 200)?;
+    let made = simulation.run(&nominal, Kind::POINT)?;
+    let others = simulation.held_out(&made, Kind::POINT, 200)?;
 
-    let session = PlannedSession { kind: Kind::Point, ..PlannedSession::default() };
+    let session = PlannedSession { kind: Kind::POINT, ..PlannedSession::default() };
     for count in [8, 40] {
         let readings: Vec<f64> = (0..count).flat_map(|row| made.data.readings(row).to_vec()).collect();
         let found = identify(&nominal, &readings, &session)?;

@@ -14,7 +14,7 @@
 //! use poecal::{CalibrationOptions, Kind, Simulation, calibrate};
 //!
 //! // A six-axis arm whose axes are off by 1° and 2 mm, and 60 points of its tip with noise of 0.05 mm from a tracker anywhere.
-//! let made = Simulation { count: 60, ..Simulation::default() }.run(&elbow(), Kind::Point)?;
+//! let made = Simulation { count: 60, ..Simulation::default() }.run(&elbow(), Kind::POINT)?;
 //! let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default())?;
 //!
 //! // 30 % of the points were held out: their error is the noise of 0.05 mm in each of three coordinates.
@@ -33,7 +33,7 @@
 //! | to | there is |
 //! |---|---|
 //! | describe a robot | [`Robot`], [`Joint`], [`JointKind`], [`Limits`], [`Reading`], [`Tolerance`]; [`Model`] and [`ChainSelection`] read it from URDF, MJCF, SDF, TOML, makers' files or a calibration |
-//! | say what was measured | [`Dataset`], [`Observation`], [`Measurement`], [`PointMeasurement`], [`PoseMeasurement`], [`Noise`], [`Set`]; [`read_measurements`] with [`ReadOptions`] gives a [`MeasurementFile`] |
+//! | say what was measured | [`Dataset`], [`Observation`], [`Measurement`], [`Noise`], [`Set`]; [`read_measurements`] with [`ReadOptions`] gives a [`MeasurementFile`] |
 //! | calibrate | [`calibrate`] with [`CalibrationOptions`] ([`DeviceFrameKnowledge`], [`Robust`], [`Loss`], [`Formulation`]) gives a [`Calibration`] with its [`CalibratedTarget`]s |
 //! | know how good it is | [`Accuracy`] ([`SetAccuracy`], [`ModelAccuracy`], [`Statistic`]), [`Verdict`], [`Trust`], [`Identifiability`] ([`Direction`]), [`Diagnosis`] of mistakes in the input |
 //! | judge it by other measurements | [`judge`], which gives a [`Judgement`] |
@@ -121,9 +121,7 @@ pub use io::model::{Model, ModelFormat, ModelSource};
 pub use io::predictions::{Predicted, PredictionFrame, predicted};
 pub use io::residuals::Residuals;
 pub use io::urdf::ChainSelection;
-pub use measurement::{
-    Dataset, Measured, Measurement, Noise, Observation, PointMeasurement, PoseMeasurement, Quantity, Set,
-};
+pub use measurement::{Dataset, Measured, Measurement, Noise, Observation, Quantity, Set};
 pub use report::{calibration_page, summary};
 pub use robot::{Joint, JointKind, Limits, Reading, Robot, Tolerance};
 pub use simulate::{Kind, Simulated, Simulation};

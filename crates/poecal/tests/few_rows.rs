@@ -20,7 +20,7 @@ fn threads() -> usize {
 #[test]
 fn fifty_rows_are_one_threads_work() {
     let before = threads();
-    for kind in [Kind::Pose, Kind::Point] {
+    for kind in [Kind::POSE, Kind::POINT] {
         let made = Simulation { count: 50, ..Simulation::default() }.run(&elbow(), kind).unwrap();
         let geometry = CalibrationOptions { corrections: Corrections::Off, ..CalibrationOptions::default() };
         let calibration = calibrate(&made.nominal, &made.data, &geometry).unwrap();
@@ -37,7 +37,7 @@ fn fifty_rows_are_one_threads_work() {
     }
     assert_eq!(threads(), before);
     // Many rows show that the count would have told.
-    let many = Simulation { count: 20_000, ..Simulation::default() }.run(&elbow(), Kind::Point).unwrap();
+    let many = Simulation { count: 20_000, ..Simulation::default() }.run(&elbow(), Kind::POINT).unwrap();
     calibrate(&many.nominal, &many.data, &CalibrationOptions::default()).unwrap();
     if std::thread::available_parallelism().is_ok_and(|count| count.get() > 1) {
         assert!(threads() > before);

@@ -7,7 +7,7 @@ use poecal::calibration::DeviceFrameKnowledge;
 use poecal::simulate::Kind;
 
 use super::shared::{ColumnArgs, TreeArgs};
-use super::words::{FRAME, SIMULATED_KIND, one_of};
+use super::words::{FRAME, one_of, simulated};
 use crate::quantity::{sigma_m, sigma_rad};
 
 /// Arguments of `poecal identify`.
@@ -24,7 +24,7 @@ pub(crate) struct Identify {
     #[command(flatten)]
     pub(crate) columns: ColumnArgs,
     /// Kind of the measurements of the tip
-    #[arg(long, value_parser = one_of(SIMULATED_KIND), default_value = "pose")]
+    #[arg(long, value_parser = simulated(), default_value = "pose")]
     pub(crate) kind: Kind,
     /// Standard deviation of each measured position component [default: 0.05mm]
     #[arg(long, value_name = "LENGTH", value_parser = sigma_m, allow_hyphen_values = true)]

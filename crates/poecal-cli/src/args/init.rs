@@ -6,7 +6,7 @@ use clap::Args;
 use poecal::simulate::Kind;
 
 use super::shared::TreeArgs;
-use super::words::{MEASURED, one_of};
+use super::words::measured;
 use crate::quantity::whole;
 
 /// Arguments of `poecal init`.
@@ -17,7 +17,7 @@ pub(crate) struct Init {
     #[command(flatten)]
     pub(crate) chain: TreeArgs,
     /// Kind of the measurements
-    #[arg(long, value_parser = one_of(MEASURED), default_value = "points")]
+    #[arg(long, value_parser = measured(), default_value = "points")]
     pub(crate) measure: Kind,
     /// Number of configurations to suggest
     #[arg(long, value_name = "N", default_value_t = 60, value_parser = clap::value_parser!(u32).range(1..=100_000))]

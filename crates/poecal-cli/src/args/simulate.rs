@@ -8,7 +8,7 @@ use poecal::robot::Sizes;
 use poecal::simulate::Kind;
 
 use super::shared::TreeArgs;
-use super::words::{FRAME, SIMULATED_KIND, one_of};
+use super::words::{FRAME, one_of, simulated};
 use crate::quantity::{LengthAndAngle, direction, terms};
 
 /// Arguments of `poecal simulate`.
@@ -38,7 +38,7 @@ pub(crate) struct Simulate {
     #[arg(long, default_value_t = 1)]
     pub(crate) seed: u64,
     /// Kind of the measurements
-    #[arg(long, value_parser = one_of(SIMULATED_KIND), default_value = "pose")]
+    #[arg(long, value_parser = simulated(), default_value = "pose")]
     pub(crate) kind: Kind,
     /// The measuring device's frame: unknown, or the robot's base
     #[arg(long, value_parser = one_of(FRAME), default_value = "unknown")]

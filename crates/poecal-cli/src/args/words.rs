@@ -176,40 +176,28 @@ pub(super) const FORM: Words<ModelFormat> = &[
     ("toml", "A table of screws", ModelFormat::Toml),
 ];
 
-/// What a simulated device sees.
-pub(super) const SIMULATED_KIND: Words<Kind> = &[
-    ("pose", "Positions and orientations", Kind::Pose),
-    ("point", "Positions", Kind::Point),
-    ("mixed", "Both in turn", Kind::Mixed),
-    ("distance", "Distances from anchors, as of a draw-wire", Kind::Distance),
-    ("distance-change", "Changes of distances, as of an interferometer", Kind::Change),
-    ("sphere", "Points of a sphere of unknown radius", Kind::Sphere),
-    ("socket", "A ball in sockets", Kind::Socket),
-    ("plane", "Points of planes", Kind::Plane),
-    ("height", "Heights over planes, as of a dial gauge", Kind::Height),
-    ("flush", "A face that lies flush on planes", Kind::Flush),
-    ("direction", "The direction of gravity, as of an inclinometer", Kind::Direction),
-    ("ball-bar", "Distances between two configurations", Kind::BallBar),
-    ("relative", "Poses from one configuration in another", Kind::Relative),
-    ("component", "Two components of positions, as of a camera that looks along the third", Kind::Component),
-];
+/// Words that the library knows: of each its help and its meaning.
+fn listed<T: Clone + Send + Sync + 'static>(
+    words: Vec<(&'static str, &'static str, T)>,
+) -> impl TypedValueParser<Value = T> {
+    let values: Vec<PossibleValue> =
+        words.iter().map(|(word, help, _)| PossibleValue::new(*word).help(*help)).collect();
+    PossibleValuesParser::new(values).try_map(move |chosen| {
+        let found = words.iter().find(|(word, ..)| *word == chosen);
+        found.map(|(.., meaning)| meaning.clone()).ok_or("expected one of the words")
+    })
+}
 
-/// What will be measured.
-pub(super) const MEASURED: Words<Kind> = &[
-    ("points", "Positions of a target, as a laser tracker sees them", Kind::Point),
-    ("poses", "Positions and orientations", Kind::Pose),
-    ("distances", "Distances from anchors, as of a draw-wire", Kind::Distance),
-    ("distance-changes", "Changes of distances, as of an interferometer", Kind::Change),
-    ("spheres", "Points of spheres", Kind::Sphere),
-    ("sockets", "A ball in sockets, or a fixed point touched in many ways", Kind::Socket),
-    ("planes", "Points of planes", Kind::Plane),
-    ("heights", "Heights over planes, as of a dial gauge", Kind::Height),
-    ("flush", "A face that lies flush on planes", Kind::Flush),
-    ("directions", "The direction of gravity, as of an inclinometer", Kind::Direction),
-    ("ball-bars", "Distances between two configurations", Kind::BallBar),
-    ("relative", "Poses from one configuration in another", Kind::Relative),
-    ("components", "Some of x, y and z, as of a camera or a gauge on a rail", Kind::Component),
-];
+/// Parser of what a simulated device sees.
+pub(super) fn simulated() -> impl TypedValueParser<Value = Kind> {
+    listed(Kind::all().into_iter().map(|kind| (kind.word(), kind.session().help, kind)).collect())
+}
+
+/// Parser of what will be measured.
+pub(super) fn measured() -> impl TypedValueParser<Value = Kind> {
+    let of = |kind: Kind| Some((kind.session().plural?, kind.session().help, kind));
+    listed(Kind::all().into_iter().filter_map(of).collect())
+}
 
 /// When the device's frame is refitted by itself.
 pub(super) const REFIT: Words<bool> =
@@ -220,10 +208,6 @@ pub(super) const END: Words<End> =
     &[("free", "It is fitted with the offsets", End::Free), ("kept", "It is the same in both", End::Kept)];
 
 /// Parser of one of these words for clap.
-pub(super) fn one_of<T: Copy + Send + Sync>(words: Words<T>) -> impl TypedValueParser<Value = T> {
-    let values = words.iter().map(|(word, help, _)| PossibleValue::new(*word).help(*help));
-    PossibleValuesParser::new(values).try_map(|chosen| {
-        let found = words.iter().find(|(word, ..)| *word == chosen);
-        found.map(|(.., meaning)| *meaning).ok_or("expected one of the words")
-    })
+pub(super) fn one_of<T: Copy + Send + Sync + 'static>(words: Words<T>) -> impl TypedValueParser<Value = T> {
+    listed(words.to_vec())
 }

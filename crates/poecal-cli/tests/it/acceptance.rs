@@ -17,7 +17,7 @@ fn decided(folder: &Folder, words: &str) -> (Decision, i32) {
 
 #[test]
 fn limits_are_kept_exceeded_or_neither() {
-    let folder = session(Kind::Pose);
+    let folder = session(Kind::POSE);
     folder.done("calibrate robot.urdf measurements.csv --accept 10mm");
     let file = calibration(&folder, "poecal-out");
     let own = file.accuracy.held_out.unwrap();
@@ -49,7 +49,7 @@ fn limits_are_kept_exceeded_or_neither() {
 
 #[test]
 fn other_measurements_decide_and_those_of_the_calibration_do_not() {
-    let folder = session(Kind::Pose);
+    let folder = session(Kind::POSE);
     folder.done("calibrate robot.urdf measurements.csv");
     let rows = folder.read("measurements.csv");
     let lines: Vec<&str> = rows.lines().collect();
@@ -66,7 +66,7 @@ fn other_measurements_decide_and_those_of_the_calibration_do_not() {
 
 #[test]
 fn a_record_is_kept_and_shown_and_typed_keys_precede_those_of_the_settings() {
-    let folder = session(Kind::Pose);
+    let folder = session(Kind::POSE);
     let settings = "poecal_settings = 1\nmodel = \"robot.urdf\"\nmeasurements = [\"measurements.csv\"]\nforce = true\naccept = [\"10mm\"]\n\
                     [record]\nserial = \"<b>4711</b>\"\ndate = 2026-03-02\noperator = \"A = B\"\nnote = \"\"\n";
     folder.write("poecal.toml", settings);
@@ -89,7 +89,7 @@ fn a_record_is_kept_and_shown_and_typed_keys_precede_those_of_the_settings() {
 
 #[test]
 fn wrong_limits_and_records_are_refused_by_one_sentence() {
-    let folder = session(Kind::Point);
+    let folder = session(Kind::POINT);
     let long = format!("--record serial={}", "x".repeat(201));
     let cases = [
         ("--accept 0.2", "--accept: found `0.2` as a limit, expected a unit behind the number"),

@@ -8,13 +8,13 @@ use crate::session::{session, write_measurements};
 
 /// A calibration in `poecal-out`, and other sessions of the same robot.
 fn checked() -> Folder {
-    let folder = session(Kind::Point);
+    let folder = session(Kind::POINT);
     folder.done("calibrate robot.urdf measurements.csv");
     // The same robot and device, in configurations that follow on those of the calibration.
     write_measurements(
         &folder,
         "all.csv",
-        Kind::Point,
+        Kind::POINT,
         "",
         &Simulation { count: 160, ..Simulation::default() },
     );

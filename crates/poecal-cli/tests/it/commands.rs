@@ -9,7 +9,7 @@ use crate::session::{ROBOT, calibration, numbers, session, write_measurements};
 
 #[test]
 fn calibrate_writes_its_folder_and_tells_three_models() {
-    let folder = session(Kind::Pose);
+    let folder = session(Kind::POSE);
     let out = folder.done("calibrate robot.urdf measurements.csv --verbose");
     for words in [
         "nominal   registered   calibrated",
@@ -47,7 +47,7 @@ fn without_placements(urdf: &str) -> String {
 
 #[test]
 fn calibrated_urdf_changes_attribute_values_only() {
-    let folder = session(Kind::Pose);
+    let folder = session(Kind::POSE);
     folder.done("calibrate robot.urdf measurements.csv");
     let calibrated = folder.read("poecal-out/calibrated.urdf");
     assert_ne!(calibrated, ROBOT);
@@ -58,11 +58,11 @@ fn calibrated_urdf_changes_attribute_values_only() {
 
 #[test]
 fn training_figures_are_never_shown_without_the_word() {
-    let folder = session(Kind::Mixed);
+    let folder = session(Kind::MIXED);
     write_measurements(
         &folder,
         "other.csv",
-        Kind::Mixed,
+        Kind::MIXED,
         "",
         &Simulation { count: 25, noise_position_m: 6e-5, ..Simulation::default() },
     );
@@ -94,7 +94,7 @@ fn training_figures_are_never_shown_without_the_word() {
 
 #[test]
 fn what_is_held_out_can_be_said() {
-    let folder = session(Kind::Pose);
+    let folder = session(Kind::POSE);
     let out = folder.done("calibrate robot.urdf measurements.csv --held-out 0 --out all --verbose");
     assert!(out.contains("held out        none: every measurement was fitted"), "{out}");
     assert!(out.contains("no row was held out: these errors are of fitted rows"), "{out}");
@@ -109,7 +109,7 @@ fn what_is_held_out_can_be_said() {
     write_measurements(
         &folder,
         "other.csv",
-        Kind::Pose,
+        Kind::POSE,
         "",
         &Simulation { count: 25, noise_position_m: 6e-5, ..simulation },
     );
@@ -131,7 +131,7 @@ fn what_is_held_out_can_be_said() {
 
 #[test]
 fn json_is_the_file_and_quiet_is_silent() {
-    let folder = session(Kind::Point);
+    let folder = session(Kind::POINT);
     let out = folder.done("calibrate robot.urdf measurements.csv --json");
     assert_eq!(out, folder.read("poecal-out/calibration.json"));
     let run = folder.run("calibrate robot.urdf measurements.csv --quiet --out quiet");
@@ -147,7 +147,7 @@ fn json_is_the_file_and_quiet_is_silent() {
 
 #[test]
 fn threads_do_not_change_a_byte() {
-    let folder = session(Kind::Mixed);
+    let folder = session(Kind::MIXED);
     let one = folder.done("calibrate robot.urdf measurements.csv --threads 1 --out one --json");
     let two = folder.done("calibrate robot.urdf measurements.csv --threads 2 --out two --json");
     assert_eq!(one, two);
@@ -158,7 +158,7 @@ fn threads_do_not_change_a_byte() {
 
 #[test]
 fn predictions_are_those_of_the_model() {
-    let folder = session(Kind::Pose);
+    let folder = session(Kind::POSE);
     folder.done("calibrate robot.urdf measurements.csv");
     let out = folder.done("predict poecal-out/calibration.json measurements.csv");
     assert_eq!(out.lines().next(), Some("id,x[m],y[m],z[m],qx,qy,qz,qw"));
@@ -194,9 +194,9 @@ fn predictions_are_those_of_the_model() {
 
 #[test]
 fn the_device_is_the_base_where_that_was_given() {
-    let folder = session(Kind::Pose);
+    let folder = session(Kind::POSE);
     let at_base = Simulation { count: 60, device_anywhere: false, ..Simulation::default() };
-    write_measurements(&folder, "base.csv", Kind::Pose, "", &at_base);
+    write_measurements(&folder, "base.csv", Kind::POSE, "", &at_base);
     folder.done("calibrate robot.urdf base.csv --frame base");
     assert_eq!(
         folder.done("predict poecal-out/calibration.json base.csv --frame device"),
@@ -206,7 +206,7 @@ fn the_device_is_the_base_where_that_was_given() {
 
 #[test]
 fn check_says_what_it_understood() {
-    let folder = session(Kind::Mixed);
+    let folder = session(Kind::MIXED);
     folder.write("ids.csv", "id;set;joint1[deg];joint2;joint3;joint4;joint5;joint6;x[mm];y[mm];z[mm];note\nr1;fit;-90;0,5;0;0;0;0;700;0;500;a\nr2;held_out;90;0,25;0;0;0;0;700;10;500;b\n");
     let out = folder.done("check robot.urdf measurements.csv ids.csv");
     for words in [
@@ -241,7 +241,7 @@ fn check_says_what_it_understood() {
 
 #[test]
 fn convert_gives_the_same_robot_in_another_form() {
-    let folder = session(Kind::Pose);
+    let folder = session(Kind::POSE);
     folder.done("calibrate robot.urdf measurements.csv");
     let run = folder.run("convert robot.urdf --to toml");
     assert!(run.out.starts_with("poecal_robot = 1\n"));
@@ -279,7 +279,7 @@ fn the_schema_in_the_docs_is_the_programs() {
 #[test]
 #[cfg(target_os = "linux")]
 fn a_result_that_does_not_arrive_is_an_error_unless_its_reader_has_gone() {
-    let folder = session(Kind::Point);
+    let folder = session(Kind::POINT);
     folder.done("calibrate robot.urdf measurements.csv");
     for arguments in [
         "calibrate robot.urdf measurements.csv --force",

@@ -18,7 +18,7 @@ const PROGRAM: &str = "\u{feff}# Griff; 1;2;3\r\nname;joint1[deg];joint2[deg];jo
 
 /// A folder with a calibration and a program.
 fn folder() -> Folder {
-    let folder = session(Kind::Pose);
+    let folder = session(Kind::POSE);
     folder.done("calibrate robot.urdf measurements.csv --out results");
     folder.write("program.csv", PROGRAM);
     folder

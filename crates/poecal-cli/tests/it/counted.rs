@@ -35,7 +35,7 @@ fn line(numbers: &[f64]) -> String {
 
 /// A folder with one session twice, as the model reads it and as the controller counts, and both calibrated.
 fn both(map: &str, count: impl Fn(&[f64]) -> Vec<f64>) -> Folder {
-    let folder = session(Kind::Pose);
+    let folder = session(Kind::POSE);
     let plain = folder.read("measurements.csv");
     let mut rows = plain.lines();
     let mut text = rows.next().unwrap().replace("joint", "A");

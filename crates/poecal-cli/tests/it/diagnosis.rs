@@ -12,7 +12,7 @@ use crate::session::{calibration, session};
 
 #[test]
 fn exchanged_columns_are_named_with_evidence() {
-    let folder = session(Kind::Pose);
+    let folder = session(Kind::POSE);
     let text = folder.read("measurements.csv");
     let header = text.lines().next().unwrap();
     let exchanged = header.replace("joint4", "other").replace("joint5", "joint4").replace("other", "joint5");
@@ -55,7 +55,7 @@ fn with_turns(text: &str, names: &str, turns: impl Fn(&Pose) -> [f64; 3]) -> Str
 
 #[test]
 fn angles_of_a_controller_that_are_called_roll_pitch_yaw_are_named_with_the_mapping_that_reads_them() {
-    let folder = session(Kind::Pose);
+    let folder = session(Kind::POSE);
     // KUKA's A turns about z, B about y, C about x: yaw, pitch, roll.
     let abc = |pose: &Pose| {
         let [roll, pitch, yaw] = rotation::to_rpy(&pose.rotation);
@@ -82,7 +82,7 @@ fn angles_of_a_controller_that_are_called_roll_pitch_yaw_are_named_with_the_mapp
 
 #[test]
 fn rotation_vectors_in_degrees_are_no_radians() {
-    let folder = session(Kind::Pose);
+    let folder = session(Kind::POSE);
     let vector = |pose: &Pose| -> [f64; 3] { rotation::log(&pose.rotation).map(f64::to_degrees).into() };
     let text = folder.read("measurements.csv");
     folder.write("ur.csv", with_turns(&text, "rx,ry,rz", vector));
@@ -99,7 +99,7 @@ fn rotation_vectors_in_degrees_are_no_radians() {
 
 #[test]
 fn rows_that_stand_twice_are_named_by_their_lines() {
-    let folder = session(Kind::Point);
+    let folder = session(Kind::POINT);
     let text = folder.read("measurements.csv");
     let copied = text.lines().nth(3).unwrap();
     folder.write("measurements.csv", format!("{text}{copied}\n"));
@@ -113,7 +113,7 @@ fn rows_that_stand_twice_are_named_by_their_lines() {
 
 #[test]
 fn targets_without_names_are_told_to_be_named() {
-    let folder = session(Kind::Pose);
+    let folder = session(Kind::POSE);
     let model = Model::read(folder.path("robot.urdf"), &Default::default()).unwrap();
     let data = read(&[folder.path("measurements.csv")], &model.robot, &ReadOptions::default()).unwrap().data;
     // Along axes of the tool.
@@ -145,7 +145,7 @@ fn targets_without_names_are_told_to_be_named() {
 
 #[test]
 fn readings_in_per_cent_of_the_range_are_named_with_the_mapping_that_reads_them() {
-    let folder = session(Kind::Pose);
+    let folder = session(Kind::POSE);
     let text = folder.read("measurements.csv");
     let mut rows = text.lines();
     let mut made = rows.next().unwrap().to_owned();

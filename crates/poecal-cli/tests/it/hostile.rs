@@ -37,7 +37,7 @@ fn folder() -> Folder {
     folder.write("robot.urdf", urdf);
     folder.write("map.toml", map);
     let model = Model::read(folder.path("plain.urdf"), &Default::default()).unwrap();
-    let data = Simulation { count: 60, ..Simulation::default() }.run(&model.robot, Kind::Point).unwrap().data;
+    let data = Simulation { count: 60, ..Simulation::default() }.run(&model.robot, Kind::POINT).unwrap().data;
     let mut text = format!("id,target,\u{1b}[5mextra\u{202d},{},x,y,z\n", data.reading_names().join(","));
     for (row, observation) in data.observations.iter().enumerate() {
         let [x, y, z]: [f64; 3] = observation.measurement.pose().translation.into();

@@ -6,7 +6,7 @@ use crate::session::session;
 
 #[test]
 fn lost_beams_are_told_or_refused() {
-    let folder = session(Kind::Point);
+    let folder = session(Kind::POINT);
     let text = folder.read("measurements.csv");
     let lines: Vec<&str> = text.lines().collect();
     let without = |line: &str, position: &str| {

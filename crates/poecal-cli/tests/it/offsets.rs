@@ -78,7 +78,7 @@ fn json_holds_the_same_and_goes_into_a_file() {
 
 #[test]
 fn a_calibration_has_a_base_and_a_tip_of_its_own() {
-    let folder = session(Kind::Pose);
+    let folder = session(Kind::POSE);
     folder.done("calibrate robot.urdf measurements.csv --out anywhere --quiet");
     let ends = |arguments: &str| {
         let out = folder.done(&format!("offsets robot.urdf {arguments} --json"));

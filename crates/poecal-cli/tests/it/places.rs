@@ -11,7 +11,7 @@ use crate::session::session;
 
 /// A folder with a model, measurements, joints and the results of a calibration.
 fn calibrated() -> Folder {
-    let folder = session(Kind::Point);
+    let folder = session(Kind::POINT);
     folder.done("calibrate robot.urdf measurements.csv --out out");
     folder
 }
@@ -310,7 +310,7 @@ fn a_report_named_inside_the_results_is_one_of_them() {
 
 #[test]
 fn results_are_there_when_nobody_can_be_told() {
-    let folder = session(Kind::Point);
+    let folder = session(Kind::POINT);
     let full = || fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
     for more in ["", " --json"] {
         let run = folder
@@ -336,7 +336,7 @@ fn at_once(folder: &Folder, commands: [&str; 2]) -> (Vec<i32>, String) {
 
 #[test]
 fn of_two_writers_one_wins_and_results_are_never_mixed() {
-    let folder = session(Kind::Point);
+    let folder = session(Kind::POINT);
     let (one, other) =
         ("calibrate robot.urdf measurements.csv --seed 1", "calibrate robot.urdf measurements.csv --seed 2");
     let mut whole = Vec::new();
@@ -385,7 +385,7 @@ fn is_ignored(number: u32) -> bool {
 
 #[test]
 fn a_signal_cleans_up() {
-    let folder = session(Kind::Point);
+    let folder = session(Kind::POINT);
     for (signal, number) in [("INT", 2), ("TERM", 15), ("HUP", 1)] {
         if is_ignored(number) {
             println!("SIG{signal} is ignored here, and not sent");
@@ -415,7 +415,7 @@ fn a_signal_cleans_up() {
 
 #[test]
 fn settings_lead_nowhere_else_and_let_only_results_go() {
-    let folder = session(Kind::Point);
+    let folder = session(Kind::POINT);
     fs::create_dir(folder.path("cell")).unwrap();
     fs::create_dir(folder.path("outside")).unwrap();
     symlink("../outside", folder.path("cell/link")).unwrap();

@@ -25,9 +25,9 @@ fn moved(folder: &Folder, from: &str, to: &str, first: usize, by_mm: f64) {
 
 #[test]
 fn a_move_during_the_session_is_repaired_and_said() {
-    let folder = session(Kind::Point);
+    let folder = session(Kind::POINT);
     let more = Simulation { count: 160, ..Simulation::default() };
-    write_measurements(&folder, "all.csv", Kind::Point, "", &more);
+    write_measurements(&folder, "all.csv", Kind::POINT, "", &more);
     let all = folder.read("all.csv");
     let part = |first: usize, count: usize| {
         let is_of = |(line, _): &(usize, &str)| *line == 0 || (first..first + count).contains(line);

@@ -7,7 +7,7 @@ use crate::session::{calibration, session, write_measurements};
 
 #[test]
 fn calibrate_writes_the_report_where_it_is_asked_to() {
-    let folder = session(Kind::Point);
+    let folder = session(Kind::POINT);
     let out = folder.done("calibrate robot.urdf measurements.csv");
     assert!(out.ends_with("residuals.csv, report.html\n"), "{out}");
     let page = folder.read("poecal-out/report.html");
@@ -27,11 +27,11 @@ fn calibrate_writes_the_report_where_it_is_asked_to() {
 
 #[test]
 fn the_report_made_again_is_the_same() {
-    let folder = session(Kind::Mixed);
+    let folder = session(Kind::MIXED);
     write_measurements(
         &folder,
         "other.csv",
-        Kind::Point,
+        Kind::POINT,
         "mirror",
         &Simulation { count: 60, ..Simulation::default() },
     );
@@ -52,7 +52,7 @@ fn the_report_made_again_is_the_same() {
 
 #[test]
 fn the_file_names_what_it_was_made_of_and_how() {
-    let folder = session(Kind::Point);
+    let folder = session(Kind::POINT);
     folder.done("calibrate robot.urdf measurements.csv --threads 1 --out a --held-out=0.2 --report none");
     let inputs = calibration(&folder, "a").inputs;
     assert_eq!(
@@ -68,7 +68,7 @@ fn the_file_names_what_it_was_made_of_and_how() {
 #[cfg(unix)]
 #[test]
 fn what_comes_through_a_pipe_has_its_own_checksum_or_none() {
-    let folder = session(Kind::Point);
+    let folder = session(Kind::POINT);
     folder.done("calibrate robot.urdf measurements.csv --out files --report none");
     let files = calibration(&folder, "files").inputs.sha256;
     for (words, piped) in [
@@ -86,7 +86,7 @@ fn what_comes_through_a_pipe_has_its_own_checksum_or_none() {
 
 #[test]
 fn mistakes_are_told() {
-    let folder: Folder = session(Kind::Point);
+    let folder: Folder = session(Kind::POINT);
     folder.done("calibrate robot.urdf measurements.csv");
     for (words, expected) in [
         ("report missing.json", "missing.json: found no such file"),

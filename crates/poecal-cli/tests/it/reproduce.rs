@@ -72,7 +72,7 @@ fn reproduction_refuses_what_it_cannot_do() {
 
 #[test]
 fn every_formulation_can_be_chosen() {
-    let folder = session(Kind::Point);
+    let folder = session(Kind::POINT);
     let mut predictions = Vec::new();
     folder.write(
         "joints.csv",
@@ -108,7 +108,7 @@ fn every_formulation_can_be_chosen() {
 
 #[test]
 fn residual_and_method_can_be_chosen() {
-    let folder = session(Kind::Pose);
+    let folder = session(Kind::POSE);
     let out = folder
         .done("calibrate robot.urdf measurements.csv --residual spatial --method gauss-newton --verbose");
     assert!(out.contains("formulation   adjoint, spatial residual of poses, gauss-newton"), "{out}");
@@ -118,7 +118,7 @@ fn residual_and_method_can_be_chosen() {
 
 #[test]
 fn a_residual_of_poses_says_that_points_have_none() {
-    let folder = session(Kind::Point);
+    let folder = session(Kind::POINT);
     let run = folder.run("calibrate robot.urdf measurements.csv --residual spatial --verbose");
     assert_eq!(run.code, 0, "{run:?}");
     let words = "--residual spatial has no effect: it is about measured frames, and there are none";

@@ -9,7 +9,7 @@ use crate::session::{calibration, session};
 /// The simulated session of points, its later rows seen from another place: a column `instrument` in `both.csv`, and files of their
 /// own, `monday.csv` and `tuesday.csv`.
 fn moved() -> Folder {
-    let folder = session(Kind::Point);
+    let folder = session(Kind::POINT);
     let text = folder.read("measurements.csv");
     let (header, rows) = text.split_once('\n').unwrap();
     let names: Vec<&str> = header.split(',').collect();

@@ -59,7 +59,7 @@ fn poor() -> Folder {
     let folder = Folder::new();
     folder.write("robot.urdf", ROBOT);
     let model = Model::read(folder.path("robot.urdf"), &Default::default()).unwrap();
-    let made = Simulation { count: 80, ..Simulation::default() }.run(&model.robot, Kind::Point).unwrap();
+    let made = Simulation { count: 80, ..Simulation::default() }.run(&model.robot, Kind::POINT).unwrap();
     let mut text = format!("{},x,y,z\n", made.data.reading_names().join(","));
     for row in 0..made.data.len() {
         let readings = made.data.readings(row);
@@ -139,7 +139,7 @@ fn a_bad_day_is_told_in_short_lists_and_in_full_on_demand() {
 
 #[test]
 fn warnings_stand_in_the_table_or_on_standard_error_and_not_in_both() {
-    let folder = session(Kind::Point);
+    let folder = session(Kind::POINT);
     let text = folder.read("measurements.csv");
     let copied = text.lines().nth(3).unwrap();
     folder.write("measurements.csv", format!("{text}{copied}\n"));
@@ -157,7 +157,7 @@ fn warnings_stand_in_the_table_or_on_standard_error_and_not_in_both() {
 
 #[test]
 fn without_held_out_rows_the_fitted_ones_are_shown_and_named() {
-    let folder = session(Kind::Pose);
+    let folder = session(Kind::POSE);
     let out = folder.done("calibrate robot.urdf measurements.csv --held-out 0");
     check(&out);
     assert!(
@@ -169,7 +169,7 @@ fn without_held_out_rows_the_fitted_ones_are_shown_and_named() {
 
 #[test]
 fn suspected_rows_do_not_count_in_the_last_row() {
-    let folder = session(Kind::Point);
+    let folder = session(Kind::POINT);
     let text = folder.read("measurements.csv");
     let knocked: Vec<String> = text
         .lines()

@@ -7,9 +7,9 @@ use crate::session::{calibration, numbers, session, write_measurements};
 
 #[test]
 fn named_targets_are_predicted_by_name() {
-    let folder = session(Kind::Point);
+    let folder = session(Kind::POINT);
     let simulation = Simulation { count: 60, ..Simulation::default() };
-    write_measurements(&folder, "smr.csv", Kind::Point, "smr1", &simulation);
+    write_measurements(&folder, "smr.csv", Kind::POINT, "smr1", &simulation);
     folder.done("calibrate robot.urdf smr.csv");
     let file = calibration(&folder, "poecal-out");
     let robot = file.robot().unwrap();
@@ -44,8 +44,8 @@ fn named_targets_are_predicted_by_name() {
             "found orientations of target `smr1`, expected positions alone, since it is a point in the calibration: leave the orientation columns out, or refit the targets with --refit-tool",
         ),
     ];
-    write_measurements(&folder, "other.csv", Kind::Point, "smr2", &simulation);
-    write_measurements(&folder, "poses.csv", Kind::Pose, "smr1", &simulation);
+    write_measurements(&folder, "other.csv", Kind::POINT, "smr2", &simulation);
+    write_measurements(&folder, "poses.csv", Kind::POSE, "smr1", &simulation);
     for (name, sentence) in refusals {
         let run = folder.run(&format!("validate poecal-out/calibration.json {name}"));
         assert_eq!((run.code, run.err), (2, format!("error: {sentence}\n")));
@@ -55,7 +55,7 @@ fn named_targets_are_predicted_by_name() {
 
 #[test]
 fn validation_judges_other_sessions() {
-    let folder = session(Kind::Pose);
+    let folder = session(Kind::POSE);
     folder.done("calibrate robot.urdf measurements.csv");
     let own_rms = calibration(&folder, "poecal-out").accuracy.held_out.unwrap().calibrated.position_mm().rms;
     let json = |arguments: &str| -> serde_json::Value {
@@ -68,7 +68,7 @@ fn validation_judges_other_sessions() {
 
     // The same robot and device, in configurations that the calibration did not see: what follows on its 60 rows.
     let more = Simulation { count: 160, ..Simulation::default() };
-    write_measurements(&folder, "all.csv", Kind::Pose, "", &more);
+    write_measurements(&folder, "all.csv", Kind::POSE, "", &more);
     let all = folder.read("all.csv");
     let is_new = |(line, _): &(usize, &str)| *line == 0 || *line > 60;
     let new: Vec<&str> = all.lines().enumerate().filter(is_new).map(|(_, line)| line).collect();
@@ -83,7 +83,7 @@ fn validation_judges_other_sessions() {
     assert!(found["calibrated"]["rotation_deg"]["rms"].as_f64().unwrap() < 0.04);
 
     // The same robot with the device elsewhere: positions in the base's own frame.
-    write_measurements(&folder, "moved.csv", Kind::Pose, "", &Simulation { device_anywhere: false, ..more });
+    write_measurements(&folder, "moved.csv", Kind::POSE, "", &Simulation { device_anywhere: false, ..more });
     let run = folder.run("validate poecal-out/calibration.json moved.csv");
     assert_eq!(run.code, 0);
     println!("{}", run.err.trim_end());
@@ -130,9 +130,9 @@ fn validation_judges_other_sessions() {
 
 #[test]
 fn the_nominal_model_is_judged_where_all_it_cannot_know_is_found_anew() {
-    let folder = session(Kind::Pose);
+    let folder = session(Kind::POSE);
     let at_base = Simulation { count: 60, device_anywhere: false, ..Simulation::default() };
-    write_measurements(&folder, "base.csv", Kind::Pose, "", &at_base);
+    write_measurements(&folder, "base.csv", Kind::POSE, "", &at_base);
     folder.done("calibrate robot.urdf base.csv --frame base --out base");
     folder.done("calibrate robot.urdf base.csv --out anywhere");
     for (name, refit, is_judged) in [

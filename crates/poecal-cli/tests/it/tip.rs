@@ -37,7 +37,7 @@ fn changed(folder: &Folder) -> Vec<(String, String)> {
 
 #[test]
 fn links_beyond_the_last_joint_keep_the_numbers_of_the_model() {
-    for kind in [Kind::Point, Kind::Pose] {
+    for kind in [Kind::POINT, Kind::POSE] {
         let folder = with_gripper(kind);
         let told = folder.done("calibrate robot.urdf measurements.csv --out results");
         let found = changed(&folder);
@@ -66,7 +66,7 @@ fn links_beyond_the_last_joint_keep_the_numbers_of_the_model() {
 
 #[test]
 fn the_device_sees_the_target_and_the_base_frame_has_the_tip() {
-    let folder = with_gripper(Kind::Point);
+    let folder = with_gripper(Kind::POINT);
     folder.done("calibrate robot.urdf measurements.csv --out results");
     folder.done("calibrate robot.urdf measurements.csv --out moved --move-tip");
     let measured = |text: &str, skip: usize| -> Vec<[f64; 3]> {
@@ -118,7 +118,7 @@ fn the_device_sees_the_target_and_the_base_frame_has_the_tip() {
 
 #[test]
 fn a_model_that_ends_in_its_reflector_may_have_it_as_its_tip() {
-    let folder = session(Kind::Point);
+    let folder = session(Kind::POINT);
     let told = folder.done("calibrate robot.urdf measurements.csv --out results --move-tip");
     assert!(told.contains("tip           the point that was measured, by --move-tip"), "{told}");
     let file = calibration(&folder, "results");
@@ -135,12 +135,12 @@ fn a_model_that_ends_in_its_reflector_may_have_it_as_its_tip() {
 
 #[test]
 fn which_target_is_meant_is_said_where_it_is_open() {
-    let folder = session(Kind::Point);
+    let folder = session(Kind::POINT);
     for (name, seed) in [("left", 1), ("right", 2)] {
         write_measurements(
             &folder,
             &format!("{name}.csv"),
-            Kind::Point,
+            Kind::POINT,
             name,
             &Simulation { seed, ..Simulation::default() },
         );

@@ -11,7 +11,7 @@ fn json(folder: &Folder, name: &str) -> serde_json::Value {
 
 /// Measurements in which joint2 hardly moves.
 fn narrow() -> Folder {
-    let folder = session(Kind::Pose);
+    let folder = session(Kind::POSE);
     let text = folder.read("measurements.csv");
     let mut kept = vec![text.lines().next().unwrap().to_owned()];
     let column = kept[0].split(',').position(|name| name == "joint2").unwrap();

@@ -15,8 +15,8 @@ fn folder() -> Folder {
     folder.write("robot.urdf", ROBOT);
     let model = Model::read(folder.path("robot.urdf"), &Default::default()).unwrap();
     let simulation = Simulation { count: 1500, ..Simulation::default() };
-    let made = simulation.run(&model.robot, Kind::Point).unwrap();
-    let other = Simulation { seed: 2, count: 1, ..simulation }.run(&model.robot, Kind::Point).unwrap().actual;
+    let made = simulation.run(&model.robot, Kind::POINT).unwrap();
+    let other = Simulation { seed: 2, count: 1, ..simulation }.run(&model.robot, Kind::POINT).unwrap().actual;
     let is_inside =
         |row: usize| [1, 2].iter().all(|&joint| (made.data.readings(row)[joint] - 0.5).abs() < 0.8);
     let is_outside =

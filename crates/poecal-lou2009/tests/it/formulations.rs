@@ -40,7 +40,7 @@ fn worst_mm(calibration: &Calibration) -> f64 {
 fn every_formulation_finds_the_robot_without_noise() {
     let none = Noise::new(0.0, 0.0);
     for robot in robots() {
-        for kind in [Kind::Pose, Kind::Point] {
+        for kind in [Kind::POSE, Kind::POINT] {
             for anywhere in [false, true] {
                 let made = session(&robot, kind, none, anywhere);
                 for formulation in Formulation::ALL {
@@ -65,7 +65,7 @@ fn every_formulation_finds_the_robot_without_noise() {
 fn offsets_of_the_joints_are_found_without_being_unknowns() {
     let none = Noise::new(0.0, 0.0);
     for robot in robots() {
-        let mut made = session(&robot, Kind::Pose, none, false);
+        let mut made = session(&robot, Kind::POSE, none, false);
         let offsets: Vec<f64> =
             (0..robot.joints.len()).map(|k| 0.03 * (k as f64 * 1.3 + 0.4).sin()).collect();
         let shifted = poecal::offsets::into_screws(&made.actual, &offsets).unwrap();
@@ -77,7 +77,7 @@ fn offsets_of_the_joints_are_found_without_being_unknowns() {
             ..Simulation::default()
         };
         let mut generator = rand_chacha::rand_core::SeedableRng::seed_from_u64(4);
-        made = exact.measure(&made.nominal, shifted, Kind::Pose, &mut generator).unwrap();
+        made = exact.measure(&made.nominal, shifted, Kind::POSE, &mut generator).unwrap();
         for formulation in Formulation::ALL {
             let found = calibrate(&made.nominal, &made.data, &options(&made, formulation)).unwrap();
             println!("{:14} {:15} {:.1e} mm", robot.name, formulation.word(), worst_mm(&found));
@@ -90,7 +90,7 @@ fn offsets_of_the_joints_are_found_without_being_unknowns() {
 #[test]
 fn formulations_part_with_noise() {
     let noise = Noise::new(5e-5, 2e-4);
-    let made = session(&elbow(), Kind::Point, noise, false);
+    let made = session(&elbow(), Kind::POINT, noise, false);
     let fit = |formulation, method| {
         let mut options = options(&made, formulation);
         options.held_out = 0.0;
@@ -116,7 +116,7 @@ fn formulations_part_with_noise() {
 /// The residual of the paper finds the same robot without noise, and a worse one with it.
 #[test]
 fn spatial_residual_costs_accuracy() {
-    let exact = session(&elbow(), Kind::Pose, Noise::new(0.0, 0.0), true);
+    let exact = session(&elbow(), Kind::POSE, Noise::new(0.0, 0.0), true);
     let with = |residual| formulated(Formulation::Adjoint, residual, Method::LevenbergMarquardt);
     let spatial =
         CalibrationOptions { formulation: with(Residual::Spatial), ..CalibrationOptions::default() };
@@ -134,8 +134,8 @@ fn spatial_residual_costs_accuracy() {
             device_anywhere: false,
             ..Simulation::default()
         };
-        let made = simulation.run(&elbow(), Kind::Pose).unwrap();
-        let unseen = simulation.held_out(&made, Kind::Pose, 100).unwrap();
+        let made = simulation.run(&elbow(), Kind::POSE).unwrap();
+        let unseen = simulation.held_out(&made, Kind::POSE, 100).unwrap();
         for (residual, sum) in [(Residual::Spatial, &mut with_spatial), (Residual::Tool, &mut with_tool)] {
             let options = CalibrationOptions {
                 frame: DeviceFrameKnowledge::Base,

@@ -6,7 +6,7 @@ use crate::reference;
 use nalgebra::Vector3;
 use poecal::estimate::{Chain, Estimate, Linkage, Packed, Session};
 use poecal::lie::{Pose, Screw, rotation};
-use poecal::measurement::{Dataset, Measurement, Noise, PointMeasurement, PoseMeasurement};
+use poecal::measurement::{Dataset, Measurement, Noise};
 use poecal::parameters::{DeviceFrame, Parameter, ScrewAxis, TargetFrame, ValueTerm};
 use poecal::problem::Problem;
 use poecal::robot::Term;
@@ -48,10 +48,8 @@ fn data(
     let position = chain.target.translation + Vector3::new(0.02, -0.01, 0.03);
     let mut data = Dataset::new(robot.reading_names());
     let measurement = match residual {
-        None => Measurement::Point(PointMeasurement { position }),
-        Some(_) => {
-            Measurement::Pose(PoseMeasurement { pose: Pose::new(turn * chain.target.rotation, position) })
-        }
+        None => Measurement::point(position),
+        Some(_) => Measurement::of_pose(&Pose::new(turn * chain.target.rotation, position)),
     };
     data.push(readings, None, measurement).unwrap();
     data.pose_residual = residual.and_then(Residual::model);
@@ -148,9 +146,9 @@ fn problem_keeps(problem: &Problem<'_>, kept: &[f64], place: usize) -> bool {
 fn the_kernels_sum_them_as_their_formulas_do() {
     let simulation = poecal::Simulation { count: 60, ..poecal::Simulation::default() };
     for (robot, kind) in [
-        (poecal::simulate::elbow(), poecal::Kind::Pose),
-        (poecal::simulate::gantry(), poecal::Kind::Mixed),
-        (poecal::simulate::scara(), poecal::Kind::Point),
+        (poecal::simulate::elbow(), poecal::Kind::POSE),
+        (poecal::simulate::gantry(), poecal::Kind::MIXED),
+        (poecal::simulate::scara(), poecal::Kind::POINT),
     ] {
         for (formulation, residual) in [
             (Formulation::Adjoint, Residual::Spatial),

@@ -1,7 +1,7 @@
 //! What the benchmarks of Monte Carlo share: noise, and measurements with it.
 
 use poecal::lie::{Pose, rotation};
-use poecal::measurement::{Dataset, Measurement, Noise, PoseMeasurement, Quantity};
+use poecal::measurement::{Dataset, Measurement, Noise, Quantity};
 use poecal::simulate::random;
 use rand_chacha::ChaCha8Rng;
 
@@ -15,7 +15,7 @@ pub(crate) fn disturbed(data: &Dataset, generator: &mut ChaCha8Rng) -> Vec<Measu
         let turn = random::normal_vector(generator) * NOISE[Quantity::Rotation];
         let seen = seen.pose();
         let pose = Pose::new(rotation::exp(&turn) * seen.rotation, seen.translation + shift);
-        Measurement::Pose(PoseMeasurement { pose })
+        Measurement::of_pose(&pose)
     };
     data.observations.iter().map(|observation| disturb(&observation.measurement)).collect()
 }

@@ -69,7 +69,7 @@ impl Cause {
 ///
 /// ```
 /// # use poecal::{CalibrationOptions, Kind, Simulation, calibrate, simulate::elbow};
-/// # let made = Simulation { count: 40, ..Simulation::default() }.run(&elbow(), Kind::Point)?;
+/// # let made = Simulation { count: 40, ..Simulation::default() }.run(&elbow(), Kind::POINT)?;
 /// # let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default())?;
 /// let structural = &calibration.identifiability.structural;
 /// // Points of a tracker that stands anywhere do not determine the base frame: a choice that changes no prediction.

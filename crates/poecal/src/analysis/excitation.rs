@@ -161,7 +161,7 @@ impl Excitation {
             all.insert(place.clone());
             let way = setup.estimate.tree.route_index(observation.into());
             if of_targets.insert((observation.target, way, place)) {
-                self.numbers += observation.measurement.observe().dim();
+                self.numbers += observation.measurement.dim();
                 self.seen[observation.target] += 1;
             }
         }

@@ -18,7 +18,7 @@ use crate::solve::Normal;
 /// ```
 /// # use poecal::calibration::{CalibrationOptions, calibrate};
 /// # use poecal::simulate::{Kind, Simulation, elbow};
-/// let made = Simulation { count: 60, ..Simulation::default() }.run(&elbow(), Kind::Point)?;
+/// let made = Simulation { count: 60, ..Simulation::default() }.run(&elbow(), Kind::POINT)?;
 /// let found = calibrate(&made.nominal, &made.data, &CalibrationOptions::default())?.identifiability;
 /// assert_eq!((found.rank, found.parameters), (27, 27));
 /// assert!(found.unidentifiable.is_empty() && found.spectrum.determined().iter().all(|&known| known));

@@ -11,11 +11,11 @@ use super::spectrum::PLAUSIBLE;
 use crate::error::{Error, ErrorKind, Result};
 use crate::estimate::{Chain, Estimate, Linkage, Packed, Session, delivered};
 use crate::lie::Pose;
-use crate::measurement::{Dataset, Measurement, Noise, Observation, PointMeasurement, PoseMeasurement};
+use crate::measurement::{Dataset, Noise, Observation};
 use crate::parameters::{Parameter, screw_axes};
 use crate::problem::{MOST_UNKNOWNS, Problem};
 use crate::robot::Robot;
-use crate::simulate::{Kind, pairs, random_configuration, seen};
+use crate::simulate::{Kind, exactly, pairs, plan, random_configuration, seen};
 use crate::solve::LeastSquares;
 use crate::start::{Registration, device_parameter, range_parameters, register, target_parameters};
 
@@ -30,7 +30,7 @@ const UNDETERMINED_EFFECT: f64 = 1.0;
 ///
 /// ```
 /// use poecal::{Kind, PlannedSession};
-/// let planned = PlannedSession { kind: Kind::Point, ..PlannedSession::default() };
+/// let planned = PlannedSession { kind: Kind::POINT, ..PlannedSession::default() };
 /// assert!(planned.device_free);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -47,7 +47,7 @@ impl Default for PlannedSession {
     /// Poses with 0.05 mm and 0.01°, device frame unknown.
     fn default() -> Self {
         let noise = Noise::new(5e-5, 0.01_f64.to_radians());
-        PlannedSession { kind: Kind::Pose, noise, device_free: true }
+        PlannedSession { kind: Kind::POSE, noise, device_free: true }
     }
 }
 
@@ -69,7 +69,7 @@ pub struct ExpectedError {
 ///
 /// ```
 /// use poecal::{Kind, PlannedSession, Simulation, identify, simulate::elbow};
-/// let made = Simulation { count: 40, ..Simulation::default() }.run(&elbow(), Kind::Pose)?;
+/// let made = Simulation { count: 40, ..Simulation::default() }.run(&elbow(), Kind::POSE)?;
 /// let foresight = identify(&made.nominal, made.data.all_readings(), &PlannedSession::default())?;
 /// assert_eq!((foresight.count, foresight.identifiability.rank), (40, 30));
 /// # Ok::<(), poecal::Error>(())
@@ -98,7 +98,7 @@ pub struct Foresight {
 /// ```
 /// use poecal::analysis::{PlannedSession, identify};
 /// use poecal::simulate::{Kind, Simulation, seven_axis};
-/// let made = Simulation { count: 40, ..Simulation::default() }.run(&seven_axis(), Kind::Pose)?;
+/// let made = Simulation { count: 40, ..Simulation::default() }.run(&seven_axis(), Kind::POSE)?;
 /// let found = identify(&seven_axis(), made.data.all_readings(), &PlannedSession::default())?;
 /// assert_eq!((found.identifiability.rank, found.identifiability.parameters), (34, 34));
 /// assert!(found.expected.mean_m.is_some_and(|mean| mean < 2e-4));
@@ -202,7 +202,7 @@ fn predicted_data(robot: &Robot, readings: &[f64], planned: &PlannedSession) -> 
         return Err(Error::new(ErrorKind::Measurement, message));
     }
     if !planned.kind.has_device() {
-        return planned.kind.plan(robot, readings);
+        return plan(planned.kind, robot, readings);
     }
     let pairs = pairs(robot);
     if pairs.is_empty() {
@@ -218,12 +218,7 @@ fn predicted_data(robot: &Robot, readings: &[f64], planned: &PlannedSession) -> 
             (None, None) => robot.forward_kinematics(readings),
             pair => seen(robot, &Pose::identity(), pair, readings),
         };
-        let as_pose = planned.kind == Kind::Pose || planned.kind == Kind::Mixed && row.is_multiple_of(2);
-        let measurement = if as_pose {
-            Measurement::Pose(PoseMeasurement { pose })
-        } else {
-            Measurement::Point(PointMeasurement { position: pose.translation })
-        };
+        let measurement = exactly(planned.kind, row, &pose);
         let station = instrument.map_or(0, |mount| data.station_index(Some(&mount.name)));
         let target = data.target_index(target.map(|mount| mount.name.as_str()));
         let observation = Observation { station, ..Observation::new(target, measurement) };
@@ -276,8 +271,8 @@ mod tests {
     /// As of a calibration by them: 4 of each of six joints and 2 more; how large the robot is stays open.
     #[test]
     fn balls_in_sockets_have_the_rank_of_the_closed_form() {
-        let made = Simulation { count: 40, ..Simulation::default() }.run(&elbow(), Kind::Socket).unwrap();
-        let planned = PlannedSession { kind: Kind::Socket, ..PlannedSession::default() };
+        let made = Simulation { count: 40, ..Simulation::default() }.run(&elbow(), Kind::SOCKET).unwrap();
+        let planned = PlannedSession { kind: Kind::SOCKET, ..PlannedSession::default() };
         let found = identify_touching(&elbow(), &made.data, &planned).unwrap();
         assert_eq!(found.identifiability.rank, 26);
     }

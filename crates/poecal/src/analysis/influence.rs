@@ -74,7 +74,7 @@ mod tests {
     use crate::estimate::{Packed, Session};
     use crate::lanes::simd_levels;
     use crate::lie::{Pose, rotation};
-    use crate::measurement::{Dataset, Measurement, Noise, PointMeasurement, Quantity};
+    use crate::measurement::{Dataset, Measurement, Noise, Quantity};
     use crate::parameters::{DeviceFrame, Parameter, TargetFrame, TargetPlace, screw_axes};
     use crate::reference;
     use crate::robot::Robot;
@@ -100,10 +100,10 @@ mod tests {
 
     /// Rows of which every third has a position only: lanes of one block then differ.
     fn mixed(robot: &Robot, count: usize) -> Dataset {
-        let mut made = Simulation { count, ..Simulation::default() }.run(robot, Kind::Pose).unwrap();
+        let mut made = Simulation { count, ..Simulation::default() }.run(robot, Kind::POSE).unwrap();
         for observation in made.data.observations.iter_mut().step_by(3) {
             let position = observation.measurement.pose().translation;
-            observation.measurement = Measurement::Point(PointMeasurement { position });
+            observation.measurement = Measurement::point(position);
         }
         made.data
     }
@@ -151,10 +151,9 @@ mod tests {
         for (row, observation) in data.observations.iter_mut().enumerate() {
             observation.target = row % 2;
             observation.stated.set(Quantity::Position, (row % 4 == 0).then_some(1e-4 * (1 + row % 5) as f64));
-            if let Measurement::Pose(seen) = &mut observation.measurement {
-                let turn = rotation::exp(&(Vector3::new(0.6, -0.48, 0.64) * turned_rad));
-                seen.pose.rotation = turn * seen.pose.rotation;
-            }
+            let turn = rotation::exp(&(Vector3::new(0.6, -0.48, 0.64) * turned_rad));
+            let turned = |pose: Pose| Pose::new(turn * pose.rotation, pose.translation);
+            observation.measurement = observation.measurement.changed(turned).unwrap();
         }
         data
     }

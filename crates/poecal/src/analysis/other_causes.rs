@@ -22,7 +22,7 @@ const SHUFFLED: usize = 400;
 impl Rules<'_> {
     /// The size of everything: angles, contacts and directions alone do not show it.
     pub(super) fn size(&mut self) {
-        let has_length = |row: &u32| self.setup.session.observation(*row).measurement.observe().has_length();
+        let has_length = |row: &u32| self.setup.session.observation(*row).measurement.has_length();
         if self.setup.rows.iter().all(has_length) {
             return;
         }

@@ -73,7 +73,7 @@ impl Statistic {
 ///
 /// ```
 /// # use poecal::{CalibrationOptions, Kind, Simulation, calibrate, simulate::elbow};
-/// # let made = Simulation { count: 40, ..Simulation::default() }.run(&elbow(), Kind::Pose)?;
+/// # let made = Simulation { count: 40, ..Simulation::default() }.run(&elbow(), Kind::POSE)?;
 /// # let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default())?;
 /// let calibrated = calibration.accuracy.training.calibrated;
 /// assert!(calibrated.position_mm().rms < 0.1 && calibrated.rotation_deg().is_some());
@@ -137,7 +137,7 @@ pub struct Improvements {
 ///
 /// ```
 /// # use poecal::{CalibrationOptions, Kind, Simulation, calibrate, simulate::elbow};
-/// # let made = Simulation { count: 40, ..Simulation::default() }.run(&elbow(), Kind::Pose)?;
+/// # let made = Simulation { count: 40, ..Simulation::default() }.run(&elbow(), Kind::POSE)?;
 /// # let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default())?;
 /// let fitted = calibration.accuracy.training;
 /// assert!(fitted.calibrated.position_mm().rms < fitted.registered.position_mm().rms);
@@ -165,7 +165,7 @@ pub struct SetAccuracy {
 ///
 /// ```
 /// # use poecal::{CalibrationOptions, Kind, Simulation, calibrate, simulate::elbow};
-/// # let made = Simulation { count: 40, ..Simulation::default() }.run(&elbow(), Kind::Pose)?;
+/// # let made = Simulation { count: 40, ..Simulation::default() }.run(&elbow(), Kind::POSE)?;
 /// # let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default())?;
 /// let accuracy = calibration.accuracy;
 /// assert_eq!((accuracy.training.count, accuracy.held_out.map(|set| set.count)), (28, Some(12)));

@@ -50,8 +50,7 @@ pub(super) fn check_count(session: &Session<'_>, fit_rows: &[u32]) -> Result<()>
             ),
         ));
     }
-    let given: usize =
-        fit_rows.iter().map(|&row| data.observations[row as usize].measurement.observe().dim()).sum();
+    let given: usize = fit_rows.iter().map(|&row| data.observations[row as usize].measurement.dim()).sum();
     if given < needed {
         return Err(Error::new(
             ErrorKind::Problem,

@@ -212,7 +212,7 @@ impl Observed<'_> {
     /// function, in the axes of the row's device.
     fn covariance(&mut self, predicted: &PredictedError, row: u32, quantity: Quantity) -> Matrix3<f64> {
         let observation = self.session.observation(row);
-        let seen = observation.measurement.observe();
+        let seen = observation.measurement;
         if quantity == Quantity::Position && seen.position().is_some() {
             return predicted.position;
         }

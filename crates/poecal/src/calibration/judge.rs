@@ -139,7 +139,7 @@ pub struct JudgedModel {
 /// use poecal::calibration::{CalibrationOptions, DeviceFrameKnowledge, Subject, calibrate, judge};
 /// use poecal::simulate::{Kind, Simulation, elbow};
 /// let exact = Simulation { noise_position_m: 0.0, noise_rotation_rad: 0.0, ..Simulation::default() };
-/// let made = exact.run(&elbow(), Kind::Point)?;
+/// let made = exact.run(&elbow(), Kind::POINT)?;
 /// let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default())?;
 /// let calibrated = calibration.robot_with_targets();
 /// let subject = Subject {
@@ -247,7 +247,7 @@ pub(super) fn check_count(subject: &Subject<'_>, data: &Dataset) -> Result<()> {
         );
         return Err(Error::new(ErrorKind::Problem, message));
     }
-    let given: usize = data.observations.iter().map(|row| row.measurement.observe().dim()).sum();
+    let given: usize = data.observations.iter().map(|row| row.measurement.dim()).sum();
     if given > frame + tool {
         return Ok(());
     }

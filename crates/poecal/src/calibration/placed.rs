@@ -9,7 +9,7 @@ use crate::robot::{MEASURED, Mount, Robot};
 ///
 /// ```
 /// # use poecal::{CalibrationOptions, Kind, Simulation, calibrate, simulate::elbow};
-/// # let made = Simulation { count: 40, ..Simulation::default() }.run(&elbow(), Kind::Pose)?;
+/// # let made = Simulation { count: 40, ..Simulation::default() }.run(&elbow(), Kind::POSE)?;
 /// # let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default())?;
 /// let [measured] = &calibration.targets[..] else { unreachable!() };
 /// assert!(measured.name.as_deref() == Some("measured") && measured.is_frame);

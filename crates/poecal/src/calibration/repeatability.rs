@@ -61,7 +61,7 @@ fn groups(data: &Dataset) -> Vec<Vec<u32>> {
 
 /// The first quantity that a row measured.
 fn leading(data: &Dataset, row: u32) -> Option<Quantity> {
-    let channels = data.observations[row as usize].measurement.observe().channels();
+    let channels = data.observations[row as usize].measurement.channels();
     channels.first().map(|channel| channel.quantity)
 }
 
@@ -83,7 +83,7 @@ fn scatter(errors: &[RowError]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::measurement::{Measurement, PointMeasurement};
+    use crate::measurement::Measurement;
 
     #[test]
     fn rows_of_one_configuration_are_found_whatever_their_order() {
@@ -97,7 +97,7 @@ mod tests {
             ([2e-4, 1.0], "p"),
         ];
         for (readings, target) in rows {
-            let seen = Measurement::Point(PointMeasurement { position: Vector3::zeros() });
+            let seen = Measurement::point(Vector3::zeros());
             data.push(&readings, Some(target), seen).unwrap();
         }
         assert_eq!(groups(&data), [vec![0, 2, 4]]);

@@ -24,7 +24,7 @@ use crate::threads;
 /// use poecal::calibration::{CalibrationOptions, calibrate};
 /// use poecal::simulate::{Kind, Simulation, elbow};
 /// let simulation = Simulation { noise_position_m: 0.0, noise_rotation_rad: 0.0, ..Simulation::default() };
-/// let made = simulation.run(&elbow(), Kind::Pose)?;
+/// let made = simulation.run(&elbow(), Kind::POSE)?;
 /// let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default())?;
 /// let held_out = calibration.accuracy.held_out.expect("30 % are held out");
 /// assert!(held_out.calibrated.position_mm().max < 1e-6);

@@ -11,7 +11,7 @@ const FEWEST_ROWS: usize = 3;
 
 /// Fewest rows that determine what a station shows of its frame.
 fn fewest(data: &Dataset, station: usize, rows: &[u32]) -> usize {
-    let numbers = rows.iter().map(|&row| data.observations[row as usize].measurement.observe().dim()).max();
+    let numbers = rows.iter().map(|&row| data.observations[row as usize].measurement.dim()).max();
     let freedom = data.device_freedom(station, rows);
     if freedom == Freedom::FRAME { FEWEST_ROWS } else { freedom.count().div_ceil(numbers.unwrap_or(1)) }
 }

@@ -22,7 +22,7 @@ const EFFECT_SAMPLE: usize = 300;
 ///
 /// ```
 /// # use poecal::{CalibrationOptions, Kind, Simulation, calibrate, simulate::elbow};
-/// # let made = Simulation { count: 40, ..Simulation::default() }.run(&elbow(), Kind::Pose)?;
+/// # let made = Simulation { count: 40, ..Simulation::default() }.run(&elbow(), Kind::POSE)?;
 /// # let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default())?;
 /// let expected = calibration.trust.expected.range.ok_or("too few rows")?;
 /// println!("{:.3} mm (RMS) to be expected anywhere within the limits", expected.sigma_m * 1e3);

@@ -5,7 +5,7 @@ use nalgebra::Vector3;
 use super::{Estimate, Linkage, Passed, RowError, Session, Sight};
 use crate::lanes::{self, FixedMotion, Frames, SimdLevel, WIDTH, Wide};
 use crate::lie::Pose;
-use crate::measurement::{ByQuantity, Dataset, NUMBERS, Observation, Seen, Written};
+use crate::measurement::{ByQuantity, Clue, Dataset, Kernel, NUMBERS, Observation, Written};
 use crate::threads;
 
 /// Rows that one thread takes at a time.
@@ -29,9 +29,13 @@ impl Session<'_> {
         each: impl Fn(&Observation, ByQuantity<(f64, usize)>) -> T + Sync,
     ) -> Vec<T> {
         self.map_errors(rows, estimate, |observation, error, predicted| {
-            let error = match Written::new(&observation.measurement, self.data.pose_residual) {
-                Written::Usual(_) => error,
-                Written::Other(pose) => RowError::new(&pose, &predicted()),
+            let written = Written::new(&observation.measurement, self.data.pose_residual);
+            let error = if written.is_usual() {
+                error
+            } else {
+                let mut values = [0.0; NUMBERS];
+                written.residual(&predicted(), &mut values);
+                RowError::of(written.measurement, values)
             };
             each(observation, self.alike(observation, error).squares())
         })
@@ -183,17 +187,19 @@ impl<'a> SideBySide<'a> {
         for (lane, &row) in rows.iter().enumerate() {
             let observation = session.observation(row);
             let Observation { target, measurement, station, .. } = observation;
-            let seen = measurement.seen();
-            match (self.linkage.station_from_first(*station), &seen) {
+            let is_frame = measurement.function().kernel == Kernel::Pose;
+            match (self.linkage.station_from_first(*station), measurement.clue()) {
                 // Measurements from further stations are compared in the device frame of the first.
                 (Some(station), _) => {
                     put(&mut self.measured, lane, &(station.inverse() * measurement.pose()));
                 }
-                (None, Seen::Frame(pose)) => put(&mut self.measured, lane, pose),
-                (None, Seen::Point(position)) => put_place(&mut self.measured, lane, position),
-                (None, Seen::Other(_)) => {}
+                (None, Clue::Frame(pose)) => put(&mut self.measured, lane, &pose),
+                (None, Clue::Place([Some(x), Some(y), Some(z)])) => {
+                    put_place(&mut self.measured, lane, &Vector3::new(x, y, z));
+                }
+                (None, _) => {}
             }
-            framed |= matches!(seen, Seen::Frame(_));
+            framed |= is_frame;
             if self.targets[lane] != Some(*target) {
                 self.targets[lane] = Some(*target);
                 let (_, end) = self.linkage.frames(Sight::from(observation));
@@ -208,32 +214,28 @@ impl<'a> SideBySide<'a> {
     }
 
     fn error(&self, lane: usize, seen: &Observation) -> RowError {
-        match seen.measurement.seen() {
-            Seen::Other(model) => {
-                let target = self.predicted(lane, seen);
-                match (self.linkage.range(seen.station), model.range()) {
-                    // The length of the seen place would lose the sign of a reading below zero.
-                    (Some(range), Some(measured)) => {
-                        let mut values = [0.0; NUMBERS];
-                        values[0] = measured - range.reading(&target);
-                        RowError::of(model, values)
-                    }
-                    (Some(range), None) => RowError::new(model, &range.seen(&target)),
-                    (None, _) => RowError::new(model, &target),
-                }
+        let measurement = &seen.measurement;
+        let mut values = [0.0; NUMBERS];
+        if measurement.is_place() {
+            for (values, [x, y, z]) in values.chunks_exact_mut(3).zip(&self.errors) {
+                let error = Vector3::new(x.0[lane], y.0[lane], z.0[lane]);
+                let own = match self.linkage.station_from_first(seen.station) {
+                    Some(station) => station.rotation * error,
+                    None => error,
+                };
+                values.copy_from_slice(own.as_slice());
             }
-            Seen::Point(_) | Seen::Frame(_) => {
-                let mut values = [0.0; NUMBERS];
-                for (values, [x, y, z]) in values.chunks_exact_mut(3).zip(&self.errors) {
-                    let error = Vector3::new(x.0[lane], y.0[lane], z.0[lane]);
-                    let own = match self.linkage.station_from_first(seen.station) {
-                        Some(station) => station.rotation * error,
-                        None => error,
-                    };
-                    values.copy_from_slice(own.as_slice());
-                }
-                RowError::of(seen.measurement.observe(), values)
+            return RowError::of(measurement, values);
+        }
+        let target = self.predicted(lane, seen);
+        match (self.linkage.range(seen.station), measurement.range()) {
+            // The length of the seen place would lose the sign of a reading below zero.
+            (Some(range), Some(measured)) => {
+                values[0] = measured - range.reading(&target);
+                RowError::of(measurement, values)
             }
+            (Some(range), None) => RowError::new(measurement, &range.seen(&target)),
+            (None, _) => RowError::new(measurement, &target),
         }
     }
 
@@ -281,7 +283,7 @@ mod tests {
     use super::*;
     use crate::estimate::{Chain, Packed};
     use crate::lie::{Screw, rotation};
-    use crate::measurement::{Measurement, PointMeasurement, PoseMeasurement, Quantity};
+    use crate::measurement::{Measurement, Quantity};
     use crate::robot::{Joint, Robot};
 
     const ROWS: u32 = 21;
@@ -322,7 +324,7 @@ mod tests {
         for robot in robots() {
             let mut data = Dataset::new(robot.reading_names());
             for readings in readings.chunks_exact(4) {
-                let seen = Measurement::Point(PointMeasurement { position: Vector3::zeros() });
+                let seen = Measurement::point(Vector3::zeros());
                 data.push(readings, None, seen).unwrap();
             }
             let packed = Packed::of(&robot, &data);
@@ -381,10 +383,10 @@ mod tests {
                 let turn = (row % 4 != 3).then(|| Vector3::new(0.6, 0.0, -0.8) * angle);
                 let position = chain.target.translation + shift;
                 let measurement = match turn {
-                    None => Measurement::Point(PointMeasurement { position }),
+                    None => Measurement::point(position),
                     Some(turn) => {
                         let pose = Pose::new(rotation::exp(&turn) * chain.target.rotation, position);
-                        Measurement::Pose(PoseMeasurement { pose })
+                        Measurement::of_pose(&pose)
                     }
                 };
                 data.push(

@@ -3,9 +3,7 @@
 use nalgebra::{Matrix3, Vector3};
 
 use crate::lie::Pose;
-use crate::measurement::{
-    ByQuantity, Channel, Channels, Measurement, NUMBERS, NoiseShape, Observe, PointMeasurement, Quantity,
-};
+use crate::measurement::{ByQuantity, Channel, Channels, Measurement, NUMBERS, NoiseShape, Quantity};
 use crate::unit::Unit;
 
 /// Error of one row: measured minus predicted, in the device's axes; `y - p` and `log(Y Rᵀ)` of theory.md §4 (16). One number for each
@@ -19,22 +17,22 @@ pub struct RowError {
 impl RowError {
     /// Of a measurement and the predicted `device_from_target`.
     #[must_use]
-    pub fn new(seen: &dyn Observe, predicted: &Pose) -> Self {
+    pub fn new(seen: &Measurement, predicted: &Pose) -> Self {
         let mut values = [0.0; NUMBERS];
         seen.residual(predicted, &mut values);
         RowError { channels: seen.channels(), values }
     }
 
     /// Of a measurement with these numbers.
-    pub(crate) fn of(seen: &dyn Observe, values: [f64; NUMBERS]) -> Self {
+    pub(crate) fn of(seen: &Measurement, values: [f64; NUMBERS]) -> Self {
         RowError { channels: seen.channels(), values }
     }
 
     /// The error of a measured position, metres.
     #[must_use]
     pub fn of_position(error: Vector3<f64>) -> Self {
-        let seen = Measurement::Point(PointMeasurement { position: error });
-        RowError::new(seen.observe(), &Pose::identity())
+        let seen = Measurement::point(error);
+        RowError::new(&seen, &Pose::identity())
     }
 
     /// This error plus `times` its change to another one of the same row.

@@ -65,9 +65,8 @@ impl<'a> Session<'a> {
     /// Whether nothing that these rows measure has a length, so that the size of the robot does not show. What is held has its own.
     pub(crate) fn lacks_length(&self, rows: &[u32]) -> bool {
         let seen = |row: &u32| self.observation(*row).measurement;
-        let has_length = |row: &u32| seen(row).observe().has_length();
-        let is_place =
-            |row: &u32| seen(row).observe().channels().iter().any(|it| it.quantity.unit() == Unit::Metre);
+        let has_length = |row: &u32| seen(row).has_length();
+        let is_place = |row: &u32| seen(row).channels().iter().any(|it| it.quantity.unit() == Unit::Metre);
         let slides = || self.robot.joints.iter().any(|joint| joint.kind == JointKind::Prismatic);
         !rows.iter().any(has_length)
             && rows.iter().any(is_place)

@@ -5,10 +5,7 @@ use std::collections::BTreeMap;
 use nalgebra::{Matrix3, Vector4};
 
 use crate::lie::{Pose, rotation};
-use crate::measurement::{
-    Dataset, DirectionMeasurement, FlushMeasurement, HeightMeasurement, Measurement, Observation,
-    PointMeasurement, PoseMeasurement,
-};
+use crate::measurement::{Dataset, Measurement, Observation, Quantity};
 
 /// A change of every row. Columns are indices of readings.
 #[derive(Clone, Debug, PartialEq)]
@@ -25,8 +22,8 @@ pub(super) enum Change {
     Add(usize, f64),
     /// Each reading paired with the measurement so many rows later in the same stream.
     Shift(i32, Stream),
-    /// Lengths of a kind times a factor; the last says whether no other kind is measured.
-    Resize(f64, Lengths, bool),
+    /// Lengths of a quantity times a factor; the last says whether no other one is measured.
+    Resize(f64, Quantity, bool),
     /// One coordinate of positions times a factor.
     ResizeAxis(usize, f64),
     /// The zero of all distances unknown.
@@ -91,57 +88,47 @@ impl Change {
     }
 
     fn measurement(&self, row: usize, observation: &Observation) -> Measurement {
-        let mut changed = observation.measurement;
-        match &mut changed {
-            Measurement::Point(PointMeasurement { position }) => {
-                if let Change::Resize(factor, Lengths::Positions, _) = self {
-                    *position *= *factor;
-                } else if let Change::ResizeAxis(axis, factor) = self {
-                    position[*axis] *= *factor;
-                } else if let Change::Mirror(mirror, _) = self {
-                    *position = mirror * *position;
+        let seen = observation.measurement;
+        match self {
+            Change::Resize(factor, quantity, _) => {
+                let mut resized = seen;
+                if seen.function().leading() == *quantity {
+                    resized.lengths_mut().iter_mut().for_each(|length| *length *= factor);
                 }
+                resized
             }
-            Measurement::Components(seen) => {
-                if let Change::Resize(factor, Lengths::Positions, _) = self {
-                    seen.position *= *factor;
-                } else if let Change::ResizeAxis(axis, factor) = self {
-                    seen.position[*axis] *= *factor;
+            Change::ResizeAxis(axis, factor) => {
+                let mut resized = seen;
+                if seen.has(Quantity::Position) {
+                    resized.lengths_mut()[*axis] *= factor;
                 }
+                resized
             }
-            Measurement::Pose(PoseMeasurement { pose }) => *pose = self.pose(row, pose),
-            Measurement::Distance(seen) => {
-                if let Change::Resize(factor, Lengths::Distances, _) = self {
-                    seen.distance *= factor;
-                }
-                seen.zero_is_unknown |= *self == Change::FreeZero;
+            Change::FreeZero => seen.from_unknown_zero(),
+            Change::ScaleTilts(factor) => seen.with_angles_times(*factor),
+            Change::Mirror(mirror, _) if !seen.sees_orientation() => {
+                seen.changed(|pose| Pose::from_translation(mirror * pose.translation)).unwrap_or(seen)
             }
-            Measurement::Height(HeightMeasurement { height })
-            | Measurement::Flush(FlushMeasurement { height, .. }) => {
-                if let Change::Resize(factor, Lengths::Heights, _) = self {
-                    *height *= factor;
-                }
+            Change::Quaternion(_)
+            | Change::Invert
+            | Change::Transpose
+            | Change::Turn(_)
+            | Change::Mirror(..) => {
+                seen.frame().map_or(seen, |pose| Measurement::of_pose(&self.pose(row, &pose)))
             }
-            Measurement::Direction(seen) => {
-                if let Change::ScaleTilts(factor) = self {
-                    *seen = DirectionMeasurement::of_tilts(seen.tilts().map(|tilt| factor * tilt));
-                }
-            }
-            Measurement::Socket(_) => {}
+            Change::Scale(..)
+            | Change::Scales(_)
+            | Change::Exchange(..)
+            | Change::Combine { .. }
+            | Change::Add(..)
+            | Change::Shift(..) => seen,
         }
-        changed
     }
 
     /// A measured pose with the change.
     fn pose(&self, row: usize, seen: &Pose) -> Pose {
         let Pose { rotation: turned, translation } = *seen;
         match self {
-            Change::Resize(factor, Lengths::Positions, _) => Pose::new(turned, translation * *factor),
-            Change::ResizeAxis(axis, factor) => {
-                let mut place = translation;
-                place[*axis] *= *factor;
-                Pose::new(turned, place)
-            }
             Change::Scale(..)
             | Change::Scales(_)
             | Change::Exchange(..)
@@ -149,6 +136,7 @@ impl Change {
             | Change::Add(..)
             | Change::Shift(..)
             | Change::Resize(..)
+            | Change::ResizeAxis(..)
             | Change::FreeZero
             | Change::ScaleTilts(_) => *seen,
             Change::Quaternion(places) => {
@@ -165,46 +153,6 @@ impl Change {
                 let turned = if *turns { mirror * turned * mirror } else { turned };
                 Pose::new(turned, mirror * translation)
             }
-        }
-    }
-}
-
-/// What is measured as a length.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Lengths {
-    /// Coordinates of positions.
-    Positions,
-    /// Distances, and radii of spheres.
-    Distances,
-    /// Heights over planes.
-    Heights,
-}
-
-impl Lengths {
-    /// All of them.
-    pub(super) const ALL: [Lengths; 3] = [Lengths::Positions, Lengths::Distances, Lengths::Heights];
-
-    /// Its name.
-    pub(super) fn words(self) -> &'static str {
-        match self {
-            Lengths::Positions => "positions",
-            Lengths::Distances => "distances",
-            Lengths::Heights => "heights",
-        }
-    }
-
-    /// Whether a measurement has one, other than zero.
-    pub(super) fn is_of(self, seen: &Measurement) -> bool {
-        match seen {
-            Measurement::Point(_) | Measurement::Components(_) | Measurement::Pose(_) => {
-                self == Lengths::Positions
-            }
-            Measurement::Distance(seen) => self == Lengths::Distances && seen.distance != 0.0,
-            Measurement::Height(HeightMeasurement { height })
-            | Measurement::Flush(FlushMeasurement { height, .. }) => {
-                self == Lengths::Heights && *height != 0.0
-            }
-            Measurement::Socket(_) | Measurement::Direction(_) => false,
         }
     }
 }

@@ -8,7 +8,7 @@ use super::euler::Reinterpretation;
 use super::fitter::Fitter;
 use super::hypotheses::Hypothesis;
 use crate::estimate::{Chain, Linkage};
-use crate::measurement::{Dataset, Measurement, Observation, PointMeasurement};
+use crate::measurement::{Dataset, Measurement, Observation};
 use crate::start::mean_rotation;
 
 /// Conventions that are tested as hypotheses.
@@ -30,8 +30,8 @@ struct MeasuredOrientation {
 pub(super) fn conventions(fitter: &Fitter<'_>, data: &Dataset) -> Vec<Hypothesis> {
     let mut points = like(data);
     for (row, seen) in data.observations.iter().enumerate() {
-        let Some(position) = seen.measurement.observe().position() else { continue };
-        let measurement = Measurement::Point(PointMeasurement { position });
+        let Some(position) = seen.measurement.position() else { continue };
+        let measurement = Measurement::point(position);
         push(&mut points, data.readings(row), Observation { measurement, ..*seen });
     }
     let (estimate, _) = fitter.registered(&points);
@@ -40,7 +40,7 @@ pub(super) fn conventions(fitter: &Fitter<'_>, data: &Dataset) -> Vec<Hypothesis
     let mut chain = Chain::default();
     let mut seen = Vec::new();
     for (row, observation) in data.observations.iter().enumerate() {
-        if let Some(turned) = observation.measurement.observe().orientation() {
+        if let Some(turned) = observation.measurement.orientation() {
             chain.evaluate(&linkage, &packed, row, observation);
             let link_from_device = chain.target.rotation.transpose();
             seen.push(MeasuredOrientation { row, target: observation.target, link_from_device, turned });

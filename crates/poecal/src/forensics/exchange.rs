@@ -6,13 +6,12 @@ use std::ops::Range;
 use nalgebra::Vector3;
 use rayon::prelude::*;
 
-use super::change::Lengths;
 use super::fitter::{Fitter, SHORT, Score, sampled, taken};
 use super::judge::{CALIBRATED_SHARE, short};
 use super::{Diagnosis, DiagnosisKind};
 use crate::estimate::Estimate;
 use crate::lie::{Pose, rotation};
-use crate::measurement::{Dataset, FlushMeasurement, HeightMeasurement, Measurement, Observation};
+use crate::measurement::{Dataset, Observation, Quantity};
 
 /// Most rounds of reassigning rows and refitting.
 const ROUNDS: usize = 6;
@@ -48,7 +47,7 @@ impl Names {
         match self {
             Names::Targets(a, b) => [a, b].contains(&row.target),
             Names::Stations(a, b) => [a, b].contains(&row.station),
-            Names::Sides => Lengths::Heights.is_of(&row.measurement),
+            Names::Sides => row.measurement.has_length_of(Quantity::Height),
         }
     }
 
@@ -68,11 +67,7 @@ impl Names {
             Names::Targets(a, b) => row.target = other(row.target, [a, b]),
             Names::Stations(a, b) => row.station = other(row.station, [a, b]),
             Names::Sides => {
-                if let Measurement::Height(HeightMeasurement { height })
-                | Measurement::Flush(FlushMeasurement { height, .. }) = &mut row.measurement
-                {
-                    *height = -*height;
-                }
+                row.measurement.lengths_mut().iter_mut().for_each(|height| *height = -*height);
             }
         }
     }

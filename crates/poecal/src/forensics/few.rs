@@ -122,7 +122,7 @@ fn place(fitter: &Fitter<'_>, all: &Dataset, estimate: &mut Estimate) {
     let mut turns: Vec<Vec<Matrix3<f64>>> = vec![Vec::new(); places.len()];
     for_links(fitter, all, estimate, |row, link| {
         let (target, seen) = (all.observations[row].target, &all.observations[row].measurement);
-        let model = seen.observe();
+        let model = seen;
         if let Some(position) = model.position() {
             let (count, sum) = &mut places[target];
             *count += 1;

@@ -4,8 +4,8 @@ use nalgebra::{Matrix3, Vector3};
 use std::f64::consts::PI;
 
 use super::DiagnosisKind;
-use super::change::{Change, Lengths, Stream};
-use crate::measurement::Dataset;
+use super::change::{Change, Stream};
+use crate::measurement::{Dataset, Quantity};
 use crate::robot::{Joint, ReadingKind, Robot, level};
 
 /// A hypothetical mistake.
@@ -209,15 +209,15 @@ pub(super) fn row_shifts(targets: usize) -> Vec<Hypothesis> {
     all
 }
 
-/// Lengths of a kind in another unit.
-pub(super) fn length_units(lengths: Lengths, is_all: bool) -> Vec<Hypothesis> {
-    let kind =
-        if lengths == Lengths::Positions { DiagnosisKind::PositionUnit } else { DiagnosisKind::LengthUnit };
+/// Lengths of a quantity in another unit.
+pub(super) fn length_units(of: Quantity, is_all: bool) -> Vec<Hypothesis> {
+    let is_position = of == Quantity::Position;
+    let kind = if is_position { DiagnosisKind::PositionUnit } else { DiagnosisKind::LengthUnit };
     let one = |(factor, words): (f64, &str)| {
         Hypothesis::new(
             kind,
-            Change::Resize(factor, lengths, is_all),
-            format!("multiplying the {} by {factor}", lengths.words()),
+            Change::Resize(factor, of, is_all),
+            format!("multiplying the {}s by {factor}", of.name()),
             format!(
                 "check their unit, since it looks as if {words} (or the model's lengths are in another one)"
             ),
@@ -357,7 +357,7 @@ mod tests {
             "inches" => 0.0254,
             other => panic!("found the unit {other}"),
         };
-        let all = length_units(Lengths::Positions, true);
+        let all = length_units(Quantity::Position, true);
         for hypothesis in &all {
             let words: Vec<&str> =
                 hypothesis.advice.split(|it: char| !it.is_alphabetic()).filter(|it| !it.is_empty()).collect();

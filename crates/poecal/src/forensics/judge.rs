@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::change::{Change, Lengths};
+use super::change::Change;
 use super::conventions::conventions;
 use super::few::FewTargets;
 use super::fitter::{Fitter, SHORT, Score, sampled};
@@ -13,7 +13,8 @@ use super::hypotheses::{
 use super::scales::joint_scales;
 use super::zero::joint_zeros;
 use super::{Diagnosis, DiagnosisKind};
-use crate::measurement::{Dataset, Measurement, Observation};
+use crate::measurement::{Dataset, Observation, Quantity};
+use crate::unit::Unit;
 
 /// Number of joints above which only neighbours are tested for wrong signs together.
 const MANY_JOINTS: usize = 12;
@@ -72,22 +73,22 @@ pub(super) fn diagnose(few: &FewTargets<'_, '_>, all: &Dataset, base: &Score) ->
 }
 
 fn single_mistakes(fitter: &Fitter<'_>, columns: &ReadingColumns, sample: &Dataset) -> Vec<Hypothesis> {
-    let turned = sample.observations.iter().any(|row| row.measurement.observe().orientation().is_some());
+    let turned = sample.observations.iter().any(|row| row.measurement.orientation().is_some());
     let mut all = joint_units(columns);
-    let placed = sample.observations.iter().any(|row| row.measurement.observe().position().is_some());
-    for lengths in Lengths::ALL {
-        let is_of = |row: &Observation| lengths.is_of(&row.measurement);
+    let placed = sample.observations.iter().any(|row| row.measurement.position().is_some());
+    for of in Quantity::ALL.into_iter().filter(|it| it.unit() == Unit::Metre) {
+        let is_of = |row: &Observation| row.measurement.has_length_of(of);
         if sample.observations.iter().any(is_of) {
             // A height is small beside how far the target moves.
-            let is_all = lengths != Lengths::Heights && sample.observations.iter().all(is_of);
-            all.extend(length_units(lengths, is_all));
+            let is_all = of != Quantity::Height && sample.observations.iter().all(is_of);
+            all.extend(length_units(of, is_all));
         }
     }
     if placed {
         all.extend(axis_units());
     }
     all.extend(of_zeros(sample));
-    if sample.observations.iter().any(|row| matches!(row.measurement, Measurement::Direction(_))) {
+    if sample.observations.iter().any(|row| row.measurement.function().with_angles_times.is_some()) {
         all.extend(tilt_units());
     }
     all.extend(joint_signs(columns));
@@ -108,7 +109,7 @@ fn single_mistakes(fitter: &Fitter<'_>, columns: &ReadingColumns, sample: &Datas
 /// Distances that count from elsewhere, which a calibration may take in.
 fn of_zeros(sample: &Dataset) -> Option<Hypothesis> {
     let is_counted = |row: &Observation| {
-        Lengths::Distances.is_of(&row.measurement) && !row.measurement.observe().zero_is_unknown()
+        row.measurement.has_length_of(Quantity::Distance) && !row.measurement.function().zero_is_unknown
     };
     let counted = |row: &Observation| row.from.is_none() && is_counted(row);
     sample.observations.iter().any(counted).then(zeros)

@@ -82,7 +82,7 @@ pub enum DiagnosisKind {
 /// use poecal::forensics::{DiagnosisKind, DiagnosisOptions, diagnose};
 /// use poecal::measurement::Dataset;
 /// use poecal::simulate::{Kind, Simulation, elbow};
-/// let made = Simulation::default().run(&elbow(), Kind::Pose)?;
+/// let made = Simulation::default().run(&elbow(), Kind::POSE)?;
 /// let mut data = Dataset::new(made.data.reading_names().to_vec());
 /// for row in 0..made.data.len() {
 ///     let mut readings = made.data.readings(row).to_vec();

@@ -2,13 +2,12 @@
 
 use std::collections::BTreeMap;
 
-use super::change::Lengths;
 use super::exchange::{Names, exchanged};
 use super::fitter::{Fitter, Score, sampled};
 use super::judge::{CALIBRATED_SHARE, short};
 use super::{Diagnosis, DiagnosisKind};
 use crate::estimate::Estimate;
-use crate::measurement::{Dataset, KnownLength, Observation};
+use crate::measurement::{Dataset, KnownLength, Observation, Quantity};
 
 /// Most pairs of places that are exchanged.
 const PAIRS: usize = 15;
@@ -28,7 +27,7 @@ pub(super) fn names(
     if !fitter.is_constrained() {
         return None;
     }
-    let has_heights = all.observations.iter().any(|row| Lengths::Heights.is_of(&row.measurement));
+    let has_heights = all.observations.iter().any(|row| row.measurement.has_length_of(Quantity::Height));
     let pairs = pairs(fitter, all, estimate).into_iter().map(|(a, b)| Names::Stations(a, b));
     let all_names = pairs.chain(has_heights.then_some(Names::Sides));
     let found = all_names.filter_map(|names| exchanged(fitter, all, names, base));

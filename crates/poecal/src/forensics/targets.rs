@@ -111,7 +111,7 @@ fn pairs(fitter: &Fitter<'_>, all: &Dataset) -> Vec<(usize, usize)> {
 fn vote(fitter: &Fitter<'_>, all: &Dataset, estimate: &Estimate, votes: &mut BTreeMap<(usize, usize), f64>) {
     let mut seen = Vec::with_capacity(all.len());
     for_links(fitter, all, estimate, |row, link| {
-        let position = all.observations[row].measurement.observe().position();
+        let position = all.observations[row].measurement.position();
         seen.extend(position.map(|position| (row, link.act(&position))));
     });
     let squared = |target: usize, place: &Vector3<f64>| {

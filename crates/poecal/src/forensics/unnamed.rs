@@ -6,7 +6,7 @@ use super::fitter::Fitter;
 use super::judge::short;
 use super::{Diagnosis, DiagnosisKind};
 use crate::distributions::median;
-use crate::measurement::{Dataset, Measurement, Seen};
+use crate::measurement::{Dataset, Measurement};
 
 /// Distance (share of the reach) and angle (radians) above which rows of one configuration contradict each other: a hundred times a robot's
 /// repeatability.
@@ -33,8 +33,7 @@ pub(super) fn diagnose<'a>(
     data: &Dataset,
     groups: impl Iterator<Item = &'a [u32]>,
 ) -> Option<Diagnosis> {
-    let is_placed =
-        |row: &u32| !matches!(data.observations[*row as usize].measurement.seen(), Seen::Other(_));
+    let is_placed = |row: &u32| data.observations[*row as usize].measurement.is_place();
     let groups = groups.filter(|rows| rows.iter().all(is_placed));
     let several: Vec<Places> =
         groups.map(|rows| places(fitter, data, rows)).filter(|places| places.first.len() > 1).collect();

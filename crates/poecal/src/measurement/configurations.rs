@@ -114,14 +114,14 @@ impl Dataset {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::measurement::{Measurement, PointMeasurement};
+    use crate::measurement::Measurement;
     use nalgebra::Vector3;
 
     #[test]
     fn rows_that_jitter_are_of_one_configuration() {
         let mut data = Dataset::new(vec!["a".to_owned(), "b".to_owned()]);
         for readings in [[0.3, 1.0], [0.0, 1.0], [0.3004, 0.9997], [0.3, 1.002], [-0.0009, 1.0]] {
-            let seen = Measurement::Point(PointMeasurement { position: Vector3::zeros() });
+            let seen = Measurement::point(Vector3::zeros());
             data.push(&readings, None, seen).unwrap();
         }
         assert_eq!(data.configurations(&data.all_rows()), [vec![0, 2], vec![1, 4], vec![3]]);
@@ -132,7 +132,7 @@ mod tests {
     fn rows_of_the_same_readings_are_found() {
         let mut data = Dataset::new(vec!["a".to_owned(), "b".to_owned()]);
         for readings in [[3.0, 1.0], [0.0, 1.0], [0.5, 0.5], [0.0, 1.0], [3.0, 1.0], [1.0, 0.0], [0.0, 1.0]] {
-            let seen = Measurement::Point(PointMeasurement { position: Vector3::zeros() });
+            let seen = Measurement::point(Vector3::zeros());
             data.push(&readings, None, seen).unwrap();
         }
         assert_eq!(data.repeated(&data.all_rows()), [vec![0, 4], vec![1, 3, 6]]);

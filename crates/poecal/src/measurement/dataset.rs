@@ -5,7 +5,9 @@ use std::path::PathBuf;
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
-use super::{ByQuantity, KnownLength, Measurement, Noise, NoiseShape, PoseResidual, Quantity, Stated};
+use super::{
+    ByQuantity, Device, KnownLength, Measurement, Noise, NoiseShape, PoseResidual, Quantity, Stated,
+};
 use crate::error::{Error, ErrorKind, Result};
 use crate::lie::Freedom;
 use crate::robot::Controller;
@@ -14,7 +16,7 @@ use crate::robot::Controller;
 ///
 /// ```
 /// # use poecal::{Kind, Set, Simulation, simulate::elbow};
-/// let mut data = Simulation { count: 40, ..Simulation::default() }.run(&elbow(), Kind::Pose)?.data;
+/// let mut data = Simulation { count: 40, ..Simulation::default() }.run(&elbow(), Kind::POSE)?.data;
 /// for (row, observation) in data.observations.iter_mut().enumerate() {
 ///     observation.set = Some(if row < 30 { Set::Fit } else { Set::HeldOut });
 /// }
@@ -40,10 +42,10 @@ pub struct Source {
 /// One row: a measurement of a target, with its noise, set and source.
 ///
 /// ```
-/// # use poecal::{Dataset, Measurement, PointMeasurement};
+/// # use poecal::{Dataset, Measurement};
 /// # use nalgebra::Vector3;
 /// let mut data = Dataset::new(vec!["joint1".into()]);
-/// let seen = Measurement::Point(PointMeasurement { position: Vector3::new(0.1, 0.2, 0.3) });
+/// let seen = Measurement::point(Vector3::new(0.1, 0.2, 0.3));
 /// data.push(&[0.1], Some("ball"), seen)?;
 /// assert_eq!((data.observations[0].target, &data.targets[0]), (0, &Some("ball".to_owned())));
 /// # Ok::<(), poecal::Error>(())
@@ -98,9 +100,9 @@ impl Observation {
 ///
 /// ```
 /// use nalgebra::Vector3;
-/// use poecal::measurement::{Dataset, Measurement, PointMeasurement};
+/// use poecal::measurement::{Dataset, Measurement};
 /// let mut data = Dataset::new(vec!["joint1".into(), "joint2".into()]);
-/// let seen = Measurement::Point(PointMeasurement { position: Vector3::new(0.1, 0.2, 0.3) });
+/// let seen = Measurement::point(Vector3::new(0.1, 0.2, 0.3));
 /// data.push(&[0.1, -0.4], None, seen)?;
 /// assert_eq!((data.len(), data.readings(0)), (1, &[0.1, -0.4][..]));
 /// # Ok::<(), poecal::Error>(())
@@ -179,7 +181,7 @@ impl Dataset {
     /// As [`Dataset::push`].
     pub fn push_observation(&mut self, readings: &[f64], observation: Observation) -> Result<()> {
         self.check_readings(readings)?;
-        if !observation.measurement.observe().is_finite() {
+        if !observation.measurement.is_finite() {
             return Err(not_finite());
         }
         self.readings.extend_from_slice(readings);
@@ -276,25 +278,23 @@ impl Dataset {
     #[must_use]
     pub fn station_word(&self, station: usize) -> &'static str {
         let own = self.observations.iter().filter(|it| it.station == station);
-        let word = |it: &Observation| match it.from {
-            Some(_) => "pair",
-            None => it.measurement.observe().device_word(),
-        };
-        let mut words = own.map(word);
-        let first = words.next().unwrap_or("instrument");
-        match words.all(|word| word == first) {
-            true if self.sphere_reading(station).is_some() => "sphere",
+        let device =
+            |it: &Observation| if it.from.is_some() { Device::Pair } else { it.measurement.device() };
+        let mut devices = own.map(device);
+        let first = devices.next().unwrap_or(Device::Instrument);
+        let found = match devices.all(|device| device == first) {
+            true if self.sphere_reading(station).is_some() => Device::Sphere,
             true => first,
-            false => "instrument",
-        }
+            false => Device::Instrument,
+        };
+        found.word()
     }
 
     /// The one distance that all rows of a station have, if it has several rows and they are distances alone: its targets are on a sphere.
     #[must_use]
     pub(crate) fn sphere_reading(&self, station: usize) -> Option<f64> {
         let own = self.observations.iter().filter(|it| it.station == station);
-        let mut readings =
-            own.map(|it| if it.from.is_some() { None } else { it.measurement.observe().range() });
+        let mut readings = own.map(|it| if it.from.is_some() { None } else { it.measurement.range() });
         let first = readings.next().flatten()?;
         let mut others = readings.peekable();
         (others.peek().is_some() && others.all(|it| it == Some(first))).then_some(first)
@@ -419,9 +419,7 @@ impl Dataset {
     #[must_use]
     pub fn device_freedom(&self, station: usize, rows: &[u32]) -> Freedom {
         let own = rows.iter().map(|&row| &self.observations[row as usize]).filter(|it| it.station == station);
-        own.map(|it| it.measurement.observe().device_freedom())
-            .reduce(Freedom::with)
-            .unwrap_or(Freedom::FRAME)
+        own.map(|it| it.measurement.device_freedom()).reduce(Freedom::with).unwrap_or(Freedom::FRAME)
     }
 
     /// Whether some of these rows are readings of a station whose zero is unknown.
@@ -429,14 +427,14 @@ impl Dataset {
     pub fn zero_is_unknown(&self, station: usize, rows: &[u32]) -> bool {
         let mut own =
             rows.iter().map(|&row| &self.observations[row as usize]).filter(|it| it.station == station);
-        own.any(|it| it.measurement.observe().zero_is_unknown())
+        own.any(|it| it.measurement.function().zero_is_unknown)
     }
 
     /// Whether a station's rows are all distances, so that it has a zero and a scale.
     #[must_use]
     pub fn is_ranging(&self, station: usize) -> bool {
         let mut own = self.observations.iter().filter(|it| it.station == station);
-        own.all(|it| it.measurement.observe().range().is_some())
+        own.all(|it| it.measurement.range().is_some())
     }
 
     /// What some of these rows show of each target; of one that none sees, its place.
@@ -486,7 +484,7 @@ impl Dataset {
     }
 
     fn positions(&self, rows: &[u32]) -> impl Iterator<Item = [Option<f64>; 3]> {
-        let of = |row: u32| self.observations[row as usize].measurement.observe().position_components();
+        let of = |row: u32| self.observations[row as usize].measurement.position_components();
         rows.iter().map(move |&row| of(row)).filter(|components| components.iter().any(Option::is_some))
     }
 

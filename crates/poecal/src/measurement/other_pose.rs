@@ -1,11 +1,8 @@
-//! The residual of a measured frame in another formulation than [`PoseMeasurement`](super::PoseMeasurement), which is given from outside.
+//! The residual of a measured frame in another formulation than that of its function, which is given from outside.
 
 use std::fmt::Debug;
 
-use nalgebra::{Matrix3, Vector3};
-
-use super::pose::POSE;
-use super::{Channels, Measurement, Observe, PoseMeasurement, Seen, Sensitivity};
+use super::{Measurement, Sensitivity};
 use crate::lie::Pose;
 
 /// Formulation of the residuals of measured frames as six numbers, of position and rotation. It holds for all frames of a data set
@@ -14,10 +11,10 @@ pub trait PoseResidual: Debug + Sync {
     /// Its name; residuals of one name are equal.
     fn name(&self) -> &'static str;
 
-    /// As [`Observe::residual`], for a measured `device_from_target`.
+    /// As [`Measurement::residual`], for a measured `device_from_target`.
     fn residual(&self, measured: &Pose, predicted: &Pose, out: &mut [f64]);
 
-    /// As [`Observe::sensitivity`].
+    /// As [`Measurement::sensitivity`].
     fn sensitivity(&self, measured: &Pose, predicted: &Pose, out: &mut [Sensitivity]);
 }
 
@@ -28,57 +25,40 @@ impl PartialEq for dyn PoseResidual {
 }
 
 /// A measurement with the formulation of its residual.
-pub(crate) enum Written<'a> {
-    /// The formulation of the measurement's type.
-    Usual(&'a Measurement),
-    /// Another formulation, of a frame.
-    Other(OtherPose),
+pub(crate) struct Written<'a> {
+    pub(crate) measurement: &'a Measurement,
+    /// Another formulation than that of its function, of a frame.
+    other: Option<(Pose, &'static dyn PoseResidual)>,
 }
 
 impl<'a> Written<'a> {
     pub(crate) fn new(measurement: &'a Measurement, other: Option<&'static dyn PoseResidual>) -> Self {
-        match (measurement.seen(), other) {
-            (Seen::Frame(pose), Some(residual)) => Written::Other(OtherPose { pose: *pose, residual }),
-            (Seen::Frame(_), None) | (Seen::Point(_) | Seen::Other(_), _) => Written::Usual(measurement),
+        Written { measurement, other: other.and_then(|other| Some((measurement.frame()?, other))) }
+    }
+
+    /// Whether it is that of its function.
+    pub(crate) fn is_usual(&self) -> bool {
+        self.other.is_none()
+    }
+
+    /// Whether the wrench of its residual has its second derivative.
+    pub(crate) fn is_wrench(&self) -> bool {
+        self.is_usual() && self.measurement.function().is_wrench
+    }
+
+    /// Writes the residual.
+    pub(crate) fn residual(&self, predicted: &Pose, out: &mut [f64]) {
+        match self.other {
+            Some((measured, other)) => other.residual(&measured, predicted, out),
+            None => self.measurement.residual(predicted, out),
         }
     }
 
-    pub(crate) fn model(&self) -> &dyn Observe {
-        match self {
-            Written::Usual(measurement) => measurement.observe(),
-            Written::Other(pose) => pose,
+    /// Writes the sensitivity.
+    pub(crate) fn sensitivity(&self, predicted: &Pose, out: &mut [Sensitivity]) {
+        match self.other {
+            Some((measured, other)) => other.sensitivity(&measured, predicted, out),
+            None => self.measurement.sensitivity(predicted, out),
         }
-    }
-}
-
-/// A measured frame with a [`PoseResidual`].
-pub(crate) struct OtherPose {
-    pose: Pose,
-    residual: &'static dyn PoseResidual,
-}
-
-impl Observe for OtherPose {
-    fn channels(&self) -> &'static Channels {
-        &POSE
-    }
-
-    fn residual(&self, predicted: &Pose, out: &mut [f64]) {
-        self.residual.residual(&self.pose, predicted, out);
-    }
-
-    fn sensitivity(&self, predicted: &Pose, out: &mut [Sensitivity]) {
-        self.residual.sensitivity(&self.pose, predicted, out);
-    }
-
-    fn position(&self) -> Option<Vector3<f64>> {
-        Some(self.pose.translation)
-    }
-
-    fn orientation(&self) -> Option<Matrix3<f64>> {
-        Some(self.pose.rotation)
-    }
-
-    fn is_finite(&self) -> bool {
-        PoseMeasurement { pose: self.pose }.is_finite()
     }
 }

@@ -20,10 +20,10 @@ macro_rules! key {
     };
 }
 
-/// Makes an enum of quantities from their table, a line for each: name, unit, and names of its components.
+/// Makes an enum of quantities from their table, a line for each: name, unit, names of its components, and what its residuals are.
 macro_rules! quantities {
     ($(#[$attribute:meta])* pub enum $Quantity:ident {
-        $($(#[$doc:meta])* $variant:ident = ($name:literal, $unit:ident, [$($component:literal),+]),)+
+        $($(#[$doc:meta])* $variant:ident = ($name:literal, $unit:ident, [$($component:literal),+], $residuals:literal),)+
     }) => {
         $(#[$attribute])*
         pub enum $Quantity {
@@ -42,6 +42,7 @@ macro_rules! quantities {
                         key: key!($name, $unit),
                         unit: Unit::$unit,
                         components: &[$($component),+],
+                        residuals: $residuals,
                     },)+
                 }
             }
@@ -62,17 +63,22 @@ quantities! {
 #[serde(rename_all = "snake_case")]
 pub enum Quantity {
     /// Place of a target.
-    Position = ("position", Metre, ["x", "y", "z"]),
+    Position = ("position", Metre, ["x", "y", "z"], "of positions along these axes"),
     /// Orientation of a target.
-    Rotation = ("rotation", Radian, ["rx", "ry", "rz"]),
+    Rotation = ("rotation", Radian, ["rx", "ry", "rz"], "of rotations about these axes"),
     /// Distance of a target from the instrument.
-    Distance = ("distance", Metre, ["distance"]),
+    Distance = ("distance", Metre, ["distance"], "of distances, above zero where more was measured"),
     /// Place of a ball from the middle of its socket.
-    Contact = ("contact", Metre, ["contact_x", "contact_y", "contact_z"]),
+    Contact = (
+        "contact",
+        Metre,
+        ["contact_x", "contact_y", "contact_z"],
+        "of contacts along three axes square to each other, from the ball to the middle of its socket"
+    ),
     /// Height of a target over a plane.
-    Height = ("height", Metre, ["height"]),
+    Height = ("height", Metre, ["height"], "of heights, above zero where more was measured than predicted"),
     /// Tilts of a face against a plane, or of a target against a direction such as gravity's.
-    Tilt = ("tilt", Radian, ["tilt_x", "tilt_y"]),
+    Tilt = ("tilt", Radian, ["tilt_x", "tilt_y"], "of tilts about the target's own x and y"),
 }
 }
 
@@ -82,6 +88,7 @@ struct Entry {
     key: &'static str,
     unit: Unit,
     components: &'static [&'static str],
+    residuals: &'static str,
 }
 
 // A quantity with more components does not compile.
@@ -119,6 +126,12 @@ impl Quantity {
     #[must_use]
     pub fn components(self) -> usize {
         self.component_names().len()
+    }
+
+    /// What its residuals are, in words.
+    #[must_use]
+    pub(crate) fn residual_words(self) -> &'static str {
+        self.entry().residuals
     }
 
     /// Its unit.

@@ -72,18 +72,18 @@ impl Problem<'_> {
     /// The whitened residual of a row as force and torque on its target, `Sᵀ W e`, where the curvature is theirs (theory.md §6 (31a)).
     fn wrench(&self, row: usize, predicted: &Pose) -> Option<Wrench> {
         let written = self.written(row);
-        let (seen, noise) = (written.model(), self.noise(row));
+        let (channels, noise) = (written.measurement.channels(), self.noise(row));
         let (mut e, mut sensitivity) = ([0.0; NUMBERS], [[0.0; 6]; NUMBERS]);
-        seen.residual(predicted, &mut e);
-        seen.sensitivity(predicted, &mut sensitivity);
-        self.make_alike(row, seen.channels(), &mut e, &mut sensitivity);
+        written.residual(predicted, &mut e);
+        written.sensitivity(predicted, &mut sensitivity);
+        self.make_alike(row, channels, &mut e, &mut sensitivity);
         let mut wrench = Wrench { force: Vector3::zeros(), torque: Vector3::zeros() };
-        for ((e, [a, b, c, p, q, r]), channel) in e.into_iter().zip(sensitivity).zip(seen.channels()) {
+        for ((e, [a, b, c, p, q, r]), channel) in e.into_iter().zip(sensitivity).zip(channels) {
             let pull = e / (noise[channel.quantity] * noise[channel.quantity]);
             wrench.force += Vector3::new(a, b, c) * pull;
             wrench.torque += Vector3::new(p, q, r) * pull;
         }
-        seen.is_wrench().then_some(wrench)
+        written.is_wrench().then_some(wrench)
     }
 
     /// Adds up `add` of each fixed chunk of rows, in the order of the rows whatever the number of threads.

@@ -7,7 +7,7 @@ use super::scatter::GramScatter;
 use crate::estimate::{Chain, Estimate, Linkage, Sight};
 use crate::lanes::{self, Arm, FixedMotion, PackedRows, RowData, Shape, ShapedRow, SimdLevel, Totals, WIDTH};
 use crate::lie::Pose;
-use crate::measurement::{Measurement, NUMBERS, Noise, Quantity, Seen};
+use crate::measurement::{Kernel, NUMBERS, Noise};
 use crate::parameters::Columns as _;
 use crate::solve::Normal;
 use crate::threads;
@@ -301,35 +301,21 @@ fn row_data<'a>(
     let observation = &problem.session.data.observations[row];
     let joints = problem.session.packed.row(row);
     let measured = problem.measurement(row);
-    let (position, orientation) = match measured.seen() {
-        Seen::Point(position) => (position, None),
-        Seen::Frame(pose) => (&pose.translation, is_pose.then_some(&pose.rotation.data.0)),
-        Seen::Other(seen) => {
-            let quantity = seen.channels().first().map_or(Quantity::Position, |channel| channel.quantity);
-            let weight = 1.0 / problem.noise(row)[quantity];
-            return RowData { joints, position: numbers_of(measured), orientation: None, weight };
-        }
+    let [x, y, z, columns @ ..] = measured.values();
+    let position = match measured.function().kernel {
+        Kernel::Pose | Kernel::Place | Kernel::Distance | Kernel::Any => [*x, *y, *z],
+        Kernel::Height => [0.0, 0.0, *x],
     };
+    if !measured.is_place() {
+        let weight = 1.0 / problem.noise(row)[measured.function().leading()];
+        return RowData { joints, position, orientation: None, weight };
+    }
+    let orientation = is_pose.then(|| columns.as_chunks::<3>().0.first_chunk::<3>()).flatten();
     let Whitening { weight, ratio } = usual.of(observation, noise);
     let weight = match problem.weights.and_then(|weights| weights.get(row)) {
         Some(own) => own.sqrt() * weight,
         None => weight,
     };
     let orientation = orientation.map(|columns| (columns, ratio));
-    RowData { joints, position: (*position).into(), orientation, weight }
-}
-
-/// What the kernels take for a position: a ball's place in its socket, a height along z, a distance first. What other rows measured comes
-/// with their shape.
-fn numbers_of(measured: &Measurement) -> [f64; 3] {
-    match measured {
-        Measurement::Socket(seen) => seen.place.into(),
-        Measurement::Height(seen) => [0.0, 0.0, seen.height],
-        Measurement::Distance(seen) => [seen.distance, 0.0, 0.0],
-        Measurement::Point(_)
-        | Measurement::Components(_)
-        | Measurement::Pose(_)
-        | Measurement::Flush(_)
-        | Measurement::Direction(_) => [0.0; 3],
-    }
+    RowData { joints, position, orientation, weight }
 }

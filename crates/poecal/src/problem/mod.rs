@@ -21,11 +21,10 @@ pub(crate) use row_block::RowBlock;
 use crate::estimate::{Estimate, Range, RangeTerm, Session};
 use crate::lanes::ShapedRow;
 use crate::lie::Pose;
-use crate::measurement::{Channels, Measurement, NUMBERS, Noise, Seen, Sensitivity, Written};
+use crate::measurement::{Channels, Measurement, NUMBERS, Noise, Sensitivity, Written};
 use crate::parameters::Parameter;
 use crate::solve::{LeastSquares, Normal};
 use fast::{Accumulate, Fast};
-use std::mem::discriminant;
 use std::sync::OnceLock;
 
 /// Most unknowns of a fit: its time grows with the cube of their number, its memory with the square. 1,000 take about half a minute of
@@ -58,11 +57,8 @@ impl<'a> Problem<'a> {
     #[must_use]
     pub fn new(session: Session<'a>, rows: Vec<u32>, free: Vec<Parameter>, noise: Noise) -> Self {
         // A few roundings of about the largest number: the distance from the device.
-        let farthest = |&row: &u32| match session.observation(row).measurement.seen() {
-            Seen::Point(position) => position.amax(),
-            Seen::Frame(pose) => pose.translation.amax(),
-            Seen::Other(_) => 0.0,
-        };
+        let farthest =
+            |&row: &u32| session.observation(row).measurement.position().map_or(0.0, |it| it.amax());
         let some = rows.iter().step_by(rows.len().div_ceil(SEEN).max(1));
         let farthest = some.map(farthest);
         let rounding_m = 4.0 * f64::EPSILON * farthest.fold(1.0, f64::max);
@@ -174,8 +170,8 @@ impl<'a> Problem<'a> {
     /// Replaces the measurements, one for each row of the data; the configurations stay.
     fn set_measurements(&mut self, measured: &[Measurement]) {
         let is_alike = self.rows.iter().all(|&row| {
-            let before = discriminant(self.measurement(row as usize));
-            measured.get(row as usize).is_none_or(|measured| discriminant(measured) == before)
+            let before = self.measurement(row as usize).function();
+            measured.get(row as usize).is_none_or(|measured| measured.function() == before)
         });
         let own = self.measured.get_or_insert_default();
         own.clear();
@@ -193,17 +189,17 @@ impl Problem<'_> {
     /// Whitened residual and sensitivity of a row for its predicted target, theory.md §4 (17).
     pub(crate) fn shaped(&self, row: usize, predicted: &Pose, range: Option<&Range>) -> ShapedRow {
         let written = self.written(row);
-        let (seen, noise) = (written.model(), self.noise(row));
+        let (channels, noise) = (written.measurement.channels(), self.noise(row));
         let mut shaped = ShapedRow::NONE;
         let read = range.map_or(*predicted, |range| range.seen(predicted));
-        seen.residual(&read, &mut shaped.residual);
-        seen.sensitivity(&read, &mut shaped.sensitivity);
+        written.residual(&read, &mut shaped.residual);
+        written.sensitivity(&read, &mut shaped.sensitivity);
         if let Some(range) = range {
             range.pull_back(predicted, &mut shaped.sensitivity);
         }
         let ShapedRow { residual, sensitivity } = &mut shaped;
-        self.make_alike(row, seen.channels(), residual, sensitivity);
-        for ((e, numbers), channel) in residual.iter_mut().zip(sensitivity).zip(seen.channels()) {
+        self.make_alike(row, channels, residual, sensitivity);
+        for ((e, numbers), channel) in residual.iter_mut().zip(sensitivity).zip(channels) {
             let sigma = noise[channel.quantity];
             *e /= sigma;
             numbers.iter_mut().for_each(|number| *number /= sigma);
@@ -221,12 +217,12 @@ impl Problem<'_> {
         out: &mut [[f64; NUMBERS]],
     ) {
         let written = self.written(row);
-        let (seen, noise) = (written.model(), self.noise(row));
+        let (channels, noise) = (written.measurement.channels(), self.noise(row));
         let mut sensitivity = [[0.0; 6]; NUMBERS];
-        seen.sensitivity(&range.map_or(*predicted, |range| range.seen(predicted)), &mut sensitivity);
+        written.sensitivity(&range.map_or(*predicted, |range| range.seen(predicted)), &mut sensitivity);
         for (&(term, scale), out) in terms.iter().zip(out) {
             let moved = Range::motion(predicted, term) / scale;
-            for ((out, [x, y, z, ..]), channel) in out.iter_mut().zip(&sensitivity).zip(seen.channels()) {
+            for ((out, [x, y, z, ..]), channel) in out.iter_mut().zip(&sensitivity).zip(channels) {
                 *out = (x * moved.x + y * moved.y + z * moved.z) / noise[channel.quantity];
             }
         }

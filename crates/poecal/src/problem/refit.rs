@@ -56,7 +56,7 @@ mod tests {
     use super::*;
     use crate::estimate::{Packed, Session};
     use crate::lie::{Pose, Screw};
-    use crate::measurement::{Dataset, Noise, PointMeasurement};
+    use crate::measurement::{Dataset, Noise};
     use crate::parameters::{Parameter, TargetPlace};
     use crate::robot::{Joint, Robot};
     use nalgebra::Vector3;
@@ -69,7 +69,7 @@ mod tests {
         let place = Vector3::new(0.01, 0.0, 0.0);
         let seen = |reading, place| {
             let position = robot.forward_kinematics(&[reading]).act(&place);
-            Measurement::Point(PointMeasurement { position })
+            Measurement::point(position)
         };
         let mut data = Dataset::new(robot.reading_names());
         for reading in [0.0, 1.0, 2.0] {

@@ -3,7 +3,7 @@
 use super::Problem;
 use crate::estimate::Sight;
 use crate::lanes::Along;
-use crate::measurement::{Measurement, Noise, Observation, Quantity, Seen};
+use crate::measurement::{Kernel, Measurement, Noise, Observation, Quantity};
 use crate::threads;
 
 /// Rows that one thread groups at a time.
@@ -104,29 +104,20 @@ impl Form {
         have_residual: bool,
         is_plain: impl Fn() -> bool,
     ) -> Self {
-        if have_screws {
-            match measured {
-                Measurement::Socket(_) => return Form::Point,
-                Measurement::Height(_) => return Form::Along(Along::Height),
-                Measurement::Distance(_) if is_plain() => return Form::Along(Along::Distance),
-                Measurement::Point(_)
-                | Measurement::Components(_)
-                | Measurement::Pose(_)
-                | Measurement::Distance(_)
-                | Measurement::Flush(_)
-                | Measurement::Direction(_) => {}
+        match measured.function().kernel {
+            Kernel::Place if have_screws => Form::Point,
+            Kernel::Pose if have_screws && have_residual => Form::Pose,
+            Kernel::Height if have_screws => Form::Along(Along::Height),
+            Kernel::Distance if have_screws && is_plain() => Form::Along(Along::Distance),
+            Kernel::Place | Kernel::Pose | Kernel::Height | Kernel::Distance | Kernel::Any => {
+                Form::shaped_of(measured)
             }
-        }
-        match measured.seen() {
-            Seen::Point(_) if have_screws => Form::Point,
-            Seen::Frame(_) if have_screws && have_residual => Form::Pose,
-            Seen::Point(_) | Seen::Frame(_) | Seen::Other(_) => Form::shaped_of(measured),
         }
     }
 
     /// Of any function of a target's pose.
     fn shaped_of(measured: &Measurement) -> Self {
-        Form::Shaped(measured.observe().dim(), measured.sees_orientation())
+        Form::Shaped(measured.dim(), measured.sees_orientation())
     }
 
     /// The same rows, as any function of the target's pose.

@@ -6,14 +6,14 @@ use rand_core::SeedableRng;
 
 use super::random;
 use crate::lie::{Pose, rotation};
-use crate::measurement::{Dataset, Measurement, PointMeasurement, PoseMeasurement, Seen};
+use crate::measurement::{Dataset, Measurement};
 
 /// Gross errors of a share of the rows: each is moved in a random direction, and every second one with an orientation is also rotated.
 /// Distances and angles are uniform between their two limits.
 ///
 /// ```
 /// use poecal::simulate::{Gross, Kind, Simulation, elbow};
-/// let mut made = Simulation::default().run(&elbow(), Kind::Pose)?;
+/// let mut made = Simulation::default().run(&elbow(), Kind::POSE)?;
 /// let rows = Gross { share: 0.1, ..Gross::default() }.spoil(&mut made.data);
 /// assert_eq!(rows.len(), 5);
 /// # Ok::<(), poecal::Error>(())
@@ -60,13 +60,10 @@ impl Gross {
             direction * (least + (most - least) * random::uniform(generator))
         };
         let (shift, turn) = (between(self.distance_m), between(self.angle_rad));
-        match measurement.seen() {
-            Seen::Point(place) => Measurement::Point(PointMeasurement { position: place + shift }),
-            Seen::Frame(pose) => {
-                let rotation = if turned { rotation::exp(&turn) * pose.rotation } else { pose.rotation };
-                Measurement::Pose(PoseMeasurement { pose: Pose::new(rotation, pose.translation + shift) })
-            }
-            Seen::Other(_) => *measurement,
-        }
+        let spoilt = measurement.changed(|pose| {
+            let rotation = if turned { rotation::exp(&turn) * pose.rotation } else { pose.rotation };
+            Pose::new(rotation, pose.translation + shift)
+        });
+        spoilt.unwrap_or(*measurement)
     }
 }

@@ -6,8 +6,10 @@ mod places;
 pub mod random;
 mod robots;
 
+pub use crate::measurement::Kind;
 pub use configuration::{Configurations, random_configuration};
 pub use gross::Gross;
+pub(crate) use places::plan;
 pub use robots::{elbow, gantry, random_chain, scara, seven_axis};
 
 use nalgebra::Vector3;
@@ -16,152 +18,16 @@ use rand_core::SeedableRng;
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::lie::{Pose, rotation};
-use crate::measurement::{
-    Dataset, Measurement, Observation, PointMeasurement, PoseMeasurement, Quantity, Source, Stated,
-};
+use crate::measurement::{Dataset, Measurement, Observation};
 use crate::robot::{
     Body, CorrectionModel, Extent, Factor, FactorReading, Joint, JointKind, Mount, Robot, Sizes, TermGroup,
 };
-
-/// Kind of the simulated measurements.
-///
-/// ```
-/// assert_eq!(poecal::Kind::Point.word(), "point");
-/// ```
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
-    /// The tip's position and orientation.
-    Pose,
-    /// The tip's position.
-    Point,
-    /// Poses and points in turn.
-    Mixed,
-    /// Distances from three anchors.
-    Distance,
-    /// Changes of the distances from three instruments.
-    Change,
-    /// Points of a sphere.
-    Sphere,
-    /// A ball in one of two sockets.
-    Socket,
-    /// Points of three planes.
-    Plane,
-    /// Heights over three planes.
-    Height,
-    /// A face that lies flush on one of three planes.
-    Flush,
-    /// The direction of gravity.
-    Direction,
-    /// Distances of the tip between two configurations.
-    BallBar,
-    /// Poses of the tip from one configuration in another.
-    Relative,
-    /// Two components of the tip's position, as a camera sees them.
-    Component,
-}
-
-impl Kind {
-    /// All kinds.
-    pub const ALL: [Kind; 14] = [
-        Kind::Pose,
-        Kind::Point,
-        Kind::Mixed,
-        Kind::Distance,
-        Kind::Change,
-        Kind::Sphere,
-        Kind::Socket,
-        Kind::Plane,
-        Kind::Height,
-        Kind::Flush,
-        Kind::Direction,
-        Kind::BallBar,
-        Kind::Relative,
-        Kind::Component,
-    ];
-
-    /// Whether a device with a frame of its own measures.
-    #[must_use]
-    pub fn has_device(self) -> bool {
-        match self {
-            Kind::Pose | Kind::Point | Kind::Mixed => true,
-            Kind::Distance
-            | Kind::Change
-            | Kind::Sphere
-            | Kind::Socket
-            | Kind::Plane
-            | Kind::Height
-            | Kind::Flush
-            | Kind::Direction
-            | Kind::BallBar
-            | Kind::Relative
-            | Kind::Component => false,
-        }
-    }
-
-    /// The word used in files: `pose`, `point`, `mixed` and so on.
-    #[must_use]
-    pub fn word(self) -> &'static str {
-        match self {
-            Kind::Pose => "pose",
-            Kind::Point => "point",
-            Kind::Mixed => "mixed",
-            Kind::Distance => "distance",
-            Kind::Change => "distance-change",
-            Kind::Sphere => "sphere",
-            Kind::Socket => "socket",
-            Kind::Plane => "plane",
-            Kind::Height => "height",
-            Kind::Flush => "flush",
-            Kind::Direction => "direction",
-            Kind::BallBar => "ball-bar",
-            Kind::Relative => "relative",
-            Kind::Component => "component",
-        }
-    }
-
-    /// Whether some rows at least measure a quantity.
-    #[must_use]
-    pub fn has(self, quantity: Quantity) -> bool {
-        self.quantities().contains(&quantity)
-    }
-
-    /// What it measures.
-    #[must_use]
-    pub fn quantities(self) -> &'static [Quantity] {
-        match self {
-            Kind::Pose | Kind::Mixed | Kind::Relative => &[Quantity::Position, Quantity::Rotation],
-            Kind::Point | Kind::Component => &[Quantity::Position],
-            Kind::Distance | Kind::Change | Kind::Sphere | Kind::BallBar => &[Quantity::Distance],
-            Kind::Socket => &[Quantity::Contact],
-            Kind::Plane | Kind::Height => &[Quantity::Height],
-            Kind::Flush => &[Quantity::Height, Quantity::Tilt],
-            Kind::Direction => &[Quantity::Tilt],
-        }
-    }
-
-    /// Whether some rows at least measure the orientation of the tip.
-    #[must_use]
-    pub fn sees_orientation(self) -> bool {
-        match self {
-            Kind::Pose | Kind::Mixed | Kind::Flush | Kind::Direction | Kind::Relative => true,
-            Kind::Point
-            | Kind::Component
-            | Kind::Distance
-            | Kind::Change
-            | Kind::Sphere
-            | Kind::Socket
-            | Kind::Plane
-            | Kind::Height
-            | Kind::BallBar => false,
-        }
-    }
-}
 
 /// A simulated measurement session.
 ///
 /// ```
 /// use poecal::simulate::{Kind, Simulation, elbow};
-/// let made = Simulation { count: 20, ..Simulation::default() }.run(&elbow(), Kind::Point)?;
+/// let made = Simulation { count: 20, ..Simulation::default() }.run(&elbow(), Kind::POINT)?;
 /// assert_eq!(made.data.len(), 20);
 /// # Ok::<(), poecal::Error>(())
 /// ```
@@ -240,7 +106,7 @@ impl Default for Simulation {
 ///
 /// ```
 /// use poecal::{Kind, Simulation, simulate::scara};
-/// let made = Simulation::default().run(&scara(), Kind::Point)?;
+/// let made = Simulation::default().run(&scara(), Kind::POINT)?;
 /// let readings = made.data.readings(0);
 /// let tip = made.device_from_base * made.actual.forward_kinematics(readings);
 /// let seen = made.data.observations[0].measurement.pose();
@@ -373,30 +239,13 @@ impl Simulation {
                 (None, None) => *device_from_base * actual.forward_kinematics(&readings),
                 _ => seen(actual, device_from_base, (instrument, target), &readings),
             };
-            let noise = random::normal_vector(generator) * self.noise_position_m;
-            let turn = random::normal_vector(generator) * self.noise_rotation_rad;
-            let position = seen.translation + noise;
-            let as_pose = kind == Kind::Pose || kind == Kind::Mixed && row % 2 == 0;
-            let measurement = if as_pose {
-                let pose = Pose::new(rotation::exp(&turn) * seen.rotation, position);
-                Measurement::Pose(PoseMeasurement { pose })
-            } else {
-                Measurement::Point(PointMeasurement { position })
-            };
+            let length = random::normal_vector(generator) * self.noise_position_m;
+            let measurement = self.drawn(kind, &seen, (row, length, 0.0), generator);
             let (target, station) = (
                 data.target_index(target.map(|mount| mount.name.as_str())),
                 instrument.map_or(0, |mount| data.station_index(Some(&mount.name))),
             );
-            let observation = Observation {
-                target,
-                station,
-                from: None,
-                measurement,
-                stated: Stated::default(),
-                noise_shape: None,
-                set: None,
-                source: Source::default(),
-            };
+            let observation = Observation { station, ..Observation::new(target, measurement) };
             data.push_observation(&readings, observation)?;
         }
         Ok(data)
@@ -435,6 +284,13 @@ impl Simulation {
         actual.name = format!("{}_actual", nominal.name);
         actual
     }
+}
+
+/// What a kind of session sees of a target, without noise.
+pub(crate) fn exactly(kind: Kind, row: usize, target: &Pose) -> Measurement {
+    let exact = Simulation { noise_position_m: 0.0, noise_rotation_rad: 0.0, ..Simulation::default() };
+    let mut generator = ChaCha8Rng::seed_from_u64(exact.seed);
+    exact.drawn(kind, target, (row, Vector3::zeros(), 0.0), &mut generator)
 }
 
 /// Pairs of an instrument on the robot and a target with a body of its own; `None` is the device beside the robot, and the tip. Nothing if both

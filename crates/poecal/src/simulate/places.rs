@@ -1,5 +1,7 @@
 //! Sessions of devices without a frame of their own: anchors, sockets, planes, spheres, gravity, and pairs of configurations.
 
+use std::cell::RefCell;
+
 use nalgebra::{DMatrix, DVector, Vector3};
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
@@ -8,18 +10,11 @@ use super::{Configurations, Kind, Simulation, random};
 use crate::error::{Error, ErrorKind, Result};
 use crate::lie::{Pose, rotation};
 use crate::linalg;
-use crate::measurement::{
-    ComponentsMeasurement, Dataset, DirectionMeasurement, DistanceMeasurement, FlushMeasurement,
-    HeightMeasurement, Measurement, NUMBERS, Observation, PoseMeasurement, SocketMeasurement,
-};
+use crate::measurement::{Dataset, Draw, Drawn, Measurement, NUMBERS, Observation, Stands};
 use crate::robot::{Body, Mount, Robot};
 
 /// Distance of the two sockets, metres.
 const SOCKETS_APART_M: f64 = 0.2;
-/// Radius of the sphere, metres.
-const SPHERE_M: f64 = 0.05;
-/// Range of the gauge that shows heights, metres.
-const GAUGE_M: f64 = 0.02;
 /// Random configurations from which one that fulfils a constraint is sought, Newton steps from each, and the largest change of a joint.
 const ATTEMPTS: usize = 2000;
 const STEPS: usize = 40;
@@ -33,14 +28,14 @@ const DIFFERENCE: f64 = 1e-6;
 #[derive(Clone)]
 struct Place {
     name: String,
-    stands: Stands,
+    base: Base,
     /// Zero of an instrument's distances, metres.
     zero_m: f64,
 }
 
 /// On what a place stands.
 #[derive(Clone)]
-enum Stands {
+enum Base {
     /// Beside the robot: `device_from_base`.
     Beside(Pose),
     /// On one of its links.
@@ -66,10 +61,10 @@ impl Sight {
 
     /// The target as it is seen, if the place is that of one configuration.
     fn seen(&self, robot: &Robot, readings: &[f64]) -> Pose {
-        let device_from_base = match &self.place.stands {
-            Stands::Beside(device_from_base) => *device_from_base,
-            Stands::On(mount) => super::base_from(robot, mount, readings).inverse(),
-            Stands::Before => Pose::identity(),
+        let device_from_base = match &self.place.base {
+            Base::Beside(device_from_base) => *device_from_base,
+            Base::On(mount) => super::base_from(robot, mount, readings).inverse(),
+            Base::Before => Pose::identity(),
         };
         device_from_base * self.base_from_target(robot, readings)
     }
@@ -83,76 +78,42 @@ impl Sight {
     fn observation(&self, data: &mut Dataset) -> Observation {
         let target = data.target_index(self.target.as_ref().map(|it| it.name.as_str()));
         let station = data.station_index(Some(&self.place.name));
-        let measurement = Measurement::Socket(SocketMeasurement::default());
+        let measurement = Measurement::socket(Vector3::zeros());
         Observation { station, ..Observation::new(target, measurement) }
     }
 }
 
-impl Kind {
-    /// Number of places from which a session of this kind measures; none of a device with a frame.
-    fn places(self) -> usize {
-        match self {
-            Kind::Pose | Kind::Point | Kind::Mixed => 0,
-            Kind::Distance | Kind::Change | Kind::Plane | Kind::Height | Kind::Flush => 3,
-            Kind::Socket => 2,
-            Kind::Sphere | Kind::Direction | Kind::BallBar | Kind::Relative | Kind::Component => 1,
-        }
-    }
-
-    /// Whether each measurement is of two configurations.
-    fn is_paired(self) -> bool {
-        self == Kind::BallBar || self == Kind::Relative
-    }
-
-    /// Whether its configurations fulfil a constraint: something is touched in each.
-    #[must_use]
-    pub fn is_touched(self) -> bool {
-        match self {
-            Kind::Socket | Kind::Plane | Kind::Height | Kind::Flush | Kind::Sphere => true,
-            Kind::Pose
-            | Kind::Point
-            | Kind::Mixed
-            | Kind::Distance
-            | Kind::Change
-            | Kind::Direction
-            | Kind::BallBar
-            | Kind::Relative
-            | Kind::Component => false,
-        }
-    }
-
-    /// What a robot would measure in some configurations, by a kind that is neither of a device with a frame nor touches anything: rows, and the
-    /// frames of the instruments, which are somewhere around it.
-    pub(crate) fn plan(self, robot: &Robot, readings: &[f64]) -> Result<(Dataset, Vec<Pose>)> {
-        let exact = Simulation { noise_position_m: 0.0, noise_rotation_rad: 0.0, ..Simulation::default() };
-        let mut generator = ChaCha8Rng::seed_from_u64(exact.seed);
-        let mut data = Dataset::new(robot.reading_names());
-        let sights = exact.sights(robot, self)?;
-        let is_paired = self.is_paired();
-        let width = data.reading_names().len().max(1) * if is_paired { 2 } else { 1 };
-        for (row, own) in readings.chunks_exact(width).enumerate() {
-            let sight = &sights[row % sights.len()];
-            let (first, own) = own.split_at(if is_paired { width / 2 } else { 0 });
-            let mut observation = sight.observation(&mut data);
-            let seen = if is_paired {
-                observation.from = Some(data.push_further(first)?);
-                sight.seen_from(robot, [first, own])
-            } else {
-                sight.seen(robot, own)
-            };
-            observation.measurement = exact.seen(self, &sight.place, &seen, &mut generator);
-            data.push_observation(own, observation)?;
-        }
-        let device = |name: &Option<String>| {
-            let own = sights.iter().find(|it| name.as_ref() == Some(&it.place.name))?;
-            match &own.place.stands {
-                Stands::Beside(device_from_base) => Some(*device_from_base),
-                Stands::On(_) | Stands::Before => None,
-            }
+/// What a robot would measure in some configurations, by a kind that is neither of a device with a frame nor touches anything: rows, and the
+/// frames of the instruments, which are somewhere around it.
+pub(crate) fn plan(kind: Kind, robot: &Robot, readings: &[f64]) -> Result<(Dataset, Vec<Pose>)> {
+    let exact = Simulation { noise_position_m: 0.0, noise_rotation_rad: 0.0, ..Simulation::default() };
+    let mut generator = ChaCha8Rng::seed_from_u64(exact.seed);
+    let mut data = Dataset::new(robot.reading_names());
+    let sights = exact.sights(robot, kind)?;
+    let is_paired = kind.is_paired();
+    let width = data.reading_names().len().max(1) * if is_paired { 2 } else { 1 };
+    for (row, own) in readings.chunks_exact(width).enumerate() {
+        let sight = &sights[row % sights.len()];
+        let (first, own) = own.split_at(if is_paired { width / 2 } else { 0 });
+        let mut observation = sight.observation(&mut data);
+        let seen = if is_paired {
+            observation.from = Some(data.push_further(first)?);
+            sight.seen_from(robot, [first, own])
+        } else {
+            sight.seen(robot, own)
         };
-        let devices = data.stations.iter().filter_map(device).collect();
-        Ok((data, devices))
+        observation.measurement = exact.seen(kind, &sight.place, (row, &seen), &mut generator);
+        data.push_observation(own, observation)?;
     }
+    let device = |name: &Option<String>| {
+        let own = sights.iter().find(|it| name.as_ref() == Some(&it.place.name))?;
+        match &own.place.base {
+            Base::Beside(device_from_base) => Some(*device_from_base),
+            Base::On(_) | Base::Before => None,
+        }
+    };
+    let devices = data.stations.iter().filter_map(device).collect();
+    Ok((data, devices))
 }
 
 impl Simulation {
@@ -171,7 +132,7 @@ impl Simulation {
             let sight = &sights[row % sights.len()];
             let mut observation = sight.observation(&mut data);
             let readings = if kind.is_touched() {
-                let found = self.touching(actual, &configurations, kind, sight, generator)?;
+                let found = self.touching(actual, (&configurations, row), kind, sight, generator)?;
                 observation.measurement = found.1;
                 found.0
             } else {
@@ -183,7 +144,7 @@ impl Simulation {
                 } else {
                     sight.seen(actual, &readings)
                 };
-                observation.measurement = self.seen(kind, &sight.place, &seen, generator);
+                observation.measurement = self.seen(kind, &sight.place, (row, &seen), generator);
                 readings
             };
             data.push_observation(&readings, observation)?;
@@ -197,7 +158,7 @@ impl Simulation {
         if !actual.instruments.is_empty() && !kind.is_paired() {
             let on = |mount: &Mount| Place {
                 name: mount.name.clone(),
-                stands: Stands::On(mount.clone()),
+                base: Base::On(mount.clone()),
                 zero_m: places.first().map_or(0.0, |it| it.zero_m),
             };
             places = actual.instruments.iter().map(on).collect();
@@ -210,15 +171,15 @@ impl Simulation {
         let sight = |place: &Place, target: &Option<Mount>| {
             let mut place = place.clone();
             // As files name the pairs of a target.
-            if let (Stands::Before, Some(mount)) = (&place.stands, target) {
+            if let (Base::Before, Some(mount)) = (&place.base, target) {
                 place.name = format!("{}/{}", place.name, mount.name);
             }
             Sight { place, target: target.clone() }
         };
         let all = targets.iter().flat_map(|target| places.iter().map(move |place| sight(place, target)));
-        let moves = |sight: &Sight| match &sight.place.stands {
-            Stands::On(mount) => mount.body != body(&sight.target),
-            Stands::Beside(_) | Stands::Before => body(&sight.target) != Body::Base,
+        let moves = |sight: &Sight| match &sight.place.base {
+            Base::On(mount) => mount.body != body(&sight.target),
+            Base::Beside(_) | Base::Before => body(&sight.target) != Body::Base,
         };
         let found: Vec<Sight> = all.filter(moves).collect();
         if found.is_empty() {
@@ -231,40 +192,29 @@ impl Simulation {
     fn places(&self, actual: &Robot, kind: Kind) -> Vec<Place> {
         let mut generator = ChaCha8Rng::seed_from_u64(self.seed);
         generator.set_stream(3);
-        let names: &[&'static str] = match kind {
-            Kind::Pose | Kind::Point | Kind::Mixed => &[""],
-            Kind::Distance | Kind::Change => &["wall", "floor", "door"],
-            Kind::Plane | Kind::Height | Kind::Flush => &["table", "side", "front"],
-            Kind::Socket => &["left", "right"],
-            Kind::Sphere => &["ball"],
-            Kind::Direction => &["gravity"],
-            Kind::BallBar | Kind::Relative => &["pair"],
-            Kind::Component => &["camera"],
-        };
+        let session = kind.session();
         let configurations = Configurations::new(actual);
         let middle = self.middle(actual, &configurations, &mut generator);
         let apart = random::direction(&mut generator) * SOCKETS_APART_M;
-        let place = |(index, &name): (usize, &&'static str)| {
+        let place = |(index, name): (usize, &&'static str)| {
             let turn = random::rotation(&mut generator);
-            let (point, turn) = if matches!(kind, Kind::Distance | Kind::Change) {
-                (random::direction(&mut generator) * (1.5 * actual.reach_m()), turn)
-            } else if kind == Kind::Socket {
-                (middle + apart * index as f64, turn)
-            } else if kind == Kind::Direction {
-                // Gravity is nearly along the base's z.
-                (Vector3::zeros(), rotation::exp(&(random::direction(&mut generator) * 0.02)))
-            } else {
-                (middle, turn)
+            let (point, turn) = match session.stands {
+                Stands::Around => (random::direction(&mut generator) * (1.5 * actual.reach_m()), turn),
+                Stands::InARow => (middle + apart * index as f64, turn),
+                Stands::Upward => {
+                    (Vector3::zeros(), rotation::exp(&(random::direction(&mut generator) * 0.02)))
+                }
+                Stands::Anywhere | Stands::Within | Stands::Before => (middle, turn),
             };
-            let is_counted = kind == Kind::Change;
+            let is_counted = session.function.zero_is_unknown && !kind.is_touched();
             let zero_m = if is_counted { random::uniform(&mut generator) - 0.5 } else { 0.0 };
-            let stands = match kind.is_paired() {
-                true => Stands::Before,
-                false => Stands::Beside(Pose::new(turn, -(turn * point))),
+            let base = match kind.is_paired() {
+                true => Base::Before,
+                false => Base::Beside(Pose::new(turn, -(turn * point))),
             };
-            Place { name: name.to_owned(), stands, zero_m }
+            Place { name: (*name).to_owned(), base, zero_m }
         };
-        names.iter().take(kind.places().max(1)).enumerate().map(place).collect()
+        session.places.iter().enumerate().map(place).collect()
     }
 
     /// A point that all targets reach well: the middle of their places.
@@ -296,67 +246,62 @@ impl Simulation {
     }
 
     /// What a device sees of a target.
-    fn seen(&self, kind: Kind, place: &Place, target: &Pose, generator: &mut ChaCha8Rng) -> Measurement {
-        let length_m = random::normal(generator) * self.noise_position_m;
+    fn seen(
+        &self,
+        kind: Kind,
+        place: &Place,
+        (row, target): (usize, &Pose),
+        generator: &mut ChaCha8Rng,
+    ) -> Measurement {
+        let length = Vector3::x() * (random::normal(generator) * self.noise_position_m);
+        self.drawn(kind, target, (row, length, place.zero_m), generator)
+    }
+
+    /// What a device sees of a target, with noise of lengths that is already drawn.
+    pub(super) fn drawn(
+        &self,
+        kind: Kind,
+        target: &Pose,
+        (row, length, zero_m): (usize, Vector3<f64>, f64),
+        generator: &mut ChaCha8Rng,
+    ) -> Measurement {
+        self.with_noise(row, length, zero_m, generator, |drawn| match kind.session().drawn {
+            Draw::Seen(measure) => measure(target, drawn),
+            Draw::Touched(constraint) => constraint(drawn)[1],
+        })
+    }
+
+    /// Draws further noise of a measurement.
+    fn with_noise<T>(
+        &self,
+        row: usize,
+        length: Vector3<f64>,
+        zero_m: f64,
+        generator: &mut ChaCha8Rng,
+        of: impl FnOnce(&mut Drawn<'_>) -> T,
+    ) -> T {
         let turn = random::normal_vector(generator) * self.noise_rotation_rad;
-        let distance = target.translation.norm() + length_m;
-        if kind == Kind::Change {
-            let reading = distance + place.zero_m;
-            return Measurement::Distance(DistanceMeasurement::from_unknown_zero(reading));
-        }
-        if kind == Kind::Direction {
-            let up = (rotation::exp(&turn) * target.rotation).row(2).transpose();
-            return Measurement::Direction(DirectionMeasurement::along(&up));
-        }
-        if kind == Kind::Component {
-            let seen = target.translation + random::normal_vector(generator) * self.noise_position_m;
-            return Measurement::Components(ComponentsMeasurement::new([Some(seen.x), Some(seen.y), None]));
-        }
-        if kind == Kind::Relative {
-            let shift = random::normal_vector(generator) * self.noise_position_m;
-            let pose = Pose::new(rotation::exp(&turn) * target.rotation, target.translation + shift);
-            return Measurement::Pose(PoseMeasurement { pose });
-        }
-        Measurement::Distance(DistanceMeasurement::new(distance))
+        let generator = RefCell::new(generator);
+        let mut lengths = || random::normal_vector(&mut generator.borrow_mut()) * self.noise_position_m;
+        let mut uniform = || random::uniform(&mut generator.borrow_mut());
+        of(&mut Drawn { row, length, turn, zero_m, lengths: &mut lengths, uniform: &mut uniform })
     }
 
     /// A configuration in which the tip touches a place, up to the noise, with what is said of it.
     fn touching(
         &self,
         actual: &Robot,
-        configurations: &Configurations,
+        (configurations, row): (&Configurations, usize),
         kind: Kind,
         sight: &Sight,
         generator: &mut ChaCha8Rng,
     ) -> Result<(Vec<f64>, Measurement)> {
         let length = random::normal_vector(generator) * self.noise_position_m;
-        let turn = random::normal_vector(generator) * self.noise_rotation_rad;
-        let flush = |height, normal| Measurement::Flush(FlushMeasurement { height, normal });
-        let (exact, said) = if kind == Kind::Plane {
-            (
-                Measurement::Height(HeightMeasurement { height: length.x }),
-                Measurement::Height(HeightMeasurement { height: 0.0 }),
-            )
-        } else if kind == Kind::Height {
-            let height = random::uniform(generator) * GAUGE_M;
-            (
-                Measurement::Height(HeightMeasurement { height: height + length.x }),
-                Measurement::Height(HeightMeasurement { height }),
-            )
-        } else if kind == Kind::Flush {
-            let normal = DirectionMeasurement::of_tilts([turn.x, turn.y]).direction;
-            (flush(length.x, normal), flush(0.0, Vector3::z()))
-        } else if kind == Kind::Sphere {
-            (
-                Measurement::Distance(DistanceMeasurement::new(SPHERE_M + length.x)),
-                Measurement::Distance(DistanceMeasurement::from_unknown_zero(0.0)),
-            )
-        } else {
-            (
-                Measurement::Socket(SocketMeasurement { place: length }),
-                Measurement::Socket(SocketMeasurement::default()),
-            )
-        };
+        let [exact, said] =
+            self.with_noise(row, length, 0.0, generator, |drawn| match kind.session().drawn {
+                Draw::Touched(constraint) => constraint(drawn),
+                Draw::Seen(measure) => [measure(&Pose::identity(), drawn); 2],
+            });
         for _ in 0..ATTEMPTS {
             let start = configurations.random(generator);
             if let Some(found) = fulfilling(actual, &start, sight, &exact)
@@ -375,10 +320,10 @@ impl Simulation {
 
 /// Readings near these with which a measurement fits exactly, by Newton's method with the least change of the joints.
 fn fulfilling(robot: &Robot, start: &[f64], sight: &Sight, exact: &Measurement) -> Option<Vec<f64>> {
-    let numbers = exact.observe().dim();
+    let numbers = exact.dim();
     let residual = |readings: &[f64]| {
         let mut e = [0.0; NUMBERS];
-        exact.observe().residual(&sight.seen(robot, readings), &mut e);
+        exact.residual(&sight.seen(robot, readings), &mut e);
         DVector::from_column_slice(&e[..numbers])
     };
     let mut readings = start.to_vec();

@@ -18,9 +18,7 @@ pub fn settle_faces(data: &mut Dataset, robot: &Robot) {
     let normals: Vec<Vector3<f64>> = sums.iter().map(face_normal).collect();
     let targets = data.targets.len();
     for observation in &mut data.observations {
-        if let Measurement::Flush(it) = &mut observation.measurement {
-            it.normal = normals[observation.station * targets + observation.target];
-        }
+        observation.measurement.set_face_normal(&normals[observation.station * targets + observation.target]);
     }
 }
 
@@ -35,12 +33,12 @@ pub fn faces_on_known_planes<'a>(
     let Some(sums) = turns_of_faces(data, robot) else { return Cow::Borrowed(data) };
     let (mut data, targets) = (data.clone(), data.targets.len());
     for observation in &mut data.observations {
-        if let (Measurement::Flush(it), Some(plane)) =
-            (&mut observation.measurement, base_from_plane.get(observation.station))
+        if let (Some(normal), Some(plane)) =
+            (observation.measurement.face_normal(), base_from_plane.get(observation.station))
         {
             let turns: &Matrix3<f64> = &sums[observation.station * targets + observation.target];
-            if (turns.transpose() * plane.rotation.column(2)).dot(&it.normal) < 0.0 {
-                it.normal = -it.normal;
+            if (turns.transpose() * plane.rotation.column(2)).dot(&normal) < 0.0 {
+                observation.measurement.set_face_normal(&-normal);
             }
         }
     }
@@ -49,7 +47,7 @@ pub fn faces_on_known_planes<'a>(
 
 /// Sum of the rotations of the targets that lay flush, in the base, of each station and target; `None` if none did.
 fn turns_of_faces(data: &Dataset, robot: &Robot) -> Option<Vec<Matrix3<f64>>> {
-    let is_flush = |it: &Measurement| matches!(it, Measurement::Flush(_));
+    let is_flush = |it: &Measurement| it.face_normal().is_some();
     if !data.observations.iter().any(|row| is_flush(&row.measurement)) {
         return None;
     }
@@ -83,7 +81,6 @@ fn face_normal(sum: &Matrix3<f64>) -> Vector3<f64> {
 mod tests {
     use super::*;
     use crate::lie::Screw;
-    use crate::measurement::FlushMeasurement;
     use crate::robot::Joint;
 
     /// The target's x stays up while the joint turns.
@@ -94,13 +91,12 @@ mod tests {
         let robot = Robot::new("one_axis", vec![turning], home).unwrap();
         let mut data = Dataset::new(robot.reading_names());
         for turned in [0.0, 1.0, 2.0] {
-            let touch = Measurement::Flush(FlushMeasurement::default());
+            let touch = Measurement::flush(0.0, &Vector3::z());
             data.push(&[turned], None, touch).unwrap();
         }
         settle_faces(&mut data, &robot);
         for row in &data.observations {
-            let Measurement::Flush(found) = row.measurement else { panic!("{row:?}") };
-            assert_eq!(found.normal, Vector3::x());
+            assert_eq!(row.measurement.face_normal(), Some(Vector3::x()));
         }
     }
 }

@@ -6,7 +6,7 @@ use super::averaging::{cube_rotations, rotation_maximising};
 use crate::estimate::Estimate;
 use crate::lie::{Pose, rotation};
 use crate::linalg;
-use crate::measurement::Measurement;
+use crate::measurement::{Clue, Measurement};
 
 /// Share of the information of distances about an anchor below which it is rounding.
 const ROUNDING: f64 = 1e-12;
@@ -70,18 +70,15 @@ impl Seen<'_> {
     /// unknown of its own, `|p|² - d² = 2 p·a - 2 d o - (|a|² - o²)` is linear. Readings that are all the same, as of a sphere, tell their zero
     /// by that unknown. Its axes are those of the start.
     fn by_ranges(&self) -> Option<(Pose, f64)> {
-        let ranges: Vec<(Vector3<f64>, f64)> = self
-            .rows
-            .iter()
-            .filter_map(|row| Some((self.place(row), row.measurement.observe().range()?)))
-            .collect();
+        let ranges: Vec<(Vector3<f64>, f64)> =
+            self.rows.iter().filter_map(|row| Some((self.place(row), row.measurement.range()?))).collect();
         if ranges.is_empty() {
             return None;
         }
         let count = ranges.len() as f64;
         let middle = ranges.iter().map(|(place, _)| place).sum::<Vector3<f64>>() / count;
         let mean = ranges.iter().map(|(_, range)| range).sum::<f64>() / count;
-        let has_zero = self.rows.iter().any(|row| row.measurement.observe().zero_is_unknown());
+        let has_zero = self.rows.iter().any(|row| row.measurement.function().zero_is_unknown);
         let varies =
             ranges.iter().any(|(_, range)| (range - mean).abs() > ROUNDING.sqrt() * mean.abs().max(1.0));
         let unknowns = if has_zero && varies { 5 } else { 4 };
@@ -112,7 +109,7 @@ impl Seen<'_> {
 
     /// The middle of the balls.
     fn by_sockets(&self) -> Option<Pose> {
-        let places = self.rows.iter().filter(|row| matches!(row.measurement, Measurement::Socket(_)));
+        let places = self.rows.iter().filter(|row| row.measurement.clue() == Clue::Middle);
         let (sum, count) =
             places.fold((Vector3::zeros(), 0), |(sum, count), row| (sum + self.place(row), count + 1));
         (count > 0).then(|| self.at(&(sum / f64::from(count))))
@@ -120,23 +117,11 @@ impl Seen<'_> {
 
     /// The plane from which the points have the measured heights.
     fn by_heights(&self) -> Option<Pose> {
-        let heights: Vec<(Vector3<f64>, f64)> = self
-            .rows
-            .iter()
-            .filter_map(|row| {
-                let height = match row.measurement {
-                    Measurement::Height(it) => it.height,
-                    Measurement::Flush(it) => it.height,
-                    Measurement::Point(_)
-                    | Measurement::Components(_)
-                    | Measurement::Pose(_)
-                    | Measurement::Distance(_)
-                    | Measurement::Socket(_)
-                    | Measurement::Direction(_) => return None,
-                };
-                Some((self.place(row), height))
-            })
-            .collect();
+        let height = |row: &Other| {
+            let Clue::Height { point, height, .. } = row.measurement.clue() else { return None };
+            Some((row.motion.act(&self.start.base_from_target[row.target].act(&point)), height))
+        };
+        let heights: Vec<(Vector3<f64>, f64)> = self.rows.iter().filter_map(height).collect();
         let count = heights.len() as f64;
         let (place, height) =
             heights.iter().fold((Vector3::zeros(), 0.0), |(place, height), it| (place + it.0, height + it.1));
@@ -156,7 +141,7 @@ impl Seen<'_> {
         let mut axes = Matrix3::zeros();
         let mut middles = [None; 3];
         for (k, found) in middles.iter_mut().enumerate() {
-            let of = |row: &Other| row.measurement.observe().position_components()[k];
+            let of = |row: &Other| row.measurement.position_components()[k];
             let seen: Vec<(Vector3<f64>, f64)> =
                 self.rows.iter().filter_map(|row| Some((self.place(row), of(row)?))).collect();
             if seen.is_empty() {
@@ -182,8 +167,8 @@ impl Seen<'_> {
     /// Mean of a plane's normals by faces that lay on it.
     fn flush_normal(&self) -> Option<Vector3<f64>> {
         let normals = self.rows.iter().filter_map(|row| {
-            let Measurement::Flush(it) = row.measurement else { return None };
-            Some(row.motion.rotation * self.start.base_from_target[row.target].rotation * it.normal)
+            let Clue::Height { up: Some(normal), .. } = row.measurement.clue() else { return None };
+            Some(row.motion.rotation * self.start.base_from_target[row.target].rotation * normal)
         });
         normals.reduce(|a, b| a + b)?.try_normalize(f64::MIN_POSITIVE)
     }
@@ -191,20 +176,9 @@ impl Seen<'_> {
     /// The device's z in the base from targets that see it, `u = Rᵀ e_z`: the mean of `R u` for the targets of the start; for free targets
     /// also turned, from several turns and by turns.
     fn by_directions(&self, targets_free: bool) -> Vec<Estimate> {
-        let seen: Vec<(&Other, Vector3<f64>)> = self
-            .rows
-            .iter()
-            .filter_map(|row| match row.measurement {
-                Measurement::Direction(it) => Some((row, it.direction)),
-                Measurement::Point(_)
-                | Measurement::Components(_)
-                | Measurement::Pose(_)
-                | Measurement::Distance(_)
-                | Measurement::Socket(_)
-                | Measurement::Height(_)
-                | Measurement::Flush(_) => None,
-            })
-            .collect();
+        let up = |row: &'_ Other| if let Clue::Up(up) = row.measurement.clue() { Some(up) } else { None };
+        let seen: Vec<(&Other, Vector3<f64>)> =
+            self.rows.iter().filter_map(|row| Some((row, up(row)?))).collect();
         if seen.is_empty() {
             return Vec::new();
         }

@@ -8,7 +8,7 @@ use super::others::{self, Other};
 
 use crate::estimate::{Chain, Estimate, Linkage, RangeTerm, Session, Unknowns, sample_rows};
 use crate::lie::{Freedom, Pose, rotation};
-use crate::measurement::{Dataset, Measurement, Noise};
+use crate::measurement::{Dataset, Noise};
 use crate::parameters::{DeviceFrame, Parameter, RangeUnknown, TargetFrame, TargetPlace};
 use crate::problem::{Prior, Problem};
 use crate::solve::{Options, minimize};
@@ -165,7 +165,7 @@ pub(crate) fn target_parameters(session: &Session<'_>, rows: &[u32]) -> impl Ite
     // Where all planes are unknown, the height of a face is one with theirs (theory.md §4 (15c)).
     let has_known = rows.iter().any(|&row| {
         let seen = session.observation(row);
-        matches!(seen.measurement, Measurement::Flush(_))
+        seen.measurement.face_normal().is_some()
             && (!session.device_free || !unknowns.moves_frame(seen.station))
     });
     let height = move |freedom: Freedom| if has_known { freedom } else { freedom.without_height() };
@@ -211,12 +211,12 @@ impl SampledRows {
         };
         let of = |row: &u32| problem.session.observation(*row);
         // Too few places are components among others.
-        let places = sample.iter().filter(|row| of(row).measurement.observe().position().is_some()).count();
-        let is_component = |row: &u32| matches!(of(row).measurement, Measurement::Components(_));
+        let places = sample.iter().filter(|row| of(row).measurement.position().is_some()).count();
+        let is_component = |row: &u32| of(row).measurement.is_part_of_position();
         let has_places = places >= FEWEST_PLACES || !sample.iter().any(is_component);
         for &row in sample {
             let observation = of(&row);
-            let model = observation.measurement.observe();
+            let model = &observation.measurement;
             chain.evaluate(&linkage, problem.session.packed, row as usize, observation);
             let motion = chain.target * start.base_from_target[observation.target].inverse();
             let Some(position) = model.position().filter(|_| has_places) else {

@@ -59,7 +59,7 @@ pub fn strongest_pattern(view: &View<'_>, normal: &Normal) -> Option<(usize, Pat
         let sigma = view.session.noise_of(observation, view.noise)[quantity];
         chain.evaluate(&linkage, view.session.packed, row as usize, observation);
         let mut sensitivity = [[0.0; 6]; NUMBERS];
-        observation.measurement.observe().sensitivity(&chain.target, &mut sensitivity);
+        observation.measurement.sensitivity(&chain.target, &mut sensitivity);
         let error = error.lead() / sigma;
         squares += error.norm_squared();
         for joint in &chain.joints {
@@ -70,7 +70,7 @@ pub fn strongest_pattern(view: &View<'_>, normal: &Normal) -> Option<(usize, Pat
             };
             // What the first quantity shows of it.
             let mut motion = Vector3::zeros();
-            let channels = observation.measurement.observe().channels();
+            let channels = observation.measurement.channels();
             let own = sensitivity.iter().zip(channels).filter(|(_, channel)| channel.quantity == quantity);
             for ([a, b, c, p, q, r], channel) in own {
                 motion[channel.component()] =

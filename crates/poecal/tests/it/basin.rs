@@ -85,20 +85,20 @@ fn basins(kind: Kind, frame: DeviceFrameKnowledge) {
 
 #[test]
 fn poses_in_the_base_frame() {
-    basins(Kind::Pose, DeviceFrameKnowledge::Base);
+    basins(Kind::POSE, DeviceFrameKnowledge::Base);
 }
 
 #[test]
 fn points_in_the_base_frame() {
-    basins(Kind::Point, DeviceFrameKnowledge::Base);
+    basins(Kind::POINT, DeviceFrameKnowledge::Base);
 }
 
 #[test]
 fn poses_from_an_unknown_place() {
-    basins(Kind::Pose, DeviceFrameKnowledge::Unknown);
+    basins(Kind::POSE, DeviceFrameKnowledge::Unknown);
 }
 
 #[test]
 fn points_from_an_unknown_place() {
-    basins(Kind::Point, DeviceFrameKnowledge::Unknown);
+    basins(Kind::POINT, DeviceFrameKnowledge::Unknown);
 }

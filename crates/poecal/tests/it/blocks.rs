@@ -59,7 +59,7 @@ fn held_out_mm(calibration: &Calibration) -> f64 {
 #[test]
 fn what_is_held_stays_and_the_rest_is_found() {
     // The robot as built, and a nominal model in which joint 3 alone is wrong.
-    for kind in [Kind::Point, Kind::Pose] {
+    for kind in [Kind::POINT, Kind::POSE] {
         let (built, data) = exact(kind, 0.0);
         let mut nominal = built.clone();
         let screw = nominal.joints[2].screw;
@@ -71,7 +71,7 @@ fn what_is_held_stays_and_the_rest_is_found() {
             for joint in held {
                 assert_eq!(found.robot.joints[joint].screw, nominal.joints[joint].screw, "joint {joint}");
             }
-            let target = if kind == Kind::Point { 3 } else { 6 };
+            let target = if kind == Kind::POINT { 3 } else { 6 };
             let Identified { parameters, rank } = identified(&found);
             println!(
                 "{kind:?} prior {has_prior}: {parameters} {rank}, held out {:.1e} mm",
@@ -97,7 +97,7 @@ fn identified(calibration: &Calibration) -> Identified {
 
 #[test]
 fn held_axes_leave_those_motions_of_the_base_that_they_do_not_see() {
-    let (built, exact_data) = exact(Kind::Point, 0.0);
+    let (built, exact_data) = exact(Kind::POINT, 0.0);
     // What is held, unknowns in the layout, and motions of the base that the held things do not see.
     let cases: [(&[&str], usize, usize); 6] = [
         // One axis: turning about it and sliding along it.
@@ -119,7 +119,7 @@ fn held_axes_leave_those_motions_of_the_base_that_they_do_not_see() {
         let told = found.identifiability.structural.iter().any(|it| it.description.contains("base frame"));
         assert_eq!(told, motions > 0, "{held:?}");
     }
-    let (nominal, data) = exact(Kind::Point, 0.001);
+    let (nominal, data) = exact(Kind::POINT, 0.001);
     // One held axis, or a held place, takes nothing from what the model can be.
     for held in [&["joint1"][..], &["targets"]] {
         for has_prior in [true, false] {
@@ -131,7 +131,7 @@ fn held_axes_leave_those_motions_of_the_base_that_they_do_not_see() {
 
 #[test]
 fn joint_zeros_alone_are_found_and_kept_as_offsets() {
-    let (built, data) = exact(Kind::Point, 0.0);
+    let (built, data) = exact(Kind::POINT, 0.0);
     let zeros = [0.0, 0.01, -0.02, 0.005, 0.015, 0.0];
     // Readings without these offsets: the nominal robot reads θ where the joint stands at θ + c.
     let mut nominal = built.clone();
@@ -154,7 +154,7 @@ fn joint_zeros_alone_are_found_and_kept_as_offsets() {
 
 #[test]
 fn words_that_name_nothing_are_refused() {
-    let (nominal, data) = exact(Kind::Point, 0.001);
+    let (nominal, data) = exact(Kind::POINT, 0.001);
     let refused = |blocks: BlockChoice| blocks.unknowns(&nominal, &data).unwrap_err().to_string();
     let message = refused(choice(&["jiont2.*"], &[]));
     println!("{message}");
@@ -165,7 +165,7 @@ fn words_that_name_nothing_are_refused() {
 
 #[test]
 fn files_hold_what_was_held_and_the_terms_that_were_found() {
-    let made = Simulation { count: 80, ..Simulation::default() }.run(&aside(), Kind::Pose).unwrap();
+    let made = Simulation { count: 80, ..Simulation::default() }.run(&aside(), Kind::POSE).unwrap();
     let found = fitted(&made.nominal, &made.data, choice(&["joint1", "joint5"], &["joint3.offset"]), true);
     let term = found.robot.terms[0];
     assert_eq!((term.joint, term.term), (2, Term::Offset));
@@ -215,7 +215,7 @@ fn terms_of_joint_values_are_found_and_written() {
     for (term, coefficient) in TERMS {
         let mut built = aside();
         built.terms.push(JointTerm { joint: 2, term, coefficient });
-        let (actual, data) = exact_of(&built, Kind::Point, 0.0);
+        let (actual, data) = exact_of(&built, Kind::POINT, 0.0);
         let nominal = Robot { terms: Vec::new(), ..actual };
         let name = format!("joint3.{}", term.model().name());
         let found = fitted(&nominal, &data, choice(&["joints"], &[&name]), true);
@@ -238,7 +238,7 @@ fn terms_of_joint_values_are_found_and_written() {
 
 #[test]
 fn a_fit_without_unknowns_is_refused_and_registration_alone_is_judged_by_its_errors() {
-    let (built, data) = exact(Kind::Point, 0.0);
+    let (built, data) = exact(Kind::POINT, 0.0);
     let blocks = choice(&["joints", "targets"], &[]);
     let options = CalibrationOptions { blocks, frame: DeviceFrameKnowledge::Base, ..Default::default() };
     let message = calibrate(&built, &data, &options).unwrap_err().to_string();
@@ -251,7 +251,7 @@ fn a_fit_without_unknowns_is_refused_and_registration_alone_is_judged_by_its_err
     assert!(message.starts_with("found `frames` to be fitted beside measurements in the base"), "{message}");
 
     let made = Simulation { error_rotation_rad: 0.0, error_position_m: 0.0, ..Simulation::default() };
-    let made = made.run(&aside(), Kind::Point).unwrap();
+    let made = made.run(&aside(), Kind::POINT).unwrap();
     let found = fitted(&made.nominal, &made.data, choice(&["joints"], &[]), true);
     println!("{:?}", found.verdict);
     assert_ne!(found.verdict.level, Level::DoNotUse);
@@ -259,7 +259,7 @@ fn a_fit_without_unknowns_is_refused_and_registration_alone_is_judged_by_its_err
 
 #[test]
 fn offsets_beside_free_axes_are_no_unknowns_of_their_own() {
-    let made = Simulation { count: 80, ..Simulation::default() }.run(&aside(), Kind::Pose).unwrap();
+    let made = Simulation { count: 80, ..Simulation::default() }.run(&aside(), Kind::POSE).unwrap();
     let found = fitted(&made.nominal, &made.data, choice(&[], &["*.offset"]), true);
     let Identified { parameters, rank } = identified(&found);
     println!("{parameters} {rank} {:?}", found.identifiability.structural.last());

@@ -7,11 +7,7 @@ use nalgebra::Vector3;
 use poecal::analysis::{Setup, identifiability};
 use poecal::estimate::{Chain, Estimate, Linkage, Packed, Range, RangeTerm, Session, delivered};
 use poecal::lie::{Freedom, Pose, Screw, rotation};
-use poecal::measurement::{
-    ComponentsMeasurement, Dataset, DirectionMeasurement, DistanceMeasurement, FlushMeasurement,
-    HeightMeasurement, Measurement, NUMBERS, Noise, Observation, PointMeasurement, PoseMeasurement,
-    SocketMeasurement,
-};
+use poecal::measurement::{Dataset, Measurement, NUMBERS, Noise, Observation};
 use poecal::parameters::{
     DeviceFrame, Parameter, RangeUnknown, TargetFrame, TargetPlace, ValueTerm, screw_axes,
 };
@@ -30,37 +26,33 @@ const NOISE: Noise = Noise::new(1e-4, 2e-4);
 /// A measurement of a target's pose in the instrument's frame.
 type Function = fn(&Pose) -> Measurement;
 
-const POINT: Function = |pose| Measurement::Point(PointMeasurement { position: pose.translation });
-const POSE: Function = |pose| Measurement::Pose(PoseMeasurement { pose: *pose });
+const POINT: Function = |pose| Measurement::point(pose.translation);
+const POSE: Function = |pose| Measurement::of_pose(pose);
 
 /// What can be measured, with the number of unknowns that one target and its first instrument add to those of the axes.
 const FUNCTIONS: [(&str, Function, usize); 6] = [
     ("poses", POSE, 6),
     ("points", POINT, 3),
-    ("distances", |pose| Measurement::Distance(DistanceMeasurement::new(pose.translation.norm())), 0),
-    ("heights", |pose| Measurement::Height(HeightMeasurement { height: pose.translation.z }), 0),
+    ("distances", |pose| Measurement::distance(pose.translation.norm()), 0),
+    ("heights", |pose| Measurement::height(pose.translation.z), 0),
     ("two components", |pose| components(pose, [true, true, false]), 2),
     ("one component", |pose| components(pose, [false, true, false]), 0),
 ];
 
 fn components(pose: &Pose, measured: [bool; 3]) -> Measurement {
     let of = |k: usize| measured[k].then_some(pose.translation[k]);
-    Measurement::Components(ComponentsMeasurement::new([of(0), of(1), of(2)]))
+    Measurement::components([of(0), of(1), of(2)])
 }
 
 /// What else can be measured, at numbers that no constraint would allow.
 const OTHERS: [(&str, Function); 4] = [
-    ("sockets", |pose| Measurement::Socket(SocketMeasurement { place: pose.translation })),
+    ("sockets", |pose| Measurement::socket(pose.translation)),
     ("flush", |pose| {
         let normal = pose.rotation.row(2).transpose();
-        Measurement::Flush(FlushMeasurement { height: pose.translation.z, normal })
+        Measurement::flush(pose.translation.z, &normal)
     }),
-    ("directions", |pose| {
-        Measurement::Direction(DirectionMeasurement { direction: pose.rotation.row(2).transpose() })
-    }),
-    ("changes", |pose| {
-        Measurement::Distance(DistanceMeasurement::from_unknown_zero(pose.translation.norm() + 0.3))
-    }),
+    ("directions", |pose| Measurement::direction(&pose.rotation.row(2).transpose())),
+    ("changes", |pose| Measurement::distance_change(pose.translation.norm() + 0.3)),
 ];
 
 /// Something that an instrument sees, by their names; in two configurations if `apart`.
@@ -503,8 +495,8 @@ fn errors_of_every_way_are_measured_minus_predicted() {
             let seen = &made.data.observations[row];
             chain.evaluate(&linkage, &made.packed, row, seen);
             let mut expected = [0.0; NUMBERS];
-            seen.measurement.observe().residual(&chain.target, &mut expected);
-            assert_eq!(error.dim(), seen.measurement.observe().dim());
+            seen.measurement.residual(&chain.target, &mut expected);
+            assert_eq!(error.dim(), seen.measurement.dim());
             for ((_, found), expected) in error.numbers().zip(expected) {
                 // Rounding of a few products of numbers of about one, and of a logarithm.
                 assert!((found - expected).abs() < 1e-13, "{} {row}: {found:e} {expected:e}", cell.name);

@@ -69,7 +69,7 @@ fn apart(a: &Robot, b: &Robot) -> f64 {
 
 #[test]
 fn two_sessions_of_one_robot_are_told_as_one() {
-    for kind in [Kind::Pose, Kind::Point] {
+    for kind in [Kind::POSE, Kind::POINT] {
         let trials = trials(60).at_least(10);
         let (mut alarms, mut share, mut moved, mut largest) = (0, 0.0, 0, 0f64);
         for seed in trials.seeds() {
@@ -102,8 +102,8 @@ fn a_joint_that_moved_is_named() {
     let (mut named, mut alone, mut worst, mut off) = (0, 0, 0f64, 0f64);
     for seed in trials.seeds() {
         let actual = made(seed);
-        let first = session(&elbow(), &actual, Kind::Pose, 2 * seed);
-        let second = session(&elbow(), &joint3_moved(&actual, 0.1), Kind::Pose, 2 * seed + 1);
+        let first = session(&elbow(), &actual, Kind::POSE, 2 * seed);
+        let second = session(&elbow(), &joint3_moved(&actual, 0.1), Kind::POSE, 2 * seed + 1);
         let found = compare(&first, &second, None).unwrap();
         let names: Vec<&str> = found.changed().map(|it| it.name.as_str()).collect();
         named += usize::from(names.contains(&"joint3"));
@@ -147,8 +147,8 @@ fn a_joint_that_moved_is_named() {
 
 #[test]
 fn another_robot_is_refused() {
-    let first = session(&elbow(), &made(1), Kind::Pose, 1);
-    let second = session(&scara(), &scara(), Kind::Pose, 2);
+    let first = session(&elbow(), &made(1), Kind::POSE, 1);
+    let second = session(&scara(), &scara(), Kind::POSE, 2);
     let error = compare(&first, &second, None).unwrap_err().to_string();
     println!("{error}");
     assert!(error.contains("`joint3`") || error.contains("joints in the second"), "{error}");
@@ -159,7 +159,7 @@ fn another_robot_is_refused() {
         joint.screw = joint.screw.transformed(&by);
         joint.frame = by * joint.frame;
     }
-    let second = session(&longer, &longer, Kind::Pose, 3);
+    let second = session(&longer, &longer, Kind::POSE, 3);
     let error = compare(&first, &second, None).unwrap_err().to_string();
     println!("{error}");
     assert!(error.contains("nominal axis of joint `joint"), "{error}");
@@ -169,7 +169,7 @@ fn another_robot_is_refused() {
 fn corrections_say_which_offset_was_put_in() {
     let offsets = [0.0, -0.9, 0.5, 0.0, 0.3, 0.0].map(f64::to_radians);
     let actual = into_screws(&elbow(), &offsets).unwrap();
-    let file = session(&elbow(), &actual, Kind::Pose, 7);
+    let file = session(&elbow(), &actual, Kind::POSE, 7);
     let mut worst = 0f64;
     for (entry, offset) in file.corrections.iter().zip(offsets) {
         let change = entry.change.as_ref().unwrap();
@@ -196,7 +196,7 @@ fn standard_deviations_of_the_parts_are_those_of_sessions() {
     let trials = trials(60).at_least(10);
     let actual = made(3);
     let files: Vec<CalibrationFile> =
-        trials.seeds().map(|seed| session(&elbow(), &actual, Kind::Pose, seed)).collect();
+        trials.seeds().map(|seed| session(&elbow(), &actual, Kind::POSE, seed)).collect();
     let changes = |file: &CalibrationFile| -> Vec<_> {
         file.corrections.iter().filter_map(|it| it.change.clone()).collect()
     };
@@ -250,7 +250,7 @@ fn standard_deviations_of_the_parts_are_those_of_sessions() {
 #[test]
 fn what_is_known_only_together_is_said() {
     let actual = made(4);
-    let file = session(&elbow(), &actual, Kind::Point, 5);
+    let file = session(&elbow(), &actual, Kind::POINT, 5);
     for (common, entry) in file.common.iter().zip(0..) {
         println!("{entry}: {:.0} % {}", 100.0 * common.share, common.words);
         assert!(common.joints.len() > 1 && common.share > 0.1);

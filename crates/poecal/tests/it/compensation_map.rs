@@ -56,7 +56,7 @@ fn file_of(robot: &Robot, kind: Kind, options: &CalibrationOptions) -> (Calibrat
 fn displacements_are_those_of_the_two_robots() {
     let options = CalibrationOptions { frame: DeviceFrameKnowledge::Base, ..CalibrationOptions::default() };
     for robot in [elbow(), seven_axis(), scara()] {
-        let (file, _) = file_of(&robot, Kind::Pose, &options);
+        let (file, _) = file_of(&robot, Kind::POSE, &options);
         let found = file.compensation.as_deref().unwrap();
         let nominal = file.nominal_robot().unwrap();
         let actual = file.corrected().unwrap_or_else(|| file.clone()).robot().unwrap();
@@ -118,7 +118,7 @@ fn displacements_are_those_of_the_two_robots() {
 #[test]
 fn corrections_are_told_where_an_arm_can_be_corrected() {
     let options = CalibrationOptions::default();
-    let (file, _) = file_of(&elbow(), Kind::Pose, &options);
+    let (file, _) = file_of(&elbow(), Kind::POSE, &options);
     let found = file.compensation.unwrap();
     println!("{:?}", found.joints);
     assert_eq!(found.joints.len(), 6);
@@ -127,15 +127,15 @@ fn corrections_are_told_where_an_arm_can_be_corrected() {
         assert!(0.0 < median && median < largest && largest < 0.6_f64.to_degrees() && joint.max_mm.is_none());
     }
     // An arm of fewer joints cannot mend every displacement, and nothing is said of corrections.
-    let (file, _) = file_of(&scara(), Kind::Pose, &options);
+    let (file, _) = file_of(&scara(), Kind::POSE, &options);
     assert!(file.compensation.unwrap().joints.is_empty());
-    let (file, _) = file_of(&gantry(), Kind::Pose, &options);
+    let (file, _) = file_of(&gantry(), Kind::POSE, &options);
     println!("gantry: {:?}", file.compensation.map(|it| (it.about, it.all, it.joints)));
 }
 
 #[test]
 fn files_without_it_have_a_report_without_it() {
-    let (mut file, residuals) = file_of(&elbow(), Kind::Point, &CalibrationOptions::default());
+    let (mut file, residuals) = file_of(&elbow(), Kind::POINT, &CalibrationOptions::default());
     let page = poecal::report::calibration_page(&file, &residuals).unwrap().concat();
     assert!(page.contains("id=\"compensation\"") && page.contains("How far an uncorrected program misses"));
     file.compensation = None;

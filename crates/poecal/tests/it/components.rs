@@ -5,9 +5,7 @@ use nalgebra::{Matrix3, Vector3};
 use poecal::calibration::{Calibration, CalibrationOptions, Robust, calibrate};
 use poecal::estimate::{Packed, Session};
 use poecal::io::measurements::{InstrumentNoise, MeasurementFile, ReadOptions, parse};
-use poecal::measurement::{
-    ComponentsMeasurement, Dataset, Measurement, Noise, NoiseShape, PointMeasurement, Quantity,
-};
+use poecal::measurement::{Dataset, Measurement, Noise, NoiseShape, Quantity};
 use poecal::problem::Problem;
 use poecal::robot::Robot;
 use poecal::simulate::{Kind, Simulated, Simulation, elbow};
@@ -15,7 +13,7 @@ use poecal::solve::LeastSquares;
 
 fn session(count: usize, seed: u64, noise_position_m: f64) -> Simulated {
     let simulation = Simulation { count, seed, noise_position_m, ..Simulation::default() };
-    simulation.run(&elbow(), Kind::Point).unwrap()
+    simulation.run(&elbow(), Kind::POINT).unwrap()
 }
 
 fn fit(robot: &Robot, data: &Dataset) -> Calibration {
@@ -27,15 +25,10 @@ fn fit(robot: &Robot, data: &Dataset) -> Calibration {
 fn with_components(data: &Dataset, measured: impl Fn(usize) -> [bool; 3]) -> Dataset {
     let mut data = data.clone();
     for (row, observation) in data.observations.iter_mut().enumerate() {
-        let (Measurement::Point(PointMeasurement { position }), measured) =
-            (observation.measurement, measured(row))
-        else {
-            panic!("a point")
-        };
+        let (position, measured) = (observation.measurement.position().unwrap(), measured(row));
         let of = |k: usize| measured[k].then_some(position[k]);
         if measured != [true; 3] {
-            observation.measurement =
-                Measurement::Components(ComponentsMeasurement::new([of(0), of(1), of(2)]));
+            observation.measurement = Measurement::components([of(0), of(1), of(2)]);
         }
     }
     data
@@ -103,8 +96,8 @@ fn read(text: &str, options: &ReadOptions) -> poecal::Result<MeasurementFile> {
 fn an_empty_cell_is_a_component_that_was_not_measured() {
     let text = format!("{HEADER},x[mm],y[mm],z[mm]\n0,1,2,3,4,5,100,,300\n0,1,2,3,4,6,1,2,3\n");
     let file = read(&text, &ReadOptions::default()).unwrap();
-    let Measurement::Components(seen) = file.data.observations[0].measurement else { panic!("components") };
-    assert_eq!(seen.components(), [Some(0.1), None, Some(0.3)]);
+    let seen = file.data.observations[0].measurement;
+    assert_eq!(seen.position_components(), [Some(0.1), None, Some(0.3)]);
     assert_eq!(
         file.warnings,
         [
@@ -198,22 +191,22 @@ fn a_fit_that_knows_the_noise_is_better() {
         let noise =
             Simulation { count: 120, seed: 900 + seed, noise_position_m: 1.0, ..Simulation::default() };
         // Unit noise of another session, made along and across the line of sight.
-        let unit = noise.run(&elbow(), Kind::Point).unwrap();
-        let clean = Simulation { noise_position_m: 0.0, ..noise }.run(&elbow(), Kind::Point).unwrap();
+        let unit = noise.run(&elbow(), Kind::POINT).unwrap();
+        let clean = Simulation { noise_position_m: 0.0, ..noise }.run(&elbow(), Kind::POINT).unwrap();
         let (mut known, mut alike) = (exact.data.clone(), exact.data.clone());
         for row in 0..exact.data.len() {
-            let place = |data: &Dataset| data.observations[row].measurement.observe().position().unwrap();
+            let place = |data: &Dataset| data.observations[row].measurement.position().unwrap();
             let sight = place(&exact.data).normalize();
             let chance = place(&unit.data) - place(&clean.data);
             let shift = sight * (sight.dot(&chance) * along) + (chance - sight * sight.dot(&chance)) * across;
-            let seen = Measurement::Point(PointMeasurement { position: place(&exact.data) + shift });
+            let seen = Measurement::point(place(&exact.data) + shift);
             known.observations[row].measurement = seen;
             alike.observations[row].measurement = seen;
             known.state_noise(row, NoiseShape::across(&sight, along, across));
         }
         let further =
             Simulation { count: 200, seed: 40 + seed, noise_position_m: 0.0, ..Simulation::default() }
-                .held_out(&exact, Kind::Point, 200)
+                .held_out(&exact, Kind::POINT, 200)
                 .unwrap();
         let error = |data: &Dataset| {
             let found = fit(&exact.nominal, data);

@@ -10,7 +10,7 @@ use poecal::calibration::{
 use poecal::estimate::{Estimate, Packed, RowError, Session};
 use poecal::io::calibration_file::{CalibrationFile, Inputs};
 use poecal::lie::{Pose, rotation};
-use poecal::measurement::{Dataset, Measurement, PoseMeasurement};
+use poecal::measurement::{Dataset, Measurement};
 use poecal::robot::{Coupling, Extent, Gives, GravityDirection, Harmonic, JointTerm, Robot, Sag, Term};
 use poecal::simulate::{Kind, Simulation, elbow, random};
 use rand_chacha::ChaCha8Rng;
@@ -47,7 +47,7 @@ fn measured(rows: usize) -> (Robot, Dataset) {
         pose.translation += 2e-5 * Vector3::from_fn(|_, _| random::normal(&mut generator));
         let turn = 5e-5 * Vector3::from_fn(|_, _| random::normal(&mut generator));
         pose.rotation = rotation::exp(&turn) * pose.rotation;
-        data.push(&readings, None, Measurement::Pose(PoseMeasurement { pose })).unwrap();
+        data.push(&readings, None, Measurement::of_pose(&pose)).unwrap();
     }
     (nominal, data)
 }
@@ -73,7 +73,7 @@ fn sag_and_eccentric_gears_are_found_and_predicted() {
 /// Nothing is planted: sizes that are chosen harm little, and the corrected robot is the one that predicts.
 #[test]
 fn a_rigid_robot_stays_as_it_is() {
-    let made = Simulation { seed: 3, count: 60, ..Simulation::default() }.run(&elbow(), Kind::Pose).unwrap();
+    let made = Simulation { seed: 3, count: 60, ..Simulation::default() }.run(&elbow(), Kind::POSE).unwrap();
     let options = CalibrationOptions::default();
     let calibration = calibrate(&made.nominal, &made.data, &options).unwrap();
     let found = correct(&calibration, &made.data, options.gravity, None, &options);
@@ -100,8 +100,8 @@ fn sizes_are_chosen_and_the_robot_predicts_as_the_fit() {
     let robot = &found.robot;
     for (row, error) in found.errors(&data, &data.all_rows()).iter().enumerate() {
         let predicted = found.estimate.device_from_base * robot.forward_kinematics(data.readings(row));
-        let Measurement::Pose(seen) = &data.observations[row].measurement else { panic!("no pose") };
-        let apart = seen.pose.translation - predicted.translation - error.position_m();
+        let seen = data.observations[row].measurement.position().unwrap();
+        let apart = seen - predicted.translation - error.position_m();
         // Rounding of products of some 18 motions of a metre.
         assert!(apart.norm() < 1e-13, "{row}: {:e}", apart.norm());
     }
@@ -187,8 +187,8 @@ fn what_is_planted_is_found_and_nothing_else() {
                     noise_rotation_rad: 1e-4,
                     ..Simulation::default()
                 };
-                let made = drawn.run(&elbow(), Kind::Pose).unwrap();
-                let unseen = drawn.held_out(&made, Kind::Pose, 100).unwrap();
+                let made = drawn.run(&elbow(), Kind::POSE).unwrap();
+                let unseen = drawn.held_out(&made, Kind::POSE, 100).unwrap();
                 let corrections = match sizes.gives() {
                     Gives::Tilting => Corrections::Auto,
                     Gives::All => Corrections::All,
@@ -232,7 +232,7 @@ fn the_direction_of_gravity_is_found() {
     let [tilted, wall] = [Vector3::new(0.2, -0.22, -1.0), Vector3::new(1.0, 0.0, 0.1)];
     for (seed, gravity) in [(1, tilted), (2, tilted), (3, tilted), (4, wall)] {
         let drawn = Simulation { terms, gravity, count: 80, seed, ..Simulation::default() };
-        let made = drawn.run(&elbow(), Kind::Pose).unwrap();
+        let made = drawn.run(&elbow(), Kind::POSE).unwrap();
         let options =
             CalibrationOptions { gravity: GravityDirection::Found, ..CalibrationOptions::default() };
         let calibration = calibrate(&made.nominal, &made.data, &options).unwrap();
@@ -250,7 +250,7 @@ fn the_direction_of_gravity_is_found() {
 #[test]
 fn a_direction_of_gravity_that_does_not_show_is_said_and_not_taken() {
     for seed in trials(5).seeds() {
-        let made = Simulation { count: 60, seed, ..Simulation::default() }.run(&elbow(), Kind::Pose).unwrap();
+        let made = Simulation { count: 60, seed, ..Simulation::default() }.run(&elbow(), Kind::POSE).unwrap();
         let options =
             CalibrationOptions { gravity: GravityDirection::Found, ..CalibrationOptions::default() };
         let found = calibrate(&made.nominal, &made.data, &options).unwrap();
@@ -267,7 +267,7 @@ fn a_direction_of_gravity_that_does_not_show_is_said_and_not_taken() {
 fn the_verdict_is_of_the_model_that_is_delivered() {
     let Ok(Corrections::Sizes(terms)) = "sag=2e-2,tilt=2e-2".parse() else { panic!("no sizes") };
     let drawn = Simulation { terms, count: 150, seed: 3, ..Simulation::default() };
-    let made = drawn.run(&elbow(), Kind::Pose).unwrap();
+    let made = drawn.run(&elbow(), Kind::POSE).unwrap();
     let options = CalibrationOptions { corrections: Corrections::Off, ..CalibrationOptions::default() };
     let rigid = calibrate(&made.nominal, &made.data, &options).unwrap();
     let whole = calibrate(&made.nominal, &made.data, &CalibrationOptions::default()).unwrap();
@@ -287,7 +287,7 @@ fn the_tolerance_fits_how_far_a_robot_is_from_its_drawing() {
             count: 14,
             ..Simulation::default()
         };
-        let made = drawn.run(&elbow(), Kind::Point).unwrap();
+        let made = drawn.run(&elbow(), Kind::POINT).unwrap();
         let options = CalibrationOptions { chooses_tolerance: true, ..CalibrationOptions::default() };
         let calibration = calibrate(&made.nominal, &made.data, &options).unwrap();
         let chosen = calibration.chosen_tolerance.unwrap();
@@ -306,7 +306,7 @@ fn a_coupling_is_found_where_it_is_asked_for() {
     actual.terms.push(JointTerm { joint: 4, term: coupled, coefficient: 0.012 });
     let mut generator = ChaCha8Rng::seed_from_u64(3);
     let drawn = Simulation { count: 40, ..Simulation::default() };
-    let made = drawn.measure(&nominal, actual, Kind::Pose, &mut generator).unwrap();
+    let made = drawn.measure(&nominal, actual, Kind::POSE, &mut generator).unwrap();
     let blocks = BlockChoice { free: vec!["joint5.coupled4".to_owned()], fix: Vec::new() };
     let options = CalibrationOptions { blocks, ..CalibrationOptions::default() };
     let calibration = calibrate(&nominal, &made.data, &options).unwrap();
@@ -431,7 +431,7 @@ fn factors_are_read_fitted_and_kept() {
     {
         let Ok(Corrections::Sizes(terms)) = words.parse() else { panic!("no sizes") };
         let simulation = Simulation { terms, count: 80, seed: 3, ..Simulation::default() };
-        let made = simulation.run(&elbow(), Kind::Pose).unwrap();
+        let made = simulation.run(&elbow(), Kind::POSE).unwrap();
         assert_eq!(made.nominal.reading_names()[6], first);
         let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default()).unwrap();
         let found = calibration.correction.as_ref().unwrap();

@@ -16,7 +16,7 @@ const ROWS: [usize; 2] = [200, 12_000];
 #[test]
 fn calibrations_with_one_thread_and_with_two_are_bit_identical() {
     for count in ROWS {
-        for kind in some([Kind::Mixed, Kind::Pose, Kind::Point]) {
+        for kind in some([Kind::MIXED, Kind::POSE, Kind::POINT]) {
             let made = Simulation { count, ..Simulation::default() }.run(&elbow(), kind).unwrap();
             // The debugging form writes every number so that it reads back to the same bits.
             let results = |threads: usize| {

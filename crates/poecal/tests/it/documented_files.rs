@@ -124,7 +124,7 @@ fn a_documented_dh_table_has_a_fixed_pose_between_its_rows() {
 
 #[test]
 fn results_have_the_documented_columns_and_keys() {
-    let made = Simulation { count: 30, ..Simulation::default() }.run(&elbow(), Kind::Pose).unwrap();
+    let made = Simulation { count: 30, ..Simulation::default() }.run(&elbow(), Kind::POSE).unwrap();
     let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default()).unwrap();
     let documented = blocks("Results", "text")[0].lines().next().unwrap();
     assert_eq!(Residuals::of(&made.data, &calibration).text().lines().next().unwrap(), documented);

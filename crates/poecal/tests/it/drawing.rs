@@ -7,7 +7,7 @@ use poecal::calibration::{BlockChoice, Calibration, CalibrationOptions, calibrat
 use poecal::estimate::{Chain, Estimate, Linkage, Packed, Session, delivered};
 use poecal::io::robot_toml;
 use poecal::lie::{Pose, rotation};
-use poecal::measurement::{Dataset, Measurement, PointMeasurement, PoseMeasurement};
+use poecal::measurement::{Dataset, Measurement};
 use poecal::parameters::{Parameter, ScrewAxis, TargetFrame, TargetPlace};
 use poecal::problem::{Layout, Prior};
 use poecal::robot::{Robot, Tolerance};
@@ -35,9 +35,9 @@ fn layout(robot: &Robot) -> Layout {
 fn two_targets(robot: &Robot) -> Dataset {
     let mut data = Dataset::new(robot.reading_names());
     let readings = vec![0.1; data.reading_names().len()];
-    let point = Measurement::Point(PointMeasurement { position: Vector3::x() });
+    let point = Measurement::point(Vector3::x());
     data.push(&readings, Some("point"), point).unwrap();
-    let pose = Measurement::Pose(PoseMeasurement { pose: Pose::identity() });
+    let pose = Measurement::of_pose(&Pose::identity());
     data.push(&readings, Some("frame"), pose).unwrap();
     data
 }
@@ -118,10 +118,10 @@ fn observed(robot: &Robot, actual: &Robot, kind: Kind, readings: &[Vec<f64>], se
         let seen = actual.forward_kinematics(real);
         let position = seen.translation + random::normal_vector(&mut generator) * NOISE_M;
         let turn = rotation::exp(&(random::normal_vector(&mut generator) * NOISE_RAD));
-        let measurement = if kind == Kind::Point {
-            Measurement::Point(PointMeasurement { position })
+        let measurement = if kind == Kind::POINT {
+            Measurement::point(position)
         } else {
-            Measurement::Pose(PoseMeasurement { pose: Pose::new(turn * seen.rotation, position) })
+            Measurement::of_pose(&Pose::new(turn * seen.rotation, position))
         };
         data.push(recorded, None, measurement).unwrap();
     }
@@ -185,7 +185,7 @@ fn an_axis_that_only_jitters_stays_at_the_drawing() {
             let readings = configurations(&robot, 60, seed, |row, generator| {
                 row[3] = 0.7 + jitter * random::normal(generator);
             });
-            let kind = if seed % 4 < 2 { Kind::Pose } else { Kind::Point };
+            let kind = if seed % 4 < 2 { Kind::POSE } else { Kind::POINT };
             let truth = actual(&robot, seed);
             // What the encoder says is noise: the joint does not move.
             let real: Vec<Vec<f64>> = readings
@@ -232,7 +232,7 @@ fn an_axis_through_the_target_stays_at_the_drawing() {
             };
             let truth = simulation.perturbed(&robot, &mut ChaCha8Rng::seed_from_u64(11));
             let readings = configurations(&robot, 60, 3, |_, _| {});
-            let found = fitted(&robot, &observed(&robot, &truth, Kind::Point, &readings, seed));
+            let found = fitted(&robot, &observed(&robot, &truth, Kind::POINT, &readings, seed));
             (
                 found.trust.joints[5].tilt_rad.to_degrees(),
                 found.identifiability.rank,
@@ -272,7 +272,7 @@ fn few_poses_of_poor_orientation_are_never_worse_than_registered() {
                 ..Simulation::default()
             };
             let truth = simulation.perturbed(&robot, &mut generator);
-            let found = fitted(&robot, &observed(&robot, &truth, Kind::Pose, &readings, seed));
+            let found = fitted(&robot, &observed(&robot, &truth, Kind::POSE, &readings, seed));
             let registered = missed_in(&robot, &truth, &found.models.registered, &others);
             let calibrated = missed_in(&robot, &truth, &found.models.calibrated, &others);
             (calibrated > registered).then(|| {
@@ -305,7 +305,7 @@ fn circles_and_surfaces_of_one_attitude_end_soon() {
                     vec![0.3 * t, -0.4 - bend, 0.9 + 0.5 * bend, 0.0, 0.2 - 0.5 * bend, -0.3 * t]
                 })
                 .collect();
-            let kind = if seed % 4 < 2 { Kind::Pose } else { Kind::Point };
+            let kind = if seed % 4 < 2 { Kind::POSE } else { Kind::POINT };
             let found = fitted(&robot, &observed(&robot, &actual(&robot, seed), kind, &readings, seed));
             println!(
                 "{seed}: {} iterations, {:?}, rank {}",
@@ -324,7 +324,7 @@ fn circles_and_surfaces_of_one_attitude_end_soon() {
 #[test]
 fn what_the_data_tell_is_not_touched() {
     let robot = elbow();
-    for kind in [Kind::Pose, Kind::Point] {
+    for kind in [Kind::POSE, Kind::POINT] {
         let sessions = trials(150);
         let sums = (sessions.seeds())
             .into_par_iter()
@@ -363,7 +363,7 @@ fn what_the_data_tell_is_not_touched() {
         error_position_m: 0.06,
         ..Simulation::default()
     };
-    let made = far.run(&robot, Kind::Pose).unwrap();
+    let made = far.run(&robot, Kind::POSE).unwrap();
     let found = calibrate(&robot, &made.data, &geometry()).unwrap();
     let rms = found.accuracy.held_out.unwrap().calibrated.position_mm().rms;
     println!("errors of 17 deg and 60 mm: {rms:.4} mm");
@@ -417,7 +417,7 @@ fn a_target_stays_near_the_tip_where_the_measurements_do_not_say_where_it_is() {
             let down = FRAC_PI_2 + 5e-6 * random::normal(generator);
             readings[4] = (down - pitch(1) * readings[1] - pitch(2) * readings[2]) / pitch(4);
         });
-        let data = observed(&robot, &robot, Kind::Point, &rows, seed);
+        let data = observed(&robot, &robot, Kind::POINT, &rows, seed);
         for (open, far) in far.iter_mut().enumerate() {
             let free = if open == 1 { vec!["targets".to_owned()] } else { Vec::new() };
             let blocks = BlockChoice { free, fix: Vec::new() };
@@ -448,7 +448,7 @@ fn cross_validation_says_the_error_of_other_rows_where_little_is_determined() {
         };
         let session = |seed: u64, count: usize| {
             let rows = configurations(&robot, count, seed, narrow);
-            observed(&robot, &truth, Kind::Point, &rows, seed)
+            observed(&robot, &truth, Kind::POINT, &rows, seed)
         };
         let data = session(seed, 120);
         let found = fitted(&robot, &data);

@@ -24,11 +24,7 @@ fn session(seed: u64, kind: Kind) -> Simulated {
 /// The measured places of the rows from one on, moved.
 fn moved(data: &mut Dataset, first: usize, by: impl Fn(usize, Vector3<f64>) -> Vector3<f64>) {
     for (row, observation) in data.observations.iter_mut().enumerate().skip(first) {
-        if let Measurement::Point(seen) = &mut observation.measurement {
-            seen.position = by(row, seen.position);
-        } else {
-            panic!("{:?}", observation.measurement);
-        }
+        observation.measurement = Measurement::point(by(row, observation.measurement.position().unwrap()));
     }
 }
 
@@ -60,7 +56,7 @@ fn a_move_of_the_device_of_a_target_of_a_zero_and_a_drift_are_repaired() {
     let trials = trials(8).at_least(4);
     let tilt = |v: Vector3<f64>| rotation::exp(&Vector3::new(0.0, 0.002, 0.004)) * v;
     for seed in trials.seeds() {
-        let clean = session(seed, Kind::Point);
+        let clean = session(seed, Kind::POINT);
         let (calibration, _) = found(&clean.nominal, &clean.data, &CalibrationOptions::default());
         assert!(
             calibration.repairs.is_empty() && calibration.suspicions.is_empty(),
@@ -131,7 +127,7 @@ fn with_readings(data: &Dataset, change: impl Fn(usize, &mut [f64])) -> Dataset 
 
 #[test]
 fn configurations_that_are_wrong_as_a_whole_are_left_out() {
-    let clean = session(3, Kind::Pose);
+    let clean = session(3, Kind::POSE);
     let (calibration, _) = found(&clean.nominal, &clean.data, &CalibrationOptions::default());
     let usual = error_mm(&clean, &calibration, 0.0);
     // Read a degree before the arm was there.
@@ -154,7 +150,7 @@ fn configurations_that_are_wrong_as_a_whole_are_left_out() {
 
 #[test]
 fn without_repairs_an_evident_move_is_a_reason_not_to_use_the_result() {
-    let mut made = session(5, Kind::Point);
+    let mut made = session(5, Kind::POINT);
     moved(&mut made.data, 40, |_, place| place + Vector3::new(0.0, 0.002, 0.0));
     let options = CalibrationOptions { repair: Repairs::Off, ..CalibrationOptions::default() };
     let (calibration, data) = found(&made.nominal, &made.data, &options);
@@ -176,7 +172,7 @@ fn without_repairs_an_evident_move_is_a_reason_not_to_use_the_result() {
 #[test]
 fn readings_that_are_all_early_are_named_with_their_angle() {
     for (seed, early_deg) in [(1, 0.05), (2, 0.2), (3, 0.1)] {
-        let made = session(seed, Kind::Point);
+        let made = session(seed, Kind::POINT);
         let data = with_readings(&made.data, |row, readings| {
             let Some(before) = row.checked_sub(1).map(|row| made.data.readings(row)) else { return };
             let way: Vec<f64> = readings.iter().zip(before).map(|(own, before)| own - before).collect();
@@ -209,7 +205,7 @@ fn readings_that_are_all_early_are_named_with_their_angle() {
 #[test]
 fn the_rounding_of_readings_is_noise_and_no_error_of_the_robot() {
     for seed in trials(6).at_least(3).seeds() {
-        let made = session(seed, Kind::Point);
+        let made = session(seed, Kind::POINT);
         let step = 0.1_f64.to_radians();
         let data = with_readings(&made.data, |_, readings| {
             readings.iter_mut().for_each(|value| *value = (*value / step).round() * step);

@@ -256,7 +256,7 @@ fn files_of_makers() {
 #[test]
 fn offsets_state_what_remains() {
     let simulation = Simulation { count: 150, noise_position_m: 1e-5, ..Simulation::default() };
-    let made = simulation.run(&elbow(), Kind::Pose).unwrap();
+    let made = simulation.run(&elbow(), Kind::POSE).unwrap();
     let calibration = calibrate(&made.nominal, &made.data, &geometry()).unwrap();
     let file = CalibrationFile::new(&calibration, &made.data, Inputs::default());
     let robot = file.robot().unwrap();

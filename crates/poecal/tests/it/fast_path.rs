@@ -9,7 +9,7 @@ use nalgebra::Vector3;
 use poecal::calibration::fit_screws;
 use poecal::estimate::{self, Estimate, Packed, delivered};
 use poecal::lie::{Pose, rotation};
-use poecal::measurement::{Dataset, Measurement, Noise, PointMeasurement, PoseMeasurement, Quantity, Seen};
+use poecal::measurement::{Dataset, Measurement, Noise, Quantity};
 use poecal::parameters::{DeviceFrame, Parameter, ScrewAxis, TargetFrame, TargetPlace, ValueTerm};
 use poecal::problem::{Problem, Refit, SimdLevel, simd_levels, stated_level};
 use poecal::robot::Robot;
@@ -111,11 +111,10 @@ impl Session {
                 observation.stated.set(Quantity::Position, Some(position_m));
                 observation.stated.set(Quantity::Rotation, Some(position_m * ratio));
             }
-            if let Measurement::Pose(seen) = &mut observation.measurement
-                && row > 20
-            {
+            if row > 20 {
                 let turn = rotation::exp(&(Vector3::new(0.6, -0.48, 0.64) * case.turned_rad));
-                seen.pose.rotation = turn * seen.pose.rotation;
+                let turned = |pose: Pose| Pose::new(turn * pose.rotation, pose.translation);
+                observation.measurement = observation.measurement.changed(turned).unwrap();
             }
         }
         let home = |target: usize| robot.home * Pose::from_translation(Vector3::x() * (0.1 * target as f64));
@@ -206,7 +205,7 @@ fn a_process_works_at_the_level_that_is_stated() {
 fn both_paths_agree() {
     for (name, robot) in robots() {
         let mut worst = (0.0, String::new());
-        for kind in [Kind::Pose, Kind::Point, Kind::Mixed] {
+        for kind in [Kind::POSE, Kind::POINT, Kind::MIXED] {
             for case in some(cases()).iter().filter(|case| robot.joints.len() < 20 || case.rows < 100) {
                 let session = Session::new(&robot, kind, case);
                 let general =
@@ -224,7 +223,7 @@ fn both_paths_agree() {
                     // What is left out of this one is about rotations alone, and of `JᵀJ` alone.
                     let nearly = problem.nearly_normal(&session.estimate);
                     assert_eq!((&nearly.gradient, nearly.cost), (&fast.gradient, fast.cost), "{name}");
-                    assert!(kind != Kind::Point || nearly == fast, "{name}");
+                    assert!(kind != Kind::POINT || nearly == fast, "{name}");
                 }
             }
         }
@@ -235,7 +234,7 @@ fn both_paths_agree() {
 #[test]
 fn sums_do_not_depend_on_threads() {
     let case = many();
-    let session = Session::new(&elbow(), Kind::Mixed, &case);
+    let session = Session::new(&elbow(), Kind::MIXED, &case);
     let of = |threads: usize| {
         let problem = session.problem(&case, SimdLevel::best());
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
@@ -250,7 +249,7 @@ fn sums_do_not_depend_on_threads() {
 fn few_passes_have_the_same_optimum() {
     let cases = [50, 50, 50, 500, 6000].into_iter().zip(1..);
     for (kind, (count, seed)) in
-        [Kind::Pose, Kind::Point].into_iter().flat_map(|kind| cases.clone().map(move |case| (kind, case)))
+        [Kind::POSE, Kind::POINT].into_iter().flat_map(|kind| cases.clone().map(move |case| (kind, case)))
     {
         let simulation = Simulation { count, seed, ..Simulation::default() };
         let made = simulation.run(&elbow(), kind).unwrap();
@@ -284,7 +283,7 @@ fn few_passes_have_the_same_optimum() {
 fn kernels_serve_the_kinds_that_they_know() {
     let robot = elbow();
     let kind = robot.joints[0].kind;
-    for seen in [Kind::Pose, Kind::Point] {
+    for seen in [Kind::POSE, Kind::POINT] {
         let mut session = Session::new(&robot, seen, &Case { rows: 5, targets: 1, ..Case::default() });
         for parameter in [
             Parameter::ScrewAxis(ScrewAxis { joint: 0, kind }),
@@ -306,7 +305,7 @@ fn kernels_serve_the_kinds_that_they_know() {
 /// Other measurements in the same configurations: shared packing and factor, and the same optimum as a fit of its own.
 #[test]
 fn refits_have_the_same_optimum() {
-    for kind in [Kind::Pose, Kind::Point] {
+    for kind in [Kind::POSE, Kind::POINT] {
         let simulation = Simulation { device_anywhere: false, ..Simulation::default() };
         let made = simulation.run(&elbow(), kind).unwrap();
         let packed = Packed::new(&made.nominal, made.data.all_readings(), 6);
@@ -326,14 +325,8 @@ fn refits_have_the_same_optimum() {
             let mut data = made.data.clone();
             for observation in &mut data.observations {
                 let shift = random::normal_vector(&mut generator) * (scale * NOISE[Quantity::Position]);
-                observation.measurement = match observation.measurement.seen() {
-                    Seen::Point(place) => Measurement::Point(PointMeasurement { position: place + shift }),
-                    Seen::Frame(&pose) => {
-                        let pose = Pose::new(pose.rotation, pose.translation + shift);
-                        Measurement::Pose(PoseMeasurement { pose })
-                    }
-                    Seen::Other(_) => observation.measurement,
-                };
+                let shifted = |pose: Pose| Pose::new(pose.rotation, pose.translation + shift);
+                observation.measurement = observation.measurement.changed(shifted).unwrap();
             }
             let measured: Vec<Measurement> = data.observations.iter().map(|seen| seen.measurement).collect();
             let (quick, _, summary) = refit.fit(&measured);

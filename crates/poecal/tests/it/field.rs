@@ -161,7 +161,7 @@ fn external_axes_that_are_slides_of_the_model_hold_and_the_arm_is_corrected_for_
         error_position_m: 0.2e-3,
         ..Simulation::default()
     };
-    let actual = simulation.run(&nominal, Kind::Pose).unwrap().actual;
+    let actual = simulation.run(&nominal, Kind::POSE).unwrap().actual;
     let degrees = [10.0, 20.0, -15.0, 40.0, 50.0, 60.0];
     let at = |track_m: f64, by: f64| {
         let mut q = vec![track_m];

@@ -9,7 +9,7 @@ use nalgebra::Vector3;
 use poecal::calibration::{CalibrationOptions, DeviceFrameKnowledge, calibrate, delivered};
 use poecal::estimate::{self, Packed};
 use poecal::forensics::{Diagnosis, DiagnosisKind, DiagnosisOptions, diagnose};
-use poecal::measurement::{Dataset, Measurement, Noise, PointMeasurement};
+use poecal::measurement::{Dataset, Measurement, Noise};
 use poecal::robot::JointKind;
 use poecal::simulate::{Kind, Simulation, elbow};
 use poecal::start::{Registration, register};
@@ -92,13 +92,8 @@ fn a_column_in_another_unit_is_named_alone() {
         let axis = seed as usize % 3;
         let mut data = session.data.clone();
         for row in &mut data.observations {
-            if let Measurement::Point(seen) = &mut row.measurement {
-                seen.position[axis] *= 1e-3;
-            } else if let Measurement::Pose(seen) = &mut row.measurement {
-                seen.pose.translation[axis] *= 1e-3;
-            } else {
-                panic!("{:?}", row.measurement);
-            }
+            assert!(row.measurement.is_place(), "{:?}", row.measurement);
+            row.measurement.values_mut()[axis] *= 1e-3;
         }
         let found = found(&session, &data);
         let name = ["x", "y", "z"][axis];
@@ -221,7 +216,7 @@ fn check_and_calibrate_name_the_same_mistakes() {
 /// A session of an elbow whose rows see so many targets in turn, with the sign of one joint wrong or not.
 fn of_targets(targets: usize, sign: f64) -> (Session, Dataset) {
     let mut session = Session::drawn(0);
-    let made = Simulation { count: 3 * targets, ..Simulation::default() }.run(&elbow(), Kind::Point).unwrap();
+    let made = Simulation { count: 3 * targets, ..Simulation::default() }.run(&elbow(), Kind::POINT).unwrap();
     session.robot = made.nominal;
     let mut data = Dataset::new(made.data.reading_names().to_vec());
     for row in 0..made.data.len() {
@@ -256,14 +251,14 @@ fn a_thousand_targets_are_looked_through() {
 /// An elbow and 600 rows of 30 targets, each at a place of its own.
 fn of_many_places() -> (Session, Dataset) {
     let (session, _) = of_targets(30, 1.0);
-    let made = Simulation { count: 600, ..Simulation::default() }.run(&elbow(), Kind::Pose).unwrap();
+    let made = Simulation { count: 600, ..Simulation::default() }.run(&elbow(), Kind::POSE).unwrap();
     let mut data = Dataset::new(made.data.reading_names().to_vec());
     for row in 0..made.data.len() {
         let target = row % 30;
         let angle = target as f64;
         let place = Vector3::new(0.1 * angle.sin(), 0.1 * angle.cos(), 0.003 * angle);
         let position = made.data.observations[row].measurement.pose().act(&place);
-        let seen = Measurement::Point(PointMeasurement { position });
+        let seen = Measurement::point(position);
         data.push(made.data.readings(row), Some(&format!("T{target}")), seen).unwrap();
     }
     (session, data)
@@ -289,7 +284,7 @@ fn two_of_many_targets_exchanged_in_some_rows_are_named() {
 #[test]
 fn a_clean_calibration_has_no_mistake() {
     let simulation = poecal::simulate::Simulation::default();
-    let made = simulation.run(&poecal::simulate::elbow(), poecal::simulate::Kind::Point).unwrap();
+    let made = simulation.run(&poecal::simulate::elbow(), poecal::simulate::Kind::POINT).unwrap();
     let calibration = calibrate(&made.nominal, &made.data, &geometry()).unwrap();
     let rows: Vec<u32> = made.data.all_rows();
     let options =

@@ -7,7 +7,7 @@ use poecal::calibration::{Calibration, CalibrationOptions, calibrate, delivered,
 use poecal::estimate::{Chain, Estimate, Linkage, Packed};
 use poecal::gauge::base_motion;
 use poecal::lie::{Pose, rotation};
-use poecal::measurement::{Dataset, Measurement, PointMeasurement, PoseMeasurement};
+use poecal::measurement::{Dataset, Measurement};
 use poecal::robot::Robot;
 use poecal::simulate::{
     Kind, Simulated, Simulation, elbow, gantry, random, random_chain, random_configuration, scara, seven_axis,
@@ -69,7 +69,7 @@ fn deviation(estimate: &Estimate, robot: &Robot) -> f64 {
 fn predictions_do_not_depend_on_the_gauge() {
     let mut generator = ChaCha8Rng::seed_from_u64(1);
     for robot in robots() {
-        let made = simulated(&robot, Kind::Mixed);
+        let made = simulated(&robot, Kind::MIXED);
         let estimate = calibrated(&made).models.calibrated;
         let rows = packed(&robot, &made.data);
         let motion = Pose::new(random::rotation(&mut generator), random::direction(&mut generator) * 2.0);
@@ -83,7 +83,7 @@ fn predictions_do_not_depend_on_the_gauge() {
 fn gauge_brings_the_screws_nearest_to_nominal_once_and_for_all() {
     let mut generator = ChaCha8Rng::seed_from_u64(2);
     for robot in robots() {
-        let made = simulated(&robot, Kind::Pose);
+        let made = simulated(&robot, Kind::POSE);
         let chosen = calibrated(&made).models.calibrated;
         let packed = Packed::of(&robot, &made.data);
         let length_m = radian_m(&robot, &packed);
@@ -114,14 +114,14 @@ fn joint_deviation(result: &Calibration, joint: usize) -> f64 {
 #[test]
 fn what_the_data_leave_open_stays_nominal() {
     for (value, joint) in [(0.0, 2), (0.6, 2), (0.6, 0), (-1.1, 5)] {
-        let mut made = simulated(&elbow(), Kind::Pose);
+        let mut made = simulated(&elbow(), Kind::POSE);
         let mut still = Dataset::new(made.nominal.reading_names());
         let exact = made.device_from_base;
         for row in 0..made.data.len() {
             let mut readings = made.data.readings(row).to_vec();
             readings[joint] = value;
             let pose = exact * made.actual.forward_kinematics(&readings);
-            still.push(&readings, None, Measurement::Pose(PoseMeasurement { pose })).unwrap();
+            still.push(&readings, None, Measurement::of_pose(&pose)).unwrap();
         }
         made.data = still;
         let result = calibrated(&made);
@@ -147,7 +147,7 @@ type Target = (Option<&'static str>, bool, Pose);
 
 fn session(robot: &Robot, targets: &[Target]) -> Simulated {
     let simulation = Simulation { count: 0, seed: 5, ..Simulation::default() };
-    let mut made = simulation.run(robot, Kind::Pose).unwrap();
+    let mut made = simulation.run(robot, Kind::POSE).unwrap();
     let mut generator = ChaCha8Rng::seed_from_u64(5);
     for _ in 0..60 {
         let readings = random_configuration(robot, &mut generator);
@@ -155,11 +155,8 @@ fn session(robot: &Robot, targets: &[Target]) -> Simulated {
             let mut pose =
                 made.device_from_base * made.actual.forward_kinematics(&readings) * *tip_from_target;
             pose.translation += random::normal_vector(&mut generator) * 5e-5;
-            let measurement = if *is_frame {
-                Measurement::Pose(PoseMeasurement { pose })
-            } else {
-                Measurement::Point(PointMeasurement { position: pose.translation })
-            };
+            let measurement =
+                if *is_frame { Measurement::of_pose(&pose) } else { Measurement::point(pose.translation) };
             made.data.push(&readings, *name, measurement).unwrap();
         }
     }

@@ -5,7 +5,7 @@ use crate::largest::larger;
 use nalgebra::{Matrix6, Vector3};
 use poecal::estimate::{Chain, Estimate, Linkage, Packed, Session, Sight};
 use poecal::lie::{Pose, Screw, rotation};
-use poecal::measurement::{Dataset, Measurement, Noise, PointMeasurement, PoseMeasurement};
+use poecal::measurement::{Dataset, Measurement, Noise};
 use poecal::parameters::{DeviceFrame, Parameter, ScrewAxis, TargetFrame, TargetPlace, ValueTerm};
 use poecal::problem::{Layout, Problem};
 use poecal::robot::Term;
@@ -25,10 +25,8 @@ const NOISE: Noise = Noise::new(0.5, 0.8);
 /// Makes a measurement of a target that was seen at a pose.
 type Measure = fn(Pose) -> Measurement;
 
-const MEASUREMENTS: [(&str, Measure); 2] = [
-    ("point", |seen| Measurement::Point(PointMeasurement { position: seen.translation })),
-    ("pose", |seen| Measurement::Pose(PoseMeasurement { pose: seen })),
-];
+const MEASUREMENTS: [(&str, Measure); 2] =
+    [("point", |seen| Measurement::point(seen.translation)), ("pose", |seen| Measurement::of_pose(&seen))];
 
 /// In the order of the chain, as a problem takes them.
 fn parameters(robot: &Robot) -> Vec<(&'static str, Parameter)> {
@@ -111,7 +109,7 @@ impl Row {
 
     /// The whitened residual.
     fn residual(&self, estimate: &Estimate) -> Vec<f64> {
-        let measurement = self.data.observations[0].measurement.observe();
+        let measurement = self.data.observations[0].measurement;
         let mut chain = Chain::default();
         chain.evaluate(&Linkage::new(estimate), &self.packed, 0, &self.data.observations[0]);
         let mut out = vec![0.0; measurement.dim()];
@@ -124,7 +122,7 @@ impl Row {
     fn columns(&self, estimate: &Estimate, layout: &Layout) -> Vec<Vec<f64>> {
         let mut chain = Chain::default();
         chain.evaluate(&Linkage::new(estimate), &self.packed, 0, &self.data.observations[0]);
-        let measurement = self.data.observations[0].measurement.observe();
+        let measurement = self.data.observations[0].measurement;
         let mut columns = vec![Vec::new(); layout.dim()];
         for (parameter, places) in layout.parameters() {
             let mut twists = vec![(Vector3::zeros(), Vector3::zeros()); places.len()];

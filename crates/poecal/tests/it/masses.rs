@@ -107,7 +107,7 @@ fn masses_are_kept_with_the_corrected_model() {
     };
     nominal.masses = vec![mass(1, 9.0), mass(2, 6.0), mass(4, 2.0)];
     let Ok(Corrections::Sizes(terms)) = "sag=1e-3".parse() else { panic!("no sizes") };
-    let made = Simulation { terms, count: 60, ..Simulation::default() }.run(&nominal, Kind::Pose).unwrap();
+    let made = Simulation { terms, count: 60, ..Simulation::default() }.run(&nominal, Kind::POSE).unwrap();
     let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default()).unwrap();
     let found = calibration.correction.as_ref().unwrap();
     assert!(found.robot.terms.iter().any(|it| it.term == Term::OwnWeight && it.coefficient != 0.0));

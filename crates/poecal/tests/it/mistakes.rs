@@ -6,7 +6,7 @@ use crate::trials::Trials;
 use nalgebra::{Matrix3, Vector3, Vector4};
 use poecal::forensics::{Diagnosis, DiagnosisKind};
 use poecal::lie::{Pose, rotation};
-use poecal::measurement::{Dataset, Measurement, Observation, PointMeasurement, PoseMeasurement};
+use poecal::measurement::{Dataset, Measurement, Observation};
 use poecal::robot::{JointKind, Robot};
 use poecal::simulate::random::{direction, shuffle, uniform};
 use poecal::simulate::{
@@ -94,9 +94,9 @@ impl Session {
             let turn = rotation::exp(&(simulate::random::normal_vector(g) * noise_rad));
             let pose = Pose::new(turn * seen.rotation, position);
             let measurement = match kind {
-                0 => Measurement::Point(PointMeasurement { position }),
-                2 if row % (targets + 1) == 0 => Measurement::Point(PointMeasurement { position }),
-                _ => Measurement::Pose(PoseMeasurement { pose }),
+                0 => Measurement::point(position),
+                2 if row % (targets + 1) == 0 => Measurement::point(position),
+                _ => Measurement::of_pose(&pose),
             };
             data.push(&readings, Some(&format!("target{target}")), measurement).unwrap();
         }
@@ -127,9 +127,9 @@ impl Session {
         self.changed(|_, _, observation| {
             let pose = change(observation.measurement.pose());
             observation.measurement = if observation.measurement.sees_orientation() {
-                Measurement::Pose(PoseMeasurement { pose })
+                Measurement::of_pose(&pose)
             } else {
-                Measurement::Point(PointMeasurement { position: pose.translation })
+                Measurement::point(pose.translation)
             };
         })
     }
@@ -212,8 +212,8 @@ impl Session {
                     }
                 };
                 let data = self.changed(|_, _, observation| {
-                    if let Measurement::Pose(seen) = &mut observation.measurement {
-                        seen.pose = inverse(seen.pose);
+                    if let Some(pose) = observation.measurement.frame() {
+                        observation.measurement = Measurement::of_pose(&inverse(pose));
                     }
                 });
                 poses.then_some((data, format!("positions too: {whole}")))

@@ -4,10 +4,7 @@ use crate::mistakes::{Looked, assert_mistakes_are_named, assert_no_alarms, betwe
 use crate::trials::trials;
 use poecal::forensics::{Diagnosis, DiagnosisKind, DiagnosisOptions, diagnose};
 use poecal::lie::Pose;
-use poecal::measurement::{
-    Dataset, DirectionMeasurement, DistanceMeasurement, KnownLength, Measurement, Observation,
-    PoseMeasurement,
-};
+use poecal::measurement::{Dataset, KnownLength, Measurement, Observation, Quantity};
 use poecal::robot::Robot;
 use poecal::simulate::random::uniform;
 use poecal::simulate::{Kind, Simulated, Simulation, elbow, random_chain, seven_axis};
@@ -20,22 +17,22 @@ const SPHERE_M: f64 = 0.05;
 
 /// Sessions, each with the mistakes that it can have.
 const CASES: [(Kind, DiagnosisKind); 16] = [
-    (Kind::Distance, DiagnosisKind::PlacesSwapped),
-    (Kind::Distance, DiagnosisKind::LengthUnit),
-    (Kind::Distance, DiagnosisKind::DistanceZero),
-    (Kind::Change, DiagnosisKind::PlacesSwapped),
-    (Kind::Change, DiagnosisKind::LengthUnit),
-    (Kind::Sphere, DiagnosisKind::DistanceZero),
-    (Kind::Socket, DiagnosisKind::PlacesSwapped),
-    (Kind::Socket, DiagnosisKind::KnownLength),
-    (Kind::Plane, DiagnosisKind::PlacesSwapped),
-    (Kind::Height, DiagnosisKind::HeightSign),
-    (Kind::Height, DiagnosisKind::LengthUnit),
-    (Kind::Flush, DiagnosisKind::PlacesSwapped),
-    (Kind::Direction, DiagnosisKind::TiltUnit),
-    (Kind::BallBar, DiagnosisKind::LengthUnit),
-    (Kind::Relative, DiagnosisKind::PositionUnit),
-    (Kind::Relative, DiagnosisKind::InvertedPose),
+    (Kind::DISTANCE, DiagnosisKind::PlacesSwapped),
+    (Kind::DISTANCE, DiagnosisKind::LengthUnit),
+    (Kind::DISTANCE, DiagnosisKind::DistanceZero),
+    (Kind::CHANGE, DiagnosisKind::PlacesSwapped),
+    (Kind::CHANGE, DiagnosisKind::LengthUnit),
+    (Kind::SPHERE, DiagnosisKind::DistanceZero),
+    (Kind::SOCKET, DiagnosisKind::PlacesSwapped),
+    (Kind::SOCKET, DiagnosisKind::KnownLength),
+    (Kind::PLANE, DiagnosisKind::PlacesSwapped),
+    (Kind::HEIGHT, DiagnosisKind::HeightSign),
+    (Kind::HEIGHT, DiagnosisKind::LengthUnit),
+    (Kind::FLUSH, DiagnosisKind::PlacesSwapped),
+    (Kind::DIRECTION, DiagnosisKind::TiltUnit),
+    (Kind::BALL_BAR, DiagnosisKind::LengthUnit),
+    (Kind::RELATIVE, DiagnosisKind::PositionUnit),
+    (Kind::RELATIVE, DiagnosisKind::InvertedPose),
 ];
 
 /// A session of a robot that is not quite as its model says.
@@ -72,15 +69,15 @@ fn drawn(kind: Kind, seed: u64) -> Session {
         ..Simulation::default()
     };
     // Not every robot can lay a face on planes of any direction.
-    let robot = robot(if kind == Kind::Flush { 0 } else { seed as usize });
+    let robot = robot(if kind == Kind::FLUSH { 0 } else { seed as usize });
     let Some(Simulated { mut data, .. }) = simulation.run(&robot, kind).ok() else {
         return drawn(kind, seed + 1_000_003);
     };
-    if kind == Kind::Sphere {
+    if kind == Kind::SPHERE {
         // The radius is known.
-        each(&mut data, |_, row| row.measurement = Measurement::Distance(DistanceMeasurement::new(SPHERE_M)));
+        each(&mut data, |_, row| row.measurement = Measurement::distance(SPHERE_M));
     }
-    if kind == Kind::Socket {
+    if kind == Kind::SOCKET {
         let known = KnownLength { stations: [0, 1], length_m: SOCKETS_M, sigma_m: KnownLength::SIGMA_M };
         data.lengths.push(known);
     }
@@ -107,10 +104,8 @@ fn mistaken(session: &Session, kind: DiagnosisKind, seed: u64) -> (Dataset, Stri
         DiagnosisKind::LengthUnit => {
             let factor = [25.4, 1.0 / 25.4, 10.0, 0.1, 1e3, 1e-3][pick(g, 6)];
             each(&mut data, |_, row| {
-                if let Measurement::Distance(seen) = &mut row.measurement {
-                    seen.distance *= factor;
-                } else if let Measurement::Height(seen) = &mut row.measurement {
-                    seen.height *= factor;
+                if [Quantity::Distance, Quantity::Height].iter().any(|it| row.measurement.has(*it)) {
+                    row.measurement.values_mut()[0] *= factor;
                 }
             });
             format!("lengths times {factor}")
@@ -119,8 +114,8 @@ fn mistaken(session: &Session, kind: DiagnosisKind, seed: u64) -> (Dataset, Stri
             // The radius of a probe's ball, a hook: 4 % to 20 % of a sphere's radius, or some of a wire.
             let by_m = if uniform(g) < 0.5 { -1.0 } else { 1.0 } * between(g, 2e-3, 1e-2);
             each(&mut data, |_, row| {
-                if let Measurement::Distance(seen) = &mut row.measurement {
-                    seen.distance += by_m;
+                if row.measurement.has(Quantity::Distance) {
+                    row.measurement.values_mut()[0] += by_m;
                 }
             });
             format!("{:.2} mm longer", by_m * 1e3)
@@ -135,20 +130,16 @@ fn mistaken(session: &Session, kind: DiagnosisKind, seed: u64) -> (Dataset, Stri
             let (start, end) = part(data.len(), g);
             let plane = pick(g, 4);
             each(&mut data, |row, seen| {
-                if let Measurement::Height(seen_height) = &mut seen.measurement
-                    && (start..end).contains(&row)
-                    && (plane == 3 || plane == seen.station)
-                {
-                    seen_height.height = -seen_height.height;
+                let is_own = plane == 3 || plane == seen.station;
+                if seen.measurement.has(Quantity::Height) && (start..end).contains(&row) && is_own {
+                    seen.measurement.values_mut()[0] *= -1.0;
                 }
             });
             format!("rows {start} to {end}, plane {plane}")
         }
         DiagnosisKind::TiltUnit => {
             each(&mut data, |_, row| {
-                if let Measurement::Direction(seen) = &mut row.measurement {
-                    *seen = DirectionMeasurement::of_tilts(seen.tilts().map(f64::to_radians));
-                }
+                row.measurement = row.measurement.with_angles_times(1f64.to_radians());
             });
             "degrees as radians".to_owned()
         }
@@ -161,7 +152,7 @@ fn mistaken(session: &Session, kind: DiagnosisKind, seed: u64) -> (Dataset, Stri
                 } else {
                     pose = pose.inverse();
                 }
-                row.measurement = Measurement::Pose(PoseMeasurement { pose });
+                row.measurement = Measurement::of_pose(&pose);
             });
             format!("times {factor}")
         }
@@ -225,7 +216,7 @@ fn mistakes_of_places_are_named() {
 
 #[test]
 fn clean_sessions_of_places_raise_no_alarm() {
-    let kinds: Vec<Kind> = Kind::ALL.into_iter().filter(|kind| !kind.has_device()).collect();
+    let kinds: Vec<Kind> = Kind::all().into_iter().filter(|kind| !kind.has_device()).collect();
     assert_no_alarms(trials(64), |index| {
         let session = drawn(kinds[index as usize % kinds.len()], index + 7_000_000);
         let found = found(&session, &session.data);

@@ -22,7 +22,7 @@ fn robots() -> (Robot, Robot) {
     let robot = elbow();
     let home = robot.home * Pose::from_translation(Vector3::new(0.08, 0.0, 0.05));
     let made = Simulation { count: 1, ..Simulation::default() };
-    let made = made.run(&Robot { home, ..robot }, Kind::Point).unwrap();
+    let made = made.run(&Robot { home, ..robot }, Kind::POINT).unwrap();
     (made.actual, made.nominal)
 }
 

@@ -7,12 +7,12 @@ use crate::trials::{some, trials};
 use nalgebra::Vector3;
 use poecal::calibration::{Calibration, CalibrationOptions, Level, Robust, calibrate};
 use poecal::lie::Pose;
-use poecal::measurement::{Dataset, Measurement, PointMeasurement, PoseMeasurement};
+use poecal::measurement::{Dataset, Measurement};
 use poecal::robot::Robot;
 use poecal::simulate::{Kind, Simulated, elbow, gantry, random_chain, scara, seven_axis};
 use rayon::prelude::*;
 
-const KINDS: [Kind; 2] = [Kind::Point, Kind::Pose];
+const KINDS: [Kind; 2] = [Kind::POINT, Kind::POSE];
 
 fn session(robot: &Robot, kind: Kind, count: usize, seed: u64) -> Simulated {
     simulated(robot, kind, count, 7000 + seed)
@@ -24,9 +24,9 @@ fn changed(made: &Simulated, motion: impl Fn(usize) -> Pose) -> Dataset {
     for (row, observation) in data.observations.iter_mut().enumerate() {
         let pose = motion(row) * observation.measurement.pose();
         observation.measurement = if observation.measurement.sees_orientation() {
-            Measurement::Pose(PoseMeasurement { pose })
+            Measurement::of_pose(&pose)
         } else {
-            Measurement::Point(PointMeasurement { position: pose.translation })
+            Measurement::point(pose.translation)
         };
     }
     data
@@ -162,9 +162,9 @@ fn with_targets(made: &Simulated, names: &[&str], knocked: impl Fn(usize, usize)
         let pose = observation.measurement.pose();
         let pose = Pose::new(pose.rotation, pose.translation + tip.rotation * arm);
         observation.measurement = if observation.measurement.sees_orientation() {
-            Measurement::Pose(PoseMeasurement { pose })
+            Measurement::of_pose(&pose)
         } else {
-            Measurement::Point(PointMeasurement { position: pose.translation })
+            Measurement::point(pose.translation)
         };
     }
     data
@@ -230,7 +230,7 @@ fn nothing_is_named_in_sessions_where_nothing_moved() {
         .into_par_iter()
         .filter_map(|seed| {
             let robot = &robots[seed as usize % robots.len()];
-            let kind = [Kind::Point, Kind::Pose, Kind::Mixed][seed as usize / 5 % 3];
+            let kind = [Kind::POINT, Kind::POSE, Kind::MIXED][seed as usize / 5 % 3];
             let count = [40, 60, 90, 150, 300][seed as usize / 15 % 5];
             let made = session(robot, kind, count, 100 + seed);
             let data = match seed % 4 {
@@ -249,7 +249,7 @@ fn nothing_is_named_in_sessions_where_nothing_moved() {
 #[test]
 fn an_orderly_session_of_a_robot_that_gives_is_not_called_a_drift() {
     for seed in 0..6 {
-        let made = session(&elbow(), Kind::Point, 150, 400 + seed);
+        let made = session(&elbow(), Kind::POINT, 150, 400 + seed);
         let mut order: Vec<usize> = (0..made.data.len()).collect();
         order.sort_by(|&a, &b| made.data.readings(a)[0].total_cmp(&made.data.readings(b)[0]));
         let mut data = Dataset::new(made.data.reading_names().to_vec());
@@ -258,7 +258,7 @@ fn an_orderly_session_of_a_robot_that_gives_is_not_called_a_drift() {
             let sag = 2e-4 * (2.0 * readings[0]).sin() + 1e-4 * (readings[0] + readings[1]).cos();
             let position = made.data.observations[row].measurement.pose().translation;
             let position = position + made.device_from_base.rotation * Vector3::new(0.0, sag, 0.0);
-            data.push(readings, None, Measurement::Point(PointMeasurement { position })).unwrap();
+            data.push(readings, None, Measurement::point(position)).unwrap();
         }
         let found = fit(&made.nominal, &data);
         assert!(!is_doubted(&found), "{seed}: {}", said(&found));

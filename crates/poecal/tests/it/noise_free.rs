@@ -31,7 +31,7 @@ const IDENTIFIED: [[f64; 6]; 6] = [
 /// The same table's last row: the point on the tool, m.
 const IDENTIFIED_POINT: [f64; 3] = [0.839_010_0, -0.005_030_0, 0.724_974_0];
 /// Iterations that lou2009 reports are 6 and 10; the step here is the same, in better coordinates.
-const ELBOW_ITERATIONS: [(Kind, usize, usize); 2] = [(Kind::Pose, 30, 5), (Kind::Point, 100, 7)];
+const ELBOW_ITERATIONS: [(Kind, usize, usize); 2] = [(Kind::POSE, 30, 5), (Kind::POINT, 100, 7)];
 
 const EXACT: Simulation = Simulation {
     error_rotation_rad: 0.017,
@@ -68,7 +68,7 @@ fn simulated_elbow(kind: Kind, count: usize) -> Simulated {
 /// 4r+2p+6 for poses and 4r+2p+3 for points.
 fn structural_rank(robot: &Robot, kind: Kind) -> usize {
     let screws: usize = robot.joints.iter().map(|j| if j.kind == JointKind::Revolute { 4 } else { 2 }).sum();
-    screws + if kind == Kind::Point { 3 } else { 6 }
+    screws + if kind == Kind::POINT { 3 } else { 6 }
 }
 
 fn held_out_m(calibration: &Calibration) -> f64 {
@@ -104,7 +104,7 @@ fn papers_elbow_is_calibrated_in_fewer_iterations_than_in_the_paper() {
 /// The nominal point lies on nominal axis 6: turning that axis and shifting it do the same to the point.
 #[test]
 fn elbow_has_rank_25_where_a_fit_of_points_starts() {
-    let made = simulated_elbow(Kind::Point, 100);
+    let made = simulated_elbow(Kind::POINT, 100);
     let robot = &made.nominal;
     let packed = Packed::new(robot, made.data.all_readings(), robot.joints.len());
     let screws = robot.joints.iter().enumerate();
@@ -132,7 +132,7 @@ fn robots_of_every_structure_are_recovered_from_anywhere() {
     }
     let cases: Vec<(&Robot, Kind)> = robots
         .iter()
-        .flat_map(|robot| [Kind::Pose, Kind::Point, Kind::Mixed].map(|kind| (robot, kind)))
+        .flat_map(|robot| [Kind::POSE, Kind::POINT, Kind::MIXED].map(|kind| (robot, kind)))
         .collect();
     let cases = some(cases);
     let failures: Vec<String> = cases

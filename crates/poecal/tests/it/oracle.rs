@@ -8,7 +8,7 @@ use nalgebra::Vector3;
 use poecal::calibration::{
     CalibrationOptions, Level, PredictedUncertainty, Robust, Subject, calibrate, judge,
 };
-use poecal::measurement::{ByQuantity, Dataset, Measurement, PointMeasurement, Quantity};
+use poecal::measurement::{ByQuantity, Dataset, Measurement, Quantity};
 use poecal::simulate::{Kind, Simulation, elbow, random};
 use rand_chacha::ChaCha8Rng;
 use rand_core::{Rng, SeedableRng};
@@ -172,7 +172,7 @@ fn fault(rows: &mut Vec<Row>, generator: &mut ChaCha8Rng) -> &'static str {
 fn dataset(rows: &[Row]) -> Dataset {
     let mut data = Dataset::new(elbow().reading_names());
     for row in rows {
-        data.push(&row.readings, None, Measurement::Point(PointMeasurement { position: row.place })).unwrap();
+        data.push(&row.readings, None, Measurement::point(row.place)).unwrap();
     }
     data
 }
@@ -183,7 +183,7 @@ type Outcome = (Level, Option<bool>);
 fn session(seed: u64) -> (String, bool, Option<Outcome>) {
     let mut generator = ChaCha8Rng::seed_from_u64(seed);
     let simulation = Simulation { count: 400, seed: 21 + seed % 7, ..Simulation::default() };
-    let made = simulation.run(&elbow(), Kind::Point).unwrap();
+    let made = simulation.run(&elbow(), Kind::POINT).unwrap();
     let mut rows: Vec<Row> = (0..made.data.len())
         .map(|row| Row {
             readings: made.data.readings(row).to_vec(),

@@ -6,9 +6,7 @@ use nalgebra::Vector3;
 use poecal::calibration::{Calibration, CalibrationOptions, Level, calibrate};
 use poecal::estimate::{Chain, Linkage, Packed};
 use poecal::lie::{Pose, rotation};
-use poecal::measurement::{
-    ByQuantity, Dataset, Measurement, Noise, PointMeasurement, PoseMeasurement, Quantity,
-};
+use poecal::measurement::{ByQuantity, Dataset, Measurement, Noise, Quantity};
 use poecal::robot::{Joint, Robot};
 use poecal::simulate::{Kind, Simulated, Simulation, elbow, random, random_configuration};
 use poecal::uncertainty::Attribution;
@@ -84,9 +82,9 @@ fn coverage(errors: &[(f64, f64)]) -> (f64, f64) {
 
 #[test]
 fn bounds_hold_where_nothing_is_unmodelled() {
-    for kind in [Kind::Pose, Kind::Point] {
+    for kind in [Kind::POSE, Kind::POINT] {
         for count in [8, 10, 12, 15, 20, 40, 60, 100, 200] {
-            if kind == Kind::Point && count < 12 {
+            if kind == Kind::POINT && count < 12 {
                 continue;
             }
             let sessions = trials(120);
@@ -139,10 +137,10 @@ fn remeasured(made: &Simulated, kind: Kind, seed: u64, real: &impl Fn(&[f64]) ->
 fn measured(seen: &Pose, kind: Kind, generator: &mut ChaCha8Rng) -> Measurement {
     let position = seen.translation + random::normal_vector(generator) * NOISE_M;
     let turn = rotation::exp(&(random::normal_vector(generator) * NOISE_RAD));
-    if kind == Kind::Point {
-        Measurement::Point(PointMeasurement { position })
+    if kind == Kind::POINT {
+        Measurement::point(position)
     } else {
-        Measurement::Pose(PoseMeasurement { pose: Pose::new(turn * seen.rotation, position) })
+        Measurement::of_pose(&Pose::new(turn * seen.rotation, position))
     }
 }
 
@@ -154,9 +152,9 @@ fn bounds_hold_with_errors_that_the_model_does_not_describe() {
             let each: Vec<Vec<(f64, f64)>> = (sessions.seeds())
                 .into_par_iter()
                 .map(|seed| {
-                    let made = session(count, seed, Kind::Pose);
+                    let made = session(count, seed, Kind::POSE);
                     let real = harmonics(seed, 2e-4);
-                    let data = remeasured(&made, Kind::Pose, seed, &real);
+                    let data = remeasured(&made, Kind::POSE, seed, &real);
                     let found = calibrate(&made.nominal, &data, &options).unwrap();
                     judged(&found, &made, seed, real)
                 })
@@ -181,7 +179,7 @@ fn noise_that_is_correlated_in_time_is_seen() {
     let (mut seen, mut errors) = (0, Vec::new());
     let (sessions, clean) = (trials(40), trials(100));
     for seed in sessions.seeds() {
-        let made = session(100, seed, Kind::Point);
+        let made = session(100, seed, Kind::POINT);
         let mut generator = ChaCha8Rng::seed_from_u64(seed ^ 0xa5);
         let (mut noise, mut data) = (Vector3::zeros(), Dataset::new(made.data.reading_names().to_vec()));
         for row in 0..made.data.len() {
@@ -189,7 +187,7 @@ fn noise_that_is_correlated_in_time_is_seen() {
             let readings = made.data.readings(row);
             let position =
                 (made.device_from_base * made.actual.forward_kinematics(readings)).translation + noise;
-            data.push(readings, None, Measurement::Point(PointMeasurement { position })).unwrap();
+            data.push(readings, None, Measurement::point(position)).unwrap();
         }
         let options = CalibrationOptions {
             sigma: ByQuantity::default().with(Quantity::Position, Some(NOISE_M)),
@@ -202,7 +200,7 @@ fn noise_that_is_correlated_in_time_is_seen() {
     let false_alarms = (clean.seeds())
         .into_par_iter()
         .filter(|&seed| {
-            let made = session(100, 500 + seed, Kind::Point);
+            let made = session(100, 500 + seed, Kind::POINT);
             let found = calibrate(&made.nominal, &made.data, &stated()).unwrap();
             found.trust.uncertainty.unwrap().discrepancy.lag_one.is_some()
         })
@@ -224,7 +222,7 @@ fn repeated_rows_promise_no_more_than_their_configurations() {
     let (mut all, mut promised, mut found_squares) = (Vec::new(), 0.0, 0.0);
     let sessions = trials(40);
     for seed in sessions.seeds() {
-        let made = session(14, seed, Kind::Pose);
+        let made = session(14, seed, Kind::POSE);
         let real = harmonics(seed, 1e-4);
         let mut generator = ChaCha8Rng::seed_from_u64(seed);
         let mut data = Dataset::new(made.data.reading_names().to_vec());
@@ -233,7 +231,7 @@ fn repeated_rows_promise_no_more_than_their_configurations() {
             let seen = made.device_from_base * made.actual.forward_kinematics(&real(readings));
             let jitter: Vec<f64> =
                 readings.iter().map(|it| it + 1e-5 * random::normal(&mut generator)).collect();
-            data.push(&jitter, None, measured(&seen, Kind::Pose, &mut generator)).unwrap();
+            data.push(&jitter, None, measured(&seen, Kind::POSE, &mut generator)).unwrap();
         }
         let found = calibrate(&made.nominal, &data, &everything()).unwrap();
         promised += found.trust.expected.range.unwrap().sigma_m.powi(2);
@@ -254,14 +252,14 @@ fn repeated_rows_promise_no_more_than_their_configurations() {
 /// Repeated measurements that scatter as much as the others show that the residuals are noise; without them they are the robot's.
 #[test]
 fn repeats_show_what_is_noise() {
-    let made = session(40, 3, Kind::Point);
+    let made = session(40, 3, Kind::POINT);
     let whose = |repeats: usize| {
         let mut generator = ChaCha8Rng::seed_from_u64(8);
         let mut data = Dataset::new(made.data.reading_names().to_vec());
         for row in (0..40).flat_map(|row| std::iter::repeat_n(row, repeats)) {
             let readings = made.data.readings(row);
             let seen = made.device_from_base * made.actual.forward_kinematics(readings);
-            data.push(readings, None, measured(&seen, Kind::Point, &mut generator)).unwrap();
+            data.push(readings, None, measured(&seen, Kind::POINT, &mut generator)).unwrap();
         }
         let found = calibrate(&made.nominal, &data, &everything()).unwrap();
         let found = found.trust.uncertainty.unwrap().discrepancy;
@@ -279,7 +277,7 @@ fn repeats_show_what_is_noise() {
 /// Twelve rows ten times over: nothing is grossly off, and it is no session to rely on.
 #[test]
 fn copied_rows_are_no_rows() {
-    let made = session(12, 4, Kind::Point);
+    let made = session(12, 4, Kind::POINT);
     let mut data = Dataset::new(made.data.reading_names().to_vec());
     for row in (0..12).flat_map(|row| [row; 10]) {
         data.push(made.data.readings(row), None, made.data.observations[row].measurement).unwrap();
@@ -309,7 +307,7 @@ fn joints_of_one_reading_are_drawn_together() {
         noise_rotation_rad: NOISE_RAD,
         ..Simulation::default()
     };
-    let made = simulation.run(&robot, Kind::Pose).unwrap();
+    let made = simulation.run(&robot, Kind::POSE).unwrap();
     let found = calibrate(&made.nominal, &made.data, &stated()).unwrap();
     let (measured, range) =
         (found.trust.expected.measured.unwrap().sigma_m, found.trust.expected.range.unwrap().sigma_m);
@@ -322,7 +320,7 @@ fn joints_of_one_reading_are_drawn_together() {
 #[test]
 fn absurd_noise_is_never_good() {
     for sigma_m in [0.05, 100.0, 1e-9] {
-        let made = session(80, 1, Kind::Pose);
+        let made = session(80, 1, Kind::POSE);
         let options = CalibrationOptions {
             sigma: ByQuantity::default().with(Quantity::Position, Some(sigma_m)),
             ..geometry()

@@ -6,7 +6,7 @@ use nalgebra::Vector3;
 use poecal::io::calibration_file::{CalibrationFile, SCHEMA};
 use poecal::io::residuals::{Residuals, columns};
 use poecal::lie::Pose;
-use poecal::measurement::{Measurement, PointMeasurement, PoseMeasurement, Quantity};
+use poecal::measurement::{Measurement, Quantity};
 use poecal::report::{Detail, calibration_page, summary};
 use serde_json::Value;
 
@@ -55,12 +55,9 @@ fn names_of_quantities_and_their_columns_follow_from_one_table() {
         names.extend(columns(quantity, true));
     }
     assert_eq!(names.len(), Quantity::ALL.into_iter().map(|it| columns(it, true).count()).sum::<usize>());
-    for seen in [
-        Measurement::Point(PointMeasurement { position: Vector3::zeros() }),
-        Measurement::Pose(PoseMeasurement { pose: Pose::identity() }),
-    ] {
+    for seen in [Measurement::point(Vector3::zeros()), Measurement::of_pose(&Pose::identity())] {
         for quantity in Quantity::ALL.into_iter().filter(|quantity| seen.has(*quantity)) {
-            let own = seen.observe().channels().iter().filter(|channel| channel.quantity == quantity);
+            let own = seen.channels().iter().filter(|channel| channel.quantity == quantity);
             assert_eq!(own.map(|channel| channel.name).collect::<Vec<_>>(), quantity.component_names());
         }
     }

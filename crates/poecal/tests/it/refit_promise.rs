@@ -45,7 +45,7 @@ fn judged(robot: &Robot, kind: Kind, seed: u64, refit_tool: bool) -> Judgement {
 #[test]
 fn a_promise_after_a_refit_is_kept_as_often_as_it_says() {
     for robot in [elbow(), seven_axis()] {
-        for kind in [Kind::Pose, Kind::Point] {
+        for kind in [Kind::POSE, Kind::POINT] {
             for refit_tool in [false, true] {
                 let fits = trials(FITS);
                 let judgements: Vec<Judgement> = (fits.seeds())
@@ -73,7 +73,7 @@ fn a_promise_after_a_refit_is_kept_as_often_as_it_says() {
                 assert!((share - 0.94).abs() < near && (turns - 0.94).abs() < near);
                 // A normal error of some thousand components is known to a few per cent. Another tool shows what a point on the last axis
                 // did not: there the error is that of a few sessions in which the drawing was far off.
-                let tolerance = if refit_tool && kind == Kind::Point { 0.4 } else { 0.07 };
+                let tolerance = if refit_tool && kind == Kind::POINT { 0.4 } else { 0.07 };
                 assert!((ratio - 1.0).abs() < tolerance + fits.more(OF_ONE_RATIO));
             }
         }
@@ -83,10 +83,10 @@ fn a_promise_after_a_refit_is_kept_as_often_as_it_says() {
 #[test]
 fn another_robot_breaks_the_promise_after_a_refit_too() {
     let simulation = Simulation { count: 60, ..Simulation::default() };
-    let made = simulation.run(&elbow(), Kind::Point).unwrap();
+    let made = simulation.run(&elbow(), Kind::POINT).unwrap();
     let calibration = calibrate(&made.nominal, &made.data, &geometry()).unwrap();
     let file = CalibrationFile::new(&calibration, &made.data, Inputs::default());
-    let other = Simulation { seed: 2, ..simulation }.run(&elbow(), Kind::Point).unwrap();
+    let other = Simulation { seed: 2, ..simulation }.run(&elbow(), Kind::POINT).unwrap();
     let judgement = file.judge(&other.data, true, true).unwrap();
     let share = judgement.promised.unwrap().position_mm().inside_bound95;
     println!("{:.1} % inside", 100.0 * share);

@@ -44,14 +44,12 @@ impl Session {
 
 /// Rows of several configurations that were come back to.
 fn repeated() -> Dataset {
-    let mut made = Simulation { count: 50, ..Simulation::default() }.run(&elbow(), Kind::Point).unwrap();
+    let mut made = Simulation { count: 50, ..Simulation::default() }.run(&elbow(), Kind::POINT).unwrap();
     for row in (0..5).cycle().take(20) {
         let readings = made.data.readings(row).to_vec();
         let mut observation = made.data.observations[row];
-        if let Measurement::Point(point) = &mut observation.measurement {
-            // Some micrometres apart, in turn along the axes.
-            point.position[made.data.len() % 3] += 1e-6 * (made.data.len() % 7) as f64;
-        }
+        // Some micrometres apart, in turn along the axes.
+        observation.measurement.values_mut()[made.data.len() % 3] += 1e-6 * (made.data.len() % 7) as f64;
         made.data.push_observation(&readings, observation).unwrap();
     }
     made.data
@@ -115,19 +113,19 @@ pub(crate) fn check_figures(name: &str, session: &Session) {
 #[test]
 fn every_figure_is_that_of_the_calibration_file() {
     for (name, robot, kind) in [
-        ("elbow, points", elbow(), Kind::Point),
-        ("seven axes, poses", seven_axis(), Kind::Pose),
-        ("SCARA, mixed", scara(), Kind::Mixed),
-        ("gantry, poses", gantry(), Kind::Pose),
+        ("elbow, points", elbow(), Kind::POINT),
+        ("seven axes, poses", seven_axis(), Kind::POSE),
+        ("SCARA, mixed", scara(), Kind::MIXED),
+        ("gantry, poses", gantry(), Kind::POSE),
     ] {
         check_figures(name, &Session::new(&robot, kind, 60));
     }
-    let mut made = Simulation { count: 80, ..Simulation::default() }.run(&elbow(), Kind::Pose).unwrap();
+    let mut made = Simulation { count: 80, ..Simulation::default() }.run(&elbow(), Kind::POSE).unwrap();
     let gross = Gross { share: 0.05, ..Gross::default() }.spoil(&mut made.data);
     let session = Session::of(&elbow(), made.data);
     check_figures("elbow, wrong rows", &session);
     assert!(session.page().contains("Suspected outliers, the worst first") && !gross.is_empty());
-    let mut data = Simulation::default().run(&elbow(), Kind::Point).unwrap().data;
+    let mut data = Simulation::default().run(&elbow(), Kind::POINT).unwrap().data;
     data.observations.iter_mut().for_each(|row| row.set = Some(Set::Fit));
     let session = Session::of(&elbow(), data);
     check_figures("elbow, nothing held out", &session);
@@ -144,7 +142,7 @@ fn robots_with_branches_are_drawn_with_their_instruments() {
         ..ChainSelection::default()
     };
     let document = UrdfDocument::parse(include_str!("../data/torso.urdf"), "torso.urdf", &selection).unwrap();
-    let session = Session::new(document.robot(), Kind::Pose, 200);
+    let session = Session::new(document.robot(), Kind::POSE, 200);
     check_figures("torso", &session);
     let page = session.page();
     assert!(page.contains("<td class=\"word\">link of torso2</td>"));
@@ -165,7 +163,7 @@ fn robots_with_branches_are_drawn_with_their_instruments() {
     }
     assert_eq!(data["rows"]["instrument"].as_array().unwrap().len(), 200);
     // Of a single instrument beside a robot without branches nothing is drawn.
-    let data = data_of(&Session::new(&elbow(), Kind::Pose, 60).page());
+    let data = data_of(&Session::new(&elbow(), Kind::POSE, 60).page());
     assert_eq!((&data["draws_instruments"], &data["rows"]["instrument"]), (&false.into(), &Value::Null));
 }
 
@@ -184,7 +182,7 @@ fn repeated_configurations_are_stated_with_accuracy_and_repeatability() {
 #[test]
 fn configurations_whose_targets_are_all_off_alike_are_named() {
     let robot = elbow();
-    let made = Simulation { count: 60, ..Simulation::default() }.run(&robot, Kind::Point).unwrap();
+    let made = Simulation { count: 60, ..Simulation::default() }.run(&robot, Kind::POINT).unwrap();
     let device_from_base = Pose::from_xyz_rpy([2.0, -1.0, 0.5], [0.1, -0.2, 2.0]);
     let places = [[0.05, 0.0, 0.02], [-0.03, 0.06, 0.0], [0.0, -0.05, 0.04]].map(Vector3::from);
     let mut data = Dataset::new(made.data.reading_names().to_vec());
@@ -200,11 +198,10 @@ fn configurations_whose_targets_are_all_off_alike_are_named() {
             let mut observation = made.data.observations[row];
             observation.target = target;
             observation.source.line = (3 * row + target + 2) as u32;
-            if let Measurement::Point(point) = &mut observation.measurement {
-                let noise = 2e-5 * Vector3::from_fn(|k, _| ((7 * row + 3 * target + k) as f64).sin());
-                point.position = device_from_base.act(&tip.act(place)) + noise;
-                point.position.x += if row == 50 && target == 1 { 0.01 } else { 0.0 };
-            }
+            let noise = 2e-5 * Vector3::from_fn(|k, _| ((7 * row + 3 * target + k) as f64).sin());
+            let wrong = if row == 50 && target == 1 { 0.01 } else { 0.0 };
+            let position = device_from_base.act(&tip.act(place)) + noise + Vector3::x() * wrong;
+            observation.measurement = Measurement::point(position);
             data.push_observation(&readings, observation).unwrap();
         }
     }
@@ -220,7 +217,7 @@ fn configurations_whose_targets_are_all_off_alike_are_named() {
 
 #[test]
 fn the_page_made_again_from_files_is_the_same() {
-    let session = Session::new(&scara(), Kind::Mixed, 60);
+    let session = Session::new(&scara(), Kind::MIXED, 60);
     let inputs = Inputs { model: "robot.urdf".into(), ..Inputs::default() };
     let direct = CalibrationFile::new(&session.calibration, &session.data, inputs);
     let read = Residuals::parse(&session.residuals().text(), "residuals.csv").unwrap();
@@ -243,7 +240,7 @@ fn names_are_no_markup() {
             Robot::new(name, joints, Pose::from_translation(Vector3::new(0.5, 0.0, 0.3))).unwrap();
         robot.base_name = name.to_owned();
         robot.tip_name = name.to_owned();
-        let mut made = Simulation { count: 40, ..Simulation::default() }.run(&robot, Kind::Pose).unwrap();
+        let mut made = Simulation { count: 40, ..Simulation::default() }.run(&robot, Kind::POSE).unwrap();
         made.data.files.push(name.into());
         made.data.targets[0] = Some(name.to_owned());
         made.data.ids = vec![name.to_owned(); made.data.len()];
@@ -268,7 +265,7 @@ fn names_are_no_markup() {
 fn pages_are_small_and_long_sessions_are_thinned_and_said_so() {
     let mut sizes = Vec::new();
     for count in [500, 50_000] {
-        let session = Session::new(&elbow(), Kind::Pose, count);
+        let session = Session::new(&elbow(), Kind::POSE, count);
         let page = session.page();
         sizes.push(page.len());
         let data = data_of(&page);
@@ -282,18 +279,18 @@ fn pages_are_small_and_long_sessions_are_thinned_and_said_so() {
 
 #[test]
 fn residuals_of_another_calibration_are_refused() {
-    let session = Session::new(&elbow(), Kind::Point, 60);
-    let other = Session::new(&elbow(), Kind::Point, 61);
+    let session = Session::new(&elbow(), Kind::POINT, 60);
+    let other = Session::new(&elbow(), Kind::POINT, 61);
     let error = calibration_page(&session.file, &other.residuals()).unwrap_err().to_string();
     assert!(error.contains("expected 42 and 18 as in the calibration"), "{error}");
-    let other = Session::new(&scara(), Kind::Point, 60);
+    let other = Session::new(&scara(), Kind::POINT, 60);
     let error = calibration_page(&session.file, &other.residuals()).unwrap_err().to_string();
     assert!(error.contains("found residuals without the reading of `joint5`"), "{error}");
 }
 
 #[test]
 fn residuals_that_were_changed_are_told_with_their_place() {
-    let session = Session::new(&elbow(), Kind::Point, 60);
+    let session = Session::new(&elbow(), Kind::POINT, 60);
     let text = session.residuals().text();
     // A message, and what stands at its place: columns count characters.
     let refused = |text: &str| {

@@ -10,7 +10,7 @@ use poecal::calibration::{
 };
 use poecal::estimate::{Estimate, Packed, Session};
 use poecal::io::calibration_file::{CalibrationFile, Inputs, OutlierSet};
-use poecal::measurement::{ByQuantity, Dataset, Measurement, Noise, PointMeasurement, Quantity, Set};
+use poecal::measurement::{ByQuantity, Dataset, Measurement, Noise, Quantity, Set};
 use poecal::parameters::screw_axes;
 use poecal::problem::Problem;
 use poecal::robot::Robot;
@@ -23,7 +23,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 use rayon::prelude::*;
 
-const KINDS: [Kind; 2] = [Kind::Pose, Kind::Point];
+const KINDS: [Kind; 2] = [Kind::POSE, Kind::POINT];
 /// What the ratio of two errors scatters by from session to session.
 const OF_ONE_SESSION: f64 = 0.2;
 
@@ -205,7 +205,7 @@ fn registration_survives_three_tenths_of_the_rows_wrong() {
 
 #[test]
 fn weights_scale_the_noise_and_zero_leaves_a_row_out() {
-    let (_, made) = session(&elbow(), Kind::Mixed, 3);
+    let (_, made) = session(&elbow(), Kind::MIXED, 3);
     let mut data = made.data;
     let robot = elbow();
     let packed = Packed::new(&robot, data.all_readings(), 6);
@@ -241,7 +241,7 @@ fn leverages_add_up_to_the_rank() {
     for kind in KINDS {
         let (_, made) = session(&elbow(), kind, 5);
         let found = fit(&elbow(), &made.data, Robust::Off);
-        let dim = if kind == Kind::Pose { 6.0 } else { 3.0 };
+        let dim = if kind == Kind::POSE { 6.0 } else { 3.0 };
         let rows = row_influence(&found, &made.data, &found.fit_rows);
         let sum: f64 = rows.iter().map(|row| dim * row.leverage).sum();
         println!("{}: leverages add up to {sum:.9}, rank {}", kind.word(), found.identifiability.rank);
@@ -253,7 +253,7 @@ fn leverages_add_up_to_the_rank() {
 /// A row's studentised residual is the same whether it was fitted or held out, but for curvature and the scale of the other rows.
 #[test]
 fn studentized_residuals_do_not_depend_on_whether_the_row_was_fitted() {
-    let (_, made) = session(&elbow(), Kind::Point, 6);
+    let (_, made) = session(&elbow(), Kind::POINT, 6);
     let options = CalibrationOptions {
         sigma: ByQuantity::default().with(Quantity::Position, Some(5e-5)),
         ..Default::default()
@@ -278,7 +278,7 @@ fn studentized_residuals_do_not_depend_on_whether_the_row_was_fitted() {
 
 #[test]
 fn held_out_rows_are_judged_too_and_the_file_names_all() {
-    let (_, made) = session(&elbow(), Kind::Pose, 8);
+    let (_, made) = session(&elbow(), Kind::POSE, 8);
     let (mut data, gross) = spoilt(&made, 0.1, 8);
     data.files.push("session.csv".into());
     for (line, row) in (2..).zip(&mut data.observations) {
@@ -312,7 +312,7 @@ fn held_out_rows_are_judged_too_and_the_file_names_all() {
 /// 0.05 mm of noise where 0.005 mm was stated is no reason to suspect anything: the scale is that of the residuals.
 #[test]
 fn a_stated_noise_that_is_too_small_makes_no_suspects() {
-    let (_, made) = session(&scara(), Kind::Point, 9);
+    let (_, made) = session(&scara(), Kind::POINT, 9);
     let options = CalibrationOptions {
         sigma: ByQuantity::default().with(Quantity::Position, Some(5e-6)),
         ..Default::default()
@@ -328,7 +328,7 @@ fn a_stated_noise_that_is_too_small_makes_no_suspects() {
 #[test]
 fn robust_results_do_not_depend_on_the_number_of_threads() {
     for count in [200, 5000] {
-        let made = Simulation { count, ..Simulation::default() }.run(&elbow(), Kind::Mixed).unwrap();
+        let made = Simulation { count, ..Simulation::default() }.run(&elbow(), Kind::MIXED).unwrap();
         let (data, _) = spoilt(&made, 0.2, 1);
         let found = |threads| format!("{:?}", with_threads(threads, || calibrated(&elbow(), &data)));
         assert_eq!(found(1), found(2));
@@ -361,7 +361,7 @@ fn what_all_targets_of_a_configuration_show_is_the_robot() {
                 for (target, place) in ["a", "b", "c"].iter().zip(&places) {
                     let seen = actual.forward_kinematics(&real).act(place);
                     let position = seen + random::normal_vector(&mut generator) * 2e-5;
-                    let seen = Measurement::Point(PointMeasurement { position });
+                    let seen = Measurement::point(position);
                     data.push(&readings, Some(*target), seen).unwrap();
                 }
             }
@@ -398,7 +398,7 @@ fn rows_that_alone_tell_something_are_kept() {
                         middle.iter().zip(&far).map(|(here, there)| here + share * (there - here)).collect();
                     let position = actual.forward_kinematics(&real(&readings)).translation
                         + random::normal_vector(&mut generator) * 3e-5;
-                    data.push(&readings, None, Measurement::Point(PointMeasurement { position })).unwrap();
+                    data.push(&readings, None, Measurement::point(position)).unwrap();
                 }
                 let options = CalibrationOptions { robust, held_out: 0.0, ..geometry() };
                 let found = calibrate(&robot, &data, &options).unwrap();

@@ -45,7 +45,7 @@ fn meshes_are_found_beside_the_urdf_and_others_are_named() {
     let path = cell.join("robot/two.urdf");
     fs::write(&path, TEXT).unwrap();
     let model = Model::read(&path, &Default::default()).unwrap();
-    let made = Simulation::default().run(&model.robot, Kind::Pose).unwrap();
+    let made = Simulation::default().run(&model.robot, Kind::POSE).unwrap();
     let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default()).unwrap();
     let file = CalibrationFile::new(&calibration, &made.data, Inputs::of_model(&model));
 
@@ -97,7 +97,7 @@ fn a_box_is_drawn_without_any_file() {
     let box_instead = r#"<box size="0.4 0.05 0.05"/>"#;
     let text = TEXT.replace(r#"<mesh filename="package://elsewhere/arm.stl"/>"#, box_instead);
     let model = Model::parse(&text, "two.urdf", &Default::default()).unwrap();
-    let made = Simulation::default().run(&model.robot, Kind::Pose).unwrap();
+    let made = Simulation::default().run(&model.robot, Kind::POSE).unwrap();
     let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default()).unwrap();
     let mut file = CalibrationFile::new(&calibration, &made.data, Inputs::of_model(&model));
     let found = Shapes::of(&file).shapes;

@@ -15,16 +15,16 @@ use poecal::simulate::{Kind, Simulated, Simulation, elbow, random_chain, seven_a
 /// Kinds without a device frame, with the rank that they add to 4 of each joint that turns and 2 of each that slides, and what it lacks of the
 /// unknowns: the size of the robot where nothing has a length.
 const KINDS: [(Kind, i32, usize); 10] = [
-    (Kind::Distance, 6, 0),
-    (Kind::Change, 9, 0),
-    (Kind::Sphere, 0, 1),
-    (Kind::Socket, 2, 1),
-    (Kind::Plane, 5, 1),
-    (Kind::Height, 6, 0),
-    (Kind::Flush, 4, 1),
-    (Kind::BallBar, -3, 0),
-    (Kind::Relative, 0, 0),
-    (Kind::Component, 2, 0),
+    (Kind::DISTANCE, 6, 0),
+    (Kind::CHANGE, 9, 0),
+    (Kind::SPHERE, 0, 1),
+    (Kind::SOCKET, 2, 1),
+    (Kind::PLANE, 5, 1),
+    (Kind::HEIGHT, 6, 0),
+    (Kind::FLUSH, 4, 1),
+    (Kind::BALL_BAR, -3, 0),
+    (Kind::RELATIVE, 0, 0),
+    (Kind::COMPONENT, 2, 0),
 ];
 
 fn g(robot: &Robot) -> usize {
@@ -92,7 +92,7 @@ fn each_kind_alone_finds_the_robot_and_has_the_rank_of_the_closed_form() {
 #[test]
 fn directions_tell_directions_alone() {
     for robot in [elbow(), seven_axis()] {
-        let made = exact(100, 1).run(&robot, Kind::Direction).unwrap();
+        let made = exact(100, 1).run(&robot, Kind::DIRECTION).unwrap();
         let found = fit(&made);
         assert!(worst(&found) < 1e-9, "{:e}", worst(&found));
         assert_eq!(found.identifiability.rank, 2 * robot.joints.len() + 2);
@@ -102,7 +102,7 @@ fn directions_tell_directions_alone() {
 /// A known distance of two sockets tells the size.
 #[test]
 fn one_known_length_gives_the_scale() {
-    let mut made = exact(150, 2).run(&elbow(), Kind::Socket).unwrap();
+    let mut made = exact(150, 2).run(&elbow(), Kind::SOCKET).unwrap();
     let without = fit(&made);
     println!("{:?}", without.identifiability.unidentifiable);
     assert_eq!(without.identifiability.unidentifiable[0].cause, Cause::NoLength);
@@ -112,7 +112,7 @@ fn one_known_length_gives_the_scale() {
     assert_eq!((found.identifiability.rank, found.identifiability.parameters), (27, 27));
     assert!(found.identifiability.unidentifiable.is_empty());
     // Sizes are right, and so are predictions anywhere.
-    let other = exact(60, 2).held_out(&made, Kind::Distance, 60).unwrap();
+    let other = exact(60, 2).held_out(&made, Kind::DISTANCE, 60).unwrap();
     assert_eq!(other.len(), 60);
     let apart = |estimate: &poecal::estimate::Estimate| {
         let [a, b] = [0, 1].map(|station| estimate.device(station).inverse().translation);
@@ -129,9 +129,9 @@ fn one_known_length_gives_the_scale() {
 fn kinds_are_mixed() {
     let robot = elbow();
     let simulation = exact(60, 3);
-    let first = simulation.run(&robot, Kind::Distance).unwrap();
+    let first = simulation.run(&robot, Kind::DISTANCE).unwrap();
     let mut data = first.data.clone();
-    for kind in [Kind::Socket, Kind::Plane, Kind::Sphere, Kind::Change] {
+    for kind in [Kind::SOCKET, Kind::PLANE, Kind::SPHERE, Kind::CHANGE] {
         let mut more = simulation.held_out(&first, kind, 40).unwrap();
         // The zero of changes is one of an instrument.
         more.stations.iter_mut().flatten().for_each(|name| *name = format!("{} {name}", kind.word()));
@@ -171,8 +171,7 @@ fn fits_reach_the_bound_of_cramer_and_rao() {
                 ..geometry()
             };
             let found = calibrate(&made.nominal, &made.data, &options).unwrap();
-            let numbers: usize =
-                made.data.observations.iter().map(|row| row.measurement.observe().dim()).sum();
+            let numbers: usize = made.data.observations.iter().map(|row| row.measurement.dim()).sum();
             let unknowns = found.identifiability.rank;
             if kind.is_touched() {
                 expected += (numbers - unknowns) as f64;
@@ -199,7 +198,7 @@ fn fits_reach_the_bound_of_cramer_and_rao() {
 #[test]
 fn a_tolerance_is_needed_where_nothing_has_a_length() {
     let options = CalibrationOptions { tolerance: None, ..geometry() };
-    for (kind, is_refused) in [(Kind::Socket, true), (Kind::Plane, true), (Kind::Distance, false)] {
+    for (kind, is_refused) in [(Kind::SOCKET, true), (Kind::PLANE, true), (Kind::DISTANCE, false)] {
         let made = exact(80, 1).run(&elbow(), kind).unwrap();
         let found = calibrate(&made.nominal, &made.data, &options);
         assert_eq!(found.is_err(), is_refused, "{}", kind.word());
@@ -215,7 +214,7 @@ fn a_tolerance_is_needed_where_nothing_has_a_length() {
 /// Places that only held-out rows name are found from these; the figure is what the constraint leaves.
 #[test]
 fn held_out_sockets_are_judged_by_their_own_mean() {
-    let made = exact(160, 4).run(&elbow(), Kind::Socket).unwrap();
+    let made = exact(160, 4).run(&elbow(), Kind::SOCKET).unwrap();
     for fitted in 0..2 {
         let mut data = made.data.clone();
         for row in &mut data.observations {
@@ -241,7 +240,7 @@ fn held_out_sockets_are_judged_by_their_own_mean() {
 fn sizes_are_chosen_where_other_sockets_are_held_out() {
     let Ok(Corrections::Sizes(terms)) = "sag=2e-3,tilt=1e-3".parse() else { panic!("no sizes") };
     let made = Simulation { terms, count: 160, seed: 4, ..Simulation::default() };
-    let mut made = made.run(&elbow(), Kind::Socket).unwrap();
+    let mut made = made.run(&elbow(), Kind::SOCKET).unwrap();
     for row in &mut made.data.observations {
         row.set = Some(if row.station == 0 { Set::Fit } else { Set::HeldOut });
     }
@@ -257,7 +256,7 @@ fn sizes_are_chosen_where_other_sockets_are_held_out() {
 /// Corrections are fitted for these too.
 #[test]
 fn corrections_are_fitted_where_there_is_no_device() {
-    let made = Simulation { count: 200, ..Simulation::default() }.run(&elbow(), Kind::Distance).unwrap();
+    let made = Simulation { count: 200, ..Simulation::default() }.run(&elbow(), Kind::DISTANCE).unwrap();
     let options = CalibrationOptions { corrections: Corrections::Auto, ..geometry() };
     let found = calibrate(&made.nominal, &made.data, &options).unwrap();
     assert!(found.correction.is_some());
@@ -278,7 +277,7 @@ fn a_single_unnamed_socket_is_a_fixed_point() {
 #[test]
 fn residuals_of_a_sphere_have_their_sign() {
     let simulation = Simulation { count: 150, ..Simulation::default() };
-    let made = simulation.run(&elbow(), Kind::Sphere).unwrap();
+    let made = simulation.run(&elbow(), Kind::SPHERE).unwrap();
     let options = CalibrationOptions { robust: Robust::Off, ..geometry() };
     let found = calibrate(&made.nominal, &made.data, &options).unwrap();
     let packed = Packed::of(&made.nominal, &made.data);

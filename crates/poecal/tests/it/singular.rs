@@ -157,7 +157,7 @@ fn calibrated(nominal: &Robot, seed: u64) -> Compensation {
         seed,
         ..Simulation::default()
     };
-    let made = simulation.run(nominal, Kind::Pose).unwrap();
+    let made = simulation.run(nominal, Kind::POSE).unwrap();
     let options = CalibrationOptions { corrections: Corrections::Off, ..CalibrationOptions::default() };
     let calibration = calibrate(nominal, &made.data, &options).unwrap();
     let file = CalibrationFile::new(&calibration, &made.data, Inputs::default());
@@ -296,7 +296,7 @@ fn a_straight_wrist_stays_straight() {
     let nominal = arm(&ARMS[0].1);
     let simulation =
         Simulation { count: 1, error_rotation_rad: 1e-3, error_position_m: 3e-4, ..Simulation::default() };
-    let actual = simulation.run(&nominal, Kind::Pose).unwrap().actual;
+    let actual = simulation.run(&nominal, Kind::POSE).unwrap().actual;
     let mut compensation = Compensation::new(&nominal, &actual, &[], &ChangeOptions::default()).unwrap();
     let found = compensation.joints(&[0.0; 6]);
     let changes: Vec<f64> = found.readings.iter().map(|it| it.to_degrees()).collect();

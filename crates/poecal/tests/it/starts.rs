@@ -6,7 +6,7 @@ use nalgebra::{Matrix3, Vector3};
 use poecal::calibration::delivered;
 use poecal::estimate::{self, Estimate, Packed};
 use poecal::lie::{Pose, rotation};
-use poecal::measurement::{Dataset, Measurement, Noise, PointMeasurement, PoseMeasurement, Quantity};
+use poecal::measurement::{Dataset, Measurement, Noise, Quantity};
 use poecal::parameters::{DeviceFrame, Parameter, TargetFrame, TargetPlace};
 use poecal::problem::Problem;
 use poecal::robot::Robot;
@@ -157,9 +157,9 @@ fn measure(session: &Session, robot: &Robot, generator: &mut ChaCha8Rng) -> (Dat
         let position = seen.translation + random::normal_vector(generator) * NOISE[Quantity::Position];
         let turn = rotation::exp(&(random::normal_vector(generator) * NOISE[Quantity::Rotation]));
         let measurement = if is_frame {
-            Measurement::Pose(PoseMeasurement { pose: Pose::new(turn * seen.rotation, position) })
+            Measurement::of_pose(&Pose::new(turn * seen.rotation, position))
         } else {
-            Measurement::Point(PointMeasurement { position })
+            Measurement::point(position)
         };
         data.push(&readings, name, measurement).unwrap();
     }

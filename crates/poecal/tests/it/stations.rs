@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 use poecal::calibration::{Calibration, CalibrationOptions, DeviceFrameKnowledge, calibrate, row_influence};
 use poecal::estimate::{Packed, Session};
 use poecal::lie::{Pose, rotation};
-use poecal::measurement::{Dataset, Measurement, PointMeasurement, PoseMeasurement, Quantity, Set};
+use poecal::measurement::{Dataset, Measurement, Quantity, Set};
 use poecal::robot::Robot;
 use poecal::simulate::{Kind, Simulated, Simulation, elbow, gantry, random, scara, seven_axis};
 use rand_chacha::ChaCha8Rng;
@@ -19,9 +19,9 @@ fn moved(station: usize) -> Pose {
 fn seen_from(place: &Pose, measurement: &Measurement) -> Measurement {
     let pose = *place * measurement.pose();
     if measurement.sees_orientation() {
-        Measurement::Pose(PoseMeasurement { pose })
+        Measurement::of_pose(&pose)
     } else {
-        Measurement::Point(PointMeasurement { position: pose.translation })
+        Measurement::point(pose.translation)
     }
 }
 
@@ -60,7 +60,7 @@ fn unseen_m(simulation: &Simulation, made: &Simulated, kind: Kind, calibration: 
 #[test]
 fn several_places_calibrate_as_one_does() {
     for (robot, kind) in
-        [(elbow(), Kind::Point), (elbow(), Kind::Pose), (scara(), Kind::Pose), (seven_axis(), Kind::Mixed)]
+        [(elbow(), Kind::POINT), (elbow(), Kind::POSE), (scara(), Kind::POSE), (seven_axis(), Kind::MIXED)]
     {
         let (mut one, mut two) = (0.0_f64, 0.0);
         for seed in 1..=4 {
@@ -95,7 +95,7 @@ fn several_places_calibrate_as_one_does() {
 #[test]
 fn exact_measurements_from_three_places_leave_nothing() {
     for robot in [elbow(), scara(), gantry()] {
-        for kind in [Kind::Pose, Kind::Point] {
+        for kind in [Kind::POSE, Kind::POINT] {
             let exact = Simulation {
                 count: 90,
                 noise_position_m: 0.0,
@@ -114,10 +114,10 @@ fn exact_measurements_from_three_places_leave_nothing() {
 #[test]
 fn each_further_place_adds_six_to_the_rank() {
     for (robot, kind, plain) in [
-        (elbow(), Kind::Point, 27),
-        (elbow(), Kind::Pose, 30),
-        (scara(), Kind::Pose, 20),
-        (gantry(), Kind::Pose, 24),
+        (elbow(), Kind::POINT, 27),
+        (elbow(), Kind::POSE, 30),
+        (scara(), Kind::POSE, 20),
+        (gantry(), Kind::POSE, 24),
     ] {
         let (_, made) = session(&robot, kind, 90, 2);
         for stations in 1..=3 {
@@ -127,7 +127,7 @@ fn each_further_place_adds_six_to_the_rank() {
             assert_eq!(found.identifiability.parameters, expected);
             assert_eq!(found.identifiability.rank, expected, "{}", robot.name);
             // The same rank, by another way: what each row means to the fit.
-            let dims = data.observations.iter().map(|row| row.measurement.observe().dim() as f64);
+            let dims = data.observations.iter().map(|row| row.measurement.dim() as f64);
             let leverages = row_influence(&found, &data, &data.all_rows());
             let sum: f64 = leverages.iter().zip(dims).map(|(row, dim)| row.leverage * dim).sum();
             assert!((sum - expected as f64).abs() < 1e-3, "{sum}");
@@ -138,7 +138,7 @@ fn each_further_place_adds_six_to_the_rank() {
 #[test]
 fn a_target_that_only_one_place_saw_is_found_too() {
     let robot = elbow();
-    let (_, made) = session(&robot, Kind::Point, 120, 3);
+    let (_, made) = session(&robot, Kind::POINT, 120, 3);
     let mut data = dealt(&made, 2);
     data.targets = vec![Some("a".into()), Some("b".into()), Some("c".into())];
     for (row, observation) in data.observations.iter_mut().enumerate() {
@@ -147,8 +147,8 @@ fn a_target_that_only_one_place_saw_is_found_too() {
         let tip = made.device_from_base * made.actual.forward_kinematics(made.data.readings(row));
         let by = tip.rotation * shift;
         let by = if observation.station == 0 { by } else { moved(1).rotation * by };
-        let Measurement::Point(seen) = &mut observation.measurement else { continue };
-        seen.position += by;
+        let shifted = |pose: Pose| Pose::new(pose.rotation, pose.translation + by);
+        observation.measurement = observation.measurement.changed(shifted).unwrap();
     }
     let found = fit(&robot, &data);
     assert_eq!(found.identifiability.rank, 24 + 9 + 6);
@@ -162,7 +162,7 @@ fn refusal(robot: &Robot, data: &Dataset, options: &CalibrationOptions) -> Strin
 #[test]
 fn places_that_cannot_be_found_are_refused() {
     let robot = elbow();
-    let (_, made) = session(&robot, Kind::Point, 60, 1);
+    let (_, made) = session(&robot, Kind::POINT, 60, 1);
     let data = dealt(&made, 2);
     let base = CalibrationOptions { frame: DeviceFrameKnowledge::Base, ..Default::default() };
     assert_eq!(
@@ -184,7 +184,7 @@ fn places_that_cannot_be_found_are_refused() {
 #[test]
 fn the_frame_of_a_held_out_place_is_found_from_its_own_rows() {
     let robot = elbow();
-    let (simulation, made) = session(&robot, Kind::Point, 120, 1);
+    let (simulation, made) = session(&robot, Kind::POINT, 120, 1);
     let mut data = dealt(&made, 2);
     for observation in &mut data.observations {
         observation.set = Some(if observation.station == 0 { Set::Fit } else { Set::HeldOut });
@@ -201,7 +201,7 @@ fn the_frame_of_a_held_out_place_is_found_from_its_own_rows() {
 #[test]
 fn mistakes_are_named_whatever_place_they_were_seen_from() {
     let robot = elbow();
-    let (_, made) = session(&robot, Kind::Pose, 80, 1);
+    let (_, made) = session(&robot, Kind::POSE, 80, 1);
     let mut data = Dataset::new(made.data.reading_names().to_vec());
     let two = dealt(&made, 2);
     for row in 0..two.len() {
@@ -221,7 +221,7 @@ fn mistakes_are_named_whatever_place_they_were_seen_from() {
 #[test]
 fn the_noise_of_each_instrument_is_found() {
     let robot = elbow();
-    let (simulation, made) = session(&robot, Kind::Pose, 240, 5);
+    let (simulation, made) = session(&robot, Kind::POSE, 240, 5);
     let mut data = dealt(&made, 2);
     let mut generator = ChaCha8Rng::seed_from_u64(3);
     // The second one is ten times noisier in position, three times in rotation.
@@ -231,8 +231,7 @@ fn the_noise_of_each_instrument_is_found() {
         let seen = observation.measurement.pose();
         let turn = rotation::exp(&(random::normal_vector(&mut generator) * rotation_rad));
         let position = seen.translation + random::normal_vector(&mut generator) * position_m;
-        observation.measurement =
-            Measurement::Pose(PoseMeasurement { pose: Pose::new(turn * seen.rotation, position) });
+        observation.measurement = Measurement::of_pose(&Pose::new(turn * seen.rotation, position));
     }
     let found = fit(&made.nominal, &data);
     let [first, second] = [0, 1].map(|station| found.stations[station].noise);
@@ -245,10 +244,10 @@ fn the_noise_of_each_instrument_is_found() {
     }
     assert!((first[Quantity::Position] / simulation.noise_position_m).ln().abs() < 0.15);
     // With one noise for both the better instrument is hardly heard.
-    let unseen = unseen_m(&simulation, &made, Kind::Pose, &found);
+    let unseen = unseen_m(&simulation, &made, Kind::POSE, &found);
     let mut stated = data.clone();
     stated.observations.iter_mut().for_each(|row| row.stated.set(Quantity::Position, Some(0.36e-3)));
-    let together = unseen_m(&simulation, &made, Kind::Pose, &fit(&made.nominal, &stated));
+    let together = unseen_m(&simulation, &made, Kind::POSE, &fit(&made.nominal, &stated));
     println!("unseen {:.4} mm, with one noise for both {:.4} mm", 1e3 * unseen, 1e3 * together);
     assert!(unseen < 0.5 * together);
 }

@@ -35,7 +35,7 @@ fn parameters(robot: &Robot, kind: Kind) -> Vec<Parameter> {
     let screws = robot.joints.iter().enumerate();
     let mut free: Vec<Parameter> =
         screws.map(|(joint, it)| Parameter::ScrewAxis(ScrewAxis { joint, kind: it.kind })).collect();
-    free.push(if kind == Kind::Point {
+    free.push(if kind == Kind::POINT {
         Parameter::TargetPlace(TargetPlace { target: 0 })
     } else {
         Parameter::TargetFrame(TargetFrame::new(0))
@@ -148,7 +148,7 @@ fn runs(kind: Kind) -> (Trials, Squares, Squares) {
 
 #[test]
 fn errors_of_pose_calibrations_are_at_the_bound() {
-    let (runs, found, allowed) = runs(Kind::Pose);
+    let (runs, found, allowed) = runs(Kind::POSE);
     judge("poses, position (µm)", runs, found.0, allowed.0);
     judge("poses, rotation (µrad)", runs, found.1, allowed.1);
 }
@@ -156,13 +156,13 @@ fn errors_of_pose_calibrations_are_at_the_bound() {
 /// Points say nothing of the target's orientation: positions alone are judged.
 #[test]
 fn errors_of_point_calibrations_are_at_the_bound() {
-    let (runs, found, allowed) = runs(Kind::Point);
+    let (runs, found, allowed) = runs(Kind::POINT);
     judge("points, position (µm)", runs, found.0, allowed.0);
 }
 
 #[test]
 fn errors_of_mixed_calibrations_are_at_the_bound() {
-    let (runs, found, allowed) = runs(Kind::Mixed);
+    let (runs, found, allowed) = runs(Kind::MIXED);
     judge("mixed, position (µm)", runs, found.0, allowed.0);
     judge("mixed, rotation (µrad)", runs, found.1, allowed.1);
 }

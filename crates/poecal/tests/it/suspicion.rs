@@ -6,7 +6,7 @@ use nalgebra::Vector3;
 use poecal::calibration::calibrate;
 use poecal::lie::Pose;
 use poecal::lie::rotation;
-use poecal::measurement::{Dataset, Measurement, PointMeasurement};
+use poecal::measurement::{Dataset, Measurement};
 use poecal::robot::{JointKind, Robot};
 use poecal::simulate::{Kind, Simulation, elbow, gantry, random, random_configuration, scara, seven_axis};
 use rand_chacha::ChaCha8Rng;
@@ -39,7 +39,7 @@ fn with_bad_transmission(robot: &Robot, joint: usize, amplitude: f64, seed: u64)
         // A point beside the last axis, so that every joint moves it.
         let seen = actual.forward_kinematics(&turned).act(&Vector3::new(0.1, 0.02, 0.05));
         let position = seen + random::normal_vector(&mut generator) * NOISE_M;
-        data.push(&readings, None, Measurement::Point(PointMeasurement { position })).unwrap();
+        data.push(&readings, None, Measurement::point(position)).unwrap();
     }
     data
 }
@@ -94,7 +94,7 @@ fn an_axis_that_stands_out_is_named() {
             let mut screws: Vec<_> = actual.joints.iter().map(|joint| joint.screw).collect();
             screws[joint] = screws[joint].transformed(&motion);
             actual = actual.with_screws(&screws);
-            let made = simulation.measure(&robot, actual, Kind::Pose, &mut generator).unwrap();
+            let made = simulation.measure(&robot, actual, Kind::POSE, &mut generator).unwrap();
             let found = named(&made.nominal, &made.data);
             println!("{:12} {:12} {found:?}", robot.name, robot.joints[joint].name);
             right += usize::from(found.iter().any(|(named, _)| *named == joint));
@@ -115,7 +115,7 @@ fn sound_robots_are_not_suspected() {
         .into_par_iter()
         .map(|seed| {
             let simulation = Simulation { seed: 900 + seed, count: 60, ..Simulation::default() };
-            let kind = if seed % 2 == 0 { Kind::Pose } else { Kind::Point };
+            let kind = if seed % 2 == 0 { Kind::POSE } else { Kind::POINT };
             let made = simulation.run(&robots[seed as usize / 2 % 4], kind).unwrap();
             named(&made.nominal, &made.data).len()
         })

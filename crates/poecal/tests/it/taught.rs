@@ -67,7 +67,7 @@ fn corrections(nominal: &Robot, actual: &Robot, meant: impl Fn(&Robot, &[f64]) -
 
 #[test]
 fn a_reflector_off_the_flange_is_no_error_of_the_joints() {
-    for kind in [Kind::Pose, Kind::Point] {
+    for kind in [Kind::POSE, Kind::POINT] {
         for frame in [DeviceFrameKnowledge::Base, DeviceFrameKnowledge::Unknown] {
             let (file, actual) = calibrated((0.0, 0.0), kind, frame);
             let taught = file.taught(&actual).unwrap();
@@ -87,7 +87,7 @@ fn a_reflector_off_the_flange_is_no_error_of_the_joints() {
 #[test]
 fn corrected_programs_reach_what_base_and_tool_of_the_actual_robot_make_of_them() {
     for frame in [DeviceFrameKnowledge::Base, DeviceFrameKnowledge::Unknown] {
-        let (file, actual) = calibrated((0.01, 2e-3), Kind::Pose, frame);
+        let (file, actual) = calibrated((0.01, 2e-3), Kind::POSE, frame);
         let taught = file.taught(&actual).unwrap();
         let nominal = file.nominal_robot().unwrap();
         let by_frames = |_: &Robot, q: &[f64]| taught.base * nominal.forward_kinematics(q) * taught.tool;

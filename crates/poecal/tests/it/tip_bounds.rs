@@ -30,7 +30,7 @@ fn made(nominal: &Robot, seed: u64) -> Robot {
 fn bounds_of_a_tip_beside_the_reflector_hold() {
     let trials = trials(40).at_least(12);
     let reflector = Pose::from_translation(Vector3::from(REFLECTOR));
-    for (nominal, kind) in [(elbow(), Kind::Point), (elbow(), Kind::Pose), (seven_axis(), Kind::Point)] {
+    for (nominal, kind) in [(elbow(), Kind::POINT), (elbow(), Kind::POSE), (seven_axis(), Kind::POINT)] {
         let (mut inside, mut all, mut off, mut expected) = (0, 0, 0.0, 0.0);
         for seed in trials.seeds() {
             let actual = made(&nominal, seed);

@@ -240,14 +240,14 @@ fn a_toml_model_says_on_which_link_everything_stands() {
 fn a_calibration_of_two_hands_keeps_its_branches() {
     let nominal = torso().robot().clone();
     let simulation = Simulation { count: 300, ..Simulation::default() };
-    let made = simulation.run(&nominal, Kind::Pose).unwrap();
+    let made = simulation.run(&nominal, Kind::POSE).unwrap();
     let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default()).unwrap();
     let held_out = calibration.accuracy.held_out.unwrap().calibrated.position_mm().rms;
     // Noise of 0.05 mm of each component.
     println!("held out: {held_out:.4} mm");
     assert!(held_out < 1.3 * 0.05 * 3f64.sqrt(), "{held_out}");
     // What a pair sees is as in the actual robot.
-    let exact = simulation.held_out(&made, Kind::Pose, 40).unwrap();
+    let exact = simulation.held_out(&made, Kind::POSE, 40).unwrap();
     let file = CalibrationFile::new(&calibration, &made.data, Inputs::default());
     let judgement = file.judge(&exact, false, false).unwrap();
     println!("exact rows: {:.4} mm", judgement.calibrated.position_mm().rms);

@@ -90,7 +90,7 @@ fn check(name: &str, made: &Simulated, rank: usize, unknowns: usize) {
 /// All joints between device and hands are seen: g and 6 of each pose target, 3 of each point, 6 of the device less 6 of the base.
 #[test]
 fn a_device_beside_the_torso_sees_both_hands() {
-    for (kind, of_target) in [(Kind::Pose, 6), (Kind::Point, 3)] {
+    for (kind, of_target) in [(Kind::POSE, 6), (Kind::POINT, 3)] {
         let made = exact(200).run(&both_hands("base_link"), kind).unwrap();
         let rank = TORSO + ARMS + 2 * of_target;
         check(&format!("device, {}s of both hands", kind.word()), &made, rank, rank);
@@ -101,9 +101,9 @@ fn a_device_beside_the_torso_sees_both_hands() {
 /// choice, and an anchor shows 3 of its 6 numbers.
 #[test]
 fn the_left_hand_sees_the_right() {
-    let places = [(Kind::Pose, 6), (Kind::Point, 3), (Kind::Distance, 0)];
+    let places = [(Kind::POSE, 6), (Kind::POINT, 3), (Kind::DISTANCE, 0)];
     for (kind, more) in places {
-        let made = exact(if kind == Kind::Distance { 300 } else { 160 }).run(&hand_to_hand(), kind).unwrap();
+        let made = exact(if kind == Kind::DISTANCE { 300 } else { 160 }).run(&hand_to_hand(), kind).unwrap();
         assert!(made.data.stations == [Some("eye".to_owned())], "{:?}", made.data.stations);
         check(&format!("hand to hand, {}s", kind.word()), &made, ARMS + more, TORSO + ARMS + more);
     }
@@ -111,11 +111,11 @@ fn the_left_hand_sees_the_right() {
 
 /// A session of both hands on six planes, three through one point and three through another.
 fn on_six_planes(count: usize) -> Simulated {
-    let first = exact(count).run(&both_hands("torso"), Kind::Plane).unwrap();
+    let first = exact(count).run(&both_hands("torso"), Kind::PLANE).unwrap();
     let mut generator = ChaCha8Rng::seed_from_u64(9);
     let other = Simulation { seed: 2, ..exact(count) };
     let actual = first.actual.clone();
-    let mut more = other.measure(&first.nominal, actual, Kind::Plane, &mut generator).unwrap().data;
+    let mut more = other.measure(&first.nominal, actual, Kind::PLANE, &mut generator).unwrap().data;
     more.stations.iter_mut().flatten().for_each(|name| *name = format!("second {name}"));
     let mut data = first.data.clone();
     data.extend(&more).unwrap();
@@ -141,7 +141,7 @@ fn planes_that_both_hands_touch() {
 fn a_torso_that_moves_ties_both_arms_together() {
     for (base, own, lacking) in [("torso_lift", 4, [2, 1, 1]), ("base_link", TORSO, [2, 1, 0])] {
         for (planes, lacks) in (1..).zip(lacking) {
-            let made = of_places(exact(450).run(&both_hands(base), Kind::Plane).unwrap(), planes);
+            let made = of_places(exact(450).run(&both_hands(base), Kind::PLANE).unwrap(), planes);
             let unknowns = own + ARMS + 6 + 3 * planes - 6;
             check(&format!("{base}, arms on {planes} planes"), &made, unknowns - lacks, unknowns);
         }
@@ -153,9 +153,9 @@ fn a_torso_that_moves_ties_both_arms_together() {
 fn with_noise_held_out_rows_are_as_good_as_the_noise() {
     let noisy = |count| Simulation { count, ..Simulation::default() };
     let sessions = [
-        ("device", both_hands("base_link"), Kind::Pose, 300, Quantity::Position, 3.0),
-        ("hand to hand", hand_to_hand(), Kind::Distance, 600, Quantity::Distance, 1.0),
-        ("planes", both_hands("torso"), Kind::Plane, 600, Quantity::Height, 1.0),
+        ("device", both_hands("base_link"), Kind::POSE, 300, Quantity::Position, 3.0),
+        ("hand to hand", hand_to_hand(), Kind::DISTANCE, 600, Quantity::Distance, 1.0),
+        ("planes", both_hands("torso"), Kind::PLANE, 600, Quantity::Height, 1.0),
     ];
     for (name, robot, kind, count, quantity, components) in sessions {
         let made = noisy(count).run(&robot, kind).unwrap();
@@ -207,8 +207,8 @@ fn a_tree_of_two_soft_arms_has_half_the_error_of_a_chain() {
     let text = include_str!("../data/torso.urdf");
     let chain = UrdfDocument::parse(text, "torso.urdf", &selection).unwrap().robot().clone();
     let drawn = Simulation { terms, count: 200, seed: 3, ..Simulation::default() };
-    let made = drawn.run(&tree, Kind::Point).unwrap();
-    let unseen = drawn.held_out(&made, Kind::Point, 100).unwrap();
+    let made = drawn.run(&tree, Kind::POINT).unwrap();
+    let unseen = drawn.held_out(&made, Kind::POINT, 100).unwrap();
     let options = CalibrationOptions::default();
     let whole = corrected_m(&calibrate(&tree, &made.data, &options).unwrap(), &unseen, Some("left"));
     let left = of_left(&chain, &made.data);

@@ -69,7 +69,7 @@ fn one(robot: &Robot, kind: Kind, seed: u64) -> Tally {
             }
         };
         judge(&shift, &expected.position);
-        if kind == Kind::Pose {
+        if kind == Kind::POSE {
             let turn = rotation::log(&(truth.rotation * chain.target.rotation.transpose()));
             judge(&turn, &expected.rotation);
         }
@@ -87,7 +87,7 @@ fn stated_intervals_hold() {
     let (mut all, mut fits, mut claims) = (Tally::default(), 0, 0);
     let each = trials.count.div_ceil(8) as u64;
     for robot in [elbow(), scara(), seven_axis(), gantry()] {
-        for kind in [Kind::Pose, Kind::Point] {
+        for kind in [Kind::POSE, Kind::POINT] {
             let tallies: Vec<Tally> =
                 (0..each).into_par_iter().map(|seed| one(&robot, kind, 1000 + seed)).collect();
             let sum = |of: fn(&Tally) -> usize| tallies.iter().map(of).sum::<usize>();
@@ -125,7 +125,7 @@ fn stated_intervals_hold() {
 
 #[test]
 fn same_bytes_whatever_the_threads() {
-    let made = Simulation { count: 2500, ..Simulation::default() }.run(&elbow(), Kind::Point).unwrap();
+    let made = Simulation { count: 2500, ..Simulation::default() }.run(&elbow(), Kind::POINT).unwrap();
     let once = calibrate(&made.nominal, &made.data, &geometry()).unwrap();
     let again = with_threads(1, || calibrate(&made.nominal, &made.data, &geometry())).unwrap();
     assert!(format!("{:?}", once.trust) == format!("{:?}", again.trust));
@@ -141,7 +141,7 @@ fn errors_that_the_model_does_not_describe_are_stated() {
     let sessions = trials(40);
     for seed in sessions.seeds() {
         let simulation = Simulation { count: 300, seed, device_anywhere: false, ..Simulation::default() };
-        let made = simulation.run(&robot, Kind::Point).unwrap();
+        let made = simulation.run(&robot, Kind::POINT).unwrap();
         let sag = |readings: &[f64]| {
             let reach = readings[1].cos() * 0.57 + (readings[1] - readings[2]).sin() * 0.63;
             Vector3::new(0.0, 0.0, -8e-4 * reach * reach.abs())
@@ -150,8 +150,8 @@ fn errors_that_the_model_does_not_describe_are_stated() {
         for row in 0..made.data.len() {
             let position =
                 made.data.observations[row].measurement.pose().translation + sag(made.data.readings(row));
-            let point = poecal::measurement::PointMeasurement { position };
-            data.push(made.data.readings(row), None, poecal::measurement::Measurement::Point(point)).unwrap();
+            let point = poecal::measurement::Measurement::point(position);
+            data.push(made.data.readings(row), None, point).unwrap();
         }
         let options = CalibrationOptions { held_out: 0.0, ..geometry() };
         let found = calibrate(&robot, &data, &options).unwrap();
@@ -186,7 +186,7 @@ fn drawing_rows_anew_agrees_with_the_covariance_where_there_is_only_noise() {
     for robot in [elbow(), scara(), seven_axis(), gantry()] {
         for seed in sessions.seeds() {
             let made =
-                Simulation { count: 200, seed, ..Simulation::default() }.run(&robot, Kind::Point).unwrap();
+                Simulation { count: 200, seed, ..Simulation::default() }.run(&robot, Kind::POINT).unwrap();
             let found = calibrate(&made.nominal, &made.data, &geometry()).unwrap();
             let bootstrap = found.trust.bootstrap.unwrap();
             ratios.push(bootstrap.sigma_m / bootstrap.formal_sigma_m);
@@ -214,8 +214,8 @@ fn drawing_rows_anew_sees_what_neighbours_share() {
                 near.iter().map(|value| value + 1e-2 * random::normal(&mut generator)).collect();
             let seen = actual.forward_kinematics(&readings).translation;
             let position = seen + shared + random::normal_vector(&mut generator) * 2e-5;
-            let point = poecal::measurement::PointMeasurement { position };
-            data.push(&readings, None, poecal::measurement::Measurement::Point(point)).unwrap();
+            let point = poecal::measurement::Measurement::point(position);
+            data.push(&readings, None, point).unwrap();
         }
     }
     let options = CalibrationOptions { held_out: 0.0, ..geometry() };
@@ -242,12 +242,12 @@ fn least_shares(robot: &Robot, data: &Dataset, tolerance: Option<Tolerance>) -> 
 #[test]
 fn what_the_data_said_and_what_the_tolerance_said_are_told_apart() {
     let tolerance = |angle_rad, length_m| Some(Tolerance { angle_rad, length_m });
-    let points = Simulation { count: 100, ..Simulation::default() }.run(&elbow(), Kind::Pose).unwrap();
+    let points = Simulation { count: 100, ..Simulation::default() }.run(&elbow(), Kind::POSE).unwrap();
     let of = |data: &Dataset, tolerance| least_shares(&points.nominal, data, tolerance);
     let (usual, tight) =
         (of(&points.data, Tolerance::default().into()), of(&points.data, tolerance(1e-7, 1e-7)));
     let none = of(&points.data, None);
-    let planes = Simulation { count: 120, ..Simulation::default() }.run(&elbow(), Kind::Plane).unwrap();
+    let planes = Simulation { count: 120, ..Simulation::default() }.run(&elbow(), Kind::PLANE).unwrap();
     let touched = of(&planes.data, Tolerance::default().into());
     println!("poses: {usual:?}, tight {tight:?}, none {none:?}; touched planes {touched:?}");
     assert!(usual.iter().all(|share| share.unwrap() > 0.99));

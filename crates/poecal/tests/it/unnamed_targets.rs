@@ -3,16 +3,16 @@
 use nalgebra::Vector3;
 use poecal::forensics::{DiagnosisOptions, diagnose};
 use poecal::lie::Pose;
-use poecal::measurement::{Dataset, Measurement, PointMeasurement};
+use poecal::measurement::{Dataset, Measurement};
 use poecal::simulate::{Kind, Simulation, elbow};
 
 /// The statements on rows of 30 configurations, of which each shows what `seen` makes of the tip.
 fn statements(seen: impl Fn(usize, Pose) -> Vec<Vector3<f64>>) -> Vec<String> {
-    let made = Simulation { count: 30, ..Simulation::default() }.run(&elbow(), Kind::Pose).unwrap();
+    let made = Simulation { count: 30, ..Simulation::default() }.run(&elbow(), Kind::POSE).unwrap();
     let mut data = Dataset::new(made.data.reading_names().to_vec());
     for row in 0..made.data.len() {
         for position in seen(row, made.data.observations[row].measurement.pose()) {
-            let point = Measurement::Point(PointMeasurement { position });
+            let point = Measurement::point(position);
             data.push(made.data.readings(row), None, point).unwrap();
         }
     }

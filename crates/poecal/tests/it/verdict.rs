@@ -7,13 +7,13 @@ use nalgebra::Vector3;
 use poecal::calibration::{Calibration, CalibrationOptions, DeviceFrameKnowledge, Level, calibrate};
 use poecal::forensics::DiagnosisKind;
 use poecal::lie::{Pose, rotation};
-use poecal::measurement::{Dataset, Measurement, Noise, PointMeasurement, PoseMeasurement, Set};
+use poecal::measurement::{Dataset, Measurement, Noise, Set};
 use poecal::robot::Robot;
 use poecal::simulate::{Gross, Kind, Simulated, Simulation, elbow, scara, seven_axis};
 use rayon::prelude::*;
 
 fn session(count: usize, seed: u64) -> Simulated {
-    simulated(&elbow(), Kind::Pose, count, seed)
+    simulated(&elbow(), Kind::POSE, count, seed)
 }
 
 /// The same poses, moved and read as these functions say.
@@ -28,7 +28,7 @@ fn changed(
         pose.translation += shift(row);
         let mut readings = made.data.readings(row).to_vec();
         reading(row, &mut readings);
-        data.push(&readings, None, Measurement::Pose(PoseMeasurement { pose })).unwrap();
+        data.push(&readings, None, Measurement::of_pose(&pose)).unwrap();
     }
     data
 }
@@ -45,7 +45,7 @@ fn sound_sessions_are_good_and_without_a_warning() {
         .into_par_iter()
         .flat_map_iter(|seed| {
             let simulation = Simulation { count: 80, seed: 300 + seed, ..Simulation::default() };
-            let kind = if seed % 2 == 0 { Kind::Pose } else { Kind::Point };
+            let kind = if seed % 2 == 0 { Kind::POSE } else { Kind::POINT };
             let made = simulation.run(&robots[seed as usize % 3], kind).unwrap();
             let found = fit(&made.nominal, &made.data);
             let words = format!("{seed}: {:?} {:?}", found.verdict, found.warnings);
@@ -146,7 +146,7 @@ fn too_few_rows_are_never_good() {
 #[test]
 fn stragglers_do_not_count_as_coverage() {
     let mut made =
-        Simulation { count: 400, seed: 8, ..Simulation::default() }.run(&elbow(), Kind::Pose).unwrap();
+        Simulation { count: 400, seed: 8, ..Simulation::default() }.run(&elbow(), Kind::POSE).unwrap();
     let middle = |row: usize| (made.data.readings(row)[1] - 0.6).abs() < 0.35;
     let far = |row: usize| (made.data.readings(row)[1] - 0.6).abs() > 2.3;
     let mut data = Dataset::new(made.data.reading_names().to_vec());
@@ -154,7 +154,7 @@ fn stragglers_do_not_count_as_coverage() {
         (0..400).filter(|&row| middle(row)).chain((0..400).filter(|&row| far(row)).take(1)).collect();
     for row in kept {
         let pose = made.data.observations[row].measurement.pose();
-        data.push(made.data.readings(row), None, Measurement::Pose(PoseMeasurement { pose })).unwrap();
+        data.push(made.data.readings(row), None, Measurement::of_pose(&pose)).unwrap();
     }
     made.data = data;
     let options = CalibrationOptions { held_out: 0.0, ..geometry() };
@@ -169,7 +169,7 @@ fn stragglers_do_not_count_as_coverage() {
 #[test]
 fn what_is_not_this_robot_is_not_to_be_used() {
     let made = Simulation { count: 80, seed: 12, device_anywhere: true, ..Simulation::default() }
-        .run(&elbow(), Kind::Pose)
+        .run(&elbow(), Kind::POSE)
         .unwrap();
     let level = |name: &str, robot: &Robot, data: &Dataset, frame| {
         let options = CalibrationOptions { frame, ..geometry() };
@@ -195,7 +195,7 @@ fn what_is_not_this_robot_is_not_to_be_used() {
         for row in 0..made.data.len() {
             let pose = made.data.observations[row].measurement.pose();
             let pose = Pose::new(of(row, &pose), pose.translation);
-            data.push(made.data.readings(row), None, Measurement::Pose(PoseMeasurement { pose })).unwrap();
+            data.push(made.data.readings(row), None, Measurement::of_pose(&pose)).unwrap();
         }
         data
     };
@@ -213,7 +213,7 @@ fn copies_are_nothing_to_judge_by() {
     for row in 0..40 {
         let mut pose = made.data.observations[row].measurement.pose();
         pose.translation *= 1.0 + 1e-15;
-        data.push(made.data.readings(row), None, Measurement::Pose(PoseMeasurement { pose })).unwrap();
+        data.push(made.data.readings(row), None, Measurement::of_pose(&pose)).unwrap();
     }
     for (row, observation) in data.observations.iter_mut().enumerate() {
         observation.set = Some(if row < 40 { Set::Fit } else { Set::HeldOut });
@@ -228,12 +228,12 @@ fn copies_are_nothing_to_judge_by() {
 fn registered_positions_are_the_best_there_are() {
     for seed in 0..10 {
         let made = Simulation { count: 60, seed, error_rotation_rad: 0.02, ..Simulation::default() }
-            .run(&elbow(), Kind::Pose)
+            .run(&elbow(), Kind::POSE)
             .unwrap();
         let mut points = Dataset::new(made.data.reading_names().to_vec());
         for row in 0..made.data.len() {
             let position = made.data.observations[row].measurement.pose().translation;
-            let seen = Measurement::Point(PointMeasurement { position });
+            let seen = Measurement::point(position);
             points.push(made.data.readings(row), None, seen).unwrap();
         }
         let rms = |data: &Dataset| {

@@ -3,7 +3,7 @@
 use nalgebra::{Matrix3, Vector3};
 use poecal::estimate::{Chain, Estimate, Linkage, Range};
 use poecal::lie::{Pose, TargetTwist};
-use poecal::measurement::{Measurement, NUMBERS, PoseMeasurement};
+use poecal::measurement::NUMBERS;
 use poecal::parameters::Parameter;
 use poecal::problem::Problem;
 use poecal::solve::{LeastSquares as _, Normal};
@@ -24,11 +24,11 @@ pub(crate) fn for_rows(
         problem.layout().target_twists(&chain, observation.target, &mut twists);
         let seen_at = as_read(problem, state, &chain, &mut twists);
         let (mut residual, mut sensitivity) = ([0.0; NUMBERS], [[0.0; 6]; NUMBERS]);
-        let seen = observation.measurement.observe();
-        match (&observation.measurement, session.data.pose_residual) {
-            (Measurement::Pose(PoseMeasurement { pose }), Some(other)) => {
-                other.residual(pose, &chain.target, &mut residual);
-                other.sensitivity(pose, &chain.target, &mut sensitivity);
+        let seen = observation.measurement;
+        match (observation.measurement.frame(), session.data.pose_residual) {
+            (Some(pose), Some(other)) => {
+                other.residual(&pose, &chain.target, &mut residual);
+                other.sensitivity(&pose, &chain.target, &mut sensitivity);
             }
             _ => {
                 seen.residual(&seen_at, &mut residual);

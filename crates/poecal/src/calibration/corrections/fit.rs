@@ -243,7 +243,7 @@ impl Geometry<'_> {
 fn numbers(task: &Task<'_>) -> ByQuantity<f64> {
     let mut counts: ByQuantity<f64> = ByQuantity::default();
     for &row in task.rows {
-        let channels = task.session.observation(row).measurement.observe().channels();
+        let channels = task.session.observation(row).measurement.channels();
         channels.iter().for_each(|channel| counts[channel.quantity] += 1.0);
     }
     counts

@@ -290,7 +290,7 @@ pub(in crate::calibration) fn whitened_rows(
 fn numbers(problem: &Problem<'_>, sample: &[u32]) -> (Vec<usize>, Vec<Quantity>) {
     let (mut starts, mut quantities) = (vec![0], Vec::new());
     for &row in sample {
-        let channels = problem.session().observation(row).measurement.observe().channels();
+        let channels = problem.session().observation(row).measurement.channels();
         quantities.extend(channels.iter().map(|channel| channel.quantity));
         starts.push(quantities.len());
     }

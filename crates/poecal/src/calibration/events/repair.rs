@@ -15,8 +15,8 @@ use crate::calibration::{
 };
 use crate::error::Result;
 use crate::estimate::RowError;
-use crate::lie::rotation;
-use crate::measurement::{Dataset, Measurement, Quantity};
+use crate::lie::{Pose, rotation};
+use crate::measurement::{Dataset, Quantity};
 use crate::robot::{Body, MEASURED, Robot};
 
 /// Most repairs of one session.
@@ -42,14 +42,11 @@ pub struct Repaired<'a> {
 ///
 /// ```
 /// use poecal::calibration::{CalibrationOptions, EventKind, calibrate_repairing};
-/// use poecal::measurement::Measurement;
 /// use poecal::simulate::{Kind, Simulation, elbow};
-/// let mut made = Simulation { count: 80, noise_position_m: 5e-5, ..Simulation::default() }.run(&elbow(), Kind::Point)?;
+/// let mut made = Simulation { count: 80, noise_position_m: 5e-5, ..Simulation::default() }.run(&elbow(), Kind::POINT)?;
 /// // Somebody leans on the tracker.
 /// for row in &mut made.data.observations[40..] {
-///     if let Measurement::Point(seen) = &mut row.measurement {
-///         seen.position.x += 2e-3;
-///     }
+///     row.measurement.values_mut()[0] += 2e-3;
 /// }
 /// let found = calibrate_repairing(&made.nominal, &made.data, &CalibrationOptions::default(), &mut |_| {})?;
 /// let [moved] = &found.calibration.repairs[..] else { panic!("{:?}", found.calibration.suspicions) };
@@ -232,7 +229,7 @@ impl<'a> Session<'a> {
 /// Whether all rows of a station measured places.
 fn sees_places(data: &Dataset, station: usize) -> bool {
     let mut own = data.observations.iter().filter(|row| row.station == station);
-    own.all(|row| matches!(row.measurement, Measurement::Point(_) | Measurement::Pose(_)))
+    own.all(|row| row.measurement.is_place())
 }
 
 /// Gives targets another name from a row on; `None` where they are of the model.
@@ -278,19 +275,8 @@ fn still(data: &mut Dataset, step: &Step, station: usize) -> Option<()> {
         let back = rotation::exp(&(Vector3::new(rx, ry, rz) * -share));
         let shift = Vector3::new(x, y, z) * share;
         let of = |position: &Vector3<f64>| back * (position - shift - about) + about;
-        match &mut data.observations.get_mut(row as usize)?.measurement {
-            Measurement::Point(seen) => seen.position = of(&seen.position),
-            Measurement::Pose(seen) => {
-                seen.pose.translation = of(&seen.pose.translation);
-                seen.pose.rotation = back * seen.pose.rotation;
-            }
-            Measurement::Components(_)
-            | Measurement::Distance(_)
-            | Measurement::Socket(_)
-            | Measurement::Height(_)
-            | Measurement::Flush(_)
-            | Measurement::Direction(_) => return None,
-        }
+        let measurement = &mut data.observations.get_mut(row as usize)?.measurement;
+        *measurement = measurement.changed(|pose| Pose::new(back * pose.rotation, of(&pose.translation)))?;
     }
     Some(())
 }

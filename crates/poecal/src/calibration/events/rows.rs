@@ -68,7 +68,7 @@ impl Rows {
         let known = unknowns(&found.model, session.unknowns, &sizes);
         let session =
             Session { robot: &found.model.robot, packed: &found.packed, unknowns: &known, ..session };
-        let numbers = |row: &u32| data.observations[*row as usize].measurement.observe().dim();
+        let numbers = |row: &u32| data.observations[*row as usize].measurement.dim();
         let all: usize = rows.iter().map(numbers).sum();
         let rows = sample_rows(rows, rows.len() * MOST_NUMBERS / all.max(MOST_NUMBERS));
         let prior = options.prior_with_terms(&session).with_terms(priors(&found.model, &sizes));

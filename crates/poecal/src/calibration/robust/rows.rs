@@ -237,7 +237,7 @@ pub(in crate::calibration) fn judge_rows(
 
 /// Scale of one component of a row's residual.
 pub(super) fn component_scale(data: &Dataset, scale: ByQuantity<f64>, row: u32, component: usize) -> f64 {
-    let channels = data.observations[row as usize].measurement.observe().channels();
+    let channels = data.observations[row as usize].measurement.channels();
     channels.get(component).map_or(1.0, |channel| scale[channel.quantity])
 }
 

@@ -55,7 +55,7 @@ impl CalibrationFile {
         let Ok(again) = self.judge(data, true, refit_tool) else { return Ok(found) };
         let [before, after] = [&found, &again].map(|it| it.delivered().errors.leading());
         let (Some((_, before)), Some((_, after))) = (before, after) else { return Ok(found) };
-        let numbers: usize = data.observations.iter().map(|row| row.measurement.observe().dim()).sum();
+        let numbers: usize = data.observations.iter().map(|row| row.measurement.dim()).sum();
         let frames = 6.0 * data.station_count() as f64;
         let freedom = numbers as f64 - frames;
         let (square, less) = (before.rms.powi(2), after.rms.powi(2));

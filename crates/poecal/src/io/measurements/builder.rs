@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::header::{Header, unit_in_name};
 use super::inputs::{Input, InputSource, Term};
-use super::kinds::{self, KINDS, KindColumns};
+use super::kinds::{self, Kind, KindColumns};
 use super::mapping::{ColumnMap, ColumnSpec, OrientationSpec, PositionSpec, TargetSpec};
 use super::orientation::OrientationForm;
 use super::units::{Dimension, Unit, UnitSource};
@@ -437,14 +437,15 @@ impl<'a> Builder<'a> {
     fn kinds(&mut self) -> Result<Vec<KindColumns>> {
         let mut found: Vec<KindColumns> = Vec::new();
         let mut known: BTreeMap<&str, usize> = BTreeMap::new();
-        for (index, kind) in KINDS.iter().enumerate() {
-            let has_number = kind.numbers.iter().any(|name| self.has(name));
+        for kind in kinds::kinds() {
+            let Kind { function, columns } = kind;
+            let has_number = columns.numbers.iter().any(|name| self.has(name));
             if !(self.has(kind.key()) || kind.needs_numbers() && has_number) {
                 continue;
             }
-            let (dimension, purpose) = (kind.dimension(), format!("for the {}", kind.quantity().name()));
-            let mut numbers = Vec::with_capacity(kind.numbers.len());
-            let names = kind.numbers.iter().filter(|name| kind.needs_numbers() || self.has(name));
+            let (dimension, purpose) = (kind.dimension(), format!("for the {}", function.leading().name()));
+            let mut numbers = Vec::with_capacity(columns.numbers.len());
+            let names = columns.numbers.iter().filter(|name| kind.needs_numbers() || self.has(name));
             for &name in names.collect::<Vec<_>>() {
                 // Kinds that a word tells apart have their numbers in the same columns.
                 let input = match known.get(name) {
@@ -454,8 +455,8 @@ impl<'a> Builder<'a> {
                 known.insert(name, input);
                 numbers.push(input);
             }
-            let mut sigmas = Vec::with_capacity(kind.quantities.len());
-            for &quantity in kind.quantities {
+            let mut sigmas = Vec::with_capacity(function.quantities.len());
+            for &quantity in function.quantities {
                 let name = format!("sigma_{}", quantity.name());
                 let dimension = match quantity.unit() {
                     crate::unit::Unit::Metre => Dimension::Length,
@@ -465,12 +466,12 @@ impl<'a> Builder<'a> {
                 let sigma = self.sigma(&name, None, dimension, true)?;
                 sigmas.extend(sigma.map(|input| (quantity, input)));
             }
-            let mut places = Vec::with_capacity(kind.places.len());
-            for name in kind.places {
+            let mut places = Vec::with_capacity(columns.places.len());
+            for name in columns.places {
                 places.extend(self.shared_text_column(name)?);
             }
-            let word = kind.word().map(|(column, _)| self.shared_text_column(column)).transpose()?.flatten();
-            found.push(KindColumns { kind: index, numbers, sigmas, places, word });
+            let word = columns.word.map(|(column, _)| self.shared_text_column(column)).transpose()?.flatten();
+            found.push(KindColumns { kind, numbers, sigmas, places, word });
         }
         Ok(found)
     }

@@ -6,7 +6,7 @@ use nalgebra::Vector3;
 
 use super::units::positive_length_m;
 use crate::error::{Error, ErrorKind, Result, first_few};
-use crate::measurement::{ComponentsMeasurement, Dataset, Measurement, NoiseShape, Quantity, Seen};
+use crate::measurement::{Dataset, Measurement, NoiseShape, Quantity};
 
 /// Noise of an instrument that looks along a line of sight, as `tracker:10um+5um/m`: 10 µm in all directions, and across the line of sight 5 µm
 /// more for each metre of distance (added as squares), as angular encoders and air make it. Without a name it is that of all instruments.
@@ -67,16 +67,11 @@ impl InstrumentNoise {
             if !is_own || observation.from.is_some() || observation.stated.get(Quantity::Position).is_some() {
                 continue;
             }
-            let place = match observation.measurement.seen() {
-                Seen::Point(position) => *position,
-                Seen::Frame(pose) => pose.translation,
-                Seen::Other(_) => {
-                    if let Measurement::Components(seen) = observation.measurement {
-                        return Err(incomplete(data, row, &seen));
-                    }
-                    continue;
-                }
-            };
+            let measurement = &observation.measurement;
+            if measurement.is_part_of_position() {
+                return Err(incomplete(data, row, measurement));
+            }
+            let Some(place) = measurement.position() else { continue };
             let distance = place.norm();
             let across = self.everywhere_m.hypot(self.per_metre * distance);
             let sight = place.try_normalize(f64::MIN_POSITIVE).unwrap_or_else(Vector3::z);
@@ -97,8 +92,9 @@ impl InstrumentNoise {
 }
 
 /// The error for a row without a whole position, whose distance is not known.
-fn incomplete(data: &Dataset, row: usize, seen: &ComponentsMeasurement) -> Error {
-    let missing = ["x", "y", "z"].into_iter().zip(seen.measured).find(|(_, measured)| !measured);
+fn incomplete(data: &Dataset, row: usize, seen: &Measurement) -> Error {
+    let missing =
+        ["x", "y", "z"].into_iter().zip(seen.position_components()).find(|(_, value)| value.is_none());
     let message = format!(
         "found an empty cell in `{}` beside noise that depends on the distance, expected a whole position: state the noise of such rows in \
          columns sigma_x, sigma_y, sigma_z",

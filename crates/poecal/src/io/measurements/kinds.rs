@@ -1,6 +1,7 @@
 //! Measurements of other kinds than positions and orientations, each in columns of its own.
 
 use std::borrow::Cow;
+use std::fmt;
 
 use super::PlaneContact;
 use super::inputs::InputReader;
@@ -8,122 +9,34 @@ use super::table::Row;
 use super::units::Dimension;
 use crate::error::Result;
 use crate::measurement::{
-    DirectionMeasurement, DistanceMeasurement, FlushMeasurement, HeightMeasurement, Measurement, Quantity,
-    SocketMeasurement, Stated,
+    Columns, FUNCTIONS, From, Function, Measurement, Quantity, Row as TableRow, Stated,
 };
 use crate::unit::Unit;
 
-/// A kind of measurement. Standard deviations are in columns `sigma_` and the name of a quantity.
+/// A kind of measurement: a function in a form of its own in files.
+#[derive(Clone, Copy)]
 pub(super) struct Kind {
-    /// What its numbers are of; the first is that of its numbers in columns.
-    pub(super) quantities: &'static [Quantity],
-    /// Columns of its numbers.
-    pub(super) numbers: &'static [&'static str],
-    /// Columns that name the place from which it is measured; two of them together.
-    pub(super) places: &'static [&'static str],
-    /// Column of a word that tells kinds apart, with the word of this one.
-    word: Option<(&'static str, &'static str)>,
-    /// Where its numbers come from.
-    from: From,
-    /// The measurement from its numbers, metres and radians; zero where none is in the row.
-    of: fn(&[f64]) -> Measurement,
+    pub(super) function: &'static Function,
+    pub(super) columns: &'static Columns,
 }
 
-/// What makes a row one of a kind.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum From {
-    /// Its numbers, all of them; where they are above 0, zero is a lost beam.
-    Numbers { above_zero: bool },
-    /// The name of its place, in a row without a position; its numbers, if there are any, else zero. A size is above 0.
-    Name { size: bool },
+impl fmt::Debug for Kind {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(self.key())
+    }
 }
 
-/// All of them. A new one is an entry here.
-pub(super) const KINDS: [Kind; 7] = [
-    Kind {
-        quantities: &[Quantity::Distance],
-        numbers: &["distance"],
-        places: &["anchor"],
-        word: None,
-        from: From::Numbers { above_zero: true },
-        of: |numbers| Measurement::Distance(DistanceMeasurement::new(number(numbers, 0))),
-    },
-    Kind {
-        quantities: &[Quantity::Distance],
-        numbers: &["distance_change"],
-        places: &["anchor"],
-        word: None,
-        from: From::Numbers { above_zero: false },
-        of: |numbers| Measurement::Distance(DistanceMeasurement::from_unknown_zero(number(numbers, 0))),
-    },
-    Kind {
-        quantities: &[Quantity::Distance],
-        numbers: &["radius"],
-        places: &["sphere"],
-        word: None,
-        from: From::Name { size: true },
-        of: |numbers| {
-            let radius = number(numbers, 0);
-            let is_known = radius > 0.0;
-            Measurement::Distance(if is_known {
-                DistanceMeasurement::new(radius)
-            } else {
-                DistanceMeasurement::from_unknown_zero(0.0)
-            })
-        },
-    },
-    Kind {
-        quantities: &[Quantity::Contact],
-        numbers: &[],
-        places: &["place", "socket"],
-        word: None,
-        from: From::Name { size: false },
-        of: |_| Measurement::Socket(SocketMeasurement::default()),
-    },
-    Kind {
-        quantities: &[Quantity::Height],
-        numbers: &["height"],
-        places: &["plane"],
-        word: Some(("contact", "point")),
-        from: From::Name { size: false },
-        of: |numbers| Measurement::Height(HeightMeasurement { height: number(numbers, 0) }),
-    },
-    Kind {
-        quantities: &[Quantity::Height, Quantity::Tilt],
-        numbers: &["height"],
-        places: &["plane"],
-        word: Some(("contact", "flush")),
-        from: From::Name { size: false },
-        of: |numbers| {
-            let height = number(numbers, 0);
-            Measurement::Flush(FlushMeasurement { height, ..FlushMeasurement::default() })
-        },
-    },
-    Kind {
-        quantities: &[Quantity::Tilt],
-        numbers: &["tilt_x", "tilt_y"],
-        places: &["direction"],
-        word: None,
-        from: From::Numbers { above_zero: false },
-        of: |numbers| {
-            Measurement::Direction(DirectionMeasurement::of_tilts([number(numbers, 0), number(numbers, 1)]))
-        },
-    },
-];
-
-fn number(numbers: &[f64], at: usize) -> f64 {
-    numbers.get(at).copied().unwrap_or(f64::NAN)
+/// All of them.
+pub(super) fn kinds() -> impl Iterator<Item = Kind> {
+    let of =
+        |row: &'static TableRow| row.columns.iter().map(|columns| Kind { function: row.function, columns });
+    FUNCTIONS.iter().flat_map(of)
 }
 
 impl Kind {
-    /// The quantity of its numbers.
-    pub(super) fn quantity(&self) -> Quantity {
-        self.quantities.first().copied().unwrap_or(Quantity::Position)
-    }
-
     /// Dimension of its numbers.
     pub(super) fn dimension(&self) -> Dimension {
-        match self.quantity().unit() {
+        match self.function.leading().unit() {
             Unit::Metre => Dimension::Length,
             Unit::Radian => Dimension::Angle,
             Unit::One => Dimension::Number,
@@ -132,37 +45,31 @@ impl Kind {
 
     /// The column without which a file has no such rows: of one that names alone make, the last of its names.
     pub(super) fn key(&self) -> &'static str {
-        let of = match self.from {
-            From::Numbers { .. } => self.numbers.first(),
-            From::Name { .. } => self.places.last(),
+        let of = match self.columns.from {
+            From::Numbers { .. } => self.columns.numbers.first(),
+            From::Name { .. } => self.columns.places.last(),
         };
         of.copied().unwrap_or_default()
     }
 
     /// Whether its numbers must be there.
     pub(super) fn needs_numbers(&self) -> bool {
-        matches!(self.from, From::Numbers { .. })
+        matches!(self.columns.from, From::Numbers { .. })
     }
 
     /// What it is measured from, in words. The zero of readings is one of an instrument, so that distances have another one.
     pub(super) fn place_word(&self) -> &'static str {
-        match self.places.last() {
-            Some(_) if self.numbers == ["distance_change"] => "anchor of changes",
+        match self.columns.places.last() {
+            Some(_) if self.function.zero_is_unknown && self.needs_numbers() => "anchor of changes",
             Some(place) => place,
             None => "instrument",
         }
     }
 
-    /// The column of its word, and the word.
-    pub(super) fn word(&self) -> Option<(&'static str, &'static str)> {
-        self.word
-    }
-
     /// Words of a column of words.
     fn words(column: &str) -> impl Iterator<Item = &'static str> {
-        KINDS
-            .iter()
-            .filter_map(|kind| kind.word)
+        kinds()
+            .filter_map(|kind| kind.columns.word)
             .filter(move |(name, _)| *name == column)
             .map(|(_, word)| word)
     }
@@ -170,15 +77,14 @@ impl Kind {
 
 /// Names of all their columns.
 pub(super) fn names() -> impl Iterator<Item = &'static str> {
-    let words = KINDS.iter().filter_map(|kind| kind.word).map(|(column, _)| column);
-    KINDS.iter().flat_map(|kind| kind.numbers.iter().chain(kind.places).copied()).chain(words)
+    let words = kinds().filter_map(|kind| kind.columns.word).map(|(column, _)| column);
+    kinds().flat_map(|kind| kind.columns.numbers.iter().chain(kind.columns.places).copied()).chain(words)
 }
 
 /// Where a file has a kind: its numbers and standard deviations as indices into the inputs, names and words as columns.
 #[derive(Clone, Debug)]
 pub(super) struct KindColumns {
-    /// Index of the kind.
-    pub(super) kind: usize,
+    pub(super) kind: Kind,
     pub(super) numbers: Vec<usize>,
     pub(super) sigmas: Vec<(Quantity, usize)>,
     /// Columns with the name of its place.
@@ -187,13 +93,9 @@ pub(super) struct KindColumns {
 }
 
 impl KindColumns {
-    fn kind(&self) -> Option<&'static Kind> {
-        KINDS.get(self.kind)
-    }
-
     /// What its place is called, and the columns that name it.
     pub(super) fn place(&self) -> (&'static str, &[usize]) {
-        (self.kind().map_or("instrument", Kind::place_word), &self.places)
+        (self.kind.place_word(), &self.places)
     }
 
     /// Name of the place of a row; `None` if no cell names it.
@@ -210,7 +112,7 @@ impl KindColumns {
 
     /// Whether the row's word is that of the kind; of none, the usual one.
     fn has_word(&self, row: &Row<'_>, usual: PlaneContact) -> Result<bool> {
-        let Some((column, own)) = self.kind().and_then(Kind::word) else { return Ok(true) };
+        let Some((column, own)) = self.kind.columns.word else { return Ok(true) };
         let cell = self.word.and_then(|at| Some((at, row.cells.get(at)?.text())));
         let Some((at, text)) = cell.filter(|(_, text)| !text.is_empty()) else {
             return Ok(usual.word() == own);
@@ -226,10 +128,9 @@ impl KindColumns {
     /// Whether a row has a measurement of the kind. `has_position` says whether it has a position too.
     pub(super) fn is_measured(&self, row: &Row<'_>, inputs: &InputReader<'_>, has_position: bool) -> bool {
         let has_number = || self.numbers.iter().any(|&input| inputs.value(input).is_some());
-        match self.kind().map(|kind| kind.from) {
-            None => false,
-            Some(From::Numbers { .. }) => has_number(),
-            Some(From::Name { .. }) => {
+        match self.kind.columns.from {
+            From::Numbers { .. } => has_number(),
+            From::Name { .. } => {
                 let is_named = self
                     .places
                     .last()
@@ -242,7 +143,7 @@ impl KindColumns {
 
     /// Whether its numbers in a row are those of a lost beam.
     pub(super) fn is_lost(&self, inputs: &InputReader<'_>) -> bool {
-        self.kind().is_some_and(|kind| kind.from == From::Numbers { above_zero: true })
+        self.kind.columns.from == (From::Numbers { above_zero: true })
             && self.numbers.iter().all(|&input| inputs.value(input) == Some(0.0))
     }
 
@@ -253,13 +154,13 @@ impl KindColumns {
         inputs: &InputReader<'_>,
         (has_position, usual): (bool, PlaneContact),
     ) -> Result<Option<(Measurement, Stated)>> {
-        let Some(kind) = self.kind() else { return Ok(None) };
+        let Kind { function, columns } = self.kind;
         if !self.is_measured(row, inputs, has_position) || !self.has_word(row, usual)? {
             return Ok(None);
         }
-        let mut numbers = vec![0.0; kind.numbers.len()];
+        let mut numbers = vec![0.0; columns.numbers.len()];
         for (number, &input) in numbers.iter_mut().zip(&self.numbers) {
-            let value = match (inputs.value(input), kind.from) {
+            let value = match (inputs.value(input), columns.from) {
                 (Some(value), _) => value,
                 (None, From::Name { .. }) => 0.0,
                 (None, From::Numbers { .. }) => {
@@ -267,10 +168,11 @@ impl KindColumns {
                     return Err(inputs.error(row, input, "found an empty cell", expected));
                 }
             };
-            let is_size = kind.from == (From::Name { size: true }) && inputs.value(input).is_some();
-            if (is_size || kind.from == (From::Numbers { above_zero: true })) && value <= 0.0 {
+            let is_size = columns.from == (From::Name { size: true }) && inputs.value(input).is_some();
+            if (is_size || columns.from == (From::Numbers { above_zero: true })) && value <= 0.0 {
                 let text = row.cells.get(inputs.column(input)).map_or("", |cell| cell.raw);
-                let what = if is_size { kind.numbers.first().copied() } else { Some(kind.quantity().name()) };
+                let what =
+                    if is_size { columns.numbers.first().copied() } else { Some(function.leading().name()) };
                 let expected = format!("a {} above 0", what.unwrap_or("number"));
                 return Err(inputs.error(row, input, &format!("found `{text}`"), &expected));
             }
@@ -280,6 +182,6 @@ impl KindColumns {
         for &(quantity, input) in &self.sigmas {
             stated.set(quantity, inputs.sigma(row, Some(input))?);
         }
-        Ok(Some(((kind.of)(&numbers), stated)))
+        Ok(Some(((columns.of)(&numbers), stated)))
     }
 }

@@ -22,9 +22,7 @@ use super::turns::{self, TurnWatch};
 use super::understanding::{self, FileUnderstanding};
 use super::{FitWhere, Frames, MeasurementFile, ReadOptions};
 use crate::error::{Error, ErrorKind, Result, shown};
-use crate::measurement::{
-    Dataset, Measurement, NoiseShape, Observation, Quantity, Seen, Set, Source, Stated,
-};
+use crate::measurement::{Dataset, Measurement, NoiseShape, Observation, Quantity, Set, Source, Stated};
 use crate::robot::{Controller, Robot, check_name};
 use crate::start::settle_faces;
 use crate::text::visible;
@@ -105,9 +103,9 @@ const COMPONENTS: &str = "single components";
 
 /// The warning of rows that have some components of a position beside rows that have all.
 fn incomplete(path: &Path, rows: &[Observation]) -> Option<String> {
-    let is_part = |row: &&Observation| matches!(row.measurement, Measurement::Components(_));
+    let is_part = |row: &&Observation| row.measurement.is_part_of_position();
     let lines: Vec<usize> = rows.iter().filter(is_part).map(|row| row.source.line as usize).collect();
-    let has_whole = rows.iter().any(|row| matches!(row.measurement, Measurement::Point(_)));
+    let has_whole = rows.iter().any(|row| row.measurement.is_place() && !row.measurement.sees_orientation());
     let first = lines.get(..lines.len().min(lost::NAMED_LINES))?;
     (has_whole && !lines.is_empty()).then(|| {
         format!(
@@ -232,16 +230,13 @@ impl<'a> Reader<'a> {
         spread::check(path, &table.header, self.robot, &layout, &self.found.data, first)?;
         let (mut points, mut poses, mut others) = (0, 0, BTreeMap::new());
         for row in new_rows {
-            match row.measurement.seen() {
-                Seen::Point(_) => points += 1,
-                Seen::Frame(_) => poses += 1,
-                // A flush face shows its orientation too, and is no pose.
-                Seen::Other(model) => {
-                    let is_part = matches!(row.measurement, Measurement::Components(_));
-                    let quantity = || model.channels().first().map_or("", |channel| channel.quantity.name());
-                    let name = if is_part { COMPONENTS } else { quantity() };
-                    *others.entry(name).or_default() += 1;
-                }
+            let seen = &row.measurement;
+            if seen.is_place() {
+                *(if seen.sees_orientation() { &mut poses } else { &mut points }) += 1;
+            } else {
+                let is_part = seen.is_part_of_position();
+                let name = if is_part { COMPONENTS } else { seen.function().leading().name() };
+                *others.entry(name).or_default() += 1;
             }
         }
         if !self.found.data.ids.is_empty() {

@@ -9,7 +9,7 @@ use super::orientation::MOST_PARTS;
 use super::table::Row;
 use crate::error::Result;
 use crate::lie::Pose;
-use crate::measurement::{ComponentsMeasurement, Measurement, PointMeasurement, PoseMeasurement};
+use crate::measurement::Measurement;
 
 /// Expected cells of an incomplete position that is one of a pose, or of a row with nothing else.
 const EMPTY: &str = "a position: where none was measured, leave all of its cells empty";
@@ -32,7 +32,7 @@ pub(super) fn measurement(
             let is_pose = orientation(row, target, inputs)?.is_some();
             let is_plain = !is_pose && direction == PoseDirection::DeviceFromTarget;
             if parts.iter().any(Option::is_some) && is_plain && !strict {
-                return Ok(Some(Measurement::Components(ComponentsMeasurement::new(parts))));
+                return Ok(Some(Measurement::components(parts)));
             }
             let empty = parts.iter().position(Option::is_none).unwrap_or(0);
             let input = columns.get(empty).copied().unwrap_or(0);
@@ -40,17 +40,17 @@ pub(super) fn measurement(
         }
     };
     let measurement = match (orientation(row, target, inputs)?, direction) {
-        (None, PoseDirection::DeviceFromTarget) => Measurement::Point(PointMeasurement { position }),
+        (None, PoseDirection::DeviceFromTarget) => Measurement::point(position),
         (None, PoseDirection::TargetFromDevice) => {
             let message = "found a position without orientation, expected both, because the mapping says that \
                            poses are target_from_device";
             return Err(row.error(inputs.column(columns[0]), message));
         }
         (Some(rotation), PoseDirection::DeviceFromTarget) => {
-            Measurement::Pose(PoseMeasurement { pose: Pose::new(rotation, position) })
+            Measurement::of_pose(&Pose::new(rotation, position))
         }
         (Some(rotation), PoseDirection::TargetFromDevice) => {
-            Measurement::Pose(PoseMeasurement { pose: Pose::new(rotation, position).inverse() })
+            Measurement::of_pose(&Pose::new(rotation, position).inverse())
         }
     };
     Ok(Some(measurement))
@@ -94,7 +94,7 @@ pub(super) fn component_noise(
     inputs: &InputReader<'_>,
     seen: &Measurement,
 ) -> Result<Option<[Option<f64>; 3]>> {
-    let measured = seen.observe().position_components().map(|value| value.is_some());
+    let measured = seen.position_components().map(|value| value.is_some());
     let mut found = [None; 3];
     for ((found, input), _) in
         found.iter_mut().zip(target.sigma_components).zip(measured).filter(|(_, is)| *is)

@@ -271,7 +271,7 @@ impl OneJoint<'_> {
 
 /// Refuses distances that differ by more than the robot reaches, from which their unit must be smaller.
 pub(super) fn check_ranges(path: &Path, robot: &Robot, slides_m: f64, rows: &[Observation]) -> Result<()> {
-    let ranged = || rows.iter().filter_map(|row| Some((row.measurement.observe().range()?, row)));
+    let ranged = || rows.iter().filter_map(|row| Some((row.measurement.range()?, row)));
     let Some(middle) = median(ranged().map(|(range, _)| range)) else { return Ok(()) };
     let reach = robot.reach_m() + slides_m;
     let far = |range: f64| (range - middle).abs() > 2.0 * reach;
@@ -307,7 +307,7 @@ pub(super) fn check_positions(
     };
     // The reach does not contain prismatic joints without limits.
     let reach = robot.reach_m() + slides_m;
-    let placed = || rows.iter().filter_map(|row| Some((row.measurement.observe().position()?, row)));
+    let placed = || rows.iter().filter_map(|row| Some((row.measurement.position()?, row)));
     let positions: Vec<Vector3<f64>> = placed().map(|(position, _)| position).collect();
     let middle = median_point(&positions);
     let far = positions.iter().filter(|position| (*position - middle).norm() > 2.0 * reach).count();

@@ -46,7 +46,7 @@ pub(super) fn check(
     let position = layout.targets.first().and_then(|target| layout.inputs.get(target.position?[0]));
     let (Some(input), true) = (position, rows.len() >= FEWEST_ROWS) else { return Ok(()) };
     let measured = rows.iter().filter_map(|&row| data.observations.get(row));
-    let measured = spread(measured.filter_map(|row| row.measurement.observe().position()).collect());
+    let measured = spread(measured.filter_map(|row| row.measurement.position()).collect());
     let modelled = |angle_factor: f64| {
         let tip = |&row: &usize| {
             let readings = data.readings(row).iter().zip(&layout.inputs);

@@ -22,7 +22,7 @@ pub(in crate::io) fn template(robot: &Robot, kind: Kind) -> Result<String> {
     let mut columns = if kind.has_device() {
         header(&names, &units, kind.sees_orientation())?
     } else {
-        let own = kind.columns().0;
+        let own = kind.session().columns;
         refuse_names(&names, &own.iter().map(|it| it.split('[').next().unwrap_or(it)).collect::<Vec<_>>())?;
         format!("{},{}", reading_header(&names, &units), own.join(","))
     };
@@ -39,15 +39,7 @@ pub(in crate::io) fn template(robot: &Robot, kind: Kind) -> Result<String> {
             "# x, y, z     where the device sees the target, in the device's own frame, wherever the device stands.\n",
         );
     }
-    text.push_str(if kind == Kind::Pose {
-        "# qx to qw    the target's orientation in the device's frame, as a quaternion (w last). Instead, name the columns\n\
-         #             rx,ry,rz[deg] for a rotation vector, or roll,pitch,yaw[deg] for turns about the fixed x, then y, then z.\n"
-    } else if kind == Kind::Mixed {
-        "# qx to qw    the target's orientation in the device's frame, as a quaternion (w last); leave all four empty in rows\n\
-         #             where a point was seen.\n"
-    } else {
-        kind.columns().1
-    });
+    text.push_str(kind.session().about);
     for (column, does, mounts) in
         [("instrument", "sees", &robot.instruments), ("target    ", "is seen", &robot.mounted)]
     {
@@ -110,66 +102,6 @@ pub(in crate::io) fn plan(robot: &Robot, count: usize, seed: u64) -> Result<Stri
     Ok(text)
 }
 
-impl Kind {
-    /// Columns of a kind without a device frame, and what they are.
-    fn columns(self) -> (&'static [&'static str], &'static str) {
-        match self {
-            Kind::Pose | Kind::Point | Kind::Mixed => (&[], ""),
-            Kind::Distance => (
-                &["anchor", "distance[mm]"],
-                "# anchor      from where the distance was measured; three places or more tell most. Where they are is found.\n\
-                 # distance    from there to the target.\n",
-            ),
-            Kind::Change => (
-                &["anchor", "distance_change[mm]"],
-                "# anchor           the instrument, or where it stood; another name whenever it was moved or set to zero.\n\
-                 # distance_change  what it shows: the distance from it, counted from any zero.\n",
-            ),
-            Kind::Sphere => (
-                &["sphere", "radius[mm]"],
-                "# sphere      the sphere that the target touches. Where it is is found.\n\
-                 # radius      its radius, and that of the probe; leave it empty if it is unknown (then it is found too).\n",
-            ),
-            Kind::Socket => (
-                &["place", "socket"],
-                "# place       where the sockets stood; another name whenever they were moved.\n\
-                 # socket      the socket in which the ball is, or the fixed point that is touched.\n",
-            ),
-            Kind::Plane | Kind::Height => (
-                &["plane", "contact", "height[mm]"],
-                "# plane       the plane that is touched. Where it is is found.\n\
-                 # contact     point, or flush where a face lies on it.\n\
-                 # height      of the target over it, as a dial gauge shows; leave it empty where it is touched.\n",
-            ),
-            Kind::Flush => (
-                &["plane", "contact"],
-                "# plane       the plane on which a face of the tool lies. Where it is is found.\n\
-                 # contact     flush, or point where a point touches it.\n",
-            ),
-            Kind::Direction => (
-                &["direction", "tilt_x[deg]", "tilt_y[deg]"],
-                "# direction   the direction that is seen, such as gravity.\n\
-                 # tilt_x, y   the tilts of the target about its own x and y, as an inclinometer with two axes shows them.\n",
-            ),
-            Kind::BallBar => (
-                &["pair", "distance[mm]"],
-                "# pair        two rows with the same name are one measurement, of two configurations; the second has the number.\n\
-                 # distance    of the target between the two.\n",
-            ),
-            Kind::Component => (
-                &["instrument", "x[mm]", "y[mm]", "z[mm]"],
-                "# instrument  what measured; each has axes of its own, which are found.\n\
-                 # x, y, z     position of the target; leave a cell empty where that component was not measured.\n",
-            ),
-            Kind::Relative => (
-                &["pair", "x[mm]", "y[mm]", "z[mm]", "qx", "qy", "qz", "qw"],
-                "# pair        two rows with the same name are one measurement, of two configurations; the second has the numbers.\n\
-                 # x to qw     the target in the second, seen from where it was in the first.\n",
-            ),
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -179,8 +111,8 @@ mod tests {
     fn the_columns_are_those_of_the_robot() {
         let last = |kind| template(&scara(), kind).unwrap().lines().last().unwrap().to_owned();
         let joints = "joint1[deg],joint2[deg],joint3[mm],joint4[deg]";
-        assert_eq!(last(Kind::Point), format!("{joints},x[mm],y[mm],z[mm]"));
-        assert_eq!(last(Kind::Pose), format!("{joints},x[mm],y[mm],z[mm],qx,qy,qz,qw"));
+        assert_eq!(last(Kind::POINT), format!("{joints},x[mm],y[mm],z[mm]"));
+        assert_eq!(last(Kind::POSE), format!("{joints},x[mm],y[mm],z[mm],qx,qy,qz,qw"));
     }
 
     #[test]

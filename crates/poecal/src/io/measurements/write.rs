@@ -3,20 +3,17 @@
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
+use super::kinds::{Kind, kinds};
 use super::units::{Dimension, Unit};
 use crate::error::{Error, ErrorKind, Result};
 use crate::io::csv_text;
-use crate::measurement::{Dataset, Measurement, Noise, Observation, Quantity, Seen};
+use crate::measurement::{Dataset, Measurement, Noise, Observation, Quantity};
 use crate::robot::{ReadingKind, Robot};
 
 /// Rows as a file with a leading comment: degrees and millimetres, orientations as quaternions, names where there are some. Readings are exact;
 /// measured numbers are rounded to less than a thousandth of their noise.
 pub(in crate::io) fn text(data: &Dataset, robot: &Robot, noise: &Noise, comment: &str) -> Result<String> {
-    if data
-        .observations
-        .iter()
-        .any(|row| row.from.is_some() || matches!(row.measurement.seen(), Seen::Other(_)))
-    {
+    if data.observations.iter().any(|row| row.from.is_some() || !row.measurement.is_place()) {
         return other_text(data, robot, noise, comment);
     }
     let mm = Unit::parse("mm", Dimension::Length)?;
@@ -54,60 +51,61 @@ pub(in crate::io) fn text(data: &Dataset, robot: &Robot, noise: &Noise, comment:
     Ok(out)
 }
 
+/// Columns of the table beside those of its rows, before them and after them.
+const BEFORE: [&str; 3] = ["target", "pair", "instrument"];
+const AFTER: [&str; 7] = ["x[mm]", "y[mm]", "z[mm]", "qx", "qy", "qz", "qw"];
+
+/// A column of a function's numbers, with the unit in which it is written.
+fn with_unit(kind: &Kind, name: &str) -> String {
+    format!("{name}[{}]", kind.function.leading().unit().symbol())
+}
+
 /// The columns of rows of other kinds, in the order of a file.
-const OTHER_COLUMNS: [&str; 21] = [
-    "target",
-    "pair",
-    "instrument",
-    "anchor",
-    "socket",
-    "plane",
-    "contact",
-    "height[mm]",
-    "sphere",
-    "direction",
-    "distance[mm]",
-    "distance_change[mm]",
-    "tilt_x[deg]",
-    "tilt_y[deg]",
-    "x[mm]",
-    "y[mm]",
-    "z[mm]",
-    "qx",
-    "qy",
-    "qz",
-    "qw",
-];
+fn other_columns() -> Vec<String> {
+    let own = |kind: Kind| {
+        let place =
+            kind.columns.places.last().into_iter().chain(kind.columns.word.as_ref().map(|(it, _)| it));
+        let numbers = kind.columns.numbers.iter().map(|name| with_unit(&kind, name)).collect::<Vec<_>>();
+        place.map(|name| (*name).to_owned()).chain(numbers).collect::<Vec<_>>()
+    };
+    let all = BEFORE.into_iter().map(str::to_owned).chain(kinds().flat_map(own));
+    let mut found: Vec<String> = Vec::new();
+    for column in all.chain(AFTER.into_iter().map(str::to_owned)) {
+        if !found.contains(&column) {
+            found.push(column);
+        }
+    }
+    found
+}
 
 /// Rows of other kinds, each with the cells that it has; a pair of configurations as two rows.
 fn other_text(data: &Dataset, robot: &Robot, noise: &Noise, comment: &str) -> Result<String> {
     let units = reading_units(data.reading_names(), robot)?;
-    let names: Vec<&str> = OTHER_COLUMNS.iter().map(|it| it.split('[').next().unwrap_or(it)).collect();
+    let columns = other_columns();
+    let names: Vec<&str> = columns.iter().map(|it| it.split('[').next().unwrap_or(it)).collect();
     refuse_names(data.reading_names(), &names)?;
     let readings = |readings: &[f64]| -> Vec<String> {
         readings.iter().zip(&units).map(|(&reading, &unit)| decimal(reading, unit, None)).collect()
     };
     let width = data.reading_names().len();
-    let mut rows: Vec<(Vec<String>, BTreeMap<&str, String>)> = Vec::with_capacity(data.len());
+    let mut rows: Vec<(Vec<String>, BTreeMap<String, String>)> = Vec::with_capacity(data.len());
     for (row, observation) in data.observations.iter().enumerate() {
         let mut cells = cells(data, observation, noise)?;
         // A single target needs no name in its rows.
         let target = data.targets.get(observation.target).and_then(Option::as_deref);
         let target = target.filter(|_| data.targets.len() > 1);
-        cells.extend(target.map(|name| ("target", csv_text::cell(name).into_owned())));
+        cells.extend(target.map(|name| ("target".to_owned(), csv_text::cell(name).into_owned())));
         if let Some(from) = observation.from {
-            let mut pair = BTreeMap::from([("pair", (row + 1).to_string())]);
-            pair.extend(target.map(|name| ("target", csv_text::cell(name).into_owned())));
+            let mut pair = BTreeMap::from([("pair".to_owned(), (row + 1).to_string())]);
+            pair.extend(target.map(|name| ("target".to_owned(), csv_text::cell(name).into_owned())));
             let first = width * from as usize;
             rows.push((readings(&data.further_readings()[first..first + width]), pair.clone()));
             cells.extend(pair);
         }
         rows.push((readings(data.readings(row)), cells));
     }
-    let used: Vec<&str> = OTHER_COLUMNS
-        .into_iter()
-        .filter(|column| rows.iter().any(|(_, cells)| cells.contains_key(column)))
-        .collect();
+    let is_used = |column: &String| rows.iter().any(|(_, cells)| cells.contains_key(column));
+    let used: Vec<String> = columns.into_iter().filter(is_used).collect();
     let mut out =
         format!("# {comment}\n{},{}\n", reading_header(data.reading_names(), &units), used.join(","));
     for (readings, cells) in rows {
@@ -119,75 +117,49 @@ fn other_text(data: &Dataset, robot: &Robot, noise: &Noise, comment: &str) -> Re
 }
 
 /// The cells of a measurement, by their columns.
-fn cells(data: &Dataset, observation: &Observation, noise: &Noise) -> Result<BTreeMap<&'static str, String>> {
-    let (mm, deg) = (Unit::parse("mm", Dimension::Length)?, Unit::parse("deg", Dimension::Angle)?);
-    let number = Dimension::Number.si_unit();
-    let length = |si: f64, quantity| decimal(si, mm, decimals(mm.from_si(noise[quantity])));
+fn cells(data: &Dataset, observation: &Observation, noise: &Noise) -> Result<BTreeMap<String, String>> {
+    let seen = &observation.measurement;
     let station = data.stations.get(observation.station).and_then(Option::as_deref).unwrap_or_default();
     let name = csv_text::cell(station).into_owned();
-    let mut cells = BTreeMap::new();
     let is_pair = observation.from.is_some();
-    match &observation.measurement {
-        Measurement::Point(_) | Measurement::Pose(_) => {
-            if !is_pair && !station.is_empty() {
-                cells.insert("instrument", name);
-            }
-            let pose = observation.measurement.pose();
-            for (column, value) in ["x[mm]", "y[mm]", "z[mm]"].into_iter().zip(pose.translation.iter()) {
-                cells.insert(column, length(*value, Quantity::Position));
-            }
-            if observation.measurement.sees_orientation() {
-                let turn = decimals(noise[Quantity::Rotation] / 2.0);
-                for (column, part) in ["qx", "qy", "qz", "qw"].into_iter().zip(pose.quaternion_xyzw()) {
-                    cells.insert(column, decimal(part, number, turn));
-                }
-            }
+    let mut cells = BTreeMap::new();
+    let own = kinds().filter(|kind| kind.function == seen.function());
+    let form = own.filter_map(|kind| Some((kind, (kind.columns.numbers_of)(seen)?))).next();
+    let Some((kind, numbers)) = form else {
+        if !is_pair && !station.is_empty() {
+            cells.insert("instrument".to_owned(), name);
         }
-        Measurement::Components(it) => {
-            if !is_pair && !station.is_empty() {
-                cells.insert("instrument", name);
-            }
-            for (column, value) in ["x[mm]", "y[mm]", "z[mm]"].into_iter().zip(it.components()) {
-                cells.insert(
-                    column,
-                    value.map_or_else(String::new, |value| length(value, Quantity::Position)),
-                );
-            }
-        }
-        Measurement::Distance(it) if it.zero_is_unknown && it.distance == 0.0 => {
-            cells.insert("sphere", name);
-        }
-        Measurement::Distance(it) => {
-            let column = if it.zero_is_unknown { "distance_change[mm]" } else { "distance[mm]" };
-            cells.insert(column, length(it.distance, Quantity::Distance));
-            if !is_pair {
-                cells.insert("anchor", name);
-            }
-        }
-        Measurement::Socket(_) => {
-            cells.insert("socket", name);
-        }
-        Measurement::Height(it) => {
-            cells.extend([("plane", name), ("contact", "point".to_owned())]);
-            if it.height != 0.0 {
-                cells.insert("height[mm]", length(it.height, Quantity::Height));
-            }
-        }
-        Measurement::Flush(it) => {
-            cells.extend([("plane", name), ("contact", "flush".to_owned())]);
-            if it.height != 0.0 {
-                cells.insert("height[mm]", length(it.height, Quantity::Height));
-            }
-        }
-        Measurement::Direction(it) => {
-            let digits = decimals(deg.from_si(noise[Quantity::Tilt]));
-            let [x, y] = it.tilts();
-            cells.insert("direction", name);
-            cells.insert("tilt_x[deg]", decimal(x, deg, digits));
-            cells.insert("tilt_y[deg]", decimal(y, deg, digits));
+        place_cells(seen, noise, &mut cells)?;
+        return Ok(cells);
+    };
+    let quantity = kind.function.leading();
+    let unit = Unit::parse(quantity.unit().symbol(), kind.dimension())?;
+    for (column, number) in kind.columns.numbers.iter().zip(numbers) {
+        if kind.needs_numbers() || number != 0.0 {
+            let digits = decimals(unit.from_si(noise[quantity]));
+            cells.insert(with_unit(&kind, column), decimal(number, unit, digits));
         }
     }
+    cells.extend(kind.columns.word.map(|(column, word)| (column.to_owned(), word.to_owned())));
+    cells.extend(kind.columns.places.last().filter(|_| !is_pair).map(|column| ((*column).to_owned(), name)));
     Ok(cells)
+}
+
+/// The cells of a place, or of some of its components, and of an orientation.
+fn place_cells(seen: &Measurement, noise: &Noise, cells: &mut BTreeMap<String, String>) -> Result<()> {
+    let mm = Unit::parse("mm", Dimension::Length)?;
+    let digits = decimals(mm.from_si(noise[Quantity::Position]));
+    let place = seen.position_components().map(|it| it.map(|length| decimal(length, mm, digits)));
+    let turn = decimals(noise[Quantity::Rotation] / 2.0);
+    let part = |part| Some(decimal(part, Dimension::Number.si_unit(), turn));
+    let parts = seen.frame().map_or([const { None }; 4], |pose| pose.quaternion_xyzw().map(part));
+    let [lengths @ .., _, _, _, _] = AFTER;
+    let [_, _, _, quaternion @ ..] = AFTER;
+    for (column, length) in lengths.into_iter().zip(place) {
+        cells.insert(column.to_owned(), length.unwrap_or_default());
+    }
+    cells.extend(quaternion.into_iter().zip(parts).filter_map(|(it, part)| Some((it.to_owned(), part?))));
+    Ok(())
 }
 
 /// Units of the readings: degrees and millimetres.
@@ -292,7 +264,7 @@ mod tests {
         use crate::io::measurements::{ReadOptions, parse};
         use crate::simulate::{Kind, Simulation, elbow};
         let exact = Noise::new(0.0, 0.0);
-        for kind in Kind::ALL {
+        for kind in Kind::all() {
             let simulation = Simulation {
                 count: 12,
                 noise_position_m: 0.0,
@@ -307,7 +279,7 @@ mod tests {
             for (found, expected) in data.observations.iter().zip(&made.data.observations) {
                 // Faces lie on their planes up or down.
                 let (metres, radians) = found.measurement.apart(&expected.measurement).unwrap();
-                assert!(metres < 1e-12 && (radians < 1e-7 || kind == Kind::Flush), "{metres} {radians}");
+                assert!(metres < 1e-12 && (radians < 1e-7 || kind == Kind::FLUSH), "{metres} {radians}");
                 assert_eq!(found.station, expected.station);
             }
         }

@@ -8,7 +8,7 @@ use crate::io::measurements::{plan, template};
 use crate::io::model::{Model, ModelSource};
 use crate::io::source_text;
 use crate::io::urdf::ChainSelection;
-use crate::simulate::Kind;
+use crate::measurement::{Device, Kind};
 use crate::text::visible;
 
 const SETTINGS: &str = include_str!("project/poecal.toml");
@@ -77,19 +77,16 @@ impl Project<'_> {
             .iter()
             .flat_map(|(key, mounts)| pairs(mounts).into_iter().map(move |pair| option(key, &pair)));
         let orientation = if self.kind.sees_orientation() { ROTATION_NOISE } else { "" };
-        let touching = match self.kind {
-            Kind::Socket => KNOWN_DISTANCE,
-            Kind::Plane | Kind::Height | Kind::Flush => CONTACT,
-            Kind::Pose
-            | Kind::Point
-            | Kind::Mixed
-            | Kind::Distance
-            | Kind::Change
-            | Kind::Sphere
-            | Kind::Direction
-            | Kind::BallBar
-            | Kind::Relative
-            | Kind::Component => "",
+        let session = self.kind.session();
+        let touching = match session.function.device {
+            Device::Socket => KNOWN_DISTANCE,
+            Device::Plane if session.columns.contains(&"contact") => CONTACT,
+            Device::Instrument
+            | Device::Anchor
+            | Device::Plane
+            | Device::Sphere
+            | Device::Direction
+            | Device::Pair => "",
         };
         let name = visible(&self.model.robot.name).into_owned();
         let replaced = [

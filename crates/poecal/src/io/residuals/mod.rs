@@ -122,7 +122,7 @@ pub struct ResidualRow {
 /// use poecal::calibration::{CalibrationOptions, calibrate};
 /// use poecal::io::residuals::Residuals;
 /// use poecal::simulate::{Kind, Simulation, elbow};
-/// let made = Simulation::default().run(&elbow(), Kind::Point)?;
+/// let made = Simulation::default().run(&elbow(), Kind::POINT)?;
 /// let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default())?;
 /// let residuals = Residuals::of(&made.data, &calibration);
 /// let text = residuals.text();

@@ -152,7 +152,7 @@ impl Validation {
     /// use poecal::io::calibration_file::{CalibrationFile, Inputs};
     /// use poecal::io::validation::{Validation, ValidationInputs};
     /// use poecal::simulate::{Kind, Simulation, elbow};
-    /// let made = Simulation { count: 60, ..Simulation::default() }.run(&elbow(), Kind::Point)?;
+    /// let made = Simulation { count: 60, ..Simulation::default() }.run(&elbow(), Kind::POINT)?;
     /// let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default())?;
     /// let file = CalibrationFile::new(&calibration, &made.data, Inputs::default());
     /// let judgement = file.judge(&made.data, false, false)?;

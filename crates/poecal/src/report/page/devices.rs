@@ -5,91 +5,56 @@ use maud::{Markup, Render, html};
 use super::html::{decimal, figure, quoted};
 use crate::io::calibration_file::{CalibrationFile, StationEntry};
 use crate::lie::Pose;
+use crate::measurement::Device;
 
-/// What a station is.
-#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum Device {
-    Instrument,
-    Anchor,
-    Socket,
-    Plane,
-    Sphere,
-    Direction,
-    Pair,
+/// What a station of a calibration is; an instrument if its file does not say.
+pub(super) fn device_of(station: &StationEntry) -> Device {
+    let word = station.kind.as_deref().unwrap_or_default();
+    Device::ALL.into_iter().find(|it| it.word() == word).unwrap_or(Device::Instrument)
 }
 
-impl Device {
-    const ALL: [Device; 7] = [
-        Device::Instrument,
-        Device::Anchor,
-        Device::Socket,
-        Device::Plane,
-        Device::Sphere,
-        Device::Direction,
-        Device::Pair,
-    ];
-
-    /// What a station of a calibration is; an instrument if its file does not say.
-    pub(super) fn of(station: &StationEntry) -> Self {
-        let word = station.kind.as_deref().unwrap_or_default();
-        Device::ALL.into_iter().find(|it| it.word() == word).unwrap_or(Device::Instrument)
+/// The devices of a calibration, each once, in the order of [`Device::ALL`].
+pub(super) fn devices(file: &CalibrationFile) -> Vec<Device> {
+    let found: Vec<Device> = file.stations.iter().map(device_of).collect();
+    match found.as_slice() {
+        [] => vec![Device::Instrument],
+        found => Device::ALL.into_iter().filter(|it| found.contains(it)).collect(),
     }
+}
 
-    /// Those of a calibration, each once, in the order of this list.
-    pub(super) fn all(file: &CalibrationFile) -> Vec<Self> {
-        let found: Vec<Device> = file.stations.iter().map(Device::of).collect();
-        match found.as_slice() {
-            [] => vec![Device::Instrument],
-            found => Device::ALL.into_iter().filter(|it| found.contains(it)).collect(),
+/// How a device is drawn; nothing of a pair, which has no place of its own.
+fn drawn_words(device: Device) -> Option<&'static str> {
+    Some(match device {
+        Device::Instrument => "instruments as their frames, x in red, y in green, z in blue",
+        Device::Anchor => {
+            "anchors as balls, those beside the robot with thin lines to some of the places that they measured"
         }
-    }
+        Device::Socket => "sockets as cups",
+        Device::Plane => "planes as sheets under the places that touched them, with their normals",
+        Device::Sphere => "the sphere in its true size",
+        Device::Direction => "the direction that was seen as an arrow at the tool",
+        Device::Pair => return None,
+    })
+}
 
-    pub(super) fn word(self) -> &'static str {
-        match self {
-            Device::Instrument => "instrument",
-            Device::Anchor => "anchor",
-            Device::Socket => "socket",
-            Device::Plane => "plane",
-            Device::Sphere => "sphere",
-            Device::Direction => "direction",
-            Device::Pair => "pair",
-        }
-    }
-
-    /// How it is drawn; nothing of a pair, which has no place of its own.
-    fn drawn_words(self) -> Option<&'static str> {
-        Some(match self {
-            Device::Instrument => "instruments as their frames, x in red, y in green, z in blue",
-            Device::Anchor => {
-                "anchors as balls, those beside the robot with thin lines to some of the places that they measured"
-            }
-            Device::Socket => "sockets as cups",
-            Device::Plane => "planes as sheets under the places that touched them, with their normals",
-            Device::Sphere => "the sphere in its true size",
-            Device::Direction => "the direction that was seen as an arrow at the tool",
-            Device::Pair => return None,
-        })
-    }
-
-    /// To where a residual's arrow goes; nothing where a residual has no place in the picture.
-    fn arrow_words(self) -> Option<&'static str> {
-        Some(match self {
-            Device::Instrument => "to its measured place",
-            Device::Anchor => "along the line to the anchor, by what it was measured to be farther or nearer",
-            Device::Socket => "to the middle of the socket",
-            Device::Plane => "along the plane's normal to the height measured",
-            Device::Sphere => "to the sphere that it touched",
-            Device::Direction | Device::Pair => return None,
-        })
-    }
+/// To where a residual's arrow goes; nothing where a residual has no place in the picture.
+fn arrow_words(device: Device) -> Option<&'static str> {
+    Some(match device {
+        Device::Instrument => "to its measured place",
+        Device::Anchor => "along the line to the anchor, by what it was measured to be farther or nearer",
+        Device::Socket => "to the middle of the socket",
+        Device::Plane => "along the plane's normal to the height measured",
+        Device::Sphere => "to the sphere that it touched",
+        Device::Direction | Device::Pair => return None,
+    })
 }
 
 /// What the picture shows, in sentences.
 pub(super) fn picture_words(file: &CalibrationFile, draws_places: bool) -> Markup {
-    let all = Device::all(file);
-    let arrows: Vec<&str> = all.iter().filter_map(|it| it.arrow_words()).collect();
-    let has_dots = all.iter().any(|it| it.arrow_words().is_none());
-    let drawn: Vec<&str> = all.iter().filter_map(|it| it.drawn_words()).collect();
+    let all = devices(file);
+    let arrows: Vec<&str> = all.iter().filter_map(|it| arrow_words(*it)).collect();
+    let has_dots = all.iter().any(|it| arrow_words(*it).is_none());
+    let drawn: Vec<&str> = all.iter().filter_map(|it| drawn_words(*it)).collect();
     let seeing = match [Device::Instrument, Device::Anchor].map(|it| all.contains(&it)) {
         [true, true] => Some("instrument or anchor"),
         [true, false] => Some("instrument"),
@@ -115,7 +80,7 @@ pub(super) fn picture_words(file: &CalibrationFile, draws_places: bool) -> Marku
 
 /// Where instruments and places were found, by kind: the fact *Device frame* and the like, with its label.
 pub(super) fn found_words(file: &CalibrationFile) -> (&'static str, Markup) {
-    let all = Device::all(file);
+    let all = devices(file);
     if all == [Device::Instrument] {
         let words = html! {
             "fitted with the robot"
@@ -130,7 +95,7 @@ pub(super) fn found_words(file: &CalibrationFile) -> (&'static str, Markup) {
         "fitted with the robot: "
         @for (k, place) in all.into_iter().filter(|it| *it != Device::Pair).enumerate() {
             @if k > 0 { "; " }
-            (place.word()) @if file.stations.iter().filter(|it| Device::of(it) == place).count() > 1 { "s" }
+            (place.word()) @if file.stations.iter().filter(|it| device_of(it) == place).count() > 1 { "s" }
             " " (names(file, place))
         }
     };
@@ -139,7 +104,7 @@ pub(super) fn found_words(file: &CalibrationFile) -> (&'static str, Markup) {
 
 /// The names of all stations of a kind.
 fn names(file: &CalibrationFile, place: Device) -> Markup {
-    let own = file.stations.iter().enumerate().filter(|(_, it)| Device::of(it) == place);
+    let own = file.stations.iter().enumerate().filter(|(_, it)| device_of(it) == place);
     let names = own.filter_map(|(k, it)| Some((k, it.instrument.as_deref()?)));
     html! {
         @for (n, (k, name)) in names.enumerate() {
@@ -151,7 +116,7 @@ fn names(file: &CalibrationFile, place: Device) -> Markup {
 /// What else was found of a station: a plane's normal, a direction, a radius, zero and scale of distances.
 pub(super) fn further(file: &CalibrationFile, index: usize, pose: &Pose) -> Markup {
     let Some(station) = file.stations.get(index) else { return Markup::default() };
-    let place = Device::of(station);
+    let place = device_of(station);
     let z = pose.rotation.column(2).into_owned();
     let direction = format!("{}, {}, {}", decimal(z.x, 4), decimal(z.y, 4), decimal(z.z, 4));
     let mut parts: Vec<Markup> = Vec::new();

@@ -4,7 +4,7 @@ use maud::{Markup, Render, html};
 
 use super::advice::told;
 use super::certificate::{limits, stated};
-use super::devices::Device;
+use super::devices::devices;
 use super::figures;
 use super::html::{HtmlTable, count, facts, figure, figure_or, list, path, plots, quoted};
 use super::lead::{kinds_words, sign, spaced};
@@ -13,7 +13,7 @@ use crate::analysis::Direction;
 use crate::calibration::{Event, Improvements, Level, NoiseSource, SetAccuracy};
 use crate::io::calibration_file::CalibrationFile;
 use crate::io::residuals::Residuals;
-use crate::measurement::Quantity;
+use crate::measurement::{Device, Quantity};
 use crate::report::summary::{
     ModelRow, Place, Point, SEE_ROBUST, delivered, expected, has_terms, leading, look_at,
 };
@@ -282,7 +282,7 @@ fn the_facts(file: &CalibrationFile, residuals: &Residuals) -> Vec<(&'static str
         }
     };
     let rows = html! {
-        (kinds_words(residuals)) @if Device::all(file) == [Device::Pair] { " between two configurations" } @if residuals.targets.len() > 1 { " of " (residuals.targets.len()) " targets" } ": "
+        (kinds_words(residuals)) @if devices(file) == [Device::Pair] { " between two configurations" } @if residuals.targets.len() > 1 { " of " (residuals.targets.len()) " targets" } ": "
         (count(file.accuracy.training.count, "accuracy.training.count")) " fitted, "
         @if let Some(set) = &file.accuracy.held_out { (count(set.count, "accuracy.held_out.count")) } @else { "none" }
         " held out"

@@ -4,12 +4,13 @@ use std::borrow::Cow;
 
 use serde::Serialize;
 
-use super::devices::Device;
+use super::devices::{device_of, devices};
 use super::short;
 use crate::error::Result;
 use crate::io::calibration_file::{CalibrationFile, PoseEntry, StationEntry};
 use crate::io::residuals::Residuals;
 use crate::lie::Pose;
+use crate::measurement::Device;
 use crate::robot::{Body, Mount, Robot};
 use crate::text::visible;
 
@@ -46,7 +47,7 @@ impl<'a> FrameData<'a> {
 
     /// The same as what a station is.
     fn of_station(self, station: Option<&StationEntry>) -> Self {
-        let place = station.map(Device::of).filter(|it| *it != Device::Instrument);
+        let place = station.map(device_of).filter(|it| *it != Device::Instrument);
         FrameData {
             kind: place.map(Device::word),
             radius_m: station.and_then(|it| it.radius_mm).map(|radius| 1e-3 * radius),
@@ -110,8 +111,8 @@ fn mount(robot: &Robot, mounts: &[Mount], name: &str) -> Option<(Body, Pose)> {
 pub(super) fn draws_instruments(file: &CalibrationFile) -> bool {
     let has_branches = file.joints.iter().any(|joint| joint.on.is_some()) || file.robot.tip_on.is_some();
     let has_mounts = !file.instruments.is_empty() || file.targets.values().any(|target| target.on.is_some());
-    let places = Device::all(file);
+    let places = devices(file);
     let has_places = places.iter().any(|it| ![Device::Instrument, Device::Pair].contains(it));
-    let drawn = file.stations.iter().filter(|it| Device::of(it) != Device::Pair).count();
+    let drawn = file.stations.iter().filter(|it| device_of(it) != Device::Pair).count();
     has_branches || has_mounts || has_places || drawn > 1
 }

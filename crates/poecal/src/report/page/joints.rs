@@ -3,12 +3,13 @@
 use maud::{Markup, html};
 use nalgebra::Vector3;
 
-use super::devices::{Device, further, picture_words};
+use super::devices::{device_of, further, picture_words};
 use super::figures;
 use super::frames::draws_instruments;
 use super::html::{HtmlTable, decimal, figure, figure_or, folded, list, plots, quoted, section};
 use crate::io::calibration_file::{CalibrationFile, JointEntry, ScrewEntry, StationEntry};
 use crate::io::shapes::Shapes;
+use crate::measurement::Device;
 use crate::robot::{Body, JointKind};
 
 pub(super) fn sections(file: &CalibrationFile, shapes: &Shapes) -> Markup {
@@ -97,7 +98,7 @@ fn stands(file: &CalibrationFile) -> Option<HtmlTable> {
     for mount in &robot.instruments {
         let own = |it: &StationEntry| it.instrument.as_deref() == Some(&mount.name);
         let station = file.stations.iter().position(own);
-        let kind = station.and_then(|k| file.stations.get(k)).map_or(Device::Instrument, Device::of);
+        let kind = station.and_then(|k| file.stations.get(k)).map_or(Device::Instrument, device_of);
         let pose = robot.base_from(mount);
         let further = station.map(|k| further(file, k, &pose)).unwrap_or_default();
         row(&mount.name, kind.word(), mount.body, Some(pose.translation), &further);
@@ -106,7 +107,7 @@ fn stands(file: &CalibrationFile) -> Option<HtmlTable> {
         row(&mount.name, "target", mount.body, Some(robot.base_from(mount).translation), &Markup::default());
     }
     for (k, station) in file.stations.iter().enumerate() {
-        let (name, kind) = (station.instrument.as_deref().unwrap_or("instrument"), Device::of(station));
+        let (name, kind) = (station.instrument.as_deref().unwrap_or("instrument"), device_of(station));
         if kind == Device::Pair || file.instruments.contains_key(name) {
             continue;
         }

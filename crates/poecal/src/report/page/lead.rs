@@ -1,7 +1,7 @@
 //! The one error that is told of each row, and words for quantities.
 
 use crate::io::residuals::{ModelErrors, ResidualRow, Residuals};
-use crate::measurement::{Measured, Quantity};
+use crate::measurement::{Measured, Quantity, measuring};
 use crate::unit::Unit;
 
 /// Which error is told of each row: that of the first quantity that it measured in one unit, of lengths if any row measured one. It is
@@ -90,15 +90,9 @@ pub(super) fn kinds_words(residuals: &Residuals) -> String {
     let mut kinds: Vec<(Vec<Quantity>, usize)> = residuals.kinds().iter().map(of).collect();
     // Poses before points, before others.
     kinds.sort_by_key(|(kind, _)| (!kind.iter().all(|it| it.is_of_pose()), std::cmp::Reverse(kind.len())));
-    let words = kinds.iter().map(|(kind, count)| match **kind {
-        [Quantity::Position, Quantity::Rotation] => format!("{count} poses"),
-        [Quantity::Position] => format!("{count} points"),
-        [Quantity::Distance] => format!("{count} distances"),
-        [Quantity::Contact] => format!("{count} contacts"),
-        [Quantity::Height] => format!("{count} heights"),
-        [Quantity::Height, Quantity::Tilt] => format!("{count} flush faces"),
-        [Quantity::Tilt] => format!("{count} directions"),
-        _ => {
+    let words = kinds.iter().map(|(kind, count)| match measuring(kind) {
+        Some(function) => format!("{count} {}", function.plural),
+        None => {
             let names: Vec<String> = kind.iter().map(|quantity| quantity.name().to_owned()).collect();
             format!("{count} rows of {}", listed(&names))
         }

@@ -50,7 +50,7 @@ const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; script-src 
 /// use poecal::io::calibration_file::{CalibrationFile, Inputs};
 /// use poecal::io::residuals::Residuals;
 /// use poecal::simulate::{Kind, Simulation, elbow};
-/// let made = Simulation::default().run(&elbow(), Kind::Point)?;
+/// let made = Simulation::default().run(&elbow(), Kind::POINT)?;
 /// let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default())?;
 /// let file = CalibrationFile::new(&calibration, &made.data, Inputs::default());
 /// let page = poecal::report::calibration_page(&file, &Residuals::of(&made.data, &calibration))?.concat();

@@ -3,7 +3,7 @@
 use maud::{Markup, Render, html};
 
 use super::data::{MOST_ROWS, drawn, keep_first, place};
-use super::devices::Device;
+use super::devices::devices;
 use super::first::{capital, error_table, error_words};
 use super::html::{HtmlTable, chart, count, decimal, figure, figure_or, folded, plots, section};
 use super::lead::{Lead, component_words, sign, spaced};
@@ -11,7 +11,7 @@ use super::{figures, readings_of, short};
 use crate::calibration::Statistic;
 use crate::io::calibration_file::{CalibrationFile, OutlierSet, RepeatabilityEntry};
 use crate::io::residuals::{ResidualRow, Residuals, RowDiagnostics};
-use crate::measurement::Quantity;
+use crate::measurement::{Device, Quantity};
 use crate::report::table::{further_words, number};
 use crate::threads;
 
@@ -79,7 +79,7 @@ fn errors(file: &CalibrationFile, residuals: &Residuals) -> Markup {
 /// In which axes residuals are, if they have any.
 fn axes_words(file: &CalibrationFile, residuals: &Residuals) -> &'static str {
     let has_axes = residuals.measured().iter().any(|it| it.is_of_pose());
-    match (has_axes, Device::all(file) == [Device::Pair]) {
+    match (has_axes, devices(file) == [Device::Pair]) {
         (false, _) => "",
         (true, false) => ", in the axes of the measuring device",
         (true, true) => ", in the axes of the target in the first of the two configurations",
@@ -88,17 +88,7 @@ fn axes_words(file: &CalibrationFile, residuals: &Residuals) -> &'static str {
 
 /// What the components of each quantity are.
 fn component_note(residuals: &Residuals) -> String {
-    let words = |quantity: &Quantity| match quantity {
-        Quantity::Position => "of positions along these axes",
-        Quantity::Rotation => "of rotations about these axes",
-        Quantity::Distance => "of distances, above zero where more was measured",
-        Quantity::Contact => {
-            "of contacts along three axes square to each other, from the ball to the middle of its socket"
-        }
-        Quantity::Height => "of heights, above zero where more was measured than predicted",
-        Quantity::Tilt => "of tilts about the target's own x and y",
-    };
-    let all: Vec<&str> = residuals.measured().iter().map(words).collect();
+    let all: Vec<&str> = residuals.measured().iter().map(|it| it.residual_words()).collect();
     format!(
         "Residuals {}. A mean away from zero in held-out rows shows that something moved: the device, what it is fixed to, the tool.",
         all.join("; ")

@@ -39,7 +39,7 @@ pub enum Detail {
 /// use poecal::io::calibration_file::{CalibrationFile, Inputs};
 /// use poecal::report::{Detail, summary};
 /// use poecal::simulate::{Kind, Simulation, elbow};
-/// let made = Simulation { count: 100, ..Simulation::default() }.run(&elbow(), Kind::Point)?;
+/// let made = Simulation { count: 100, ..Simulation::default() }.run(&elbow(), Kind::POINT)?;
 /// let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default())?;
 /// let file = CalibrationFile::new(&calibration, &made.data, Inputs::default());
 /// let short = summary(&file, Detail::Short);

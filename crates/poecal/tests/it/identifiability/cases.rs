@@ -112,119 +112,119 @@ const FREE: Motion = |_, _, _| {};
 #[rustfmt::skip]
 pub(crate) const CASES: &[Case] = &[
     Case {
-        name: "all joints move", robot: elbow, kind: Kind::Pose, count: 60,
+        name: "all joints move", robot: elbow, kind: Kind::POSE, count: 60,
         motion: FREE,
         words: "30 of 30",
     },
     Case {
-        name: "jitter, poses", robot: elbow, kind: Kind::Pose, count: 60,
+        name: "jitter, poses", robot: elbow, kind: Kind::POSE, count: 60,
         motion: jitter,
         words: "26 of 30\n\
                 open 4: joint3 stood still but for the jitter of readings: its screw is undetermined",
     },
     Case {
-        name: "jitter, points", robot: bent_tool, kind: Kind::Point, count: 60,
+        name: "jitter, points", robot: bent_tool, kind: Kind::POINT, count: 60,
         motion: jitter,
         words: "23 of 27\n\
                 open 4: joint3 stood still but for the jitter of readings: its screw is undetermined",
     },
     Case {
-        name: "never moved from zero", robot: elbow, kind: Kind::Pose, count: 60,
+        name: "never moved from zero", robot: elbow, kind: Kind::POSE, count: 60,
         motion: |_, q, _| q[2] = 0.0,
         words: "26 of 30\n\
                 open 4: joint3 never moved: its screw is undetermined",
     },
     Case {
-        name: "first joint still", robot: elbow, kind: Kind::Pose, count: 60,
+        name: "first joint still", robot: elbow, kind: Kind::POSE, count: 60,
         motion: |_, q, _| q[0] = 0.7,
         words: "26 of 30\n\
                 open 4: joint1 never moved: its screw is undetermined",
     },
     Case {
-        name: "last joint still, points", robot: bent_tool, kind: Kind::Point, count: 60,
+        name: "last joint still, points", robot: bent_tool, kind: Kind::POINT, count: 60,
         motion: |_, q, _| q[5] = 0.7,
         words: "23 of 27\n\
                 open 4: joint6 never moved: its screw is undetermined",
     },
     Case {
-        name: "wrist frozen, poses", robot: elbow, kind: Kind::Pose, count: 60,
+        name: "wrist frozen, poses", robot: elbow, kind: Kind::POSE, count: 60,
         motion: |_, q, _| q[3..].copy_from_slice(&[0.3, 0.4, 0.5]),
         words: "18 of 30\n\
                 open 12: joint4, joint5 and joint6 never moved: their screws are undetermined",
     },
     Case {
-        name: "wrist frozen, points", robot: bent_tool, kind: Kind::Point, count: 60,
+        name: "wrist frozen, points", robot: bent_tool, kind: Kind::POINT, count: 60,
         motion: |_, q, _| q[3..].copy_from_slice(&[0.3, 0.4, 0.5]),
         words: "15 of 27\n\
                 open 12: joint4, joint5 and joint6 never moved: their screws are undetermined",
     },
     Case {
-        name: "SCARA points", robot: scara, kind: Kind::Point, count: 60,
+        name: "SCARA points", robot: scara, kind: Kind::POINT, count: 60,
         motion: FREE,
         words: "17 of 17",
     },
     Case {
-        name: "SCARA, point on the spindle", robot: scara_spindle, kind: Kind::Point, count: 60,
+        name: "SCARA, point on the spindle", robot: scara_spindle, kind: Kind::POINT, count: 60,
         motion: FREE,
         words: "15 of 17\n\
                 open 2: joint4: the point measured lies on the axis (within 0.0 mm): its tilt about the point is not determined",
     },
     Case {
-        name: "SCARA without its slide", robot: scara, kind: Kind::Pose, count: 60,
+        name: "SCARA without its slide", robot: scara, kind: Kind::POSE, count: 60,
         motion: |_, q, _| q[2] = 0.1,
         words: "18 of 20\n\
                 open 2: joint3 never moved: its screw is undetermined",
     },
     Case {
-        name: "point on the last axis", robot: elbow, kind: Kind::Point, count: 60,
+        name: "point on the last axis", robot: elbow, kind: Kind::POINT, count: 60,
         motion: FREE,
         words: "25 of 27\n\
                 open 2: joint6: the point measured lies on the axis (within 0.0 mm): its tilt about the point is not determined",
     },
     Case {
-        name: "point where the wrist's axes meet", robot: wrist_point, kind: Kind::Point, count: 60,
+        name: "point where the wrist's axes meet", robot: wrist_point, kind: Kind::POINT, count: 60,
         motion: FREE,
         words: "21 of 27\n\
                 open 6: joint4, joint5 and joint6: the point measured lies on the axes (within 0.0 mm): their tilts about it are not determined",
     },
     Case {
-        name: "parallel axes together", robot: elbow, kind: Kind::Pose, count: 60,
+        name: "parallel axes together", robot: elbow, kind: Kind::POSE, count: 60,
         motion: |_, q, _| q[2] = q[1] + 0.3,
         words: "28 of 30\n\
                 open 2: joint2 and joint3: parallel axes, moved only together: their places cannot be separated",
     },
     Case {
-        name: "parallel axes together, points", robot: bent_tool, kind: Kind::Point, count: 60,
+        name: "parallel axes together, points", robot: bent_tool, kind: Kind::POINT, count: 60,
         motion: |_, q, _| q[2] = q[1] + 0.3,
         words: "25 of 27\n\
                 open 2: joint2 and joint3: parallel axes, moved only together: their places cannot be separated",
     },
     Case {
-        name: "parallel axes in another ratio", robot: elbow, kind: Kind::Pose, count: 60,
+        name: "parallel axes in another ratio", robot: elbow, kind: Kind::POSE, count: 60,
         motion: |_, q, _| q[2] = 0.5 * q[1],
         words: "30 of 30",
     },
     Case {
-        name: "5 degrees, points", robot: bent_tool, kind: Kind::Point, count: 60,
+        name: "5 degrees, points", robot: bent_tool, kind: Kind::POINT, count: 60,
         motion: |_, q, g| q[4] = 1.0 + 5.0 * DEG * random::uniform(g),
         words: "27 of 27\n\
                 weak 1: joint5 moved by 4.8 deg only: part of its screw is determined to 1.3 mm or 0.14 deg only",
     },
     Case {
-        name: "1 degree, poses", robot: elbow, kind: Kind::Pose, count: 60,
+        name: "1 degree, poses", robot: elbow, kind: Kind::POSE, count: 60,
         motion: |_, q, g| q[4] = 1.0 + DEG * random::uniform(g),
         words: "30 of 30\n\
                 weak 4: joint5 moved by 1.0 deg only: its screw is determined to 2.4 mm or 0.27 deg only",
     },
     Case {
-        name: "0.3 degrees, points", robot: bent_tool, kind: Kind::Point, count: 60,
+        name: "0.3 degrees, points", robot: bent_tool, kind: Kind::POINT, count: 60,
         motion: |_, q, g| q[4] = 1.0 + 0.3 * DEG * random::uniform(g),
         words: "25 of 27\n\
                 open 2: joint5 moved by 0.3 deg only: part of its screw is lost in the noise\n\
                 weak 2: joint5 moved by 0.3 deg only: part of its screw is determined to 4.9 mm or 0.52 deg only",
     },
     Case {
-        name: "every joint by 5 degrees, points", robot: bent_tool, kind: Kind::Point, count: 60,
+        name: "every joint by 5 degrees, points", robot: bent_tool, kind: Kind::POINT, count: 60,
         motion: |_, q, g| q.iter_mut().for_each(|q| *q = 0.5 + 5.0 * DEG * random::uniform(g)),
         words: "23 of 27\n\
                 open 2: joint5 moved by 4.8 deg only: part of its screw is lost in the noise\n\
@@ -234,26 +234,26 @@ pub(crate) const CASES: &[Case] = &[
                 weak 1: joint6 moved by 4.8 deg only: part of its screw is determined to 1.2 mm or 0.13 deg only",
     },
     Case {
-        name: "SCARA poses of one orientation", robot: scara, kind: Kind::Pose, count: 60,
+        name: "SCARA poses of one orientation", robot: scara, kind: Kind::POSE, count: 60,
         motion: |_, q, _| q[3] = -q[0] - q[1],
         words: "18 of 20\n\
                 open 2: the tool kept one orientation: its place on the last link and where the axes stand cannot be separated",
     },
     Case {
-        name: "elbow poses of one orientation", robot: elbow, kind: Kind::Pose, count: 60,
+        name: "elbow poses of one orientation", robot: elbow, kind: Kind::POSE, count: 60,
         motion: one_orientation,
         words: "27 of 30\n\
                 open 3: the tool kept one orientation: its place on the last link and where the axes stand cannot be separated",
     },
     Case {
-        name: "elbow points of one orientation", robot: bent_tool, kind: Kind::Point, count: 60,
+        name: "elbow points of one orientation", robot: bent_tool, kind: Kind::POINT, count: 60,
         motion: one_orientation,
         words: "23 of 27\n\
                 open 4: the tool kept one orientation: its place on the last link and where the axes stand cannot be separated\n\
                 weak 6: joint1, joint2, joint3, joint4, joint5 and joint6 moved far enough, but not independently of the others: their screws are determined to 9.0 mm or 0.95 deg only",
     },
     Case {
-        name: "upright tool", robot: elbow, kind: Kind::Pose, count: 60,
+        name: "upright tool", robot: elbow, kind: Kind::POSE, count: 60,
         motion: upright,
         words: "24 of 30\n\
                 open 4: joint4 never moved: its screw is undetermined\n\
@@ -261,66 +261,66 @@ pub(crate) const CASES: &[Case] = &[
                 open 1: joint2, joint3 and joint5: parallel axes, moved only together: their places cannot be separated",
     },
     Case {
-        name: "too few rows", robot: elbow, kind: Kind::Pose, count: 4,
+        name: "too few rows", robot: elbow, kind: Kind::POSE, count: 4,
         motion: FREE,
         words: "24 of 30\n\
                 open 6: too few rows: 24 numbers for 30 unknowns",
     },
     Case {
-        name: "too few rows, points", robot: scara, kind: Kind::Point, count: 5,
+        name: "too few rows, points", robot: scara, kind: Kind::POINT, count: 5,
         motion: FREE,
         words: "15 of 17\n\
                 open 2: too few rows: 15 numbers for 17 unknowns",
     },
     Case {
-        name: "the same configurations again", robot: elbow, kind: Kind::Pose, count: 60,
+        name: "the same configurations again", robot: elbow, kind: Kind::POSE, count: 60,
         motion: repeated,
         words: "24 of 30\n\
                 open 6: too few configurations: 60 rows repeat 4, which give 24 numbers for 30 unknowns",
     },
     Case {
-        name: "gantry with a frozen slide", robot: gantry, kind: Kind::Pose, count: 60,
+        name: "gantry with a frozen slide", robot: gantry, kind: Kind::POSE, count: 60,
         motion: |_, q, _| q[1] = 0.1,
         words: "22 of 24\n\
                 open 2: joint2 never moved: its screw is undetermined",
     },
     Case {
-        name: "gantry with a frozen wrist, points", robot: gantry, kind: Kind::Point, count: 60,
+        name: "gantry with a frozen wrist, points", robot: gantry, kind: Kind::POINT, count: 60,
         motion: |_, q, _| q[3..].copy_from_slice(&[0.3, 0.4, 0.5]),
         words: "9 of 21\n\
                 open 12: joint4, joint5 and joint6 never moved: their screws are undetermined",
     },
     Case {
-        name: "slides moved together", robot: gantry, kind: Kind::Pose, count: 60,
+        name: "slides moved together", robot: gantry, kind: Kind::POSE, count: 60,
         motion: |_, q, _| q[1] = 0.5 * q[0] + 0.1,
         words: "23 of 24\n\
                 open 1: joint1 and joint2: moved only together: only their common motion is observed, their own directions are not determined",
     },
     Case {
-        name: "a stage that follows", robot: column, kind: Kind::Pose, count: 60,
+        name: "a stage that follows", robot: column, kind: Kind::POSE, count: 60,
         motion: FREE,
         words: "16 of 18\n\
                 open 2: lift and stage: moved only together: only their common motion is observed, their own directions are not determined",
     },
     Case {
-        name: "positioner", robot: positioner, kind: Kind::Pose, count: 60,
+        name: "positioner", robot: positioner, kind: Kind::POSE, count: 60,
         motion: FREE,
         words: "14 of 14",
     },
     Case {
-        name: "positioner, table never turned", robot: positioner, kind: Kind::Point, count: 60,
+        name: "positioner, table never turned", robot: positioner, kind: Kind::POINT, count: 60,
         motion: |_, q, _| q[1] = 0.0,
         words: "7 of 11\n\
                 open 4: turntable never moved: its screw is undetermined",
     },
     Case {
-        name: "7 axes, elbow frozen straight", robot: seven_axis, kind: Kind::Pose, count: 60,
+        name: "7 axes, elbow frozen straight", robot: seven_axis, kind: Kind::POSE, count: 60,
         motion: |_, q, _| q[3] = 0.0,
         words: "30 of 34\n\
                 open 4: joint4 never moved: its screw is undetermined",
     },
     Case {
-        name: "7 axes, elbow frozen, two together", robot: seven_axis, kind: Kind::Pose, count: 60,
+        name: "7 axes, elbow frozen, two together", robot: seven_axis, kind: Kind::POSE, count: 60,
         motion: |_, q, _| { q[3] = 0.0; q[4] = -q[2]; },
         words: "26 of 34\n\
                 open 4: joint4 never moved: its screw is undetermined\n\

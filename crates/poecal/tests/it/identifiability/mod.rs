@@ -8,7 +8,7 @@ use cases::{CASES, Case};
 use poecal::analysis::{Cause, Identifiability, PlannedSession, identify};
 use poecal::calibration::{CalibrationOptions, Formulation, FormulationWords, calibrate};
 use poecal::lie::{Pose, rotation};
-use poecal::measurement::{Dataset, Measurement, PointMeasurement, PoseMeasurement, Quantity};
+use poecal::measurement::{Dataset, Measurement, Quantity};
 use poecal::parameters::{Parameter, ValueTerm, screw_axes};
 use poecal::robot::Term;
 use poecal::robot::{JointKind, Robot};
@@ -74,10 +74,10 @@ fn measured(case: &Case, noise: f64) -> (Robot, Dataset) {
         let turn =
             rotation::exp(&(random::normal_vector(&mut generator) * noise * usual[Quantity::Rotation]));
         pose.rotation = turn * pose.rotation;
-        let measurement = if case.kind == Kind::Point {
-            Measurement::Point(PointMeasurement { position: pose.translation })
+        let measurement = if case.kind == Kind::POINT {
+            Measurement::point(pose.translation)
         } else {
-            Measurement::Pose(PoseMeasurement { pose })
+            Measurement::of_pose(&pose)
         };
         data.push(&readings, None, measurement).unwrap();
     }
@@ -158,7 +158,7 @@ fn an_unknown_that_is_open_is_not_determined() {
 
 #[test]
 fn offsets_beside_screws_are_structure_and_not_a_defect_of_the_data() {
-    let made = Simulation { count: 60, ..Simulation::default() }.run(&elbow(), Kind::Pose).unwrap();
+    let made = Simulation { count: 60, ..Simulation::default() }.run(&elbow(), Kind::POSE).unwrap();
     let with_offsets = Formulation {
         joint_parameters: |kinds| {
             let offset = |(joint, &kind)| Parameter::ValueTerm(ValueTerm { joint, kind, term: Term::Offset });
@@ -187,7 +187,7 @@ fn a_target_seen_once_is_named() {
             let tip = robot.forward_kinematics(&readings) * Pose::from_xyz_rpy([0.02, place, 0.0], [0.0; 3]);
             let position = tip.translation + random::normal_vector(&mut generator) * 5e-5;
             if seen {
-                let seen = Measurement::Point(PointMeasurement { position });
+                let seen = Measurement::point(position);
                 data.push(&readings, Some(name), seen).unwrap();
             }
         }
@@ -223,7 +223,7 @@ fn joints_that_stand_still_are_named_and_no_others() {
             }
             readings.extend(row);
         }
-        let kind = if seed % 3 == 0 { Kind::Point } else { Kind::Pose };
+        let kind = if seed % 3 == 0 { Kind::POINT } else { Kind::POSE };
         let session = PlannedSession { kind, ..PlannedSession::default() };
         let found = identify(&robot, &readings, &session).unwrap().identifiability;
         let named = found.unidentifiable.iter().filter(|it| it.cause == Cause::StoodStill);
