@@ -3,8 +3,9 @@
 use std::path::PathBuf;
 use std::str::FromStr;
 
+use poecal::Unit;
 use poecal::compensate::MostChange;
-use poecal::io::measurements::{Dimension, Unit};
+use poecal::io::measurements::NamedUnit;
 use poecal::robot::{Corrections, GravityDirection, Sizes, Tolerance};
 use poecal::{Error, ErrorKind, MOST_THREADS, Result};
 
@@ -12,25 +13,25 @@ use poecal::{Error, ErrorKind, MOST_THREADS, Result};
 ///
 /// # Errors
 /// One sentence with found and expected.
-pub(crate) fn parse(text: &str, quantity: Dimension) -> Result<f64> {
+pub(crate) fn parse(text: &str, quantity: Unit) -> Result<f64> {
     let (value, symbol) = value_and_symbol(text, example(quantity))?;
-    Ok(Unit::parse(symbol, quantity)?.to_si(value))
+    Ok(NamedUnit::parse(symbol, quantity)?.to_si(value))
 }
 
 /// As [`parse`], for a number of either sign.
 ///
 /// # Errors
 /// As [`parse`].
-pub(crate) fn signed(text: &str, quantity: Dimension) -> Result<f64> {
+pub(crate) fn signed(text: &str, quantity: Unit) -> Result<f64> {
     let (value, symbol) = signed_and_symbol(text, example(quantity))?;
-    Ok(Unit::parse(symbol, quantity)?.to_si(value))
+    Ok(NamedUnit::parse(symbol, quantity)?.to_si(value))
 }
 
-fn example(quantity: Dimension) -> &'static str {
+fn example(quantity: Unit) -> &'static str {
     match quantity {
-        Dimension::Length => "0.05mm",
-        Dimension::Angle => "0.01deg",
-        Dimension::Number => "3",
+        Unit::Metre => "0.05mm",
+        Unit::Radian => "0.01deg",
+        Unit::One => "3",
     }
 }
 
@@ -76,8 +77,8 @@ impl FromStr for LengthAndAngle {
         let (mut length_m, mut angle_rad) = (None, None);
         for part in text.split(',').map(str::trim) {
             let (value, symbol) = value_and_symbol(part, "2mm or 1deg")?;
-            let unit = Unit::parse_any(symbol)?;
-            let place = if unit.quantity() == Dimension::Angle { &mut angle_rad } else { &mut length_m };
+            let unit = NamedUnit::parse_any(symbol)?;
+            let place = if unit.of() == Unit::Radian { &mut angle_rad } else { &mut length_m };
             if place.replace(unit.to_si(value)).is_some() {
                 let message = format!("found `{text}`, expected one length and one angle, like 2mm,1deg");
                 return Err(Error::new(ErrorKind::Option, message));
@@ -128,15 +129,15 @@ impl FromStr for BelievedTolerance {
 
 /// Parser of a standard deviation of positions for clap.
 pub(crate) fn sigma_m(text: &str) -> std::result::Result<f64, String> {
-    above_zero(text, Dimension::Length)
+    above_zero(text, Unit::Metre)
 }
 
 /// Parser of a standard deviation of rotations for clap.
 pub(crate) fn sigma_rad(text: &str) -> std::result::Result<f64, String> {
-    above_zero(text, Dimension::Angle)
+    above_zero(text, Unit::Radian)
 }
 
-fn above_zero(text: &str, quantity: Dimension) -> std::result::Result<f64, String> {
+fn above_zero(text: &str, quantity: Unit) -> std::result::Result<f64, String> {
     match parse(text, quantity) {
         Ok(value) if value > 0.0 => Ok(value),
         Ok(_) => Err(format!("found `{text}`, expected a standard deviation above 0")),

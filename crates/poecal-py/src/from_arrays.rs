@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 
 use nalgebra::Vector3;
 use poecal::Error;
-use poecal::io::measurements::{Dimension, LARGEST_NUMBER, Unit};
+use poecal::Unit;
+use poecal::io::measurements::{LARGEST_NUMBER, NamedUnit};
 use poecal::lie::Pose;
 use poecal::measurement::{ByQuantity, Dataset, Measurement, Observation, Quantity, Set};
 use poecal::robot::{JointKind, Robot};
@@ -36,7 +37,7 @@ pub(crate) struct ArrayColumns<'a, 'py> {
 /// The rows.
 pub(crate) fn dataset(robot: &Robot, columns: &ArrayColumns<'_, '_>) -> PyResult<Dataset> {
     let length =
-        Unit::parse(columns.length_unit, Dimension::Length).map_err(|error| named("length_unit", error))?;
+        NamedUnit::parse(columns.length_unit, Unit::Metre).map_err(|error| named("length_unit", error))?;
     let readings = readings(robot, columns, length)?;
     let names = robot.reading_names();
     let m = readings.len() / names.len().max(1);
@@ -92,9 +93,9 @@ fn named(argument: &str, error: Error) -> PyErr {
 }
 
 /// Readings of all rows in SI.
-fn readings(robot: &Robot, columns: &ArrayColumns<'_, '_>, length: Unit) -> PyResult<Vec<f64>> {
+fn readings(robot: &Robot, columns: &ArrayColumns<'_, '_>, length: NamedUnit) -> PyResult<Vec<f64>> {
     let angle =
-        Unit::parse(columns.angle_unit, Dimension::Angle).map_err(|error| named("angle_unit", error))?;
+        NamedUnit::parse(columns.angle_unit, Unit::Radian).map_err(|error| named("angle_unit", error))?;
     let names = robot.reading_names();
     let n = names.len();
     let expected = format!("shape (m, {n}): in each row {}", names.join(", "));
@@ -102,7 +103,7 @@ fn readings(robot: &Robot, columns: &ArrayColumns<'_, '_>, length: Unit) -> PyRe
     let slides = |name: &String| {
         robot.joints.iter().any(|joint| joint.reading.name == *name && joint.kind == JointKind::Prismatic)
     };
-    let units: Vec<Unit> = names.iter().map(|name| if slides(name) { length } else { angle }).collect();
+    let units: Vec<NamedUnit> = names.iter().map(|name| if slides(name) { length } else { angle }).collect();
     let readings: Vec<f64> =
         joints.values.iter().zip(units.iter().cycle()).map(|(&value, unit)| unit.to_si(value)).collect();
     for (row, values) in readings.chunks_exact(n.max(1)).enumerate() {
@@ -121,7 +122,7 @@ fn check_size(name: &str, row: usize, si: &[f64]) -> PyResult<()> {
 }
 
 /// Measurements in SI.
-fn measured(columns: &ArrayColumns<'_, '_>, m: usize, length: Unit) -> PyResult<Vec<Measurement>> {
+fn measured(columns: &ArrayColumns<'_, '_>, m: usize, length: NamedUnit) -> PyResult<Vec<Measurement>> {
     match (columns.positions, columns.poses) {
         (Some(positions), None) => points(positions, columns.quaternions_xyzw, m, length),
         (None, Some(poses)) if columns.quaternions_xyzw.is_none() => frames(poses, m, length),
@@ -138,7 +139,7 @@ fn measured(columns: &ArrayColumns<'_, '_>, m: usize, length: Unit) -> PyResult<
     }
 }
 
-fn frames(poses: &Bound<'_, PyAny>, m: usize, length: Unit) -> PyResult<Vec<Measurement>> {
+fn frames(poses: &Bound<'_, PyAny>, m: usize, length: NamedUnit) -> PyResult<Vec<Measurement>> {
     let expected = format!("shape ({m}, 4, 4): a pose for each row of joints");
     let poses = Numbers::finite_of(poses, "poses", &[Some(m), Some(4), Some(4)], &expected)?;
     let rows = poses.values.chunks_exact(16).enumerate();
@@ -155,7 +156,7 @@ fn points(
     positions: &Bound<'_, PyAny>,
     quaternions: Option<&Bound<'_, PyAny>>,
     m: usize,
-    length: Unit,
+    length: NamedUnit,
 ) -> PyResult<Vec<Measurement>> {
     let expected = format!("shape ({m}, 3): a position for each row of joints");
     let positions = Numbers::finite_of(positions, "positions", &[Some(m), Some(3)], &expected)?;

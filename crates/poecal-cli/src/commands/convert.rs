@@ -1,6 +1,6 @@
 //! `poecal convert`: a model in another form, or without the offsets of its joints.
 
-use poecal::io::measurements::Dimension;
+use poecal::Unit;
 use poecal::io::model::{self, Model, ModelFormat};
 use poecal::offsets::into_screws;
 use poecal::robot::{JointKind, Robot};
@@ -49,8 +49,8 @@ fn offsets(stated: &[String], robot: &Robot) -> Result<Vec<f64>> {
             return Err(bad(unknown_joint(name, robot)));
         };
         let quantity = match joint.kind {
-            JointKind::Revolute => Dimension::Angle,
-            JointKind::Prismatic => Dimension::Length,
+            JointKind::Revolute => Unit::Radian,
+            JointKind::Prismatic => Unit::Metre,
         };
         let value = signed(value, quantity).map_err(|error| bad(format!("joint `{name}`: {error}")))?;
         if offset.replace(value).is_some() {

@@ -1,7 +1,10 @@
 //! What changed between two calibrations of one robot: in terms that do not depend on how base, tool and screws were written
 //! (theory.md §9, *Two calibrations*).
 
+mod chi_square;
 mod spread;
+
+pub use chi_square::ChiSquare;
 
 use std::collections::BTreeSet;
 
@@ -27,25 +30,6 @@ const OTHER_M: f64 = 0.05;
 const OTHER_RAD: f64 = 0.1;
 /// Probability of a test to call noise a change; of the joints all together.
 const CHANCE: f64 = 0.01;
-
-/// A χ² of a change against its covariance, and the largest that noise exceeds in one of a hundred cases.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ChiSquare {
-    /// `dᵀ C⁻¹ d`.
-    pub value: f64,
-    /// Rank of C.
-    pub freedom: usize,
-    /// What noise exceeds with a probability of 1 % (of all joints together).
-    pub limit: f64,
-}
-
-impl ChiSquare {
-    /// Whether it is more than noise.
-    #[must_use]
-    pub fn is_change(&self) -> bool {
-        self.value > self.limit
-    }
-}
 
 /// How a joint changed.
 #[derive(Clone, Debug, PartialEq)]

@@ -2,10 +2,9 @@
 
 use std::str::FromStr;
 
-use super::measurements::{Dimension, Unit as TypedUnit};
+use super::measurements::NamedUnit;
 use crate::calibration::{AcceptanceLimits, AcceptedModel, AcceptedStatistic, Limit};
 use crate::error::{Error, ErrorKind, Result};
-use crate::unit::Unit;
 
 impl FromStr for Limit {
     type Err = Error;
@@ -29,9 +28,8 @@ impl FromStr for Limit {
         if symbol.is_empty() {
             return Err(bad(text, "a unit behind the number"));
         }
-        let typed = TypedUnit::parse_any(symbol.trim())?;
-        let unit = if typed.quantity() == Dimension::Angle { Unit::Radian } else { Unit::Metre };
-        Ok(Limit { statistic, unit, most: typed.to_si(value) })
+        let typed = NamedUnit::parse_any(symbol.trim())?;
+        Ok(Limit { statistic, unit: typed.of(), most: typed.to_si(value) })
     }
 }
 

@@ -4,7 +4,8 @@
 use nalgebra::{Vector3, Vector6};
 
 use super::fit::{Block, Comparison, Normal};
-use super::{End, OffsetOptions, check_same_joints};
+use super::screws::check_same_joints;
+use super::{End, OffsetOptions};
 use crate::error::Result;
 use crate::robot::{JointKind, Robot};
 

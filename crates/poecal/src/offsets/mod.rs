@@ -4,104 +4,26 @@
 mod at_tip;
 mod changes;
 mod fit;
+mod options;
 mod prediction;
+mod screws;
 mod start;
 mod taught;
 
 pub use changes::JointChange;
 pub(crate) use changes::{ChangeBySteps, Changes, direction};
+pub use options::{End, OffsetOptions};
 pub use prediction::TipError;
+pub use screws::into_screws;
 pub(crate) use taught::{Taught, with_tool_of};
 
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::Result;
 use crate::lie::{Pose, rotation};
-use crate::robot::{Body, JointKind, Robot};
+use crate::robot::{JointKind, Robot};
 use at_tip::TipFit;
 use fit::{Comparison, OffsetState};
 use prediction::Predictions;
-
-/// The robot without offsets that is exactly `robot` with `offsets` added to its joint values (radians, metres; one a joint):
-/// `ξ'ᵢ = Ad(Gᵢ₋₁) ξᵢ`, `M' = Gₙ M` with `Gᵢ = exp(ξ₁δ₁) … exp(ξᵢδᵢ)`, so that `f'(θ) = f(θ + δ)` for every θ (theory.md §8 (38a)).
-///
-/// A joint's frame is fixed to the link that the joint moves and moves by `Gᵢ`, its own rotation included. Limits stay, since they bound
-/// readings. The offset of a mimic joint is that of its own value.
-///
-/// # Errors
-/// [`ErrorKind::Option`] if there is not one finite offset for each joint.
-pub fn into_screws(robot: &Robot, offsets: &[f64]) -> Result<Robot> {
-    if offsets.len() != robot.joints.len() {
-        let message = format!(
-            "found {} offsets for robot `{}`, expected one for each of its {} joints",
-            offsets.len(),
-            robot.name,
-            robot.joints.len()
-        );
-        return Err(Error::new(ErrorKind::Option, message));
-    }
-    let mut equivalent = robot.clone();
-    // Of each joint's link, from its place without offsets.
-    let mut motions: Vec<Pose> = Vec::with_capacity(offsets.len());
-    let of = |motions: &[Pose], body: Body| {
-        body.joint().and_then(|joint| motions.get(joint)).copied().unwrap_or_else(Pose::identity)
-    };
-    for (index, (joint, &offset)) in equivalent.joints.iter_mut().zip(offsets).enumerate() {
-        if !offset.is_finite() {
-            let message =
-                format!("found the offset {offset} of joint `{}`, expected a finite one", joint.name);
-            return Err(Error::new(ErrorKind::Option, message));
-        }
-        let screw = joint.screw;
-        let before = of(&motions, robot.body_before(index));
-        joint.screw = screw.transformed(&before);
-        let motion = (before * screw.exp(offset)).orthonormalized();
-        joint.frame = (motion * joint.frame).orthonormalized();
-        motions.push(motion);
-    }
-    equivalent.home = (of(&motions, robot.tip_body()) * robot.home).orthonormalized();
-    Ok(equivalent)
-}
-
-/// Whether one end of the robot may move to explain a difference.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum End {
-    /// Both robots have the same frame there.
-    Kept,
-    /// The frame is found with the offsets.
-    Free,
-}
-
-impl End {
-    /// The word used in files and options: `kept` or `free`.
-    #[must_use]
-    pub fn word(self) -> &'static str {
-        match self {
-            End::Kept => "kept",
-            End::Free => "free",
-        }
-    }
-}
-
-/// Configurations in which the tips are compared: what remains is within 1 %.
-const CONFIGURATIONS: usize = 10_000;
-
-/// Options of [`explain`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct OffsetOptions {
-    /// The base frame: free where the actual robot's is a choice.
-    pub base: End,
-    /// The tip frame: free where the tool was changed or refitted.
-    pub tip: End,
-    /// Number of random configurations in which the tips are compared.
-    pub configurations: usize,
-    /// Seed of these.
-    pub seed: u64,
-}
-
-impl Default for OffsetOptions {
-    fn default() -> Self {
-        OffsetOptions { base: End::Kept, tip: End::Kept, configurations: CONFIGURATIONS, seed: 1 }
-    }
-}
+use screws::check_same_joints;
 
 /// Difference of a joint's screw that offsets do not explain.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -214,48 +136,4 @@ fn remainder(
         rotation_rad: rotation::log(&(home.rotation * actual.home.rotation.transpose())).norm(),
     });
     (joints.collect(), home)
-}
-
-fn check_same_joints(nominal: &Robot, actual: &Robot) -> Result<()> {
-    let differ = |message: String| Err(Error::new(ErrorKind::Option, message));
-    for (robot, which) in [(nominal, "nominal"), (actual, "actual")] {
-        if !robot.is_serial() {
-            return differ(format!(
-                "found branches or joints beyond the tip in the {which} robot, expected a serial chain: offsets are explained from base to \
-                 tip, choose one chain with --base-link and --tip-link"
-            ));
-        }
-    }
-    if nominal.joints.len() != actual.joints.len() {
-        return differ(format!(
-            "found an actual robot of {} joints, expected the {} of the nominal one: compare two models of one robot",
-            actual.joints.len(),
-            nominal.joints.len()
-        ));
-    }
-    for (index, (expected, found)) in nominal.joints.iter().zip(&actual.joints).enumerate() {
-        if expected.name != found.name {
-            return differ(format!(
-                "found joint `{}` at place {} of the actual robot, expected `{}` as in the nominal one: compare two models of one robot",
-                found.name,
-                index + 1,
-                expected.name
-            ));
-        }
-        if expected.kind != found.kind {
-            return differ(format!(
-                "found the {} joint `{}` in the actual robot, expected a {} one as in the nominal robot",
-                found.kind.word(),
-                found.name,
-                expected.kind.word()
-            ));
-        }
-        if expected.reading != found.reading {
-            return differ(format!(
-                "found joint `{}` with another relation to its reading in the actual robot, expected the same mimic relation as in the nominal one",
-                found.name
-            ));
-        }
-    }
-    Ok(())
 }

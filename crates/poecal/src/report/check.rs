@@ -11,13 +11,13 @@ use crate::error::first_few;
 use crate::forensics::Diagnosis;
 use crate::io::calibration_file::{BodyEntry, MassEntry, PoseEntry};
 use crate::io::measurements::{
-    ColumnUnderstanding, DecimalSign, Dimension, FileUnderstanding, MeasurementFile, Separator, Unit,
-    UnitSource,
+    ColumnUnderstanding, DecimalSign, FileUnderstanding, MeasurementFile, NamedUnit, Separator, UnitSource,
 };
 use crate::io::model::{Model, ModelSource};
 use crate::measurement::Set;
 use crate::robot::{Joint, JointKind, Mount, Robot};
 use crate::text::visible;
+use crate::unit::Unit;
 
 /// Widest name of ours, and of a column, that the table of columns keeps on one line.
 const WIDEST: usize = 22;
@@ -351,11 +351,11 @@ fn unit_words(column: &ColumnUnderstanding) -> String {
 /// Smallest and largest value, in millimetres or degrees.
 fn range_words(column: &ColumnUnderstanding) -> String {
     let (Some(min), Some(max)) = (column.min, column.max) else { return String::new() };
-    let quantity = column.unit.and_then(|unit| Unit::parse_any(unit).ok()).map(Unit::quantity);
+    let quantity = column.unit.and_then(|unit| NamedUnit::parse_any(unit).ok()).map(NamedUnit::of);
     let (factor, unit) = match quantity {
-        Some(Dimension::Length) => (1e3, " mm"),
-        Some(Dimension::Angle) => (1f64.to_degrees(), " deg"),
-        Some(Dimension::Number) | None => (1.0, ""),
+        Some(Unit::Metre) => (1e3, " mm"),
+        Some(Unit::Radian) => (1f64.to_degrees(), " deg"),
+        Some(Unit::One) | None => (1.0, ""),
     };
     let (min, max) = (short(min * factor, 3), short(max * factor, 3));
     if min == max { format!("{min}{unit}") } else { format!("{min} to {max}{unit}") }

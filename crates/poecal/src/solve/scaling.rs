@@ -12,11 +12,11 @@ const SLOWEST: f64 = 0.7;
 pub(super) struct Scaled<'a, P> {
     problem: &'a P,
     /// The unit of each unknown; empty where unknowns stay as they are given.
-    units: Vec<Unit>,
+    units: Vec<Scale>,
 }
 
 #[derive(Clone, Copy)]
-struct Unit {
+struct Scale {
     /// Reference norm of the column, of the unknown as it is given; zero as long as the column was.
     norm: f64,
     /// The unit, in that of the unknown as it is given.
@@ -29,7 +29,7 @@ impl<'a, P: LeastSquares> Scaled<'a, P> {
             Scaling::Given => 0,
             Scaling::Columns { .. } => problem.dim(),
         };
-        Scaled { problem, units: vec![Unit { norm: 0.0, size: 1.0 }; count] }
+        Scaled { problem, units: vec![Scale { norm: 0.0, size: 1.0 }; count] }
     }
 
     /// Chooses units anew at a state with this normal information, which is in the units so far and is changed to the new ones. In these
@@ -42,7 +42,7 @@ impl<'a, P: LeastSquares> Scaled<'a, P> {
             let size = (-norm.log2().round()).exp2();
             if norm > 0.0 && size.is_normal() {
                 *ratio = size / unit.size;
-                *unit = Unit { norm, size };
+                *unit = Scale { norm, size };
             }
         }
         scale(normal, &ratios);

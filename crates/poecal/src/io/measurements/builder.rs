@@ -7,10 +7,11 @@ use super::inputs::{Input, InputSource, Term};
 use super::kinds::{self, Kind, KindColumns};
 use super::mapping::{ColumnMap, ColumnSpec, OrientationSpec, PositionSpec, TargetSpec};
 use super::orientation::OrientationForm;
-use super::units::{Dimension, Unit, UnitSource};
+use super::units::{NamedUnit, UnitSource};
 use crate::error::{Error, ErrorKind, Result, distance_within, first_few};
 use crate::io::numbers::LARGEST_NUMBER;
 use crate::robot::{Controller, Factor, ReadingKind, Robot, sum_words};
+use crate::unit::Unit;
 
 const DEFAULT_FORMS: [OrientationForm; 3] =
     [OrientationForm::QuaternionXyzw, OrientationForm::RotationVector, OrientationForm::ROLL_PITCH_YAW];
@@ -174,21 +175,15 @@ impl<'a> Builder<'a> {
             self.header.only_unit(column, "kg")?;
         }
         let (name, label, source) = (name.to_owned(), name.to_owned(), InputSource::Column(column));
-        let (unit, unit_from) = (Dimension::Number.si_unit(), UnitSource::Si);
+        let (unit, unit_from) = (NamedUnit::from(Unit::One), UnitSource::Si);
         self.inputs.push(Input { name, label, source, unit, unit_from, sum: Vec::new(), offset: 0.0 });
         Ok(())
     }
 
     /// Adds a number from a column or a constant.
-    fn spec_input(
-        &mut self,
-        name: &str,
-        spec: &ColumnSpec,
-        quantity: Dimension,
-        purpose: &str,
-    ) -> Result<usize> {
-        if let Some(unit) = spec.unit.filter(|unit| unit.quantity() != quantity) {
-            Unit::parse_for(unit.symbol(), quantity, &format!(" {purpose}"))
+    fn spec_input(&mut self, name: &str, spec: &ColumnSpec, quantity: Unit, purpose: &str) -> Result<usize> {
+        if let Some(unit) = spec.unit.filter(|unit| unit.of() != quantity) {
+            NamedUnit::parse_for(unit.symbol(), quantity, &format!(" {purpose}"))
                 .map_err(|error| error.in_file(&self.map.path))?;
         }
         if let Some(columns) = &spec.columns {
@@ -203,10 +198,10 @@ impl<'a> Builder<'a> {
             return Ok(at);
         };
         let stated = spec.unit.or(self.map.units.of(quantity));
-        let unit = stated.unwrap_or(quantity.si_unit());
+        let unit = stated.unwrap_or(NamedUnit::from(quantity));
         let unit_from = if stated.is_some() { UnitSource::Mapping } else { UnitSource::Si };
         if unit.to_si(value).abs() > LARGEST_NUMBER {
-            let si = quantity.si_unit().symbol();
+            let si = NamedUnit::from(quantity).symbol();
             let message =
                 format!("found the value {value:?} {purpose}, expected at most {LARGEST_NUMBER:e} {si}");
             return Err(Error::new(ErrorKind::Measurement, message).in_file(&self.map.path));
@@ -219,7 +214,7 @@ impl<'a> Builder<'a> {
         &mut self,
         name: &str,
         value: f64,
-        (unit, unit_from): (Unit, UnitSource),
+        (unit, unit_from): (NamedUnit, UnitSource),
     ) -> usize {
         let (name, label, source) = (name.to_owned(), name.to_owned(), InputSource::Constant(value));
         self.inputs.push(Input { name, label, source, unit, unit_from, sum: Vec::new(), offset: 0.0 });
@@ -246,8 +241,8 @@ impl<'a> Builder<'a> {
         &mut self,
         name: &str,
         column: &str,
-        quantity: Dimension,
-        mapped: Option<Unit>,
+        quantity: Unit,
+        mapped: Option<NamedUnit>,
         purpose: &str,
     ) -> Result<usize> {
         self.column_or(name, column, quantity, (mapped, None), purpose)
@@ -258,8 +253,8 @@ impl<'a> Builder<'a> {
         &mut self,
         name: &str,
         column: &str,
-        quantity: Dimension,
-        (mapped, unstated): (Option<Unit>, Option<Unit>),
+        quantity: Unit,
+        (mapped, unstated): (Option<NamedUnit>, Option<NamedUnit>),
         purpose: &str,
     ) -> Result<usize> {
         let index = self.text_column(column, purpose)?;
@@ -271,10 +266,10 @@ impl<'a> Builder<'a> {
         let (unit, unit_from) = match (stated.or(default), self.header.units_line) {
             (Some(known), _) => known,
             // With a line of units, an empty cell in it may have been forgotten or merged.
-            (None, Some(line)) if quantity != Dimension::Number => {
+            (None, Some(line)) if quantity != Unit::One => {
                 return Err(self.header.no_unit(index, line, quantity, purpose));
             }
-            (None, _) => (quantity.si_unit(), UnitSource::Si),
+            (None, _) => (NamedUnit::from(quantity), UnitSource::Si),
         };
         let (name, label, source) = (name.to_owned(), column.to_owned(), InputSource::Column(index));
         self.inputs.push(Input { name, label, source, unit, unit_from, sum: Vec::new(), offset: 0.0 });
@@ -286,8 +281,8 @@ impl<'a> Builder<'a> {
         &mut self,
         name: &str,
         columns: &BTreeMap<String, f64>,
-        quantity: Dimension,
-        unit: Option<Unit>,
+        quantity: Unit,
+        unit: Option<NamedUnit>,
         purpose: &str,
     ) -> Result<usize> {
         if !self.readings.contains(name) {
@@ -304,9 +299,9 @@ impl<'a> Builder<'a> {
     pub(super) fn joined_input(
         &mut self,
         name: &str,
-        columns: &[(String, f64, Option<Unit>)],
-        quantity: Dimension,
-        unit: Option<Unit>,
+        columns: &[(String, f64, Option<NamedUnit>)],
+        quantity: Unit,
+        unit: Option<NamedUnit>,
         purpose: &str,
     ) -> Result<usize> {
         let mut sum: Vec<Term> = Vec::with_capacity(columns.len());
@@ -410,11 +405,11 @@ impl<'a> Builder<'a> {
         let mut sigma = |name: &str, spec: Option<&ColumnSpec>, quantity| {
             self.sigma(&format!("{prefix}{name}"), spec, quantity, is_only && position.is_some())
         };
-        let sigma_position = sigma("sigma_position", target.sigma_position.as_ref(), Dimension::Length)?;
-        let sigma_rotation = sigma("sigma_rotation", target.sigma_rotation.as_ref(), Dimension::Angle)?;
+        let sigma_position = sigma("sigma_position", target.sigma_position.as_ref(), Unit::Metre)?;
+        let sigma_rotation = sigma("sigma_rotation", target.sigma_rotation.as_ref(), Unit::Radian)?;
         let mut sigma_components = [None; 3];
         for (name, of) in ["sigma_x", "sigma_y", "sigma_z"].into_iter().zip(&mut sigma_components) {
-            *of = sigma(name, None, Dimension::Length)?;
+            *of = sigma(name, None, Unit::Metre)?;
         }
         let name = Some(target.name.clone());
         Ok(TargetLayout {
@@ -443,7 +438,8 @@ impl<'a> Builder<'a> {
             if !(self.has(kind.key()) || kind.needs_numbers() && has_number) {
                 continue;
             }
-            let (dimension, purpose) = (kind.dimension(), format!("for the {}", function.leading().name()));
+            let (dimension, purpose) =
+                (function.leading().unit(), format!("for the {}", function.leading().name()));
             let mut numbers = Vec::with_capacity(columns.numbers.len());
             let names = columns.numbers.iter().filter(|name| kind.needs_numbers() || self.has(name));
             for &name in names.collect::<Vec<_>>() {
@@ -458,12 +454,7 @@ impl<'a> Builder<'a> {
             let mut sigmas = Vec::with_capacity(function.quantities.len());
             for &quantity in function.quantities {
                 let name = format!("sigma_{}", quantity.name());
-                let dimension = match quantity.unit() {
-                    crate::unit::Unit::Metre => Dimension::Length,
-                    crate::unit::Unit::Radian => Dimension::Angle,
-                    crate::unit::Unit::One => Dimension::Number,
-                };
-                let sigma = self.sigma(&name, None, dimension, true)?;
+                let sigma = self.sigma(&name, None, quantity.unit(), true)?;
                 sigmas.extend(sigma.map(|input| (quantity, input)));
             }
             let mut places = Vec::with_capacity(columns.places.len());
@@ -491,13 +482,8 @@ impl<'a> Builder<'a> {
             let column =
                 spec.columns.as_ref().and_then(|columns| columns.get(i)).map_or(axis, String::as_str);
             let purpose = format!("for the position {prefix}{axis}");
-            *index = self.column_input(
-                &format!("{prefix}{axis}"),
-                column,
-                Dimension::Length,
-                spec.unit,
-                &purpose,
-            )?;
+            *index =
+                self.column_input(&format!("{prefix}{axis}"), column, Unit::Metre, spec.unit, &purpose)?;
         }
         Ok(indices)
     }
@@ -546,7 +532,7 @@ impl<'a> Builder<'a> {
         &mut self,
         name: &str,
         spec: Option<&ColumnSpec>,
-        quantity: Dimension,
+        quantity: Unit,
         by_our_name: bool,
     ) -> Result<Option<usize>> {
         let default = ColumnSpec::default();
@@ -569,13 +555,7 @@ impl<'a> Builder<'a> {
     }
 
     /// A standard deviation from a column of expanded uncertainties.
-    fn expanded_input(
-        &mut self,
-        name: &str,
-        column: &str,
-        quantity: Dimension,
-        purpose: &str,
-    ) -> Result<usize> {
+    fn expanded_input(&mut self, name: &str, column: &str, quantity: Unit, purpose: &str) -> Result<usize> {
         let index = self.column_input(name, column, quantity, None, purpose)?;
         if let Some(input) = self.inputs.get_mut(index)
             && let InputSource::Column(column) = input.source
@@ -636,10 +616,10 @@ fn clash(name: &str) -> String {
     )
 }
 
-fn reading_quantity(robot: &Robot, reading: &str) -> Dimension {
+fn reading_quantity(robot: &Robot, reading: &str) -> Unit {
     match robot.reading_kind(reading) {
-        ReadingKind::Length => Dimension::Length,
-        ReadingKind::Angle => Dimension::Angle,
-        ReadingKind::Factor => Dimension::Number,
+        ReadingKind::Length => Unit::Metre,
+        ReadingKind::Angle => Unit::Radian,
+        ReadingKind::Factor => Unit::One,
     }
 }

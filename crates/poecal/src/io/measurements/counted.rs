@@ -2,9 +2,10 @@
 
 use super::builder::Builder;
 use super::inputs::{Input, Term};
-use super::units::{Dimension, Unit, UnitSource};
+use super::units::{NamedUnit, UnitSource};
 use crate::error::{Error, ErrorKind, Result};
 use crate::robot::{Controller, ControllerColumn, ControllerReading, Robot, ThirdAxis, level};
+use crate::unit::Unit;
 
 impl Builder<'_> {
     /// Takes the third axis as it counts.
@@ -52,18 +53,18 @@ impl Builder<'_> {
     pub(super) fn kept_input(
         &mut self,
         kept: &ControllerReading,
-        quantity: Dimension,
+        quantity: Unit,
         purpose: &str,
     ) -> Result<()> {
         let name = kept.reading.as_str();
         let column = |(column, it): (&'_ String, &ControllerColumn)| {
-            let unit = Unit::parse_for(&it.unit, quantity, &format!(" {purpose}"))?;
+            let unit = NamedUnit::parse_for(&it.unit, quantity, &format!(" {purpose}"))?;
             Ok((column.clone(), it.factor, Some(unit)))
         };
         let columns = kept.columns.iter().map(column).collect::<Result<Vec<_>>>()?;
         match &columns[..] {
             [] => {
-                self.constant_input(name, kept.offset, (quantity.si_unit(), UnitSource::Mapping));
+                self.constant_input(name, kept.offset, (NamedUnit::from(quantity), UnitSource::Mapping));
             }
             [(column, factor, unit)] if *factor == 1.0 && kept.offset == 0.0 => {
                 self.column_or(name, column, quantity, (None, *unit), purpose)?;

@@ -4,8 +4,9 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use super::cells::{Cell, Separator, character_column, split, split_line};
-use super::units::{Dimension, Unit, UnitSource};
+use super::units::{NamedUnit, UnitSource};
 use crate::error::{Error, ErrorKind, Result, first_few, nearest};
+use crate::unit::Unit;
 
 /// A column of the header: `name[unit]` or `name (unit)`.
 #[derive(Clone, Debug)]
@@ -16,7 +17,7 @@ pub(super) struct HeaderCell {
     pub(super) name: String,
     /// Text in brackets.
     pub(super) unit: Option<String>,
-    /// Unit in the line of units, with its column there.
+    /// NamedUnit in the line of units, with its column there.
     below: Option<(usize, String)>,
     column: usize,
 }
@@ -39,7 +40,7 @@ pub(super) struct Header<'a> {
 impl HeaderCell {
     fn new(text: &str, column: usize) -> Self {
         // Round brackets may be part of a name.
-        let is_unit = |unit: &str| Unit::parse_any(unit.trim()).is_ok();
+        let is_unit = |unit: &str| NamedUnit::parse_any(unit.trim()).is_ok();
         let (name, unit) = bracketed(text, '[', ']')
             .or_else(|| bracketed(text, '(', ')').filter(|(_, unit)| is_unit(unit)))
             .map_or((text, None), |(name, unit)| (name.trim_end(), Some(unit.trim().to_owned())));
@@ -59,13 +60,13 @@ fn bracketed(text: &str, open: char, close: char) -> Option<(&str, &str)> {
 }
 
 /// The unit in a column's name, as `x_mm` or `x in mm`.
-pub(super) fn unit_in_name(text: &str, name: &str) -> Option<Unit> {
+pub(super) fn unit_in_name(text: &str, name: &str) -> Option<NamedUnit> {
     let start = text.get(..name.len()).filter(|start| start.eq_ignore_ascii_case(name))?;
     let rest = text.get(start.len()..).filter(|rest| !rest.starts_with(char::is_alphanumeric))?;
     let words = rest.split(|c: char| !c.is_alphanumeric() && c != '°').filter(|word| !word.is_empty());
     match words.collect::<Vec<_>>().as_slice() {
         [unit] | ["in", unit] => {
-            Unit::parse_any(unit).or_else(|_| Unit::parse_any(&unit.to_lowercase())).ok()
+            NamedUnit::parse_any(unit).or_else(|_| NamedUnit::parse_any(&unit.to_lowercase())).ok()
         }
         _ => None,
     }
@@ -73,7 +74,7 @@ pub(super) fn unit_in_name(text: &str, name: &str) -> Option<Unit> {
 
 /// Whether the cells below a header are units: one is, and none is a number. (Each is checked when it is needed.)
 pub(super) fn are_units(cells: &[Cell<'_>]) -> bool {
-    cells.iter().any(|cell| Unit::parse_any(bare(cell.raw)).is_ok())
+    cells.iter().any(|cell| NamedUnit::parse_any(bare(cell.raw)).is_ok())
         && !cells.iter().any(|cell| is_number(cell.raw))
 }
 
@@ -187,16 +188,16 @@ impl<'a> Header<'a> {
         }
     }
 
-    /// Unit of a column by the header, the line of units, or both.
+    /// NamedUnit of a column by the header, the line of units, or both.
     pub(super) fn unit(
         &self,
         index: usize,
-        quantity: Dimension,
+        quantity: Unit,
         purpose: &str,
-    ) -> Result<Option<(Unit, UnitSource)>> {
+    ) -> Result<Option<(NamedUnit, UnitSource)>> {
         let Some(cell) = self.cells.get(index) else { return Ok(None) };
         let parse = |symbol: &str, place: (usize, usize)| {
-            Unit::parse_for(symbol, quantity, &format!(" {purpose}"))
+            NamedUnit::parse_for(symbol, quantity, &format!(" {purpose}"))
                 .map_err(|error| Error::new(ErrorKind::Unit, error.message()).at(self.path, place.0, place.1))
         };
         let in_header = cell.unit.as_deref().map(|unit| parse(unit, (self.line, cell.column))).transpose()?;
@@ -220,9 +221,9 @@ impl<'a> Header<'a> {
     }
 
     /// The error for a column without a unit in the line of units or elsewhere.
-    pub(super) fn no_unit(&self, index: usize, line: usize, quantity: Dimension, purpose: &str) -> Error {
+    pub(super) fn no_unit(&self, index: usize, line: usize, quantity: Unit, purpose: &str) -> Error {
         let name = self.cells.get(index).map_or("", |cell| cell.text.as_str());
-        let si = quantity.si_unit().symbol();
+        let si = NamedUnit::from(quantity).symbol();
         let message = format!(
             "found no unit below column `{name}` in the line of units (line {line}), expected one {purpose}: write `{si}` \
              there if it is in {si}"
@@ -354,7 +355,7 @@ mod tests {
 
     #[test]
     fn units_are_seen_in_names() {
-        let symbol = |text: &str, name: &str| unit_in_name(text, name).map(Unit::symbol);
+        let symbol = |text: &str, name: &str| unit_in_name(text, name).map(NamedUnit::symbol);
         for text in ["x_mm", "x-mm", "X.mm", "x in mm", "x / MM", "x (MM)", "x_[mm]"] {
             assert_eq!(symbol(text, "x"), Some("mm"), "{text}");
         }

@@ -2,9 +2,10 @@
 
 use super::number::Numbers;
 use super::table::Row;
-use super::units::{Dimension, Unit, UnitSource};
+use super::units::{NamedUnit, UnitSource};
 use crate::error::{Error, Result};
 use crate::io::numbers::LARGEST_NUMBER;
+use crate::unit::Unit;
 
 /// A number in each row.
 #[derive(Clone, Debug)]
@@ -14,7 +15,7 @@ pub(super) struct Input {
     /// Name in messages: the file's column; of a constant our name.
     pub(super) label: String,
     pub(super) source: InputSource,
-    pub(super) unit: Unit,
+    pub(super) unit: NamedUnit,
     pub(super) unit_from: UnitSource,
     /// Columns of a sum; `source` is the first of them.
     pub(super) sum: Vec<Term>,
@@ -47,7 +48,7 @@ impl Input {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Term {
     pub(super) column: usize,
-    pub(super) unit: Unit,
+    pub(super) unit: NamedUnit,
     pub(super) factor: f64,
 }
 
@@ -257,9 +258,9 @@ fn check_size(value: f64, row: &Row<'_>, input: &Input) -> Result<()> {
         return Ok(());
     }
     let text = row.cells.get(column).map_or("", |cell| cell.raw);
-    let si = match input.unit.quantity() {
-        Dimension::Number => String::new(),
-        quantity @ (Dimension::Length | Dimension::Angle) => format!(" {}", quantity.si_unit().symbol()),
+    let si = match input.unit.of() {
+        Unit::One => String::new(),
+        quantity @ (Unit::Metre | Unit::Radian) => format!(" {}", NamedUnit::from(quantity).symbol()),
     };
     let message = format!(
         "found `{text}` in column `{}`, expected at most {LARGEST_NUMBER:e}{si}: correct the number or the column's unit, \

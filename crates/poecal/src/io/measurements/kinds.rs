@@ -6,12 +6,10 @@ use std::fmt;
 use super::PlaneContact;
 use super::inputs::InputReader;
 use super::table::Row;
-use super::units::Dimension;
 use crate::error::Result;
 use crate::measurement::{
     Columns, FUNCTIONS, From, Function, Measurement, Quantity, Row as TableRow, Stated,
 };
-use crate::unit::Unit;
 
 /// A kind of measurement: a function in a form of its own in files.
 #[derive(Clone, Copy)]
@@ -34,15 +32,6 @@ pub(super) fn kinds() -> impl Iterator<Item = Kind> {
 }
 
 impl Kind {
-    /// Dimension of its numbers.
-    pub(super) fn dimension(&self) -> Dimension {
-        match self.function.leading().unit() {
-            Unit::Metre => Dimension::Length,
-            Unit::Radian => Dimension::Angle,
-            Unit::One => Dimension::Number,
-        }
-    }
-
     /// The column without which a file has no such rows: of one that names alone make, the last of its names.
     pub(super) fn key(&self) -> &'static str {
         let of = match self.columns.from {

@@ -12,11 +12,12 @@ use super::FitWhere;
 use super::cells::Separator;
 use super::number::DecimalSign;
 use super::orientation::OrientationForm;
-use super::units::{Dimension, Unit};
+use super::units::NamedUnit;
 use crate::error::{Error, ErrorKind, Result};
 use crate::io::source_text;
 use crate::io::urdf::ChainSelection;
 use crate::robot::ThirdAxis;
+use crate::unit::Unit;
 
 /// A mapping of a file's columns to ours, as TOML (docs/file-formats.md, "Mapping file").
 #[derive(Clone, Debug, Default, Deserialize)]
@@ -69,17 +70,17 @@ pub(super) enum PoseDirection {
 #[serde(deny_unknown_fields, default)]
 pub(super) struct UnitDefaults {
     #[serde(deserialize_with = "length_unit")]
-    pub(super) length: Option<Unit>,
+    pub(super) length: Option<NamedUnit>,
     #[serde(deserialize_with = "angle_unit")]
-    pub(super) angle: Option<Unit>,
+    pub(super) angle: Option<NamedUnit>,
 }
 
 impl UnitDefaults {
-    pub(super) fn of(self, quantity: Dimension) -> Option<Unit> {
+    pub(super) fn of(self, quantity: Unit) -> Option<NamedUnit> {
         match quantity {
-            Dimension::Length => self.length,
-            Dimension::Angle => self.angle,
-            Dimension::Number => None,
+            Unit::Metre => self.length,
+            Unit::Radian => self.angle,
+            Unit::One => None,
         }
     }
 }
@@ -95,7 +96,7 @@ pub(super) struct ColumnSpec {
     /// What is added to the columns, in the unit.
     pub(super) offset: Option<f64>,
     #[serde(default, deserialize_with = "any_unit")]
-    pub(super) unit: Option<Unit>,
+    pub(super) unit: Option<NamedUnit>,
 }
 
 #[derive(Clone, Debug, Default, Deserialize)]
@@ -103,7 +104,7 @@ pub(super) struct ColumnSpec {
 pub(super) struct PositionSpec {
     pub(super) columns: Option<[String; 3]>,
     #[serde(default, deserialize_with = "length_unit")]
-    pub(super) unit: Option<Unit>,
+    pub(super) unit: Option<NamedUnit>,
 }
 
 #[derive(Clone, Debug, Deserialize)]
@@ -111,7 +112,7 @@ pub(super) struct PositionSpec {
 pub(super) struct OrientationSpec {
     pub(super) form: OrientationForm,
     pub(super) columns: Vec<String>,
-    pub(super) unit: Option<Unit>,
+    pub(super) unit: Option<NamedUnit>,
 }
 
 #[derive(Deserialize)]
@@ -121,7 +122,7 @@ struct OrientationFields {
     form: OrientationForm,
     columns: Option<Vec<String>>,
     #[serde(default, deserialize_with = "angle_unit")]
-    unit: Option<Unit>,
+    unit: Option<NamedUnit>,
 }
 
 /// One target of a layout with several per row.
@@ -232,7 +233,7 @@ impl TryFrom<OrientationFields> for OrientationSpec {
         if columns.len() != form.len() {
             return error(format!("found {} `columns`, expected {} ({form})", columns.len(), form.len()));
         }
-        if fields.unit.is_some() && form.quantity() == Dimension::Number {
+        if fields.unit.is_some() && form.quantity() == Unit::One {
             return error("found a unit for numbers without one, expected none".to_owned());
         }
         Ok(OrientationSpec { form, columns, unit: fields.unit })
@@ -307,16 +308,20 @@ fn parsed<'de, D: Deserializer<'de>, T>(
     parse(&text).map(Some).map_err(D::Error::custom)
 }
 
-fn length_unit<'de, D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Option<Unit>, D::Error> {
-    parsed(deserializer, |text| Unit::parse(text, Dimension::Length))
+fn length_unit<'de, D: Deserializer<'de>>(
+    deserializer: D,
+) -> std::result::Result<Option<NamedUnit>, D::Error> {
+    parsed(deserializer, |text| NamedUnit::parse(text, Unit::Metre))
 }
 
-fn angle_unit<'de, D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Option<Unit>, D::Error> {
-    parsed(deserializer, |text| Unit::parse(text, Dimension::Angle))
+fn angle_unit<'de, D: Deserializer<'de>>(
+    deserializer: D,
+) -> std::result::Result<Option<NamedUnit>, D::Error> {
+    parsed(deserializer, |text| NamedUnit::parse(text, Unit::Radian))
 }
 
-fn any_unit<'de, D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Option<Unit>, D::Error> {
-    parsed(deserializer, Unit::parse_any)
+fn any_unit<'de, D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Option<NamedUnit>, D::Error> {
+    parsed(deserializer, NamedUnit::parse_any)
 }
 
 fn orientation_form<'de, D: Deserializer<'de>>(

@@ -47,7 +47,7 @@ pub use rewritten::{JointRow, RewrittenTable, rewrite_joints};
 pub use socket_distance::SocketDistances;
 pub(in crate::io) use template::{plan, template};
 pub use understanding::{ColumnUnderstanding, FileUnderstanding};
-pub use units::{Dimension, Unit, UnitSource};
+pub use units::{NamedUnit, UnitSource};
 pub(in crate::io) use write::text;
 
 use std::collections::BTreeMap;

@@ -5,9 +5,9 @@ use std::str::FromStr;
 
 use nalgebra::{Matrix3, Vector3, Vector4};
 
-use super::units::Dimension;
 use crate::error::{Error, ErrorKind, Result};
 use crate::lie::rotation;
+use crate::unit::Unit;
 
 /// Largest deviation of a quaternion's norm from 1.
 const QUATERNION_TOLERANCE: f64 = 1e-2;
@@ -45,9 +45,9 @@ impl OrientationForm {
         self.part_names().len()
     }
 
-    /// Dimension of its columns.
-    pub(super) fn quantity(self) -> Dimension {
-        if self.len() == 3 { Dimension::Angle } else { Dimension::Number }
+    /// Unit of its columns.
+    pub(super) fn quantity(self) -> Unit {
+        if self.len() == 3 { Unit::Radian } else { Unit::One }
     }
 
     /// Column names in our own files, in order; empty for Euler angles, which these do not have.
@@ -214,7 +214,7 @@ mod tests {
         let by_rows: Vec<f64> = rounded.transpose().iter().copied().collect();
         for (form, values) in [("rotation_matrix", &by_rows), ("rotation_matrix_by_columns", &by_columns)] {
             let form: OrientationForm = form.parse().unwrap();
-            assert_eq!((form.len(), form.quantity()), (9, Dimension::Number));
+            assert_eq!((form.len(), form.quantity()), (9, Unit::One));
             let found = form.rotation(values).unwrap();
             assert!((found - turned).amax() < 1e-6);
             assert!((found.transpose() * found - Matrix3::identity()).amax() < 1e-15);

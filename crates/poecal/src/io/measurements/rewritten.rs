@@ -12,7 +12,7 @@ use super::number::{DecimalSign, Numbers};
 use super::scale::JointWatch;
 use super::table::{Table, TableRows};
 use super::text::Blocks;
-use super::units::Unit;
+use super::units::NamedUnit;
 use crate::error::{Error, ErrorKind, Result};
 use crate::io::numbers::push_number;
 use crate::robot::{Counting, Robot};
@@ -86,7 +86,7 @@ fn columns(
     layout: &ColumnLayout,
     counting: Option<&Counting>,
     header: &Header<'_>,
-) -> Result<Vec<(usize, Unit)>> {
+) -> Result<Vec<(usize, NamedUnit)>> {
     let terms: Vec<Term> = layout.inputs.iter().flat_map(Input::terms).collect();
     let Some(counting) = counting else { return Ok(terms.iter().map(|it| (it.column, it.unit)).collect()) };
     let mut columns = Vec::with_capacity(terms.len());
@@ -122,7 +122,7 @@ fn counting(layout: &ColumnLayout, path: &Path) -> Result<Option<Counting>> {
 
 /// The current block with its new numbers.
 struct Rewriting {
-    columns: Vec<(usize, Unit)>,
+    columns: Vec<(usize, NamedUnit)>,
     counting: Option<Counting>,
     numbers: Vec<f64>,
     text: String,

@@ -9,11 +9,12 @@ use super::inputs::{Input, InputReader, Range};
 use super::layout::ColumnLayout;
 use super::lost::{NAMED_LINES, named_lines};
 use super::table::Row;
-use super::units::{Dimension, Unit, UnitSource};
+use super::units::{NamedUnit, UnitSource};
 use crate::distributions::{median, median_point};
 use crate::error::{Error, ErrorKind, Result};
 use crate::measurement::Observation;
 use crate::robot::{Joint, JointKind, Limits, Robot};
+use crate::unit::Unit;
 
 /// Without limits, readings beyond this many radians or metres need a stated unit.
 const LARGEST_UNLIMITED: f64 = 50.0;
@@ -125,7 +126,7 @@ impl<'a> JointWatch<'a> {
                 return Err(Error::new(ErrorKind::Unit, message).at(path, line, column));
             }
             if let Some(limits) = one.joint.limits {
-                warnings.push(one.limit_warning(path, limits, input.unit.quantity().si_unit()));
+                warnings.push(one.limit_warning(path, limits, NamedUnit::from(input.unit.of())));
             }
         }
         Ok(warnings)
@@ -182,7 +183,7 @@ impl OneJoint<'_> {
     }
 
     /// The unit that explains readings far outside.
-    fn other_unit(&self, input: &Input, extremes: [f64; 2], rows: usize) -> Option<Unit> {
+    fn other_unit(&self, input: &Input, extremes: [f64; 2], rows: usize) -> Option<NamedUnit> {
         let candidates: &[&str] = match input.unit.symbol() {
             "rad" => &["deg", "mrad"],
             "m" => &["mm", "um"],
@@ -190,14 +191,14 @@ impl OneJoint<'_> {
             "mm" => &["um"],
             _ => &[],
         };
-        let quantity = input.unit.quantity();
+        let quantity = input.unit.of();
         let is_rare = (self.beyond as f64) < SHARE * rows as f64;
         if is_rare || !self.is_far_outside(quantity, extremes, input.unit_from) {
             return None;
         }
         let span = self.joint.limits.map_or(0.0, |limits| limits.upper - limits.lower);
         candidates.iter().find_map(|symbol| {
-            let unit = Unit::parse(symbol, quantity).ok()?;
+            let unit = NamedUnit::parse(symbol, quantity).ok()?;
             let fits = extremes.into_iter().all(|reading| {
                 let reading = unit.to_si(input.unit.from_si(reading));
                 let plausible = self.joint.limits.is_some() || reading.abs() <= LARGEST_OTHERWISE;
@@ -208,14 +209,14 @@ impl OneJoint<'_> {
     }
 
     /// Whether a reading is so far outside that the joint cannot have been there.
-    fn is_far_outside(&self, quantity: Dimension, extremes: [f64; 2], unit_from: UnitSource) -> bool {
+    fn is_far_outside(&self, quantity: Unit, extremes: [f64; 2], unit_from: UnitSource) -> bool {
         match self.joint.limits {
             Some(limits) => {
                 let span = limits.upper - limits.lower;
                 // Limits may be narrow or wrong: only large readings count.
                 let (large, spans) = match quantity {
-                    Dimension::Length => (5.0, 5.0),
-                    Dimension::Angle | Dimension::Number => (std::f64::consts::TAU, 0.5),
+                    Unit::Metre => (5.0, 5.0),
+                    Unit::Radian | Unit::One => (std::f64::consts::TAU, 0.5),
                 };
                 extremes
                     .into_iter()
@@ -225,12 +226,12 @@ impl OneJoint<'_> {
         }
     }
 
-    fn unit_message(&self, input: &Input, likely: Unit, is_per_cent: bool) -> String {
+    fn unit_message(&self, input: &Input, likely: NamedUnit, is_per_cent: bool) -> String {
         let stated = input.unit.symbol();
         let symbol = likely.symbol();
         let outside = match self.joint.limits {
             Some(limits) => {
-                let si = input.unit.quantity().si_unit().symbol();
+                let si = NamedUnit::from(input.unit.of()).symbol();
                 format!(
                     "far outside the limits {} to {} {si} of joint `{}`",
                     short(limits.lower),
@@ -254,7 +255,7 @@ impl OneJoint<'_> {
         )
     }
 
-    fn limit_warning(&self, path: &Path, limits: Limits, unit: Unit) -> String {
+    fn limit_warning(&self, path: &Path, limits: Limits, unit: NamedUnit) -> String {
         format!(
             "{}: joint `{}` lies beyond its limits {} to {} {} in {} {} ({})",
             path.display(),

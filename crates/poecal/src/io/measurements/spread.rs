@@ -8,13 +8,14 @@ use super::header::Header;
 use super::inputs::{Input, InputSource};
 use super::layout::ColumnLayout;
 use super::scale::short;
-use super::units::{Dimension, Unit};
+use super::units::NamedUnit;
 use crate::distributions::{median, median_point};
 use crate::error::{Error, ErrorKind, Result};
 use crate::lie::Pose;
 use crate::measurement::Dataset;
 use crate::robot::{Mount, Robot};
 use crate::simulate::seen;
+use crate::unit::Unit;
 
 /// Most rows of the comparison.
 const ROWS: usize = 500;
@@ -110,7 +111,7 @@ fn is_about(ratio: f64, expected: f64) -> bool {
 }
 
 fn is_angle(input: &Input) -> bool {
-    input.unit.quantity() == Dimension::Angle
+    input.unit.of() == Unit::Radian
 }
 
 /// The first joint angle, if all are in degrees and as small as radians.
@@ -146,7 +147,7 @@ fn position_message(input: &Input, measured: f64, modelled: f64, power: i32) -> 
         if power > 0 { "small" } else { "large" }
     );
     let likely = ["m", "mm", "um", "nm"].into_iter().find(|symbol| {
-        Unit::parse(symbol, Dimension::Length)
+        NamedUnit::parse(symbol, Unit::Metre)
             .is_ok_and(|unit| (unit.to_si(1.0) * 10f64.powi(power) / stated.to_si(1.0) - 1.0).abs() < 1e-9)
     });
     let advice = match likely {

@@ -5,6 +5,7 @@ use std::f64::consts::PI;
 use serde::Serialize;
 
 use crate::error::{Error, ErrorKind, Result, nearest};
+use crate::unit::Unit;
 
 /// Source of a column's unit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -20,46 +21,11 @@ pub enum UnitSource {
     Si,
 }
 
-/// Dimension of a number.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Dimension {
-    /// SI unit metre.
-    Length,
-    /// SI unit radian.
-    Angle,
-    /// A pure number, such as a part of a quaternion.
-    Number,
-}
-
-impl Dimension {
-    /// The SI unit: `m`, `rad` or `1`.
-    #[must_use]
-    pub fn si_unit(self) -> Unit {
-        match self {
-            Dimension::Length => METRE,
-            Dimension::Angle => RADIAN,
-            Dimension::Number => ONE,
-        }
-    }
-
-    fn words(self) -> &'static str {
-        match self {
-            Dimension::Length => "a length",
-            Dimension::Angle => "an angle",
-            Dimension::Number => "a number without unit",
-        }
-    }
-
-    fn known_units(self) -> impl Iterator<Item = &'static Unit> {
-        UNITS.iter().filter(move |unit| unit.quantity == self)
-    }
-}
-
-/// A unit: symbol, quantity, and conversion to SI.
+/// A unit of files: its symbol, the SI unit of the same quantity, and the conversion to it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Unit {
+pub struct NamedUnit {
     symbol: &'static str,
-    quantity: Dimension,
+    of: Unit,
     // Lengths are divided by a power of ten, which is exact; 0.001 is not.
     factor: f64,
     divisor: f64,
@@ -69,49 +35,73 @@ pub struct Unit {
 
 const fn unit(
     symbol: &'static str,
-    quantity: Dimension,
+    of: Unit,
     (factor, divisor): (f64, f64),
     names: &'static str,
-) -> Unit {
-    Unit { symbol, quantity, factor, divisor, names }
+) -> NamedUnit {
+    NamedUnit { symbol, of, factor, divisor, names }
 }
 
-const METRE: Unit = unit("m", Dimension::Length, (1.0, 1.0), "metre metres meter meters");
-const RADIAN: Unit = unit("rad", Dimension::Angle, (1.0, 1.0), "radian radians");
-const ONE: Unit = unit("1", Dimension::Number, (1.0, 1.0), "");
+const METRE: NamedUnit = unit("m", Unit::Metre, (1.0, 1.0), "metre metres meter meters");
+const RADIAN: NamedUnit = unit("rad", Unit::Radian, (1.0, 1.0), "radian radians");
+const ONE: NamedUnit = unit("1", Unit::One, (1.0, 1.0), "");
 
-const UNITS: [Unit; 12] = [
+const UNITS: [NamedUnit; 12] = [
     METRE,
-    unit("cm", Dimension::Length, (1.0, 1e2), "centimetre centimetres centimeter centimeters"),
-    unit("mm", Dimension::Length, (1.0, 1e3), "millimetre millimetres millimeter millimeters"),
-    unit("um", Dimension::Length, (1.0, 1e6), "micrometre micrometres micrometer micrometers micron microns"),
-    unit("nm", Dimension::Length, (1.0, 1e9), ""),
+    unit("cm", Unit::Metre, (1.0, 1e2), "centimetre centimetres centimeter centimeters"),
+    unit("mm", Unit::Metre, (1.0, 1e3), "millimetre millimetres millimeter millimeters"),
+    unit("um", Unit::Metre, (1.0, 1e6), "micrometre micrometres micrometer micrometers micron microns"),
+    unit("nm", Unit::Metre, (1.0, 1e9), ""),
     // 25.4 mm exactly.
-    unit("in", Dimension::Length, (254.0, 1e4), "inch inches"),
+    unit("in", Unit::Metre, (254.0, 1e4), "inch inches"),
     RADIAN,
-    unit("mrad", Dimension::Angle, (1.0, 1e3), "milliradian milliradians"),
-    unit("deg", Dimension::Angle, (PI / 180.0, 1.0), "degree degrees"),
-    unit("arcmin", Dimension::Angle, (PI / 10_800.0, 1.0), "arcminute arcminutes"),
-    unit("arcsec", Dimension::Angle, (PI / 648_000.0, 1.0), "arcsecond arcseconds"),
+    unit("mrad", Unit::Radian, (1.0, 1e3), "milliradian milliradians"),
+    unit("deg", Unit::Radian, (PI / 180.0, 1.0), "degree degrees"),
+    unit("arcmin", Unit::Radian, (PI / 10_800.0, 1.0), "arcminute arcminutes"),
+    unit("arcsec", Unit::Radian, (PI / 648_000.0, 1.0), "arcsecond arcseconds"),
     ONE,
 ];
 
-impl Unit {
-    /// The unit of this symbol for this quantity; also `µm`, `°` and words such as `degrees` and `inch`.
+/// The SI unit itself, as files name it.
+impl From<Unit> for NamedUnit {
+    fn from(unit: Unit) -> Self {
+        match unit {
+            Unit::Metre => METRE,
+            Unit::Radian => RADIAN,
+            Unit::One => ONE,
+        }
+    }
+}
+
+fn words(unit: Unit) -> &'static str {
+    match unit {
+        Unit::Metre => "a length",
+        Unit::Radian => "an angle",
+        Unit::One => "a number without unit",
+    }
+}
+
+/// The units of one quantity.
+fn units_of(of: Unit) -> impl Iterator<Item = &'static NamedUnit> {
+    UNITS.iter().filter(move |unit| unit.of == of)
+}
+
+impl NamedUnit {
+    /// The unit of this symbol for the quantity of an SI unit; also `µm`, `°` and words such as `degrees` and `inch`.
     ///
     /// # Errors
     /// [`ErrorKind::Unit`] if it is unknown or measures something else.
-    pub fn parse(symbol: &str, quantity: Dimension) -> Result<Unit> {
-        Unit::parse_for(symbol, quantity, "")
+    pub fn parse(symbol: &str, of: Unit) -> Result<NamedUnit> {
+        NamedUnit::parse_for(symbol, of, "")
     }
 
-    /// As [`Unit::parse`]; `purpose` (` for …`) describes the unit's use in the message.
-    pub(super) fn parse_for(symbol: &str, quantity: Dimension, purpose: &str) -> Result<Unit> {
+    /// As [`NamedUnit::parse`]; `purpose` (` for …`) describes the unit's use in the message.
+    pub(super) fn parse_for(symbol: &str, of: Unit, purpose: &str) -> Result<NamedUnit> {
         let plain = plain(symbol);
-        if let Some(unit) = quantity.known_units().find(|unit| unit.symbol == plain) {
+        if let Some(unit) = units_of(of).find(|unit| unit.symbol == plain) {
             return Ok(*unit);
         }
-        let symbols: Vec<&str> = quantity.known_units().map(|unit| unit.symbol).collect();
+        let symbols: Vec<&str> = units_of(of).map(|unit| unit.symbol).collect();
         let known_elsewhere = UNITS.iter().any(|unit| unit.symbol == plain);
         let hint = match nearest(plain, symbols.iter().copied()) {
             Some(near) if !known_elsewhere && near.eq_ignore_ascii_case(plain) => {
@@ -119,7 +109,7 @@ impl Unit {
             }
             _ => String::new(),
         };
-        let (words, symbols) = (quantity.words(), symbols.join(", "));
+        let (words, symbols) = (words(of), symbols.join(", "));
         let message = format!("found the unit `{symbol}`{purpose}, expected {words} ({symbols}){hint}");
         Err(Error::new(ErrorKind::Unit, message))
     }
@@ -128,8 +118,8 @@ impl Unit {
     ///
     /// # Errors
     /// [`ErrorKind::Unit`] if it is unknown.
-    pub fn parse_any(symbol: &str) -> Result<Unit> {
-        let unit = Unit::parse(symbol, Dimension::Length).or_else(|_| Unit::parse(symbol, Dimension::Angle));
+    pub fn parse_any(symbol: &str) -> Result<NamedUnit> {
+        let unit = NamedUnit::parse(symbol, Unit::Metre).or_else(|_| NamedUnit::parse(symbol, Unit::Radian));
         unit.map_err(|_| {
             let symbols = UNITS.iter().filter(|unit| **unit != ONE).map(|unit| unit.symbol);
             let symbols = symbols.collect::<Vec<_>>().join(", ");
@@ -155,16 +145,17 @@ impl Unit {
         self.symbol
     }
 
-    /// Its quantity.
+    /// The SI unit of the same quantity.
     #[must_use]
-    pub fn quantity(self) -> Dimension {
-        self.quantity
+    pub fn of(self) -> Unit {
+        self.of
     }
 }
 
 /// The symbol for any name of a unit.
 fn plain(name: &str) -> &str {
-    let is_named = |unit: &&Unit| unit.names.split_whitespace().any(|word| word.eq_ignore_ascii_case(name));
+    let is_named =
+        |unit: &&NamedUnit| unit.names.split_whitespace().any(|word| word.eq_ignore_ascii_case(name));
     match name {
         "µm" | "μm" => "um",
         "°" => "deg",
@@ -180,7 +171,7 @@ pub(super) fn positive_length_m(text: &str) -> Result<Option<f64>> {
     let (number, symbol) = text.split_at(at);
     let value = number.trim().parse::<f64>().ok().filter(|value| value.is_finite() && *value > 0.0);
     let (Some(value), false) = (value, symbol.is_empty()) else { return Ok(None) };
-    Ok(Some(Unit::parse(symbol.trim(), Dimension::Length)?.to_si(value)))
+    Ok(Some(NamedUnit::parse(symbol.trim(), Unit::Metre)?.to_si(value)))
 }
 
 #[cfg(test)]
@@ -190,11 +181,11 @@ mod tests {
     #[test]
     fn every_unit_converts_there_and_back() {
         for unit in UNITS {
-            assert_eq!(Unit::parse(unit.symbol, unit.quantity).unwrap(), unit);
+            assert_eq!(NamedUnit::parse(unit.symbol, unit.of).unwrap(), unit);
             assert!((unit.from_si(unit.to_si(0.7)) - 0.7).abs() < 1e-15, "{}", unit.symbol);
         }
-        assert_eq!(Unit::parse("µm", Dimension::Length).unwrap().to_si(3.0), 3e-6);
-        assert_eq!(Unit::parse("deg", Dimension::Angle).unwrap().to_si(180.0), PI);
+        assert_eq!(NamedUnit::parse("µm", Unit::Metre).unwrap().to_si(3.0), 3e-6);
+        assert_eq!(NamedUnit::parse("deg", Unit::Radian).unwrap().to_si(180.0), PI);
     }
 
     #[test]
@@ -225,21 +216,21 @@ mod tests {
     fn units_have_other_names() {
         for unit in UNITS {
             for name in unit.names.split_whitespace() {
-                assert_eq!(Unit::parse_any(name).unwrap(), unit);
+                assert_eq!(NamedUnit::parse_any(name).unwrap(), unit);
             }
         }
-        assert_eq!(Unit::parse("Inches", Dimension::Length).unwrap().to_si(1.0), 0.0254);
-        assert_eq!(Unit::parse("in", Dimension::Length).unwrap().to_si(10.0), 0.254);
-        assert!(Unit::parse("Degrees", Dimension::Length).is_err());
+        assert_eq!(NamedUnit::parse("Inches", Unit::Metre).unwrap().to_si(1.0), 0.0254);
+        assert_eq!(NamedUnit::parse("in", Unit::Metre).unwrap().to_si(10.0), 0.254);
+        assert!(NamedUnit::parse("Degrees", Unit::Metre).is_err());
     }
 
     #[test]
     fn unknown_units_name_what_is_known() {
-        let message = |symbol, quantity| Unit::parse(symbol, quantity).unwrap_err().to_string();
+        let message = |symbol, of| NamedUnit::parse(symbol, of).unwrap_err().to_string();
         assert_eq!(
-            message("MM", Dimension::Length),
+            message("MM", Unit::Metre),
             "found the unit `MM`, expected a length (m, cm, mm, um, nm, in); did you mean `mm`?"
         );
-        assert_eq!(message("m", Dimension::Number), "found the unit `m`, expected a number without unit (1)");
+        assert_eq!(message("m", Unit::One), "found the unit `m`, expected a number without unit (1)");
     }
 }

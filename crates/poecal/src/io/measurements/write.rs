@@ -4,11 +4,12 @@ use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
 use super::kinds::{Kind, kinds};
-use super::units::{Dimension, Unit};
+use super::units::NamedUnit;
 use crate::error::{Error, ErrorKind, Result};
 use crate::io::csv_text;
 use crate::measurement::{Dataset, Measurement, Noise, Observation, Quantity};
 use crate::robot::{ReadingKind, Robot};
+use crate::unit::Unit;
 
 /// Rows as a file with a leading comment: degrees and millimetres, orientations as quaternions, names where there are some. Readings are exact;
 /// measured numbers are rounded to less than a thousandth of their noise.
@@ -16,8 +17,8 @@ pub(in crate::io) fn text(data: &Dataset, robot: &Robot, noise: &Noise, comment:
     if data.observations.iter().any(|row| row.from.is_some() || !row.measurement.is_place()) {
         return other_text(data, robot, noise, comment);
     }
-    let mm = Unit::parse("mm", Dimension::Length)?;
-    let number = Dimension::Number.si_unit();
+    let mm = NamedUnit::parse("mm", Unit::Metre)?;
+    let number = NamedUnit::from(Unit::One);
     let orientations = data.observations.iter().any(|row| row.measurement.sees_orientation());
     let units = reading_units(data.reading_names(), robot)?;
     let named = [&data.stations, &data.targets].map(|names| names.iter().any(Option::is_some));
@@ -133,7 +134,7 @@ fn cells(data: &Dataset, observation: &Observation, noise: &Noise) -> Result<BTr
         return Ok(cells);
     };
     let quantity = kind.function.leading();
-    let unit = Unit::parse(quantity.unit().symbol(), kind.dimension())?;
+    let unit = NamedUnit::parse(quantity.unit().symbol(), quantity.unit())?;
     for (column, number) in kind.columns.numbers.iter().zip(numbers) {
         if kind.needs_numbers() || number != 0.0 {
             let digits = decimals(unit.from_si(noise[quantity]));
@@ -147,11 +148,11 @@ fn cells(data: &Dataset, observation: &Observation, noise: &Noise) -> Result<BTr
 
 /// The cells of a place, or of some of its components, and of an orientation.
 fn place_cells(seen: &Measurement, noise: &Noise, cells: &mut BTreeMap<String, String>) -> Result<()> {
-    let mm = Unit::parse("mm", Dimension::Length)?;
+    let mm = NamedUnit::parse("mm", Unit::Metre)?;
     let digits = decimals(mm.from_si(noise[Quantity::Position]));
     let place = seen.position_components().map(|it| it.map(|length| decimal(length, mm, digits)));
     let turn = decimals(noise[Quantity::Rotation] / 2.0);
-    let part = |part| Some(decimal(part, Dimension::Number.si_unit(), turn));
+    let part = |part| Some(decimal(part, NamedUnit::from(Unit::One), turn));
     let parts = seen.frame().map_or([const { None }; 4], |pose| pose.quaternion_xyzw().map(part));
     let [lengths @ .., _, _, _, _] = AFTER;
     let [_, _, _, quaternion @ ..] = AFTER;
@@ -163,18 +164,18 @@ fn place_cells(seen: &Measurement, noise: &Noise, cells: &mut BTreeMap<String, S
 }
 
 /// Units of the readings: degrees and millimetres.
-pub(super) fn reading_units(names: &[String], robot: &Robot) -> Result<Vec<Unit>> {
-    let (deg, mm) = (Unit::parse("deg", Dimension::Angle)?, Unit::parse("mm", Dimension::Length)?);
+pub(super) fn reading_units(names: &[String], robot: &Robot) -> Result<Vec<NamedUnit>> {
+    let (deg, mm) = (NamedUnit::parse("deg", Unit::Radian)?, NamedUnit::parse("mm", Unit::Metre)?);
     let unit = |name: &String| match robot.reading_kind(name) {
         ReadingKind::Length => mm,
         ReadingKind::Angle => deg,
-        ReadingKind::Factor => Dimension::Number.si_unit(),
+        ReadingKind::Factor => NamedUnit::from(Unit::One),
     };
     Ok(names.iter().map(unit).collect())
 }
 
 /// Header of readings and measured positions, with or without orientations.
-pub(super) fn header(names: &[String], units: &[Unit], orientations: bool) -> Result<String> {
+pub(super) fn header(names: &[String], units: &[NamedUnit], orientations: bool) -> Result<String> {
     let measured_names: &[&str] =
         if orientations { &["x", "y", "z", "qx", "qy", "qz", "qw"] } else { &["x", "y", "z"] };
     refuse_names(names, measured_names)?;
@@ -202,10 +203,9 @@ pub(super) fn refuse_names(names: &[String], measured: &[&str]) -> Result<()> {
 }
 
 /// The columns of the readings.
-pub(super) fn reading_header(names: &[String], units: &[Unit]) -> String {
-    let cell = |(name, unit): (&String, &Unit)| {
-        let symbol =
-            if unit.quantity() == Dimension::Number { String::new() } else { format!("[{}]", unit.symbol()) };
+pub(super) fn reading_header(names: &[String], units: &[NamedUnit]) -> String {
+    let cell = |(name, unit): (&String, &NamedUnit)| {
+        let symbol = if unit.of() == Unit::One { String::new() } else { format!("[{}]", unit.symbol()) };
         csv_text::cell(&format!("{name}{symbol}")).into_owned()
     };
     names.iter().zip(units).map(cell).collect::<Vec<_>>().join(",")
@@ -217,7 +217,7 @@ fn decimals(noise: f64) -> Option<usize> {
 }
 
 /// A number in a unit, with the given decimals, else with as many as are needed to read back the same number.
-pub(super) fn decimal(si: f64, unit: Unit, decimals: Option<usize>) -> String {
+pub(super) fn decimal(si: f64, unit: NamedUnit, decimals: Option<usize>) -> String {
     let value = unit.from_si(si);
     let with = |count: usize| format!("{value:.count$}");
     match decimals {
@@ -235,8 +235,8 @@ mod tests {
 
     #[test]
     fn readings_read_back_the_same() {
-        let deg = Unit::parse("deg", Dimension::Angle).unwrap();
-        let mm = Unit::parse("mm", Dimension::Length).unwrap();
+        let deg = NamedUnit::parse("deg", Unit::Radian).unwrap();
+        let mm = NamedUnit::parse("mm", Unit::Metre).unwrap();
         assert_eq!(decimal(deg.to_si(-12.3456), deg, None), "-12.3456");
         assert_eq!(decimal(mm.to_si(250.001), mm, None), "250.001");
         for si in [0.1 + 0.2, -1e-3, 3.0, 0.123_456_789_012_345_6] {
@@ -287,7 +287,7 @@ mod tests {
 
     #[test]
     fn measured_numbers_are_as_long_as_their_noise_deserves() {
-        let mm = Unit::parse("mm", Dimension::Length).unwrap();
+        let mm = NamedUnit::parse("mm", Unit::Metre).unwrap();
         assert_eq!(decimal(0.812_310_012_345, mm, decimals(0.05)), "812.31001");
         assert_eq!(decimals(0.0), None);
     }

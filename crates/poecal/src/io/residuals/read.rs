@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 use std::path::Path;
 
-use super::{
+use super::rows::{
     DIAGNOSTICS, FIRST, INSTRUMENT, MODELS, ModelErrors, ResidualRow, Residuals, RowDiagnostics, columns,
 };
 use crate::error::{Error, ErrorKind, Result};

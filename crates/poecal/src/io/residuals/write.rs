@@ -4,8 +4,8 @@ use std::fmt::Write as _;
 use std::io::Write;
 use std::ops::Range;
 
+use super::rows::{DIAGNOSTICS, FIRST, INSTRUMENT, MODELS, ModelErrors, Residuals, RowDiagnostics, columns};
 use super::source::RowSource;
-use super::{DIAGNOSTICS, FIRST, INSTRUMENT, MODELS, ModelErrors, Residuals, RowDiagnostics, columns};
 use crate::calibration::Calibration;
 use crate::io::csv_text::cell;
 use crate::io::numbers::push_number;

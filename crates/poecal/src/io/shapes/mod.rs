@@ -7,6 +7,7 @@ mod mesh;
 mod obj;
 mod simplify;
 mod stl;
+mod written;
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -15,6 +16,7 @@ use self::collector::{MOST_TRIANGLES, Triangles};
 use self::find::Folders;
 
 use self::simplify::fitted;
+pub use self::written::Mesh;
 use super::calibration_file::CalibrationFile;
 use super::urdf::{Geometry, Visual};
 use crate::lie::Pose;
@@ -53,23 +55,6 @@ pub struct Shape {
     pub nominal_pose: Pose,
     /// Its form.
     pub form: Form,
-}
-
-/// A mesh as text: places in whole steps from a corner, and three of them for each triangle. Both are little-endian numbers in base 64.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Mesh {
-    /// The corner, metres.
-    pub least: [f32; 3],
-    /// The step, metres.
-    pub step: f32,
-    /// x, y and z of each place, 16 bits each.
-    pub places: String,
-    /// Indices of places, 16 bits each, or 32 if `wide`.
-    pub corners: String,
-    /// Whether indices have 32 bits.
-    pub wide: bool,
-    /// Number of triangles.
-    pub triangles: usize,
 }
 
 /// What a robot looks like.
