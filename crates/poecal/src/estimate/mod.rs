@@ -10,6 +10,7 @@ mod range;
 mod rounding;
 mod row_error;
 mod session;
+mod side_by_side;
 mod sight;
 mod tree;
 mod unknowns;

@@ -3,6 +3,7 @@
 mod averaging;
 mod faces;
 mod hand_eye;
+mod one_station;
 mod others;
 mod registration;
 mod robust;

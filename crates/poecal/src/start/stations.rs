@@ -2,7 +2,8 @@
 
 use std::cmp::Reverse;
 
-use super::registration::{Registration, at_one_station, polish, roughly_at_one_station};
+use super::one_station::{at_one_station, roughly_at_one_station};
+use super::registration::{Registration, polish};
 use crate::estimate::{Estimate, Session, Unknowns};
 use crate::lie::Freedom;
 

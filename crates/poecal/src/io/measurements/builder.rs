@@ -4,17 +4,14 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::header::{Header, unit_in_name};
 use super::inputs::{Input, InputSource, Term};
-use super::kinds::{self, Kind, KindColumns};
-use super::mapping::{ColumnMap, ColumnSpec, OrientationSpec, PositionSpec, TargetSpec};
-use super::orientation::OrientationForm;
+use super::kinds;
+use super::mapping::{ColumnMap, ColumnSpec};
+use super::numbered::numbered;
 use super::units::{NamedUnit, UnitSource};
 use crate::error::{Error, ErrorKind, Result, distance_within, first_few};
 use crate::io::numbers::LARGEST_NUMBER;
 use crate::robot::{Controller, Factor, ReadingKind, Robot, sum_words};
 use crate::unit::Unit;
-
-const DEFAULT_FORMS: [OrientationForm; 3] =
-    [OrientationForm::QuaternionXyzw, OrientationForm::RotationVector, OrientationForm::ROLL_PITCH_YAW];
 
 /// Names with a meaning in every file, beside those of joints.
 const OUR_NAMES: [&str; 23] = [
@@ -43,34 +40,6 @@ const OUR_NAMES: [&str; 23] = [
     "set",
 ];
 
-/// Beginning of columns of expanded uncertainties (95 %), in place of `sigma_`, and their coverage factor.
-const EXPANDED: &str = "U95_";
-const COVERAGE_FACTOR: f64 = 2.0;
-
-/// Names of columns that number joints from base to tip.
-const NUMBERED: [&str; 8] = ["q", "joint", "j", "a", "joint_", "J", "A", "Q"];
-
-/// Joints with their numbered columns, if the file names no joint and has a column `q1` (or [`NUMBERED`]) and so on for each, and no more.
-fn numbered(
-    header: &Header<'_>,
-    robot: &Robot,
-    map: &ColumnMap,
-    names: &[String],
-) -> Option<Vec<(String, String)>> {
-    let joints: Vec<&String> =
-        names.iter().filter(|name| robot.reading_kind(name) != ReadingKind::Factor).collect();
-    if !map.joints.is_empty() || joints.iter().any(|name| header.count(name) > 0) {
-        return None;
-    }
-    let has_all = |prefix: &&str| {
-        let has = |number: usize| header.count(&format!("{prefix}{number}")) == 1;
-        (1..=joints.len()).all(has) && !has(joints.len() + 1)
-    };
-    let prefix = NUMBERED.into_iter().find(|prefix| has_all(prefix))?;
-    let column = |(index, name): (usize, &String)| (name.clone(), format!("{prefix}{}", index + 1));
-    Some(joints.into_iter().enumerate().map(column).collect())
-}
-
 /// Whether a name has a meaning in every file.
 fn is_our_name(name: &str) -> bool {
     OUR_NAMES.contains(&name) || kinds::names().any(|known| known == name)
@@ -79,26 +48,11 @@ fn is_our_name(name: &str) -> bool {
 /// Advice where a column of ours is missing.
 const MISSING: &str = ": rename or add a column, or name the right one in a mapping file (--columns)";
 
-/// One target of a row; numbers are indices into [`Builder::inputs`].
-#[derive(Clone, Debug)]
-pub(super) struct TargetLayout {
-    pub(super) name: Option<String>,
-    /// None in a file of other kinds of measurements.
-    pub(super) position: Option<[usize; 3]>,
-    pub(super) orientation: Option<(OrientationForm, Vec<usize>)>,
-    pub(super) sigma_position: Option<usize>,
-    /// Of each component.
-    pub(super) sigma_components: [Option<usize>; 3],
-    pub(super) sigma_rotation: Option<usize>,
-    /// Other kinds of measurements.
-    pub(super) kinds: Vec<KindColumns>,
-}
-
 /// Finds columns in a header, and records which are used.
 pub(super) struct Builder<'a> {
     pub(super) header: &'a Header<'a>,
     pub(super) map: &'a ColumnMap,
-    readings: BTreeSet<String>,
+    pub(super) readings: BTreeSet<String>,
     pub(super) inputs: Vec<Input>,
     used: Vec<bool>,
     /// Joints with the numbered columns that are taken for them, where no column has the name of a joint.
@@ -181,7 +135,13 @@ impl<'a> Builder<'a> {
     }
 
     /// Adds a number from a column or a constant.
-    fn spec_input(&mut self, name: &str, spec: &ColumnSpec, quantity: Unit, purpose: &str) -> Result<usize> {
+    pub(super) fn spec_input(
+        &mut self,
+        name: &str,
+        spec: &ColumnSpec,
+        quantity: Unit,
+        purpose: &str,
+    ) -> Result<usize> {
         if let Some(unit) = spec.unit.filter(|unit| unit.of() != quantity) {
             NamedUnit::parse_for(unit.symbol(), quantity, &format!(" {purpose}"))
                 .map_err(|error| error.in_file(&self.map.path))?;
@@ -222,7 +182,7 @@ impl<'a> Builder<'a> {
     }
 
     /// What the mapping adds to a joint's columns, in the unit of the first.
-    fn add_offset(&mut self, at: usize, offset: Option<f64>, purpose: &str) -> Result<()> {
+    pub(super) fn add_offset(&mut self, at: usize, offset: Option<f64>, purpose: &str) -> Result<()> {
         let Some(offset) = offset else { return Ok(()) };
         let Some(input) = self.inputs.get_mut(at) else { return Ok(()) };
         let added = input.unit.to_si(offset);
@@ -237,7 +197,7 @@ impl<'a> Builder<'a> {
     }
 
     /// Adds a number from a column.
-    fn column_input(
+    pub(super) fn column_input(
         &mut self,
         name: &str,
         column: &str,
@@ -277,7 +237,7 @@ impl<'a> Builder<'a> {
     }
 
     /// Adds a sum of columns.
-    fn sum_input(
+    pub(super) fn sum_input(
         &mut self,
         name: &str,
         columns: &BTreeMap<String, f64>,
@@ -335,7 +295,7 @@ impl<'a> Builder<'a> {
     }
 
     /// Explains a duplicate column by a joint of the model with the name of a column with a meaning.
-    fn explained(&self, name: &str, error: Error) -> Error {
+    pub(super) fn explained(&self, name: &str, error: Error) -> Error {
         let is_clash = self.readings.contains(name) && is_our_name(name);
         match self.header.second(name) {
             Some(second) if is_clash => {
@@ -362,207 +322,14 @@ impl<'a> Builder<'a> {
         }
     }
 
-    fn mark(&mut self, index: usize) {
+    pub(super) fn mark(&mut self, index: usize) {
         if let Some(used) = self.used.get_mut(index) {
             *used = true;
         }
     }
 
-    fn is_used(&self, index: usize) -> bool {
+    pub(super) fn is_used(&self, index: usize) -> bool {
         self.used.get(index).copied().unwrap_or(false)
-    }
-
-    /// The targets of a row: those of the mapping, or the only one.
-    pub(super) fn targets(&mut self) -> Result<Vec<TargetLayout>> {
-        let map = self.map;
-        if !map.targets.is_empty() {
-            return map.targets.iter().map(|target| self.target(target, false)).collect();
-        }
-        let only = TargetSpec {
-            name: String::new(),
-            position: map.position.clone().unwrap_or_default(),
-            orientation: map.orientation.clone(),
-            sigma_position: map.sigma_position.clone(),
-            sigma_rotation: map.sigma_rotation.clone(),
-        };
-        Ok(vec![TargetLayout { name: map.target_name.clone(), ..self.target(&only, true)? }])
-    }
-
-    /// One target of a row; the columns of the only one may have our names.
-    fn target(&mut self, target: &TargetSpec, is_only: bool) -> Result<TargetLayout> {
-        let prefix = if is_only { String::new() } else { format!("{} ", target.name) };
-        let kinds = if is_only { self.kinds()? } else { Vec::new() };
-        let is_named = target.position.columns.is_some() || ["x", "y", "z"].iter().any(|name| self.has(name));
-        let position = match kinds.is_empty() || is_named {
-            true => Some(self.position(&prefix, &target.position)?),
-            false => None,
-        };
-        let orientation = match &target.orientation {
-            Some(spec) => Some(self.mapped_orientation(&prefix, spec)?),
-            None if is_only && position.is_some() => self.default_orientation()?,
-            None => None,
-        };
-        let mut sigma = |name: &str, spec: Option<&ColumnSpec>, quantity| {
-            self.sigma(&format!("{prefix}{name}"), spec, quantity, is_only && position.is_some())
-        };
-        let sigma_position = sigma("sigma_position", target.sigma_position.as_ref(), Unit::Metre)?;
-        let sigma_rotation = sigma("sigma_rotation", target.sigma_rotation.as_ref(), Unit::Radian)?;
-        let mut sigma_components = [None; 3];
-        for (name, of) in ["sigma_x", "sigma_y", "sigma_z"].into_iter().zip(&mut sigma_components) {
-            *of = sigma(name, None, Unit::Metre)?;
-        }
-        let name = Some(target.name.clone());
-        Ok(TargetLayout {
-            name,
-            position,
-            orientation,
-            sigma_position,
-            sigma_components,
-            sigma_rotation,
-            kinds,
-        })
-    }
-
-    /// Whether the header has a column of this name that is not used otherwise.
-    fn has(&self, name: &str) -> bool {
-        self.header.count(name) > 0 && !self.readings.contains(name)
-    }
-
-    /// The other kinds of measurements of which the header has columns.
-    fn kinds(&mut self) -> Result<Vec<KindColumns>> {
-        let mut found: Vec<KindColumns> = Vec::new();
-        let mut known: BTreeMap<&str, usize> = BTreeMap::new();
-        for kind in kinds::kinds() {
-            let Kind { function, columns } = kind;
-            let has_number = columns.numbers.iter().any(|name| self.has(name));
-            if !(self.has(kind.key()) || kind.needs_numbers() && has_number) {
-                continue;
-            }
-            let (dimension, purpose) =
-                (function.leading().unit(), format!("for the {}", function.leading().name()));
-            let mut numbers = Vec::with_capacity(columns.numbers.len());
-            let names = columns.numbers.iter().filter(|name| kind.needs_numbers() || self.has(name));
-            for &name in names.collect::<Vec<_>>() {
-                // Kinds that a word tells apart have their numbers in the same columns.
-                let input = match known.get(name) {
-                    Some(&input) => input,
-                    None => self.column_input(name, name, dimension, None, &purpose)?,
-                };
-                known.insert(name, input);
-                numbers.push(input);
-            }
-            let mut sigmas = Vec::with_capacity(function.quantities.len());
-            for &quantity in function.quantities {
-                let name = format!("sigma_{}", quantity.name());
-                let sigma = self.sigma(&name, None, quantity.unit(), true)?;
-                sigmas.extend(sigma.map(|input| (quantity, input)));
-            }
-            let mut places = Vec::with_capacity(columns.places.len());
-            for name in columns.places {
-                places.extend(self.shared_text_column(name)?);
-            }
-            let word = columns.word.map(|(column, _)| self.shared_text_column(column)).transpose()?.flatten();
-            found.push(KindColumns { kind, numbers, sigmas, places, word });
-        }
-        Ok(found)
-    }
-
-    /// Index of an optional column that several kinds may use.
-    fn shared_text_column(&mut self, name: &str) -> Result<Option<usize>> {
-        let index = self.header.find(name)?.filter(|_| !self.readings.contains(name));
-        if let Some(index) = index {
-            self.mark(index);
-        }
-        Ok(index)
-    }
-
-    fn position(&mut self, prefix: &str, spec: &PositionSpec) -> Result<[usize; 3]> {
-        let mut indices = [0; 3];
-        for (i, (axis, index)) in ["x", "y", "z"].into_iter().zip(&mut indices).enumerate() {
-            let column =
-                spec.columns.as_ref().and_then(|columns| columns.get(i)).map_or(axis, String::as_str);
-            let purpose = format!("for the position {prefix}{axis}");
-            *index =
-                self.column_input(&format!("{prefix}{axis}"), column, Unit::Metre, spec.unit, &purpose)?;
-        }
-        Ok(indices)
-    }
-
-    fn mapped_orientation(
-        &mut self,
-        prefix: &str,
-        spec: &OrientationSpec,
-    ) -> Result<(OrientationForm, Vec<usize>)> {
-        let indices = spec.columns.iter().zip(spec.form.part_names()).map(|(column, name)| {
-            let purpose = format!("for the {}orientation ({})", prefix, spec.form);
-            self.column_input(&format!("{prefix}{name}"), column, spec.form.quantity(), spec.unit, &purpose)
-        });
-        let indices = indices.collect::<Result<_>>()?;
-        Ok((spec.form, indices))
-    }
-
-    /// The orientation columns with our own names: all of one form, or none.
-    fn default_orientation(&mut self) -> Result<Option<(OrientationForm, Vec<usize>)>> {
-        let mut chosen: Option<(OrientationForm, &str)> = None;
-        for form in DEFAULT_FORMS {
-            for name in form.own_columns() {
-                let Some(index) = self.header.find(name)?.filter(|&index| !self.is_used(index)) else {
-                    continue;
-                };
-                match chosen {
-                    Some((other, first)) if other != form => {
-                        let message = format!(
-                            "found the orientation columns `{first}` and `{name}`, expected one form only"
-                        );
-                        return Err(self.header.error(ErrorKind::Measurement, index, message));
-                    }
-                    Some(_) => {}
-                    None => chosen = Some((form, name)),
-                }
-            }
-        }
-        let Some((form, _)) = chosen else { return Ok(None) };
-        let purpose = format!("for the orientation ({form})");
-        let names = form.own_columns().iter();
-        let indices = names.map(|name| self.column_input(name, name, form.quantity(), None, &purpose));
-        Ok(Some((form, indices.collect::<Result<_>>()?)))
-    }
-
-    fn sigma(
-        &mut self,
-        name: &str,
-        spec: Option<&ColumnSpec>,
-        quantity: Unit,
-        by_our_name: bool,
-    ) -> Result<Option<usize>> {
-        let default = ColumnSpec::default();
-        let purpose = format!("for `{name}`");
-        let expanded = name.replacen("sigma_", EXPANDED, 1);
-        let has_expanded = by_our_name && spec.is_none() && self.header.find(&expanded)?.is_some();
-        let spec = match spec {
-            Some(spec) => spec,
-            None if by_our_name && self.header.find(name)?.is_some() => &default,
-            None if has_expanded => {
-                return self.expanded_input(name, &expanded, quantity, &purpose).map(Some);
-            }
-            None => return Ok(None),
-        };
-        if let Some(second) = self.header.find(&expanded)?.filter(|_| has_expanded) {
-            let message = format!("found `{expanded}` beside `{name}`, expected one of the two");
-            return Err(self.header.error(ErrorKind::Measurement, second, message));
-        }
-        self.spec_input(name, spec, quantity, &purpose).map(Some)
-    }
-
-    /// A standard deviation from a column of expanded uncertainties.
-    fn expanded_input(&mut self, name: &str, column: &str, quantity: Unit, purpose: &str) -> Result<usize> {
-        let index = self.column_input(name, column, quantity, None, purpose)?;
-        if let Some(input) = self.inputs.get_mut(index)
-            && let InputSource::Column(column) = input.source
-        {
-            input.sum = vec![Term { column, unit: input.unit, factor: 1.0 / COVERAGE_FACTOR }];
-        }
-        Ok(index)
     }
 
     /// Refuses a column with two meanings. (One sigma may serve several targets, and one column several sums.)

@@ -1,9 +1,10 @@
 //! Meaning of a file's columns, from header, mapping and robot.
 
-use super::builder::{Builder, TargetLayout};
+use super::builder::Builder;
 use super::header::Header;
 use super::inputs::Input;
 use super::mapping::{ColumnMap, PoseDirection};
+use super::targets::TargetLayout;
 use super::{FitWhere, ReadOptions};
 use crate::error::Result;
 use crate::robot::{Controller, Robot};

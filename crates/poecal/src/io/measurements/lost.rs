@@ -5,10 +5,10 @@ use std::path::Path;
 use nalgebra::Matrix3;
 use serde::Serialize;
 
-use super::builder::TargetLayout;
 use super::inputs::InputReader;
 use super::orientation::MOST_PARTS;
 use super::table::Row;
+use super::targets::TargetLayout;
 use crate::error::{Error, Result};
 
 /// Most lines in a warning.

@@ -2,11 +2,11 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::builder::TargetLayout;
 use super::inputs::InputReader;
 use super::mapping::PoseDirection;
 use super::orientation::MOST_PARTS;
 use super::table::Row;
+use super::targets::TargetLayout;
 use crate::error::Result;
 use crate::lie::Pose;
 use crate::measurement::Measurement;
