@@ -121,10 +121,10 @@ pub use io::model::{Model, ModelFormat, ModelSource};
 pub use io::predictions::{Predicted, PredictionFrame, predicted};
 pub use io::residuals::Residuals;
 pub use io::urdf::ChainSelection;
-pub use measurement::{Dataset, Measured, Measurement, Noise, Observation, Quantity, Set};
+pub use measurement::{Dataset, Kind, Measured, Measurement, Noise, Observation, Quantity, Set};
 pub use report::{calibration_page, summary};
 pub use robot::{Joint, JointKind, Limits, Reading, Robot, Tolerance};
-pub use simulate::{Kind, Simulated, Simulation};
+pub use simulate::{Simulated, Simulation};
 
 #[doc(inline)]
 pub use poecal_arm::lie;

@@ -74,7 +74,8 @@ fn few_types_are_shown_and_each_has_an_example() {
     };
     for module in &modules {
         let own = handed_on(&folder(module).join("mod.rs"));
-        shown.extend(own.into_iter().map(|(_, name)| (module.clone(), name)));
+        let place = |from: &str| from.strip_prefix("crate::").unwrap_or(module).to_owned();
+        shown.extend(own.into_iter().map(|(from, name)| (place(&from), name)));
     }
     shown.push(("solve".into(), "LeastSquares".into()));
     shown.retain(|(_, name)| name.starts_with(char::is_uppercase));
