@@ -6,6 +6,7 @@ use nalgebra::Vector3;
 
 use crate::lie::{Pose, Screw};
 use crate::placed::MOST_JOINTS;
+use crate::terms::Term;
 use crate::trig::cosine_and_sine;
 
 /// A serial arm as calibration finds it: `base_from_tip(q) = exp(ξ₁θ₁(q)) … exp(ξₘθₘ(q)) M` with n readings q and joint values θ that are
@@ -50,7 +51,7 @@ pub struct Joint {
     pub value: JointValue,
 }
 
-/// A joint's value (rad, m) as a function of the readings: `θ = c + Σ fᵢ qᵢ + Σ waves + moments`.
+/// A joint's value (rad, m) as a function of the readings: `θ = c + Σ fᵢ qᵢ + Σ waves + moments + Σ curves`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct JointValue {
     /// What it has where all readings are 0.
@@ -61,6 +62,8 @@ pub struct JointValue {
     pub waves: Vec<Wave>,
     /// What it gives under weights.
     pub pull: Option<Pull>,
+    /// Other functions.
+    pub curves: Vec<Curve>,
 }
 
 impl JointValue {
@@ -75,6 +78,7 @@ impl JointValue {
             && self.linear == [(reading, 1.0)]
             && self.waves.is_empty()
             && self.pull.is_none()
+            && self.curves.is_empty()
     }
 }
 
@@ -93,6 +97,21 @@ pub struct Wave {
     pub cosine: f64,
     /// Amplitude b (rad, m).
     pub sine: f64,
+}
+
+/// A part of a joint's value that is another function of the table of terms ([`crate::TermKind`]), `k b(x)` with `x = c + Σ fᵢ qᵢ + moments`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Curve {
+    /// The term with the function b.
+    pub term: Term,
+    /// Its coefficient k (rad, m).
+    pub coefficient: f64,
+    /// The argument where all readings are 0.
+    pub constant: f64,
+    /// Readings, and the argument per unit of each.
+    pub linear: Vec<(usize, f64)>,
+    /// The moments in the argument, of weights by their part of it.
+    pub pull: Option<Pull>,
 }
 
 /// What a joint gives under weights: `Σ z·((p - o) × ĝ)` with the axis z through o, where weights at p are counted by what they turn the joint
@@ -146,12 +165,16 @@ impl Model {
             }
         };
         model.readings = self.readings.saturating_sub(1);
-        for JointValue { constant, linear, waves, .. } in
-            model.joints.iter_mut().map(|joint| &mut joint.value)
-        {
+        let hold = |constant: &mut f64, linear: &mut Vec<(usize, f64)>| {
             *constant += linear.iter().filter(|it| it.0 == reading).map(|it| it.1 * value).sum::<f64>();
             linear.retain(|it| it.0 != reading);
             linear.iter_mut().for_each(|it| shifted(&mut it.0));
+        };
+        for JointValue { constant, linear, waves, curves, .. } in
+            model.joints.iter_mut().map(|joint| &mut joint.value)
+        {
+            hold(constant, linear);
+            curves.iter_mut().for_each(|it| hold(&mut it.constant, &mut it.linear));
             for wave in waves.iter().filter(|it| it.reading == reading) {
                 let (cosine, sine) = cosine_and_sine(wave.order * (wave.factor * value + wave.offset));
                 *constant += wave.cosine * cosine + wave.sine * sine;
@@ -193,12 +216,20 @@ impl Model {
                 && finite(&it.place)
                 && it.weights.iter().all(weight)
         };
+        let linear = |it: &(usize, f64)| reading(it.0) && it.1.is_finite();
+        let curve = |it: &Curve| {
+            it.coefficient.is_finite()
+                && it.constant.is_finite()
+                && it.linear.iter().all(linear)
+                && it.pull.iter().all(pull)
+        };
         let joint = |it: &Joint| {
             screw(&it.screw)
                 && it.value.constant.is_finite()
-                && it.value.linear.iter().all(|(index, factor)| reading(*index) && factor.is_finite())
+                && it.value.linear.iter().all(linear)
                 && it.value.waves.iter().all(wave)
                 && it.value.pull.iter().all(pull)
+                && it.value.curves.iter().all(curve)
         };
         (1..=MOST_JOINTS).contains(&self.readings)
             && self.drawing.len() <= MOST_JOINTS

@@ -28,14 +28,6 @@ impl<const N: usize> Placed<N> {
     }
 }
 
-/// Turns a frame about its own z, by the cosine and sine of the angle.
-#[inline(always)]
-pub(crate) fn turn_by(frame: &mut Matrix3<f64>, (c, s): (f64, f64)) {
-    let (x, y) = (frame.column(0).into_owned(), frame.column(1).into_owned());
-    frame.set_column(0, &(x * c + y * s));
-    frame.set_column(1, &(y * c - x * s));
-}
-
 /// A frame on a joint's axis, which is its z, where it is nearest to a point.
 pub(crate) fn along(screw: &Screw, near: &Vector3<f64>) -> Pose {
     let direction = screw.direction();

@@ -6,7 +6,8 @@ mod chain;
 mod frames;
 mod weights;
 
-use chain::{Rows, Wanted};
+pub(crate) use chain::Rows;
+use chain::Wanted;
 use nalgebra::Vector3;
 
 use crate::arm::Arm;
@@ -21,7 +22,7 @@ impl Arm {
     /// numbers, sooner, since eight configurations are computed side by side.
     #[inline(always)]
     pub fn forward_kinematics_of(&self, readings: &[f64], tips: &mut [Pose]) {
-        let mut rows = Rows::<WIDTH>::new();
+        let mut rows = Rows::<WIDTH, MOST_JOINTS>::new();
         for (some, out) in readings.chunks(WIDTH * self.joints()).zip(tips.chunks_mut(WIDTH)) {
             load(self, some, &mut rows);
             rows.place(self, Wanted::Tips);
@@ -35,7 +36,7 @@ impl Arm {
     #[inline(always)]
     pub fn jacobians_of(&self, readings: &[f64], jacobians: &mut [f64]) {
         let n = self.joints();
-        let mut rows = Rows::<WIDTH>::new();
+        let mut rows = Rows::<WIDTH, MOST_JOINTS>::new();
         for (some, out) in readings.chunks(WIDTH * n).zip(jacobians.chunks_mut(6 * WIDTH * n)) {
             load(self, some, &mut rows);
             rows.place(self, Wanted::Motions);
@@ -55,7 +56,7 @@ impl Arm {
     /// ([`crate::Pull`]): `p − p₀` and `log(R R₀ᵀ)`.
     #[inline(always)]
     pub fn sag_of(&self, readings: &[f64], sag: &mut [[f64; 6]]) {
-        let (mut rows, mut bare) = (Rows::<WIDTH>::new(), Rows::<WIDTH>::new());
+        let (mut rows, mut bare) = (Rows::<WIDTH, MOST_JOINTS>::new(), Rows::<WIDTH, MOST_JOINTS>::new());
         for (some, out) in readings.chunks(WIDTH * self.joints()).zip(sag.chunks_mut(WIDTH)) {
             load(self, some, &mut rows);
             bare.q = rows.q;
@@ -74,11 +75,11 @@ impl Arm {
     /// tip, as the hybrid or `LOCAL_WORLD_ALIGNED` Jacobian of others. What weights add is in it.
     #[must_use]
     pub fn jacobian(&self, q: &[f64]) -> [(Vector3<f64>, Vector3<f64>); MOST_JOINTS] {
-        if self.real().is_none_or(|real| real.pulls.is_empty()) {
+        if self.real().is_none_or(|real| !real.has_moments) {
             let placed = self.placed(q);
             return core::array::from_fn(|reading| placed.column(reading));
         }
-        let mut rows = Rows::<1>::new();
+        let mut rows = Rows::<1, MOST_JOINTS>::new();
         rows.q.iter_mut().zip(q).for_each(|(to, from)| to[0] = *from);
         rows.place(self, Wanted::Motions);
         core::array::from_fn(|reading| {
@@ -90,7 +91,7 @@ impl Arm {
 
 /// Readings of configurations, one after the other, side by side; places that are left keep what they had.
 #[inline(always)]
-fn load(arm: &Arm, readings: &[f64], rows: &mut Rows<WIDTH>) {
+fn load(arm: &Arm, readings: &[f64], rows: &mut Rows<WIDTH, MOST_JOINTS>) {
     for (row, readings) in readings.chunks_exact(arm.joints()).enumerate() {
         for (to, from) in rows.q.iter_mut().zip(readings) {
             to[row] = *from;

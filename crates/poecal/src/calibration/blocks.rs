@@ -6,7 +6,7 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::estimate::Unknowns;
 use crate::measurement::Dataset;
 use crate::parameters::{Block, Names};
-use crate::robot::{Coupling, Robot, Term};
+use crate::robot::{Argument, Robot, Term};
 
 /// Blocks that a message lists at most.
 const LISTED: usize = 12;
@@ -115,20 +115,17 @@ pub(super) fn refuse_frames(choice: &BlockChoice, robot: &Robot, data: &Dataset)
     }
 }
 
-/// A term by its exact name that is no block without being asked for: a harmonic, or a coupling with another joint.
+/// A term by its exact name that is no block without being asked for.
 fn further_term(names: &Names, word: &str) -> Option<(usize, Term)> {
     let (joint, term) = word.rsplit_once('.')?;
     let joint = names.joints.iter().position(|name| name == joint)?;
     let term: Term = term.parse().ok()?;
-    match term {
-        Term::Harmonic(_) => Some((joint, term)),
-        Term::Coupling(Coupling { joint: other }) => {
-            (other < names.joints.len() && other != joint).then_some((joint, term))
-        }
-        Term::Offset | Term::Ratio | Term::OwnWeight | Term::Sag(_) | Term::Factor(_) | Term::Payload(_) => {
-            None
-        }
-    }
+    let is_further = match term.argument() {
+        Argument::OtherJoint => term.index() < names.joints.len() && term.index() != joint,
+        Argument::Nothing | Argument::OwnValue => true,
+        Argument::Masses | Argument::Weight | Argument::Factor | Argument::Payload => false,
+    };
+    is_further.then_some((joint, term))
 }
 
 /// Of each block, whether a word means it.

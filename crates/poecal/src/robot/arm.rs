@@ -1,9 +1,12 @@
 //! The arm of a robot as `poecal_arm` computes with it.
 
 use nalgebra::Vector3;
-use poecal_arm::{Arm, Drawn, Joint as ArmJoint, JointValue, MOST_JOINTS, Model, Wave};
+use poecal_arm::{
+    Argument, Arm, Curve, Drawn, Function, Joint as ArmJoint, JointValue, MOST_JOINTS, Model, Pull, Term,
+    Wave,
+};
 
-use super::{JointTerm, Limits, Robot, Statics, Term};
+use super::{JointTerm, Limits, Robot, Statics};
 use crate::error::{Error, ErrorKind, Result};
 
 impl Robot {
@@ -79,59 +82,11 @@ impl Robot {
         let factors: Vec<f64> = (self.factors.iter().enumerate())
             .map(|(index, it)| factors.get(index).map_or(0.0, |value| value - it.reference))
             .collect();
+        let values =
+            Values { robot: self, statics, moving: &moving, readings: &readings, indices: &indices, factors };
         let mut model = Model::new(readings.len(), &self.home);
         for &joint in &path {
-            let own = &self.joints[joint].reading;
-            let mut value = JointValue { constant: own.offset, ..JointValue::default() };
-            if let Some(reading) = reading_of(joint)
-                && own.multiplier != 0.0
-            {
-                value.linear.push((reading, own.multiplier));
-            }
-            let mut sags = vec![0.0; self.gravity.as_ref().map_or(0, |gravity| gravity.weights.len())];
-            let mut of_masses = 0.0;
-            for JointTerm { joint: _, term, coefficient } in
-                self.terms.iter().filter(|it| it.joint == joint && it.coefficient != 0.0)
-            {
-                let turns = self.joints[joint].give_of.unwrap_or(joint);
-                match term {
-                    Term::Offset => value.constant += coefficient,
-                    Term::Factor(it) => {
-                        value.constant += coefficient * factors.get(it.index).copied().unwrap_or(0.0)
-                    }
-                    Term::Ratio => self.add_linear(&mut value, reading_of(turns), turns, *coefficient),
-                    Term::Coupling(it) if it.joint < self.joints.len() => {
-                        let other = self.joints[it.joint].give_of.unwrap_or(it.joint);
-                        self.add_linear(&mut value, reading_of(other), other, *coefficient);
-                    }
-                    Term::Coupling(_) => {}
-                    Term::Harmonic(it) => {
-                        let turned = &self.joints[turns].reading;
-                        let Some(reading) = reading_of(turns) else { continue };
-                        value.waves.push(Wave {
-                            reading,
-                            factor: turned.multiplier,
-                            offset: turned.offset,
-                            order: f64::from(it.order),
-                            cosine: if it.cosine { *coefficient } else { 0.0 },
-                            sine: if it.cosine { 0.0 } else { *coefficient },
-                        });
-                    }
-                    Term::Sag(it) => {
-                        if let Some(sag) = sags.get_mut(it.weight) {
-                            *sag += coefficient;
-                        }
-                    }
-                    Term::Payload(it) => {
-                        if let Some(sag) = sags.last_mut() {
-                            *sag += coefficient * factors.get(it.index).copied().unwrap_or(0.0);
-                        }
-                    }
-                    Term::OwnWeight => of_masses += coefficient,
-                }
-            }
-            value.waves = together(&value.waves);
-            value.pull = statics.as_ref().and_then(|it| it.pull(joint, &moving, &sags, of_masses));
+            let value = values.of(joint);
             if value != JointValue::default() {
                 model.joints.push(ArmJoint { screw: self.joints[joint].screw, value });
             }
@@ -155,17 +110,6 @@ impl Robot {
         Ok((model, readings))
     }
 
-    /// Adds a share of the value of a joint.
-    fn add_linear(&self, value: &mut JointValue, reading: Option<usize>, of: usize, share: f64) {
-        let own = &self.joints[of].reading;
-        value.constant += share * own.offset;
-        let Some(reading) = reading else { return };
-        match value.linear.iter_mut().find(|it| it.0 == reading) {
-            Some(it) => it.1 += share * own.multiplier,
-            None => value.linear.push((reading, share * own.multiplier)),
-        }
-    }
-
     /// Limits of a reading: those of the joint that is named by it, without placeholders.
     fn limits_of(&self, moving: &[usize], indices: &[usize], reading: usize) -> Option<(f64, f64)> {
         let joint =
@@ -174,6 +118,125 @@ impl Robot {
         let (low, high) = (limits.lower, limits.upper);
         (joint.reading.multiplier == 1.0 && joint.reading.offset == 0.0).then_some((low, high))
     }
+}
+
+/// Values of joints as functions of the readings of an arm.
+struct Values<'a> {
+    robot: &'a Robot,
+    statics: Option<Statics<'a>>,
+    /// The joints of the arm but gives.
+    moving: &'a [usize],
+    /// Of each reading of the arm the index among the robot's.
+    readings: &'a [usize],
+    /// Of each joint the index of its reading.
+    indices: &'a [usize],
+    /// The factors, from their references.
+    factors: Vec<f64>,
+}
+
+impl Values<'_> {
+    fn of(&self, joint: usize) -> JointValue {
+        let own = &self.robot.joints[joint].reading;
+        let mut value = JointValue { constant: own.offset, ..JointValue::default() };
+        if let Some(reading) = self.reading_of(joint)
+            && own.multiplier != 0.0
+        {
+            value.linear.push((reading, own.multiplier));
+        }
+        let mut load = self.unloaded();
+        let terms = self.robot.terms.iter().filter(|it| it.joint == joint && it.coefficient != 0.0);
+        for &JointTerm { term, coefficient, .. } in terms {
+            let is_linear = matches!(term.kind().row().function, Function::Identity);
+            match term.argument() {
+                Argument::Nothing => value.constant += coefficient * term.function(0.0)[0],
+                Argument::Factor => value.constant += coefficient * term.function(self.factor(term))[0],
+                Argument::OwnValue => self.add_of_value(&mut value, term, coefficient, joint),
+                Argument::OtherJoint => self.add_of_value(&mut value, term, coefficient, term.index()),
+                Argument::Masses | Argument::Weight | Argument::Payload if is_linear => {
+                    self.add_load(&mut load, term, coefficient);
+                }
+                Argument::Masses | Argument::Weight | Argument::Payload => {
+                    let mut load = self.unloaded();
+                    self.add_load(&mut load, term, 1.0);
+                    let pull = self.pull(joint, &load);
+                    value.curves.push(Curve { term, coefficient, constant: 0.0, linear: Vec::new(), pull });
+                }
+            }
+        }
+        value.waves = together(&value.waves);
+        value.pull = self.pull(joint, &load);
+        value
+    }
+
+    /// Index among the arm's readings of that of a joint.
+    fn reading_of(&self, joint: usize) -> Option<usize> {
+        self.readings.iter().position(|&it| it == self.indices[joint])
+    }
+
+    /// Adds a term that is a function of the value of a joint, of a give that of the joint which gives.
+    fn add_of_value(&self, value: &mut JointValue, term: Term, coefficient: f64, of: usize) {
+        let Some(joint) = self.robot.joints.get(of) else { return };
+        let of = joint.give_of.unwrap_or(of);
+        let (own, reading) = (&self.robot.joints[of].reading, self.reading_of(of));
+        let linear = |share: f64| reading.map(|reading| (reading, share * own.multiplier));
+        match (term.kind().row().function, reading) {
+            (Function::One, _) => value.constant += coefficient,
+            (Function::Identity, _) => {
+                value.constant += coefficient * own.offset;
+                let Some((reading, factor)) = linear(coefficient) else { return };
+                match value.linear.iter_mut().find(|it| it.0 == reading) {
+                    Some(it) => it.1 += factor,
+                    None => value.linear.push((reading, factor)),
+                }
+            }
+            (function @ (Function::Sine | Function::Cosine), Some(reading)) => {
+                let is_cosine = matches!(function, Function::Cosine);
+                value.waves.push(Wave {
+                    reading,
+                    factor: own.multiplier,
+                    offset: own.offset,
+                    order: term.number() as f64,
+                    cosine: if is_cosine { coefficient } else { 0.0 },
+                    sine: if is_cosine { 0.0 } else { coefficient },
+                });
+            }
+            (Function::Sine | Function::Cosine | Function::Other(_), _) => {
+                let (constant, linear) = (own.offset, linear(1.0).into_iter().collect());
+                value.curves.push(Curve { term, coefficient, constant, linear, pull: None });
+            }
+        }
+    }
+
+    /// The factor of a term's number, from its reference.
+    fn factor(&self, term: Term) -> f64 {
+        self.factors.get(term.index()).copied().unwrap_or(0.0)
+    }
+
+    fn unloaded(&self) -> Load {
+        let weights = self.robot.gravity.as_ref().map_or(0, |gravity| gravity.weights.len());
+        Load { weights: vec![0.0; weights], masses: 0.0 }
+    }
+
+    /// Adds the moment that a term is a function of, by a coefficient.
+    fn add_load(&self, load: &mut Load, term: Term, coefficient: f64) {
+        let (weight, factor) = match term.argument() {
+            Argument::Masses => (Some(&mut load.masses), 1.0),
+            Argument::Weight => (load.weights.get_mut(term.index()), 1.0),
+            Argument::Payload => (load.weights.last_mut(), self.factor(term)),
+            Argument::Nothing | Argument::OwnValue | Argument::OtherJoint | Argument::Factor => return,
+        };
+        weight.into_iter().for_each(|it| *it += coefficient * factor);
+    }
+
+    fn pull(&self, joint: usize, load: &Load) -> Option<Pull> {
+        self.statics.as_ref()?.pull(joint, self.moving, &load.weights, load.masses)
+    }
+}
+
+/// Of each weight and of all masses, how much their moment about a joint counts.
+struct Load {
+    weights: Vec<f64>,
+    masses: f64,
 }
 
 /// Waves with those of one order as one.

@@ -143,7 +143,7 @@ fn joint_zeros_alone_are_found_and_kept_as_offsets() {
     println!("{:?}: {:.1e} mm", found.robot.terms, held_out_mm(&found));
     assert!(held_out_mm(&found) < 1e-6, "{}", held_out_mm(&found));
     let of = |joint: usize| {
-        let term = |it: &&JointTerm| it.joint == joint && it.term == Term::Offset;
+        let term = |it: &&JointTerm| it.joint == joint && it.term == Term::OFFSET;
         found.robot.terms.iter().find(term).map_or(0.0, |it| it.coefficient)
     };
     for (joint, zero) in zeros.iter().enumerate().skip(1).take(4) {
@@ -168,7 +168,7 @@ fn files_hold_what_was_held_and_the_terms_that_were_found() {
     let made = Simulation { count: 80, ..Simulation::default() }.run(&aside(), Kind::Pose).unwrap();
     let found = fitted(&made.nominal, &made.data, choice(&["joint1", "joint5"], &["joint3.offset"]), true);
     let term = found.robot.terms[0];
-    assert_eq!((term.joint, term.term), (2, Term::Offset));
+    assert_eq!((term.joint, term.term), (2, Term::OFFSET));
     let file = CalibrationFile::new(&found, &made.data, Inputs::default());
     let again = CalibrationFile::parse(&file.to_text().unwrap(), "calibration.json").unwrap();
     assert_eq!(again, file);
@@ -208,7 +208,7 @@ fn files_hold_what_was_held_and_the_terms_that_were_found() {
 }
 
 /// Terms with a coefficient to be found.
-const TERMS: [(Term, f64); 2] = [(Term::Offset, 0.01), (Term::Ratio, 0.002)];
+const TERMS: [(Term, f64); 2] = [(Term::OFFSET, 0.01), (Term::RATIO, 0.002)];
 
 #[test]
 fn terms_of_joint_values_are_found_and_written() {
@@ -217,7 +217,7 @@ fn terms_of_joint_values_are_found_and_written() {
         built.terms.push(JointTerm { joint: 2, term, coefficient });
         let (actual, data) = exact_of(&built, Kind::Point, 0.0);
         let nominal = Robot { terms: Vec::new(), ..actual };
-        let name = format!("joint3.{}", term.model().name());
+        let name = format!("joint3.{}", term);
         let found = fitted(&nominal, &data, choice(&["joints"], &[&name]), true);
         let own = found.robot.terms.iter().map(|it| (it.joint, it.term, it.coefficient)).collect::<Vec<_>>();
         println!("{name} = {coefficient}: {own:?}, held out {:.1e} mm", held_out_mm(&found));

@@ -10,7 +10,7 @@ use super::orientation::OrientationForm;
 use super::units::{Dimension, Unit, UnitSource};
 use crate::error::{Error, ErrorKind, Result, distance_within, first_few};
 use crate::io::numbers::LARGEST_NUMBER;
-use crate::robot::{Controller, Factor, ReadingKind, Robot, sum_words};
+use crate::robot::{Controller, FactorReading, ReadingKind, Robot, sum_words};
 
 const DEFAULT_FORMS: [OrientationForm; 3] =
     [OrientationForm::QuaternionXyzw, OrientationForm::RotationVector, OrientationForm::ROLL_PITCH_YAW];
@@ -170,7 +170,7 @@ impl<'a> Builder<'a> {
             return Err(Error::new(ErrorKind::Option, message));
         }
         let column = self.text_column(name, "for the factor")?;
-        if name == Factor::PAYLOAD {
+        if name == FactorReading::PAYLOAD {
             self.header.only_unit(column, "kg")?;
         }
         let (name, label, source) = (name.to_owned(), name.to_owned(), InputSource::Column(column));
