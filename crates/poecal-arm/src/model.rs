@@ -7,7 +7,6 @@ use nalgebra::Vector3;
 use crate::lie::{Pose, Screw};
 use crate::placed::MOST_JOINTS;
 use crate::terms::Term;
-use crate::trig::cosine_and_sine;
 
 /// A serial arm as calibration finds it: `base_from_tip(q) = exp(ξ₁θ₁(q)) … exp(ξₘθₘ(q)) M` with n readings q and joint values θ that are
 /// functions of them ([`JointValue`]). Joints that no reading turns are places where links give.
@@ -155,47 +154,6 @@ pub struct Drawn {
 }
 
 impl Model {
-    /// The same with a reading that stays at a value (rad, m): one reading fewer.
-    #[must_use]
-    pub fn held(&self, reading: usize, value: f64) -> Self {
-        let mut model = self.clone();
-        let shifted = |it: &mut usize| {
-            if *it > reading {
-                *it -= 1;
-            }
-        };
-        model.readings = self.readings.saturating_sub(1);
-        let hold = |constant: &mut f64, linear: &mut Vec<(usize, f64)>| {
-            *constant += linear.iter().filter(|it| it.0 == reading).map(|it| it.1 * value).sum::<f64>();
-            linear.retain(|it| it.0 != reading);
-            linear.iter_mut().for_each(|it| shifted(&mut it.0));
-        };
-        for JointValue { constant, linear, waves, curves, .. } in
-            model.joints.iter_mut().map(|joint| &mut joint.value)
-        {
-            hold(constant, linear);
-            curves.iter_mut().for_each(|it| hold(&mut it.constant, &mut it.linear));
-            for wave in waves.iter().filter(|it| it.reading == reading) {
-                let (cosine, sine) = cosine_and_sine(wave.order * (wave.factor * value + wave.offset));
-                *constant += wave.cosine * cosine + wave.sine * sine;
-            }
-            waves.retain(|it| it.reading != reading);
-            waves.iter_mut().for_each(|it| shifted(&mut it.reading));
-        }
-        for drawn in &mut model.drawing {
-            if drawn.reading == reading {
-                drawn.constant += drawn.factor * value;
-                (drawn.factor, drawn.reading) = (0.0, 0);
-            } else {
-                shifted(&mut drawn.reading);
-            }
-        }
-        if reading < model.limits.len() {
-            model.limits.remove(reading);
-        }
-        model
-    }
-
     /// Whether all numbers are finite and all indices are of something that is there.
     pub(crate) fn is_whole(&self) -> bool {
         let finite = |v: &Vector3<f64>| v.iter().all(|it| it.is_finite());

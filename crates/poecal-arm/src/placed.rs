@@ -16,10 +16,6 @@ pub(crate) struct Placed<const N: usize> {
 }
 
 impl<const N: usize> Placed<N> {
-    pub(crate) fn at_rest() -> Self {
-        Placed { v: [Vector3::zeros(); N], w: [Vector3::zeros(); N], tip: Pose::identity() }
-    }
-
     /// How the tip moves with a reading: its point, and its turn.
     #[inline]
     pub(crate) fn column(&self, reading: usize) -> (Vector3<f64>, Vector3<f64>) {

@@ -6,8 +6,7 @@ use nalgebra::Vector3;
 
 use crate::lie::Pose;
 use crate::model::{Curve, Drawn, JointValue, Model, Pull, Wave};
-use crate::placed::{Placed, along};
-use crate::rows::Rows;
+use crate::placed::along;
 use crate::terms::Term;
 
 /// A chain of joints, with what does not depend on the configuration.
@@ -140,14 +139,5 @@ impl Real {
         let has_functions = has_moments || links.iter().any(|it| !it.waves.is_empty());
         let (readings, gravity) = (model.readings, model.gravity);
         Real { links, tip, readings, has_functions, has_moments, drawing, gravity }
-    }
-
-    /// Where the tip is, and how it moves with each reading: but for what compliance under weights adds to it, some 1e-3 of it.
-    #[inline]
-    pub(crate) fn placed<const J: usize>(&self, q: &[f64; J]) -> Placed<J> {
-        let mut rows = Rows::<1, J>::new();
-        rows.q.iter_mut().zip(q).for_each(|(to, from)| to[0] = *from);
-        rows.place_steps(self);
-        rows.placed()
     }
 }

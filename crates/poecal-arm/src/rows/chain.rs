@@ -5,6 +5,7 @@ use nalgebra::Vector3;
 use super::frames::{Frames, Row, Vectors, add_times, cosines_and_sines, cross};
 use super::weights::{self, Bodies};
 use crate::arm::Arm;
+use crate::chain::Chain;
 use crate::model::Wave;
 use crate::placed::{MOST_JOINTS, Placed};
 use crate::real::{Moment, Real, SMALL, Sum, is_plain, small};
@@ -12,7 +13,7 @@ use crate::terms::Term;
 
 /// What is wanted of a pass.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Wanted {
+pub(crate) enum Wanted {
     /// Tips alone.
     Tips,
     /// Tips without what weights add.
@@ -36,15 +37,18 @@ pub(crate) struct Rows<const N: usize, const J: usize> {
 }
 
 impl<const J: usize> Rows<1, J> {
-    /// Takes an arm to a configuration, with motions for a step.
+    /// One configuration.
     #[inline(always)]
-    pub(crate) fn place_steps(&mut self, real: &Real) {
-        self.place_real(real, Wanted::Steps);
+    pub(crate) fn at(q: &[f64; J]) -> Self {
+        let mut rows = Rows::new();
+        rows.q.iter_mut().zip(q).for_each(|(to, from)| to[0] = *from);
+        rows
     }
 
-    /// The tip and its motions.
+    /// The tip and its motions, once the arm is there.
     #[inline(always)]
-    pub(crate) fn placed(&self) -> Placed<J> {
+    pub(crate) fn placed(mut self, place: impl FnOnce(&mut Self)) -> Placed<J> {
+        place(&mut self);
         let vector = |of: &Vectors<1>| Vector3::new(of[0][0], of[1][0], of[2][0]);
         Placed { v: self.v.each_ref().map(vector), w: self.w.each_ref().map(vector), tip: self.tip.pose(0) }
     }
@@ -78,41 +82,47 @@ impl<const N: usize, const J: usize> Rows<N, J> {
 
     /// Takes an arm to these configurations.
     #[inline(always)]
-    pub(super) fn place(&mut self, arm: &Arm, wanted: Wanted) {
+    pub(crate) fn place(&mut self, arm: &Arm, wanted: Wanted) {
         if wanted == Wanted::Motions {
             self.v[..arm.joints()].fill([[0.0; N]; 3]);
             self.w[..arm.joints()].fill([[0.0; N]; 3]);
         }
         match arm.real() {
             Some(real) => self.place_real(real, wanted),
-            None => self.place_rigid(arm, wanted),
+            None => self.place_rigid(arm.chain(), wanted),
         }
     }
 
     #[inline(always)]
-    fn place_rigid(&mut self, arm: &Arm, wanted: Wanted) {
-        let chain = arm.chain();
+    pub(crate) fn place_rigid(&mut self, chain: &Chain, wanted: Wanted) {
+        // Of one configuration those of all joints are made of vector instructions, as many as there may be.
+        let count = if N == 1 { J } else { chain.len() };
+        let mut angles = self.q;
+        for (angle, link) in angles.iter_mut().zip(&chain.links) {
+            for it in angle {
+                *it = link.turned + if link.slides { 0.0 } else { *it };
+            }
+        }
+        for (found, angle) in self.found.iter_mut().zip(&angles).take(count) {
+            *found = cosines_and_sines(angle);
+        }
         let mut frame = Frames::of(&chain.start);
-        for (index, link) in chain.links.iter().enumerate() {
+        for (index, link) in chain.links.iter().enumerate().take(J) {
             frame.tilt(&link.origin, link.tilt);
-            if wanted == Wanted::Motions {
-                self.moves(index, &motion(&frame, link.slides), &[1.0; N]);
+            if matches!(wanted, Wanted::Motions | Wanted::Steps) {
+                [self.v[index], self.w[index]] = motion(&frame, link.slides);
             }
             if link.slides {
                 frame.slide(&self.q[index]);
             }
-            let mut angles = [link.turned; N];
-            for l in 0..N {
-                angles[l] += if link.slides { 0.0 } else { self.q[index][l] };
-            }
-            frame.turn_by(&cosines_and_sines(&angles));
+            frame.turn_by(&self.found[index]);
         }
         frame.advance(&chain.tip);
         self.tip = frame;
     }
 
     #[inline(always)]
-    fn place_real(&mut self, real: &Real, wanted: Wanted) {
+    pub(crate) fn place_real(&mut self, real: &Real, wanted: Wanted) {
         if real.has_functions {
             for (found, q) in self.found.iter_mut().zip(&self.q[..real.readings]) {
                 *found = cosines_and_sines(q);

@@ -6,11 +6,10 @@ mod chain;
 mod frames;
 mod weights;
 
-pub(crate) use chain::Rows;
-use chain::Wanted;
+pub(crate) use chain::{Rows, Wanted};
 use nalgebra::Vector3;
 
-use crate::arm::Arm;
+use crate::arm::{Arm, first};
 use crate::lie::{Pose, rotation};
 use crate::placed::MOST_JOINTS;
 
@@ -75,17 +74,8 @@ impl Arm {
     /// tip, as the hybrid or `LOCAL_WORLD_ALIGNED` Jacobian of others. What weights add is in it.
     #[must_use]
     pub fn jacobian(&self, q: &[f64]) -> [(Vector3<f64>, Vector3<f64>); MOST_JOINTS] {
-        if self.real().is_none_or(|real| !real.has_moments) {
-            let placed = self.placed(q);
-            return core::array::from_fn(|reading| placed.column(reading));
-        }
-        let mut rows = Rows::<1, MOST_JOINTS>::new();
-        rows.q.iter_mut().zip(q).for_each(|(to, from)| to[0] = *from);
-        rows.place(self, Wanted::Motions);
-        core::array::from_fn(|reading| {
-            let [moves, turns] = rows.column(reading).map(|it| Vector3::new(it[0][0], it[1][0], it[2][0]));
-            (moves, turns)
-        })
+        let placed = Rows::at(&first::<MOST_JOINTS>(q)).placed(|rows| rows.place(self, Wanted::Motions));
+        core::array::from_fn(|reading| placed.column(reading))
     }
 }
 

@@ -99,17 +99,6 @@ pub struct TermRow {
 }
 
 impl TermRow {
-    const fn new(
-        name: &'static str,
-        formula: &'static str,
-        argument: Argument,
-        function: Function,
-        deviation: [f64; 2],
-        groups: [Option<TermGroup>; 3],
-    ) -> Self {
-        TermRow { name, formula, argument, function, deviation, groups }
-    }
-
     /// Whether it has a number.
     #[must_use]
     pub fn is_numbered(&self) -> bool {
@@ -142,35 +131,37 @@ table! {
 /// ```
 pub enum TermKind: TermRow {
     /// Joint offset: the reading at which the joint is at zero (lou2009: Δθ). Of an encoder that was mounted anew: 5° or 20 mm.
-    Offset = TermRow::new("offset", "1",
-        Argument::Nothing, Function::One, [5f64.to_radians(), 0.02], [None; 3]),
+    Offset = TermRow { name: "offset", formula: "1",
+        argument: Argument::Nothing, function: Function::One, deviation: [5f64.to_radians(), 0.02], groups: [None; 3] },
     /// Error of a gear's ratio. 0.5 %: a belt, or a tooth more or less of a gear with two hundred.
-    Ratio = TermRow::new("ratio", "q",
-        Argument::OwnValue, Function::Identity, [5e-3; 2], [Some(TermGroup::Ratio), None, None]),
+    Ratio = TermRow { name: "ratio", formula: "q",
+        argument: Argument::OwnValue, function: Function::Identity, deviation: [5e-3; 2], groups: [Some(TermGroup::Ratio), None, None] },
     /// A harmonic of the joint's value, k periods a turn: eccentric gears and encoders; of a give the wobble of its joint's bearing. 0.1° or
     /// 0.2 mm are the largest that users of encoders report.
-    Sine = TermRow::new("sin", "sin({} q)", Argument::OwnValue, Function::Sine, TENTH, PERIODIC),
+    Sine = TermRow { name: "sin", formula: "sin({} q)",
+        argument: Argument::OwnValue, function: Function::Sine, deviation: TENTH, groups: PERIODIC },
     /// The same a quarter of a period later.
-    Cosine = TermRow::new("cos", "cos({} q)", Argument::OwnValue, Function::Cosine, TENTH, PERIODIC),
+    Cosine = TermRow { name: "cos", formula: "cos({} q)",
+        argument: Argument::OwnValue, function: Function::Cosine, deviation: TENTH, groups: PERIODIC },
     /// Compliance under the robot's own weight, `Σ m z·((p - o) × ĝ)/Σ m ℓ` with the masses m at p, the axis z through o and the longest
     /// lever ℓ of each; of a joint that slides `z·ĝ`.
-    Masses = TermRow::new("masses", "the moment about the joint of the links' masses, over the largest",
-        Argument::Masses, Function::Identity, TENTH, [Some(TermGroup::Sag), Some(TermGroup::Tilt), None]),
+    Masses = TermRow { name: "masses", formula: "the moment about the joint of the links' masses, over the largest",
+        argument: Argument::Masses, function: Function::Identity, deviation: TENTH, groups: [Some(TermGroup::Sag), Some(TermGroup::Tilt), None] },
     /// Compliance under one weight, `z·((p - o) × ĝ)/ℓ` with the weight at p, the axis z through o and the longest lever ℓ of all weights of
     /// that joint; of a joint that slides `z·ĝ`. A weight that the joint does not carry has no moment.
-    Sag = TermRow::new("sag", "the moment about the joint of weight {}, over the largest",
-        Argument::Weight, Function::Identity, TENTH, [Some(TermGroup::Sag), Some(TermGroup::Tilt), Some(TermGroup::Shift)]),
+    Sag = TermRow { name: "sag", formula: "the moment about the joint of weight {}, over the largest",
+        argument: Argument::Weight, function: Function::Identity, deviation: TENTH, groups: [Some(TermGroup::Sag), Some(TermGroup::Tilt), Some(TermGroup::Shift)] },
     /// Coupling: a joint that turns or slides with another one, as of wrists whose gears lie in one another, and of parallel links. 2 %: the
     /// ratio of a last stage of gears.
-    Coupled = TermRow::new("coupled", "the value of joint {}, counted from the base",
-        Argument::OtherJoint, Function::Identity, [2e-2; 2], [None; 3]),
+    Coupled = TermRow { name: "coupled", formula: "the value of joint {}, counted from the base",
+        argument: Argument::OtherJoint, function: Function::Identity, deviation: [2e-2; 2], groups: [None; 3] },
     /// What else is read: a temperature, or half the backlash where the factor is the side from which the joint came, +1 or -1.
-    Factor = TermRow::new("factor", "factor {} from its reference",
-        Argument::Factor, Function::Identity, HUNDREDTH, [Some(TermGroup::Factors), None, None]),
+    Factor = TermRow { name: "factor", formula: "factor {} from its reference",
+        argument: Argument::Factor, function: Function::Identity, deviation: HUNDREDTH, groups: [Some(TermGroup::Factors), None, None] },
     /// Compliance under a payload, `f z·((p - o) × ĝ)/ℓ` with the payload f at the place p of the last weight, axis and lever as of a sag: the
     /// payload being known, the coefficient is an angle each kilogram at full lever.
-    Payload = TermRow::new("payload", "factor {} * the moment about the joint of a unit weight at the last link, over the largest",
-        Argument::Payload, Function::Identity, HUNDREDTH, [Some(TermGroup::Payload), Some(TermGroup::Payload), None]),
+    Payload = TermRow { name: "payload", formula: "factor {} * the moment about the joint of a unit weight at the last link, over the largest",
+        argument: Argument::Payload, function: Function::Identity, deviation: HUNDREDTH, groups: [Some(TermGroup::Payload), Some(TermGroup::Payload), None] },
 }
 }
 
@@ -189,18 +180,6 @@ pub struct GroupRow {
     pub effect: &'static str,
 }
 
-impl GroupRow {
-    const fn new(
-        name: &'static str,
-        symbols: [&'static str; 2],
-        sizes: [f64; 3],
-        tried: &'static [f64],
-        effect: &'static str,
-    ) -> Self {
-        GroupRow { name, symbols, sizes, tried, effect }
-    }
-}
-
 /// Sizes that are tried, radians or metres: from a precise robot's to those of plastic gears.
 const OF_VALUES: &[f64] = &[0.0, 3e-5, 1e-4, 3e-4, 1e-3, 3e-3, 1e-2, 3e-2];
 const OF_FACTORS: &[f64] = &[0.0, 1e-6, 1e-5, 1e-4, 1e-3];
@@ -212,35 +191,35 @@ table! {
 /// A group of terms whose coefficients are of one size.
 pub enum TermGroup: GroupRow {
     /// Gears that give about the joint's own axis under weight; radians at the largest moment.
-    Sag = GroupRow::new("sag", ANGLES, [1e-3, 1e-3, 3e-4], OF_VALUES,
-        "{joint} sags by up to {much} under weight"),
+    Sag = GroupRow { name: "sag", symbols: ANGLES, sizes: [1e-3, 1e-3, 3e-4], tried: OF_VALUES,
+        effect: "{joint} sags by up to {much} under weight" },
     /// Bearings and links that give across the axis under weight; radians at the largest moment.
-    Tilt = GroupRow::new("tilt", ANGLES, [1e-3, 1e-3, 3e-4], &[],
-        "the bearing or link of {joint} tilts by up to {much} under weight"),
+    Tilt = GroupRow { name: "tilt", symbols: ANGLES, sizes: [1e-3, 1e-3, 3e-4], tried: &[],
+        effect: "the bearing or link of {joint} tilts by up to {much} under weight" },
     /// Ratios of gears; radians each radian.
-    Ratio = GroupRow::new("ratio", ANGLES, [1e-4, 1e-4, 3e-5], OF_VALUES,
-        "{joint} turns {much} {way} each radian than it says"),
+    Ratio = GroupRow { name: "ratio", symbols: ANGLES, sizes: [1e-4, 1e-4, 3e-5], tried: OF_VALUES,
+        effect: "{joint} turns {much} {way} each radian than it says" },
     /// First and second harmonic of the joint's own value; radians of amplitude.
-    Harmonics = GroupRow::new("harmonics", ANGLES, [1e-4, 1e-4, 3e-5], OF_VALUES,
-        "gear or encoder of {joint} errs by up to {much} within a turn"),
+    Harmonics = GroupRow { name: "harmonics", symbols: ANGLES, sizes: [1e-4, 1e-4, 3e-5], tried: OF_VALUES,
+        effect: "gear or encoder of {joint} errs by up to {much} within a turn" },
     /// Second harmonic across the axis, and first where bearings give in all directions; radians of amplitude.
-    Wobble = GroupRow::new("wobble", ANGLES, [1e-4, 0.0, 0.0], OF_VALUES,
-        "the axis of {joint} wobbles by up to {much} within a turn"),
+    Wobble = GroupRow { name: "wobble", symbols: ANGLES, sizes: [1e-4, 0.0, 0.0], tried: OF_VALUES,
+        effect: "the axis of {joint} wobbles by up to {much} within a turn" },
     /// Half the play of gears: of factors whose names begin with `approach`, radians each unit.
-    Backlash = GroupRow::new("backlash", ANGLES, [1e-4, 0.0, 0.0], OF_VALUES,
-        "{joint} stands off by {much} to the side from which it comes"),
+    Backlash = GroupRow { name: "backlash", symbols: ANGLES, sizes: [1e-4, 0.0, 0.0], tried: OF_VALUES,
+        effect: "{joint} stands off by {much} to the side from which it comes" },
     /// Of all other factors, radians each unit.
-    Factors = GroupRow::new("factors", ANGLES, [1e-5, 0.0, 0.0], OF_FACTORS,
-        "{joint} follows the factors by up to {much}"),
+    Factors = GroupRow { name: "factors", symbols: ANGLES, sizes: [1e-5, 0.0, 0.0], tried: OF_FACTORS,
+        effect: "{joint} follows the factors by up to {much}" },
     /// Gears, bearings and links that give under a payload: of the factor `payload`, radians each kilogram at full lever.
-    Payload = GroupRow::new("payload", ["mrad", "mrad/kg"], [1e-4, 0.0, 0.0], OF_LENGTHS,
-        "{joint} gives by up to {much} under the payload"),
+    Payload = GroupRow { name: "payload", symbols: ["mrad", "mrad/kg"], sizes: [1e-4, 0.0, 0.0], tried: OF_LENGTHS,
+        effect: "{joint} gives by up to {much} under the payload" },
     /// Bearings and links that shift under weight; metres.
-    Shift = GroupRow::new("shift", LENGTHS, [1e-4, 0.0, 0.0], OF_VALUES,
-        "the bearing or link of {joint} shifts by up to {much} under weight"),
+    Shift = GroupRow { name: "shift", symbols: LENGTHS, sizes: [1e-4, 0.0, 0.0], tried: OF_VALUES,
+        effect: "the bearing or link of {joint} shifts by up to {much} under weight" },
     /// First and second harmonic along three axes; metres of amplitude.
-    Runout = GroupRow::new("runout", LENGTHS, [3e-5, 0.0, 0.0], OF_LENGTHS,
-        "the axis of {joint} runs out by up to {much} within a turn"),
+    Runout = GroupRow { name: "runout", symbols: LENGTHS, sizes: [3e-5, 0.0, 0.0], tried: OF_LENGTHS,
+        effect: "the axis of {joint} runs out by up to {much} within a turn" },
 }
 }
 

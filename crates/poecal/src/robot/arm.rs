@@ -33,13 +33,7 @@ impl Robot {
     /// # Errors
     /// As [`Robot::arm`].
     pub fn arm_holding(&self, factors: &[f64], held: &[(usize, f64)]) -> Result<(Arm, Vec<usize>)> {
-        let (mut model, mut readings) = self.arm_model(factors)?;
-        for &(reading, value) in held {
-            if let Some(at) = readings.iter().position(|it| *it == reading) {
-                model = model.held(at, value);
-                readings.remove(at);
-            }
-        }
+        let (model, readings) = self.model_holding(factors, held)?;
         let names = self.reading_names();
         let arm = Arm::of(&model).ok_or_else(|| {
             let names: Vec<&str> =
@@ -61,13 +55,18 @@ impl Robot {
     /// # Errors
     /// [`ErrorKind::Model`] if more than [`MOST_JOINTS`] readings move the tip.
     pub fn arm_model(&self, factors: &[f64]) -> Result<(Model, Vec<usize>)> {
+        self.model_holding(factors, &[])
+    }
+
+    fn model_holding(&self, factors: &[f64], held: &[(usize, f64)]) -> Result<(Model, Vec<usize>)> {
         let indices = self.reading_indices();
         let path = self.joints_to(self.tip_body());
         let moving: Vec<usize> =
             path.iter().copied().filter(|&it| self.joints[it].give_of.is_none()).collect();
         let mut readings: Vec<usize> = Vec::new();
         for &joint in &moving {
-            if !readings.contains(&indices[joint]) {
+            let is_held = held.iter().any(|it| it.0 == indices[joint]);
+            if !is_held && !readings.contains(&indices[joint]) {
                 readings.push(indices[joint]);
             }
         }
@@ -77,13 +76,19 @@ impl Robot {
                 format!("{} joints move the tip, expected at most {MOST_JOINTS}", readings.len()),
             ));
         }
-        let reading_of = |joint: usize| readings.iter().position(|&it| it == indices[joint]);
         let statics = Statics::new(self);
         let factors: Vec<f64> = (self.factors.iter().enumerate())
             .map(|(index, it)| factors.get(index).map_or(0.0, |value| value - it.reference))
             .collect();
-        let values =
-            Values { robot: self, statics, moving: &moving, readings: &readings, indices: &indices, factors };
+        let values = Values {
+            robot: self,
+            statics,
+            moving: &moving,
+            readings: &readings,
+            indices: &indices,
+            held,
+            factors,
+        };
         let mut model = Model::new(readings.len(), &self.home);
         for &joint in &path {
             let value = values.of(joint);
@@ -94,14 +99,10 @@ impl Robot {
         if let Some(gravity) = &self.gravity {
             model.gravity = gravity.direction;
             for &joint in &moving {
-                let own = &self.joints[joint].reading;
-                let Some(reading) = reading_of(joint) else { continue };
-                model.drawing.push(Drawn {
-                    screw: gravity.axes.get(joint).map_or(self.joints[joint].screw, |it| it.0),
-                    reading,
-                    factor: own.multiplier,
-                    constant: own.offset,
-                });
+                let screw = gravity.axes.get(joint).map_or(self.joints[joint].screw, |it| it.0);
+                let (constant, linear) = values.by_reading(joint);
+                let (reading, factor) = linear.unwrap_or((0, 0.0));
+                model.drawing.push(Drawn { screw, reading, factor, constant });
             }
         } else {
             model.gravity = Vector3::zeros();
@@ -130,20 +131,18 @@ struct Values<'a> {
     readings: &'a [usize],
     /// Of each joint the index of its reading.
     indices: &'a [usize],
+    /// Readings that stay at a value.
+    held: &'a [(usize, f64)],
     /// The factors, from their references.
     factors: Vec<f64>,
 }
 
 impl Values<'_> {
     fn of(&self, joint: usize) -> JointValue {
-        let own = &self.robot.joints[joint].reading;
-        let mut value = JointValue { constant: own.offset, ..JointValue::default() };
-        if let Some(reading) = self.reading_of(joint)
-            && own.multiplier != 0.0
-        {
-            value.linear.push((reading, own.multiplier));
-        }
-        let mut load = self.unloaded();
+        let (constant, linear) = self.by_reading(joint);
+        let linear = linear.into_iter().collect();
+        let mut value = JointValue { constant, linear, ..JointValue::default() };
+        let mut moments = Vec::new();
         let terms = self.robot.terms.iter().filter(|it| it.joint == joint && it.coefficient != 0.0);
         for &JointTerm { term, coefficient, .. } in terms {
             let is_linear = matches!(term.kind().row().function, Function::Identity);
@@ -153,55 +152,55 @@ impl Values<'_> {
                 Argument::OwnValue => self.add_of_value(&mut value, term, coefficient, joint),
                 Argument::OtherJoint => self.add_of_value(&mut value, term, coefficient, term.index()),
                 Argument::Masses | Argument::Weight | Argument::Payload if is_linear => {
-                    self.add_load(&mut load, term, coefficient);
+                    moments.push((term, coefficient));
                 }
                 Argument::Masses | Argument::Weight | Argument::Payload => {
-                    let mut load = self.unloaded();
-                    self.add_load(&mut load, term, 1.0);
-                    let pull = self.pull(joint, &load);
-                    value.curves.push(Curve { term, coefficient, constant: 0.0, linear: Vec::new(), pull });
+                    let (linear, pull) = (Vec::new(), self.pull(joint, &[(term, 1.0)]));
+                    value.curves.push(Curve { term, coefficient, constant: 0.0, linear, pull });
                 }
             }
         }
         value.waves = together(&value.waves);
-        value.pull = self.pull(joint, &load);
+        value.pull = self.pull(joint, &moments);
         value
     }
 
-    /// Index among the arm's readings of that of a joint.
-    fn reading_of(&self, joint: usize) -> Option<usize> {
-        self.readings.iter().position(|&it| it == self.indices[joint])
+    /// The value of a joint by its reading: a constant, and the arm's reading with a factor.
+    fn by_reading(&self, joint: usize) -> (f64, Option<(usize, f64)>) {
+        let (own, reading) = (&self.robot.joints[joint].reading, self.indices[joint]);
+        let of_arm = self.readings.iter().position(|it| *it == reading);
+        match of_arm.filter(|_| own.multiplier != 0.0) {
+            Some(at) => (own.offset, Some((at, own.multiplier))),
+            None => {
+                let held = self.held.iter().find(|it| it.0 == reading).map_or(0.0, |it| it.1);
+                (own.offset + own.multiplier * held, None)
+            }
+        }
     }
 
     /// Adds a term that is a function of the value of a joint, of a give that of the joint which gives.
     fn add_of_value(&self, value: &mut JointValue, term: Term, coefficient: f64, of: usize) {
         let Some(joint) = self.robot.joints.get(of) else { return };
-        let of = joint.give_of.unwrap_or(of);
-        let (own, reading) = (&self.robot.joints[of].reading, self.reading_of(of));
-        let linear = |share: f64| reading.map(|reading| (reading, share * own.multiplier));
-        match (term.kind().row().function, reading) {
-            (Function::One, _) => value.constant += coefficient,
-            (Function::Identity, _) => {
-                value.constant += coefficient * own.offset;
-                let Some((reading, factor)) = linear(coefficient) else { return };
+        let (constant, linear) = self.by_reading(joint.give_of.unwrap_or(of));
+        let Some((reading, factor)) = linear else {
+            value.constant += coefficient * term.function(constant)[0];
+            return;
+        };
+        let wave =
+            Wave { reading, factor, offset: constant, order: term.number() as f64, cosine: 0.0, sine: 0.0 };
+        match term.kind().row().function {
+            Function::One => value.constant += coefficient,
+            Function::Identity => {
+                value.constant += coefficient * constant;
                 match value.linear.iter_mut().find(|it| it.0 == reading) {
-                    Some(it) => it.1 += factor,
-                    None => value.linear.push((reading, factor)),
+                    Some(it) => it.1 += coefficient * factor,
+                    None => value.linear.push((reading, coefficient * factor)),
                 }
             }
-            (function @ (Function::Sine | Function::Cosine), Some(reading)) => {
-                let is_cosine = matches!(function, Function::Cosine);
-                value.waves.push(Wave {
-                    reading,
-                    factor: own.multiplier,
-                    offset: own.offset,
-                    order: term.number() as f64,
-                    cosine: if is_cosine { coefficient } else { 0.0 },
-                    sine: if is_cosine { 0.0 } else { coefficient },
-                });
-            }
-            (Function::Sine | Function::Cosine | Function::Other(_), _) => {
-                let (constant, linear) = (own.offset, linear(1.0).into_iter().collect());
+            Function::Sine => value.waves.push(Wave { sine: coefficient, ..wave }),
+            Function::Cosine => value.waves.push(Wave { cosine: coefficient, ..wave }),
+            Function::Other(_) => {
+                let linear = vec![(reading, factor)];
                 value.curves.push(Curve { term, coefficient, constant, linear, pull: None });
             }
         }
@@ -212,31 +211,22 @@ impl Values<'_> {
         self.factors.get(term.index()).copied().unwrap_or(0.0)
     }
 
-    fn unloaded(&self) -> Load {
-        let weights = self.robot.gravity.as_ref().map_or(0, |gravity| gravity.weights.len());
-        Load { weights: vec![0.0; weights], masses: 0.0 }
+    /// The moments about a joint that terms are functions of, by these coefficients.
+    fn pull(&self, joint: usize, terms: &[(Term, f64)]) -> Option<Pull> {
+        let weights = self.robot.gravity.as_ref()?.weights.len();
+        let (mut sags, mut of_masses) = (vec![0.0; weights], 0.0);
+        for &(term, coefficient) in terms {
+            match term.argument() {
+                Argument::Masses => of_masses += coefficient,
+                Argument::Weight => sags.get_mut(term.index()).into_iter().for_each(|it| *it += coefficient),
+                Argument::Payload => {
+                    sags.last_mut().into_iter().for_each(|it| *it += coefficient * self.factor(term));
+                }
+                Argument::Nothing | Argument::OwnValue | Argument::OtherJoint | Argument::Factor => {}
+            }
+        }
+        self.statics.as_ref()?.pull(joint, self.moving, &sags, of_masses)
     }
-
-    /// Adds the moment that a term is a function of, by a coefficient.
-    fn add_load(&self, load: &mut Load, term: Term, coefficient: f64) {
-        let (weight, factor) = match term.argument() {
-            Argument::Masses => (Some(&mut load.masses), 1.0),
-            Argument::Weight => (load.weights.get_mut(term.index()), 1.0),
-            Argument::Payload => (load.weights.last_mut(), self.factor(term)),
-            Argument::Nothing | Argument::OwnValue | Argument::OtherJoint | Argument::Factor => return,
-        };
-        weight.into_iter().for_each(|it| *it += coefficient * factor);
-    }
-
-    fn pull(&self, joint: usize, load: &Load) -> Option<Pull> {
-        self.statics.as_ref()?.pull(joint, self.moving, &load.weights, load.masses)
-    }
-}
-
-/// Of each weight and of all masses, how much their moment about a joint counts.
-struct Load {
-    weights: Vec<f64>,
-    masses: f64,
 }
 
 /// Waves with those of one order as one.

@@ -136,49 +136,46 @@ impl<'a> Corrected<'a> {
             [Argument::Masses, Argument::Weight, Argument::Payload, Argument::Factor, Argument::OwnValue];
         let arguments = arguments.into_iter().filter(|it| is_moving || *it != Argument::OwnValue);
         let mut found = Vec::new();
-        for argument in arguments.filter(|it| self.has(*it)) {
-            let kinds = || TermKind::ALL.into_iter().filter(|kind| kind.row().argument == argument);
-            let plain = kinds().filter(|kind| !kind.row().is_numbered()).map(|kind| kind.numbered(0));
-            let numbered = self.numbers(argument).into_iter().flat_map(|number| {
-                kinds().filter(|kind| kind.row().is_numbered()).map(move |kind| kind.numbered(number))
-            });
-            let with_group = |term| Some((term, self.group(term)?, self.share(term)));
-            found.extend(plain.chain(numbered).filter_map(with_group));
+        for (argument, number) in
+            arguments.flat_map(|it| self.numbers(it).into_iter().map(move |at| (it, at)))
+        {
+            let is_of =
+                |kind: &TermKind| kind.row().argument == argument && kind.row().is_numbered() == (number > 0);
+            let terms = TermKind::ALL.into_iter().filter(is_of).map(|kind| kind.numbered(number));
+            found.extend(terms.filter_map(|term| Some((term, self.group(term)?, self.share(term)))));
         }
         found
     }
 
-    /// Whether it has terms of this argument: a joint that slides has none but those of its gives under weight.
-    fn has(&self, argument: Argument) -> bool {
-        match argument {
-            Argument::Masses => (self.is_give || self.turns) && self.statics.carries_masses(self.joint),
-            Argument::Weight | Argument::Payload => self.is_give || self.turns,
-            Argument::OwnValue | Argument::Factor => self.turns,
-            Argument::Nothing | Argument::OtherJoint => false,
-        }
-    }
-
-    /// Numbers of its terms of this argument.
+    /// Numbers of its terms of this argument, 0 of those without: a joint that slides has none but those of its gives under weight.
     fn numbers(&self, argument: Argument) -> Vec<usize> {
+        let is_loaded = self.is_give || self.turns;
         let counted = |index: usize| index + 1;
         match argument {
+            Argument::Masses if is_loaded && self.statics.carries_masses(self.joint) => vec![0],
             // All weights pull alike where a link shifts.
             Argument::Weight if self.shifts => {
                 self.carried.last().copied().map(counted).into_iter().collect()
             }
-            Argument::Weight => self.carried.iter().copied().map(counted).collect(),
-            Argument::Payload => {
+            Argument::Weight if is_loaded => self.carried.iter().copied().map(counted).collect(),
+            Argument::Payload if is_loaded => {
                 let last = self.robot.gravity.as_ref().map_or(0, |gravity| gravity.weights.len());
                 let is_carried = self.carried.last().is_some_and(|it| counted(*it) == last);
                 self.robot.payloads().filter(|_| is_carried).map(counted).collect()
             }
-            Argument::Factor => self.factors().map(counted).collect(),
-            Argument::OwnValue => match (self.is_give, self.extent.gives) {
-                (false, _) => (1..=usize::from(self.extent.orders)).collect(),
+            Argument::Factor if self.turns => self.factors().map(counted).collect(),
+            Argument::OwnValue if self.turns => match (self.is_give, self.extent.gives) {
+                (false, _) => (0..=usize::from(self.extent.orders)).collect(),
                 (true, Gives::Tilting) => vec![2],
                 (true, Gives::All) => vec![1, 2],
             },
-            Argument::Nothing | Argument::Masses | Argument::OtherJoint => Vec::new(),
+            Argument::Nothing
+            | Argument::OwnValue
+            | Argument::Masses
+            | Argument::Weight
+            | Argument::OtherJoint
+            | Argument::Factor
+            | Argument::Payload => Vec::new(),
         }
     }
 

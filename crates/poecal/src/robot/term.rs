@@ -24,7 +24,7 @@ impl JointKind {
     #[must_use]
     pub fn unit_of(self, term: Term) -> Unit {
         match self {
-            _ if term.kind().row().is_share() => Unit::One,
+            JointKind::Revolute | JointKind::Prismatic if term.kind().row().is_share() => Unit::One,
             JointKind::Revolute => Unit::Radian,
             JointKind::Prismatic => Unit::Metre,
         }
@@ -34,6 +34,29 @@ impl JointKind {
     #[must_use]
     pub fn deviation_of(self, term: Term) -> f64 {
         term.deviation(self == JointKind::Prismatic)
+    }
+}
+
+impl Robot {
+    /// What a term of a joint needs that this robot does not have, in words.
+    pub(crate) fn lacks(&self, term: Term) -> Option<String> {
+        let (joints, factors) = (self.joints.len(), self.factors.len());
+        let weights = self.gravity.as_ref().map_or(0, |gravity| gravity.weights.len());
+        if !term.is_of(joints, factors) {
+            return Some(format!("one of the {joints} joints and {factors} factors"));
+        }
+        match term.argument() {
+            Argument::Masses if self.masses.is_empty() => Some("a robot with masses".to_owned()),
+            Argument::Weight | Argument::Payload if weights == 0 => Some("a robot with weights".to_owned()),
+            Argument::Weight if term.index() >= weights => Some(format!("one of the {weights} weights")),
+            Argument::Nothing
+            | Argument::OwnValue
+            | Argument::Masses
+            | Argument::Weight
+            | Argument::OtherJoint
+            | Argument::Factor
+            | Argument::Payload => None,
+        }
     }
 }
 

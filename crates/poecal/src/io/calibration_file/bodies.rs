@@ -10,7 +10,7 @@ use super::{CalibrationFile, JointEntry, PoseEntry, ScrewEntry, TargetEntry};
 use crate::calibration::CalibratedTarget;
 use crate::error::{Error, ErrorKind, Result};
 use crate::lie::Pose;
-use crate::robot::{Argument, Body, JointTerm, Mass, Mount, Robot, Term};
+use crate::robot::{Body, JointTerm, Mass, Mount, Robot, Term};
 use nalgebra::Vector3;
 
 /// A body of the robot: `"base"`, or `{"link_of": "joint2"}`, the link that this joint moves.
@@ -116,13 +116,6 @@ impl CalibrationFile {
                         format!("found {coefficient} as the {term} of joint `{name}`, expected a number");
                     return Err(Error::new(ErrorKind::Model, message));
                 }
-                if !term.is_of(self.joints.len(), self.robot.factors.len()) {
-                    let (name, joints, factors) = (&entry.name, self.joints.len(), self.robot.factors.len());
-                    let message = format!(
-                        "found the term {term} of joint `{name}`, expected one of the {joints} joints and {factors} factors"
-                    );
-                    return Err(Error::new(ErrorKind::Model, message));
-                }
                 robot.terms.push(JointTerm { joint, term, coefficient });
             }
         }
@@ -209,23 +202,10 @@ impl CalibrationFile {
 
     /// Refuses terms of weights that the robot does not carry, and gives that do not stand on their joint.
     fn check_terms(&self, robot: &Robot) -> Result<()> {
-        let weights = robot.gravity.as_ref().map_or(0, |gravity| gravity.weights.len());
         for JointTerm { joint, term, .. } in &robot.terms {
-            let (is_there, needed) = if term.argument() == Argument::Masses {
-                (!robot.masses.is_empty(), "masses")
-            } else {
-                (!term.needs_gravity() || weights > 0, "weights")
-            };
-            if !is_there {
+            if let Some(needed) = robot.lacks(*term) {
                 let name = &robot.joints[*joint].name;
-                let message =
-                    format!("found the term {term} of joint `{name}`, expected a robot with {needed}");
-                return Err(Error::new(ErrorKind::Model, message));
-            }
-            if term.argument() == Argument::Weight && term.index() >= weights {
-                let name = &robot.joints[*joint].name;
-                let message =
-                    format!("found the term {term} of joint `{name}`, expected one of the {weights} weights");
+                let message = format!("found the term {term} of joint `{name}`, expected {needed}");
                 return Err(Error::new(ErrorKind::Model, message));
             }
         }
