@@ -9,6 +9,7 @@ use crate::lie::{Pose, Screw};
 use crate::model::{Joint, Model};
 use crate::placed::{MOST_JOINTS, Placed};
 use crate::real::Real;
+use crate::rows::{Rows, Wanted};
 
 /// Least joint value per reading of a joint that the reading is said to move.
 const LEAST_SENSE: f64 = 0.5;
@@ -63,7 +64,7 @@ impl Arm {
             return None;
         }
         let real = Real::new(model);
-        let at_zero = real.placed(&[0.0; MOST_JOINTS]);
+        let at_zero = Rows::at(&[0.0; MOST_JOINTS]).placed(|rows| rows.place_real(&real, Wanted::Steps));
         let mut screws = Vec::with_capacity(model.readings);
         for reading in 0..model.readings {
             let (v, w) = (at_zero.v[reading], at_zero.w[reading]);
@@ -179,15 +180,16 @@ impl Arm {
     /// The same at as many readings as there are, or more.
     #[inline]
     pub(crate) fn placed_at<const N: usize>(&self, q: &[f64; N]) -> Placed<N> {
+        // What one of the two does not need is not made for it.
         match &self.real {
-            Some(real) => real.placed(q),
-            None => self.chain.placed(q),
+            Some(real) => Rows::at(q).placed(|rows| rows.place_real(real, Wanted::Steps)),
+            None => Rows::at(q).placed(|rows| rows.place_rigid(&self.chain, Wanted::Steps)),
         }
     }
 }
 
 /// The first readings; those that are not given are 0.
-fn first<const N: usize>(q: &[f64]) -> [f64; N] {
+pub(crate) fn first<const N: usize>(q: &[f64]) -> [f64; N] {
     let mut all = [0.0; N];
     all.iter_mut().zip(q).for_each(|(to, from)| *to = *from);
     all

@@ -9,8 +9,7 @@ use nalgebra::{Matrix3, Vector3};
 use nalgebra::{ComplexField as _, RealField as _};
 
 use crate::lie::{Pose, Screw, rotation};
-use crate::placed::{Placed, along};
-use crate::trig::cosine_and_sine;
+use crate::placed::along;
 
 /// Sine of the angle between two axes below which any direction across both serves.
 const PARALLEL: f64 = 1e-9;
@@ -38,12 +37,6 @@ pub(crate) struct Link {
     /// Angle about its own axis at zero.
     pub(crate) turned: f64,
     pub(crate) slides: bool,
-}
-
-/// `(y, z)` turned about x by an angle.
-#[inline(always)]
-fn tilted(y: Vector3<f64>, z: Vector3<f64>, (c, s): (f64, f64)) -> (Vector3<f64>, Vector3<f64>) {
-    (y * c + z * s, z * c - y * s)
 }
 
 impl Chain {
@@ -99,36 +92,5 @@ impl Chain {
     /// Number of joints.
     pub(crate) fn len(&self) -> usize {
         self.links.len()
-    }
-
-    /// Where the tip is at joint values, and how it moves with each; those that are not given are 0.
-    #[inline]
-    pub(crate) fn placed<const N: usize>(&self, q: &[f64; N]) -> Placed<N> {
-        let mut out = Placed::at_rest();
-        let column = |k: usize| self.start.rotation.column(k).into_owned();
-        let (mut x, mut y, mut z, mut at) = (column(0), column(1), column(2), self.start.translation);
-        let (mut cosines, mut sines) = (*q, *q);
-        for (k, link) in self.links.iter().enumerate().take(N) {
-            cosines[k] = link.turned + if link.slides { 0.0 } else { q[k] };
-        }
-        for (c, s) in cosines.iter_mut().zip(sines.iter_mut()) {
-            (*c, *s) = cosine_and_sine(*c);
-        }
-        for (k, (link, (v, w))) in self.links.iter().zip(out.v.iter_mut().zip(out.w.iter_mut())).enumerate() {
-            at += x * link.origin.x + y * link.origin.y + z * link.origin.z;
-            (y, z) = tilted(y, z, link.tilt);
-            if link.slides {
-                *v = z;
-                at += z * q[k];
-            } else {
-                *v = at.cross(&z);
-                *w = z;
-            }
-            let (c, s) = (cosines[k], sines[k]);
-            (x, y) = (x * c + y * s, y * c - x * s);
-        }
-        let turned = Matrix3::from_columns(&[x, y, z]);
-        out.tip = Pose::new(turned * self.tip.rotation, at + turned * self.tip.translation);
-        out
     }
 }

@@ -7,6 +7,7 @@
 //! |---|---|
 //! | have an arm, and the pose of its tip | [`Arm`], [`Arm::forward_kinematics`] |
 //! | have joints that turn more than their readings say | [`Model`], [`Arm::of`] |
+//! | know what joints do beyond their readings, with derivatives | [`TermKind`], [`Term`] |
 //! | have many poses, Jacobians, or what weights do, in many configurations | [`Arm::forward_kinematics_of`], [`Arm::jacobians_of`], [`Arm::sag_of`] |
 //! | move the tip to a pose, from where the arm is | [`Arm::nearest`] |
 //! | correct readings of a program for the drawing | [`Corrections`] |
@@ -35,10 +36,12 @@ mod placed;
 mod real;
 mod rows;
 mod small;
+mod terms;
 pub mod trig;
 
 pub use arm::Arm;
 pub use branches::{AllBranches, Branches, HeldBranches, MOST_BRANCHES};
 pub use correction::{Correction, Corrections, MostChange, Outcome};
-pub use model::{Drawn, Joint, JointValue, Model, Pull, PulledWeight, Wave};
+pub use model::{Curve, Drawn, Joint, JointValue, Model, Pull, PulledWeight, Wave};
 pub use placed::MOST_JOINTS;
+pub use terms::{Argument, Function, GroupRow, Term, TermGroup, TermKind, TermRow};

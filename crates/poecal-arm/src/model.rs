@@ -6,7 +6,7 @@ use nalgebra::Vector3;
 
 use crate::lie::{Pose, Screw};
 use crate::placed::MOST_JOINTS;
-use crate::trig::cosine_and_sine;
+use crate::terms::Term;
 
 /// A serial arm as calibration finds it: `base_from_tip(q) = exp(ξ₁θ₁(q)) … exp(ξₘθₘ(q)) M` with n readings q and joint values θ that are
 /// functions of them ([`JointValue`]). Joints that no reading turns are places where links give.
@@ -50,7 +50,7 @@ pub struct Joint {
     pub value: JointValue,
 }
 
-/// A joint's value (rad, m) as a function of the readings: `θ = c + Σ fᵢ qᵢ + Σ waves + moments`.
+/// A joint's value (rad, m) as a function of the readings: `θ = c + Σ fᵢ qᵢ + Σ waves + moments + Σ curves`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct JointValue {
     /// What it has where all readings are 0.
@@ -61,6 +61,8 @@ pub struct JointValue {
     pub waves: Vec<Wave>,
     /// What it gives under weights.
     pub pull: Option<Pull>,
+    /// Other functions.
+    pub curves: Vec<Curve>,
 }
 
 impl JointValue {
@@ -75,6 +77,7 @@ impl JointValue {
             && self.linear == [(reading, 1.0)]
             && self.waves.is_empty()
             && self.pull.is_none()
+            && self.curves.is_empty()
     }
 }
 
@@ -93,6 +96,21 @@ pub struct Wave {
     pub cosine: f64,
     /// Amplitude b (rad, m).
     pub sine: f64,
+}
+
+/// A part of a joint's value that is another function of the table of terms ([`crate::TermKind`]), `k b(x)` with `x = c + Σ fᵢ qᵢ + moments`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Curve {
+    /// The term with the function b.
+    pub term: Term,
+    /// Its coefficient k (rad, m).
+    pub coefficient: f64,
+    /// The argument where all readings are 0.
+    pub constant: f64,
+    /// Readings, and the argument per unit of each.
+    pub linear: Vec<(usize, f64)>,
+    /// The moments in the argument, of weights by their part of it.
+    pub pull: Option<Pull>,
 }
 
 /// What a joint gives under weights: `Σ z·((p - o) × ĝ)` with the axis z through o, where weights at p are counted by what they turn the joint
@@ -136,43 +154,6 @@ pub struct Drawn {
 }
 
 impl Model {
-    /// The same with a reading that stays at a value (rad, m): one reading fewer.
-    #[must_use]
-    pub fn held(&self, reading: usize, value: f64) -> Self {
-        let mut model = self.clone();
-        let shifted = |it: &mut usize| {
-            if *it > reading {
-                *it -= 1;
-            }
-        };
-        model.readings = self.readings.saturating_sub(1);
-        for JointValue { constant, linear, waves, .. } in
-            model.joints.iter_mut().map(|joint| &mut joint.value)
-        {
-            *constant += linear.iter().filter(|it| it.0 == reading).map(|it| it.1 * value).sum::<f64>();
-            linear.retain(|it| it.0 != reading);
-            linear.iter_mut().for_each(|it| shifted(&mut it.0));
-            for wave in waves.iter().filter(|it| it.reading == reading) {
-                let (cosine, sine) = cosine_and_sine(wave.order * (wave.factor * value + wave.offset));
-                *constant += wave.cosine * cosine + wave.sine * sine;
-            }
-            waves.retain(|it| it.reading != reading);
-            waves.iter_mut().for_each(|it| shifted(&mut it.reading));
-        }
-        for drawn in &mut model.drawing {
-            if drawn.reading == reading {
-                drawn.constant += drawn.factor * value;
-                (drawn.factor, drawn.reading) = (0.0, 0);
-            } else {
-                shifted(&mut drawn.reading);
-            }
-        }
-        if reading < model.limits.len() {
-            model.limits.remove(reading);
-        }
-        model
-    }
-
     /// Whether all numbers are finite and all indices are of something that is there.
     pub(crate) fn is_whole(&self) -> bool {
         let finite = |v: &Vector3<f64>| v.iter().all(|it| it.is_finite());
@@ -193,12 +174,20 @@ impl Model {
                 && finite(&it.place)
                 && it.weights.iter().all(weight)
         };
+        let linear = |it: &(usize, f64)| reading(it.0) && it.1.is_finite();
+        let curve = |it: &Curve| {
+            it.coefficient.is_finite()
+                && it.constant.is_finite()
+                && it.linear.iter().all(linear)
+                && it.pull.iter().all(pull)
+        };
         let joint = |it: &Joint| {
             screw(&it.screw)
                 && it.value.constant.is_finite()
-                && it.value.linear.iter().all(|(index, factor)| reading(*index) && factor.is_finite())
+                && it.value.linear.iter().all(linear)
                 && it.value.waves.iter().all(wave)
                 && it.value.pull.iter().all(pull)
+                && it.value.curves.iter().all(curve)
         };
         (1..=MOST_JOINTS).contains(&self.readings)
             && self.drawing.len() <= MOST_JOINTS

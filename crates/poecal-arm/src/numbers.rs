@@ -1,31 +1,38 @@
 //! Models as flat lists of numbers, which every language can hold in an array.
 
+use alloc::string::{String, ToString};
 use alloc::vec::Vec;
 
 use nalgebra::{Matrix3, Vector3};
 
 use crate::lie::{Pose, Screw};
-use crate::model::{Drawn, Joint, JointValue, Model, Pull, PulledWeight, Wave};
+use crate::model::{Curve, Drawn, Joint, JointValue, Model, Pull, PulledWeight, Wave};
 use crate::placed::MOST_JOINTS;
 
-/// First number of a list: the version of its order.
-const VERSION: f64 = 1.0;
+/// First number of a list, the version of its order: without curves, and with them.
+const VERSIONS: [f64; 2] = [1.0, 2.0];
 /// Limit of a reading that has none; every language can write it.
 const UNLIMITED: f64 = 1e300;
 /// Most joints, waves or weights of a list.
 const MOST: usize = 1000;
 
 impl Model {
-    /// All numbers of the model (m, rad), in this order: 1 (the version); the numbers of readings, joints and drawn joints; home as three rows
+    /// All numbers of the model (m, rad), in this order: 1 (the version; 2 with curves); the numbers of readings, joints and drawn joints; home as three rows
     /// of rotation and translation; gravity; of each reading its smallest and largest value (±1e300 if there is none); of each joint its
     /// axis, constant, the number of its linear parts with (reading, factor) each, the number of its waves with (reading, factor, offset,
     /// order, cosine, sine) each, and the number of its weights, before them, if there are any, (drawn joints before it, 1 if it slides,
     /// direction, place), with (drawn joints that carry it, size, place) each; of each drawn joint its axis, reading, factor and constant.
-    /// An axis is 1 if it slides or 0, a direction and a point. Indices count from 0.
+    /// With curves their number follows, and of each its joint, its coefficient, the number of letters of its term's name with the code of each,
+    /// and of its argument constant, linear parts and weights as of a joint. An axis is 1 if it slides or 0, a direction and a point. Indices
+    /// count from 0.
     #[must_use]
     pub fn numbers(&self) -> Vec<f64> {
         let mut out = Vec::new();
-        out.extend([VERSION, self.readings as f64, self.joints.len() as f64, self.drawing.len() as f64]);
+        let curves: Vec<(usize, &Curve)> = (self.joints.iter().enumerate())
+            .flat_map(|(at, joint)| joint.value.curves.iter().map(move |curve| (at, curve)))
+            .collect();
+        let version = VERSIONS[usize::from(!curves.is_empty())];
+        out.extend([version, self.readings as f64, self.joints.len() as f64, self.drawing.len() as f64]);
         for row in 0..3 {
             out.extend((0..3).map(|column| self.home.rotation[(row, column)]));
             out.push(self.home.translation[row]);
@@ -46,28 +53,27 @@ impl Model {
         for Joint { screw, value } in &self.joints {
             axis(&mut out, screw);
             out.push(value.constant);
-            out.push(value.linear.len() as f64);
-            for (reading, factor) in &value.linear {
-                out.extend([*reading as f64, *factor]);
-            }
+            write_linear(&mut out, &value.linear);
             out.push(value.waves.len() as f64);
             for it in &value.waves {
                 out.extend([it.reading as f64, it.factor, it.offset, it.order, it.cosine, it.sine]);
             }
-            let weights = value.pull.as_ref().map_or(0, |pull| pull.weights.len());
-            out.push(weights as f64);
-            if let Some(pull) = value.pull.as_ref().filter(|_| weights > 0) {
-                out.extend([pull.after as f64, if pull.slides { 1.0 } else { 0.0 }]);
-                out.extend(pull.direction.iter().chain(pull.place.iter()));
-                for it in &pull.weights {
-                    out.extend([it.after as f64, it.size]);
-                    out.extend(it.place.iter());
-                }
-            }
+            write_pull(&mut out, value.pull.as_ref());
         }
         for it in &self.drawing {
             axis(&mut out, &it.screw);
             out.extend([it.reading as f64, it.factor, it.constant]);
+        }
+        if !curves.is_empty() {
+            out.push(curves.len() as f64);
+        }
+        for (joint, curve) in curves {
+            let name = curve.term.to_string();
+            out.extend([joint as f64, curve.coefficient, name.len() as f64]);
+            out.extend(name.bytes().map(f64::from));
+            out.push(curve.constant);
+            write_linear(&mut out, &curve.linear);
+            write_pull(&mut out, curve.pull.as_ref());
         }
         out
     }
@@ -76,7 +82,8 @@ impl Model {
     #[must_use]
     pub fn from_numbers(numbers: &[f64]) -> Option<Self> {
         let mut rest = Rest(numbers);
-        if rest.number()? != VERSION {
+        let version = rest.number()?;
+        if !VERSIONS.contains(&version) {
             return None;
         }
         let (readings, joints, drawn) = (rest.count()?, rest.count()?, rest.count()?);
@@ -99,10 +106,8 @@ impl Model {
         }
         for _ in 0..joints {
             let screw = rest.axis()?;
-            let mut value = JointValue { constant: rest.number()?, ..JointValue::default() };
-            for _ in 0..rest.count()? {
-                value.linear.push((rest.count()?, rest.number()?));
-            }
+            let constant = rest.number()?;
+            let mut value = JointValue { constant, linear: rest.linear()?, ..JointValue::default() };
             for _ in 0..rest.count()? {
                 value.waves.push(Wave {
                     reading: rest.count()?,
@@ -113,17 +118,7 @@ impl Model {
                     sine: rest.number()?,
                 });
             }
-            let weights = rest.count()?;
-            if weights > 0 {
-                let (after, slides) = (rest.count()?, rest.number()? != 0.0);
-                let (direction, place) = (rest.vector()?, rest.vector()?);
-                let mut pull = Pull { after, slides, direction, place, weights: Vec::new() };
-                for _ in 0..weights {
-                    let (after, size, place) = (rest.count()?, rest.number()?, rest.vector()?);
-                    pull.weights.push(PulledWeight { after, size, place });
-                }
-                value.pull = Some(pull);
-            }
+            value.pull = rest.pull()?;
             model.joints.push(Joint { screw, value });
         }
         for _ in 0..drawn {
@@ -131,7 +126,32 @@ impl Model {
             let (reading, factor, constant) = (rest.count()?, rest.number()?, rest.number()?);
             model.drawing.push(Drawn { screw, reading, factor, constant });
         }
+        let curves = if version == VERSIONS[0] { 0 } else { rest.count()? };
+        for _ in 0..curves {
+            let (joint, curve) = (rest.count()?, rest.curve()?);
+            model.joints.get_mut(joint)?.value.curves.push(curve);
+        }
         (rest.0.is_empty() && model.is_whole()).then_some(model)
+    }
+}
+
+fn write_linear(out: &mut Vec<f64>, linear: &[(usize, f64)]) {
+    out.push(linear.len() as f64);
+    for (reading, factor) in linear {
+        out.extend([*reading as f64, *factor]);
+    }
+}
+
+fn write_pull(out: &mut Vec<f64>, pull: Option<&Pull>) {
+    let weights = pull.map_or(0, |pull| pull.weights.len());
+    out.push(weights as f64);
+    if let Some(pull) = pull.filter(|_| weights > 0) {
+        out.extend([pull.after as f64, if pull.slides { 1.0 } else { 0.0 }]);
+        out.extend(pull.direction.iter().chain(pull.place.iter()));
+        for it in &pull.weights {
+            out.extend([it.after as f64, it.size]);
+            out.extend(it.place.iter());
+        }
     }
 }
 
@@ -155,6 +175,34 @@ impl Rest<'_> {
         Some(Vector3::new(self.number()?, self.number()?, self.number()?))
     }
 
+    fn linear(&mut self) -> Option<Vec<(usize, f64)>> {
+        (0..self.count()?).map(|_| Some((self.count()?, self.number()?))).collect()
+    }
+
+    /// Weights, if there are any; `None` of numbers that are none.
+    fn pull(&mut self) -> Option<Option<Pull>> {
+        let weights = self.count()?;
+        if weights == 0 {
+            return Some(None);
+        }
+        let (after, slides) = (self.count()?, self.number()? != 0.0);
+        let (direction, place) = (self.vector()?, self.vector()?);
+        let mut pull = Pull { after, slides, direction, place, weights: Vec::new() };
+        for _ in 0..weights {
+            let (after, size, place) = (self.count()?, self.number()?, self.vector()?);
+            pull.weights.push(PulledWeight { after, size, place });
+        }
+        Some(Some(pull))
+    }
+
+    fn curve(&mut self) -> Option<Curve> {
+        let coefficient = self.number()?;
+        let letter = |code: usize| char::from_u32(u32::try_from(code).ok()?);
+        let name: String = (0..self.count()?).map(|_| letter(self.count()?)).collect::<Option<_>>()?;
+        let (term, constant) = (name.parse().ok()?, self.number()?);
+        Some(Curve { term, coefficient, constant, linear: self.linear()?, pull: self.pull()? })
+    }
+
     fn axis(&mut self) -> Option<Screw> {
         let slides = self.number()?;
         let (direction, point) = (self.vector()?, self.vector()?);
@@ -173,6 +221,7 @@ impl Rest<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::terms::TermKind;
 
     #[test]
     fn a_model_comes_back_from_its_numbers() {
@@ -182,5 +231,16 @@ mod tests {
         let numbers = model.numbers();
         assert_eq!(numbers[..4], [1.0, 1.0, 1.0, 0.0]);
         assert_eq!(Model::from_numbers(&numbers).unwrap().numbers(), numbers);
+
+        let (term, linear) = (TermKind::Sine.numbered(3), [(0, 2.0)].to_vec());
+        model.joints[0].value.curves.push(Curve {
+            term,
+            coefficient: 0.1,
+            constant: 0.2,
+            linear,
+            pull: None,
+        });
+        let again = Model::from_numbers(&model.numbers()).unwrap();
+        assert_eq!((model.numbers()[0], again.joints), (2.0, model.joints));
     }
 }

@@ -16,24 +16,12 @@ pub(crate) struct Placed<const N: usize> {
 }
 
 impl<const N: usize> Placed<N> {
-    pub(crate) fn at_rest() -> Self {
-        Placed { v: [Vector3::zeros(); N], w: [Vector3::zeros(); N], tip: Pose::identity() }
-    }
-
     /// How the tip moves with a reading: its point, and its turn.
     #[inline]
     pub(crate) fn column(&self, reading: usize) -> (Vector3<f64>, Vector3<f64>) {
         let w = self.w[reading];
         (self.v[reading] + w.cross(&self.tip.translation), w)
     }
-}
-
-/// Turns a frame about its own z, by the cosine and sine of the angle.
-#[inline(always)]
-pub(crate) fn turn_by(frame: &mut Matrix3<f64>, (c, s): (f64, f64)) {
-    let (x, y) = (frame.column(0).into_owned(), frame.column(1).into_owned());
-    frame.set_column(0, &(x * c + y * s));
-    frame.set_column(1, &(y * c - x * s));
 }
 
 /// A frame on a joint's axis, which is its z, where it is nearest to a point.

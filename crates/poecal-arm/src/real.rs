@@ -1,13 +1,13 @@
-//! Forward kinematics of arms whose joint values are more than their readings.
+//! Arms whose joint values are more than their readings: what does not depend on the configuration.
 
 use alloc::vec::Vec;
 
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::Vector3;
 
 use crate::lie::Pose;
-use crate::model::{Drawn, JointValue, Model, Pull, Wave};
-use crate::placed::{MOST_JOINTS, Placed, along, turn_by};
-use crate::trig::cosine_and_sine;
+use crate::model::{Curve, Drawn, JointValue, Model, Pull, Wave};
+use crate::placed::along;
+use crate::terms::Term;
 
 /// A chain of joints, with what does not depend on the configuration.
 #[derive(Clone, Debug, PartialEq)]
@@ -17,18 +17,37 @@ pub(crate) struct Real {
     pub(crate) readings: usize,
     /// Whether values depend on cosines and sines of the readings.
     pub(crate) has_functions: bool,
+    /// Whether they depend on moments of weights.
+    pub(crate) has_moments: bool,
     pub(crate) drawing: Vec<(Pose, Drawn)>,
     pub(crate) gravity: Vector3<f64>,
-    /// Moments of weights, and the link whose joint they turn.
-    pub(crate) pulls: Vec<(usize, Moment)>,
 }
 
+/// A joint: its place, and its value as of a [`JointValue`].
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Link {
     /// Its frame, the axis along z, in that of the link before.
     pub(crate) frame: Pose,
     pub(crate) slides: bool,
-    pub(crate) value: JointValue,
+    pub(crate) own: Sum,
+    pub(crate) waves: Vec<Wave>,
+    /// Other functions of sums, with their coefficients.
+    pub(crate) curves: Vec<(Term, f64, Sum)>,
+}
+
+/// A sum of a constant, of readings and of a moment.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Sum {
+    pub(crate) constant: f64,
+    pub(crate) linear: Vec<(usize, f64)>,
+    pub(crate) moment: Option<Moment>,
+}
+
+impl Sum {
+    fn of(constant: f64, linear: &[(usize, f64)], pull: Option<&Pull>, from_base: &[Pose]) -> Self {
+        let moment = pull.map(|pull| Moment::of(pull, from_base));
+        Sum { constant, linear: linear.to_vec(), moment }
+    }
 }
 
 /// A [`Pull`] with the weights of each body as one.
@@ -64,21 +83,6 @@ impl Moment {
             weights,
         }
     }
-
-    fn at(&self, bodies: &[Pose; MOST_JOINTS + 1], gravity: &Vector3<f64>) -> f64 {
-        let body = &bodies[self.after];
-        let axis = body.rotation * self.direction;
-        let size: f64 = self.weights.iter().map(|(_, size, _)| size).sum();
-        if self.slides {
-            return size * axis.dot(gravity);
-        }
-        let mut sum = body.act(&self.place) * -size;
-        for (after, size, place) in &self.weights {
-            let body = &bodies[*after];
-            sum += body.rotation * place + body.translation * *size;
-        }
-        axis.dot(&sum.cross(gravity))
-    }
 }
 
 /// Angle below which a few terms of the series are exact.
@@ -112,88 +116,28 @@ impl Real {
             before = frame;
         }
         let mut before = Pose::identity();
-        let mut links = Vec::with_capacity(model.joints.len());
-        let mut pulls = Vec::new();
+        let mut links: Vec<Link> = Vec::with_capacity(model.joints.len());
         for joint in model.joints.iter().filter(|joint| joint.value != JointValue::default()) {
             let frame = along(&joint.screw, &before.translation);
-            if let Some(pull) = &joint.value.pull {
-                pulls.push((links.len(), Moment::of(pull, &from_base)));
-            }
+            let JointValue { constant, linear, waves, pull, curves } = &joint.value;
+            let curve = |it: &Curve| {
+                (it.term, it.coefficient, Sum::of(it.constant, &it.linear, it.pull.as_ref(), &from_base))
+            };
             links.push(Link {
                 frame: before.inverse() * frame,
                 slides: joint.screw.is_prismatic(),
-                value: joint.value.clone(),
+                own: Sum::of(*constant, linear, pull.as_ref(), &from_base),
+                waves: waves.clone(),
+                curves: curves.iter().map(curve).collect(),
             });
             before = frame;
         }
         let tip = before.inverse() * model.home;
-        let has_waves = model.joints.iter().any(|joint| !joint.value.waves.is_empty());
-        let has_functions = has_waves || !pulls.is_empty();
-        Real { links, tip, readings: model.readings, has_functions, drawing, gravity: model.gravity, pulls }
-    }
-
-    /// Where the tip is, and how it moves with each reading: but for what weights add to it, some 1e-3 of it.
-    pub(crate) fn placed<const N: usize>(&self, q: &[f64; N]) -> Placed<N> {
-        let mut found = [(1.0, 0.0); N];
-        if self.has_functions {
-            for (found, q) in found.iter_mut().zip(&q[..self.readings]) {
-                *found = cosine_and_sine(*q);
-            }
-        }
-        let mut bodies = [Pose::identity(); MOST_JOINTS + 1];
-        if !self.pulls.is_empty() {
-            for (index, (frame, drawn)) in self.drawing.iter().enumerate() {
-                let mut body = bodies[index] * *frame;
-                let value = drawn.factor * q[drawn.reading] + drawn.constant;
-                if drawn.screw.is_prismatic() {
-                    body.translation += body.rotation.column(2) * value;
-                } else if drawn.factor == 1.0 && drawn.constant == 0.0 {
-                    turn_by(&mut body.rotation, found[drawn.reading]);
-                } else {
-                    turn_by(&mut body.rotation, cosine_and_sine(value));
-                }
-                bodies[index + 1] = body;
-            }
-        }
-        let mut pulls = self.pulls.iter().peekable();
-        let mut out = Placed::at_rest();
-        let (mut turned, mut at) = (Matrix3::identity(), Vector3::zeros());
-        for (index, link) in self.links.iter().enumerate() {
-            at += turned * link.frame.translation;
-            turned *= link.frame.rotation;
-            let axis = turned.column(2).into_owned();
-            let (v, w) = if link.slides { (axis, Vector3::zeros()) } else { (at.cross(&axis), axis) };
-            let mut value = link.value.constant;
-            let mut moves = |reading: usize, slope: f64| {
-                out.v[reading] += v * slope;
-                out.w[reading] += w * slope;
-            };
-            for &(reading, factor) in &link.value.linear {
-                value += factor * q[reading];
-                moves(reading, factor);
-            }
-            for wave in &link.value.waves {
-                let (c, s) = match wave.order {
-                    1.0 if is_plain(wave) => found[wave.reading],
-                    2.0 if is_plain(wave) => {
-                        let (c, s) = found[wave.reading];
-                        (c * c - s * s, 2.0 * c * s)
-                    }
-                    order => cosine_and_sine(order * (wave.factor * q[wave.reading] + wave.offset)),
-                };
-                value += wave.cosine * c + wave.sine * s;
-                moves(wave.reading, wave.order * wave.factor * (wave.sine * c - wave.cosine * s));
-            }
-            if let Some((_, pull)) = pulls.next_if(|(of, _)| *of == index) {
-                value += pull.at(&bodies, &self.gravity);
-            }
-            if link.slides {
-                at += axis * value;
-            } else {
-                turn_by(&mut turned, if value.abs() < SMALL { small(value) } else { cosine_and_sine(value) });
-            }
-        }
-        out.tip = Pose::new(turned * self.tip.rotation, at + turned * self.tip.translation);
-        out
+        let pulls =
+            |it: &Link| it.own.moment.is_some() || it.curves.iter().any(|(.., of)| of.moment.is_some());
+        let has_moments = links.iter().any(pulls);
+        let has_functions = has_moments || links.iter().any(|it| !it.waves.is_empty());
+        let (readings, gravity) = (model.readings, model.gravity);
+        Real { links, tip, readings, has_functions, has_moments, drawing, gravity }
     }
 }

@@ -53,7 +53,7 @@ impl Formulation {
                 Parameter::ScrewAxis(ScrewAxis { joint, kind })
             });
             if self.has_offsets() {
-                parameters.push(Parameter::ValueTerm(ValueTerm { joint, kind, term: Term::Offset }));
+                parameters.push(Parameter::ValueTerm(ValueTerm { joint, kind, term: Term::OFFSET }));
             }
         }
         parameters

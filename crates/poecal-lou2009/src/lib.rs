@@ -142,7 +142,7 @@ fn point(ended: &[Ended]) -> PointRow {
 fn offsets(ended: &[Ended]) -> Vec<OffsetRow> {
     let identified = |formulation, joint: usize| {
         exact(ended, formulation, MeasurementKind::Poses, true)
-            .map_or(f64::NAN, |run| run.estimate.coefficient(joint, Term::Offset).to_degrees())
+            .map_or(f64::NAN, |run| run.estimate.coefficient(joint, Term::OFFSET).to_degrees())
     };
     tables::nominal()
         .joints

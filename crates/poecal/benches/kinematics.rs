@@ -10,7 +10,7 @@ use std::time::Instant;
 
 use nalgebra::Vector3;
 use poecal::compensate::Kinematics;
-use poecal::robot::{Coupling, Gives, Gravity, Harmonic, JointTerm, Sag, Term};
+use poecal::robot::{Gives, Gravity, JointTerm, Term, TermKind};
 use poecal::{Robot, simulate};
 
 const ROWS: usize = 4096;
@@ -27,7 +27,7 @@ fn main() -> Result<(), poecal::Error> {
         let q: Vec<f64> = (0..ROWS * 6).map(|at| 3.0 * (at as f64 * 0.7).sin()).collect();
         let rows = || q.chunks_exact(6);
         let mut bare = robot.clone();
-        bare.terms.retain(|it| !matches!(it.term, Term::Sag(_)));
+        bare.terms.retain(|it| !it.term.needs_gravity());
         let (bare, _) = bare.arm(&[])?;
         compare(
             &format!("{name}, poses"),
@@ -54,11 +54,14 @@ fn with_terms() -> Robot {
     robot.gravity = Some(Gravity::of_unit_weights(&robot, -Vector3::z()));
     let weights = robot.gravity.as_ref().map_or(0, |it| it.weights.len());
     for joint in 0..robot.joints.len() {
-        let mut terms: Vec<Term> = (0..weights).map(|weight| Term::Sag(Sag { weight })).collect();
+        let mut terms: Vec<Term> = (0..weights).map(|weight| TermKind::Sag.at(weight)).collect();
         if robot.joints[joint].give_of.is_none() {
-            terms.extend([Term::Offset, Term::Ratio, Term::Coupling(Coupling { joint: (joint + 1) % 6 })]);
-            let waves = [(1, false), (1, true), (2, false), (2, true)];
-            terms.extend(waves.map(|(order, cosine)| Term::Harmonic(Harmonic { order, cosine })));
+            terms.extend([Term::OFFSET, Term::RATIO, TermKind::Coupled.at((joint + 1) % 6)]);
+            terms.extend(
+                [1, 2]
+                    .iter()
+                    .flat_map(|&order| [TermKind::Sine, TermKind::Cosine].map(|kind| kind.numbered(order))),
+            );
         }
         robot.terms.extend(terms.into_iter().map(|term| JointTerm { joint, term, coefficient: 3e-4 }));
     }

@@ -149,7 +149,7 @@ pub fn screw_motions(estimate: &Estimate, layout: &Layout) -> Vec<Vec<Vector6<f6
     let screws = estimate.screws();
     for (parameter, places) in layout.parameters() {
         let (Parameter::ValueTerm(term), [(place, scale)]) = (parameter, places) else { continue };
-        if term.term == Term::Offset {
+        if term.term == Term::OFFSET {
             let by_offset = screws[term.joint].twist().to_vector() / *scale;
             moved[*place].iter_mut().skip(term.joint + 1).for_each(|motion| *motion += by_offset);
         }

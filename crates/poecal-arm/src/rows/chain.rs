@@ -1,43 +1,68 @@
 //! Tips, and how they move, of several configurations side by side.
 
+use nalgebra::Vector3;
+
 use super::frames::{Frames, Row, Vectors, add_times, cosines_and_sines, cross};
 use super::weights::{self, Bodies};
 use crate::arm::Arm;
-use crate::placed::MOST_JOINTS;
-use crate::real::{Real, SMALL, is_plain, small};
+use crate::chain::Chain;
+use crate::model::Wave;
+use crate::placed::{MOST_JOINTS, Placed};
+use crate::real::{Moment, Real, SMALL, Sum, is_plain, small};
+use crate::terms::Term;
 
 /// What is wanted of a pass.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Wanted {
+pub(crate) enum Wanted {
     /// Tips alone.
     Tips,
     /// Tips without what weights add.
     Unloaded,
     /// Tips, and how they move with each reading.
     Motions,
+    /// The same but for what compliance under weights adds to the motions: enough for steps to a configuration.
+    Steps,
 }
 
-/// Several configurations of an arm, its tips there, and how these move.
+/// Several configurations of an arm of up to `J` readings, its tips there, and how these move.
 #[derive(Clone, Debug)]
-pub(super) struct Rows<const N: usize> {
-    pub(super) q: [Row<N>; MOST_JOINTS],
+pub(crate) struct Rows<const N: usize, const J: usize> {
+    pub(crate) q: [Row<N>; J],
     pub(super) tip: Frames<N>,
     /// Of each reading `velocity = v + w × tip` and `angular = w`, in the base.
-    v: [Vectors<N>; MOST_JOINTS],
-    w: [Vectors<N>; MOST_JOINTS],
-    found: [[Row<N>; 2]; MOST_JOINTS],
+    v: [Vectors<N>; J],
+    w: [Vectors<N>; J],
+    found: [[Row<N>; 2]; J],
     bodies: Bodies<N>,
 }
 
-impl<const N: usize> Rows<N> {
+impl<const J: usize> Rows<1, J> {
+    /// One configuration.
     #[inline(always)]
-    pub(super) fn new() -> Self {
+    pub(crate) fn at(q: &[f64; J]) -> Self {
+        let mut rows = Rows::new();
+        rows.q.iter_mut().zip(q).for_each(|(to, from)| to[0] = *from);
+        rows
+    }
+
+    /// The tip and its motions, once the arm is there.
+    #[inline(always)]
+    pub(crate) fn placed(mut self, place: impl FnOnce(&mut Self)) -> Placed<J> {
+        place(&mut self);
+        let vector = |of: &Vectors<1>| Vector3::new(of[0][0], of[1][0], of[2][0]);
+        Placed { v: self.v.each_ref().map(vector), w: self.w.each_ref().map(vector), tip: self.tip.pose(0) }
+    }
+}
+
+impl<const N: usize, const J: usize> Rows<N, J> {
+    #[inline(always)]
+    pub(crate) fn new() -> Self {
         Rows {
-            q: [[0.0; N]; MOST_JOINTS],
+            q: [[0.0; N]; J],
             tip: Frames::BASE,
-            v: [[[0.0; N]; 3]; MOST_JOINTS],
-            w: [[[0.0; N]; 3]; MOST_JOINTS],
-            found: [[[1.0; N], [0.0; N]]; MOST_JOINTS],
+            v: [[[0.0; N]; 3]; J],
+            w: [[[0.0; N]; 3]; J],
+            found: [[[1.0; N], [0.0; N]]; J],
             bodies: [Frames::BASE; MOST_JOINTS + 1],
         }
     }
@@ -57,101 +82,82 @@ impl<const N: usize> Rows<N> {
 
     /// Takes an arm to these configurations.
     #[inline(always)]
-    pub(super) fn place(&mut self, arm: &Arm, wanted: Wanted) {
+    pub(crate) fn place(&mut self, arm: &Arm, wanted: Wanted) {
         if wanted == Wanted::Motions {
             self.v[..arm.joints()].fill([[0.0; N]; 3]);
             self.w[..arm.joints()].fill([[0.0; N]; 3]);
         }
         match arm.real() {
             Some(real) => self.place_real(real, wanted),
-            None => self.place_rigid(arm, wanted),
+            None => self.place_rigid(arm.chain(), wanted),
         }
     }
 
     #[inline(always)]
-    fn place_rigid(&mut self, arm: &Arm, wanted: Wanted) {
-        let chain = arm.chain();
+    pub(crate) fn place_rigid(&mut self, chain: &Chain, wanted: Wanted) {
+        // Of one configuration those of all joints are made of vector instructions, as many as there may be.
+        let count = if N == 1 { J } else { chain.len() };
+        let mut angles = self.q;
+        for (angle, link) in angles.iter_mut().zip(&chain.links) {
+            for it in angle {
+                *it = link.turned + if link.slides { 0.0 } else { *it };
+            }
+        }
+        for (found, angle) in self.found.iter_mut().zip(&angles).take(count) {
+            *found = cosines_and_sines(angle);
+        }
         let mut frame = Frames::of(&chain.start);
-        for (index, link) in chain.links.iter().enumerate() {
+        for (index, link) in chain.links.iter().enumerate().take(J) {
             frame.tilt(&link.origin, link.tilt);
-            if wanted == Wanted::Motions {
-                self.moves(index, &motion(&frame, link.slides), &[1.0; N]);
+            if matches!(wanted, Wanted::Motions | Wanted::Steps) {
+                [self.v[index], self.w[index]] = motion(&frame, link.slides);
             }
             if link.slides {
                 frame.slide(&self.q[index]);
             }
-            let mut angles = [link.turned; N];
-            for l in 0..N {
-                angles[l] += if link.slides { 0.0 } else { self.q[index][l] };
-            }
-            frame.turn_by(&cosines_and_sines(&angles));
+            frame.turn_by(&self.found[index]);
         }
         frame.advance(&chain.tip);
         self.tip = frame;
     }
 
     #[inline(always)]
-    fn place_real(&mut self, real: &Real, wanted: Wanted) {
+    pub(crate) fn place_real(&mut self, real: &Real, wanted: Wanted) {
         if real.has_functions {
             for (found, q) in self.found.iter_mut().zip(&self.q[..real.readings]) {
                 *found = cosines_and_sines(q);
             }
         }
-        let has_weights = wanted != Wanted::Unloaded && !real.pulls.is_empty();
-        if has_weights {
+        if wanted != Wanted::Unloaded && real.has_moments {
             weights::place(real, &self.q, &self.found, &mut self.bodies);
         }
-        let mut pulls = real.pulls.iter().filter(|_| has_weights).peekable();
+        let moves = matches!(wanted, Wanted::Motions | Wanted::Steps);
         let mut frame = Frames::BASE;
-        for (index, link) in real.links.iter().enumerate() {
+        for link in &real.links {
             frame.advance(&link.frame);
             let motion = motion(&frame, link.slides);
-            let mut value = [link.value.constant; N];
-            for &(reading, factor) in &link.value.linear {
-                for l in 0..N {
-                    value[l] += factor * self.q[reading][l];
-                }
-                if wanted == Wanted::Motions {
-                    self.moves(reading, &motion, &[factor; N]);
-                }
+            let mut value = [link.own.constant; N];
+            self.add_linear(&link.own, &mut value);
+            if moves {
+                self.linear_moves(&link.own, &motion, &[1.0; N]);
             }
-            for wave in &link.value.waves {
-                let [c, s] = match wave.order {
-                    1.0 if is_plain(wave) => self.found[wave.reading],
-                    2.0 if is_plain(wave) => doubled(&self.found[wave.reading]),
-                    order => {
-                        let mut angles = self.q[wave.reading];
-                        for angle in &mut angles {
-                            *angle = order * (wave.factor * *angle + wave.offset);
-                        }
-                        cosines_and_sines(&angles)
-                    }
-                };
-                let mut slope = [0.0; N];
-                for l in 0..N {
-                    value[l] += wave.cosine * c[l] + wave.sine * s[l];
-                    slope[l] = wave.order * wave.factor * (wave.sine * c[l] - wave.cosine * s[l]);
-                }
-                if wanted == Wanted::Motions {
+            for wave in &link.waves {
+                let slope = self.add_wave(wave, &mut value);
+                if moves {
                     self.moves(wave.reading, &motion, &slope);
                 }
             }
-            if let Some((_, pull)) = pulls.next_if(|(of, _)| *of == index) {
-                let given = pull.values(real, &self.bodies);
-                for l in 0..N {
-                    value[l] += given[l];
-                }
+            if let Some(moment) = link.own.moment.as_ref().filter(|_| wanted != Wanted::Unloaded) {
+                add(&mut value, &moment.values(real, &self.bodies));
                 if wanted == Wanted::Motions {
-                    let (v, w) = (&mut self.v, &mut self.w);
-                    pull.slopes(
-                        real,
-                        &self.bodies,
-                        #[inline(always)]
-                        |reading, slope| {
-                            add_times(&mut v[reading], &motion[0], slope);
-                            add_times(&mut w[reading], &motion[1], slope);
-                        },
-                    );
+                    self.moment_moves(moment, real, &motion, &[1.0; N]);
+                }
+            }
+            for (term, coefficient, of) in &link.curves {
+                let slope = self.add_curve((*term, *coefficient, of), real, wanted, &mut value);
+                if moves {
+                    self.linear_moves(of, &motion, &slope);
+                    of.moment.iter().for_each(|it| self.moment_moves(it, real, &motion, &slope));
                 }
             }
             if link.slides {
@@ -164,11 +170,104 @@ impl<const N: usize> Rows<N> {
         self.tip = frame;
     }
 
+    #[inline(always)]
+    fn add_linear(&self, of: &Sum, value: &mut Row<N>) {
+        for &(reading, factor) in &of.linear {
+            for l in 0..N {
+                value[l] += factor * self.q[reading][l];
+            }
+        }
+    }
+
+    /// Adds a wave, and says how it changes with its reading.
+    #[inline(always)]
+    fn add_wave(&self, wave: &Wave, value: &mut Row<N>) -> Row<N> {
+        let [c, s] = match wave.order {
+            1.0 if is_plain(wave) => self.found[wave.reading],
+            2.0 if is_plain(wave) => doubled(&self.found[wave.reading]),
+            order => {
+                let mut angles = self.q[wave.reading];
+                for angle in &mut angles {
+                    *angle = order * (wave.factor * *angle + wave.offset);
+                }
+                cosines_and_sines(&angles)
+            }
+        };
+        let mut slope = [0.0; N];
+        for l in 0..N {
+            value[l] += wave.cosine * c[l] + wave.sine * s[l];
+            slope[l] = wave.order * wave.factor * (wave.sine * c[l] - wave.cosine * s[l]);
+        }
+        slope
+    }
+
+    /// Adds another function of a sum, and says how it changes with that sum.
+    #[inline(always)]
+    fn add_curve(
+        &self,
+        (term, coefficient, of): (Term, f64, &Sum),
+        real: &Real,
+        wanted: Wanted,
+        value: &mut Row<N>,
+    ) -> Row<N> {
+        let mut x = [of.constant; N];
+        self.add_linear(of, &mut x);
+        if let Some(moment) = of.moment.as_ref().filter(|_| wanted != Wanted::Unloaded) {
+            add(&mut x, &moment.values(real, &self.bodies));
+        }
+        let mut slope = [0.0; N];
+        for l in 0..N {
+            let [found, derivative] = term.function(x[l]);
+            value[l] += coefficient * found;
+            slope[l] = coefficient * derivative;
+        }
+        slope
+    }
+
+    /// Adds a joint's motion with the linear parts of a sum, of which it moves by a share, to that of their readings.
+    #[inline(always)]
+    fn linear_moves(&mut self, of: &Sum, motion: &[Vectors<N>; 2], share: &Row<N>) {
+        for &(reading, factor) in &of.linear {
+            let mut slope = *share;
+            for it in &mut slope {
+                *it *= factor;
+            }
+            self.moves(reading, motion, &slope);
+        }
+    }
+
+    /// The same with a moment.
+    #[inline(always)]
+    fn moment_moves(&mut self, of: &Moment, real: &Real, motion: &[Vectors<N>; 2], share: &Row<N>) {
+        let (v, w) = (&mut self.v, &mut self.w);
+        of.slopes(
+            real,
+            &self.bodies,
+            #[inline(always)]
+            |reading, slope| {
+                let mut slope = *slope;
+                for l in 0..N {
+                    slope[l] *= share[l];
+                }
+                add_times(&mut v[reading], &motion[0], &slope);
+                add_times(&mut w[reading], &motion[1], &slope);
+            },
+        );
+    }
+
     /// Adds a joint's motion to that of a reading.
     #[inline(always)]
     fn moves(&mut self, reading: usize, [v, w]: &[Vectors<N>; 2], slope: &Row<N>) {
         add_times(&mut self.v[reading], v, slope);
         add_times(&mut self.w[reading], w, slope);
+    }
+}
+
+/// Adds numbers to others.
+#[inline(always)]
+fn add<const N: usize>(to: &mut Row<N>, of: &Row<N>) {
+    for l in 0..N {
+        to[l] += of[l];
     }
 }
 

@@ -6,10 +6,10 @@ mod chain;
 mod frames;
 mod weights;
 
-use chain::{Rows, Wanted};
+pub(crate) use chain::{Rows, Wanted};
 use nalgebra::Vector3;
 
-use crate::arm::Arm;
+use crate::arm::{Arm, first};
 use crate::lie::{Pose, rotation};
 use crate::placed::MOST_JOINTS;
 
@@ -21,7 +21,7 @@ impl Arm {
     /// numbers, sooner, since eight configurations are computed side by side.
     #[inline(always)]
     pub fn forward_kinematics_of(&self, readings: &[f64], tips: &mut [Pose]) {
-        let mut rows = Rows::<WIDTH>::new();
+        let mut rows = Rows::<WIDTH, MOST_JOINTS>::new();
         for (some, out) in readings.chunks(WIDTH * self.joints()).zip(tips.chunks_mut(WIDTH)) {
             load(self, some, &mut rows);
             rows.place(self, Wanted::Tips);
@@ -35,7 +35,7 @@ impl Arm {
     #[inline(always)]
     pub fn jacobians_of(&self, readings: &[f64], jacobians: &mut [f64]) {
         let n = self.joints();
-        let mut rows = Rows::<WIDTH>::new();
+        let mut rows = Rows::<WIDTH, MOST_JOINTS>::new();
         for (some, out) in readings.chunks(WIDTH * n).zip(jacobians.chunks_mut(6 * WIDTH * n)) {
             load(self, some, &mut rows);
             rows.place(self, Wanted::Motions);
@@ -55,7 +55,7 @@ impl Arm {
     /// ([`crate::Pull`]): `p − p₀` and `log(R R₀ᵀ)`.
     #[inline(always)]
     pub fn sag_of(&self, readings: &[f64], sag: &mut [[f64; 6]]) {
-        let (mut rows, mut bare) = (Rows::<WIDTH>::new(), Rows::<WIDTH>::new());
+        let (mut rows, mut bare) = (Rows::<WIDTH, MOST_JOINTS>::new(), Rows::<WIDTH, MOST_JOINTS>::new());
         for (some, out) in readings.chunks(WIDTH * self.joints()).zip(sag.chunks_mut(WIDTH)) {
             load(self, some, &mut rows);
             bare.q = rows.q;
@@ -74,23 +74,14 @@ impl Arm {
     /// tip, as the hybrid or `LOCAL_WORLD_ALIGNED` Jacobian of others. What weights add is in it.
     #[must_use]
     pub fn jacobian(&self, q: &[f64]) -> [(Vector3<f64>, Vector3<f64>); MOST_JOINTS] {
-        if self.real().is_none_or(|real| real.pulls.is_empty()) {
-            let placed = self.placed(q);
-            return core::array::from_fn(|reading| placed.column(reading));
-        }
-        let mut rows = Rows::<1>::new();
-        rows.q.iter_mut().zip(q).for_each(|(to, from)| to[0] = *from);
-        rows.place(self, Wanted::Motions);
-        core::array::from_fn(|reading| {
-            let [moves, turns] = rows.column(reading).map(|it| Vector3::new(it[0][0], it[1][0], it[2][0]));
-            (moves, turns)
-        })
+        let placed = Rows::at(&first::<MOST_JOINTS>(q)).placed(|rows| rows.place(self, Wanted::Motions));
+        core::array::from_fn(|reading| placed.column(reading))
     }
 }
 
 /// Readings of configurations, one after the other, side by side; places that are left keep what they had.
 #[inline(always)]
-fn load(arm: &Arm, readings: &[f64], rows: &mut Rows<WIDTH>) {
+fn load(arm: &Arm, readings: &[f64], rows: &mut Rows<WIDTH, MOST_JOINTS>) {
     for (row, readings) in readings.chunks_exact(arm.joints()).enumerate() {
         for (to, from) in rows.q.iter_mut().zip(readings) {
             to[row] = *from;

@@ -17,8 +17,8 @@ fn same<const N: usize>(of: &nalgebra::Vector3<f64>) -> Vectors<N> {
 #[inline(always)]
 pub(super) fn place<const N: usize>(
     real: &Real,
-    q: &[Row<N>; MOST_JOINTS],
-    found: &[[Row<N>; 2]; MOST_JOINTS],
+    q: &[Row<N>],
+    found: &[[Row<N>; 2]],
     bodies: &mut Bodies<N>,
 ) {
     let mut body = Frames::BASE;

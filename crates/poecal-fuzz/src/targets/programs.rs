@@ -30,7 +30,7 @@ pub fn programs(data: &[u8]) -> bool {
     let text = &data[end + 1..];
     let nominal = elbow();
     let mut actual = nominal.clone();
-    actual.terms.push(JointTerm { joint: 1, term: Term::Offset, coefficient: 0.003 });
+    actual.terms.push(JointTerm { joint: 1, term: Term::OFFSET, coefficient: 0.003 });
     let mut options = ProgramOptions::of(language);
     options.change.nearest = text.len().is_multiple_of(2);
     options.given.tools.push((None, Pose::from_translation([0.0, 0.0, 0.1].into())));

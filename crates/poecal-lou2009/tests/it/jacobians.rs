@@ -90,7 +90,7 @@ fn jacobians_agree_with_differences() {
         parameters.push(("free screw", FreeScrew::of(joint, it.kind)));
         parameters.push(("screw axis", Parameter::ScrewAxis(ScrewAxis { joint, kind: it.kind })));
         parameters
-            .push(("offset", Parameter::ValueTerm(ValueTerm { joint, kind: it.kind, term: Term::Offset })));
+            .push(("offset", Parameter::ValueTerm(ValueTerm { joint, kind: it.kind, term: Term::OFFSET })));
     }
     let mut compared = 0;
     for (seen, residual) in

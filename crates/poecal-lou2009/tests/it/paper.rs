@@ -247,7 +247,7 @@ fn free_screws_and_offsets_of_the_solver_are_those_of_the_paper() {
                     let screw = seen * literal.screw_blocks[i] * estimate.base_from_axis[i].adjoint();
                     let free = FreeScrew::of(i, joint.kind);
                     let shift =
-                        Parameter::ValueTerm(ValueTerm { joint: i, kind: joint.kind, term: Term::Offset });
+                        Parameter::ValueTerm(ValueTerm { joint: i, kind: joint.kind, term: Term::OFFSET });
                     let mut twists = [(Vector3::zeros(), Vector3::zeros()); 6];
                     let dim = free.model().columns().len();
                     free.model().target_twists(&chain, 0, &mut twists[..dim]);

@@ -206,7 +206,7 @@ impl Rules<'_> {
                     }
                 }
                 Parameter::OtherScrew(screw) => format!("the screw of {}", name(screw.joint)),
-                Parameter::ValueTerm(it) => format!("the {} of {}", it.term.model().name(), name(it.joint)),
+                Parameter::ValueTerm(it) => format!("the {} of {}", it.term, name(it.joint)),
                 Parameter::TargetPlace(it) => format!("the place of {}", target_name(self.setup, it.target)),
                 Parameter::TargetFrame(it) => format!("the frame of {}", target_name(self.setup, it.target)),
                 Parameter::DeviceFrame(it) if self.setup.session.data.station_count() > 1 => {

@@ -1,20 +1,22 @@
 //! The choice of what a fit changes, by names of blocks.
 
+use std::borrow::Cow;
+
 use wildmatch::WildMatch;
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::estimate::Unknowns;
 use crate::measurement::Dataset;
 use crate::parameters::{Block, Names};
-use crate::robot::{Coupling, Robot, Term};
+use crate::robot::{Argument, Gravity, GravityDirection, JointTerm, Robot, Term};
 
 /// Blocks that a message lists at most.
 const LISTED: usize = 12;
 
 /// What a fit changes beside or without the usual: first the blocks of `fix` are held as in the model, then those of `free` are unknown.
 /// A word is a block's name ([`Names::of`]), in which `*` and `?` stand for any letters and any letter; a joint's name, which means its axis;
-/// or one of `joints` (all axes), `targets` and `frames`. Only by their exact names are harmonics unknown (`joint2.sin1`), and couplings:
-/// `joint3.coupled2` is what the second joint turns joint3.
+/// or one of `joints` (all axes), `targets` and `frames`. Only by their exact names are further terms unknown: harmonics (`joint2.sin1`), couplings (`joint3.coupled2` is
+/// what the second joint turns joint3), and what depends on weights or factors (`joint2.masses`).
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct BlockChoice {
     /// Words of what is unknown.
@@ -33,6 +35,40 @@ pub(crate) fn names(robot: &Robot, data: &Dataset) -> Names {
 }
 
 impl BlockChoice {
+    /// The robot with what the freed terms are functions of beside joint values: gravity in this direction, and these terms themselves.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Option`] if the robot has no such masses, weights or factors, or gravity is to be found.
+    pub(super) fn with_terms<'a>(
+        &self,
+        robot: Cow<'a, Robot>,
+        data: &Dataset,
+        gravity: GravityDirection,
+    ) -> Result<Cow<'a, Robot>> {
+        let names = names(&robot, data);
+        let mut found = robot;
+        for word in &self.free {
+            let needs_more = |it: &(usize, Term)| it.1.needs_gravity() || it.1.argument() == Argument::Factor;
+            let Some((joint, term)) = further_term(&names, word).filter(needs_more) else { continue };
+            if term.needs_gravity() && found.gravity.is_none() {
+                let GravityDirection::Known(direction) = gravity else {
+                    let message =
+                        format!("found `{word}` to be fitted, expected a known direction of gravity");
+                    return Err(Error::new(ErrorKind::Option, message));
+                };
+                found.to_mut().gravity = Some(Gravity::of_unit_weights(&found, direction));
+            }
+            if let Some(needed) = found.lacks(term) {
+                let message = format!("found `{word}` to be fitted, expected {needed}");
+                return Err(Error::new(ErrorKind::Option, message));
+            }
+            if !found.terms.iter().any(|it| (it.joint, it.term) == (joint, term)) {
+                found.to_mut().terms.push(JointTerm { joint, term, coefficient: 0.0 });
+            }
+        }
+        Ok(found)
+    }
+
     /// The unknowns of a fit.
     ///
     /// # Errors
@@ -115,20 +151,13 @@ pub(super) fn refuse_frames(choice: &BlockChoice, robot: &Robot, data: &Dataset)
     }
 }
 
-/// A term by its exact name that is no block without being asked for: a harmonic, or a coupling with another joint.
+/// A term by its exact name that is no block without being asked for.
 fn further_term(names: &Names, word: &str) -> Option<(usize, Term)> {
     let (joint, term) = word.rsplit_once('.')?;
     let joint = names.joints.iter().position(|name| name == joint)?;
     let term: Term = term.parse().ok()?;
-    match term {
-        Term::Harmonic(_) => Some((joint, term)),
-        Term::Coupling(Coupling { joint: other }) => {
-            (other < names.joints.len() && other != joint).then_some((joint, term))
-        }
-        Term::Offset | Term::Ratio | Term::OwnWeight | Term::Sag(_) | Term::Factor(_) | Term::Payload(_) => {
-            None
-        }
-    }
+    let is_other = term.argument() != Argument::OtherJoint || term.index() != joint;
+    (is_other && term.is_of(names.joints.len(), usize::MAX)).then_some((joint, term))
 }
 
 /// Of each block, whether a word means it.

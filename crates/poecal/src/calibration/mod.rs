@@ -186,7 +186,7 @@ fn fitted(
         Searched::Afterwards(left_out) => left_out,
     };
     let (data, rows) = (&written(data, options.formulation.pose_residual), data.len());
-    let robot = &*about_mean_factors(robot, data);
+    let robot = &*options.blocks.with_terms(about_mean_factors(robot, data), data, options.gravity)?;
     let packed = Arc::new(threads::in_pool(rows, || Packed::of(robot, data)));
     if options.frame == DeviceFrameKnowledge::Base {
         blocks::refuse_frames(&options.blocks, robot, data)?;

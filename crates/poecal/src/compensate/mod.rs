@@ -328,7 +328,7 @@ mod tests {
     fn an_offset_is_taken_off_the_reading() {
         let nominal = elbow();
         let mut actual = nominal.clone();
-        actual.terms.push(JointTerm { joint: 1, term: Term::Offset, coefficient: 0.01 });
+        actual.terms.push(JointTerm { joint: 1, term: Term::OFFSET, coefficient: 0.01 });
         let mut compensation = Compensation::new(&nominal, &actual, &[], &ChangeOptions::default()).unwrap();
         let found = compensation.joints(&[0.1, 0.2, 0.3, 0.4, 0.5, 0.6]);
         assert!((found.readings[1] - 0.19).abs() < 1e-12 && found.outcome == Outcome::Reached);

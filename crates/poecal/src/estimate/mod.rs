@@ -218,7 +218,7 @@ impl Estimate {
     /// Joint offsets: joint value minus reading at zero, radians or metres (lou2009: Δθ).
     #[must_use]
     pub fn offsets(&self) -> Vec<f64> {
-        (0..self.kinds().len()).map(|joint| self.coefficient(joint, Term::Offset)).collect()
+        (0..self.kinds().len()).map(|joint| self.coefficient(joint, Term::OFFSET)).collect()
     }
 
     /// The same estimate with other joint offsets.
@@ -226,7 +226,7 @@ impl Estimate {
     pub fn with_offsets(&self, offsets: &[f64]) -> Self {
         let mut estimate = self.clone();
         for (joint, &offset) in offsets.iter().enumerate() {
-            *estimate.coefficient_mut(joint, Term::Offset) = offset;
+            *estimate.coefficient_mut(joint, Term::OFFSET) = offset;
         }
         estimate
     }
@@ -240,7 +240,7 @@ impl Estimate {
         }
         let (screws, offsets) = (self.screws(), self.offsets());
         let mut moved = self.clone();
-        moved.terms.retain(|it| it.term != Term::Offset);
+        moved.terms.retain(|it| it.term != Term::OFFSET);
         // How the link of each joint moves, and all that stands on it.
         let mut motions: Vec<Pose> = Vec::with_capacity(screws.len());
         let of = |motions: &[Pose], body: Option<usize>| {

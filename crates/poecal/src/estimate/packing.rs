@@ -198,7 +198,7 @@ impl<'a> Bases<'a> {
         let at = self.terms.iter().position(|it| *it == (joint, term));
         at.and_then(|at| self.bases.get(at))
             .copied()
-            .unwrap_or_else(|| term.model().basis(joint, &Situation::of(self.values)))
+            .unwrap_or_else(|| Situation::of(self.values).basis(joint, term))
     }
 
     /// The sum of terms of a joint, each with its place among the robot's terms, if it is there.

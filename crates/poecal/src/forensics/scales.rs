@@ -36,9 +36,9 @@ pub(super) fn joint_scales(
     let fitted = [vec![1.0; count], degrees.clone(), radians.clone()].into_iter().map(|mut factors| {
         let scaled = Change::Scales(factors.clone()).apply(data);
         let (estimate, _) = fitter.roughly_registered(&scaled);
-        let (estimate, misfit) = fitter.with_term(&scaled, &estimate, (&joints, Term::Ratio), LONG);
+        let (estimate, misfit) = fitter.with_term(&scaled, &estimate, (&joints, Term::RATIO), LONG);
         for (column, factor) in factors.iter_mut().enumerate() {
-            *factor *= 1.0 + own(column).map_or(0.0, |(joint, _)| estimate.coefficient(joint, Term::Ratio));
+            *factor *= 1.0 + own(column).map_or(0.0, |(joint, _)| estimate.coefficient(joint, Term::RATIO));
         }
         (misfit.total_m, factors)
     });

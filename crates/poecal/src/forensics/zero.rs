@@ -59,8 +59,8 @@ fn joint_zero(
     let fitted = rough.into_iter().take(FITTED_STARTS).map(|(_, start, estimate)| {
         let data = Change::Add(column, start).apply(data);
         let (fitted, misfit) =
-            fitter.with_term(&data, &estimate, (&[joint], Term::Offset), FITTED_ITERATIONS);
-        (misfit.total_m, start + fitted.coefficient(joint, Term::Offset) / multiplier)
+            fitter.with_term(&data, &estimate, (&[joint], Term::OFFSET), FITTED_ITERATIONS);
+        (misfit.total_m, start + fitted.coefficient(joint, Term::OFFSET) / multiplier)
     });
     let (_, by) = fitted.min_by(|a, b| a.0.total_cmp(&b.0))?;
     let (gross, words) = if turns {

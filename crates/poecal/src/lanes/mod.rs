@@ -7,7 +7,6 @@ mod gram;
 mod influence;
 mod kernel;
 mod plan;
-mod poses;
 mod rows;
 mod shape;
 mod simd;
@@ -22,12 +21,11 @@ pub(crate) use dense::Factor;
 pub(crate) use errors::Frames;
 pub(crate) use influence::NUMBERS;
 pub(crate) use plan::{Along, Arm, DevicePlan, FixedMotion, JointPlan, PackedRows, Plan, RowData, TermPlan};
-pub(crate) use poses::Exponential;
 pub(crate) use rows::{Shape, ShapedRow};
 pub use simd::{SimdLevel, simd_levels, stated_level};
 pub(crate) use simd::{
-    by_best, cholesky, cosines_and_sines, errors, influences, inverse, last_links, product_of_exponentials,
-    solve, sum_gradient, sum_products, whitened_columns,
+    by_best, cholesky, cosines_and_sines, errors, influences, inverse, last_links, solve, sum_gradient,
+    sum_products, whitened_columns,
 };
 pub(crate) use totals::{Tiles, Totals};
 pub(crate) use vector::{WIDTH, Wide};

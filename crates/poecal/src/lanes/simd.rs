@@ -16,7 +16,6 @@ use super::errors::{self, Frames};
 use super::influence::{self, NUMBERS};
 use super::kernel;
 use super::plan::{Arm, FixedMotion};
-use super::poses::{self, Exponential};
 use super::sincos;
 use super::tip;
 use super::totals::Totals;
@@ -246,10 +245,6 @@ dispatch!(
 dispatch!(
     /// Writes `(cos, sin)` of each angle, with the same bits at every level.
     sincos::cosines_and_sines(angles: &[f64], out: &mut [(f64, f64)])
-);
-dispatch!(
-    /// The product of the motions of all joints, each with its two factors, with the same bits at every level.
-    poses::product_of_exponentials(joints: &[Exponential], factors: &[[Wide; 2]]) -> [[Wide; 4]; 3]
 );
 dispatch!(
     /// Factor of the symmetric matrix given by its upper triangle (row-major `n × n`) plus `damping` on the diagonal; `None` if that

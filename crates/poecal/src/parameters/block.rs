@@ -36,7 +36,7 @@ impl Names {
     #[must_use]
     pub fn blocks(&self) -> Vec<Block> {
         let joints = (0..self.joints.len()).flat_map(|joint| {
-            let terms = Term::ALL.into_iter().map(move |term| Block::Term(joint, term));
+            let terms = Term::plain().map(move |term| Block::Term(joint, term));
             std::iter::once(Block::Axis(joint)).chain(terms)
         });
         let targets = (0..self.targets.len()).map(Block::Target);
@@ -57,7 +57,7 @@ impl Names {
         };
         match block {
             Block::Axis(at) => format!("{}.axis", joint(at)),
-            Block::Term(at, term) => format!("{}.{}", joint(at), term.model().name()),
+            Block::Term(at, term) => format!("{}.{}", joint(at), term),
             Block::Target(at) if self.targets.get(at).is_some_and(|it| it.as_deref() == Some(MEASURED)) => {
                 "target".to_owned()
             }

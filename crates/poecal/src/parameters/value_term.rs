@@ -34,7 +34,7 @@ impl Columns for ValueTerm {
             [[column(Unit::Metre, false)], [column(Unit::Radian, false)], [column(Unit::One, false)]];
         const SHIFTED: [[Column; 1]; 3] =
             [[column(Unit::Metre, true)], [column(Unit::Radian, true)], [column(Unit::One, true)]];
-        let at = self.term.model().unit(self.kind) as usize;
+        let at = self.kind.unit_of(self.term) as usize;
         match self.kind {
             JointKind::Revolute => &TURNED[at],
             JointKind::Prismatic => &SHIFTED[at],

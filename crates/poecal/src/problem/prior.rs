@@ -229,7 +229,7 @@ impl Prior {
         }
     }
 
-    /// The same with these priors of terms; others have those of their types ([`crate::robot::TermModel::deviation`]).
+    /// The same with these priors of terms; others have those of their types ([`crate::robot::JointKind::deviation_of`]).
     #[must_use]
     pub fn with_terms(mut self, term_priors: Vec<TermPrior>) -> Self {
         self.term_priors = term_priors;
@@ -298,7 +298,7 @@ impl Prior {
             let Some(&ValueTerm { joint, kind, term }) = parameter.value_term() else { continue };
             let nominal = self.terms.iter().find(|it| it.joint == joint && it.term == term);
             let own = self.term_priors.iter().find(|it| it.joint == joint && it.term == term);
-            let sigma = own.map_or_else(|| term.model().deviation(kind), |it| it.deviation);
+            let sigma = own.map_or_else(|| kind.deviation_of(term), |it| it.deviation);
             let value =
                 (estimate.coefficient(joint, term) - nominal.map_or(0.0, |it| it.coefficient)) / sigma;
             normal.cost += 0.5 * weight * value * value;

@@ -68,7 +68,7 @@ impl Layout {
     fn offset_motions(&self, estimate: &Estimate) -> Vec<Motion> {
         let screws = estimate.screws();
         let motion = |(parameter, places): (&Parameter, &[(usize, f64)])| {
-            let term = parameter.value_term().filter(|it| it.term == Term::Offset)?;
+            let term = parameter.value_term().filter(|it| it.term == Term::OFFSET)?;
             let &(place, scale) = places.first()?;
             let size = if term.kind == JointKind::Revolute { 1.0 / self.length_m() } else { 1.0 };
             let twist = Twist::from_vector(&(screws.get(term.joint)?.twist().to_vector() * size));

@@ -3,8 +3,8 @@
 use nalgebra::Vector3;
 
 use super::{
-    Factor, Gives, Gravity, Harmonic, JointKind, JointTerm, Payload, Robot, Sag, Sizes, Statics, Term,
-    TermGroup,
+    Argument, Function, Gives, Gravity, JointKind, JointTerm, Robot, Sizes, Statics, Term, TermGroup,
+    TermKind,
 };
 
 /// How far the model of what joints do reaches.
@@ -29,23 +29,9 @@ pub struct CorrectionModel {
     pub robot: Robot,
     /// Index there of each joint of the robot without gives.
     pub places: Vec<usize>,
-    /// Group of each term of `robot.terms`; those that the model has itself come first and have none.
-    pub groups: Vec<TermGroup>,
-    /// Number of terms that the model has itself.
-    own: usize,
-    /// Share of a term's variance in that of its group and joint: several weights share one size.
-    shares: Vec<f64>,
-}
-
-/// Factors on which a joint's value may depend, with their groups: the side from which it is approached only if it is its own, or that of all.
-fn factors(robot: &Robot, joint: usize) -> impl Iterator<Item = (usize, TermGroup)> {
-    let own = robot.joints.get(joint).map(|joint| [&joint.name, &joint.reading.name]);
-    let all = robot.factors.iter().enumerate().filter(|(_, it)| it.group() != TermGroup::Payload);
-    all.filter_map(move |(index, it)| {
-        let is_own =
-            |of: &str| of.is_empty() || own.is_some_and(|own| own.into_iter().any(|name| name == of));
-        it.approached().is_none_or(is_own).then(|| (index, it.group()))
-    })
+    /// Group of each term of `robot.terms`, and its share of the variance there: several weights share one size. Those that the model has
+    /// itself come first and have none.
+    pub groups: Vec<(TermGroup, f64)>,
 }
 
 impl CorrectionModel {
@@ -56,107 +42,48 @@ impl CorrectionModel {
         robot.gravity = Some(Gravity::of_unit_weights(&robot, gravity));
         let all: Vec<usize> = (0..robot.joints.len()).collect();
         let (mut robot, places) = robot.giving(&all, extent.gives);
-        let own = robot.terms.len();
-        let (mut terms, mut groups, mut shares) = (Vec::new(), Vec::new(), Vec::new());
-        let Some(statics) = Statics::new(&robot) else {
-            return CorrectionModel { robot, places, groups, own, shares };
-        };
-        let weights = robot.gravity.as_ref().map_or(0, |gravity| gravity.weights.len());
+        let (mut terms, mut groups) = (Vec::new(), Vec::new());
+        let Some(statics) = Statics::new(&robot) else { return CorrectionModel { robot, places, groups } };
         for (joint, it) in robot.joints.iter().enumerate() {
-            let of = it.give_of.unwrap_or(joint);
-            let is_own = it.give_of.is_none();
-            let turns = robot.joints[of].kind == JointKind::Revolute;
-            let shifts = !is_own && it.kind == JointKind::Prismatic;
-            let is_moving =
-                places.iter().position(|&place| place == of).is_some_and(|at| moves.get(at) == Some(&true));
-            let mut push = |term: Term, group: TermGroup, share: f64| {
+            let of = places.iter().position(|&place| place == it.give_of.unwrap_or(joint));
+            let is_moving = of.is_some_and(|at| moves.get(at) == Some(&true));
+            for (term, group, share) in Corrected::new(&robot, &statics, extent, joint).terms(is_moving) {
                 let is_known = robot.terms.iter().any(|it| it.joint == joint && it.term == term);
                 if !is_known {
                     terms.push(JointTerm { joint, term, coefficient: 0.0 });
-                    groups.push(group);
-                    shares.push(share);
-                }
-            };
-            if shifts {
-                // All weights pull alike.
-                let carried = (0..weights).rev().find(|&weight| statics.is_carried(joint, weight));
-                carried.into_iter().for_each(|weight| push(Term::Sag(Sag { weight }), TermGroup::Shift, 1.0));
-            } else if !is_own || turns {
-                let carried: Vec<usize> =
-                    (0..weights).filter(|&weight| statics.is_carried(joint, weight)).collect();
-                let group = if is_own { TermGroup::Sag } else { TermGroup::Tilt };
-                // Masses of a drawing are estimates: half of what is believed.
-                let masses = statics.carries_masses(joint);
-                let believed = if masses { 0.5 } else { 1.0 };
-                if masses {
-                    push(Term::OwnWeight, group, 0.5);
-                }
-                let share = believed / carried.len().max(1) as f64;
-                carried.iter().for_each(|&weight| push(Term::Sag(Sag { weight }), group, share));
-                let carries_payload =
-                    weights.checked_sub(1).is_some_and(|last| statics.is_carried(joint, last));
-                for index in robot.payloads().filter(|_| carries_payload) {
-                    push(Term::Payload(Payload { index }), TermGroup::Payload, 1.0);
-                }
-            }
-            if is_own && turns {
-                for (index, group) in factors(&robot, joint) {
-                    push(Term::Factor(Factor { index }), group, 1.0);
-                }
-            }
-            if !turns || !is_moving {
-                continue;
-            }
-            let harmonic = |order, cosine| Term::Harmonic(Harmonic { order, cosine });
-            if is_own {
-                push(Term::Ratio, TermGroup::Ratio, 1.0);
-                for order in 1..=extent.orders {
-                    push(harmonic(order, false), TermGroup::Harmonics, 1.0);
-                    push(harmonic(order, true), TermGroup::Harmonics, 1.0);
-                }
-            } else {
-                let group = if shifts { TermGroup::Runout } else { TermGroup::Wobble };
-                let first = match extent.gives {
-                    Gives::Tilting => 2,
-                    Gives::All => 1,
-                };
-                for order in first..=2 {
-                    push(harmonic(order, false), group, 1.0);
-                    push(harmonic(order, true), group, 1.0);
+                    groups.push((group, share));
                 }
             }
         }
         robot.terms.extend(terms);
-        CorrectionModel { robot, places, groups, own, shares }
+        CorrectionModel { robot, places, groups }
     }
 
     /// The same without the terms of groups of size 0.
     #[must_use]
     pub fn with_sizes(&self, sizes: &Sizes) -> Self {
         let mut kept = self.clone();
-        let is_kept = |at: usize| at < self.own || sizes[self.groups[at - self.own]] > 0.0;
-        let mut at = 0..;
-        kept.robot.terms.retain(|_| at.next().is_some_and(is_kept));
-        let mut at = self.own..;
-        kept.groups.retain(|_| at.next().is_some_and(is_kept));
-        let mut at = self.own..;
-        kept.shares.retain(|_| at.next().is_some_and(is_kept));
+        let corrected = kept.robot.terms.split_off(self.own());
+        let corrected = corrected.into_iter().zip(self.groups.iter().copied());
+        let (terms, groups): (Vec<_>, _) = corrected.filter(|(_, (group, _))| sizes[*group] > 0.0).unzip();
+        kept.robot.terms.extend(terms);
+        kept.groups = groups;
         kept
+    }
+
+    /// Number of terms that the model has itself.
+    fn own(&self) -> usize {
+        self.robot.terms.len() - self.groups.len()
     }
 
     /// Prior standard deviation of each term of the groups.
     pub fn deviations(&self, sizes: &Sizes) -> impl Iterator<Item = f64> {
-        self.groups.iter().zip(&self.shares).map(|(group, share)| sizes[*group] * share.sqrt())
-    }
-
-    /// Share of each term's variance in that of its group and joint.
-    pub fn shares(&self) -> impl Iterator<Item = f64> {
-        self.shares.iter().copied()
+        self.groups.iter().map(|(group, share)| sizes[*group] * share.sqrt())
     }
 
     /// The joints and terms of the groups.
     pub fn terms(&self) -> impl Iterator<Item = (usize, Term)> {
-        self.robot.terms.iter().skip(self.own).map(|it| (it.joint, it.term))
+        self.robot.terms.iter().skip(self.own()).map(|it| (it.joint, it.term))
     }
 
     /// The gives.
@@ -166,8 +93,124 @@ impl CorrectionModel {
 
     /// The joints and terms of the groups of a size above 0.
     pub fn terms_of(&self, sizes: &Sizes) -> impl Iterator<Item = (usize, Term)> {
-        let used = self.terms().zip(&self.groups).filter(|(_, group)| sizes[**group] > 0.0);
+        let used = self.terms().zip(&self.groups).filter(|(_, (group, _))| sizes[*group] > 0.0);
         used.map(|(term, _)| term)
+    }
+}
+
+/// A joint or a give of a robot in gravity, as the table of terms asks for it.
+struct Corrected<'a> {
+    robot: &'a Robot,
+    statics: &'a Statics<'a>,
+    extent: Extent,
+    joint: usize,
+    is_give: bool,
+    /// Whether it is a give that slides.
+    shifts: bool,
+    /// Whether the joint, or the one that gives, turns.
+    turns: bool,
+    /// Indices of the weights that it carries.
+    carried: Vec<usize>,
+}
+
+impl<'a> Corrected<'a> {
+    fn new(robot: &'a Robot, statics: &'a Statics<'a>, extent: Extent, joint: usize) -> Self {
+        let own = &robot.joints[joint];
+        let is_give = own.give_of.is_some();
+        let weights = 0..robot.gravity.as_ref().map_or(0, |gravity| gravity.weights.len());
+        Corrected {
+            robot,
+            statics,
+            extent,
+            joint,
+            is_give,
+            shifts: is_give && own.kind == JointKind::Prismatic,
+            turns: robot.joints[own.give_of.unwrap_or(joint)].kind == JointKind::Revolute,
+            carried: weights.filter(|&weight| statics.is_carried(joint, weight)).collect(),
+        }
+    }
+
+    /// Its terms, each with its group and its share of the variance of that; those of its own value only if it moves.
+    fn terms(&self, is_moving: bool) -> Vec<(Term, TermGroup, f64)> {
+        let arguments =
+            [Argument::Masses, Argument::Weight, Argument::Payload, Argument::Factor, Argument::OwnValue];
+        let arguments = arguments.into_iter().filter(|it| is_moving || *it != Argument::OwnValue);
+        let mut found = Vec::new();
+        for (argument, number) in
+            arguments.flat_map(|it| self.numbers(it).into_iter().map(move |at| (it, at)))
+        {
+            let is_of =
+                |kind: &TermKind| kind.row().argument == argument && kind.row().is_numbered() == (number > 0);
+            let terms = TermKind::all().into_iter().filter(is_of).map(|kind| kind.numbered(number));
+            found.extend(terms.filter_map(|term| Some((term, self.group(term)?, self.share(term)))));
+        }
+        found
+    }
+
+    /// Numbers of its terms of this argument, 0 of those without: a joint that slides has none but those of its gives under weight.
+    fn numbers(&self, argument: Argument) -> Vec<usize> {
+        let is_loaded = self.is_give || self.turns;
+        let counted = |index: usize| index + 1;
+        match argument {
+            Argument::Masses if is_loaded && self.statics.carries_masses(self.joint) => vec![0],
+            // All weights pull alike where a link shifts.
+            Argument::Weight if self.shifts => {
+                self.carried.last().copied().map(counted).into_iter().collect()
+            }
+            Argument::Weight if is_loaded => self.carried.iter().copied().map(counted).collect(),
+            Argument::Payload if is_loaded => {
+                let last = self.robot.gravity.as_ref().map_or(0, |gravity| gravity.weights.len());
+                let is_carried = self.carried.last().is_some_and(|it| counted(*it) == last);
+                self.robot.payloads().filter(|_| is_carried).map(counted).collect()
+            }
+            Argument::Factor if self.turns => self.factors().map(counted).collect(),
+            Argument::OwnValue if self.turns => match (self.is_give, self.extent.gives) {
+                (false, _) => (0..=usize::from(self.extent.orders)).collect(),
+                (true, Gives::Tilting) => vec![2],
+                (true, Gives::All) => vec![1, 2],
+            },
+            Argument::Nothing
+            | Argument::OwnValue
+            | Argument::Masses
+            | Argument::Weight
+            | Argument::OtherJoint
+            | Argument::Factor
+            | Argument::Payload => Vec::new(),
+        }
+    }
+
+    /// Factors on which its value may depend: the side from which it is approached only if it is its own, or that of all.
+    fn factors(&self) -> impl Iterator<Item = usize> {
+        let joint = &self.robot.joints[self.joint];
+        let is_own =
+            |of: &str| of.is_empty() || [&joint.name, &joint.reading.name].into_iter().any(|it| it == of);
+        let all = self.robot.factors.iter().enumerate();
+        all.filter(move |(_, it)| !it.is_payload() && it.approached().is_none_or(is_own))
+            .map(|(index, _)| index)
+    }
+
+    /// The group of a term, if it is among corrections; of a factor by its name.
+    fn group(&self, term: Term) -> Option<TermGroup> {
+        let group = term.kind().row().groups[usize::from(self.is_give) + usize::from(self.shifts)]?;
+        let factor = self.robot.factors.get(term.index()).filter(|_| term.argument() == Argument::Factor);
+        Some(factor.map_or(group, |it| it.group()))
+    }
+
+    /// Share of a term in the variance of its group. Masses of a drawing are estimates: half of what is believed of a moment.
+    fn share(&self, term: Term) -> f64 {
+        let is_moment = matches!(term.kind().row().function, Function::Identity) && !self.shifts;
+        let believed = if self.statics.carries_masses(self.joint) { 0.5 } else { 1.0 };
+        match term.argument() {
+            Argument::Masses if is_moment => believed,
+            Argument::Weight if is_moment => believed / self.carried.len().max(1) as f64,
+            Argument::Nothing
+            | Argument::OwnValue
+            | Argument::Masses
+            | Argument::Weight
+            | Argument::OtherJoint
+            | Argument::Factor
+            | Argument::Payload => 1.0,
+        }
     }
 }
 
@@ -180,6 +223,6 @@ mod tests {
     fn each_joint_has_two_gives_and_each_term_a_group() {
         let model = CorrectionModel::new(&elbow(), -Vector3::z(), &[true; 6], Extent::default());
         assert_eq!((model.robot.joints.len(), model.places[1]), (18, 3));
-        assert!(model.groups.contains(&TermGroup::Sag) && model.groups.len() == model.robot.terms.len());
+        assert!(model.groups.iter().any(|it| it.0 == TermGroup::Sag) && model.own() == 0);
     }
 }

@@ -66,7 +66,7 @@ impl FromStr for Corrections {
                     text.parse().ok().filter(|size| (1e-9..=1.0).contains(size)).ok_or_else(|| {
                         format!(
                             "found `{text}` as the size of {name}, expected {} from 1e-9 to 1, like 1e-3",
-                            group.unit_words()
+                            if group.is_of_lengths() { "metres" } else { "radians" }
                         )
                     })?
                 }

@@ -3,7 +3,7 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::{Body, Joint, Robot, TermFunctions};
-use crate::lanes::{self, Exponential, SimdLevel, WIDTH, Wide};
+use crate::lanes::{self, SimdLevel, WIDTH};
 use crate::lie::{Pose, Screw, hat};
 
 impl Robot {
@@ -43,43 +43,28 @@ impl Robot {
         self.motion(&self.joint_values(readings)) * self.home
     }
 
-    /// [`Robot::forward_kinematics`] of several configurations, their readings one after the other.
+    /// [`Robot::forward_kinematics`] of several configurations, their readings one after the other: the same numbers, sooner, since eight
+    /// configurations are computed side by side.
     pub fn forward_kinematics_of(&self, readings: &[f64]) -> impl Iterator<Item = Pose> {
         let path = self.joints_to(self.tip_body());
         let (joints, indices) = self.path(&path, &self.reading_indices());
         let width = self.reading_names().len().max(1);
-        let exponentials: Vec<Exponential> = joints.iter().map(|joint| exponential(&joint.screw)).collect();
-        let mut values = vec![0.0; joints.len() * WIDTH];
-        let mut found = vec![(0.0, 0.0); values.len()];
-        let mut factors = vec![[Wide::ZERO; 2]; joints.len()];
+        let exponentials: Vec<Exponential> = joints.iter().map(|it| Exponential::of(&it.screw)).collect();
+        let mut values = vec![[0.0; WIDTH]; joints.len()];
         readings.chunks(WIDTH * width).flat_map(move |some| {
             let some = some.chunks_exact(width);
             let count = some.len();
-            for ((joint, &index), values) in joints.iter().zip(&indices).zip(values.chunks_exact_mut(WIDTH)) {
-                for (value, readings) in values.iter_mut().zip(some.clone()) {
-                    *value = joint.reading.value(readings.get(index).copied().unwrap_or(0.0));
+            for (lane, readings) in some.enumerate() {
+                let all = (!self.terms.is_empty()).then(|| self.joint_values(readings));
+                for (k, values) in values.iter_mut().enumerate() {
+                    values[lane] = match &all {
+                        Some(all) => all[path[k]],
+                        None => joints[k].reading.value(readings[indices[k]]),
+                    };
                 }
             }
-            if !self.terms.is_empty() {
-                for (lane, readings) in some.clone().enumerate() {
-                    let (_, all) = self.path(&path, &self.joint_values(readings));
-                    values
-                        .iter_mut()
-                        .skip(lane)
-                        .step_by(WIDTH)
-                        .zip(all)
-                        .for_each(|(value, all)| *value = all);
-                }
-            }
-            lanes::cosines_and_sines(SimdLevel::best(), &values, &mut found);
-            let each = joints.iter().zip(&mut factors).zip(found.chunks(WIDTH).zip(values.chunks(WIDTH)));
-            for ((joint, [first, second]), (found, values)) in each {
-                for (lane, (&found, &value)) in found.iter().zip(values).enumerate() {
-                    (first.0[lane], second.0[lane]) = factors_of(&joint.screw, value, found);
-                }
-            }
-            let rows = lanes::product_of_exponentials(SimdLevel::best(), &exponentials, &factors);
-            (0..count).map(move |lane| Pose::from_rows(|i, j| rows[i][j].0[lane]) * self.home)
+            let rows = product(&exponentials, &values);
+            (0..count).map(move |lane| Pose::from_rows(|i, j| rows[i][j][lane]) * self.home)
         })
     }
 
@@ -112,35 +97,83 @@ impl Robot {
     #[must_use]
     pub fn motion_of(&self, body: Body, joint_values: &[f64]) -> Pose {
         let (joints, values) = self.path(&self.joints_to(body), joint_values);
-        let mut found = vec![(0.0, 0.0); values.len()];
-        lanes::cosines_and_sines(SimdLevel::best(), &values, &mut found);
-        let mut rows = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]];
-        for ((joint, value), found) in joints.into_iter().zip(values).zip(found) {
-            let (first, second) = factors_of(&joint.screw, value, found);
-            exponential(&joint.screw).advance(&mut rows, first, second, |number| number);
+        let exponentials: Vec<Exponential> = joints.iter().map(|it| Exponential::of(&it.screw)).collect();
+        let values: Vec<[f64; 1]> = values.into_iter().map(|value| [value]).collect();
+        let rows = product(&exponentials, &values);
+        Pose::from_rows(|i, j| rows[i][j][0])
+    }
+}
+
+/// Poses of several configurations, by rows: three directions and a translation.
+type Rows<const N: usize> = [[[f64; N]; 4]; 3];
+
+/// The motion of a joint, `exp(ξ̂θ) = I + sin θ F + (1 - cos θ) G`, or `I + θ F` of a sliding joint: theory.md §1 (2a).
+#[derive(Clone, Copy, Debug)]
+struct Exponential {
+    slides: bool,
+    first: [[f64; 4]; 3],
+    second: [[f64; 4]; 3],
+}
+
+impl Exponential {
+    fn of(screw: &Screw) -> Self {
+        let rows = |turn: &Matrix3<f64>, shift: &Vector3<f64>| {
+            std::array::from_fn(|i| [turn[(i, 0)], turn[(i, 1)], turn[(i, 2)], shift[i]])
+        };
+        if screw.is_prismatic() {
+            let none = Matrix3::zeros();
+            let (first, second) = (rows(&none, &screw.v()), rows(&none, &Vector3::zeros()));
+            return Exponential { slides: true, first, second };
         }
-        Pose::from_rows(|i, j| rows[i][j])
+        let (w, point) = (screw.w(), screw.w().cross(&screw.v()));
+        let (first, second) = (hat(&w), w * w.transpose() - Matrix3::identity());
+        let (first, second) = (rows(&first, &-(first * point)), rows(&second, &-(second * point)));
+        Exponential { slides: false, first, second }
+    }
+
+    /// Moves poses by the joint's motion. No product is fused with a sum, so that the bits are the same by all instructions. `1 - cos θ` is
+    /// added to numbers of about one, so that its rounding at small angles is negligible.
+    #[inline(always)]
+    fn advance<const N: usize>(&self, rows: &mut Rows<N>, values: &[f64; N], found: &[(f64, f64); N]) {
+        let (mut first, mut second) = (*values, [0.0; N]);
+        if !self.slides {
+            for l in 0..N {
+                (first[l], second[l]) = (found[l].1, 1.0 - found[l].0);
+            }
+        }
+        let mut change = [[[0.0; N]; 4]; 3];
+        for i in 0..3 {
+            for j in 0..4 {
+                for l in 0..N {
+                    change[i][j][l] = first[l] * self.first[i][j] + second[l] * self.second[i][j];
+                }
+            }
+        }
+        for row in rows {
+            let [x, y, z, _] = *row;
+            for j in 0..4 {
+                for l in 0..N {
+                    row[j][l] += x[l] * change[0][j][l] + y[l] * change[1][j][l] + z[l] * change[2][j][l];
+                }
+            }
+        }
     }
 }
 
-/// The two numbers of a joint's motion that depend on its value: `sin θ` and `1 - cos θ` with `(cos θ, sin θ)` known, or θ of a sliding
-/// joint. They are added to numbers of about one, so that rounding of `1 - cos θ` at small angles is negligible.
-fn factors_of(screw: &Screw, value: f64, (cosine, sine): (f64, f64)) -> (f64, f64) {
-    if screw.is_prismatic() { (value, 0.0) } else { (sine, 1.0 - cosine) }
-}
-
-/// `exp(ξ̂θ) = I + sin θ F + (1 - cos θ) G`, or `I + θ F` of a sliding joint: theory.md §1 (2a).
-fn exponential(screw: &Screw) -> Exponential {
-    let rows = |turn: &Matrix3<f64>, shift: &Vector3<f64>| {
-        std::array::from_fn(|i| [turn[(i, 0)], turn[(i, 1)], turn[(i, 2)], shift[i]])
-    };
-    if screw.is_prismatic() {
-        let none = Matrix3::zeros();
-        return Exponential { first: rows(&none, &screw.v()), second: rows(&none, &Vector3::zeros()) };
-    }
-    let (w, point) = (screw.w(), screw.w().cross(&screw.v()));
-    let (first, second) = (hat(&w), w * w.transpose() - Matrix3::identity());
-    Exponential { first: rows(&first, &-(first * point)), second: rows(&second, &-(second * point)) }
+/// The product of the motions of all joints at their values: theory.md §2 (6).
+fn product<const N: usize>(joints: &[Exponential], values: &[[f64; N]]) -> Rows<N> {
+    let mut found = vec![[(0.0, 0.0); N]; values.len()];
+    lanes::cosines_and_sines(SimdLevel::best(), values.as_flattened(), found.as_flattened_mut());
+    let one = |i: usize, j: usize| [f64::from(u8::from(i == j)); N];
+    let mut rows: Rows<N> = std::array::from_fn(|i| std::array::from_fn(|j| one(i, j)));
+    lanes::by_best(
+        #[inline(always)]
+        || {
+            let each = joints.iter().zip(values.iter().zip(&found));
+            each.for_each(|(joint, (values, found))| joint.advance(&mut rows, values, found));
+        },
+    );
+    rows
 }
 
 #[cfg(test)]

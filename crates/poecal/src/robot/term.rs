@@ -1,155 +1,12 @@
-//! Terms of joint values: what a joint really turns or slides beyond its reading.
+//! Terms of joint values in a configuration: theory.md §3.
 
 use std::borrow::Cow;
-use std::fmt;
-use std::str::FromStr;
 
-use schemars::{JsonSchema, Schema, SchemaGenerator};
-use serde::de::Error as _;
-use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use poecal_arm::{Argument, Term};
+use serde::{Deserialize, Serialize};
 
-use super::coupling::Coupling;
-use super::factor::Factor;
-use super::harmonic::Harmonic;
-use super::offset::Offset;
-use super::own_weight::OwnWeight;
-use super::payload::Payload;
-use super::ratio::Ratio;
-use super::sag::Sag;
-use super::term_model::TermModel;
-
-/// A term of a joint's value, `θ ← θ + c b(q)` with a known function b of the configuration and a coefficient c (theory.md §3). A new term is
-/// one file with [`TermModel`], one variant here and its name.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Term {
-    /// Joint offset: 1.
-    Offset,
-    /// Error of the gear's ratio: the joint's value.
-    Ratio,
-    /// A harmonic of the joint's value.
-    Harmonic(Harmonic),
-    /// What the joint gives under the robot's own weight.
-    OwnWeight,
-    /// What the joint gives under a weight.
-    Sag(Sag),
-    /// What another joint turns it.
-    Coupling(Coupling),
-    /// What it owes to a factor.
-    Factor(Factor),
-    /// What it gives under a payload.
-    Payload(Payload),
-}
-
-impl Term {
-    /// Terms that need nothing but a joint's value, and that a model may state.
-    pub const ALL: [Term; 2] = [Term::Offset, Term::Ratio];
-
-    /// Whether its function is of the weights that the robot carries.
-    #[must_use]
-    pub fn needs_gravity(&self) -> bool {
-        match self {
-            Term::OwnWeight | Term::Sag(_) | Term::Payload(_) => true,
-            Term::Offset | Term::Ratio | Term::Harmonic(_) | Term::Coupling(_) | Term::Factor(_) => false,
-        }
-    }
-
-    /// Whether it can be of a robot with so many joints and factors.
-    #[must_use]
-    pub fn is_of(&self, joints: usize, factors: usize) -> bool {
-        match self {
-            Term::Coupling(Coupling { joint }) => *joint < joints,
-            Term::Factor(Factor { index }) | Term::Payload(Payload { index }) => *index < factors,
-            Term::Offset | Term::Ratio | Term::Harmonic(_) | Term::OwnWeight | Term::Sag(_) => true,
-        }
-    }
-
-    /// The same term where joints have other indices.
-    #[must_use]
-    pub fn moved(self, index: impl Fn(usize) -> usize) -> Self {
-        match self {
-            Term::Coupling(Coupling { joint }) => Term::Coupling(Coupling { joint: index(joint) }),
-            Term::Offset
-            | Term::Ratio
-            | Term::Harmonic(_)
-            | Term::OwnWeight
-            | Term::Sag(_)
-            | Term::Factor(_)
-            | Term::Payload(_) => self,
-        }
-    }
-
-    /// What the term is.
-    #[must_use]
-    pub fn model(&self) -> &dyn TermModel {
-        match self {
-            Term::Offset => &Offset,
-            Term::Ratio => &Ratio,
-            Term::Harmonic(harmonic) => harmonic,
-            Term::OwnWeight => &OwnWeight,
-            Term::Sag(sag) => sag,
-            Term::Coupling(coupling) => coupling,
-            Term::Factor(factor) => factor,
-            Term::Payload(payload) => payload,
-        }
-    }
-}
-
-impl fmt::Display for Term {
-    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        out.write_str(&self.model().name())
-    }
-}
-
-impl FromStr for Term {
-    type Err = String;
-
-    fn from_str(name: &str) -> Result<Self, String> {
-        let numbered = |prefix: &str| name.strip_prefix(prefix)?.parse::<u16>().ok().filter(|it| *it > 0);
-        let order = |prefix: &str| u8::try_from(numbered(prefix)?).ok();
-        let harmonic = |order: u8, cosine: bool| Term::Harmonic(Harmonic { order, cosine });
-        let found = Term::ALL.into_iter().find(|term| term.model().name() == name);
-        let found = found.or_else(|| (name == "masses").then_some(Term::OwnWeight));
-        found
-            .or_else(|| Some(harmonic(order("sin")?, false)))
-            .or_else(|| Some(harmonic(order("cos")?, true)))
-            .or_else(|| Some(Term::Sag(Sag { weight: usize::from(numbered("sag")?) - 1 })))
-            .or_else(|| Some(Term::Coupling(Coupling { joint: usize::from(numbered("coupled")?) - 1 })))
-            .or_else(|| Some(Term::Factor(Factor { index: usize::from(numbered("factor")?) - 1 })))
-            .or_else(|| Some(Term::Payload(Payload { index: usize::from(numbered("payload")?) - 1 })))
-            .ok_or_else(|| {
-                format!(
-                    "found the term `{name}`, expected offset, ratio, sin1, cos1, …, masses, sag1, …, coupled1, …, factor1, … or payload1, …"
-                )
-            })
-    }
-}
-
-impl Serialize for Term {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.collect_str(self)
-    }
-}
-
-impl<'de> Deserialize<'de> for Term {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let name: Cow<'de, str> = Deserialize::deserialize(deserializer)?;
-        name.parse().map_err(D::Error::custom)
-    }
-}
-
-impl JsonSchema for Term {
-    fn schema_name() -> Cow<'static, str> {
-        "Term".into()
-    }
-
-    fn json_schema(_: &mut SchemaGenerator) -> Schema {
-        schemars::json_schema!({
-            "type": "string",
-            "pattern": "^(offset|ratio|masses|(sin|cos|sag|coupled|factor|payload)[1-9][0-9]*)$",
-            "description": "A term of a joint's value.",
-        })
-    }
-}
+use super::{JointKind, Moments, Robot, Statics};
+use crate::unit::Unit;
 
 /// A term of a joint with its coefficient.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -158,32 +15,128 @@ pub struct JointTerm {
     pub joint: usize,
     /// The term.
     pub term: Term,
-    /// Its coefficient c, in [`TermModel::unit`].
+    /// Its coefficient c, in [`JointKind::unit_of`].
     pub coefficient: f64,
+}
+
+impl JointKind {
+    /// Unit of the coefficient of a term for a joint of this kind.
+    #[must_use]
+    pub fn unit_of(self, term: Term) -> Unit {
+        match self {
+            JointKind::Revolute | JointKind::Prismatic if term.kind().row().is_share() => Unit::One,
+            JointKind::Revolute => Unit::Radian,
+            JointKind::Prismatic => Unit::Metre,
+        }
+    }
+
+    /// Standard deviation of this coefficient over robots, its prior, in that unit.
+    #[must_use]
+    pub fn deviation_of(self, term: Term) -> f64 {
+        term.deviation(self == JointKind::Prismatic)
+    }
+}
+
+impl Robot {
+    /// What a term of a joint needs that this robot does not have, in words.
+    pub(crate) fn lacks(&self, term: Term) -> Option<String> {
+        let (joints, factors) = (self.joints.len(), self.factors.len());
+        let weights = self.gravity.as_ref().map_or(0, |gravity| gravity.weights.len());
+        if !term.is_of(joints, factors) {
+            return Some(format!("one of the {joints} joints and {factors} factors"));
+        }
+        match term.argument() {
+            Argument::Masses if self.masses.is_empty() => Some("a robot with masses".to_owned()),
+            Argument::Weight | Argument::Payload if weights == 0 => Some("a robot with weights".to_owned()),
+            Argument::Weight if term.index() >= weights => Some(format!("one of the {weights} weights")),
+            Argument::Nothing
+            | Argument::OwnValue
+            | Argument::Masses
+            | Argument::Weight
+            | Argument::OtherJoint
+            | Argument::Factor
+            | Argument::Payload => None,
+        }
+    }
+}
+
+/// One configuration, as terms of joint values depend on it.
+#[derive(Clone, Copy, Debug)]
+pub struct Situation<'a> {
+    /// Values of all joints without terms, radians or metres.
+    pub values: &'a [f64],
+    /// Moments of the weights that the robot carries, if it has any.
+    pub moments: Option<&'a Moments>,
+    /// The robot's factors, from their references.
+    pub factors: &'a [f64],
+}
+
+impl<'a> Situation<'a> {
+    /// These values of all joints, without weights and factors.
+    #[must_use]
+    pub fn of(values: &'a [f64]) -> Self {
+        Situation { values, moments: None, factors: &[] }
+    }
+
+    /// The function b of a term of a joint.
+    #[must_use]
+    pub fn basis(&self, joint: usize, term: Term) -> f64 {
+        let value = |of: &[f64], at: usize| of.get(at).copied().unwrap_or_default();
+        let moment = |of: &dyn Fn(&Moments) -> f64| self.moments.map_or(0.0, of);
+        let x = match term.argument() {
+            Argument::Nothing => 0.0,
+            Argument::OwnValue => value(self.values, joint),
+            Argument::OtherJoint => value(self.values, term.index()),
+            Argument::Masses => moment(&|it| it.of_masses(joint)),
+            Argument::Weight => moment(&|it| it.of(joint, term.index())),
+            Argument::Factor => value(self.factors, term.index()),
+            Argument::Payload => value(self.factors, term.index()) * moment(&|it| it.of_last(joint)),
+        };
+        let [found, _] = term.function(x);
+        found
+    }
+}
+
+/// Functions b of all terms of a robot, configuration after configuration.
+pub(crate) struct TermFunctions<'a> {
+    robot: &'a Robot,
+    statics: Option<Statics<'a>>,
+    moments: Moments,
+}
+
+impl<'a> TermFunctions<'a> {
+    pub(crate) fn new(robot: &'a Robot) -> Self {
+        TermFunctions { robot, statics: Statics::new(robot), moments: Moments::default() }
+    }
+
+    /// The functions at these values of all joints and of the factors, in the order of the robot's terms.
+    pub(crate) fn at(&mut self, values: &[f64], factors: &[f64]) -> Vec<f64> {
+        let TermFunctions { robot, statics, moments } = self;
+        if let Some(statics) = &statics {
+            statics.evaluate(values, moments);
+        }
+        let factors = robot.factors.iter().zip(factors).map(|(it, value)| value - it.reference);
+        let factors: Vec<f64> = factors.collect();
+        let own = own_values(robot, values);
+        let at = Situation { values: &own, moments: statics.as_ref().map(|_| &*moments), factors: &factors };
+        robot.terms.iter().map(|it| at.basis(it.joint, it.term)).collect()
+    }
+}
+
+/// Joint values as terms depend on them: of a give that of the joint which gives.
+fn own_values<'a>(robot: &Robot, values: &'a [f64]) -> Cow<'a, [f64]> {
+    if robot.joints.iter().all(|joint| joint.give_of.is_none()) {
+        return Cow::Borrowed(values);
+    }
+    let of = |give: Option<usize>| give.and_then(|joint| values.get(joint)).copied();
+    let own = robot.joints.iter().zip(values);
+    Cow::Owned(own.map(|(joint, &value)| of(joint.give_of).unwrap_or(value)).collect())
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::robot::Situation;
     use crate::robot::tests::elbow;
-
-    #[test]
-    fn terms_are_parsed_from_their_names() {
-        for (name, term) in [
-            ("offset", Term::Offset),
-            ("ratio", Term::Ratio),
-            ("sin2", Term::Harmonic(Harmonic { order: 2, cosine: false })),
-            ("cos2", Term::Harmonic(Harmonic { order: 2, cosine: true })),
-            ("masses", Term::OwnWeight),
-            ("sag6", Term::Sag(Sag { weight: 5 })),
-            ("coupled4", Term::Coupling(Coupling { joint: 3 })),
-            ("factor1", Term::Factor(Factor { index: 0 })),
-            ("payload1", Term::Payload(Payload { index: 0 })),
-        ] {
-            assert_eq!((name.parse::<Term>(), term.to_string().as_str()), (Ok(term), name));
-        }
-    }
 
     #[test]
     fn terms_are_functions_of_the_configuration() {
@@ -200,10 +153,10 @@ mod tests {
             ("sag6", 0.0),
             ("payload1", 0.0),
         ] {
-            assert_eq!(name.parse::<Term>().unwrap().model().basis(0, &at), expected, "{name}");
+            assert_eq!(at.basis(0, name.parse().unwrap()), expected, "{name}");
         }
         let mut robot = elbow();
-        robot.terms.push(JointTerm { joint: 1, term: Term::Offset, coefficient: 0.02 });
+        robot.terms.push(JointTerm { joint: 1, term: Term::OFFSET, coefficient: 0.02 });
         assert_eq!(robot.joint_values(&[0.0; 6])[1], 0.02);
     }
 }

@@ -9,7 +9,7 @@ impl Robot {
     #[must_use]
     pub fn without_offsets(&self) -> Robot {
         let mut robot = self.clone();
-        robot.terms.retain(|it| it.term != Term::Offset);
+        robot.terms.retain(|it| it.term != Term::OFFSET);
         if robot.terms.len() == self.terms.len() {
             return robot;
         }
@@ -19,7 +19,7 @@ impl Robot {
             body.and_then(|joint| motions.get(joint)).copied().unwrap_or_else(Pose::identity)
         };
         for (index, joint) in robot.joints.iter_mut().enumerate() {
-            let own = self.terms.iter().filter(|it| it.joint == index && it.term == Term::Offset);
+            let own = self.terms.iter().filter(|it| it.joint == index && it.term == Term::OFFSET);
             let offset: f64 = own.map(|it: &JointTerm| it.coefficient).sum();
             let before = of(&motions, self.body_before(index).joint());
             let motion = before * joint.screw.exp(offset);

@@ -20,7 +20,7 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::lie::{Pose, rotation};
 use crate::measurement::{Dataset, Measurement, Observation};
 use crate::robot::{
-    Body, CorrectionModel, Extent, Factor, FactorReading, Joint, JointKind, Mount, Robot, Sizes, TermGroup,
+    Body, CorrectionModel, Extent, FactorReading, Joint, JointKind, Mount, Robot, Sizes, TermGroup,
 };
 
 /// A simulated measurement session.
@@ -144,11 +144,14 @@ impl Simulation {
     /// The robot with the factors of its terms: the side from which each joint that turns is approached, the temperature, and the payload.
     fn with_factors(&self, nominal: &Robot) -> Result<Robot> {
         let turns = |joint: &&Joint| joint.kind == JointKind::Revolute && joint.reading.name == joint.name;
-        let approached =
-            nominal.joints.iter().filter(turns).map(|joint| format!("{}_{}", Factor::APPROACH, joint.name));
+        let approached = nominal
+            .joints
+            .iter()
+            .filter(turns)
+            .map(|joint| format!("{}_{}", FactorReading::APPROACH, joint.name));
         let sides = approached.filter(|_| self.terms[TermGroup::Backlash] > 0.0);
         let warmth = (self.terms[TermGroup::Factors] > 0.0).then(|| TEMPERATURE.to_owned());
-        let payload = (self.terms[TermGroup::Payload] > 0.0).then(|| Factor::PAYLOAD.to_owned());
+        let payload = (self.terms[TermGroup::Payload] > 0.0).then(|| FactorReading::PAYLOAD.to_owned());
         let missing = |name: &String| !nominal.factors.iter().any(|it| it.name == *name);
         nominal.with_factors(&sides.chain(warmth).chain(payload).filter(missing).collect::<Vec<_>>())
     }

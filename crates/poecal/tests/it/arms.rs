@@ -5,9 +5,7 @@ use std::f64::consts::PI;
 use nalgebra::Vector3;
 use poecal::compensate::Kinematics;
 use poecal::lie::rotation;
-use poecal::robot::{
-    Body, Coupling, Factor, FactorReading, Gives, Gravity, Harmonic, JointTerm, Mass, Payload, Sag, Term,
-};
+use poecal::robot::{Body, FactorReading, Gives, Gravity, JointTerm, Mass, Term, TermKind};
 use poecal::{AllBranches, Arm};
 use poecal::{Robot, simulate};
 
@@ -36,13 +34,13 @@ fn bent(robot: &Robot, size: f64, numbers: &mut ChaCha8Rng) -> Robot {
         .into();
     let weights = robot.gravity.as_ref().unwrap().weights.len();
     for joint in 0..robot.joints.len() {
-        let mut terms = vec![Term::Offset, Term::Ratio, Term::OwnWeight];
-        terms.push(Term::Factor(Factor { index: 0 }));
-        terms.push(Term::Payload(Payload { index: 1 }));
-        terms.push(Term::Coupling(Coupling { joint: (joint + 7) % robot.joints.len() }));
-        terms.extend((0..weights).map(|weight| Term::Sag(Sag { weight })));
+        let mut terms = vec![Term::OFFSET, Term::RATIO, TermKind::Masses.numbered(0)];
+        terms.push(TermKind::Factor.at(0));
+        terms.push(TermKind::Payload.at(1));
+        terms.push(TermKind::Coupled.at((joint + 7) % robot.joints.len()));
+        terms.extend((0..weights).map(|weight| TermKind::Sag.at(weight)));
         for order in [1, 2] {
-            terms.extend([false, true].map(|cosine| Term::Harmonic(Harmonic { order, cosine })));
+            terms.extend([TermKind::Sine, TermKind::Cosine].map(|it| it.numbered(order)));
         }
         let slides = robot.joints[joint].kind == poecal::JointKind::Prismatic;
         let share = if slides { size / 3.0 } else { size } / terms.len() as f64;
@@ -171,7 +169,7 @@ fn jacobians_are_the_differences_of_poses() {
         let (mut worst, mut of_weights) = (0.0_f64, 0.0_f64);
         let mut unloaded = robot.clone();
         unloaded.gravity = None;
-        unloaded.terms.retain(|it| !matches!(it.term, Term::Sag(_) | Term::Payload(_) | Term::OwnWeight));
+        unloaded.terms.retain(|it| !it.term.needs_gravity());
         let without = Kinematics::new(&unloaded, &[26.0, 1.5]).unwrap().jacobians(&readings);
         for (it, without) in jacobians.iter().zip(&without) {
             of_weights = of_weights.max((it - without).abs());
@@ -206,7 +204,7 @@ fn sag_is_what_the_terms_of_weights_do() {
         let robot = bent(&robot, 0.02, &mut numbers);
         let factors = [26.0, 1.5];
         let mut unloaded = robot.clone();
-        unloaded.terms.retain(|it| !matches!(it.term, Term::Sag(_) | Term::Payload(_) | Term::OwnWeight));
+        unloaded.terms.retain(|it| !it.term.needs_gravity());
         let width = robot.joint_reading_names().len();
         let mut readings = many(100, width, &mut numbers);
         // Joints of other branches are at zero for an arm.

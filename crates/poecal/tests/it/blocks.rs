@@ -1,17 +1,19 @@
 //! Fits of some blocks of unknowns only: what is held stays to the bit, and the rest is found.
 
 use crate::common::geometry;
+use nalgebra::Vector3;
 use poecal::analysis::{Cause, Direction};
 use poecal::calibration::{
     BlockChoice, Calibration, CalibrationOptions, DeviceFrameKnowledge, Level, calibrate,
 };
 use poecal::estimate::Packed;
 use poecal::io::calibration_file::{CalibrationFile, Inputs};
+use poecal::io::export::{ExportFormat, ExportOptions, export};
 use poecal::io::model::{Model, ModelFormat, ModelSource, convert};
 use poecal::io::{Difference, robot_toml};
-use poecal::lie::Pose;
+use poecal::lie::{Pose, rotation};
 use poecal::measurement::Dataset;
-use poecal::robot::{JointTerm, Robot, Term};
+use poecal::robot::{Body, CorrectionModel, Extent, Gravity, JointTerm, Mass, Robot, Term};
 use poecal::simulate::{Kind, Simulation, elbow};
 
 fn words(words: &[&str]) -> Vec<String> {
@@ -143,7 +145,7 @@ fn joint_zeros_alone_are_found_and_kept_as_offsets() {
     println!("{:?}: {:.1e} mm", found.robot.terms, held_out_mm(&found));
     assert!(held_out_mm(&found) < 1e-6, "{}", held_out_mm(&found));
     let of = |joint: usize| {
-        let term = |it: &&JointTerm| it.joint == joint && it.term == Term::Offset;
+        let term = |it: &&JointTerm| it.joint == joint && it.term == Term::OFFSET;
         found.robot.terms.iter().find(term).map_or(0.0, |it| it.coefficient)
     };
     for (joint, zero) in zeros.iter().enumerate().skip(1).take(4) {
@@ -168,7 +170,7 @@ fn files_hold_what_was_held_and_the_terms_that_were_found() {
     let made = Simulation { count: 80, ..Simulation::default() }.run(&aside(), Kind::POSE).unwrap();
     let found = fitted(&made.nominal, &made.data, choice(&["joint1", "joint5"], &["joint3.offset"]), true);
     let term = found.robot.terms[0];
-    assert_eq!((term.joint, term.term), (2, Term::Offset));
+    assert_eq!((term.joint, term.term), (2, Term::OFFSET));
     let file = CalibrationFile::new(&found, &made.data, Inputs::default());
     let again = CalibrationFile::parse(&file.to_text().unwrap(), "calibration.json").unwrap();
     assert_eq!(again, file);
@@ -208,16 +210,28 @@ fn files_hold_what_was_held_and_the_terms_that_were_found() {
 }
 
 /// Terms with a coefficient to be found.
-const TERMS: [(Term, f64); 2] = [(Term::Offset, 0.01), (Term::Ratio, 0.002)];
+const TERMS: &[(&str, f64)] = &[("offset", 0.01), ("ratio", 0.002), ("sin2", 0.001), ("masses", 0.002)];
+
+/// The same arm with masses on its links.
+fn heavy() -> Robot {
+    let mut robot = aside();
+    let masses = [(1, 9.0, 0.3), (2, 6.0, 0.72), (4, 2.0, 0.7)];
+    robot.masses = masses
+        .map(|(joint, kg, z)| Mass { body: Body::Link(joint), place: Vector3::new(0.3, 0.02, z), kg })
+        .into();
+    robot
+}
 
 #[test]
 fn terms_of_joint_values_are_found_and_written() {
-    for (term, coefficient) in TERMS {
-        let mut built = aside();
+    for &(term, coefficient) in TERMS {
+        let name = format!("joint3.{term}");
+        let term: Term = term.parse().unwrap();
+        let mut built = heavy();
+        built.gravity = Some(Gravity::of_unit_weights(&built, -Vector3::z()));
         built.terms.push(JointTerm { joint: 2, term, coefficient });
         let (actual, data) = exact_of(&built, Kind::POINT, 0.0);
-        let nominal = Robot { terms: Vec::new(), ..actual };
-        let name = format!("joint3.{}", term.model().name());
+        let nominal = Robot { terms: Vec::new(), gravity: None, ..actual };
         let found = fitted(&nominal, &data, choice(&["joints"], &[&name]), true);
         let own = found.robot.terms.iter().map(|it| (it.joint, it.term, it.coefficient)).collect::<Vec<_>>();
         println!("{name} = {coefficient}: {own:?}, held out {:.1e} mm", held_out_mm(&found));
@@ -225,14 +239,50 @@ fn terms_of_joint_values_are_found_and_written() {
         assert!((own[0].2 - coefficient).abs() < 1e-9 && held_out_mm(&found) < 1e-6);
 
         let file = CalibrationFile::new(&found, &data, Inputs::default());
-        let read = robot_toml::parse(&robot_toml::write(&file.robot().unwrap()), "r.toml").unwrap();
+        let text = file.to_text().unwrap();
+        let read = CalibrationFile::parse(&text, "calibration.json").unwrap().robot().unwrap();
         assert_eq!(read.terms, found.robot.terms);
+        // TOML has no weights.
+        if !term.needs_gravity() {
+            let read = robot_toml::parse(&robot_toml::write(&read), "r.toml").unwrap();
+            assert_eq!(read.terms, found.robot.terms);
+        }
+        reaches_its_own_poses(&read);
         let path = "calibration.json".into();
         let model = Model { path, robot: read, source: ModelSource::Calibration(Box::new(file)) };
+        // The arrays are read back and compared.
+        export(&model, ExportFormat::C, &ExportOptions::default()).unwrap();
         let urdf = convert(&model, ModelFormat::Urdf).unwrap();
         // What URDF cannot hold is said.
         let lost = !found.robot.without_offsets().terms.is_empty();
         assert_eq!(urdf.notes.iter().any(|note| note.contains(&name)), lost, "{:?}", urdf.notes);
+
+        let model = CorrectionModel::new(&nominal, -Vector3::z(), &[true; 6], Extent::default());
+        let is_corrected = model.terms().any(|it| it == (model.places[2], term));
+        assert_eq!(is_corrected, term.kind().row().groups[0].is_some());
+    }
+}
+
+/// Inverse kinematics with the derivatives of the terms.
+fn reaches_its_own_poses(robot: &Robot) {
+    let (arm, _) = robot.arm(&[]).unwrap();
+    for turn in 0..20 {
+        let q: [f64; 6] = std::array::from_fn(|joint| (1.7 * f64::from(turn) + 0.9 * joint as f64).sin());
+        let target = robot.forward_kinematics(&q);
+        let mut found = q.map(|it| it + 0.02);
+        let left = arm.nearest(&target, &mut found);
+        assert!(left < 1e-11, "{q:?}: {left:.1e}");
+        for (joint, (moves, turns)) in arm.jacobian(&q).into_iter().take(6).enumerate() {
+            let at = |by: f64| {
+                let mut moved = q;
+                moved[joint] += by;
+                arm.forward_kinematics(&moved)
+            };
+            let (after, before) = (at(1e-6), at(-1e-6));
+            let shift = (after.translation - before.translation) / 2e-6;
+            let turn = rotation::log(&(after.rotation * before.rotation.transpose())) / 2e-6;
+            assert!((shift - moves).norm() < 1e-8 && (turn - turns).norm() < 1e-8);
+        }
     }
 }
 

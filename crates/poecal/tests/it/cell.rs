@@ -13,7 +13,7 @@ use poecal::parameters::{
 };
 use poecal::problem::Problem;
 use poecal::robot::{
-    Body, Gives, Gravity, Harmonic, Joint, JointKind, JointTerm, Mount, Robot, Sag, Statics, Term,
+    Body, Gives, Gravity, Joint, JointKind, JointTerm, Mount, Robot, Statics, Term, TermKind,
 };
 use poecal::simulate::random;
 use poecal::solve::LeastSquares as _;
@@ -253,13 +253,12 @@ fn deviating(cell: &Cell) -> Cell {
     let weights = gravity.weights.len();
     robot.gravity = Some(gravity);
     let statics = Statics::new(&robot).unwrap();
-    let harmonics =
-        (1..3).flat_map(|order| [false, true].map(|cosine| Term::Harmonic(Harmonic { order, cosine })));
+    let harmonics = (1..3).flat_map(|order| [TermKind::Sine, TermKind::Cosine].map(|it| it.numbered(order)));
     let mut terms = Vec::new();
     for (joint, it) in robot.joints.iter().enumerate() {
         let sags = (0..weights).filter(|&weight| statics.is_carried(joint, weight));
-        let sags = sags.map(|weight| Term::Sag(Sag { weight }));
-        let ratio = it.give_of.is_none().then_some(Term::Ratio);
+        let sags = sags.map(|weight| TermKind::Sag.at(weight));
+        let ratio = it.give_of.is_none().then_some(Term::RATIO);
         for (k, term) in harmonics.clone().chain(sags).chain(ratio).enumerate() {
             terms.push(JointTerm { joint, term, coefficient: 1e-3 * (1 + (joint + 3 * k) % 5) as f64 });
         }
@@ -290,9 +289,9 @@ fn sensitivities_of_every_way_are_those_of_differences() {
         // Terms of every joint's value, at coefficients that are not zero.
         let mut estimate = made.estimate.clone();
         let joints = 0..made.robot.joints.len();
-        let terms: Vec<_> = joints.flat_map(|joint| Term::ALL.map(|term| (joint, term))).collect();
+        let terms: Vec<_> = joints.flat_map(|joint| Term::plain().map(move |term| (joint, term))).collect();
         for &(joint, term) in &terms {
-            let k = usize::from(term == Term::Ratio);
+            let k = usize::from(term == Term::RATIO);
             *estimate.coefficient_mut(joint, term) = 0.02 * (1 + joint + k) as f64;
         }
         compare(&made, &estimate, with_terms(&made, terms.into_iter()), cell.name);
@@ -388,8 +387,8 @@ fn ranks_are_those_of_the_closed_form() {
     }
 }
 
-fn of_order(order: u8) -> [Term; 2] {
-    [false, true].map(|cosine| Term::Harmonic(Harmonic { order, cosine }))
+fn of_order(order: usize) -> [Term; 2] {
+    [TermKind::Sine, TermKind::Cosine].map(|it| it.numbered(order))
 }
 
 /// A robot of joints that turn, each with gives in all directions, and harmonics of orders 1 and 2.
@@ -437,7 +436,7 @@ fn ranks_of_what_bearings_do_are_those_of_the_closed_form() {
             (rank, values[rank - 1], after)
         };
         let terms: Vec<(usize, Term)> = (0..made.robot.joints.len())
-            .flat_map(|joint| of_order(order).map(|term| (joint, term)))
+            .flat_map(|joint| of_order(usize::from(order)).map(|term| (joint, term)))
             .collect();
         let columns = terms.len();
         let (of_geometry, ..) = rank(Vec::new());
@@ -461,8 +460,7 @@ fn what_joints_turn_is_told_from_their_screws() {
             rank: 0,
         };
         let made = Measured::new(&cell, 300, 0.0);
-        let harmonic = |order, cosine| Term::Harmonic(Harmonic { order, cosine });
-        let own = [Term::Ratio, harmonic(1, false), harmonic(1, true), harmonic(2, false), harmonic(2, true)];
+        let own = ["ratio", "sin1", "cos1", "sin2", "cos2"].map(|name| name.parse().unwrap());
         let terms: Vec<(usize, Term)> = (0..6).flat_map(|joint| own.map(|term| (joint, term))).collect();
         let rank = |terms: Vec<(usize, Term)>| {
             let problem = made.problem(with_terms(&made, terms.into_iter()));

@@ -41,7 +41,7 @@ fn calibrations_with_one_thread_and_with_two_are_bit_identical() {
 fn kinematics_do_not_depend_on_threads() {
     let nominal = elbow();
     let mut actual = nominal.clone();
-    actual.terms.push(JointTerm { joint: 1, term: Term::Offset, coefficient: 0.01 });
+    actual.terms.push(JointTerm { joint: 1, term: Term::OFFSET, coefficient: 0.01 });
     let readings: Vec<f64> = (0..6 * 2100).map(|at| (f64::from(at) * 0.37).sin()).collect();
     let found = |threads: usize| {
         with_threads(threads, || {

@@ -336,7 +336,7 @@ fn corrected_robots_are_geometry_and_a_file_beside() {
     let (mut robot, _) = elbow().giving(&[1, 2], poecal::robot::Gives::All);
     robot.terms.push(poecal::robot::JointTerm {
         joint: 0,
-        term: poecal::robot::Term::Ratio,
+        term: poecal::robot::Term::RATIO,
         coefficient: 1e-3,
     });
     for format in ExportFormat::ALL {

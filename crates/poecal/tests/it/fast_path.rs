@@ -287,7 +287,7 @@ fn kernels_serve_the_kinds_that_they_know() {
         let mut session = Session::new(&robot, seen, &Case { rows: 5, targets: 1, ..Case::default() });
         for parameter in [
             Parameter::ScrewAxis(ScrewAxis { joint: 0, kind }),
-            Parameter::ValueTerm(ValueTerm { joint: 0, kind, term: Term::Offset }),
+            Parameter::ValueTerm(ValueTerm { joint: 0, kind, term: Term::OFFSET }),
             Parameter::TargetPlace(TargetPlace { target: 0 }),
             Parameter::TargetFrame(TargetFrame::new(0)),
             Parameter::DeviceFrame(DeviceFrame::new(0, Vector3::zeros())),

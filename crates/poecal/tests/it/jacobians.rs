@@ -37,7 +37,7 @@ fn parameters(robot: &Robot) -> Vec<(&'static str, Parameter)> {
     ];
     for (joint, it) in robot.joints.iter().enumerate() {
         all.push((it.kind.word(), Parameter::ScrewAxis(ScrewAxis { joint, kind: it.kind })));
-        all.push(("offset", Parameter::ValueTerm(ValueTerm { joint, kind: it.kind, term: Term::Offset })));
+        all.push(("offset", Parameter::ValueTerm(ValueTerm { joint, kind: it.kind, term: Term::OFFSET })));
     }
     all.push(("target place", Parameter::TargetPlace(TargetPlace { target: 0 })));
     all.push(("target frame", Parameter::TargetFrame(TargetFrame::new(0))));

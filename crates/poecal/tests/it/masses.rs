@@ -6,7 +6,7 @@ use poecal::io::calibration_file::{CalibrationFile, Inputs};
 use poecal::io::robot_toml;
 use poecal::io::urdf::{ChainSelection, UrdfDocument};
 use poecal::lie::Pose;
-use poecal::robot::{Body, Gravity, JointTerm, Mass, Moments, Robot, Situation, Statics, Term};
+use poecal::robot::{Body, Gravity, JointTerm, Mass, Moments, Robot, Situation, Statics, Term, TermKind};
 use poecal::simulate::{Kind, Simulation, elbow};
 
 /// A shoulder and an elbow with a cover that is fixed to the forearm, and a cart below the base.
@@ -64,7 +64,7 @@ fn masses_of_a_urdf_pull_as_their_potential_says() {
     // They follow joint offsets that become screws.
     let mut off = heavy.clone();
     off.masses[2].place = off.home.translation;
-    off.terms = vec![JointTerm { joint: 0, term: Term::Offset, coefficient: 0.3 }];
+    off.terms = vec![JointTerm { joint: 0, term: Term::OFFSET, coefficient: 0.3 }];
     let off = off.without_offsets();
     assert!((off.masses[2].place - off.home.translation).norm() < 1e-15 && off.home != heavy.home);
 
@@ -90,7 +90,7 @@ fn masses_of_a_urdf_pull_as_their_potential_says() {
         less[joint] -= step;
         let slope = (potential(&more) - potential(&less)) / (2.0 * step);
         let situation = Situation { values: &at, moments: Some(&moments), factors: &[] };
-        let moment = Term::OwnWeight.model().basis(joint, &situation) * statics.mass_levers_kg_m()[joint];
+        let moment = situation.basis(joint, TermKind::Masses.numbered(0)) * statics.mass_levers_kg_m()[joint];
         println!("{moment:.9} kg m, by differences {slope:.9}");
         // Differences of order 2 over 1e-5.
         assert!((moment - slope).abs() < 1e-8);
@@ -110,7 +110,9 @@ fn masses_are_kept_with_the_corrected_model() {
     let made = Simulation { terms, count: 60, ..Simulation::default() }.run(&nominal, Kind::POSE).unwrap();
     let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default()).unwrap();
     let found = calibration.correction.as_ref().unwrap();
-    assert!(found.robot.terms.iter().any(|it| it.term == Term::OwnWeight && it.coefficient != 0.0));
+    assert!(
+        found.robot.terms.iter().any(|it| it.term == TermKind::Masses.numbered(0) && it.coefficient != 0.0)
+    );
     let text = CalibrationFile::new(&calibration, &made.data, Inputs::default()).to_text().unwrap();
     let read =
         CalibrationFile::parse(&text, "calibration.json").unwrap().corrected().unwrap().robot().unwrap();

@@ -3,7 +3,6 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::grid::CHOSEN;
 use super::left_out::LeftOutPart;
 use super::linear::Linear;
 use crate::robot::{Sizes, TermGroup};
@@ -111,7 +110,7 @@ pub(super) fn choose(linear: &Linear, parts: &[LeftOutPart], configurations: usi
     let mut best = common;
     for _ in 0..SWEEPS {
         let before = best.sizes;
-        for (groups, sizes) in CHOSEN.into_iter().filter(|(groups, _)| linear.has_any(groups)) {
+        for (groups, sizes) in chosen().filter(|(groups, _)| linear.has_any(groups)) {
             for &size in sizes {
                 let mut other = best.sizes;
                 groups.iter().for_each(|&group| other[group] = size);
@@ -137,6 +136,13 @@ pub(super) fn choose(linear: &Linear, parts: &[LeftOutPart], configurations: usi
     }
     let reason = if best.sizes == Sizes::NONE { SizesReason::NoBetter } else { SizesReason::Predict };
     Choice { sizes: best.sizes, reason, tried }
+}
+
+/// Groups whose sizes are chosen in turn, with the sizes that are tried; those of gravity are of one size.
+pub(super) fn chosen() -> impl Iterator<Item = (&'static [TermGroup], &'static [f64])> {
+    static ALL: [TermGroup; TermGroup::ALL.len()] = TermGroup::ALL;
+    let together = ALL.chunk_by(|_, next| next.row().tried.is_empty());
+    together.map(|groups| (groups, groups.first().map_or(&[][..], |it| it.row().tried)))
 }
 
 /// Prior of the choice by so many configurations, of which `few` is the inverse.

@@ -27,7 +27,7 @@ pub struct JointEffect {
     pub joint: String,
     /// The group.
     pub group: TermGroup,
-    /// Largest deviation in the fitted rows, radians or metres ([`TermGroup::unit`]); of a ratio the change each radian.
+    /// Largest deviation in the fitted rows, radians or metres ([`TermGroup::is_of_lengths`]); of a ratio the change each radian.
     pub amplitude: f64,
     /// Its standard deviation.
     pub sigma: f64,
@@ -42,22 +42,11 @@ impl JointEffect {
     #[must_use]
     pub fn words(&self) -> String {
         let JointEffect { joint, group, amplitude, .. } = self;
-        let much = format!("{:.2} {}", 1e3 * amplitude.abs(), group.symbol());
-        match group {
-            TermGroup::Sag => format!("{joint} sags by up to {much} under weight"),
-            TermGroup::Tilt => format!("the bearing or link of {joint} tilts by up to {much} under weight"),
-            TermGroup::Ratio => {
-                let way = if *amplitude < 0.0 { "less" } else { "more" };
-                format!("{joint} turns {much} {way} each radian than it says")
-            }
-            TermGroup::Harmonics => format!("gear or encoder of {joint} errs by up to {much} within a turn"),
-            TermGroup::Wobble => format!("the axis of {joint} wobbles by up to {much} within a turn"),
-            TermGroup::Backlash => format!("{joint} stands off by {much} to the side from which it comes"),
-            TermGroup::Factors => format!("{joint} follows the factors by up to {much}"),
-            TermGroup::Payload => format!("{joint} gives by up to {much} under the payload"),
-            TermGroup::Shift => format!("the bearing or link of {joint} shifts by up to {much} under weight"),
-            TermGroup::Runout => format!("the axis of {joint} runs out by up to {much} within a turn"),
-        }
+        let much = format!("{:.2} {}", 1e3 * amplitude.abs(), group.row().symbols[0]);
+        let way = if *amplitude < 0.0 { "less" } else { "more" };
+        let words = [("{much}", much.as_str()), ("{way}", way), ("{joint}", joint)];
+        let effect = group.row().effect.to_owned();
+        words.into_iter().fold(effect, |effect, (of, word)| effect.replace(of, word))
     }
 
     /// Whether it is more than chance and the prior make.
@@ -227,7 +216,7 @@ impl<'a> Gatherer<'a> {
     fn of(&self, joint: usize, group: TermGroup) -> Vec<Vec<(usize, Term, f64)>> {
         let all = self.model.terms().zip(self.model.groups.iter().zip(self.deviations));
         let mut found: BTreeMap<usize, Vec<(usize, Term, f64)>> = BTreeMap::new();
-        for ((at, term), (own, deviation)) in all {
+        for ((at, term), ((own, _), deviation)) in all {
             let of = self.model.robot.joints[at].give_of.unwrap_or(at);
             if of == joint && *own == group {
                 found.entry(at).or_default().push((at, term, *deviation));

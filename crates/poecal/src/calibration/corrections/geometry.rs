@@ -2,8 +2,8 @@
 
 use std::slice;
 
+use super::choice::chosen;
 use super::choice::weight_of_prior;
-use super::grid::CHOSEN;
 use super::linear::Linear;
 use super::modes::Class;
 use super::unknowns::{estimate, unknowns};
@@ -103,7 +103,7 @@ impl Geometry<'_> {
         let weight = weight_of_prior(configurations);
         let classes: Vec<Class> = match sizes {
             None => {
-                CHOSEN.map(|(groups, sizes)| (groups, sizes.iter().copied().fold(0.0, f64::max))).to_vec()
+                chosen().map(|(groups, sizes)| (groups, sizes.iter().copied().fold(0.0, f64::max))).collect()
             }
             Some(sizes) => {
                 TermGroup::ALL.iter().map(|group| (slice::from_ref(group), sizes[*group])).collect()

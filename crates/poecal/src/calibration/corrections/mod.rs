@@ -6,7 +6,6 @@ mod fit;
 mod found;
 mod geometry;
 mod gravity;
-mod grid;
 mod left_out;
 mod linear;
 mod matrices;

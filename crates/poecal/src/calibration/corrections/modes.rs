@@ -49,7 +49,7 @@ impl Columns {
         classes: &[Class],
         held_station: Option<usize>,
     ) -> Self {
-        let groups: Vec<_> = model.terms().zip(model.groups.iter().zip(model.shares())).collect();
+        let groups: Vec<_> = model.terms().zip(&model.groups).collect();
         let (mut known, mut devices, mut held, mut terms) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
         for (parameter, places) in layout.parameters() {
             let at = |(place, _): &(usize, f64)| *place;

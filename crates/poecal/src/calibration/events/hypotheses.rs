@@ -98,7 +98,7 @@ pub(super) fn hypotheses(
     }
     for (joint, &at) in found.model.places.iter().enumerate() {
         let Some(&kind) = found.estimate.kinds().get(at) else { continue };
-        let term = ValueTerm { joint: at, kind, term: Term::Offset };
+        let term = ValueTerm { joint: at, kind, term: Term::OFFSET };
         let known = free.iter().position(|it| it.value_term().is_some_and(|own| *own == term));
         let at = known.unwrap_or_else(|| place(free, Parameter::ValueTerm(term)));
         all.push(Hypothesis { moved: Moved::Zero(joint), parts: vec![(at, Part::Own)], unknowns: 1 });

@@ -1,15 +1,16 @@
 //! The robot of a calibration file: its joints, and on which bodies joints, targets and instruments stand.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 
-use schemars::JsonSchema;
+use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::{Deserialize, Serialize};
 
 use super::{CalibrationFile, JointEntry, PoseEntry, ScrewEntry, TargetEntry};
 use crate::calibration::CalibratedTarget;
 use crate::error::{Error, ErrorKind, Result};
 use crate::lie::Pose;
-use crate::robot::{Body, JointTerm, Mass, Mount, Robot, Sag, Term};
+use crate::robot::{Body, JointTerm, Mass, Mount, Robot, Term};
 use nalgebra::Vector3;
 
 /// A body of the robot: `"base"`, or `{"link_of": "joint2"}`, the link that this joint moves.
@@ -20,6 +21,23 @@ pub enum BodyEntry {
     Base,
     /// The link that this joint moves.
     LinkOf(String),
+}
+
+/// The name of a term, as a key.
+pub(super) struct TermName;
+
+impl JsonSchema for TermName {
+    fn schema_name() -> Cow<'static, str> {
+        "Term".into()
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        schemars::json_schema!({
+            "type": "string",
+            "pattern": Term::pattern(),
+            "description": "A term of a joint's value.",
+        })
+    }
 }
 
 /// An instrument on the robot.
@@ -93,16 +111,9 @@ impl CalibrationFile {
         for (joint, entry) in self.joints.iter().enumerate() {
             for (&term, &coefficient) in of(entry).1 {
                 if !coefficient.is_finite() {
-                    let (name, term) = (&entry.name, term.model().name());
+                    let name = &entry.name;
                     let message =
                         format!("found {coefficient} as the {term} of joint `{name}`, expected a number");
-                    return Err(Error::new(ErrorKind::Model, message));
-                }
-                if !term.is_of(self.joints.len(), self.robot.factors.len()) {
-                    let (name, joints, factors) = (&entry.name, self.joints.len(), self.robot.factors.len());
-                    let message = format!(
-                        "found the term {term} of joint `{name}`, expected one of the {joints} joints and {factors} factors"
-                    );
                     return Err(Error::new(ErrorKind::Model, message));
                 }
                 robot.terms.push(JointTerm { joint, term, coefficient });
@@ -191,25 +202,10 @@ impl CalibrationFile {
 
     /// Refuses terms of weights that the robot does not carry, and gives that do not stand on their joint.
     fn check_terms(&self, robot: &Robot) -> Result<()> {
-        let weights = robot.gravity.as_ref().map_or(0, |gravity| gravity.weights.len());
         for JointTerm { joint, term, .. } in &robot.terms {
-            let (is_there, needed) = if *term == Term::OwnWeight {
-                (!robot.masses.is_empty(), "masses")
-            } else {
-                (!term.needs_gravity() || weights > 0, "weights")
-            };
-            if !is_there {
+            if let Some(needed) = robot.lacks(*term) {
                 let name = &robot.joints[*joint].name;
-                let message =
-                    format!("found the term {term} of joint `{name}`, expected a robot with {needed}");
-                return Err(Error::new(ErrorKind::Model, message));
-            }
-            if let Term::Sag(Sag { weight }) = term
-                && *weight >= weights
-            {
-                let name = &robot.joints[*joint].name;
-                let message =
-                    format!("found the term {term} of joint `{name}`, expected one of the {weights} weights");
+                let message = format!("found the term {term} of joint `{name}`, expected {needed}");
                 return Err(Error::new(ErrorKind::Model, message));
             }
         }

@@ -7,7 +7,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::alike::SuspectedConfigurationEntry;
-use super::bodies::{BodyEntry, InstrumentEntry, MassEntry, MeasuredEntry};
+use super::bodies::{BodyEntry, InstrumentEntry, MassEntry, MeasuredEntry, TermName};
 use super::changes::CommonDirectionEntry;
 use super::compensation::CompensationEntry;
 use super::corrected::{CorrectedEntry, GravityEntry};
@@ -361,9 +361,11 @@ pub struct JointEntry {
     pub gives: Option<String>,
     /// Coefficients of terms of the joint's value, in radians, metres, or by value: the value is the reading's, plus these terms.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    #[schemars(with = "BTreeMap<TermName, f64>")]
     pub terms: BTreeMap<Term, f64>,
     /// The same of the nominal model.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    #[schemars(with = "BTreeMap<TermName, f64>")]
     pub nominal_terms: BTreeMap<Term, f64>,
 }
 

@@ -464,7 +464,7 @@ impl CalibrationFile {
         let n = entry.unknowns.len();
         // The diagonal of an upper triangle by rows.
         let variance = entry.covariance_m2.get(at * n - at * at.saturating_sub(1) / 2)?;
-        Some(variance.max(0.0).sqrt() / term.model().unit(kind).metres(entry.length_m))
+        Some(variance.max(0.0).sqrt() / kind.unit_of(term).metres(entry.length_m))
     }
 
     /// Names of the unknowns, in the order of the covariance.

@@ -1,7 +1,5 @@
 //! Screws of a product of exponentials, and what no other form says of joints.
 
-use std::borrow::Cow;
-
 use serde::{Deserialize, Serialize};
 
 use super::{Proof, Written, unread};
@@ -96,8 +94,8 @@ struct Beside<'a> {
 #[derive(Serialize)]
 struct BesideTerm<'a> {
     joint: &'a str,
-    term: Cow<'static, str>,
-    formula: Cow<'static, str>,
+    term: String,
+    formula: String,
     coefficient: f64,
 }
 
@@ -109,11 +107,10 @@ pub(super) fn beside(model: &Model) -> Result<Option<String>> {
     }
     let terms = plain.terms.iter().filter_map(|it| {
         let joint = plain.joints.get(it.joint)?;
-        let known = it.term.model();
         Some(BesideTerm {
             joint: &joint.name,
-            term: known.name(),
-            formula: known.formula(),
+            term: it.term.to_string(),
+            formula: it.term.formula(),
             coefficient: it.coefficient,
         })
     });

@@ -10,7 +10,7 @@ use super::numbered::numbered;
 use super::units::{NamedUnit, UnitSource};
 use crate::error::{Error, ErrorKind, Result, distance_within, first_few};
 use crate::io::numbers::LARGEST_NUMBER;
-use crate::robot::{Controller, Factor, ReadingKind, Robot, sum_words};
+use crate::robot::{Controller, FactorReading, ReadingKind, Robot, sum_words};
 use crate::unit::Unit;
 
 /// Names with a meaning in every file, beside those of joints.
@@ -125,7 +125,7 @@ impl<'a> Builder<'a> {
             return Err(Error::new(ErrorKind::Option, message));
         }
         let column = self.text_column(name, "for the factor")?;
-        if name == Factor::PAYLOAD {
+        if name == FactorReading::PAYLOAD {
             self.header.only_unit(column, "kg")?;
         }
         let (name, label, source) = (name.to_owned(), name.to_owned(), InputSource::Column(column));

@@ -44,12 +44,12 @@ pub(super) fn robot(context: &Context, file: &File) -> Result<Robot> {
     }
     for (joint, table) in file.joint.iter().enumerate() {
         for (&term, value) in &table.terms {
-            let found = match term.model().unit(table.kind) {
+            let found = match table.kind.unit_of(term) {
                 Unit::Metre => context.length.to_metres(*value.get_ref()),
                 Unit::Radian => context.angle.to_radians(*value.get_ref()),
                 Unit::One => *value.get_ref(),
             };
-            let of = format!("{} of joint `{}`", term.model().name(), table.name());
+            let of = format!("{term} of joint `{}`", table.name());
             if term.needs_gravity() || !term.is_of(file.joint.len(), 0) {
                 let message = format!(
                     "found the term {of}, expected one of offset, ratio, sin1, cos1, …, or coupled1 to coupled{}: weights are in a calibration.json",

@@ -88,8 +88,7 @@ fn joint_keys(joint: &Joint) -> String {
 /// The terms of a joint's value.
 fn term_keys(robot: &Robot, joint: usize) -> String {
     let own = robot.terms.iter().filter(|it| it.joint == joint);
-    let keys: Vec<String> =
-        own.map(|it| format!("{} = {}", it.term.model().name(), shortest(it.coefficient))).collect();
+    let keys: Vec<String> = own.map(|it| format!("{} = {}", it.term, shortest(it.coefficient))).collect();
     if keys.is_empty() { String::new() } else { format!(", terms = {{ {} }}", keys.join(", ")) }
 }
 

@@ -18,7 +18,7 @@ pub(in crate::io) fn holdable<'a>(robot: &'a Robot, notes: &mut Vec<String>) -> 
     if !plain.terms.is_empty() {
         let name = |it: &JointTerm| {
             let joint = plain.joints.get(it.joint).map_or("", |joint| joint.name.as_str());
-            format!("{joint}.{}", it.term.model().name())
+            format!("{joint}.{}", it.term)
         };
         let left: Vec<String> = plain.terms.iter().map(name).collect();
         plain.terms.clear();

@@ -113,7 +113,7 @@ fn tried(found: &CorrectedEntry) -> Markup {
     let groups: Vec<TermGroup> = TermGroup::ALL.into_iter().filter(|group| is_tried(&group.name())).collect();
     let names: Vec<&str> = groups.iter().map(|group| group.name()).collect();
     let heads: Vec<String> =
-        groups.iter().map(|group| format!("{}, {}", group.name(), group.symbol_of_sizes())).collect();
+        groups.iter().map(|group| format!("{}, {}", group.name(), group.row().symbols[1])).collect();
     let head: Vec<&str> =
         std::iter::once("left out, of geometry's error").chain(heads.iter().map(String::as_str)).collect();
     let mut table = HtmlTable::new(

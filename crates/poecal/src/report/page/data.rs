@@ -257,7 +257,7 @@ impl ResidualData {
 /// Factor and shift of a joint's value by its terms, as a straight line through the values at 0 and 1.
 fn straight(terms: &BTreeMap<Term, f64>) -> Option<[f64; 2]> {
     let at = |value: f64| -> f64 {
-        value + terms.iter().map(|(term, c)| c * term.model().basis(0, &Situation::of(&[value]))).sum::<f64>()
+        value + terms.iter().map(|(term, c)| c * Situation::of(&[value]).basis(0, *term)).sum::<f64>()
     };
     (!terms.is_empty()).then(|| [at(1.0) - at(0.0), at(0.0)])
 }

@@ -240,7 +240,7 @@ fn corrected_words(found: &CorrectedEntry) -> String {
         let size = *found.sizes.get(group.name())?;
         let shown = format!("{:.4}", 1e3 * size);
         let shown = shown.trim_end_matches('0').trim_end_matches('.');
-        (size > 0.0).then(|| format!("{} {shown} {}", group.name(), group.symbol_of_sizes()))
+        (size > 0.0).then(|| format!("{} {shown} {}", group.name(), group.row().symbols[1]))
     });
     let used = used.collect::<Vec<_>>().join(", ");
     let chosen = found.tried.iter().find(|it| it.sizes == found.sizes);
@@ -258,14 +258,13 @@ fn corrected_words(found: &CorrectedEntry) -> String {
 pub(super) fn terms(file: &CalibrationFile) -> impl Iterator<Item = (String, String)> {
     file.joints.iter().flat_map(|joint| {
         joint.terms.iter().map(|(term, &coefficient)| {
-            let (model, name) = (term.model(), &joint.name);
-            let unit = model.unit(joint.kind);
+            let unit = joint.kind.unit_of(*term);
             let sign = if coefficient < 0.0 { "-" } else { "" };
-            let name = format!("{name}.{}", model.name());
+            let name = format!("{}.{term}", joint.name);
             let value = format!("{sign}{}", number(unit.shown(coefficient.abs())));
             // The prior alone tells as much as half its own width.
             let (spread, open) = match file.sigma(&name) {
-                Some(sigma) if sigma > 0.5 * model.deviation(joint.kind) => {
+                Some(sigma) if sigma > 0.5 * joint.kind.deviation_of(*term) => {
                     (String::new(), " (not determined)")
                 }
                 Some(sigma) => (format!(" ± {}", number(unit.shown(sigma))), ""),

@@ -161,7 +161,7 @@ fn offsets_beside_screws_are_structure_and_not_a_defect_of_the_data() {
     let made = Simulation { count: 60, ..Simulation::default() }.run(&elbow(), Kind::POSE).unwrap();
     let with_offsets = Formulation {
         joint_parameters: |kinds| {
-            let offset = |(joint, &kind)| Parameter::ValueTerm(ValueTerm { joint, kind, term: Term::Offset });
+            let offset = |(joint, &kind)| Parameter::ValueTerm(ValueTerm { joint, kind, term: Term::OFFSET });
             screw_axes(kinds).into_iter().chain(kinds.iter().enumerate().map(offset)).collect()
         },
         words: FormulationWords { formulation: "offsets too", ..FormulationWords::default() },

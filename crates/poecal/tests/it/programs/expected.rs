@@ -17,7 +17,7 @@ use std::path::{Path, PathBuf};
 use nalgebra::Vector3;
 use poecal::compensate::{Inverse, ProgramOptions, compensate_program};
 use poecal::lie::{Pose, Screw, rotation};
-use poecal::robot::{Harmonic, JointTerm, Term};
+use poecal::robot::{JointTerm, Term, TermKind};
 use poecal::{Joint, Limits, Robot};
 
 /// Numbers of a target that the test has read: their bytes and values.
@@ -73,9 +73,9 @@ pub(super) fn actual(nominal: &Robot) -> Robot {
             * Pose::from_translation(-point);
         joint.screw = joint.screw.transformed(&moved);
         let offset = [0.002, -0.0015, 0.003, -0.001, 0.0025, -0.002][index];
-        out.terms.push(JointTerm { joint: index, term: Term::Offset, coefficient: offset });
-        let wave = Harmonic { order: 1, cosine: index % 2 == 0 };
-        out.terms.push(JointTerm { joint: index, term: Term::Harmonic(wave), coefficient: 2e-4 * sign });
+        out.terms.push(JointTerm { joint: index, term: Term::OFFSET, coefficient: offset });
+        let kind = if index % 2 == 0 { TermKind::Cosine } else { TermKind::Sine };
+        out.terms.push(JointTerm { joint: index, term: kind.numbered(1), coefficient: 2e-4 * sign });
     }
     out.home = out.home
         * Pose::new(rotation::exp(&Vector3::new(1e-3, -5e-4, 2e-4)), Vector3::new(1e-4, 2e-4, -3e-4));

@@ -7,7 +7,7 @@
 use nalgebra::Vector3;
 use poecal::compensate::{Inverse, Language, ProgramOptions, compensate_program};
 use poecal::lie::{Pose, Screw, Twist, rotation};
-use poecal::robot::{Harmonic, JointTerm, Term};
+use poecal::robot::{JointTerm, Term, TermKind};
 use poecal::{Joint, Limits, Robot};
 
 /// A program, and what is expected of it.
@@ -197,9 +197,9 @@ pub(super) fn actual(nominal: &Robot) -> Robot {
         let w = Vector3::new((5.0 * k).cos(), (k + 3.0).sin(), (4.0 * k).cos()) * 5e-4;
         joint.screw = joint.screw.transformed(&Pose::exp(&Twist::new(v, w)));
         let coefficient = 2e-3 * (k + 0.5).sin();
-        out.terms.push(JointTerm { joint: at, term: Term::Offset, coefficient });
+        out.terms.push(JointTerm { joint: at, term: Term::OFFSET, coefficient });
     }
-    let wave = Term::Harmonic(Harmonic { order: 1, cosine: false });
+    let wave = TermKind::Sine.numbered(1);
     out.terms.push(JointTerm { joint: 1, term: wave, coefficient: 8e-4 });
     out
 }
