@@ -141,7 +141,7 @@ impl<'a> Corrected<'a> {
         {
             let is_of =
                 |kind: &TermKind| kind.row().argument == argument && kind.row().is_numbered() == (number > 0);
-            let terms = TermKind::all().into_iter().filter(is_of).map(|kind| kind.numbered(number));
+            let terms = TermKind::ALL.into_iter().filter(is_of).map(|kind| kind.numbered(number));
             found.extend(terms.filter_map(|term| Some((term, self.group(term)?, self.share(term)))));
         }
         found
