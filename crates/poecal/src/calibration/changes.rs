@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::finished::Finished;
+use super::summary::Finished;
 use crate::analysis::PLAUSIBLE;
 use crate::estimate::Session;
 use crate::gauge::{Deviation, screw_motions};
@@ -43,7 +43,7 @@ pub(super) fn joint_changes(
 ) -> Vec<(JointChange, ChangeBySteps)> {
     let session = &finished.view.session;
     let Session { robot: nominal, length_m, .. } = *session;
-    let calibrated = &finished.models.calibrated;
+    let calibrated = finished.view.estimate;
     let actual = Robot { terms: calibrated.terms.clone(), ..nominal.with_screws(&calibrated.screws()) };
     let base = if session.base_free() { End::Free } else { End::Kept };
     let Ok(changes) = Changes::of(nominal, &actual, base) else {

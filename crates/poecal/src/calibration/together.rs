@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector, Vector3};
 
-use super::finished::Finished;
+use super::summary::Finished;
 use crate::estimate::{Session, sample_rows};
 use crate::offsets::{ChangeBySteps, JointChange, direction};
 use crate::robot::JointKind;

@@ -3,7 +3,7 @@
 use super::CoverageCheck;
 use super::changes::{joint_changes, sigmas};
 use super::expected::{Expectations, expectations_beside};
-use super::finished::Finished;
+use super::summary::Finished;
 use super::suspicion::{JointCorrection, suspicions};
 use super::together::{CommonDirection, common_directions, held_sigmas};
 use crate::analysis::{JointCoverage, coverage};
@@ -12,7 +12,7 @@ use crate::gauge::screw_deviations;
 use crate::measurement::Quantity;
 use crate::start::{Registration, register_again};
 use crate::uncertainty::{
-    Bootstrap, CrossValidation, Discrepancy, Shares, Uncertainty, bootstrap, cross_validate, discrepancy,
+    Bootstrap, CrossValidation, Discrepancy, Shares, Uncertainty, bootstrap, discrepancy,
 };
 
 /// Rows by which the effect of each correction is computed.
@@ -48,10 +48,9 @@ pub struct Trust {
     pub common: Vec<CommonDirection>,
 }
 
-/// Judges a finished fit.
-pub(super) fn trust(finished: &Finished<'_>) -> Trust {
+/// Judges a finished fit, beside its cross-validation.
+pub(super) fn trust(finished: &Finished<'_>, cross_validation: Option<CrossValidation>) -> Trust {
     let view = &finished.view;
-    let cross_validation = cross_validate(view, finished.seed);
     let found = discrepancy(view, finished.normal, finished.remainder, cross_validation.as_ref());
     let mut uncertainty = uncertainty(finished, &found);
     let coverage = coverage(&view.session, view.rows);
@@ -87,7 +86,7 @@ fn joints(
 ) -> (Vec<JointCorrection>, Vec<CommonDirection>) {
     let view = &finished.view;
     let Session { robot, length_m, .. } = view.session;
-    let calibrated = &finished.models.calibrated;
+    let calibrated = finished.view.estimate;
     let deviations = screw_deviations(calibrated, robot, finished.layout, length_m, view.session.base_free());
     let nominal: Vec<_> = robot.joints.iter().map(|joint| joint.screw).collect();
     let rows = sample_rows(view.rows, EFFECT_SAMPLE);

@@ -1,6 +1,7 @@
 //! What joints really do beyond geometry: terms of their values and of their bearings, fitted beside the screws with priors (theory.md §6).
 
 mod choice;
+mod correct;
 mod effects;
 mod fit;
 mod found;
@@ -18,9 +19,10 @@ mod worse;
 
 pub(super) use choice::weight_of_prior;
 pub use choice::{SizesReason, TriedSizes};
+pub use correct::correct;
 pub use effects::{Effects, JointEffect, JointErrorPart, JointErrors};
-pub use fit::correct;
-pub use found::Correction;
+pub(super) use fit::fit;
+pub use found::{CorrectedFit, Correction};
+pub(super) use geometry::Geometry;
 pub(super) use linear::whitened_rows;
-pub(super) use suspects::suspected;
 pub(super) use unknowns::{priors, unknowns};

@@ -6,7 +6,7 @@ use super::hypotheses::Moved;
 use super::names::{DEVICE, family, next_of};
 use super::search::Step;
 use super::told::{Event, EventKind};
-use crate::calibration::Calibration;
+use crate::calibration::corrections::Geometry;
 use crate::measurement::Dataset;
 use crate::robot::{MEASURED, Robot};
 
@@ -25,8 +25,8 @@ pub(super) enum Happened {
 
 impl Happened {
     /// Whether all rows of it are suspected as outliers anyway.
-    pub(super) fn is_suspected(&self, best: &Calibration) -> bool {
-        matches!(self, Happened::Wrong(rows) if rows.iter().all(|row| best.robustness.suspects_row(*row)))
+    pub(super) fn is_suspected(&self, best: &Geometry<'_>) -> bool {
+        matches!(self, Happened::Wrong(rows) if rows.iter().all(|row| best.suspects_row(*row)))
     }
 
     /// Whether the session without it can be better by much.
@@ -39,9 +39,13 @@ impl Happened {
 }
 
 /// An event with the sentence of it where it is repaired, and where it is only suspected.
-pub(super) struct Said(pub(super) Event, String);
+pub(super) struct Said(Event, String);
 
 impl Said {
+    pub(super) fn repaired(self, [before, after]: [f64; 2], residuals: Vec<[f64; 3]>) -> Event {
+        Event { error_before_mm: Some(before), error_after_mm: Some(after), residuals, ..self.0 }
+    }
+
     pub(super) fn suspected(self, before: f64, after: Option<f64>) -> Event {
         let Said(event, statement) = self;
         Event { statement, error_before_mm: Some(before), error_after_mm: after, ..event }

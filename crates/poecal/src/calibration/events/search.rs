@@ -6,7 +6,7 @@ use super::early::early;
 use super::hypotheses::{Columns, Moved};
 use super::rows::{Optimum, Rows};
 use super::wrong::without_wrong;
-use crate::calibration::{Calibration, CalibrationOptions, Correction};
+use crate::calibration::corrections::{CorrectedFit, Geometry};
 use crate::linalg;
 use crate::measurement::Dataset;
 
@@ -24,17 +24,6 @@ const EVIDENT: f64 = 60.0;
 const OF_TIME: f64 = 2.0;
 /// Fewest consecutive runs that may be wrong because of a step.
 const BLOCK: usize = 3;
-
-/// A finished calibration whose session is searched.
-#[derive(Clone, Copy)]
-pub(super) struct Search<'a> {
-    pub(super) calibration: &'a Calibration,
-    pub(super) found: &'a Correction,
-    pub(super) data: &'a Dataset,
-    pub(super) options: &'a CalibrationOptions,
-    /// The rows in the order measured.
-    pub(super) rows: &'a [u32],
-}
 
 /// A step.
 #[derive(Clone, Debug)]
@@ -57,7 +46,7 @@ pub(super) struct Step {
 
 /// What was found.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Events {
+pub(super) struct Shown {
     /// Rows of configurations that are wrong.
     pub(super) wrong: Vec<u32>,
     /// An evident step.
@@ -66,10 +55,10 @@ pub(super) struct Events {
     pub(super) early: Option<String>,
 }
 
-/// Searches a session.
-pub(super) fn search(search: &Search<'_>) -> Option<Events> {
-    let Search { calibration, found, data, options, rows } = *search;
-    let rows = Rows::new(calibration, found, data, options, rows)?;
+/// Searches a session, its rows in the order measured, by its corrected model.
+pub(super) fn search(geometry: &Geometry<'_>, found: &CorrectedFit, rows: &[u32]) -> Option<Shown> {
+    let rows = Rows::new(geometry, found, rows)?;
+    let data = geometry.session.data;
     if rows.runs.len() < FEWEST {
         return None;
     }
@@ -88,8 +77,9 @@ pub(super) fn search(search: &Search<'_>) -> Option<Events> {
     };
     let wrong = if step.is_some() { isolated(&is_wrong) } else { is_wrong };
     let wrong = of_rows(&wrong);
-    let early = step.is_none().then(|| early(&rows, &optimum, &single, data, &calibration.nominal)).flatten();
-    Some(Events { wrong, step, early })
+    let early =
+        step.is_none().then(|| early(&rows, &optimum, &single, data, geometry.session.robot)).flatten();
+    Some(Shown { wrong, step, early })
 }
 
 /// Those that are wrong without being one of several in a row.

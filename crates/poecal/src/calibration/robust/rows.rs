@@ -58,16 +58,6 @@ impl Robustness {
         robustness
     }
 
-    /// Rows of which others are suspected than before.
-    pub(in crate::calibration) fn differs(&self, suspected: &[bool]) -> bool {
-        self.rows.iter().zip(suspected).any(|(row, suspected)| row.suspected != *suspected)
-    }
-
-    /// Whether a row is suspected.
-    pub(in crate::calibration) fn suspects_row(&self, row: u32) -> bool {
-        self.rows.get(row as usize).is_some_and(|it| it.suspected)
-    }
-
     /// The suspected rows, in the order of the data.
     pub fn suspects(&self) -> impl Iterator<Item = u32> {
         let rows = self.rows.iter().enumerate().filter(|(_, row)| row.suspected);
