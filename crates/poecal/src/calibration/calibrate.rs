@@ -24,24 +24,6 @@ pub fn calibrate(robot: &Robot, data: &Dataset, options: &CalibrationOptions) ->
 /// that are left out ([`CalibrationOptions::repair`]); reports each stage as it begins. All that belongs to the calibration belongs to
 /// [`Repaired::data`].
 ///
-/// ```
-/// use poecal::calibration::{CalibrationOptions, EventKind, calibrate_repairing};
-/// use poecal::measurement::Measurement;
-/// use poecal::simulate::{Kind, Simulation, elbow};
-/// let mut made = Simulation { count: 80, noise_position_m: 5e-5, ..Simulation::default() }.run(&elbow(), Kind::Point)?;
-/// // Somebody leans on the tracker.
-/// for row in &mut made.data.observations[40..] {
-///     if let Measurement::Point(seen) = &mut row.measurement {
-///         seen.position.x += 2e-3;
-///     }
-/// }
-/// let found = calibrate_repairing(&made.nominal, &made.data, &CalibrationOptions::default(), &mut |_| {})?;
-/// let [moved] = &found.calibration.repairs[..] else { panic!("{:?}", found.calibration.suspicions) };
-/// assert!(moved.kind == EventKind::Device && moved.from_row == 41);
-/// assert!((moved.size_mm.unwrap_or(0.0) - 2.0).abs() < 0.3);
-/// # Ok::<(), poecal::Error>(())
-/// ```
-///
 /// # Errors
 /// As [`calibrate`].
 pub fn calibrate_repairing<'a>(
@@ -71,11 +53,11 @@ fn calibrated<'a>(
     progress(Stage::Fit);
     // A loop where several instruments have different noises: fit, noises, fit.
     let fit = run.fit(start)?;
-    if run.corrections != Corrections::Off {
+    if fit.run.corrections != Corrections::Off {
         progress(Stage::Corrections);
     }
     // A loop where the corrected model suspects other rows than geometry: terms, rows, fit, terms.
-    let mut found = run.correct(fit)?;
+    let mut found = fit.correct()?;
     // A loop over sessions where something happened: search, session as it would be without, its fit.
     let events = searches.then(|| repair(&mut found));
     progress(Stage::Analysis);

@@ -6,6 +6,7 @@ mod accuracy;
 mod assess;
 mod blocks;
 mod calibrate;
+mod calibrated;
 mod changes;
 mod corrected;
 mod corrections;
@@ -29,6 +30,7 @@ mod options;
 mod placed;
 mod refused;
 mod repeatability;
+mod restart;
 mod result;
 mod robust;
 mod rounding;
@@ -39,6 +41,7 @@ mod stage;
 mod stations;
 mod summary;
 mod suspicion;
+mod task;
 mod together;
 mod tolerance;
 mod trust;
@@ -59,7 +62,6 @@ pub(crate) use blocks::names;
 pub use calibrate::{calibrate, calibrate_repairing};
 pub use corrections::{
     CorrectedFit, Correction, Effects, JointEffect, JointErrorPart, JointErrors, SizesReason, TriedSizes,
-    correct,
 };
 pub use coverage_check::{
     CoverageCheck, InSampledRange, JudgedError, JudgedRow, PartCoverage, PredictedUncertainty, Promise,

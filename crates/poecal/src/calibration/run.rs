@@ -4,21 +4,16 @@ use std::borrow::Cow;
 use std::sync::Arc;
 
 use super::blocks::refuse_frames;
-use super::corrections::Geometry;
 use super::count::check_count;
-use super::fit::Task;
-use super::instrument_noise::{ROUNDS, noise_ratios};
-use super::located::located;
+use super::found::Start;
 use super::refused::allowed_corrections;
-use super::robust::{self, RobustFit};
 use super::stations::{check_length, check_stations};
 use super::{
-    CalibrationOptions, Corrections, DeviceFrameKnowledge, Formulation, NoiseSource, Robust, delivered,
-    estimate_noise, noise, split_rows,
+    CalibrationOptions, Corrections, DeviceFrameKnowledge, NoiseSource, delivered, estimate_noise, noise,
+    split_rows,
 };
 use crate::error::Result;
 use crate::estimate::{Estimate, Packed, Session, Unknowns};
-use crate::gauge;
 use crate::measurement::{Dataset, Noise, PoseResidual};
 use crate::problem::Prior;
 use crate::robot::{Robot, TermGroup, Tolerance};
@@ -47,24 +42,6 @@ pub(super) struct Run<'a> {
     pub(super) left_out: Vec<u32>,
     length_m: f64,
     device_free: bool,
-}
-
-/// Device frame and targets with nominal screws, and the noise that they leave.
-#[derive(Clone)]
-pub(super) struct Start {
-    pub(super) registered: Estimate,
-    noise: Noise,
-    source: NoiseSource,
-}
-
-/// The screws fitted, and every row judged by the fit.
-pub(super) struct CalibratedFit {
-    pub(super) start: Start,
-    pub(super) robust: RobustFit,
-    /// Noise of each instrument in units of the first one's; empty if all are alike.
-    pub(super) noise_ratios: Vec<Noise>,
-    /// The calibrated model: the fit in the nominal base frame, with the frames of all stations.
-    pub(super) calibrated: Estimate,
 }
 
 impl<'a> Run<'a> {
@@ -136,21 +113,6 @@ impl<'a> Run<'a> {
         threads::in_pool(self.data.len(), step)
     }
 
-    /// A fit, as corrections begin with it.
-    pub(super) fn geometry<'s>(&'s self, fit: &'s CalibratedFit) -> Geometry<'s> {
-        Geometry {
-            session: self.session(&fit.noise_ratios),
-            options: &self.options,
-            estimate: &fit.calibrated,
-            noise: fit.robust.fitted.noise,
-            noise_source: fit.robust.fitted.noise_source,
-            loss: fit.robust.loss,
-            judged: &fit.robust.judged.rows,
-            fit_rows: &self.fit_rows,
-            held_out_rows: &self.held_out_rows,
-        }
-    }
-
     pub(super) fn registration<'s>(
         &'s self,
         session: Session<'s>,
@@ -176,64 +138,6 @@ impl<'a> Run<'a> {
             let registered = register_again(&of(noise).weighed_by(&registered), &registered);
             Start { registered, noise, source }
         })
-    }
-
-    /// Fits the screws; where several instruments have different noises, again with these until they do not change.
-    pub(super) fn fit(&self, start: Start) -> Result<CalibratedFit> {
-        let mut ratios = Vec::new();
-        let mut fit = self.fit_with(&ratios, &start, self.options.robust)?;
-        let is_open = start.source == NoiseSource::Estimated && self.data.station_count() > 1;
-        for _ in 0..if is_open { ROUNDS } else { 0 } {
-            let Some(found) = noise_ratios(&self.session(&ratios), &self.fit_rows, &fit) else { break };
-            ratios = found;
-            let again = Start { noise: fit.fitted.noise, ..start.clone() };
-            fit = self.fit_with(&ratios, &again, self.options.robust)?;
-        }
-        let calibrated = self.calibrated(&fit, &ratios);
-        Ok(CalibratedFit { start, robust: fit, noise_ratios: ratios, calibrated })
-    }
-
-    /// The fit with other rows suspected; of all rows at full weight where none is.
-    pub(super) fn suspecting(&self, fit: CalibratedFit, suspected: &[bool]) -> Result<CalibratedFit> {
-        if suspected.contains(&true) {
-            return Ok(CalibratedFit { robust: fit.robust.suspecting(suspected), ..fit });
-        }
-        let robust = self.fit_with(&fit.noise_ratios, &fit.start, Robust::Off)?.suspecting(suspected);
-        Ok(CalibratedFit { calibrated: self.calibrated(&robust, &fit.noise_ratios), robust, ..fit })
-    }
-
-    /// One fit of the screws.
-    fn fit_with(&self, ratios: &[Noise], start: &Start, robust: Robust) -> Result<RobustFit> {
-        let session = self.session(ratios);
-        let Start { registered, noise, source } = start;
-        let options = CalibrationOptions { robust, ..self.options.clone() };
-        let (rows, prior) = (&self.fit_rows, self.prior.as_ref().map(|prior| (prior, 1.0)));
-        let task = Task { session, rows, weights: None, prior, options: &options };
-        self.in_pool(|| {
-            if !self.left_out.is_empty() {
-                return robust::fit_without(&task, registered, (*noise, *source), &self.left_out);
-            }
-            robust::fit(&task, &self.registration(session, rows, *noise, true), registered, *source)
-        })
-    }
-
-    /// The calibrated model of a fit.
-    fn calibrated(&self, fit: &RobustFit, ratios: &[Noise]) -> Estimate {
-        let session = self.session(ratios);
-        // Offsets that were asked for stay; those of a formulation are a way to write the screws.
-        let found = if self.options.formulation == Formulation::default() {
-            fit.fitted.estimate.clone()
-        } else {
-            fit.fitted.estimate.without_offsets()
-        };
-        let found = if session.base_free() {
-            let targets = &self.delivered.base_from_target;
-            let motion = gauge::base_motion(&found, &self.robot, targets, self.length_m);
-            found.rebased(&motion)
-        } else {
-            found
-        };
-        located(&session, &self.fit_rows, &found, fit.fitted.noise).into_owned()
     }
 }
 

@@ -1,11 +1,12 @@
 //! What residuals show beside the fit: mistakes in the input, changes during the session, noise that does not fit.
 
+use super::calibrated::CalibratedFit;
 use super::doubts::doubts;
 use super::figures::Figures;
 use super::fit::is_suspicious;
 use super::moves::{ChangeSearch, FrameSearch, FramesApart, Moved, frames_apart, moved};
 use super::noise_doubts::{NoiseDoubt, noise_doubts};
-use super::run::{CalibratedFit, Run};
+use super::run::Run;
 use super::summary::FitSummary;
 use super::{Accuracy, CalibratedTarget, Robustness};
 use crate::estimate::{Estimate, Session};
@@ -45,25 +46,19 @@ impl Signs {
     }
 }
 
-impl Run<'_> {
+impl CalibratedFit<'_> {
     /// Looks for signs of mistakes and changes; for steps and drifts only if `finds_moves`.
-    pub(super) fn signs(
-        &self,
-        fit: &CalibratedFit,
-        summary: &FitSummary,
-        figures: &Figures,
-        finds_moves: bool,
-    ) -> Signs {
+    pub(super) fn signs(&self, summary: &FitSummary, figures: &Figures, finds_moves: bool) -> Signs {
         let Figures { accuracy, robustness, .. } = figures;
-        let apart = self.frames_apart(fit, accuracy);
+        let apart = self.frames_apart(accuracy);
         let diagnosis = match &apart {
             Some(apart) => self.diagnosis(&apart.data, &apart.estimate, None),
             None => {
-                let believed = fit.robust.loss.map(|_| &summary.kept[..]);
-                self.diagnosis(&self.data, &fit.calibrated, believed)
+                let believed = self.robust.robustness.loss.map(|_| &summary.kept[..]);
+                self.diagnosis(&self.run.data, &self.estimate, believed)
             }
         };
-        let of_steps = || finds_moves.then(|| self.moved(fit)).flatten();
+        let of_steps = || finds_moves.then(|| self.moved()).flatten();
         let moved = apart.as_ref().map(FramesApart::moved).or_else(of_steps);
         let input = self.input_doubts(accuracy, robustness, moved.as_ref());
         Signs { diagnosis, moved, input, noise: noise_doubts(&summary.remainder, figures.lag_one()) }
@@ -72,10 +67,10 @@ impl Run<'_> {
     /// Mistakes in all rows, held-out ones too: shifted rows show best in an unbroken series. After a robust fit first in the kept rows,
     /// since single wrong ones hide mistakes in all.
     fn diagnosis(&self, data: &Dataset, calibrated: &Estimate, believed: Option<&[u32]>) -> Vec<Diagnosis> {
-        if !self.options.diagnose {
+        if !self.run.options.diagnose {
             return Vec::new();
         }
-        let Session { robot, device_free, .. } = self.session(&[]);
+        let Session { robot, device_free, .. } = self.session();
         let options = DiagnosisOptions { device_free, calibrated: Some(calibrated) };
         let in_all = || diagnose(robot, data, &data.all_rows(), &options);
         let Some(believed) = believed else { return in_all() };
@@ -100,33 +95,33 @@ impl Run<'_> {
             return Vec::new();
         }
         let (rows, errors) = match &robustness.training_rest {
-            Some(rest) if !robustness.suspects_many() => (robustness.rest(&self.fit_rows), rest),
-            _ => (self.fit_rows.clone(), &accuracy.training),
+            Some(rest) if !robustness.suspects_many() => (robustness.rest(&self.run.fit_rows), rest),
+            _ => (self.run.fit_rows.clone(), &accuracy.training),
         };
-        doubts(&self.data, &rows, &errors.registered, self.options.frame)
+        doubts(&self.run.data, &rows, &errors.registered, self.run.options.frame)
     }
 
     /// Different device frames, if a fit with one has larger errors than a robot's own.
-    fn frames_apart(&self, fit: &CalibratedFit, accuracy: &Accuracy) -> Option<FramesApart> {
+    fn frames_apart(&self, accuracy: &Accuracy) -> Option<FramesApart> {
         let left_m = accuracy.training.calibrated.leading_m();
-        let search = self.frame_search(fit, left_m);
+        let search = self.frame_search(left_m);
         let is_open = search.session.base_free() && is_suspicious(left_m, search.session.length_m);
         is_open.then(|| frames_apart(&search)).flatten()
     }
 
-    fn frame_search<'s>(&'s self, fit: &'s CalibratedFit, left_m: f64) -> FrameSearch<'s> {
-        let (session, noise) = (self.session(&fit.noise_ratios), fit.robust.fitted.noise);
-        FrameSearch { session, rows: &self.fit_rows, noise, options: &self.options, left_m }
+    fn frame_search(&self, left_m: f64) -> FrameSearch<'_> {
+        let (session, noise, Run { fit_rows, options, .. }) = (self.session(), self.noise(), &self.run);
+        FrameSearch { session, rows: fit_rows, noise, options, left_m }
     }
 
     /// Change point or drift of the session. Rows held out by chance belong to it as well; rows with a stated set may belong to another.
-    fn moved(&self, fit: &CalibratedFit) -> Option<Moved> {
-        let search = self.frame_search(fit, f64::INFINITY);
-        let is_stated = self.data.observations.iter().any(|row| row.set.is_some());
-        let rows = if is_stated { self.fit_rows.clone() } else { self.data.all_rows() };
+    fn moved(&self) -> Option<Moved> {
+        let search = self.frame_search(f64::INFINITY);
+        let is_stated = self.run.data.observations.iter().any(|row| row.set.is_some());
+        let rows = if is_stated { self.run.fit_rows.clone() } else { self.run.data.all_rows() };
         // Least squares take a part of a move into the screws; a robust loss does not.
-        let again = (search.session.base_free() && fit.robust.loss.is_none()).then_some(&search);
-        moved(&ChangeSearch { session: search.session, estimate: &fit.calibrated, rows: &rows, again })
+        let again = (search.session.base_free() && self.robust.robustness.loss.is_none()).then_some(&search);
+        moved(&ChangeSearch { session: search.session, estimate: &self.estimate, rows: &rows, again })
     }
 }
 

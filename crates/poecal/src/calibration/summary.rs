@@ -1,10 +1,9 @@
 //! Inputs of the analysis after a fit.
 
-use super::corrections::Geometry;
+use super::calibrated::CalibratedFit;
 use super::fit::minimal;
 use super::noise::is_stated;
-use super::robust::registrable;
-use super::run::{CalibratedFit, Run};
+use super::robust::RobustFit;
 use super::{CalibrationOptions, Formulation};
 use crate::estimate::{Estimate, Session};
 use crate::measurement::{ByQuantity, Noise};
@@ -29,15 +28,6 @@ pub(super) struct FitSummary {
     noise_is_stated: ByQuantity<bool>,
     /// Variance of the whitened residuals.
     variance: f64,
-}
-
-/// A summary with the session and the model that it is of.
-pub(super) struct Finished<'a> {
-    pub(super) view: View<'a>,
-    pub(super) layout: &'a Layout,
-    pub(super) normal: &'a Normal,
-    pub(super) remainder: &'a Remainder,
-    pub(super) seed: u64,
 }
 
 impl FitSummary {
@@ -74,37 +64,26 @@ impl FitSummary {
         View { session, rows: kept, free, noise, noise_is_stated, prior, variance, estimate }
     }
 
-    pub(super) fn of<'a>(&'a self, geometry: &Geometry<'a>) -> Finished<'a> {
-        let view = self.view(geometry.session, geometry.estimate);
-        let FitSummary { layout, normal, remainder, .. } = self;
-        Finished { view, layout, normal, remainder, seed: geometry.options.seed }
-    }
-
     /// Cross-validation of the fit.
-    pub(super) fn cross_validated(&self, geometry: &Geometry<'_>) -> Option<CrossValidation> {
-        cross_validate(&self.view(geometry.session, geometry.estimate), geometry.options.seed)
+    pub(super) fn cross_validated(&self, fit: &CalibratedFit<'_>) -> Option<CrossValidation> {
+        cross_validate(&self.view(fit.session(), &fit.estimate), fit.run.options.seed)
     }
-}
 
-impl Run<'_> {
-    /// What the rows of a fit say of its unknowns.
-    pub(super) fn summary(&self, of: &CalibratedFit) -> FitSummary {
-        let (session, is_robust) = (self.session(&of.noise_ratios), of.robust.loss.is_some());
-        let (fitted, calibrated) = (&of.robust.fitted, &of.calibrated);
-        let kept = if is_robust {
-            registrable(&of.robust.judged.rows, &self.fit_rows)
-        } else {
-            self.fit_rows.clone()
-        };
-        let is_usual = self.options.formulation == Formulation::default();
+    /// The summary of a fit.
+    pub(super) fn of(fit: &CalibratedFit<'_>) -> Self {
+        let CalibratedFit { run, robust: RobustFit { fitted, robustness }, estimate, .. } = fit;
+        let (session, is_robust) = (fit.session(), robustness.loss.is_some());
+        let kept = if is_robust { robustness.registrable(&run.fit_rows) } else { run.fit_rows.clone() };
+        let is_usual = run.options.formulation == Formulation::default();
         let (layout, normal) = if (is_usual || fitted.layout.is_minimal()) && !is_robust {
             (fitted.layout.clone(), fitted.normal.clone())
         } else {
-            minimal(session, &kept, calibrated, fitted.noise)
+            minimal(session, &kept, estimate, fitted.noise)
         };
-        let prior = PriorInformation::new(self.prior.as_ref(), calibrated, &layout, session.length_m);
-        let of = ((&session, calibrated), (layout, normal));
-        let mut summary = FitSummary::new(of.0, kept, of.1, prior, fitted.noise, &self.options);
+        let prior = PriorInformation::new(run.prior.as_ref(), estimate, &layout, session.length_m);
+        let information = (layout, normal);
+        let mut summary =
+            FitSummary::new((&session, estimate), kept, information, prior, fitted.noise, &run.options);
         summary.variance /= if is_robust { EFFICIENCY } else { 1.0 };
         summary
     }

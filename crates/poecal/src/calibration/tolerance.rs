@@ -1,6 +1,7 @@
 //! Tolerances of the prior, chosen by cross-validation.
 
 use super::run::Run;
+use super::summary::FitSummary;
 use crate::error::Result;
 use crate::robot::Tolerance;
 
@@ -26,8 +27,9 @@ impl Run<'_> {
         let mut best = (f64::INFINITY, Tolerance::default());
         for tolerance in tried() {
             let run = self.with_tolerance(tolerance);
-            let fit = run.fit(run.register())?;
-            let validated = run.in_pool(|| run.summary(&fit).cross_validated(&run.geometry(&fit)));
+            let start = run.register();
+            let fit = run.fit(start)?;
+            let validated = fit.run.in_pool(|| FitSummary::of(&fit).cross_validated(&fit));
             // Too few rows for cross-validation choose nothing.
             let Some(validated) = validated else { return Ok(self.with_tolerance(Tolerance::default())) };
             let errors = std::iter::once(&validated.random).chain(&validated.blocked).map(|it| it.rms.lead());

@@ -1,17 +1,19 @@
 //! The fit of screws and terms together.
 
 use super::choice::{Choice, SizesReason, TriedSizes, choose, weight_of_prior};
+use super::context::{CorrectionContext, Sampled};
 use super::found::CorrectedFit;
-use super::geometry::{CorrectionContext, Geometry, Sampled};
 use super::gravity::of_no_use;
 use super::linear::between;
 use super::promise::uncertainty;
 use super::unknowns::{estimate, moving, priors, unknowns};
 use crate::calibration::accuracy::model_accuracy;
-use crate::calibration::fit::Task;
+use crate::calibration::calibrated::CalibratedFit;
 use crate::calibration::found::OngoingFit;
 use crate::calibration::located::located;
 use crate::calibration::noise::{NoiseSource, stated};
+use crate::calibration::run::Run;
+use crate::calibration::task::Task;
 use crate::calibration::{delivered, estimate_noise};
 use crate::estimate::{Estimate, Packed, RowError, Session};
 use crate::gauge;
@@ -27,16 +29,13 @@ const UNDAMPED: f64 = 1e3;
 /// The fit stops within a tenth of a standard deviation: what the priors hold is not known better.
 const DECREMENT: f64 = 1e-2;
 
-/// Fits screws and terms together, with these sizes or with those that cross-validation chooses; geometry alone where terms lead nowhere.
-pub(in crate::calibration) fn fit(
-    geometry: &Geometry<'_>,
-    gravity: GravityDirection,
-    sizes: Option<Sizes>,
-) -> CorrectedFit {
-    let context = CorrectionContext::new(*geometry);
-    let moves = moving(&geometry.session, &context.rows);
-    let is_found = gravity == GravityDirection::Found;
-    let (gravity, doubt) = match gravity {
+/// Fits screws and terms together (theory.md §6, *Corrections*), with these sizes or with those that cross-validation chooses; geometry alone
+/// where terms lead nowhere.
+pub(in crate::calibration) fn corrected(geometry: &CalibratedFit<'_>, sizes: Option<Sizes>) -> CorrectedFit {
+    let context = CorrectionContext::new(geometry);
+    let moves = moving(&context.session, &context.rows);
+    let is_found = geometry.run.options.gravity == GravityDirection::Found;
+    let (gravity, doubt) = match geometry.run.options.gravity {
         GravityDirection::Known(direction) => (direction, None),
         GravityDirection::Found => context.gravity(&moves, sizes.unwrap_or(Sizes::COMMON)),
     };
@@ -71,12 +70,11 @@ struct SizeChoice {
 impl CorrectionContext<'_> {
     /// Chooses sizes, unless they are given.
     fn choose_sizes(&self, model: &CorrectionModel, sizes: Option<Sizes>) -> SizeChoice {
-        let Geometry { mut noise, noise_source, .. } = self.geometry;
-        let start = || estimate(model, self.geometry.estimate, self.geometry.session.data);
+        let (mut noise, source) = (self.geometry.noise(), self.geometry.robust.fitted.noise_source);
         let Some(Sampled { mut linear, parts, configurations }) = self.sampled(model, sizes) else {
             let (sizes, reason) =
                 sizes.map_or((Sizes::NONE, SizesReason::Undetermined), |sizes| (sizes, SizesReason::Given));
-            let estimate = start();
+            let estimate = self.start(model);
             return SizeChoice {
                 sizes,
                 reason,
@@ -89,11 +87,11 @@ impl CorrectionContext<'_> {
         };
         let mut variance = 1.0;
         let usual = sizes.unwrap_or(Sizes::COMMON);
-        if noise_source == NoiseSource::Estimated {
+        if source == NoiseSource::Estimated {
             for (quantity, factor) in linear.whiten(&usual) {
                 noise[quantity] *= factor;
             }
-        } else if noise_source != NoiseSource::Exact {
+        } else if source != NoiseSource::Exact {
             variance = linear.weigh_priors(&usual);
         }
         let whole = linear.whole();
@@ -102,7 +100,7 @@ impl CorrectionContext<'_> {
             Some(sizes) => Choice { sizes, reason: SizesReason::Given, tried: Vec::new() },
             None => choose(&linear, &parts, configurations),
         };
-        let estimate = linear.solution(&choice.sizes, &whole).unwrap_or_else(start);
+        let estimate = linear.solution(&choice.sizes, &whole).unwrap_or_else(|| self.start(model));
         let growth = if parts.is_empty() { 1.0 } else { linear.growth(&parts, &whole, &choice.sizes) };
         let Choice { sizes, reason, tried } = choice;
         SizeChoice { sizes, reason, tried, estimate, noise, variance, growth }
@@ -119,7 +117,7 @@ impl CorrectionContext<'_> {
         if sizes == Sizes::NONE {
             return Ok(self.without_terms(model, possible, choice.clone()));
         }
-        let Geometry { session: of_geometry, options, .. } = self.geometry;
+        let (of_geometry, options) = (self.session, &self.geometry.run.options);
         let packed = Packed::of(&model.robot, of_geometry.data);
         let unknowns = unknowns(model, of_geometry.unknowns, &sizes);
         let session = self.session(model, &packed, &unknowns);
@@ -134,7 +132,7 @@ impl CorrectionContext<'_> {
         let prior = options.prior_with_terms(&session).with_terms(priors(model, &sizes));
         let weight = weight_of_prior(of_geometry.data.configurations(&self.rows).len()) * variance;
         let task = Task { options: &near, ..self.task(session, (&prior, weight)) };
-        let (found, noise) = fitted(&task, start, noise, &self.geometry);
+        let (found, noise) = fitted(&task, start, noise, self.geometry);
         let base_motion = || {
             let targets = delivered(&model.robot, of_geometry.data).base_from_target;
             gauge::base_motion(&found, &model.robot, &targets, session.length_m)
@@ -154,7 +152,7 @@ impl CorrectionContext<'_> {
 
     /// Geometry alone, with the uncertainty that terms which may be there leave.
     fn without_terms(&self, model: &CorrectionModel, possible: &Sizes, choice: SizeChoice) -> CorrectedFit {
-        let Geometry { session: of_geometry, noise, .. } = self.geometry;
+        let (of_geometry, noise) = (self.session, self.geometry.noise());
         let packed = Packed::of(&model.robot, of_geometry.data);
         let unknowns = unknowns(model, of_geometry.unknowns, &Sizes::NONE);
         let session = self.session(model, &packed, &unknowns);
@@ -164,7 +162,7 @@ impl CorrectionContext<'_> {
 
     /// Geometry as an estimate of a model.
     fn start(&self, model: &CorrectionModel) -> Estimate {
-        estimate(model, self.geometry.estimate, self.geometry.session.data)
+        estimate(model, &self.geometry.estimate, self.session.data)
     }
 
     /// A fit with its uncertainty by all terms that are possible.
@@ -176,7 +174,7 @@ impl CorrectionContext<'_> {
         (packed, predicted, noise): (Packed, Predicted, Noise),
     ) -> CorrectedFit {
         let SizeChoice { sizes, reason, tried, variance, growth, .. } = choice;
-        let Geometry { session: of_geometry, options, held_out_rows, .. } = self.geometry;
+        let (of_geometry, Run { options, held_out_rows, .. }) = (self.session, &self.geometry.run);
         let Predicted { estimate, training, held_out } = predicted;
         let every = unknowns(model, of_geometry.unknowns, possible);
         let session = self.session(model, &packed, &every);
@@ -211,7 +209,7 @@ struct Predicted {
 
 impl Predicted {
     fn new(context: &CorrectionContext<'_>, session: &Session<'_>, found: &Estimate, noise: Noise) -> Self {
-        let Geometry { fit_rows, held_out_rows, .. } = context.geometry;
+        let Run { fit_rows, held_out_rows, .. } = &context.geometry.run;
         let estimate = located(session, &context.rows, found, noise).into_owned();
         let [training, held_out] = [fit_rows, held_out_rows].map(|rows| session.errors(rows, &estimate));
         Predicted { estimate, training, held_out }
@@ -229,7 +227,7 @@ fn numbers(task: &Task<'_>) -> ByQuantity<f64> {
 }
 
 /// The optimum with the noise estimated anew.
-fn fitted(task: &Task<'_>, start: Estimate, noise: Noise, of: &Geometry<'_>) -> (Estimate, Noise) {
+fn fitted(task: &Task<'_>, start: Estimate, noise: Noise, of: &CalibratedFit<'_>) -> (Estimate, Noise) {
     let (mut estimate, mut noise) = (start, noise);
     let counts = numbers(task);
     let all: f64 = counts.iter().map(|(_, count)| *count).sum();
@@ -237,7 +235,7 @@ fn fitted(task: &Task<'_>, start: Estimate, noise: Noise, of: &Geometry<'_>) -> 
         let found = OngoingFit::new(task.fit(estimate, noise));
         let known = task.effective_unknowns(&found);
         estimate = found.estimate;
-        if of.noise_source != NoiseSource::Estimated {
+        if of.robust.fitted.noise_source != NoiseSource::Estimated {
             break;
         }
         let Some(better) = estimate_noise(&task.session, task.rows, &estimate, known, None, noise) else {
@@ -245,7 +243,7 @@ fn fitted(task: &Task<'_>, start: Estimate, noise: Noise, of: &Geometry<'_>) -> 
         };
         let better = ByQuantity::from_fn(|quantity| {
             let freedom = counts[quantity] * (1.0 - known / all).max(0.0);
-            between(of.noise[quantity], better[quantity].powi(2) * freedom, freedom)
+            between(of.noise()[quantity], better[quantity].powi(2) * freedom, freedom)
         });
         let better = stated(task.options, better);
         let change = better.iter().map(|(quantity, sigma)| (sigma / noise[quantity]).ln().abs());

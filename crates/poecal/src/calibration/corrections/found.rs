@@ -3,14 +3,16 @@
 use std::ops::Deref;
 
 use super::choice::{SizesReason, TriedSizes};
-use super::effects::{Effects, effects};
-use super::geometry::Geometry;
+use super::effect::Effects;
+use super::effects::effects;
 use crate::analysis::coverage;
 use crate::calibration::accuracy::ModelAccuracy;
+use crate::calibration::calibrated::CalibratedFit;
 use crate::calibration::coverage_check::{CoverageCheck, held_out_check};
 use crate::calibration::expected::{Expectations, expectations_beside};
 use crate::calibration::options::DeviceFrameKnowledge;
 use crate::calibration::placed::{CalibratedStation, CalibratedTarget, place_tip, stations};
+use crate::calibration::run::Run;
 use crate::estimate::{Estimate, Packed, RowError, Session, Unknowns};
 use crate::measurement::{Dataset, Noise, Quantity};
 use crate::robot::{CorrectionModel, Robot, Sizes};
@@ -59,9 +61,9 @@ impl CorrectedFit {
     }
 
     /// Its robot with the measurements.
-    pub(in crate::calibration) fn session<'a>(&'a self, geometry: &Geometry<'a>) -> Session<'a> {
+    pub(in crate::calibration) fn session<'a>(&'a self, geometry: &'a CalibratedFit<'_>) -> Session<'a> {
         let CorrectedFit { model, packed, unknowns, .. } = self;
-        Session { robot: &model.robot, packed, unknowns, ..geometry.session }
+        Session { robot: &model.robot, packed, unknowns, ..geometry.session() }
     }
 
     /// Error of positions in cross-validation (metres, RMS): that of geometry alone times the share that terms leave on rows that are left out.
@@ -75,10 +77,10 @@ impl CorrectedFit {
     /// The fit with what it is worth, beside the cross-validation of geometry.
     pub(in crate::calibration) fn judged(
         mut self,
-        geometry: &Geometry<'_>,
+        geometry: &CalibratedFit<'_>,
         of_geometry: Option<&CrossValidation>,
     ) -> Correction {
-        let Geometry { options, held_out_rows, .. } = *geometry;
+        let Run { options, held_out_rows, .. } = &geometry.run;
         let left_out_m = self.left_out_m(of_geometry);
         let mut uncertainty = self.uncertainty.take();
         let (session, rows) = (self.session(geometry), &geometry.weighted_rows());
@@ -89,7 +91,7 @@ impl CorrectedFit {
         });
         let found = uncertainty.as_ref().filter(|_| self.has_terms()).map(|uncertainty| {
             let deviations: Vec<f64> = model.deviations(&self.possible).collect();
-            let before = (&geometry.session, geometry.estimate);
+            let before = (&geometry.session(), &geometry.estimate);
             effects(model, (&session, estimate), before, rows, (uncertainty, &deviations), *noise)
         });
         let predicted = uncertainty.as_ref().map(|it| (it, &coverage[..]));

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::geometry::{CorrectionContext, Sampled};
+use super::context::{CorrectionContext, Sampled};
 use crate::lie::rotation;
 use crate::robot::{CorrectionModel, Sizes};
 

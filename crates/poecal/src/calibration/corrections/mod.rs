@@ -1,11 +1,11 @@
 //! What joints really do beyond geometry: terms of their values and of their bearings, fitted beside the screws with priors (theory.md §6).
 
 mod choice;
-mod correct;
+mod context;
+mod effect;
 mod effects;
 mod fit;
 mod found;
-mod geometry;
 mod gravity;
 mod grid;
 mod left_out;
@@ -19,10 +19,8 @@ mod worse;
 
 pub(super) use choice::weight_of_prior;
 pub use choice::{SizesReason, TriedSizes};
-pub use correct::correct;
-pub use effects::{Effects, JointEffect, JointErrorPart, JointErrors};
-pub(super) use fit::fit;
+pub use effect::{Effects, JointEffect, JointErrorPart, JointErrors};
+pub(super) use fit::corrected;
 pub use found::{CorrectedFit, Correction};
-pub(super) use geometry::Geometry;
 pub(super) use linear::whitened_rows;
 pub(super) use unknowns::{priors, unknowns};

@@ -1,8 +1,8 @@
 //! Uncertainty of what screws and terms predict: the priors' part, and the errors of the parts that were left out (theory.md §9,
 //! *Corrected models*).
 
-use crate::calibration::fit::Task;
 use crate::calibration::summary::FitSummary;
+use crate::calibration::task::Task;
 use crate::estimate::{Estimate, sample_rows};
 use crate::measurement::Noise;
 use crate::problem::{Prior, Problem};

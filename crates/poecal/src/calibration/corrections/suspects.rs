@@ -1,22 +1,23 @@
 //! Rows that are suspected by the corrected model.
 
 use super::found::CorrectedFit;
-use super::geometry::Geometry;
 use super::unknowns::priors;
 use crate::analysis::effective_unknowns;
-use crate::calibration::fit::Task;
+use crate::calibration::calibrated::CalibratedFit;
 use crate::calibration::robust::{Configurations, JudgingFit, judge_rows};
+use crate::calibration::run::Run;
+use crate::calibration::task::Task;
 use crate::robot::Sizes;
 use crate::solve::{LeastSquares as _, Normal};
 
 impl CorrectedFit {
     /// Whether each row is suspected of a gross error; `None` if they are the rows that geometry suspects. Without terms they are.
-    pub(in crate::calibration) fn other_suspects(&self, geometry: &Geometry<'_>) -> Option<Vec<bool>> {
+    pub(in crate::calibration) fn other_suspects(&self, geometry: &CalibratedFit<'_>) -> Option<Vec<bool>> {
         if self.sizes == Sizes::NONE {
             return None;
         }
         let session = self.session(geometry);
-        let (rows, options, weight) = (geometry.fit_rows, geometry.options, self.prior_weight);
+        let (Run { fit_rows: rows, options, .. }, weight) = (&geometry.run, self.prior_weight);
         let prior = options.prior_with_terms(&session).with_terms(priors(&self.model, &self.sizes));
         let counted = geometry.weights();
         let prior_of_task = Some((&prior, weight));
@@ -27,11 +28,12 @@ impl CorrectedFit {
         prior.add(&self.estimate, problem.layout(), weight, &mut believed);
         let unknowns = normal.dim() as f64 - effective_unknowns(&normal, &believed);
         let judging = JudgingFit { estimate: &self.estimate, noise: self.noise, normal: &normal, unknowns };
-        let all = counted.clone().unwrap_or_else(|| vec![1.0; geometry.judged.len()]);
+        let all = counted.clone().unwrap_or_else(|| vec![1.0; session.data.len()]);
         let configurations = Configurations::new(session.data, rows);
-        let judged = judge_rows(&task, &configurations, judging, &all, geometry.loss);
+        let judged = judge_rows(&task, &configurations, judging, &all, geometry.robust.robustness.loss);
         let suspected: Vec<bool> = judged.rows.iter().map(|row| row.suspected).collect();
-        let differs = geometry.judged.iter().zip(&suspected).any(|(row, it)| row.suspected != *it);
+        let differs =
+            geometry.robust.robustness.rows.iter().zip(&suspected).any(|(row, it)| row.suspected != *it);
         differs.then_some(suspected)
     }
 }

@@ -1,6 +1,6 @@
 //! Whether terms are worse than geometry alone, after their fit.
 
-use super::geometry::CorrectionContext;
+use super::context::CorrectionContext;
 use crate::estimate::RowError;
 
 /// Ratio of errors above which a fit is worse on held-out rows.
@@ -11,8 +11,8 @@ const FEWEST_HELD_OUT: usize = 4;
 impl CorrectionContext<'_> {
     /// Whether a fit with terms explains the fitted rows no worse than geometry alone, by its errors on these.
     pub(super) fn is_no_worse(&self, training: &[RowError]) -> bool {
-        let rows = self.geometry.fit_rows;
-        let without = self.geometry.session.errors(rows, self.geometry.estimate);
+        let rows = &self.geometry.run.fit_rows;
+        let without = self.session.errors(rows, &self.geometry.estimate);
         let squares = |errors: &[RowError]| -> f64 {
             let counted = rows.iter().zip(errors).filter(|(row, _)| self.weight(**row) > 0.5);
             counted.map(|(_, error)| error.lead().norm_squared()).sum()
@@ -23,12 +23,12 @@ impl CorrectionContext<'_> {
     /// Whether a fit with terms is worse than geometry alone on the rows that were held out, by its errors on these: by more than [`WORSE`],
     /// and by more than the standard error of the mean over their configurations.
     pub(super) fn is_worse_held_out(&self, with: &[RowError]) -> bool {
-        let rows = self.geometry.held_out_rows;
-        let configurations = self.geometry.session.data.configurations(rows);
+        let rows = &self.geometry.run.held_out_rows;
+        let configurations = self.session.data.configurations(rows);
         if configurations.len() < FEWEST_HELD_OUT {
             return false;
         }
-        let without = self.geometry.session.errors(rows, self.geometry.estimate);
+        let without = self.session.errors(rows, &self.geometry.estimate);
         let squares = |errors: &[RowError], of: &[u32]| -> f64 {
             let at = of.iter().filter_map(|row| rows.binary_search(row).ok());
             let each = at.filter_map(|at: usize| errors.get(at)).map(|error| error.lead().norm_squared());

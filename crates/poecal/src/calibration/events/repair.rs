@@ -42,10 +42,10 @@ pub(in crate::calibration) fn repair(best: &mut Found<'_>) -> Events {
         events.early = early;
         let Some(happened) = happened else { break };
         let before = error_of(best);
-        let event = event(&happened, &best.run.data, &best.run.robot);
+        let event = event(&happened, &best.fit.run.data, &best.fit.run.robot);
         let matters = happened.matters();
-        let is_open = matters && best.run.options.repair == Repairs::Auto;
-        let Some(repaired) = is_open.then(|| without(&best.run, &happened)).flatten() else {
+        let is_open = matters && best.fit.run.options.repair == Repairs::Auto;
+        let Some(repaired) = is_open.then(|| without(&best.fit.run, &happened)).flatten() else {
             let event = event.suspected(before, None);
             if matters && event.is_grave(before) {
                 events.against = Some(event.statement.clone());
@@ -59,14 +59,14 @@ pub(in crate::calibration) fn repair(best: &mut Found<'_>) -> Events {
             break;
         };
         let after = error_of(&other);
-        let left_out = &other.run.left_out;
+        let left_out = &other.fit.run.left_out;
         let is_better = match happened {
             // Rows that are wrong have errors of their own in any case: they matter by what they do to the others.
             Happened::Wrong(_) => kept_error(&other, left_out) <= OTHERS_BETTER * kept_error(best, left_out),
             Happened::Step(_) => after <= BETTER * before,
         };
         if !is_better {
-            if !happened.is_suspected(&best.run.geometry(&best.fit)) {
+            if !happened.is_suspected(&best.fit) {
                 events.suspicions.push(event.suspected(before, Some(after)));
             }
             break;
@@ -79,27 +79,28 @@ pub(in crate::calibration) fn repair(best: &mut Found<'_>) -> Events {
 
 /// Fits a session.
 fn fitted(run: Run<'_>) -> Result<Found<'_>> {
-    let fit = run.fit(run.register())?;
-    run.correct(fit)
+    let start = run.register();
+    run.fit(start)?.correct()
 }
 
 /// What happened that is not repaired yet, and a doubt about all readings where nothing did.
 fn next(found: &Found<'_>) -> (Option<Happened>, Option<String>) {
-    let Found { run, fit, corrected: Some(corrected), .. } = found else { return (None, None) };
-    let geometry = run.geometry(fit);
+    let Found { fit, corrected: Some(corrected), .. } = found else { return (None, None) };
+    let run = &fit.run;
     // Rows with a stated set may belong to another session.
     let is_stated = run.data.observations.iter().any(|row| row.set.is_some());
     let mut rows = if is_stated { run.fit_rows.clone() } else { run.data.all_rows() };
     rows.sort_unstable();
     rows.retain(|row| run.left_out.binary_search(row).is_err());
-    let Some(Shown { wrong, step, early }) = search(&geometry, corrected, &rows) else {
+    let Some(Shown { wrong, step, early }) = search(fit, corrected, &rows) else {
         return (None, None);
     };
     let is_fitted = |row: &u32| run.fit_rows.binary_search(row).is_ok();
     // Rows that are suspected already and have no part in the fit need no other one.
-    let is_done = wrong.iter().all(|row| geometry.suspects_row(*row))
+    let is_done = wrong.iter().all(|row| fit.robust.robustness.suspects_row(*row))
         && (!wrong.iter().any(is_fitted)
-            || geometry.loss.is_some() && geometry.suspects().count() == wrong.len());
+            || fit.robust.robustness.loss.is_some()
+                && fit.robust.robustness.suspects().count() == wrong.len());
     if !wrong.is_empty() && !is_done && run.options.robust == Robust::Auto {
         return (Some(Happened::Wrong(wrong)), early);
     }
@@ -113,22 +114,21 @@ fn error_of(found: &Found<'_>) -> f64 {
     let left_out = corrected.and_then(|it| it.left_out_m(validated)).map(|metres| 1e3 * metres);
     let random = validated.and_then(|it| it.random.rms.leading());
     let left_out = left_out.or_else(|| random.map(|(_, rms)| rms)).filter(|it| it.is_finite());
-    left_out.unwrap_or(0.0).max(kept_error(found, &found.run.left_out))
+    left_out.unwrap_or(0.0).max(kept_error(found, &found.fit.run.left_out))
 }
 
 /// Root mean square error of the delivered model on the fitted rows but for some, millimetres or degrees.
 fn kept_error(found: &Found<'_>, left_out: &[u32]) -> f64 {
-    let kept = found.run.fit_rows.iter().copied().filter(|row| left_out.binary_search(row).is_err());
+    let kept = found.fit.run.fit_rows.iter().copied().filter(|row| left_out.binary_search(row).is_err());
     let errors = errors_of(found, &kept.collect::<Vec<u32>>());
     Statistic::of(errors).map_or(f64::INFINITY, |it| it.rms)
 }
 
 /// Errors of the delivered model on some rows, millimetres or degrees.
 fn errors_of(found: &Found<'_>, rows: &[u32]) -> Vec<f64> {
-    let geometry = found.run.geometry(&found.fit);
     let errors: Vec<RowError> = match found.corrected.as_ref().filter(|it| it.has_terms()) {
-        Some(corrected) => corrected.session(&geometry).errors(rows, &corrected.estimate),
-        None => geometry.session.errors(rows, geometry.estimate),
+        Some(corrected) => corrected.session(&found.fit).errors(rows, &corrected.estimate),
+        None => found.fit.session().errors(rows, &found.fit.estimate),
     };
     let shown = |error: &RowError| {
         let quantity = error.leading().unwrap_or(Quantity::Position);
@@ -139,7 +139,7 @@ fn errors_of(found: &Found<'_>, rows: &[u32]) -> Vec<f64> {
 
 /// Row numbers with the errors of two models, of some rows.
 fn picture(before: &Found<'_>, after: &Found<'_>) -> Vec<[f64; 3]> {
-    let rows: Vec<u32> = after.run.data.all_rows();
+    let rows: Vec<u32> = after.fit.run.data.all_rows();
     let step = rows.len().div_ceil(DRAWN).max(1);
     let some: Vec<u32> = rows.into_iter().step_by(step).collect();
     let both = errors_of(before, &some).into_iter().zip(errors_of(after, &some)).zip(&some);

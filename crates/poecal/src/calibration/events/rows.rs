@@ -5,10 +5,9 @@ use std::ops::Range;
 use nalgebra::{DMatrix, DVector};
 
 use super::hypotheses::{Columns, hypotheses};
-use crate::calibration::corrections::{
-    CorrectedFit, Geometry, priors, unknowns, weight_of_prior, whitened_rows,
-};
-use crate::calibration::fit::Task;
+use crate::calibration::calibrated::CalibratedFit;
+use crate::calibration::corrections::{CorrectedFit, priors, unknowns, weight_of_prior, whitened_rows};
+use crate::calibration::task::Task;
 use crate::estimate::{Session, sample_rows};
 use crate::linalg;
 use crate::measurement::Dataset;
@@ -56,12 +55,12 @@ pub(super) struct Optimum {
 
 impl Rows {
     /// The rows of a session with its corrected model; `None` if that determines nothing.
-    pub(super) fn new(geometry: &Geometry<'_>, found: &CorrectedFit, rows: &[u32]) -> Option<Self> {
-        let Geometry { session, options, .. } = *geometry;
+    pub(super) fn new(fit: &CalibratedFit<'_>, found: &CorrectedFit, rows: &[u32]) -> Option<Self> {
+        let (session, options) = (fit.session(), &fit.run.options);
         let data = session.data;
         let sizes = found.sizes.max(&Sizes::COMMON);
         let known = unknowns(&found.model, session.unknowns, &sizes);
-        let session = Session { unknowns: &known, ..found.session(geometry) };
+        let session = Session { unknowns: &known, ..found.session(fit) };
         let numbers = |row: &u32| data.observations[*row as usize].measurement.observe().dim();
         let all: usize = rows.iter().map(numbers).sum();
         let rows = sample_rows(rows, rows.len() * MOST_NUMBERS / all.max(MOST_NUMBERS));

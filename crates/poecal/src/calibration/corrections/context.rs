@@ -7,10 +7,10 @@ use super::grid::CHOSEN;
 use super::linear::Linear;
 use super::modes::Class;
 use super::unknowns::{estimate, unknowns};
-use crate::calibration::fit::Task;
-use crate::calibration::{CalibrationOptions, Loss, NoiseSource, Robust, RowJudgement};
-use crate::estimate::{Estimate, Packed, Session, Unknowns};
-use crate::measurement::{ByQuantity, Noise};
+use crate::calibration::calibrated::CalibratedFit;
+use crate::calibration::task::Task;
+use crate::estimate::{Packed, Session, Unknowns};
+use crate::measurement::ByQuantity;
 use crate::problem::Prior;
 use crate::robot::{CorrectionModel, Extent, JointTerm, Robot, Sizes, TermGroup};
 use crate::uncertainty::{PriorInformation, View, parts_to_leave_out};
@@ -18,53 +18,10 @@ use crate::uncertainty::{PriorInformation, View, parts_to_leave_out};
 /// Most rows from which sizes are chosen.
 const SAMPLE: usize = 2000;
 
-/// A fit of geometry alone, with which corrections begin.
-#[derive(Clone, Copy)]
-pub(in crate::calibration) struct Geometry<'a> {
-    pub(in crate::calibration) session: Session<'a>,
-    pub(in crate::calibration) options: &'a CalibrationOptions,
-    /// The calibrated model.
-    pub(in crate::calibration) estimate: &'a Estimate,
-    pub(in crate::calibration) noise: Noise,
-    pub(in crate::calibration) noise_source: NoiseSource,
-    pub(in crate::calibration) loss: Option<Loss>,
-    /// Judgement of each row.
-    pub(in crate::calibration) judged: &'a [RowJudgement],
-    pub(in crate::calibration) fit_rows: &'a [u32],
-    pub(in crate::calibration) held_out_rows: &'a [u32],
-}
-
-impl Geometry<'_> {
-    /// The suspected rows, in the order of the data.
-    pub(in crate::calibration) fn suspects(&self) -> impl Iterator<Item = u32> {
-        let rows = (0..).zip(self.judged).filter(|(_, row)| row.suspected);
-        rows.map(|(row, _)| row)
-    }
-
-    /// Whether a row is suspected.
-    pub(in crate::calibration) fn suspects_row(&self, row: u32) -> bool {
-        self.judged.get(row as usize).is_some_and(|it| it.suspected)
-    }
-
-    /// The fitted rows that have a weight: others say nothing of the noise either.
-    pub(super) fn weighted_rows(&self) -> Vec<u32> {
-        let weights = self.weights();
-        let weight = |row: u32| weights.as_ref().and_then(|it| it.get(row as usize));
-        let counts = |row: &u32| weight(*row).is_none_or(|weight| *weight > 0.0);
-        self.fit_rows.iter().copied().filter(counts).collect()
-    }
-
-    /// Weights of all rows of the data after a robust fit: those of a loss that was asked for; otherwise only suspected rows lose theirs.
-    pub(super) fn weights(&self) -> Option<Vec<f64>> {
-        let is_chosen = matches!(self.options.robust, Robust::Loss(_));
-        let weight = |row: &RowJudgement| if row.suspected || is_chosen { row.weight } else { 1.0 };
-        self.loss.map(|_| self.judged.iter().map(weight).collect())
-    }
-}
-
 /// Geometry with what a fit of terms needs beside it.
 pub(super) struct CorrectionContext<'a> {
-    pub(super) geometry: Geometry<'a>,
+    pub(super) geometry: &'a CalibratedFit<'a>,
+    pub(super) session: Session<'a>,
     /// The nominal robot with all terms that geometry has.
     pub(super) nominal: Robot,
     /// The fitted rows that have a weight.
@@ -81,16 +38,16 @@ pub(super) struct Sampled {
 }
 
 impl<'g> CorrectionContext<'g> {
-    pub(super) fn new(geometry: Geometry<'g>) -> Self {
-        let (rows, weights) = (geometry.weighted_rows(), geometry.weights());
+    pub(super) fn new(geometry: &'g CalibratedFit<'g>) -> Self {
+        let (session, rows, weights) = (geometry.session(), geometry.weighted_rows(), geometry.weights());
         // Terms that geometry has are of no group.
-        let mut nominal = geometry.session.robot.clone();
-        for &(joint, term) in &geometry.session.unknowns.terms {
+        let mut nominal = session.robot.clone();
+        for &(joint, term) in &session.unknowns.terms {
             if !nominal.terms.iter().any(|it| (it.joint, it.term) == (joint, term)) {
                 nominal.terms.push(JointTerm { joint, term, coefficient: 0.0 });
             }
         }
-        CorrectionContext { geometry, nominal, rows, weights }
+        CorrectionContext { geometry, session, nominal, rows, weights }
     }
 
     /// Weight of a row.
@@ -100,7 +57,7 @@ impl<'g> CorrectionContext<'g> {
 
     /// How far the model reaches; for terms of these sizes as far as they do.
     pub(super) fn extent(&self, sizes: Option<Sizes>) -> Extent {
-        let options = self.geometry.options;
+        let options = &self.geometry.run.options;
         let gives = sizes.map_or(options.corrections.gives(), |sizes| sizes.gives());
         Extent { orders: options.harmonics, gives }
     }
@@ -111,17 +68,18 @@ impl<'g> CorrectionContext<'g> {
         packed: &'a Packed,
         unknowns: &'a Unknowns,
     ) -> Session<'a> {
-        Session { robot: &model.robot, packed, unknowns, ..self.geometry.session }
+        Session { robot: &model.robot, packed, unknowns, ..self.session }
     }
 
     pub(super) fn task<'a>(&'a self, session: Session<'a>, prior: (&'a Prior, f64)) -> Task<'a> {
-        let CorrectionContext { rows, weights, geometry, .. } = self;
-        Task { session, rows, weights: weights.as_deref(), prior: Some(prior), options: geometry.options }
+        let (CorrectionContext { rows, weights, .. }, options) = (self, &self.geometry.run.options);
+        Task { session, rows, weights: weights.as_deref(), prior: Some(prior), options }
     }
 
     /// A sample of the rows, linear about the calibrated model; none if that determines nothing.
     pub(super) fn sampled(&self, model: &CorrectionModel, sizes: Option<Sizes>) -> Option<Sampled> {
-        let Geometry { session: of_geometry, options, noise, estimate: calibrated, .. } = self.geometry;
+        let (of_geometry, noise) = (self.session, self.geometry.noise());
+        let (calibrated, options) = (&self.geometry.estimate, &self.geometry.run.options);
         let none = PriorInformation::none(0);
         let view = View {
             session: of_geometry,
