@@ -20,7 +20,7 @@ pub(crate) use report::{Report, ReportPlace};
 pub(crate) use reproduce::{Experiment, Reproduce};
 pub(crate) use shared::{TreeArgs, with_mapping};
 pub(crate) use simulate::Simulate;
-pub(crate) use words::{ExportForm, PredictedModel, ProgramLanguage};
+pub(crate) use words::{ExportForm, ProgramLanguage};
 
 use std::path::{Path, PathBuf};
 
@@ -32,9 +32,7 @@ use poecal::io::record::Record;
 
 use crate::quantity::{sigma_m, threads};
 use shared::{ChainArgs, ColumnArgs, Meaning, OutFile, Reading};
-use words::{
-    ACCEPTED_MODEL, EXPORT_FORMAT, FORM, FRAME, PREDICT_IN, PREDICTED_MODEL, REFIT, REQUIRED_LEVEL, one_of,
-};
+use words::{EXPORT_FORMAT, FORM, FRAME, MODEL, PREDICT_IN, REFIT, REQUIRED_LEVEL, one_of};
 
 /// What the program ends with.
 const EXIT_CODES: &str = "Exit codes: 0 done, and a calibration is usable; 1 there are results, but the verdict is `do not use` or \
@@ -162,7 +160,7 @@ pub(crate) struct Validate {
     #[arg(long, value_name = "[rms:|p95:|max:]LIMIT", value_delimiter = ',')]
     pub(crate) accept: Vec<Limit>,
     /// Which model shall keep them: the corrected one, if there is one (the default), or the calibrated one, which a URDF holds
-    #[arg(long, value_parser = one_of(ACCEPTED_MODEL))]
+    #[arg(long, value_parser = one_of(MODEL))]
     pub(crate) accept_model: Option<AcceptedModel>,
     /// Folder for the results of the check: validation.json, errors.csv with each row beside its bound, and a report
     #[arg(long, value_name = "DIR")]
@@ -210,8 +208,8 @@ pub(crate) struct Predict {
     #[arg(long)]
     pub(crate) with_uncertainty: bool,
     /// Which model of a calibration predicts: the corrected one, if there is one, or the calibrated one, which a URDF holds
-    #[arg(long = "model", value_parser = one_of(PREDICTED_MODEL), default_value = "corrected")]
-    pub(crate) of: PredictedModel,
+    #[arg(long = "model", value_parser = one_of(MODEL), default_value = "corrected")]
+    pub(crate) of: AcceptedModel,
     /// Predict this target of the model instead of the tip; of a URDF, with its link
     #[arg(long, value_name = "NAME|NAME=LINK")]
     pub(crate) target: Option<String>,
@@ -252,8 +250,8 @@ pub(crate) struct Export {
     #[arg(long, value_parser = one_of(EXPORT_FORMAT))]
     pub(crate) format: ExportForm,
     /// Which model of the calibration: geometry alone, or the corrected one, whose terms of the joints go to a file beside, FILE.joints.json
-    #[arg(long = "model", value_parser = one_of(PREDICTED_MODEL), default_value = "calibrated")]
-    pub(crate) of: PredictedModel,
+    #[arg(long = "model", value_parser = one_of(MODEL), default_value = "calibrated")]
+    pub(crate) of: AcceptedModel,
     /// The URDF into which the numbers are written [default: the one that was calibrated]; for --format urdf
     #[arg(long, value_name = "ROBOT.urdf")]
     pub(crate) onto: Option<PathBuf>,

@@ -87,6 +87,11 @@ impl Console {
         place.write(vec![text.into()])
     }
 
+    /// A result to a file, or to people; `is_data` to standard output for programs.
+    pub(crate) fn show(&self, text: String, place: Option<FilePlace>, is_data: bool) -> Result<()> {
+        if is_data || place.is_some() { self.deliver(text, place) } else { self.say(&text) }
+    }
+
     /// A result, unless `--quiet` suppresses it.
     pub(crate) fn say(&self, text: &str) -> Result<()> {
         if self.quiet {

@@ -82,8 +82,11 @@ impl Timings {
         Timings { watch: Watch::start(), parts: Vec::new() }
     }
 
-    /// Ends a part.
+    /// Ends a part, unless it has ended.
     pub(crate) fn end(&mut self, part: &'static str) {
+        if self.parts.iter().any(|(ended, _)| *ended == part) {
+            return;
+        }
         self.parts.push((part, self.watch.read()));
         self.watch = Watch::start();
     }

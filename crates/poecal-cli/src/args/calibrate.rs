@@ -11,9 +11,7 @@ use poecal_lou2009::{Formulation, Method, Residual};
 
 use super::report::ReportPlace;
 use super::shared::{Reading, TreeArgs};
-use super::words::{
-    ACCEPTED_MODEL, FORMULATION, FRAME, METHOD, REPAIR, REQUIRED_LEVEL, RESIDUAL, ROBUST, one_of,
-};
+use super::words::{FORMULATION, FRAME, METHOD, MODEL, REPAIR, REQUIRED_LEVEL, RESIDUAL, ROBUST, one_of};
 use crate::quantity::{BelievedTolerance, share, sigma_m, sigma_rad, whole};
 
 /// Arguments of `poecal calibrate`.
@@ -116,7 +114,7 @@ pub(crate) struct Calibrate {
     #[arg(long, value_name = "[rms:|p95:|max:]LIMIT", value_delimiter = ',')]
     pub(crate) accept: Vec<Limit>,
     /// Which model shall keep them: the corrected one, if there is one (the default), or the calibrated one, which a URDF holds
-    #[arg(long, value_parser = one_of(ACCEPTED_MODEL))]
+    #[arg(long, value_parser = one_of(MODEL))]
     pub(crate) accept_model: Option<AcceptedModel>,
     /// What the report states of the session, like serial=4711 (repeatable): certificate, laboratory, customer, robot, serial, instrument,
     /// operator, date, place, temperature or note

@@ -3,11 +3,12 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use poecal::calibration::AcceptedModel;
 use poecal::compensate::MostChange;
 use poecal::robot::ThirdAxis;
 
 use super::shared::{ColumnArgs, OutFile};
-use super::words::{LANGUAGE, PREDICTED_MODEL, PredictedModel, ProgramLanguage, THIRD_AXIS, one_of};
+use super::words::{LANGUAGE, MODEL, ProgramLanguage, THIRD_AXIS, one_of};
 use crate::quantity::most_change;
 
 /// Arguments of `poecal compensate`.
@@ -45,8 +46,8 @@ pub(crate) struct Compensate {
     #[arg(long, value_parser = one_of(THIRD_AXIS))]
     pub(crate) third_axis: Option<ThirdAxis>,
     /// Which model of the calibration is the actual robot: the corrected one, if there is one, or the calibrated one
-    #[arg(long = "model", value_parser = one_of(PREDICTED_MODEL), default_value = "corrected")]
-    pub(crate) of: PredictedModel,
+    #[arg(long = "model", value_parser = one_of(MODEL), default_value = "corrected")]
+    pub(crate) of: AcceptedModel,
     /// Value of a factor of the corrected model while the program runs [default: its reference]
     #[arg(long = "factor", value_name = "NAME=VALUE")]
     pub(crate) factors: Vec<String>,

@@ -86,21 +86,8 @@ pub(super) const PREDICT_IN: Words<PredictionFrame> = &[
     ("device", "The measuring device of a calibration", PredictionFrame::Device),
 ];
 
-/// A model of a calibration.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum PredictedModel {
-    Corrected,
-    Calibrated,
-}
-
-/// Which model of a calibration predicts.
-pub(super) const PREDICTED_MODEL: Words<PredictedModel> = &[
-    ("corrected", "Screws and terms of the joints", PredictedModel::Corrected),
-    ("calibrated", "Geometry alone, as a URDF holds it", PredictedModel::Calibrated),
-];
-
-/// Which model shall keep limits.
-pub(super) const ACCEPTED_MODEL: Words<AcceptedModel> = &[
+/// Which model of a calibration predicts, or shall keep limits.
+pub(super) const MODEL: Words<AcceptedModel> = &[
     ("corrected", "Screws and terms of the joints", AcceptedModel::Corrected),
     ("calibrated", "Geometry alone, as a URDF holds it", AcceptedModel::Calibrated),
 ];

@@ -56,8 +56,9 @@ pub(crate) fn calibrate(arguments: &Calibrate, typed: &[OsString], console: &Con
     let repaired = calibrate_repairing(&model.robot, &data, &options, &mut |stage| {
         let step = Stage::ALL.iter().position(|&other| other == stage).unwrap_or(0);
         bar.set(step as u64, stage.words());
-        if stage == Stage::Analysis {
-            timings.end("start");
+        match stage {
+            Stage::Registration | Stage::Fit => {}
+            Stage::Corrections | Stage::Analysis => timings.end("start"),
         }
     });
     timings.end("analysis");

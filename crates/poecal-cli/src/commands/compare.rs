@@ -26,10 +26,6 @@ pub(crate) fn compare(arguments: &Compare, console: &Console) -> Result<u8> {
     } else {
         told.text(if arguments.verbose { Detail::Full } else { Detail::Short })
     };
-    if arguments.json || place.is_some() {
-        console.deliver(text, place)?;
-    } else {
-        console.say(&text)?;
-    }
+    console.show(text, place, arguments.json)?;
     Ok(if found.is_moved() == Some(true) { WORSE } else { DONE })
 }

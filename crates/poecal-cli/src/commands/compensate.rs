@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use poecal::calibration::AcceptedModel;
 use poecal::compensate::{
     ChangeOptions, Given, Language, ProgramOptions, TableOptions, compensate_file, compensate_table,
 };
@@ -12,7 +13,7 @@ use poecal::io::urdf::ChainSelection;
 use poecal::robot::JointKind;
 use poecal::{Error, ErrorKind, Result, Robot, report};
 
-use crate::args::{Compensate, PredictedModel, ProgramLanguage};
+use crate::args::{Compensate, ProgramLanguage};
 use crate::console::Console;
 use crate::{DONE, WORSE};
 
@@ -22,10 +23,7 @@ pub(crate) fn compensate(arguments: &Compensate, console: &Console) -> Result<u8
     let inputs: Vec<&Path> = inputs.into_iter().chain(mapping).map(PathBuf::as_path).collect();
     let place = if arguments.dry_run { None } else { arguments.place.reserve(&inputs, console)? };
     let model = Model::read(&arguments.calibration, &ChainSelection::default())?;
-    let model = match arguments.of {
-        PredictedModel::Corrected => model.corrected()?,
-        PredictedModel::Calibrated => model,
-    };
+    let model = if arguments.of == AcceptedModel::Corrected { model.corrected()? } else { model };
     let ModelSource::Calibration(file) = &model.source else {
         let message = "found a robot model, expected a calibration.json, which has the nominal robot and the actual one";
         return Err(Error::new(ErrorKind::Option, message).in_file(&arguments.calibration));

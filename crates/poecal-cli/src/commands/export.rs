@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use poecal::calibration::AcceptedModel;
 use poecal::io::export::{self, ExportFormat, ExportOptions};
 use poecal::io::model::Model;
 use poecal::io::output::{Existing, FilePlace};
@@ -10,10 +11,11 @@ use poecal::io::urdf::ChainSelection;
 use poecal::{Error, ErrorKind, Result};
 
 use crate::DONE;
-use crate::args::{Apply, Export, ExportForm, PredictedModel};
+use crate::args::{Apply, Export, ExportForm};
 use crate::console::Console;
 
-pub(crate) fn export(arguments: &Export, console: &Console) -> Result<u8> {
+/// The form, with the options that it has.
+fn format(arguments: &Export) -> Result<ExportFormat> {
     let format = match arguments.format {
         ExportForm::Open(format) => format,
         ExportForm::Closed(why) => {
@@ -35,21 +37,20 @@ pub(crate) fn export(arguments: &Export, console: &Console) -> Result<u8> {
             return Err(Error::new(ErrorKind::Option, message));
         }
     }
+    Ok(format)
+}
+
+pub(crate) fn export(arguments: &Export, console: &Console) -> Result<u8> {
+    let format = format(arguments)?;
     let further = arguments.onto.iter().chain(&arguments.motors);
     let inputs: Vec<&Path> = std::iter::once(&arguments.model).chain(further).map(PathBuf::as_path).collect();
     let place = arguments.place.reserve(&inputs, console)?;
     let selection = arguments.chain.selection(None)?;
     let is_calibration = arguments.model.extension().is_some_and(|it| it.eq_ignore_ascii_case("json"));
-    let of_model = if is_calibration && arguments.onto.is_some() {
-        ChainSelection::default()
-    } else {
-        selection.clone()
-    };
-    let model = Model::read(&arguments.model, &of_model)?;
-    let model = match arguments.of {
-        PredictedModel::Corrected => model.corrected()?,
-        PredictedModel::Calibrated => model,
-    };
+    let whole = ChainSelection::default();
+    let is_whole = is_calibration && arguments.onto.is_some();
+    let model = Model::read(&arguments.model, if is_whole { &whole } else { &selection })?;
+    let model = if arguments.of == AcceptedModel::Corrected { model.corrected()? } else { model };
     if let Some(urdf) = &arguments.onto {
         let converted = export::onto(&model, urdf, &selection)?;
         console.warnings(&converted.notes);

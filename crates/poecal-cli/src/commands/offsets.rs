@@ -36,10 +36,6 @@ pub(crate) fn offsets(arguments: &Offsets, console: &Console) -> Result<u8> {
     }
     let found = report::Offsets::new(&nominal, &actual, &explanation);
     let text = if arguments.json { report::json(&found)? } else { found.text() };
-    if arguments.json || place.is_some() {
-        console.deliver(text, place)?;
-    } else {
-        console.say(&text)?;
-    }
+    console.show(text, place, arguments.json)?;
     Ok(DONE)
 }

@@ -4,12 +4,13 @@ use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
 use poecal::Result;
+use poecal::calibration::AcceptedModel;
 use poecal::io::model::Model;
 use poecal::io::urdf::named_link;
 use poecal::io::{measurements, predictions};
 
 use crate::DONE;
-use crate::args::{Predict, PredictedModel, with_mapping};
+use crate::args::{Predict, with_mapping};
 use crate::console::Console;
 
 pub(crate) fn predict(arguments: &Predict, console: &Console) -> Result<u8> {
@@ -26,7 +27,7 @@ pub(crate) fn predict(arguments: &Predict, console: &Console) -> Result<u8> {
     let selection = arguments.chain.selection().joined(&[], mounted.as_slice())?;
     let model = Model::read(&arguments.model, &with_mapping(selection, options.as_ref().ok())?)?;
     let model = match arguments.of {
-        PredictedModel::Corrected => {
+        AcceptedModel::Corrected => {
             let corrected = model.corrected()?;
             if !corrected.robot.terms.iter().all(|it| it.coefficient == 0.0)
                 && corrected.robot.gravity.is_some()
@@ -37,7 +38,7 @@ pub(crate) fn predict(arguments: &Predict, console: &Console) -> Result<u8> {
             }
             corrected
         }
-        PredictedModel::Calibrated => model,
+        AcceptedModel::Calibrated => model,
     };
     let joints = measurements::read_joints(&arguments.joints, &model.robot, &model.reads(options?))?;
     console.warnings(&joints.warnings);

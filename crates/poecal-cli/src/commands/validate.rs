@@ -8,9 +8,7 @@ use poecal::calibration::{AcceptanceLimits, Decision};
 use poecal::io::calibration_file::{CalibrationFile, Inputs};
 use poecal::io::measurements::{self, ReadOptions};
 use poecal::io::named_files::{actual, refuse_repeats};
-use poecal::io::output::{
-    Contents, Existing, FilePlace, FolderPlace, Page, ValidationResults, write_validation,
-};
+use poecal::io::output::{Existing, ValidationPlaces};
 use poecal::io::record::Record;
 use poecal::io::validation::{HISTORY, History, JudgedRows, Judging, Validation, ValidationInputs, now};
 use poecal::{ErrorKind, Result, report};
@@ -23,7 +21,7 @@ use crate::{DONE, WORSE};
 
 pub(crate) fn validate(arguments: &Validate, typed: &[OsString], console: &Console) -> Result<u8> {
     refuse_repeats(&arguments.measurements)?;
-    let places = Places::reserve(arguments, console)?;
+    let places = places(arguments, console)?;
     let file = CalibrationFile::read(&arguments.calibration)?;
     let mut history = Kept::read(arguments)?;
     let in_file = |error: poecal::Error| {
@@ -55,7 +53,10 @@ pub(crate) fn validate(arguments: &Validate, typed: &[OsString], console: &Conso
     console.warnings(&read.warnings);
     let rows = JudgedRows { data: &read.data, robot: &calibrated, rows: &found.judgement.rows };
     let earlier: Vec<_> = own.iter().flat_map(|own| history.checks.before(&found, own)).collect();
-    let (written, place) = places.write(&found, rows, || report::validation_page(&found, &rows, &earlier))?;
+    let (folder, report) = places.write(&found, rows, || report::validation_page(&found, &rows, &earlier))?;
+    let mut written = folder.as_ref().map_or_else(String::new, |it| style::written(&it.folder, &it.files));
+    written.extend(report.as_ref().map(|path| labelled("report", &shown(path))));
+    let place = folder.map(|it| it.folder).or(report);
     history.append(&found, console)?;
     let table = || {
         let calibration = arguments.calibration.display().to_string();
@@ -92,54 +93,14 @@ fn named(arguments: &Validate, file: &CalibrationFile) -> String {
 }
 
 /// Places of the results.
-struct Places<'a> {
-    folder: Option<FolderPlace>,
-    /// A report outside the results.
-    report: Option<(FilePlace, &'a Path)>,
-    /// Whether a report is wanted among them.
-    is_among: bool,
-}
-
-impl<'a> Places<'a> {
-    fn reserve(arguments: &'a Validate, console: &Console) -> Result<Self> {
-        let (existing, inputs) = (Existing::forced(arguments.force), arguments.inputs());
-        let reserve = |out: &PathBuf| {
-            FolderPlace::reserve(out, Contents::Validation, existing, &inputs, &mut console.warner())
-        };
-        let folder = arguments.out.as_ref().map(reserve).transpose()?;
-        let elsewhere = match (&arguments.report, &folder) {
-            (Some(ReportPlace::File(path)), Some(folder)) => {
-                folder.reserve_report(path, &inputs, &mut console.warner())?.map(|place| (place, path))
-            }
-            (Some(ReportPlace::File(path)), None) => {
-                Some((FilePlace::reserve(path, existing, &inputs, &mut console.warner())?, path))
-            }
-            (Some(ReportPlace::None) | None, _) => None,
-        };
-        let report = elsewhere.map(|(place, path)| (place, path.as_path()));
-        let is_among = report.is_none() && arguments.report != Some(ReportPlace::None);
-        Ok(Places { folder, report, is_among })
-    }
-
-    /// Writes the results; returns what to say of that, and the place.
-    fn write(
-        self,
-        found: &Validation,
-        rows: JudgedRows<'_>,
-        page: impl FnOnce() -> Page,
-    ) -> Result<(String, Option<PathBuf>)> {
-        let Some(folder) = self.folder else {
-            let Some((place, path)) = self.report else { return Ok(Default::default()) };
-            place.write(page())?;
-            return Ok((labelled("report", &shown(path)), Some(path.to_owned())));
-        };
-        let (elsewhere, path) = self.report.unzip();
-        let report = (self.is_among || elsewhere.is_some()).then(page);
-        let written = write_validation(folder, elsewhere, ValidationResults { found, rows, report })?;
-        let mut words = style::written(&written.folder, &written.files);
-        words.extend(path.map(|path| labelled("report", &shown(path))));
-        Ok((words, Some(written.folder)))
-    }
+fn places(arguments: &Validate, console: &Console) -> Result<ValidationPlaces> {
+    let report = match &arguments.report {
+        Some(ReportPlace::File(path)) => (true, Some(path.as_path())),
+        Some(ReportPlace::None) => (false, None),
+        None => (true, None),
+    };
+    let (existing, inputs) = (Existing::forced(arguments.force), arguments.inputs());
+    ValidationPlaces::reserve(arguments.out.as_deref(), report, existing, &inputs, &mut console.warner())
 }
 
 /// The history that a check is appended to.

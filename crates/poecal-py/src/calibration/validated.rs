@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use poecal::io::calibration_file::Inputs;
-use poecal::io::output::{Contents, Existing, FilePlace, FolderPlace, ValidationResults, write_validation};
+use poecal::io::output::{Existing, ValidationPlaces};
 use poecal::io::record::Record;
 use poecal::io::validation::{Earlier, History, JudgedRows, Judging, Validation, ValidationInputs, now};
 use poecal::report;
@@ -13,15 +13,11 @@ use super::{Calibration, ReportPlace};
 use crate::errors::raise;
 use crate::findings::Findings;
 use crate::measurements::Measurements;
-use crate::places::{reserved_file, reserved_folder, said};
+use crate::places::said;
 
 /// Places of the results.
 pub(super) struct Places {
-    folder: Option<FolderPlace>,
-    /// A report outside the results.
-    report: Option<FilePlace>,
-    /// Whether a report is wanted among them.
-    is_among: bool,
+    results: ValidationPlaces,
     history: Option<History>,
 }
 
@@ -33,24 +29,17 @@ impl Places {
         report: Option<ReportPlace>,
         history: Option<PathBuf>,
     ) -> PyResult<Self> {
-        let existing = Existing::forced(force);
         let own = calibration.source().into_iter();
         let inputs: Vec<&Path> = own.chain(measurements.source.names.iter().map(Path::new)).collect();
-        let folder =
-            out.map(|out| reserved_folder(py, out, Contents::Validation, existing, &inputs)).transpose()?;
-        let (is_among, elsewhere) = match (report, &folder) {
-            (Some(ReportPlace::File(path)), Some(folder)) => {
-                let place = said(py, |say| folder.reserve_report(&path, &inputs, say))?;
-                (place.is_none(), place)
-            }
-            (Some(ReportPlace::File(path)), None) => {
-                (false, Some(reserved_file(py, &path, existing, &inputs)?))
-            }
-            (Some(ReportPlace::Among(among)), _) => (among, None),
-            (None, _) => (true, None),
+        let report = match &report {
+            Some(ReportPlace::File(path)) => (true, Some(path.as_path())),
+            Some(ReportPlace::Among(among)) => (*among, None),
+            None => (true, None),
         };
+        let existing = Existing::forced(force);
+        let results = said(py, |say| ValidationPlaces::reserve(out, report, existing, &inputs, &mut *say))?;
         let history = history.map(|path| History::read(&path)).transpose().map_err(raise)?;
-        Ok(Places { folder, report: elsewhere, is_among, history })
+        Ok(Places { results, history })
     }
 
     pub(super) fn judge(
@@ -79,14 +68,7 @@ impl Places {
             let earlier: Vec<Earlier> =
                 before.into_iter().flat_map(|(kept, own)| kept.before(&found, own)).collect();
             let page = || report::validation_page(&found, &rows, &earlier);
-            match (self.folder, self.report) {
-                (Some(folder), elsewhere) => {
-                    let report = (self.is_among || elsewhere.is_some()).then(page);
-                    write_validation(folder, elsewhere, ValidationResults { found: &found, rows, report })?;
-                }
-                (None, Some(place)) => place.write(page())?,
-                (None, None) => {}
-            }
+            self.results.write(&found, rows, page)?;
             if let (Some(history), Some(time)) = (&mut self.history, now()) {
                 history.append(&found, &time)?;
             }

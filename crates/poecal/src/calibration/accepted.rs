@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::acceptance::{Errors, mean_square};
 use super::judge::{check_count, judged_rows};
-use super::located::promised_rows;
+use super::located::rows_of_fitted_stations;
 use super::{
     Acceptance, AcceptanceLimits, AcceptedLimit, AcceptedModel, AcceptedRows, AcceptedStatistic, Calibration,
     Limit, Subject,
@@ -37,7 +37,7 @@ pub(super) fn accepted(
     data: &Dataset,
     accept: &AcceptanceLimits,
 ) -> Result<Acceptance> {
-    let rows = promised_rows(data, &calibration.fit_rows, &calibration.held_out_rows);
+    let rows = rows_of_fitted_stations(data, &calibration.fit_rows, &calibration.held_out_rows);
     if rows.is_empty() {
         return by_cross_validation(calibration, data, accept);
     }

@@ -20,14 +20,6 @@ pub struct Models {
     pub calibrated: Estimate,
 }
 
-impl Models {
-    /// What `to` makes of each.
-    pub(super) fn map(self, mut to: impl FnMut(Estimate) -> Estimate) -> Models {
-        let Models { nominal, registered, calibrated } = self;
-        Models { nominal: to(nominal), registered: to(registered), calibrated: to(calibrated) }
-    }
-}
-
 /// Mean, root mean square, 95th percentile (linear between ranks) and maximum of errors.
 ///
 /// ```

@@ -2,13 +2,13 @@
 
 use nalgebra::Vector3;
 
-use super::finished::Finished;
 use crate::analysis::PLAUSIBLE;
 use crate::estimate::Session;
 use crate::gauge::{Deviation, screw_motions};
 use crate::offsets::{ChangeBySteps, Changes, End, JointChange};
+use crate::problem::Layout;
 use crate::robot::{Joint, JointKind, Robot};
-use crate::uncertainty::Uncertainty;
+use crate::uncertainty::{Uncertainty, View};
 
 /// Standard deviations, as shares of those of a nominal model, up to which something is determined.
 const DETERMINED: f64 = 0.5;
@@ -37,20 +37,21 @@ fn sigma(rows: &[Vec<f64>], uncertainty: Option<&Uncertainty>, most: f64) -> Opt
 
 /// The correction of each joint, with its derivatives by the unknowns. In a robot with branches offsets are not told from the axes.
 pub(super) fn joint_changes(
-    finished: &Finished<'_>,
+    view: &View<'_>,
+    layout: &Layout,
     uncertainty: Option<&Uncertainty>,
     deviations: &[Deviation],
 ) -> Vec<(JointChange, ChangeBySteps)> {
-    let session = &finished.view.session;
+    let session = &view.session;
     let Session { robot: nominal, length_m, .. } = *session;
-    let calibrated = &finished.models.calibrated;
+    let calibrated = view.estimate;
     let actual = Robot { terms: calibrated.terms.clone(), ..nominal.with_screws(&calibrated.screws()) };
     let base = if session.base_free() { End::Free } else { End::Kept };
     let Ok(changes) = Changes::of(nominal, &actual, base) else {
         let joints = nominal.joints.iter().zip(&actual.joints).zip(deviations);
         let of = |(pair, deviation): (_, &Deviation)| {
             let by_steps = ChangeBySteps {
-                offset: vec![0.0; finished.layout.dim()],
+                offset: vec![0.0; layout.dim()],
                 tilt: deviation.tilt_by_step.clone(),
                 shift: deviation.shift_by_step.clone(),
             };
@@ -58,7 +59,7 @@ pub(super) fn joint_changes(
         };
         return joints.map(of).collect();
     };
-    let by_steps = changes.by_steps(&screw_motions(calibrated, finished.layout));
+    let by_steps = changes.by_steps(&screw_motions(calibrated, layout));
     let with_sigmas = |(change, by_steps): (&JointChange, ChangeBySteps)| {
         let (sigma_tilt, sigma_shift) = sigmas((&by_steps.tilt, &by_steps.shift), uncertainty, length_m);
         let most = if change.kind == JointKind::Revolute { PLAUSIBLE } else { PLAUSIBLE * length_m };

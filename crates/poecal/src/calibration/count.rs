@@ -1,6 +1,5 @@
 //! Numbers measured and unknowns of a problem.
 
-use super::measurements_words;
 use crate::error::{Error, ErrorKind, Result};
 use crate::estimate::Session;
 use crate::measurement::Dataset;
@@ -73,4 +72,9 @@ pub(super) fn of_device(data: &Dataset, station: usize, rows: &[u32]) -> usize {
 /// Unknowns of further device frames as part of a list, if there are any.
 fn of_devices(unknowns: usize) -> String {
     if unknowns > 0 { format!(", {unknowns} of device frames") } else { String::new() }
+}
+
+/// A number of measurements in words.
+pub(super) fn measurements_words(count: usize) -> String {
+    if count == 1 { "1 measurement".to_owned() } else { format!("{count} measurements") }
 }

@@ -4,8 +4,9 @@ use nalgebra::{Matrix3, Vector3};
 use serde::Serialize;
 
 use super::accuracy::{ModelAccuracy, model_accuracy};
+use super::located::rows_of_fitted_stations;
 use crate::analysis::{JointCoverage, inside};
-use crate::estimate::{Chain, Estimate, Linkage, RowError, Session};
+use crate::estimate::{Chain, Estimate, Linkage, RowError, Session, sample_rows};
 use crate::measurement::{ByQuantity, Measured, NUMBERS, Noise, Quantity};
 use crate::parameters::Parameter;
 use crate::uncertainty::{Discrepancy, PredictedError, Refit, Uncertainty};
@@ -276,6 +277,21 @@ pub(super) fn promised_rows(
         None => *predicted,
     };
     Some(predicted.rows(&seen.session, &seen.estimate, &data.all_rows(), &seen.errors))
+}
+
+/// Coverage on held-out rows, at most so many, of a model with its uncertainty and sampled ranges; `None` without any that bounds promise.
+pub(super) fn held_out_check(
+    (session, estimate): (&Session<'_>, &Estimate),
+    (fitted, held_out): (&[u32], &[u32]),
+    predicted: Option<(&Uncertainty, &[JointCoverage])>,
+    most: usize,
+) -> Option<CoverageCheck> {
+    let (uncertainty, coverage) = predicted?;
+    let targets: Vec<usize> = (0..session.data.targets.len()).collect();
+    let rows = sample_rows(&rows_of_fitted_stations(session.data, fitted, held_out), most);
+    let errors = session.errors(&rows, estimate);
+    let predicted = PredictedUncertainty { uncertainty, targets: &targets, coverage };
+    (!rows.is_empty()).then(|| predicted.check(session, estimate, &rows, &errors))
 }
 
 /// Coverage over all rows, and over those inside the sampled range, if there are any.

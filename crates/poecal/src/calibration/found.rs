@@ -1,4 +1,4 @@
-//! Result of a fit.
+//! Begin and results of a fit.
 
 use super::NoiseSource;
 use crate::estimate::Estimate;
@@ -20,6 +20,14 @@ pub struct SolverReport {
     /// Joint offsets (radians or metres): joint value minus reading, where the formulation has offsets. They are not
     /// identifiable beside the screws (lou2009 Proposition 1); the calibrated robot has them in its screws.
     pub joint_offsets: Option<Vec<f64>>,
+}
+
+/// Device frame and targets with nominal screws, and the noise that they leave.
+#[derive(Clone)]
+pub(super) struct Start {
+    pub(super) registered: Estimate,
+    pub(super) noise: Noise,
+    pub(super) source: NoiseSource,
 }
 
 /// A fit in progress.

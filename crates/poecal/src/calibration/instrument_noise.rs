@@ -22,8 +22,7 @@ struct Sum {
 /// their noise and suspected rows do not count. `None` if that changes nothing (theory.md §6, *Noise*).
 pub(super) fn noise_ratios(session: &Session<'_>, rows: &[u32], fit: &RobustFit) -> Option<Vec<Noise>> {
     let stations = session.data.station_count();
-    let rows: Vec<u32> =
-        rows.iter().copied().filter(|&row| !fit.judged.rows[row as usize].suspected).collect();
+    let rows: Vec<u32> = fit.robustness.rest(rows);
     let mut sums: Vec<ByQuantity<Sum>> = vec![ByQuantity::default(); stations];
     let squares = session
         .map_squares(&rows, &fit.fitted.estimate, |observation, squares| (observation.station, squares));

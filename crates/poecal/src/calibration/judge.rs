@@ -4,13 +4,13 @@ use serde::Serialize;
 
 use super::acceptance::{Acceptance, AcceptedModel};
 use super::accuracy::{ModelAccuracy, model_accuracy};
-use super::count::of_device;
+use super::count::{measurements_words, of_device};
 use super::coverage_check::{
     CoverageCheck, InSampledRange, JudgedRow, JudgedRows, PartCoverage, PredictedUncertainty, ROUNDING,
     coverage_checks, promised_rows,
 };
 use super::verdict::Level;
-use super::{DeviceFrameKnowledge, delivered, measurements_words};
+use super::{DeviceFrameKnowledge, delivered};
 use crate::error::{Error, ErrorKind, Result};
 use crate::estimate::{Packed, Range, Session};
 use crate::lie::Freedom;

@@ -19,7 +19,7 @@ pub(super) fn stations_to_locate(data: &Dataset, fitted: &[u32]) -> Vec<usize> {
 }
 
 /// Held-out rows of stations that were fitted: bounds promise nothing of frames that are found from the judging rows themselves.
-pub(super) fn promised_rows(data: &Dataset, fitted: &[u32], held_out: &[u32]) -> Vec<u32> {
+pub(super) fn rows_of_fitted_stations(data: &Dataset, fitted: &[u32], held_out: &[u32]) -> Vec<u32> {
     let others = stations_to_locate(data, fitted);
     let is_promised = |row: &u32| !others.contains(&data.observations[*row as usize].station);
     held_out.iter().copied().filter(is_promised).collect()

@@ -1,12 +1,12 @@
 //! Result of a calibration.
 
+use std::borrow::Cow;
 use std::sync::Arc;
 
 use super::placed::{CalibratedStation, CalibratedTarget};
-use super::verdict::Judged;
 use super::{
-    Acceptance, Accuracy, CalibrationOptions, Correction, DeviceFrameKnowledge, Event, Formulation,
-    JointEffect, Models, NoiseSource, Robustness, SolverReport, Trust, Verdict, fit_screws,
+    Acceptance, Accuracy, CalibrationOptions, Correction, DeviceFrameKnowledge, Event, Formulation, Models,
+    NoiseSource, Robustness, SolverReport, Trust, Verdict, fit_screws,
 };
 use crate::analysis::Identifiability;
 use crate::estimate::{Packed, Session, Unknowns};
@@ -64,8 +64,6 @@ pub struct Calibration {
     pub acceptance: Option<Acceptance>,
     /// Verdict with its reasons, on the model that is delivered.
     pub verdict: Verdict,
-    /// The same before expected errors are looked at.
-    pub(super) judged: Judged,
     /// Noise by which residuals were whitened where a row stated none; of the first of several instruments.
     pub noise: Noise,
     /// Noise of each instrument in units of the first one's; empty if all are alike.
@@ -92,6 +90,15 @@ pub struct Calibration {
     pub(super) packed: Arc<Packed>,
 }
 
+/// A calibration, and the session that it is of.
+#[derive(Clone, Debug)]
+pub struct Repaired<'a> {
+    /// The calibration, with what was repaired and what is suspected.
+    pub calibration: Calibration,
+    /// The measurements as they were fitted: those given where nothing was repaired but rows left out.
+    pub data: Cow<'a, Dataset>,
+}
+
 impl Calibration {
     /// Joint values of measurements; the stored ones for the data of the calibration.
     pub(crate) fn packed(&self, data: &Dataset) -> Arc<Packed> {
@@ -99,37 +106,6 @@ impl Calibration {
             return Arc::clone(&self.packed);
         }
         Arc::new(Packed::of(&self.nominal, data))
-    }
-
-    /// The same with this against any use.
-    pub(super) fn against(mut self, reason: String) -> Self {
-        self.judged = self.judged.against(reason);
-        self.verdict = match self.correction.as_deref().filter(|it| it.has_terms()) {
-            Some(found) => self.judged.of_corrected(found.judging_errors(), &found.expected),
-            None => self.judged.of_calibrated(&self.trust.expected),
-        };
-        self
-    }
-
-    /// The calibration with a corrected model.
-    pub(super) fn with_correction(mut self, found: Correction) -> Self {
-        self.accuracy.training.corrected = Some(found.training);
-        if let Some(held_out) = &mut self.accuracy.held_out {
-            held_out.corrected = found.held_out;
-        }
-        for (joint, correction) in self.nominal.joints.iter().zip(&mut self.trust.joints) {
-            let own = found.effects.each.iter().filter(|it| it.joint == joint.name && it.is_found()).take(2);
-            let told: Vec<String> = own.map(JointEffect::words).collect();
-            if let Some(words) = correction.suspicious.as_mut().filter(|_| !told.is_empty()) {
-                *words = format!("{words}. By the corrected model {}", told.join(", and "));
-            }
-        }
-        if found.has_terms() {
-            self.verdict = self.judged.of_corrected(found.judging_errors(), &found.expected);
-        }
-        self.warnings.extend(found.doubt.clone());
-        self.correction = Some(Box::new(found));
-        self
     }
 
     /// The session of these measurements and their joint values.

@@ -1,6 +1,7 @@
 //! Checks of several stations before a fit.
 
-use super::{CalibrationOptions, DeviceFrameKnowledge, measurements_words};
+use super::count::measurements_words;
+use super::{CalibrationOptions, DeviceFrameKnowledge};
 use crate::error::{Error, ErrorKind, Result};
 use crate::estimate::{Session, Unknowns};
 use crate::lie::Freedom;

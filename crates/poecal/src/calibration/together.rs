@@ -2,11 +2,11 @@
 
 use nalgebra::{DMatrix, DVector, Vector3};
 
-use super::finished::Finished;
 use crate::estimate::{Session, sample_rows};
 use crate::offsets::{ChangeBySteps, JointChange, direction};
 use crate::robot::JointKind;
-use crate::uncertainty::{Uncertainty, held_covariance, position_information};
+use crate::solve::Normal;
+use crate::uncertainty::{Uncertainty, View, held_covariance, position_information};
 
 /// Rows by which the effect on predictions is computed.
 const ROWS: usize = 300;
@@ -33,8 +33,12 @@ pub struct CommonDirection {
 
 /// Standard deviations of the tilt (radians) and shift (metres) of each joint's axis with the axes of all other joints held: theory.md §9
 /// (39b).
-pub(super) fn held_sigmas(finished: &Finished<'_>, uncertainty: &Uncertainty) -> Vec<Option<(f64, f64)>> {
-    let layout = finished.layout;
+pub(super) fn held_sigmas(
+    view: &View<'_>,
+    normal: &Normal,
+    uncertainty: &Uncertainty,
+) -> Vec<Option<(f64, f64)>> {
+    let layout = &uncertainty.layout;
     let n = layout.dim();
     let joint_of = |place: usize| -> Option<usize> {
         let mut parameters = layout.parameters();
@@ -48,7 +52,7 @@ pub(super) fn held_sigmas(finished: &Finished<'_>, uncertainty: &Uncertainty) ->
         })?;
         let kept: Vec<usize> = (0..n).filter(|&k| joints[k].is_none_or(|own| own == joint)).collect();
         let scatter = uncertainty.discrepancy.scatter;
-        let covariance = held_covariance(&finished.view, &finished.normal.gram, n, scatter, &kept)?;
+        let covariance = held_covariance(view, &normal.gram, n, scatter, &kept)?;
         let sigma = |places: &[(usize, f64)]| {
             let variance = |&(place, scale): &(usize, f64)| {
                 let at = kept.iter().position(|&own| own == place)?;
@@ -61,19 +65,19 @@ pub(super) fn held_sigmas(finished: &Finished<'_>, uncertainty: &Uncertainty) ->
             JointKind::Prismatic => Some((sigma(places)?, 0.0)),
         }
     };
-    (0..finished.view.session.robot.joints.len()).map(of_axis).collect()
+    (0..view.session.robot.joints.len()).map(of_axis).collect()
 }
 
 /// The common directions of a fit: eigenvectors of the covariance of all corrections with the largest eigenvalues, where these are what
 /// makes the standard deviations large (theory.md §9 (39c)).
 pub(super) fn common_directions(
-    finished: &Finished<'_>,
+    view: &View<'_>,
     uncertainty: &Uncertainty,
     changes: &[(JointChange, ChangeBySteps)],
     held: &[Option<(f64, f64)>],
 ) -> Vec<CommonDirection> {
-    let Session { robot, length_m, .. } = finished.view.session;
-    let n = finished.layout.dim();
+    let Session { robot, length_m, .. } = view.session;
+    let n = uncertainty.layout.dim();
     let is_larger = |(change, held): (&JointChange, &Option<(f64, f64)>)| {
         let Some((tilt, shift)) = held else { return false };
         let larger = |all: Option<f64>, held: f64| all.is_some_and(|all| all > LARGER * held);
@@ -85,20 +89,7 @@ pub(super) fn common_directions(
     if n == 0 || !larger.contains(&true) {
         return Vec::new();
     }
-    // Seven rows of each joint, in metres: offset, tilt, shift.
-    let unit = |joint: usize| if changes[joint].0.kind == JointKind::Revolute { length_m } else { 1.0 };
-    let mut rows = DMatrix::zeros(7 * changes.len(), n);
-    for (joint, (change, by_steps)) in changes.iter().enumerate().filter(|(joint, _)| larger[*joint]) {
-        let offset = change.offset.map_or(0.0, |_| unit(joint));
-        let tilts = by_steps.tilt.iter().map(|row| (row, length_m));
-        let shifts = by_steps.shift.iter().map(|row| (row, 1.0));
-        let all = std::iter::once((&by_steps.offset, offset)).chain(tilts).chain(shifts);
-        for (part, (row, scale)) in all.enumerate() {
-            for (k, value) in row.iter().enumerate() {
-                rows[(7 * joint + part, k)] = scale * value;
-            }
-        }
-    }
+    let rows = by_unknowns(changes, &larger, n, length_m);
     let covariance = DMatrix::from_row_slice(n, n, &uncertainty.covariance);
     let spread = &covariance * rows.transpose();
     let of_changes = &rows * &spread;
@@ -106,8 +97,8 @@ pub(super) fn common_directions(
     let upper: Vec<f64> = (0..size * size).map(|k| of_changes[(k / size, k % size)]).collect();
     let (values, vectors) = crate::linalg::symmetric_eigen(&upper, size);
     let total: f64 = values.iter().sum();
-    let sampled = sample_rows(finished.view.rows, ROWS);
-    let information = DMatrix::from_row_slice(n, n, &position_information(&finished.view, &sampled));
+    let sampled = sample_rows(view.rows, ROWS);
+    let information = DMatrix::from_row_slice(n, n, &position_information(view, &sampled));
     let told = |k: usize| -> Option<CommonDirection> {
         let value = values[k];
         if value <= SHARE * total || value <= 0.0 {
@@ -126,6 +117,29 @@ pub(super) fn common_directions(
         })
     };
     (0..size).rev().take(MOST).filter_map(told).collect()
+}
+
+/// Derivatives of the corrections of some joints by the unknowns: seven rows of each joint, in metres, of offset, tilt and shift.
+fn by_unknowns(
+    changes: &[(JointChange, ChangeBySteps)],
+    counts: &[bool],
+    unknowns: usize,
+    length_m: f64,
+) -> DMatrix<f64> {
+    let mut rows = DMatrix::zeros(7 * changes.len(), unknowns);
+    for (joint, (change, by_steps)) in changes.iter().enumerate().filter(|(joint, _)| counts[*joint]) {
+        let unit = if change.kind == JointKind::Revolute { length_m } else { 1.0 };
+        let offset = change.offset.map_or(0.0, |_| unit);
+        let tilts = by_steps.tilt.iter().map(|row| (row, length_m));
+        let shifts = by_steps.shift.iter().map(|row| (row, 1.0));
+        let all = std::iter::once((&by_steps.offset, offset)).chain(tilts).chain(shifts);
+        for (part, (row, scale)) in all.enumerate() {
+            for (k, value) in row.iter().enumerate() {
+                rows[(7 * joint + part, k)] = scale * value;
+            }
+        }
+    }
+    rows
 }
 
 /// The largest part of a joint in a direction.

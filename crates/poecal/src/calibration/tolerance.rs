@@ -1,6 +1,7 @@
 //! Tolerances of the prior, chosen by cross-validation.
 
-use super::{Calibration, CalibrationOptions};
+use super::run::Run;
+use super::summary::FitSummary;
 use crate::error::Result;
 use crate::robot::Tolerance;
 
@@ -13,34 +14,32 @@ fn tried() -> [Tolerance; 5] {
     [Tolerance::default(), of(0.2, 2e-3), of(0.05, 5e-4), of(1.0, 1e-2), of(3.0, 1e-2)]
 }
 
-/// The tolerance whose fit predicts rows best which are left out: random folds, ends of the joints' ranges, files, ids.
-///
-/// # Errors
-/// Those of the fits.
-pub(super) fn chosen(
-    options: &CalibrationOptions,
-    calibrate: impl Fn(&CalibrationOptions) -> Result<Calibration>,
-) -> Result<Tolerance> {
-    let mut best: Option<(f64, Tolerance)> = None;
-    for tolerance in tried() {
-        let options = CalibrationOptions {
-            tolerance: Some(tolerance),
-            chooses_tolerance: false,
-            corrections: super::Corrections::Off,
-            diagnose: false,
-            accept: None,
-            ..options.clone()
-        };
-        let found = calibrate(&options)?;
-        // Too few rows for cross-validation choose nothing.
-        let Some(validated) = found.trust.cross_validation else { return Ok(Tolerance::default()) };
-        let errors = std::iter::once(&validated.random).chain(&validated.blocked).map(|it| it.rms.lead());
-        let count = 1.0 + validated.blocked.len() as f64;
-        let mean = errors.map(|it| it.max(f64::MIN_POSITIVE).ln()).sum::<f64>() / count;
-        let bonus = if tolerance == Tolerance::default() { USUAL } else { 0.0 };
-        if best.is_none_or(|(least, _)| mean - bonus < least) {
-            best = Some((mean - bonus, tolerance));
+impl Run<'_> {
+    /// The same with the tolerance whose fit predicts rows best which are left out (random folds, ends of the joints' ranges, files, ids), if
+    /// that is asked for.
+    ///
+    /// # Errors
+    /// Those of the fits.
+    pub(super) fn with_best_tolerance(self) -> Result<Self> {
+        if !self.options.chooses_tolerance {
+            return Ok(self);
         }
+        let mut best = (f64::INFINITY, Tolerance::default());
+        for tolerance in tried() {
+            let run = self.with_tolerance(tolerance);
+            let start = run.register();
+            let fit = run.fit(start)?;
+            let validated = fit.run.in_pool(|| FitSummary::of(&fit).cross_validated(&fit));
+            // Too few rows for cross-validation choose nothing.
+            let Some(validated) = validated else { return Ok(self.with_tolerance(Tolerance::default())) };
+            let errors = std::iter::once(&validated.random).chain(&validated.blocked).map(|it| it.rms.lead());
+            let count = 1.0 + validated.blocked.len() as f64;
+            let mean = errors.map(|it| it.max(f64::MIN_POSITIVE).ln()).sum::<f64>() / count;
+            let bonus = if tolerance == Tolerance::default() { USUAL } else { 0.0 };
+            if mean - bonus < best.0 {
+                best = (mean - bonus, tolerance);
+            }
+        }
+        Ok(self.with_tolerance(best.1))
     }
-    Ok(best.map_or_else(Tolerance::default, |(_, tolerance)| tolerance))
 }

@@ -3,7 +3,7 @@
 use super::CoverageCheck;
 use super::changes::{joint_changes, sigmas};
 use super::expected::{Expectations, expectations_beside};
-use super::finished::Finished;
+use super::summary::FitSummary;
 use super::suspicion::{JointCorrection, suspicions};
 use super::together::{CommonDirection, common_directions, held_sigmas};
 use crate::analysis::{JointCoverage, coverage};
@@ -11,9 +11,7 @@ use crate::estimate::{Estimate, Session, rms_m, sample_rows};
 use crate::gauge::screw_deviations;
 use crate::measurement::Quantity;
 use crate::start::{Registration, register_again};
-use crate::uncertainty::{
-    Bootstrap, CrossValidation, Discrepancy, Shares, Uncertainty, bootstrap, cross_validate, discrepancy,
-};
+use crate::uncertainty::{Bootstrap, CrossValidation, Shares, Uncertainty, View, bootstrap, discrepancy};
 
 /// Rows by which the effect of each correction is computed.
 const EFFECT_SAMPLE: usize = 300;
@@ -48,55 +46,52 @@ pub struct Trust {
     pub common: Vec<CommonDirection>,
 }
 
-/// Judges a finished fit.
-pub(super) fn trust(finished: &Finished<'_>) -> Trust {
-    let view = &finished.view;
-    let cross_validation = cross_validate(view, finished.seed);
-    let found = discrepancy(view, finished.normal, finished.remainder, cross_validation.as_ref());
-    let mut uncertainty = uncertainty(finished, &found);
+/// Judges a finished fit, beside its cross-validation.
+pub(super) fn trust(
+    view: &View<'_>,
+    summary: &FitSummary,
+    cross_validation: Option<CrossValidation>,
+    seed: u64,
+) -> Trust {
+    let FitSummary { layout, normal, remainder, .. } = summary;
+    let found = discrepancy(view, normal, remainder, cross_validation.as_ref());
+    let mut uncertainty = (remainder.numbers > normal.dim())
+        .then(|| Uncertainty::new(view, layout.clone(), &normal.gram, &found))
+        .flatten();
     let coverage = coverage(&view.session, view.rows);
     let left_out_m = cross_validation.as_ref().and_then(|found| found.random.rms.get(Quantity::Position));
     let expected = uncertainty.as_mut().map_or_else(Expectations::default, |uncertainty| {
-        expectations_beside(&view.session, view.rows, &coverage, (uncertainty, left_out_m), finished.seed)
+        expectations_beside(&view.session, view.rows, &coverage, (uncertainty, left_out_m), seed)
     });
-    let (joints, common) = joints(finished, uncertainty.as_ref());
+    let (joints, common) = joints(view, summary, uncertainty.as_ref());
     Trust {
         joints,
         common,
         coverage,
         cross_validation,
         uncertainty,
-        bootstrap: bootstrap(view, finished.seed),
+        bootstrap: bootstrap(view, seed),
         expected,
         held_out: None,
     }
 }
 
-fn uncertainty(finished: &Finished<'_>, found: &Discrepancy) -> Option<Uncertainty> {
-    let normal = finished.normal;
-    if finished.remainder.numbers <= normal.dim() {
-        return None;
-    }
-    Uncertainty::new(&finished.view, finished.layout.clone(), &normal.gram, found)
-}
-
 /// Correction of each joint with its uncertainty and effect.
 fn joints(
-    finished: &Finished<'_>,
+    view: &View<'_>,
+    FitSummary { layout, normal, .. }: &FitSummary,
     uncertainty: Option<&Uncertainty>,
 ) -> (Vec<JointCorrection>, Vec<CommonDirection>) {
-    let view = &finished.view;
     let Session { robot, length_m, .. } = view.session;
-    let calibrated = &finished.models.calibrated;
-    let deviations = screw_deviations(calibrated, robot, finished.layout, length_m, view.session.base_free());
+    let calibrated = view.estimate;
+    let deviations = screw_deviations(calibrated, robot, layout, length_m, view.session.base_free());
     let nominal: Vec<_> = robot.joints.iter().map(|joint| joint.screw).collect();
     let rows = sample_rows(view.rows, EFFECT_SAMPLE);
-    let normal = finished.normal;
     let shares = Shares::new(view, &normal.gram, normal.dim());
     let from_data = |rows: &[Vec<f64>; 3]| shares.as_ref()?.of_measurements(rows);
-    let changes = joint_changes(finished, uncertainty, &deviations);
-    let held = uncertainty.map_or_else(|| vec![None; changes.len()], |it| held_sigmas(finished, it));
-    let common = uncertainty.map(|it| common_directions(finished, it, &changes, &held));
+    let changes = joint_changes(view, layout, uncertainty, &deviations);
+    let held = uncertainty.map_or_else(|| vec![None; changes.len()], |it| held_sigmas(view, normal, it));
+    let common = uncertainty.map(|it| common_directions(view, it, &changes, &held));
     let mut joints: Vec<JointCorrection> = deviations
         .into_iter()
         .zip(&changes)
@@ -106,7 +101,7 @@ fn joints(
                 sigmas((&deviation.tilt_by_step, &deviation.shift_by_step), uncertainty, length_m);
             let mut screws = calibrated.screws();
             screws[joint] = nominal[joint];
-            let left = registered_again(finished, &rows, &calibrated.with_screws(&screws));
+            let left = registered_again(view, &rows, &calibrated.with_screws(&screws));
             JointCorrection {
                 tilt_rad: deviation.tilt_rad,
                 shift_m: deviation.shift_m,
@@ -121,14 +116,13 @@ fn joints(
             }
         })
         .collect();
-    let suspicions = suspicions(view, finished.normal, &joints);
+    let suspicions = suspicions(view, normal, &joints);
     joints.iter_mut().zip(suspicions).for_each(|(joint, words)| joint.suspicious = words);
     (joints, common.unwrap_or_default())
 }
 
 /// An estimate with tool and device frame refitted.
-fn registered_again(finished: &Finished<'_>, rows: &[u32], start: &Estimate) -> Estimate {
-    let view = &finished.view;
+fn registered_again(view: &View<'_>, rows: &[u32], start: &Estimate) -> Estimate {
     let registration =
         Registration { session: view.session, rows, noise: view.noise, targets_free: true, prior: None };
     register_again(&registration, start)

@@ -2,12 +2,14 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::noise_doubts::NoiseDoubt;
-use super::trust::Trust;
-use super::{AcceptedModel, Accuracy, Expectations, ModelAccuracy, Robustness, SolverReport};
-use crate::analysis::{Direction, Identifiability};
+use super::calibrated::CalibratedFit;
+use super::figures::Figures;
+use super::signs::Signs;
+use super::summary::FitSummary;
+use super::{AcceptedModel, Expectations, ModelAccuracy};
+use crate::analysis::Direction;
+use crate::forensics::DiagnosisKind;
 use crate::measurement::Quantity;
-use crate::robot::Robot;
 
 /// Level of a verdict.
 #[derive(
@@ -173,30 +175,19 @@ const RANGE: f64 = 2.0;
 
 /// Input of a verdict.
 pub(super) struct Grounds<'a> {
-    pub(super) accuracy: &'a Accuracy,
-    pub(super) solver: &'a SolverReport,
-    pub(super) identifiability: &'a Identifiability,
-    pub(super) trust: &'a Trust,
-    pub(super) robot: &'a Robot,
-    pub(super) robustness: &'a Robustness,
-    pub(super) rows: usize,
-    /// Numbers measured in distinct configurations.
-    pub(super) numbers: usize,
-    /// Whether the zero of a joint was found to be another.
-    pub(super) has_other_zeros: bool,
-    /// Contradictions between residuals and stated noise.
-    pub(super) noise: &'a [NoiseDoubt],
-    pub(super) reach_m: f64,
+    pub(super) fit: &'a CalibratedFit<'a>,
+    pub(super) summary: &'a FitSummary,
+    pub(super) figures: &'a Figures,
+    pub(super) signs: &'a Signs,
     /// Mistakes in the input, a sentence each.
-    pub(super) mistakes: &'a [String],
-    /// Whether an axis or a term of a joint is unknown.
-    pub(super) moves_joints: bool,
+    pub(super) mistakes: Vec<String>,
 }
 
 /// The verdict, but for the expected errors of the model.
 pub(super) fn judged(grounds: &Grounds<'_>) -> Judged {
     // Suspected rows do not count.
-    let (accuracy, robustness) = (grounds.accuracy, grounds.robustness);
+    let Figures { accuracy, robustness, .. } = grounds.figures;
+    let (run, reach_m) = (&grounds.fit.run, grounds.fit.reach_m());
     let (set, name) = match &accuracy.held_out {
         Some(set) => (robustness.held_out_rest.as_ref().unwrap_or(set), "held-out"),
         None => (robustness.training_rest.as_ref().unwrap_or(&accuracy.training), "fitted"),
@@ -205,13 +196,14 @@ pub(super) fn judged(grounds: &Grounds<'_>) -> Judged {
     let of = |model: &ModelAccuracy| model.get(leading).unwrap_or_default().rms;
     let (registered, calibrated) = (of(&set.registered), of(&set.calibrated));
     let (what, unit) = (leading.name(), leading.unit().symbol());
-    let is_no_better = grounds.moves_joints && calibrated > (1.0 - WORTH) * registered;
+    let moves_joints = run.unknowns.moves_joints(run.robot.joints.len());
+    let is_no_better = moves_joints && calibrated > (1.0 - WORTH) * registered;
     let no_better = is_no_better.then(|| {
         format!(
             "on {name} rows the calibrated screws are no better than the nominal ones ({calibrated:.3} {unit} against {registered:.3} {unit})"
         )
     });
-    let too_large = is_too_large(&set.calibrated, grounds.reach_m).then(|| {
+    let too_large = is_too_large(&set.calibrated, reach_m).then(|| {
         format!(
             "the {what} error of the calibrated model on {name} rows is {calibrated:.1} {unit} (RMS), more than 1 % of the robot's reach"
         )
@@ -222,20 +214,20 @@ pub(super) fn judged(grounds: &Grounds<'_>) -> Judged {
         too_large,
         drifted: drifted(grounds),
         everywhere: against_use_everywhere(grounds),
-        reach_m: grounds.reach_m,
+        reach_m,
     }
 }
 
 fn against_use(grounds: &Grounds<'_>) -> Vec<String> {
-    let mut reasons = grounds.mistakes.to_vec();
-    if !grounds.solver.termination.is_success() {
+    let mut reasons = grounds.mistakes.clone();
+    if !grounds.fit.robust.fitted.report.termination.is_success() {
         reasons.push("the fit did not converge".to_owned());
     }
-    let unknowns = grounds.identifiability.parameters;
-    if (grounds.numbers as f64) < REDUNDANCY * unknowns as f64 {
+    let unknowns = grounds.figures.identifiability.parameters;
+    if (grounds.summary.remainder.numbers as f64) < REDUNDANCY * unknowns as f64 {
         reasons.push(format!(
             "{} numbers measured in different configurations for {unknowns} unknowns are too few to judge the fit",
-            grounds.numbers
+            grounds.summary.remainder.numbers
         ));
     }
     reasons
@@ -243,12 +235,13 @@ fn against_use(grounds: &Grounds<'_>) -> Vec<String> {
 
 /// Axes farther from nominal than any axis of this robot. The zero of a joint turns all later axes.
 fn drifted(grounds: &Grounds<'_>) -> Vec<String> {
-    if grounds.has_other_zeros {
+    if grounds.signs.diagnosis.iter().any(|it| it.kind == DiagnosisKind::JointZero) {
         return Vec::new();
     }
-    let joints = grounds.robot.joints.iter().zip(&grounds.trust.joints);
+    let reach_m = grounds.fit.reach_m();
+    let joints = grounds.fit.run.robot.joints.iter().zip(&grounds.figures.trust.joints);
     joints
-        .filter(|(_, it)| it.shift_m > ANOTHER_SHARE * grounds.reach_m || it.tilt_rad > ANOTHER_RAD)
+        .filter(|(_, it)| it.shift_m > ANOTHER_SHARE * reach_m || it.tilt_rad > ANOTHER_RAD)
         .map(|(joint, it)| {
             format!(
                 "the axis of {} ended {:.0} mm and {:.1} deg from nominal: check whether the model is that of this robot, \
@@ -265,38 +258,49 @@ fn drifted(grounds: &Grounds<'_>) -> Vec<String> {
 /// Undetermined directions, but for those of joints of one reading: no configuration separates them, and no prediction does.
 fn undetermined_directions(grounds: &Grounds<'_>) -> usize {
     let reading = |name: &String| {
-        grounds.robot.joints.iter().find(|joint| joint.name == *name).map(|joint| joint.reading.name.as_str())
+        grounds
+            .fit
+            .run
+            .robot
+            .joints
+            .iter()
+            .find(|joint| joint.name == *name)
+            .map(|joint| joint.reading.name.as_str())
     };
     let is_one_reading = |direction: &&Direction| {
         let mut readings = direction.joints.iter().map(reading);
         let first = readings.next().flatten();
         direction.joints.len() > 1 && first.is_some() && readings.all(|other| other == first)
     };
-    let found = grounds.identifiability;
+    let found = &grounds.figures.identifiability;
     let followers: usize = found.unidentifiable.iter().filter(is_one_reading).map(|it| it.directions).sum();
     (found.parameters - found.rank).saturating_sub(followers)
 }
 
 fn against_use_everywhere(grounds: &Grounds<'_>) -> Vec<String> {
-    let trust = grounds.trust;
-    let absurd = grounds.noise.iter().filter(|doubt| doubt.is_absurd);
+    let Figures { trust, robustness, .. } = grounds.figures;
+    let run = &grounds.fit.run;
+    let absurd = grounds.signs.noise.iter().filter(|doubt| doubt.is_absurd);
     let mut reasons: Vec<String> = absurd.map(|doubt| doubt.statement.clone()).collect();
-    if grounds.robustness.suspects_many() {
-        let suspects = grounds.robustness.suspects().count();
+    if robustness.suspects_many() {
+        let suspects = robustness.suspects().count();
         reasons.push(format!(
             "{suspects} of {} rows {}",
-            grounds.robustness.rows.len(),
+            robustness.rows.len(),
             if suspects == 1 { "is a suspected outlier" } else { "are suspected outliers" }
         ));
     }
-    let unknowns = grounds.identifiability.parameters;
-    if trust.cross_validation.is_none() || (grounds.numbers as f64) < TESTED * unknowns as f64 {
+    let unknowns = grounds.figures.identifiability.parameters;
+    if trust.cross_validation.is_none()
+        || (grounds.summary.remainder.numbers as f64) < TESTED * unknowns as f64
+    {
         reasons.push(format!(
             "{} rows with {} measured numbers for {unknowns} unknowns are too few to test the fit",
-            grounds.rows, grounds.numbers
+            run.fit_rows.len(),
+            grounds.summary.remainder.numbers
         ));
     }
-    for (coverage, joint) in trust.coverage.iter().zip(&grounds.robot.joints) {
+    for (coverage, joint) in trust.coverage.iter().zip(&run.robot.joints) {
         if let Some(share) = coverage.share(joint.kind).filter(|share| *share < COVERED) {
             reasons.push(format!(
                 "{} was moved through {:.0} % of its range only",

@@ -27,7 +27,7 @@ const ROUNDED: f64 = 0.5;
 const ROUNDING: f64 = 1e-9;
 
 /// Residual variance of one kind, position (m²) or rotation (rad²).
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Part {
     /// Mean square of a component over its degrees of freedom; between configurations, if rows are repeated.
     pub mean_square: f64,
@@ -134,7 +134,7 @@ impl Part {
 }
 
 /// Variances of the residuals of a fit.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Remainder {
     /// Of each quantity.
     pub parts: ByQuantity<Part>,

@@ -4,8 +4,8 @@ use crate::trials::trials;
 use nalgebra::Vector3;
 use poecal::Quantity;
 use poecal::calibration::{
-    AcceptedModel, BlockChoice, CalibrationOptions, CorrectionModel, Corrections, Level, Sizes, TermGroup,
-    calibrate, correct,
+    AcceptedModel, BlockChoice, CalibrationOptions, Correction, CorrectionModel, Corrections, Level, Sizes,
+    TermGroup, calibrate,
 };
 use poecal::estimate::{Estimate, Packed, RowError, Session};
 use poecal::io::calibration_file::{CalibrationFile, Inputs};
@@ -19,6 +19,12 @@ use rayon::prelude::*;
 
 fn mean_mm(errors: &[RowError]) -> f64 {
     1e3 * errors.iter().map(RowError::length_m).sum::<f64>() / errors.len().max(1) as f64
+}
+
+/// The corrected model with terms of these sizes.
+fn with_sizes(robot: &Robot, data: &Dataset, sizes: Sizes, options: &CalibrationOptions) -> Correction {
+    let options = CalibrationOptions { corrections: Corrections::Sizes(sizes), ..options.clone() };
+    *calibrate(robot, data, &options).unwrap().correction.unwrap()
 }
 
 /// Poses of an elbow robot that sags and whose gears are eccentric, by a device beside it.
@@ -57,7 +63,7 @@ fn sag_and_eccentric_gears_are_found_and_predicted() {
     let (robot, data) = measured(120);
     let options = CalibrationOptions { move_tip: true, ..CalibrationOptions::default() };
     let calibration = calibrate(&robot, &data, &options).unwrap();
-    let found = correct(&calibration, &data, options.gravity, Some(Sizes::COMMON), &options);
+    let found = with_sizes(&robot, &data, Sizes::COMMON, &options);
     let rows = &calibration.held_out_rows;
     let geometry = calibration.accuracy.held_out.unwrap().calibrated.position_mm().mean;
     let corrected = mean_mm(&found.errors(&data, rows));
@@ -76,7 +82,7 @@ fn a_rigid_robot_stays_as_it_is() {
     let made = Simulation { seed: 3, count: 60, ..Simulation::default() }.run(&elbow(), Kind::POSE).unwrap();
     let options = CalibrationOptions::default();
     let calibration = calibrate(&made.nominal, &made.data, &options).unwrap();
-    let found = correct(&calibration, &made.data, options.gravity, None, &options);
+    let found = calibration.correction.as_deref().unwrap();
     let geometry = calibration.accuracy.held_out.unwrap().calibrated.position_mm().mean;
     let corrected = mean_mm(&found.errors(&made.data, &calibration.held_out_rows));
     println!(
@@ -93,7 +99,7 @@ fn sizes_are_chosen_and_the_robot_predicts_as_the_fit() {
     let (robot, data) = measured(120);
     let options = CalibrationOptions { move_tip: true, ..CalibrationOptions::default() };
     let calibration = calibrate(&robot, &data, &options).unwrap();
-    let found = correct(&calibration, &data, options.gravity, None, &options);
+    let found = calibration.correction.as_deref().unwrap();
     let corrected = mean_mm(&found.errors(&data, &calibration.held_out_rows));
     println!("held out {corrected:.4} mm by {:?} of {} tried", found.sizes, found.tried.len());
     assert!(corrected < 0.045, "{corrected}");
@@ -207,7 +213,7 @@ fn what_is_planted_is_found_and_nothing_else() {
                 let oracle = if sizes == Sizes::NONE {
                     geometry
                 } else {
-                    let known = correct(&calibration, &made.data, options.gravity, Some(sizes), &options);
+                    let known = with_sizes(&made.nominal, &made.data, sizes, &options);
                     missed(&known.model.robot, &known.estimate)
                 };
                 [corrected / oracle, corrected / geometry]
@@ -334,8 +340,7 @@ fn noise_of_few_poses_stays() {
     for count in 11..16 {
         let (robot, data) = measured(count);
         let options = CalibrationOptions { held_out: 0.0, diagnose: false, ..Default::default() };
-        let calibration = calibrate(&robot, &data, &options).unwrap();
-        let found = correct(&calibration, &data, options.gravity, Some(sizes), &options);
+        let found = with_sizes(&robot, &data, sizes, &options);
         let bounds =
             found.uncertainty.as_ref().map(|it| it.predictions(&Packed::of(&found.model.robot, &data), 0));
         let widest = bounds.iter().flatten().map(|it| it.bound_position_m()).fold(0.0, f64::max);
@@ -375,8 +380,7 @@ fn a_freed_term_is_fitted_once() {
     let (robot, data) = measured(80);
     let blocks = BlockChoice { free: vec!["joint3.sin2".to_owned()], ..Default::default() };
     let options = CalibrationOptions { blocks, ..Default::default() };
-    let calibration = calibrate(&robot, &data, &options).unwrap();
-    let found = correct(&calibration, &data, options.gravity, Some(Sizes::COMMON), &options);
+    let found = with_sizes(&robot, &data, Sizes::COMMON, &options);
     let name = TermKind::Sine.numbered(2);
     let third = found.model.places[2];
     let own: Vec<&JointTerm> =
@@ -392,7 +396,7 @@ fn effects_are_what_predictions_lose_without_them() {
     let (robot, data) = measured(120);
     let options = CalibrationOptions { held_out: 0.0, move_tip: true, ..Default::default() };
     let calibration = calibrate(&robot, &data, &options).unwrap();
-    let found = correct(&calibration, &data, options.gravity, Some(Sizes::COMMON), &options);
+    let found = with_sizes(&robot, &data, Sizes::COMMON, &options);
     for effect in &found.effects.each {
         let joint = found.robot.joints.iter().position(|it| it.name == effect.joint).unwrap();
         let of = |at: usize| found.robot.joints[at].give_of.unwrap_or(at);

@@ -1,9 +1,10 @@
-//! What the terms of a corrected model do at each joint: how much, how well it is told, and over the joint's range.
+//! What the terms of a corrected model do at each joint: how much, how well it is determined, and over the joint's range.
 
 use std::collections::BTreeMap;
 
 use nalgebra::Vector3;
 
+use super::effect::{Effects, JointEffect, JointErrorPart, JointErrors};
 use crate::estimate::{Chain, Estimate, Linkage, RowError, Session, sample_rows};
 use crate::measurement::{Noise, Quantity};
 use crate::parameters::Parameter;
@@ -19,80 +20,6 @@ const FEWEST: usize = 3;
 const VAGUE: f64 = 1e-3;
 /// Correlation of two effects above which the measurements do not tell them apart.
 const CONFUSED: f64 = 0.8;
-
-/// What one group of terms does at one joint.
-#[derive(Clone, Debug, PartialEq)]
-pub struct JointEffect {
-    /// Name of the joint.
-    pub joint: String,
-    /// The group.
-    pub group: TermGroup,
-    /// Largest deviation in the fitted rows, radians or metres ([`TermGroup::is_of_lengths`]); of a ratio the change each radian.
-    pub amplitude: f64,
-    /// Its standard deviation.
-    pub sigma: f64,
-    /// Share of its prior variance that the measurements took away, 0 to 1.
-    pub told: f64,
-    /// Root mean square distance by which it moves the target in the fitted rows, but for the mean of all, metres.
-    pub effect_m: f64,
-}
-
-impl JointEffect {
-    /// The effect in words.
-    #[must_use]
-    pub fn words(&self) -> String {
-        let JointEffect { joint, group, amplitude, .. } = self;
-        let much = format!("{:.2} {}", 1e3 * amplitude.abs(), group.row().symbols[0]);
-        let way = if *amplitude < 0.0 { "less" } else { "more" };
-        let words = [("{much}", much.as_str()), ("{way}", way), ("{joint}", joint)];
-        let effect = group.row().effect.to_owned();
-        words.into_iter().fold(effect, |effect, (of, word)| effect.replace(of, word))
-    }
-
-    /// Whether it is more than chance and the prior make.
-    #[must_use]
-    pub fn is_found(&self) -> bool {
-        self.amplitude.abs() > 2.0 * self.sigma && self.told > 0.5
-    }
-}
-
-/// Error of a joint in a part of its range, radians or metres of its own value: the motion of the joint that explains most of the rows'
-/// residuals.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct JointErrorPart {
-    /// From and to, values of the joint.
-    pub range: [f64; 2],
-    /// Number of rows.
-    pub rows: usize,
-    /// By the calibrated model.
-    pub before: f64,
-    /// By the corrected model.
-    pub after: f64,
-    /// Mean deviation by the joint's own terms, and its standard deviation.
-    pub terms: (f64, f64),
-}
-
-/// Error of a joint over its sampled range.
-#[derive(Clone, Debug, PartialEq)]
-pub struct JointErrors {
-    /// Name of the joint.
-    pub joint: String,
-    /// Whether it slides.
-    pub slides: bool,
-    /// The parts that have rows enough.
-    pub parts: Vec<JointErrorPart>,
-}
-
-/// What the terms do.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Effects {
-    /// Of each joint and group, the one that moves the target most first.
-    pub each: Vec<JointEffect>,
-    /// Of each joint over its range.
-    pub errors: Vec<JointErrors>,
-    /// Effects that the measurements do not tell apart, a sentence each.
-    pub confused: Vec<String>,
-}
 
 /// A term at one row: its place among the unknowns of the covariance with the scale there, its coefficient and its function.
 struct TermAt {
@@ -180,6 +107,23 @@ fn about_their_mean(of_rows: &mut [Vec<Vec<TermAt>>]) {
             }
         }
     }
+}
+
+/// The motion of a joint that explains most of the residuals of some rows, and its standard deviation.
+fn explained(some: &[usize], errors: &[RowError], motions: &[Motion], noise: Noise) -> (f64, f64) {
+    let weigh = [Quantity::Position, Quantity::Rotation].map(|it| noise[it].powi(-2));
+    let (mut along, mut information) = (0.0, 0.0);
+    for &at in some {
+        let (shift, turn) = &motions[at];
+        let seen = [(Quantity::Position, shift), (Quantity::Rotation, turn)];
+        for ((quantity, motion), weight) in seen.into_iter().zip(weigh) {
+            if errors[at].length(quantity).is_some() {
+                along += weight * motion.dot(&errors[at].vector(quantity));
+                information += weight * motion.norm_squared();
+            }
+        }
+    }
+    (along / information, information.powf(-0.5))
 }
 
 struct Gatherer<'a> {
@@ -320,58 +264,36 @@ impl<'a> Gatherer<'a> {
         if width.is_nan() || width <= 0.0 {
             return Vec::new();
         }
-        let weigh = [Quantity::Position, Quantity::Rotation].map(|it| noise[it].powi(-2));
-        // The motion of the joint that explains most of the residuals, and its standard deviation.
-        let explained = |some: &[usize], errors: &[RowError]| {
-            let (mut along, mut information) = (0.0, 0.0);
-            for &at in some {
-                let (shift, turn) = &motions[at];
-                let seen = [(Quantity::Position, shift), (Quantity::Rotation, turn)];
-                for ((quantity, motion), weight) in seen.into_iter().zip(weigh) {
-                    if errors[at].length(quantity).is_some() {
-                        along += weight * motion.dot(&errors[at].vector(quantity));
-                        information += weight * motion.norm_squared();
-                    }
-                }
-            }
-            (along / information, information.powf(-0.5))
-        };
         let part = |part: usize| {
             let range = [least + width * part as f64, least + width * (part + 1) as f64];
-            let is_here = |row: u32| {
-                let at = ((value(row) - least) / width) as usize;
-                at.min(PARTS - 1) == part
-            };
+            let is_here = |row: u32| (((value(row) - least) / width) as usize).min(PARTS - 1) == part;
             let some: Vec<usize> = (0..rows.len()).filter(|&at| is_here(rows[at])).collect();
             if some.len() < FEWEST {
                 return None;
             }
-            let count = some.len() as f64;
-            let mut mean = 0.0;
-            let mut along: BTreeMap<usize, f64> = BTreeMap::new();
-            for &at in &some {
-                for it in self.at(&own, rows[at]) {
-                    mean += it.coefficient * it.basis / count;
-                    if let Some((place, scale)) = it.place {
-                        *along.entry(place).or_default() += it.basis / scale / count;
-                    }
-                }
-            }
-            let along: Vec<(usize, f64)> = along.into_iter().collect();
-            let [(before, sigma), (after, _)] = [0, 1].map(|k| explained(&some, &residuals[k]));
+            let terms = self.mean_of(&own, some.iter().map(|&at| rows[at]));
+            let [(before, sigma), (after, _)] =
+                residuals.each_ref().map(|it| explained(&some, it, motions, noise));
             // What the target does not show of a joint is no error of it.
-            if sigma.is_nan() || sigma > VAGUE {
-                return None;
-            }
-            Some(JointErrorPart {
-                range,
-                rows: some.len(),
-                before,
-                after,
-                terms: (mean, self.covariance(&along, &along).max(0.0).sqrt()),
-            })
+            let shows = !sigma.is_nan() && sigma <= VAGUE;
+            shows.then_some(JointErrorPart { range, rows: some.len(), before, after, terms })
         };
         (0..PARTS).filter_map(part).collect()
+    }
+
+    /// Mean deviation by terms in some rows, and its standard deviation.
+    fn mean_of(&self, terms: &[(usize, Term, f64)], rows: impl ExactSizeIterator<Item = u32>) -> (f64, f64) {
+        let count = rows.len() as f64;
+        let mut mean = 0.0;
+        let mut along: BTreeMap<usize, f64> = BTreeMap::new();
+        for it in rows.flat_map(|row| self.at(terms, row)) {
+            mean += it.coefficient * it.basis / count;
+            if let Some((place, scale)) = it.place {
+                *along.entry(place).or_default() += it.basis / scale / count;
+            }
+        }
+        let along: Vec<(usize, f64)> = along.into_iter().collect();
+        (mean, self.covariance(&along, &along).max(0.0).sqrt())
     }
 
     /// Pairs of effects that the measurements do not tell apart.
@@ -394,23 +316,5 @@ impl<'a> Gatherer<'a> {
             }
         }
         confused
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn an_effect_is_said_in_milliradians() {
-        let sag = JointEffect {
-            joint: "joint2".into(),
-            group: TermGroup::Sag,
-            amplitude: 4e-4,
-            sigma: 5e-5,
-            told: 0.9,
-            effect_m: 2e-4,
-        };
-        assert_eq!(sag.words(), "joint2 sags by up to 0.40 mrad under weight");
     }
 }

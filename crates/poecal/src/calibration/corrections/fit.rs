@@ -1,83 +1,61 @@
 //! The fit of screws and terms together.
 
 use super::choice::{Choice, SizesReason, TriedSizes, choose, weight_of_prior};
-use super::effects::effects;
-use super::found::Correction;
-use super::geometry::{Geometry, Sampled};
+use super::context::{CorrectionContext, Sampled};
+use super::found::CorrectedFit;
 use super::gravity::of_no_use;
 use super::linear::between;
 use super::promise::uncertainty;
-use super::unknowns::{estimate, moving, priors, unknowns, weights};
-use crate::analysis::coverage;
+use super::unknowns::{estimate, moving, priors, unknowns};
 use crate::calibration::accuracy::model_accuracy;
-use crate::calibration::expected::{Expectations, expectations_beside};
-use crate::calibration::fit::Task;
+use crate::calibration::calibrated::CalibratedFit;
 use crate::calibration::found::OngoingFit;
-use crate::calibration::located::{located, promised_rows};
+use crate::calibration::located::located;
 use crate::calibration::noise::{NoiseSource, stated};
-use crate::calibration::placed::{place_tip, stations};
-use crate::calibration::{Calibration, CalibrationOptions, PredictedUncertainty, delivered, estimate_noise};
-use crate::estimate::{Estimate, Packed, Session, sample_rows};
+use crate::calibration::run::Run;
+use crate::calibration::task::Task;
+use crate::calibration::{delivered, estimate_noise};
+use crate::estimate::{Estimate, Packed, RowError, Session};
 use crate::gauge;
-use crate::measurement::{ByQuantity, Dataset, Noise, Quantity};
-use crate::robot::{CorrectionModel, GravityDirection, JointTerm, Robot, Sizes};
+use crate::measurement::{ByQuantity, Noise};
+use crate::robot::{CorrectionModel, GravityDirection, JointTerm, Sizes};
 
 /// Most rounds of re-estimating the noise.
 const ROUNDS: usize = 4;
 /// Change of the noise below which it stays, as a share.
 const SETTLED: f64 = 0.02;
-/// Most held-out rows whose bounds are checked.
-const JUDGED: usize = 4000;
 /// Factor of the first trust region.
 const UNDAMPED: f64 = 1e3;
 /// The fit stops within a tenth of a standard deviation: what the priors hold is not known better.
 const DECREMENT: f64 = 1e-2;
 
-/// Fits screws and terms together, from a finished calibration (theory.md §6, *Corrections*): with these sizes, or with those that
-/// cross-validation chooses.
-#[must_use]
-pub fn correct(
-    calibration: &Calibration,
-    data: &Dataset,
-    gravity: GravityDirection,
-    sizes: Option<Sizes>,
-    options: &CalibrationOptions,
-) -> Correction {
-    let own = calibration.packed(data);
-    let session = calibration.session(data, &own).with_noise_ratios(&calibration.noise_ratios);
-    let weights = weights(calibration, options);
-    // Rows without weight say nothing of the noise either.
-    let counts = |row: &u32| {
-        weights.as_deref().is_none_or(|it| it.get(*row as usize).is_none_or(|weight| *weight > 0.0))
-    };
-    let rows: Vec<u32> = calibration.fit_rows.iter().copied().filter(counts).collect();
-    // Terms that geometry has are of no group.
-    let mut nominal = calibration.nominal.clone();
-    for &(joint, term) in &session.unknowns.terms {
-        if !nominal.terms.iter().any(|it| (it.joint, it.term) == (joint, term)) {
-            nominal.terms.push(JointTerm { joint, term, coefficient: 0.0 });
-        }
-    }
-    let moves = moving(&session, &rows);
-    let weights = weights.as_deref();
-    let geometry = Geometry { calibration, nominal, session, options, rows, weights };
-    let is_found = gravity == GravityDirection::Found;
-    let (gravity, doubt) = match gravity {
+/// Fits screws and terms together (theory.md §6, *Corrections*), with these sizes or with those that cross-validation chooses; geometry alone
+/// where terms lead nowhere.
+pub(in crate::calibration) fn corrected(geometry: &CalibratedFit<'_>, sizes: Option<Sizes>) -> CorrectedFit {
+    let context = CorrectionContext::new(geometry);
+    let moves = moving(&context.session, &context.rows);
+    let is_found = geometry.run.options.gravity == GravityDirection::Found;
+    let (gravity, doubt) = match geometry.run.options.gravity {
         GravityDirection::Known(direction) => (direction, None),
-        GravityDirection::Found => geometry.gravity(&moves, sizes.unwrap_or(Sizes::COMMON)),
+        GravityDirection::Found => context.gravity(&moves, sizes.unwrap_or(Sizes::COMMON)),
     };
-    let all = CorrectionModel::new(&geometry.nominal, gravity, &moves, geometry.extent(sizes));
+    let all = CorrectionModel::new(&context.nominal, gravity, &moves, context.extent(sizes));
     let all = sizes.map_or_else(|| all.clone(), |sizes| all.with_sizes(&sizes));
-    let begun = geometry.begin(&all, sizes);
+    let choice = context.choose_sizes(&all, sizes);
     // Terms that may be there keep their part of the uncertainty.
-    let possible = if sizes.is_some() { begun.sizes } else { begun.sizes.max(&Sizes::COMMON) };
-    let found = geometry.end(all.with_sizes(&possible), &possible, begun);
-    let is_of_no_use = is_found && !found.has_terms();
-    Correction { doubt: doubt.or_else(|| is_of_no_use.then(of_no_use)), ..found }
+    let possible = if sizes.is_some() { choice.sizes } else { choice.sizes.max(&Sizes::COMMON) };
+    let model = all.with_sizes(&possible);
+    let found = context.with_terms(&model, &possible, &choice).unwrap_or_else(|reason| {
+        let none = context.choose_sizes(&model, Some(Sizes::NONE));
+        context.without_terms(&model, &possible, SizeChoice { reason, tried: choice.tried, ..none })
+    });
+    let is_of_no_use = is_found && found.sizes == Sizes::NONE;
+    CorrectedFit { doubt: doubt.or_else(|| is_of_no_use.then(of_no_use)), ..found }
 }
 
 /// Sizes, and the optimum with them as far as rows are linear.
-struct Begun {
+#[derive(Clone)]
+struct SizeChoice {
     sizes: Sizes,
     reason: SizesReason,
     tried: Vec<TriedSizes>,
@@ -89,26 +67,31 @@ struct Begun {
     growth: f64,
 }
 
-impl Geometry<'_> {
+impl CorrectionContext<'_> {
     /// Chooses sizes, unless they are given.
-    fn begin(&self, model: &CorrectionModel, sizes: Option<Sizes>) -> Begun {
-        let Geometry { calibration, .. } = *self;
-        let noise = calibration.noise;
-        let start = || estimate(model, &calibration.models.calibrated, self.session.data);
+    fn choose_sizes(&self, model: &CorrectionModel, sizes: Option<Sizes>) -> SizeChoice {
+        let (mut noise, source) = (self.geometry.noise(), self.geometry.robust.fitted.noise_source);
         let Some(Sampled { mut linear, parts, configurations }) = self.sampled(model, sizes) else {
             let (sizes, reason) =
                 sizes.map_or((Sizes::NONE, SizesReason::Undetermined), |sizes| (sizes, SizesReason::Given));
-            let estimate = start();
-            return Begun { sizes, reason, tried: Vec::new(), estimate, noise, variance: 1.0, growth: 1.0 };
+            let estimate = self.start(model);
+            return SizeChoice {
+                sizes,
+                reason,
+                tried: Vec::new(),
+                estimate,
+                noise,
+                variance: 1.0,
+                growth: 1.0,
+            };
         };
-        let mut noise = noise;
         let mut variance = 1.0;
         let usual = sizes.unwrap_or(Sizes::COMMON);
-        if calibration.noise_source == NoiseSource::Estimated {
+        if source == NoiseSource::Estimated {
             for (quantity, factor) in linear.whiten(&usual) {
                 noise[quantity] *= factor;
             }
-        } else if calibration.noise_source != NoiseSource::Exact {
+        } else if source != NoiseSource::Exact {
             variance = linear.weigh_priors(&usual);
         }
         let whole = linear.whole();
@@ -117,125 +100,119 @@ impl Geometry<'_> {
             Some(sizes) => Choice { sizes, reason: SizesReason::Given, tried: Vec::new() },
             None => choose(&linear, &parts, configurations),
         };
-        let estimate = linear.solution(&choice.sizes, &whole).unwrap_or_else(start);
+        let estimate = linear.solution(&choice.sizes, &whole).unwrap_or_else(|| self.start(model));
         let growth = if parts.is_empty() { 1.0 } else { linear.growth(&parts, &whole, &choice.sizes) };
         let Choice { sizes, reason, tried } = choice;
-        Begun { sizes, reason, tried, estimate, noise, variance, growth }
+        SizeChoice { sizes, reason, tried, estimate, noise, variance, growth }
     }
 
-    /// The fit of a model with the sizes of a beginning, and what it promises with all terms that are possible.
-    fn end(&self, model: CorrectionModel, possible: &Sizes, begun: Begun) -> Correction {
-        let Geometry { calibration, options, .. } = *self;
-        let Begun { sizes, reason, tried, estimate: begun, noise, variance, growth } = begun;
-        let of_geometry = self.session;
-        let data = of_geometry.data;
-        let start = estimate(&model, &calibration.models.calibrated, data);
-        let packed = Packed::of(&model.robot, data);
-        let fitted_unknowns = unknowns(&model, of_geometry.unknowns, &sizes);
-        let session = self.session(&model, &packed, &fitted_unknowns);
-        let rows = &self.rows;
-        let weight = weight_of_prior(data.configurations(rows).len());
-        let (estimate, noise) = if sizes == Sizes::NONE {
-            (start, calibration.noise)
-        } else {
-            let coefficient = |it: JointTerm| begun.coefficient(it.joint, it.term);
-            let terms = start.terms.into_iter().map(|it| JointTerm { coefficient: coefficient(it), ..it });
-            let terms = terms.collect();
-            let begun = Estimate { terms, ..begun };
-            // The start is the optimum as far as rows are linear: no damping.
-            let mut near = options.clone();
-            near.solver.trust *= UNDAMPED;
-            near.solver.decrement = near.solver.decrement.max(DECREMENT);
-            let prior = self.prior(&session).with_terms(priors(&model, &sizes));
-            let task = Task { options: &near, ..self.task(session, (&prior, weight * variance)) };
-            let (found, noise) = fitted(&task, begun, (noise, calibration));
-            let base_motion = |found: &Estimate| {
-                let targets = delivered(&model.robot, data).base_from_target;
-                gauge::base_motion(found, &model.robot, &targets, session.length_m)
-            };
-            (if session.base_free() { found.rebased(&base_motion(&found)) } else { found }, noise)
+    /// The fit with the sizes of a choice; the reason where it is worse than geometry alone.
+    fn with_terms(
+        &self,
+        model: &CorrectionModel,
+        possible: &Sizes,
+        choice: &SizeChoice,
+    ) -> Result<CorrectedFit, SizesReason> {
+        let SizeChoice { sizes, reason, ref estimate, noise, variance, .. } = *choice;
+        if sizes == Sizes::NONE {
+            return Ok(self.without_terms(model, possible, choice.clone()));
+        }
+        let (of_geometry, options) = (self.session, &self.geometry.run.options);
+        let packed = Packed::of(&model.robot, of_geometry.data);
+        let unknowns = unknowns(model, of_geometry.unknowns, &sizes);
+        let session = self.session(model, &packed, &unknowns);
+        let coefficient = |it: JointTerm| estimate.coefficient(it.joint, it.term);
+        let terms = self.start(model).terms.into_iter();
+        let terms = terms.map(|it| JointTerm { coefficient: coefficient(it), ..it }).collect();
+        let start = Estimate { terms, ..estimate.clone() };
+        // The start is the optimum as far as rows are linear: no damping.
+        let mut near = options.clone();
+        near.solver.trust *= UNDAMPED;
+        near.solver.decrement = near.solver.decrement.max(DECREMENT);
+        let prior = options.prior_with_terms(&session).with_terms(priors(model, &sizes));
+        let weight = weight_of_prior(of_geometry.data.configurations(&self.rows).len()) * variance;
+        let task = Task { options: &near, ..self.task(session, (&prior, weight)) };
+        let (found, noise) = fitted(&task, start, noise, self.geometry);
+        let base_motion = || {
+            let targets = delivered(&model.robot, of_geometry.data).base_from_target;
+            gauge::base_motion(&found, &model.robot, &targets, session.length_m)
         };
+        let found = if session.base_free() { found.rebased(&base_motion()) } else { found };
+        let predicted = Predicted::new(self, &session, &found, noise);
         // Where rows are far from linear, terms may lead nowhere.
-        if sizes != Sizes::NONE && !self.is_no_worse(&session, &estimate) {
-            return self.end_without(model, possible, tried, SizesReason::LedNowhere);
+        if !self.is_no_worse(&predicted.training) {
+            return Err(SizesReason::LedNowhere);
         }
-        if sizes != Sizes::NONE && reason != SizesReason::Given && self.is_worse_held_out(&session, &estimate)
-        {
-            return self.end_without(model, possible, tried, SizesReason::WorseHeldOut);
+        if reason != SizesReason::Given && self.is_worse_held_out(&predicted.held_out) {
+            return Err(SizesReason::WorseHeldOut);
         }
-        let every = unknowns(&model, of_geometry.unknowns, possible);
-        let prior = self.prior(&session).with_terms(priors(&model, possible));
-        let whole = self.task(Session { unknowns: &every, ..session }, (&prior, weight));
-        let mut uncertainty = uncertainty(&whole, (&estimate, noise), (&prior, [weight, variance]), growth);
-        if sizes != Sizes::NONE && uncertainty.is_none() {
-            return self.end_without(model, possible, tried, SizesReason::LedNowhere);
-        }
-        let coverage = coverage(&session, rows);
-        let left_out_m = self.left_out_m(&sizes, &tried);
-        let expected = uncertainty.as_mut().map_or_else(Expectations::default, |uncertainty| {
-            expectations_beside(&session, rows, &coverage, (uncertainty, left_out_m), options.seed)
-        });
-        let found = uncertainty.as_ref().filter(|_| sizes != Sizes::NONE).map(|uncertainty| {
-            let deviations: Vec<f64> = model.deviations(possible).collect();
-            let before = (&of_geometry, &calibration.models.calibrated);
-            effects(&model, (&session, &estimate), before, rows, (uncertainty, &deviations), noise)
-        });
-        let estimate = located(&session, rows, &estimate, noise).into_owned();
-        let training = session.errors(&calibration.fit_rows, &estimate);
-        let judged = &calibration.held_out_rows;
-        let held_out = session.errors(judged, &estimate);
-        let targets: Vec<usize> = (0..data.targets.len()).collect();
-        let promised = promised_rows(data, rows, judged);
-        let kept = uncertainty.as_ref().filter(|_| !promised.is_empty()).map(|uncertainty| {
-            let predicted = PredictedUncertainty { uncertainty, targets: &targets, coverage: &coverage };
-            let some = sample_rows(&promised, JUDGED);
-            predicted.check(&session, &estimate, &some, &session.errors(&some, &estimate))
-        });
-        let (robot, targets) = place_tip(&model.robot, data, &data.frames(rows), &estimate, options.move_tip);
-        Correction {
+        let found = self.corrected(model, possible, choice.clone(), (packed, predicted, noise));
+        if found.uncertainty.is_none() { Err(SizesReason::LedNowhere) } else { Ok(found) }
+    }
+
+    /// Geometry alone, with the uncertainty that terms which may be there leave.
+    fn without_terms(&self, model: &CorrectionModel, possible: &Sizes, choice: SizeChoice) -> CorrectedFit {
+        let (of_geometry, noise) = (self.session, self.geometry.noise());
+        let packed = Packed::of(&model.robot, of_geometry.data);
+        let unknowns = unknowns(model, of_geometry.unknowns, &Sizes::NONE);
+        let session = self.session(model, &packed, &unknowns);
+        let predicted = Predicted::new(self, &session, &self.start(model), noise);
+        self.corrected(model, possible, choice, (packed, predicted, noise))
+    }
+
+    /// Geometry as an estimate of a model.
+    fn start(&self, model: &CorrectionModel) -> Estimate {
+        estimate(model, &self.geometry.estimate, self.session.data)
+    }
+
+    /// A fit with its uncertainty by all terms that are possible.
+    fn corrected(
+        &self,
+        model: &CorrectionModel,
+        possible: &Sizes,
+        choice: SizeChoice,
+        (packed, predicted, noise): (Packed, Predicted, Noise),
+    ) -> CorrectedFit {
+        let SizeChoice { sizes, reason, tried, variance, growth, .. } = choice;
+        let (of_geometry, Run { options, held_out_rows, .. }) = (self.session, &self.geometry.run);
+        let Predicted { estimate, training, held_out } = predicted;
+        let every = unknowns(model, of_geometry.unknowns, possible);
+        let session = self.session(model, &packed, &every);
+        let weight = weight_of_prior(of_geometry.data.configurations(&self.rows).len());
+        let prior = options.prior_with_terms(&session).with_terms(priors(model, possible));
+        let whole = self.task(session, (&prior, weight));
+        CorrectedFit {
+            uncertainty: uncertainty(&whole, (&estimate, noise), (&prior, [weight, variance]), growth),
+            unknowns: unknowns(model, of_geometry.unknowns, &sizes),
+            training: model_accuracy(&training),
+            held_out: (!held_out_rows.is_empty()).then(|| model_accuracy(&held_out)),
+            prior_weight: weight * variance,
+            model: model.clone(),
+            possible: *possible,
+            doubt: None,
             sizes,
             reason,
             tried,
-            robot: Robot { terms: estimate.terms.clone(), ..robot },
-            targets,
-            stations: stations(&session, &estimate, noise),
-            training: model_accuracy(&training),
-            held_out: (!judged.is_empty()).then(|| model_accuracy(&held_out)),
-            uncertainty,
-            effects: found.unwrap_or_default(),
-            expected,
-            left_out_m,
-            kept,
-            noise,
-            frame: calibration.frame,
-            doubt: None,
-            prior_weight: weight * variance,
-            unknowns: fitted_unknowns,
-            model,
-            estimate,
             packed,
+            estimate,
+            noise,
         }
     }
+}
 
-    /// Error of positions in cross-validation (metres, RMS): that of geometry alone times the share that terms leave on rows that are left out.
-    fn left_out_m(&self, sizes: &Sizes, tried: &[TriedSizes]) -> Option<f64> {
-        let of = |sizes: &Sizes| tried.iter().find(|it| it.sizes == *sizes).map(|it| it.left_out);
-        let geometry_m =
-            self.calibration.trust.cross_validation.as_ref()?.random.rms.get(Quantity::Position)?;
-        let left = (0.5 * (of(sizes)? - of(&Sizes::NONE)?)).exp();
-        Some(geometry_m * left).filter(|it| it.is_finite())
-    }
+/// What a fit predicts: its model with the frames of all stations, and its errors.
+struct Predicted {
+    estimate: Estimate,
+    training: Vec<RowError>,
+    held_out: Vec<RowError>,
+}
 
-    /// Geometry alone where terms lead nowhere.
-    fn end_without(
-        &self,
-        model: CorrectionModel,
-        possible: &Sizes,
-        tried: Vec<TriedSizes>,
-        reason: SizesReason,
-    ) -> Correction {
-        let none = self.begin(&model, Some(Sizes::NONE));
-        self.end(model, possible, Begun { reason, tried, ..none })
+impl Predicted {
+    fn new(context: &CorrectionContext<'_>, session: &Session<'_>, found: &Estimate, noise: Noise) -> Self {
+        let Run { fit_rows, held_out_rows, .. } = &context.geometry.run;
+        let estimate = located(session, &context.rows, found, noise).into_owned();
+        let [training, held_out] = [fit_rows, held_out_rows].map(|rows| session.errors(rows, &estimate));
+        Predicted { estimate, training, held_out }
     }
 }
 
@@ -250,7 +227,7 @@ fn numbers(task: &Task<'_>) -> ByQuantity<f64> {
 }
 
 /// The optimum with the noise estimated anew.
-fn fitted(task: &Task<'_>, start: Estimate, (noise, of): (Noise, &Calibration)) -> (Estimate, Noise) {
+fn fitted(task: &Task<'_>, start: Estimate, noise: Noise, of: &CalibratedFit<'_>) -> (Estimate, Noise) {
     let (mut estimate, mut noise) = (start, noise);
     let counts = numbers(task);
     let all: f64 = counts.iter().map(|(_, count)| *count).sum();
@@ -258,7 +235,7 @@ fn fitted(task: &Task<'_>, start: Estimate, (noise, of): (Noise, &Calibration)) 
         let found = OngoingFit::new(task.fit(estimate, noise));
         let known = task.effective_unknowns(&found);
         estimate = found.estimate;
-        if of.noise_source != NoiseSource::Estimated {
+        if of.robust.fitted.noise_source != NoiseSource::Estimated {
             break;
         }
         let Some(better) = estimate_noise(&task.session, task.rows, &estimate, known, None, noise) else {
@@ -266,7 +243,7 @@ fn fitted(task: &Task<'_>, start: Estimate, (noise, of): (Noise, &Calibration)) 
         };
         let better = ByQuantity::from_fn(|quantity| {
             let freedom = counts[quantity] * (1.0 - known / all).max(0.0);
-            between(of.noise[quantity], better[quantity].powi(2) * freedom, freedom)
+            between(of.noise()[quantity], better[quantity].powi(2) * freedom, freedom)
         });
         let better = stated(task.options, better);
         let change = better.iter().map(|(quantity, sigma)| (sigma / noise[quantity]).ln().abs());

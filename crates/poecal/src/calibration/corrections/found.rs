@@ -1,20 +1,29 @@
-//! Result of a fit of screws and terms.
+//! A fit of screws and terms, and what it is worth.
+
+use std::ops::Deref;
 
 use super::choice::{SizesReason, TriedSizes};
-use super::effects::Effects;
+use super::effect::Effects;
+use super::effects::effects;
+use crate::analysis::coverage;
 use crate::calibration::accuracy::ModelAccuracy;
-use crate::calibration::coverage_check::CoverageCheck;
-use crate::calibration::expected::Expectations;
+use crate::calibration::calibrated::CalibratedFit;
+use crate::calibration::coverage_check::{CoverageCheck, held_out_check};
+use crate::calibration::expected::{Expectations, expectations_beside};
 use crate::calibration::options::DeviceFrameKnowledge;
-use crate::calibration::placed::{CalibratedStation, CalibratedTarget};
+use crate::calibration::placed::{CalibratedStation, CalibratedTarget, place_tip, stations};
+use crate::calibration::run::Run;
 use crate::estimate::{Estimate, Packed, RowError, Session, Unknowns};
-use crate::measurement::{Dataset, Noise};
+use crate::measurement::{Dataset, Noise, Quantity};
 use crate::robot::{CorrectionModel, Robot, Sizes};
-use crate::uncertainty::Uncertainty;
+use crate::uncertainty::{CrossValidation, Uncertainty};
 
-/// A fit of screws and terms: the robot that it found, with all that predicts rows.
+/// Most held-out rows whose bounds are checked.
+const JUDGED: usize = 4000;
+
+/// A fit of screws and terms together.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Correction {
+pub struct CorrectedFit {
     /// The robot with its gives and terms, as in the model.
     pub model: CorrectionModel,
     /// Prior sizes of the groups of terms.
@@ -23,6 +32,91 @@ pub struct Correction {
     pub reason: SizesReason,
     /// Sizes that cross-validation tried, if it chose.
     pub tried: Vec<TriedSizes>,
+    /// What was fitted.
+    pub unknowns: Unknowns,
+    /// What was found.
+    pub estimate: Estimate,
+    /// Noise of the fit.
+    pub noise: Noise,
+    /// Errors on the training rows.
+    pub training: ModelAccuracy,
+    /// Errors on the held-out rows.
+    pub held_out: Option<ModelAccuracy>,
+    /// Covariance of the unknowns and of terms that may be there, and model error.
+    pub uncertainty: Option<Uncertainty>,
+    /// What is said of a direction of gravity that was not found.
+    pub doubt: Option<String>,
+    /// Sizes of all terms that may be there.
+    pub(super) possible: Sizes,
+    /// Weight of the priors in the fit.
+    pub(in crate::calibration) prior_weight: f64,
+    pub(in crate::calibration) packed: Packed,
+}
+
+impl CorrectedFit {
+    /// Whether it has terms at all, rather than geometry alone.
+    #[must_use]
+    pub fn has_terms(&self) -> bool {
+        self.sizes != Sizes::NONE
+    }
+
+    /// Its robot with the measurements.
+    pub(in crate::calibration) fn session<'a>(&'a self, geometry: &'a CalibratedFit<'_>) -> Session<'a> {
+        let CorrectedFit { model, packed, unknowns, .. } = self;
+        Session { robot: &model.robot, packed, unknowns, ..geometry.session() }
+    }
+
+    /// Error of positions in cross-validation (metres, RMS): that of geometry alone times the share that terms leave on rows that are left out.
+    pub(in crate::calibration) fn left_out_m(&self, of_geometry: Option<&CrossValidation>) -> Option<f64> {
+        let of = |sizes: &Sizes| self.tried.iter().find(|it| it.sizes == *sizes).map(|it| it.left_out);
+        let geometry_m = of_geometry?.random.rms.get(Quantity::Position)?;
+        let left = (0.5 * (of(&self.sizes)? - of(&Sizes::NONE)?)).exp();
+        Some(geometry_m * left).filter(|it| it.is_finite())
+    }
+
+    /// The fit with what it is worth, beside the cross-validation of geometry.
+    pub(in crate::calibration) fn judged(
+        mut self,
+        geometry: &CalibratedFit<'_>,
+        of_geometry: Option<&CrossValidation>,
+    ) -> Correction {
+        let Run { options, held_out_rows, .. } = &geometry.run;
+        let left_out_m = self.left_out_m(of_geometry);
+        let mut uncertainty = self.uncertainty.take();
+        let (session, rows) = (self.session(geometry), &geometry.weighted_rows());
+        let CorrectedFit { model, estimate, noise, .. } = &self;
+        let coverage = coverage(&session, rows);
+        let expected = uncertainty.as_mut().map_or_else(Expectations::default, |uncertainty| {
+            expectations_beside(&session, rows, &coverage, (uncertainty, left_out_m), options.seed)
+        });
+        let found = uncertainty.as_ref().filter(|_| self.has_terms()).map(|uncertainty| {
+            let deviations: Vec<f64> = model.deviations(&self.possible).collect();
+            let before = (&geometry.session(), &geometry.estimate);
+            effects(model, (&session, estimate), before, rows, (uncertainty, &deviations), *noise)
+        });
+        let predicted = uncertainty.as_ref().map(|it| (it, &coverage[..]));
+        let kept = held_out_check((&session, estimate), (rows, held_out_rows), predicted, JUDGED);
+        let frames = session.data.frames(rows);
+        let (robot, targets) = place_tip(&model.robot, session.data, &frames, estimate, options.move_tip);
+        Correction {
+            robot: Robot { terms: estimate.terms.clone(), ..robot },
+            targets,
+            stations: stations(&session, estimate, *noise),
+            frame: options.frame,
+            effects: found.unwrap_or_default(),
+            expected,
+            left_out_m,
+            kept,
+            fit: CorrectedFit { uncertainty, ..self },
+        }
+    }
+}
+
+/// A fit of screws and terms: the robot that it found, with all that predicts rows.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Correction {
+    /// The fit.
+    pub fit: CorrectedFit,
     /// The robot that was found, with its gives and its terms, and its tip as that of [`Calibration::robot`](crate::Calibration).
     /// It predicts as the fit does.
     pub robot: Robot,
@@ -30,20 +124,8 @@ pub struct Correction {
     pub targets: Vec<CalibratedTarget>,
     /// All stations.
     pub stations: Vec<CalibratedStation>,
-    /// What was fitted.
-    pub unknowns: Unknowns,
-    /// What was found.
-    pub estimate: Estimate,
-    /// Noise of the fit.
-    pub noise: Noise,
     /// What was known of the device's frame.
     pub frame: DeviceFrameKnowledge,
-    /// Errors on the training rows.
-    pub training: ModelAccuracy,
-    /// Errors on the held-out rows.
-    pub held_out: Option<ModelAccuracy>,
-    /// Covariance of the unknowns and of terms that may be there, and model error.
-    pub uncertainty: Option<Uncertainty>,
     /// What the terms do; nothing without any.
     pub effects: Effects,
     /// Expected errors.
@@ -53,11 +135,14 @@ pub struct Correction {
     pub left_out_m: Option<f64>,
     /// Coverage on the held-out rows.
     pub kept: Option<CoverageCheck>,
-    /// What is said of a direction of gravity that was not found.
-    pub doubt: Option<String>,
-    /// Weight of the priors in the fit.
-    pub(in crate::calibration) prior_weight: f64,
-    pub(in crate::calibration) packed: Packed,
+}
+
+impl Deref for Correction {
+    type Target = CorrectedFit;
+
+    fn deref(&self) -> &CorrectedFit {
+        &self.fit
+    }
 }
 
 impl Correction {
@@ -70,11 +155,5 @@ impl Correction {
     /// Errors of the rows that were held out, or of those that were fitted where there are no such.
     pub(in crate::calibration) fn judging_errors(&self) -> &ModelAccuracy {
         self.held_out.as_ref().unwrap_or(&self.training)
-    }
-
-    /// Whether it has terms at all, rather than geometry alone.
-    #[must_use]
-    pub fn has_terms(&self) -> bool {
-        self.sizes != Sizes::NONE
     }
 }

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::geometry::{Geometry, Sampled};
+use super::context::{CorrectionContext, Sampled};
 use crate::lie::rotation;
 use crate::robot::{CorrectionModel, Sizes};
 
@@ -17,7 +17,7 @@ const NUMBERS_OF_A_CONFIGURATION: f64 = 3.0;
 /// Least share by which the noise becomes less.
 const LEAST_GAIN: f64 = 0.005;
 
-impl Geometry<'_> {
+impl CorrectionContext<'_> {
     /// The direction of gravity with which terms leave the least noise: the best of three, tilted until it gets no better.
     /// Where that is not evidently better than -z of the base, -z, and a sentence of it.
     pub(super) fn gravity(&self, moves: &[bool], sizes: Sizes) -> (Vector3<f64>, Option<String>) {

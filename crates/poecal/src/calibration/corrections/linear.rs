@@ -5,7 +5,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::matrices::{ROUNDING_OF_TERMS, cholesky, of_some, square};
 use super::modes::{Class, Columns, Mode, NEGLIGIBLE, modes};
-use crate::calibration::fit::Task;
+use crate::calibration::task::Task;
 use crate::estimate::Estimate;
 use crate::linalg;
 use crate::measurement::{Noise, Quantity};
@@ -80,15 +80,13 @@ impl Linear {
         }
         let prior = of_some(&prior, &columns.known);
         let known = whole.select_columns(&columns.known);
-        let terms = whole.select_columns(&columns.terms.iter().map(|it| it.place).collect::<Vec<_>>())
-            * DMatrix::from_diagonal(&DVector::from_iterator(
-                columns.terms.len(),
-                columns.terms.iter().map(|it| it.unit),
-            ));
+        let places: Vec<usize> = columns.terms.iter().map(|it| it.place).collect();
+        let unit = DVector::from_iterator(columns.terms.len(), columns.terms.iter().map(|it| it.unit));
+        let unit = DMatrix::from_diagonal(&unit);
+        let terms = whole.select_columns(&places) * &unit;
         let (modes, turn) = modes(&columns, classes, (&known, &terms), (&prior, weight))?;
         let held = whole.select_columns(&columns.held);
         let own = &terms * &turn;
-        let unit = DVector::from_iterator(columns.terms.len(), columns.terms.iter().map(|it| it.unit));
         let mut jacobian = DMatrix::zeros(total, known.ncols() + own.ncols() + held.ncols());
         jacobian.columns_mut(0, known.ncols()).copy_from(&known);
         jacobian.columns_mut(known.ncols(), own.ncols()).copy_from(&own);
@@ -99,8 +97,8 @@ impl Linear {
             estimate: estimate.clone(),
             known: columns.known,
             devices: devices.chain(behind..behind + held.ncols()).collect(),
-            own: columns.terms.iter().map(|it| it.place).collect(),
-            turn: DMatrix::from_diagonal(&unit) * turn,
+            own: places,
+            turn: unit * turn,
             layout,
             modes,
             sample,

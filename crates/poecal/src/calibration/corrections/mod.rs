@@ -1,10 +1,11 @@
 //! What joints really do beyond geometry: terms of their values and of their bearings, fitted beside the screws with priors (theory.md §6).
 
 mod choice;
+mod context;
+mod effect;
 mod effects;
 mod fit;
 mod found;
-mod geometry;
 mod gravity;
 mod left_out;
 mod linear;
@@ -17,9 +18,8 @@ mod worse;
 
 pub(super) use choice::weight_of_prior;
 pub use choice::{SizesReason, TriedSizes};
-pub use effects::{Effects, JointEffect, JointErrorPart, JointErrors};
-pub use fit::correct;
-pub use found::Correction;
+pub use effect::{Effects, JointEffect, JointErrorPart, JointErrors};
+pub(super) use fit::corrected;
+pub use found::{CorrectedFit, Correction};
 pub(super) use linear::whitened_rows;
-pub(super) use suspects::suspected;
 pub(super) use unknowns::{priors, unknowns};

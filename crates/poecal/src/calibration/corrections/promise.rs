@@ -1,14 +1,13 @@
 //! Uncertainty of what screws and terms predict: the priors' part, and the errors of the parts that were left out (theory.md §9,
 //! *Corrected models*).
 
-use crate::calibration::fit::Task;
-use crate::calibration::noise::is_stated;
+use crate::calibration::summary::FitSummary;
+use crate::calibration::task::Task;
 use crate::estimate::{Estimate, sample_rows};
 use crate::measurement::Noise;
-use crate::parameters::Parameter;
 use crate::problem::{Prior, Problem};
 use crate::solve::{LeastSquares as _, Normal};
-use crate::uncertainty::{PriorInformation, Uncertainty, View, discrepancy, remainder};
+use crate::uncertainty::{PriorInformation, Uncertainty, View, discrepancy};
 
 /// Rows of which residuals are searched for structure.
 const MANY: usize = 4000;
@@ -22,55 +21,31 @@ pub(super) fn uncertainty(
     (prior, [weight, variance]): (&Prior, [f64; 2]),
     growth: f64,
 ) -> Option<Uncertainty> {
-    let rows = match task.weights {
-        Some(weights) => {
-            let is_kept = |row: &&u32| weights.get(**row as usize).is_none_or(|weight| *weight > 0.0);
-            task.rows.iter().filter(is_kept).copied().collect()
-        }
-        None => task.rows.to_vec(),
-    };
-    let free: Vec<Parameter> = task.free(estimate);
-    let problem = Problem::new(task.session, rows.clone(), free.clone(), noise);
-    let problem = match task.weights {
-        Some(weights) => problem.with_weights(weights),
-        None => problem,
-    };
-    let layout = problem.layout().clone();
-    let normal = problem.normal(estimate);
+    let measured = Task { prior: None, ..*task };
+    let problem = measured.problem(estimate, noise);
+    let (layout, normal) = (problem.layout().clone(), problem.normal(estimate));
     let mut believed = Normal::new(layout.dim());
     prior.add(estimate, &layout, 1.0, &mut believed);
-    let prior = PriorInformation { normal: believed, is_fitted: true, weight: Some(weight * variance) }
-        .with_chosen(
-            &layout.motions_without_effect(estimate, &task.session, &rows).directions,
-            task.session.length_m,
-        );
-    let mut view = View {
-        session: task.session,
-        rows: &rows,
-        free: &free,
-        noise,
-        noise_is_stated: is_stated(task.session.data, task.options),
-        prior: &prior,
-        variance: 1.0,
-        estimate,
-    };
-    let remainder = remainder(&view, &normal, &layout);
+    let prior = PriorInformation { normal: believed, is_fitted: true, weight: Some(weight * variance) };
+    let of = (&task.session, estimate);
+    let summary = FitSummary::new(of, task.rows.to_vec(), (layout, normal), prior, noise, task.options);
+    let FitSummary { remainder, normal, .. } = &summary;
+    let mut view = summary.view(task.session, estimate);
     if remainder.numbers as f64 <= remainder.effective_unknowns {
         return None;
     }
-    view.variance = remainder.variance;
-    let mut found = if rows.len() > MANY {
+    let mut found = if view.rows.len() > MANY {
         // Of many rows the priors' weight decides: a sample tells whether their residuals have structure.
-        let few = sample_rows(&rows, MANY);
-        let of_few = Problem::new(task.session, few.clone(), free.clone(), noise).normal(estimate);
-        discrepancy(&View { rows: &few, ..view }, &of_few, &remainder, None)
+        let few = sample_rows(view.rows, MANY);
+        let of_few = Problem::new(task.session, few.clone(), view.free.to_vec(), noise).normal(estimate);
+        discrepancy(&View { rows: &few, ..view }, &of_few, remainder, None)
     } else {
-        discrepancy(&view, &normal, &remainder, None)
+        discrepancy(&view, normal, remainder, None)
     };
     // What rows share beyond the terms: as the weight of the priors and the parts that were left out have it, or as it scatters.
     view.variance = remainder.variance * (weight * growth).max(found.scatter);
     (found.scatter, found.extrapolation) = (1.0, 1.0);
     let root = growth.sqrt();
     found.standard_deviation.values_mut().for_each(|(_, sigma)| *sigma *= root);
-    Uncertainty::new(&view, layout, &normal.gram, &found)
+    Uncertainty::new(&view, summary.layout.clone(), &normal.gram, &found)
 }

@@ -1,7 +1,6 @@
 //! What a fit of a model with gives and terms changes, where it starts, and what is known before.
 
 use crate::analysis::ranges;
-use crate::calibration::{Calibration, CalibrationOptions, Robust, RowJudgement};
 use crate::estimate::{Estimate, Session, Tree, Unknowns};
 use crate::measurement::Dataset;
 use crate::problem::TermPrior;
@@ -52,11 +51,4 @@ pub(super) fn estimate(model: &CorrectionModel, found: &Estimate, data: &Dataset
 /// Whether each joint's value changes among some rows.
 pub(super) fn moving(session: &Session<'_>, rows: &[u32]) -> Vec<bool> {
     ranges(session, rows).into_iter().map(|(least, most)| most - least > LEAST_RANGE_RAD).collect()
-}
-
-/// Weights of all rows of the data after a robust fit: those of a loss that was asked for; otherwise only suspected rows lose theirs.
-pub(super) fn weights(calibration: &Calibration, options: &CalibrationOptions) -> Option<Vec<f64>> {
-    let is_chosen = matches!(options.robust, Robust::Loss(_));
-    let weight = |row: &RowJudgement| if row.suspected || is_chosen { row.weight } else { 1.0 };
-    calibration.robustness.loss.map(|_| calibration.robustness.rows.iter().map(weight).collect())
 }

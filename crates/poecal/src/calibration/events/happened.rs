@@ -6,7 +6,7 @@ use super::hypotheses::Moved;
 use super::names::{DEVICE, family, next_of};
 use super::search::Step;
 use super::told::{Event, EventKind};
-use crate::calibration::Calibration;
+use crate::calibration::calibrated::CalibratedFit;
 use crate::measurement::Dataset;
 use crate::robot::{MEASURED, Robot};
 
@@ -25,8 +25,8 @@ pub(super) enum Happened {
 
 impl Happened {
     /// Whether all rows of it are suspected as outliers anyway.
-    pub(super) fn is_suspected(&self, best: &Calibration) -> bool {
-        matches!(self, Happened::Wrong(rows) if rows.iter().all(|row| best.robustness.suspects_row(*row)))
+    pub(super) fn is_suspected(&self, best: &CalibratedFit<'_>) -> bool {
+        matches!(self, Happened::Wrong(rows) if rows.iter().all(|row| best.robust.robustness.suspects_row(*row)))
     }
 
     /// Whether the session without it can be better by much.
@@ -39,9 +39,13 @@ impl Happened {
 }
 
 /// An event with the sentence of it where it is repaired, and where it is only suspected.
-pub(super) struct Said(pub(super) Event, String);
+pub(super) struct Said(Event, String);
 
 impl Said {
+    pub(super) fn repaired(self, [before, after]: [f64; 2], residuals: Vec<[f64; 3]>) -> Event {
+        Event { error_before_mm: Some(before), error_after_mm: Some(after), residuals, ..self.0 }
+    }
+
     pub(super) fn suspected(self, before: f64, after: Option<f64>) -> Event {
         let Said(event, statement) = self;
         Event { statement, error_before_mm: Some(before), error_after_mm: after, ..event }
@@ -54,25 +58,56 @@ pub(super) fn event(happened: &Happened, data: &Dataset, robot: &Robot) -> Said 
         Happened::Wrong(rows) => return wrong_words(data, rows),
         Happened::Step(step) => step,
     };
-    let from = data.place(step.first);
     let number = step.first as usize + 1;
+    let has = |turns: bool| step.turns.contains(&turns);
     let length = |turns: bool| {
         let own = step.size.iter().zip(&step.turns).filter(|(_, it)| **it == turns);
         own.map(|(value, _)| value * value).sum::<f64>().sqrt()
     };
-    let (shift_mm, turn_deg) = (1e3 * length(false), length(true).to_degrees());
-    let has = |turns: bool| step.turns.contains(&turns);
-    let far = far_words(has(false).then_some(shift_mm), has(true).then_some(turn_deg));
-    let count = data.len();
-    let again =
-        format!("measure the {} rows before it again, or the {} from it on", number - 1, count + 1 - number);
-    let name_of = |target: usize| data.targets.get(target).cloned().flatten();
+    let size_mm = has(false).then(|| 1e3 * length(false));
+    let size_deg = has(true).then(|| length(true).to_degrees());
+    let Statement { kind, name, is, taken } = statement(step, &far_words(size_mm, size_deg), data, robot);
+    let remedy = if kind == EventKind::Drift {
+        "wait until it has settled, and measure again".to_owned()
+    } else {
+        let after = data.len() + 1 - number;
+        format!("measure the {} rows before it again, or the {after} from it on", number - 1)
+    };
+    let event = Event {
+        kind,
+        name,
+        from_row: number,
+        from: data.place(step.first),
+        rows: Vec::new(),
+        size_mm,
+        size_deg,
+        error_before_mm: None,
+        error_after_mm: None,
+        statement: format!("{is}: {taken}"),
+        residuals: Vec::new(),
+    };
+    Said(event, format!("{is}: {remedy}"))
+}
+
+/// What a step is of, in words: what happened, and what it is taken as where it is repaired.
+struct Statement {
+    kind: EventKind,
+    name: String,
+    is: String,
+    taken: String,
+}
+
+fn statement(step: &Step, far: &str, data: &Dataset, robot: &Robot) -> Statement {
+    let from = data.place(step.first);
     let or = other_words(step, robot, data)
         .map_or_else(String::new, |or| format!(" ({or} explains it nearly as well)"));
+    let named = |names: &[Option<String>], at: usize| names.get(at).cloned().flatten().unwrap_or_default();
+    let other = |name: &str, usual, names: &[Option<String>]| {
+        next_of(if name.is_empty() { usual } else { name }, names.iter().flatten())
+    };
     let (kind, name, is, taken) = match step.moved {
         Moved::Device(station) => {
-            let name = data.stations.get(station).cloned().flatten().unwrap_or_default();
-            let next = next_of(if name.is_empty() { DEVICE } else { &name }, data.stations.iter().flatten());
+            let name = named(&data.stations, station);
             let is = match files_apart(data, step.first) {
                 Some((before, after)) if name.is_empty() => format!(
                     "the files {before} and {after} do not share one device frame, as --frames per-file says: the measuring device is {far} \
@@ -83,21 +118,22 @@ pub(super) fn event(happened: &Happened, data: &Dataset, robot: &Robot) -> Said 
                     quoted(&name)
                 ),
             };
-            (EventKind::Device, name, is, format!("taken as set up anew there, `{next}`"))
+            let taken = format!("taken as set up anew there, `{}`", other(&name, DEVICE, &data.stations));
+            (EventKind::Device, name, is, taken)
         }
         Moved::Target(target) => {
-            let name = name_of(target).unwrap_or_default();
+            let name = named(&data.targets, target);
             let bases: BTreeSet<&str> =
                 data.targets.iter().map(|it| family(it.as_deref().unwrap_or(MEASURED)).0).collect();
-            let several = bases.len() > 1;
-            let kind = if several { EventKind::Nest } else { EventKind::Target };
-            let next = next_of(if name.is_empty() { MEASURED } else { &name }, data.targets.iter().flatten());
-            let what = if several { "nest of target" } else { "target" };
-            let is = format!(
-                "from {from} on the {what}{} is {far} from where it was on the arm{or}",
-                quoted(&name)
-            );
-            (kind, name, is, format!("taken as another target, `{next}`"))
+            let (kind, what) = if bases.len() > 1 {
+                (EventKind::Nest, "nest of target")
+            } else {
+                (EventKind::Target, "target")
+            };
+            let own = quoted(&name);
+            let is = format!("from {from} on the {what}{own} is {far} from where it was on the arm{or}");
+            let taken = format!("taken as another target, `{}`", other(&name, MEASURED, &data.targets));
+            (kind, name, is, taken)
         }
         Moved::Tool => {
             let is =
@@ -105,39 +141,18 @@ pub(super) fn event(happened: &Happened, data: &Dataset, robot: &Robot) -> Said 
             (EventKind::Target, String::new(), is, "taken as other targets from there on".to_owned())
         }
         Moved::Zero(joint) => {
-            let joint = robot.joints.get(joint);
-            let name = joint.map(|joint| joint.name.clone()).unwrap_or_default();
+            let name = robot.joints.get(joint).map(|joint| joint.name.clone()).unwrap_or_default();
             let is = format!("from {from} on the zero of joint `{name}` is {far} from where it was{or}");
             (EventKind::Zero, name, is, "readings before it are taken as those after it".to_owned())
         }
         Moved::Drift(station) => {
-            let name = data.stations.get(station).cloned().flatten().unwrap_or_default();
-            let is = format!(
-                "the measuring device{} drifts by {far} from the first row to the last{or}",
-                quoted(&name)
-            );
+            let name = named(&data.stations, station);
+            let own = quoted(&name);
+            let is = format!("the measuring device{own} drifts by {far} from the first row to the last{or}");
             (EventKind::Drift, name, is, "measurements are taken as without the drift".to_owned())
         }
     };
-    let remedy = if kind == EventKind::Drift {
-        "wait until it has settled, and measure again".to_owned()
-    } else {
-        again
-    };
-    let event = Event {
-        kind,
-        name,
-        from_row: number,
-        from,
-        rows: Vec::new(),
-        size_mm: has(false).then_some(shift_mm),
-        size_deg: has(true).then_some(turn_deg),
-        error_before_mm: None,
-        error_after_mm: None,
-        statement: format!("{is}: {taken}"),
-        residuals: Vec::new(),
-    };
-    Said(event, format!("{is}: {remedy}"))
+    Statement { kind, name, is, taken }
 }
 
 /// The files before and after a row with which one begins.

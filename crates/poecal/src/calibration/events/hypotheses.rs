@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, Matrix3, Vector3};
 
-use crate::calibration::Correction;
+use crate::calibration::corrections::CorrectedFit;
 use crate::estimate::Session;
 use crate::parameters::{Parameter, Subject, ValueTerm};
 use crate::robot::Term;
@@ -53,7 +53,7 @@ pub(super) struct Columns {
 /// All hypotheses; parameters that the fit does not have are appended to `free`.
 pub(super) fn hypotheses(
     session: &Session<'_>,
-    found: &Correction,
+    found: &CorrectedFit,
     rows: &[u32],
     free: &mut Vec<Parameter>,
 ) -> Vec<Hypothesis> {

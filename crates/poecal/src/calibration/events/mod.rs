@@ -6,11 +6,12 @@ mod happened;
 mod hypotheses;
 mod names;
 mod repair;
+mod repaired;
 mod rows;
 mod search;
 mod told;
 mod wrong;
 
 pub(crate) use names::family;
-pub use repair::{Repaired, calibrate_repairing};
+pub(super) use repair::{Events, repair};
 pub use told::{Event, EventKind, Repairs};

@@ -5,9 +5,9 @@ use std::ops::Range;
 use nalgebra::{DMatrix, DVector};
 
 use super::hypotheses::{Columns, hypotheses};
-use crate::calibration::corrections::{priors, unknowns, weight_of_prior, whitened_rows};
-use crate::calibration::fit::Task;
-use crate::calibration::{Calibration, CalibrationOptions, Correction};
+use crate::calibration::calibrated::CalibratedFit;
+use crate::calibration::corrections::{CorrectedFit, priors, unknowns, weight_of_prior, whitened_rows};
+use crate::calibration::task::Task;
 use crate::estimate::{Session, sample_rows};
 use crate::linalg;
 use crate::measurement::Dataset;
@@ -54,20 +54,13 @@ pub(super) struct Optimum {
 }
 
 impl Rows {
-    /// The rows of a finished calibration with its corrected model; `None` if that determines nothing.
-    pub(super) fn new(
-        calibration: &Calibration,
-        found: &Correction,
-        data: &Dataset,
-        options: &CalibrationOptions,
-        rows: &[u32],
-    ) -> Option<Self> {
-        let own = calibration.packed(data);
+    /// The rows of a session with its corrected model; `None` if that determines nothing.
+    pub(super) fn new(fit: &CalibratedFit<'_>, found: &CorrectedFit, rows: &[u32]) -> Option<Self> {
+        let (session, options) = (fit.session(), &fit.run.options);
+        let data = session.data;
         let sizes = found.sizes.max(&Sizes::COMMON);
-        let session = calibration.session(data, &own).with_noise_ratios(&calibration.noise_ratios);
         let known = unknowns(&found.model, session.unknowns, &sizes);
-        let session =
-            Session { robot: &found.model.robot, packed: &found.packed, unknowns: &known, ..session };
+        let session = Session { unknowns: &known, ..found.session(fit) };
         let numbers = |row: &u32| data.observations[*row as usize].measurement.dim();
         let all: usize = rows.iter().map(numbers).sum();
         let rows = sample_rows(rows, rows.len() * MOST_NUMBERS / all.max(MOST_NUMBERS));

@@ -6,7 +6,8 @@ use super::early::early;
 use super::hypotheses::{Columns, Moved};
 use super::rows::{Optimum, Rows};
 use super::wrong::without_wrong;
-use crate::calibration::{Calibration, CalibrationOptions, Correction};
+use crate::calibration::calibrated::CalibratedFit;
+use crate::calibration::corrections::CorrectedFit;
 use crate::linalg;
 use crate::measurement::Dataset;
 
@@ -24,17 +25,6 @@ const EVIDENT: f64 = 60.0;
 const OF_TIME: f64 = 2.0;
 /// Fewest consecutive runs that may be wrong because of a step.
 const BLOCK: usize = 3;
-
-/// A finished calibration whose session is searched.
-#[derive(Clone, Copy)]
-pub(super) struct Search<'a> {
-    pub(super) calibration: &'a Calibration,
-    pub(super) found: &'a Correction,
-    pub(super) data: &'a Dataset,
-    pub(super) options: &'a CalibrationOptions,
-    /// The rows in the order measured.
-    pub(super) rows: &'a [u32],
-}
 
 /// A step.
 #[derive(Clone, Debug)]
@@ -57,7 +47,7 @@ pub(super) struct Step {
 
 /// What was found.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Events {
+pub(super) struct Shown {
     /// Rows of configurations that are wrong.
     pub(super) wrong: Vec<u32>,
     /// An evident step.
@@ -66,10 +56,10 @@ pub(super) struct Events {
     pub(super) early: Option<String>,
 }
 
-/// Searches a session.
-pub(super) fn search(search: &Search<'_>) -> Option<Events> {
-    let Search { calibration, found, data, options, rows } = *search;
-    let rows = Rows::new(calibration, found, data, options, rows)?;
+/// Searches a session, its rows in the order measured, by its corrected model.
+pub(super) fn search(fit: &CalibratedFit<'_>, found: &CorrectedFit, rows: &[u32]) -> Option<Shown> {
+    let rows = Rows::new(fit, found, rows)?;
+    let data = &*fit.run.data;
     if rows.runs.len() < FEWEST {
         return None;
     }
@@ -88,8 +78,8 @@ pub(super) fn search(search: &Search<'_>) -> Option<Events> {
     };
     let wrong = if step.is_some() { isolated(&is_wrong) } else { is_wrong };
     let wrong = of_rows(&wrong);
-    let early = step.is_none().then(|| early(&rows, &optimum, &single, data, &calibration.nominal)).flatten();
-    Some(Events { wrong, step, early })
+    let early = step.is_none().then(|| early(&rows, &optimum, &single, data, &fit.run.robot)).flatten();
+    Some(Shown { wrong, step, early })
 }
 
 /// Those that are wrong without being one of several in a row.
@@ -135,6 +125,16 @@ fn evident(rows: &Rows, optimum: &Optimum, weights: &[f64], data: &Dataset) -> O
     Some(Step { other, ..step.clone() })
 }
 
+/// The runs that see a hypothesis, in an order, with how much of its step each has: of a drift its place, from -1/2 to 1/2.
+fn shares(rows: &Rows, weights: &[f64], columns: &Columns, order: &[usize]) -> Vec<(usize, f64)> {
+    let sees = |at: usize| weights[at] > 0.0 && rows.runs[at].clone().any(|row| columns.sees[row]);
+    let seen: Vec<usize> = order.iter().copied().filter(|&at| sees(at)).collect();
+    let is_drift = matches!(columns.moved, Moved::Drift(_));
+    let last = (seen.len().max(2) - 1) as f64;
+    let share = |place: usize| if is_drift { place as f64 / last - 0.5 } else { 1.0 };
+    seen.into_iter().enumerate().map(|(place, at)| (at, share(place))).collect()
+}
+
 /// The step along an order of the runs that explains most; of a drift, the drift.
 fn strongest(
     rows: &Rows,
@@ -146,23 +146,19 @@ fn strongest(
     let (p, k) = (optimum.whitened.ncols(), columns.of.ncols());
     let far = columns.turns.iter().map(|turns| if *turns { FAR_RAD } else { FAR_M });
     let prior: Vec<f64> = far.map(|far| optimum.variance / (far * far)).collect();
-    let sees = |at: usize| weights[at] > 0.0 && rows.runs[at].clone().any(|row| columns.sees[row]);
-    let seen: Vec<usize> = order.iter().copied().filter(|&at| sees(at)).collect();
-    let is_drift = matches!(columns.moved, Moved::Drift(_));
-    // How much of the step a run has: of a drift its place, from -1/2 to 1/2.
-    let share =
-        |place: usize| if is_drift { place as f64 / (seen.len().max(2) - 1) as f64 - 0.5 } else { 1.0 };
+    let seen = shares(rows, weights, columns, order);
     let mut gram = DMatrix::zeros(k, k);
     let mut mixed = DMatrix::zeros(p, k);
     let mut pull = DVector::zeros(k);
     let mut best: Option<(usize, f64, DVector<f64>)> = None;
-    for (place, &at) in seen.iter().enumerate().rev() {
+    for (place, &(at, share)) in seen.iter().enumerate().rev() {
         let numbers = rows.numbers(&rows.runs[at]);
         let (begin, n) = (numbers.start, numbers.len());
-        let own = columns.of.rows(begin, n) * share(place);
+        let own = columns.of.rows(begin, n) * share;
         gram += own.tr_mul(&own);
         mixed += optimum.whitened.rows(begin, n).tr_mul(&own);
         pull += own.tr_mul(&optimum.residual.rows(begin, n));
+        let is_drift = matches!(columns.moved, Moved::Drift(_));
         let after = seen.len() - place;
         let counts = if is_drift { place == 0 } else { after.min(place) >= FEWEST_BESIDE };
         if !counts {
@@ -178,24 +174,16 @@ fn strongest(
     }
     let (place, gain, step) = best?;
     let mut moved = DVector::zeros(optimum.residual.len());
-    for (own, &at) in seen.iter().enumerate().skip(place) {
+    for &(at, share) in &seen[place..] {
         let numbers = rows.numbers(&rows.runs[at]);
-        let of_step = columns.of.rows(numbers.start, numbers.len()) * &step * share(own);
+        let of_step = columns.of.rows(numbers.start, numbers.len()) * &step * share;
         moved.rows_mut(numbers.start, numbers.len()).copy_from(&of_step);
     }
     let leaves = (1.0 - gain / optimum.freedom.max(1.0)).max(0.0).sqrt();
     let gain = gain / rows.shared(optimum, weights, &moved);
-    let first = *rows.rows.get(rows.runs.get(*seen.get(place)?)?.start)?;
+    let first = *rows.rows.get(rows.runs.get(seen.get(place)?.0)?.start)?;
     let size = step.iter().copied().collect();
     let score = gain - k as f64 * (rows.runs.len() as f64).ln();
-    Some(Step {
-        moved: columns.moved,
-        first,
-        size,
-        turns: columns.turns.clone(),
-        gain,
-        leaves,
-        score,
-        other: None,
-    })
+    let (moved, turns) = (columns.moved, columns.turns.clone());
+    Some(Step { moved, first, size, turns, gain, leaves, score, other: None })
 }

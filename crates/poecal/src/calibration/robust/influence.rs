@@ -6,7 +6,8 @@ use std::sync::Arc;
 use super::rows::component_scale;
 use crate::analysis::{Influence, influence};
 use crate::calibration::fit;
-use crate::calibration::{Calibration, DeviceFrameKnowledge, written};
+use crate::calibration::run::written;
+use crate::calibration::{Calibration, DeviceFrameKnowledge};
 use crate::estimate::{Packed, Session};
 use crate::measurement::Dataset;
 use crate::parameters::{Parameter, screw_axes};
@@ -38,7 +39,7 @@ impl<'a> RowInfluence<'a> {
     /// Prepares a finished calibration.
     pub(crate) fn new(calibration: &'a Calibration, data: &'a Dataset) -> Self {
         let packed = calibration.packed(data);
-        let data = written(data, calibration.formulation.pose_residual);
+        let data = written(Cow::Borrowed(data), calibration.formulation.pose_residual);
         let weights = calibration.robustness.rows.iter().map(|row| row.weight).collect();
         let Calibration { fit_rows, models, .. } = calibration;
         let session = calibration.session(&data, &packed);

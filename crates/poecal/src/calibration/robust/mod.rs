@@ -9,12 +9,11 @@ mod scale;
 pub(crate) use influence::RowInfluence;
 pub use influence::row_influence;
 pub use loss::{Loss, Robust};
-pub(super) use rows::registrable;
 pub use rows::{Robustness, RowJudgement};
 
-use super::fit::Task;
-use super::found::{Fitted, OngoingFit};
+use super::found::{Fitted, OngoingFit, Start};
 use super::noise::{NoiseSource, stated};
+use super::task::Task;
 use super::{CalibrationOptions, estimate_noise};
 use crate::error::Result;
 use crate::estimate::Estimate;
@@ -24,7 +23,7 @@ use crate::solve;
 use crate::start::{Registration, register_robustly};
 use crate::uncertainty::{PriorInformation, View, leave_clusters_out};
 pub(super) use alike::Configurations;
-use rows::{Bounds, RowJudgements, is_judgeable};
+use rows::{Bounds, is_judgeable};
 pub(super) use rows::{JudgingFit, judge_rows};
 use scale::{RowParts, Scale, parts, settle};
 
@@ -41,34 +40,24 @@ fn judging(fitted: &Fitted) -> JudgingFit<'_> {
     JudgingFit { estimate, noise: *noise, normal, unknowns: normal.dim() as f64 }
 }
 
-/// A fit with its loss and the judgement of every row of the data.
+/// A fit with its loss, and every row of the data judged by it.
 #[derive(Clone)]
 pub(super) struct RobustFit {
     pub(super) fitted: Fitted,
-    pub(super) loss: Option<Loss>,
-    pub(super) judged: RowJudgements,
+    pub(super) robustness: Robustness,
 }
 
 /// Fits as the options ask: by least squares, by a robust loss, or by Tukey's where least squares show outliers.
-pub(super) fn fit(
-    task: &Task<'_>,
-    registration: &Registration<'_>,
-    registered: &Estimate,
-    source: NoiseSource,
-) -> Result<RobustFit> {
-    let noise = registration.noise;
+pub(super) fn fit(task: &Task<'_>, registration: &Registration<'_>, start: &Start) -> Result<RobustFit> {
     let configurations = &Configurations::new(task.session.data, task.rows);
-    let attempt = |loss, other| attempt(task, configurations, registration, registered, source, loss, other);
-    let ordinary = |found| ordinary(task, configurations, found, registered, noise, source);
+    let attempt = |loss, other| attempt(task, configurations, registration, start, loss, other);
+    let ordinary = |found| ordinary(task, configurations, found, start);
     match task.options.robust {
-        Robust::Off => {
-            let found = task.with_first_prior_weight(noise, source).first_fit(registered, noise);
-            ordinary(found)
-        }
+        Robust::Off => ordinary(task.first_fit(start)),
         Robust::Loss(loss) => attempt(loss, None),
         Robust::Auto => {
-            let found = task.with_first_prior_weight(noise, source).first_fit(registered, noise);
-            if !shows_outliers(task, configurations, &found, noise, source) {
+            let found = task.first_fit(start);
+            if !shows_outliers(task, configurations, &found, start) {
                 return ordinary(found);
             }
             let tried = attempt(Loss::Tukey, None)?;
@@ -92,41 +81,29 @@ pub(super) fn fit(
 }
 
 /// Fits by least squares without some rows, which are suspected then, and only they.
-pub(super) fn fit_without(
-    task: &Task<'_>,
-    registered: &Estimate,
-    (noise, source): (Noise, NoiseSource),
-    left_out: &[u32],
-) -> Result<RobustFit> {
+pub(super) fn fit_without(task: &Task<'_>, start: &Start, left_out: &[u32]) -> Result<RobustFit> {
     let is_left_out = |row: &u32| left_out.binary_search(row).is_ok();
     let kept: Vec<u32> = task.rows.iter().copied().filter(|row| !is_left_out(row)).collect();
     let of_kept = Task { rows: &kept, ..*task };
-    let found = of_kept.with_first_prior_weight(noise, source).first_fit(registered, noise);
-    let fitted = of_kept.with_first_prior_weight(noise, source).complete(found, registered, noise, source)?;
+    let fitted = of_kept.complete(of_kept.first_fit(start), start)?;
     let count = u32::try_from(task.session.data.len()).unwrap_or(u32::MAX);
     let weights: Vec<f64> = (0..count).map(|row| f64::from(u8::from(!is_left_out(&row)))).collect();
     let weighted = Task { weights: Some(&weights), ..*task };
     let configurations = Configurations::new(task.session.data, task.rows);
-    let judged = judge_rows(&weighted, &configurations, judging(&fitted), &weights, Some(Loss::Tukey));
+    let robustness = judge_rows(&weighted, &configurations, judging(&fitted), &weights, Some(Loss::Tukey));
     let suspected: Vec<bool> = (0..count).map(|row| is_left_out(&row)).collect();
-    Ok(RobustFit { fitted, loss: Some(Loss::Tukey), judged }.suspecting(&suspected))
+    Ok(RobustFit { fitted, robustness: robustness.suspecting(&suspected) })
 }
 
 impl RobustFit {
-    /// The same with these rows suspected.
-    pub(super) fn suspecting(mut self, suspected: &[bool]) -> Self {
-        self.judged.rows.iter_mut().zip(suspected).for_each(|(row, suspected)| row.suspected = *suspected);
-        self
-    }
-
     /// Whether a fitted row is suspected.
     fn is_evident(&self, task: &Task<'_>) -> bool {
-        task.rows.iter().any(|&row| self.judged.rows[row as usize].suspected)
+        task.rows.iter().any(|&row| self.robustness.suspects_row(row))
     }
 
     /// Whether it predicts held-out clusters of rows better than another fit, by a bounded loss.
     fn predicts_better(&self, task: &Task<'_>, other: &RobustFit) -> bool {
-        let scale = self.judged.scale();
+        let scale = self.robustness.scale;
         let noise = ByQuantity::from_fn(|quantity| scale[quantity] * self.fitted.noise[quantity]);
         match (self.cross_validated_loss(task, noise), other.cross_validated_loss(task, noise)) {
             (Some(own), Some(others)) => own < others,
@@ -140,7 +117,7 @@ impl RobustFit {
         let prior = task.prior.map(|(prior, _)| prior);
         let prior = PriorInformation::new(prior, estimate, layout, task.session.length_m);
         let free: Vec<Parameter> = layout.parameters().map(|(parameter, _)| *parameter).collect();
-        let weights: Vec<f64> = self.judged.rows.iter().map(|row| row.weight).collect();
+        let weights: Vec<f64> = self.robustness.rows.iter().map(|row| row.weight).collect();
         let view = View {
             session: task.session,
             rows: task.rows,
@@ -176,14 +153,12 @@ fn ordinary(
     task: &Task<'_>,
     configurations: &Configurations,
     found: OngoingFit,
-    registered: &Estimate,
-    noise: Noise,
-    source: NoiseSource,
+    start: &Start,
 ) -> Result<RobustFit> {
-    let fitted = task.with_first_prior_weight(noise, source).complete(found, registered, noise, source)?;
+    let fitted = task.complete(found, start)?;
     let weights = vec![1.0; task.session.data.len()];
-    let judged = judge_rows(task, configurations, judging(&fitted), &weights, None);
-    Ok(RobustFit { fitted, loss: None, judged })
+    let robustness = judge_rows(task, configurations, judging(&fitted), &weights, None);
+    Ok(RobustFit { fitted, robustness })
 }
 
 /// Cheap screening: does any residual exceed the 1/1000 quantile at the robust scale? If so, a robust fit decides.
@@ -191,15 +166,15 @@ fn shows_outliers(
     task: &Task<'_>,
     configurations: &Configurations,
     found: &OngoingFit,
-    noise: Noise,
-    source: NoiseSource,
+    start: &Start,
 ) -> bool {
+    let noise = start.noise;
     let unknowns = configurations.repeats * found.normal.dim() as f64;
     let mut parts = parts(&task.session, task.rows, &found.estimate, noise);
     if !is_judgeable(parts.iter(), unknowns) {
         return false;
     }
-    let (_, scale) = settle(&mut parts, unknowns, noise, estimated(task, source));
+    let (_, scale) = settle(&mut parts, unknowns, noise, estimated(task, start.source));
     let bounds = Bounds::new(task.rows.len(), 1.0);
     let shares = configurations.shares(&task.session, &found.estimate);
     task.rows.iter().zip(&parts).any(|(&row, part)| {
@@ -219,16 +194,15 @@ fn attempt(
     task: &Task<'_>,
     configurations: &Configurations,
     registration: &Registration<'_>,
-    registered: &Estimate,
-    source: NoiseSource,
+    Start { registered, noise, source }: &Start,
     loss: Loss,
     other: Option<&Estimate>,
 ) -> Result<RobustFit> {
-    let start = register_robustly(registration, registered);
-    let mut best = Reweighted::new(task, configurations, start, registration.noise);
+    let source = *source;
+    let mut best = Reweighted::new(task, configurations, register_robustly(registration, registered), *noise);
     best.run(task, Loss::Huber, source);
     if let Some(other) = other.filter(|_| task.is_suspicious(3f64.sqrt() * best.position_m())) {
-        let mut second = Reweighted::new(task, configurations, other.clone(), registration.noise);
+        let mut second = Reweighted::new(task, configurations, other.clone(), *noise);
         second.run(task, Loss::Huber, source);
         if second.position_m() < best.position_m() {
             best = second;
@@ -375,7 +349,8 @@ impl<'c> Reweighted<'c> {
         found.report.iterations += self.iterations;
         found.report.trace.splice(0..0, self.trace);
         let fitted = weighted.finish(found, self.noise, source)?;
-        let judged = judge_rows(&weighted, self.configurations, judging(&fitted), &self.weights, Some(loss));
-        Ok(RobustFit { fitted, loss: Some(loss), judged })
+        let robustness =
+            judge_rows(&weighted, self.configurations, judging(&fitted), &self.weights, Some(loss));
+        Ok(RobustFit { fitted, robustness })
     }
 }

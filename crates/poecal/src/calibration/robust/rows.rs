@@ -4,8 +4,8 @@ use super::alike::TAILS;
 use super::{Configurations, Loss, RowParts, Scale, parts};
 use crate::analysis::influence;
 use crate::calibration::SetAccuracy;
-use crate::calibration::fit::Task;
 use crate::calibration::located::located;
+use crate::calibration::task::Task;
 use crate::distributions;
 use crate::estimate::Estimate;
 use crate::measurement::{ByQuantity, Dataset, Noise};
@@ -39,28 +39,24 @@ pub struct Robustness {
 }
 
 impl Robustness {
-    /// Collects the judgement of training and held-out rows; `accuracy` gives the errors on some rows.
-    pub(in crate::calibration) fn new(
-        loss: Option<Loss>,
-        RowJudgements { rows, scale }: RowJudgements,
+    /// The same with the errors on training and held-out rows but for the suspected ones; `accuracy` gives those on some rows.
+    pub(in crate::calibration) fn beside(
+        self,
         [fitted, held_out]: [&[u32]; 2],
         accuracy: impl Fn(&[u32]) -> SetAccuracy,
     ) -> Self {
-        let scale = scale.0;
-        let mut robustness = Robustness { loss, rows, scale, training_rest: None, held_out_rest: None };
         let of_rest = |rows: &[u32]| {
-            let rest = robustness.rest(rows);
+            let rest = self.rest(rows);
             (rest.len() < rows.len() && !rest.is_empty()).then(|| accuracy(&rest))
         };
         let (training_rest, held_out_rest) = (of_rest(fitted), of_rest(held_out));
-        robustness.training_rest = training_rest;
-        robustness.held_out_rest = held_out_rest;
-        robustness
+        Robustness { training_rest, held_out_rest, ..self }
     }
 
-    /// Rows of which others are suspected than before.
-    pub(in crate::calibration) fn differs(&self, suspected: &[bool]) -> bool {
-        self.rows.iter().zip(suspected).any(|(row, suspected)| row.suspected != *suspected)
+    /// The same with these rows suspected.
+    pub(in crate::calibration) fn suspecting(mut self, suspected: &[bool]) -> Self {
+        self.rows.iter_mut().zip(suspected).for_each(|(row, suspected)| row.suspected = *suspected);
+        self
     }
 
     /// Whether a row is suspected.
@@ -82,8 +78,13 @@ impl Robustness {
     /// These rows without the suspected ones.
     #[must_use]
     pub fn rest(&self, rows: &[u32]) -> Vec<u32> {
-        let suspected = |row: u32| self.rows.get(row as usize).is_some_and(|judged| judged.suspected);
-        rows.iter().copied().filter(|&row| !suspected(row)).collect()
+        rows.iter().copied().filter(|&row| !self.suspects_row(row)).collect()
+    }
+
+    /// Rows for registering device and targets: these without suspected ones, unless too few remain.
+    pub(in crate::calibration) fn registrable(&self, rows: &[u32]) -> Vec<u32> {
+        let kept = self.rest(rows);
+        if kept.len() * 2 > rows.len() { kept } else { rows.to_vec() }
     }
 
     /// A sentence about the outliers among training and held-out rows, if there are any.
@@ -140,20 +141,6 @@ pub(super) fn is_judgeable<'a>(parts: impl Iterator<Item = &'a RowParts>, unknow
     parts.flat_map(RowParts::iter).map(|(_, part)| part.components).sum::<usize>() as f64 >= 2.0 * unknowns
 }
 
-/// Judgement of every row of the data, with its scale.
-#[derive(Clone)]
-pub(in crate::calibration) struct RowJudgements {
-    pub(in crate::calibration) rows: Vec<RowJudgement>,
-    scale: Scale,
-}
-
-impl RowJudgements {
-    /// Robust scale over the noise of the fit, of each quantity.
-    pub(super) fn scale(&self) -> ByQuantity<f64> {
-        self.scale.0
-    }
-}
-
 /// A fit by which rows are judged.
 #[derive(Clone, Copy)]
 pub(in crate::calibration) struct JudgingFit<'a> {
@@ -174,75 +161,94 @@ pub(in crate::calibration) fn judge_rows(
     fitted: JudgingFit<'_>,
     weights: &[f64],
     loss: Option<Loss>,
-) -> RowJudgements {
-    let all: Vec<u32> = (0..u32::try_from(task.session.data.len()).unwrap_or(u32::MAX)).collect();
+) -> Robustness {
+    let all: Vec<u32> = task.session.data.all_rows();
     let estimate = &*located(&task.session, task.rows, fitted.estimate, fitted.noise);
-    let mut is_fitted = vec![false; all.len()];
-    task.rows.iter().for_each(|&row| is_fitted[row as usize] = true);
-    let bounds = Bounds::suspected(all.len());
-    let parts = parts(&task.session, &all, estimate, fitted.noise);
+    let mut fit_weights = vec![None; all.len()];
+    task.rows.iter().for_each(|&row| fit_weights[row as usize] = Some(weights[row as usize]));
+    let rows = Rows {
+        parts: parts(&task.session, &all, estimate, fitted.noise),
+        shares: configurations.shares(&task.session, estimate),
+        bounds: Bounds::suspected(all.len()),
+        weights: fit_weights,
+        all,
+    };
     let unknowns = configurations.repeats * fitted.unknowns;
-    let shares = configurations.shares(&task.session, estimate);
-    let judge = |scale: Scale| -> RowJudgements {
+    let robustness = |rows, scale: Scale| {
+        let (training_rest, held_out_rest) = (None, None);
+        Robustness { loss, rows, scale: scale.0, training_rest, held_out_rest }
+    };
+    let of_fit = || task.rows.iter().map(|&row| (row, &rows.parts[row as usize]));
+    let scale = Scale::of(of_fit().map(|(_, part)| part), unknowns).at_least_rounding(fitted.noise);
+    if !is_judgeable(of_fit().map(|(_, part)| part), unknowns) {
+        let judged = weights.iter().map(|&weight| RowJudgement { weight, suspected: false }).collect();
+        return robustness(judged, scale);
+    }
+    let judged = rows.judged(task, fitted, scale, loss);
+    if !judged.iter().any(|row| row.suspected) {
+        return robustness(judged, scale);
+    }
+    // Suspected rows widen their own scale: judge once more without them.
+    let kept = of_fit().filter(|(row, _)| !judged[*row as usize].suspected);
+    let scale = Scale::of(kept.map(|(_, part)| part), unknowns).at_least_rounding(fitted.noise);
+    robustness(rows.judged(task, fitted, scale, loss), scale)
+}
+
+/// All rows of the data as they are judged.
+struct Rows {
+    all: Vec<u32>,
+    parts: Vec<RowParts>,
+    /// Share of each row's length that counts.
+    shares: Vec<f64>,
+    /// Weight of each row in the fit; `None` of one that was held out.
+    weights: Vec<Option<f64>>,
+    bounds: Bounds,
+}
+
+impl Rows {
+    /// The part of a row's length that counts, at a scale, and the number of its components.
+    fn length(&self, row: u32, scale: Scale) -> (f64, usize) {
+        let (length, components) = scale.length(&self.parts[row as usize]);
+        (self.shares[row as usize] * length, components)
+    }
+
+    /// Every row judged at a scale.
+    fn judged(
+        &self,
+        task: &Task<'_>,
+        fitted: JudgingFit<'_>,
+        scale: Scale,
+        loss: Option<Loss>,
+    ) -> Vec<RowJudgement> {
+        let judged = |&row: &u32| {
+            let (length, components) = self.length(row, scale);
+            let usual = loss.map_or(1.0, |loss| loss.weight(length, components));
+            RowJudgement { weight: self.weights[row as usize].unwrap_or(usual), suspected: false }
+        };
+        let mut rows: Vec<RowJudgement> = self.all.iter().map(judged).collect();
         // Influence is computed only where it may matter: rows with a leverage near 1 have no residual to judge them by.
-        let lengths = parts.iter().map(|row| scale.length(row));
-        let near: Vec<u32> = all
-            .iter()
-            .zip(lengths)
-            .filter(|(row, (length, components))| {
-                shares[**row as usize] * length > 0.5 * bounds.of(*components)
-            })
-            .map(|(&row, _)| row)
-            .collect();
-        let mut rows: Vec<RowJudgement> = all
-            .iter()
-            .map(|&row| {
-                let (length, components) = scale.length(&parts[row as usize]);
-                let length = shares[row as usize] * length;
-                let usual = loss.map_or(1.0, |loss| loss.weight(length, components));
-                let weight = if is_fitted[row as usize] { weights[row as usize] } else { usual };
-                RowJudgement { weight, suspected: false }
-            })
-            .collect();
-        let counted: Vec<f64> = near
-            .iter()
-            .map(|&row| if is_fitted[row as usize] { weights[row as usize] } else { 0.0 })
-            .collect();
-        let problem = Task { weights: None, ..*task };
-        let problem = problem.problem(fitted.estimate, fitted.noise);
+        let is_near = |row: &u32| {
+            let (length, components) = self.length(*row, scale);
+            length > 0.5 * self.bounds.of(components)
+        };
+        let near: Vec<u32> = self.all.iter().copied().filter(is_near).collect();
+        let counted: Vec<f64> = near.iter().map(|&row| self.weights[row as usize].unwrap_or(0.0)).collect();
+        let unweighted = Task { weights: None, ..*task };
+        let problem = unweighted.problem(fitted.estimate, fitted.noise);
         let found = influence(&problem, fitted.estimate, fitted.normal, &near, &counted, |row, component| {
             component_scale(task.session.data, scale.0, row, component)
         });
         for (&row, influence) in near.iter().zip(&found) {
-            let (_, components) = scale.length(&parts[row as usize]);
-            rows[row as usize].suspected =
-                shares[row as usize] * influence.studentized > bounds.of(components);
+            let studentized = self.shares[row as usize] * influence.studentized;
+            let (_, components) = self.length(row, scale);
+            rows[row as usize].suspected = studentized > self.bounds.of(components);
         }
-        RowJudgements { rows, scale }
-    };
-    let of_fit = || task.rows.iter().map(|&row| (row, &parts[row as usize]));
-    let scale = Scale::of(of_fit().map(|(_, part)| part), unknowns).at_least_rounding(fitted.noise);
-    if !is_judgeable(of_fit().map(|(_, part)| part), unknowns) {
-        let rows = weights.iter().map(|&weight| RowJudgement { weight, suspected: false }).collect();
-        return RowJudgements { rows, scale };
+        rows
     }
-    let judged = judge(scale);
-    if !judged.rows.iter().any(|row| row.suspected) {
-        return judged;
-    }
-    // Suspected rows widen their own scale: judge once more without them.
-    let kept = of_fit().filter(|(row, _)| !judged.rows[*row as usize].suspected);
-    judge(Scale::of(kept.map(|(_, part)| part), unknowns).at_least_rounding(fitted.noise))
 }
 
 /// Scale of one component of a row's residual.
 pub(super) fn component_scale(data: &Dataset, scale: ByQuantity<f64>, row: u32, component: usize) -> f64 {
     let channels = data.observations[row as usize].measurement.channels();
     channels.get(component).map_or(1.0, |channel| scale[channel.quantity])
-}
-
-/// Rows for registering device and targets: without suspected ones, unless too few remain.
-pub(in crate::calibration) fn registrable(robustness: &[RowJudgement], rows: &[u32]) -> Vec<u32> {
-    let kept: Vec<u32> = rows.iter().copied().filter(|&row| !robustness[row as usize].suspected).collect();
-    if kept.len() * 2 > rows.len() { kept } else { rows.to_vec() }
 }

@@ -134,21 +134,7 @@ pub(crate) fn workspace(calibration: &Calibration) -> Option<Workspace> {
     let is_free = readings.len() >= FREE;
     let expected_m = expected.measured.map_or(REACHED, |it| it.sigma_m);
     let cell_m = cell(&compared);
-    let at = |it: &Compared| [it.height_m, it.radius_m].map(|value| (value / cell_m).floor() as i64);
-    compared.sort_by_key(at);
-    let cells = compared.chunk_by(|one, other| at(one) == at(other)).filter_map(|own| {
-        let [height, radius] = at(own.first()?);
-        Some(WorkspaceCell {
-            radius_m: radius as f64 * cell_m,
-            height_m: height as f64 * cell_m,
-            displaced: Displacements::of(own.iter()),
-            expected_m: own
-                .iter()
-                .map(|it| it.expected_m2)
-                .sum::<Option<f64>>()
-                .map(|sum| (sum / own.len() as f64).sqrt()),
-        })
-    });
+    let cells = cells(&mut compared, cell_m);
     let names = nominal.reading_names();
     let of_joint = |(index, &reading): (usize, &usize)| {
         let name = names.get(reading)?.clone();
@@ -159,13 +145,30 @@ pub(crate) fn workspace(calibration: &Calibration) -> Option<Workspace> {
     Some(Workspace {
         about,
         cell_m,
-        cells: cells.collect(),
+        cells,
         all: Displacements::of(compared.iter()),
         joints: readings.iter().enumerate().filter(|_| is_free).filter_map(of_joint).collect(),
         needless: compared.iter().filter(|it| it.moved_m <= expected_m).count(),
         beyond_limits: compared.iter().filter(|it| it.is_beyond_limits).count(),
         unmended: compared.iter().filter(|it| is_free && it.mended.is_none()).count(),
     })
+}
+
+/// The cells of the workspace in which configurations are, which are sorted by them.
+fn cells(compared: &mut [Compared], cell_m: f64) -> Vec<WorkspaceCell> {
+    let at = |it: &Compared| [it.height_m, it.radius_m].map(|value| (value / cell_m).floor() as i64);
+    compared.sort_by_key(at);
+    let cell = |own: &[Compared]| {
+        let [height, radius] = at(own.first()?);
+        let squares = own.iter().map(|it| it.expected_m2).sum::<Option<f64>>();
+        Some(WorkspaceCell {
+            radius_m: radius as f64 * cell_m,
+            height_m: height as f64 * cell_m,
+            displaced: Displacements::of(own.iter()),
+            expected_m: squares.map(|sum| (sum / own.len() as f64).sqrt()),
+        })
+    };
+    compared.chunk_by(|one, other| at(one) == at(other)).filter_map(cell).collect()
 }
 
 /// Mean square errors of predicted places (of the first target, or the tip) in configurations, of these readings.

@@ -167,7 +167,7 @@ impl CorrectedEntry {
 
     /// Of a corrected model.
     pub(super) fn of(found: &Correction, data: &Dataset) -> Self {
-        let Correction { robot, model, .. } = found;
+        let (robot, model) = (&found.robot, &found.model);
         let geometry = found.tried.iter().find(|it| it.sizes == Sizes::NONE).map_or(0.0, |it| it.left_out);
         let tried = |it: &TriedSizes| TriedEntry {
             sizes: of_sizes(&it.sizes),

@@ -28,7 +28,7 @@ pub use place::FolderPlace;
 pub use project::{Project, write_project};
 pub use reproduction::write_reproduction;
 pub use simulation::{SimulatedSession, write_simulation};
-pub use validation::{ValidationResults, write_validation};
+pub use validation::ValidationPlaces;
 
 use std::borrow::Cow;
 use std::io::Write;

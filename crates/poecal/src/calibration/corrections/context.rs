@@ -1,4 +1,4 @@
-//! A finished calibration as the beginning of a fit with terms, and its rows as linear functions.
+//! A fit of geometry as the beginning of a fit with terms, and its rows as linear functions.
 
 use std::slice;
 
@@ -7,27 +7,27 @@ use super::choice::weight_of_prior;
 use super::linear::Linear;
 use super::modes::Class;
 use super::unknowns::{estimate, unknowns};
-use crate::calibration::fit::Task;
-use crate::calibration::{Calibration, CalibrationOptions};
+use crate::calibration::calibrated::CalibratedFit;
+use crate::calibration::task::Task;
 use crate::estimate::{Packed, Session, Unknowns};
 use crate::measurement::ByQuantity;
 use crate::problem::Prior;
-use crate::robot::{CorrectionModel, Extent, Robot, Sizes, TermGroup};
+use crate::robot::{CorrectionModel, Extent, JointTerm, Robot, Sizes, TermGroup};
 use crate::uncertainty::{PriorInformation, View, parts_to_leave_out};
 
 /// Most rows from which sizes are chosen.
 const SAMPLE: usize = 2000;
 
-/// A finished calibration, from which corrections are fitted.
-pub(super) struct Geometry<'a> {
-    pub(super) calibration: &'a Calibration,
-    pub(super) nominal: Robot,
+/// Geometry with what a fit of terms needs beside it.
+pub(super) struct CorrectionContext<'a> {
+    pub(super) geometry: &'a CalibratedFit<'a>,
     pub(super) session: Session<'a>,
-    pub(super) options: &'a CalibrationOptions,
+    /// The nominal robot with all terms that geometry has.
+    pub(super) nominal: Robot,
     /// The fitted rows that have a weight.
     pub(super) rows: Vec<u32>,
     /// Weights of all rows of the data.
-    pub(super) weights: Option<&'a [f64]>,
+    weights: Option<Vec<f64>>,
 }
 
 /// Rows of a sample as linear functions, and the parts of them that are left out in turn.
@@ -37,11 +37,29 @@ pub(super) struct Sampled {
     pub(super) configurations: usize,
 }
 
-impl Geometry<'_> {
+impl<'g> CorrectionContext<'g> {
+    pub(super) fn new(geometry: &'g CalibratedFit<'g>) -> Self {
+        let (session, rows, weights) = (geometry.session(), geometry.weighted_rows(), geometry.weights());
+        // Terms that geometry has are of no group.
+        let mut nominal = session.robot.clone();
+        for &(joint, term) in &session.unknowns.terms {
+            if !nominal.terms.iter().any(|it| (it.joint, it.term) == (joint, term)) {
+                nominal.terms.push(JointTerm { joint, term, coefficient: 0.0 });
+            }
+        }
+        CorrectionContext { geometry, session, nominal, rows, weights }
+    }
+
+    /// Weight of a row.
+    pub(super) fn weight(&self, row: u32) -> f64 {
+        self.weights.as_ref().and_then(|it| it.get(row as usize)).copied().unwrap_or(1.0)
+    }
+
     /// How far the model reaches; for terms of these sizes as far as they do.
     pub(super) fn extent(&self, sizes: Option<Sizes>) -> Extent {
-        let gives = sizes.map_or(self.options.corrections.gives(), |sizes| sizes.gives());
-        Extent { orders: self.options.harmonics, gives }
+        let options = &self.geometry.run.options;
+        let gives = sizes.map_or(options.corrections.gives(), |sizes| sizes.gives());
+        Extent { orders: options.harmonics, gives }
     }
 
     pub(super) fn session<'a>(
@@ -54,49 +72,39 @@ impl Geometry<'_> {
     }
 
     pub(super) fn task<'a>(&'a self, session: Session<'a>, prior: (&'a Prior, f64)) -> Task<'a> {
-        let Geometry { rows, options, weights, .. } = self;
-        Task { session, rows, weights: *weights, prior: Some(prior), options }
-    }
-
-    pub(super) fn prior(&self, session: &Session<'_>) -> Prior {
-        self.options.prior_with_terms(session)
+        let (CorrectionContext { rows, weights, .. }, options) = (self, &self.geometry.run.options);
+        Task { session, rows, weights: weights.as_deref(), prior: Some(prior), options }
     }
 
     /// A sample of the rows, linear about the calibrated model; none if that determines nothing.
     pub(super) fn sampled(&self, model: &CorrectionModel, sizes: Option<Sizes>) -> Option<Sampled> {
-        let Geometry { calibration, options, .. } = *self;
-        let noise = calibration.noise;
+        let (of_geometry, noise) = (self.session, self.geometry.noise());
+        let (calibrated, options) = (&self.geometry.estimate, &self.geometry.run.options);
         let none = PriorInformation::none(0);
         let view = View {
-            session: self.session,
+            session: of_geometry,
             rows: &self.rows,
             free: &[],
             noise,
             noise_is_stated: ByQuantity::default(),
             prior: &none,
             variance: 1.0,
-            estimate: &calibration.models.calibrated,
+            estimate: calibrated,
         };
         let (sample, parts) = parts_to_leave_out(&view, SAMPLE, options.seed);
         // The rows of the sample alone, so that terms are evaluated at no others.
-        let data = self.session.data.only(&sample);
+        let data = of_geometry.data.only(&sample);
         let rows = data.all_rows();
         let among = |row: &u32| sample.binary_search(row).ok().and_then(|at| u32::try_from(at).ok());
         let parts: Vec<Vec<u32>> = parts.iter().map(|part| part.iter().filter_map(among).collect()).collect();
-        let weights: Option<Vec<f64>> = self.weights.map(|weights| {
-            sample.iter().map(|&row| weights.get(row as usize).copied().unwrap_or(1.0)).collect()
-        });
-        let start = estimate(model, &calibration.models.calibrated, &data);
+        let weights: Option<Vec<f64>> =
+            self.weights.as_ref().map(|_| sample.iter().map(|&row| self.weight(row)).collect());
+        let start = estimate(model, calibrated, &data);
         let packed = Packed::of(&model.robot, &data);
-        let unknowns = unknowns(model, self.session.unknowns, &sizes.unwrap_or(Sizes::ALL));
-        let session = Session {
-            data: &data,
-            robot: &model.robot,
-            packed: &packed,
-            unknowns: &unknowns,
-            ..self.session
-        };
-        let prior = self.prior(&session);
+        let unknowns = unknowns(model, of_geometry.unknowns, &sizes.unwrap_or(Sizes::ALL));
+        let session =
+            Session { data: &data, robot: &model.robot, packed: &packed, unknowns: &unknowns, ..of_geometry };
+        let prior = options.prior_with_terms(&session);
         let prior = Some((&prior, 1.0));
         let task = Task { session, rows: &rows, weights: weights.as_deref(), prior, options };
         let configurations = data.configurations(&rows).len();

@@ -1,0 +1,117 @@
+//! The judgement of what was fitted, once, at the end.
+
+use std::sync::Arc;
+
+use super::accepted::accepted;
+use super::calibrated::CalibratedFit;
+use super::corrected::Found;
+use super::events::Events;
+use super::figures::Figures;
+use super::improvement::improvements;
+use super::placed::{place_tip, stations};
+use super::robust::RobustFit;
+use super::rounding::rounded;
+use super::run::Run;
+use super::signs::Signs;
+use super::verdict::{Grounds, Judged, judged};
+use super::{CalibratedTarget, Calibration, Corrections, Level, Repaired};
+use crate::error::Result;
+use crate::forensics::Diagnosis;
+use crate::robot::Robot;
+use crate::threads;
+
+impl<'a> Found<'a> {
+    /// Judges what was fitted; with `events` if the session was searched for them.
+    pub(super) fn judge(self, events: Option<Events>) -> Result<Repaired<'a>> {
+        let rows = self.fit.run.data.len();
+        let (mut calibration, run) = threads::in_pool(rows, || self.judged(events));
+        let improvement = improvements(&calibration, &run.data);
+        if let Some(set) = &mut calibration.accuracy.held_out {
+            set.improvement = improvement;
+        }
+        if let Some(accept) = &run.options.accept {
+            calibration.acceptance = Some(accepted(&calibration, &run.data, accept)?);
+        }
+        Ok(Repaired { calibration, data: run.data })
+    }
+
+    fn judged(self, events: Option<Events>) -> (Calibration, Run<'a>) {
+        let Found { fit, corrected, summary, cross_validation } = self;
+        // Where a corrected model searches for steps and drifts, the residuals of geometry do not.
+        let finds_moves = events.is_none() || fit.run.corrections == Corrections::Off;
+        let events = events.unwrap_or_default();
+        let mut figures = fit.figures(&summary, corrected, cross_validation);
+        let signs = fit.signs(&summary, &figures, finds_moves);
+        let (robot, targets) = fit.placed(&figures);
+        let mistakes = signs.mistakes(&targets, fit.reach_m());
+        let judged =
+            judged(&Grounds { fit: &fit, summary: &summary, figures: &figures, signs: &signs, mistakes });
+        let is_doubtful = judged.of_calibrated(&figures.trust.expected).level == Level::DoNotUse;
+        if is_doubtful || signs.diagnosis.iter().any(Diagnosis::is_of_input) {
+            // Mistakes in the input are not the fault of a joint.
+            figures.trust.joints.iter_mut().for_each(|joint| joint.suspicious = None);
+        }
+        figures.explain_suspicions(&fit.run.robot);
+        let warnings = fit.warnings(&figures, &signs, &events);
+        let stations = stations(&fit.session(), &fit.estimate, fit.noise());
+        let Figures { models, accuracy, robustness, trust, identifiability, correction } = figures;
+        let judged = events.against.into_iter().fold(judged, Judged::against);
+        let verdict = match correction.as_ref().filter(|it| it.has_terms()) {
+            Some(found) => judged.of_corrected(found.judging_errors(), &found.expected),
+            None => judged.of_calibrated(&trust.expected),
+        };
+        let CalibratedFit { run, robust: RobustFit { fitted, .. }, noise_ratios, .. } = fit;
+        let calibration = Calibration {
+            nominal: run.robot.clone(),
+            robot,
+            targets,
+            frame: run.options.frame,
+            unknowns: run.unknowns.clone(),
+            formulation: run.options.formulation,
+            chosen_tolerance: run.options.tolerance.filter(|_| run.options.chooses_tolerance),
+            base_from_device: models.calibrated.device_from_base.inverse(),
+            stations,
+            models,
+            accuracy,
+            solver: fitted.report,
+            identifiability,
+            trust,
+            acceptance: None,
+            verdict,
+            noise: fitted.noise,
+            noise_ratios,
+            noise_source: fitted.noise_source,
+            robustness,
+            warnings,
+            diagnosis: signs.diagnosis,
+            repairs: events.repairs,
+            suspicions: events.suspicions,
+            fit_rows: run.fit_rows.clone(),
+            held_out_rows: run.held_out_rows.clone(),
+            correction: correction.map(Box::new),
+            packed: Arc::clone(&run.packed),
+        };
+        (calibration, run)
+    }
+}
+
+impl CalibratedFit<'_> {
+    /// The calibrated robot with its tip, and the targets in that.
+    fn placed(&self, figures: &Figures) -> (Robot, Vec<CalibratedTarget>) {
+        let Run { robot, data, options, fit_rows, .. } = &self.run;
+        place_tip(robot, data, &data.frames(fit_rows), &figures.models.calibrated, options.move_tip)
+    }
+
+    /// Warnings, a sentence each.
+    fn warnings(&self, figures: &Figures, signs: &Signs, events: &Events) -> Vec<String> {
+        let Figures { accuracy, robustness, correction, .. } = figures;
+        let mut warnings = signs.warnings();
+        warnings.extend(rounded(&self.session(), accuracy.training.calibrated.leading_m()));
+        if !signs.moved.as_ref().is_some_and(|it| it.explains(robustness)) {
+            warnings.extend(robustness.warning(&self.run.fit_rows, &self.run.held_out_rows));
+        }
+        warnings.extend(correction.as_ref().and_then(|it| it.doubt.clone()));
+        warnings.extend(events.early.clone());
+        warnings
+    }
+}

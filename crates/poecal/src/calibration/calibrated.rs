@@ -1,0 +1,124 @@
+//! The fit of the screws, and every row judged by it.
+
+use super::found::Start;
+use super::instrument_noise::{ROUNDS, noise_ratios};
+use super::located::located;
+use super::robust::{self, RobustFit};
+use super::run::Run;
+use super::task::Task;
+use super::{CalibrationOptions, Formulation, NoiseSource, Robust, Robustness, RowJudgement};
+use crate::error::Result;
+use crate::estimate::{Estimate, Session};
+use crate::gauge;
+use crate::measurement::Noise;
+
+/// A session with its screws fitted.
+pub(super) struct CalibratedFit<'a> {
+    pub(super) run: Run<'a>,
+    pub(super) start: Start,
+    /// The fit, and the judgement of every row.
+    pub(super) robust: RobustFit,
+    /// Noise of each instrument in units of the first one's; empty if all are alike.
+    pub(super) noise_ratios: Vec<Noise>,
+    /// The calibrated model: the fit in the nominal base frame, with the frames of all stations.
+    pub(super) estimate: Estimate,
+}
+
+impl<'a> Run<'a> {
+    /// Fits the screws; where several instruments have different noises, again with these until they do not change.
+    pub(super) fn fit(self, start: Start) -> Result<CalibratedFit<'a>> {
+        let mut ratios = Vec::new();
+        let mut fit = self.fit_with(&ratios, &start, self.options.robust)?;
+        let is_open = start.source == NoiseSource::Estimated && self.data.station_count() > 1;
+        for _ in 0..if is_open { ROUNDS } else { 0 } {
+            let Some(found) = noise_ratios(&self.session(&ratios), &self.fit_rows, &fit) else { break };
+            ratios = found;
+            let again = Start { noise: fit.fitted.noise, ..start.clone() };
+            fit = self.fit_with(&ratios, &again, self.options.robust)?;
+        }
+        let estimate = self.calibrated(&fit, &ratios);
+        Ok(CalibratedFit { run: self, start, robust: fit, noise_ratios: ratios, estimate })
+    }
+
+    /// One fit of the screws.
+    fn fit_with(&self, ratios: &[Noise], start: &Start, robust: Robust) -> Result<RobustFit> {
+        let (session, rows) = (self.session(ratios), &self.fit_rows);
+        let options = CalibrationOptions { robust, ..self.options.clone() };
+        let prior = self.prior.as_ref().map(|prior| (prior, 1.0));
+        let task = Task { session, rows, weights: None, prior, options: &options };
+        self.in_pool(|| {
+            if !self.left_out.is_empty() {
+                return robust::fit_without(&task, start, &self.left_out);
+            }
+            robust::fit(&task, &self.registration(session, rows, start.noise, true), start)
+        })
+    }
+
+    /// The calibrated model of a fit.
+    fn calibrated(&self, fit: &RobustFit, ratios: &[Noise]) -> Estimate {
+        let session = self.session(ratios);
+        // Offsets that were asked for stay; those of a formulation are a way to write the screws.
+        let found = if self.options.formulation == Formulation::default() {
+            fit.fitted.estimate.clone()
+        } else {
+            fit.fitted.estimate.without_offsets()
+        };
+        let found = if session.base_free() {
+            let targets = &self.delivered.base_from_target;
+            let motion = gauge::base_motion(&found, &self.robot, targets, session.length_m);
+            found.rebased(&motion)
+        } else {
+            found
+        };
+        located(&session, &self.fit_rows, &found, fit.fitted.noise).into_owned()
+    }
+}
+
+impl CalibratedFit<'_> {
+    /// Robot and measurements, with the noises of the instruments.
+    pub(super) fn session(&self) -> Session<'_> {
+        self.run.session(&self.noise_ratios)
+    }
+
+    /// Reach of the robot, metres.
+    pub(super) fn reach_m(&self) -> f64 {
+        3.0 * self.session().length_m
+    }
+
+    /// Noise by which residuals were whitened where a row stated none.
+    pub(super) fn noise(&self) -> Noise {
+        self.robust.fitted.noise
+    }
+
+    /// Weights of all rows of the data after a robust fit: those of a loss that was asked for; otherwise only suspected rows lose theirs.
+    pub(super) fn weights(&self) -> Option<Vec<f64>> {
+        let is_chosen = matches!(self.run.options.robust, Robust::Loss(_));
+        let weight = |row: &RowJudgement| if row.suspected || is_chosen { row.weight } else { 1.0 };
+        let Robustness { loss, rows, .. } = &self.robust.robustness;
+        loss.map(|_| rows.iter().map(weight).collect())
+    }
+
+    /// The fitted rows that have a weight: others say nothing of the noise either.
+    pub(super) fn weighted_rows(&self) -> Vec<u32> {
+        let weights = self.weights();
+        let weight = |row: u32| weights.as_ref().and_then(|it| it.get(row as usize));
+        let counts = |row: &u32| weight(*row).is_none_or(|weight| *weight > 0.0);
+        self.run.fit_rows.iter().copied().filter(counts).collect()
+    }
+
+    /// The fit with other rows suspected; of all rows at full weight where none is.
+    pub(super) fn suspecting(self, suspected: &[bool]) -> Result<Self> {
+        if suspected.contains(&true) {
+            return Ok(self.with_suspects(suspected));
+        }
+        let CalibratedFit { run, start, noise_ratios, .. } = self;
+        let robust = run.fit_with(&noise_ratios, &start, Robust::Off)?;
+        let estimate = run.calibrated(&robust, &noise_ratios);
+        Ok(CalibratedFit { run, start, robust, noise_ratios, estimate }.with_suspects(suspected))
+    }
+
+    fn with_suspects(mut self, suspected: &[bool]) -> Self {
+        self.robust.robustness = self.robust.robustness.suspecting(suspected);
+        self
+    }
+}
