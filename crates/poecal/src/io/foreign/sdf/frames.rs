@@ -78,7 +78,7 @@ impl<'a> Frames<'a> {
         let links = first("link").or_else(|| first("model"));
         let (pose, base) = self.pose(model, &of)?;
         let outer = prefix.trim_end_matches("::").rsplit_once("::");
-        let outer = outer.map_or(String::new(), |(outer, _)| format!("{outer}::"));
+        let outer = outer.filter(|it| !it.0.is_empty()).map_or(String::new(), |it| format!("{}::", it.0));
         let base = base.map_or(around, |base| Self::within(&outer, base));
         let on = model.attribute("canonical_link").or(links).map(|link| Self::within(prefix, link));
         self.found.insert(own.clone(), Frame { node: Some(model), pose, base, on });
