@@ -164,14 +164,39 @@ impl<'a> XmlSource<'a> {
     }
 
     /// An error at the start of an element.
-    pub(super) fn error(&self, node: Node<'a, 'a>, message: String) -> Error {
-        self.error_at(node.range().start, message)
+    pub(super) fn error(&self, node: Node<'a, 'a>, message: impl Into<String>) -> Error {
+        self.error_at(node.range().start, message.into())
+    }
+
+    /// The same as a result.
+    pub(super) fn refuse<T>(&self, node: Node<'a, 'a>, message: impl Into<String>) -> Result<T> {
+        Err(self.error(node, message))
     }
 
     /// The same for a text that is no URDF at all.
-    pub(super) fn syntax_error(&self, node: Node<'a, 'a>, message: String) -> Error {
+    pub(super) fn syntax_error(&self, node: Node<'a, 'a>, message: impl Into<String>) -> Error {
         let text = self.document.input_text();
         Error::new(ErrorKind::Syntax, message).at_offset(self.path, text, node.range().start)
+    }
+
+    /// What a word of an attribute means; `of` says where it is.
+    pub(super) fn meaning<T: Copy>(
+        &self,
+        node: Node<'a, 'a>,
+        (name, word): (&str, &str),
+        of: &str,
+        words: &[(&str, T)],
+        expected: &str,
+    ) -> Result<T> {
+        match words.iter().find(|(it, _)| *it == word) {
+            Some((_, meant)) => Ok(*meant),
+            None => self.refuse(node, format!("found {name}=\"{word}\" {of}, expected {expected}")),
+        }
+    }
+
+    /// The first child element of this name.
+    pub(super) fn child(self, node: Node<'a, 'a>, name: &'static str) -> Option<Node<'a, 'a>> {
+        self.children(node, name).next()
     }
 
     /// Child elements of this name.
@@ -227,6 +252,11 @@ impl<'a> XmlSource<'a> {
         }
     }
 
+    /// The only number of an attribute, if present.
+    pub(super) fn number(&self, node: Node<'a, 'a>, name: &str, of: &str) -> Result<Option<f64>> {
+        self.numbers::<1>(node, name, of).map(|it| it.map(|[only]| only))
+    }
+
     /// The numbers of an attribute, if present.
     pub(super) fn numbers<const N: usize>(
         &self,
@@ -262,7 +292,7 @@ impl<'a> XmlSource<'a> {
         let mut offset = range.start;
         for word in raw.split(|character: char| character.is_ascii_whitespace()) {
             if !word.is_empty() {
-                let number = self.number(word, offset, (name, of), largest)?;
+                let number = self.parsed(word, offset, (name, of), largest)?;
                 if let Some(slot) = numbers.get_mut(count) {
                     *slot = number;
                 }
@@ -280,7 +310,7 @@ impl<'a> XmlSource<'a> {
         ))
     }
 
-    fn number(&self, word: &str, offset: usize, (name, of): (&str, &str), largest: f64) -> Result<f64> {
+    fn parsed(&self, word: &str, offset: usize, (name, of): (&str, &str), largest: f64) -> Result<f64> {
         let found = |expected: &str| {
             self.error_at(offset, format!("found `{word}` in `{name}` of {of}, expected {expected}"))
         };

@@ -4,6 +4,7 @@ mod axes;
 mod build;
 mod engine;
 mod fanuc;
+mod fate;
 mod flow;
 mod forms;
 mod given;
@@ -13,11 +14,13 @@ mod parsed;
 mod place;
 mod posture;
 mod rapid;
+mod reasons;
 mod scan;
 mod shape;
 mod stated;
 mod summary;
 mod urscript;
+mod written;
 
 use std::path::Path;
 

@@ -1,5 +1,6 @@
 //! What the languages make of a program: its targets, its motions, and what cannot be corrected.
 
+use std::collections::BTreeMap;
 use std::ops::Range;
 
 pub(crate) use super::super::Listed;
@@ -16,6 +17,37 @@ pub(crate) struct Parsed {
     pub(crate) motions: Vec<Motion>,
     /// What cannot be corrected, as the language alone says.
     pub(crate) listed: Vec<Listed>,
+    /// Targets by the byte where their numbers begin.
+    known: BTreeMap<usize, usize>,
+}
+
+impl Parsed {
+    /// Lists a target that stays as it is.
+    pub(crate) fn list(&mut self, line: usize, name: impl Into<String>, reason: impl Into<String>) {
+        self.listed.push(Listed { line, name: name.into(), reason: reason.into() });
+    }
+
+    /// The same with what is listed in the order of the text, each once.
+    pub(crate) fn sorted(mut self) -> Self {
+        self.listed.sort();
+        self.listed.dedup();
+        self
+    }
+
+    /// The index of a target, made if its numbers are new.
+    pub(crate) fn target(&mut self, target: Target) -> usize {
+        let new = self.targets.len();
+        let index = *self.known.entry(target.start()).or_insert(new);
+        if index == new {
+            self.targets.push(target);
+        }
+        index
+    }
+
+    /// Whether a target with these numbers is there.
+    pub(crate) fn knows(&self, numbers: &[Number]) -> bool {
+        numbers.first().is_some_and(|it| self.known.contains_key(&it.range.start))
+    }
 }
 
 /// A target that is stated by numbers. It is corrected if all motions to it mean the same.
@@ -30,6 +62,18 @@ pub(crate) struct Target {
     pub(crate) numbers: Vec<Number>,
     /// What it means.
     pub(crate) meant: Meant,
+}
+
+impl Target {
+    /// The byte where its numbers begin.
+    fn start(&self) -> usize {
+        self.numbers.first().map_or(0, |it| it.range.start)
+    }
+
+    /// Its numbers in the unit of what it means.
+    pub(crate) fn scaled(&self) -> Vec<f64> {
+        self.numbers.iter().map(Number::scaled).collect()
+    }
 }
 
 /// What the numbers of a target mean.
@@ -60,6 +104,14 @@ pub(crate) struct Motion {
     pub(crate) stated: Stated,
     /// Why the target cannot be corrected, if the language says so already.
     pub(crate) refused: Option<String>,
+}
+
+impl Motion {
+    /// A motion to a target of which nothing else is known.
+    pub(crate) fn to(target: usize, line: usize) -> Self {
+        let (tool, frame, stated, refused) = (None, None, Stated::Nothing, None);
+        Motion { target, line, after: None, is_straight: false, tool, frame, stated, refused }
+    }
 }
 
 /// A number as it is written.

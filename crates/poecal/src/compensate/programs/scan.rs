@@ -49,6 +49,16 @@ impl Token {
         self.kind == Kind::Sign(sign)
     }
 
+    /// Whether it is a bracket that opens.
+    fn opens(&self) -> bool {
+        matches!(self.kind, Kind::Sign(b'(' | b'[' | b'{'))
+    }
+
+    /// Whether it is a bracket that closes.
+    fn closes(&self) -> bool {
+        matches!(self.kind, Kind::Sign(b')' | b']' | b'}'))
+    }
+
     /// Its bytes as text.
     pub(crate) fn text<'t>(&self, text: &'t [u8]) -> &'t str {
         text.get(self.range.clone()).and_then(|it| std::str::from_utf8(it).ok()).unwrap_or("")
@@ -189,25 +199,42 @@ pub(crate) fn signed(tokens: &[Token]) -> Option<Number> {
     Some(Number { range: start..range.end, value: sign * value, decimals: *decimals, scale: 1.0 })
 }
 
+/// The tokens that are in no bracket, each with its place among all; brackets are none of them.
+pub(crate) fn outside(tokens: &[Token]) -> impl Iterator<Item = (usize, &Token)> {
+    let mut depth = 0_usize;
+    tokens.iter().enumerate().filter(move |(_, token)| {
+        let is_bracket = token.opens() || token.closes();
+        depth = if token.opens() { depth + 1 } else { depth.saturating_sub(usize::from(token.closes())) };
+        !is_bracket && depth == 0
+    })
+}
+
+/// Tokens cut at the separators that are in no bracket.
+fn pieces(tokens: &[Token], separator: u8) -> Vec<&[Token]> {
+    let (mut out, mut start) = (Vec::new(), 0);
+    for (at, _) in outside(tokens).filter(|(_, it)| it.is(separator)) {
+        out.push(&tokens[start..at]);
+        start = at + 1;
+    }
+    out.push(&tokens[start..]);
+    out
+}
+
 /// Tokens between brackets, cut at the commas that are in no further bracket.
 pub(crate) fn parts(tokens: &[Token]) -> Vec<&[Token]> {
-    let mut out = Vec::new();
-    let (mut depth, mut start) = (0_usize, 0);
-    for (at, token) in tokens.iter().enumerate() {
-        match token.kind {
-            Kind::Sign(b'(' | b'[' | b'{') => depth += 1,
-            Kind::Sign(b')' | b']' | b'}') => depth = depth.saturating_sub(1),
-            Kind::Sign(b',') if depth == 0 => {
-                out.push(&tokens[start..at]);
-                start = at + 1;
-            }
-            Kind::Word | Kind::Number(..) | Kind::Text | Kind::Sign(_) | Kind::LineEnd => {}
-        }
-    }
-    if start < tokens.len() || !out.is_empty() {
-        out.push(&tokens[start..]);
-    }
-    out
+    if tokens.is_empty() { Vec::new() } else { pieces(tokens, b',') }
+}
+
+/// Tokens between separators outside of brackets; `None` if brackets do not match.
+pub(crate) fn cut(tokens: &[Token], separator: u8) -> Option<Vec<&[Token]>> {
+    let deeper =
+        |depth: usize, it: &Token| (depth + usize::from(it.opens())).checked_sub(usize::from(it.closes()));
+    (tokens.iter().try_fold(0, deeper) == Some(0)).then(|| pieces(tokens, separator))
+}
+
+/// Whether a word is one of a list, which has blanks between its words.
+pub(crate) fn is_one_of(words: &str, word: &str) -> bool {
+    words.split(' ').any(|it| it == word)
 }
 
 /// What stands in a bracket at the beginning of tokens, and what follows it.

@@ -5,7 +5,7 @@ use serde::Serialize;
 use super::super::{Checked, Summary};
 use super::Language;
 use super::engine::Engine;
-use super::parsed::{Meant, Number, Parsed};
+use super::parsed::{Meant, Parsed};
 use crate::lie::Pose;
 use crate::robot::Robot;
 
@@ -45,29 +45,22 @@ pub(super) fn checked(
 ) -> Checked {
     let mut places: Vec<Option<(Pose, Pose)>> = vec![None; written.targets.len()];
     for motion in &written.motions {
-        if let (Some(place), Some(tool), Some(frame)) =
-            (places.get_mut(motion.target), motion.tool, motion.frame)
-        {
-            *place = Some((tool, frame));
+        if let (Some(place), Some(known)) = (places.get_mut(motion.target), motion.tool.zip(motion.frame)) {
+            *place = Some(known);
         }
     }
     let mut largest = Checked::default();
     for (index, q) in meant {
         let Some(target) = written.targets.get(*index) else { continue };
-        let numbers: Vec<f64> = target.numbers.iter().map(Number::scaled).collect();
+        let numbers = target.scaled();
         let wanted = nominal.forward_kinematics(q);
         let mut commanded = match target.meant {
             Meant::Joints => engine.readings(numbers),
             Meant::Pose(form) => {
-                let pose = |it: &[f64]| form.pose(it.get(..form.names().len()).unwrap_or(&[]));
                 let place = places.get(*index).copied().flatten();
-                let (Some(new), Some((tool, frame))) = (pose(&numbers), place) else { continue };
-                let base_from_tip: Pose =
-                    engine.given.base * frame * new * (engine.given.flange * tool).inverse();
+                let (Some(new), Some(place)) = (form.of_first(&numbers), place) else { continue };
                 let poses = engine.at(q);
-                let mut own = poses.of_arm(q);
-                poses.compensation().nominal().nearest(&base_from_tip, &mut own);
-                poses.of_robot(&own, q)
+                poses.of_robot(&engine.commanded_by(poses, &new, place, q), q)
             }
         };
         let share = engine.at(q).compensation().share_of_most(q, &commanded);

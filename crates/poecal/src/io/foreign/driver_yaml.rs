@@ -3,8 +3,6 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
-use nalgebra::Vector3;
-
 use super::links::{LinkJoint, LinkJointKind, Links};
 use crate::error::{Error, ErrorKind, Result, first_few};
 use crate::forms::AxisFrames;
@@ -123,16 +121,8 @@ fn serial(name: &str, base: &str, names: &[(String, String)], tip: &str, frames:
     let mut parent = links.add(base, None);
     for ((joint, link), frame) in names.iter().zip(&frames.joints) {
         let child = links.add(link, None);
-        links.joints.push(LinkJoint {
-            name: joint.clone(),
-            kind: LinkJointKind::Turns,
-            parent,
-            child: child.clone(),
-            parent_from_child: *frame,
-            axis: Vector3::z_axis(),
-            limits: None,
-            mimic: None,
-        });
+        let ends = (parent, child.clone());
+        links.joints.push(LinkJoint::new(joint.clone(), LinkJointKind::Turns, ends, *frame));
         parent = child;
     }
     let tip = links.add(tip, None);

@@ -1,13 +1,12 @@
 //! Links and joints, and the URDF that says them.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::fmt::Write as _;
 
 use nalgebra::{Unit, Vector3};
 
 use crate::io::numbers::shortest;
-use crate::io::urdf::{WIDE_LIMIT_M, escaped, origin_values};
-use crate::lie::Pose;
+use crate::io::urdf::{UrdfText, WIDE_LIMITS, escaped};
+use crate::lie::{Pose, rotation};
 use crate::robot::Limits;
 
 /// A tree of links.
@@ -78,6 +77,18 @@ pub(super) enum LinkJointKind {
     Free,
 }
 
+impl LinkJointKind {
+    /// The motion by a value; none of a joint that is fixed or has several degrees of freedom.
+    pub(super) fn motion(self, axis: &Unit<Vector3<f64>>, value: f64) -> Option<Pose> {
+        let along = axis.into_inner() * value;
+        match self {
+            LinkJointKind::Turns => Some(Pose::new(rotation::exp(&along), Vector3::zeros())),
+            LinkJointKind::Slides => Some(Pose::from_translation(along)),
+            LinkJointKind::Fixed | LinkJointKind::Free => None,
+        }
+    }
+}
+
 /// The joint that another one follows: `q = multiplier q' + offset`.
 pub(super) struct Mimic {
     pub(super) joint: String,
@@ -126,41 +137,43 @@ impl Links {
     /// Fixes a link to another one.
     pub(super) fn fix(&mut self, parent: &str, child: &str, parent_from_child: Pose) {
         let name = self.joint_names.free(&format!("{child}_mount"));
-        self.joints.push(LinkJoint {
-            name,
-            kind: LinkJointKind::Fixed,
-            parent: parent.to_owned(),
-            child: child.to_owned(),
-            parent_from_child,
-            axis: Vector3::z_axis(),
-            limits: None,
-            mimic: None,
-        });
+        let ends = (parent.to_owned(), child.to_owned());
+        self.joints.push(LinkJoint::new(name, LinkJointKind::Fixed, ends, parent_from_child));
     }
 
     /// The URDF.
     pub(super) fn urdf(&self) -> String {
-        let mut text = String::from("<?xml version=\"1.0\"?>\n");
-        let _ = writeln!(text, "<robot name=\"{}\">", escaped(&self.name));
+        let mut text = UrdfText::of_robot(&self.name);
         for (name, inertial) in &self.links {
-            let name = escaped(name);
             let Some(Inertial { pose, kg }) = inertial else {
-                let _ = writeln!(text, "  <link name=\"{name}\"/>");
+                text.link(name);
                 continue;
             };
-            let _ = writeln!(text, "  <link name=\"{name}\">\n    <inertial>");
-            let _ = writeln!(text, "      {}", origin(pose));
-            let _ = writeln!(text, "      <mass value=\"{}\"/>", shortest(*kg));
-            text.push_str("    </inertial>\n  </link>\n");
+            text.line(1, &format!("<link name=\"{}\">", escaped(name)));
+            text.line(2, "<inertial>");
+            text.origin(3, pose);
+            text.line(3, &format!("<mass value=\"{}\"/>", shortest(*kg)));
+            text.line(2, "</inertial>");
+            text.line(1, "</link>");
         }
         self.joints.iter().for_each(|joint| joint.push(&mut text));
-        text.push_str("</robot>\n");
-        text
+        text.finish()
     }
 }
 
 impl LinkJoint {
-    fn push(&self, text: &mut String) {
+    /// A joint about or along z, without limits.
+    pub(super) fn new(
+        name: String,
+        kind: LinkJointKind,
+        (parent, child): (String, String),
+        parent_from_child: Pose,
+    ) -> Self {
+        let axis = Vector3::z_axis();
+        LinkJoint { name, kind, parent, child, parent_from_child, axis, limits: None, mimic: None }
+    }
+
+    fn push(&self, text: &mut UrdfText) {
         let kind = match (self.kind, self.limits) {
             (LinkJointKind::Fixed, _) => "fixed",
             (LinkJointKind::Turns, Some(_)) => "revolute",
@@ -168,38 +181,18 @@ impl LinkJoint {
             (LinkJointKind::Slides, _) => "prismatic",
             (LinkJointKind::Free, _) => "floating",
         };
-        let _ = writeln!(text, "  <joint name=\"{}\" type=\"{kind}\">", escaped(&self.name));
-        let _ = writeln!(text, "    <parent link=\"{}\"/>", escaped(&self.parent));
-        let _ = writeln!(text, "    <child link=\"{}\"/>", escaped(&self.child));
-        let _ = writeln!(text, "    {}", origin(&self.parent_from_child));
+        text.open_joint(&self.name, kind, (&self.parent, &self.child));
+        text.origin(2, &self.parent_from_child);
         if matches!(self.kind, LinkJointKind::Turns | LinkJointKind::Slides) {
-            let [x, y, z] = <[f64; 3]>::from(self.axis.into_inner()).map(shortest);
-            let _ = writeln!(text, "    <axis xyz=\"{x} {y} {z}\"/>");
+            text.axis(self.axis.into_inner().into());
         }
         // URDF demands limits of a prismatic joint.
-        let wide = Limits { lower: -WIDE_LIMIT_M, upper: WIDE_LIMIT_M };
-        let limits = self.limits.or((self.kind == LinkJointKind::Slides).then_some(wide));
-        if let Some(Limits { lower, upper }) = limits {
-            let (lower, upper) = (shortest(lower), shortest(upper));
-            let _ = writeln!(
-                text,
-                "    <limit lower=\"{lower}\" upper=\"{upper}\" effort=\"0\" velocity=\"0\"/>"
-            );
+        if let Some(limits) = self.limits.or((self.kind == LinkJointKind::Slides).then_some(WIDE_LIMITS)) {
+            text.limits(limits);
         }
         if let Some(mimic) = &self.mimic {
-            let _ = writeln!(
-                text,
-                "    <mimic joint=\"{}\" multiplier=\"{}\" offset=\"{}\"/>",
-                escaped(&mimic.joint),
-                shortest(mimic.multiplier),
-                shortest(mimic.offset)
-            );
+            text.mimic(&mimic.joint, mimic.multiplier, mimic.offset);
         }
-        text.push_str("  </joint>\n");
+        text.close_joint();
     }
-}
-
-fn origin(pose: &Pose) -> String {
-    let (xyz, rpy) = origin_values(pose);
-    format!("<origin xyz=\"{}\" rpy=\"{}\"/>", xyz.map(shortest).join(" "), rpy.map(shortest).join(" "))
 }

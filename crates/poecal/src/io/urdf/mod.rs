@@ -27,7 +27,7 @@ pub(super) use splice::escaped;
 pub(super) use terms::holdable;
 pub(super) use visuals::{Geometry, Visual};
 pub use write::write_new;
-pub(super) use write::{WIDE_LIMIT_M, written_new};
+pub(super) use write::{UrdfText, WIDE_LIMITS, written_new};
 
 use crate::error::Result;
 use crate::io::source_text;

@@ -145,9 +145,7 @@ fn mass<'a>(source: &XmlSource<'a>, link: Node<'a, 'a>, at: At, of: &str) -> Res
     let child = |node, name| source.only_child(node, name, of, true);
     let Some(inertial) = child(link, "inertial")? else { return Ok(None) };
     let Some(mass) = child(inertial, "mass")? else { return Ok(None) };
-    let Some([kg]) = source.numbers(mass, "value", of)?.filter(|[kg]| Mass::is_mass(*kg)) else {
-        return Ok(None);
-    };
+    let Some(kg) = source.number(mass, "value", of)?.filter(|kg| Mass::is_mass(*kg)) else { return Ok(None) };
     let centre = match child(inertial, "origin")? {
         Some(origin) => source.numbers(origin, "xyz", of)?.unwrap_or_default(),
         None => [0.0; 3],
@@ -276,12 +274,9 @@ fn read_mimic<'a>(tree: &Tree<'a>, follower: &TreeJoint<'a>) -> Result<Option<Re
             leader.kind.word()
         ));
     }
-    let number = |name, default| {
-        source.numbers::<1>(node, name, &of).map(|number| number.map_or(default, |[only]| only))
-    };
     Ok(Some(Reading {
         name: name.to_owned(),
-        multiplier: number("multiplier", 1.0)?,
-        offset: number("offset", 0.0)?,
+        multiplier: source.number(node, "multiplier", &of)?.unwrap_or(1.0),
+        offset: source.number(node, "offset", &of)?.unwrap_or(0.0),
     }))
 }

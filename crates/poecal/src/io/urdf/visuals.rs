@@ -88,13 +88,13 @@ fn visual<'a>(
 ) -> Option<Visual> {
     let of = "a shape";
     let (mut xyz, mut rpy) = ([0.0; 3], [0.0; 3]);
-    if let Some(origin) = source.children(shape, "origin").next() {
+    if let Some(origin) = source.child(shape, "origin") {
         xyz = source.numbers(origin, "xyz", of).ok()?.unwrap_or(xyz);
         rpy = source.numbers(origin, "rpy", of).ok()?.unwrap_or(rpy);
     }
-    let geometry = source.children(shape, "geometry").next()?;
+    let geometry = source.child(shape, "geometry")?;
     let form = geometry.children().find(Node::is_element)?;
-    let length = |name| source.numbers::<1>(form, name, of).ok().flatten().map(|[value]| value.abs());
+    let length = |name| source.number(form, name, of).ok().flatten().map(f64::abs);
     let geometry = match form.tag_name().name() {
         "box" => Geometry::Box(source.numbers(form, "size", of).ok()??.map(f64::abs)),
         "cylinder" => Geometry::Cylinder { radius: length("radius")?, length: length("length")? },

@@ -9,10 +9,10 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::io::model::Converted;
 use crate::io::numbers::{shortest, tidy};
 use crate::lie::Pose;
-use crate::robot::{Body, Joint, JointKind, MEASURED, Robot};
+use crate::robot::{Body, Joint, JointKind, Limits, MEASURED, Robot};
 
-/// Limit for a prismatic joint without limits, metres: URDF requires one.
-pub(in crate::io) const WIDE_LIMIT_M: f64 = 1000.0;
+/// Limits of a prismatic joint without limits, metres: URDF requires some.
+pub(in crate::io) const WIDE_LIMITS: Limits = Limits { lower: -1000.0, upper: 1000.0 };
 
 /// Writes a robot as a new URDF: base link, one link a joint, and the tip on a fixed joint. Instruments, and targets with a body of their own,
 /// are links on fixed joints too.
@@ -25,10 +25,8 @@ pub fn write_new(robot: &Robot) -> Result<Converted> {
 
 /// The same with the selection that gives the robot again.
 pub(in crate::io) fn written_new(robot: &Robot) -> Result<(Converted, ChainSelection)> {
-    let mut writer = Writer { text: String::new(), notes: Vec::new(), links: Vec::new() };
-    writer.line(0, "<?xml version=\"1.0\"?>");
-    writer.line(0, &format!("<robot name=\"{}\">", escaped(&robot.name)));
-    writer.links.push(robot.tip_name.clone());
+    let text = UrdfText::of_robot(&robot.name);
+    let mut writer = Writer { text, notes: Vec::new(), links: vec![robot.tip_name.clone()] };
     let base = writer.link(&robot.base_name);
     writer.leaders(robot, &base);
     // Name and pose of each joint's link as in the text.
@@ -42,7 +40,7 @@ pub(in crate::io) fn written_new(robot: &Robot) -> Result<(Converted, ChainSelec
         let frame = frame_on_axis(&joint.frame, &joint.screw);
         let child = writer.link(&format!("{}_link", joint.name));
         let origin = base_from_link.inverse() * frame;
-        let base_from_link = base_from_link * writer.joint(joint, &parent, &child, &origin)?;
+        let base_from_link = base_from_link * writer.joint(joint, (&parent, &child), &origin)?;
         links.push((child, base_from_link));
     }
     let mut mounted: Vec<String> = Vec::new();
@@ -56,21 +54,20 @@ pub(in crate::io) fn written_new(robot: &Robot) -> Result<(Converted, ChainSelec
         mounted.push(mount.clone());
         mount
     };
-    let (parent, base_from_link) = of(&links, robot.tip_body());
-    writer.line(1, &format!("<link name=\"{}\"/>", escaped(&robot.tip_name)));
-    writer.open_joint(&mount_name(&robot.tip_name), "fixed", &parent, &robot.tip_name);
-    writer.origin(&(base_from_link.inverse() * robot.home));
-    writer.line(1, "</joint>");
+    let mut fix = |text: &mut UrdfText, body: Body, link: &str, base_from_end: Pose| {
+        let (parent, base_from_link) = of(&links, body);
+        text.open_joint(&mount_name(link), "fixed", (&parent, link));
+        text.origin(2, &(base_from_link.inverse() * base_from_end));
+        text.close_joint();
+    };
+    writer.text.link(&robot.tip_name);
+    fix(&mut writer.text, robot.tip_body(), &robot.tip_name, robot.home);
     let mut ends = vec![robot.tip_name.clone()];
     for mount in robot.instruments.iter().chain(&robot.mounted) {
-        let (parent, base_from_link) = of(&links, mount.body);
         let link = writer.link(&mount.name);
-        writer.open_joint(&mount_name(&link), "fixed", &parent, &link);
-        writer.origin(&(base_from_link.inverse() * robot.base_from(mount)));
-        writer.line(1, "</joint>");
+        fix(&mut writer.text, mount.body, &link, robot.base_from(mount));
         ends.push(link);
     }
-    writer.line(0, "</robot>");
     if robot.targets.iter().any(|(name, _)| name != MEASURED) {
         writer.notes.push("targets are not part of a URDF and were left out".to_owned());
     }
@@ -79,21 +76,73 @@ pub(in crate::io) fn written_new(robot: &Robot) -> Result<(Converted, ChainSelec
     }
     let ends: Vec<&str> = ends.iter().map(String::as_str).collect();
     let selection = ChainSelection::of(robot, &ends);
-    Ok((Converted { text: writer.text, notes: writer.notes }, selection))
+    Ok((Converted { text: writer.text.finish(), notes: writer.notes }, selection))
+}
+
+/// The text of a URDF, line by line.
+pub(in crate::io) struct UrdfText(String);
+
+impl UrdfText {
+    /// The first lines of a robot's.
+    pub(in crate::io) fn of_robot(name: &str) -> Self {
+        UrdfText(format!("<?xml version=\"1.0\"?>\n<robot name=\"{}\">\n", escaped(name)))
+    }
+
+    pub(in crate::io) fn line(&mut self, depth: usize, line: &str) {
+        // Writing to a String cannot fail.
+        let _ = writeln!(self.0, "{:width$}{line}", "", width = 2 * depth);
+    }
+
+    pub(in crate::io) fn link(&mut self, name: &str) {
+        self.line(1, &format!("<link name=\"{}\"/>", escaped(name)));
+    }
+
+    /// Writes an origin, and returns it as in the text.
+    pub(in crate::io) fn origin(&mut self, depth: usize, pose: &Pose) -> Pose {
+        let (xyz, rpy) = origin_values(pose);
+        self.line(depth, &format!("<origin xyz=\"{}\" rpy=\"{}\"/>", triple(xyz), triple(rpy)));
+        Pose::from_xyz_rpy(xyz, rpy)
+    }
+
+    /// Begins a joint from a parent to a child.
+    pub(in crate::io) fn open_joint(&mut self, name: &str, kind: &str, (parent, child): (&str, &str)) {
+        self.line(1, &format!("<joint name=\"{}\" type=\"{kind}\">", escaped(name)));
+        self.line(2, &format!("<parent link=\"{}\"/>", escaped(parent)));
+        self.line(2, &format!("<child link=\"{}\"/>", escaped(child)));
+    }
+
+    pub(in crate::io) fn axis(&mut self, axis: [f64; 3]) {
+        self.line(2, &format!("<axis xyz=\"{}\"/>", triple(axis)));
+    }
+
+    pub(in crate::io) fn limits(&mut self, limits: Limits) {
+        let limits = format!("lower=\"{}\" upper=\"{}\"", shortest(limits.lower), shortest(limits.upper));
+        self.line(2, &format!("<limit {limits} effort=\"0\" velocity=\"0\"/>"));
+    }
+
+    pub(in crate::io) fn mimic(&mut self, joint: &str, multiplier: f64, offset: f64) {
+        let (joint, multiplier, offset) = (escaped(joint), shortest(multiplier), shortest(offset));
+        self.line(2, &format!("<mimic joint=\"{joint}\" multiplier=\"{multiplier}\" offset=\"{offset}\"/>"));
+    }
+
+    pub(in crate::io) fn close_joint(&mut self) {
+        self.line(1, "</joint>");
+    }
+
+    /// The whole text.
+    pub(in crate::io) fn finish(mut self) -> String {
+        self.line(0, "</robot>");
+        self.0
+    }
 }
 
 struct Writer {
-    text: String,
+    text: UrdfText,
     notes: Vec<String>,
     links: Vec<String>,
 }
 
 impl Writer {
-    fn line(&mut self, depth: usize, line: &str) {
-        // Writing to a String cannot fail.
-        let _ = writeln!(self.text, "{:width$}{line}", "", width = 2 * depth);
-    }
-
     /// Writes a link with a free name, and returns the name.
     fn link(&mut self, wanted: &str) -> String {
         let mut name = wanted.to_owned();
@@ -101,26 +150,12 @@ impl Writer {
             name.push('_');
         }
         self.links.push(name.clone());
-        self.line(1, &format!("<link name=\"{}\"/>", escaped(&name)));
+        self.text.link(&name);
         name
     }
 
-    fn open_joint(&mut self, name: &str, kind: &str, parent: &str, child: &str) {
-        self.line(1, &format!("<joint name=\"{}\" type=\"{kind}\">", escaped(name)));
-        self.line(2, &format!("<parent link=\"{}\"/>", escaped(parent)));
-        self.line(2, &format!("<child link=\"{}\"/>", escaped(child)));
-    }
-
-    /// Writes an origin, and returns it as in the text.
-    fn origin(&mut self, pose: &Pose) -> Pose {
-        let (xyz, rpy) = origin_values(pose);
-        self.line(2, &format!("<origin xyz=\"{}\" rpy=\"{}\"/>", triple(xyz), triple(rpy)));
-        Pose::from_xyz_rpy(xyz, rpy)
-    }
-
-    fn limit(&mut self, lower: f64, upper: f64) {
-        let limits = format!("lower=\"{}\" upper=\"{}\"", shortest(lower), shortest(upper));
-        self.line(2, &format!("<limit {limits} effort=\"0\" velocity=\"0\"/>"));
+    fn limits(&mut self, limits: Limits) {
+        self.text.limits(limits);
         let note = "effort and velocity limits are not known and were written as 0, since URDF demands them";
         if !self.notes.iter().any(|known| known == note) {
             self.notes.push(note.to_owned());
@@ -129,9 +164,10 @@ impl Writer {
 
     /// Range of a joint without limits of its own.
     fn wide_limit(&mut self, name: &str) {
-        self.limit(-WIDE_LIMIT_M, WIDE_LIMIT_M);
+        self.limits(WIDE_LIMITS);
         self.notes.push(format!(
-            "joint `{name}` has no limits; URDF demands them of a prismatic joint, so ±{WIDE_LIMIT_M} m were written"
+            "joint `{name}` has no limits; URDF demands them of a prismatic joint, so ±{} m were written",
+            WIDE_LIMITS.upper
         ));
     }
 
@@ -146,15 +182,13 @@ impl Writer {
             }
             let child = self.link(&format!("{name}_link"));
             match follower.kind {
-                JointKind::Revolute => {
-                    self.open_joint(&name, "continuous", base, &child);
-                }
+                JointKind::Revolute => self.text.open_joint(&name, "continuous", (base, &child)),
                 JointKind::Prismatic => {
-                    self.open_joint(&name, "prismatic", base, &child);
+                    self.text.open_joint(&name, "prismatic", (base, &child));
                     self.wide_limit(&name);
                 }
             }
-            self.line(1, "</joint>");
+            self.text.close_joint();
             self.notes.push(format!(
                 "joint `{name}` leads mimic joints from beside the chain; it was added at `{base}` to carry the reading only"
             ));
@@ -162,29 +196,24 @@ impl Writer {
     }
 
     /// Writes a moving joint, and returns its origin as in the text.
-    fn joint(&mut self, joint: &Joint, parent: &str, child: &str, origin: &Pose) -> Result<Pose> {
+    fn joint(&mut self, joint: &Joint, ends: (&str, &str), origin: &Pose) -> Result<Pose> {
         let kind = match (joint.kind, joint.limits) {
             (JointKind::Prismatic, _) => "prismatic",
             (JointKind::Revolute, Some(_)) => "revolute",
             (JointKind::Revolute, None) => "continuous",
         };
-        self.open_joint(&joint.name, kind, parent, child);
-        let origin = self.origin(origin);
+        self.text.open_joint(&joint.name, kind, ends);
+        let origin = self.text.origin(2, origin);
         let direction = joint.frame.rotation.transpose() * joint.screw.direction();
-        self.line(2, &format!("<axis xyz=\"{}\"/>", triple(tidy(direction.into()))));
+        self.text.axis(tidy(direction.into()));
         match (joint.limits, joint.kind) {
-            (Some(limits), _) => self.limit(limits.lower, limits.upper),
+            (Some(limits), _) => self.limits(limits),
             (None, JointKind::Prismatic) => self.wide_limit(&joint.name),
             (None, JointKind::Revolute) => {}
         }
         let reading = &joint.reading;
         if reading.name != joint.name {
-            let relation = format!(
-                "multiplier=\"{}\" offset=\"{}\"",
-                shortest(reading.multiplier),
-                shortest(reading.offset)
-            );
-            self.line(2, &format!("<mimic joint=\"{}\" {relation}/>", escaped(&reading.name)));
+            self.text.mimic(&reading.name, reading.multiplier, reading.offset);
         } else if reading.multiplier != 1.0 || reading.offset != 0.0 {
             let message = format!(
                 "joint `{}` has a factor or an offset on its own reading, expected factor 1 and offset 0: URDF has them for mimic joints only",
@@ -192,7 +221,7 @@ impl Writer {
             );
             return Err(Error::new(ErrorKind::Export, message));
         }
-        self.line(1, "</joint>");
+        self.text.close_joint();
         Ok(origin)
     }
 }

@@ -13,12 +13,12 @@ use std::ops::Range;
 
 pub(crate) use configuration::Configuration;
 use instructions::{Instructions, Move};
-use positions::{Group, Position, positions};
+use positions::{Group, PoseOf, Position, positions};
 
 use super::axes::{Axes, NO_EXTERNAL, OTHER_EXTERNAL};
 use super::forms::PoseForm;
 use super::given::Given;
-use super::parsed::{Listed, Meant, Motion, Number, Parsed, Target};
+use super::parsed::{Meant, Motion, Number, Parsed, Target};
 use super::scan::{Rules, Scanner, Token, signed};
 use super::stated::Stated;
 use crate::lie::Pose;
@@ -87,14 +87,17 @@ fn follows_line(line: &[u8]) -> bool {
     text.contains("LINE_TRACK_SCHEDULE_NUMBER") && number.is_some_and(|it| it > 0)
 }
 
+/// A target, and tool, frame and configuration of the motions to it.
+type Made = (Target, Option<Pose>, Option<Pose>, Stated);
+
 struct Maker<'a> {
     given: &'a Given,
     axes: &'a Axes,
     /// Line that says that the program follows a moving line.
     tracked: Option<usize>,
     out: Parsed,
-    /// Of each position, its target and its motion.
-    targets: HashMap<u32, (usize, Motion)>,
+    /// Of each position, its motion.
+    targets: HashMap<u32, Motion>,
 }
 
 impl Maker<'_> {
@@ -114,28 +117,17 @@ impl Maker<'_> {
             };
             match made {
                 Ok((target, tool, frame, stated)) => {
-                    let target_index = self.out.targets.len();
+                    let at = self.out.targets.len();
                     self.out.targets.push(target);
-                    let motion = Motion {
-                        target: target_index,
-                        line,
-                        after: None,
-                        is_straight: false,
-                        tool,
-                        frame,
-                        refused: None,
-                        stated,
-                    };
-                    self.targets.insert(position.number, (target_index, motion));
+                    self.targets
+                        .insert(position.number, Motion { tool, frame, stated, ..Motion::to(at, line) });
                 }
-                Err(reason) => self.out.listed.push(Listed { line, name, reason }),
+                Err(reason) => self.out.list(line, name, reason),
             }
         }
         self.motions(instructions);
         self.out.listed.extend(instructions.listed.iter().cloned());
-        self.out.listed.sort();
-        self.out.listed.dedup();
-        self.out
+        self.out.sorted()
     }
 
     /// Motions in the order of the text, then positions without one: they are corrected too, since another program or an index that is
@@ -143,18 +135,15 @@ impl Maker<'_> {
     fn motions(&mut self, instructions: &Instructions<'_>) {
         let mut is_moved = vec![false; self.out.targets.len()];
         for (number, of) in &instructions.moves {
-            if let Some((target, motion)) = self.targets.get(number) {
+            if let Some(motion) = self.targets.get(number) {
+                is_moved[motion.target] = true;
                 let motion = Motion { line: of.line, is_straight: of.is_straight, ..motion.clone() };
                 self.out.motions.push(motion);
-                if let Some(it) = is_moved.get_mut(*target) {
-                    *it = true;
-                }
             }
         }
-        let mut rest: Vec<&(usize, Motion)> =
-            self.targets.values().filter(|(target, _)| is_moved.get(*target) == Some(&false)).collect();
-        rest.sort_by_key(|(target, _)| *target);
-        self.out.motions.extend(rest.into_iter().map(|(_, motion)| motion.clone()));
+        let mut rest: Vec<&Motion> = self.targets.values().filter(|it| !is_moved[it.target]).collect();
+        rest.sort_by_key(|it| it.target);
+        self.out.motions.extend(rest.into_iter().cloned());
     }
 
     /// The external axes that the model has, and the others.
@@ -164,18 +153,7 @@ impl Maker<'_> {
         Ok((own.ok_or(NO_EXTERNAL)?, others))
     }
 
-    #[allow(clippy::type_complexity)]
-    fn target(
-        &self,
-        position: &Position,
-        moves: &[&Move],
-    ) -> Result<(Target, Option<Pose>, Option<Pose>, Stated), String> {
-        let made = |numbers: Vec<Number>, meant: Meant| Target {
-            line: position.line,
-            name: position.name.clone(),
-            numbers,
-            meant,
-        };
+    fn target(&self, position: &Position, moves: &[&Move]) -> Result<Made, String> {
         // What other groups have in it moves without this arm, but for motions with COORD.
         let mut own = position.groups.iter().filter(|(number, _)| [0, ARM].contains(number));
         let group = match (own.next(), own.next()) {
@@ -188,18 +166,25 @@ impl Maker<'_> {
         if let Some(of) = moves.iter().find(|it| it.is_incremental) {
             return Err(format!("moved to by INC on line {}: it is a distance, not a place", of.line));
         }
-        let Group::Pose(pose) = group else {
-            return match group {
-                Group::Joints(numbers, external) => {
-                    let (external, _) = self.external(external)?;
-                    let numbers =
-                        self.axes.joined(numbers, &external).ok_or("it has other axes than the robot")?;
-                    Ok((made(numbers, Meant::Joints), None, None, Stated::Nothing))
-                }
-                Group::Pose(_) => Err(String::new()),
-                Group::Unknown(reason) => Err((*reason).to_owned()),
-            };
-        };
+        let (line, name) = (position.line, position.name.clone());
+        match group {
+            Group::Joints(numbers, external) => {
+                let (external, _) = self.external(external)?;
+                let numbers =
+                    self.axes.joined(numbers, &external).ok_or("it has other axes than the robot")?;
+                Ok((Target { line, name, numbers, meant: Meant::Joints }, None, None, Stated::Nothing))
+            }
+            Group::Pose(pose) => {
+                let (numbers, tool, frame, stated) = self.pose(pose, moves)?;
+                let meant = Meant::Pose(PoseForm::Wpr);
+                Ok((Target { line, name, numbers, meant }, Some(tool), Some(frame), stated))
+            }
+            Group::Unknown(reason) => Err((*reason).to_owned()),
+        }
+    }
+
+    /// Numbers, tool, frame and configuration of a pose.
+    fn pose(&self, pose: &PoseOf, moves: &[&Move]) -> Result<(Vec<Number>, Pose, Pose, Stated), String> {
         if let Some(line) = self.tracked {
             return Err(format!("the program follows a moving line (line {line})"));
         }
@@ -217,17 +202,12 @@ impl Maker<'_> {
             return Err("its user frame or its tool is not a number".to_owned());
         };
         for of in moves {
+            let line = of.line;
             if let Some(active) = of.frame.filter(|it| *it != frame) {
-                return Err(format!(
-                    "stated in user frame {frame}, but moved to in {active} on line {}",
-                    of.line
-                ));
+                return Err(format!("stated in user frame {frame}, but moved to in {active} on line {line}"));
             }
             if let Some(active) = of.tool.filter(|it| *it != tool) {
-                return Err(format!(
-                    "stated with tool {tool}, but moved to with {active} on line {}",
-                    of.line
-                ));
+                return Err(format!("stated with tool {tool}, but moved to with {active} on line {line}"));
             }
         }
         let known = |given: Option<Pose>, number: u32, what: &str, flag: &str| {
@@ -240,7 +220,6 @@ impl Maker<'_> {
         let tool = known(self.given.tool(Some(&tool.to_string())), tool, "tool", "--tool")?;
         let configuration = pose.configuration.clone().ok_or("its configuration is not understood")?;
         let numbers = pose.numbers.iter().chain(&external).cloned().collect();
-        let target = made(numbers, Meant::Pose(PoseForm::Wpr));
-        Ok((target, Some(tool), Some(frame), Stated::Fanuc(configuration)))
+        Ok((numbers, tool, frame, Stated::Fanuc(configuration)))
     }
 }

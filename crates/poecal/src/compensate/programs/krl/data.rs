@@ -2,8 +2,7 @@
 
 use super::super::forms::PoseForm;
 use super::super::given::Given;
-use super::super::parsed::{Listed, Meant, Motion, Parsed, Target};
-use super::super::stated::Stated;
+use super::super::parsed::{Meant, Motion, Number, Parsed, Target};
 use super::reason;
 use super::status::Status;
 use super::values::{Place, Value, Variable, Variables};
@@ -29,11 +28,7 @@ pub(super) fn parse(variables: &Variables, given: &Given) -> Parsed {
             _ => None,
         };
         if let Some(reason) = refused {
-            out.listed.push(Listed {
-                line: variable.line,
-                name: variable.name.clone(),
-                reason: reason.to_owned(),
-            });
+            out.list(variable.line, &variable.name, reason);
             continue;
         }
         match &variable.value {
@@ -49,17 +44,13 @@ pub(super) fn parse(variables: &Variables, given: &Given) -> Parsed {
     out
 }
 
-fn target(variable: &Variable, numbers: Vec<super::super::parsed::Number>, meant: Meant) -> Target {
+fn target(variable: &Variable, numbers: Vec<Number>, meant: Meant) -> Target {
     Target { line: variable.line, name: variable.name.clone(), numbers, meant }
 }
 
 /// What the file says of a point's tool and base: of XP1 in FP1.
 fn of_point(variables: &Variables, key: &str) -> Option<Place> {
-    let name = key.strip_prefix('X')?;
-    match variables.of_name(&format!("F{name}")).ok()?.value {
-        Value::Place(place) => Some(place),
-        Value::Pose(..) | Value::Joints(_) | Value::Broken(_) | Value::Name(_) | Value::Other => None,
-    }
+    variables.place(&format!("F{}", key.strip_prefix('X')?))
 }
 
 fn motion(
@@ -70,7 +61,6 @@ fn motion(
     variables: &Variables,
     given: &Given,
 ) -> Motion {
-    let is_stated = status != Status::default();
     let (tool, frame, refused) = match place {
         None => (given.tool(None), given.frame(None), None),
         Some(place) if place.is_external => (None, None, Some(reason::FOREIGN)),
@@ -81,16 +71,8 @@ fn motion(
             (tool, frame, refused)
         }
     };
-    Motion {
-        target,
-        line,
-        after: None,
-        is_straight: false,
-        tool,
-        frame: frame.filter(|_| !variables.moves_root),
-        stated: if is_stated { Stated::Krl(status) } else { Stated::Nothing },
-        refused: refused.map(str::to_owned),
-    }
+    let (frame, refused) = (frame.filter(|_| !variables.moves_root), refused.map(str::to_owned));
+    Motion { tool, frame, stated: status.stated(), refused, ..Motion::to(target, line) }
 }
 
 /// A tool or base by its number: as the file states it, or the user; number 0 is none.
@@ -105,11 +87,6 @@ pub(super) fn numbered(list: &str, number: i64, variables: &Variables, given: &G
 
 /// The pose of a variable that is assigned once.
 pub(super) fn stated(key: &str, variables: &Variables) -> Option<Pose> {
-    match &variables.of_name(key).ok()?.value {
-        Value::Pose(numbers, _) => {
-            let values: Vec<f64> = numbers.iter().map(|it| it.value).collect();
-            PoseForm::Abc.pose(&values)
-        }
-        Value::Joints(_) | Value::Broken(_) | Value::Place(_) | Value::Name(_) | Value::Other => None,
-    }
+    let Value::Pose(numbers, _) = &variables.of_name(key).ok()?.value else { return None };
+    PoseForm::Abc.of_numbers(numbers)
 }

@@ -1,14 +1,14 @@
 //! Programs of KRL (`.src`): statements, and the motions that they make.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 
 use super::super::axes::Axes;
 use super::super::build::Blocks;
 use super::super::flow::{Node, State, Walk};
 use super::super::forms::PoseForm;
 use super::super::given::Given;
-use super::super::parsed::{Listed, Meant, Motion, Number, Parsed, Setting, Target};
-use super::super::scan::{Kind, Scanner, Token, bracket, parts, shown};
+use super::super::parsed::{Meant, Motion, Parsed, Setting, Target};
+use super::super::scan::{Kind, Scanner, Token, bracket, is_one_of, parts, shown};
 use super::super::stated::Stated;
 use super::data::{numbered, stated};
 use super::status::Status;
@@ -40,50 +40,12 @@ pub(super) enum Step {
 }
 
 /// Statements that neither move the robot nor set tool and base.
-const HARMLESS: [&str; 22] = [
-    "WAIT",
-    "HALT",
-    "PULSE",
-    "TRIGGER",
-    "INTERRUPT",
-    "SIGNAL",
-    "CONTINUE",
-    "DECL",
-    "EXT",
-    "EXTFCT",
-    "IMPORT",
-    "ENUM",
-    "STRUC",
-    "BRAKE",
-    "ANIN",
-    "ANOUT",
-    "CWRITE",
-    "SWRITE",
-    "SREAD",
-    "CAST_TO",
-    "CAST_FROM",
-    "CONFIRM",
-];
+const HARMLESS: &str = "WAIT HALT PULSE TRIGGER INTERRUPT SIGNAL CONTINUE DECL EXT EXTFCT IMPORT ENUM STRUC BRAKE \
+                        ANIN ANOUT CWRITE SWRITE SREAD CAST_TO CAST_FROM CONFIRM";
 
-/// Functions of the language that only give a value.
-const FUNCTIONS: [&str; 16] = [
-    "ABS",
-    "SQRT",
-    "SIN",
-    "COS",
-    "TAN",
-    "ACOS",
-    "ATAN2",
-    "VARSTATE",
-    "STRLEN",
-    "STRTODELETE",
-    "INV_POS",
-    "FORWARD",
-    "INVERSE",
-    "STRCOMP",
-    "STRFIND",
-    "ROUND",
-];
+/// Words before a bracket that call nothing: operators, and functions of the language that only give a value.
+const FUNCTIONS: &str = "AND OR NOT EXOR B_AND B_OR ABS SQRT SIN COS TAN ACOS ATAN2 VARSTATE STRLEN STRTODELETE INV_POS \
+                         FORWARD INVERSE STRCOMP STRFIND ROUND";
 
 /// Reads the statements of a program.
 pub(super) struct Reader<'r> {
@@ -92,8 +54,6 @@ pub(super) struct Reader<'r> {
     axes: &'r Axes,
     variables: &'r Variables,
     out: Parsed,
-    /// Targets by the byte where their numbers begin.
-    known: BTreeMap<usize, usize>,
     /// Names that are told to be in another file.
     absent: BTreeSet<String>,
     blocks: Blocks<Step>,
@@ -109,7 +69,6 @@ impl<'r> Reader<'r> {
             axes,
             variables,
             out: Parsed::default(),
-            known: BTreeMap::new(),
             absent: BTreeSet::new(),
             blocks: Blocks::new(),
             open: BTreeSet::new(),
@@ -125,8 +84,8 @@ impl<'r> Reader<'r> {
         let main = self.blocks.finish();
         self.list_unused();
         let given = self.given;
-        let mut motions: Vec<Motion> = Vec::new();
         let moves_root = self.variables.moves_root;
+        let motions = &mut self.out.motions;
         let mut step = |step: &Step, state: &mut State| match step {
             Step::Tool(setting) => state.tool = *setting,
             Step::Frame(setting) => state.frame = *setting,
@@ -135,14 +94,12 @@ impl<'r> Reader<'r> {
             Step::Move { target, line, is_straight, stated, own } => {
                 let frame = own.1.unwrap_or(state.frame).or(given.frame(None));
                 motions.push(Motion {
-                    target: *target,
-                    line: *line,
                     after: state.last,
                     is_straight: *is_straight,
                     tool: own.0.unwrap_or(state.tool).or(given.tool(None)),
                     frame: frame.filter(|_| !moves_root),
                     stated: stated.clone(),
-                    refused: None,
+                    ..Motion::to(*target, *line)
                 });
                 state.last = Some(motions.len() - 1);
             }
@@ -150,21 +107,21 @@ impl<'r> Reader<'r> {
         let open = &self.open;
         let mut walk = Walk::new(&self.blocks.routines, self.blocks.size, true, &mut step);
         walk.run(&main, &self.blocks.called, &|name| open.contains(name));
-        self.out.motions = motions;
         Ok(self.out)
     }
 
     /// Targets to which no motion of the file leads: other files may use them, with any tool and base.
     fn list_unused(&mut self) {
-        for variable in self.variables.known.values() {
-            let start = match &variable.value {
-                Value::Pose(numbers, status) if *status != Status::default() => numbers.first(),
-                Value::Joints(numbers) => numbers.first(),
-                Value::Pose(..) | Value::Broken(_) | Value::Place(_) | Value::Name(_) | Value::Other => None,
+        for variable in self.variables.known.values().filter(|it| it.assignments == 1) {
+            let numbers = match &variable.value {
+                Value::Pose(numbers, status) if *status != Status::default() => numbers,
+                Value::Joints(numbers) => numbers,
+                Value::Pose(..) | Value::Broken(_) | Value::Place(_) | Value::Name(_) | Value::Other => {
+                    continue;
+                }
             };
-            if start.is_some_and(|it| !self.known.contains_key(&it.range.start)) && variable.assignments == 1
-            {
-                self.list(variable.line, variable.name.clone(), reason::UNUSED);
+            if !numbers.is_empty() && !self.out.knows(numbers) {
+                self.out.list(variable.line, &variable.name, reason::UNUSED);
             }
         }
     }
@@ -176,11 +133,8 @@ impl<'r> Reader<'r> {
         let line = first.line;
         match word.as_str() {
             "DEF" | "DEFFCT" | "GLOBAL" if rest.iter().any(|it| it.is(b'(')) => {
-                let before = tokens.iter().position(|it| it.is(b'(')).unwrap_or(0);
-                let name = tokens
-                    .get(before.saturating_sub(1))
-                    .map_or("", |it| it.text(self.text))
-                    .to_ascii_uppercase();
+                let before = tokens.iter().take_while(|it| !it.is(b'(')).last();
+                let name = before.map_or("", |it| it.text(self.text)).to_ascii_uppercase();
                 if word == "GLOBAL" {
                     self.open.insert(name.clone());
                 }
@@ -221,7 +175,7 @@ impl<'r> Reader<'r> {
         if let Some((_, way)) = MOTIONS.iter().find(|it| it.0 == word) {
             return self.motion(tokens, *way);
         }
-        if HARMLESS.contains(&word) {
+        if is_one_of(HARMLESS, word) {
             return;
         }
         self.calls(tokens);
@@ -234,34 +188,28 @@ impl<'r> Reader<'r> {
     fn calls(&mut self, tokens: &[Token]) {
         for pair in tokens.windows(2) {
             let name = pair[0].text(self.text).to_ascii_uppercase();
-            let is_call = pair[0].kind == Kind::Word && pair[1].is(b'(');
-            let is_word = ["AND", "OR", "NOT", "EXOR", "B_AND", "B_OR"].contains(&name.as_str());
-            if is_call && !is_word && !FUNCTIONS.contains(&name.as_str()) {
+            if pair[0].kind == Kind::Word && pair[1].is(b'(') && !is_one_of(FUNCTIONS, &name) {
                 self.blocks.push([Node::Call(name)]);
             }
         }
     }
 
+    fn steps(&mut self, steps: impl IntoIterator<Item = Step>) {
+        self.blocks.push(steps.into_iter().map(Node::Step));
+    }
+
     /// What is assigned to a variable of the controller.
     fn assigned(&mut self, key: &str, is_part: bool, value: &[Token]) {
         match key {
-            "$TOOL" | "$BASE" if is_part => self.blocks.push([Node::Step(Step::Lost)]),
-            "$TOOL" => {
-                let setting = self.setting(value, true);
-                self.blocks.push([Node::Step(Step::Tool(setting))]);
-            }
-            "$BASE" => {
-                let setting = self.setting(value, false);
-                self.blocks.push([Node::Step(Step::Frame(setting))]);
-            }
+            "$TOOL" | "$BASE" if is_part => self.steps([Step::Lost]),
+            "$TOOL" => self.steps([Step::Tool(self.setting(value, true))]),
+            "$BASE" => self.steps([Step::Frame(self.setting(value, false))]),
             "FDAT_ACT" => {
-                let place = self.place(value);
-                let (tool, base) = self.of_place(place);
-                self.blocks.push([Node::Step(Step::Tool(tool)), Node::Step(Step::Frame(base))]);
+                let (tool, base) = self.of_place(self.place(value));
+                self.steps([Step::Tool(tool), Step::Frame(base)]);
             }
             "$IPO_MODE" if value.iter().any(|it| it.is_word(self.text, "TCP")) => {
-                let unknown = Setting::Unknown;
-                self.blocks.push([Node::Step(Step::Tool(unknown)), Node::Step(Step::Frame(unknown))]);
+                self.steps([Step::Tool(Setting::Unknown), Step::Frame(Setting::Unknown)]);
             }
             _ => {}
         }
@@ -270,21 +218,21 @@ impl<'r> Reader<'r> {
     /// Tool and base of a point that is named.
     fn place(&self, tokens: &[Token]) -> Option<Place> {
         let Value::Name(key) = value(self.text, tokens, self.axes) else { return None };
-        match self.variables.of_name(&key).ok()?.value {
-            Value::Place(place) => Some(place),
-            Value::Pose(..) | Value::Joints(_) | Value::Broken(_) | Value::Name(_) | Value::Other => None,
-        }
+        self.variables.place(&key)
+    }
+
+    /// A tool or base of the controller's lists by its number.
+    fn numbered(&self, list: &str, number: Option<i64>) -> Setting {
+        number
+            .and_then(|it| numbered(list, it, self.variables, self.given))
+            .map_or(Setting::Unknown, Setting::Is)
     }
 
     fn of_place(&self, place: Option<Place>) -> (Setting, Setting) {
         let Some(place) = place.filter(|it| !it.is_external) else {
             return (Setting::Unknown, Setting::Unknown);
         };
-        let of = |list: &str, number: Option<i64>| {
-            let pose = number.and_then(|it| numbered(list, it, self.variables, self.given));
-            pose.map_or(Setting::Unknown, Setting::Is)
-        };
-        (of("TOOL_DATA", place.tool), of("BASE_DATA", place.base))
+        (self.numbered("TOOL_DATA", place.tool), self.numbered("BASE_DATA", place.base))
     }
 
     /// The pose that is assigned to `$TOOL` or `$BASE`.
@@ -298,15 +246,11 @@ impl<'r> Reader<'r> {
             }
             Value::Name(key) => {
                 match key.strip_prefix(list).and_then(|it| it.strip_prefix('[')?.strip_suffix(']')) {
-                    Some(number) => {
-                        number.parse().ok().and_then(|it| numbered(list, it, self.variables, self.given))
-                    }
+                    Some(number) => return self.numbered(list, number.parse().ok()),
                     None => user(&key).or_else(|| stated(&key, self.variables)),
                 }
             }
-            Value::Pose(numbers, _) => {
-                PoseForm::Abc.pose(&numbers.iter().map(|it| it.value).collect::<Vec<_>>())
-            }
+            Value::Pose(numbers, _) => PoseForm::Abc.of_numbers(&numbers),
             Value::Joints(_) | Value::Broken(_) | Value::Place(_) | Value::Other => None,
         };
         pose.map_or(Setting::Unknown, Setting::Is)
@@ -325,22 +269,15 @@ impl<'r> Reader<'r> {
             Some([Token { kind: Kind::Number(value, 0), .. }]) => Some(*value as i64),
             _ => None,
         };
-        let pose = |list: &str| number.and_then(|it| numbered(list, it, self.variables, self.given));
+        // They set speeds; what they set of tool and base is in FDAT_ACT, which is assigned before.
+        const SPEEDS: &str = "PTP_PARAMS CP_PARAMS PTP_DAT CP_DAT VEL_PTP VEL_CP ACC_PTP ACC_CP OV_PRO";
         let step = match word.as_str() {
-            "TOOL" => Step::Tool(pose("TOOL_DATA").map_or(Setting::Unknown, Setting::Is)),
-            "BASE" => Step::Frame(pose("BASE_DATA").map_or(Setting::Unknown, Setting::Is)),
-            // They set speeds; what they set of tool and base is in FDAT_ACT, which is assigned before.
-            "PTP_PARAMS" | "CP_PARAMS" | "PTP_DAT" | "CP_DAT" | "VEL_PTP" | "VEL_CP" | "ACC_PTP"
-            | "ACC_CP" | "OV_PRO" => {
-                return;
-            }
+            "TOOL" => Step::Tool(self.numbered("TOOL_DATA", number)),
+            "BASE" => Step::Frame(self.numbered("BASE_DATA", number)),
+            word if is_one_of(SPEEDS, word) => return,
             _ => Step::Lost,
         };
-        self.blocks.push([Node::Step(step)]);
-    }
-
-    fn list(&mut self, line: usize, name: String, reason: &str) {
-        self.out.listed.push(Listed { line, name, reason: reason.to_owned() });
+        self.steps([step]);
     }
 
     fn motion(&mut self, tokens: &[Token], way: Way) {
@@ -352,8 +289,8 @@ impl<'r> Reader<'r> {
         let (targets, others) = rest.split_at(rest.iter().position(is_end).unwrap_or(rest.len()));
         let arguments = parts(targets);
         if way == Way::Relative {
-            self.list(line, shown(self.text, tokens), reason::RELATIVE);
-            return self.blocks.push([Node::Step(Step::Away)]);
+            self.out.list(line, shown(self.text, tokens), reason::RELATIVE);
+            return self.steps([Step::Away]);
         }
         let own = self.own(others);
         let is_angle = |it: &&[Token]| it.first().is_some_and(|word| word.is_word(self.text, "CA"));
@@ -362,8 +299,8 @@ impl<'r> Reader<'r> {
         let count = if is_arc { 2 } else { 1 };
         for argument in arguments.iter().filter(|it| !is_angle(it)).take(count) {
             if has_angle {
-                self.list(line, shown(self.text, argument), reason::ANGLE);
-                self.blocks.push([Node::Step(Step::Away)]);
+                self.out.list(line, shown(self.text, argument), reason::ANGLE);
+                self.steps([Step::Away]);
                 continue;
             }
             let step = match self.aim(argument) {
@@ -373,12 +310,12 @@ impl<'r> Reader<'r> {
                 Err(reason) => {
                     let name = shown(self.text, argument);
                     if reason != reason::ABSENT || self.absent.insert(name.to_ascii_uppercase()) {
-                        self.list(line, name, reason);
+                        self.out.list(line, name, reason);
                     }
                     Step::Away
                 }
             };
-            self.blocks.push([Node::Step(step)]);
+            self.steps([step]);
         }
     }
 
@@ -425,31 +362,13 @@ impl<'r> Reader<'r> {
             | Value::Place(_)
             | Value::Other) => (found, line, shown(self.text, tokens)),
         };
-        match found {
-            Value::Pose(numbers, status) => {
-                let stated = if status.status.is_some() || status.turn.is_some() {
-                    Stated::Krl(status)
-                } else {
-                    Stated::Nothing
-                };
-                Ok((self.target(line, name, numbers, Meant::Pose(PoseForm::Abc)), stated))
-            }
-            Value::Joints(numbers) => Ok((self.target(line, name, numbers, Meant::Joints), Stated::Nothing)),
-            Value::Broken(reason) => Err(reason),
-            Value::Place(_) => Err(reason::UNKNOWN),
-            Value::Name(_) | Value::Other => Err(reason::COMPUTED),
-        }
-    }
-
-    /// The index of a target, made if its numbers are new.
-    fn target(&mut self, line: usize, name: String, numbers: Vec<Number>, meant: Meant) -> usize {
-        let start = numbers.first().map_or(0, |it| it.range.start);
-        if let Some(&index) = self.known.get(&start) {
-            return index;
-        }
-        let index = self.out.targets.len();
-        self.known.insert(start, index);
-        self.out.targets.push(Target { line, name, numbers, meant });
-        index
+        let (numbers, meant, stated) = match found {
+            Value::Pose(numbers, status) => (numbers, Meant::Pose(PoseForm::Abc), status.stated()),
+            Value::Joints(numbers) => (numbers, Meant::Joints, Stated::Nothing),
+            Value::Broken(reason) => return Err(reason),
+            Value::Place(_) => return Err(reason::UNKNOWN),
+            Value::Name(_) | Value::Other => return Err(reason::COMPUTED),
+        };
+        Ok((self.out.target(Target { line, name, numbers, meant }), stated))
     }
 }

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::super::axes::Axes;
 use super::super::parsed::Number;
-use super::super::scan::{Kind, Rules, Scanner, Token, bracket, parts, signed};
+use super::super::scan::{Kind, Rules, Scanner, Token, bracket, is_one_of, outside, parts, signed};
 use super::reason;
 use super::status::Status;
 
@@ -68,27 +68,16 @@ pub(super) struct Assignment<'t> {
 
 /// An assignment, if a statement is one.
 pub(super) fn assignment<'t>(text: &[u8], tokens: &'t [Token]) -> Option<Assignment<'t>> {
-    let mut depth = 0_usize;
-    let equals = tokens.iter().position(|it| {
-        match it.kind {
-            Kind::Sign(b'(' | b'[' | b'{') => depth += 1,
-            Kind::Sign(b')' | b']' | b'}') => depth = depth.saturating_sub(1),
-            Kind::Word | Kind::Number(..) | Kind::Text | Kind::Sign(_) | Kind::LineEnd => {}
-        }
-        depth == 0 && it.is(b'=')
-    })?;
+    let (equals, _) = outside(tokens).find(|(_, it)| it.is(b'='))?;
     let (left, value) = (&tokens[..equals], &tokens[equals + 1..]);
     // `DECL GLOBAL E6POS XP1`: the name is the last word before an index or a part.
     let words = left.iter().take_while(|it| it.kind == Kind::Word).count();
     let at = words.checked_sub(1)?;
     let name = left.get(at)?;
     let is_frame = left[..at].iter().any(|it| it.is_word(text, "FRAME"));
-    let (index, rest) = match bracket(&left[words..], b'[', b']') {
-        Some((inside, rest)) => (Some(inside), rest),
-        None => (None, &left[words..]),
-    };
-    let is_part = !rest.is_empty();
-    Some(Assignment { key: key(text, name, index), is_part, name, is_frame, value })
+    let index = bracket(&left[words..], b'[', b']');
+    let is_part = !index.map_or(&left[words..], |it| it.1).is_empty();
+    Some(Assignment { key: key(text, name, index.map(|it| it.0)), is_part, name, is_frame, value })
 }
 
 /// The name of a variable in capitals, with its index, `*` if that is no number.
@@ -100,6 +89,9 @@ pub(super) fn key(text: &[u8], name: &Token, index: Option<&[Token]>) -> String 
         Some(_) => format!("{name}[*]"),
     }
 }
+
+/// Statements that compare, and assign nothing.
+const CONDITIONS: &str = "IF WHILE UNTIL WAIT FOR SIGNAL INTERRUPT TRIGGER ON_ERROR_PROCEED";
 
 impl Variables {
     /// Of a text.
@@ -118,10 +110,8 @@ impl Variables {
                 continue;
             }
             out.is_data |= first.is_word(text, "DEFDAT");
-            let is_other =
-                ["IF", "WHILE", "UNTIL", "WAIT", "FOR", "SIGNAL", "INTERRUPT", "TRIGGER", "ON_ERROR_PROCEED"];
-            let is_motion = super::MOTIONS.iter().any(|(it, _)| first.is_word(text, it));
-            if is_motion || is_other.iter().any(|it| first.is_word(text, it)) {
+            let word = first.text(text).to_ascii_uppercase();
+            if super::MOTIONS.iter().any(|(it, _)| *it == word) || is_one_of(CONDITIONS, &word) {
                 continue;
             }
             out.hand_over(text, &tokens);
@@ -179,6 +169,12 @@ impl Variables {
             }
             Some(it) => Ok(it),
         }
+    }
+
+    /// Tool and base of a point by its name in capitals.
+    pub(super) fn place(&self, key: &str) -> Option<Place> {
+        let Value::Place(place) = self.of_name(key).ok()?.value else { return None };
+        Some(place)
     }
 }
 

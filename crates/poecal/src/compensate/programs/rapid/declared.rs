@@ -2,9 +2,9 @@
 
 use std::collections::HashMap;
 
-use super::super::scan::{Kind, Token};
+use super::super::scan::{Kind, Token, cut, is_one_of};
 use super::outline::{Outline, Routine, Statement};
-use super::tokens::{ASSIGN, Value, cut, lower, value, written};
+use super::tokens::{ASSIGN, Value, lower, value, written};
 
 /// Kinds of data that matter here.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -49,6 +49,13 @@ pub(super) struct Data {
     pub(super) is_double: bool,
 }
 
+impl Data {
+    fn new(sort: Sort, name: String, line: usize) -> Self {
+        let (dimensions, value, changed, given) = (0, None, None, Vec::new());
+        Data { sort, name, line, dimensions, value, changed, given, is_double: false }
+    }
+}
+
 /// From where data can be seen: a routine, a module, everywhere.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 enum Seen {
@@ -70,17 +77,7 @@ impl Declared {
         let mut out = Declared::default();
         for (index, routine) in outline.routines.iter().enumerate() {
             for name in &routine.parameters {
-                let data = Data {
-                    sort: Sort::Parameter,
-                    name: name.clone(),
-                    line: 0,
-                    dimensions: 0,
-                    value: None,
-                    changed: None,
-                    given: Vec::new(),
-                    is_double: false,
-                };
-                out.add(Seen::Routine(index), data);
+                out.add(Seen::Routine(index), Data::new(Sort::Parameter, name.clone(), 0));
             }
         }
         for statement in &outline.statements {
@@ -183,7 +180,7 @@ impl Declared {
                     let is_field = before.is_some_and(|it| it.is(b'.') || it.is(b'\\'));
                     if let Some(Some(function)) = open.last()
                         && !is_field
-                        && !HARMLESS.contains(&function.to_ascii_lowercase().as_str())
+                        && !is_one_of(HARMLESS, &function.to_ascii_lowercase())
                     {
                         let function = function.clone();
                         self.give(&lower(text, token), &function, true, statement);
@@ -196,7 +193,7 @@ impl Declared {
 }
 
 /// Functions whose result stays right if a target that they are given is corrected.
-const HARMLESS: [&str; 4] = ["offs", "reltool", "distance", "valtostr"];
+const HARMLESS: &str = "offs reltool distance valtostr";
 
 /// A declaration and whether it is `LOCAL`.
 fn declaration(tokens: &[Token], text: &[u8]) -> Option<(Data, bool)> {
@@ -215,7 +212,7 @@ fn declaration(tokens: &[Token], text: &[u8]) -> Option<(Data, bool)> {
         is_local = head == "local";
         head = word(&mut rest)?.0;
     }
-    if !matches!(head.as_str(), "const" | "pers" | "var") {
+    if !is_one_of("const pers var", &head) {
         return None;
     }
     let (kind, _) = word(&mut rest)?;
@@ -237,15 +234,6 @@ fn declaration(tokens: &[Token], text: &[u8]) -> Option<(Data, bool)> {
     }
     let is_kept = sort != Sort::Other;
     let written_value = rest.get(at + 1..).filter(|it| is_kept && !it.is_empty());
-    let data = Data {
-        sort,
-        name: written(text, &name),
-        line: name.line,
-        dimensions,
-        value: written_value.map(|it| value(it, text, 0)),
-        changed: None,
-        given: Vec::new(),
-        is_double: false,
-    };
-    Some((data, is_local))
+    let value = written_value.map(|it| value(it, text, 0));
+    Some((Data { dimensions, value, ..Data::new(sort, written(text, &name), name.line) }, is_local))
 }

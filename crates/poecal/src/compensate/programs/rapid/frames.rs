@@ -8,23 +8,6 @@ use crate::lie::Pose;
 /// Difference from 1 of a quaternion's length up to which it is one.
 const LENGTH: f64 = 5e-3;
 
-/// A list's values.
-fn list(value: &Value, count: usize) -> Option<&[Value]> {
-    match value {
-        Value::List(values) => Some(&values[..]).filter(|it| it.len() == count),
-        Value::Number(_) | Value::Word(_) | Value::Text(_) | Value::Other => None,
-    }
-}
-
-/// The numbers of a list of so many.
-pub(super) fn numbers(value: &Value, count: usize) -> Option<Vec<Number>> {
-    let number = |it: &Value| match it {
-        Value::Number(number) => Some(number.clone()),
-        Value::List(_) | Value::Word(_) | Value::Text(_) | Value::Other => None,
-    };
-    list(value, count)?.iter().map(number).collect()
-}
-
 /// Whether a quaternion has about the length 1.
 pub(super) fn has_length(quaternion: &[Number]) -> bool {
     (quaternion.iter().map(|it| it.value * it.value).sum::<f64>().sqrt() - 1.0).abs() < LENGTH
@@ -32,37 +15,33 @@ pub(super) fn has_length(quaternion: &[Number]) -> bool {
 
 /// `[[x, y, z], [q1, q2, q3, q4]]`.
 fn frame(value: &Value) -> Option<Pose> {
-    let [place, quaternion] = list(value, 2)? else { return None };
-    let (place, quaternion) = (numbers(place, 3)?, numbers(quaternion, 4)?);
+    let [place, quaternion] = value.list(2)? else { return None };
+    let (place, quaternion) = (place.numbers(3)?, quaternion.numbers(4)?);
     let all: Vec<f64> = place.iter().chain(&quaternion).map(|it| it.value).collect();
     PoseForm::Quaternion.pose(&all).filter(|_| has_length(&quaternion))
-}
-
-fn is_word(value: &Value, word: &str) -> bool {
-    matches!(value, Value::Word(it) if it == word)
 }
 
 /// `flange_from_tool` of a `tooldata`, or why it is not known.
 pub(super) fn tool(value: &Value) -> Result<Pose, &'static str> {
     const SHAPE: &str = "is not written as [TRUE,[[x,y,z],[q1,q2,q3,q4]],[load]] with numbers";
-    let [held, pose, _] = list(value, 3).ok_or(SHAPE)? else { return Err(SHAPE) };
-    if is_word(held, "false") {
+    let [held, pose, _] = value.list(3).ok_or(SHAPE)? else { return Err(SHAPE) };
+    if held.is("false") {
         return Err("is not held by the robot");
     }
-    if is_word(held, "true") { frame(pose).ok_or(SHAPE) } else { Err(SHAPE) }
+    if held.is("true") { frame(pose).ok_or(SHAPE) } else { Err(SHAPE) }
 }
 
 /// `base_from_object` of a `wobjdata`, or why it is not known.
 pub(super) fn work_object(value: &Value) -> Result<Pose, &'static str> {
     const SHAPE: &str = "is not written as [FALSE,TRUE,\"\",[uframe],[oframe]] with numbers";
-    let [held, is_fixed, unit, user, object] = list(value, 5).ok_or(SHAPE)? else { return Err(SHAPE) };
-    if is_word(held, "true") {
+    let [held, is_fixed, unit, user, object] = value.list(5).ok_or(SHAPE)? else { return Err(SHAPE) };
+    if held.is("true") {
         return Err("is held by the robot");
     }
-    if is_word(is_fixed, "false") || matches!(unit, Value::Text(false)) {
+    if is_fixed.is("false") || *unit == Value::Text(false) {
         return Err("moves with a mechanical unit");
     }
-    if !is_word(held, "false") || !is_word(is_fixed, "true") || !matches!(unit, Value::Text(true)) {
+    if !held.is("false") || !is_fixed.is("true") || *unit != Value::Text(true) {
         return Err(SHAPE);
     }
     Ok(frame(user).ok_or(SHAPE)? * frame(object).ok_or(SHAPE)?)

@@ -25,7 +25,7 @@ use tokens::tokens;
 use super::axes::Axes;
 use super::given::Given;
 use super::parsed::{Listed, Parsed};
-use super::scan::{Kind, Token, shown};
+use super::scan::{Kind, Token, is_one_of, shown};
 
 /// The targets and motions of a program.
 pub(crate) fn parse(text: &[u8], given: &Given, axes: &Axes) -> Parsed {
@@ -40,9 +40,7 @@ pub(crate) fn parse(text: &[u8], given: &Given, axes: &Axes) -> Parsed {
     }
     let mut out = targets::parsed(&reader.moves, &declared, &outline, (given, axes), text);
     out.listed.append(&mut reader.listed);
-    out.listed.sort();
-    out.listed.dedup();
-    out
+    out.sorted()
 }
 
 struct Reader<'a> {
@@ -87,9 +85,8 @@ impl Reader<'_> {
         own: &[Token],
         declared: &mut Declared,
     ) {
-        const ONLY_READ: [&str; 7] = ["const", "eoffson", "pdispon", "pers", "return", "tpwrite", "var"];
         let is_assignment = own.get(1).is_some_and(|it| it.kind != Kind::Word && !it.is(b'\\'));
-        if is_assignment || ONLY_READ.contains(&instruction.name.as_str()) {
+        if is_assignment || is_one_of("const eoffson pdispon pers return tpwrite var", &instruction.name) {
             return;
         }
         let name = shown(self.text, own.get(..1).unwrap_or_default());

@@ -1,6 +1,6 @@
 //! What instructions of RAPID leave switched on for moves after them: program displacements, and configurations that are not followed.
 
-use super::super::scan::Token;
+use super::super::scan::{Token, is_one_of};
 use super::moves::{Instruction, layout};
 use super::outline::Outline;
 use super::tokens::ASSIGN;
@@ -30,21 +30,17 @@ impl Modal {
         let mut out = Modal { on: vec![None; outline.statements.len()], everywhere: None };
         // Line and block of what has switched it on.
         let mut on: Option<(usize, usize)> = None;
-        let mut routine = None;
-        let mut handler = 0;
+        let (mut routine, mut handler) = (None, 0);
+        let everywhere = |all: &mut Option<usize>, on: Option<(usize, usize)>| {
+            *all = all.or(on.map(|(line, _)| line));
+        };
         for (index, statement) in outline.statements.iter().enumerate() {
             let outermost = outline.outermost(statement.block);
             if statement.routine != routine || outermost != handler {
-                if let Some((line, _)) = on.take() {
-                    out.everywhere.get_or_insert(line);
-                }
+                everywhere(&mut out.everywhere, on.take());
                 (routine, handler) = (statement.routine, outermost);
             }
-            if let Some((line, block)) = on
-                && !outline.is_in(statement.block, block)
-            {
-                out.everywhere.get_or_insert(line);
-            }
+            everywhere(&mut out.everywhere, on.filter(|(_, block)| !outline.is_in(statement.block, *block)));
             let own = tokens.get(statement.tokens.clone()).unwrap_or_default();
             let instruction = Instruction::of(own, text);
             match instruction.as_ref().and_then(|it| switched(switch, it)) {
@@ -53,25 +49,18 @@ impl Modal {
                 }
                 Some(false) => {
                     // Within a branch, it may stay on.
-                    if on.is_some_and(|(_, block)| block == statement.block) {
-                        on = None;
-                    }
+                    on = on.filter(|(_, block)| *block != statement.block);
                 }
                 None => {
-                    if let Some((line, _)) = on
-                        && leads_elsewhere(own, instruction.as_ref())
-                    {
-                        out.everywhere.get_or_insert(line);
-                    }
+                    let leads = on.is_some() && leads_elsewhere(own, instruction.as_ref());
+                    everywhere(&mut out.everywhere, on.filter(|_| leads));
                 }
             }
             if let Some(of) = out.on.get_mut(index) {
                 *of = on.map(|(line, _)| line);
             }
         }
-        if let Some((line, _)) = on {
-            out.everywhere.get_or_insert(line);
-        }
+        everywhere(&mut out.everywhere, on);
         out
     }
 
@@ -104,49 +93,12 @@ fn switched(switch: Switch, instruction: &Instruction<'_>) -> Option<bool> {
 
 /// Whether a statement may run other routines or leave this one: all that is no instruction known to do neither.
 pub(super) fn leads_elsewhere(tokens: &[Token], instruction: Option<&Instruction<'_>>) -> bool {
-    const STAY: [&str; 36] = [
-        "accset",
-        "clkreset",
-        "clkstart",
-        "clkstop",
-        "confj",
-        "confl",
-        "const",
-        "decr",
-        "eoffsoff",
-        "eoffson",
-        "eoffsset",
-        "gripload",
-        "incr",
-        "invertdo",
-        "moveextj",
-        "pdispoff",
-        "pdispon",
-        "pdispset",
-        "pers",
-        "pulsedo",
-        "reset",
-        "set",
-        "setao",
-        "setdo",
-        "setgo",
-        "singarea",
-        "stop",
-        "tperase",
-        "tpwrite",
-        "var",
-        "velset",
-        "waitdi",
-        "waitdo",
-        "waitrob",
-        "waittime",
-        "waituntil",
-    ];
+    const STAY: &str = "accset clkreset clkstart clkstop confj confl const decr eoffsoff eoffson eoffsset gripload incr \
+                        invertdo moveextj pdispoff pdispon pdispset pers pulsedo reset set setao setdo setgo singarea stop \
+                        tperase tpwrite var velset waitdi waitdo waitrob waittime waituntil";
     let is_assignment = tokens.get(1).is_some_and(|it| it.is(ASSIGN) || it.is(b'.') || it.is(b'{'));
     match instruction {
-        Some(it) => {
-            !is_assignment && layout(&it.name).is_none() && STAY.binary_search(&it.name.as_str()).is_err()
-        }
+        Some(it) => !is_assignment && layout(&it.name).is_none() && !is_one_of(STAY, &it.name),
         None => !tokens.is_empty(),
     }
 }

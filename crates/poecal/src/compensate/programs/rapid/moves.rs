@@ -1,8 +1,8 @@
 //! Instructions of RAPID that move the robot, and where their arguments are.
 
 use super::super::parsed::Number;
-use super::super::scan::{Kind, Token, signed};
-use super::tokens::{ASSIGN, cut, lower};
+use super::super::scan::{Kind, Token, cut, signed};
+use super::tokens::{ASSIGN, lower};
 
 /// Where an instruction has its tool.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

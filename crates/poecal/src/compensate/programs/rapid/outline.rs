@@ -2,8 +2,8 @@
 
 use std::ops::Range;
 
-use super::super::scan::{Kind, Token};
-use super::tokens::{cut, lower};
+use super::super::scan::{Kind, Token, bracket, cut, is_one_of};
+use super::tokens::lower;
 
 /// A statement that ends with a semicolon, and where it stands.
 #[derive(Clone, Debug)]
@@ -89,6 +89,10 @@ impl Reader<'_> {
         self.tokens.get(at).filter(|it| it.kind == Kind::Word).map(|it| lower(self.text, it))
     }
 
+    fn is_word(&self, at: usize, words: &str) -> bool {
+        self.word(at).is_some_and(|it| is_one_of(words, &it))
+    }
+
     fn is(&self, at: usize, sign: u8) -> bool {
         self.tokens.get(at).is_some_and(|it| it.is(sign))
     }
@@ -117,9 +121,14 @@ impl Reader<'_> {
             }
             self.is_entry = true;
             self.at += 2;
-            return;
+        } else {
+            self.keyword(&word);
         }
-        match word.as_str() {
+    }
+
+    /// What begins with a word.
+    fn keyword(&mut self, word: &str) {
+        match word {
             "module" => {
                 self.module += 1;
                 self.at += 2;
@@ -130,20 +139,16 @@ impl Reader<'_> {
                 self.leave_all();
                 self.at += 1;
             }
-            "local" | "task"
-                if self
-                    .word(self.at + 1)
-                    .is_some_and(|it| matches!(it.as_str(), "proc" | "func" | "trap" | "record")) =>
-            {
+            "local" | "task" if self.is_word(self.at + 1, "proc func trap record") => {
                 self.at += 1;
             }
             "proc" | "trap" => self.routine(self.at + 1),
             "func" => self.routine(self.at + 2),
-            "record" => self.skip_to(&["endrecord"], false),
+            "record" => self.skip_behind(|it| it.is_word(it.at, "endrecord")),
             "if" => self.branch(),
             "elseif" => {
                 self.sibling();
-                self.skip_to(&["then"], true);
+                self.skip_behind_in_statement("then");
             }
             "else" => {
                 self.sibling();
@@ -151,26 +156,16 @@ impl Reader<'_> {
             }
             "for" | "while" => {
                 self.enter();
-                self.skip_to(&["do"], true);
+                self.skip_behind_in_statement("do");
             }
             "test" => {
                 self.enter();
                 self.at += 1;
-                while self
-                    .word(self.at)
-                    .is_none_or(|it| !matches!(it.as_str(), "case" | "default" | "endtest"))
-                    && self.at < self.tokens.len()
-                    && !self.is(self.at, b';')
-                {
-                    self.at += 1;
-                }
+                self.skip(|it| it.is_word(it.at, "case default endtest") || it.is(it.at, b';'));
             }
             "case" => {
                 self.sibling();
-                while self.at < self.tokens.len() && !self.is(self.at, b':') && !self.is(self.at, b';') {
-                    self.at += 1;
-                }
-                self.at += 1;
+                self.skip_behind(|it| it.is(it.at, b':') || it.is(it.at, b';'));
             }
             "endif" | "endfor" | "endwhile" | "endtest" => {
                 self.leave();
@@ -253,8 +248,7 @@ impl Reader<'_> {
                     self.at = at + 1;
                     return;
                 }
-                let is_operator =
-                    |word: &str| matches!(word, "and" | "or" | "xor" | "not" | "div" | "mod" | "if");
+                let is_operator = |word: &str| is_one_of("and or xor not div mod if", word);
                 let follows_value = self.tokens.get(at - 1).is_some_and(|before| match before.kind {
                     Kind::Word => !is_operator(&lower(self.text, before)),
                     Kind::Number(..) | Kind::Text | Kind::Sign(b')' | b'}' | b']') => true,
@@ -285,28 +279,29 @@ impl Reader<'_> {
         self.at = end + 1;
     }
 
-    fn skip_to(&mut self, words: &[&str], is_one_statement: bool) {
-        while self.at < self.tokens.len() && !(is_one_statement && self.is(self.at, b';')) {
-            let found = self.word(self.at).is_some_and(|it| words.contains(&it.as_str()));
+    /// Goes on to what this is true of, or to the end.
+    fn skip(&mut self, is_end: impl Fn(&Self) -> bool) {
+        while self.at < self.tokens.len() && !is_end(self) {
             self.at += 1;
-            if found {
-                return;
-            }
         }
     }
 
+    /// The same, and beyond it.
+    fn skip_behind(&mut self, is_end: impl Fn(&Self) -> bool) {
+        self.skip(is_end);
+        self.at += 1;
+    }
+
+    /// Goes on behind a word, or to the end of the statement.
+    fn skip_behind_in_statement(&mut self, word: &str) {
+        self.skip(|it| it.is(it.at, b';') || it.is_word(it.at, word));
+        self.at += usize::from(self.is_word(self.at, word));
+    }
+
     fn skip_brackets(&mut self) {
-        if !self.is(self.at, b'(') {
-            return;
-        }
-        let mut depth = 0_usize;
-        while let Some(token) = self.tokens.get(self.at) {
-            depth += usize::from(token.is(b'('));
-            depth -= usize::from(token.is(b')'));
-            self.at += 1;
-            if depth == 0 {
-                return;
-            }
+        if self.is(self.at, b'(') {
+            let rest = self.tokens.get(self.at..).unwrap_or_default();
+            self.at = self.tokens.len() - bracket(rest, b'(', b')').map_or(0, |(_, behind)| behind.len());
         }
     }
 }

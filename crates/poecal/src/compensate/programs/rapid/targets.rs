@@ -5,11 +5,11 @@ use std::collections::HashMap;
 use super::super::axes::{Axes, NO_EXTERNAL, OTHER_EXTERNAL};
 use super::super::forms::PoseForm;
 use super::super::given::Given;
-use super::super::parsed::{Listed, Meant, Motion, Number, Parsed, Target};
+use super::super::parsed::{Meant, Motion, Number, Parsed, Target};
 use super::super::stated::Stated;
 use super::configuration::Configuration;
 use super::declared::{Data, Declared, Sort};
-use super::frames::{has_length, numbers, tool, work_object};
+use super::frames::{has_length, tool, work_object};
 use super::going::{Held, Move, Moves, To};
 use super::outline::Outline;
 use super::tokens::Value;
@@ -36,10 +36,9 @@ pub(super) fn parsed(
         given,
         axes,
         lines,
-        targets: Vec::new(),
         motions: vec![None; moves.going.len()],
         more: Vec::new(),
-        listed: Vec::new(),
+        out: Parsed::default(),
     };
     for (at, data) in declared.data.iter().enumerate() {
         if matches!(data.sort, Sort::Target | Sort::Joints)
@@ -66,31 +65,24 @@ struct Maker<'a> {
     axes: &'a Axes,
     /// Ends of lines.
     lines: Vec<usize>,
-    targets: Vec<Target>,
     /// Of each move, its motion.
     motions: Vec<Option<Motion>>,
     /// Motions to any element of an array.
     more: Vec<Motion>,
-    listed: Vec<Listed>,
+    out: Parsed,
 }
 
 impl Maker<'_> {
-    fn list(&mut self, line: usize, name: &str, reason: String) {
-        self.listed.push(Listed { line, name: name.to_owned(), reason });
-    }
-
     fn data(&mut self, at: usize, data: &Data, value: &Value) {
         let is_joints = data.sort == Sort::Joints;
-        if data.is_double {
-            return self.list(data.line, &data.name, "declared more than once".to_owned());
-        }
-        if let Some(line) = data.changed {
-            return self.list(data.line, &data.name, format!("changed by the program on line {line}"));
-        }
-        if let Some(given) = data.given.first() {
-            let reason =
-                format!("given to {} on line {}, whose use of it is not known", given.to, given.line);
-            return self.list(data.line, &data.name, reason);
+        let reason = match (data.is_double, data.changed, data.given.first()) {
+            (true, ..) => Some("declared more than once".to_owned()),
+            (_, Some(line), _) => Some(format!("changed by the program on line {line}")),
+            (.., given) => given
+                .map(|it| format!("given to {} on line {}, whose use of it is not known", it.to, it.line)),
+        };
+        if let Some(reason) = reason {
+            return self.out.list(data.line, &data.name, reason);
         }
         let mut elements = Vec::new();
         spread(value, data.dimensions, &mut Vec::new(), &mut elements);
@@ -121,44 +113,41 @@ impl Maker<'_> {
         };
         let (numbers, meant, known) = match made {
             Ok(made) => made,
-            Err(reason) => return self.list(line, &name, reason),
+            Err(reason) => return self.out.list(line, name, reason),
         };
-        let target = self.targets.len();
+        let target = self.out.targets.len();
         let stated = configuration(numbers.get(7..11).unwrap_or_default());
         if let (true, Some((tool, frame))) = (moves.is_empty(), known.first().copied()) {
-            let (after, is_straight, refused) = (None, false, None);
             let (tool, frame, stated) = (Some(tool), Some(frame), stated.clone());
-            self.more.push(Motion { target, line, after, is_straight, tool, frame, refused, stated });
+            self.more.push(Motion { tool, frame, stated, ..Motion::to(target, line) });
         }
         for (number, of) in moves.iter().enumerate() {
             let known = known.get(number);
             let motion = Motion {
-                target,
-                line: of.line,
-                after: None,
                 is_straight: of.is_straight,
                 tool: known.map(|it| it.0),
                 frame: known.map(|it| it.1),
-                refused: None,
                 stated: if of.is_not_followed { Stated::Nothing } else { stated.clone() },
+                ..Motion::to(target, of.line)
             };
             match own.get(number).and_then(|&it| self.motions.get_mut(it)) {
                 Some(place) => *place = Some(motion),
                 None => self.more.push(motion),
             }
         }
-        self.targets.push(Target { line, name, numbers, meant });
+        self.out.targets.push(Target { line, name, numbers, meant });
     }
 
     fn pose(&self, value: &Value, moves: &[&Move]) -> Result<(Vec<Number>, Meant, Vec<Known>), String> {
         const SHAPE: &str =
             "not written as [[x,y,z],[q1,q2,q3,q4],[cf1,cf4,cf6,cfx],[external axes]] with numbers";
-        let Value::List(parts) = value else { return Err(SHAPE.to_owned()) };
-        let [place, quaternion, configuration, external] = &parts[..] else { return Err(SHAPE.to_owned()) };
-        let mut all = numbers(place, 3).ok_or(SHAPE)?;
-        let quaternion = numbers(quaternion, 4).ok_or(SHAPE)?;
-        let configuration = numbers(configuration, 4).ok_or(SHAPE)?;
-        let external = numbers(external, 6).ok_or(SHAPE)?;
+        let Some([place, quaternion, configuration, external]) = value.list(4) else {
+            return Err(SHAPE.into());
+        };
+        let mut all = place.numbers(3).ok_or(SHAPE)?;
+        let quaternion = quaternion.numbers(4).ok_or(SHAPE)?;
+        let configuration = configuration.numbers(4).ok_or(SHAPE)?;
+        let external = external.numbers(6).ok_or(SHAPE)?;
         let mut known = Vec::new();
         if moves.is_empty() {
             // The moves are in another module: the user says what is true of them.
@@ -183,17 +172,12 @@ impl Maker<'_> {
         for of in moves {
             known.push((self.tool(&of.tool)?, self.frame(&of.object)?));
         }
-        for (what, is_other) in [
-            (
-                "with different tools",
-                known.iter().position(|it| Some(&it.0) != known.first().map(|it| &it.0)),
-            ),
-            (
-                "in different work objects",
-                known.iter().position(|it| Some(&it.1) != known.first().map(|it| &it.1)),
-            ),
+        let first = known.first().copied();
+        for (what, other) in [
+            ("with different tools", known.iter().position(|it| Some(it.0) != first.map(|it| it.0))),
+            ("in different work objects", known.iter().position(|it| Some(it.1) != first.map(|it| it.1))),
         ] {
-            if let (Some(one), Some(other)) = (moves.first(), is_other.and_then(|at| moves.get(at))) {
+            if let (Some(one), Some(other)) = (moves.first(), other.and_then(|at| moves.get(at))) {
                 return Err(format!("moved {what}, on lines {} and {}", one.line, other.line));
             }
         }
@@ -266,7 +250,7 @@ impl Maker<'_> {
         }
     }
 
-    fn parsed(self) -> Parsed {
+    fn parsed(mut self) -> Parsed {
         // Numbers of motions, where moves without one are left out.
         let mut place = Vec::with_capacity(self.motions.len());
         let mut count = 0;
@@ -282,7 +266,8 @@ impl Maker<'_> {
             motions.extend(motion.map(|motion| Motion { after, ..motion }));
         }
         motions.extend(self.more);
-        Parsed { targets: self.targets, motions, listed: self.listed }
+        self.out.motions = motions;
+        self.out
     }
 }
 
@@ -313,10 +298,9 @@ fn external_axes(mut numbers: Vec<Number>, axes: &Axes) -> Result<Vec<Number>, S
 /// `[[six angles in degrees],[external axes]]`: those that the model does not have do not change where the arm's joints are.
 fn joints(value: &Value, axes: &Axes) -> Result<Vec<Number>, String> {
     const SHAPE: &str = "not written as [[six angles],[external axes]] with numbers";
-    let Value::List(parts) = value else { return Err(SHAPE.to_owned()) };
-    let [arm, external] = &parts[..] else { return Err(SHAPE.to_owned()) };
-    let mut arm = numbers(arm, 6).ok_or(SHAPE)?;
-    let mut external = numbers(external, 6).ok_or(SHAPE)?;
+    let Some([arm, external]) = value.list(2) else { return Err(SHAPE.to_owned()) };
+    let mut arm = arm.numbers(6).ok_or(SHAPE)?;
+    let mut external = external.numbers(6).ok_or(SHAPE)?;
     external.truncate(axes.external.len());
     let external = external_axes(external, axes)?;
     if arm.iter().any(|it| it.value.abs() > 1e6) {

@@ -1,7 +1,7 @@
 //! Values of RAPID, from their tokens.
 
 use super::super::parsed::Number;
-use super::super::scan::{Kind, Rules, Scanner, Token, signed};
+use super::super::scan::{Kind, Rules, Scanner, Token, cut, signed};
 
 /// How RAPID is written.
 const RULES: Rules = Rules { comments: &["!"], quotes: b"\"", letters: b"", is_open_in_brackets: false };
@@ -54,6 +54,25 @@ pub(super) enum Value {
     Other,
 }
 
+impl Value {
+    /// The values of a list of so many.
+    pub(super) fn list(&self, count: usize) -> Option<&[Value]> {
+        let Value::List(values) = self else { return None };
+        Some(&values[..]).filter(|it| it.len() == count)
+    }
+
+    /// The numbers of a list of so many.
+    pub(super) fn numbers(&self, count: usize) -> Option<Vec<Number>> {
+        let number = |it: &Value| if let Value::Number(number) = it { Some(number.clone()) } else { None };
+        self.list(count)?.iter().map(number).collect()
+    }
+
+    /// Whether it is this name.
+    pub(super) fn is(&self, word: &str) -> bool {
+        matches!(self, Value::Word(it) if it == word)
+    }
+}
+
 /// Most brackets in one another that are looked into: arrays of three dimensions of data of three levels are fewer.
 const DEEPEST: usize = 8;
 
@@ -76,24 +95,6 @@ pub(super) fn value(tokens: &[Token], text: &[u8], depth: usize) -> Value {
         }
         _ => Value::Other,
     }
-}
-
-/// Tokens between separators outside of brackets; `None` if brackets do not match.
-pub(super) fn cut(tokens: &[Token], separator: u8) -> Option<Vec<&[Token]>> {
-    let (mut out, mut start, mut depth) = (Vec::new(), 0, 0_usize);
-    for (at, token) in tokens.iter().enumerate() {
-        match token.kind {
-            Kind::Sign(b'[' | b'(' | b'{') => depth += 1,
-            Kind::Sign(b']' | b')' | b'}') => depth = depth.checked_sub(1)?,
-            Kind::Sign(sign) if sign == separator && depth == 0 => {
-                out.push(tokens.get(start..at)?);
-                start = at + 1;
-            }
-            Kind::Word | Kind::Number(..) | Kind::Text | Kind::Sign(_) | Kind::LineEnd => {}
-        }
-    }
-    out.push(tokens.get(start..)?);
-    (depth == 0).then_some(out)
 }
 
 /// A word in lower case.

@@ -3,7 +3,7 @@
 use super::super::build::Blocks;
 use super::super::flow::Node;
 use super::super::parsed::Setting;
-use super::super::scan::{Kind, Rules, Scanner, Token, bracket};
+use super::super::scan::{Kind, Rules, Scanner, Token, bracket, is_one_of, outside};
 use super::Step;
 use crate::error::Result;
 
@@ -25,27 +25,15 @@ pub(super) struct Program {
 /// Statements of a line: `if x: movej(q) end` are three.
 pub(super) fn cut<'t>(text: &[u8], line: &'t [Token]) -> Vec<&'t [Token]> {
     let mut out = Vec::new();
-    let (mut start, mut depth) = (0, 0_usize);
-    for (at, token) in line.iter().enumerate() {
-        let is_header = line.get(start).is_some_and(|it| HEADERS.iter().any(|word| it.text(text) == *word));
-        match token.kind {
-            Kind::Sign(b'(' | b'[' | b'{') => depth += 1,
-            Kind::Sign(b')' | b']' | b'}') => depth = depth.saturating_sub(1),
-            Kind::Sign(b':') if depth == 0 && is_header => {
-                out.push(&line[start..=at]);
-                start = at + 1;
-            }
-            Kind::Sign(b';') if depth == 0 => {
-                out.push(&line[start..at]);
-                start = at + 1;
-            }
-            Kind::Word if depth == 0 && ["end", "else", "elif"].contains(&token.text(text)) && at > start => {
-                out.push(&line[start..at]);
-                start = at;
-            }
-            Kind::Word | Kind::Number(..) | Kind::Text | Kind::Sign(_) | Kind::LineEnd => {}
+    let mut start = 0;
+    for (at, token) in outside(line) {
+        let word = if token.kind == Kind::Word { token.text(text) } else { "" };
+        let is_header = line.get(start).is_some_and(|it| is_one_of(HEADERS, it.text(text)));
+        if token.is(b';') || is_one_of("end else elif", word) && at > start {
+            out.push(&line[start..at]);
+            start = at + usize::from(word.is_empty());
         }
-        if token.kind == Kind::Word && token.text(text) == "end" && depth == 0 && start == at {
+        if token.is(b':') && is_header || word == "end" && start == at {
             out.push(&line[start..=at]);
             start = at + 1;
         }
@@ -56,12 +44,12 @@ pub(super) fn cut<'t>(text: &[u8], line: &'t [Token]) -> Vec<&'t [Token]> {
     out
 }
 
-const HEADERS: [&str; 7] = ["def", "thread", "sec", "while", "if", "elif", "else"];
+const HEADERS: &str = "def thread sec while if elif else";
 
 /// Name and parameters of a routine's first line.
 pub(super) fn header<'t>(text: &'t [u8], tokens: &'t [Token]) -> Option<(&'t str, &'t [Token])> {
     let [word, name, rest @ ..] = tokens else { return None };
-    if !["def", "thread", "sec"].contains(&word.text(text)) {
+    if !is_one_of("def thread sec", word.text(text)) {
         return None;
     }
     let parameters = bracket(rest, b'(', b')').map_or(&rest[..0], |it| it.0);

@@ -3,14 +3,14 @@
 mod blocks;
 mod values;
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 
 use super::axes::Axes;
 use super::flow::{Node, State, Walk};
 use super::forms::PoseForm;
 use super::given::Given;
-use super::parsed::{Listed, Meant, Motion, Number, Parsed, Setting, Target};
-use super::scan::{Kind, Rules, Token, bracket, parts, shown};
+use super::parsed::{Meant, Motion, Number, Parsed, Setting, Target};
+use super::scan::{Kind, Rules, Token, bracket, is_one_of, parts, shown};
 use super::stated::Stated;
 use crate::error::Result;
 use crate::lie::Pose;
@@ -18,6 +18,9 @@ use blocks::Program;
 use values::{Value, Variables};
 
 const RULES: Rules = Rules { comments: &["#"], quotes: b"\"'", letters: b"", is_open_in_brackets: true };
+
+/// How poses are written.
+const FORM: PoseForm = PoseForm::RotationVector;
 
 /// Statements that move the robot to targets: their name, the places of the targets among the arguments, and the way there.
 const MOTIONS: [(&str, &[usize], Way); 9] = [
@@ -33,16 +36,7 @@ const MOTIONS: [(&str, &[usize], Way); 9] = [
 ];
 
 /// Statements after which nobody knows where the robot is.
-const AWAY: [&str; 8] = [
-    "speedj",
-    "speedl",
-    "freedrive_mode",
-    "teach_mode",
-    "force_mode",
-    "move_until",
-    "mc_run_motion",
-    "tool_contact",
-];
+const AWAY: &str = "speedj speedl freedrive_mode teach_mode force_mode move_until mc_run_motion tool_contact";
 
 /// How a motion gets to its target.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -66,15 +60,7 @@ enum Frame {
 #[derive(Clone, Debug)]
 enum Step {
     /// A motion to the target with this index, in these frames.
-    Move {
-        target: usize,
-        line: usize,
-        way: Way,
-        frames: Vec<Frame>,
-        stated: Stated,
-        tool: Option<Setting>,
-        is_inverse: bool,
-    },
+    Move { aim: Aim, line: usize, way: Way },
     /// The tool is set.
     Tool(Setting),
     /// Poses are those of a frame that moves; or no longer.
@@ -86,7 +72,7 @@ enum Step {
 /// Targets and motions of a program.
 pub(crate) fn parse(text: &[u8], given: &Given, axes: &Axes) -> Result<Parsed> {
     let variables = Variables::of(text, &RULES, axes);
-    let mut reader = Reader { text, given, axes, variables, out: Parsed::default(), known: BTreeMap::new() };
+    let mut reader = Reader { text, given, axes, variables, out: Parsed::default() };
     let program = Program::read(text, &RULES, &mut |tokens, nodes| reader.statement(tokens, nodes))?;
     Ok(reader.motions(&program))
 }
@@ -98,14 +84,13 @@ struct Reader<'r> {
     axes: &'r Axes,
     variables: Variables,
     out: Parsed,
-    /// Targets by the byte where their numbers begin.
-    known: BTreeMap<usize, usize>,
 }
 
 /// A target of a motion, or why it is none.
 type Found = std::result::Result<Aim, String>;
 
 /// What the argument of a motion says.
+#[derive(Clone, Debug)]
 struct Aim {
     target: usize,
     frames: Vec<Frame>,
@@ -135,8 +120,7 @@ impl Reader<'_> {
             let rest = &tokens[at + 1..];
             let Some((inside, _)) = bracket(rest, b'(', b')') else { continue };
             let name = token.text(self.text);
-            let is_run =
-                at > 0 && ["run", "join", "kill"].iter().any(|it| tokens[at - 1].text(self.text) == *it);
+            let is_run = at > 0 && is_one_of("run join kill", tokens[at - 1].text(self.text));
             if self.variables.routines.contains(name) {
                 self.arguments(inside);
                 if !is_run {
@@ -156,7 +140,7 @@ impl Reader<'_> {
                 nodes.push(Node::Step(Step::Tool(setting)));
             } else if name.starts_with("track_conveyor") || name == "stop_conveyor_tracking" {
                 nodes.push(Node::Step(Step::Moving(name.starts_with("track"))));
-            } else if AWAY.contains(&name) {
+            } else if is_one_of(AWAY, name) {
                 if name.starts_with("speed") {
                     self.list(&tokens[at..], token.line, reason::SPEED);
                 }
@@ -166,8 +150,7 @@ impl Reader<'_> {
     }
 
     fn list(&mut self, tokens: &[Token], line: usize, reason: &str) {
-        let name = shown(self.text, tokens);
-        self.out.listed.push(Listed { line, name, reason: reason.to_owned() });
+        self.out.list(line, shown(self.text, tokens), reason);
     }
 
     /// Targets that are handed to a routine.
@@ -193,15 +176,7 @@ impl Reader<'_> {
         };
         let found = if way == Way::Unknown { Err(reason::UNKNOWN.to_owned()) } else { self.aim(argument) };
         match found {
-            Ok(aim) => Step::Move {
-                target: aim.target,
-                line: word.line,
-                way,
-                frames: aim.frames,
-                stated: aim.stated,
-                tool: aim.tool,
-                is_inverse: aim.is_inverse,
-            },
+            Ok(aim) => Step::Move { aim, line: word.line, way },
             Err(reason) => {
                 let tokens = if argument.is_empty() { std::slice::from_ref(word) } else { argument };
                 self.list(tokens, word.line, &reason);
@@ -212,32 +187,29 @@ impl Reader<'_> {
 
     /// The target that an expression means.
     fn aim(&mut self, tokens: &[Token]) -> Found {
-        let plain = |target| Aim {
-            target,
-            frames: Vec::new(),
-            stated: Stated::Nothing,
-            tool: None,
-            is_inverse: false,
-        };
-        match self.variables.value(self.text, tokens, self.axes) {
-            Value::Pose(numbers) => {
-                Ok(plain(self.target(tokens, None, numbers, Meant::Pose(PoseForm::RotationVector))))
+        let line = tokens.first().map_or(0, |it| it.line);
+        let (value, line, name) = match self.variables.value(self.text, tokens, self.axes) {
+            Value::Name(name) => (self.variables.of_name(&name)?, self.variables.line(&name), name),
+            Value::Other => return self.of_call(tokens),
+            value @ (Value::Pose(_) | Value::Joints(_) | Value::Broken(_)) => {
+                (value, line, shown(self.text, tokens))
             }
-            Value::Joints(numbers) => Ok(plain(self.target(tokens, None, numbers, Meant::Joints))),
-            Value::Broken(reason) => Err(reason.to_owned()),
-            Value::Name(name) => match self.variables.of_name(&name)? {
-                Value::Pose(numbers) => Ok(plain(self.target(
-                    tokens,
-                    Some(&name),
-                    numbers,
-                    Meant::Pose(PoseForm::RotationVector),
-                ))),
-                Value::Joints(numbers) => Ok(plain(self.target(tokens, Some(&name), numbers, Meant::Joints))),
-                Value::Broken(reason) => Err(reason.to_owned()),
-                Value::Name(_) | Value::Other => Err(reason::COMPUTED.to_owned()),
-            },
-            Value::Other => self.of_call(tokens),
-        }
+        };
+        let (numbers, meant) = match value {
+            Value::Pose(numbers) => (numbers, Meant::Pose(PoseForm::RotationVector)),
+            Value::Joints(numbers) => (numbers, Meant::Joints),
+            Value::Broken(reason) => return Err(reason.to_owned()),
+            Value::Name(_) | Value::Other => return Err(reason::COMPUTED.to_owned()),
+        };
+        let target = self.out.target(Target { line, name, numbers, meant });
+        Ok(Aim { target, frames: Vec::new(), stated: Stated::Nothing, tool: None, is_inverse: false })
+    }
+
+    /// A pose that is stated, to be changed once more.
+    fn pose(&mut self, tokens: &[Token]) -> Found {
+        let aim = self.aim(tokens)?;
+        let is_pose = self.out.targets.get(aim.target).is_some_and(|it| it.meant != Meant::Joints);
+        if is_pose && !aim.is_inverse { Ok(aim) } else { Err(reason::COMPUTED.to_owned()) }
     }
 
     /// The target of `pose_trans(…)` or `get_inverse_kin(…)`.
@@ -249,14 +221,11 @@ impl Reader<'_> {
         match (name.text(self.text), &arguments[..]) {
             ("pose_trans", [frame, pose]) => {
                 let frame = match self.variables.value(self.text, frame, self.axes) {
-                    Value::Pose(numbers) => Frame::Is(pose_of(&numbers).ok_or_else(computed)?),
+                    Value::Pose(numbers) => Frame::Is(FORM.of_numbers(&numbers).ok_or_else(computed)?),
                     Value::Name(name) => Frame::Named(name),
                     Value::Joints(_) | Value::Broken(_) | Value::Other => return Err(computed()),
                 };
-                let mut aim = self.aim(pose)?;
-                if !self.is_pose(aim.target) || aim.is_inverse {
-                    return Err(computed());
-                }
+                let mut aim = self.pose(pose)?;
                 aim.frames.insert(0, frame);
                 Ok(aim)
             }
@@ -266,21 +235,13 @@ impl Reader<'_> {
     }
 
     fn inverse(&mut self, pose: &[Token], others: &[&[Token]]) -> Found {
-        let mut aim = self.aim(pose)?;
-        if !self.is_pose(aim.target) || aim.is_inverse {
-            return Err(reason::COMPUTED.to_owned());
-        }
+        const NAMES: [&str; 4] = ["qnear", "maxPositionError", "maxOrientationError", "tcp"];
+        let mut aim = self.pose(pose)?;
         aim.is_inverse = true;
         for (at, argument) in others.iter().enumerate() {
             let (name, value) = match argument {
                 [name, sign, value @ ..] if sign.is(b'=') => (name.text(self.text), value),
-                all => (
-                    ["qnear", "maxPositionError", "maxOrientationError", "tcp"]
-                        .get(at)
-                        .copied()
-                        .unwrap_or(""),
-                    *all,
-                ),
+                all => (NAMES.get(at).copied().unwrap_or(""), *all),
             };
             match name {
                 "qnear" => match self.literal(value) {
@@ -297,10 +258,6 @@ impl Reader<'_> {
         Ok(aim)
     }
 
-    fn is_pose(&self, target: usize) -> bool {
-        self.out.targets.get(target).is_some_and(|it| it.meant != Meant::Joints)
-    }
-
     /// What stands there in numbers, or of a variable that is assigned once.
     fn literal(&self, tokens: &[Token]) -> Option<Value> {
         match self.variables.value(self.text, tokens, self.axes) {
@@ -315,26 +272,10 @@ impl Reader<'_> {
             Value::Pose(_) | Value::Joints(_) | Value::Broken(_) | Value::Other => None,
         };
         match self.literal(tokens) {
-            Some(Value::Pose(numbers)) => pose_of(&numbers).map_or(Setting::Unknown, Setting::Is),
-            _ => named().map_or(Setting::Unknown, Setting::Is),
+            Some(Value::Pose(numbers)) => FORM.of_numbers(&numbers),
+            _ => named(),
         }
-    }
-
-    /// The index of a target, made if its numbers are new.
-    fn target(&mut self, tokens: &[Token], name: Option<&str>, numbers: Vec<Number>, meant: Meant) -> usize {
-        let start = numbers.first().map_or(0, |it| it.range.start);
-        if let Some(&index) = self.known.get(&start) {
-            return index;
-        }
-        let line = match name {
-            Some(name) => self.variables.line(name),
-            None => tokens.first().map_or(0, |it| it.line),
-        };
-        let name = name.map_or_else(|| shown(self.text, tokens), str::to_owned);
-        let index = self.out.targets.len();
-        self.known.insert(start, index);
-        self.out.targets.push(Target { line, name, numbers, meant });
-        index
+        .map_or(Setting::Unknown, Setting::Is)
     }
 
     /// Follows the program from motion to motion.
@@ -342,14 +283,14 @@ impl Reader<'_> {
         let names: BTreeSet<&str> = self.out.targets.iter().map(|it| it.name.as_str()).collect();
         let given = self.given;
         let at_start = given.frame(None).unwrap_or(Pose::identity());
-        let mut motions: Vec<Motion> = Vec::new();
+        let motions = &mut self.out.motions;
         let frame_of = |frame: &Frame| match frame {
             Frame::Is(pose) => Ok(*pose),
             Frame::Named(name) if names.contains(name.as_str()) => Err(reason::RELATIVE.to_owned()),
             Frame::Named(name) => match (given.frame(Some(name)), self.variables.of_name(name)) {
                 (Some(pose), _) => Ok(pose),
                 (None, Ok(Value::Pose(numbers))) => {
-                    pose_of(&numbers).ok_or_else(|| reason::COMPUTED.to_owned())
+                    FORM.of_numbers(&numbers).ok_or_else(|| reason::COMPUTED.to_owned())
                 }
                 (None, Err(reason)) if reason == reason::ABSENT => Err(reason::FRAME.to_owned()),
                 (None, Err(reason)) => Err(format!("its frame {name}: {reason}")),
@@ -361,32 +302,24 @@ impl Reader<'_> {
             Step::Moving(true) => state.frame = Setting::Unknown,
             Step::Moving(false) => state.frame = Setting::Unset,
             Step::Away => state.last = None,
-            Step::Move { target, line, way, frames, stated, tool, is_inverse } => {
+            Step::Move { aim: Aim { target, frames, stated, tool, is_inverse }, line, way } => {
                 let product = frames.iter().map(frame_of).try_fold(at_start, |all, it| it.map(|it| all * it));
                 let frame = product.as_ref().ok().filter(|_| state.frame != Setting::Unknown).copied();
                 let tool = tool.unwrap_or(state.tool).or(given.tool(None));
-                let after = if program.threads_move { None } else { state.last };
                 motions.push(Motion {
-                    target: *target,
-                    line: *line,
-                    after,
+                    after: state.last.filter(|_| !program.threads_move),
                     is_straight: *way != Way::Joints && !is_inverse,
-                    tool: if program.threads_set { None } else { tool },
+                    tool: tool.filter(|_| !program.threads_set),
                     frame,
                     stated: stated.clone(),
                     refused: product.err(),
+                    ..Motion::to(*target, *line)
                 });
                 state.last = (*way != Way::Stream).then(|| motions.len() - 1);
             }
         };
         let mut walk = Walk::new(&program.blocks.routines, program.blocks.size, false, &mut step);
         walk.run(&program.main, &program.blocks.called, &|_| false);
-        self.out.motions = motions;
         self.out
     }
-}
-
-fn pose_of(numbers: &[Number]) -> Option<Pose> {
-    let values: Vec<f64> = numbers.iter().map(Number::scaled).collect();
-    PoseForm::RotationVector.pose(&values)
 }

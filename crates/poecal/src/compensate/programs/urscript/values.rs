@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::super::axes::Axes;
 use super::super::parsed::Number;
-use super::super::scan::{Kind, Rules, Scanner, Token, bracket, parts, signed};
+use super::super::scan::{Kind, Rules, Scanner, Token, bracket, is_one_of, parts, signed};
 use super::blocks::{cut, header};
 use super::reason;
 
@@ -54,7 +54,7 @@ impl Variables {
                     continue;
                 }
                 let rest = match tokens {
-                    [word, rest @ ..] if ["global", "local"].contains(&word.text(text)) => rest,
+                    [word, rest @ ..] if is_one_of("global local", word.text(text)) => rest,
                     all => all,
                 };
                 let Some(name) = rest.first().filter(|it| it.kind == Kind::Word) else { continue };
@@ -94,24 +94,21 @@ impl Variables {
     pub(super) fn value(&self, text: &[u8], tokens: &[Token], axes: &Axes) -> Value {
         let list = |tokens: &[Token]| {
             let (inside, rest) = bracket(tokens, b'[', b']')?;
-            rest.is_empty().then(|| parts(inside).iter().map(|it| element(text, it)).collect::<Vec<_>>())
+            let all = parts(inside);
+            let numbers: Option<Vec<Number>> = all.iter().map(|it| element(text, it)).collect();
+            rest.is_empty().then_some((all.len(), numbers))
         };
         match tokens {
             [word] if word.kind == Kind::Word => Value::Name(word.text(text).to_owned()),
             [p, rest @ ..] if p.is_word(text, "p") && !rest.is_empty() => match list(rest) {
                 None => Value::Other,
-                Some(numbers) => match numbers.into_iter().collect::<Option<Vec<Number>>>() {
-                    Some(numbers) if numbers.len() == 6 => Value::Pose(numbers),
-                    Some(_) | None => Value::Broken(reason::EXPRESSIONS),
-                },
+                Some((6, Some(numbers))) => Value::Pose(numbers),
+                Some(_) => Value::Broken(reason::EXPRESSIONS),
             },
             _ => match list(tokens) {
                 None => Value::Other,
-                Some(numbers) if numbers.len() != axes.count() => Value::Broken(reason::COUNT),
-                Some(numbers) => numbers
-                    .into_iter()
-                    .collect::<Option<Vec<Number>>>()
-                    .map_or(Value::Broken(reason::EXPRESSIONS), Value::Joints),
+                Some((count, _)) if count != axes.count() => Value::Broken(reason::COUNT),
+                Some((_, numbers)) => numbers.map_or(Value::Broken(reason::EXPRESSIONS), Value::Joints),
             },
         }
     }
