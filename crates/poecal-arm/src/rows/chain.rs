@@ -179,7 +179,7 @@ impl<const N: usize, const J: usize> Rows<N, J> {
         }
     }
 
-    /// Adds a wave, and says how it changes with its reading.
+    /// Adds a wave; returns its derivative by its reading.
     #[inline(always)]
     fn add_wave(&self, wave: &Wave, value: &mut Row<N>) -> Row<N> {
         let [c, s] = match wave.order {
@@ -201,7 +201,7 @@ impl<const N: usize, const J: usize> Rows<N, J> {
         slope
     }
 
-    /// Adds another function of a sum, and says how it changes with that sum.
+    /// Adds another function of a sum; returns its derivative by that sum.
     #[inline(always)]
     fn add_curve(
         &self,
