@@ -138,16 +138,10 @@ impl Arm {
         self.real.is_none()
     }
 
-    /// What its joint values are beyond their readings.
+    /// Its joints as if their values were their readings, and what these are beyond them.
     #[inline(always)]
-    pub(crate) fn real(&self) -> Option<&Real> {
-        self.real.as_deref()
-    }
-
-    /// Its joints as if their values were their readings.
-    #[inline(always)]
-    pub(crate) fn chain(&self) -> &Chain {
-        &self.chain
+    pub(crate) fn parts(&self) -> (&Chain, Option<&Real>) {
+        (&self.chain, self.real.as_deref())
     }
 
     /// Joint values per reading; `None` if a reading moves several joints.

@@ -4,7 +4,6 @@ use nalgebra::Vector3;
 
 use super::frames::{Frames, Row, Vectors, add_times, cosines_and_sines, cross};
 use super::weights::{self, Bodies};
-use crate::arm::Arm;
 use crate::chain::Chain;
 use crate::model::Wave;
 use crate::placed::{MOST_JOINTS, Placed};
@@ -80,16 +79,16 @@ impl<const N: usize, const J: usize> Rows<N, J> {
         [moves, w]
     }
 
-    /// Takes an arm to these configurations.
+    /// Takes an arm to these configurations: a chain of screws, or one whose joint values are more than their readings.
     #[inline(always)]
-    pub(crate) fn place(&mut self, arm: &Arm, wanted: Wanted) {
+    pub(super) fn place(&mut self, (chain, real): (&Chain, Option<&Real>), wanted: Wanted) {
         if wanted == Wanted::Motions {
-            self.v[..arm.joints()].fill([[0.0; N]; 3]);
-            self.w[..arm.joints()].fill([[0.0; N]; 3]);
+            self.v[..chain.len()].fill([[0.0; N]; 3]);
+            self.w[..chain.len()].fill([[0.0; N]; 3]);
         }
-        match arm.real() {
+        match real {
             Some(real) => self.place_real(real, wanted),
-            None => self.place_rigid(arm.chain(), wanted),
+            None => self.place_rigid(chain, wanted),
         }
     }
 
@@ -179,7 +178,7 @@ impl<const N: usize, const J: usize> Rows<N, J> {
         }
     }
 
-    /// Adds a wave, and says how it changes with its reading.
+    /// Adds a wave; returns its derivative by its reading.
     #[inline(always)]
     fn add_wave(&self, wave: &Wave, value: &mut Row<N>) -> Row<N> {
         let [c, s] = match wave.order {
@@ -201,7 +200,7 @@ impl<const N: usize, const J: usize> Rows<N, J> {
         slope
     }
 
-    /// Adds another function of a sum, and says how it changes with that sum.
+    /// Adds another function of a sum; returns its derivative by that sum.
     #[inline(always)]
     fn add_curve(
         &self,

@@ -24,7 +24,7 @@ impl Arm {
         let mut rows = Rows::<WIDTH, MOST_JOINTS>::new();
         for (some, out) in readings.chunks(WIDTH * self.joints()).zip(tips.chunks_mut(WIDTH)) {
             load(self, some, &mut rows);
-            rows.place(self, Wanted::Tips);
+            rows.place(self.parts(), Wanted::Tips);
             let count = some.len() / self.joints();
             out.iter_mut().take(count).enumerate().for_each(|(row, out)| *out = rows.tip.pose(row));
         }
@@ -38,7 +38,7 @@ impl Arm {
         let mut rows = Rows::<WIDTH, MOST_JOINTS>::new();
         for (some, out) in readings.chunks(WIDTH * n).zip(jacobians.chunks_mut(6 * WIDTH * n)) {
             load(self, some, &mut rows);
-            rows.place(self, Wanted::Motions);
+            rows.place(self.parts(), Wanted::Motions);
             for reading in 0..n {
                 let column = rows.column(reading);
                 for (row, out) in out.chunks_exact_mut(6 * n).take(some.len() / n).enumerate() {
@@ -59,8 +59,8 @@ impl Arm {
         for (some, out) in readings.chunks(WIDTH * self.joints()).zip(sag.chunks_mut(WIDTH)) {
             load(self, some, &mut rows);
             bare.q = rows.q;
-            rows.place(self, Wanted::Tips);
-            bare.place(self, Wanted::Unloaded);
+            rows.place(self.parts(), Wanted::Tips);
+            bare.place(self.parts(), Wanted::Unloaded);
             for (row, out) in out.iter_mut().take(some.len() / self.joints()).enumerate() {
                 let (tip, bare) = (rows.tip.pose(row), bare.tip.pose(row));
                 let shift = tip.translation - bare.translation;
@@ -74,7 +74,8 @@ impl Arm {
     /// tip, as the hybrid or `LOCAL_WORLD_ALIGNED` Jacobian of others. What weights add is in it.
     #[must_use]
     pub fn jacobian(&self, q: &[f64]) -> [(Vector3<f64>, Vector3<f64>); MOST_JOINTS] {
-        let placed = Rows::at(&first::<MOST_JOINTS>(q)).placed(|rows| rows.place(self, Wanted::Motions));
+        let placed =
+            Rows::at(&first::<MOST_JOINTS>(q)).placed(|rows| rows.place(self.parts(), Wanted::Motions));
         core::array::from_fn(|reading| placed.column(reading))
     }
 }

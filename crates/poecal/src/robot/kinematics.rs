@@ -1,5 +1,7 @@
 //! Forward kinematics by the product of exponentials.
 
+#![allow(clippy::needless_range_loop, reason = "loops over configurations go over several lists alike")]
+
 use nalgebra::{Matrix3, Vector3};
 
 use super::{Body, Joint, Robot, TermFunctions};
@@ -169,8 +171,9 @@ fn product<const N: usize>(joints: &[Exponential], values: &[[f64; N]]) -> Rows<
     lanes::by_best(
         #[inline(always)]
         || {
-            let each = joints.iter().zip(values.iter().zip(&found));
-            each.for_each(|(joint, (values, found))| joint.advance(&mut rows, values, found));
+            for (joint, (values, found)) in joints.iter().zip(values.iter().zip(&found)) {
+                joint.advance(&mut rows, values, found);
+            }
         },
     );
     rows

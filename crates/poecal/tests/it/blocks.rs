@@ -210,7 +210,13 @@ fn files_hold_what_was_held_and_the_terms_that_were_found() {
 }
 
 /// Terms with a coefficient to be found.
-const TERMS: &[(&str, f64)] = &[("offset", 0.01), ("ratio", 0.002), ("sin2", 0.001), ("masses", 0.002)];
+const TERMS: &[(&str, f64)] = &[
+    // Of joint3, one line each.
+    ("offset", 0.01),
+    ("ratio", 0.002),
+    ("sin2", 0.001),
+    ("masses", 0.002),
+];
 
 /// The same arm with masses on its links.
 fn heavy() -> Robot {
