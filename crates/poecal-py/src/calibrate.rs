@@ -10,6 +10,7 @@ use poecal::calibration::{
 };
 use poecal::io::abb::AbbCalibration;
 use poecal::io::calibration_file::Inputs;
+use poecal::io::measurements::MeasurementFile;
 use poecal::io::named_files::refuse_fitted;
 use poecal::io::record::Record;
 use poecal::measurement::{ByQuantity, Dataset, Quantity};
@@ -23,7 +24,7 @@ use crate::calibration::Calibration;
 use crate::errors::{argument, raise};
 use crate::measurements::Measurements;
 use crate::robot::Robot;
-use crate::words::{chosen, frame as frame_word, from_mm, robust as robust_word, sigma};
+use crate::words::{chosen, frame as frame_word, from_mm, robust as robust_word, sigma, sigmas};
 
 /// Calibrates a robot from measurements.
 ///
@@ -130,29 +131,13 @@ pub(crate) fn calibrate(
     #[pyo3(from_py_with = arg::progress)] progress: Option<Function>,
 ) -> PyResult<Calibration> {
     let usual = CalibrationOptions::default();
-    let formulation = chosen("formulation", formulation, &Formulation::ALL.map(|it| (it.word(), it)))?;
-    let residual = chosen("residual", residual, &Residual::ALL.map(|it| (it.word(), it)))?;
-    let method = match method {
-        Some(word) => chosen("method", word, &Method::ALL.map(|it| (it.word(), it)))?,
-        None => formulation.usual_method(),
-    };
-    let sigma_position_m = sigma_position_mm.map(|it| sigma("sigma_position_mm", it, from_mm));
-    let sigma_rotation_rad = sigma_rotation_deg.map(|it| sigma("sigma_rotation_deg", it, f64::to_radians));
+    let (formulation, residual) = written(formulation, residual, method)?;
+    let [position, rotation] = sigmas(sigma_position_mm, sigma_rotation_deg)?;
     let options = CalibrationOptions {
         frame: frame_word(frame)?,
         blocks: BlockChoice { free: free.unwrap_or_default(), fix: fix.unwrap_or_default() },
-        sigma: ByQuantity::default()
-            .with(Quantity::Position, sigma_position_m.transpose()?)
-            .with(Quantity::Rotation, sigma_rotation_rad.transpose()?),
-        tolerance: match &tolerance_deg_mm {
-            Believed::Given(given) => Some(tolerance(*given)?),
-            Believed::Of(path) => {
-                let found = AbbCalibration::read(path).and_then(|found| found.tolerance(path));
-                Some(found.map_err(raise)?)
-            }
-            Believed::None => None,
-            Believed::Auto => usual.tolerance,
-        },
+        sigma: ByQuantity::default().with(Quantity::Position, position).with(Quantity::Rotation, rotation),
+        tolerance: tolerance(&tolerance_deg_mm)?,
         chooses_tolerance: tolerance_deg_mm == Believed::Auto,
         corrections: corrections.unwrap_or_default(),
         harmonics: orders(harmonics)?,
@@ -163,20 +148,34 @@ pub(crate) fn calibrate(
         repair: chosen("repair", repair, &[("auto", Repairs::Auto), ("off", Repairs::Off)])?,
         move_tip,
         accept: accept_limits(accept, accept_model)?,
-        formulation: formulated(formulation, residual, method),
+        formulation,
         ..usual
     };
     let data = rows(py, robot, measurements, validate, held_out, seed)?;
     warn_of_residual(py, &data, residual)?;
-    let inputs = inputs(robot, measurements, validate);
+    let stated = (inputs(robot, measurements, validate), record.unwrap_or_default());
     let (found, repaired, took) = fit(py, &robot.model.robot, &data, &options, progress)?;
     let data = match (repaired, data) {
         (None, Cow::Borrowed(_)) => Arc::clone(&measurements.file),
         (Some(data), _) | (None, Cow::Owned(data)) => {
-            Arc::new(poecal::io::measurements::MeasurementFile { data, ..Default::default() })
+            Arc::new(MeasurementFile { data, ..Default::default() })
         }
     };
-    Ok(Calibration::of_fit(robot.clone(), found, data, (inputs, record.unwrap_or_default()), took))
+    Ok(Calibration::of_fit(robot.clone(), found, data, stated, took))
+}
+
+/// The formulation that these words name, and its residual.
+fn written(
+    formulation: &str,
+    residual: &str,
+    method: Option<&str>,
+) -> PyResult<(poecal::Formulation, Residual)> {
+    let formulation = chosen("formulation", formulation, &Formulation::ALL.map(|it| (it.word(), it)))?;
+    let residual = chosen("residual", residual, &Residual::ALL.map(|it| (it.word(), it)))?;
+    let methods = Method::ALL.map(|it| (it.word(), it));
+    let method = method.map(|word| chosen("method", word, &methods)).transpose()?;
+    let method = method.unwrap_or_else(|| formulation.usual_method());
+    Ok((formulated(formulation, residual, method), residual))
 }
 
 /// Limits for the model of this name.
@@ -293,9 +292,16 @@ fn orders(harmonics: u32) -> PyResult<u8> {
 }
 
 /// A tolerance in SI.
-fn tolerance((angle_deg, length_mm): (f64, f64)) -> PyResult<Tolerance> {
-    Ok(Tolerance {
-        angle_rad: sigma("tolerance_deg_mm", angle_deg, f64::to_radians)?,
-        length_m: sigma("tolerance_deg_mm", length_mm, from_mm)?,
-    })
+fn tolerance(believed: &Believed) -> PyResult<Option<Tolerance>> {
+    match believed {
+        Believed::Given((angle_deg, length_mm)) => Ok(Some(Tolerance {
+            angle_rad: sigma("tolerance_deg_mm", *angle_deg, f64::to_radians)?,
+            length_m: sigma("tolerance_deg_mm", *length_mm, from_mm)?,
+        })),
+        Believed::Of(path) => {
+            AbbCalibration::read(path).and_then(|found| found.tolerance(path)).map(Some).map_err(raise)
+        }
+        Believed::None => Ok(None),
+        Believed::Auto => Ok(CalibrationOptions::default().tolerance),
+    }
 }

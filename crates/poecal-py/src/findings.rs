@@ -23,7 +23,7 @@ use crate::notebook;
 use crate::pickle;
 use crate::places::reserved_folder;
 use crate::robot::Robot;
-use crate::words::{chosen, end, frame as frame_word, from_mm, kind as kind_word, sigma};
+use crate::words::{chosen, end, frame as frame_word, from_mm, kind as kind_word, sigma, sigmas};
 
 /// A result: `str` is the program's table, `to_dict` what the program prints with `--json`, and `found["key"]` a part of it.
 #[pyclass(frozen, eq, module = "poecal", name = "Findings")]
@@ -160,14 +160,13 @@ pub(crate) fn identify(
 ) -> PyResult<Findings> {
     let model = &robot.model;
     let joints = Joints::of(joints, &model.robot)?;
-    let position_m = sigma_position_mm.map(|it| sigma("sigma_position_mm", it, from_mm));
-    let rotation_rad = sigma_rotation_deg.map(|it| sigma("sigma_rotation_deg", it, f64::to_radians));
+    let [position_m, rotation_rad] = sigmas(sigma_position_mm, sigma_rotation_deg)?;
     let usual = PlannedSession::default();
     let session = PlannedSession {
         kind: kind_word(kind)?,
         noise: Noise::new(
-            position_m.transpose()?.unwrap_or(usual.noise[Quantity::Position]),
-            rotation_rad.transpose()?.unwrap_or(usual.noise[Quantity::Rotation]),
+            position_m.unwrap_or(usual.noise[Quantity::Position]),
+            rotation_rad.unwrap_or(usual.noise[Quantity::Rotation]),
         ),
         device_free: frame_word(frame)? == DeviceFrameKnowledge::Unknown,
     };

@@ -229,6 +229,9 @@ pub(crate) fn inverse<'py>(
         return Err(argument("held", message.to_owned()));
     }
     let Some(near) = near else {
+        if held.is_none() && !inverse.has_branches() {
+            return Err(without_branches(robot, &inverse));
+        }
         let start = vec![0.0; n];
         let find = |inverse: &Inverse, row: usize, target: &Pose| match &held {
             Some((reading, values)) => {
@@ -237,18 +240,6 @@ pub(crate) fn inverse<'py>(
             }
             None => inverse.branches(target, &start, limits),
         };
-        if held.is_none() && !inverse.has_branches() {
-            let message = match inverse.redundant() {
-                Some(reading) => format!(
-                    "found None, expected a configuration from which to start, or held={{\"{}\": value}}: an arm of seven joints has \
-                     branches where one of them is held",
-                    robot.joint_reading_names()[reading]
-                ),
-                None => "found None, expected a configuration from which to start: all branches are found of arms with six turning joints"
-                    .to_owned(),
-            };
-            return Err(argument("near", message));
-        }
         let found: Vec<Vec<Vec<f64>>> = py.detach(|| inverse.of_many(&targets, find));
         let arrays = found
             .into_iter()
@@ -261,11 +252,9 @@ pub(crate) fn inverse<'py>(
     };
     let (near, one) = configurations(near, "near", robot)?;
     if !one && near.rows() != targets.len() {
-        let message = format!(
-            "found {} configurations for {} poses, expected one for each, or one for all",
-            near.rows(),
-            targets.len()
-        );
+        let (found, poses) = (near.rows(), targets.len());
+        let message =
+            format!("found {found} configurations for {poses} poses, expected one for each, or one for all");
         return Err(argument("near", message));
     }
     let found = py.detach(|| {
@@ -276,6 +265,20 @@ pub(crate) fn inverse<'py>(
         })
     });
     rows(py, found.concat(), n, is_single)
+}
+
+/// The error of an arm whose branches are not all found.
+fn without_branches(robot: &Robot, inverse: &Inverse) -> PyErr {
+    let message = match inverse.redundant() {
+        Some(reading) => format!(
+            "found None, expected a configuration from which to start, or held={{\"{}\": value}}: an arm of seven joints has \
+             branches where one of them is held",
+            robot.joint_reading_names()[reading]
+        ),
+        None => "found None, expected a configuration from which to start: all branches are found of arms with six turning joints"
+            .to_owned(),
+    };
+    argument("near", message)
 }
 
 /// The reading that is held, and its value for all poses or for each.

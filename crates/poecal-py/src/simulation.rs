@@ -170,15 +170,7 @@ pub(crate) fn simulate(
         count,
         seed,
         device_anywhere: frame_word(frame)? == DeviceFrameKnowledge::Unknown,
-        terms: match terms {
-            None | Some(Corrections::Off) => Sizes::NONE,
-            Some(Corrections::Sizes(sizes)) => sizes,
-            Some(other @ (Corrections::Auto | Corrections::All)) => {
-                let word = if other == Corrections::All { "all" } else { "auto" };
-                let message = format!("found {word}, expected off, or groups with sizes");
-                return Err(crate::errors::argument("terms", &message));
-            }
-        },
+        terms: sizes(terms)?,
         gravity: direction(gravity.unwrap_or([0.0, 0.0, -1.0]))?,
     };
     let kind = kind_word(kind)?;
@@ -199,17 +191,32 @@ pub(crate) fn simulate(
         visible(&robot.model.path.display().to_string()),
         kind.word()
     );
-    let command = if simulation.terms == Sizes::NONE {
-        command
-    } else {
-        let used = TermGroup::ALL.into_iter().filter(|&group| simulation.terms[group] > 0.0);
-        let used: Vec<String> =
-            used.map(|group| format!("{}={:e}", group.name(), simulation.terms[group])).collect();
-        let [x, y, z]: [f64; 3] = simulation.gravity.into();
-        let command = command.trim_end_matches(')');
-        format!("{command}, terms=\"{}\", gravity=({x:?}, {y:?}, {z:?}))", used.join(","))
-    };
+    let command = with_terms(command, &simulation);
     // With the factors of its terms.
     let nominal = robot.with_robot(made.nominal.clone());
     Ok(Simulation { nominal, simulation, kind, made, held_out, command })
+}
+
+/// Sizes of the terms that a simulated robot has.
+fn sizes(terms: Option<Corrections>) -> PyResult<Sizes> {
+    let word = match terms {
+        None | Some(Corrections::Off) => return Ok(Sizes::NONE),
+        Some(Corrections::Sizes(sizes)) => return Ok(sizes),
+        Some(Corrections::Auto) => "auto",
+        Some(Corrections::All) => "all",
+    };
+    Err(crate::errors::argument("terms", format!("found {word}, expected off, or groups with sizes")))
+}
+
+/// The command of a simulation with its terms, if it has any.
+fn with_terms(command: String, simulation: &simulated::Simulation) -> String {
+    if simulation.terms == Sizes::NONE {
+        return command;
+    }
+    let used = TermGroup::ALL.into_iter().filter(|&group| simulation.terms[group] > 0.0);
+    let used: Vec<String> =
+        used.map(|group| format!("{}={:e}", group.name(), simulation.terms[group])).collect();
+    let [x, y, z]: [f64; 3] = simulation.gravity.into();
+    let command = command.trim_end_matches(')');
+    format!("{command}, terms=\"{}\", gravity=({x:?}, {y:?}, {z:?}))", used.join(","))
 }

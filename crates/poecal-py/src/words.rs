@@ -62,6 +62,13 @@ pub(crate) fn sigma(name: &str, value: f64, to_si: fn(f64) -> f64) -> PyResult<f
     Err(argument(name, format!("found {value}, expected a standard deviation above 0")))
 }
 
+/// Standard deviations of positions (millimetres) and rotations (degrees) in SI, where they are given.
+pub(crate) fn sigmas(position_mm: Option<f64>, rotation_deg: Option<f64>) -> PyResult<[Option<f64>; 2]> {
+    let position = position_mm.map(|it| sigma("sigma_position_mm", it, from_mm));
+    let rotation = rotation_deg.map(|it| sigma("sigma_rotation_deg", it, f64::to_radians));
+    Ok([position.transpose()?, rotation.transpose()?])
+}
+
 /// A size of errors or noise in SI.
 pub(crate) fn size(name: &str, value: f64, to_si: fn(f64) -> f64) -> PyResult<f64> {
     if value >= 0.0 && value.is_finite() {

@@ -59,7 +59,8 @@ pub(super) fn check_length(
     options: &CalibrationOptions,
     fitted: &[u32],
 ) -> Result<()> {
-    if options.tolerance.is_some() || !session.lacks_length(fitted) {
+    let has_tolerance = options.tolerance.is_some() || options.chooses_tolerance;
+    if has_tolerance || !session.lacks_length(fitted) {
         return Ok(());
     }
     let message = "found no tolerance, and nothing measured that has a length: the robot that fits best would be a point; expected a tolerance \
