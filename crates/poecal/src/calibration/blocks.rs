@@ -1,7 +1,5 @@
 //! The choice of what a fit changes, by names of blocks.
 
-use std::borrow::Cow;
-
 use wildmatch::WildMatch;
 
 use crate::error::{Error, ErrorKind, Result};
@@ -39,12 +37,12 @@ impl BlockChoice {
     ///
     /// # Errors
     /// [`ErrorKind::Option`] if the robot has no such masses, weights or factors, or gravity is to be found.
-    pub(super) fn with_terms<'a>(
+    pub(super) fn with_terms(
         &self,
-        robot: Cow<'a, Robot>,
+        robot: Robot,
         data: &Dataset,
         gravity: GravityDirection,
-    ) -> Result<Cow<'a, Robot>> {
+    ) -> Result<Robot> {
         let names = names(&robot, data);
         let mut found = robot;
         for word in &self.free {
@@ -56,14 +54,14 @@ impl BlockChoice {
                         format!("found `{word}` to be fitted, expected a known direction of gravity");
                     return Err(Error::new(ErrorKind::Option, message));
                 };
-                found.to_mut().gravity = Some(Gravity::of_unit_weights(&found, direction));
+                found.gravity = Some(Gravity::of_unit_weights(&found, direction));
             }
             if let Some(needed) = found.lacks(term) {
                 let message = format!("found `{word}` to be fitted, expected {needed}");
                 return Err(Error::new(ErrorKind::Option, message));
             }
             if !found.terms.iter().any(|it| (it.joint, it.term) == (joint, term)) {
-                found.to_mut().terms.push(JointTerm { joint, term, coefficient: 0.0 });
+                found.terms.push(JointTerm { joint, term, coefficient: 0.0 });
             }
         }
         Ok(found)
