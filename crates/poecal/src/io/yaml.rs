@@ -23,6 +23,12 @@ pub(super) struct Value {
 }
 
 impl Value {
+    fn new(open: &[Open], span: &Span, text: &str, in_degrees: bool) -> Self {
+        let keys = open.iter().filter_map(Open::key).collect();
+        let (line, column) = (span.start.line(), span.start.col() + 1);
+        Value { keys, text: text.to_owned(), in_degrees, line, column }
+    }
+
     /// An error at the value.
     pub(super) fn error(&self, path: &Path, message: String) -> Error {
         Error::new(ErrorKind::Model, message).at(path, self.line, self.column)
@@ -53,7 +59,7 @@ pub(super) fn values(text: &str, path: &Path, expected: &str) -> Result<Vec<Valu
     };
     let mut open: Vec<Open> = Vec::new();
     let mut found = Vec::new();
-    let mut documents = 0;
+    let mut has_begun = false;
     for event in Parser::new_from_str(text) {
         let (event, span) = event.map_err(|error| {
             let place = error.marker();
@@ -77,9 +83,7 @@ pub(super) fn values(text: &str, path: &Path, expected: &str) -> Result<Vec<Valu
                             return refuse(&span, &format!("the unknown tag `!{}`", visible(name)));
                         }
                     };
-                    let keys = open.iter().filter_map(Open::key).collect();
-                    let (line, column) = (span.start.line(), span.start.col() + 1);
-                    found.push(Value { keys, text: text.to_string(), in_degrees, line, column });
+                    found.push(Value::new(&open, &span, &text, in_degrees));
                     close_value(&mut open);
                 }
                 Some(Open::List) => {}
@@ -94,15 +98,9 @@ pub(super) fn values(text: &str, path: &Path, expected: &str) -> Result<Vec<Valu
                 }
                 let is_list = matches!(event, Event::SequenceStart(..));
                 if is_list && open.iter().all(|it| matches!(it, Open::Map { .. })) && !open.is_empty() {
-                    let keys = open.iter().filter_map(Open::key).collect();
-                    let (line, column) = (span.start.line(), span.start.col() + 1);
-                    found.push(Value { keys, text: "[...]".to_owned(), in_degrees: false, line, column });
+                    found.push(Value::new(&open, &span, "[...]", false));
                 }
-                open.push(if matches!(event, Event::MappingStart(..)) {
-                    Open::Map { key: None, seen: BTreeSet::new() }
-                } else {
-                    Open::List
-                });
+                open.push(if is_list { Open::List } else { Open::Map { key: None, seen: BTreeSet::new() } });
             }
             Event::MappingEnd | Event::SequenceEnd => {
                 open.pop();
@@ -111,13 +109,15 @@ pub(super) fn values(text: &str, path: &Path, expected: &str) -> Result<Vec<Valu
             Event::Alias(_) | Event::UnresolvedAlias(_) => {
                 return refuse(&span, "a reference to another place of the file");
             }
-            Event::DocumentStart(..) => {
-                documents += 1;
-                if documents > 1 {
-                    return refuse(&span, "a second document");
-                }
+            Event::DocumentStart(..) if std::mem::replace(&mut has_begun, true) => {
+                return refuse(&span, "a second document");
             }
-            Event::StreamStart | Event::StreamEnd | Event::DocumentEnd | Event::Anchor(..) | _ => {}
+            Event::StreamStart
+            | Event::StreamEnd
+            | Event::DocumentStart(..)
+            | Event::DocumentEnd
+            | Event::Anchor(..)
+            | _ => {}
         }
     }
     Ok(found)

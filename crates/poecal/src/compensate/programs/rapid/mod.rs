@@ -165,8 +165,9 @@ impl Reader<'_> {
             argument = *base;
         }
         if is_relative {
-            let reason = "relative to a target: the offset is left as it is, at most its target is corrected";
-            self.list(line, shown(text, written), reason);
+            const REASON: &str =
+                "relative to a target: the offset is left as it is, at most its target is corrected";
+            self.list(line, shown(text, written), REASON);
         }
         let number = match argument {
             Argument::Name(name, indices) => {
@@ -191,9 +192,8 @@ impl Reader<'_> {
                 None
             }
             Argument::Numbers(tokens) => {
-                let first = tokens.iter().position(|it| it.is(b']')).map_or(0, |it| it + 1);
-                let name =
-                    format!("{instruction} {},…]", shown(text, tokens.get(..first).unwrap_or_default()));
+                let first = tokens.split_inclusive(|it| it.is(b']')).next().unwrap_or_default();
+                let name = format!("{instruction} {},…]", shown(text, first));
                 let value = tokens::value(tokens, text, 0);
                 Some(self.moves.in_place(name, value, is_joints, of, before))
             }
