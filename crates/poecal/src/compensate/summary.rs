@@ -178,10 +178,10 @@ impl Summary {
         }
         for &(index, low, high) in &self.limits {
             let Some(&value) = found.readings.get(index) else { continue };
-            if value < low || value > high {
-                if count(&mut self.beyond_limits.0, &mut self.beyond_limits.1, line) {
-                    self.beyond_limits.2 = self.joints.get(index).cloned().unwrap_or_default();
-                }
+            if (value < low || value > high)
+                && count(&mut self.beyond_limits.0, &mut self.beyond_limits.1, line)
+            {
+                self.beyond_limits.2 = self.joints.get(index).cloned().unwrap_or_default();
             }
         }
         match found.outcome {

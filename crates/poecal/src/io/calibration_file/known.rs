@@ -90,8 +90,6 @@ impl CalibrationFile {
         robot: &Robot,
         body: Body,
     ) -> Result<(Uncertainty, Vec<usize>)> {
-        const NONE: &str = "found a calibration without uncertainty, expected more measurements than unknowns to estimate it from: \
-                            calibrate with more configurations, or hold out fewer";
         let entry = self.uncertainty.as_ref().ok_or_else(|| Error::new(ErrorKind::Model, NONE))?;
         let axes = entry.axes.iter().map(PoseEntry::pose).collect::<Result<Vec<_>>>()?;
         if axes.len() != robot.joints.len() {
@@ -201,6 +199,10 @@ impl UncertaintyEntry {
         }
     }
 }
+
+/// What is said of a file without uncertainty.
+const NONE: &str = "found a calibration without uncertainty, expected more measurements than unknowns to estimate it from: calibrate with \
+                    more configurations, or hold out fewer";
 
 /// An error of a file that states no uncertainty that can be used.
 fn bad(what: &str) -> Error {

@@ -45,7 +45,7 @@ use std::path::Path;
 
 use super::record::Record;
 use super::{json_text, source_text};
-use crate::calibration::{CalibratedStation, Calibration, DeviceFrameKnowledge, ModelAccuracy, names};
+use crate::calibration::{Calibration, DeviceFrameKnowledge, ModelAccuracy, names};
 use crate::error::{Error, ErrorKind, Result};
 use crate::forensics::Diagnosis;
 use crate::lie::{Pose, Screw, Twist};
@@ -214,40 +214,6 @@ impl SolverEntry {
             trace: solver.trace.iter().copied().filter(|value| value.is_finite()).collect(),
             joint_offsets: OffsetEntry::of(calibration),
         }
-    }
-}
-
-impl RobotEntry {
-    /// Frames of a robot and its nominal model.
-    pub(in crate::io) fn new(robot: &Robot, nominal: &Robot) -> Self {
-        RobotEntry {
-            name: robot.name.clone(),
-            base_link: robot.base_name.clone(),
-            tip_link: robot.tip_name.clone(),
-            base_from_tip_at_zero: (&robot.home).into(),
-            nominal_base_from_tip_at_zero: (&nominal.home).into(),
-            tip_on: robot.tip.map(|body| BodyEntry::of(robot, body)),
-            gravity: robot.gravity.as_ref().map(|gravity| GravityEntry::of(robot, gravity)),
-            masses: MassEntry::of(robot),
-            factors: robot.factors.clone(),
-        }
-    }
-}
-
-impl StationEntry {
-    /// Stations of a calibration; empty for a single one without a name.
-    fn of(stations: &[CalibratedStation], noise: Noise, errors: &ModelAccuracy) -> Vec<Self> {
-        let is_plain = stations.len() == 1 && stations.iter().all(|it| it.name.is_none());
-        let entry = |it: &CalibratedStation| StationEntry {
-            instrument: it.name.clone(),
-            base_from_device: (&it.base_from_device).into(),
-            sigma: (it.noise != noise).then(|| measured(errors, it.noise)),
-            kind: (it.kind != "instrument").then(|| it.kind.to_owned()),
-            radius_mm: it.radius_m.map(|radius| 1e3 * radius),
-            zero_mm: (it.range.zero_m != 0.0).then_some(1e3 * it.range.zero_m),
-            scale: (it.range.scale != 0.0).then_some(it.range.scale),
-        };
-        if is_plain { Vec::new() } else { stations.iter().map(entry).collect() }
     }
 }
 

@@ -94,29 +94,25 @@ pub(super) fn write(model: &Model, robot: &Robot, flavour: &Flavour<'_>) -> Resu
     );
     let mut notes = Vec::new();
     let is_franka = matches!(flavour, Flavour::Franka);
-    let indent = match flavour {
-        Flavour::Franka => "",
-        Flavour::Names | Flavour::Ur(_) | Flavour::Xarm => {
-            text.push_str(if matches!(flavour, Flavour::Names) { "origins:\n" } else { "kinematics:\n" });
-            "  "
-        }
+    let (head, indent) = match flavour {
+        Flavour::Franka => ("", ""),
+        Flavour::Names => ("origins:\n", "  "),
+        Flavour::Ur(_) | Flavour::Xarm => ("kinematics:\n", "  "),
     };
+    text.push_str(head);
     for (key, frame) in keys.iter().zip(&frames.joints) {
         push_origin(&mut text, indent, &quoted(key), named_numbers(frame), is_franka);
     }
-    let tool = if is_franka {
+    if is_franka {
         push_origin(&mut text, indent, "joint8", named_numbers(&frames.last_from_tip), true);
-        None
-    } else {
-        Some(&frames.last_from_tip).filter(|tool| !is_none(tool))
-    };
+    }
     match flavour {
         Flavour::Ur(Some(hash)) => text.push_str(&format!("  hash: {}\n", quoted(hash))),
         Flavour::Ur(None) => notes.push(NO_HASH.to_owned()),
         Flavour::Names | Flavour::Xarm | Flavour::Franka => {}
     }
-    if let Some(tool) = tool {
-        notes.push(push_tool(&mut text, robot, tool));
+    if !is_franka && !is_none(&frames.last_from_tip) {
+        notes.push(push_tool(&mut text, robot, &frames.last_from_tip));
     }
     if !is_none(&before) {
         let stands = format!(

@@ -27,6 +27,9 @@ use super::given::Given;
 use super::parsed::{Listed, Parsed};
 use super::scan::{Kind, Token, is_one_of, shown};
 
+/// What is said of a target that a move counts from another one.
+const RELATIVE: &str = "relative to a target: the offset is left as it is, at most its target is corrected";
+
 /// The targets and motions of a program.
 pub(crate) fn parse(text: &[u8], given: &Given, axes: &Axes) -> Parsed {
     let tokens = tokens(text);
@@ -165,9 +168,7 @@ impl Reader<'_> {
             argument = *base;
         }
         if is_relative {
-            const REASON: &str =
-                "relative to a target: the offset is left as it is, at most its target is corrected";
-            self.list(line, shown(text, written), REASON);
+            self.list(line, shown(text, written), RELATIVE);
         }
         let number = match argument {
             Argument::Name(name, indices) => {
