@@ -307,15 +307,10 @@ impl JointEntry {
             ));
         }
         Ok(Joint {
-            name: self.name.clone(),
-            kind,
-            screw,
             frame: self.base_from_joint.pose()?,
             limits: self.limits.map(|[lower, upper]| Limits { lower, upper }),
             reading: self.reading.clone(),
-            tolerance: None,
-            stands_on: None,
-            give_of: None,
+            ..Joint::with_screw(&self.name, kind, screw)
         })
     }
 }
