@@ -74,6 +74,15 @@ impl Checked {
     }
 }
 
+/// Counts one more on a line; whether it is the first.
+fn count(number: &mut usize, first: &mut usize, line: usize) -> bool {
+    *number += 1;
+    if *number == 1 {
+        *first = line;
+    }
+    *number == 1
+}
+
 /// What a compensation changes, and what is left.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Summary {
@@ -169,25 +178,21 @@ impl Summary {
         }
         for &(index, low, high) in &self.limits {
             let Some(&value) = found.readings.get(index) else { continue };
-            if value < low || value > high {
-                if self.beyond_limits.0 == 0 {
-                    self.beyond_limits = (0, line, self.joints.get(index).cloned().unwrap_or_default());
-                }
-                self.beyond_limits.0 += 1;
+            if (value < low || value > high)
+                && count(&mut self.beyond_limits.0, &mut self.beyond_limits.1, line)
+            {
+                self.beyond_limits.2 = self.joints.get(index).cloned().unwrap_or_default();
             }
         }
-        let count = |counted: &mut (usize, usize), is: bool| {
-            if is {
-                counted.1 = if counted.0 == 0 { line } else { counted.1 };
-                counted.0 += 1;
+        match found.outcome {
+            Outcome::Nearest => {
+                count(&mut self.unreached.0, &mut self.unreached.1, line);
             }
-        };
-        count(&mut self.unreached, found.outcome == Outcome::Nearest);
-        let mut turned = (self.turned.0, self.turned.1);
-        count(&mut turned, found.outcome == Outcome::Turned);
-        (self.turned.0, self.turned.1) = turned;
-        if found.outcome == Outcome::Turned {
-            self.turned.2.include(found.left_rad, line);
+            Outcome::Turned => {
+                count(&mut self.turned.0, &mut self.turned.1, line);
+                self.turned.2.include(found.left_rad, line);
+            }
+            Outcome::Reached | Outcome::TooFar(..) => {}
         }
         if let Some(targets) = &mut self.targets {
             targets.push(most);

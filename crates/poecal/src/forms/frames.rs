@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 
 use crate::error::{Error, ErrorKind, Result};
-use crate::lie::{Pose, Screw, rotation};
+use crate::lie::{Pose, rotation};
 use crate::robot::{Joint, JointKind, Limits, Robot};
 
 /// A frame's z nearer than this to its axis needs no turn.
@@ -69,14 +69,8 @@ impl AxisFrames {
         for (joint, frame) in of.joints.iter().zip(&self.joints) {
             base_from = base_from * *frame;
             let z = base_from.rotation.column(2).into_owned();
-            let screw = match joint.kind {
-                JointKind::Revolute => Screw::revolute(&z, &base_from.translation),
-                JointKind::Prismatic => Screw::prismatic(&z),
-            };
-            let mut own = match joint.kind {
-                JointKind::Revolute => Joint::revolute(&joint.name, screw),
-                JointKind::Prismatic => Joint::prismatic(&joint.name, screw),
-            };
+            let screw = joint.kind.screw(&z, &base_from.translation);
+            let mut own = Joint::with_screw(&joint.name, joint.kind, screw);
             own.frame = base_from;
             // The new zero is the old reading's.
             let by = joint.reading.offset;

@@ -23,6 +23,12 @@ pub(super) struct Value {
 }
 
 impl Value {
+    fn new(open: &[Open], span: &Span, text: &str, in_degrees: bool) -> Self {
+        let keys = open.iter().filter_map(Open::key).collect();
+        let (line, column) = (span.start.line(), span.start.col() + 1);
+        Value { keys, text: text.to_owned(), in_degrees, line, column }
+    }
+
     /// An error at the value.
     pub(super) fn error(&self, path: &Path, message: String) -> Error {
         Error::new(ErrorKind::Model, message).at(path, self.line, self.column)
@@ -47,13 +53,13 @@ impl Value {
 
 /// The values of the mappings of a text, in its order; a list is one without its entries. `expected` describes the file in messages.
 pub(super) fn values(text: &str, path: &Path, expected: &str) -> Result<Vec<Value>> {
-    let refuse = |span: &Span, found: &str| {
+    let error = |span: &Span, found: &str| {
         let message = format!("found {found}, expected {expected}");
-        Err(Error::new(ErrorKind::Syntax, message).at(path, span.start.line(), span.start.col() + 1))
+        Error::new(ErrorKind::Syntax, message).at(path, span.start.line(), span.start.col() + 1)
     };
     let mut open: Vec<Open> = Vec::new();
     let mut found = Vec::new();
-    let mut documents = 0;
+    let mut has_begun = false;
     for event in Parser::new_from_str(text) {
         let (event, span) = event.map_err(|error| {
             let place = error.marker();
@@ -61,63 +67,43 @@ pub(super) fn values(text: &str, path: &Path, expected: &str) -> Result<Vec<Valu
             Error::new(ErrorKind::Syntax, message).at(path, place.line(), place.col() + 1)
         })?;
         match event {
-            Event::Scalar(text, _, _, tag) => match open.last_mut() {
-                Some(Open::Map { key: key @ None, seen }) => {
-                    if !seen.insert(text.to_string()) {
-                        return refuse(&span, &format!("the key `{}` twice", visible(&text)));
-                    }
-                    *key = Some(text.to_string());
-                }
-                Some(Open::Map { .. }) => {
-                    // As xacro reads them; others would be other numbers.
-                    let in_degrees = match tag.as_ref().map(|tag| (tag.handle(), tag.suffix())) {
-                        None | Some(("tag:yaml.org,2002:", _) | ("!", "radians")) => false,
-                        Some(("!", "degrees")) => true,
-                        Some((_, name)) => {
-                            return refuse(&span, &format!("the unknown tag `!{}`", visible(name)));
-                        }
-                    };
-                    let keys = open.iter().filter_map(Open::key).collect();
-                    let (line, column) = (span.start.line(), span.start.col() + 1);
-                    found.push(Value { keys, text: text.to_string(), in_degrees, line, column });
+            Event::Scalar(text, _, _, tag) => {
+                let tag = tag.as_ref().map(|tag| (tag.handle(), tag.suffix()));
+                let value = scalar(&mut open, &text, tag).map_err(|it| error(&span, &it))?;
+                if let Some(in_degrees) = value {
+                    found.push(Value::new(&open, &span, &text, in_degrees));
                     close_value(&mut open);
                 }
-                Some(Open::List) => {}
-                None => return refuse(&span, "a text alone"),
-            },
+            }
             Event::MappingStart(..) | Event::SequenceStart(..) => {
                 if let Some(Open::Map { key: None, .. }) = open.last() {
-                    return refuse(&span, "a key that is no text");
+                    return Err(error(&span, "a key that is no text"));
                 }
                 if open.len() > DEEPEST {
-                    return refuse(&span, "more than 64 mappings in each other");
+                    return Err(error(&span, "more than 64 mappings in each other"));
                 }
                 let is_list = matches!(event, Event::SequenceStart(..));
                 if is_list && open.iter().all(|it| matches!(it, Open::Map { .. })) && !open.is_empty() {
-                    let keys = open.iter().filter_map(Open::key).collect();
-                    let (line, column) = (span.start.line(), span.start.col() + 1);
-                    found.push(Value { keys, text: "[...]".to_owned(), in_degrees: false, line, column });
+                    found.push(Value::new(&open, &span, "[...]", false));
                 }
-                open.push(if matches!(event, Event::MappingStart(..)) {
-                    Open::Map { key: None, seen: BTreeSet::new() }
-                } else {
-                    Open::List
-                });
+                open.push(if is_list { Open::List } else { Open::Map { key: None, seen: BTreeSet::new() } });
             }
             Event::MappingEnd | Event::SequenceEnd => {
                 open.pop();
                 close_value(&mut open);
             }
             Event::Alias(_) | Event::UnresolvedAlias(_) => {
-                return refuse(&span, "a reference to another place of the file");
+                return Err(error(&span, "a reference to another place of the file"));
             }
-            Event::DocumentStart(..) => {
-                documents += 1;
-                if documents > 1 {
-                    return refuse(&span, "a second document");
-                }
+            Event::DocumentStart(..) if std::mem::replace(&mut has_begun, true) => {
+                return Err(error(&span, "a second document"));
             }
-            Event::StreamStart | Event::StreamEnd | Event::DocumentEnd | Event::Anchor(..) | _ => {}
+            Event::StreamStart
+            | Event::StreamEnd
+            | Event::DocumentStart(..)
+            | Event::DocumentEnd
+            | Event::Anchor(..)
+            | _ => {}
         }
     }
     Ok(found)
@@ -142,6 +128,31 @@ impl Open {
             Open::Map { key, .. } => key.clone(),
             Open::List => None,
         }
+    }
+}
+
+/// Takes a text where a key or a value comes next; of a value of a mapping, whether it is marked as degrees, and what is wrong with it.
+fn scalar(
+    open: &mut [Open],
+    text: &str,
+    tag: Option<(&str, &str)>,
+) -> std::result::Result<Option<bool>, String> {
+    match open.last_mut() {
+        Some(Open::Map { key: key @ None, seen }) => {
+            if !seen.insert(text.to_owned()) {
+                return Err(format!("the key `{}` twice", visible(text)));
+            }
+            *key = Some(text.to_owned());
+            Ok(None)
+        }
+        Some(Open::Map { .. }) => match tag {
+            // As xacro reads them; others would be other numbers.
+            None | Some(("tag:yaml.org,2002:", _) | ("!", "radians")) => Ok(Some(false)),
+            Some(("!", "degrees")) => Ok(Some(true)),
+            Some((_, name)) => Err(format!("the unknown tag `!{}`", visible(name))),
+        },
+        Some(Open::List) => Ok(None),
+        None => Err("a text alone".to_owned()),
     }
 }
 

@@ -105,15 +105,26 @@ fn range_words(judgement: &Judgement) -> String {
 }
 
 fn refitted_words(judgement: &Judgement) -> String {
+    match refitted_parts(judgement).as_str() {
+        "" => "nothing: screws, tool and device frame are the calibration's".to_owned(),
+        parts => format!("{parts}: fitted to these measurements, so training for them"),
+    }
+}
+
+/// What was refitted; nothing of nothing.
+pub(super) fn refitted_parts(judgement: &Judgement) -> String {
     let words = judgement.refitted.iter().map(|part| match part {
         Refitted::DeviceFrame => "device frame",
         Refitted::Tool => "tool",
     });
-    let words: Vec<&str> = words.collect();
-    if words.is_empty() {
-        return "nothing: screws, tool and device frame are the calibration's".to_owned();
-    }
-    format!("{}: fitted to these measurements, so training for them", words.join(" and "))
+    words.collect::<Vec<_>>().join(" and ")
+}
+
+/// The models that were judged, by their names.
+pub(super) fn judged_models(judgement: &Judgement) -> Vec<(&'static str, &ModelAccuracy)> {
+    let nominal = judgement.nominal.as_ref().map(|model| ("nominal", model));
+    let corrected = judgement.with_terms().map(|model| ("corrected", &model.errors));
+    nominal.into_iter().chain([("calibrated", &judgement.calibrated)]).chain(corrected).collect()
 }
 
 fn block(
@@ -122,10 +133,7 @@ fn block(
     judgement: &Judgement,
     of: impl Fn(&ModelAccuracy) -> Option<Statistic>,
 ) {
-    let nominal = judgement.nominal.as_ref().map(|model| ("nominal", model));
-    let corrected = judgement.with_terms().map(|model| ("corrected", &model.errors));
-    let columns: Vec<_> =
-        nominal.into_iter().chain([("calibrated", &judgement.calibrated)]).chain(corrected).collect();
+    let columns = judged_models(judgement);
     row(out, title, WIDTHS, columns.iter().map(|(head, _)| head));
     for (label, _, value) in STATISTICS {
         let cells = columns.iter().map(|(_, model)| number_or_dash(of(model).map(value)));

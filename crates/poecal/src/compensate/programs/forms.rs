@@ -5,7 +5,6 @@ use std::f64::consts::{PI, TAU};
 use nalgebra::Vector3;
 
 use super::Language;
-use super::parsed::Number;
 use crate::lie::{Pose, rotation};
 
 /// A form of a pose in numbers.
@@ -51,11 +50,6 @@ impl PoseForm {
             (_, 0..3) => 6,
             (PoseForm::Abc | PoseForm::Wpr, _) => 7,
         }
-    }
-
-    /// The pose of numbers of a program, as it writes them or by their scale; `None` as of [`PoseForm::pose`].
-    pub(crate) fn of_numbers(self, numbers: &[Number]) -> Option<Pose> {
-        self.pose(&numbers.iter().map(Number::scaled).collect::<Vec<f64>>())
     }
 
     /// The pose that the first of these numbers mean, the others being words of a configuration; `None` as of [`PoseForm::pose`].

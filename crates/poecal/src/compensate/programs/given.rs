@@ -49,12 +49,8 @@ impl Given {
 }
 
 fn named(poses: &[(Option<String>, Pose)], name: Option<&str>) -> Option<Pose> {
-    let is = |it: &Option<String>| match (it, name) {
-        (Some(it), Some(name)) => it.eq_ignore_ascii_case(name),
-        (None, None) => true,
-        (Some(_), None) | (None, Some(_)) => false,
-    };
-    poses.iter().find(|(it, _)| is(it)).map(|(_, pose)| *pose)
+    let small = |it: Option<&str>| it.map(str::to_ascii_lowercase);
+    poses.iter().find(|(it, _)| small(it.as_deref()) == small(name)).map(|(_, pose)| *pose)
 }
 
 impl Given {
@@ -103,13 +99,11 @@ impl Given {
     /// # Errors
     /// [`ErrorKind::Option`].
     pub fn set_start(&mut self, words: &str, language: Language) -> Result<()> {
-        let number = |it: &str| it.trim().parse().ok().filter(|it: &f64| it.is_finite());
-        let numbers: Option<Vec<f64>> = words.split(',').map(number).collect();
         let (scale, unit) = match language {
             Language::UrScript => (1.0, "radians"),
             Language::Rapid | Language::Krl | Language::Fanuc => (1_f64.to_radians(), "degrees"),
         };
-        let Some(numbers) = numbers else {
+        let Some(numbers) = numbers(words) else {
             let message =
                 format!("found --start {words}, expected the readings of all joints, J1,J2,… in {unit}");
             return Err(Error::new(ErrorKind::Option, message));
@@ -120,12 +114,7 @@ impl Given {
 }
 
 fn add(poses: &mut Vec<Named>, found: Named, words: &str, option: &str) -> Result<()> {
-    let is_same = |it: &Named| match (&it.0, &found.0) {
-        (Some(one), Some(other)) => one.eq_ignore_ascii_case(other),
-        (None, None) => true,
-        (Some(_), None) | (None, Some(_)) => false,
-    };
-    if poses.iter().any(is_same) {
+    if named(poses, found.0.as_deref()).is_some() {
         let message = format!("found {option} {words} for one that is stated already, expected each once");
         return Err(Error::new(ErrorKind::Option, message));
     }
@@ -133,13 +122,15 @@ fn add(poses: &mut Vec<Named>, found: Named, words: &str, option: &str) -> Resul
     Ok(())
 }
 
+/// Numbers between commas.
+fn numbers(words: &str) -> Option<Vec<f64>> {
+    words.split(',').map(|it| it.trim().parse().ok().filter(|it: &f64| it.is_finite())).collect()
+}
+
 fn plain_pose(words: &str, language: Language, option: &str) -> Result<Pose> {
-    let numbers: Vec<Option<f64>> =
-        words.split(',').map(|it| it.trim().parse().ok().filter(|it: &f64| it.is_finite())).collect();
     let form = PoseForm::of(language);
     let expected = form.names();
-    let found: Option<Vec<f64>> = numbers.into_iter().collect();
-    found.filter(|it| it.len() == expected.len()).and_then(|it| form.pose(&it)).ok_or_else(|| {
+    numbers(words).filter(|it| it.len() == expected.len()).and_then(|it| form.pose(&it)).ok_or_else(|| {
         let message = format!(
             "found {option} {words}, expected {} as {} writes poses ({})",
             expected.join(","),

@@ -134,6 +134,13 @@ impl Number {
     }
 }
 
+impl PoseForm {
+    /// The pose of numbers of a program; `None` as of [`PoseForm::pose`].
+    pub(crate) fn of_numbers(self, numbers: &[Number]) -> Option<Pose> {
+        self.pose(&numbers.iter().map(Number::scaled).collect::<Vec<f64>>())
+    }
+}
+
 /// A tool or a frame while a program runs.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) enum Setting {

@@ -20,6 +20,12 @@ pub(crate) enum Stated {
     Fanuc(fanuc::Configuration),
 }
 
+impl From<Status> for Stated {
+    fn from(status: Status) -> Self {
+        if status == Status::default() { Stated::Nothing } else { Stated::Krl(status) }
+    }
+}
+
 impl Stated {
     /// Whether a configuration of the nominal arm (the model's readings, and the counted ones) fits the words, borders included.
     pub(crate) fn fits(&self, nominal: &Arm, (q, counted): &(Vec<f64>, Vec<f64>)) -> bool {

@@ -6,9 +6,9 @@ use std::collections::BTreeMap;
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::{Deserialize, Serialize};
 
-use super::{CalibrationFile, JointEntry, PoseEntry, ScrewEntry, TargetEntry};
+use super::{CalibrationFile, JointEntry, PoseEntry, ScrewEntry, TargetEntry, refuse};
 use crate::calibration::CalibratedTarget;
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::Result;
 use crate::lie::Pose;
 use crate::robot::{Body, JointTerm, Mass, Mount, Robot, Term};
 use nalgebra::Vector3;
@@ -112,9 +112,9 @@ impl CalibrationFile {
             for (&term, &coefficient) in of(entry).1 {
                 if !coefficient.is_finite() {
                     let name = &entry.name;
-                    let message =
-                        format!("found {coefficient} as the {term} of joint `{name}`, expected a number");
-                    return Err(Error::new(ErrorKind::Model, message));
+                    return refuse(format!(
+                        "found {coefficient} as the {term} of joint `{name}`, expected a number"
+                    ));
                 }
                 robot.terms.push(JointTerm { joint, term, coefficient });
             }
@@ -122,21 +122,19 @@ impl CalibrationFile {
         let names: Vec<String> = self.robot.factors.iter().map(|it| it.name.clone()).collect();
         robot = robot.with_factors(&names)?;
         if let Some(factor) = self.robot.factors.iter().find(|it| !it.reference.is_finite()) {
-            let message =
-                format!("found a reference of factor `{}` that is no number, expected one", factor.name);
-            return Err(Error::new(ErrorKind::Model, message));
+            return refuse(format!(
+                "found a reference of factor `{}` that is no number, expected one",
+                factor.name
+            ));
         }
         robot.factors.clone_from(&self.robot.factors);
         robot.base_name.clone_from(&self.robot.base_link);
         robot.tip_name.clone_from(&self.robot.tip_link);
-        for index in 0..self.joints.len() {
-            let on = self.joints.get(index).and_then(|entry| entry.on.as_ref());
-            let on = on.map(|on| on.body(&robot)).transpose()?;
-            let gives = self.joints.get(index).and_then(|entry| entry.gives.as_deref());
-            let give_of = gives.map(|name| self.joint_that_gives(name, index)).transpose()?;
-            if let Some(joint) = robot.joints.get_mut(index) {
-                (joint.stands_on, joint.give_of) = (on, give_of);
-            }
+        for (index, entry) in self.joints.iter().enumerate() {
+            let on = entry.on.as_ref().map(|on| on.body(&robot)).transpose()?;
+            let give_of =
+                entry.gives.as_deref().map(|name| self.joint_that_gives(name, index)).transpose()?;
+            (robot.joints[index].stands_on, robot.joints[index].give_of) = (on, give_of);
         }
         robot.masses = self.robot.masses.iter().map(|entry| entry.mass(&robot)).collect::<Result<_>>()?;
         if let Some(gravity) = &self.robot.gravity {
@@ -187,8 +185,7 @@ impl MassEntry {
 
     fn mass(&self, robot: &Robot) -> Result<Mass> {
         if !Mass::is_mass(self.mass_kg) {
-            let message = format!("found a mass of {} kg, expected above 0 and at most 1e6", self.mass_kg);
-            return Err(Error::new(ErrorKind::Model, message));
+            return refuse(format!("found a mass of {} kg, expected above 0 and at most 1e6", self.mass_kg));
         }
         Ok(Mass { body: self.on.body(robot)?, place: Vector3::from(self.place_m), kg: self.mass_kg })
     }
@@ -205,8 +202,7 @@ impl CalibrationFile {
         for JointTerm { joint, term, .. } in &robot.terms {
             if let Some(needed) = robot.lacks(*term) {
                 let name = &robot.joints[*joint].name;
-                let message = format!("found the term {term} of joint `{name}`, expected {needed}");
-                return Err(Error::new(ErrorKind::Model, message));
+                return refuse(format!("found the term {term} of joint `{name}`, expected {needed}"));
             }
         }
         for (index, joint) in robot.joints.iter().enumerate() {
@@ -216,9 +212,9 @@ impl CalibrationFile {
                 before.is_some_and(|before| before == of || robot.joints[before].give_of == Some(of));
             if !is_on_it {
                 let (give, name) = (&joint.name, &robot.joints[of].name);
-                let message =
-                    format!("found `{give}` as a give of `{name}`, expected it to stand on that joint");
-                return Err(Error::new(ErrorKind::Model, message));
+                return refuse(format!(
+                    "found `{give}` as a give of `{name}`, expected it to stand on that joint"
+                ));
             }
         }
         Ok(())
@@ -227,11 +223,11 @@ impl CalibrationFile {
     /// Index of the joint of which another is a give.
     fn joint_that_gives(&self, name: &str, give: usize) -> Result<usize> {
         let found = self.joints.iter().position(|entry| entry.name == name);
-        found.filter(|&of| of < give && self.joints[of].gives.is_none()).ok_or_else(|| {
-            let own = &self.joints[give].name;
-            let message = format!("found `{own}` as a give of `{name}`, expected one of a joint before it");
-            Error::new(ErrorKind::Model, message)
-        })
+        let own = &self.joints[give].name;
+        found.filter(|&of| of < give && self.joints[of].gives.is_none()).map_or_else(
+            || refuse(format!("found `{own}` as a give of `{name}`, expected one of a joint before it")),
+            Ok,
+        )
     }
 }
 
@@ -249,11 +245,9 @@ impl BodyEntry {
             BodyEntry::Base => Ok(Body::Base),
             BodyEntry::LinkOf(name) => {
                 let found = robot.joints.iter().position(|joint| joint.name == *name);
-                found.map(Body::Link).ok_or_else(|| {
-                    let message =
-                        format!("found the link of joint `{name}`, expected that of a joint of this file");
-                    Error::new(ErrorKind::Model, message)
-                })
+                let message =
+                    || format!("found the link of joint `{name}`, expected that of a joint of this file");
+                found.map(Body::Link).map_or_else(|| refuse(message()), Ok)
             }
         }
     }

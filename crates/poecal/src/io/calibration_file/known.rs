@@ -90,11 +90,7 @@ impl CalibrationFile {
         robot: &Robot,
         body: Body,
     ) -> Result<(Uncertainty, Vec<usize>)> {
-        let entry = self.uncertainty.as_ref().ok_or_else(|| {
-            let message = "found a calibration without uncertainty, expected more measurements than unknowns to estimate it from: \
-                           calibrate with more configurations, or hold out fewer";
-            Error::new(ErrorKind::Model, message)
-        })?;
+        let entry = self.uncertainty.as_ref().ok_or_else(|| Error::new(ErrorKind::Model, NONE))?;
         let axes = entry.axes.iter().map(PoseEntry::pose).collect::<Result<Vec<_>>>()?;
         if axes.len() != robot.joints.len() {
             return Err(bad("another number of axes than of joints"));
@@ -130,17 +126,18 @@ impl CalibrationFile {
         let n = layout.dim();
         let outside = entry.covariance_outside_m2.as_ref();
         std::iter::once(&entry.covariance_m2).chain(outside).try_for_each(|upper| check(upper, n))?;
-        let mut covariances = (symmetric(&entry.covariance_m2, n), outside.map(|upper| symmetric(upper, n)));
+        let mut covariance = symmetric(&entry.covariance_m2, n);
+        let mut covariance_outside = outside.map(|upper| symmetric(upper, n));
         if let Some(found) = LinkPoints::new(&estimate, &layout, &points) {
-            covariances =
-                (found.covariance(&covariances.0), covariances.1.map(|outside| found.covariance(&outside)));
+            covariance = found.covariance(&covariance);
+            covariance_outside = covariance_outside.map(|outside| found.covariance(&outside));
             layout = found.layout;
         }
         let uncertainty = Uncertainty {
             estimate,
             layout,
-            covariance: covariances.0,
-            covariance_outside: covariances.1,
+            covariance,
+            covariance_outside,
             sampled: self.coverage.iter().map(|it| [it.sampled_min, it.sampled_max]).collect(),
             discrepancy: entry.model_error(),
             length_m: entry.length_m,
@@ -202,6 +199,10 @@ impl UncertaintyEntry {
         }
     }
 }
+
+/// What is said of a file without uncertainty.
+const NONE: &str = "found a calibration without uncertainty, expected more measurements than unknowns to estimate it from: calibrate with \
+                    more configurations, or hold out fewer";
 
 /// An error of a file that states no uncertainty that can be used.
 fn bad(what: &str) -> Error {

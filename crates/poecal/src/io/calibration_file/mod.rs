@@ -7,6 +7,7 @@ mod compensation;
 mod controller;
 mod corrected;
 mod fitted;
+mod frames;
 mod judging;
 mod keyed;
 mod known;
@@ -29,6 +30,7 @@ pub use controller::Counted;
 pub use corrected::{
     CorrectedEntry, EffectEntry, GravityEntry, JointErrorEntry, JointErrorsEntry, TriedEntry, WeightEntry,
 };
+pub use frames::*;
 pub use keyed::*;
 pub use original::OriginalUrdf;
 pub use outliers::{OutlierEntry, OutlierSet, RobustEntry};
@@ -43,7 +45,7 @@ use std::path::Path;
 
 use super::record::Record;
 use super::{json_text, source_text};
-use crate::calibration::{CalibratedStation, Calibration, DeviceFrameKnowledge, ModelAccuracy, names};
+use crate::calibration::{Calibration, DeviceFrameKnowledge, ModelAccuracy, names};
 use crate::error::{Error, ErrorKind, Result};
 use crate::forensics::Diagnosis;
 use crate::lie::{Pose, Screw, Twist};
@@ -77,34 +79,13 @@ impl CalibrationFile {
             record: Record::default(),
             accuracy: calibration.accuracy,
             blocks: BlocksEntry::of(calibration, data),
-            solver: SolverEntry {
-                formulation: calibration.formulation.words.formulation.to_owned(),
-                pose_residual: calibration.formulation.words.pose_residual.to_owned(),
-                method: calibration.formulation.words.method.to_owned(),
-                note: calibration.formulation.words.note.map(str::to_owned),
-                iterations: calibration.solver.iterations,
-                converged: calibration.solver.termination.is_success(),
-                termination: calibration.solver.termination,
-                restarts: calibration.solver.restarts,
-                chosen_tolerance: calibration.chosen_tolerance.map(|it| ToleranceEntry {
-                    angle_deg: it.angle_rad.to_degrees(),
-                    length_mm: 1e3 * it.length_m,
-                }),
-                trace: calibration.solver.trace.iter().copied().filter(|value| value.is_finite()).collect(),
-                joint_offsets: OffsetEntry::of(calibration),
-            },
+            solver: SolverEntry::of(calibration),
             identifiability: IdentifiabilityEntry::of(&calibration.identifiability),
             acceptance: calibration.acceptance.clone(),
             verdict: Some(calibration.verdict.clone()),
             coverage: calibration.trust.coverage.clone(),
             cross_validation: CrossValidationEntry::of(&calibration.trust),
-            corrections: calibration
-                .trust
-                .coverage
-                .iter()
-                .zip(&calibration.trust.joints)
-                .map(CorrectionEntry::of)
-                .collect(),
+            corrections: CorrectionEntry::of_all(&calibration.trust),
             common: CommonDirectionEntry::of(calibration),
             uncertainty: UncertaintyEntry::of(calibration, data),
             robust: RobustEntry::of(calibration),
@@ -193,6 +174,11 @@ impl CalibrationFile {
     }
 }
 
+/// An error of a file that holds no valid robot, as a result.
+fn refuse<T>(message: String) -> Result<T> {
+    Err(Error::new(ErrorKind::Model, message))
+}
+
 /// Cuts examples in Rust off a description.
 fn without_example(schema: &mut Schema) {
     if let Some(Value::String(words)) = schema.get_mut("description")
@@ -209,37 +195,25 @@ impl From<&Diagnosis> for DiagnosisEntry {
     }
 }
 
-impl RobotEntry {
-    /// Frames of a robot and its nominal model.
-    pub(in crate::io) fn new(robot: &Robot, nominal: &Robot) -> Self {
-        RobotEntry {
-            name: robot.name.clone(),
-            base_link: robot.base_name.clone(),
-            tip_link: robot.tip_name.clone(),
-            base_from_tip_at_zero: (&robot.home).into(),
-            nominal_base_from_tip_at_zero: (&nominal.home).into(),
-            tip_on: robot.tip.map(|body| BodyEntry::of(robot, body)),
-            gravity: robot.gravity.as_ref().map(|gravity| GravityEntry::of(robot, gravity)),
-            masses: MassEntry::of(robot),
-            factors: robot.factors.clone(),
+impl SolverEntry {
+    fn of(calibration: &Calibration) -> Self {
+        let (solver, words) = (&calibration.solver, &calibration.formulation.words);
+        SolverEntry {
+            formulation: words.formulation.to_owned(),
+            pose_residual: words.pose_residual.to_owned(),
+            method: words.method.to_owned(),
+            note: words.note.map(str::to_owned),
+            iterations: solver.iterations,
+            converged: solver.termination.is_success(),
+            termination: solver.termination,
+            restarts: solver.restarts,
+            chosen_tolerance: calibration.chosen_tolerance.map(|it| ToleranceEntry {
+                angle_deg: it.angle_rad.to_degrees(),
+                length_mm: 1e3 * it.length_m,
+            }),
+            trace: solver.trace.iter().copied().filter(|value| value.is_finite()).collect(),
+            joint_offsets: OffsetEntry::of(calibration),
         }
-    }
-}
-
-impl StationEntry {
-    /// Stations of a calibration; empty for a single one without a name.
-    fn of(stations: &[CalibratedStation], noise: Noise, errors: &ModelAccuracy) -> Vec<Self> {
-        let is_plain = stations.len() == 1 && stations.iter().all(|it| it.name.is_none());
-        let entry = |it: &CalibratedStation| StationEntry {
-            instrument: it.name.clone(),
-            base_from_device: (&it.base_from_device).into(),
-            sigma: (it.noise != noise).then(|| measured(errors, it.noise)),
-            kind: (it.kind != "instrument").then(|| it.kind.to_owned()),
-            radius_mm: it.radius_m.map(|radius| 1e3 * radius),
-            zero_mm: (it.range.zero_m != 0.0).then_some(1e3 * it.range.zero_m),
-            scale: (it.range.scale != 0.0).then_some(it.range.scale),
-        };
-        if is_plain { Vec::new() } else { stations.iter().map(entry).collect() }
     }
 }
 
@@ -327,22 +301,16 @@ impl JointEntry {
         if let Some([lower, upper]) = self.limits
             && (lower.is_nan() || upper.is_nan() || lower >= upper)
         {
-            let message = format!(
+            return refuse(format!(
                 "found limits from {lower} to {upper} of joint `{}`, expected the lower one first",
                 self.name
-            );
-            return Err(Error::new(ErrorKind::Model, message));
+            ));
         }
         Ok(Joint {
-            name: self.name.clone(),
-            kind,
-            screw,
             frame: self.base_from_joint.pose()?,
             limits: self.limits.map(|[lower, upper]| Limits { lower, upper }),
             reading: self.reading.clone(),
-            tolerance: None,
-            stands_on: None,
-            give_of: None,
+            ..Joint::with_screw(&self.name, kind, screw)
         })
     }
 }

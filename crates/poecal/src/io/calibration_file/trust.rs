@@ -233,7 +233,12 @@ impl BootstrapEntry {
 }
 
 impl CorrectionEntry {
-    pub(super) fn of((coverage, found): (&JointCoverage, &JointCorrection)) -> Self {
+    /// Those of all joints.
+    pub(super) fn of_all(trust: &Trust) -> Vec<Self> {
+        trust.coverage.iter().zip(&trust.joints).map(Self::of).collect()
+    }
+
+    fn of((coverage, found): (&JointCoverage, &JointCorrection)) -> Self {
         CorrectionEntry {
             joint: coverage.joint.clone(),
             tilt_deg: found.tilt_rad.to_degrees(),

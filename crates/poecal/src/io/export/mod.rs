@@ -24,94 +24,67 @@ use crate::forms::DhConvention;
 use crate::robot::{MEASURED, Robot};
 use origins::Flavour;
 
-/// A form.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ExportFormat {
-    /// URDF: the text that was calibrated, or a new one.
-    Urdf,
-    /// A TOML model of poecal, of screws.
-    Toml,
-    /// Screws of a product of exponentials, JSON.
-    Poe,
-    /// Denavit and Hartenberg's table, JSON.
-    Dh,
-    /// Craig's table, JSON.
-    Mdh,
-    /// Denavit and Hartenberg's table with Hayati's rows, JSON.
-    Hayati,
-    /// Origins of a URDF's joints by their names, YAML: for xacro's `load_yaml`.
-    Origins,
-    /// The kinematics file of Universal Robots' driver, YAML.
-    Ur,
-    /// The kinematics file of uFactory's description, YAML.
-    Xarm,
-    /// The kinematics file of Franka's description, YAML.
-    Franka,
-    /// PAL Robotics' master calibration, YAML: differences of the origins of a URDF.
-    Pal,
-    /// LeRobot's calibration of motors, JSON: joint offsets in ticks.
-    Lerobot,
-    /// MuJoCo's model, XML.
-    Mjcf,
-    /// Gazebo's model, XML.
-    Sdf,
-    /// USD physics, text.
-    Usd,
-    /// Origins, a row for each joint.
-    Csv,
-    /// The joint offsets, base and tool that come nearest, JSON.
-    Offsets,
-    /// Arrays of C with the nominal and the actual arm, for kinematics on a controller.
-    C,
+/// Makes the forms by their words.
+macro_rules! formats {
+    ($($(#[$doc:meta])* $name:ident = $word:literal,)+) => {
+        /// A form.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        pub enum ExportFormat {
+            $($(#[$doc])* $name,)+
+        }
+
+        impl ExportFormat {
+            /// All of them.
+            pub const ALL: [ExportFormat; 18] = [$(ExportFormat::$name),+];
+
+            /// Its word, as the program and the package name it.
+            #[must_use]
+            pub const fn word(self) -> &'static str {
+                match self {
+                    $(ExportFormat::$name => $word,)+
+                }
+            }
+        }
+    };
 }
 
-impl ExportFormat {
-    /// All of them.
-    pub const ALL: [ExportFormat; 18] = [
-        ExportFormat::Urdf,
-        ExportFormat::Toml,
-        ExportFormat::Poe,
-        ExportFormat::Dh,
-        ExportFormat::Mdh,
-        ExportFormat::Hayati,
-        ExportFormat::Origins,
-        ExportFormat::Ur,
-        ExportFormat::Xarm,
-        ExportFormat::Franka,
-        ExportFormat::Pal,
-        ExportFormat::Lerobot,
-        ExportFormat::Mjcf,
-        ExportFormat::Sdf,
-        ExportFormat::Usd,
-        ExportFormat::Csv,
-        ExportFormat::Offsets,
-        ExportFormat::C,
-    ];
-
-    /// Its word, as the program and the package name it.
-    #[must_use]
-    pub const fn word(self) -> &'static str {
-        match self {
-            ExportFormat::Urdf => "urdf",
-            ExportFormat::Toml => "toml",
-            ExportFormat::Poe => "poe",
-            ExportFormat::Dh => "dh",
-            ExportFormat::Mdh => "mdh",
-            ExportFormat::Hayati => "hayati",
-            ExportFormat::Origins => "origins",
-            ExportFormat::Ur => "ur",
-            ExportFormat::Xarm => "xarm",
-            ExportFormat::Franka => "franka",
-            ExportFormat::Pal => "pal",
-            ExportFormat::Lerobot => "lerobot",
-            ExportFormat::Mjcf => "mjcf",
-            ExportFormat::Sdf => "sdf",
-            ExportFormat::Usd => "usd",
-            ExportFormat::Csv => "csv",
-            ExportFormat::Offsets => "offsets",
-            ExportFormat::C => "c",
-        }
-    }
+formats! {
+    /// URDF: the text that was calibrated, or a new one.
+    Urdf = "urdf",
+    /// A TOML model of poecal, of screws.
+    Toml = "toml",
+    /// Screws of a product of exponentials, JSON.
+    Poe = "poe",
+    /// Denavit and Hartenberg's table, JSON.
+    Dh = "dh",
+    /// Craig's table, JSON.
+    Mdh = "mdh",
+    /// Denavit and Hartenberg's table with Hayati's rows, JSON.
+    Hayati = "hayati",
+    /// Origins of a URDF's joints by their names, YAML: for xacro's `load_yaml`.
+    Origins = "origins",
+    /// The kinematics file of Universal Robots' driver, YAML.
+    Ur = "ur",
+    /// The kinematics file of uFactory's description, YAML.
+    Xarm = "xarm",
+    /// The kinematics file of Franka's description, YAML.
+    Franka = "franka",
+    /// PAL Robotics' master calibration, YAML: differences of the origins of a URDF.
+    Pal = "pal",
+    /// LeRobot's calibration of motors, JSON: joint offsets in ticks.
+    Lerobot = "lerobot",
+    /// MuJoCo's model, XML.
+    Mjcf = "mjcf",
+    /// Gazebo's model, XML.
+    Sdf = "sdf",
+    /// USD physics, text.
+    Usd = "usd",
+    /// Origins, a row for each joint.
+    Csv = "csv",
+    /// The joint offsets, base and tool that come nearest, JSON.
+    Offsets = "offsets",
+    /// Arrays of C with the nominal and the actual arm, for kinematics on a controller.
+    C = "c",
 }
 
 /// What some forms need beside the robot.

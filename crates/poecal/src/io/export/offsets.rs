@@ -163,6 +163,23 @@ struct Motor {
 /// Largest homing offset that the motors store.
 const MOST_TICKS: i64 = 2047;
 
+/// The calibration of motors that LeRobot has, or one without offsets.
+fn motors_of(robot: &Robot, motors: Option<&str>) -> Result<BTreeMap<String, Motor>> {
+    match motors {
+        Some(text) => serde_json::from_str(text).map_err(|error| {
+            option(format!(
+                "found {error} in the calibration of motors, expected LeRobot's JSON with id, drive_mode, homing_offset, range_min, range_max of \
+                 each joint"
+            ))
+        }),
+        None => {
+            let motor = |id: u32| Motor { id, drive_mode: 0, homing_offset: 0, range_min: 0, range_max: 4095 };
+            let joints = robot.joints.iter().map(|joint| joint.name.clone());
+            Ok(joints.zip((1..).map(motor)).collect())
+        }
+    }
+}
+
 /// Offsets in ticks of Feetech's motors, `position = ticks - homing_offset`.
 pub(super) fn write_ticks(model: &Model, robot: &Robot, motors: Option<&str>) -> Result<Written> {
     let (nominal, found) = explained(model, robot)?;
@@ -178,19 +195,7 @@ pub(super) fn write_ticks(model: &Model, robot: &Robot, motors: Option<&str>) ->
             controller.words()
         )));
     }
-    let mut file: BTreeMap<String, Motor> = match motors {
-        Some(text) => serde_json::from_str(text).map_err(|error| {
-            option(format!(
-                "found {error} in the calibration of motors, expected LeRobot's JSON with id, drive_mode, homing_offset, range_min, range_max of \
-                 each joint"
-            ))
-        })?,
-        None => {
-            let motor = |id: u32| Motor { id, drive_mode: 0, homing_offset: 0, range_min: 0, range_max: 4095 };
-            let joints = robot.joints.iter().map(|joint| joint.name.clone());
-            joints.zip((1..).map(motor)).collect()
-        }
-    };
+    let mut file = motors_of(robot, motors)?;
     let mut rounded = Vec::with_capacity(found.offsets.len());
     for (joint, offset) in robot.joints.iter().zip(&found.offsets) {
         let known = file.keys().cloned().collect::<Vec<_>>().join(", ");

@@ -22,6 +22,9 @@ const UR_LINKS: [&str; 6] = ["shoulder", "upper_arm", "forearm", "wrist_1", "wri
 /// Smaller parts of a tool (metres, radians) are rounding.
 const NO_TOOL: f64 = 1e-12;
 
+const NO_HASH: &str = "the file has no `hash`, which the driver compares with the controller's checksum and complains of if it is another: state it \
+                       with --hash calib_…, as the driver's own extraction prints it";
+
 /// Whose file it is.
 pub(super) enum Flavour<'a> {
     /// Joints by their own names.
@@ -91,36 +94,25 @@ pub(super) fn write(model: &Model, robot: &Robot, flavour: &Flavour<'_>) -> Resu
     );
     let mut notes = Vec::new();
     let is_franka = matches!(flavour, Flavour::Franka);
-    let indent = match flavour {
-        Flavour::Franka => "",
-        Flavour::Names | Flavour::Ur(_) | Flavour::Xarm => {
-            text.push_str(if matches!(flavour, Flavour::Names) { "origins:\n" } else { "kinematics:\n" });
-            "  "
-        }
+    let (head, indent) = match flavour {
+        Flavour::Franka => ("", ""),
+        Flavour::Names => ("origins:\n", "  "),
+        Flavour::Ur(_) | Flavour::Xarm => ("kinematics:\n", "  "),
     };
+    text.push_str(head);
     for (key, frame) in keys.iter().zip(&frames.joints) {
         push_origin(&mut text, indent, &quoted(key), named_numbers(frame), is_franka);
     }
-    let tool = if is_franka {
+    if is_franka {
         push_origin(&mut text, indent, "joint8", named_numbers(&frames.last_from_tip), true);
-        None
-    } else {
-        Some(&frames.last_from_tip).filter(|tool| !is_none(tool))
-    };
-    if let Flavour::Ur(hash) = flavour {
-        match hash {
-            Some(hash) => {
-                let _ = writeln!(text, "  hash: {}", quoted(hash));
-            }
-            None => notes.push(
-                "the file has no `hash`, which the driver compares with the controller's checksum and complains of if it is another: state it \
-                 with --hash calib_…, as the driver's own extraction prints it"
-                    .to_owned(),
-            ),
-        }
     }
-    if let Some(tool) = tool {
-        notes.push(push_tool(&mut text, robot, tool));
+    match flavour {
+        Flavour::Ur(Some(hash)) => text.push_str(&format!("  hash: {}\n", quoted(hash))),
+        Flavour::Ur(None) => notes.push(NO_HASH.to_owned()),
+        Flavour::Names | Flavour::Xarm | Flavour::Franka => {}
+    }
+    if !is_franka && !is_none(&frames.last_from_tip) {
+        notes.push(push_tool(&mut text, robot, &frames.last_from_tip));
     }
     if !is_none(&before) {
         let stands = format!(
@@ -131,18 +123,26 @@ pub(super) fn write(model: &Model, robot: &Robot, flavour: &Flavour<'_>) -> Resu
         let _ = writeln!(text, "# {}", visible(&stands));
         notes.push(stands);
     }
-    let mut again = if matches!(flavour, Flavour::Names) {
-        let joints = read(&text, &keys)?.into_iter().map(|(xyz, rpy)| Pose::from_xyz_rpy(xyz, rpy));
-        AxisFrames { joints: joints.collect(), last_from_tip: frames.last_from_tip }
-    } else {
-        let read = AxisFrames::of(&read_back(&text, "arm.yaml", None)?)?;
-        let last_from_tip = if is_franka { read.last_from_tip } else { frames.last_from_tip };
-        AxisFrames { last_from_tip, ..read }
-    };
+    let mut again = frames_of(&text, flavour, &keys, frames.last_from_tip)?;
     if let Some(first) = again.joints.first_mut() {
         *first = before * *first;
     }
     Ok(Written { text, notes, proof: Proof::Again(again.robot(robot)?.into()) })
+}
+
+/// The frames of a text as it is written here; most have no place for the tip.
+fn frames_of(text: &str, flavour: &Flavour<'_>, keys: &[String], last_from_tip: Pose) -> Result<AxisFrames> {
+    match flavour {
+        Flavour::Names => {
+            let joints = read(text, keys)?.into_iter().map(|(xyz, rpy)| Pose::from_xyz_rpy(xyz, rpy));
+            Ok(AxisFrames { joints: joints.collect(), last_from_tip })
+        }
+        Flavour::Franka => AxisFrames::of(&read_back(text, "arm.yaml", None)?),
+        Flavour::Ur(_) | Flavour::Xarm => {
+            let read = AxisFrames::of(&read_back(text, "arm.yaml", None)?)?;
+            Ok(AxisFrames { last_from_tip, ..read })
+        }
+    }
 }
 
 /// Origins of the joints of the URDF that was calibrated, fixed ones too, with the axes that it has; none where an axis turned in its frame.

@@ -323,11 +323,19 @@ pub(super) fn check_positions(
     {
         return Ok(());
     }
-    // The columns of which that is so: a header may state the unit of one of three wrongly.
-    // One in which nothing moved shows nothing.
     let far_of =
         |axis: usize| positions.iter().fold(0.0, |most: f64, it| most.max((it[axis] - middle[axis]).abs()));
-    let is_right = |axis: usize| (STILL * reach..=REACHES * reach).contains(&far_of(axis));
+    match positions_message(inputs, [0, 1, 2].map(far_of), apart, reach) {
+        Some(message) => Err(Error::new(ErrorKind::Unit, message).at_line(path, line as usize)),
+        None => Ok(()),
+    }
+}
+
+/// What is wrong of positions of which one is so far from their middle, by how far each coordinate is at most; nothing without a smaller unit.
+fn positions_message(inputs: [&Input; 3], far: [f64; 3], apart: Vector3<f64>, reach: f64) -> Option<String> {
+    // The columns of which that is so: a header may state the unit of one of three wrongly.
+    // One in which nothing moved shows nothing.
+    let is_right = |axis: usize| (STILL * reach..=REACHES * reach).contains(&far[axis]);
     let own: Vec<usize> = (0..3).filter(|axis| !is_right(*axis)).collect();
     let own = if own.is_empty() { vec![0, 1, 2] } else { own };
     let mut headers = Vec::new();
@@ -336,11 +344,11 @@ pub(super) fn check_positions(
             "m" => "mm",
             "mm" => "um",
             "um" => "nm",
-            _ => return Ok(()),
+            _ => return None,
         };
         headers.push((input.name.as_str(), smaller));
     }
-    let Some((first, smaller)) = headers.first() else { return Ok(()) };
+    let (first, smaller) = headers.first()?;
     let unit = inputs[own[0]].unit;
     let what = match own.len() {
         3 => "positions".to_owned(),
@@ -358,15 +366,14 @@ pub(super) fn check_positions(
         several => format!(", beside `{}`, which it can reach", several.join("` and `")),
     };
     let written: Vec<String> = headers.iter().map(|(name, unit)| format!("{name}[{unit}]")).collect();
-    let message = format!(
+    Some(format!(
         "found {what} up to {} {stated} from their middle, where the robot reaches {} {stated}{others}, expected another \
          unit, most likely {smaller}; write `{}` in the header, or the unit in the mapping",
-        short(unit.from_si(if own.len() == 3 { spread } else { apart[own[0]].abs() })),
+        short(unit.from_si(if own.len() == 3 { apart.norm() } else { apart[own[0]].abs() })),
         short(unit.from_si(reach)),
         written.join(","),
         stated = unit.symbol(),
-    );
-    Err(Error::new(ErrorKind::Unit, message).at_line(path, line as usize))
+    ))
 }
 
 /// A number to four significant digits.

@@ -61,6 +61,11 @@ pub(super) fn place(context: &Context, file: &File, robot: &mut Robot) -> Result
         let body = body(context, robot, on, &format!("`on` of {of}"))?;
         robot.instruments.push(robot.mount(&name, body, &pose));
     }
+    masses(context, file, robot)
+}
+
+/// Masses of the links.
+fn masses(context: &Context, file: &File, robot: &mut Robot) -> Result<()> {
     for mass in &file.mass {
         let body = body(context, robot, &mass.on, "`on` of the mass")?;
         let place =

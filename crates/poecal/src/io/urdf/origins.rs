@@ -1,8 +1,8 @@
 //! Origins of the joints of a URDF, by their names.
 
 use super::UrdfDocument;
-use crate::lie::{Pose, Screw, rotation};
-use crate::robot::{JointKind, Robot};
+use crate::lie::{Pose, rotation};
+use crate::robot::Robot;
 
 /// The `<origin>` of a joint as its text has it, metres and radians.
 #[derive(Clone, Debug, PartialEq)]
@@ -30,11 +30,16 @@ impl UrdfDocument {
         self.parts.iter().map(of).collect()
     }
 
+    /// Pose in the base of the link below a joint, by those of all links so far; without a joint, of the link from which the chain leads down.
+    pub(super) fn below(&self, links: &[Pose], part: Option<usize>) -> Pose {
+        part.and_then(|part| links.get(part)).copied().unwrap_or(self.base_from_top)
+    }
+
     /// Pose in the base of the link on which the first moving joint stands, by the fixed joints before it.
     pub(in crate::io) fn base_from_first_parent(&self) -> Pose {
         let mut links: Vec<Pose> = Vec::new();
         for part in &self.parts {
-            let parent = part.parent.and_then(|at| links.get(at)).copied().unwrap_or(self.base_from_top);
+            let parent = self.below(&links, part.parent);
             if part.axis.is_some() {
                 return parent;
             }
@@ -47,23 +52,17 @@ impl UrdfDocument {
     pub(in crate::io) fn with_origins(&self, origins: &[Origin]) -> Robot {
         let mut robot = self.robot.clone();
         let mut links: Vec<Pose> = Vec::with_capacity(self.parts.len());
-        let at = |links: &[Pose], part: Option<usize>| {
-            part.and_then(|part| links.get(part)).copied().unwrap_or(self.base_from_top)
-        };
         let mut joints = robot.joints.iter_mut();
         for (part, origin) in self.parts.iter().zip(origins) {
-            let frame = at(&links, part.parent) * Pose::from_xyz_rpy(origin.xyz, origin.rpy);
+            let frame = self.below(&links, part.parent) * Pose::from_xyz_rpy(origin.xyz, origin.rpy);
             if let Some((axis, joint)) = part.axis.and_then(|axis| Some((axis, joints.next()?))) {
                 let direction = frame.rotation * axis;
                 joint.frame = frame;
-                joint.screw = match joint.kind {
-                    JointKind::Revolute => Screw::revolute(&direction, &frame.translation),
-                    JointKind::Prismatic => Screw::prismatic(&direction),
-                };
+                joint.screw = joint.kind.screw(&direction, &frame.translation);
             }
             links.push(frame);
         }
-        robot.home = at(&links, self.ends.first().and_then(|tip| tip.part));
+        robot.home = self.below(&links, self.ends.first().and_then(|tip| tip.part));
         robot
     }
 }

@@ -160,25 +160,14 @@ pub(super) fn fixed_pose(source: &XmlSource, joint: &TreeJoint) -> Option<Pose> 
 
 fn moving_joint(tree: &Tree, joint: &TreeJoint, axis: &Vector3<f64>, base_from_joint: Pose) -> Result<Joint> {
     let direction = base_from_joint.rotation * axis;
-    let kind = match joint.kind {
-        JointType::Prismatic => JointKind::Prismatic,
-        JointType::Revolute
-        | JointType::Continuous
-        | JointType::Fixed
-        | JointType::Floating
-        | JointType::Planar => JointKind::Revolute,
-    };
+    let slides = joint.kind == JointType::Prismatic;
+    let kind = if slides { JointKind::Prismatic } else { JointKind::Revolute };
     let screw = kind.screw(&direction, &base_from_joint.translation);
     Ok(Joint {
-        name: joint.name.to_owned(),
-        kind,
-        screw,
         frame: base_from_joint,
         limits: read_limits(&tree.source, joint)?,
         reading: read_reading(tree, joint)?,
-        tolerance: None,
-        stands_on: None,
-        give_of: None,
+        ..Joint::with_screw(joint.name, kind, screw)
     })
 }
 

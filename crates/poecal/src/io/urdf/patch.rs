@@ -47,11 +47,8 @@ impl UrdfDocument {
         let carried = self.carried(&wanted);
         // Values as the new text has them, so that rounding does not add up along the chain.
         let mut base_from_links: Vec<Pose> = Vec::with_capacity(self.parts.len());
-        let at = |links: &[Pose], part: Option<usize>| {
-            part.and_then(|part| links.get(part)).copied().unwrap_or(self.base_from_top)
-        };
         for (part, carried) in self.parts.iter().zip(carried) {
-            let base_from_parent = at(&base_from_links, part.parent);
+            let base_from_parent = self.below(&base_from_links, part.parent);
             let moving = part.axis.and_then(|axis| Some((axis, joints.next()?)));
             base_from_links.push(match (moving, carried) {
                 (Some((axis, joint)), _) => write_joint(&mut splice, part, &axis, base_from_parent, joint),
@@ -64,7 +61,8 @@ impl UrdfDocument {
         for (index, (end, wanted)) in self.ends.iter().zip(&wanted).enumerate() {
             // What is on the base itself, and not on a link that it is joined to, is where it is.
             let is_base = end.part.is_none() && end.link == self.robot.base_name;
-            let base_from_link = if is_base { Pose::identity() } else { at(&base_from_links, end.part) };
+            let base_from_link =
+                if is_base { Pose::identity() } else { self.below(&base_from_links, end.part) };
             if close(&base_from_link, wanted) {
                 links.push(end.link.clone());
                 continue;

@@ -10,7 +10,7 @@ use super::html::{HtmlTable, count, facts, figure, figure_or, list, path, plots,
 use super::lead::{kinds_words, sign, spaced};
 use super::trust::direction_words;
 use crate::analysis::Direction;
-use crate::calibration::{Event, Improvements, Level, NoiseSource, SetAccuracy};
+use crate::calibration::{Event, Improvements, Level, ModelAccuracy, NoiseSource, SetAccuracy};
 use crate::io::calibration_file::CalibrationFile;
 use crate::io::residuals::Residuals;
 use crate::measurement::{Device, Quantity};
@@ -257,18 +257,25 @@ fn verdict_words(level: Level) -> &'static str {
     }
 }
 
-/// Errors of the models.
+/// Errors of the models of a set.
 pub(super) fn error_table(caption: &str, set: &SetAccuracy, key: &str, quantity: Quantity) -> HtmlTable {
-    let models = models(set);
+    let models: Vec<_> = models(set).iter().map(|(name, model)| (*name, model(set))).collect();
+    models_table(caption, &models, &format!("{key}."), quantity)
+}
+
+/// Errors of some models, by the statistics of each.
+pub(super) fn models_table(
+    caption: &str,
+    models: &[(&str, Option<&ModelAccuracy>)],
+    key: &str,
+    quantity: Quantity,
+) -> HtmlTable {
     let heads: Vec<&str> = std::iter::once("").chain(models.iter().map(|(name, _)| *name)).collect();
     let mut table = HtmlTable::new(caption, 1, &heads);
     for (label, statistic, value) in STATISTICS {
         let cells = models.iter().map(|(name, model)| {
-            figure_or(
-                model(set).and_then(|model| model.get(quantity)).map(value),
-                format_args!("{key}.{name}.{}.{statistic}", quantity.key()),
-                "",
-            )
+            let found = model.and_then(|model| model.get(quantity)).map(value);
+            figure_or(found, format_args!("{key}{name}.{}.{statistic}", quantity.key()), "")
         });
         table.cells(std::iter::once(label.render()).chain(cells));
     }

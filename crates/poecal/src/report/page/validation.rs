@@ -1,21 +1,19 @@
 //! The page of a check: whether a calibration holds for measurements that it did not see.
 
-use maud::{Markup, PreEscaped, Render, html};
+use maud::{Markup, PreEscaped, html};
 
 use super::certificate::{self, limits, stated};
-use super::first::{capital, error_words};
-use super::html::{HtmlTable, count, facts, figure, figure_or, list, plots, quoted, section};
+use super::first::{capital, error_words, models_table};
+use super::html::{HtmlTable, count, facts, figure, list, plots, quoted, section};
 use super::lead::{sign, spaced};
 use super::{head, method};
-use crate::calibration::{Level, ModelAccuracy, Refitted};
+use crate::calibration::Level;
 use crate::io::output::Page;
 use crate::io::validation::{Earlier, JudgedRows, Validation, VerdictError};
 use crate::measurement::Quantity;
-use crate::report::judgement::confirmed_words;
+use crate::report::judgement::{confirmed_words, judged_models, refitted_parts};
 use crate::report::plot::{Axis, Line, LinePlot, Scale};
-use crate::report::table::STATISTICS;
 use crate::text::visible_markup;
-use crate::unit::Unit;
 
 /// Largest rows that the table lists.
 const LISTED: usize = 10;
@@ -110,31 +108,15 @@ fn one_figure(found: &Validation, quantity: Quantity, error: &VerdictError) -> M
 
 fn errors(found: &Validation) -> Markup {
     let own = &found.judgement;
-    let nominal = own.nominal.as_ref().map(|model| ("nominal", model));
-    let corrected = own.with_terms().map(|model| ("corrected", &model.errors));
-    let models: Vec<(&str, &ModelAccuracy)> =
-        nominal.into_iter().chain([("calibrated", &own.calibrated)]).chain(corrected).collect();
+    let models: Vec<_> = judged_models(own).into_iter().map(|(name, model)| (name, Some(model))).collect();
     let tables = own.calibrated.iter().map(|(quantity, _)| {
-        let heads: Vec<&str> = std::iter::once("").chain(models.iter().map(|(name, _)| *name)).collect();
-        let mut table = HtmlTable::new(&error_words(quantity, "on these measurements"), 1, &heads);
-        for (label, statistic, value) in STATISTICS {
-            let cells = models.iter().map(|(name, model)| {
-                let key = format!("{name}.{}.{statistic}", quantity.key());
-                figure_or(model.get(quantity).map(value), key, "")
-            });
-            table.cells(std::iter::once(label.render()).chain(cells));
-        }
-        table
+        models_table(&error_words(quantity, "on these measurements"), &models, "", quantity)
     });
     html! { @for table in tables { (table) } }
 }
 
 fn the_facts(found: &Validation) -> Vec<(&'static str, Markup)> {
-    let parts = found.judgement.refitted.iter().map(|part| match part {
-        Refitted::DeviceFrame => "device frame",
-        Refitted::Tool => "tool",
-    });
-    let parts = parts.collect::<Vec<_>>().join(" and ");
+    let parts = refitted_parts(&found.judgement);
     let refitted = if parts.is_empty() { "nothing".to_owned() } else { parts + ", to these measurements" };
     let delivered = found.judgement.delivered();
     let inside = match delivered.in_sampled_range {
@@ -187,11 +169,7 @@ fn largest(rows: &JudgedRows<'_>) -> Markup {
         .collect();
     all.sort_by(|a, b| b.1.total_cmp(&a.1));
     all.truncate(LISTED);
-    let unit = match quantity.unit() {
-        Unit::Metre => "mm",
-        Unit::Radian => "°",
-        Unit::One => "",
-    };
+    let unit = sign(quantity.unit());
     let has_targets = rows.data.targets.len() > 1;
     let (error, bound) = (format!("error, {unit}"), format!("95 % bound, {unit}"));
     let heads: &[&str] =

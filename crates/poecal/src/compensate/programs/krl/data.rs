@@ -72,7 +72,7 @@ fn motion(
         }
     };
     let (frame, refused) = (frame.filter(|_| !variables.moves_root), refused.map(str::to_owned));
-    Motion { tool, frame, stated: status.stated(), refused, ..Motion::to(target, line) }
+    Motion { tool, frame, stated: status.into(), refused, ..Motion::to(target, line) }
 }
 
 /// A tool or base by its number: as the file states it, or the user; number 0 is none.

@@ -363,7 +363,7 @@ impl<'r> Reader<'r> {
             | Value::Other) => (found, line, shown(self.text, tokens)),
         };
         let (numbers, meant, stated) = match found {
-            Value::Pose(numbers, status) => (numbers, Meant::Pose(PoseForm::Abc), status.stated()),
+            Value::Pose(numbers, status) => (numbers, Meant::Pose(PoseForm::Abc), status.into()),
             Value::Joints(numbers) => (numbers, Meant::Joints, Stated::Nothing),
             Value::Broken(reason) => return Err(reason),
             Value::Place(_) => return Err(reason::UNKNOWN),

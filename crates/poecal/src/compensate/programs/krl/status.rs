@@ -4,7 +4,6 @@ use nalgebra::Vector3;
 use poecal_arm::Arm;
 
 use super::super::shape::{axes, wrist_centre};
-use super::super::stated::Stated;
 
 /// `S` and `T` of a pose, as far as they are stated.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -27,11 +26,6 @@ fn sided(value: f64, border: f64) -> Bit {
 }
 
 impl Status {
-    /// What it says of a configuration.
-    pub(super) fn stated(self) -> Stated {
-        if self == Status::default() { Stated::Nothing } else { Stated::Krl(self) }
-    }
-
     /// Whether a configuration of the nominal arm is what is stated; at borders either bit is.
     pub(crate) fn fits(&self, nominal: &Arm, q: &[f64], counted: &[f64]) -> bool {
         let fit = |stated: Option<u32>, bits: &[Bit]| {

@@ -193,37 +193,70 @@ pub(super) fn value(text: &[u8], tokens: &[Token], axes: &Axes) -> Value {
     }
 }
 
-/// A field of an aggregate: its name in capitals, its number if it is one, and its tokens.
-type Field<'t> = (String, Option<Number>, &'t [Token]);
+/// Fields of an aggregate: the name of each in capitals, its number if it is one, and its tokens.
+struct Fields<'t>(Vec<(String, Option<Number>, &'t [Token])>);
 
-fn aggregate(text: &[u8], inside: &[Token], axes: &Axes) -> Value {
-    let inside = match inside {
-        [kind, colon, rest @ ..] if kind.kind == Kind::Word && colon.is(b':') => rest,
-        all => all,
-    };
-    let mut fields: Vec<Field<'_>> = Vec::new();
-    for part in parts(inside) {
-        let [name, value @ ..] = part else { return Value::Other };
-        let name = name.text(text).to_ascii_uppercase();
-        if fields.iter().any(|it| it.0 == name) {
-            return Value::Other;
+impl<'t> Fields<'t> {
+    /// Of an aggregate without its brackets; `None` if it has a field twice, or none of a name.
+    fn of(text: &[u8], inside: &'t [Token]) -> Option<Self> {
+        let inside = match inside {
+            [kind, colon, rest @ ..] if kind.kind == Kind::Word && colon.is(b':') => rest,
+            all => all,
+        };
+        let mut fields = Fields(Vec::new());
+        for part in parts(inside) {
+            let [name, value @ ..] = part else { return None };
+            let name = name.text(text).to_ascii_uppercase();
+            if fields.get(&name).is_some() {
+                return None;
+            }
+            fields.0.push((name, signed(value).or_else(|| bits(text, value)), value));
         }
-        fields.push((name, signed(value).or_else(|| bits(text, value)), value));
+        Some(fields)
     }
-    let has = |name: &str| fields.iter().any(|it| it.0 == name);
-    if has("TOOL_NO") || has("BASE_NO") {
-        return Value::Place(place(text, &fields));
+
+    /// The number of a field, if it is one, and its tokens.
+    fn get(&self, name: &str) -> Option<(Option<&Number>, &'t [Token])> {
+        self.0.iter().find(|it| it.0 == name).map(|it| (it.1.as_ref(), it.2))
     }
-    let is_pose = ["X", "Y", "Z", "A", "B", "C"].iter().any(|it| has(it));
-    let is_joints = fields.iter().any(|it| is_axis(&it.0, b'A'));
-    if is_pose {
-        pose(&fields, axes)
-    } else if is_joints {
-        joints(&fields, axes)
-    } else {
-        Value::Other
+
+    /// The number of a field, or why there is none.
+    fn number(&self, name: &str, absent: &'static str) -> Result<Number, &'static str> {
+        self.get(name).ok_or(absent)?.0.cloned().ok_or(reason::EXPRESSIONS)
+    }
+
+    /// How many fields are axes of a letter.
+    fn axes(&self, letter: u8) -> usize {
+        self.0.iter().filter(|it| is_axis(&it.0, letter)).count()
+    }
+
+    /// Whether fields of external axes that are none of the model's, nor of these names, are other than zero.
+    fn has_external(&self, axes: &Axes, names: &[String]) -> bool {
+        let is_known = |name: &str| names.iter().any(|it| it.eq_ignore_ascii_case(name));
+        let is_of_model = |name: &str| (1..=axes.external.len()).any(|it| name == format!("E{it}"));
+        let mut external =
+            self.0.iter().filter(|it| is_axis(&it.0, b'E') && !is_known(&it.0) && !is_of_model(&it.0));
+        external.any(|it| it.1.as_ref().is_none_or(|number| number.value != 0.0))
     }
 }
+
+fn aggregate(text: &[u8], inside: &[Token], axes: &Axes) -> Value {
+    let Some(fields) = Fields::of(text, inside) else { return Value::Other };
+    let has = |name: &str| fields.get(name).is_some();
+    let found = if has("TOOL_NO") || has("BASE_NO") {
+        return Value::Place(place(text, &fields));
+    } else if POSE.into_iter().any(has) {
+        pose(&fields, axes)
+    } else if fields.axes(b'A') > 0 {
+        joints(&fields, axes)
+    } else {
+        return Value::Other;
+    };
+    found.unwrap_or_else(Value::Broken)
+}
+
+/// Fields of a frame.
+const POSE: [&str; 6] = ["X", "Y", "Z", "A", "B", "C"];
 
 fn is_axis(name: &str, letter: u8) -> bool {
     matches!(name.as_bytes(), [first, b'1'..=b'9'] if *first == letter)
@@ -244,102 +277,63 @@ fn bits(text: &[u8], tokens: &[Token]) -> Option<Number> {
     Some(Number { range: token.range.clone(), value: f64::from(value), decimals: 0, scale: 1.0 })
 }
 
-fn place(text: &[u8], fields: &[Field<'_>]) -> Place {
+fn place(text: &[u8], fields: &Fields<'_>) -> Place {
     let number = |name: &str| {
-        let number = fields.iter().find(|it| it.0 == name)?.1.as_ref()?;
+        let number = fields.get(name)?.0?;
         (number.value.fract() == 0.0).then_some(number.value as i64)
     };
-    let mode = fields.iter().find(|it| it.0 == "IPO_FRAME");
-    let is_external = mode.is_some_and(|it| !it.2.iter().any(|word| word.is_word(text, "BASE")));
+    let mode = fields.get("IPO_FRAME");
+    let is_external = mode.is_some_and(|it| !it.1.iter().any(|word| word.is_word(text, "BASE")));
     Place { tool: number("TOOL_NO"), base: number("BASE_NO"), is_external }
 }
 
-/// Whether fields of external axes that are none of the model's, nor of these names, are other than zero.
-fn has_external(fields: &[Field<'_>], axes: &Axes, names: &[String]) -> bool {
-    let is_known = |name: &str| names.iter().any(|it| it.eq_ignore_ascii_case(name));
-    let is_of_model =
-        |name: &str| (1..=axes.external.len()).any(|it| name.eq_ignore_ascii_case(&format!("E{it}")));
-    let external = fields.iter().filter(|it| is_axis(&it.0, b'E') && !is_known(&it.0) && !is_of_model(&it.0));
-    external.into_iter().any(|it| it.1.as_ref().is_none_or(|number| number.value != 0.0))
-}
-
-/// The external axes that the model has, mm.
-fn external(fields: &[Field<'_>], axes: &Axes) -> Result<Vec<Number>, &'static str> {
-    let one = |it: usize| match fields.iter().find(|field| field.0 == format!("E{it}")) {
-        Some((_, Some(number), _)) => Ok(Number { scale: 1e-3, ..number.clone() }),
-        Some(_) => Err(reason::EXPRESSIONS),
-        None => Err(reason::NO_EXTERNAL),
-    };
-    (1..=axes.external.len()).map(one).collect()
-}
-
-fn pose(fields: &[Field<'_>], axes: &Axes) -> Value {
-    let mut numbers = Vec::new();
-    for name in ["X", "Y", "Z", "A", "B", "C"] {
-        match fields.iter().find(|it| it.0 == name) {
-            None => return Value::Broken(reason::PARTIAL),
-            Some((_, None, _)) => return Value::Broken(reason::EXPRESSIONS),
-            Some((_, Some(number), _)) => numbers.push(number.clone()),
-        }
-    }
-    if has_external(fields, axes, &[]) {
-        return Value::Broken(reason::EXTERNAL);
+fn pose(fields: &Fields<'_>, axes: &Axes) -> Result<Value, &'static str> {
+    let number = |name: &str| fields.number(name, reason::PARTIAL);
+    let mut numbers = POSE.into_iter().map(number).collect::<Result<Vec<_>, _>>()?;
+    if fields.has_external(axes, &[]) {
+        return Err(reason::EXTERNAL);
     }
     let mut words = [None, None];
     for (word, name) in words.iter_mut().zip(["S", "T"]) {
-        match fields.iter().find(|it| it.0 == name) {
-            None => {}
-            Some((_, Some(number), _)) if number.value >= 0.0 && number.value.fract() == 0.0 => {
-                *word = Some(number.value as u32);
-                numbers.push(number.clone());
-            }
-            Some(_) => return Value::Broken(reason::EXPRESSIONS),
-        }
+        let Some((number, _)) = fields.get(name) else { continue };
+        let is_whole = |it: &&Number| it.value >= 0.0 && it.value.fract() == 0.0;
+        let number = number.filter(is_whole).ok_or(reason::EXPRESSIONS)?;
+        *word = Some(number.value as u32);
+        numbers.push(number.clone());
     }
     // A frame has none.
-    let has_some = fields.iter().any(|it| is_axis(&it.0, b'E'));
-    if has_some || words.iter().any(Option::is_some) {
-        match external(fields, axes) {
-            Ok(external) => numbers.extend(external),
-            Err(reason) => return Value::Broken(reason),
+    if fields.axes(b'E') > 0 || words.iter().any(Option::is_some) {
+        for it in 1..=axes.external.len() {
+            let number = fields.number(&format!("E{it}"), reason::NO_EXTERNAL)?;
+            numbers.push(Number { scale: 1e-3, ..number });
         }
     }
-    Value::Pose(numbers, Status { status: words[0], turn: words[1] })
+    Ok(Value::Pose(numbers, Status { status: words[0], turn: words[1] }))
 }
 
-fn joints(fields: &[Field<'_>], axes: &Axes) -> Value {
-    if has_external(fields, axes, &axes.names) {
-        return Value::Broken(reason::EXTERNAL);
+fn joints(fields: &Fields<'_>, axes: &Axes) -> Result<Value, &'static str> {
+    if fields.has_external(axes, &axes.names) {
+        return Err(reason::EXTERNAL);
     }
-    let is_named = axes
-        .names
-        .iter()
-        .all(|it| is_axis(&it.to_ascii_uppercase(), b'A') || is_axis(&it.to_ascii_uppercase(), b'E'));
+    let names: Vec<String> = axes.names.iter().map(|it| it.to_ascii_uppercase()).collect();
+    let is_named = names.iter().all(|it| is_axis(it, b'A') || is_axis(it, b'E'));
     if !is_named && axes.external.is_empty() && axes.count() != 6 {
-        return Value::Broken(reason::COUNT);
+        return Err(reason::COUNT);
     }
     let mut numbers = Vec::new();
-    for index in 0..axes.count() {
+    for (index, own) in names.iter().enumerate() {
         let external = axes.external.iter().position(|it| *it == index);
         let before = axes.external.iter().filter(|it| **it < index).count();
         let name = match external {
-            _ if is_named => axes.names[index].to_ascii_uppercase(),
+            _ if is_named => own.clone(),
             Some(external) => format!("E{}", external + 1),
             None => format!("A{}", index + 1 - before),
         };
-        match fields.iter().find(|it| it.0 == name) {
-            None => return Value::Broken(reason::PARTIAL),
-            Some((_, None, _)) => return Value::Broken(reason::EXPRESSIONS),
-            Some((_, Some(number), _)) => {
-                let scale = axes.scale(index, 1.0_f64.to_radians(), 1e-3);
-                numbers.push(Number { scale, ..number.clone() });
-            }
-        }
+        let scale = axes.scale(index, 1.0_f64.to_radians(), 1e-3);
+        numbers.push(Number { scale, ..fields.number(&name, reason::PARTIAL)? });
     }
-    let others = fields.iter().filter(|it| is_axis(&it.0, b'A')).count();
-    let own = (0..axes.count())
-        .filter(|it| is_named || !axes.external.contains(it))
-        .filter(|&it| !is_named || is_axis(&axes.names[it].to_ascii_uppercase(), b'A'))
-        .count();
-    if others == own { Value::Joints(numbers) } else { Value::Broken(reason::COUNT) }
+    let is_own =
+        |&it: &usize| if is_named { is_axis(&names[it], b'A') } else { !axes.external.contains(&it) };
+    let own = (0..axes.count()).filter(is_own).count();
+    if fields.axes(b'A') == own { Ok(Value::Joints(numbers)) } else { Err(reason::COUNT) }
 }

@@ -27,6 +27,9 @@ use super::given::Given;
 use super::parsed::{Listed, Parsed};
 use super::scan::{Kind, Token, is_one_of, shown};
 
+/// What is said of a target that a move counts from another one.
+const RELATIVE: &str = "relative to a target: the offset is left as it is, at most its target is corrected";
+
 /// The targets and motions of a program.
 pub(crate) fn parse(text: &[u8], given: &Given, axes: &Axes) -> Parsed {
     let tokens = tokens(text);
@@ -165,8 +168,7 @@ impl Reader<'_> {
             argument = *base;
         }
         if is_relative {
-            let reason = "relative to a target: the offset is left as it is, at most its target is corrected";
-            self.list(line, shown(text, written), reason);
+            self.list(line, shown(text, written), RELATIVE);
         }
         let number = match argument {
             Argument::Name(name, indices) => {
@@ -191,9 +193,8 @@ impl Reader<'_> {
                 None
             }
             Argument::Numbers(tokens) => {
-                let first = tokens.iter().position(|it| it.is(b']')).map_or(0, |it| it + 1);
-                let name =
-                    format!("{instruction} {},…]", shown(text, tokens.get(..first).unwrap_or_default()));
+                let first = tokens.split_inclusive(|it| it.is(b']')).next().unwrap_or_default();
+                let name = format!("{instruction} {},…]", shown(text, first));
                 let value = tokens::value(tokens, text, 0);
                 Some(self.moves.in_place(name, value, is_joints, of, before))
             }
