@@ -427,9 +427,10 @@ impl Dataset {
     /// Whether some of these rows are readings of a station whose zero is unknown.
     #[must_use]
     pub fn zero_is_unknown(&self, station: usize, rows: &[u32]) -> bool {
-        let mut own =
-            rows.iter().map(|&row| &self.observations[row as usize]).filter(|it| it.station == station);
-        own.any(|it| it.measurement.observe().zero_is_unknown())
+        // Nothing else has one: very many rows are asked, and a call for each would take as long as the row itself in a fit.
+        let is_distance = |it: &&Observation| matches!(it.measurement, Measurement::Distance(_));
+        let mut own = rows.iter().map(|&row| &self.observations[row as usize]).filter(is_distance);
+        own.any(|it| it.station == station && it.measurement.observe().zero_is_unknown())
     }
 
     /// Whether a station's rows are all distances, so that it has a zero and a scale.
@@ -443,11 +444,22 @@ impl Dataset {
     #[must_use]
     pub fn target_freedoms(&self, rows: &[u32]) -> Vec<Freedom> {
         let mut found: Vec<Option<Freedom>> = vec![None; self.targets.len()];
+        let mut partly = found.len();
         for &row in rows {
             let observation = &self.observations[row as usize];
             let known = &mut found[observation.target];
+            if *known == Some(Freedom::FRAME) {
+                continue;
+            }
             let own = observation.measurement.target_freedom();
-            *known = Some(known.map_or(own, |known| known.with(own)));
+            let both = known.map_or(own, |known| known.with(own));
+            *known = Some(both);
+            if both == Freedom::FRAME {
+                partly -= 1;
+                if partly == 0 {
+                    break;
+                }
+            }
         }
         found.into_iter().map(|it| it.unwrap_or(Freedom::PLACE)).collect()
     }
