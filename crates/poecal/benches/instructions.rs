@@ -1,4 +1,4 @@
-//! Fits of the paper's elbow to poses and nothing else: `ROWS [REPEATS [points]]`. Once for `scripts/count-instructions`; repeated, it
+//! Fits of the paper's elbow to poses and nothing else: `ROWS [REPEATS [poses|points [alone]]]`, with the prior of every fit unless it is `alone`. Once for `scripts/count-instructions`; repeated, it
 //! prints the median and the least CPU time in milliseconds (packing included) for `scripts/plot-cost`.
 
 #![allow(
@@ -11,6 +11,8 @@ use cpu_time::ProcessTime;
 use poecal::calibration::{CalibrationOptions, delivered, fit_screws};
 use poecal::estimate::{Packed, Session};
 use poecal::measurement::Noise;
+use poecal::problem::Prior;
+use poecal::robot::Tolerance;
 use poecal::simulate::{Kind, Simulation, elbow};
 
 fn main() {
@@ -18,6 +20,7 @@ fn main() {
     let number = |at: usize| arguments.get(at).and_then(|text| text.parse::<usize>().ok());
     let (rows, repeats) = (number(0).unwrap_or(500), number(1).unwrap_or(0));
     let kind = if arguments.get(2).is_some_and(|word| word == "points") { Kind::POINT } else { Kind::POSE };
+    let is_alone = arguments.get(3).is_some_and(|word| word == "alone");
     let (noise_position_m, noise_rotation_rad) = (5e-5, 5e-4);
     let noise = Noise::new(noise_position_m, noise_rotation_rad);
     let simulation = Simulation {
@@ -30,12 +33,17 @@ fn main() {
     let made = simulation.run(&elbow(), kind).expect("a simulation of a finite robot");
     let all = made.data.all_rows();
     let options = CalibrationOptions::default();
+    let prior = {
+        let packed = Packed::new(&made.nominal, made.data.all_readings(), 6);
+        Prior::of(&Session::new(&made.nominal, &made.data, &packed, false), Tolerance::default())
+    };
+    let prior = (!is_alone).then_some((&prior, 1.0));
     let fit = || {
         let packed = Packed::new(&made.nominal, made.data.all_readings(), 6);
         let session = Session::new(&made.nominal, &made.data, &packed, false);
         let session = session.with_length(made.nominal.reach_m() / 3.0);
         let start = delivered(&made.nominal, &made.data);
-        std::hint::black_box(fit_screws(session, &all, start, noise, None, &options));
+        std::hint::black_box(fit_screws(session, &all, start, noise, prior, &options));
     };
     if repeats == 0 {
         return fit();

@@ -149,6 +149,24 @@ impl Packed {
         self.bases_at(row, further).of(joint, term)
     }
 
+    /// Place of a term of a joint among the packed ones, by which its function is found in each row.
+    pub(crate) fn place_of(&self, joint: usize, term: Term) -> Option<usize> {
+        self.terms.iter().position(|it| *it == (joint, term))
+    }
+
+    /// The function b of a term of a joint, at its [place](Packed::place_of), in a row or in a further configuration in place of it.
+    pub(crate) fn basis_at(
+        &self,
+        row: usize,
+        further: Option<u32>,
+        place: Option<usize>,
+        (joint, term): (usize, Term),
+    ) -> f64 {
+        let found = self.bases_at(row, further);
+        let known = place.and_then(|place| found.bases.get(place)).copied();
+        known.unwrap_or_else(|| found.of(joint, term))
+    }
+
     /// Whether each joint is revolute.
     pub(crate) fn turns(&self) -> impl Iterator<Item = bool> {
         self.kinds.iter().map(|&kind| kind == JointKind::Revolute)
@@ -227,13 +245,16 @@ fn bases<'a>(robot: &Robot, angles: &[f64], factors: impl Fn(usize) -> &'a [f64]
     if robot.terms.is_empty() {
         return Vec::new();
     }
-    let joints = robot.joints.len().max(1);
-    let rows: Vec<&[f64]> = angles.chunks_exact(joints).collect();
-    threads::concat_chunks(&rows, CHUNK, |chunk, rows| {
+    let (joints, count) = (robot.joints.len().max(1), robot.terms.len());
+    let mut bases = vec![0.0; angles.len() / joints * count];
+    threads::fill_chunks(&mut bases, CHUNK * count, |chunk, bases| {
         let mut functions = TermFunctions::new(robot);
-        let each = rows.iter().enumerate();
-        each.flat_map(|(row, values)| functions.at(values, factors(chunk * CHUNK + row))).collect()
-    })
+        let rows = angles[chunk * CHUNK * joints..].chunks_exact(joints);
+        for (row, (values, bases)) in rows.zip(bases.chunks_exact_mut(count)).enumerate() {
+            functions.write(values, factors(chunk * CHUNK + row), bases);
+        }
+    });
+    bases
 }
 
 /// A subsample of `count` rows, or all if there are no more. The rows are spread evenly but not periodically, since a fixed stride could

@@ -64,7 +64,9 @@ impl Tree {
             let body = mount.map_or(Body::Base, |mount| mount.body);
             let named = data.targets.iter().position(|target| name.is_some() && target.as_deref() == name);
             let in_two = || data.observations.iter().find(|row| row.station == station && row.from.is_some());
-            let shared = if mount.is_none() { in_two() } else { None };
+            // Without further configurations there are no rows in two.
+            let may_be_shared = mount.is_none() && !data.further_readings().is_empty();
+            let shared = if may_be_shared { in_two() } else { None };
             shared.map_or(Stand::On(body), |row| Stand::Target(named.unwrap_or(row.target)))
         };
         let instruments = (0..data.station_count()).map(stand).collect();

@@ -25,7 +25,7 @@ pub(super) fn whitened_columns<S: Simd>(
     let mut work = WORK.take();
     work.begin(arm, true);
     for part in parts(simd) {
-        let found = add_rows::<S, true>(simd, arm, (block, first), &mut work, 0, part);
+        let found = add_rows::<S, true, false>(simd, arm, (block, first), &mut work, 0, part);
         for (k, &value) in found.iter().flat_map(|part| &part.0).enumerate() {
             value.store(&mut residual[k], part);
         }

@@ -5,7 +5,7 @@ use pulp::Simd;
 use super::vector::{Lanes, WIDTH, Wide, parts};
 
 /// Columns of one side of a tile: nine sums in registers hide the latency of their additions, and six loads feed nine products.
-pub(super) const TILE: usize = 3;
+pub(crate) const TILE: usize = 3;
 
 /// Length, in `Wide`s, of the accumulators of all tiles of so many columns, for vectors of so many lanes.
 pub(super) fn sums_len(columns: usize, lanes: usize) -> usize {
@@ -14,19 +14,23 @@ pub(super) fn sums_len(columns: usize, lanes: usize) -> usize {
 }
 
 /// Adds the products of each pair of columns, summed over rows but not over lanes. A column is `stride` wide numbers long, of which
-/// the first `used` count; `columns` is a multiple of [`TILE`].
+/// the first `used` count; `columns` is a multiple of [`TILE`]. Tiles at pairs of columns that are not `needed` stay as they are.
 #[inline(always)]
 pub(super) fn add_products<S: Simd>(
     simd: S,
     jacobian: &[Wide],
-    stride: usize,
-    used: usize,
+    (stride, used): (usize, usize),
     columns: usize,
     sums: &mut [Wide],
+    needed: impl Fn(usize, usize) -> bool,
 ) {
     let mut at = 0;
     for i in (0..columns).step_by(TILE) {
         for j in (i..columns).step_by(TILE) {
+            if !needed(i, j) {
+                at += TILE * TILE;
+                continue;
+            }
             let tile = tile(simd, &jacobian[i * stride..], &jacobian[j * stride..], stride, used);
             for sum in tile {
                 sum.add_to(&mut sums[at * S::F64_LANES / WIDTH], at % (WIDTH / S::F64_LANES));

@@ -16,18 +16,31 @@ use super::work::{Axis, ValueColumn, WORK, Work};
 /// Sums over all rows of `blocks`.
 #[inline(always)]
 pub(super) fn sum_products<S: Simd>(simd: S, arm: &Arm<'_>, blocks: &[Wide]) -> Totals {
-    sum::<S, true>(simd, arm, blocks)
+    sum::<S, true, false>(simd, arm, blocks)
 }
 
 /// The same without products of columns.
 #[inline(always)]
 pub(super) fn sum_gradient<S: Simd>(simd: S, arm: &Arm<'_>, blocks: &[Wide]) -> Totals {
-    sum::<S, false>(simd, arm, blocks)
+    sum::<S, false, false>(simd, arm, blocks)
 }
 
-/// Sums over all rows of `blocks`; products of columns only if `FULL`.
+/// [`sum_products`] of a plain plan ([`Plan::is_plain`]).
 #[inline(always)]
-fn sum<S: Simd, const FULL: bool>(simd: S, arm: &Arm<'_>, blocks: &[Wide]) -> Totals {
+pub(super) fn sum_plain_products<S: Simd>(simd: S, arm: &Arm<'_>, blocks: &[Wide]) -> Totals {
+    sum::<S, true, true>(simd, arm, blocks)
+}
+
+/// [`sum_gradient`] of a plain plan.
+#[inline(always)]
+pub(super) fn sum_plain_gradient<S: Simd>(simd: S, arm: &Arm<'_>, blocks: &[Wide]) -> Totals {
+    sum::<S, false, true>(simd, arm, blocks)
+}
+
+/// Sums over all rows of `blocks`; products of columns only if `FULL`. `PLAIN` rows are compiled apart: beside the branches for all others
+/// their numbers do not stay in registers.
+#[inline(always)]
+fn sum<S: Simd, const FULL: bool, const PLAIN: bool>(simd: S, arm: &Arm<'_>, blocks: &[Wide]) -> Totals {
     let plan = arm.plan;
     // A pass does not call another, so the room is free; if it were not, there would be another.
     let mut own = WORK.take();
@@ -41,12 +54,12 @@ fn sum<S: Simd, const FULL: bool>(simd: S, arm: &Arm<'_>, blocks: &[Wide]) -> To
     for blocks in blocks.chunks(len * (work.waiting / slots)) {
         for (filled, block) in blocks.chunks_exact(len).enumerate() {
             for part in parts(simd) {
-                add_rows::<S, FULL>(simd, arm, (block, first), work, filled * slots, part);
+                add_rows::<S, FULL, PLAIN>(simd, arm, (block, first), work, filled * slots, part);
             }
             first += WIDTH;
         }
         if FULL {
-            multiply(simd, plan, work, blocks.len() / len * slots);
+            multiply::<S, PLAIN>(simd, plan, work, blocks.len() / len * slots);
         }
     }
     for (joint, axis) in plan.joints.iter().zip(&work.axes) {
@@ -75,16 +88,18 @@ fn sum<S: Simd, const FULL: bool>(simd: S, arm: &Arm<'_>, blocks: &[Wide]) -> To
 
 /// Adds the products of the waiting columns.
 #[inline(always)]
-fn multiply<S: Simd>(simd: S, plan: &Plan, work: &mut Work, filled: usize) {
+fn multiply<S: Simd, const PLAIN: bool>(simd: S, plan: &Plan, work: &mut Work, filled: usize) {
     let columns = plan.columns().next_multiple_of(TILE);
     let stride = 3 * work.waiting;
     let used = if plan.along.is_some() { filled } else { 3 * filled };
-    add_products(simd, work.jacobian.as_flattened(), stride, used, columns, &mut work.products);
+    let jacobian = work.jacobian.as_flattened();
+    let needed = |i: usize, j: usize| PLAIN || plan.needs(i, j);
+    add_products(simd, jacobian, (stride, used), columns, &mut work.products, needed);
     let rows = work.turned_rows;
     if rows > 0 {
         let turns = plan.turns.len().next_multiple_of(TILE);
         let (stride, used) = (rows * work.waiting, rows * filled);
-        add_products(simd, &work.turned, stride, used, turns, &mut work.turned_products);
+        add_products(simd, &work.turned, (stride, used), turns, &mut work.turned_products, |_, _| true);
     }
 }
 
@@ -133,7 +148,7 @@ struct RowWrench<S: Simd> {
 /// Columns and gradient of part `part` of a block, whose first row has a place among all; gives the whitened residuals: of position and
 /// rotation, or the numbers of shaped rows.
 #[inline(always)]
-pub(super) fn add_rows<S: Simd, const FULL: bool>(
+pub(super) fn add_rows<S: Simd, const FULL: bool, const PLAIN: bool>(
     simd: S,
     arm: &Arm<'_>,
     (block, first): (&[Wide], usize),
@@ -160,8 +175,9 @@ pub(super) fn add_rows<S: Simd, const FULL: bool>(
     let Some((position, rest)) = rest.split_first_chunk::<3>() else { return none };
     let (measured, joints) = rest.split_at(if plan.is_pose() { 9 } else { 0 });
     let (weight, per_length) = (Lanes::load(simd, &noise[0], part), Lanes::splat(simd, 1.0 / plan.length_m));
-    if !FULL && weight.are_below(f64::MIN_POSITIVE) {
-        // All rows are padding of the block.
+    let weights = &noise[0].0[part * S::F64_LANES..(part + 1) * S::F64_LANES];
+    if !FULL && weights.iter().all(|weight| *weight < f64::MIN_POSITIVE) {
+        // All rows are padding of the block. Asked one by one, the first row says no.
         return none;
     }
     // Empty without unknowns.
@@ -170,9 +186,10 @@ pub(super) fn add_rows<S: Simd, const FULL: bool>(
     let (joints, factors) = joints.split_at(2 * plan.joints.len());
     let mut batch = Batch { plan, part, columns, stride, axes, terms, shift_gradient, turn_gradient };
 
-    if let Some(shape) = arm.shape {
+    if let (false, Some(shape)) = (PLAIN, arm.shape) {
         let whole = Lanes::splat(simd, 1.0);
-        let last = batch.chain(simd, steps, (joints.as_chunks::<2>().0, factors), whole, per_length);
+        let last =
+            batch.chain::<S, PLAIN>(simd, steps, (joints.as_chunks::<2>().0, factors), whole, per_length);
         let target = if plan.joints.is_empty() { Frame::fixed(simd, end) } else { last.then(simd, end) };
         let rows = ShapedRows::new((shape, plan.given), first + part * S::F64_LANES, &target, weight);
         let residuals = rows.residual(simd);
@@ -181,7 +198,7 @@ pub(super) fn add_rows<S: Simd, const FULL: bool>(
         square.add_to(square_sum, part);
         let wrench = RowWrench { weight: whole, per_length, force, torque: torque.scale(per_length) };
         batch.add_device::<S, FULL>(simd, &target, &wrench);
-        batch.add_axes::<S, FULL>(simd, &target, &wrench);
+        batch.add_axes::<S, FULL, PLAIN>(simd, &target, &wrench);
         batch.add_place::<S, FULL>(&target, &wrench);
         if FULL {
             rows.project(simd, plan, batch.columns, stride, part);
@@ -189,16 +206,16 @@ pub(super) fn add_rows<S: Simd, const FULL: bool>(
         rows.add_given::<S, FULL>(simd, plan, (batch.columns, stride), given_gradient, part);
         return residuals;
     }
-    let last = batch.chain(simd, steps, (joints.as_chunks::<2>().0, factors), weight, per_length);
+    let last = batch.chain::<S, PLAIN>(simd, steps, (joints.as_chunks::<2>().0, factors), weight, per_length);
     let target = if plan.joints.is_empty() { Frame::fixed(simd, end) } else { last.then(simd, end) };
     let place = Vectors::load(simd, position, part);
     let (direction, force, residual) = match plan.along {
-        Some(along) => {
+        Some(along) if !PLAIN => {
             let (direction, error) = one_number(simd, along, place, target.origin());
             let (number, zero) = (error * weight, Lanes::splat(simd, 0.0));
             (Some(direction), direction.scale(number), Vectors([number, zero, zero]))
         }
-        None => {
+        Some(_) | None => {
             let force = (place - target.origin()).scale(weight);
             (None, force, force)
         }
@@ -220,7 +237,7 @@ pub(super) fn add_rows<S: Simd, const FULL: bool>(
     }
     squares.add_to(square_sum, part);
     batch.add_device::<S, FULL>(simd, &target, &wrench);
-    batch.add_axes::<S, FULL>(simd, &target, &wrench);
+    batch.add_axes::<S, FULL, PLAIN>(simd, &target, &wrench);
     batch.add_place::<S, FULL>(&target, &wrench);
     if let (true, true, Some((turn, ratio))) = (FULL, rows > 0, turn) {
         batch.add_turned(simd, &turn, ratio, turned.get_mut(filled * rows..).unwrap_or_default(), rows);
@@ -276,7 +293,7 @@ fn project<S: Simd>(
 impl Batch<'_> {
     /// The chain from the device to the last joint's moved frame; writes the axes' shift columns: theory.md §5 (20) and (22).
     #[inline(always)]
-    fn chain<S: Simd>(
+    fn chain<S: Simd, const PLAIN: bool>(
         &mut self,
         simd: S,
         steps: &[FixedMotion],
@@ -294,11 +311,9 @@ impl Batch<'_> {
             let (cosine, sine) = (Lanes::load(simd, cosine, part), Lanes::load(simd, sine, part));
             let (slide, own_sine) = (weight * cosine * per_length, weight * sine);
             let versine = weight - weight * cosine;
-            let mut along = Vectors([Lanes::splat(simd, 0.0); 3]);
             for (k, row) in link.0.iter_mut().enumerate() {
                 let still = if index == 0 { *row } else { turned(simd, *row, step) };
-                let [x, y, z, origin] = still;
-                along.0[k] = z;
+                let [x, y, _, origin] = still;
                 *row = moved(still, joint.turns, cosine, sine);
                 let (a, b) = if joint.turns {
                     (y.times_from(own_sine, x * versine), x.times_plus(own_sine, y * versine))
@@ -309,9 +324,11 @@ impl Batch<'_> {
                 b.store(&mut axis.shifts[1][k], part);
                 origin.store(&mut axis.origin[k], part);
             }
-            if joint.terms.1 == 0 {
+            if PLAIN || joint.terms.1 == 0 {
                 continue;
             }
+            // Its own motion leaves the joint's direction as it is.
+            let along = link.column(2);
             let terms = joint.terms.0..joint.terms.0 + joint.terms.1;
             for (term, factor) in self.terms[terms.clone()].iter_mut().zip(&factors[terms]) {
                 let factor = Lanes::load(simd, factor, part);
@@ -348,23 +365,15 @@ impl Batch<'_> {
 
     /// Columns of the axes' tilts, theory.md §5 (21), and the gradient of all their unknowns.
     #[inline(always)]
-    fn add_axes<S: Simd, const FULL: bool>(&mut self, simd: S, target: &Frame<S>, wrench: &RowWrench<S>) {
+    fn add_axes<S: Simd, const FULL: bool, const PLAIN: bool>(
+        &mut self,
+        simd: S,
+        target: &Frame<S>,
+        wrench: &RowWrench<S>,
+    ) {
         let (part, stride) = (self.part, self.stride);
-        for (joint, axis) in self.plan.joints.iter().zip(&*self.axes).filter(|(joint, _)| joint.terms.1 > 0) {
-            let arm = (target.origin() - Vectors::load(simd, &axis.origin, part)).scale(wrench.per_length);
-            let moment = arm.cross(wrench.force) + wrench.torque;
-            let (first, end) = (joint.terms.0, joint.terms.0 + joint.terms.1);
-            for (plan, found) in self.plan.terms[first..end].iter().zip(&mut self.terms[first..end]) {
-                let along = Vectors::load(simd, &found.direction, part);
-                let pull = if joint.turns { along.dot(moment) } else { along.dot(wrench.force) };
-                pull.add_to(&mut found.gradient, part);
-                if FULL {
-                    along.store(&mut self.columns[plan.shift * stride], part);
-                    if let Some(turn) = plan.turn {
-                        along.cross(arm).store(&mut self.columns[(self.plan.shifts + turn) * stride], part);
-                    }
-                }
-            }
+        if !PLAIN && !self.plan.terms.is_empty() {
+            self.add_terms::<S, FULL>(simd, target, wrench);
         }
         for (joint, axis) in self.plan.joints.iter().zip(&mut *self.axes) {
             let Some((shift, tilt)) = joint.columns else { continue };
@@ -387,6 +396,28 @@ impl Batch<'_> {
                 let column = (self.plan.shifts + tilt) * stride;
                 a.cross(arm).store(&mut self.columns[column], part);
                 b.cross(arm).store(&mut self.columns[column + stride], part);
+            }
+        }
+    }
+
+    /// Columns and gradient of the unknown terms of joint values.
+    #[inline(always)]
+    fn add_terms<S: Simd, const FULL: bool>(&mut self, simd: S, target: &Frame<S>, wrench: &RowWrench<S>) {
+        let (part, stride) = (self.part, self.stride);
+        for (joint, axis) in self.plan.joints.iter().zip(&*self.axes).filter(|(joint, _)| joint.terms.1 > 0) {
+            let arm = (target.origin() - Vectors::load(simd, &axis.origin, part)).scale(wrench.per_length);
+            let moment = arm.cross(wrench.force) + wrench.torque;
+            let (first, end) = (joint.terms.0, joint.terms.0 + joint.terms.1);
+            for (plan, found) in self.plan.terms[first..end].iter().zip(&mut self.terms[first..end]) {
+                let along = Vectors::load(simd, &found.direction, part);
+                let pull = if joint.turns { along.dot(moment) } else { along.dot(wrench.force) };
+                pull.add_to(&mut found.gradient, part);
+                if FULL {
+                    along.store(&mut self.columns[plan.shift * stride], part);
+                    if let Some(turn) = plan.turn {
+                        along.cross(arm).store(&mut self.columns[(self.plan.shifts + turn) * stride], part);
+                    }
+                }
             }
         }
     }

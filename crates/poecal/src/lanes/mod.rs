@@ -19,13 +19,14 @@ mod work;
 
 pub(crate) use dense::Factor;
 pub(crate) use errors::Frames;
+pub(crate) use gram::TILE;
 pub(crate) use influence::NUMBERS;
 pub(crate) use plan::{Along, Arm, DevicePlan, FixedMotion, JointPlan, PackedRows, Plan, RowData, TermPlan};
 pub(crate) use rows::{Shape, ShapedRow};
 pub use simd::{SimdLevel, simd_levels, stated_level};
 pub(crate) use simd::{
     by_best, cholesky, cosines_and_sines, errors, influences, inverse, last_links, solve, sum_gradient,
-    sum_products, whitened_columns,
+    sum_plain_gradient, sum_plain_products, sum_products, whitened_columns,
 };
 pub(crate) use totals::{Tiles, Totals};
 pub(crate) use vector::{WIDTH, Wide};

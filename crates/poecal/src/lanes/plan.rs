@@ -1,5 +1,6 @@
 //! Input of the kernels: an arm's frames, its columns, and rows side by side.
 
+use super::gram::TILE;
 use super::rows::Shape;
 use super::vector::{WIDTH, Wide};
 use crate::lie::Pose;
@@ -72,6 +73,8 @@ pub(crate) struct Plan {
     pub(crate) tilts: usize,
     /// The translation column of each rotation column.
     pub(crate) turns: Vec<usize>,
+    /// Of each tile of columns, whether they are all directions of rotation columns and no unknowns; empty if none is.
+    pub(crate) idle: Vec<bool>,
     /// Metres that a radian counts.
     pub(crate) length_m: f64,
     /// Whether the rows depend on the target's orientation.
@@ -96,6 +99,20 @@ impl Plan {
     /// Groups of three numbers of a row whose products are summed at once.
     pub(crate) fn slots(&self) -> usize {
         self.shaped.div_ceil(3).max(1)
+    }
+
+    /// Whether the products of the tile at these two columns are wanted: those of directions only with each other's translation columns, from
+    /// which the products of rotations follow (theory.md §6 (28a)), and only where an orientation was measured.
+    #[inline(always)]
+    pub(super) fn needs(&self, column: usize, other: usize) -> bool {
+        let is_idle = |column: usize| self.idle.get(column / TILE).copied().unwrap_or(false);
+        let both_shift = column.max(other) < self.shifts;
+        !is_idle(column) && !is_idle(other) || self.is_pose() && both_shift
+    }
+
+    /// Whether the rows are positions and poses of an arm whose joints have no unknown terms: kernels of their own, without all else.
+    pub(crate) fn is_plain(&self) -> bool {
+        self.shaped == 0 && self.along.is_none() && self.terms.is_empty()
     }
 
     /// Whether a row has a measured orientation beside its position.

@@ -218,6 +218,14 @@ dispatch!(
     kernel::sum_gradient(arm: &Arm<'_>, blocks: &[Wide]) -> Totals
 );
 dispatch!(
+    /// Sums over the rows of a plain plan, with products of columns.
+    kernel::sum_plain_products(arm: &Arm<'_>, blocks: &[Wide]) -> Totals
+);
+dispatch!(
+    /// Sums over the rows of a plain plan, without products of columns.
+    kernel::sum_plain_gradient(arm: &Arm<'_>, blocks: &[Wide]) -> Totals
+);
+dispatch!(
     /// Writes columns and residuals of the rows of one block.
     columns::whitened_columns(
         arm: &Arm<'_>,

@@ -30,6 +30,7 @@ impl Totals {
 }
 
 /// Index of the product of columns `a ≤ b` in a sum of tiles: `left[a] + right[b]`.
+#[derive(Clone, Debug)]
 pub(crate) struct Tiles {
     pub(crate) left: Vec<usize>,
     pub(crate) right: Vec<usize>,

@@ -29,7 +29,7 @@ impl<S: Simd> Turn<S> {
         let sine = doubled.scale(trace.all(0.5));
         let sine_squared = sine.dot(sine);
         // A trace above one means an angle below π/2.
-        if !(sine_squared.are_below(SMALL) && (-trace).are_below(-1.0)) {
+        if !sine_squared.are_below(SMALL, (-trace, -1.0)) {
             return Self::large(simd, measured, predicted);
         }
         let r = sine.scale(sine_squared.polynomial(series::ARCSINE));

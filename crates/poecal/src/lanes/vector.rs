@@ -94,12 +94,14 @@ impl<S: Simd> Lanes<S> {
         self.simd.reduce_sum_f64s(self.numbers)
     }
 
-    /// Whether all are below a bound.
+    /// Whether all are below a bound, and all others below theirs.
     #[inline(always)]
-    pub(super) fn are_below(self, bound: f64) -> bool {
-        let is_below = self.simd.less_than_f64s(self.numbers, self.all(bound).numbers);
-        let others = self.simd.select_f64s(is_below, self.all(0.0).numbers, self.all(1.0).numbers);
-        self.simd.reduce_max_f64s(others) == 0.0
+    pub(super) fn are_below(self, bound: f64, (other, other_bound): (Self, f64)) -> bool {
+        let simd = self.simd;
+        let is_below = simd.less_than_f64s(self.numbers, self.all(bound).numbers);
+        let other_is_below = simd.less_than_f64s(other.numbers, self.all(other_bound).numbers);
+        let both = simd.and_m64s(is_below, other_is_below);
+        simd.reduce_max_f64s(simd.select_f64s(both, self.all(0.0).numbers, self.all(1.0).numbers)) == 0.0
     }
 
     /// Adds these to part `part` of a wide number.

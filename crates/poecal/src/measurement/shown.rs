@@ -93,11 +93,22 @@ impl Dataset {
     #[must_use]
     pub fn target_freedoms(&self, rows: &[u32]) -> Vec<Freedom> {
         let mut found: Vec<Option<Freedom>> = vec![None; self.targets.len()];
+        let mut partly = found.len();
         for &row in rows {
             let observation = &self.observations[row as usize];
             let known = &mut found[observation.target];
+            if *known == Some(Freedom::FRAME) {
+                continue;
+            }
             let own = observation.measurement.target_freedom();
-            *known = Some(known.map_or(own, |known| known.with(own)));
+            let both = known.map_or(own, |known| known.with(own));
+            *known = Some(both);
+            if both == Freedom::FRAME {
+                partly -= 1;
+                if partly == 0 {
+                    break;
+                }
+            }
         }
         found.into_iter().map(|it| it.unwrap_or(Freedom::PLACE)).collect()
     }

@@ -3,7 +3,7 @@
 use super::row_group::Form;
 use super::{Layout, Problem};
 use crate::estimate::{Estimate, Passed, RangeTerm, Sight};
-use crate::lanes::{Along, DevicePlan, JointPlan, Plan, TermPlan};
+use crate::lanes::{Along, DevicePlan, JointPlan, Plan, TILE, TermPlan};
 use crate::lie::Freedom;
 use crate::parameters::{OtherScrew, Parameter, Subject, ValueTerm};
 use crate::robot::{JointKind, Term};
@@ -67,7 +67,17 @@ impl ColumnMap {
         made.add_target(&problem.layout);
         made.add_range(&problem.layout);
         made.plan.shifts = made.shift_places.len();
+        made.plan.idle = made.idle_tiles();
         made
+    }
+
+    /// Of each tile of columns, whether none is an unknown; empty if all have one.
+    fn idle_tiles(&self) -> Vec<bool> {
+        if self.shift_places.iter().all(|place| place.is_unknown()) {
+            return Vec::new();
+        }
+        let places: Vec<Place> = self.places().take(self.plan.columns()).collect();
+        places.chunks(TILE).map(|tile| !tile.iter().any(|place| place.is_unknown())).collect()
     }
 
     /// Places of the plan's columns in a step: translation columns, rotation columns, given ones.
@@ -258,6 +268,7 @@ fn plan_without_unknowns(problem: &Problem<'_>, state: &Estimate, sight: Sight, 
         shifts: 0,
         tilts: 0,
         turns: Vec::new(),
+        idle: Vec::new(),
         length_m: problem.layout.length_m(),
         given: 0,
         framed: form.sees_orientation(),

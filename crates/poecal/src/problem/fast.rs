@@ -148,7 +148,12 @@ impl Group {
         arm: &Arm<'_>,
         sums: Accumulate,
     ) -> Totals {
-        let sum = if sums == Accumulate::Gradient { lanes::sum_gradient } else { lanes::sum_products };
+        let sum = match (sums, self.arranged.plan.is_plain()) {
+            (Accumulate::Gradient, true) => lanes::sum_plain_gradient,
+            (Accumulate::Gradient, false) => lanes::sum_gradient,
+            (Accumulate::All | Accumulate::GaussNewton, true) => lanes::sum_plain_products,
+            (Accumulate::All | Accumulate::GaussNewton, false) => lanes::sum_products,
+        };
         let size = chunk_size(self.rows.len());
         let chunk = |index: usize| {
             let last = self.rows.len().min((index + 1) * size);
@@ -272,6 +277,9 @@ pub(super) fn pack(
     let noise = session.usual_noise(station, problem.noise);
     let usual = (noise, Whitening::new(noise));
     let route = linkage.tree().route(*sight);
+    // Looked up once for all rows.
+    let places: Vec<Option<usize>> =
+        terms.iter().map(|(passed, term, _)| session.packed.place_of(passed.joint, *term)).collect();
     packed.pack(
         plan,
         rows.len(),
@@ -283,9 +291,9 @@ pub(super) fn pack(
             (first, second)
         },
         |at, term| {
-            let (passed, term, scale) = terms[term];
+            let (place, (passed, term, scale)) = (places[term], terms[term]);
             let from = session.observation(rows[at]).from.filter(|_| passed.backward);
-            let basis = scale * session.packed.basis(rows[at] as usize, from, passed.joint, term);
+            let basis = scale * session.packed.basis_at(rows[at] as usize, from, place, (passed.joint, term));
             if passed.backward { -basis } else { basis }
         },
     );

@@ -2,6 +2,7 @@
 
 mod column_map;
 mod curvature;
+mod deviations;
 mod fast;
 mod layout;
 mod lengths;

@@ -1,11 +1,12 @@
 //! Gaussian prior: the axes are near nominal, and weakly the targets too (theory.md §6 (27a), (27c)).
 
-use nalgebra::{Matrix3, Matrix3x6, Matrix6, SVector, Vector3, Vector6};
+use nalgebra::{SVector, Vector3, Vector6};
 
 use super::Layout;
+use super::deviations::{Deviation, Deviations, Nominal, NominalTarget};
 use crate::estimate::{Estimate, Session, delivered};
-use crate::lie::{Pose, Twist, hat};
-use crate::linalg::{self, Factor6};
+use crate::lie::{Pose, Twist};
+use crate::linalg::Factor6;
 use crate::parameters::ValueTerm;
 use crate::robot::{JointTerm, Robot, Term, Tolerance};
 use crate::solve::Normal;
@@ -14,8 +15,6 @@ use crate::solve::Normal;
 const ITERATIONS: usize = 20;
 /// Converged step of the base (metres, radians): the gradient then moves no unknown by a picometre.
 const FOUND: f64 = 1e-8;
-/// Rounding of the base's information, as a share of its trace: axes that are all parallel leave directions undetermined.
-const ROUNDING: f64 = 1e-12;
 
 /// Standard deviation of a target's place from its place in the model: a share of the robot's reach, and at least so many metres. A reflector
 /// on any gripper or pointer is within it; it only decides where the measurements do not.
@@ -47,139 +46,6 @@ pub struct TermPrior {
     pub term: Term,
     /// Standard deviation.
     pub deviation: f64,
-}
-
-/// A nominal axis.
-#[derive(Clone, Debug, PartialEq)]
-struct Nominal {
-    direction: Vector3<f64>,
-    origin: Vector3<f64>,
-    turns: bool,
-    tolerance: Tolerance,
-}
-
-/// Nominal place of a target at home.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct NominalTarget {
-    /// Index of the target.
-    target: usize,
-    place: Vector3<f64>,
-    sigma_m: f64,
-}
-
-/// Deviation of a target, over its standard deviation.
-struct TargetDeviation {
-    target: usize,
-    value: Vector3<f64>,
-    /// Derivative by shifts along the target's own axes.
-    own: Matrix3<f64>,
-    /// Derivative by a motion of the base, a twist.
-    base: Matrix3x6<f64>,
-}
-
-/// Deviations after the best motion of the base.
-struct Deviations {
-    axes: Vec<Deviation>,
-    targets: Vec<TargetDeviation>,
-}
-
-/// Deviation of an axis with its derivatives by motions; tilts before shifts, each over its standard deviation.
-struct Deviation {
-    value: Vector6<f64>,
-    /// Derivatives by shifts along x and y and rotations about x and y of the axis' own frame.
-    own: [Vector6<f64>; 4],
-    /// Derivative by a motion of the base, a twist.
-    base: Matrix6<f64>,
-}
-
-impl Nominal {
-    /// Deviation of an axis with this `base_from_axis`.
-    fn deviation(&self, frame: &Pose) -> Deviation {
-        let [x, y, d] = [0, 1, 2].map(|k| frame.rotation.column(k).into_owned());
-        let (tilt, shift) = (1.0 / self.tolerance.angle_rad, 1.0 / self.tolerance.length_m);
-        let shift = if self.turns { shift } else { 0.0 };
-        let along = d.dot(&(self.origin - frame.translation));
-        let nearest = frame.translation + d * along;
-        let missing = self.origin - nearest;
-        let both = |tilted: Vector3<f64>, shifted: Vector3<f64>| {
-            let (a, b) = (tilted * tilt, shifted * shift);
-            Vector6::new(a.x, a.y, a.z, b.x, b.y, b.z)
-        };
-        // A rotation moves the direction by `turned`, a point of the axis by `moved`, and the nearest point also along the axis.
-        let change = |turned: Vector3<f64>, moved: Vector3<f64>| {
-            both(turned, moved - d * d.dot(&moved) + d * turned.dot(&missing))
-        };
-        let zero = Vector3::zeros();
-        let mut base = Matrix6::zeros();
-        for k in 0..3 {
-            let unit = Vector3::ith(k, 1.0);
-            base.set_column(k, &change(zero, unit));
-            base.set_column(3 + k, &change(unit.cross(&d), unit.cross(&nearest)));
-        }
-        Deviation {
-            value: both(d - self.direction, -missing),
-            own: [change(zero, x), change(zero, y), change(-y, -y * along), change(x, x * along)],
-            base,
-        }
-    }
-}
-
-impl NominalTarget {
-    /// Deviation of a target with this `base_from_target`.
-    fn deviation(&self, frame: &Pose) -> TargetDeviation {
-        let mut base = Matrix3x6::zeros();
-        base.fixed_view_mut::<3, 3>(0, 0).fill_diagonal(1.0);
-        base.fixed_view_mut::<3, 3>(0, 3).copy_from(&-hat(&frame.translation));
-        TargetDeviation {
-            target: self.target,
-            value: (frame.translation - self.place) / self.sigma_m,
-            own: frame.rotation / self.sigma_m,
-            base: base / self.sigma_m,
-        }
-    }
-}
-
-impl Deviations {
-    /// `½ |u|²` of the axes.
-    fn cost_of_axes(&self) -> f64 {
-        self.axes.iter().map(|it| 0.5 * it.value.norm_squared()).sum()
-    }
-
-    /// `½ |u|²` of axes and targets.
-    fn cost(&self) -> f64 {
-        self.cost_of_axes() + self.targets.iter().map(|it| 0.5 * it.value.norm_squared()).sum::<f64>()
-    }
-
-    /// Gradient by a motion of the base.
-    fn pull_of_base(&self) -> Vector6<f64> {
-        let axes: Vector6<f64> = self.axes.iter().map(|it| it.base.tr_mul(&it.value)).sum();
-        axes + self.targets.iter().map(|it| it.base.tr_mul(&it.value)).sum::<Vector6<f64>>()
-    }
-
-    /// Factor of the information of a motion of the base, `BᵀB` with `B = (0 T; A S)` for an axis: a shift tilts no axis.
-    fn base_factor(&self) -> Option<Factor6> {
-        let (mut shifts, mut mixed, mut turns) = (Matrix3::zeros(), Matrix3::zeros(), Matrix3::zeros());
-        for Deviation { base, .. } in &self.axes {
-            let [tilted, across, moved] =
-                [(0, 3), (3, 0), (3, 3)].map(|at| base.fixed_view::<3, 3>(at.0, at.1).into_owned());
-            shifts += across.tr_mul(&across);
-            mixed += across.tr_mul(&moved);
-            turns += tilted.tr_mul(&tilted) + moved.tr_mul(&moved);
-        }
-        for TargetDeviation { base, .. } in &self.targets {
-            let [across, moved] = [0, 3].map(|at| base.fixed_view::<3, 3>(0, at).into_owned());
-            shifts += across.tr_mul(&across);
-            mixed += across.tr_mul(&moved);
-            turns += moved.tr_mul(&moved);
-        }
-        let least = ROUNDING * (shifts.trace() + turns.trace());
-        let mut gram = Matrix6::identity() * least;
-        for (at, block) in [((0, 0), shifts), ((0, 3), mixed), ((3, 0), mixed.transpose()), ((3, 3), turns)] {
-            let mut place = gram.fixed_view_mut::<3, 3>(at.0, at.1);
-            place += block;
-        }
-        linalg::cholesky_6(gram)
-    }
 }
 
 impl Prior {
@@ -259,35 +125,35 @@ impl Prior {
         (2.0 * self.at_best_base(estimate).0.cost_of_axes() / free as f64).max(1.0)
     }
 
+    /// Deviations after a motion of the base.
+    fn deviations(&self, estimate: &Estimate, motion: Option<&Pose>) -> Deviations {
+        let moved = |frame: &Pose| motion.map_or(*frame, |motion| *motion * *frame);
+        let frames = estimate.base_from_axis.iter().map(moved);
+        let axes: Vec<Deviation> =
+            self.axes.iter().zip(frames).map(|(nominal, frame)| Deviation::new(nominal, &frame)).collect();
+        let frame = |nominal: &NominalTarget| estimate.base_from_target.get(nominal.target).map(moved);
+        let targets = self.targets.iter().filter_map(|it| Some(it.deviation(&frame(it)?))).collect();
+        let by_base = self.base_free.then(|| {
+            let targets = self.targets.iter().filter_map(|it| Some(it.by_base(&frame(it)?)));
+            (axes.iter().map(Deviation::by_base).collect(), targets.collect())
+        });
+        Deviations { axes, targets, by_base }
+    }
+
     /// Deviations after the best motion of the base, and the factor of that motion's information.
     fn at_best_base(&self, estimate: &Estimate) -> (Deviations, Option<Factor6>) {
-        let deviations = |motion: &Pose| -> Deviations {
-            let frames = estimate.base_from_axis.iter().map(|frame| *motion * *frame);
-            let axes =
-                self.axes.iter().zip(frames).map(|(nominal, frame)| nominal.deviation(&frame)).collect();
-            let target = |nominal: &NominalTarget| {
-                estimate
-                    .base_from_target
-                    .get(nominal.target)
-                    .map(|frame| nominal.deviation(&(*motion * *frame)))
-            };
-            Deviations { axes, targets: self.targets.iter().filter_map(target).collect() }
-        };
+        let mut found = self.deviations(estimate, None);
         let mut motion = Pose::identity();
-        let mut found = deviations(&motion);
-        if !self.base_free {
-            return (found, None);
-        }
         for _ in 0..ITERATIONS {
-            let Some(factor) = found.base_factor() else { return (found, None) };
-            let step = factor.solve(&-found.pull_of_base());
+            let Some((pull, factor)) = found.of_base() else { return (found, None) };
+            let step = factor.solve(&-pull);
             if step.amax() < FOUND || !step.amax().is_finite() {
                 return (found, Some(factor));
             }
             motion = (Pose::exp(&Twist::from_vector(&step)) * motion).orthonormalized();
-            found = deviations(&motion);
+            found = self.deviations(estimate, Some(&motion));
         }
-        let factor = found.base_factor();
+        let factor = found.of_base().map(|(_, factor)| factor);
         (found, factor)
     }
 
@@ -316,36 +182,41 @@ impl Prior {
     pub fn add(&self, estimate: &Estimate, layout: &Layout, weight: f64, normal: &mut Normal) {
         let (deviations, base) = self.at_best_base(estimate);
         let n = layout.dim();
-        let is_wanted = !normal.gram.is_empty();
         if self.terms_count {
             self.add_terms(estimate, layout, weight, normal);
         }
         // Products of each unknown's column with those of the base.
-        let mut shared: Vec<(usize, Vector6<f64>)> = Vec::with_capacity(n);
+        let by_base = deviations.by_base.as_ref().filter(|_| !normal.gram.is_empty());
+        let mut shared: Vec<(usize, Vector6<f64>)> = Vec::new();
         for (parameter, places) in layout.parameters() {
             if let Some(axis) = parameter.screw_axis() {
                 let Some(deviation) = deviations.axes.get(axis.joint) else { continue };
-                let own = &deviation.own[4 - places.len()..];
+                let own = &deviation.own()[4 - places.len()..];
                 add_columns((places, own), &deviation.value, weight, n, normal);
-                let follows = |column: &Vector6<f64>| deviation.base.tr_mul(column);
-                shared.extend(places.iter().zip(own).map(|((at, scale), own)| (*at, follows(own) / *scale)));
+                if let Some(base) = by_base.and_then(|(axes, _)| axes.get(axis.joint)) {
+                    shared.extend(
+                        places.iter().zip(own).map(|((at, scale), own)| (*at, base.tr_mul(own) / *scale)),
+                    );
+                }
             } else if let Some((target, motions)) = parameter.target_motions() {
-                let Some(deviation) = deviations.targets.iter().find(|it| it.target == target) else {
-                    continue;
-                };
-                let shifts = motions.iter().zip(places).filter(|(motion, _)| **motion < 3);
-                let (own, places): (Vec<Vector3<f64>>, Vec<(usize, f64)>) = shifts
-                    .map(|(&motion, place)| (deviation.own.column(motion).into_owned(), *place))
-                    .unzip();
-                add_columns((&places, &own), &deviation.value, weight, n, normal);
-                let follows = |column: &Vector3<f64>| deviation.base.tr_mul(column);
-                shared.extend(places.iter().zip(&own).map(|((at, scale), own)| (*at, follows(own) / *scale)));
+                let Some(at) = deviations.targets.iter().position(|it| it.target == target) else { continue };
+                let deviation = &deviations.targets[at];
+                // The shifts are the first motions of a target.
+                let count = motions.iter().take_while(|motion| **motion < 3).count();
+                let (mut own, places) = ([Vector3::zeros(); 3], &places[..count]);
+                for (own, &motion) in own.iter_mut().zip(&motions[..count]) {
+                    *own = deviation.own.column(motion).into_owned();
+                }
+                let own = &own[..count];
+                add_columns((places, own), &deviation.value, weight, n, normal);
+                if let Some(base) = by_base.and_then(|(_, targets)| targets.get(at)) {
+                    shared.extend(
+                        places.iter().zip(own).map(|((at, scale), own)| (*at, base.tr_mul(own) / *scale)),
+                    );
+                }
             }
         }
         normal.cost += weight * deviations.cost();
-        if !is_wanted {
-            return;
-        }
         let Some(base) = base else { return };
         let lower = base.l_dirty();
         for (_, pull) in &mut shared {
@@ -370,10 +241,12 @@ fn add_columns<const N: usize>(
 ) {
     for (k, (&(place, scale), column)) in places.iter().zip(own).enumerate() {
         normal.gradient[place] -= weight / scale * column.dot(value);
+        if normal.gram.is_empty() {
+            continue;
+        }
         for (&(other, other_scale), other_column) in places.iter().zip(own).skip(k) {
-            if let Some(information) = normal.gram.get_mut(place.min(other) * n + place.max(other)) {
-                *information += weight / (scale * other_scale) * column.dot(other_column);
-            }
+            normal.gram[place.min(other) * n + place.max(other)] +=
+                weight / (scale * other_scale) * column.dot(other_column);
         }
     }
 }

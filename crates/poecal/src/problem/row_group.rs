@@ -46,8 +46,11 @@ impl RowGroup {
     /// Groups rows by target, station and form; stores `key(position, row)` of each.
     pub(super) fn of(problem: &Problem<'_>, rows: &[u32], key: impl Fn(u32, u32) -> u32) -> Vec<RowGroup> {
         let mut groups: Vec<RowGroup> = Vec::new();
-        let usual =
-            |observation: &Observation| problem.session.usual_noise(observation.station, problem.noise);
+        let (usual, are_alike) = (Whitening::new(problem.noise), problem.session.noise_ratios.is_empty());
+        let ratio = |observation: &Observation| match are_alike {
+            true => usual.of(observation, problem.noise).ratio,
+            false => Whitening::new(problem.session.noise_of(observation, problem.noise)).ratio,
+        };
         let own = |row: u32| problem.measurement(row as usize);
         let (is_other, residual) = (problem.layout.has_other_screws(), problem.session.data.pose_residual);
         let mut at = 0;
@@ -64,8 +67,7 @@ impl RowGroup {
             if !groups.get(at).is_some_and(|group| group.holds(sight, form)) {
                 at = groups.iter().position(|group| group.holds(sight, form)).unwrap_or(groups.len());
             }
-            let ratio =
-                (form == Form::Pose).then(|| Whitening::new(observation.noise_or(usual(observation))).ratio);
+            let ratio = (form == Form::Pose).then(|| ratio(observation));
             match groups.get_mut(at) {
                 Some(group) => {
                     group.ratio = same(group.ratio, ratio);

@@ -1,11 +1,126 @@
 //! Places of the hot path's sums in the problem's `JᵀJ`.
 
 use super::column_map::{ColumnMap, Place};
-use crate::lanes::{Tiles, Totals};
+use crate::lanes::{TILE, Tiles, Totals};
 
 /// Places of a group's products, computed once for all passes.
+#[derive(Clone, Debug)]
+pub(super) enum GramScatter {
+    /// Each column is an unknown of its own.
+    Plain(PlainScatter),
+    /// Some are none, or one unknown has several.
+    Listed(ListedScatter),
+}
+
+impl GramScatter {
+    /// Places for rows of this column map, with `n` unknowns.
+    pub(super) fn new(arranged: &ColumnMap, n: usize) -> Self {
+        match PlainScatter::new(arranged, n) {
+            Some(plain) => GramScatter::Plain(plain),
+            None => GramScatter::Listed(ListedScatter::new(arranged, n)),
+        }
+    }
+
+    /// Adds sums to the upper triangle of a Gram matrix.
+    pub(super) fn add(&self, totals: &Totals, gram: &mut [f64]) {
+        match self {
+            GramScatter::Plain(plain) => plain.add(totals, gram),
+            GramScatter::Listed(listed) => listed.add(totals, gram),
+        }
+    }
+}
+
+/// Places of columns that are an unknown each: a list of all products would take longer to make than a small fit takes to use it.
+#[derive(Clone, Debug)]
+pub(super) struct PlainScatter {
+    /// Where the row of each position column begins in the matrix, and its place in a step.
+    at: Vec<(usize, usize)>,
+    /// The same of the rotation columns, where their products are among the sums, and where those of their translation columns are.
+    turns_at: Vec<(usize, usize)>,
+    turns: Tiles,
+    of_shifts: Tiles,
+    /// Factor `ρ²/L²` of theory.md §6 (28a), if it is the same for all rows.
+    shared: Option<f64>,
+}
+
+impl PlainScatter {
+    /// `None` where a column is no unknown, or not the only one of its unknown.
+    fn new(arranged: &ColumnMap, n: usize) -> Option<Self> {
+        let plan = &arranged.plan;
+        let mut is_known = vec![false; n];
+        for place in arranged.places() {
+            let known = is_known.get_mut(place.at)?;
+            if place.sign != 1.0 || std::mem::replace(known, true) {
+                return None;
+            }
+        }
+        let columns = plan.columns();
+        let turns = if plan.is_pose() { &plan.turns[..] } else { &[] };
+        if !turns.is_sorted() {
+            return None;
+        }
+        let tiles = Tiles::new(columns);
+        let of_shifts = Tiles {
+            left: turns.iter().map(|&shift| tiles.left[shift]).collect(),
+            right: turns.iter().map(|&shift| tiles.right[shift]).collect(),
+        };
+        let of_place = |place: Place| (place.at * n, place.at);
+        Some(PlainScatter {
+            at: arranged.places().take(columns).map(of_place).collect(),
+            turns_at: arranged.turn_places().iter().take(turns.len()).copied().map(of_place).collect(),
+            turns: Tiles::new(turns.len()),
+            of_shifts,
+            shared: plan.ratio.map(|ratio| (ratio / plan.length_m).powi(2)),
+        })
+    }
+
+    fn add(&self, totals: &Totals, gram: &mut [f64]) {
+        // Of the two places of a product in the matrix, the upper one is the earlier.
+        let place =
+            |(row, at): (usize, usize), (other_row, other): (usize, usize)| (row + other).min(other_row + at);
+        let mut tiles = totals.products.as_chunks::<{ TILE * TILE }>().0.iter();
+        for (first, left) in self.at.chunks(TILE).enumerate() {
+            for (second, right) in self.at.chunks(TILE).enumerate().skip(first) {
+                let Some(tile) = tiles.next() else { return };
+                match (left, right) {
+                    (&[a, b, c], right @ &[_, _, _]) if second > first => {
+                        for (other, of_row) in [a, b, c].into_iter().zip(tile.as_chunks::<TILE>().0) {
+                            for (at, product) in right.iter().zip(of_row) {
+                                gram[place(other, *at)] += product;
+                            }
+                        }
+                    }
+                    _ => {
+                        for (k, other) in left.iter().enumerate() {
+                            let above = if second > first { 0 } else { k };
+                            for (l, at) in right.iter().enumerate().skip(above) {
+                                gram[place(*other, *at)] += tile[k * TILE + l];
+                            }
+                        }
+                    }
+                }
+            }
+        }
+        // Where the curvature of the logarithm is left out, rotations add nothing of their own.
+        let (own, of_shifts, has_own) = (&self.turns, &self.of_shifts, !totals.turned.is_empty());
+        for (first, &a) in self.turns_at.iter().enumerate() {
+            let (left, left_of_shift) = (own.left[first], of_shifts.left[first]);
+            let rights = own.right[first..].iter().zip(&of_shifts.right[first..]);
+            for (&b, (right, right_of_shift)) in self.turns_at[first..].iter().zip(rights) {
+                let own = if has_own { totals.turned[left + right] } else { 0.0 };
+                let turned = match self.shared {
+                    Some(factor) => factor * (totals.products[left_of_shift + right_of_shift] + own),
+                    None => own,
+                };
+                gram[place(a, b)] += turned;
+            }
+        }
+    }
+}
+
+/// Places of every product.
 #[derive(Clone, Debug, Default)]
-pub(super) struct GramScatter {
+pub(super) struct ListedScatter {
     /// Position columns: index among the sums, and in the Gram matrix.
     position: Vec<(usize, usize)>,
     /// Rotation columns: index of the product of their translation columns, of the rotation rows' sum, and in the Gram matrix.
@@ -17,9 +132,8 @@ pub(super) struct GramScatter {
     shared: Option<f64>,
 }
 
-impl GramScatter {
-    /// Places for rows of this column map, with `n` unknowns.
-    pub(super) fn new(arranged: &ColumnMap, n: usize) -> Self {
+impl ListedScatter {
+    fn new(arranged: &ColumnMap, n: usize) -> Self {
         let plan = &arranged.plan;
         let upper = |a: usize, b: usize| a.min(b) * n + a.max(b);
         // Of two columns of one unknown, the product counts twice on the diagonal.
@@ -30,10 +144,10 @@ impl GramScatter {
         let columns = plan.columns();
         let places: Vec<Place> = arranged.places().take(columns).collect();
         let tiles = Tiles::new(columns);
-        let mut made = GramScatter {
+        let mut made = ListedScatter {
             position: Vec::with_capacity(columns * (columns + 1) / 2),
             shared: plan.ratio.map(|ratio| (ratio / plan.length_m).powi(2)),
-            ..GramScatter::default()
+            ..ListedScatter::default()
         };
         for (a, (&place, left)) in places.iter().zip(&tiles.left).enumerate() {
             for (b, (&other, right)) in places.iter().zip(&tiles.right).enumerate().skip(a) {
@@ -63,8 +177,7 @@ impl GramScatter {
         made
     }
 
-    /// Adds sums to the upper triangle of a Gram matrix.
-    pub(super) fn add(&self, totals: &Totals, gram: &mut [f64]) {
+    fn add(&self, totals: &Totals, gram: &mut [f64]) {
         for &(from, to) in &self.position {
             gram[to] += totals.products[from];
         }

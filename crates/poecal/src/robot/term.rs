@@ -111,6 +111,13 @@ impl<'a> TermFunctions<'a> {
 
     /// The functions at these values of all joints and of the factors, in the order of the robot's terms.
     pub(crate) fn at(&mut self, values: &[f64], factors: &[f64]) -> Vec<f64> {
+        let mut found = vec![0.0; self.robot.terms.len()];
+        self.write(values, factors, &mut found);
+        found
+    }
+
+    /// Writes them.
+    pub(crate) fn write(&mut self, values: &[f64], factors: &[f64], out: &mut [f64]) {
         let TermFunctions { robot, statics, moments } = self;
         if let Some(statics) = &statics {
             statics.evaluate(values, moments);
@@ -119,7 +126,9 @@ impl<'a> TermFunctions<'a> {
         let factors: Vec<f64> = factors.collect();
         let own = own_values(robot, values);
         let at = Situation { values: &own, moments: statics.as_ref().map(|_| &*moments), factors: &factors };
-        robot.terms.iter().map(|it| at.basis(it.joint, it.term)).collect()
+        for (out, it) in out.iter_mut().zip(&robot.terms) {
+            *out = at.basis(it.joint, it.term);
+        }
     }
 }
 

@@ -253,19 +253,17 @@ impl<'a, P: LeastSquares> Search<'a, P> {
             && self.damping.is_finite()
     }
 
-    /// Residuals and gradient at the end of a step, beside the `JᵀJ` of its start; `None` where the end needs its own.
+    /// Residuals and gradient at the end of a step, for the `JᵀJ` of its start; `None` where the end needs its own.
     fn evaluate_without_jtj(&self, state: &P::State, predicted: f64) -> Option<Normal> {
         let cost = self.normal.cost;
         if self.nonlinear || !self.reuse.may_freeze(predicted, cost, || self.is_well_conditioned()) {
             return None;
         }
-        let mut normal = self.problem.gradient(state)?;
-        normal.gram.clone_from(&self.normal.gram);
-        Some(normal)
+        self.problem.gradient(state)
     }
 
     /// Moves on, and lowers the damping the more, the better the model predicted the reduction (Nielsen).
-    fn accept(&mut self, state: P::State, normal: Normal, gain: f64) {
+    fn accept(&mut self, state: P::State, mut normal: Normal, gain: f64) {
         self.damping *= if gain <= 0.5 {
             (1.0 - (2.0 * gain - 1.0).powi(3)).min(2.0)
         } else if self.nonlinear {
@@ -275,6 +273,9 @@ impl<'a, P: LeastSquares> Search<'a, P> {
         };
         self.increase = 2.0;
         self.state = state;
+        if self.reuse.is_frozen() {
+            normal.gram = std::mem::take(&mut self.normal.gram);
+        }
         self.normal = normal;
         self.trace.push(self.normal.mean_square());
         if !self.reuse.is_frozen() {

@@ -95,8 +95,8 @@ pub(crate) fn device_parameter(data: &Dataset, station: usize, rows: &[u32]) -> 
 
 /// The unknown zeros and scales of distances in these rows: what the rows say, and what the session names.
 pub(crate) fn range_parameters(session: &Session<'_>, rows: &[u32]) -> impl Iterator<Item = RangeUnknown> {
-    let (data, unknowns, rows) = (session.data, session.unknowns, rows.to_vec());
-    let is_seen = move |station: usize| data.zero_is_unknown(station, &rows);
+    let (data, unknowns) = (session.data, session.unknowns);
+    let is_seen = move |station: usize| data.zero_is_unknown(station, rows);
     let named = |station: usize, term: RangeTerm| unknowns.ranges.contains(&(station, term));
     (0..data.station_count()).flat_map(move |station| {
         let zero = is_seen(station) || named(station, RangeTerm::Zero);
@@ -110,14 +110,18 @@ pub(crate) fn range_parameters(session: &Session<'_>, rows: &[u32]) -> impl Iter
 pub(crate) fn target_parameters(session: &Session<'_>, rows: &[u32]) -> impl Iterator<Item = Parameter> {
     let unknowns = session.unknowns;
     let data = session.data;
+    let mut freedoms = data.target_freedoms(rows);
     // Where all planes are unknown, the height of a face is one with theirs (theory.md §4 (15c)).
-    let has_known = rows.iter().any(|&row| {
+    let is_known = |&row: &u32| {
         let seen = session.observation(row);
         seen.measurement.face_normal().is_some()
             && (!session.device_free || !unknowns.moves_frame(seen.station))
-    });
-    let height = move |freedom: Freedom| if has_known { freedom } else { freedom.without_height() };
-    let targets = data.target_freedoms(rows).into_iter().map(height).enumerate();
+    };
+    let has_height = |freedom: &Freedom| freedom.without_height() != *freedom;
+    if freedoms.iter().any(has_height) && !rows.iter().any(is_known) {
+        freedoms.iter_mut().for_each(|freedom| *freedom = freedom.without_height());
+    }
+    let targets = freedoms.into_iter().enumerate();
     let targets = targets.filter(|&(target, _)| unknowns.moves_target(target));
     targets.map(|(target, freedom)| target_parameter(target, freedom))
 }

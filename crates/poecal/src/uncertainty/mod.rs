@@ -167,13 +167,12 @@ impl Uncertainty {
             let farther: Vec<f64> =
                 some.iter().map(|&(row, _)| self.outside(packed.joint_values(row))).collect();
             let wider = beyond.as_ref().filter(|_| farther.iter().any(|share| *share > 0.0));
-            let wider = wider.map(|covariance| &motions * covariance);
+            let wider = wider.map(|covariance| products(&motions, &(&motions * covariance)));
+            let nearer = products(&motions, &spread);
             found.extend(farther.into_iter().enumerate().map(|(at, share)| {
                 std::array::from_fn(|part| {
-                    let first = 3 * (PARTS * at + part);
-                    let here = products(&motions, &spread, first);
-                    let there = wider.as_ref().filter(|_| share > 0.0);
-                    let there = there.map(|spread| products(&motions, spread, first));
+                    let here = nearer[PARTS * at + part];
+                    let there = wider.as_ref().filter(|_| share > 0.0).map(|there| there[PARTS * at + part]);
                     there.map_or(here, |there| here * (1.0 - share) + there * share) + own[part]
                 })
             }));

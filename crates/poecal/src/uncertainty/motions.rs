@@ -31,13 +31,18 @@ pub(super) fn motions(
     motions
 }
 
-/// `Σ a bᵀ` over the columns of two matrices, each restricted to three rows from `first` on.
-pub(super) fn products(a: &DMatrix<f64>, b: &DMatrix<f64>, first: usize) -> Matrix3<f64> {
-    let cut = |matrix: &DMatrix<f64>, column: usize| {
-        let start = column * matrix.nrows() + first;
-        Vector3::from_column_slice(&matrix.as_slice()[start..start + 3])
-    };
-    let mut sum = Matrix3::zeros();
-    (0..a.ncols()).for_each(|column| sum += cut(a, column) * cut(b, column).transpose());
-    sum
+/// `Σ a bᵀ` over the columns of two matrices, for each three rows of both.
+pub(super) fn products(a: &DMatrix<f64>, b: &DMatrix<f64>) -> Vec<Matrix3<f64>> {
+    let mut sums = vec![Matrix3::zeros(); a.nrows() / 3];
+    let height = a.nrows().max(1);
+    let (left, right) = (a.as_slice().chunks_exact(height), b.as_slice().chunks_exact(height));
+    // Column after column, as they lie in memory.
+    for (a, b) in left.zip(right) {
+        for (sum, (a, b)) in sums.iter_mut().zip(a.as_chunks::<3>().0.iter().zip(b.as_chunks::<3>().0)) {
+            for (sum, b) in sum.data.0.iter_mut().zip(b) {
+                sum.iter_mut().zip(a).for_each(|(sum, a)| *sum += a * b);
+            }
+        }
+    }
+    sums
 }
