@@ -6,7 +6,7 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::estimate::Unknowns;
 use crate::measurement::Dataset;
 use crate::parameters::{Block, Names};
-use crate::robot::{Argument, Gravity, GravityDirection, JointTerm, Robot, Term};
+use crate::robot::{Argument, Gravity, GravityDirection, JointTerm, Robot, Statics, Term};
 
 /// Blocks that a message lists at most.
 const LISTED: usize = 12;
@@ -56,7 +56,10 @@ impl BlockChoice {
                 };
                 found.gravity = Some(Gravity::of_unit_weights(&found, direction));
             }
-            if let Some(needed) = found.lacks(term) {
+            let is_pulled = !term.needs_gravity()
+                || Statics::new(&found).is_some_and(|statics| statics.is_pulled(joint, term));
+            let carried = || (!is_pulled).then(|| "one of what the joint carries".to_owned());
+            if let Some(needed) = found.lacks(term).or_else(carried) {
                 let message = format!("found `{word}` to be fitted, expected {needed}");
                 return Err(Error::new(ErrorKind::Option, message));
             }

@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 use poecal_arm::{Pull, PulledWeight};
 
-use super::{Body, Gravity, JointKind, Mass, Robot, Weight};
+use super::{Argument, Body, Gravity, JointKind, Mass, Robot, Term, Weight};
 use crate::lie::Pose;
 
 /// Lever below which a weight has no moment, as a share of the arm: a tool on the last axis.
@@ -116,6 +116,16 @@ impl<'a> Statics<'a> {
     #[must_use]
     pub fn carries_masses(&self, joint: usize) -> bool {
         self.mass_levers.get(joint).is_some_and(|all| *all > 0.0)
+    }
+
+    /// Whether what a term is a function of has a moment about a joint in any configuration.
+    pub(crate) fn is_pulled(&self, joint: usize, term: Term) -> bool {
+        match term.argument() {
+            Argument::Masses => self.carries_masses(joint),
+            Argument::Weight => self.is_carried(joint, term.index()),
+            Argument::Payload => self.is_carried(joint, self.gravity.weights.len().saturating_sub(1)),
+            Argument::Nothing | Argument::OwnValue | Argument::OtherJoint | Argument::Factor => false,
+        }
     }
 
     /// What a joint gives with these coefficients of the weights and of all masses, where these joints are the moving ones of an arm.
