@@ -1,6 +1,7 @@
 //! All configurations of an arm that have its tip at a pose.
 
 mod axis;
+mod found;
 mod general;
 mod held;
 mod parallel;
@@ -8,8 +9,8 @@ mod roots;
 mod ways;
 mod wrist;
 
-use core::f64::consts::TAU;
-
+pub use found::{Branches, MOST_BRANCHES};
+use found::{SAME, apart, sort, turned};
 pub use held::HeldBranches;
 use ways::{MOST_STEPS, Ways};
 
@@ -21,75 +22,6 @@ use crate::arm::Arm;
 use crate::lie::{Pose, Screw};
 use crate::newton::{REACHED, Six, newton};
 use crate::trig::wrapped;
-
-/// Difference of all joints (rad) below which two configurations are one.
-const SAME: f64 = 1e-7;
-/// Most branches of an arm of six axes (primrose1986).
-pub const MOST_BRANCHES: usize = 16;
-
-/// Configurations that have the tip at a pose, joint values (rad) in (-π, π]: those of [`AllBranches::at`].
-///
-/// ```
-/// use nalgebra::Vector3;
-/// use poecal_arm::{AllBranches, Arm, lie::{Pose, Screw}};
-/// let axes = [Vector3::z(), Vector3::y(), Vector3::y(), Vector3::x(), Vector3::y(), Vector3::x()];
-/// let points = [0.0, 0.0, 0.4, 0.4, 0.8, 0.8].map(|z| Vector3::new(0.0, 0.0, z));
-/// let screws: Vec<Screw> = axes.iter().zip(&points).map(|(axis, point)| Screw::revolute(axis, point)).collect();
-/// let arm = Arm::new(&screws, &Pose::from_translation(Vector3::new(0.1, 0.0, 0.8))).unwrap();
-/// let far = Pose::from_translation(Vector3::new(9.0, 0.0, 0.0));
-/// assert!(AllBranches::new(&arm).unwrap().at(&far).as_slice().is_empty());
-/// ```
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Branches<const N: usize = 6> {
-    values: [[f64; N]; MOST_BRANCHES],
-    count: usize,
-}
-
-impl<const N: usize> Branches<N> {
-    const EMPTY: Self = Branches { values: [[0.0; N]; MOST_BRANCHES], count: 0 };
-
-    /// The configurations.
-    #[must_use]
-    pub fn as_slice(&self) -> &[[f64; N]] {
-        &self.values[..self.count]
-    }
-
-    /// Adds a configuration, unless it is there or there is no room.
-    fn add(&mut self, q: &[f64; N], same: f64) {
-        if self.count < MOST_BRANCHES && !self.as_slice().iter().any(|other| apart(q, other) < same) {
-            self.values[self.count] = *q;
-            self.count += 1;
-        }
-    }
-}
-
-/// The largest difference of a joint, rad.
-fn apart<const N: usize>(one: &[f64; N], other: &[f64; N]) -> f64 {
-    one.iter().zip(other).map(|(a, b)| wrapped(a - b).abs()).fold(0.0, f64::max)
-}
-
-/// A configuration turned by whole turns to where it is nearest to `near` and within limits; `None` if there is no such one.
-fn turned<const N: usize>(branch: &[f64; N], near: &[f64; N], limits: &[(f64, f64)]) -> Option<[f64; N]> {
-    let mut q = *branch;
-    for ((q, near), &(low, high)) in q.iter_mut().zip(near).zip(limits) {
-        let turns = ((near - *q) / TAU).round();
-        let turned = *q + turns * TAU;
-        // Limits that are met but for rounding are met.
-        let least = ((low - SAME - turned) / TAU).ceil();
-        let most = ((high + SAME - turned) / TAU).floor();
-        if least > most {
-            return None;
-        }
-        *q = turned + TAU * 0.0_f64.clamp(least, most);
-    }
-    Some(q)
-}
-
-/// Sorts configurations by the joint that has to move most.
-fn sort<const N: usize>(found: &mut Branches<N>, near: &[f64; N]) {
-    let far = |q: &[f64; N]| q.iter().zip(near).map(|(q, near)| (q - near).abs()).fold(0.0, f64::max);
-    found.values[..found.count].sort_unstable_by(|one, other| far(one).total_cmp(&far(other)));
-}
 
 /// All branches of one arm of six revolute joints: those of the nearest arm that has them in closed form (its last or first three axes meet,
 /// or its second to fourth, or third to fifth, are parallel), each followed by Newton's iteration of the arm itself. Where two of them meet or

@@ -1,47 +1,13 @@
 //! Columns of one group of rows: the unknowns that move its target, in the order of the kernels.
 
-use super::row_group::Form;
+use super::arranged::{ColumnMap, Place};
+use super::form::Form;
 use super::{Layout, Problem};
-use crate::estimate::{Estimate, Passed, RangeTerm, Sight};
+use crate::estimate::{Estimate, Passed, Sight};
 use crate::lanes::{Along, DevicePlan, JointPlan, Plan, TILE, TermPlan};
 use crate::lie::Freedom;
 use crate::parameters::{OtherScrew, Parameter, Subject, ValueTerm};
-use crate::robot::{JointKind, Term};
-
-/// Columns of one group of rows: their order in the kernels, and their places in a step.
-#[derive(Clone, Debug)]
-pub(super) struct ColumnMap {
-    pub(super) sight: Sight,
-    form: Form,
-    pub(super) plan: Plan,
-    /// Places of the plan's translation and rotation columns in a step.
-    shift_places: Vec<Place>,
-    turn_places: Vec<Place>,
-    given_places: Vec<Place>,
-    /// Screws in another parameterisation, with the scale of each of their unknowns.
-    pub(super) screws: Vec<(OtherScrew, Vec<f64>)>,
-    /// Terms of the range that are unknown, the last of the given columns, with the scale of each.
-    pub(super) ranges: Vec<(RangeTerm, f64)>,
-    /// Joint and term of each of the plan's terms, and its column in a step over that of the kernels.
-    pub(super) terms: Vec<(Passed, Term, f64)>,
-}
-
-/// Place of a column in a step, and its sign: the same unknown may move a target twice, and against its own direction.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Place {
-    pub(super) at: usize,
-    pub(super) sign: f64,
-}
-
-impl Place {
-    /// Of a column that is no unknown.
-    const NONE: Place = Place { at: usize::MAX, sign: 1.0 };
-
-    /// Whether the column is an unknown.
-    pub(super) fn is_unknown(self) -> bool {
-        self.at != usize::MAX
-    }
-}
+use crate::robot::JointKind;
 
 impl ColumnMap {
     /// Of rows of one sight and form. Of two parameters of one frame, axis or target the first counts.

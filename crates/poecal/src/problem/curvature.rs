@@ -1,6 +1,6 @@
 //! Second derivatives of a problem: along a step, and of the prediction under the residuals' wrench (theory.md §6 (31), (31a)).
 
-use super::fast::{Accumulate, Fast, SecondDifference};
+use super::groups::{Accumulate, Fast, SecondDifference};
 use super::{Problem, ShapedRow};
 use crate::estimate::{Chain, Estimate, Linkage, Range};
 use crate::lie::Pose;

@@ -1,7 +1,8 @@
 //! The hot path: rows grouped by instrument, target and form, packed side by side, and summed by [`crate::lanes`].
 
 use super::Problem;
-use super::column_map::ColumnMap;
+use super::arranged::ColumnMap;
+use super::groups::{Accumulate, Fast, Group, SecondDifference};
 use super::row_group::{RowGroup, Whitening};
 use super::scatter::GramScatter;
 use crate::estimate::{Chain, Estimate, Linkage, Sight};
@@ -24,47 +25,6 @@ const KEPT: usize = 2048;
 thread_local! {
     /// Buffer of a chunk that does not stay packed.
     pub(super) static ROWS: RefCell<PackedRows> = const { RefCell::new(PackedRows::EMPTY) };
-}
-
-/// Sums over rows.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Accumulate {
-    /// Cost, gradient and `JᵀJ`.
-    All,
-    /// The same; `JᵀJ` may lack the curvature of the logarithm, where that saves time.
-    GaussNewton,
-    /// Cost and gradient.
-    Gradient,
-}
-
-/// The groups of rows of a problem.
-#[derive(Clone, Debug)]
-pub(super) struct Fast {
-    groups: Vec<(Group, GramScatter)>,
-    level: SimdLevel,
-    /// Of the state at which it was built: its joints are those of every other.
-    linkage: Linkage,
-    /// A step along which residuals are replaced by their second derivative.
-    second: Option<SecondDifference>,
-}
-
-/// A step, by the frames ahead of a state and behind it.
-#[derive(Clone, Debug)]
-pub(super) struct SecondDifference {
-    pub(super) ahead: Linkage,
-    pub(super) behind: Linkage,
-    /// Share of the step that they are away.
-    pub(super) fraction: f64,
-}
-
-#[derive(Clone, Debug)]
-struct Group {
-    arranged: ColumnMap,
-    rows: Vec<u32>,
-    /// Whether its rows stay packed.
-    keeps: bool,
-    /// Chunks of packed rows, if they stay packed.
-    packed: Vec<PackedRows>,
 }
 
 impl Fast {

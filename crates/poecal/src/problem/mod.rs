@@ -1,9 +1,12 @@
 //! Rows × columns: the only place where measurements and parameters meet. Assembly of the normal equations, no algorithms.
 
+mod arranged;
 mod column_map;
 mod curvature;
 mod deviations;
 mod fast;
+mod form;
+mod groups;
 mod layout;
 mod lengths;
 mod prior;
@@ -25,7 +28,7 @@ use crate::lie::Pose;
 use crate::measurement::{Channels, Measurement, NUMBERS, Noise, Sensitivity, Written};
 use crate::parameters::Parameter;
 use crate::solve::{LeastSquares, Normal};
-use fast::{Accumulate, Fast};
+use groups::{Accumulate, Fast};
 use std::sync::OnceLock;
 
 /// Most unknowns of a fit: its time grows with the cube of their number, its memory with the square. 1,000 take about half a minute of

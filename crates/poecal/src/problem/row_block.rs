@@ -1,7 +1,7 @@
 //! Jacobian and residuals of several rows side by side.
 
 use super::Problem;
-use super::column_map::ColumnMap;
+use super::arranged::ColumnMap;
 use super::fast::{ROWS, RowShapes, fixed_motions, pack};
 use super::row_group::RowGroup;
 use crate::estimate::{Estimate, Linkage};

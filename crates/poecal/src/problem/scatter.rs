@@ -1,6 +1,6 @@
 //! Places of the hot path's sums in the problem's `JᵀJ`.
 
-use super::column_map::{ColumnMap, Place};
+use super::arranged::{ColumnMap, Place};
 use crate::lanes::{TILE, Tiles, Totals};
 
 /// Places of a group's products, computed once for all passes.

@@ -10,6 +10,7 @@ mod forms;
 mod given;
 mod krl;
 mod language;
+mod number;
 mod parsed;
 mod place;
 mod posture;

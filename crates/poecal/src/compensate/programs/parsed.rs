@@ -1,10 +1,10 @@
 //! What the languages make of a program: its targets, its motions, and what cannot be corrected.
 
 use std::collections::BTreeMap;
-use std::ops::Range;
 
 pub(crate) use super::super::Listed;
 use super::forms::PoseForm;
+pub(crate) use super::number::Number;
 use super::stated::Stated;
 use crate::lie::Pose;
 
@@ -111,26 +111,6 @@ impl Motion {
     pub(crate) fn to(target: usize, line: usize) -> Self {
         let (tool, frame, stated, refused) = (None, None, Stated::Nothing, None);
         Motion { target, line, after: None, is_straight: false, tool, frame, stated, refused }
-    }
-}
-
-/// A number as it is written.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Number {
-    /// Its bytes, sign included.
-    pub(crate) range: Range<usize>,
-    /// Its value.
-    pub(crate) value: f64,
-    /// Digits behind the point.
-    pub(crate) decimals: usize,
-    /// What it is multiplied with to be in the unit of its target.
-    pub(crate) scale: f64,
-}
-
-impl Number {
-    /// The value in the unit of its target.
-    pub(crate) fn scaled(&self) -> f64 {
-        self.value * self.scale
     }
 }
 

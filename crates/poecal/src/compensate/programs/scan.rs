@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::parsed::Number;
+use super::number::Number;
 
 /// How a language is written.
 #[derive(Clone, Copy, Debug)]

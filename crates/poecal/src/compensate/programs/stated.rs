@@ -2,8 +2,9 @@
 
 use poecal_arm::Arm;
 
+use super::fanuc::configuration::Configuration as Letters;
 use super::krl::status::Status;
-use super::{fanuc, rapid};
+use super::rapid::configuration::Configuration as Quarters;
 
 /// What a motion's text says of the configuration in which a pose is reached.
 #[derive(Clone, Debug, PartialEq)]
@@ -15,9 +16,9 @@ pub(crate) enum Stated {
     /// Status and turn of KRL.
     Krl(Status),
     /// Quarter turns and branch of RAPID.
-    Rapid(rapid::Configuration),
+    Rapid(Quarters),
     /// Letters and turn numbers of FANUC.
-    Fanuc(fanuc::Configuration),
+    Fanuc(Letters),
 }
 
 impl From<Status> for Stated {

@@ -53,17 +53,12 @@ use crate::measurement::{Dataset, Measured, Noise};
 use crate::parameters::Block;
 use crate::robot::{Joint, JointKind, JointTerm, Limits, Robot, Term};
 use nalgebra::Vector3;
-use refusal::refusal;
+pub use refusal::SCHEMA;
+use refusal::{EARLIER, refusal};
 use schemars::Schema;
 use schemars::generate::SchemaSettings;
 use schemars::transform::RecursiveTransform;
 use serde_json::Value;
-
-/// Version of the files that are written. Readers take those of version 1 too, and refuse others.
-pub const SCHEMA: &str = "poecal-calibration-2";
-
-/// Version without quantities beside position and rotation, but otherwise the same.
-const EARLIER: &str = "poecal-calibration-1";
 
 impl CalibrationFile {
     /// File of a finished calibration, with the user's names of the inputs.

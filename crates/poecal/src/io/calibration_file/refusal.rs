@@ -2,8 +2,13 @@
 
 use std::path::Path;
 
-use super::{EARLIER, SCHEMA};
 use crate::error::{Error, ErrorKind};
+
+/// Version of the files that are written. Readers take those of version 1 too, and refuse others.
+pub const SCHEMA: &str = "poecal-calibration-2";
+
+/// Version without quantities beside position and rotation, but otherwise the same.
+pub(super) const EARLIER: &str = "poecal-calibration-1";
 
 /// Message for a text that is no calibration of this version; `error` is the parser's.
 pub(super) fn refusal(text: &str, error: Option<serde_json::Error>, path: &Path) -> Error {

@@ -11,18 +11,22 @@ mod screws;
 mod sdf;
 mod tables;
 mod usd;
+mod written;
 
 use std::borrow::Cow;
 
 pub use onto::onto;
+pub use written::Exported;
 
 use super::model::{Converted, Model, ModelFormat, convert};
 use super::proof::Difference;
-use super::urdf::ChainSelection;
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::Result;
 use crate::forms::DhConvention;
-use crate::robot::{MEASURED, Robot};
+use crate::robot::Robot;
 use origins::Flavour;
+use written::{
+    CONFIGURATIONS, Proof, SAME, Written, export_error, is_same, left_out, read_back, remaining, unread,
+};
 
 /// Makes the forms by their words.
 macro_rules! formats {
@@ -94,39 +98,6 @@ pub struct ExportOptions {
     pub hash: Option<String>,
     /// The calibration of motors that LeRobot has, whose offsets are corrected.
     pub motors: Option<String>,
-}
-
-/// A robot in a form.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Exported {
-    /// The whole text.
-    pub text: String,
-    /// What the form loses, and what was added, a sentence each.
-    pub notes: Vec<String>,
-    /// Largest difference of the tip on 1,000 configurations, of the text read back from the robot without terms of its joints.
-    pub remains: Difference,
-    /// What the form cannot say of the joints, as a text of its own: terms of their values, with formulas; none if there are none.
-    pub beside: Option<String>,
-}
-
-/// Configurations of the comparison.
-const CONFIGURATIONS: usize = 1000;
-/// Largest difference (metres for a robot of a metre, radians) of a form that can carry the geometry.
-const SAME: f64 = 1e-9;
-
-/// A text, and the robot that is read from it; what its form cannot say is in notes.
-struct Written {
-    text: String,
-    notes: Vec<String>,
-    proof: Proof,
-}
-
-/// How a text compares with the robot.
-enum Proof {
-    /// It carries the geometry: the robot that was read back, which must be the same.
-    Again(Box<Robot>),
-    /// It cannot carry every geometry, and states what remains.
-    Remains(Difference),
 }
 
 /// Writes a robot in a form, reads it back and compares the tip on 1,000 configurations.
@@ -204,30 +175,6 @@ fn geometry<'a>(robot: &'a Robot, format: ExportFormat, notes: &mut Vec<String>)
     Cow::Owned(plain)
 }
 
-/// How far a robot that was read back is off.
-fn remaining(robot: &Robot, again: &Robot) -> Difference {
-    Difference::of(robot, again, CONFIGURATIONS)
-}
-
-/// The robot that the reader of models finds in a text, as a file of this name, between two links.
-fn read_back(text: &str, name: &str, ends: Option<(&str, &str)>) -> Result<Robot> {
-    let selection = match ends {
-        Some((base, tip)) => ChainSelection {
-            base_link: Some(base.to_owned()),
-            tip_link: Some(tip.to_owned()),
-            ..ChainSelection::default()
-        },
-        None => ChainSelection::default(),
-    };
-    let read = Model::parse(text, name, &selection);
-    read.map(|model| model.robot).map_err(|error| unread(&format!("a fault ({})", error.message())))
-}
-
-/// Whether a difference from a robot is rounding.
-fn is_same(robot: &Robot, remains: &Difference) -> bool {
-    remains.is_within(SAME * robot.reach_m().max(1.0), SAME)
-}
-
 /// A model's own forms.
 fn converted(model: &Model, robot: &Robot, to: ModelFormat, mut said: Vec<String>) -> Result<Exported> {
     let plain = Model { robot: robot.clone(), ..model.clone() };
@@ -237,26 +184,4 @@ fn converted(model: &Model, robot: &Robot, to: ModelFormat, mut said: Vec<String
     let beside = if robot == &model.robot { None } else { screws::beside(model)? };
     // `convert` has compared them.
     Ok(Exported { text, notes, remains: Difference { position_m: 0.0, rotation_rad: 0.0 }, beside })
-}
-
-/// A note on targets that the form does not name; of what was measured without a name, every table of a calibration says where it is.
-fn left_out(robot: &Robot) -> Option<String> {
-    let names = robot.targets.iter().map(|(name, _)| name.as_str());
-    let names: Vec<&str> = names.filter(|name| *name != MEASURED).collect();
-    (!names.is_empty()).then(|| {
-        format!(
-            "the targets {} are not in this form; calibration.json has them in the tip's frame",
-            names.join(", ")
-        )
-    })
-}
-
-/// An error of a form that cannot hold a robot.
-fn export_error(message: String) -> Error {
-    Error::new(ErrorKind::Export, message)
-}
-
-/// An error of a text that was just written and cannot be read.
-fn unread(what: &str) -> Error {
-    export_error(format!("the text that was written has {what}: nothing was written"))
 }

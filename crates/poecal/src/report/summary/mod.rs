@@ -3,12 +3,14 @@
 mod details;
 mod errors;
 mod look;
+mod names;
 
 use std::mem::discriminant;
 
 pub(super) use errors::{ModelRow, has_terms, leading};
 use look::reasons;
 pub(super) use look::{Place, Point, SEE_ROBUST, look_at};
+pub(super) use names::{MOST, names};
 
 use super::acceptance;
 use super::table::{line, lines, number, rounded};
@@ -19,8 +21,6 @@ use crate::io::calibration_file::{CalibrationFile, CorrectedEntry, UncertaintyEn
 
 /// Angle of gravity from -z of the base below which it is not told, radians.
 const UPRIGHT: f64 = 1e-4;
-/// The most that a list of the table names.
-pub(super) const MOST: usize = 5;
 
 /// How much a table tells.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -274,12 +274,4 @@ pub(super) fn terms(file: &CalibrationFile) -> impl Iterator<Item = (String, Str
             (name, format!("{value}{spread}{symbol}{open}"))
         })
     })
-}
-
-/// Some names, the first few of many.
-pub(super) fn names(all: &[&str]) -> String {
-    if all.len() <= MOST {
-        return all.join(", ");
-    }
-    format!("{}, … and {} more", all[..MOST - 1].join(", "), all.len() - (MOST - 1))
 }

@@ -4,46 +4,27 @@
 //! them. Positions of joints are the controller's readings, whose third joint is counted from the level and not from the lower arm: so are
 //! those of a calibration whose joints were read from the controller.
 
-mod configuration;
+pub(crate) mod configuration;
 mod instructions;
 mod positions;
+mod words;
 
 use std::collections::HashMap;
-use std::ops::Range;
 
 pub(crate) use configuration::Configuration;
 use instructions::{Instructions, Move};
 use positions::{Group, PoseOf, Position, positions};
+use words::{tokens, whole};
 
 use super::axes::{Axes, NO_EXTERNAL, OTHER_EXTERNAL};
 use super::forms::PoseForm;
 use super::given::Given;
 use super::parsed::{Meant, Motion, Number, Parsed, Target};
-use super::scan::{Rules, Scanner, Token, signed};
 use super::stated::Stated;
 use crate::lie::Pose;
 
-/// How the language is written. Comments are told by where they stand, and a quote is also a letter of comments and names.
-const RULES: Rules = Rules { comments: &[], quotes: b"", letters: b"", is_open_in_brackets: false };
-
-/// The tokens of a part of a program that begins on a line.
-fn tokens(text: &[u8], part: Range<usize>, line: usize) -> impl Iterator<Item = Token> {
-    let start = part.start;
-    Scanner::new(text.get(part).unwrap_or_default(), &RULES).map(move |mut token| {
-        token.range = token.range.start + start..token.range.end + start;
-        token.line += line - 1;
-        token
-    })
-}
-
 /// The group of axes that is the arm.
 const ARM: u32 = 1;
-
-/// A number without a sign and without decimals, and nothing else.
-fn whole(tokens: &[Token]) -> Option<u32> {
-    let number = signed(tokens).filter(|it| it.decimals == 0 && (0.0..1e6).contains(&it.value))?;
-    Some(number.value as u32)
-}
 
 /// A section's name in upper case, if a line begins one.
 fn section(line: &[u8]) -> Option<String> {

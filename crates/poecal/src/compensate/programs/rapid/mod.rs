@@ -4,7 +4,7 @@
 //! configuration `[cf1,cf4,cf6,cfx]` has the quarter turns of joints 1, 4 and 6, and of eight branches the one (ABB, *Technical reference
 //! manual, RAPID*, `confdata`).
 
-mod configuration;
+pub(crate) mod configuration;
 mod declared;
 mod frames;
 mod going;
@@ -14,7 +14,6 @@ mod outline;
 mod targets;
 mod tokens;
 
-pub(crate) use configuration::Configuration;
 use declared::{Declared, Sort};
 use going::{Held, Move, Moves};
 use modal::{Modal, Switch, leads_elsewhere};

@@ -1,6 +1,8 @@
 //! URScript: the language of Universal Robots.
 
 mod blocks;
+mod reason;
+mod step;
 mod values;
 
 use std::collections::BTreeSet;
@@ -15,6 +17,7 @@ use super::stated::Stated;
 use crate::error::Result;
 use crate::lie::Pose;
 use blocks::Program;
+use step::{Aim, Frame, Step, Way};
 use values::{Value, Variables};
 
 const RULES: Rules = Rules { comments: &["#"], quotes: b"\"'", letters: b"", is_open_in_brackets: true };
@@ -38,37 +41,6 @@ const MOTIONS: [(&str, &[usize], Way); 9] = [
 /// Statements after which nobody knows where the robot is.
 const AWAY: &str = "speedj speedl freedrive_mode teach_mode force_mode move_until mc_run_motion tool_contact";
 
-/// How a motion gets to its target.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Way {
-    Joints,
-    Straight,
-    /// Many targets in short steps, not each of which is reached.
-    Stream,
-    Unknown,
-}
-
-/// A frame of a pose.
-#[derive(Clone, Debug)]
-enum Frame {
-    Is(Pose),
-    /// By the variable that has it.
-    Named(String),
-}
-
-/// A statement that matters.
-#[derive(Clone, Debug)]
-enum Step {
-    /// A motion to the target with this index, in these frames.
-    Move { aim: Aim, line: usize, way: Way },
-    /// The tool is set.
-    Tool(Setting),
-    /// Poses are those of a frame that moves; or no longer.
-    Moving(bool),
-    /// Nobody knows where the robot is.
-    Away,
-}
-
 /// Targets and motions of a program.
 pub(crate) fn parse(text: &[u8], given: &Given, axes: &Axes) -> Result<Parsed> {
     let variables = Variables::of(text, &RULES, axes);
@@ -88,30 +60,6 @@ struct Reader<'r> {
 
 /// A target of a motion, or why it is none.
 type Found = std::result::Result<Aim, String>;
-
-/// What the argument of a motion says.
-#[derive(Clone, Debug)]
-struct Aim {
-    target: usize,
-    frames: Vec<Frame>,
-    stated: Stated,
-    tool: Option<Setting>,
-    /// Whether it is made a configuration before the motion: the nearest, whatever the way.
-    is_inverse: bool,
-}
-
-mod reason {
-    pub(super) const COMPUTED: &str = "it is computed while the program runs";
-    pub(super) const ABSENT: &str = "it is stated in no line of this file";
-    pub(super) const SEVERAL: &str = "it is assigned several times";
-    pub(super) const ARGUMENT: &str = "it is handed to a routine";
-    pub(super) const EXPRESSIONS: &str = "it has words or expressions instead of numbers";
-    pub(super) const COUNT: &str = "it has another number of values than the robot has joints";
-    pub(super) const SPEED: &str = "it is a motion without a target";
-    pub(super) const UNKNOWN: &str = "the motion is none that is known here";
-    pub(super) const RELATIVE: &str = "it is relative to a target that is corrected itself";
-    pub(super) const FRAME: &str = "its frame is stated in no line of this file: state it by --frame NAME=";
-}
 
 impl Reader<'_> {
     /// What a statement does, as nodes.

@@ -1,12 +1,12 @@
 //! MuJoCo's model. A body is a link; between it and the body around it stand its joints, in their order.
 
 mod defaults;
+mod elements;
 mod joints;
 
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use nalgebra::{Unit, Vector3};
 use roxmltree::Node;
 
 use super::links::{Inertial, Links};
@@ -15,6 +15,7 @@ use crate::io::xml::{XmlSource, parsed, readable};
 use crate::lie::Pose;
 use crate::robot::Mass;
 use defaults::{Defaults, Settings, Stated};
+use elements::{described, unit};
 
 /// The body around all bodies.
 const WORLD: &str = "world";
@@ -203,17 +204,4 @@ impl<'a> Reader<'a, '_> {
         let pose = body_from_frame * self.defaults.pose(Stated { node, class: None })?;
         Ok(Some(Inertial { pose, kg }).filter(|it| Mass::is_mass(it.kg)))
     }
-}
-
-/// An element in messages.
-fn described(node: Node<'_, '_>) -> String {
-    let tag = node.tag_name().name();
-    match node.attribute("name") {
-        Some(name) => format!("<{tag}> `{name}`"),
-        None => format!("a <{tag}> without name"),
-    }
-}
-
-fn unit(direction: [f64; 3]) -> Option<Unit<Vector3<f64>>> {
-    Unit::try_new(Vector3::from(direction), 1e-12)
 }

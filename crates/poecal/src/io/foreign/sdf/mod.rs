@@ -2,6 +2,7 @@
 
 mod frames;
 mod joints;
+mod words;
 
 use std::path::Path;
 
@@ -11,13 +12,10 @@ use super::links::Links;
 use crate::error::Result;
 use crate::io::xml::{XmlSource, parsed, readable};
 use frames::Frames;
+use words::{MODEL, WORLD, text_of};
 
 /// What is read.
 const EXPECTED: &str = "a model of Gazebo (SDF)";
-/// The frame around the model.
-const WORLD: &str = "world";
-/// A model's own frame.
-const MODEL: &str = "__model__";
 
 /// The links; frames of these names are links too.
 pub(super) fn read(text: &str, path: &Path, named: &[&str]) -> Result<Links> {
@@ -58,10 +56,4 @@ fn the_model<'a>(source: XmlSource<'a>, root: Node<'a, 'a>) -> Result<Node<'a, '
 /// Whether an element is one of a plugin, which says what it likes.
 fn is_of_plugin(node: Node<'_, '_>) -> bool {
     node.ancestors().any(|it| it.has_tag_name("plugin"))
-}
-
-/// An element's text, without comments within.
-fn text_of(node: Node<'_, '_>) -> String {
-    let texts: String = node.children().filter(Node::is_text).filter_map(|it| it.text()).collect();
-    texts.trim().to_owned()
 }
