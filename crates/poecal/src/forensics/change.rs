@@ -104,7 +104,7 @@ impl Change {
                 }
                 resized
             }
-            Change::FreeZero => seen.from_unknown_zero(),
+            Change::FreeZero => seen.with_unknown_zero(),
             Change::ScaleTilts(factor) => seen.with_angles_times(*factor),
             Change::Mirror(mirror, _) if !seen.sees_orientation() => {
                 seen.changed(|pose| Pose::from_translation(mirror * pose.translation)).unwrap_or(seen)

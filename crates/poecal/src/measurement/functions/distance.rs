@@ -154,7 +154,7 @@ impl Measurement {
     }
 
     /// The same with the zero of its readings unknown, if it is a distance.
-    pub(crate) fn from_unknown_zero(self) -> Self {
+    pub(crate) fn with_unknown_zero(self) -> Self {
         if *self.function() == DISTANCE { self.of(&CHANGE) } else { self }
     }
 }
