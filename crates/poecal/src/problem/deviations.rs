@@ -35,12 +35,15 @@ pub(super) struct TargetDeviation {
     pub(super) own: Matrix3<f64>,
 }
 
+/// Derivatives of axes and targets by a motion of the base, a twist.
+type ByBase = (Vec<Matrix6<f64>>, Vec<Matrix3x6<f64>>);
+
 /// Deviations, after the best motion of the base where that is free.
 pub(super) struct Deviations {
     pub(super) axes: Vec<Deviation>,
     pub(super) targets: Vec<TargetDeviation>,
-    /// Derivatives of both by a motion of the base, a twist; none where the base is held.
-    pub(super) by_base: Option<(Vec<Matrix6<f64>>, Vec<Matrix3x6<f64>>)>,
+    /// Derivatives of both by a motion of the base; none where the base is held.
+    pub(super) by_base: Option<ByBase>,
 }
 
 /// Deviation of an axis, tilts before shifts, each over its standard deviation; and what its derivatives follow from.
