@@ -208,7 +208,7 @@ export interface IdentifyOptions {
   /** Target, as rows name it, and its link in a URDF (repeatable), likewise. Without --tip-link, the first that a joint moves is the tip */
   target?: Value | readonly Value[];
   /** Kind of the measurements of the tip */
-  kind?: "pose" | "point" | "mixed" | "distance" | "distance-change" | "sphere" | "socket" | "plane" | "height" | "flush" | "direction" | "ball-bar" | "relative" | "component";
+  kind?: "pose" | "mixed" | "relative" | "point" | "component" | "distance" | "ball-bar" | "distance-change" | "sphere" | "socket" | "plane" | "height" | "flush" | "direction";
   /** Standard deviation of each measured position component [default: 0.05mm] */
   sigmaPosition?: Value | readonly Value[];
   /** Standard deviation of each measured rotation component [default: 0.01deg] */
@@ -265,7 +265,7 @@ export interface SimulateOptions {
   /** Seed of everything random [default: 1] */
   seed?: Value | readonly Value[];
   /** Kind of the measurements */
-  kind?: "pose" | "point" | "mixed" | "distance" | "distance-change" | "sphere" | "socket" | "plane" | "height" | "flush" | "direction" | "ball-bar" | "relative" | "component";
+  kind?: "pose" | "mixed" | "relative" | "point" | "component" | "distance" | "ball-bar" | "distance-change" | "sphere" | "socket" | "plane" | "height" | "flush" | "direction";
   /** The measuring device's frame: unknown, or the robot's base */
   frame?: "unknown" | "base";
   /** Number of further measurements, free of noise, to judge a calibration by [default: 0] */
