@@ -11,7 +11,8 @@ use crate::robot::Controller;
 /// Measurements with the configurations they were taken in. Readings are stored flat, one after the other.
 ///
 /// ```
-/// /// use poecal::measurement::{Dataset, Measurement};
+/// use nalgebra::Vector3;
+/// use poecal::measurement::{Dataset, Measurement};
 /// let mut data = Dataset::new(vec!["joint1".into(), "joint2".into()]);
 /// let seen = Measurement::point(Vector3::new(0.1, 0.2, 0.3));
 /// data.push(&[0.1, -0.4], None, seen)?;
