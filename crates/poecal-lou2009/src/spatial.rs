@@ -8,7 +8,7 @@ use poecal::measurement::{PoseResidual, Sensitivity};
 /// takes the predicted frame to the measured one, linear part first.
 ///
 /// Its sensitivity is `J_r(e)⁻¹ = J_l(-e)⁻¹` on the spatial twist, exact also for large residuals. To first order the linear part is
-/// `(y - p) + p × r`, so rotation noise counts as position noise times the distance: [`poecal::measurement::PoseMeasurement`] is what a device's
+/// `(y - p) + p × r`, so rotation noise counts as position noise times the distance: [`poecal::measurement::Measurement`] is what a device's
 /// data sheet describes, this is for comparison (docs/theory.md §4 (16a)).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Spatial;

@@ -14,7 +14,7 @@ pub(super) const SAME: f64 = 1e-7;
 /// Most branches of an arm of six axes (primrose1986).
 pub const MOST_BRANCHES: usize = 16;
 
-/// Configurations that have the tip at a pose, joint values (rad) in (-π, π]: those of [`AllBranches::at`].
+/// Configurations that have the tip at a pose, joint values (rad) in (-π, π]: those of [`AllBranches::at`](super::AllBranches::at).
 ///
 /// ```
 /// use nalgebra::Vector3;

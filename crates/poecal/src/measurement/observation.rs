@@ -22,10 +22,10 @@ pub enum Set {
     HeldOut,
 }
 
-/// Where a row came from: index into [`Dataset::files`] and line (from 1; 0 if it has none).
+/// Where a row came from: index into [`Dataset::files`](crate::Dataset::files) and line (from 1; 0 if it has none).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct Source {
-    /// Index into [`Dataset::files`].
+    /// Index into [`Dataset::files`](crate::Dataset::files).
     pub file: u32,
     /// Line in that file, from 1.
     pub line: u32,
@@ -44,19 +44,19 @@ pub struct Source {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Observation {
-    /// Index into [`Dataset::targets`].
+    /// Index into [`Dataset::targets`](crate::Dataset::targets).
     pub target: usize,
-    /// Index into [`Dataset::stations`]; 0 where there is one device frame only.
+    /// Index into [`Dataset::stations`](crate::Dataset::stations); 0 where there is one device frame only.
     #[serde(default)]
     pub station: usize,
-    /// The instrument's own configuration, if it differs from the target's: index into [`Dataset::further_readings`].
+    /// The instrument's own configuration, if it differs from the target's: index into [`Dataset::further_readings`](crate::Dataset::further_readings).
     #[serde(default)]
     pub from: Option<u32>,
     /// The measurement.
     pub measurement: Measurement,
     /// Standard deviations of each component, metres or radians, where the row states them.
     pub stated: Stated,
-    /// Shape of the noise of its position, if it is not the same in all directions: index into [`Dataset::noise_shapes`].
+    /// Shape of the noise of its position, if it is not the same in all directions: index into [`Dataset::noise_shapes`](crate::Dataset::noise_shapes).
     #[serde(default)]
     pub noise_shape: Option<u32>,
     /// Set of the row, if it states it.

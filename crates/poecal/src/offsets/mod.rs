@@ -72,7 +72,7 @@ pub struct Explanation {
 /// offsets, a base and a tool, and nothing else.
 ///
 /// # Errors
-/// [`ErrorKind::Option`] if the robots do not have the same joints (number, names in order, kinds and readings), or have branches.
+/// [`ErrorKind::Option`](crate::ErrorKind::Option) if the robots do not have the same joints (number, names in order, kinds and readings), or have branches.
 pub fn explain(nominal: &Robot, actual: &Robot, options: &OffsetOptions) -> Result<Explanation> {
     explained(nominal, actual, options, true)
 }

@@ -23,7 +23,7 @@ impl End {
 /// Configurations in which the tips are compared: what remains is within 1 %.
 const CONFIGURATIONS: usize = 10_000;
 
-/// Options of [`explain`].
+/// Options of [`explain`](super::explain).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct OffsetOptions {
     /// The base frame: free where the actual robot's is a choice.

@@ -77,7 +77,7 @@ impl CalibrationFile {
     /// The calibrated robot, with its named targets.
     ///
     /// # Errors
-    /// [`ErrorKind::Model`] if the file holds no valid robot.
+    /// [`ErrorKind::Model`](crate::ErrorKind::Model) if the file holds no valid robot.
     pub fn robot(&self) -> Result<Robot> {
         self.robot_of(|joint| (&joint.screw, &joint.terms), &self.robot.base_from_tip_at_zero)
     }
@@ -295,7 +295,7 @@ impl InstrumentEntry {
     /// Its pose in the frame of the joint that moves its body, or in the base.
     ///
     /// # Errors
-    /// [`ErrorKind::Model`] if the quaternion is far from unit.
+    /// [`ErrorKind::Model`](crate::ErrorKind::Model) if the quaternion is far from unit.
     pub fn pose(&self) -> Result<Pose> {
         PoseEntry { position_m: self.position_m, quaternion_xyzw: self.quaternion_xyzw }.pose()
     }
@@ -305,7 +305,7 @@ impl TargetEntry {
     /// Its pose in the tip frame, or in the frame of its body; a point has the orientation of that frame.
     ///
     /// # Errors
-    /// [`ErrorKind::Model`] if the quaternion is far from unit.
+    /// [`ErrorKind::Model`](crate::ErrorKind::Model) if the quaternion is far from unit.
     pub fn pose(&self) -> Result<Pose> {
         let quaternion_xyzw = self.quaternion_xyzw.unwrap_or([0.0, 0.0, 0.0, 1.0]);
         PoseEntry { position_m: self.position_m, quaternion_xyzw }.pose()

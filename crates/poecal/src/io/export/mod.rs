@@ -103,7 +103,7 @@ pub struct ExportOptions {
 /// Writes a robot in a form, reads it back and compares the tip on 1,000 configurations.
 ///
 /// # Errors
-/// [`ErrorKind::Export`] if the form cannot hold the robot, or the text read back differs by more than 1e-9 m (of a robot of a metre) or rad
+/// [`ErrorKind::Export`](crate::ErrorKind::Export) if the form cannot hold the robot, or the text read back differs by more than 1e-9 m (of a robot of a metre) or rad
 /// though the form can carry it.
 pub fn export(model: &Model, format: ExportFormat, options: &ExportOptions) -> Result<Exported> {
     let counted = model.sums().map(|it| {
