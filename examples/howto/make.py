@@ -182,6 +182,33 @@ def hand_eye(robot, path):
     write(path, [["X", "Y", "Z", "A", "B", "C", "rvec_x", "rvec_y", "rvec_z", "tvec_x", "tvec_y", "tvec_z"], *rows])
 
 
+def corners(robot, folder):
+    """A camera in the hand and a chessboard on the table: the joints of each picture, and the corners of the squares in pixels."""
+    focal, centre, k1, size = 1400.0, np.array([959.5, 599.5]), -0.12, np.array([1920, 1200])
+    board = [(f"corner{5 * row + column}", np.array([0.04 * column, 0.04 * row, 0, 1])) for row in range(4) for column in range(5)]
+    tip_from_camera = pose([0, np.pi / 2, 0], [0.05, 0.01, 0.06])
+    base_from_board = pose([0, 0.02, 0.4], [0.55, 0.1, 0.05])
+    pictures, seen = [], []
+    while len(pictures) < 50:
+        configurations = [robot.configuration() for _ in range(2000)]
+        for configuration, tip in zip(configurations, robot.tips(configurations), strict=True):
+            camera_from_board = np.linalg.inv(tip @ tip_from_camera) @ base_from_board
+            places = np.array([(camera_from_board @ point)[:3] for _, point in board])
+            if len(pictures) == 50 or places[:, 2].min() < 0.35 or places[:, 2].max() > 0.9 or -camera_from_board[:3, 2] @ places[0] < 0.5 * places[0, 2]:
+                continue
+            slopes = places[:, :2] / places[:, 2:]
+            pixels = focal * slopes * (1 + k1 * (slopes**2).sum(axis=1, keepdims=True)) + centre
+            if pixels.min() < 0 or (pixels > size - 1).any():
+                continue
+            image = f"{len(pictures) + 1:03}.png"
+            pictures.append([image, *configuration])
+            for (name, _), pixel in zip(board, pixels, strict=True):
+                seen.append([image, name, *(f"{value:.2f}" for value in pixel + robot.noise(0.2, 0.2))])
+    write(folder / "pictures.csv", [["image", *JOINTS], *pictures])
+    write(folder / "corners.csv", [["image", "target", "u[px]", "v[px]"], *seen])
+    write(folder / "lens.csv", [["name", "fx", "fy", "cx", "cy", "k1", "width", "height"], ["wrist", focal, focal, *centre, k1, *size]])
+
+
 def write(path, rows):
     with path.open("w", encoding="utf-8", newline="") as file:
         csv.writer(file, lineterminator="\n").writerows(rows)
@@ -196,6 +223,7 @@ def main(poecal, folder):
         hand_camera(robot, folder / "camera.csv")
         motion_capture(robot, folder / "joints.csv", folder / "take.csv")
         hand_eye(robot, folder / "hand_eye.csv")
+        corners(robot, folder)
 
 
 if __name__ == "__main__":

@@ -186,7 +186,7 @@ impl Validate {
     /// All input files.
     pub(crate) fn inputs(&self) -> Vec<&Path> {
         let files = std::iter::once(&self.calibration).chain(&self.measurements);
-        files.chain(&self.meaning.columns.columns).map(PathBuf::as_path).collect()
+        files.map(PathBuf::as_path).chain(self.meaning.files()).collect()
     }
 }
 

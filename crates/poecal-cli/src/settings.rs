@@ -27,7 +27,10 @@ const TABLE: &str = "record";
 /// Settings with the place of an output.
 const OUTPUTS: [&str; 2] = ["out", "report"];
 /// Settings with file names, relative to the settings' folder.
-const FILES: [&str; 6] = ["model", "measurements", "columns", "validate", "out", "report"];
+const FILES: [&str; 8] =
+    ["model", "measurements", "columns", "camera", "markers", "validate", "out", "report"];
+/// Values of these that are words and no files.
+const NO_FILES: [(&str, &str); 3] = [("report", "none"), ("markers", "chessboard:"), ("markers", "charuco:")];
 
 /// A command line with the settings in it, and their source.
 pub(crate) struct Completed {
@@ -163,7 +166,10 @@ fn values(arg: &Arg, entry: &Setting, settings: &Settings) -> Result<Vec<OsStrin
         return Err(settings.error(entry, message));
     }
     let word = |text: &String| {
-        let is_file = FILES.contains(&key) && !(key == "report" && text == "none");
+        let is_word = |(of, word): &(&str, &str)| {
+            *of == key && (text == word || word.ends_with(':') && text.starts_with(word))
+        };
+        let is_file = FILES.contains(&key) && !NO_FILES.iter().any(is_word);
         let value = if is_file { folder.join(text).into_os_string() } else { OsString::from(text) };
         if arg.is_positional() {
             return value;

@@ -38,6 +38,7 @@ fn options(
     frames: Frames,
     (socket_distance, contact): (Option<&str>, PlaneContact),
     instrument_noise: Option<&[String]>,
+    (cameras, markers): (&[String], &[String]),
 ) -> poecal::Result<ReadOptions> {
     Ok(ReadOptions {
         frames,
@@ -52,8 +53,16 @@ fn options(
             .flatten()
             .map(|it| it.parse())
             .collect::<Result<_, _>>()?,
+        cameras: each(cameras, measurements::read_cameras)?,
+        boards: each(markers, measurements::read_boards)?,
         ..ReadOptions::default()
     })
+}
+
+/// What several files or specifications hold, in their order.
+fn each<T>(typed: &[String], read: fn(&str) -> poecal::Result<Vec<T>>) -> poecal::Result<Vec<T>> {
+    let found: Vec<Vec<T>> = typed.iter().map(|typed| read(typed)).collect::<Result<_, _>>()?;
+    Ok(found.into_iter().flatten().collect())
 }
 
 #[pymethods]
@@ -84,6 +93,10 @@ impl Measurements {
     /// instrument_noise
     ///     Noise of instruments that grows with the distance, like "tracker:10um+5um/m": a standard deviation in all directions, and one
     ///     across the line of sight for each metre; of all instruments without a name. For rows that state none.
+    /// cameras
+    ///     Files of the cameras that saw corners in pixels: CSV (FILE#VERSION where it has several), YAML of OpenCV, ROS or Kalibr, XML of ViSP.
+    /// markers
+    ///     Boards or solids that they saw: CSV files of points, or "chessboard:10x7:27mm".
     ///
     /// Returns
     /// -------
@@ -97,7 +110,7 @@ impl Measurements {
     /// MeasurementError
     ///     It holds no measurements of this robot; the error tells the line and the column.
     #[staticmethod]
-    #[pyo3(signature = (paths, robot, *, columns=None, fit_where=None, ignore_sets=false, strict=false, frames="common", socket_distance=None, contact="point", instrument_noise=None))]
+    #[pyo3(signature = (paths, robot, *, columns=None, fit_where=None, ignore_sets=false, strict=false, frames="common", socket_distance=None, contact="point", instrument_noise=None, cameras=None, markers=None))]
     #[expect(clippy::too_many_arguments, reason = "the options of a Python function")]
     fn from_csv(
         py: Python<'_>,
@@ -111,6 +124,8 @@ impl Measurements {
         #[pyo3(from_py_with = arg::socket_distance)] socket_distance: Option<&str>,
         #[pyo3(from_py_with = arg::contact)] contact: &str,
         #[pyo3(from_py_with = arg::instrument_noise)] instrument_noise: Option<Vec<String>>,
+        #[pyo3(from_py_with = arg::cameras)] cameras: Option<Vec<String>>,
+        #[pyo3(from_py_with = arg::markers)] markers: Option<Vec<String>>,
     ) -> PyResult<Self> {
         let contact = chosen("contact", contact, &CONTACTS)?;
         let words = [("common", Frames::Common), ("per-file", Frames::PerFile)];
@@ -126,6 +141,7 @@ impl Measurements {
                 frames,
                 (socket_distance, contact),
                 instrument_noise.as_deref(),
+                (cameras.as_deref().unwrap_or_default(), markers.as_deref().unwrap_or_default()),
             )?;
             let file = measurements::read(&paths, &robot.model.robot, &robot.model.reads(options))?;
             let mut sha256 = Inputs::checksums(columns.iter().map(PathBuf::as_path))?;
@@ -234,6 +250,10 @@ impl Measurements {
     /// instrument_noise
     ///     Noise of instruments that grows with the distance, like "tracker:10um+5um/m": a standard deviation in all directions, and one
     ///     across the line of sight for each metre; of all instruments without a name. For rows that state none.
+    /// cameras
+    ///     Files of the cameras that saw corners in pixels: CSV (FILE#VERSION where it has several), YAML of OpenCV, ROS or Kalibr, XML of ViSP.
+    /// markers
+    ///     Boards or solids that they saw: CSV files of points, or "chessboard:10x7:27mm".
     ///
     /// Returns
     /// -------
@@ -245,7 +265,7 @@ impl Measurements {
     /// MeasurementError
     ///     The table holds no measurements of this robot; the error tells the row.
     #[staticmethod]
-    #[pyo3(signature = (frame, robot, *, columns=None, fit_where=None, ignore_sets=false, strict=false, socket_distance=None, contact="point", instrument_noise=None))]
+    #[pyo3(signature = (frame, robot, *, columns=None, fit_where=None, ignore_sets=false, strict=false, socket_distance=None, contact="point", instrument_noise=None, cameras=None, markers=None))]
     #[expect(clippy::too_many_arguments, reason = "the options of a Python function")]
     fn from_dataframe(
         py: Python<'_>,
@@ -258,6 +278,8 @@ impl Measurements {
         #[pyo3(from_py_with = arg::socket_distance)] socket_distance: Option<&str>,
         #[pyo3(from_py_with = arg::contact)] contact: &str,
         #[pyo3(from_py_with = arg::instrument_noise)] instrument_noise: Option<Vec<String>>,
+        #[pyo3(from_py_with = arg::cameras)] cameras: Option<Vec<String>>,
+        #[pyo3(from_py_with = arg::markers)] markers: Option<Vec<String>>,
     ) -> PyResult<Self> {
         let contact = chosen("contact", contact, &CONTACTS)?;
         let text = from_dataframe::text(frame)?;
@@ -270,6 +292,7 @@ impl Measurements {
                 Frames::Common,
                 (socket_distance, contact),
                 instrument_noise.as_deref(),
+                (cameras.as_deref().unwrap_or_default(), markers.as_deref().unwrap_or_default()),
             )?;
             measurements::parse(&text, from_dataframe::NAME, &robot.model.robot, &options)
         };

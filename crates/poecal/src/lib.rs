@@ -67,6 +67,8 @@ pub mod analysis;
 #[cfg_attr(doc, doc(hidden))]
 pub mod calibration;
 #[cfg_attr(doc, doc(hidden))]
+pub mod camera;
+#[cfg_attr(doc, doc(hidden))]
 pub mod compare;
 #[cfg_attr(doc, doc(hidden))]
 pub mod compensate;

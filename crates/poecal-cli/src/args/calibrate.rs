@@ -139,8 +139,7 @@ impl Calibrate {
 
     /// All input files.
     pub(crate) fn inputs(&self) -> Vec<&Path> {
-        let mapping = self.reading.meaning.columns.columns.iter();
         let files = self.model.iter().chain(&self.measurements).chain(&self.validate).chain(&self.settings);
-        files.chain(mapping).map(PathBuf::as_path).collect()
+        files.map(PathBuf::as_path).chain(self.reading.meaning.files()).collect()
     }
 }

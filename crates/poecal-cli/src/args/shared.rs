@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use poecal::io::measurements::{
-    ColumnMap, Frames, InstrumentNoise, PlaneContact, ReadOptions, SocketDistances,
+    ColumnMap, Frames, InstrumentNoise, PlaneContact, ReadOptions, SocketDistances, read_boards, read_cameras,
 };
 use poecal::io::output::{Existing, FilePlace};
 use poecal::io::urdf::{ChainSelection, named_link};
@@ -98,19 +98,46 @@ pub(crate) struct Meaning {
     /// line of sight for each metre; of all instruments without a name. For rows that state none; may be given again
     #[arg(long, value_name = "[NAME:]LENGTH+LENGTH/m")]
     pub(crate) instrument_noise: Vec<InstrumentNoise>,
+    /// Cameras of corners in pixels: CSV with name, fx, fy, cx, cy, k1, … in OpenCV's order (FILE#VERSION where it has several), YAML of OpenCV,
+    /// ROS or Kalibr, XML of ViSP; may be given again
+    #[arg(long, value_name = "FILE[#VERSION]")]
+    pub(crate) camera: Vec<String>,
+    /// Board or solid that cameras see: CSV with target, x[mm], y[mm], z[mm] of its points, or chessboard:10x7:27mm (squares along x and y, and
+    /// their side); may be given again
+    #[arg(long, value_name = "FILE|BOARD")]
+    pub(crate) markers: Vec<String>,
 }
 
 impl Meaning {
+    /// The files that say what others mean.
+    pub(crate) fn files(&self) -> impl Iterator<Item = &Path> {
+        let camera = self.camera.iter().map(|typed| match typed.rsplit_once('#') {
+            Some((file, _)) if !Path::new(typed).exists() => Path::new(file),
+            _ => Path::new(typed),
+        });
+        let markers = self.markers.iter().map(Path::new).filter(|path| path.is_file());
+        self.columns.columns.iter().map(PathBuf::as_path).chain(camera).chain(markers)
+    }
+
     pub(crate) fn options(&self) -> poecal::Result<ReadOptions> {
         let (strict, frames, contact) = (self.strict, self.frames, self.contact);
         let socket_distances = self.socket_distance.clone();
         let instrument_noise = self.instrument_noise.clone();
+        let (mut cameras, mut boards) = (Vec::new(), Vec::new());
+        for typed in &self.camera {
+            cameras.extend(read_cameras(typed)?);
+        }
+        for typed in &self.markers {
+            boards.extend(read_boards(typed)?);
+        }
         Ok(ReadOptions {
             strict,
             frames,
             contact,
             socket_distances,
             instrument_noise,
+            cameras,
+            boards,
             ..self.columns.options()?
         })
     }

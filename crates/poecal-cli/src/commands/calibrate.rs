@@ -142,9 +142,9 @@ fn read_measurements(
     // With --validate the sets are given by the files' roles.
     let ignore_sets = !arguments.validate.is_empty();
     let options = model.reads(ReadOptions { ignore_sets, ..reading? });
-    let mapping = arguments.reading.meaning.columns.columns.iter();
+    let meaning = arguments.reading.meaning.files();
     let mut inputs = Inputs {
-        sha256: Inputs::checksums(std::iter::once(&model.path).chain(mapping).map(PathBuf::as_path))?,
+        sha256: Inputs::checksums(std::iter::once(model.path.as_path()).chain(meaning))?,
         ..Inputs::of_model(model)
     };
     let mut read = |paths: &[PathBuf]| -> Result<Dataset> {

@@ -5,8 +5,9 @@ use std::ops::Deref;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::pixels::{PixelAccuracy, pixel_accuracy};
 use crate::estimate::{Estimate, RowError, Session};
-use crate::measurement::Measured;
+use crate::measurement::{Dataset, Measured};
 use crate::unit::Unit;
 
 /// The three models of every result, as estimates.
@@ -80,6 +81,9 @@ pub struct ModelAccuracy {
     /// error of a distance, a ball from the middle of its socket, a height over its plane. Absent if there are none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub residual_mm: Option<Statistic>,
+    /// Of the corners of all pictures; absent if there are none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub pixels: Option<PixelAccuracy>,
 }
 
 impl Deref for ModelAccuracy {
@@ -92,7 +96,7 @@ impl Deref for ModelAccuracy {
 
 impl From<Measured<Statistic>> for ModelAccuracy {
     fn from(quantities: Measured<Statistic>) -> Self {
-        ModelAccuracy { quantities, residual_mm: None }
+        ModelAccuracy { quantities, residual_mm: None, pixels: None }
     }
 }
 
@@ -174,7 +178,7 @@ pub struct Accuracy {
 /// Errors of the three models on some rows (at least one): theory.md §9.
 #[must_use]
 pub fn set_accuracy(session: &Session<'_>, rows: &[u32], models: &Models) -> SetAccuracy {
-    let of = |estimate: &Estimate| model_accuracy(&session.errors(rows, estimate));
+    let of = |estimate: &Estimate| model_accuracy(session.data, rows, &session.errors(rows, estimate));
     SetAccuracy {
         count: rows.len(),
         nominal: of(&models.nominal),
@@ -186,11 +190,12 @@ pub fn set_accuracy(session: &Session<'_>, rows: &[u32], models: &Models) -> Set
 }
 
 /// Statistics of one model's row errors.
-pub(super) fn model_accuracy(errors: &[RowError]) -> ModelAccuracy {
+pub(super) fn model_accuracy(data: &Dataset, rows: &[u32], errors: &[RowError]) -> ModelAccuracy {
     let quantities = Measured::of(|quantity| {
         let shown = |length: f64| quantity.unit().shown(length);
         Statistic::of(errors.iter().filter_map(|error| error.length(quantity).map(shown)).collect())
     });
     let constrained = errors.iter().filter_map(RowError::constraint_m);
-    ModelAccuracy { quantities, residual_mm: Statistic::of(constrained.map(|it| 1e3 * it).collect()) }
+    let residual_mm = Statistic::of(constrained.map(|it| 1e3 * it).collect());
+    ModelAccuracy { quantities, residual_mm, pixels: pixel_accuracy(data, rows, errors) }
 }

@@ -64,6 +64,7 @@ fn calibrated<'a>(
     // All that is said of the fit, once.
     let Repaired { calibration, data: repaired } = found.judge(events)?;
     // What a formulation writes otherwise is given back as it was.
-    let data = if calibration.repairs.is_empty() { Cow::Borrowed(data) } else { repaired };
+    let is_as_given = calibration.repairs.is_empty() && data.pictures.is_empty();
+    let data = if is_as_given { Cow::Borrowed(data) } else { repaired };
     Ok(Repaired { calibration, data })
 }

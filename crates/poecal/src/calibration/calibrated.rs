@@ -1,8 +1,11 @@
 //! The fit of the screws, and every row judged by it.
 
+use std::borrow::Cow;
+
 use super::found::Start;
 use super::instrument_noise::{ROUNDS, noise_ratios};
 use super::located::located;
+use super::pictures;
 use super::robust::{self, RobustFit};
 use super::run::Run;
 use super::task::Task;
@@ -26,7 +29,7 @@ pub(super) struct CalibratedFit<'a> {
 
 impl<'a> Run<'a> {
     /// Fits the screws; where several instruments have different noises, again with these until they do not change.
-    pub(super) fn fit(self, start: Start) -> Result<CalibratedFit<'a>> {
+    pub(super) fn fit(mut self, mut start: Start) -> Result<CalibratedFit<'a>> {
         let mut ratios = Vec::new();
         let mut fit = self.fit_with(&ratios, &start, self.options.robust)?;
         let is_open = start.source == NoiseSource::Estimated && self.data.station_count() > 1;
@@ -35,6 +38,13 @@ impl<'a> Run<'a> {
             ratios = found;
             let again = Start { noise: fit.fitted.noise, ..start.clone() };
             fit = self.fit_with(&ratios, &again, self.options.robust)?;
+        }
+        // A loop where there are pictures: fit, what their corners share, fit.
+        for _ in 0..pictures::ROUNDS {
+            let Some(data) = self.renewed_pictures(&ratios, &fit) else { break };
+            self.data = Cow::Owned(data);
+            start = self.register();
+            fit = self.fit_with(&ratios, &start, self.options.robust)?;
         }
         let estimate = self.calibrated(&fit, &ratios);
         Ok(CalibratedFit { run: self, start, robust: fit, noise_ratios: ratios, estimate })

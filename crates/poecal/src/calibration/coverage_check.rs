@@ -7,7 +7,7 @@ use super::accuracy::{ModelAccuracy, model_accuracy};
 use super::located::rows_of_fitted_stations;
 use crate::analysis::{JointCoverage, inside};
 use crate::estimate::{Chain, Estimate, Linkage, RowError, Session, sample_rows};
-use crate::measurement::{ByQuantity, Measured, NUMBERS, Noise, Quantity};
+use crate::measurement::{ByQuantity, Dataset, Measured, NUMBERS, Noise, Quantity};
 use crate::parameters::Parameter;
 use crate::uncertainty::{Discrepancy, PredictedError, Refit, Uncertainty};
 use crate::unit::Unit;
@@ -296,14 +296,17 @@ pub(super) fn held_out_check(
 
 /// Coverage over all rows, and over those inside the sampled range, if there are any.
 pub(super) fn coverage_checks(
+    data: &Dataset,
     rows: &[JudgedRow],
     errors: &[RowError],
 ) -> (CoverageCheck, Option<InSampledRange>) {
     let inside = || rows.iter().zip(errors).filter(|(row, _)| row.inside_sampled_range);
+    let own = (0..).zip(rows).filter(|(_, row)| row.inside_sampled_range).map(|(at, _)| at);
+    let own: Vec<u32> = own.collect();
     let errors: Vec<RowError> = inside().map(|(_, error)| *error).collect();
     let some = (!errors.is_empty()).then(|| InSampledRange {
         count: errors.len(),
-        calibrated: model_accuracy(&errors),
+        calibrated: model_accuracy(data, &own, &errors),
         promised: CoverageCheck::of(inside().map(|(row, _)| row)),
     });
     (CoverageCheck::of(rows.iter()), some)

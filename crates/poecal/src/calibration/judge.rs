@@ -171,7 +171,7 @@ pub fn judge(subject: &Subject<'_>, data: &Dataset) -> Result<Judgement> {
     let frame_is_common = subject.refit_frame || subject.frame == DeviceFrameKnowledge::Base;
     let nominal = (frame_is_common && subject.refit_tool).then(|| {
         let packed = Packed::of(subject.nominal, data);
-        model_accuracy(&judged_rows(subject, subject.nominal, data, &packed).errors)
+        model_accuracy(data, &data.all_rows(), &judged_rows(subject, subject.nominal, data, &packed).errors)
     });
     let packed = Packed::of(subject.calibrated, data);
     let rows = judged_rows(subject, subject.calibrated, data, &packed);
@@ -180,11 +180,11 @@ pub fn judge(subject: &Subject<'_>, data: &Dataset) -> Result<Judgement> {
     let (promised, in_sampled_range, each) = match promised {
         None => (None, None, rows.errors.iter().map(JudgedRow::of).collect()),
         Some(each) => {
-            let (all, some) = coverage_checks(&each, &rows.errors);
+            let (all, some) = coverage_checks(data, &each, &rows.errors);
             (Some(all), some, each)
         }
     };
-    let calibrated = model_accuracy(&rows.errors);
+    let calibrated = model_accuracy(data, &data.all_rows(), &rows.errors);
     Ok(Judgement {
         count: data.len(),
         refitted,

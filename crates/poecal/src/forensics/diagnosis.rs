@@ -35,6 +35,8 @@ pub enum DiagnosisKind {
     TargetsUnnamed,
     /// Joint readings that are too large or too small by a factor of each joint.
     JointScale,
+    /// A board that cameras see is of another size than stated.
+    BoardSize,
     /// Distances or heights in another unit than stated.
     LengthUnit,
     /// Distances that do not count from their anchor, or a radius that is another.
@@ -90,4 +92,13 @@ impl Diagnosis {
     pub fn is_of_input(&self) -> bool {
         self.kind != DiagnosisKind::DuplicateRows
     }
+}
+
+/// Three significant digits.
+pub(super) fn short(value: f64) -> String {
+    if !value.is_finite() || value == 0.0 {
+        return value.to_string();
+    }
+    let digits = (2 - value.abs().log10().floor() as i32).clamp(0, 6) as usize;
+    format!("{value:.digits$}")
 }

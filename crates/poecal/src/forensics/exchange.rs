@@ -6,8 +6,9 @@ use std::ops::Range;
 use nalgebra::Vector3;
 use rayon::prelude::*;
 
+use super::diagnosis::short;
 use super::fitter::{Fitter, SHORT, Score, sampled, taken};
-use super::judge::{CALIBRATED_SHARE, short};
+use super::judge::CALIBRATED_SHARE;
 use super::{Diagnosis, DiagnosisKind};
 use crate::estimate::Estimate;
 use crate::lie::{Pose, rotation};

@@ -2,8 +2,10 @@
 
 use rayon::prelude::*;
 
+use super::boards::board_size;
 use super::change::Change;
 use super::conventions::conventions;
+use super::diagnosis::short;
 use super::few::FewTargets;
 use super::fitter::{Fitter, SHORT, Score, sampled};
 use super::hypotheses::{
@@ -102,6 +104,7 @@ fn single_mistakes(fitter: &Fitter<'_>, columns: &ReadingColumns, sample: &Datas
         all.extend(mirrors(fitter.device_free, turned));
     }
     all.extend(row_shifts(sample.targets.len()));
+    all.extend(board_size(fitter, sample));
     all.extend(joint_zeros(fitter, columns, sample));
     all
 }
@@ -215,10 +218,12 @@ impl Fitter<'_> {
         let calibrated = base.calibrated.total_m.max(noise) / after.1.max(noise);
         let least = if one.kind == DiagnosisKind::JointZero { ZERO_GAIN } else { REGISTERED_GAIN };
         let enough = if is_freed { FREED_GAIN } else { CALIBRATED_GAIN };
+        // A board's depth is noisier than what other devices measure.
+        let share = if one.kind == DiagnosisKind::BoardSize { 4.0 } else { 1.0 } * CALIBRATED_SHARE;
         (registered > least || calibrated > enough)
             && registered.min(calibrated) * SLACK > 1.0
             && one.score.registered.total_m < REGISTERED_SHARE * reach
-            && one.score.calibrated.total_m < CALIBRATED_SHARE * reach
+            && one.score.calibrated.total_m < share * reach
     }
 }
 
@@ -247,13 +252,4 @@ fn diagnosis(best: &Hypothesis, base: &Score, score: &Score) -> Diagnosis {
         before_mm: before.total_m * 1e3,
         after_mm: after.total_m * 1e3,
     }
-}
-
-/// Three significant digits.
-pub(super) fn short(value: f64) -> String {
-    if !value.is_finite() || value == 0.0 {
-        return value.to_string();
-    }
-    let digits = (2 - value.abs().log10().floor() as i32).clamp(0, 6) as usize;
-    format!("{value:.digits$}")
 }

@@ -3,6 +3,7 @@
 //! A mistake is a change of readings or measurements. Each hypothesis undoes one, and is named if the nominal robot, or a short
 //! calibration, then explains the measurements far better than before and better than with any other hypothesis.
 
+mod boards;
 mod change;
 mod conventions;
 mod diagnosis;

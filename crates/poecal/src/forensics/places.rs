@@ -2,9 +2,10 @@
 
 use std::collections::BTreeMap;
 
+use super::diagnosis::short;
 use super::exchange::{Names, exchanged};
 use super::fitter::{Fitter, Score, sampled};
-use super::judge::{CALIBRATED_SHARE, short};
+use super::judge::CALIBRATED_SHARE;
 use super::{Diagnosis, DiagnosisKind};
 use crate::estimate::Estimate;
 use crate::measurement::{Dataset, KnownLength, Observation, Quantity};

@@ -1,7 +1,7 @@
 //! Rows that repeat or contradict each other.
 
+use super::diagnosis::short;
 use super::fitter::Fitter;
-use super::judge::short;
 use super::unnamed::{self, contradiction_m};
 use super::{Diagnosis, DiagnosisKind};
 use crate::measurement::Dataset;

@@ -4,10 +4,10 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use nalgebra::Vector3;
 
+use super::diagnosis::short;
 use super::exchange::{Names, exchanged, starts};
 use super::few::{FewTargets, TARGETS, for_links};
 use super::fitter::{Fitter, Score, sampled, taken};
-use super::judge::short;
 use super::{Diagnosis, DiagnosisKind};
 use crate::estimate::Estimate;
 use crate::measurement::Dataset;

@@ -2,8 +2,8 @@
 
 use nalgebra::Vector3;
 
+use super::diagnosis::short;
 use super::fitter::Fitter;
-use super::judge::short;
 use super::{Diagnosis, DiagnosisKind};
 use crate::distributions::median;
 use crate::measurement::{Dataset, Measurement};

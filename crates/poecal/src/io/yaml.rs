@@ -162,3 +162,80 @@ fn close_value(open: &mut [Open]) {
         *key = None;
     }
 }
+
+/// A number or word of a file with all the keys and places in lists that lead to it.
+#[derive(Debug)]
+pub(super) struct Leaf {
+    /// Keys, and numbers of places in lists.
+    pub(super) path: Vec<String>,
+    /// Its text.
+    pub(super) text: String,
+    /// Its line.
+    pub(super) line: usize,
+}
+
+/// All numbers and words of a text, entries of lists too; the directive of OpenCV, which is no YAML, and tags are passed over.
+pub(super) fn leaves(text: &str, path: &Path, expected: &str) -> Result<Vec<Leaf>> {
+    let text = match text.strip_prefix("%YAML:") {
+        Some(rest) => format!("#{rest}"),
+        None => text.to_owned(),
+    };
+    let text = text.replacen("\n---", "\n#--", 1);
+    // Each open mapping with the key whose value comes next, each open list with the number of its next entry.
+    let mut open: Vec<Nesting> = Vec::new();
+    let mut found = Vec::new();
+    for event in Parser::new_from_str(&text) {
+        let (event, span) = event.map_err(|error| {
+            let place = error.marker();
+            let message = format!("found broken YAML ({}), expected {expected}", visible(&error.info()));
+            Error::new(ErrorKind::Syntax, message).at(path, place.line(), place.col() + 1)
+        })?;
+        match event {
+            Event::Scalar(text, ..) => match open.last_mut() {
+                Some(Nesting::Map(key @ None)) => *key = Some(text.to_string()),
+                _ => {
+                    let keys = open.iter().map(Nesting::step).collect();
+                    found.push(Leaf { path: keys, text: text.to_string(), line: span.start.line() });
+                    next(&mut open);
+                }
+            },
+            Event::MappingStart(..) | Event::SequenceStart(..) if open.len() > DEEPEST => {
+                let message =
+                    format!("found more than {DEEPEST} mappings in each other, expected {expected}");
+                return Err(Error::new(ErrorKind::Syntax, message).at_line(path, span.start.line()));
+            }
+            Event::MappingStart(..) => open.push(Nesting::Map(None)),
+            Event::SequenceStart(..) => open.push(Nesting::List(0)),
+            Event::MappingEnd | Event::SequenceEnd => {
+                open.pop();
+                next(&mut open);
+            }
+            _ => {}
+        }
+    }
+    Ok(found)
+}
+
+/// A mapping or list that has begun.
+enum Nesting {
+    Map(Option<String>),
+    List(usize),
+}
+
+impl Nesting {
+    fn step(&self) -> String {
+        match self {
+            Nesting::Map(key) => key.clone().unwrap_or_default(),
+            Nesting::List(at) => at.to_string(),
+        }
+    }
+}
+
+/// The value of the innermost key or place has ended.
+fn next(open: &mut [Nesting]) {
+    match open.last_mut() {
+        Some(Nesting::Map(key)) => *key = None,
+        Some(Nesting::List(at)) => *at += 1,
+        None => {}
+    }
+}

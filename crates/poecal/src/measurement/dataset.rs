@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use serde::{Deserialize, Serialize};
 
 use super::{KnownLength, Measurement, NoiseShape, Observation, PoseResidual, Quantity};
+use crate::camera::Pictures;
 use crate::error::{Error, ErrorKind, Result};
 use crate::robot::Controller;
 
@@ -39,6 +40,9 @@ pub struct Dataset {
     /// Shapes of the noise of positions.
     #[serde(default)]
     pub noise_shapes: Vec<NoiseShape>,
+    /// The pictures among the rows.
+    #[serde(default)]
+    pub pictures: Pictures,
     /// How the readings are made of those that the controller counts, where they are not one by one.
     #[serde(default)]
     pub controller: Option<Controller>,
@@ -135,7 +139,12 @@ impl Dataset {
                 .iter()
                 .filter_map(|row| row.noise_shape)
                 .all(|at| (at as usize) < self.noise_shapes.len())
-            && self.observations.iter().all(|row| (row.source.file as usize) < files);
+            && self.observations.iter().all(|row| (row.source.file as usize) < files)
+            && self
+                .pictures
+                .all
+                .iter()
+                .all(|it| (it.row as usize) < self.len() && self.pictures.view(it).is_some());
         if fits {
             return Ok(());
         }

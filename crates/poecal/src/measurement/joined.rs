@@ -24,6 +24,7 @@ impl Dataset {
             reading_names: self.reading_names.clone(),
             further_readings: self.further_readings.clone(),
             noise_shapes: self.noise_shapes.clone(),
+            pictures: self.pictures.only(rows),
             factors: self.factors,
             targets: self.targets.clone(),
             stations: self.stations.clone(),
@@ -76,6 +77,7 @@ impl Dataset {
         let first_shape = u32::try_from(self.noise_shapes.len()).unwrap_or(u32::MAX);
         self.noise_shapes.extend_from_slice(&other.noise_shapes);
         self.files.extend(other.files.iter().cloned());
+        self.pictures.extend(&other.pictures, u32::try_from(self.len()).unwrap_or(u32::MAX));
         let mut readings = Vec::with_capacity(order.len());
         // Looked up once for each target: there may be very many rows.
         let mut targets: Vec<Option<usize>> = vec![None; other.targets.len()];

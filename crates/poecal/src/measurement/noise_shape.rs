@@ -1,14 +1,14 @@
 //! Noise that is not the same in all directions.
 
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{Matrix3, Matrix6, Vector3};
 use serde::{Deserialize, Serialize};
 
 use super::{Channels, NUMBERS, Quantity};
 
-/// Shape of the covariance Σ of a position: `σ Σ^{-1/2}`, which makes noise of one standard deviation σ in all directions of it
-/// (theory.md §4 (17a)).
+/// Shape of the covariance Σ of a position, or of a whole pose: `σ Σ^{-1/2}`, which makes noise of one standard deviation σ in all directions of
+/// it (theory.md §4 (17a)); of a pose `diag(σ_p, σ_r) Σ^{-1/2}`, of the shift and then the turn about the target.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct NoiseShape(Matrix3<f64>);
+pub struct NoiseShape(Matrix6<f64>);
 
 impl NoiseShape {
     /// Of a covariance with these standard deviations of its components, metres, none of those that were not measured: the σ of all of them,
@@ -18,7 +18,8 @@ impl NoiseShape {
         let measured: Vec<f64> = sigmas.into_iter().flatten().collect();
         let mean = (measured.iter().map(|sigma| sigma.ln()).sum::<f64>() / measured.len() as f64).exp();
         let factors = sigmas.map(|sigma| sigma.map_or(0.0, |sigma| mean / sigma));
-        (!measured.is_empty()).then(|| (mean, NoiseShape(Matrix3::from_diagonal(&factors.into()))))
+        (!measured.is_empty())
+            .then(|| (mean, NoiseShape::of_position(&Matrix3::from_diagonal(&factors.into()))))
     }
 
     /// Of a standard deviation along a unit vector and another one across it, metres: the σ of both, with their geometric mean, and the shape.
@@ -26,24 +27,48 @@ impl NoiseShape {
     pub fn across(sight: &Vector3<f64>, along_m: f64, across_m: f64) -> (f64, NoiseShape) {
         let mean = (along_m * across_m * across_m).cbrt();
         let along = sight * sight.transpose();
-        (mean, NoiseShape(along * (mean / along_m) + (Matrix3::identity() - along) * (mean / across_m)))
+        let shape = along * (mean / along_m) + (Matrix3::identity() - along) * (mean / across_m);
+        (mean, NoiseShape::of_position(&shape))
+    }
+
+    /// Of what whitens a pose, `Σ^{-1/2}` (1/m and 1/rad), with the standard deviations of its components, m and rad.
+    #[must_use]
+    pub fn of_pose(whitening: &Matrix6<f64>, [shift_m, turn_rad]: [f64; 2]) -> NoiseShape {
+        let mut shape = *whitening;
+        shape.fixed_rows_mut::<3>(0).scale_mut(shift_m);
+        shape.fixed_rows_mut::<3>(3).scale_mut(turn_rad);
+        NoiseShape(shape)
+    }
+
+    fn of_position(shape: &Matrix3<f64>) -> Self {
+        let mut whole = Matrix6::identity();
+        whole.fixed_view_mut::<3, 3>(0, 0).copy_from(shape);
+        NoiseShape(whole)
     }
 
     /// A vector whose noise has this shape, as one whose noise has none.
     #[must_use]
     pub fn whitened(&self, vector: &Vector3<f64>) -> Vector3<f64> {
-        self.0 * vector
+        self.0.fixed_view::<3, 3>(0, 0) * vector
     }
 
-    /// The same for numbers of a measurement: those of its position change, others stay. Each of them has `N` parts.
+    /// The same for numbers of a measurement: those of its pose change, others stay. Each of them has `N` parts.
     pub(crate) fn whiten<const N: usize>(&self, channels: &Channels, numbers: &mut [[f64; N]]) {
-        let own = channels.of(Quantity::Position);
+        let firsts = [(Quantity::Position, 0), (Quantity::Rotation, 3)];
+        let place = |k: usize| {
+            let of = |&(quantity, first): &(Quantity, usize)| {
+                (channels[k].quantity == quantity).then(|| first + channels[k].component())
+            };
+            firsts.iter().find_map(of)
+        };
         let mut before = [[0.0; N]; NUMBERS];
-        before[own.clone()].copy_from_slice(&numbers[own.clone()]);
-        for k in own.clone() {
-            let row = channels[k].component();
+        let own = channels.len();
+        before[..own].copy_from_slice(&numbers[..own]);
+        for k in 0..own {
+            let Some(row) = place(k) else { continue };
             numbers[k] = std::array::from_fn(|part| {
-                own.clone().map(|l| self.0[(row, channels[l].component())] * before[l][part]).sum()
+                let of = |l: usize| place(l).map_or(0.0, |column| self.0[(row, column)] * before[l][part]);
+                (0..own).map(of).sum()
             });
         }
     }

@@ -2,6 +2,7 @@
 
 mod configuration;
 mod gross;
+mod pictures;
 mod places;
 pub mod random;
 mod robots;
@@ -9,6 +10,7 @@ mod robots;
 pub use crate::measurement::Kind;
 pub use configuration::{Configurations, random_configuration};
 pub use gross::Gross;
+pub use pictures::{Photographed, PictureSimulation};
 pub(crate) use places::plan;
 pub use robots::{elbow, gantry, random_chain, scara, seven_axis};
 

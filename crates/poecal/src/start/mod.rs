@@ -5,12 +5,15 @@ mod faces;
 mod hand_eye;
 mod one_station;
 mod others;
+mod pictures;
 mod registration;
 mod robust;
 mod stations;
 
 pub(crate) use averaging::mean_rotation;
 pub use faces::{faces_on_known_planes, settle_faces};
+pub(crate) use pictures::predicted_pose;
+pub use pictures::settle_pictures;
 pub use registration::{Registration, register_again};
 pub(crate) use registration::{device_parameter, free_parameters, range_parameters, target_parameters};
 pub use robust::register_robustly;

@@ -6,6 +6,7 @@ use super::view::View;
 use super::{clusters, neighbours, order};
 use crate::measurement::{ByQuantity, Noise, Quantity};
 use crate::solve::Normal;
+use crate::unit::Unit;
 
 /// Model error and noise, as the residuals show them (theory.md §9 (40) and (41)).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -60,6 +61,10 @@ pub fn discrepancy(
     let structured = by_place.is_some() || lag_one.is_some();
     let own =
         ByQuantity::from_fn(|quantity| remainder.parts[quantity].settled(structured || alike[quantity]));
+    let own = ByQuantity::from_fn(|quantity| match of_pictures(view, quantity) {
+        Some(common) => remainder.parts[quantity].shared(common),
+        None => own[quantity],
+    });
     // A quantity that was not measured is predicted as well as the others of its unit.
     let is_measured =
         |quantity: &Quantity| remainder.parts[*quantity].stated.is_some() || view.session.data.has(*quantity);
@@ -84,5 +89,19 @@ pub fn discrepancy(
         attribution: settled.map(|it| it.attribution),
         freedom: settled.map(|it| it.freedom),
         lag_one,
+    }
+}
+
+/// Standard deviation of what the corners of a picture share, if that is what the rows are: the error of the configuration, and no noise.
+fn of_pictures(view: &View<'_>, quantity: Quantity) -> Option<f64> {
+    let pictures = &view.session.data.pictures;
+    let is_picture = |row: &u32| pictures.of_row(*row).is_some();
+    if pictures.is_empty() || !view.rows.iter().all(is_picture) {
+        return None;
+    }
+    match quantity.unit() {
+        Unit::Metre => Some(pictures.common.shift_m),
+        Unit::Radian => Some(pictures.common.turn_rad),
+        Unit::One => None,
     }
 }

@@ -84,6 +84,19 @@ impl Part {
             .then(|| self.mean_square > within * f_quantile(CHANCE, self.freedom.max(1.0), freedom))
     }
 
+    /// Residuals of which a part of this standard deviation is the robot's, and the rest the instrument's.
+    #[must_use]
+    pub fn shared(&self, robot: f64) -> Settled {
+        let ratio = self.stated.map_or(1.0, |(_, ratio)| ratio.max(1.0));
+        let robot_square = (robot * robot * ratio).min(self.mean_square);
+        Settled {
+            robot: robot_square.sqrt(),
+            instrument: (self.mean_square - robot_square).sqrt(),
+            attribution: Attribution::Robot,
+            freedom: self.freedom,
+        }
+    }
+
     /// Attributes the residuals to robot or instrument, by whether they show structure (theory.md §9, between (40) and (41)).
     #[must_use]
     pub fn settled(&self, structured: bool) -> Settled {
@@ -146,6 +159,13 @@ pub struct Remainder {
     pub numbers: usize,
 }
 
+/// Error of a row, the same as if its noise were the same in all directions, and its noise.
+struct Deviation {
+    error: RowError,
+    alike: RowError,
+    noise: Noise,
+}
+
 /// Sums over residuals of one quantity.
 #[derive(Clone, Copy, Default)]
 struct ResidualSums {
@@ -160,33 +180,36 @@ struct ResidualSums {
 }
 
 impl ResidualSums {
-    /// Adds the rows of one target in one configuration: errors with their standard deviations.
-    fn add(&mut self, quantity: Quantity, rows: &[(&RowError, Noise)]) {
-        let seen = |(error, _): &&(&RowError, Noise)| !error.part(quantity).is_empty();
-        let mut rows: Vec<&(&RowError, Noise)> = rows.iter().filter(seen).collect();
+    /// Adds the rows of one target in one configuration.
+    fn add(&mut self, quantity: Quantity, rows: &[Deviation]) {
+        let mut rows: Vec<&Deviation> =
+            rows.iter().filter(|row| !row.error.part(quantity).is_empty()).collect();
         // Rows repeat each other where they have the same components.
-        while let Some((first, _)) = rows.first() {
-            let kind = first.measured(quantity);
-            let (own, rest) = rows.into_iter().partition(|(error, _)| error.measured(quantity) == kind);
-            let own: Vec<&(&RowError, Noise)> = own;
-            let vectors: Vec<(Vector3<f64>, f64)> =
-                own.iter().map(|(error, noise)| (error.vector(quantity), noise[quantity])).collect();
+        while let Some(first) = rows.first() {
+            let kind = first.error.measured(quantity);
+            let (own, rest) = rows.into_iter().partition(|row| row.error.measured(quantity) == kind);
+            let own: Vec<&Deviation> = own;
+            let vectors: Vec<([Vector3<f64>; 2], f64)> = own
+                .iter()
+                .map(|row| ([row.error.vector(quantity), row.alike.vector(quantity)], row.noise[quantity]))
+                .collect();
             self.add_vectors(&vectors, kind.into_iter().filter(|it| *it).count());
             rows = rest;
         }
     }
 
-    fn add_vectors(&mut self, rows: &[(Vector3<f64>, f64)], components: usize) {
+    /// Adds errors, each beside itself as if noise were the same in all directions, with its standard deviation.
+    fn add_vectors(&mut self, rows: &[([Vector3<f64>; 2], f64)], components: usize) {
         if rows.is_empty() {
             return;
         }
-        let mean = rows.iter().map(|(error, _)| error).sum::<Vector3<f64>>() / rows.len() as f64;
-        for (error, sigma) in rows {
-            let (square, apart) = (error.norm_squared(), (error - mean).norm_squared());
-            self.squares += square;
-            self.whitened += square / (sigma * sigma);
-            self.within += apart;
-            self.whitened_within += apart / (sigma * sigma);
+        let mean = |of: usize| rows.iter().map(|(row, _)| row[of]).sum::<Vector3<f64>>() / rows.len() as f64;
+        let means = [mean(0), mean(1)];
+        for ([error, alike], sigma) in rows {
+            self.squares += error.norm_squared();
+            self.whitened += alike.norm_squared() / (sigma * sigma);
+            self.within += (error - means[0]).norm_squared();
+            self.whitened_within += (alike - means[1]).norm_squared() / (sigma * sigma);
             self.variances += components as f64 * sigma * sigma;
             self.components += components;
         }
@@ -239,8 +262,11 @@ pub fn remainder(view: &View<'_>, normal: &Normal, layout: &Layout) -> Remainder
         rows.sort_by_key(|&row| (view.session.observation(row).target, row));
         let target = |row: &u32| view.session.observation(*row).target;
         for same in rows.chunk_by(|a, b| target(a) == target(b)) {
-            let noise = |row: u32| view.session.noise_of(view.session.observation(row), view.noise);
-            let of = |row: u32| place(row).map(|error| (error, noise(row)));
+            let of = |row: u32| {
+                let (observation, error) = (view.session.observation(row), *place(row)?);
+                let noise = view.session.noise_of(observation, view.noise);
+                Some(Deviation { error, alike: view.session.alike(observation, error), noise })
+            };
             let seen: Vec<_> = same.iter().filter_map(|&row| of(row)).collect();
             sums.values_mut().for_each(|(quantity, sums)| sums.add(quantity, &seen));
         }

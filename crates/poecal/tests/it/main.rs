@@ -51,6 +51,7 @@ mod moves;
 mod noise_free;
 mod offsets;
 mod oracle;
+mod pictures;
 mod programs;
 mod promises;
 mod quantities;

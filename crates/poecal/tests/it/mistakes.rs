@@ -284,6 +284,7 @@ impl Session {
             DiagnosisKind::TargetsSwapped => self.renamed(g),
             // These sessions see one target in each configuration, from a device with a frame.
             DiagnosisKind::TargetsUnnamed
+            | DiagnosisKind::BoardSize
             | DiagnosisKind::LengthUnit
             | DiagnosisKind::DistanceZero
             | DiagnosisKind::KnownLength

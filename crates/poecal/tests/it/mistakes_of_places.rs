@@ -161,6 +161,7 @@ fn mistaken(session: &Session, kind: DiagnosisKind, seed: u64) -> (Dataset, Stri
         | DiagnosisKind::JointsSwapped
         | DiagnosisKind::JointsCoupled
         | DiagnosisKind::JointScale
+        | DiagnosisKind::BoardSize
         | DiagnosisKind::JointZero
         | DiagnosisKind::QuaternionOrder
         | DiagnosisKind::EulerConvention

@@ -174,7 +174,7 @@ impl CorrectionContext<'_> {
         (packed, predicted, noise): (Packed, Predicted, Noise),
     ) -> CorrectedFit {
         let SizeChoice { sizes, reason, tried, variance, growth, .. } = choice;
-        let (of_geometry, Run { options, held_out_rows, .. }) = (self.session, &self.geometry.run);
+        let (of_geometry, Run { options, fit_rows, held_out_rows, .. }) = (self.session, &self.geometry.run);
         let Predicted { estimate, training, held_out } = predicted;
         let every = unknowns(model, of_geometry.unknowns, possible);
         let session = self.session(model, &packed, &every);
@@ -184,8 +184,9 @@ impl CorrectionContext<'_> {
         CorrectedFit {
             uncertainty: uncertainty(&whole, (&estimate, noise), (&prior, [weight, variance]), growth),
             unknowns: unknowns(model, of_geometry.unknowns, &sizes),
-            training: model_accuracy(&training),
-            held_out: (!held_out_rows.is_empty()).then(|| model_accuracy(&held_out)),
+            training: model_accuracy(of_geometry.data, fit_rows, &training),
+            held_out: (!held_out_rows.is_empty())
+                .then(|| model_accuracy(of_geometry.data, held_out_rows, &held_out)),
             prior_weight: weight * variance,
             model: model.clone(),
             possible: *possible,

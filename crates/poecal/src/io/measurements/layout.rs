@@ -67,20 +67,7 @@ impl ColumnLayout {
         };
         let pair = builder.optional_text_column("pair")?;
         let id = builder.id_column()?;
-        let rule = options.fit_where.as_ref().or(map.set.as_ref()).cloned();
-        let words = builder.optional_text_column("set")?.filter(|_| !options.ignore_sets);
-        let set = match (rule, words) {
-            (Some(rule), _) if options.ignore_sets => {
-                // A known column is not listed as ignored.
-                builder.optional_text_column(&rule.column)?;
-                SetRule::Unstated
-            }
-            (Some(rule), _) => {
-                SetRule::Where(builder.text_column(&rule.column, "that says which rows are fitted")?, rule)
-            }
-            (None, Some(column)) => SetRule::Words(column),
-            (None, None) => SetRule::Unstated,
-        };
+        let set = set_rule(&mut builder, options, map)?;
         let (ignored, controller, pose) = (builder.ignored(), builder.controller(robot), map.pose);
         let Builder { inputs, numbered, missed, .. } = builder;
         Ok(ColumnLayout {
@@ -119,6 +106,23 @@ impl ColumnLayout {
         ))
     }
 
+    /// The layout of a file that has joint readings of pictures: joints, `id` and `set`.
+    pub(super) fn pictures(
+        header: &Header<'_>,
+        robot: &Robot,
+        options: &ReadOptions,
+        map: &ColumnMap,
+    ) -> Result<Self> {
+        let mut builder = Builder::new(header, robot, map, options.controller.as_ref())?;
+        builder.check_distinct()?;
+        let id = builder.id_column()?;
+        let set = set_rule(&mut builder, options, map)?;
+        builder.optional_text_column("image")?;
+        let (ignored, controller) = (builder.ignored(), builder.controller(robot));
+        let Builder { inputs, numbered, missed, .. } = builder;
+        Ok(ColumnLayout { inputs, id, set, ignored, numbered, controller, missed, ..ColumnLayout::default() })
+    }
+
     /// The layout of a file that is read for its joints alone.
     pub(super) fn joints(
         header: &Header<'_>,
@@ -133,4 +137,22 @@ impl ColumnLayout {
         let Builder { inputs, numbered, missed, .. } = builder;
         Ok(ColumnLayout { inputs, id, numbered, controller, missed, ..ColumnLayout::default() })
     }
+}
+
+/// What says the set of a row.
+fn set_rule(builder: &mut Builder<'_>, options: &ReadOptions, map: &ColumnMap) -> Result<SetRule> {
+    let rule = options.fit_where.as_ref().or(map.set.as_ref()).cloned();
+    let words = builder.optional_text_column("set")?.filter(|_| !options.ignore_sets);
+    Ok(match (rule, words) {
+        (Some(rule), _) if options.ignore_sets => {
+            // A known column is not listed as ignored.
+            builder.optional_text_column(&rule.column)?;
+            SetRule::Unstated
+        }
+        (Some(rule), _) => {
+            SetRule::Where(builder.text_column(&rule.column, "that says which rows are fitted")?, rule)
+        }
+        (None, Some(column)) => SetRule::Words(column),
+        (None, None) => SetRule::Unstated,
+    })
 }

@@ -4,7 +4,9 @@
 //! (`layout` and `builder`, from header, mapping and robot), numbers in SI (`inputs`), without those of lost beams (`lost`), and at
 //! last measurements (`row`, [`read()`]), which are judged for their scale (`scale`, `spread`, `turns`).
 
+mod boards;
 mod builder;
+mod cameras;
 mod cells;
 mod counted;
 mod fit_where;
@@ -20,10 +22,13 @@ mod naming;
 mod number;
 mod numbered;
 mod orientation;
+mod picture_files;
+mod pixels;
 mod read;
 mod rewritten;
 mod row;
 mod scale;
+mod sightings;
 mod socket_distance;
 mod spread;
 mod table;
@@ -37,6 +42,8 @@ mod units;
 mod write;
 
 pub use super::numbers::LARGEST_NUMBER;
+pub use boards::read_boards;
+pub use cameras::read_cameras;
 pub use cells::Separator;
 pub(in crate::io) use cells::{Cell, split};
 pub use fit_where::FitWhere;
@@ -55,6 +62,7 @@ pub(in crate::io) use write::text;
 
 use std::collections::BTreeMap;
 
+use crate::camera::{Board, Camera};
 use crate::measurement::Dataset;
 use crate::robot::Controller;
 
@@ -86,6 +94,10 @@ pub struct ReadOptions {
     pub socket_distances: Option<SocketDistances>,
     /// What rows with a `plane` are that do not say it in `contact`.
     pub contact: PlaneContact,
+    /// Cameras that saw corners in pixels.
+    pub cameras: Vec<Camera>,
+    /// The boards or solids of these corners.
+    pub boards: Vec<Board>,
     /// Noise of instruments that depends on the distance, for rows that state none.
     pub instrument_noise: Vec<InstrumentNoise>,
 }

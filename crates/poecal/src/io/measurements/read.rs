@@ -9,6 +9,7 @@ use super::lost::{self, LostBeams};
 use super::mapping::ColumnMap;
 use super::naming::Names;
 use super::number::Numbers;
+use super::picture_files::{self, TakenByImage};
 use super::scale::{self, JointWatch};
 use super::socket_distance::Sockets;
 use super::spread;
@@ -17,10 +18,11 @@ use super::text::Blocks;
 use super::turns::{self, TurnWatch};
 use super::understanding::{self, FileUnderstanding};
 use super::{FitWhere, Frames, MeasurementFile, ReadOptions};
+use crate::camera::Board;
 use crate::error::{Error, ErrorKind, Result, shown};
 use crate::measurement::{Dataset, Observation};
 use crate::robot::{Controller, Robot};
-use crate::start::settle_faces;
+use crate::start::{settle_faces, settle_pictures};
 use crate::text::visible;
 
 /// Reads measurement files, joined in their order.
@@ -41,11 +43,27 @@ fn read_all(paths: &[&Path], robot: &Robot, options: &ReadOptions) -> Result<Mea
     }
     let no_map = ColumnMap::default();
     let mut reader = Reader::new(robot, options, &no_map);
-    for path in paths {
+    // Readings by picture come before the corners of the pictures, in whatever order the files are named.
+    let mut order = paths.to_vec();
+    if !options.cameras.is_empty() {
+        order.sort_by_key(|path| !has_readings_of_pictures(path, reader.map));
+    }
+    for path in order {
         let blocks = Blocks::open(path, "a measurement file (CSV)")?;
         reader.file(path, blocks).map_err(|error| beside(error, path, paths, reader.map))?;
     }
     reader.finish()
+}
+
+/// Whether a file has readings of joints by picture. One that cannot be read is named when it is read.
+fn has_readings_of_pictures(path: &Path, map: &ColumnMap) -> bool {
+    // A pipe is read once.
+    if !path.is_file() {
+        return false;
+    }
+    let table =
+        Blocks::open(path, "a measurement file (CSV)").and_then(|blocks| Table::open(path, blocks, map));
+    table.is_ok_and(|table| picture_files::are_readings_of_pictures(&table.header))
 }
 
 /// An error of a column that is in another of the files: tables that stand side by side, and not one below the other.
@@ -130,6 +148,10 @@ pub(super) struct Reader<'a> {
     pub(super) places: BTreeMap<String, (&'static str, PathBuf, usize)>,
     /// Pairs of rows: the first one's configuration until the second is read, and its line.
     pub(super) begun: BTreeMap<String, (Option<u32>, usize)>,
+    /// Readings of joints by picture.
+    pub(super) taken: TakenByImage,
+    /// The boards, one that is at several places by its names there.
+    pub(super) boards: Vec<Board>,
     /// The sockets of each place.
     pub(super) sockets: Sockets,
     /// Which of the values that mark a row to fit were seen.
@@ -147,6 +169,8 @@ impl<'a> Reader<'a> {
             stations: Names::default(),
             places: BTreeMap::new(),
             begun: BTreeMap::new(),
+            taken: TakenByImage::new(),
+            boards: options.boards.clone(),
             sockets: Sockets::new(),
             fit_values_seen: Vec::new(),
             found: MeasurementFile {
@@ -158,6 +182,12 @@ impl<'a> Reader<'a> {
 
     fn file<'p>(&mut self, path: &'p Path, blocks: Blocks<'p>) -> Result<()> {
         let mut table = Table::open(path, blocks, self.map)?;
+        if picture_files::are_corners(&table.header) {
+            return self.corners(path, table);
+        }
+        if !self.options.cameras.is_empty() && picture_files::are_readings_of_pictures(&table.header) {
+            return self.readings_of_pictures(path, table);
+        }
         let layout = ColumnLayout::new(&table.header, self.robot, self.options, self.map)?;
         if let Some(column) = layout.instrument.filter(|_| self.options.frames == Frames::PerFile) {
             let message = "found a column that names the instrument beside --frames per-file, expected one of the two: leave the option \
@@ -302,7 +332,7 @@ impl<'a> Reader<'a> {
     }
 
     /// How the files' readings are made of columns, which must be the same in all.
-    fn take_controller(&mut self, path: &Path, layout: &ColumnLayout) -> Result<()> {
+    pub(super) fn take_controller(&mut self, path: &Path, layout: &ColumnLayout) -> Result<()> {
         let words = |it: &Option<Controller>| it.as_ref().map(|it| (it.third_axis, it.words()));
         let is_first = self.found.understood.is_empty();
         if !is_first && words(&self.found.data.controller) != words(&layout.controller) {
@@ -319,7 +349,7 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    fn warn_of_ignored(&mut self, path: &Path, layout: &ColumnLayout) {
+    pub(super) fn warn_of_ignored(&mut self, path: &Path, layout: &ColumnLayout) {
         if layout.ignored.is_empty() {
             return;
         }
@@ -358,6 +388,8 @@ impl<'a> Reader<'a> {
             noise.state(&mut found.data)?;
         }
         settle_faces(&mut found.data, self.robot);
+        found.data.settle_pixels();
+        found.warnings.extend(settle_pictures(&mut found.data, self.robot));
         found.warnings.iter_mut().for_each(|warning| *warning = visible(warning).into_owned());
         Ok(found)
     }

@@ -111,7 +111,7 @@ impl Reader<'_> {
     }
 
     /// The stated set of a row.
-    fn set(&mut self, row: &Row<'_>, layout: &ColumnLayout) -> Result<Option<Set>> {
+    pub(super) fn set(&mut self, row: &Row<'_>, layout: &ColumnLayout) -> Result<Option<Set>> {
         let text = |index: usize| row.cells.get(index).map(|cell| cell.text()).unwrap_or_default();
         match &layout.set {
             SetRule::Unstated => Ok(None),

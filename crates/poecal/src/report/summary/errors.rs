@@ -91,6 +91,17 @@ pub(super) fn figures(out: &mut String, file: &CalibrationFile) {
     });
     let (largest, rest) = (largest.unwrap_or_default(), rest.unwrap_or_default());
     line(out, judging, &format!("{} rows: {} (RMS){largest}{rest}", set.count, words(after.1)));
+    if let (Some(before), Some(after)) = (before.1.pixels, after.1.pixels) {
+        let words = format!(
+            "{} px before, {} px after (RMS), {} mm at the board square to the ray; median of {} pictures {} px",
+            number(before.rms_px),
+            number(after.rms_px),
+            number(after.rms_mm),
+            after.pictures,
+            number(after.median_picture_px)
+        );
+        line(out, "corners", &words);
+    }
     if !held_out {
         let validated = file.cross_validation.as_ref().map(|it| leading_words(&it.random.rms));
         let validated = validated.map_or_else(String::new, |rms| format!("; cross-validation {rms} (RMS)"));

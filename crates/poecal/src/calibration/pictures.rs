@@ -1,0 +1,114 @@
+//! Pictures as a fit sees them: the common error of their corners, and the pose of each that is nearest to its prediction (theory.md §6,
+//! *Pictures*).
+
+use nalgebra::{Matrix6, Vector6};
+
+use super::robust::RobustFit;
+use super::run::Run;
+use crate::camera::{Centre, CommonError, Sighting};
+use crate::linalg;
+use crate::measurement::{Dataset, Noise, SightingAbout, deviation};
+use crate::solve::Normal;
+use crate::start::predicted_pose;
+
+/// Most fits with the noise of pictures found anew.
+pub(super) const ROUNDS: usize = 8;
+/// Change of a standard deviation that is worth another fit.
+const CHANGE: f64 = 0.05;
+/// Turn of a pose from its prediction beyond which a flat board is seen as tilted the other way, rad.
+const FLIPPED_RAD: f64 = 0.2;
+/// Times the noise of its best pose up to which a pose near the prediction is taken instead.
+const AS_GOOD: f64 = 3.0;
+
+impl Run<'_> {
+    /// The data with the noise of pictures as the residuals of a fit show it, and with each picture at the pose that is nearest to its
+    /// prediction. `None` if that changes nothing.
+    pub(super) fn renewed_pictures(&self, ratios: &[Noise], fit: &RobustFit) -> Option<Dataset> {
+        let pictures = &self.data.pictures;
+        if pictures.is_empty() {
+            return None;
+        }
+        let session = self.session(ratios);
+        let rows: Vec<u32> = pictures.all.iter().map(|it| it.row).collect();
+        let errors = session.errors(&rows, &fit.fitted.estimate);
+        let mut has_moved = false;
+        // Sightings with how far each is off its prediction, as motions of its row.
+        let mut found: Vec<(Sighting, Vector6<f64>)> = Vec::with_capacity(rows.len());
+        for (picture, error) in pictures.all.iter().zip(&errors) {
+            let measured = self.data.observations[picture.row as usize].measurement.pose();
+            let predicted = predicted_pose(&measured, error);
+            let view = pictures.view(picture)?;
+            let kept = view.sighting(&picture.directed(&measured), true)?;
+            let expected = picture.directed(&predicted);
+            let is_flipped = |it: &Sighting| expected.apart(&it.camera_from_board).1 > FLIPPED_RAD;
+            let near = view
+                .sighting(&expected, true)
+                .filter(|it| !is_flipped(it))
+                .or_else(|| view.near(&expected).filter(|_| view.dimensions() == 2 && is_flipped(&kept)));
+            let mean = |it: &Sighting| it.cost / it.freedom.max(1.0);
+            let is_as_good = |near: &Sighting| {
+                mean(near) <= AS_GOOD * AS_GOOD * mean(&kept).max(1.0) && near.freedom >= kept.freedom - 1.0
+            };
+            let sighting = near.filter(is_as_good).unwrap_or(kept);
+            let pose = picture.directed(&sighting.camera_from_board);
+            let moved = deviation(&sighting.camera_from_board, &picture.directed(&measured));
+            has_moved |= (moved.transpose() * sighting.information * moved)[0] > CHANGE * CHANGE;
+            found.push((sighting, deviation(&pose, &predicted)));
+        }
+        let common = self.common_error(fit, &found, session.length_m);
+        let before = pictures.common;
+        let differs = |a: f64, b: f64| (a / b).ln().abs() > CHANGE;
+        let same = common.about == before.about
+            && !differs(common.shift_m, before.shift_m)
+            && !differs(common.turn_rad, before.turn_rad);
+        if !has_moved && same {
+            return None;
+        }
+        let mut data = self.data.clone().into_owned();
+        data.pictures.common = common;
+        for (at, (sighting, _)) in found.iter().enumerate() {
+            data.state_picture(at, sighting);
+        }
+        Some(data)
+    }
+
+    /// The likeliest common error of the corners of a picture, about the board or about the camera.
+    fn common_error(
+        &self,
+        fit: &RobustFit,
+        found: &[(Sighting, Vector6<f64>)],
+        length_m: f64,
+    ) -> CommonError {
+        let pictures = &self.data.pictures;
+        let unknowns = self.effective_unknowns(fit);
+        let counts =
+            |row: u32| self.fit_rows.binary_search(&row).is_ok() && !fit.robustness.suspects_row(row);
+        let seen = |about: Centre| -> Vec<(Matrix6<f64>, Vector6<f64>)> {
+            let own = pictures.all.iter().zip(found).filter(|(picture, _)| counts(picture.row));
+            own.map(|(picture, (sighting, deviation))| {
+                let sighting = SightingAbout::new(sighting, about);
+                (sighting.information, sighting.from_row(picture.of_camera) * deviation)
+            })
+            .collect()
+        };
+        let likeliest = |about: Centre| {
+            CommonError { about, ..pictures.common }.likeliest(&seen(about), unknowns, length_m)
+        };
+        let (board, camera) = (likeliest(Centre::Board), likeliest(Centre::Camera));
+        // What is known of the centre stays known unless the other is better.
+        let margin = if pictures.common.about == Centre::Board { 2.0 } else { -2.0 };
+        if camera.1 + margin < board.1 { camera.0 } else { board.0 }
+    }
+
+    /// Effective number of unknowns that the measurements determine beside the prior (theory.md §6 (34)).
+    fn effective_unknowns(&self, fit: &RobustFit) -> f64 {
+        let fitted = &fit.fitted;
+        let n = fitted.normal.dim();
+        let Some(prior) = &self.prior else { return n as f64 };
+        let mut believed = Normal::new(n);
+        prior.add(&fitted.estimate, &fitted.layout, 1.0, &mut believed);
+        let whole: Vec<f64> = fitted.normal.gram.iter().zip(&believed.gram).map(|(a, b)| a + b).collect();
+        let Some(factor) = linalg::cholesky(&whole, n, 0.0) else { return n as f64 };
+        n as f64 - linalg::trace_of_quotient(&factor, &believed.gram, n)
+    }
+}

@@ -1,0 +1,89 @@
+//! Errors of corners in pictures.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use nalgebra::Vector2;
+
+use crate::camera::{Corner, Picture};
+use crate::distributions::median;
+use crate::estimate::RowError;
+use crate::lie::Pose;
+use crate::measurement::Dataset;
+use crate::start::predicted_pose;
+
+/// Distances of corners from where a model sees them: in the picture, and at the board, square to the ray.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct PixelAccuracy {
+    /// Number of pictures.
+    pub pictures: usize,
+    /// Number of corners.
+    pub corners: usize,
+    /// Corners that the model has behind the camera or beyond its lens; they are in no figure.
+    #[serde(default, skip_serializing_if = "is_none")]
+    pub unseen: usize,
+    /// Mean over the corners, pixels.
+    pub mean_px: f64,
+    /// Median over the corners, pixels.
+    pub median_px: f64,
+    /// Root mean square over the corners, pixels.
+    pub rms_px: f64,
+    /// Largest, pixels.
+    pub max_px: f64,
+    /// Median over the pictures of the root mean square of each, pixels.
+    pub median_picture_px: f64,
+    /// Root mean square over the corners at the board, square to the ray, millimetres.
+    pub rms_mm: f64,
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands over references")]
+fn is_none(count: &usize) -> bool {
+    *count == 0
+}
+
+/// The errors of the pictures among some rows by the errors of these rows; `None` without a corner that is seen.
+pub(super) fn pixel_accuracy(data: &Dataset, rows: &[u32], errors: &[RowError]) -> Option<PixelAccuracy> {
+    let (mut lengths, mut across, mut of_pictures) = (Vec::new(), 0.0, Vec::new());
+    let mut unseen = 0;
+    for (row, error) in rows.iter().zip(errors) {
+        let Some(picture) = data.pictures.of_row(*row).and_then(|at| data.pictures.all.get(at)) else {
+            continue;
+        };
+        let measured = data.observations.get(*row as usize)?.measurement.pose();
+        let pose = picture.directed(&predicted_pose(&measured, error));
+        let own = corners(data, picture, &pose);
+        unseen += picture.corners.len() - own.len();
+        if own.is_empty() {
+            continue;
+        }
+        let squares: f64 = own.iter().map(|(px, _)| px * px).sum();
+        of_pictures.push((squares / own.len() as f64).sqrt());
+        across += own.iter().map(|(_, m)| m * m).sum::<f64>();
+        lengths.extend(own.iter().map(|(px, _)| *px));
+    }
+    let count = lengths.len() as f64;
+    Some(PixelAccuracy {
+        pictures: of_pictures.len(),
+        corners: lengths.len(),
+        unseen,
+        mean_px: lengths.iter().sum::<f64>() / count,
+        median_px: median(lengths.iter().copied())?,
+        rms_px: (lengths.iter().map(|px| px * px).sum::<f64>() / count).sqrt(),
+        max_px: lengths.iter().copied().fold(0.0, f64::max),
+        median_picture_px: median(of_pictures.iter().copied())?,
+        rms_mm: 1e3 * (across / count).sqrt(),
+    })
+}
+
+/// Of each corner that a pose of the board lets the camera see, how far it is off: pixels, and metres at its depth.
+fn corners(data: &Dataset, picture: &Picture, pose: &Pose) -> Vec<(f64, f64)> {
+    let Some(view) = data.pictures.view(picture) else { return Vec::new() };
+    let of = |(corner, error): (&Corner, Option<Vector2<f64>>)| {
+        let depth = pose.act(view.board.points.get(corner.point as usize)?).z;
+        let [fx, fy] = view.lens.focal_px;
+        let error = error?;
+        let across = (error.x / fx).hypot(error.y / fy) * depth;
+        Some((error.norm(), across))
+    };
+    picture.corners.iter().zip(view.errors(pose)).filter_map(of).collect()
+}

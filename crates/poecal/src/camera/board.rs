@@ -1,0 +1,90 @@
+//! Bodies of known points: boards, cubes of tags, frames of markers.
+
+use nalgebra::{Matrix3, Vector3};
+use serde::{Deserialize, Serialize};
+
+use crate::error::{Error, ErrorKind, Result};
+use crate::linalg;
+
+/// Points of one solid, in its own frame.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Board {
+    /// Its name.
+    pub name: String,
+    /// Names of its points.
+    pub names: Vec<String>,
+    /// The points, metres, in the same order.
+    pub points: Vec<Vector3<f64>>,
+}
+
+impl Board {
+    /// A chessboard of so many squares along x and y: its inner corners `corner0`, `corner1`, … along x first, in metres from the first one.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Option`] if it has fewer than two corners along a side, or its squares have no size.
+    pub fn chessboard(name: &str, [columns, rows]: [usize; 2], square_m: f64) -> Result<Self> {
+        if columns < 3 || rows < 3 || columns > MOST_SQUARES || rows > MOST_SQUARES {
+            let message = format!(
+                "found a board of {columns} × {rows} squares, expected 3 to {MOST_SQUARES} along each side"
+            );
+            return Err(Error::new(ErrorKind::Option, message));
+        }
+        if !(square_m > 0.0 && square_m.is_finite()) {
+            let message = format!("found squares of {square_m:?} m, expected a length above 0");
+            return Err(Error::new(ErrorKind::Option, message));
+        }
+        let places = (0..rows - 1).flat_map(|row| (0..columns - 1).map(move |column| (column, row)));
+        let points: Vec<Vector3<f64>> =
+            places.map(|(x, y)| Vector3::new(x as f64 * square_m, y as f64 * square_m, 0.0)).collect();
+        let names = (0..points.len()).map(|at| format!("corner{at}")).collect();
+        Ok(Board { name: name.to_owned(), names, points })
+    }
+
+    /// The point with a name.
+    #[must_use]
+    pub fn find(&self, name: &str) -> Option<usize> {
+        self.names.iter().position(|own| own == name)
+    }
+
+    /// Largest distance of a point from the middle, metres.
+    #[must_use]
+    pub fn radius_m(&self) -> f64 {
+        let middle = middle(&self.points);
+        self.points.iter().map(|point| (point - middle).norm()).fold(0.0, f64::max)
+    }
+
+    /// The same board in another size.
+    #[must_use]
+    pub fn scaled(&self, factor: f64) -> Self {
+        Board { points: self.points.iter().map(|point| point * factor).collect(), ..self.clone() }
+    }
+}
+
+/// Most squares along a side: 250 of 4 mm make a metre.
+const MOST_SQUARES: usize = 250;
+
+/// Mean of some points.
+#[must_use]
+pub fn middle(points: &[Vector3<f64>]) -> Vector3<f64> {
+    points.iter().sum::<Vector3<f64>>() / points.len().max(1) as f64
+}
+
+/// The direction in which some points are nearest to each other: the normal of a flat board.
+#[must_use]
+pub fn normal(points: &[Vector3<f64>]) -> Vector3<f64> {
+    let (_, vectors) = linalg::symmetric_eigen(scatter(points).as_slice(), 3);
+    Vector3::new(vectors[(0, 0)], vectors[(1, 0)], vectors[(2, 0)])
+}
+
+fn scatter(points: &[Vector3<f64>]) -> Matrix3<f64> {
+    let middle = middle(points);
+    points.iter().map(|point| (point - middle) * (point - middle).transpose()).sum()
+}
+
+/// How many dimensions some points have: 0 of one place, 1 of a line, 2 of a plane, 3 otherwise, by a thousandth of their size.
+#[must_use]
+pub fn dimensions(points: &[Vector3<f64>]) -> usize {
+    let (values, _) = linalg::symmetric_eigen(scatter(points).as_slice(), 3);
+    let largest = values.iter().copied().fold(0.0, f64::max);
+    values.iter().filter(|value| **value > 1e-6 * largest).count()
+}

@@ -1,0 +1,18 @@
+//! Cameras: lenses, boards of known points, and the poses from which these look as they were seen.
+
+mod board;
+mod common;
+mod lens;
+mod picture;
+mod pictures;
+mod pnp;
+mod poses;
+mod sighting;
+
+pub use board::{Board, dimensions, middle, normal};
+pub use common::{Centre, CommonError, motion_by_inverse};
+pub use lens::{Distortion, LENS_NAMES, LENS_NUMBERS, Lens, Projection};
+pub use picture::{Camera, Corner, Picture};
+pub use pictures::Pictures;
+pub use pnp::poses_of_rays;
+pub use sighting::{Sighting, View, moved};

@@ -1,0 +1,127 @@
+//! Boards and solids whose points cameras see: CSV, or in words.
+
+use std::path::Path;
+
+use nalgebra::Vector3;
+
+use super::header::{Header, unit_in_name};
+use super::mapping::ColumnMap;
+use super::number::Numbers;
+use super::table::Table;
+use super::text::Blocks;
+use super::units::{NamedUnit, positive_length_m};
+use crate::camera::Board;
+use crate::error::{Error, ErrorKind, Result};
+use crate::unit::Unit;
+
+/// The board of all corners where no column names it.
+const BOARD: &str = "board";
+
+/// The boards of a file of points, or of a specification such as `chessboard:10x7:27mm` (squares along x and y, and their side).
+///
+/// # Errors
+/// A file that cannot be read or has no points, or a specification that is none.
+pub fn read_boards(typed: &str) -> Result<Vec<Board>> {
+    match typed.split_once(':') {
+        Some((kind @ ("chessboard" | "charuco"), rest)) => Ok(vec![specified(kind, rest, typed)?]),
+        _ => of_table(Path::new(typed)),
+    }
+}
+
+/// `COLSxROWS:SQUARE`, and of a ChArUco board what its markers are, which does not move the corners.
+fn specified(kind: &str, rest: &str, typed: &str) -> Result<Board> {
+    let refuse = || {
+        let message = format!(
+            "found the board `{typed}`, expected squares along x and y and their side, as chessboard:10x7:27mm or charuco:5x7:36mm:18mm:DICT_6X6_250"
+        );
+        Error::new(ErrorKind::Option, message)
+    };
+    let mut parts = rest.split(':');
+    let (columns, rows) = parts.next().and_then(|it| it.split_once(['x', 'X'])).ok_or_else(refuse)?;
+    let count = |text: &str| text.trim().parse::<usize>().map_err(|_| refuse());
+    let square = parts.next().ok_or_else(refuse)?;
+    let square_m = positive_length_m(square)?.ok_or_else(refuse)?;
+    if kind == "chessboard" && parts.next().is_some() {
+        return Err(refuse());
+    }
+    Board::chessboard(BOARD, [count(columns)?, count(rows)?], square_m)
+}
+
+/// A column of a coordinate, with its unit: `x[mm]`, `x_mm`.
+fn coordinate(header: &Header<'_>, name: &str) -> Result<(usize, NamedUnit)> {
+    if let Some(at) = header.find(name)? {
+        let unit = header.unit(at, Unit::Metre, "for a point")?;
+        return Ok((at, unit.map_or(NamedUnit::from(Unit::Metre), |(unit, _)| unit)));
+    }
+    let found =
+        header.cells.iter().enumerate().find_map(|(at, cell)| Some((at, unit_in_name(&cell.name, name)?)));
+    match found.filter(|(_, unit)| unit.of() == Unit::Metre) {
+        Some(found) => Ok(found),
+        None => {
+            Err(header.require(name, "for a point of the board", |_| false, "").err().unwrap_or_else(|| {
+                Error::new(ErrorKind::Measurement, format!("found no column `{name}`"))
+                    .at_line(header.path, header.line)
+            }))
+        }
+    }
+}
+
+fn of_table(path: &Path) -> Result<Vec<Board>> {
+    let map = ColumnMap::default();
+    let mut table = Table::open(path, Blocks::open(path, "points of a board (CSV)")?, &map)?;
+    let header = &table.header;
+    let name = ["target", "marker", "corner", "name"].iter().find(|name| header.count(name) > 0);
+    let Some(name) = name else {
+        let message = "found no column `target`, expected one with the names of the points";
+        return Err(Error::new(ErrorKind::Measurement, message).at_line(path, header.line));
+    };
+    let (name_at, of_board) = (header.find(name)?.unwrap_or(0), header.find("board")?);
+    let columns = [coordinate(header, "x")?, coordinate(header, "y")?, coordinate(header, "z")?];
+    let mut numbers = Numbers::new(None);
+    let mut boards: Vec<Board> = Vec::new();
+    while let Some(mut rows) = table.next_block()? {
+        while let Some(row) = rows.next()? {
+            let text =
+                |at: usize| row.cells.get(at).map(|cell| cell.text().trim().to_owned()).unwrap_or_default();
+            let mut point = Vector3::zeros();
+            for ((value, (at, unit)), axis) in point.iter_mut().zip(columns).zip(["x", "y", "z"]) {
+                let raw = text(at);
+                let found = numbers.parse(&raw, row.line);
+                let found = found.map_err(|expected| {
+                    row.error(at, format!("found `{raw}` for `{axis}`, expected {expected}"))
+                })?;
+                *value = unit.to_si(found);
+                if value.abs() > FARTHEST_M {
+                    let message = format!(
+                        "found `{raw}` for `{axis}`, {value} m, expected a point of a board: state the unit of the column, as {axis}[mm]"
+                    );
+                    return Err(row.error(at, message));
+                }
+            }
+            let own = of_board.map(text).filter(|it| !it.is_empty()).unwrap_or_else(|| BOARD.to_owned());
+            let at = boards.iter().position(|it| it.name == own).unwrap_or_else(|| {
+                boards.push(Board { name: own, ..Board::default() });
+                boards.len() - 1
+            });
+            let Some(board) = boards.get_mut(at) else { continue };
+            // Points that are only numbered are named by their column too.
+            let word = text(name_at);
+            let point_name =
+                if word.bytes().all(|it| it.is_ascii_digit()) { format!("{name}{word}") } else { word };
+            if board.find(&point_name).is_some() {
+                let message = format!("found the point `{point_name}` a second time, expected it once");
+                return Err(row.error(name_at, message));
+            }
+            board.names.push(point_name);
+            board.points.push(point);
+        }
+    }
+    if boards.is_empty() {
+        let message = "found a header and no rows, expected the points of a board";
+        return Err(Error::new(ErrorKind::Measurement, message).at_line(path, table.header.line));
+    }
+    Ok(boards)
+}
+
+/// Largest coordinate of a point of a board, metres.
+const FARTHEST_M: f64 = 10.0;

@@ -1,0 +1,30 @@
+//! Files that are of pictures: of corners, or of the joint readings of each picture.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+use super::header::Header;
+use crate::measurement::Set;
+
+/// Whether the columns of a file are those of corners.
+pub(super) fn are_corners(header: &Header<'_>) -> bool {
+    header.count("u") > 0 && header.count("v") > 0
+}
+
+/// Whether a file has readings of joints by picture, and nothing that was measured.
+pub(super) fn are_readings_of_pictures(header: &Header<'_>) -> bool {
+    header.count("image") > 0 && ["u", "v", "x", "y", "z"].iter().all(|name| header.count(name) == 0)
+}
+
+/// The configuration of a picture.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Taken {
+    pub(super) readings: Vec<f64>,
+    pub(super) set: Option<Set>,
+    pub(super) id: String,
+    /// File and line.
+    pub(super) place: (PathBuf, usize),
+}
+
+/// Configurations by the names of their pictures.
+pub(super) type TakenByImage = BTreeMap<String, Taken>;

@@ -1,0 +1,93 @@
+//! The pictures of a file as rows of the session.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use super::inputs::InputReader;
+use super::layout::ColumnLayout;
+use super::pixels::Gathered;
+use super::read::Reader;
+use super::table::Table;
+use super::understanding::{self, FileUnderstanding};
+use crate::camera::Picture;
+use crate::error::{Error, ErrorKind, Result, first_few};
+use crate::measurement::Source;
+
+impl Reader<'_> {
+    /// Adds pictures as rows, each with the poses that fit its corners; those without one are left out, and named.
+    pub(super) fn take_pictures(&mut self, path: &Path, gathered: Vec<Gathered>) -> Result<()> {
+        let file = u32::try_from(self.found.data.files.len().saturating_sub(1)).unwrap_or(u32::MAX);
+        let (mut left_out, mut found) = (Vec::new(), 0);
+        self.found.data.pictures.cameras.clone_from(&self.options.cameras);
+        self.found.data.pictures.boards.clone_from(&self.boards);
+        for one in gathered {
+            let name = one.image.clone().unwrap_or_else(|| format!("of line {}", one.taken.place.1));
+            let line = one.corners.first().map_or(0, |corner| corner.line);
+            let picture = Picture::new(one.camera, one.board, one.image, one.corners);
+            let taken = (one.taken.set, Source { file, line });
+            let data = &mut self.found.data;
+            match data.push_picture(&one.taken.readings, picture, taken) {
+                Ok(Ok(())) => {}
+                Ok(Err(reason)) => {
+                    left_out.push(format!("{name} ({reason})"));
+                    continue;
+                }
+                Err(error) => {
+                    let kind = ErrorKind::Measurement;
+                    return Err(Error::new(kind, error.message()).at_line(path, line as usize));
+                }
+            }
+            if !one.taken.id.is_empty() || !data.ids.is_empty() {
+                data.ids.resize(data.len() - 1, String::new());
+                data.ids.push(one.taken.id);
+            }
+            found += 1;
+        }
+        if !left_out.is_empty() {
+            self.found.warnings.push(format!(
+                "{}: left out {} of {} pictures: {}",
+                path.display(),
+                left_out.len(),
+                left_out.len() + found,
+                first_few(&left_out)
+            ));
+        }
+        if found == 0 {
+            let message =
+                "found no picture with a pose, expected at least four corners of a board in a picture";
+            return Err(Error::new(ErrorKind::Measurement, message).in_file(path));
+        }
+        Ok(())
+    }
+
+    /// Says how a file of corners was understood.
+    pub(super) fn understand_pictures(
+        &mut self,
+        table: &Table<'_>,
+        layout: &ColumnLayout,
+        inputs: &InputReader<'_>,
+        (first, rows): (usize, usize),
+    ) -> Result<()> {
+        let path = table.header.path;
+        let pictures = self.found.data.len() - first;
+        self.warn_of_ignored(path, layout);
+        self.take_controller(path, layout)?;
+        self.found.understood.push(FileUnderstanding {
+            path: path.to_path_buf(),
+            rows,
+            points: 0,
+            poses: 0,
+            others: BTreeMap::from([("pictures", pictures)]),
+            lost: super::LostBeams::default(),
+            separator: table.separator,
+            separator_line: table.separator_line,
+            units_line: table.header.units_line,
+            decimal_sign: inputs.numbers.sign(),
+            columns: understanding::columns(&table.header, layout, &inputs.ranges),
+            orientation: None,
+            pose: understanding::pose_word(layout.pose),
+            ignored: layout.ignored.iter().map(|(name, _)| name.clone()).collect(),
+        });
+        Ok(())
+    }
+}

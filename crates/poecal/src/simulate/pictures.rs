@@ -1,0 +1,196 @@
+//! Simulated sessions of a camera and a board.
+
+use nalgebra::{Vector2, Vector3, Vector6};
+use rand_chacha::ChaCha8Rng;
+use rand_core::SeedableRng;
+
+use super::{Configurations, Simulation, random};
+use crate::camera::{Board, Camera, CommonError, Corner, Lens, Picture, middle, moved};
+use crate::error::{Error, ErrorKind, Result};
+use crate::lie::{Pose, rotation};
+use crate::measurement::{Dataset, Source};
+use crate::robot::Robot;
+
+/// A simulated session in which a camera takes pictures of a board, one of them on the robot's tip.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PictureSimulation {
+    /// Errors of the robot, seed, and number of pictures; what it says of noise is not used.
+    pub session: Simulation,
+    /// The lens, with the size of its picture.
+    pub lens: Lens,
+    /// The board.
+    pub board: Board,
+    /// Whether the camera is on the tip, and the board stays.
+    pub in_hand: bool,
+    /// Nearest and farthest distance of the board from the camera, metres.
+    pub distance_m: [f64; 2],
+    /// Largest angle between the board's normal and the line of sight, rad.
+    pub tilt_rad: f64,
+    /// Standard deviation of each coordinate of a corner, pixels.
+    pub noise_px: f64,
+    /// What the corners of a picture share: the error of the arm in each configuration, about what is on its tip.
+    pub common: CommonError,
+}
+
+/// A simulated session of pictures with its truth.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Photographed {
+    /// The nominal robot.
+    pub nominal: Robot,
+    /// The actual robot.
+    pub actual: Robot,
+    /// Pose of what is on the tip, camera or board, in the frame of the actual tip.
+    pub tip_from_held: Pose,
+    /// Pose of what stays, board or camera, in the base.
+    pub base_from_other: Pose,
+    /// The pictures.
+    pub data: Dataset,
+}
+
+/// Most configurations that are tried for each picture.
+const TRIES: usize = 2000;
+/// Remainder below which an arm has reached a pose.
+const REACHED: f64 = 1e-9;
+
+impl PictureSimulation {
+    /// A camera of 1,500 px at 0.6 to 1 m from a board of 7 × 5 squares of 36 mm, with corners to 0.3 px.
+    #[must_use]
+    pub fn usual(session: Simulation, in_hand: bool) -> Self {
+        let lens = Lens { size_px: Some([1920, 1200]), ..Lens::pinhole([1500.0, 1500.0], [959.5, 599.5]) };
+        PictureSimulation {
+            session,
+            lens,
+            board: Board::chessboard("board", [7, 5], 0.036).unwrap_or_default(),
+            in_hand,
+            distance_m: [0.6, 1.0],
+            tilt_rad: 0.7,
+            noise_px: 0.3,
+            common: CommonError { shift_m: 0.0, turn_rad: 0.0, ..CommonError::default() },
+        }
+    }
+
+    /// Simulates a robot that deviates from a nominal one, and pictures in configurations from which all of the board is seen.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Problem`] if the robot cannot be moved so that the camera sees the board.
+    pub fn run(&self, nominal: &Robot) -> Result<Photographed> {
+        let mut generator = ChaCha8Rng::seed_from_u64(self.session.seed);
+        let actual = self.session.perturbed(nominal, &mut generator);
+        let turn = random::direction(&mut generator) * 0.3;
+        let held_turn =
+            rotation::exp(&turn) * rotation::about(0, if self.in_hand { 0.0 } else { std::f64::consts::PI });
+        let tip_from_held = Pose::new(held_turn, random::normal_vector(&mut generator) * 0.03);
+        let refuse = || {
+            Error::new(
+                ErrorKind::Problem,
+                "found no configurations in which the camera sees the board, expected some",
+            )
+        };
+        let (arm, readings) = nominal.arm(&[])?;
+        let configurations = Configurations::new(nominal);
+        // What stays is where one configuration sees it well.
+        let first = configurations.random(&mut generator);
+        let base_from_held = nominal.forward_kinematics(&first) * tip_from_held;
+        let base_from_other = base_from_held * self.relative(&self.sight(&mut generator));
+        let mut data = Dataset::new(nominal.reading_names());
+        data.pictures.cameras = vec![Camera { name: "camera".to_owned(), lens: self.lens }];
+        data.pictures.boards = vec![self.board.clone()];
+        data.pictures.sigma_px = self.noise_px;
+        let mut near = first;
+        for _ in 0..self.session.count {
+            let mut found = None;
+            for attempt in 0..TRIES {
+                // Another branch of the arm now and then.
+                if attempt % 20 == 19 {
+                    near = configurations.random(&mut generator);
+                }
+                let wanted = base_from_other
+                    * self.relative(&self.sight(&mut generator)).inverse()
+                    * tip_from_held.inverse();
+                let mut q: Vec<f64> = readings.iter().map(|&at| near[at]).collect();
+                if arm.nearest(&wanted, &mut q) > REACHED {
+                    continue;
+                }
+                let mut all = near.clone();
+                readings.iter().zip(&q).for_each(|(&at, value)| all[at] = *value);
+                if !configurations.contain(&all) {
+                    continue;
+                }
+                let held = self.held(&actual, &all, &tip_from_held, &mut generator);
+                let camera_from_board = if self.in_hand {
+                    held.inverse() * base_from_other
+                } else {
+                    base_from_other.inverse() * held
+                };
+                if let Some(corners) = self.corners(&camera_from_board, &mut generator) {
+                    found = Some((all, corners));
+                    break;
+                }
+            }
+            let (all, corners) = found.ok_or_else(refuse)?;
+            let image = Some(format!("{:03}.png", data.len()));
+            let picture = Picture::new(0, 0, image, corners);
+            data.push_picture(&all, picture, (None, Source::default()))?.map_err(|_| refuse())?;
+            near = all;
+        }
+        data.settle_pixels();
+        Ok(Photographed { nominal: nominal.clone(), actual, tip_from_held, base_from_other, data })
+    }
+
+    /// A pose of the board in the camera's frame.
+    fn sight(&self, generator: &mut ChaCha8Rng) -> Pose {
+        let [nearest, farthest] = self.distance_m;
+        let depth = nearest + (farthest - nearest) * random::uniform(generator);
+        let [width, height] = self.lens.size_px.unwrap_or([1000, 1000]).map(f64::from);
+        let pixel = Vector2::new(
+            (0.2 + 0.6 * random::uniform(generator)) * width,
+            (0.2 + 0.6 * random::uniform(generator)) * height,
+        );
+        let ray = self.lens.ray(&pixel).unwrap_or_else(Vector3::z);
+        // Tilted about a line across the sight, turned about it.
+        let across = std::f64::consts::TAU * random::uniform(generator);
+        let tilt = rotation::exp(
+            &(Vector3::new(across.cos(), across.sin(), 0.0) * self.tilt_rad * random::uniform(generator)),
+        );
+        let turn = tilt * rotation::about(2, std::f64::consts::TAU * random::uniform(generator));
+        let middle = middle(&self.board.points);
+        Pose::new(turn, ray * (depth / ray.z) - turn * middle)
+    }
+
+    /// Pose of what stays in the frame of what is held, by the pose of the board in the camera's frame.
+    fn relative(&self, camera_from_board: &Pose) -> Pose {
+        if self.in_hand { *camera_from_board } else { camera_from_board.inverse() }
+    }
+
+    /// What is held, in the base, with the error of this configuration.
+    fn held(
+        &self,
+        actual: &Robot,
+        readings: &[f64],
+        tip_from_held: &Pose,
+        generator: &mut ChaCha8Rng,
+    ) -> Pose {
+        let exact = actual.forward_kinematics(readings) * *tip_from_held;
+        let shift = random::normal_vector(generator) * self.common.shift_m;
+        let turn = random::normal_vector(generator) * self.common.turn_rad;
+        moved(&exact, &Vector6::new(shift.x, shift.y, shift.z, turn.x, turn.y, turn.z))
+    }
+
+    /// The corners as they are seen; `None` if one is not in the picture.
+    fn corners(&self, camera_from_board: &Pose, generator: &mut ChaCha8Rng) -> Option<Vec<Corner>> {
+        let size = self.lens.size_px.map(|size| size.map(f64::from));
+        let mut corners = Vec::with_capacity(self.board.points.len());
+        for (point, place) in (0..).zip(&self.board.points) {
+            let exact = self.lens.pixel(&camera_from_board.act(place))?;
+            let is_inside = size.is_none_or(|[width, height]| {
+                (0.0..width - 1.0).contains(&exact.x) && (0.0..height - 1.0).contains(&exact.y)
+            });
+            if !is_inside {
+                return None;
+            }
+            let noise = Vector2::new(random::normal(generator), random::normal(generator)) * self.noise_px;
+            corners.push(Corner { point, pixel: exact + noise, sigma_px: None, weight: 1.0, line: 0 });
+        }
+        Some(corners)
+    }
+}

@@ -1,0 +1,191 @@
+//! Which end of the robot a camera is on, and which of two poses a board has in a picture, with nominal screws.
+
+use super::registration::Registration;
+use super::stations::register;
+use crate::camera::{Picture, Pictures};
+use crate::distributions::median;
+use crate::estimate::{Estimate, Packed, RowError, Session, delivered};
+use crate::lie::{Pose, rotation};
+use crate::measurement::{Dataset, Measurement, Noise, Quantity, deviation};
+use crate::robot::{Mount, Robot};
+
+/// Most rounds in which pictures take the other of their poses.
+const ROUNDS: usize = 6;
+/// Noise of a registration, which the nominal robot misses by more than pictures do: m and rad.
+const NOISE: Noise = Noise::new(2e-3, 5e-3);
+/// Times the usual error beyond which a picture does not count in a registration.
+const ODD: f64 = 4.0;
+/// Fewest pictures of a registration.
+const FEWEST: usize = 4;
+/// How many times worse the other place of a camera must look, so that this one is evident.
+const EVIDENT: f64 = 1.5;
+
+/// Finds for each picture that has two poses the one that the other pictures agree with, and for cameras and boards that are not placed on the
+/// robot by name whether the camera is beside it, with the board in its hand, or in its hand, with the board beside: the place from which the
+/// corners look more as they were seen, with the robot as it is (theory.md §6, *Start*). Returns what was found, a sentence each.
+pub fn settle_pictures(data: &mut Dataset, robot: &Robot) -> Vec<String> {
+    if data.pictures.is_empty() {
+        return Vec::new();
+    }
+    let is_placed = |name: &str, mounts: &[Mount]| mounts.iter().any(|mount| mount.name == name);
+    let Pictures { cameras, boards, .. } = &data.pictures;
+    let placed = cameras.iter().any(|it| is_placed(&it.name, &robot.instruments))
+        || boards.iter().any(|it| is_placed(&it.name, &robot.mounted));
+    let (beside, beside_px) = settled(data, robot);
+    if placed {
+        *data = beside;
+        return Vec::new();
+    }
+    let (in_hand, in_hand_px) = settled(&in_hand(data), robot);
+    let (found, place, own, other) = if in_hand_px < beside_px {
+        (in_hand, "on the last link, and the board stays", in_hand_px, beside_px)
+    } else {
+        (beside, "beside the robot, and the board is on the last link", beside_px, in_hand_px)
+    };
+    *data = found;
+    let doubt = if other < EVIDENT * own {
+        "; that is not evident: say it with --instrument CAMERA=LINK and --target BOARD=LINK"
+    } else {
+        ""
+    };
+    vec![format!(
+        "the camera is {place}: so the nominal robot misses half of the pictures by less than {own:.1} px, the other way {other:.1} px{doubt}"
+    )]
+}
+
+/// The same pictures with the camera as the target, and the board as what it is seen from.
+fn in_hand(data: &Dataset) -> Dataset {
+    let mut found = data.clone();
+    let rows: Vec<(usize, usize, usize)> =
+        data.pictures.all.iter().map(|it| (it.row as usize, it.camera, it.board)).collect();
+    // Names of what no picture shows stay.
+    let is_of_pictures = |row: usize| data.pictures.of_row(row as u32).is_some();
+    let others = (0..data.len()).filter(|row| !is_of_pictures(*row));
+    let others: Vec<(usize, usize, usize)> =
+        others.map(|row| (row, data.observations[row].target, data.observations[row].station)).collect();
+    (found.targets, found.stations) = (Vec::new(), Vec::new());
+    for (row, target, station) in others {
+        let target = found.target_index(data.targets[target].as_deref());
+        let station = data.stations.get(station).cloned().flatten();
+        let station = named_station(&mut found, station.as_deref());
+        (found.observations[row].target, found.observations[row].station) = (target, station);
+    }
+    for (row, camera, board) in rows {
+        let camera = data.pictures.cameras[camera].name.clone();
+        let board = data.pictures.boards[board].name.clone();
+        let target = found.target_index(Some(&camera));
+        let station = named_station(&mut found, Some(&board));
+        (found.observations[row].target, found.observations[row].station) = (target, station);
+    }
+    found.pictures.all.iter_mut().for_each(|picture| picture.of_camera = true);
+    found
+}
+
+fn named_station(data: &mut Dataset, name: Option<&str>) -> usize {
+    if let Some(at) = data.stations.iter().position(|it| it.as_deref() == name) {
+        return at;
+    }
+    data.stations.push(name.map(str::to_owned));
+    data.stations.len() - 1
+}
+
+/// The data with the pose of each picture that fits the others, and the median distance of corners from where they would be seen, pixels.
+fn settled(data: &Dataset, robot: &Robot) -> (Dataset, f64) {
+    let mut found = data.clone();
+    let rows: Vec<u32> = data.pictures.all.iter().map(|it| it.row).collect();
+    for at in 0..found.pictures.all.len() {
+        choose(&mut found, at, |picture| picture.poses.first().copied());
+    }
+    let packed = Packed::of(robot, &found);
+    let (mut best, mut result, mut used) = (f64::INFINITY, found.clone(), rows.clone());
+    for _ in 0..ROUNDS {
+        let registered = registered(&found, robot, &packed, &used);
+        let predicted = predicted(&found, robot, &packed, &rows, &registered);
+        let missed: Vec<f64> =
+            found.pictures.all.iter().zip(&predicted).map(|it| missed_px(&found, it)).collect();
+        let usual = median(missed.iter().copied()).unwrap_or(f64::INFINITY);
+        if usual < best {
+            (best, result) = (usual, found.clone());
+        }
+        let mut has_changed = false;
+        for (at, predicted) in predicted.iter().enumerate() {
+            let before = found.pictures.all[at].poses.first().copied();
+            choose(&mut found, at, |picture| nearest(picture, predicted));
+            has_changed |= before != found.pictures.all[at].poses.first().copied();
+        }
+        // One whose board is tilted the other way pulls all others.
+        let kept =
+            rows.iter().zip(&missed).filter(|(_, missed)| **missed <= ODD * usual).map(|(row, _)| *row);
+        let kept: Vec<u32> = kept.collect();
+        if !has_changed && kept == used {
+            break;
+        }
+        used = if kept.len() >= FEWEST { kept } else { rows.clone() };
+    }
+    (result, best)
+}
+
+/// The registration of some pictures, all alike: by their own noise, a wrong pose that is known well would pull the others.
+fn registered(data: &Dataset, robot: &Robot, packed: &Packed, rows: &[u32]) -> Estimate {
+    let mut plain = data.clone();
+    for &row in rows {
+        let observation = &mut plain.observations[row as usize];
+        observation.noise_shape = None;
+        for quantity in [Quantity::Position, Quantity::Rotation] {
+            observation.stated.set(quantity, None);
+        }
+    }
+    let session = Session::new(robot, &plain, packed, true);
+    let registration = Registration { session, rows, noise: NOISE, targets_free: true, prior: None };
+    register(&registration, &delivered(robot, &plain)).0
+}
+
+/// Poses of the boards in the frames of their cameras, as an estimate predicts them, one for each picture.
+fn predicted(data: &Dataset, robot: &Robot, packed: &Packed, rows: &[u32], estimate: &Estimate) -> Vec<Pose> {
+    let session = Session::new(robot, data, packed, true);
+    let errors = session.errors(rows, estimate);
+    let seen = data.pictures.all.iter().zip(errors);
+    seen.map(|(picture, error)| {
+        let measured = data.observations[picture.row as usize].measurement.pose();
+        picture.directed(&predicted_pose(&measured, &error))
+    })
+    .collect()
+}
+
+/// The predicted pose of a row from what was measured and its error (theory.md §4 (16)).
+pub(crate) fn predicted_pose(measured: &Pose, error: &RowError) -> Pose {
+    let turn = rotation::exp(&-error.vector(Quantity::Rotation));
+    Pose::new(turn * measured.rotation, measured.translation - error.position_m())
+}
+
+/// Root mean square distance of the corners of a picture from where they would be seen, pixels; one that would not be seen is far off.
+fn missed_px(data: &Dataset, (picture, pose): (&Picture, &Pose)) -> f64 {
+    const UNSEEN: f64 = 1e4;
+    let errors = data.pictures.view(picture).map(|view| view.errors(pose)).unwrap_or_default();
+    let squares = errors.iter().map(|error| error.map_or(UNSEEN * UNSEEN, |it| it.norm_squared()));
+    (squares.sum::<f64>() / errors.len().max(1) as f64).sqrt()
+}
+
+/// Makes one of the poses of a picture its first, and its row.
+fn choose(data: &mut Dataset, at: usize, pose: impl FnOnce(&Picture) -> Option<Pose>) {
+    let Some(picture) = data.pictures.all.get_mut(at) else { return };
+    let Some(chosen) = pose(picture) else { return };
+    if let Some(place) = picture.poses.iter().position(|it| *it == chosen) {
+        picture.poses.swap(0, place);
+    }
+    let (row, measured) = (picture.row as usize, picture.directed(&chosen));
+    let sighting = {
+        let picture = &data.pictures.all[at];
+        data.pictures.view(picture).and_then(|view| view.sighting(&chosen, true))
+    };
+    match sighting {
+        Some(sighting) => data.state_picture(at, &sighting),
+        None => data.observations[row].measurement = Measurement::of_pose(&measured),
+    }
+}
+
+/// The pose of a picture that is turned least from a predicted one.
+fn nearest(picture: &Picture, predicted: &Pose) -> Option<Pose> {
+    let turned = |pose: &&Pose| deviation(pose, predicted).fixed_rows::<3>(3).norm();
+    picture.poses.iter().min_by(|a, b| turned(a).total_cmp(&turned(b))).copied()
+}
