@@ -70,13 +70,10 @@ impl Console {
         }
         let mut out = std::io::stdout().lock();
         match out.write_all(bytes).and_then(|()| out.flush()) {
-            Err(error) if error.kind() != ErrorKind::BrokenPipe => {
-                let message = format!(
-                    "standard output cannot be written to ({error}), expected room for {} bytes",
-                    bytes.len()
-                );
-                Err(poecal::Error::new(poecal::ErrorKind::File, message))
-            }
+            Err(error) if error.kind() != ErrorKind::BrokenPipe => poecal::ErrorKind::File.refuse(format!(
+                "standard output cannot be written to ({error}), expected room for {} bytes",
+                bytes.len()
+            )),
             _ => Ok(()),
         }
     }

@@ -70,7 +70,7 @@ fn understood(typed: Vec<OsString>) -> Result<(Vec<OsString>, Arguments), u8> {
         Ok(_) => {
             let message = error.to_string();
             let sentence = message.lines().next().unwrap_or_default().trim_start_matches("error: ");
-            refused(&Error::new(ErrorKind::Option, sentence))
+            refused(&ErrorKind::Option.error(sentence))
         }
     };
     let (matches, arguments) = parsed(&typed).map_err(|error| told(&typed, error))?;

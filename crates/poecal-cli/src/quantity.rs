@@ -56,8 +56,8 @@ fn signed_and_symbol<'a>(text: &'a str, example: &str) -> Result<(f64, &'a str)>
 }
 
 fn bad(text: &str, what: &str, expected: &str, example: &str) -> Error {
-    let message = format!("found `{text}`{what}, expected a number{expected} with a unit, like {example}");
-    Error::new(ErrorKind::Option, message)
+    ErrorKind::Option
+        .error(format!("found `{text}`{what}, expected a number{expected} with a unit, like {example}"))
 }
 
 /// A length and an angle as given by the user: `1deg,2mm` in either order; an omitted one is zero.
@@ -80,8 +80,8 @@ impl FromStr for LengthAndAngle {
             let unit = NamedUnit::parse_any(symbol)?;
             let place = if unit.of() == Unit::Radian { &mut angle_rad } else { &mut length_m };
             if place.replace(unit.to_si(value)).is_some() {
-                let message = format!("found `{text}`, expected one length and one angle, like 2mm,1deg");
-                return Err(Error::new(ErrorKind::Option, message));
+                return ErrorKind::Option
+                    .refuse(format!("found `{text}`, expected one length and one angle, like 2mm,1deg"));
             }
         }
         Ok(LengthAndAngle {
@@ -120,10 +120,9 @@ impl FromStr for BelievedTolerance {
         if length_m > 0.0 && angle_rad > 0.0 {
             return Ok(BelievedTolerance::Given(Tolerance { angle_rad, length_m }));
         }
-        let message = format!(
+        ErrorKind::Option.refuse(format!(
             "found `{text}`, expected an angle and a length above 0, like 0.5deg,5mm, or none, or auto, or MOC.cfg of a controller of ABB"
-        );
-        Err(Error::new(ErrorKind::Option, message))
+        ))
     }
 }
 

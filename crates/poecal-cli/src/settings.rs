@@ -9,7 +9,7 @@ use clap::parser::ValueSource;
 use clap::{Arg, ArgAction, ArgMatches, Command, CommandFactory as _};
 use poecal::io::disk;
 use poecal::io::settings::{Setting, SettingValue, Settings};
-use poecal::{Error, ErrorKind, Result};
+use poecal::{ErrorKind, Result};
 
 use crate::args::Arguments;
 
@@ -53,11 +53,10 @@ pub(crate) fn complete(typed: &[OsString], matches: &ArgMatches) -> Result<Optio
     }
     let path = named.map_or(Path::new(USUAL), PathBuf::as_path);
     if named.is_none() && disk::here().follow(path).is_err() {
-        let message = format!(
+        return Err(ErrorKind::Option.error(format!(
             "found neither a model among the arguments nor this file, expected `poecal {name} MODEL FILES…`, or settings in this folder: \
              `poecal init MODEL` writes them"
-        );
-        return Err(Error::new(ErrorKind::Option, message).in_file(path));
+        )).in_file(path));
     }
     let whole = Arguments::command();
     let (Some(command), Some(own)) = (whole.find_subcommand(COMMAND), whole.find_subcommand(name)) else {

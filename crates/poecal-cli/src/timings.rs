@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use poecal::solve::Summary;
-use poecal::{Error, ErrorKind, Result};
+use poecal::{ErrorKind, Result};
 use serde_json::{Value, json};
 
 /// Time and number of repetitions of a solve, at most.
@@ -67,8 +67,7 @@ pub(crate) fn need_clocks() -> Result<()> {
     if cfg!(any(unix, windows)) {
         return Ok(());
     }
-    let message = "found --timings where the program has no clock, expected to run on an operating system: leave it out";
-    Err(Error::new(ErrorKind::Option, message))
+    ErrorKind::Option.refuse("found --timings where the program has no clock, expected to run on an operating system: leave it out")
 }
 
 /// Times of consecutive parts.

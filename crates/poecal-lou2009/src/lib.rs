@@ -33,7 +33,7 @@ pub use spatial::Spatial;
 use claims::{Evidence, claims};
 use runs::Ended;
 
-use poecal::error::{Error, ErrorKind, Result};
+use poecal::error::{ErrorKind, Result};
 use poecal::lie::Screw;
 use poecal::measurement::{Noise, Quantity};
 use poecal::robot::Term;
@@ -68,10 +68,8 @@ impl Default for ReproductionOptions {
 /// [`ErrorKind::Option`] without a trial or a start; [`ErrorKind::Problem`] if a claim lacks what it is judged by.
 pub fn lou2009(options: &ReproductionOptions) -> Result<Reproduction> {
     if options.trials == 0 || options.starts == 0 {
-        return Err(Error::new(
-            ErrorKind::Option,
-            "found no trial or no start to compare formulations by, expected at least 1 of each",
-        ));
+        return ErrorKind::Option
+            .refuse("found no trial or no start to compare formulations by, expected at least 1 of each");
     }
     let ended = runs::runs(options.seed)?;
     let mut found = Reproduction {

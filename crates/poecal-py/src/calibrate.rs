@@ -4,6 +4,7 @@ use std::borrow::Cow;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use poecal::ErrorKind;
 use poecal::calibration::{
     AcceptanceLimits, AcceptedModel, BlockChoice, CalibrationOptions, Corrections, Repaired, Repairs, Stage,
     calibrate_repairing, settle_sets,
@@ -15,7 +16,6 @@ use poecal::io::named_files::refuse_fitted;
 use poecal::io::record::Record;
 use poecal::measurement::{ByQuantity, Dataset, Quantity};
 use poecal::robot::{GravityDirection, Tolerance};
-use poecal::{Error, ErrorKind};
 use poecal_lou2009::{Formulation, Method, Residual, formulated};
 use pyo3::prelude::*;
 
@@ -239,7 +239,7 @@ fn rows<'a>(
         other.check_robot(robot)?;
         if other.data().observations.is_empty() {
             let message = "validate: found no rows, expected at least one that judges the fit";
-            return Err(raise(Error::new(ErrorKind::Option, message)));
+            return Err(raise(ErrorKind::Option.error(message)));
         }
         refuse_fitted(&other.data().files, &measurements.data().files).map_err(raise)?;
         data.to_mut().judged_by(other.data()).map_err(raise)?;

@@ -49,7 +49,7 @@ fn exception(py: Python<'_>, error: &Error, row: Option<usize>) -> PyResult<PyEr
 
 /// An exception for an argument: `name: message`.
 pub(crate) fn argument(name: &str, message: impl std::fmt::Display) -> PyErr {
-    raise(Error::new(ErrorKind::Option, format!("{name}: {message}")))
+    raise(ErrorKind::Option.error(format!("{name}: {message}")))
 }
 
 /// An exception of the class `name` of `poecal._errors`.

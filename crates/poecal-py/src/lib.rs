@@ -75,8 +75,7 @@ mod _poecal {
     /// A level of vector instructions that `POECAL_SIMD` names and this machine does not have is refused before anything is computed.
     #[pymodule_init]
     fn check_level(_module: &Bound<'_, PyModule>) -> PyResult<()> {
-        let refused =
-            |sentence| crate::errors::raise(poecal::Error::new(poecal::ErrorKind::Option, sentence));
+        let refused = |sentence| crate::errors::raise(poecal::ErrorKind::Option.error(sentence));
         poecal::problem::stated_level().map(drop).map_err(refused)
     }
 

@@ -37,6 +37,21 @@ pub enum ErrorKind {
     Solver,
 }
 
+impl ErrorKind {
+    /// [`Error::new`] of this kind.
+    pub fn error(self, message: impl Into<String>) -> Error {
+        Error::new(self, message)
+    }
+
+    /// The same as a result.
+    ///
+    /// # Errors
+    /// Always.
+    pub fn refuse<T>(self, message: impl Into<String>) -> Result<T> {
+        Err(Error::new(self, message))
+    }
+}
+
 /// Where in a file: line and column count from 1, a column in characters.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Place {

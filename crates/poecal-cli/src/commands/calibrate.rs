@@ -19,7 +19,7 @@ use poecal::io::shapes::Shapes;
 use poecal::measurement::{ByQuantity, Dataset, Quantity};
 use poecal::report::Detail;
 use poecal::robot::Tolerance;
-use poecal::{Error, ErrorKind, Result, report};
+use poecal::{ErrorKind, Result, report};
 use poecal_lou2009::{Residual, formulated};
 
 use super::typed::command;
@@ -118,9 +118,9 @@ fn record(arguments: &Calibrate) -> Result<Record> {
 /// The model, if it and measurements are named, by arguments or settings.
 fn stated_model(arguments: &Calibrate) -> Result<&Path> {
     let missing = |what: &str| {
-        let message =
-            format!("found no {what}, expected `poecal calibrate MODEL FILES…`, or settings that name both");
-        Err(Error::new(ErrorKind::Option, message))
+        ErrorKind::Option.refuse(format!(
+            "found no {what}, expected `poecal calibrate MODEL FILES…`, or settings that name both"
+        ))
     };
     match &arguments.model {
         None => missing("model"),

@@ -4,7 +4,7 @@ use poecal::calibration::DeviceFrameKnowledge;
 use poecal::forensics::{DiagnosisOptions, diagnose};
 use poecal::io::measurements;
 use poecal::io::model::Model;
-use poecal::{Error, ErrorKind, Result, report};
+use poecal::{ErrorKind, Result, report};
 
 use crate::DONE;
 use crate::args::Check;
@@ -13,8 +13,8 @@ use crate::console::Console;
 pub(crate) fn check(arguments: &Check, console: &Console) -> Result<u8> {
     let options = arguments.reading.options();
     let Some(path) = &arguments.model else {
-        let message = "found no model, expected `poecal check MODEL FILES…`, or settings that name it";
-        return Err(Error::new(ErrorKind::Option, message));
+        return ErrorKind::Option
+            .refuse("found no model, expected `poecal check MODEL FILES…`, or settings that name it");
     };
     let model = Model::read(path, &arguments.chain.selection(options.as_ref().ok())?)?;
     let options = model.reads(options?);

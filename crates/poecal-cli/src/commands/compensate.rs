@@ -11,7 +11,7 @@ use poecal::io::model::{Model, ModelSource};
 use poecal::io::output::FilePlace;
 use poecal::io::urdf::ChainSelection;
 use poecal::robot::JointKind;
-use poecal::{Error, ErrorKind, Result, Robot, report};
+use poecal::{ErrorKind, Result, Robot, report};
 
 use crate::args::{Compensate, ProgramLanguage};
 use crate::console::Console;
@@ -25,8 +25,7 @@ pub(crate) fn compensate(arguments: &Compensate, console: &Console) -> Result<u8
     let model = Model::read(&arguments.calibration, &ChainSelection::default())?;
     let model = if arguments.of == AcceptedModel::Corrected { model.corrected()? } else { model };
     let ModelSource::Calibration(file) = &model.source else {
-        let message = "found a robot model, expected a calibration.json, which has the nominal robot and the actual one";
-        return Err(Error::new(ErrorKind::Option, message).in_file(&arguments.calibration));
+        return Err(ErrorKind::Option.error("found a robot model, expected a calibration.json, which has the nominal robot and the actual one").in_file(&arguments.calibration));
     };
     let taught = file.taught(&model.robot)?;
     let factors = factors(&model.robot, &arguments.factors, console)?;
@@ -44,12 +43,11 @@ pub(crate) fn compensate(arguments: &Compensate, console: &Console) -> Result<u8
         );
     }
     if let Some(stated) = arguments.third_axis {
-        let message = format!(
+        return ErrorKind::Option.refuse(format!(
             "found --third-axis {0} for a table, expected it for programs of FANUC (.ls): write `third_axis = \"{0}\"` into a mapping \
              (--columns)",
             stated.word()
-        );
-        return Err(Error::new(ErrorKind::Option, message));
+        ));
     }
     let read = model.reads(arguments.columns.options()?);
     let options =
@@ -102,17 +100,17 @@ fn robot_program(
     console: &Console,
 ) -> Result<u8> {
     if arguments.columns.columns.is_some() {
-        let message = format!(
+        return ErrorKind::Option.refuse(format!(
             "found --columns for a program in {}, expected it for tables (CSV) alone: programs state what the controller counted in the \
              calibration's mapping",
             language.title()
-        );
-        return Err(Error::new(ErrorKind::Option, message));
+        ));
     }
     if arguments.third_axis.is_some() && language != Language::Fanuc {
-        let message =
-            format!("found --third-axis for a program in {}, expected one of FANUC", language.title());
-        return Err(Error::new(ErrorKind::Option, message));
+        return ErrorKind::Option.refuse(format!(
+            "found --third-axis for a program in {}, expected one of FANUC",
+            language.title()
+        ));
     }
     let options = ProgramOptions {
         language,
@@ -172,9 +170,9 @@ fn factors(robot: &Robot, stated: &[String], console: &Console) -> Result<Vec<f6
         let Some((index, value)) = found else {
             let known =
                 if names.is_empty() { "this model has no factors".to_owned() } else { names.join(", ") };
-            let message =
-                format!("found --factor {text}, expected NAME=VALUE with a factor of the model: {known}");
-            return Err(Error::new(ErrorKind::Option, message));
+            return ErrorKind::Option.refuse(format!(
+                "found --factor {text}, expected NAME=VALUE with a factor of the model: {known}"
+            ));
         };
         values[index] = value;
         is_stated[index] = true;

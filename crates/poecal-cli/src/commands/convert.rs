@@ -4,7 +4,7 @@ use poecal::Unit;
 use poecal::io::model::{self, Model, ModelFormat};
 use poecal::offsets::into_screws;
 use poecal::robot::{JointKind, Robot};
-use poecal::{Error, ErrorKind, Result, nearest};
+use poecal::{ErrorKind, Result, nearest};
 
 use crate::DONE;
 use crate::args::Convert;
@@ -40,7 +40,7 @@ pub(crate) fn convert(arguments: &Convert, console: &Console) -> Result<u8> {
 fn offsets(stated: &[String], robot: &Robot) -> Result<Vec<f64>> {
     let mut offsets = vec![None; robot.joints.len()];
     for text in stated {
-        let bad = |message: String| Error::new(ErrorKind::Option, format!("--offset: {message}"));
+        let bad = |message: String| ErrorKind::Option.error(format!("--offset: {message}"));
         let (name, value) = text.rsplit_once('=').ok_or_else(|| {
             bad(format!("found `{text}`, expected a joint and its offset, like joint2=0.5deg or slide=1.2mm"))
         })?;
@@ -75,7 +75,7 @@ fn unknown_joint(name: &str, robot: &Robot) -> String {
 fn form(arguments: &Convert) -> Result<ModelFormat> {
     let named = arguments.place.out.as_ref().and_then(ModelFormat::of_path);
     arguments.to.or(named).ok_or_else(|| {
-        let message = match &arguments.place.out {
+        ErrorKind::Option.error(match &arguments.place.out {
             Some(out) => format!(
                 "found no form in the name `{}`, expected .urdf or .toml, or --to urdf|toml",
                 out.display()
@@ -83,7 +83,6 @@ fn form(arguments: &Convert) -> Result<ModelFormat> {
             None => {
                 "found neither --to nor --out, expected the form to write: --to urdf or --to toml".to_owned()
             }
-        };
-        Error::new(ErrorKind::Option, message)
+        })
     })
 }

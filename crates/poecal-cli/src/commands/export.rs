@@ -8,7 +8,7 @@ use poecal::io::model::Model;
 use poecal::io::output::{Existing, FilePlace};
 use poecal::io::text_of;
 use poecal::io::urdf::ChainSelection;
-use poecal::{Error, ErrorKind, Result};
+use poecal::{ErrorKind, Result};
 
 use crate::DONE;
 use crate::args::{Apply, Export, ExportForm};
@@ -19,11 +19,10 @@ fn format(arguments: &Export) -> Result<ExportFormat> {
     let format = match arguments.format {
         ExportForm::Open(format) => format,
         ExportForm::Closed(why) => {
-            let message = format!(
+            return ErrorKind::Option.refuse(format!(
                 "--format: found the form of a controller that nobody outside can write ({why}), expected another: take `offsets`, and enter them \
                  by mastering, and correct programs for what remains"
-            );
-            return Err(Error::new(ErrorKind::Option, message));
+            ));
         }
     };
     for (name, is_there, of) in [
@@ -32,9 +31,10 @@ fn format(arguments: &Export) -> Result<ExportFormat> {
         ("--motors", arguments.motors.is_some(), ExportFormat::Lerobot),
     ] {
         if is_there && format != of {
-            let message =
-                format!("found {name} beside another form, expected it with --format {} alone", of.word());
-            return Err(Error::new(ErrorKind::Option, message));
+            return ErrorKind::Option.refuse(format!(
+                "found {name} beside another form, expected it with --format {} alone",
+                of.word()
+            ));
         }
     }
     Ok(format)

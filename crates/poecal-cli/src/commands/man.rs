@@ -2,7 +2,7 @@
 
 use clap::CommandFactory as _;
 use poecal::text::visible;
-use poecal::{Error, ErrorKind, Result, nearest};
+use poecal::{ErrorKind, Result, nearest};
 
 use crate::DONE;
 use crate::args::{Arguments, Man};
@@ -18,14 +18,12 @@ pub(crate) fn man(arguments: &Man, console: &Console) -> Result<u8> {
         None => program,
         Some(name) => {
             let found = program.find_subcommand(name).cloned();
-            found.ok_or_else(|| Error::new(ErrorKind::Option, unknown(name, &program)))?
+            found.ok_or_else(|| ErrorKind::Option.error(unknown(name, &program)))?
         }
     };
     let mut page = Vec::new();
     let written = clap_mangen::Man::new(command).source(SOURCE).render(&mut page);
-    written.map_err(|error| {
-        Error::new(ErrorKind::File, format!("the manual page cannot be written ({error})"))
-    })?;
+    written.map_err(|error| ErrorKind::File.error(format!("the manual page cannot be written ({error})")))?;
     console.data(&String::from_utf8_lossy(&page))?;
     Ok(DONE)
 }

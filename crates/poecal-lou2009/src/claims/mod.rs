@@ -68,12 +68,11 @@ impl Evidence<'_> {
 }
 
 fn missing(what: &str, formulation: Formulation, seen: MeasurementKind) -> Error {
-    let message = format!(
+    ErrorKind::Problem.error(format!(
         "found no {what} of `{}` with {}, expected one to judge a claim by",
         formulation.word(),
         seen.word()
-    );
-    Error::new(ErrorKind::Problem, message)
+    ))
 }
 
 /// A statement of the paper.

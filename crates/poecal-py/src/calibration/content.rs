@@ -4,13 +4,13 @@ use std::path::Path;
 use std::sync::{Arc, OnceLock};
 use std::time::Duration;
 
+use poecal::ErrorKind;
 use poecal::io::calibration_file::{CalibrationFile, Inputs};
 use poecal::io::measurements::MeasurementFile;
 use poecal::io::model::{Model, ModelSource};
 use poecal::io::record::Record;
 use poecal::io::residuals::Residuals;
 use poecal::report;
-use poecal::{Error, ErrorKind};
 use pyo3::prelude::*;
 use serde::{Deserialize, Serialize};
 
@@ -201,7 +201,7 @@ impl Calibration {
             Found::Written(written) => written.file.verdict.as_ref().ok_or_else(|| {
                 let message =
                     "found a calibration without a verdict, expected one: calibrate again with this version";
-                raise(Error::new(ErrorKind::Model, message))
+                raise(ErrorKind::Model.error(message))
             }),
         }
     }

@@ -8,7 +8,7 @@ use super::coverage::{JointCoverage, coverage};
 use super::identifiability::{Identifiability, identifiability};
 use super::setup::Setup;
 use super::spectrum::PLAUSIBLE;
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::{ErrorKind, Result};
 use crate::estimate::{Chain, Estimate, Linkage, Packed, Session, delivered};
 use crate::lie::Pose;
 use crate::measurement::{Dataset, Noise, Observation};
@@ -108,11 +108,10 @@ pub fn identify(robot: &Robot, readings: &[f64], planned: &PlannedSession) -> Re
     let frames = robot.instruments.len().saturating_sub(1) + robot.mounted.len().max(1);
     check_unknowns(robot, frames)?;
     if planned.kind.is_touched() {
-        let message = format!(
+        return ErrorKind::Option.refuse(format!(
             "found the kind `{}` and configurations alone, expected a measurement file that names what each row touches",
             planned.kind.word()
-        );
-        return Err(Error::new(ErrorKind::Option, message));
+        ));
     }
     let (data, devices) = predicted_data(robot, readings, planned)?;
     let mut estimate = delivered(robot, &data);
@@ -145,12 +144,11 @@ fn check_unknowns(robot: &Robot, frames: usize) -> Result<()> {
     if unknowns <= MOST_UNKNOWNS {
         return Ok(());
     }
-    let message = format!(
+    ErrorKind::Problem.refuse(format!(
         "found about {unknowns} unknowns of {} joints, expected at most {MOST_UNKNOWNS} in one fit: identify a \
          shorter chain",
         robot.joints.len()
-    );
-    Err(Error::new(ErrorKind::Problem, message))
+    ))
 }
 
 /// What data would determine, at an estimate that predicts them.
@@ -175,8 +173,7 @@ fn foresee(
         Setup { session, rows: &rows, estimate: &estimate, layout: problem.layout(), noise: planned.noise };
     let gram = problem.normal(&estimate).gram;
     if !gram.iter().all(|value| value.is_finite()) {
-        let message = "found joint readings beyond what can be computed with, expected radians and metres: check their units";
-        return Err(Error::new(ErrorKind::Measurement, message));
+        return ErrorKind::Measurement.refuse("found joint readings beyond what can be computed with, expected radians and metres: check their units");
     }
     let identifiability = identifiability(&setup, &gram, 1.0);
     let expected = expected(&setup, &identifiability);
@@ -194,21 +191,20 @@ fn predicted_data(robot: &Robot, readings: &[f64], planned: &PlannedSession) -> 
     let mut data = Dataset::new(robot.reading_names());
     let width = data.reading_names().len();
     if readings.is_empty() || !readings.len().is_multiple_of(width.max(1)) {
-        let message = format!(
+        return ErrorKind::Measurement.refuse(format!(
             "found {} joint readings, expected configurations of {width} readings each: {}",
             readings.len(),
             data.reading_names().join(", ")
-        );
-        return Err(Error::new(ErrorKind::Measurement, message));
+        ));
     }
     if !planned.kind.has_device() {
         return plan(planned.kind, robot, readings);
     }
     let pairs = pairs(robot);
     if pairs.is_empty() {
-        let message =
-            "found instruments and targets on the same links only, expected joints between them: name others";
-        return Err(Error::new(ErrorKind::Problem, message));
+        return ErrorKind::Problem.refuse(
+            "found instruments and targets on the same links only, expected joints between them: name others",
+        );
     }
     let planned_rows = readings.chunks_exact(width).enumerate();
     let planned_rows =

@@ -120,10 +120,8 @@ fn by_cross_validation(
     data: &Dataset,
     accept: &AcceptanceLimits,
 ) -> Result<Acceptance> {
-    let none = |what: &str| {
-        let message = format!("found limits to accept and no rows held out, {what}");
-        Error::new(ErrorKind::Problem, message)
-    };
+    let none =
+        |what: &str| ErrorKind::Problem.error(format!("found limits to accept and no rows held out, {what}"));
     let Some(found) = &calibration.trust.cross_validation else {
         return Err(none(
             "and too few for cross-validation, expected rows that judge the fit: measure more, or hold out a share of them",
@@ -154,11 +152,10 @@ fn by_cross_validation(
 fn unmeasured(limit: &Limit, measured: impl Iterator<Item = Quantity>) -> Error {
     let names = measured.map(Quantity::name).collect::<Vec<_>>().join(", ");
     let what = if limit.unit == Unit::Radian { "angle" } else { "length" };
-    let message = format!(
+    ErrorKind::Option.error(format!(
         "found the limit `{}`, but the rows that decide measured no {what}, only {names}, expected limits of what was measured: leave it out",
         limit.words()
-    );
-    Error::new(ErrorKind::Option, message)
+    ))
 }
 
 #[cfg(test)]

@@ -50,9 +50,9 @@ impl BlockChoice {
             let Some((joint, term)) = further_term(&names, word).filter(needs_more) else { continue };
             if term.needs_gravity() && found.gravity.is_none() {
                 let GravityDirection::Known(direction) = gravity else {
-                    let message =
-                        format!("found `{word}` to be fitted, expected a known direction of gravity");
-                    return Err(Error::new(ErrorKind::Option, message));
+                    return ErrorKind::Option.refuse(format!(
+                        "found `{word}` to be fitted, expected a known direction of gravity"
+                    ));
                 };
                 found.gravity = Some(Gravity::of_unit_weights(&found, direction));
             }
@@ -60,8 +60,7 @@ impl BlockChoice {
                 || Statics::new(&found).is_some_and(|statics| statics.is_pulled(joint, term));
             let carried = || (!is_pulled).then(|| "one of what the joint carries".to_owned());
             if let Some(needed) = found.lacks(term).or_else(carried) {
-                let message = format!("found `{word}` to be fitted, expected {needed}");
-                return Err(Error::new(ErrorKind::Option, message));
+                return ErrorKind::Option.refuse(format!("found `{word}` to be fitted, expected {needed}"));
             }
             if !found.terms.iter().any(|it| (it.joint, it.term) == (joint, term)) {
                 found.terms.push(JointTerm { joint, term, coefficient: 0.0 });
@@ -124,8 +123,8 @@ impl BlockChoice {
         let is_any = !further.is_empty() || is_free.contains(&true);
         unknowns.terms.extend(further);
         if !is_any {
-            let message = "found that every block is held, expected at least one that is unknown: fix fewer";
-            return Err(Error::new(ErrorKind::Option, message));
+            return ErrorKind::Option
+                .refuse("found that every block is held, expected at least one that is unknown: fix fewer");
         }
         Ok(unknowns)
     }
@@ -143,10 +142,9 @@ pub(super) fn refuse_frames(choice: &BlockChoice, robot: &Robot, data: &Dataset)
     };
     match choice.free.iter().find(frees) {
         Some(word) => {
-            let message = format!(
+            ErrorKind::Option.refuse(format!(
                 "found `{word}` to be fitted beside measurements in the base frame (--frame base), expected one of the two: leave one out"
-            );
-            Err(Error::new(ErrorKind::Option, message))
+            ))
         }
         None => Ok(()),
     }
@@ -180,9 +178,8 @@ fn chosen(names: &Names, blocks: &[Block], word: &str) -> Vec<bool> {
 }
 
 fn no_range(name: &str) -> Error {
-    let message =
-        format!("found `{name}` to be fitted, expected an instrument that measures distances alone");
-    Error::new(ErrorKind::Option, message)
+    ErrorKind::Option
+        .error(format!("found `{name}` to be fitted, expected an instrument that measures distances alone"))
 }
 
 fn unknown_word(names: &Names, blocks: &[Block], word: &str) -> Error {
@@ -192,10 +189,9 @@ fn unknown_word(names: &Names, blocks: &[Block], word: &str) -> Error {
         listed.push("…".to_owned());
         listed.extend(last);
     }
-    let message = format!(
+    ErrorKind::Option.error(format!(
         "found `{word}`, expected what to free or fix: joints, targets, frames, or a block's name, in which `*` stands for any letters \
          ({})",
         listed.join(", ")
-    );
-    Error::new(ErrorKind::Option, message)
+    ))
 }

@@ -1,6 +1,6 @@
 //! Numbers measured and unknowns of a problem.
 
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::{ErrorKind, Result};
 use crate::estimate::Session;
 use crate::measurement::Dataset;
 use crate::problem::MOST_UNKNOWNS;
@@ -19,12 +19,9 @@ pub(super) fn check_count(session: &Session<'_>, fit_rows: &[u32]) -> Result<()>
     for (is_seen, name) in is_seen.into_iter().zip(&data.targets) {
         if !is_seen {
             let name = name.as_deref().unwrap_or(MEASURED);
-            return Err(Error::new(
-                ErrorKind::Problem,
-                format!(
+            return ErrorKind::Problem.refuse(format!(
                     "found no measurement of target `{name}` to fit, expected at least one of every target: fit some of its rows, or leave its rows out"
-                ),
-            ));
+                ));
         }
     }
     let targets = data.target_freedoms(fit_rows).into_iter().enumerate();
@@ -36,30 +33,23 @@ pub(super) fn check_count(session: &Session<'_>, fit_rows: &[u32]) -> Result<()>
     let devices: usize = devices.map(|at| of_device(data, at, fit_rows)).sum();
     let needed = screws + targets + devices;
     if needed == 0 {
-        let message = "found nothing that is unknown, expected at least one block to fit: fix fewer, or leave --frame base out";
-        return Err(Error::new(ErrorKind::Option, message));
+        return ErrorKind::Option.refuse("found nothing that is unknown, expected at least one block to fit: fix fewer, or leave --frame base out");
     }
     if needed > MOST_UNKNOWNS {
-        return Err(Error::new(
-            ErrorKind::Problem,
-            format!(
+        return ErrorKind::Problem.refuse(format!(
                 "found {needed} unknowns ({screws} of the screws, {targets} of {} targets{}), expected at most {MOST_UNKNOWNS} in one fit: calibrate with fewer targets, or a shorter chain",
                 data.targets.len(),
                 of_devices(devices)
-            ),
-        ));
+            ));
     }
     let given: usize = fit_rows.iter().map(|&row| data.observations[row as usize].measurement.dim()).sum();
     if given < needed {
-        return Err(Error::new(
-            ErrorKind::Problem,
-            format!(
+        return ErrorKind::Problem.refuse(format!(
                 "found {} to fit with {given} measured numbers, expected at least {needed} numbers \
                  ({screws} of the screws, {targets} of the targets{}): measure more configurations, or hold out fewer",
                 measurements_words(fit_rows.len()),
                 of_devices(devices)
-            ),
-        ));
+            ));
     }
     Ok(())
 }

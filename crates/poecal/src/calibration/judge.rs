@@ -11,7 +11,7 @@ use super::coverage_check::{
 };
 use super::verdict::Level;
 use super::{DeviceFrameKnowledge, delivered};
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::{ErrorKind, Result};
 use crate::estimate::{Packed, Range, Session};
 use crate::lie::Freedom;
 use crate::lie::Pose;
@@ -240,26 +240,22 @@ pub(super) fn check_count(subject: &Subject<'_>, data: &Dataset) -> Result<()> {
     let targets = data.target_freedoms(&data.all_rows()).into_iter().map(Freedom::count);
     let tool: usize = if subject.refit_tool { targets.sum() } else { 0 };
     if tool > MOST_UNKNOWNS {
-        let message = format!(
+        return ErrorKind::Problem.refuse(format!(
             "found {tool} unknowns of {} targets to be refitted, expected at most {MOST_UNKNOWNS} in one fit: \
              leave --refit-tool out, or judge fewer targets",
             data.targets.len()
-        );
-        return Err(Error::new(ErrorKind::Problem, message));
+        ));
     }
     let given: usize = data.observations.iter().map(|row| row.measurement.dim()).sum();
     if given > frame + tool {
         return Ok(());
     }
-    Err(Error::new(
-        ErrorKind::Problem,
-        format!(
+    ErrorKind::Problem.refuse(format!(
             "found {} with {given} measured numbers, expected more than the {} unknowns to be refitted \
              ({frame} of the device frame, {tool} of the targets): measure more configurations, or refit less",
             measurements_words(data.len()),
             frame + tool
-        ),
-    ))
+        ))
 }
 
 /// Difference of two errors that are one, as a share: rounding of two fits of a frame.

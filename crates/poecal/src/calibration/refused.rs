@@ -1,7 +1,7 @@
 //! Options that contradict each other, the robot or the measurements.
 
 use super::{CalibrationOptions, Corrections, Formulation};
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::{ErrorKind, Result};
 use crate::estimate::Unknowns;
 use crate::measurement::Dataset;
 use crate::robot::{GravityDirection, Robot, TermGroup};
@@ -72,5 +72,5 @@ pub(super) fn allowed_corrections(
 }
 
 fn refused(found: &str) -> Result<()> {
-    Err(Error::new(ErrorKind::Option, format!("found {found}")))
+    ErrorKind::Option.refuse(format!("found {found}"))
 }

@@ -4,7 +4,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 
 use super::CalibrationOptions;
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::{ErrorKind, Result};
 use crate::measurement::{Dataset, Set};
 use crate::simulate::random;
 
@@ -18,13 +18,13 @@ const VALIDATE: &str = "--validate";
 /// [`ErrorKind::Option`] if the share is not in `[0, 1)`, [`ErrorKind::Problem`] if no row is left to fit.
 pub fn split_rows(data: &Dataset, options: &CalibrationOptions) -> Result<(Vec<u32>, Vec<u32>)> {
     if !(0.0..1.0).contains(&options.held_out) {
-        return Err(Error::new(
-            ErrorKind::Option,
-            format!("found a held-out share of {}, expected a number from 0 to below 1", options.held_out),
+        return ErrorKind::Option.refuse(format!(
+            "found a held-out share of {}, expected a number from 0 to below 1",
+            options.held_out
         ));
     }
     let count = u32::try_from(data.len()).map_err(|_| {
-        Error::new(ErrorKind::Problem, format!("found {} rows, expected at most {}", data.len(), u32::MAX))
+        ErrorKind::Problem.error(format!("found {} rows, expected at most {}", data.len(), u32::MAX))
     })?;
     let stated = data.observations.iter().any(|row| row.set.is_some());
     let held_out: Vec<bool> = if stated {
@@ -34,9 +34,8 @@ pub fn split_rows(data: &Dataset, options: &CalibrationOptions) -> Result<(Vec<u
     };
     let (held_out_count, fitted): (Vec<u32>, Vec<u32>) = (0..count).partition(|&row| held_out[row as usize]);
     if fitted.is_empty() {
-        return Err(Error::new(
-            ErrorKind::Problem,
-            format!("found {count} rows of which none is to be fitted, expected some in the set `fit`"),
+        return ErrorKind::Problem.refuse(format!(
+            "found {count} rows of which none is to be fitted, expected some in the set `fit`"
         ));
     }
     if stated {
@@ -68,16 +67,13 @@ fn refuse_copies(data: &Dataset, held_out: &[bool], held_out_count: usize) -> Re
     let Some(&(row, other)) = copies.first().filter(|_| 2 * copies.len() >= held_out_count) else {
         return Ok(());
     };
-    Err(Error::new(
-        ErrorKind::Problem,
-        format!(
+    ErrorKind::Problem.refuse(format!(
             "found {} of {held_out_count} held-out rows that repeat fitted rows ({} as {}), expected rows that were not fitted: judge by \
              others, or fit all rows and let a share be held out (--held-out)",
             copies.len(),
             data.place(row),
             data.place(other)
-        ),
-    ))
+        ))
 }
 
 /// Applies the stated sets. If rows state their set, `held_out` must be absent or 0; 0 fits all rows but those of `--validate`. `stated_by`
@@ -91,11 +87,10 @@ pub fn settle_sets(data: &mut Dataset, held_out: Option<f64>, stated_by: &str) -
     }
     match held_out {
         Some(share) if share > 0.0 => {
-            let message = format!(
+            return ErrorKind::Option.refuse(format!(
                 "found --held-out {share}, but {stated_by} already says which rows are held out, expected one of the \
                  two: leave --held-out out, or fit every row with --held-out 0"
-            );
-            return Err(Error::new(ErrorKind::Option, message));
+            ));
         }
         // With --validate nothing else is held out.
         Some(_) if stated_by != VALIDATE => {

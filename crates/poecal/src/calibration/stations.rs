@@ -2,7 +2,7 @@
 
 use super::count::measurements_words;
 use super::{CalibrationOptions, DeviceFrameKnowledge};
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::{ErrorKind, Result};
 use crate::estimate::{Session, Unknowns};
 use crate::lie::Freedom;
 use crate::measurement::Dataset;
@@ -29,11 +29,10 @@ pub(super) fn check_stations(
         return Ok(());
     }
     if options.frame == DeviceFrameKnowledge::Base {
-        let message = format!(
+        return ErrorKind::Option.refuse(format!(
             "found measurements of {stations} instruments that are to be in the base frame (--frame base), expected one of the two: leave \
              the instruments' names out if all measure in the base frame, or --frame base if each has a frame of its own"
-        );
-        return Err(Error::new(ErrorKind::Option, message));
+        ));
     }
     for station in (0..stations).filter(|&station| unknowns.moves_frame(station)) {
         let (own, judging) = (data.seen_from(station, fitted), data.seen_from(station, held_out));
@@ -43,12 +42,11 @@ pub(super) fn check_stations(
         if rows.len() >= needed {
             continue;
         }
-        let message = format!(
+        return ErrorKind::Problem.refuse(format!(
             "found {} of {} to find its frame from, expected at least {needed}: measure more from there, hold out fewer, or leave its rows out",
             measurements_words(rows.len()),
             data.station_words(station),
-        );
-        return Err(Error::new(ErrorKind::Problem, message));
+        ));
     }
     Ok(())
 }
@@ -63,7 +61,6 @@ pub(super) fn check_length(
     if has_tolerance || !session.lacks_length(fitted) {
         return Ok(());
     }
-    let message = "found no tolerance, and nothing measured that has a length: the robot that fits best would be a point; expected a tolerance \
-                   (--tolerance), or a known length, such as the distance of two sockets (--socket-distance)";
-    Err(Error::new(ErrorKind::Problem, message))
+    ErrorKind::Problem.refuse("found no tolerance, and nothing measured that has a length: the robot that fits best would be a point; expected a tolerance \
+                   (--tolerance), or a known length, such as the distance of two sockets (--socket-distance)")
 }

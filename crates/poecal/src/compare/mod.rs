@@ -144,11 +144,10 @@ pub fn compare(first: &CalibrationFile, second: &CalibrationFile, limit_m: Optio
 fn other_robot(a: &Robot, b: &Robot, error: Error) -> Error {
     if !a.is_serial() || !b.is_serial() {
         let message = "found a robot with branches, expected a serial chain: compare its calibrations by `poecal validate` on each other's rows";
-        return Error::new(ErrorKind::Option, message);
+        return ErrorKind::Option.error(message);
     }
-    let refused = |words: String| {
-        Error::new(ErrorKind::Option, format!("{words}: compare two calibrations of one robot"))
-    };
+    let refused =
+        |words: String| ErrorKind::Option.error(format!("{words}: compare two calibrations of one robot"));
     let pairs = a.joints.iter().zip(&b.joints);
     for (k, (one, other)) in pairs.enumerate() {
         if one.name != other.name {
@@ -188,11 +187,10 @@ fn check_nominal(a: &Robot, b: &Robot) -> Result<()> {
         };
         if angle > OTHER_RAD || away > OTHER_M {
             let (name, mm, deg) = (&one.name, 1e3 * away, angle.to_degrees());
-            let message = format!(
+            return ErrorKind::Option.refuse(format!(
                 "found the nominal axis of joint `{name}` {mm:.1} mm and {deg:.2} deg from that of the first calibration, expected one robot: \
                  compare two calibrations of one robot"
-            );
-            return Err(Error::new(ErrorKind::Option, message));
+            ));
         }
     }
     Ok(())

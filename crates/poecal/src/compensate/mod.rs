@@ -23,7 +23,7 @@ pub use programs::{
 pub use summary::{Checked, CorrectedTarget, Largest, Listed, Summary};
 pub use table::{TableOptions, compensate_table};
 
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::{ErrorKind, Result};
 use crate::robot::Robot;
 use crate::threads::map_chunks;
 
@@ -108,8 +108,8 @@ impl Compensation {
         let Some(corrections) =
             corrections.filter(|_| names == nominal.joint_reading_names() && own == readings)
         else {
-            let message = "the nominal robot has other joints than the actual one, expected the same";
-            return Err(Error::new(ErrorKind::Model, message));
+            return ErrorKind::Model
+                .refuse("the nominal robot has other joints than the actual one, expected the same");
         };
         let count = readings.len();
         Ok(Compensation {

@@ -235,12 +235,11 @@ fn polar(point: &Vector3<f64>) -> (f64, f64) {
 }
 
 fn too_far(row: &DhEntry, next: &str, reach_m: f64) -> Error {
-    let message = format!(
+    ErrorKind::Export.error(format!(
         "found axes of `{}` and `{next}` that are nearly parallel, whose row of Denavit and Hartenberg needs d = {:.1} m ({:.0} times the reach), \
          expected at most ten: take `--format hayati`, which has another row there, or `poe`",
         row.joint,
         row.d_m,
         (row.d_m / reach_m).abs()
-    );
-    Error::new(ErrorKind::Export, message)
+    ))
 }

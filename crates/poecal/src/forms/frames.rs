@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::{ErrorKind, Result};
 use crate::lie::{Pose, rotation};
 use crate::robot::{Joint, JointKind, Limits, Robot};
 
@@ -108,10 +108,9 @@ pub(super) fn along_axis(joint: &Joint) -> Pose {
 /// Refuses what frames alone cannot say.
 fn refuse_coupled(robot: &Robot) -> Result<()> {
     let refuse = |found: String| {
-        let message = format!(
+        ErrorKind::Export.refuse(format!(
             "{found}, expected a chain of joints, each with a reading of its own: URDF, TOML and calibration.json hold others"
-        );
-        Err(Error::new(ErrorKind::Export, message))
+        ))
     };
     if !robot.is_serial() {
         return refuse("found a robot with branches".to_owned());

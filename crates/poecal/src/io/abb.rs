@@ -5,7 +5,7 @@
 use std::path::Path;
 
 use super::source_text;
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::{ErrorKind, Result};
 use crate::robot::Tolerance;
 
 const EXPECTED: &str = "MOC.cfg of a controller of ABB whose arm has Absolute Accuracy, with error_offset_x and others in ARM_CALIB";
@@ -87,10 +87,9 @@ impl AbbCalibration {
         let (length_m, angle_rad) = (rms(|arm| &arm.lengths_m), rms(|arm| &arm.angles_rad));
         match (length_m, angle_rad) {
             (Some(length_m), Some(angle_rad)) => Ok(Tolerance { angle_rad, length_m }),
-            _ => {
-                let message = format!("found no errors of axes, expected {EXPECTED}");
-                Err(Error::new(ErrorKind::Model, message).in_file(path))
-            }
+            _ => Err(ErrorKind::Model
+                .error(format!("found no errors of axes, expected {EXPECTED}"))
+                .in_file(path)),
         }
     }
 }
@@ -121,10 +120,9 @@ impl Entry<'_> {
             match word.parse::<f64>() {
                 Ok(number) if number.abs() < 1.0 => numbers.push(number),
                 _ => {
-                    let message = format!(
+                    return Err(ErrorKind::Model.error(format!(
                         "found `{word}` for `-{key}`, expected a number of metres, radians or rad/Nm below 1"
-                    );
-                    return Err(Error::new(ErrorKind::Model, message).at_line(path, line));
+                    )).at_line(path, line));
                 }
             }
         }

@@ -8,7 +8,7 @@ use sha2::{Digest as _, Sha256};
 
 use super::disk::{self, ObjectKind};
 use super::source::is_standard_input;
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::{ErrorKind, Result};
 
 /// SHA-256 of a file, as hexadecimal digits; `None` for input that can be read only once, such as a pipe.
 ///
@@ -25,9 +25,11 @@ pub(super) fn sha256(path: &Path) -> Result<Option<String>> {
         Ok(Some(file.sha256()))
     };
     read().map_err(|error: io::Error| {
-        let message =
-            format!("the file cannot be read ({error}), expected an input file to take the checksum of");
-        Error::new(ErrorKind::File, message).in_file(path)
+        ErrorKind::File
+            .error(format!(
+                "the file cannot be read ({error}), expected an input file to take the checksum of"
+            ))
+            .in_file(path)
     })
 }
 

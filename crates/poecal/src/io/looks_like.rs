@@ -32,7 +32,7 @@ pub(super) fn table_for_model(text: &str, path: &Path) -> Option<Error> {
             first_few(&cells)
         )
     };
-    Some(Error::new(ErrorKind::Syntax, message).at_line(path, index + 1))
+    Some(ErrorKind::Syntax.error(message).at_line(path, index + 1))
 }
 
 /// The error for a header that is the beginning of a model.
@@ -50,7 +50,7 @@ pub(super) fn model_for_table(line: &str, path: &Path, number: usize) -> Option<
     let message = format!(
         "found {form}, expected a table (CSV) with a header that names the columns: the model is named first, and tables behind it"
     );
-    Some(Error::new(ErrorKind::Syntax, message).at_line(path, number))
+    Some(ErrorKind::Syntax.error(message).at_line(path, number))
 }
 
 fn has_content(line: &str) -> bool {

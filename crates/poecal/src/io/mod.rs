@@ -35,7 +35,7 @@ pub use proof::Difference;
 
 use serde::Serialize;
 
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::{ErrorKind, Result};
 
 /// The text of a file that is no model and no table; `what` it is, messages say.
 ///
@@ -48,7 +48,7 @@ pub fn text_of(path: &std::path::Path, what: &str) -> Result<String> {
 /// A value as the text of a JSON file; `what` it is, messages say.
 pub(crate) fn json_text(value: &impl Serialize, what: &str) -> Result<String> {
     let text = serde_json::to_string_pretty(value);
-    let text = text
-        .map_err(|error| Error::new(ErrorKind::Export, format!("the {what} cannot be written: {error}")))?;
+    let text =
+        text.map_err(|error| ErrorKind::Export.error(format!("the {what} cannot be written: {error}")))?;
     Ok(text + "\n")
 }

@@ -237,8 +237,9 @@ fn refuse_chain(path: &Path, selection: &ChainSelection) -> Result<()> {
     if selection.base_link.is_none() && selection.tip_link.is_none() {
         return Ok(());
     }
-    let message = "found --base-link or --tip-link, expected neither: this model has one chain only";
-    Err(Error::new(ErrorKind::Option, message).in_file(path))
+    Err(ErrorKind::Option
+        .error("found --base-link or --tip-link, expected neither: this model has one chain only")
+        .in_file(path))
 }
 
 /// Refuses instruments and targets that a model without links does not have itself.
@@ -257,10 +258,9 @@ fn check_mounts(path: &Path, selection: &ChainSelection, robot: &Robot) -> Resul
         } else {
             format!("it has {}", first_few(known))
         };
-        let message = format!(
+        return Err(ErrorKind::Option.error(format!(
             "found {what} `{name}` on link `{link}`, expected {what}s that the model names itself, since links are those of a URDF: {known}"
-        );
-        return Err(Error::new(ErrorKind::Option, message).in_file(path));
+        )).in_file(path));
     }
     Ok(())
 }
@@ -313,7 +313,7 @@ fn toml_notes(model: &Model) -> Vec<String> {
 }
 
 fn export(model: &Model, message: String) -> Error {
-    Error::new(ErrorKind::Export, message).in_file(&model.path)
+    ErrorKind::Export.error(message).in_file(&model.path)
 }
 
 /// Compares the forward kinematics of a model and of its text read back.

@@ -4,7 +4,7 @@ use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
 use super::disk::{self, Disk};
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::{ErrorKind, Result};
 
 /// Canonical path of an existing file. Others stay as they are, for the reader's error.
 #[must_use]
@@ -49,5 +49,5 @@ pub fn refuse_fitted(judges: &[PathBuf], fitted: &[PathBuf]) -> Result<()> {
 
 /// Refuses a file, if there is one.
 fn refuse(path: Option<&PathBuf>, message: &str) -> Result<()> {
-    path.map_or(Ok(()), |path| Err(Error::new(ErrorKind::Option, message).in_file(path)))
+    path.map_or(Ok(()), |path| Err(ErrorKind::Option.error(message).in_file(path)))
 }

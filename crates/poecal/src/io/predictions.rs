@@ -8,7 +8,7 @@ use super::measurements::JointsTable;
 use super::model::{Model, ModelSource};
 use super::numbers::push_number;
 use crate::analysis::inside;
-use crate::error::{Error, ErrorKind, Result, first_few, nearest};
+use crate::error::{ErrorKind, Result, first_few, nearest};
 use crate::estimate::Packed;
 use crate::lie::Pose;
 use crate::robot::Robot;
@@ -129,13 +129,12 @@ fn seen(model: &Model) -> Result<Option<&str>> {
         ([], _) => Ok(None),
         (_, Some(only)) => Ok(Some(only)),
         (several, None) => {
-            let message = format!(
+            Err(ErrorKind::Option.error(format!(
                 "found {} targets that the device may see ({}), expected the name of one for --frame device: write --target {}",
                 several.len(),
                 first_few(several),
                 several[0]
-            );
-            Err(Error::new(ErrorKind::Option, message).in_file(&model.path))
+            )).in_file(&model.path))
         }
     }
 }
@@ -147,9 +146,12 @@ const UNCERTAINTY_COLUMNS: &str =
 /// Predicted uncertainty of each row.
 fn doubts(model: &Model, readings: &[f64], target: Option<&str>) -> Result<Vec<(PredictedError, bool)>> {
     let ModelSource::Calibration(file) = &model.source else {
-        let message = "found a robot model without uncertainty, expected a calibration.json for \
-                       --with-uncertainty: calibrate first";
-        return Err(Error::new(ErrorKind::Option, message).in_file(&model.path));
+        return Err(ErrorKind::Option
+            .error(
+                "found a robot model without uncertainty, expected a calibration.json for \
+                       --with-uncertainty: calibrate first",
+            )
+            .in_file(&model.path));
     };
     let (uncertainty, indices) = file.uncertainty(&[target]).map_err(|error| error.in_file(&model.path))?;
     let width = model.robot.reading_names().len();
@@ -175,8 +177,7 @@ fn robot_with_target<'a>(model: &'a Model, name: &str) -> Result<(Cow<'a, Robot>
         None if !names.is_empty() => format!("expected one of {}", first_few(&names)),
         None => "expected none: the model has no targets, leave out --target to predict the tip".to_owned(),
     };
-    let message = format!("found no target `{name}`, {expected}");
-    Err(Error::new(ErrorKind::Option, message).in_file(&model.path))
+    Err(ErrorKind::Option.error(format!("found no target `{name}`, {expected}")).in_file(&model.path))
 }
 
 fn device_from_base(model: &Model) -> Result<Pose> {
@@ -187,10 +188,9 @@ fn device_from_base(model: &Model) -> Result<Pose> {
                 file.instruments.get(*name).is_some_and(|instrument| instrument.on != BodyEntry::Base)
             };
             if let Some(name) = first.filter(is_moved) {
-                let message = format!(
+                return Err(ErrorKind::Option.error(format!(
                     "found the instrument `{name}` on the robot, expected one beside it for --frame device: use --frame base"
-                );
-                return Err(Error::new(ErrorKind::Option, message).in_file(&model.path));
+                )).in_file(&model.path));
             }
             let found = match file.last_station() {
                 Some(station) => station.base_from_device.pose(),
@@ -199,10 +199,11 @@ fn device_from_base(model: &Model) -> Result<Pose> {
             let base_from_device = found.map_err(|error| error.in_file(&model.path))?;
             Ok(base_from_device.inverse())
         }
-        ModelSource::Urdf(_) | ModelSource::Toml => {
-            let message = "found a robot model without a measuring device, expected a calibration.json for \
-                           --frame device: use --frame base";
-            Err(Error::new(ErrorKind::Option, message).in_file(&model.path))
-        }
+        ModelSource::Urdf(_) | ModelSource::Toml => Err(ErrorKind::Option
+            .error(
+                "found a robot model without a measuring device, expected a calibration.json for \
+                           --frame device: use --frame base",
+            )
+            .in_file(&model.path)),
     }
 }

@@ -4,7 +4,7 @@ use std::io::Read as _;
 use std::path::Path;
 
 use super::source;
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::{ErrorKind, Result};
 
 /// Largest program that is read, bytes.
 const LARGEST: u64 = 64 << 20;
@@ -26,13 +26,11 @@ fn read_at(path: &Path) -> Result<Vec<u8>> {
         .read_to_end(&mut bytes)
         .map_err(|error| source::unreadable(path, &error, expected))?;
     if bytes.iter().all(u8::is_ascii_whitespace) {
-        let message = "the file is empty, expected a robot program";
-        return Err(Error::new(ErrorKind::File, message).in_file(path));
+        return Err(ErrorKind::File.error("the file is empty, expected a robot program").in_file(path));
     }
     if bytes.contains(&0) {
-        let message = "found zero bytes, expected a robot program as text with one byte for each letter of a word (ASCII, Latin-1, UTF-8): save \
-                       it so";
-        return Err(Error::new(ErrorKind::Syntax, message).in_file(path));
+        return Err(ErrorKind::Syntax.error("found zero bytes, expected a robot program as text with one byte for each letter of a word (ASCII, Latin-1, UTF-8): save \
+                       it so").in_file(path));
     }
     Ok(bytes)
 }

@@ -139,7 +139,7 @@ impl Record {
 }
 
 fn refused(message: String) -> Error {
-    Error::new(ErrorKind::Option, message)
+    ErrorKind::Option.error(message)
 }
 
 fn unknown(key: &str) -> Error {

@@ -72,9 +72,8 @@ impl Settings {
 
     /// Compiled once, and not for each kind of path.
     fn parse_at(text: &str, path: &Path, keys: &[&str]) -> Result<Self> {
-        let at = |offset: usize, message: String| {
-            Error::new(ErrorKind::Syntax, message).at_offset(path, text, offset)
-        };
+        let at =
+            |offset: usize, message: String| ErrorKind::Syntax.error(message).at_offset(path, text, offset);
         let table = DeTable::parse(text).map_err(|error| {
             at(error.span().map_or(0, |span| span.start), error.message().trim().replace('\n', ", "))
         })?;
@@ -121,10 +120,9 @@ impl Settings {
             entries.push(Setting { key: key.get_ref().to_string(), value, line, column });
         }
         if !versioned {
-            let message = format!(
+            return Err(ErrorKind::Syntax.error(format!(
                 "found no `{VERSION_KEY} = 1`, expected settings with this line, the version of their form"
-            );
-            return Err(Error::new(ErrorKind::Syntax, message).in_file(path));
+            )).in_file(path));
         }
         entries.sort_by_key(|entry| (entry.line, entry.column));
         Ok(Settings { path: path.to_path_buf(), entries })
@@ -133,7 +131,7 @@ impl Settings {
     /// An error at one of the settings.
     #[must_use]
     pub fn error(&self, entry: &Setting, message: impl Into<String>) -> Error {
-        Error::new(ErrorKind::Option, message).at(&self.path, entry.line, entry.column)
+        ErrorKind::Option.error(message).at(&self.path, entry.line, entry.column)
     }
 }
 

@@ -38,7 +38,7 @@ pub(super) struct Input {
 /// # Errors
 /// [`ErrorKind::File`] if it is a directory, missing, unreadable, or of a form that is no text.
 pub(super) fn open(path: &Path, expected: &str, largest: u64) -> Result<Input> {
-    let error = |message: String| Error::new(ErrorKind::File, message).in_file(path);
+    let error = |message: String| ErrorKind::File.error(message).in_file(path);
     let disk = disk::here();
     let opened = if is_standard_input(path) {
         disk.standard_input()
@@ -77,8 +77,7 @@ pub(super) fn is_standard_input(path: &Path) -> bool {
 }
 
 pub(super) fn unreadable(path: &Path, error: &io::Error, expected: &str) -> Error {
-    Error::new(ErrorKind::File, format!("the file cannot be read ({error}), expected {expected}"))
-        .in_file(path)
+    ErrorKind::File.error(format!("the file cannot be read ({error}), expected {expected}")).in_file(path)
 }
 
 impl Read for Input {

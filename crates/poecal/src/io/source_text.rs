@@ -25,11 +25,10 @@ pub(super) fn read_up_to(path: &Path, expected: &str, largest: u64) -> Result<St
             let valid = error.utf8_error().valid_up_to();
             let message = format!("found bytes that are not UTF-8, expected {expected} as UTF-8 text");
             let text = String::from_utf8_lossy(error.as_bytes());
-            Error::new(ErrorKind::File, message).at_offset(path, &text, valid)
+            ErrorKind::File.error(message).at_offset(path, &text, valid)
         })?;
     if text.trim_start_matches('\u{feff}').trim().is_empty() {
-        let message = format!("the file is empty, expected {expected}");
-        return Err(Error::new(ErrorKind::File, message).in_file(path));
+        return Err(ErrorKind::File.error(format!("the file is empty, expected {expected}")).in_file(path));
     }
     Ok(text)
 }

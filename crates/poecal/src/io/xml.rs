@@ -108,8 +108,9 @@ fn undeclared(text: &str) -> Vec<usize> {
 /// An XML text, parsed; `expected` describes it in messages.
 pub(super) fn parsed<'a>(text: &'a str, path: &Path, expected: &str) -> Result<Document<'a>> {
     if let Some(offset) = crowded_element(text) {
-        let message = format!("found an element with more than 1000 attributes, expected {expected}");
-        return Err(Error::new(ErrorKind::Syntax, message).at_offset(path, text, offset));
+        return Err(ErrorKind::Syntax
+            .error(format!("found an element with more than 1000 attributes, expected {expected}"))
+            .at_offset(path, text, offset));
     }
     Document::parse(text).map_err(|error| broken(&error, path, expected))
 }
@@ -137,7 +138,7 @@ pub(super) fn root_name(text: &str) -> Option<&str> {
 fn broken(error: &roxmltree::Error, path: &Path, expected: &str) -> Error {
     let place = error.pos();
     let (line, column) = (place.row as usize, place.col as usize);
-    let message = if let roxmltree::Error::UnknownNamespace(prefix, _) = error {
+    ErrorKind::Syntax.error(if let roxmltree::Error::UnknownNamespace(prefix, _) = error {
         format!(
             "found the prefix `{prefix}`, which is declared in another element alone, expected xmlns:{prefix}=\"…\" in the first element too"
         )
@@ -146,8 +147,7 @@ fn broken(error: &roxmltree::Error, path: &Path, expected: &str) -> Error {
     } else {
         let complaint = error.to_string().replace(&format!(" at {place}"), "");
         format!("found broken XML ({complaint}), expected {expected}")
-    };
-    Error::new(ErrorKind::Syntax, message).at(path, line, column)
+    }).at(path, line, column)
 }
 
 /// A parsed XML text and the name of its file.
@@ -160,7 +160,7 @@ pub(super) struct XmlSource<'a> {
 impl<'a> XmlSource<'a> {
     /// An error at a byte offset of the text.
     pub(super) fn error_at(&self, offset: usize, message: String) -> Error {
-        Error::new(ErrorKind::Model, message).at_offset(self.path, self.document.input_text(), offset)
+        ErrorKind::Model.error(message).at_offset(self.path, self.document.input_text(), offset)
     }
 
     /// An error at the start of an element.
@@ -176,7 +176,7 @@ impl<'a> XmlSource<'a> {
     /// The same for a text that is no URDF at all.
     pub(super) fn syntax_error(&self, node: Node<'a, 'a>, message: impl Into<String>) -> Error {
         let text = self.document.input_text();
-        Error::new(ErrorKind::Syntax, message).at_offset(self.path, text, node.range().start)
+        ErrorKind::Syntax.error(message).at_offset(self.path, text, node.range().start)
     }
 
     /// What a word of an attribute means; `of` says where it is.

@@ -31,7 +31,7 @@ impl Value {
 
     /// An error at the value.
     pub(super) fn error(&self, path: &Path, message: String) -> Error {
-        Error::new(ErrorKind::Model, message).at(path, self.line, self.column)
+        ErrorKind::Model.error(message).at(path, self.line, self.column)
     }
 
     /// Its number.
@@ -54,8 +54,11 @@ impl Value {
 /// The values of the mappings of a text, in its order; a list is one without its entries. `expected` describes the file in messages.
 pub(super) fn values(text: &str, path: &Path, expected: &str) -> Result<Vec<Value>> {
     let error = |span: &Span, found: &str| {
-        let message = format!("found {found}, expected {expected}");
-        Error::new(ErrorKind::Syntax, message).at(path, span.start.line(), span.start.col() + 1)
+        ErrorKind::Syntax.error(format!("found {found}, expected {expected}")).at(
+            path,
+            span.start.line(),
+            span.start.col() + 1,
+        )
     };
     let mut open: Vec<Open> = Vec::new();
     let mut found = Vec::new();
@@ -63,8 +66,9 @@ pub(super) fn values(text: &str, path: &Path, expected: &str) -> Result<Vec<Valu
     for event in Parser::new_from_str(text) {
         let (event, span) = event.map_err(|error| {
             let place = error.marker();
-            let message = format!("found broken YAML ({}), expected {expected}", visible(&error.info()));
-            Error::new(ErrorKind::Syntax, message).at(path, place.line(), place.col() + 1)
+            ErrorKind::Syntax
+                .error(format!("found broken YAML ({}), expected {expected}", visible(&error.info())))
+                .at(path, place.line(), place.col() + 1)
         })?;
         match event {
             Event::Scalar(text, _, _, tag) => {

@@ -107,14 +107,11 @@ impl Dataset {
 
     fn check_readings(&self, readings: &[f64]) -> Result<()> {
         if readings.len() != self.reading_names.len() {
-            return Err(Error::new(
-                ErrorKind::Measurement,
-                format!(
-                    "found {} joint readings, expected {}: {}",
-                    readings.len(),
-                    self.reading_names.len(),
-                    self.reading_names.join(", ")
-                ),
+            return ErrorKind::Measurement.refuse(format!(
+                "found {} joint readings, expected {}: {}",
+                readings.len(),
+                self.reading_names.len(),
+                self.reading_names.join(", ")
             ));
         }
         if is_finite(readings) { Ok(()) } else { Err(not_finite()) }
@@ -148,9 +145,8 @@ impl Dataset {
         if fits {
             return Ok(());
         }
-        let message = "found readings, rows and targets of a data set that do not fit together, expected a reading of each joint and a \
-                       target in every row";
-        Err(Error::new(ErrorKind::Measurement, message))
+        ErrorKind::Measurement.refuse("found readings, rows and targets of a data set that do not fit together, expected a reading of each joint and a \
+                       target in every row")
     }
 
     /// States the noise of a row's position by its standard deviation σ, metres, and its shape.
@@ -294,8 +290,6 @@ fn is_finite(numbers: &[f64]) -> bool {
 }
 
 fn not_finite() -> Error {
-    Error::new(
-        ErrorKind::Measurement,
-        "found a number that is not finite, expected finite joint readings and measurements",
-    )
+    ErrorKind::Measurement
+        .error("found a number that is not finite, expected finite joint readings and measurements")
 }

@@ -1,7 +1,7 @@
 //! Some of the rows of a session, and the rows of several.
 
 use super::{Dataset, KnownLength, Set};
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::{ErrorKind, Result};
 
 impl Dataset {
     /// The same rows as if all had been measured from one station.
@@ -62,7 +62,7 @@ impl Dataset {
         let place = |name: &String| {
             let found = other.reading_names.iter().position(|candidate| candidate == name);
             let message = || format!("found no reading of joint `{name}`, expected one in every file");
-            found.ok_or_else(|| Error::new(ErrorKind::Measurement, message()))
+            found.ok_or_else(|| ErrorKind::Measurement.error(message()))
         };
         let order: Vec<usize> = self.reading_names.iter().map(place).collect::<Result<_>>()?;
         if self.controller.is_none() {

@@ -1,6 +1,6 @@
 //! Offsets written into screws, and robots that can be compared joint by joint.
 
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::{ErrorKind, Result};
 use crate::lie::Pose;
 use crate::robot::{Body, Robot};
 
@@ -14,13 +14,12 @@ use crate::robot::{Body, Robot};
 /// [`ErrorKind::Option`] if there is not one finite offset for each joint.
 pub fn into_screws(robot: &Robot, offsets: &[f64]) -> Result<Robot> {
     if offsets.len() != robot.joints.len() {
-        let message = format!(
+        return ErrorKind::Option.refuse(format!(
             "found {} offsets for robot `{}`, expected one for each of its {} joints",
             offsets.len(),
             robot.name,
             robot.joints.len()
-        );
-        return Err(Error::new(ErrorKind::Option, message));
+        ));
     }
     let mut equivalent = robot.clone();
     // Of each joint's link, from its place without offsets.
@@ -30,9 +29,10 @@ pub fn into_screws(robot: &Robot, offsets: &[f64]) -> Result<Robot> {
     };
     for (index, (joint, &offset)) in equivalent.joints.iter_mut().zip(offsets).enumerate() {
         if !offset.is_finite() {
-            let message =
-                format!("found the offset {offset} of joint `{}`, expected a finite one", joint.name);
-            return Err(Error::new(ErrorKind::Option, message));
+            return ErrorKind::Option.refuse(format!(
+                "found the offset {offset} of joint `{}`, expected a finite one",
+                joint.name
+            ));
         }
         let screw = joint.screw;
         let before = of(&motions, robot.body_before(index));
@@ -46,7 +46,7 @@ pub fn into_screws(robot: &Robot, offsets: &[f64]) -> Result<Robot> {
 }
 
 pub(super) fn check_same_joints(nominal: &Robot, actual: &Robot) -> Result<()> {
-    let differ = |message: String| Err(Error::new(ErrorKind::Option, message));
+    let differ = |message: String| ErrorKind::Option.refuse(message);
     for (robot, which) in [(nominal, "nominal"), (actual, "actual")] {
         if !robot.is_serial() {
             return differ(format!(

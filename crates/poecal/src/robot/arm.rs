@@ -7,7 +7,7 @@ use poecal_arm::{
 };
 
 use super::{JointTerm, Limits, Robot, Statics};
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::{ErrorKind, Result};
 
 impl Robot {
     /// The joints from the base to the tip, their terms at these values of the factors, and the limits of their readings, for forward and
@@ -38,14 +38,11 @@ impl Robot {
         let arm = Arm::of(&model).ok_or_else(|| {
             let names: Vec<&str> =
                 readings.iter().filter_map(|&it| names.get(it)).map(String::as_str).collect();
-            Error::new(
-                ErrorKind::Model,
-                format!(
-                    "not every one of the joints {} moves the tip of robot `{}`",
-                    names.join(", "),
-                    self.name
-                ),
-            )
+            ErrorKind::Model.error(format!(
+                "not every one of the joints {} moves the tip of robot `{}`",
+                names.join(", "),
+                self.name
+            ))
         })?;
         Ok((arm, readings))
     }
@@ -71,10 +68,8 @@ impl Robot {
             }
         }
         if readings.len() > MOST_JOINTS {
-            return Err(Error::new(
-                ErrorKind::Model,
-                format!("{} joints move the tip, expected at most {MOST_JOINTS}", readings.len()),
-            ));
+            return ErrorKind::Model
+                .refuse(format!("{} joints move the tip, expected at most {MOST_JOINTS}", readings.len()));
         }
         let statics = Statics::new(self);
         let factors: Vec<f64> = (self.factors.iter().enumerate())

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use super::Robot;
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::{ErrorKind, Result};
 use crate::lie::Pose;
 
 /// Name of the only target where no row names it.
@@ -136,11 +136,10 @@ impl Robot {
         if joints && mounts && masses && is_known(self.tip_body(), count) {
             return Ok(());
         }
-        let message = format!(
+        ErrorKind::Model.refuse(format!(
             "robot `{}` has a joint or a frame on a link that does not come before it, expected a tree from the base on",
             self.name
-        );
-        Err(Error::new(ErrorKind::Model, message))
+        ))
     }
 }
 

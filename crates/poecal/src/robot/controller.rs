@@ -105,25 +105,21 @@ impl Controller {
     pub fn check(&self, robot: &Robot) -> Result<()> {
         let names: Vec<&str> = self.readings.iter().map(|it| it.reading.as_str()).collect();
         if names != robot.joint_reading_names() {
-            let message = format!(
+            return ErrorKind::Model.refuse(format!(
                 "found the readings {} of the controller, expected those of the joints, {}",
                 names.join(", "),
                 robot.joint_reading_names().join(", ")
-            );
-            return Err(Error::new(ErrorKind::Model, message));
+            ));
         }
         let is_sound = |it: &&ControllerReading| {
             it.offset.is_finite() && it.columns.values().all(|column| column.factor.is_normal())
         };
         match self.readings.iter().find(|it| !is_sound(it)) {
             None => Ok(()),
-            Some(reading) => Err(Error::new(
-                ErrorKind::Model,
-                format!(
+            Some(reading) => ErrorKind::Model.refuse(format!(
                     "found a factor or an offset of the reading `{}` that is no number, expected factors other than 0",
                     reading.reading
-                ),
-            )),
+                )),
         }
     }
 
@@ -139,11 +135,10 @@ impl Controller {
     /// [`ErrorKind::Option`] of a robot whose second and third axes are not parallel; as [`Controller::counting`].
     pub fn with_third_axis(mut self, robot: &Robot, counts: ThirdAxis) -> Result<Self> {
         let Some((second, third, factor)) = level(robot) else {
-            let message = format!(
+            return ErrorKind::Option.refuse(format!(
                 "found a third axis that counts from the {}, expected a robot whose second and third axes are parallel",
                 counts.word()
-            );
-            return Err(Error::new(ErrorKind::Option, message));
+            ));
         };
         let own = self.axes()?;
         let Some(at) = self.readings.iter().position(|it| it.reading == third) else { return Ok(self) };
@@ -198,12 +193,11 @@ impl Controller {
     fn not_apart(&self) -> Error {
         let sums: Vec<String> =
             self.readings.iter().filter(|it| !it.is_plain()).map(ControllerReading::words).collect();
-        let message = format!(
+        ErrorKind::Option.error(format!(
             "the readings are made of columns ({}) that cannot be taken apart again, expected a column of its own in each: correct by a calibration \
              whose mapping has one",
             sums.join("; ")
-        );
-        Error::new(ErrorKind::Option, message)
+        ))
     }
 
     /// The way from counted readings to those of the model, and back.

@@ -38,7 +38,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use nalgebra::Vector3;
 
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::{ErrorKind, Result};
 use crate::lie::{Pose, Screw};
 
 /// Most moving joints of a robot: the time of a fit grows with the cube of their number.
@@ -105,7 +105,7 @@ impl Robot {
     /// [`ErrorKind::Model`] if there is no joint, there are more than [`MOST_JOINTS`], two joints share a name, or a name is longer
     /// than [`LONGEST_NAME`].
     pub fn new(name: &str, joints: Vec<Joint>, home: Pose) -> Result<Self> {
-        let error = |message: String| Err(Error::new(ErrorKind::Model, message));
+        let error = |message: String| ErrorKind::Model.refuse(message);
         if joints.is_empty() {
             return error(format!(
                 "robot `{name}` has no moving joint, expected at least one revolute, continuous or prismatic joint"
@@ -161,10 +161,9 @@ impl Robot {
         for name in names {
             check_name(name, "factor")?;
             if robot.joints.iter().any(|joint| joint.name == *name) || robot.reading_names().contains(name) {
-                let message = format!(
+                return ErrorKind::Option.refuse(format!(
                     "found the factor `{name}`, expected a name that no joint and no other factor has"
-                );
-                return Err(Error::new(ErrorKind::Option, message));
+                ));
             }
             robot.factors.push(FactorReading::new(name));
         }
@@ -300,9 +299,9 @@ pub(crate) fn check_name(name: &str, of: &str) -> Result<()> {
         return Ok(());
     }
     let letters = name.chars().count();
-    let message =
-        format!("found the {of} `{name}`, whose name has {letters} letters, expected at most {LONGEST_NAME}");
-    Err(Error::new(ErrorKind::Model, message))
+    ErrorKind::Model.refuse(format!(
+        "found the {of} `{name}`, whose name has {letters} letters, expected at most {LONGEST_NAME}"
+    ))
 }
 
 #[cfg(test)]

@@ -18,7 +18,7 @@ use nalgebra::Vector3;
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::{ErrorKind, Result};
 use crate::lie::{Pose, rotation};
 use crate::measurement::{Dataset, Measurement, Observation};
 use crate::robot::{
@@ -228,7 +228,7 @@ impl Simulation {
         let configurations = Configurations::new(nominal);
         let pairs = pairs(actual);
         if pairs.is_empty() {
-            return Err(Error::new(ErrorKind::Problem, SAME_LINKS));
+            return ErrorKind::Problem.refuse(SAME_LINKS);
         }
         let mut before = vec![0.0; data.reading_names().len()];
         for row in 0..self.count {

@@ -7,7 +7,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 
 use super::{Configurations, Kind, Simulation, random};
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::{ErrorKind, Result};
 use crate::lie::{Pose, rotation};
 use crate::linalg;
 use crate::measurement::{Dataset, Draw, Drawn, Measurement, NUMBERS, Observation, Stands};
@@ -183,7 +183,7 @@ impl Simulation {
         };
         let found: Vec<Sight> = all.filter(moves).collect();
         if found.is_empty() {
-            return Err(Error::new(ErrorKind::Problem, super::SAME_LINKS));
+            return ErrorKind::Problem.refuse(super::SAME_LINKS);
         }
         Ok(found)
     }
@@ -310,11 +310,10 @@ impl Simulation {
                 return Ok((found, said));
             }
         }
-        let message = format!(
+        ErrorKind::Problem.refuse(format!(
             "found no configuration within the joints' limits in which `{}` is touched, expected a robot that reaches it",
             sight.place.name
-        );
-        Err(Error::new(ErrorKind::Problem, message))
+        ))
     }
 }
 

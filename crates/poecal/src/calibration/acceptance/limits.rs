@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::{ErrorKind, Result};
 use crate::unit::Unit;
 
 /// What of the errors is limited.
@@ -94,16 +94,16 @@ impl AcceptanceLimits {
     /// [`ErrorKind::Option`] if there are none, or two of one statistic and unit.
     pub fn new(limits: Vec<Limit>, model: AcceptedModel) -> Result<Self> {
         if limits.is_empty() {
-            let message = "found no limit to accept, expected at least one, like 0.2mm or max:0.5mm";
-            return Err(Error::new(ErrorKind::Option, message));
+            return ErrorKind::Option
+                .refuse("found no limit to accept, expected at least one, like 0.2mm or max:0.5mm");
         }
         for (k, limit) in limits.iter().enumerate() {
             let same = |other: &&Limit| (other.statistic, other.unit) == (limit.statistic, limit.unit);
             if let Some(other) = limits[..k].iter().find(same) {
                 let [other, own] = [other, limit].map(|it| it.words());
-                let message =
-                    format!("found two limits of one kind, {other} and {own}, expected one of them");
-                return Err(Error::new(ErrorKind::Option, message));
+                return ErrorKind::Option.refuse(format!(
+                    "found two limits of one kind, {other} and {own}, expected one of them"
+                ));
             }
         }
         Ok(AcceptanceLimits { limits, model })
@@ -118,11 +118,10 @@ impl AcceptanceLimits {
             return AcceptanceLimits::new(limits, model.unwrap_or_default()).map(Some);
         }
         let Some(model) = model else { return Ok(None) };
-        let message = format!(
+        ErrorKind::Option.refuse(format!(
             "found `{}` as the model that shall keep limits, but no limit, expected one, like 0.2mm or max:0.5mm",
             model.word()
-        );
-        Err(Error::new(ErrorKind::Option, message))
+        ))
     }
 }
 

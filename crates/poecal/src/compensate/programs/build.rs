@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::flow::Node;
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::{ErrorKind, Result};
 
 /// Blocks within blocks.
 const DEEPEST: usize = 100;
@@ -61,9 +61,11 @@ impl<S> Blocks<S> {
 
     fn begin(&mut self, block: Block<S>, line: usize) -> Result<()> {
         if self.open.len() >= DEEPEST {
-            let message =
-                format!("found a block within {DEEPEST} others, expected fewer: make routines of them");
-            return Err(Error::new(ErrorKind::Syntax, message).at_line("program", line));
+            return Err(ErrorKind::Syntax
+                .error(format!(
+                    "found a block within {DEEPEST} others, expected fewer: make routines of them"
+                ))
+                .at_line("program", line));
         }
         self.size += 1;
         self.open.push((block, std::mem::take(&mut self.nodes)));

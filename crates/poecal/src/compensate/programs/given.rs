@@ -2,7 +2,7 @@
 
 use super::Language;
 use super::forms::PoseForm;
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::{ErrorKind, Result};
 use crate::io::calibration_file::TaughtRobot;
 use crate::lie::Pose;
 
@@ -104,9 +104,9 @@ impl Given {
             Language::Rapid | Language::Krl | Language::Fanuc => (1_f64.to_radians(), "degrees"),
         };
         let Some(numbers) = numbers(words) else {
-            let message =
-                format!("found --start {words}, expected the readings of all joints, J1,J2,… in {unit}");
-            return Err(Error::new(ErrorKind::Option, message));
+            return ErrorKind::Option.refuse(format!(
+                "found --start {words}, expected the readings of all joints, J1,J2,… in {unit}"
+            ));
         };
         self.start = Some(numbers.iter().map(|it| it * scale).collect());
         Ok(())
@@ -115,8 +115,8 @@ impl Given {
 
 fn add(poses: &mut Vec<Named>, found: Named, words: &str, option: &str) -> Result<()> {
     if named(poses, found.0.as_deref()).is_some() {
-        let message = format!("found {option} {words} for one that is stated already, expected each once");
-        return Err(Error::new(ErrorKind::Option, message));
+        return ErrorKind::Option
+            .refuse(format!("found {option} {words} for one that is stated already, expected each once"));
     }
     poses.push(found);
     Ok(())
@@ -131,13 +131,12 @@ fn plain_pose(words: &str, language: Language, option: &str) -> Result<Pose> {
     let form = PoseForm::of(language);
     let expected = form.names();
     numbers(words).filter(|it| it.len() == expected.len()).and_then(|it| form.pose(&it)).ok_or_else(|| {
-        let message = format!(
+        ErrorKind::Option.error(format!(
             "found {option} {words}, expected {} as {} writes poses ({})",
             expected.join(","),
             language.title(),
             language.units()
-        );
-        Error::new(ErrorKind::Option, message)
+        ))
     })
 }
 

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use serde::Serialize;
 
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::{ErrorKind, Result};
 
 /// A language of robot programs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -54,11 +54,10 @@ impl Language {
         let end = path.extension().and_then(|it| it.to_str()).unwrap_or_default().to_ascii_lowercase();
         match OTHERS.iter().find(|(ends, _)| ends.contains(&end.as_str())) {
             Some((_, maker)) => {
-                let message = format!(
+                Err(ErrorKind::Option.error(format!(
                     "found a program of {maker} by the end of its name, expected joint readings (CSV), or a program in URScript (.script), RAPID \
                      (.mod, .prg, .sys), KRL (.src, .dat) or of FANUC as text (.ls)"
-                );
-                Err(Error::new(ErrorKind::Option, message).in_file(path))
+                )).in_file(path))
             }
             None => Ok(Self::of(path)),
         }

@@ -26,7 +26,7 @@ mod written;
 use std::path::Path;
 
 use super::ChangeOptions;
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::{ErrorKind, Result};
 use crate::io::programs::read_program;
 use crate::robot::{Controller, Robot};
 use axes::Axes;
@@ -90,12 +90,11 @@ pub fn compensate_program(
     options: &ProgramOptions,
 ) -> Result<(Vec<u8>, ProgramSummary)> {
     if text.len() > LARGEST_PROGRAM {
-        let message = format!(
+        return ErrorKind::Syntax.refuse(format!(
             "found a program of {} MB, expected at most {} MB: cut it into several",
             text.len() >> 20,
             LARGEST_PROGRAM >> 20
-        );
-        return Err(Error::new(ErrorKind::Syntax, message));
+        ));
     }
     let counting = options.controller.as_ref().filter(|it| !it.is_plain());
     let counting = counting.map(Controller::counting).transpose()?;
@@ -103,19 +102,17 @@ pub fn compensate_program(
     engine.counting = counting;
     let axes = Axes::of(nominal, engine.poses.compensation());
     if let Some(start) = options.given.start.as_ref().filter(|it| it.len() != axes.count()) {
-        let message = format!(
+        return ErrorKind::Option.refuse(format!(
             "found {} readings as the start, expected one of each joint: {}",
             start.len(),
             axes.names.join(", ")
-        );
-        return Err(Error::new(ErrorKind::Option, message));
+        ));
     }
     let parsed = parse(options.language, text, &options.given, &axes)?;
     let joints = parsed.targets.iter().find(|it| it.meant == Meant::Joints);
     if let (Language::Fanuc, true, Some(target)) = (options.language, options.is_third_axis_open, joints) {
-        let message = "found a joint target, and a calibration whose rows do not show from where the third axis counts, expected \
-                       `--third-axis level` where J3 counts from the level, as controllers of FANUC do by themselves, or `--third-axis arm`";
-        return Err(Error::new(ErrorKind::Option, message).at_line("", target.line));
+        return Err(ErrorKind::Option.error("found a joint target, and a calibration whose rows do not show from where the third axis counts, expected \
+                       `--third-axis level` where J3 counts from the level, as controllers of FANUC do by themselves, or `--third-axis arm`").at_line("", target.line));
     }
     engine.hold(axes.external.clone(), &parsed)?;
     let mut made = engine.correct(text, parsed, options.each);

@@ -14,7 +14,7 @@ use crate::analysis::JointCoverage;
 use crate::calibration::{
     Correction, JointEffect, JointErrorPart, JointErrors, Sizes, SizesReason, TermGroup, TriedSizes,
 };
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::{ErrorKind, Result};
 use crate::lie::Pose;
 use crate::measurement::Dataset;
 use crate::robot::{Gravity, Robot, Statics, Weight};
@@ -274,7 +274,7 @@ impl GravityEntry {
 
     /// The weights of a robot with these joints.
     pub(super) fn gravity(&self, robot: &Robot, joints: &[JointEntry]) -> Result<Gravity> {
-        let bad = |message: String| Error::new(ErrorKind::Model, message);
+        let bad = |message: String| ErrorKind::Model.error(message);
         let direction = Vector3::from(self.direction);
         let length = direction.norm();
         if !(length > 0.0 && length.is_finite()) {

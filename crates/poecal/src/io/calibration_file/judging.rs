@@ -2,7 +2,7 @@
 
 use super::{CalibrationFile, MeasuredEntry};
 use crate::calibration::{AcceptedModel, DeviceFrameKnowledge};
-use crate::error::{Error, ErrorKind, Result, first_few, nearest};
+use crate::error::{ErrorKind, Result, first_few, nearest};
 use crate::lie::Pose;
 use crate::measurement::{ByQuantity, Dataset, Noise, Quantity};
 
@@ -24,10 +24,9 @@ impl CalibrationFile {
         let sigma = &self.noise.sigma;
         for (_, key, sigma) in sigma.keys() {
             if sigma.is_nan() || sigma <= 0.0 {
-                let message = format!(
+                return ErrorKind::Model.refuse(format!(
                     "found `noise.{key}` of {sigma}, expected a standard deviation above 0: calibrate again"
-                );
-                return Err(Error::new(ErrorKind::Model, message));
+                ));
             }
         }
         let like = |quantity: Quantity| sigma.iter().find(|(other, _)| other.unit() == quantity.unit());
@@ -56,11 +55,10 @@ impl CalibrationFile {
             if stations == 1 {
                 return Ok(vec![self.base_from_device()?]);
             }
-            let message = format!(
+            return ErrorKind::Problem.refuse(format!(
                 "found measurements of {stations} instruments, expected those of one, since the calibration has one device frame: judge \
                  each by itself, {REFIT}"
-            );
-            return Err(Error::new(ErrorKind::Problem, message));
+            ));
         }
         let names = || self.stations.iter().filter_map(|it| it.instrument.as_deref());
         let known = first_few(&names().collect::<Vec<_>>());
@@ -75,7 +73,7 @@ impl CalibrationFile {
                 if let Some(found) = found {
                     return found.base_from_device.pose();
                 }
-                let message = match name {
+                ErrorKind::Problem.refuse(match name {
                     None => format!(
                         "found measurements without an instrument's name, expected one of {known} as in the calibration: add a column \
                          `instrument`, {REFIT}"
@@ -84,8 +82,7 @@ impl CalibrationFile {
                         "found measurements of instrument `{name}`, whose frame is not in the calibration, expected one of {known}: \
                          rename it, {REFIT}"
                     ),
-                };
-                Err(Error::new(ErrorKind::Problem, message))
+                })
             })
             .collect()
     }
@@ -100,7 +97,7 @@ impl CalibrationFile {
         let frames = data.frames(&data.all_rows());
         let known = first_few(&names().collect::<Vec<_>>());
         for (is_frame, name) in frames.into_iter().zip(&data.targets) {
-            let message = match name.as_deref().or(self.unnamed()) {
+            return ErrorKind::Problem.refuse(match name.as_deref().or(self.unnamed()) {
                 None if self.targets.is_empty() => continue,
                 None => format!(
                     "found measurements without a target's name, expected one of {known} as in the calibration: add a \
@@ -130,8 +127,7 @@ impl CalibrationFile {
                         )
                     }
                 },
-            };
-            return Err(Error::new(ErrorKind::Problem, message));
+            });
         }
         Ok(())
     }

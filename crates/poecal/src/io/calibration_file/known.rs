@@ -90,7 +90,7 @@ impl CalibrationFile {
         robot: &Robot,
         body: Body,
     ) -> Result<(Uncertainty, Vec<usize>)> {
-        let entry = self.uncertainty.as_ref().ok_or_else(|| Error::new(ErrorKind::Model, NONE))?;
+        let entry = self.uncertainty.as_ref().ok_or_else(|| ErrorKind::Model.error(NONE))?;
         let axes = entry.axes.iter().map(PoseEntry::pose).collect::<Result<Vec<_>>>()?;
         if axes.len() != robot.joints.len() {
             return Err(bad("another number of axes than of joints"));
@@ -206,10 +206,9 @@ const NONE: &str = "found a calibration without uncertainty, expected more measu
 
 /// An error of a file that states no uncertainty that can be used.
 fn bad(what: &str) -> Error {
-    let message = format!(
+    ErrorKind::Model.error(format!(
         "found {what}, expected the uncertainty that `poecal calibrate` writes: calibrate again with this version"
-    );
-    Error::new(ErrorKind::Model, message)
+    ))
 }
 
 /// The place of a row's diagonal in an upper triangle by rows.

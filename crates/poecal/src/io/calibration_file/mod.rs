@@ -46,7 +46,7 @@ use std::path::Path;
 use super::record::Record;
 use super::{json_text, source_text};
 use crate::calibration::{Calibration, DeviceFrameKnowledge, ModelAccuracy, names};
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::{ErrorKind, Result};
 use crate::forensics::Diagnosis;
 use crate::lie::{Pose, Screw, Twist};
 use crate::measurement::{Dataset, Measured, Noise};
@@ -171,7 +171,7 @@ impl CalibrationFile {
 
 /// An error of a file that holds no valid robot, as a result.
 fn refuse<T>(message: String) -> Result<T> {
-    Err(Error::new(ErrorKind::Model, message))
+    ErrorKind::Model.refuse(message)
 }
 
 /// Cuts examples in Rust off a description.
@@ -317,9 +317,9 @@ impl ScrewEntry {
         let twist = Twist::new(Vector3::from(self.v_m), Vector3::from(self.w));
         let bad = || {
             let (name, kind) = (&of.name, kind.word());
-            let message =
-                format!("found a screw of joint `{name}` that is no {kind} screw, expected a unit one");
-            Error::new(ErrorKind::Model, message)
+            ErrorKind::Model.error(format!(
+                "found a screw of joint `{name}` that is no {kind} screw, expected a unit one"
+            ))
         };
         let screw = Screw::project(&twist).ok_or_else(bad)?;
         let off = (screw.twist().to_vector() - twist.to_vector()).norm();
@@ -338,10 +338,9 @@ impl PoseEntry {
     pub fn pose(&self) -> Result<Pose> {
         let norm = self.quaternion_xyzw.iter().map(|q| q * q).sum::<f64>().sqrt();
         if norm.is_nan() || (norm - 1.0).abs() > 1e-6 {
-            let message = format!(
+            return ErrorKind::Model.refuse(format!(
                 "found a quaternion of length {norm}, expected a unit quaternion in x, y, z, w order"
-            );
-            return Err(Error::new(ErrorKind::Model, message));
+            ));
         }
         Ok(Pose::from_position_quaternion(self.position_m, self.quaternion_xyzw))
     }

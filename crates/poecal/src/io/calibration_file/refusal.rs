@@ -23,20 +23,21 @@ pub(super) fn refusal(text: &str, error: Option<serde_json::Error>, path: &Path)
         // The parser counts bytes up to the unexpected one.
         let before = text.split('\n').nth(line - 1).unwrap_or_default().char_indices();
         let column = before.take_while(|(at, _)| *at < error.column()).count().max(1);
-        Error::new(ErrorKind::Syntax, message).at(path, line, column)
+        ErrorKind::Syntax.error(message).at(path, line, column)
     };
     let value: serde_json::Value = match serde_json::from_str(text) {
         Ok(value) => value,
         Err(error) => return syntax(&error),
     };
-    let message = match (value.get("schema").and_then(serde_json::Value::as_str), error) {
-        (Some(SCHEMA | EARLIER), Some(error)) => return syntax(&error),
-        (Some(other), _) => {
-            format!("found schema `{other}`, expected `{SCHEMA}`: calibrate again with this version")
-        }
-        (None, _) => {
-            format!("found JSON without the key `schema`, expected a calibration of schema `{SCHEMA}`")
-        }
-    };
-    Error::new(ErrorKind::Syntax, message).in_file(path)
+    ErrorKind::Syntax
+        .error(match (value.get("schema").and_then(serde_json::Value::as_str), error) {
+            (Some(SCHEMA | EARLIER), Some(error)) => return syntax(&error),
+            (Some(other), _) => {
+                format!("found schema `{other}`, expected `{SCHEMA}`: calibrate again with this version")
+            }
+            (None, _) => {
+                format!("found JSON without the key `schema`, expected a calibration of schema `{SCHEMA}`")
+            }
+        })
+        .in_file(path)
 }

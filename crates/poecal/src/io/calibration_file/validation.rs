@@ -8,7 +8,7 @@ use crate::calibration::{
     PartCoverage, PredictedUncertainty, Refitted, Subject, accepted_by, judge,
 };
 use crate::distributions::f_quantile;
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::{ErrorKind, Result};
 use crate::estimate::Range;
 use crate::lie::rotation;
 use crate::measurement::{Dataset, Quantity};
@@ -94,11 +94,10 @@ impl CalibrationFile {
         let names = self.inputs.measurements.iter().filter_map(|name| self.inputs.sha256.get(name));
         let seen: Vec<&String> = names.collect();
         if let Some((name, _)) = sha256.iter().find(|(_, sha256)| seen.contains(sha256)) {
-            let message = format!(
+            return ErrorKind::Problem.refuse(format!(
                 "found `{name}`, which the calibration was made of, expected measurements that it has not seen: it was accepted or not by its own \
                  rows held out when it was made"
-            );
-            return Err(Error::new(ErrorKind::Problem, message));
+            ));
         }
         let corrected = if limits.model == AcceptedModel::Corrected { self.corrected() } else { None };
         let model = if corrected.is_some() { AcceptedModel::Corrected } else { AcceptedModel::Calibrated };

@@ -240,5 +240,5 @@ pub(super) fn write_ticks(model: &Model, robot: &Robot, motors: Option<&str>) ->
 }
 
 fn option(message: String) -> Error {
-    Error::new(ErrorKind::Option, message)
+    ErrorKind::Option.error(message)
 }

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::{SAME, export_error, is_same, remaining};
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::{ErrorKind, Result};
 use crate::io::hashes::sha256_of;
 use crate::io::model::{Converted, Model, ModelSource, verify};
 use crate::io::source_text;
@@ -19,8 +19,9 @@ use crate::robot::Robot;
 /// as [`UrdfDocument::read`] and [`crate::io::model::convert`].
 pub fn onto(calibration: &Model, urdf: &Path, selection: &ChainSelection) -> Result<Converted> {
     let ModelSource::Calibration(file) = &calibration.source else {
-        let message = "found a model, expected the calibration.json whose numbers are written into the URDF";
-        return Err(Error::new(ErrorKind::Option, message).in_file(&calibration.path));
+        return Err(ErrorKind::Option
+            .error("found a model, expected the calibration.json whose numbers are written into the URDF")
+            .in_file(&calibration.path));
     };
     let text = source_text::read(urdf, "a URDF robot description")?;
     let kept = file.inputs.urdf.as_ref();
@@ -62,7 +63,7 @@ pub fn onto(calibration: &Model, urdf: &Path, selection: &ChainSelection) -> Res
 
 /// Refuses a URDF that is not the nominal robot of the calibration, whose joint frames may be known.
 fn refuse_other(nominal: &Robot, found: &Robot, urdf: &Path, has_frames: bool) -> Result<()> {
-    let refuse = |message: String| Err(Error::new(ErrorKind::Export, message).in_file(urdf));
+    let refuse = |message: String| Err(ErrorKind::Export.error(message).in_file(urdf));
     let names = |robot: &Robot| -> Vec<String> { robot.joints.iter().map(|it| it.name.clone()).collect() };
     let (expected, own) = (names(nominal), names(found));
     if let Some(name) = own.iter().find(|name| !expected.contains(name)) {

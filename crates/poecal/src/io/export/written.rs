@@ -78,7 +78,7 @@ pub(super) fn left_out(robot: &Robot) -> Option<String> {
 
 /// An error of a form that cannot hold a robot.
 pub(super) fn export_error(message: String) -> Error {
-    Error::new(ErrorKind::Export, message)
+    ErrorKind::Export.error(message)
 }
 
 /// An error of a text that was just written and cannot be read.

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use super::links::{LinkJoint, LinkJointKind, Links};
-use crate::error::{Error, ErrorKind, Result, first_few};
+use crate::error::{ErrorKind, Result, first_few};
 use crate::forms::AxisFrames;
 use crate::io::yaml::{Value, values};
 use crate::lie::Pose;
@@ -26,7 +26,7 @@ const UR: [(&str, &str); 6] = [
 pub(super) fn read(text: &str, path: &Path) -> Result<Links> {
     let values = values(text, path, EXPECTED)?;
     let refuse = |found: String| {
-        Err(Error::new(ErrorKind::Model, format!("found {found}, expected {EXPECTED}")).in_file(path))
+        Err(ErrorKind::Model.error(format!("found {found}, expected {EXPECTED}")).in_file(path))
     };
     let Some(first) = values.first() else { return refuse("no values".to_owned()) };
     // Franka's numbers lie deeper, and have nothing above.
@@ -100,8 +100,9 @@ fn origin(of: Option<&BTreeMap<&str, &Value>>, path: &Path, key: &str) -> Result
     let mut numbers = [0.0; 6];
     for (number, name) in numbers.iter_mut().zip(NUMBERS) {
         let Some(value) = of.and_then(|of| of.get(name)) else {
-            let message = format!("found no `{name}` of `{key}`, expected {}", NUMBERS.join(", "));
-            return Err(Error::new(ErrorKind::Model, message).in_file(path));
+            return Err(ErrorKind::Model
+                .error(format!("found no `{name}` of `{key}`, expected {}", NUMBERS.join(", ")))
+                .in_file(path));
         };
         *number = value.number(path)?;
     }

@@ -35,15 +35,15 @@ pub(super) fn read(text: &str, path: &Path, beside: Option<(&str, &Path)>) -> Re
         let mut found = lines.iter().filter(|line| line.section == section && line.key == key);
         let (first, second) = (found.next(), found.next());
         if let Some(line) = second {
-            let message = format!("found `{key}` a second time in [{section}], expected it once");
-            return Err(Error::new(ErrorKind::Model, message).at_line(line.path, line.number));
+            return Err(ErrorKind::Model
+                .error(format!("found `{key}` a second time in [{section}], expected it once"))
+                .at_line(line.path, line.number));
         }
         first.map(Line::numbers).transpose()
     };
     let nominal = |key: &str| -> Result<[f64; JOINTS]> {
         list("DH", key)?.ok_or_else(|| {
-            let message = format!("found no `{key}` in [DH], expected {EXPECTED}");
-            Error::new(ErrorKind::Model, message).in_file(path)
+            ErrorKind::Model.error(format!("found no `{key}` in [DH], expected {EXPECTED}")).in_file(path)
         })
     };
     let (a, d, alpha) = (nominal("a")?, nominal("d")?, nominal("alpha")?);
@@ -51,9 +51,8 @@ pub(super) fn read(text: &str, path: &Path, beside: Option<(&str, &Path)>) -> Re
         lines.iter().find(|line| line.section == "mounting" && line.key == "calibration_status")
         && line.value == "0"
     {
-        let message = "found calibration_status = 0, which says that the controller has no calibration, expected 1 or 2: leave the file out and \
-                       read urcontrol.conf, the nominal arm";
-        return Err(Error::new(ErrorKind::Model, message).at_line(line.path, line.number));
+        return Err(ErrorKind::Model.error("found calibration_status = 0, which says that the controller has no calibration, expected 1 or 2: leave the file out and \
+                       read urcontrol.conf, the nominal arm").at_line(line.path, line.number));
     }
     let mut found = [None; 4];
     for (found, key) in found.iter_mut().zip(DELTAS) {
@@ -62,9 +61,13 @@ pub(super) fn read(text: &str, path: &Path, beside: Option<(&str, &Path)>) -> Re
     let missing: Vec<&str> =
         DELTAS.into_iter().zip(&found).filter_map(|(key, it)| it.is_none().then_some(key)).collect();
     if !missing.is_empty() && missing.len() < DELTAS.len() {
-        let message =
-            format!("found no {} in [mounting], expected all of {}", missing.join(", "), DELTAS.join(", "));
-        return Err(Error::new(ErrorKind::Model, message).in_file(path));
+        return Err(ErrorKind::Model
+            .error(format!(
+                "found no {} in [mounting], expected all of {}",
+                missing.join(", "),
+                DELTAS.join(", ")
+            ))
+            .in_file(path));
     }
     let deltas = found.map(Option::unwrap_or_default);
     let rows: Vec<DhRow> = (0..JOINTS)
@@ -97,8 +100,9 @@ struct Line<'a> {
 impl Line<'_> {
     fn numbers(&self) -> Result<[f64; JOINTS]> {
         let refuse = |found: String| {
-            let message = format!("found {found} for `{}`, expected six numbers in brackets", self.key);
-            Error::new(ErrorKind::Model, message).at_line(self.path, self.number)
+            ErrorKind::Model
+                .error(format!("found {found} for `{}`, expected six numbers in brackets", self.key))
+                .at_line(self.path, self.number)
         };
         let inside = self.value.strip_prefix('[').and_then(|rest| rest.strip_suffix(']'));
         let Some(inside) = inside else { return Err(refuse(format!("`{}`", self.value))) };

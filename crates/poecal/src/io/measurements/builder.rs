@@ -72,8 +72,9 @@ impl<'a> Builder<'a> {
         let names = robot.reading_names();
         let readings: BTreeSet<String> = names.iter().cloned().collect();
         if let Some(name) = map.joints.keys().find(|name| !readings.contains(*name)) {
-            let message = format!("found the joint `{name}`, expected one of {}", first_few(&names));
-            return Err(Error::new(ErrorKind::Measurement, message).in_file(&map.path));
+            return Err(ErrorKind::Measurement
+                .error(format!("found the joint `{name}`, expected one of {}", first_few(&names)))
+                .in_file(&map.path));
         }
         let used = vec![false; header.cells.len()];
         let has_all = |kept: &&Controller| {
@@ -119,10 +120,9 @@ impl<'a> Builder<'a> {
     /// Adds the number of a factor, in whatever unit its column is.
     fn factor_input(&mut self, name: &str) -> Result<()> {
         if is_our_name(name) {
-            let message = format!(
+            return ErrorKind::Option.refuse(format!(
                 "found the factor `{name}`, expected a column without a meaning of its own: rename it"
-            );
-            return Err(Error::new(ErrorKind::Option, message));
+            ));
         }
         let column = self.text_column(name, "for the factor")?;
         if name == FactorReading::PAYLOAD {
@@ -162,9 +162,11 @@ impl<'a> Builder<'a> {
         let unit_from = if stated.is_some() { UnitSource::Mapping } else { UnitSource::Si };
         if unit.to_si(value).abs() > LARGEST_NUMBER {
             let si = NamedUnit::from(quantity).symbol();
-            let message =
-                format!("found the value {value:?} {purpose}, expected at most {LARGEST_NUMBER:e} {si}");
-            return Err(Error::new(ErrorKind::Measurement, message).in_file(&self.map.path));
+            return Err(ErrorKind::Measurement
+                .error(format!(
+                    "found the value {value:?} {purpose}, expected at most {LARGEST_NUMBER:e} {si}"
+                ))
+                .in_file(&self.map.path));
         }
         Ok(self.constant_input(name, unit.to_si(value), (unit, unit_from)))
     }
@@ -187,10 +189,9 @@ impl<'a> Builder<'a> {
         let Some(input) = self.inputs.get_mut(at) else { return Ok(()) };
         let added = input.unit.to_si(offset);
         if !self.readings.contains(&input.name) || added.abs() > LARGEST_NUMBER {
-            let message = format!(
+            return Err(ErrorKind::Measurement.error(format!(
                 "found the offset {offset:?} {purpose}, expected one of a joint's reading, of at most {LARGEST_NUMBER:e}"
-            );
-            return Err(Error::new(ErrorKind::Measurement, message).in_file(&self.map.path));
+            )).in_file(&self.map.path));
         }
         (input.sum, input.offset) = (input.terms(), added);
         Ok(())
@@ -246,9 +247,11 @@ impl<'a> Builder<'a> {
         purpose: &str,
     ) -> Result<usize> {
         if !self.readings.contains(name) {
-            let message =
-                format!("found `columns` {purpose}, expected one column: only joints are sums of columns");
-            return Err(Error::new(ErrorKind::Measurement, message).in_file(&self.map.path));
+            return Err(ErrorKind::Measurement
+                .error(format!(
+                    "found `columns` {purpose}, expected one column: only joints are sums of columns"
+                ))
+                .in_file(&self.map.path));
         }
         let columns: Vec<_> =
             columns.iter().map(|(column, &factor)| (column.clone(), factor, None)).collect();

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use serde::Serialize;
 
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::{ErrorKind, Result};
 use crate::io::csv_text::plain;
 
 /// Separator of cells.
@@ -199,7 +199,7 @@ pub(super) fn split_line<'a>(
     cells: &mut Vec<Cell<'a>>,
 ) -> Result<()> {
     split(text, separator, cells).map_err(|(offset, message)| {
-        Error::new(ErrorKind::Syntax, message).at(path, line, character_column(text, offset))
+        ErrorKind::Syntax.error(message).at(path, line, character_column(text, offset))
     })
 }
 

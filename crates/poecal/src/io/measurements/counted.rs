@@ -3,15 +3,14 @@
 use super::builder::Builder;
 use super::inputs::{Input, Term};
 use super::units::{NamedUnit, UnitSource};
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::{ErrorKind, Result};
 use crate::robot::{Controller, ControllerColumn, ControllerReading, Robot, ThirdAxis, level};
 use crate::unit::Unit;
 
 impl Builder<'_> {
     /// Takes the third axis as it counts.
     pub(super) fn third_axis(&mut self, robot: &Robot, names: &[String], counts: ThirdAxis) -> Result<()> {
-        let in_map =
-            |message: String| Err(Error::new(ErrorKind::Measurement, message).in_file(&self.map.path));
+        let in_map = |message: String| Err(ErrorKind::Measurement.error(message).in_file(&self.map.path));
         let at = |name: &String| names.iter().position(|it| it == name);
         let found =
             level(robot).and_then(|(second, third, factor)| Some((at(&second)?, at(&third)?, factor)));

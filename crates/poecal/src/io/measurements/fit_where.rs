@@ -42,8 +42,8 @@ impl FromStr for FitWhere {
         let is_whole =
             |rule: &FitWhere| !rule.column.is_empty() && rule.values.iter().all(|value| !value.is_empty());
         parts.filter(is_whole).ok_or_else(|| {
-            let message = format!("found `{text}` as the rows to fit, expected COLUMN=VALUE[,VALUE]");
-            Error::new(ErrorKind::Option, message)
+            ErrorKind::Option
+                .error(format!("found `{text}` as the rows to fit, expected COLUMN=VALUE[,VALUE]"))
         })
     }
 }

@@ -106,9 +106,12 @@ impl<'a> Header<'a> {
         let mut cells = Vec::new();
         split_line(path, line, text, separator, &mut cells)?;
         if cells.iter().all(|cell| is_number(&cell.text())) {
-            let message = "found a line of numbers, expected a header that names the columns \
-                           (a line that begins with `#` is a comment)";
-            return Err(Error::new(ErrorKind::Syntax, message).at_line(path, line));
+            return Err(ErrorKind::Syntax
+                .error(
+                    "found a line of numbers, expected a header that names the columns \
+                           (a line that begins with `#` is a comment)",
+                )
+                .at_line(path, line));
         }
         let cells = header_cells(text, &cells);
         let mut named: BTreeMap<String, (usize, Option<usize>)> = BTreeMap::new();
@@ -179,11 +182,9 @@ impl<'a> Header<'a> {
         let below = below.map(|(line, (column, unit))| (line, *column, bare(unit)));
         let stated = cell.unit.as_deref().map(|unit| (self.line, cell.column, unit));
         match stated.into_iter().chain(below).find(|(.., unit)| *unit != expected) {
-            Some((line, column, unit)) => {
-                let message =
-                    format!("found the unit `{unit}` of `{}`, expected `{expected}` or none", cell.name);
-                Err(Error::new(ErrorKind::Unit, message).at(self.path, line, column))
-            }
+            Some((line, column, unit)) => Err(ErrorKind::Unit
+                .error(format!("found the unit `{unit}` of `{}`, expected `{expected}` or none", cell.name))
+                .at(self.path, line, column)),
             None => Ok(()),
         }
     }
@@ -198,7 +199,7 @@ impl<'a> Header<'a> {
         let Some(cell) = self.cells.get(index) else { return Ok(None) };
         let parse = |symbol: &str, place: (usize, usize)| {
             NamedUnit::parse_for(symbol, quantity, &format!(" {purpose}"))
-                .map_err(|error| Error::new(ErrorKind::Unit, error.message()).at(self.path, place.0, place.1))
+                .map_err(|error| ErrorKind::Unit.error(error.message()).at(self.path, place.0, place.1))
         };
         let in_header = cell.unit.as_deref().map(|unit| parse(unit, (self.line, cell.column))).transpose()?;
         let Some((line, (column, symbol))) = self.units_line.zip(cell.below.as_ref()) else {
@@ -207,13 +208,12 @@ impl<'a> Header<'a> {
         let below = parse(symbol, (line, *column))?;
         match in_header {
             Some(unit) if unit != below => {
-                let message = format!(
+                Err(ErrorKind::Unit.error(format!(
                     "found the unit `{symbol}` below `{}`, expected `{}` as in the header (line {}), or an empty cell",
                     cell.text,
                     unit.symbol(),
                     self.line
-                );
-                Err(Error::new(ErrorKind::Unit, message).at(self.path, line, *column))
+                )).at(self.path, line, *column))
             }
             Some(unit) => Ok(Some((unit, UnitSource::Header))),
             None => Ok(Some((below, UnitSource::UnitsLine))),
@@ -264,8 +264,9 @@ impl<'a> Header<'a> {
             return Ok(index);
         }
         let hint = self.no_header(name).unwrap_or_else(|| self.other_names(name, is_known) + advice);
-        let message = format!("found no column `{name}`, expected one {purpose}; {hint}");
-        Err(Error::new(ErrorKind::Measurement, message).at_line(self.path, self.line))
+        Err(ErrorKind::Measurement
+            .error(format!("found no column `{name}`, expected one {purpose}; {hint}"))
+            .at_line(self.path, self.line))
     }
 
     /// Message if this line is no header.

@@ -43,11 +43,10 @@ fn metres(text: &str, whole: &str) -> Result<f64> {
 }
 
 fn bad(text: &str) -> Error {
-    let message = format!(
+    ErrorKind::Option.error(format!(
         "found `{text}` as the noise of an instrument, expected a standard deviation in all directions and one across the line of sight for \
          each metre, like tracker:10um+5um/m"
-    );
-    Error::new(ErrorKind::Option, message)
+    ))
 }
 
 impl InstrumentNoise {
@@ -86,8 +85,7 @@ impl InstrumentNoise {
             [] => "no name, since no row names its instrument".to_owned(),
             _ => format!("one of {}", first_few(&named)),
         };
-        let message = format!("found noise of the instrument `{name}`, expected {expected}");
-        Error::new(ErrorKind::Option, message)
+        ErrorKind::Option.error(format!("found noise of the instrument `{name}`, expected {expected}"))
     }
 }
 
@@ -101,7 +99,7 @@ fn incomplete(data: &Dataset, row: usize, seen: &Measurement) -> Error {
         missing.map_or("x", |(name, _)| name)
     );
     let source = data.observations[row].source;
-    let error = Error::new(ErrorKind::Measurement, message);
+    let error = ErrorKind::Measurement.error(message);
     match data.files.get(source.file as usize) {
         Some(path) => error.at_line(path, source.line as usize),
         None => error,

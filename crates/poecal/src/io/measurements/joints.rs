@@ -10,7 +10,7 @@ use super::number::Numbers;
 use super::scale::JointWatch;
 use super::table::{Table, refuse_more_rows};
 use super::text::Blocks;
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::{ErrorKind, Result};
 use crate::robot::Robot;
 use crate::text::visible;
 
@@ -82,8 +82,9 @@ fn of_blocks<'p>(
         }
     }
     if joints.rows == 0 {
-        let message = "found a header and no rows, expected at least one row of joint readings";
-        return Err(Error::new(ErrorKind::Measurement, message).at_line(path, table.header.line));
+        return Err(ErrorKind::Measurement
+            .error("found a header and no rows, expected at least one row of joint readings")
+            .at_line(path, table.header.line));
     }
     let mut warnings = watch.finish(path, &layout, &inputs.ranges)?;
     warnings.extend(layout.joint_words().into_iter().map(|words| format!("{}: {words}", path.display())));

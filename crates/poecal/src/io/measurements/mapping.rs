@@ -163,7 +163,7 @@ impl ColumnMap {
                            that the file's poses point"
                     .to_owned();
             }
-            let found = Error::new(ErrorKind::Syntax, message);
+            let found = ErrorKind::Syntax.error(message);
             match error.span() {
                 Some(span) => found.at_offset(path, text, span.start),
                 None => found.in_file(path),
@@ -187,7 +187,7 @@ impl ColumnMap {
     }
 
     fn check(&self) -> Result<()> {
-        let error = |message: String| Err(Error::new(ErrorKind::Syntax, message));
+        let error = |message: String| ErrorKind::Syntax.refuse(message);
         if self.target.is_some() && self.target_name.is_some() {
             return error("found both `target` and `target_name`, expected one of them".to_owned());
         }
@@ -229,7 +229,7 @@ impl TryFrom<OrientationFields> for OrientationSpec {
             Some(columns) => columns,
             None => form.own_columns().iter().map(|name| (*name).to_owned()).collect(),
         };
-        let error = |message: String| Err(Error::new(ErrorKind::Syntax, message));
+        let error = |message: String| ErrorKind::Syntax.refuse(message);
         if columns.len() != form.len() {
             return error(format!("found {} `columns`, expected {} ({form})", columns.len(), form.len()));
         }
@@ -336,9 +336,8 @@ fn third_axis<'de, D: Deserializer<'de>>(
     parsed(deserializer, |text| match text {
         "arm" => Ok(ThirdAxis::Arm),
         "level" => Ok(ThirdAxis::Level),
-        _ => Err(Error::new(
-            ErrorKind::Syntax,
-            format!("found the third axis `{text}`, expected `arm` or `level`, from which it counts"),
+        _ => ErrorKind::Syntax.refuse(format!(
+            "found the third axis `{text}`, expected `arm` or `level`, from which it counts"
         )),
     })
 }
@@ -349,10 +348,8 @@ fn separator<'de, D: Deserializer<'de>>(deserializer: D) -> std::result::Result<
         ";" => Ok(Separator::Semicolon),
         "\t" | "tab" => Ok(Separator::Tab),
         " " | "whitespace" => Ok(Separator::Whitespace),
-        _ => Err(Error::new(
-            ErrorKind::Syntax,
-            format!("found the separator `{text}`, expected `,`, `;`, `tab` or `whitespace`"),
-        )),
+        _ => ErrorKind::Syntax
+            .refuse(format!("found the separator `{text}`, expected `,`, `;`, `tab` or `whitespace`")),
     })
 }
 
@@ -362,9 +359,6 @@ fn decimal_sign<'de, D: Deserializer<'de>>(
     parsed(deserializer, |text| match text {
         "." => Ok(DecimalSign::Point),
         "," => Ok(DecimalSign::Comma),
-        _ => Err(Error::new(
-            ErrorKind::Syntax,
-            format!("found the decimal sign `{text}`, expected `.` or `,`"),
-        )),
+        _ => ErrorKind::Syntax.refuse(format!("found the decimal sign `{text}`, expected `.` or `,`")),
     })
 }

@@ -149,13 +149,10 @@ impl FromStr for OrientationForm {
                 _ => None,
             },
         };
-        form.ok_or_else(|| {
-            let message = format!(
+        form.ok_or_else(|| ErrorKind::Syntax.error(format!(
                 "found the orientation form `{text}`, expected quaternion_xyzw, quaternion_wxyz, rotation_vector, \
                  rotation_matrix, rotation_matrix_by_columns, roll_pitch_yaw, or intrinsic_ or extrinsic_ and three axes such as intrinsic_xyz"
-            );
-            Error::new(ErrorKind::Syntax, message)
-        })
+            )))
     }
 }
 

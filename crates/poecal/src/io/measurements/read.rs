@@ -39,7 +39,7 @@ pub fn read(paths: &[impl AsRef<Path>], robot: &Robot, options: &ReadOptions) ->
 /// Compiled once, and not for each kind of path.
 fn read_all(paths: &[&Path], robot: &Robot, options: &ReadOptions) -> Result<MeasurementFile> {
     if paths.is_empty() {
-        return Err(Error::new(ErrorKind::Option, "found no measurement file, expected at least one"));
+        return ErrorKind::Option.refuse("found no measurement file, expected at least one");
     }
     let no_map = ColumnMap::default();
     let mut reader = Reader::new(robot, options, &no_map);
@@ -204,8 +204,7 @@ impl<'a> Reader<'a> {
         let (watch, rows, lost) = self.rows(&mut table, &layout, &mut inputs)?;
         self.refuse_single_rows(path)?;
         self.found.sha256.extend(table.sha256().map(|sha256| (path.display().to_string(), sha256)));
-        let refuse =
-            |message| Err(Error::new(ErrorKind::Measurement, message).at_line(path, table.header.line));
+        let refuse = |message| Err(ErrorKind::Measurement.error(message).at_line(path, table.header.line));
         if rows == 0 {
             return refuse("found a header and no rows, expected at least one measurement");
         }
@@ -254,10 +253,9 @@ impl<'a> Reader<'a> {
     /// Refuses a pair of which one row is missing.
     fn refuse_single_rows(&mut self, path: &Path) -> Result<()> {
         if let Some((name, (_, line))) = self.begun.iter().find(|(_, (index, _))| index.is_some()) {
-            let message = format!(
+            return Err(ErrorKind::Measurement.error(format!(
                 "found one row of the pair `{name}`, expected two: the instrument's configuration, then the target's with what was measured"
-            );
-            return Err(Error::new(ErrorKind::Measurement, message).at_line(path, *line));
+            )).at_line(path, *line));
         }
         self.begun.clear();
         Ok(())
@@ -338,12 +336,13 @@ impl<'a> Reader<'a> {
         if !is_first && words(&self.found.data.controller) != words(&layout.controller) {
             let shown =
                 |it: &Option<Controller>| it.as_ref().map_or("one by one".to_owned(), Controller::words);
-            let message = format!(
-                "found joint readings of columns {} after a file with {}, expected the same in all files",
-                shown(&layout.controller),
-                shown(&self.found.data.controller)
-            );
-            return Err(Error::new(ErrorKind::Measurement, message).in_file(path));
+            return Err(ErrorKind::Measurement
+                .error(format!(
+                    "found joint readings of columns {} after a file with {}, expected the same in all files",
+                    shown(&layout.controller),
+                    shown(&self.found.data.controller)
+                ))
+                .in_file(path));
         }
         self.found.data.controller.clone_from(&layout.controller);
         Ok(())
@@ -374,7 +373,7 @@ impl<'a> Reader<'a> {
         {
             let message =
                 format!("found no row with `{value}` in column `{column}`, expected at least one to fit");
-            let error = Error::new(ErrorKind::Option, message);
+            let error = ErrorKind::Option.error(message);
             return Err(match self.found.data.files.as_slice() {
                 [only] => error.in_file(only),
                 _ => error,

@@ -13,7 +13,7 @@ use super::scale::JointWatch;
 use super::table::{Table, TableRows};
 use super::text::Blocks;
 use super::units::NamedUnit;
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::{ErrorKind, Result};
 use crate::io::numbers::push_number;
 use crate::robot::{Counting, Robot};
 use crate::text::visible;
@@ -71,8 +71,9 @@ pub fn rewrite_joints(
         out(&row_of.text)?;
     }
     if rewritten.rows == 0 {
-        let message = "found a header and no rows, expected at least one row of joint readings";
-        return Err(Error::new(ErrorKind::Measurement, message).at_line(path, table.header.line));
+        return Err(ErrorKind::Measurement
+            .error("found a header and no rows, expected at least one row of joint readings")
+            .at_line(path, table.header.line));
     }
     let mut warnings = watch.finish(path, &layout, &inputs.ranges)?;
     warnings.extend(layout.joint_words().into_iter().map(|words| format!("{}: {words}", path.display())));
@@ -95,12 +96,13 @@ fn columns(
             terms.iter().filter(|it| header.cells.get(it.column).is_some_and(|cell| cell.name == *name));
         let Some(first) = own.next() else { continue };
         if let Some(other) = own.find(|it| it.unit.symbol() != first.unit.symbol()) {
-            let message = format!(
-                "found column `{name}` in {} and in {} by the mapping, expected one unit",
-                first.unit.symbol(),
-                other.unit.symbol()
-            );
-            return Err(Error::new(ErrorKind::Measurement, message).in_file(header.path));
+            return Err(ErrorKind::Measurement
+                .error(format!(
+                    "found column `{name}` in {} and in {} by the mapping, expected one unit",
+                    first.unit.symbol(),
+                    other.unit.symbol()
+                ))
+                .in_file(header.path));
         }
         columns.push((first.column, first.unit));
     }
@@ -110,11 +112,10 @@ fn columns(
 /// The way back from readings that are sums to their columns; `None` where each reading is a column.
 fn counting(layout: &ColumnLayout, path: &Path) -> Result<Option<Counting>> {
     if let Some(input) = layout.inputs.iter().find(|it| matches!(it.source, InputSource::Constant(_))) {
-        let message = format!(
+        return Err(ErrorKind::Measurement.error(format!(
             "joint `{}` is a constant by the mapping, expected a column of its own, which can be corrected",
             input.name
-        );
-        return Err(Error::new(ErrorKind::Measurement, message).in_file(path));
+        )).in_file(path));
     }
     let sums = layout.controller.as_ref().filter(|it| !it.is_plain());
     sums.map(|it| it.counting().map_err(|error| error.in_file(path))).transpose()

@@ -11,7 +11,7 @@ use super::lost::{NAMED_LINES, named_lines};
 use super::table::Row;
 use super::units::{NamedUnit, UnitSource};
 use crate::distributions::{median, median_point};
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::{ErrorKind, Result};
 use crate::measurement::Observation;
 use crate::robot::{Joint, JointKind, Limits, Robot};
 use crate::unit::Unit;
@@ -122,8 +122,9 @@ impl<'a> JointWatch<'a> {
                     range.0.map(|(low, high)| input.unit.from_si(low.abs().max(high.abs())))
                 });
                 let is_per_cent = PER_CENT.contains(&extremes.fold(0.0, f64::max));
-                let message = one.unit_message(input, likely, is_per_cent);
-                return Err(Error::new(ErrorKind::Unit, message).at(path, line, column));
+                return Err(ErrorKind::Unit
+                    .error(one.unit_message(input, likely, is_per_cent))
+                    .at(path, line, column));
             }
             if let Some(limits) = one.joint.limits {
                 warnings.push(one.limit_warning(path, limits, NamedUnit::from(input.unit.of())));
@@ -282,13 +283,12 @@ pub(super) fn check_ranges(path: &Path, robot: &Robot, slides_m: f64, rows: &[Ob
     if !far(range) || (count as f64) < SHARE * ranged().count() as f64 {
         return Ok(());
     }
-    let message = format!(
+    Err(ErrorKind::Unit.error(format!(
         "found distances up to {} m from their middle, where the robot reaches {} m, expected another unit, most likely mm; write \
          the unit in the header, as `distance[mm]`",
         short((range - middle).abs()),
         short(reach)
-    );
-    Err(Error::new(ErrorKind::Unit, message).at_line(path, row.source.line as usize))
+    )).at_line(path, row.source.line as usize))
 }
 
 /// Refuses positions whose spread shows that their unit must be smaller.
@@ -326,7 +326,7 @@ pub(super) fn check_positions(
     let far_of =
         |axis: usize| positions.iter().fold(0.0, |most: f64, it| most.max((it[axis] - middle[axis]).abs()));
     match positions_message(inputs, [0, 1, 2].map(far_of), apart, reach) {
-        Some(message) => Err(Error::new(ErrorKind::Unit, message).at_line(path, line as usize)),
+        Some(message) => Err(ErrorKind::Unit.error(message).at_line(path, line as usize)),
         None => Ok(()),
     }
 }

@@ -44,10 +44,9 @@ fn metres(text: &str, whole: &str) -> Result<f64> {
 }
 
 fn bad(text: &str) -> Error {
-    let message = format!(
+    ErrorKind::Option.error(format!(
         "found `{text}` as the distance of sockets, expected one like 50mm, or pairs by name like A-B=50mm,B-C=70mm"
-    );
-    Error::new(ErrorKind::Option, message)
+    ))
 }
 
 /// The sockets of each place, with the index of their stations.
@@ -73,15 +72,14 @@ impl SocketDistances {
             }
             if found.len() == before {
                 let names: Vec<String> = sockets.values().flatten().map(|(name, _)| name.clone()).collect();
-                let message = match (pair, names.as_slice()) {
+                return ErrorKind::Option.refuse(match (pair, names.as_slice()) {
                     (_, []) => "found a distance of sockets and no row that names a socket, expected a column `socket`".to_owned(),
                     (Some(pair), names) => format!(
                         "found the sockets `{pair}` and no place that has both, expected two of {}",
                         first_few(names)
                     ),
                     (None, _) => "found a distance of sockets and only one socket in each place, expected two".to_owned(),
-                };
-                return Err(Error::new(ErrorKind::Option, message));
+                });
             }
         }
         Ok(found)
@@ -91,13 +89,12 @@ impl SocketDistances {
 fn too_many(place: &str, sockets: &[(String, usize)]) -> Error {
     let names: Vec<String> = sockets.iter().map(|(name, _)| name.clone()).collect();
     let place = if place.is_empty() { String::new() } else { format!(" in the place `{place}`") };
-    let message = format!(
+    ErrorKind::Option.error(format!(
         "found the sockets {}{place} and one distance, expected the distances of pairs by name, like `{}-{}=50mm`",
         first_few(&names),
         names.first().map_or("A", String::as_str),
         names.get(1).map_or("B", String::as_str)
-    );
-    Error::new(ErrorKind::Option, message)
+    ))
 }
 
 /// The stations of a pair by name, wherever names have a hyphen themselves.

@@ -10,7 +10,7 @@ use super::layout::ColumnLayout;
 use super::scale::short;
 use super::units::NamedUnit;
 use crate::distributions::{median, median_point};
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::{ErrorKind, Result};
 use crate::lie::Pose;
 use crate::measurement::Dataset;
 use crate::robot::{Mount, Robot};
@@ -82,7 +82,7 @@ pub(super) fn check(
         None => Ok(()),
         Some((input, message)) => Err(match input.source {
             InputSource::Column(column) => header.error(ErrorKind::Unit, column, message),
-            InputSource::Constant(_) => Error::new(ErrorKind::Unit, message).in_file(path),
+            InputSource::Constant(_) => ErrorKind::Unit.error(message).in_file(path),
         }),
     }
 }

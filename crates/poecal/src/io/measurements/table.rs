@@ -45,10 +45,8 @@ impl<'a> Table<'a> {
     /// Reads the header with the lines of separator and units; the separator is the mapping's, stated or recognised.
     pub(super) fn open(path: &'a Path, mut blocks: Blocks<'a>, map: &ColumnMap) -> Result<Self> {
         blocks.advance()?;
-        let none = || {
-            let message = "found no line with text, expected a header and rows";
-            Error::new(ErrorKind::Syntax, message).in_file(path)
-        };
+        let none =
+            || ErrorKind::Syntax.error("found no line with text, expected a header and rows").in_file(path);
         let (mut line, mut text) = next_line(&mut blocks, map.skip_lines)?.ok_or_else(none)?;
         if let Some(error) = model_for_table(&text, path, line) {
             return Err(error);
@@ -121,12 +119,13 @@ impl TableRows<'_> {
                     Some(extra) => character_column(text, extra.offset),
                     None => text.trim_end().chars().count() + 1,
                 };
-                let message = format!(
-                    "found {found} cell{}, expected {expected} as in the header (line {header_line}){}",
-                    if found == 1 { "" } else { "s" },
-                    self.count_hint(text)
-                );
-                return Err(Error::new(ErrorKind::Syntax, message).at(path, line, place));
+                return Err(ErrorKind::Syntax
+                    .error(format!(
+                        "found {found} cell{}, expected {expected} as in the header (line {header_line}){}",
+                        if found == 1 { "" } else { "s" },
+                        self.count_hint(text)
+                    ))
+                    .at(path, line, place));
             }
             for (at, name) in &self.header.names {
                 if let Some(cell) = self.cells.get(*at).filter(|cell| cell.text().trim() != name) {
@@ -136,7 +135,7 @@ impl TableRows<'_> {
                         self.header.cells.get(*at).map_or("", |it| it.text.as_str())
                     );
                     let place = character_column(text, cell.offset);
-                    return Err(Error::new(ErrorKind::Measurement, message).at(path, line, place));
+                    return Err(ErrorKind::Measurement.error(message).at(path, line, place));
                 }
             }
             return Ok(Some(Row { path, line, text, cells: &self.cells }));
@@ -199,10 +198,9 @@ fn stated_separator(path: &Path, line: usize, text: &str) -> Result<Option<Separ
     let separator = characters.next().and_then(Separator::of);
     match separator {
         Some(separator) if characters.all(|c| separator.matches(c) || c == ' ') => Ok(Some(separator)),
-        _ => {
-            let message = format!("found the separator `{stated}`, expected `,`, `;`, a tab or a blank");
-            Err(Error::new(ErrorKind::Syntax, message).at(path, line, 1))
-        }
+        _ => Err(ErrorKind::Syntax
+            .error(format!("found the separator `{stated}`, expected `,`, `;`, a tab or a blank"))
+            .at(path, line, 1)),
     }
 }
 
@@ -214,8 +212,9 @@ pub(super) fn refuse_more_rows(read: usize, row: &Row<'_>) -> Result<()> {
     if read <= MOST_ROWS {
         return Ok(());
     }
-    let message = "found more than 10,000,000 measurements, expected fewer: leave some out";
-    Err(Error::new(ErrorKind::Measurement, message).at_line(row.path, row.line))
+    Err(ErrorKind::Measurement
+        .error("found more than 10,000,000 measurements, expected fewer: leave some out")
+        .at_line(row.path, row.line))
 }
 
 impl Row<'_> {
@@ -228,7 +227,7 @@ impl Row<'_> {
     /// An error at a cell.
     pub(super) fn error(&self, index: usize, message: impl Into<String>) -> Error {
         let (line, column) = self.place(index);
-        Error::new(ErrorKind::Measurement, message).at(self.path, line, column)
+        ErrorKind::Measurement.error(message).at(self.path, line, column)
     }
 }
 

@@ -102,9 +102,12 @@ impl<'a> Blocks<'a> {
                 break;
             }
             if bytes.len() > LONGEST_LINE {
-                let message =
-                    format!("found a line longer than {} MiB, expected a table (CSV)", LONGEST_LINE >> 20);
-                return Err(Error::new(ErrorKind::Syntax, message).at_line(self.path, self.lines + 1));
+                return Err(ErrorKind::Syntax
+                    .error(format!(
+                        "found a line longer than {} MiB, expected a table (CSV)",
+                        LONGEST_LINE >> 20
+                    ))
+                    .at_line(self.path, self.lines + 1));
             }
         }
         let is_first = self.newline.is_none();
@@ -167,7 +170,7 @@ fn not_utf8(path: &Path, bytes: &[u8], valid: usize, lines: usize) -> Error {
     let is_utf16 = is_marked || matches!(bytes, [0, 1..=255, 0, 1..=255, ..] | [1..=255, 0, 1..=255, 0, ..]);
     if lines == 0 && is_utf16 {
         let message = "found UTF-16 text, expected UTF-8; save the file as `CSV UTF-8`";
-        return Error::new(ErrorKind::Syntax, message).in_file(path);
+        return ErrorKind::Syntax.error(message).in_file(path);
     }
     let before = String::from_utf8_lossy(bytes.get(..valid).unwrap_or_default());
     let found = match bytes.get(valid) {
@@ -175,8 +178,11 @@ fn not_utf8(path: &Path, bytes: &[u8], valid: usize, lines: usize) -> Error {
         Some(found) => format!("the byte 0x{found:02X}"),
     };
     let (line, column) = position(&before, before.len());
-    let message = format!("found {found}, expected UTF-8 text; save the file as `CSV UTF-8`");
-    Error::new(ErrorKind::Syntax, message).at(path, lines + line, column)
+    ErrorKind::Syntax.error(format!("found {found}, expected UTF-8 text; save the file as `CSV UTF-8`")).at(
+        path,
+        lines + line,
+        column,
+    )
 }
 
 /// Lines with their number (from 1) that are neither blank nor a comment (`#`).

@@ -10,7 +10,7 @@ use super::layout::ColumnLayout;
 use super::mapping::ColumnMap;
 use super::orientation::OrientationForm;
 use super::table::Row;
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::{ErrorKind, Result};
 
 /// Least share of rows with implausible angles: a few corrupt rows are no wrong unit.
 const SHARE: f64 = 0.1;
@@ -87,7 +87,7 @@ impl TurnWatch {
         let what =
             if first.is_vector { "rotation vectors as long as" } else { "angles of an orientation up to" };
         let degrees: Vec<String> = first.columns.iter().map(|name| format!("`{name}[deg]`")).collect();
-        let message = format!(
+        Err(ErrorKind::Unit.error(format!(
             "found {what} {:.1} rad in the columns {} ({} of {} rows are beyond {:.1} rad), expected radians: the unit is likely deg, \
              which the header states as {} and a mapping as `unit = \"deg\"`",
             self.largest,
@@ -96,8 +96,7 @@ impl TurnWatch {
             self.rows,
             first.most,
             degrees.join(", ")
-        );
-        Err(Error::new(ErrorKind::Unit, message).at(path, first.line, first.column))
+        )).at(path, first.line, first.column))
     }
 }
 

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use serde::Serialize;
 
-use crate::error::{Error, ErrorKind, Result, nearest};
+use crate::error::{ErrorKind, Result, nearest};
 use crate::unit::Unit;
 
 /// Source of a column's unit.
@@ -110,8 +110,8 @@ impl NamedUnit {
             _ => String::new(),
         };
         let (words, symbols) = (words(of), symbols.join(", "));
-        let message = format!("found the unit `{symbol}`{purpose}, expected {words} ({symbols}){hint}");
-        Err(Error::new(ErrorKind::Unit, message))
+        ErrorKind::Unit
+            .refuse(format!("found the unit `{symbol}`{purpose}, expected {words} ({symbols}){hint}"))
     }
 
     /// The unit of this symbol, of any quantity.
@@ -123,7 +123,7 @@ impl NamedUnit {
         unit.map_err(|_| {
             let symbols = UNITS.iter().filter(|unit| **unit != ONE).map(|unit| unit.symbol);
             let symbols = symbols.collect::<Vec<_>>().join(", ");
-            Error::new(ErrorKind::Unit, format!("found the unit `{symbol}`, expected one of {symbols}"))
+            ErrorKind::Unit.error(format!("found the unit `{symbol}`, expected one of {symbols}"))
         })
     }
 

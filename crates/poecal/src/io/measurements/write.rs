@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 
 use super::kinds::{Kind, kinds};
 use super::units::NamedUnit;
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::{ErrorKind, Result};
 use crate::io::csv_text;
 use crate::measurement::{Dataset, Measurement, Noise, Observation, Quantity};
 use crate::robot::{ReadingKind, Robot};
@@ -186,18 +186,16 @@ pub(super) fn header(names: &[String], units: &[NamedUnit], orientations: bool) 
 /// Refuses joints with names that could not be read back beside these columns.
 pub(super) fn refuse_names(names: &[String], measured: &[&str]) -> Result<()> {
     if let Some(name) = names.iter().find(|name| measured.contains(&name.as_str())) {
-        let message = format!(
+        return ErrorKind::Model.refuse(format!(
             "found the joint `{name}` in the model, expected none with the name of a measured column, which could not be \
              read back: rename the joint in the model"
-        );
-        return Err(Error::new(ErrorKind::Model, message));
+        ));
     }
     if let Some(name) = names.iter().find(|name| name.contains(['\n', '\r'])) {
-        let message = format!(
+        return ErrorKind::Model.refuse(format!(
             "found a line break in the name of the joint `{name}`, expected none, since a column of that name could not be read \
              back: rename the joint in the model"
-        );
-        return Err(Error::new(ErrorKind::Model, message));
+        ));
     }
     Ok(())
 }

@@ -34,7 +34,7 @@ impl Existing {
 
 /// An error at a path.
 pub(super) fn refused(path: &Path, message: impl Into<String>) -> Error {
-    Error::new(ErrorKind::File, message).in_file(path)
+    ErrorKind::File.error(message).in_file(path)
 }
 
 /// The object at a path, if there is one.

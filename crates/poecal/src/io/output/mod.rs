@@ -39,7 +39,7 @@ use super::proof::{Difference, Reference};
 use super::residuals::ResidualRows;
 use super::robot_toml;
 use super::urdf::{self, ChainSelection};
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::{ErrorKind, Result};
 use crate::robot::Robot;
 
 /// Number of configurations in which written models are compared with their robot.
@@ -127,11 +127,10 @@ fn prove(files: &[NewFile], folder: &Path, final_folder: &Path) -> Result<Differ
         let difference = reference.difference(&read);
         known = Some(reference);
         if !difference.is_within(TOLERANCE, TOLERANCE) {
-            let message = format!(
+            return ErrorKind::Export.refuse(format!(
                 "{} read back differs from its robot by {:.1e} m and {:.1e} rad, expected at most 1e-9: nothing was written",
                 file.name, difference.position_m, difference.rotation_rad
-            );
-            return Err(Error::new(ErrorKind::Export, message));
+            ));
         }
         largest.position_m = largest.position_m.max(difference.position_m);
         largest.rotation_rad = largest.rotation_rad.max(difference.rotation_rad);

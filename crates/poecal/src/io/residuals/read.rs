@@ -6,7 +6,7 @@ use std::path::Path;
 use super::rows::{
     DIAGNOSTICS, FIRST, INSTRUMENT, MODELS, ModelErrors, ResidualRow, Residuals, RowDiagnostics, columns,
 };
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::{ErrorKind, Result};
 use crate::io::measurements::{Cell, Separator, split};
 use crate::io::source::LARGEST_TABLE;
 use crate::io::source_text;
@@ -51,7 +51,7 @@ impl Residuals {
             });
             is_head = false;
             done.map_err(|(offset, message)| {
-                Error::new(ErrorKind::Syntax, message).at_offset(path, text, start + offset)
+                ErrorKind::Syntax.error(message).at_offset(path, text, start + offset)
             })?;
         }
         Ok(found)

@@ -30,7 +30,7 @@ pub(super) fn span<T>(value: &Option<Spanned<T>>) -> Option<Range<usize>> {
 
 impl Context<'_> {
     pub(super) fn error(&self, span: Range<usize>, message: String) -> Error {
-        Error::new(ErrorKind::Model, message).at_offset(self.path, self.text, span.start)
+        ErrorKind::Model.error(message).at_offset(self.path, self.text, span.start)
     }
 
     /// Refuses the first of the keys that is there.

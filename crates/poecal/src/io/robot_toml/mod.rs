@@ -75,5 +75,5 @@ fn syntax_error(error: &toml::de::Error, text: &str, path: &Path) -> Error {
         },
     };
     let offset = error.span().map_or(0, |span| span.start);
-    Error::new(ErrorKind::Syntax, message).at_offset(path, text, offset)
+    ErrorKind::Syntax.error(message).at_offset(path, text, offset)
 }

@@ -99,7 +99,7 @@ fn first_moved<'a>(
 }
 
 fn error(source: &XmlSource, message: String) -> Error {
-    Error::new(ErrorKind::Model, message).in_file(source.path)
+    ErrorKind::Model.error(message).in_file(source.path)
 }
 
 fn find_link(tree: &Tree, name: &str, option: &str) -> Result<usize> {

@@ -149,8 +149,8 @@ impl UrdfDocument {
     }
 
     fn other(&self, found: &str) -> Error {
-        let message = format!("{found}, expected the robot that was read from {}", self.path.display());
-        Error::new(ErrorKind::Export, message)
+        ErrorKind::Export
+            .error(format!("{found}, expected the robot that was read from {}", self.path.display()))
     }
 
     fn check_same_joints(&self, calibrated: &Robot) -> Result<()> {

@@ -1,6 +1,6 @@
 //! Which joints and links of a URDF are read.
 
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::{ErrorKind, Result};
 use crate::robot::{Mount, Robot};
 
 /// Selection of a chain, or of a tree. An omitted end must be unique: the base is then the root above the tip, and the tip the only end link
@@ -49,10 +49,9 @@ impl ChainSelection {
             for (name, link) in all {
                 match ours.iter().find(|(known, _)| *known == name) {
                     Some((_, known)) if *known != link => {
-                        let message = format!(
+                        return ErrorKind::Option.refuse(format!(
                             "found {what} `{name}` on link `{known}` and on link `{link}`, expected one link"
-                        );
-                        return Err(Error::new(ErrorKind::Option, message));
+                        ));
                     }
                     Some(_) => {}
                     None => ours.push((name, link)),
@@ -72,10 +71,8 @@ pub fn named_link(text: &str) -> Result<(String, String)> {
         Some((name, link)) if !name.trim().is_empty() && !link.trim().is_empty() => {
             Ok((name.trim().to_owned(), link.trim().to_owned()))
         }
-        _ => {
-            let message = format!("found `{text}`, expected a name and its link, like camera=camera_link");
-            Err(Error::new(ErrorKind::Option, message))
-        }
+        _ => ErrorKind::Option
+            .refuse(format!("found `{text}`, expected a name and its link, like camera=camera_link")),
     }
 }
 

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use super::ChainSelection;
 use super::patch::{frame_on_axis, origin_values};
 use super::splice::{escaped, triple};
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::{ErrorKind, Result};
 use crate::io::model::Converted;
 use crate::io::numbers::{shortest, tidy};
 use crate::lie::Pose;
@@ -215,11 +215,10 @@ impl Writer {
         if reading.name != joint.name {
             self.text.mimic(&reading.name, reading.multiplier, reading.offset);
         } else if reading.multiplier != 1.0 || reading.offset != 0.0 {
-            let message = format!(
+            return ErrorKind::Export.refuse(format!(
                 "joint `{}` has a factor or an offset on its own reading, expected factor 1 and offset 0: URDF has them for mimic joints only",
                 joint.name
-            );
-            return Err(Error::new(ErrorKind::Export, message));
+            ));
         }
         self.text.close_joint();
         Ok(origin)

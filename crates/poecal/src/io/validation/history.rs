@@ -130,7 +130,7 @@ struct Timed<'a> {
 
 /// The line of a check, as text and as a value that has been read.
 fn line_of(validation: &Validation, time: &str) -> Result<(String, Value)> {
-    let cannot = |error| Error::new(ErrorKind::Export, format!("the check cannot be written: {error}"));
+    let cannot = |error| ErrorKind::Export.error(format!("the check cannot be written: {error}"));
     let text = serde_json::to_string(&Timed { time, validation }).map_err(cannot)?;
     let line = serde_json::from_str(&text).map_err(cannot)?;
     Ok((text, line))
@@ -147,5 +147,5 @@ fn without_run(mut line: Value) -> Value {
 }
 
 fn refused(path: &Path, message: String) -> Error {
-    Error::new(ErrorKind::File, message).in_file(path)
+    ErrorKind::File.error(message).in_file(path)
 }

@@ -10,7 +10,7 @@ use super::frames::{FrameData, Frames, draws_instruments};
 use super::lead::{Lead, component_words, sign};
 use super::shapes::{MeshData, ShapeData};
 use super::{reading_index, readings_of, short};
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::{ErrorKind, Result};
 use crate::io::calibration_file::{CalibrationFile, ScrewEntry};
 use crate::io::residuals::{ResidualRow, Residuals};
 use crate::io::shapes::Shapes;
@@ -156,9 +156,8 @@ pub(super) fn json(file: &CalibrationFile, residuals: &Residuals, shapes: &Shape
         shapes: shapes.shapes.iter().map(ShapeData::of).collect(),
         meshes: shapes.meshes.iter().map(MeshData::of).collect(),
     };
-    let text = serde_json::to_string(&data).map_err(|error| {
-        Error::new(ErrorKind::Export, format!("the report's data cannot be written: {error}"))
-    })?;
+    let text = serde_json::to_string(&data)
+        .map_err(|error| ErrorKind::Export.error(format!("the report's data cannot be written: {error}")))?;
     // Within a script element, `</script` and `<!--` would be markup wherever they stand.
     Ok(text.replace('<', "\\u003c"))
 }

@@ -24,7 +24,7 @@ pub use validation::validation_page;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use crate::calibration::Statistic;
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::{ErrorKind, Result};
 use crate::io::calibration_file::CalibrationFile;
 use crate::io::output::Page;
 use crate::io::record::Record;
@@ -120,8 +120,8 @@ fn head(title: &str, record: &Record, version: &str) -> Markup {
 /// Refuses residuals of another calibration.
 fn check(file: &CalibrationFile, residuals: &Residuals) -> Result<()> {
     let refused = |words: String| {
-        let message = format!("found residuals {words}: name the residuals.csv that was written with it");
-        Err(Error::new(ErrorKind::Problem, message))
+        ErrorKind::Problem
+            .refuse(format!("found residuals {words}: name the residuals.csv that was written with it"))
     };
     let held_out = residuals.rows().iter().filter(|row| row.held_out).count();
     let found = (residuals.rows().len() - held_out, held_out);
