@@ -9,7 +9,7 @@ use clap::parser::ValueSource;
 use clap::{Arg, ArgAction, ArgMatches, Command, CommandFactory as _};
 use poecal::io::disk;
 use poecal::io::settings::{Setting, SettingValue, Settings};
-use poecal::{ErrorKind, Result};
+use poecal::{Error, ErrorKind, Result};
 
 use crate::args::Arguments;
 

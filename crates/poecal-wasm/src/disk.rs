@@ -178,7 +178,7 @@ impl Disk for MemoryDisk {
     }
 
     fn standard_input(&self) -> io::Result<Box<dyn Read + Send>> {
-        let taken = || io::ErrorKind::ResourceBusy.error("standard input is read already");
+        let taken = || io::Error::new(io::ErrorKind::ResourceBusy, "standard input is read already");
         let bytes = Arc::new(self.state().input.take().ok_or_else(taken)?);
         Ok(Box::new(Reader { bytes, at: 0 }))
     }
