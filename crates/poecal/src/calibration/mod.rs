@@ -28,6 +28,7 @@ mod noise;
 mod noise_doubts;
 mod options;
 mod placed;
+mod pull;
 mod refused;
 mod repeatability;
 mod restart;
