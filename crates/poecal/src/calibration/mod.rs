@@ -30,6 +30,7 @@ mod options;
 mod pictures;
 mod pixels;
 mod placed;
+mod pull;
 mod refused;
 mod repeatability;
 mod restart;

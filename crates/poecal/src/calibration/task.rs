@@ -3,6 +3,7 @@
 use super::fit::{SUSPICIOUS, fit_screws, free_parameters, is_suspicious};
 use super::found::{Fitted, OngoingFit, Start};
 use super::noise::stated;
+use super::pull::{EXACT, FINE, RELEASED, SOONER, left_by_pull};
 use super::{CalibrationOptions, Formulation, Minimum, NoiseSource, estimate_noise};
 use crate::analysis::effective_unknowns;
 use crate::distributions::is_within_band;
@@ -12,9 +13,9 @@ use crate::measurement::{Noise, Quantity};
 use crate::parameters::Parameter;
 use crate::problem::{Prior, Problem};
 use crate::solve::{LeastSquares as _, Normal, Options, Summary};
+use crate::unit::Unit;
 
-/// Most rounds of re-estimating noise and the weight of the prior. Two or three are enough, but for data without noise: there each reduces
-/// the remaining pull of the prior.
+/// Most rounds of re-estimating noise and the weight of the prior. Two or three are enough, but for data without noise.
 const RENEWALS: usize = 12;
 
 /// Predicted reduction of a full step.
@@ -62,12 +63,37 @@ impl Task<'_> {
 
     /// Effective number of unknowns determined by the measurements rather than the prior: theory.md §6 (34).
     pub(super) fn effective_unknowns(&self, found: &OngoingFit) -> f64 {
-        let unknowns = found.normal.dim();
-        let Some((prior, weight)) = self.prior else { return unknowns as f64 };
-        let layout = self.problem(&found.estimate, Noise::new(1.0, 1.0));
-        let mut believed = Normal::new(unknowns);
-        prior.add(&found.estimate, layout.layout(), weight, &mut believed);
-        unknowns as f64 - effective_unknowns(&found.normal, &believed)
+        let by_prior = self.believed(found).map(|believed| effective_unknowns(&found.normal, &believed));
+        found.normal.dim() as f64 - by_prior.unwrap_or(0.0)
+    }
+
+    /// The prior's part of a fit's normal information.
+    fn believed(&self, found: &OngoingFit) -> Option<Normal> {
+        let (prior, weight) = self.prior?;
+        let problem = self.problem(&found.estimate, Noise::new(1.0, 1.0));
+        let mut believed = Normal::new(found.normal.dim());
+        prior.add(&found.estimate, problem.layout(), weight, &mut believed);
+        Some(believed)
+    }
+
+    /// Whether the residuals are evidently the prior's pull and nothing that an instrument adds; never where the prior alone gives the robot
+    /// its size.
+    fn is_pull(&self, found: &OngoingFit, noise: Noise) -> bool {
+        let Session { length_m, .. } = self.session;
+        let believed = if self.session.lacks_length(self.rows) { None } else { self.believed(found) };
+        let of_rows = Task { prior: None, ..*self };
+        let seen = || of_rows.problem(&found.estimate, noise).normal(&found.estimate);
+        let left = believed.and_then(|believed| left_by_pull(&found.normal, &believed, seen));
+        let is_measured = |it: &Quantity| it.unit() == Unit::Metre && self.session.data.has(*it);
+        let lengths = Quantity::ALL.into_iter().filter(is_measured).map(|it| noise[it]);
+        let noise_m = lengths.fold(0.0, f64::max);
+        left.is_some_and(|left| (left * self.mean_square(found)).sqrt() * noise_m < FINE * length_m)
+    }
+
+    /// Whether residuals are so near rounding that the rest of the prior's pull does not matter.
+    fn is_exact(&self, found: &OngoingFit, noise: Noise, source: NoiseSource) -> bool {
+        let rounding = || self.problem(&found.estimate, noise).rounding();
+        source == NoiseSource::Exact && self.mean_square(found) < EXACT * rounding()
     }
 
     /// Mean squared whitened residual, without the prior's part of the cost.
@@ -89,6 +115,7 @@ impl Task<'_> {
         }
         for _ in 0..RENEWALS {
             let (unknowns, before) = (task.effective_unknowns(&found), noise);
+            let is_pull = source == NoiseSource::Estimated && task.is_pull(&found, noise);
             if source == NoiseSource::Estimated {
                 let by_rotations = task.determined_by_rotations(&found, noise);
                 let (session, rows) = (&self.session, self.rows);
@@ -97,7 +124,11 @@ impl Task<'_> {
                     None => source = NoiseSource::Exact,
                 }
             }
-            let weight = task.renewed_weight(&found, unknowns, source);
+            if task.is_exact(&found, noise, source) {
+                break;
+            }
+            let released = if is_pull { RELEASED } else { 1.0 };
+            let weight = released * task.renewed_weight(&found, unknowns, source);
             let weighed = task.prior.is_none_or(|(_, counted)| (weight / counted).ln().abs() < 0.5);
             let fits = source != NoiseSource::Estimated
                 || noise == before
@@ -107,7 +138,11 @@ impl Task<'_> {
                 break;
             }
             let estimate = found.estimate.clone();
-            found.update(task.fit(estimate, noise));
+            found.update(if is_pull {
+                task.released_fit(estimate, noise)
+            } else {
+                task.fit(estimate, noise)
+            });
         }
         task.finish(found, noise, source)
     }
@@ -156,7 +191,8 @@ impl Task<'_> {
         let mut found = found;
         let mut normal = self.problem(&found.estimate, noise).normal(&found.estimate);
         // The last change of the noise moved the optimum.
-        if predicted_reduction(&normal) > self.options.solver.decrement * normal.mean_square() {
+        let is_exact = self.is_exact(&found, noise, source);
+        if !is_exact && predicted_reduction(&normal) > self.options.solver.decrement * normal.mean_square() {
             let start = found.estimate.clone();
             found.update(self.minimize(&self.problem(&start, noise), start, &self.options.solver));
             normal = self.problem(&found.estimate, noise).normal(&found.estimate);
@@ -188,6 +224,13 @@ impl Task<'_> {
             return self.minimize(&self.problem(&start, noise), start, &self.options.solver);
         }
         fit_screws(self.session, self.rows, start, noise, self.prior, self.options)
+    }
+
+    /// One fit whose prior is let go.
+    fn released_fit(&self, start: Estimate, noise: Noise) -> (Estimate, Normal, Summary) {
+        let mut options = self.options.clone();
+        options.solver.decrement *= SOONER;
+        Task { options: &options, ..*self }.fit(start, noise)
     }
 
     /// Minimises with the formulation of the options.

@@ -69,8 +69,13 @@ impl Linkage {
             }
         });
         let ends = ends.collect();
-        let base_from_first = first.inverse();
-        let further_from_first = devices.iter().skip(1).map(|&device| device * base_from_first).collect();
+        let further_from_first = match devices.get(1..) {
+            Some(further @ [_, ..]) => {
+                let base_from_first = first.inverse();
+                further.iter().map(|&device| device * base_from_first).collect()
+            }
+            _ => Vec::new(),
+        };
         let of = |joint: usize| terms.iter().copied().enumerate().filter(move |(_, it)| it.joint == joint);
         let joints = if estimate.has_terms() { tree.kinds().len() } else { 0 };
         let terms = (0..joints).map(|joint| of(joint).collect()).collect();

@@ -15,12 +15,13 @@ impl ColumnMap {
         // An instrument's known zero is not in the kernels.
         let is_plain = form != Form::Along(Along::Distance) || state.range(sight.station).is_plain();
         let form = if is_plain { form } else { form.shaped() };
+        let unknowns = problem.layout.dim();
         let mut made = ColumnMap {
             sight,
             form,
             plan: plan_without_unknowns(problem, state, sight, form),
-            shift_places: Vec::new(),
-            turn_places: Vec::new(),
+            shift_places: Vec::with_capacity(unknowns),
+            turn_places: Vec::with_capacity(unknowns),
             given_places: Vec::new(),
             screws: Vec::new(),
             ranges: Vec::new(),
@@ -114,15 +115,18 @@ impl ColumnMap {
     }
 
     fn add_joints(&mut self, layout: &Layout, route: &[Passed]) {
-        let mut of_joints: Vec<Vec<Unknown<'_>>> = Vec::new();
+        let mut of_joints: Vec<(usize, Unknown<'_>)> = Vec::with_capacity(layout.dim());
         for (parameter, places) in layout.parameters() {
-            let Subject::Joint(joint) = parameter.model().subject() else { continue };
-            of_joints.resize(of_joints.len().max(joint + 1), Vec::new());
-            of_joints[joint].push((parameter, places));
+            if let Subject::Joint(joint) = parameter.model().subject() {
+                of_joints.push((joint, (parameter, places)));
+            }
         }
+        of_joints.sort_by_key(|(joint, _)| *joint);
         for (index, passed) in route.iter().enumerate() {
             self.plan.joints[index].terms.0 = self.plan.terms.len();
-            for &(parameter, places) in of_joints.get(passed.joint).into_iter().flatten() {
+            let first = of_joints.partition_point(|(joint, _)| *joint < passed.joint);
+            let own = of_joints[first..].iter().take_while(|(joint, _)| *joint == passed.joint);
+            for &(_, (parameter, places)) in own {
                 match parameter {
                     Parameter::ScrewAxis(_) => self.add_axis(index, places),
                     Parameter::ValueTerm(term) => self.add_term(index, *passed, term, places),
@@ -233,7 +237,7 @@ fn plan_without_unknowns(problem: &Problem<'_>, state: &Estimate, sight: Sight, 
         frame: None,
         shifts: 0,
         tilts: 0,
-        turns: Vec::new(),
+        turns: Vec::with_capacity(problem.layout.dim()),
         idle: Vec::new(),
         length_m: problem.layout.length_m(),
         given: 0,

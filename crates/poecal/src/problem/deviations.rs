@@ -61,6 +61,44 @@ pub(super) struct Deviation {
     shift: f64,
 }
 
+/// Derivatives of a deviation by the motions of its axis: a shift changes the second half only.
+pub(super) struct OwnMotions {
+    shifts: [Vector3<f64>; 2],
+    turns: [Vector6<f64>; 2],
+}
+
+impl OwnMotions {
+    /// All as columns.
+    pub(super) fn columns(&self) -> [Vector6<f64>; 4] {
+        let whole = |shift: Vector3<f64>| Vector6::new(0.0, 0.0, 0.0, shift.x, shift.y, shift.z);
+        let ([a, b], [c, d]) = (self.shifts, self.turns);
+        [whole(a), whole(b), c, d]
+    }
+
+    /// Product of two columns.
+    #[inline]
+    pub(super) fn product(&self, column: usize, other: usize) -> f64 {
+        match (column, other) {
+            (0 | 1, 0 | 1) => self.shifts[column].dot(&self.shifts[other]),
+            (0 | 1, _) => self.along_shift(column, &self.turns[other - 2]),
+            (_, 0 | 1) => self.along_shift(other, &self.turns[column - 2]),
+            _ => self.turns[column - 2].dot(&self.turns[other - 2]),
+        }
+    }
+
+    /// Product of a column with a deviation.
+    #[inline]
+    pub(super) fn along(&self, column: usize, value: &Vector6<f64>) -> f64 {
+        if column < 2 { self.along_shift(column, value) } else { self.turns[column - 2].dot(value) }
+    }
+
+    #[inline]
+    fn along_shift(&self, column: usize, value: &Vector6<f64>) -> f64 {
+        let [_, _, _, x, y, z] = value.data.0[0];
+        self.shifts[column].dot(&Vector3::new(x, y, z))
+    }
+}
+
 impl Deviation {
     /// Of an axis with this `base_from_axis`.
     pub(super) fn new(nominal: &Nominal, frame: &Pose) -> Self {
@@ -92,9 +130,14 @@ impl Deviation {
     }
 
     /// Derivatives by shifts along x and y and rotations about x and y of the axis' own frame.
-    pub(super) fn own(&self) -> [Vector6<f64>; 4] {
-        let Deviation { x, y, along, .. } = *self;
-        [self.shifted(x), self.shifted(y), self.change(-y, -y * along), self.change(x, x * along)]
+    #[inline]
+    pub(super) fn own(&self) -> OwnMotions {
+        let Deviation { x, y, d, along, .. } = *self;
+        let shifted = |moved: Vector3<f64>| (moved - d * d.dot(&moved)) * self.shift;
+        OwnMotions {
+            shifts: [shifted(x), shifted(y)],
+            turns: [self.change(-y, -y * along), self.change(x, x * along)],
+        }
     }
 
     /// Derivative by a motion of the base, a twist.

@@ -240,10 +240,12 @@ pub(super) fn pack(
     // Looked up once for all rows.
     let places: Vec<Option<usize>> =
         terms.iter().map(|(passed, term, _)| session.packed.place_of(passed.joint, *term)).collect();
+    let is_pose = plan.is_pose();
     packed.pack(
         plan,
         rows.len(),
-        |at| row_data(problem, usual, rows[at] as usize, plan.is_pose()),
+        #[inline(always)]
+        |at| row_data(problem, usual, rows[at] as usize, is_pose),
         |at, joint| {
             let from = session.observation(rows[at]).from;
             let (_, first, second) =

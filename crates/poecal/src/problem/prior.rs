@@ -3,7 +3,7 @@
 use nalgebra::{SVector, Vector3, Vector6};
 
 use super::Layout;
-use super::deviations::{Deviation, Deviations, Nominal, NominalTarget};
+use super::deviations::{Deviation, Deviations, Nominal, NominalTarget, OwnMotions};
 use crate::estimate::{Estimate, Session, delivered};
 use crate::lie::{Pose, Twist};
 use crate::linalg::Factor6;
@@ -191,11 +191,15 @@ impl Prior {
         for (parameter, places) in layout.parameters() {
             if let Some(axis) = parameter.screw_axis() {
                 let Some(deviation) = deviations.axes.get(axis.joint) else { continue };
-                let own = &deviation.own()[4 - places.len()..];
-                add_columns((places, own), &deviation.value, weight, n, normal);
+                let own = deviation.own();
+                add_axis((places, &own), &deviation.value, weight, n, normal);
                 if let Some(base) = by_base.and_then(|(axes, _)| axes.get(axis.joint)) {
+                    let own = own.columns();
                     shared.extend(
-                        places.iter().zip(own).map(|((at, scale), own)| (*at, base.tr_mul(own) / *scale)),
+                        places
+                            .iter()
+                            .zip(&own[4 - places.len()..])
+                            .map(|((at, scale), own)| (*at, base.tr_mul(own) / *scale)),
                     );
                 }
             } else if let Some((target, motions)) = parameter.target_motions() {
@@ -226,6 +230,29 @@ impl Prior {
             for (other, also) in &shared[k..] {
                 normal.gram[place.min(other) * n + place.max(other)] -= weight * followed.dot(also);
             }
+        }
+    }
+}
+
+/// The same as [`add_columns`] for an axis: with the shifts and turns of a revolute joint, or the turns of a sliding one.
+fn add_axis(
+    (places, own): (&[(usize, f64)], &OwnMotions),
+    value: &Vector6<f64>,
+    weight: f64,
+    n: usize,
+    normal: &mut Normal,
+) {
+    let first = 4 - places.len().min(4);
+    for (k, &(place, scale)) in (first..4).zip(places) {
+        normal.gradient[place] -= weight / scale * own.along(k, value);
+    }
+    if normal.gram.is_empty() {
+        return;
+    }
+    for (k, &(place, scale)) in (first..4).zip(places) {
+        for (l, &(other, other_scale)) in (first..4).zip(places).skip(k - first) {
+            normal.gram[place.min(other) * n + place.max(other)] +=
+                weight / (scale * other_scale) * own.product(k, l);
         }
     }
 }

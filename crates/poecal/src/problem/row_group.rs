@@ -73,7 +73,11 @@ impl RowGroup {
                     group.ratio = same(group.ratio, ratio);
                     group.rows.push(key(position, row));
                 }
-                None => groups.push(RowGroup { sight, form, ratio, rows: vec![key(position, row)] }),
+                None => {
+                    let mut own = Vec::with_capacity(rows.len() - position as usize);
+                    own.push(key(position, row));
+                    groups.push(RowGroup { sight, form, ratio, rows: own });
+                }
             }
         }
         groups

@@ -101,7 +101,15 @@ impl PlainScatter {
                 }
             }
         }
-        // Where the curvature of the logarithm is left out, rotations add nothing of their own.
+        if let (Some(factor), true) = (self.shared, totals.turned.is_empty()) {
+            // The curvature of the logarithm is left out: rotations add nothing of their own.
+            for (first, (&a, left)) in self.turns_at.iter().zip(&self.of_shifts.left).enumerate() {
+                for (&b, right) in self.turns_at[first..].iter().zip(&self.of_shifts.right[first..]) {
+                    gram[place(a, b)] += factor * totals.products[left + right];
+                }
+            }
+            return;
+        }
         let (own, of_shifts, has_own) = (&self.turns, &self.of_shifts, !totals.turned.is_empty());
         for (first, &a) in self.turns_at.iter().enumerate() {
             let (left, left_of_shift) = (own.left[first], of_shifts.left[first]);
