@@ -160,6 +160,7 @@ def packages() -> list[Step]:
           for name in ("aarch64-unknown-linux-gnu", WASM)),
         Step(f"oldest Rust ({oldest})", [["cargo", f"+{oldest}", "check", "--locked", "--workspace"]], shows=CARGO_SHOWS, may_lack=True,
              lacks=lack(f"Rust {oldest} (rustup toolchain install {oldest} --profile minimal)", has("cargo", f"+{oldest}", "--version"))),
+        Step("recipes", [[PYTHON, "scripts/recipes"]], after=["Python tools"], shows=r"\.patch: |^laser line|^load side"),
         Step("simulated disk", [[sys.executable, "scripts/rust_tests.py", "simulated_disk"]], after=["Rust build"], shows=r"^FAILED |^\d+ passed, |^\d+ (trials|stops)", env={"POECAL_TRIALS": "10000"}),
         Step("documentation site", [["scripts/build-docs"], [*PYTEST, SITE]], after=["Python tools", "npm build"] if node and not wasm else ["Python tools", "web tools"] if node else ["Python tools"],
              shows="^site: |^(WARNING|ERROR) |" + PYTEST_SHOWS, env={"POECAL_PAGE": "web/app/dist/poecal.html"} if node and not wasm else {}),

@@ -198,7 +198,8 @@ def corners(robot, folder):
                 continue
             slopes = places[:, :2] / places[:, 2:]
             pixels = focal * slopes * (1 + k1 * (slopes**2).sum(axis=1, keepdims=True)) + centre
-            if pixels.min() < 0 or (pixels > size - 1).any():
+            # Far outside, the polynomial of the lens turns back into the picture.
+            if np.abs(slopes).max() > 1 or pixels.min() < 0 or (pixels > size - 1).any():
                 continue
             image = f"{len(pictures) + 1:03}.png"
             pictures.append([image, *configuration])
