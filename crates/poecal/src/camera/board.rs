@@ -46,6 +46,28 @@ impl Board {
         self.names.iter().position(|own| own == name)
     }
 
+    /// The same points in the order of a grid that counts along its other side first: what corners are where columns and rows of a board are
+    /// exchanged. `None` of a board that is no grid, or as long as it is wide.
+    #[must_use]
+    pub fn transposed(&self) -> Option<Self> {
+        let [first, second, ..] = self.points.as_slice() else { return None };
+        let along = second - first;
+        let on_line =
+            |point: &Vector3<f64>| (point - first).cross(&along).norm() < 1e-6 * along.norm_squared();
+        let columns = self.points.iter().take_while(|point| on_line(point)).count();
+        let rows = self.points.len() / columns.max(1);
+        if columns * rows != self.points.len() || rows < 2 || columns == rows {
+            return None;
+        }
+        let across = self.points.get(columns)? - first;
+        let place = |at: usize| first + along * (at % rows) as f64 + across * (at / rows) as f64;
+        let is_grid = (0..self.points.len()).all(|at| {
+            let own = first + along * (at % columns) as f64 + across * (at / columns) as f64;
+            (own - self.points[at]).norm() < 1e-6 * along.norm()
+        });
+        is_grid.then(|| Board { points: (0..self.points.len()).map(place).collect(), ..self.clone() })
+    }
+
     /// Largest distance of a point from the middle, metres.
     #[must_use]
     pub fn radius_m(&self) -> f64 {

@@ -40,6 +40,7 @@ mod turns;
 mod understanding;
 mod units;
 mod write;
+mod wrong_boards;
 
 pub use super::numbers::LARGEST_NUMBER;
 pub use boards::read_boards;

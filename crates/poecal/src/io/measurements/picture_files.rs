@@ -6,6 +6,10 @@ use std::path::PathBuf;
 use super::header::Header;
 use crate::measurement::Set;
 
+/// What is said of corners where no camera is stated.
+pub(super) const NO_CAMERA: &str =
+    "found corners in pixels and no camera, expected --camera FILE with its focal lengths and centre";
+
 /// Whether the columns of a file are those of corners.
 pub(super) fn are_corners(header: &Header<'_>) -> bool {
     header.count("u") > 0 && header.count("v") > 0

@@ -8,7 +8,7 @@ use super::header::Header;
 use super::inputs::InputReader;
 use super::layout::ColumnLayout;
 use super::number::Numbers;
-use super::picture_files::Taken;
+use super::picture_files::{NO_CAMERA, Taken};
 use super::read::Reader;
 use super::scale::JointWatch;
 use super::table::{Row, Table, refuse_more_rows};
@@ -200,7 +200,7 @@ impl Reader<'_> {
     fn refuse_without_cameras(&self, header: &Header<'_>) -> Result<()> {
         let at = header.find("u")?.unwrap_or(0);
         let missing = if self.options.cameras.is_empty() {
-            "found corners in pixels and no camera, expected --camera FILE with its focal lengths and centre"
+            NO_CAMERA
         } else if self.options.boards.is_empty() {
             "found corners in pixels and no board, expected --markers with its points: a CSV file, or chessboard:10x7:27mm"
         } else {

@@ -17,6 +17,7 @@ use super::table::{Table, refuse_more_rows};
 use super::text::Blocks;
 use super::turns::{self, TurnWatch};
 use super::understanding::{self, FileUnderstanding};
+use super::wrong_boards::refuse_wrong_boards;
 use super::{FitWhere, Frames, MeasurementFile, ReadOptions};
 use crate::camera::Board;
 use crate::error::{Error, ErrorKind, Result, shown};
@@ -50,7 +51,9 @@ fn read_all(paths: &[&Path], robot: &Robot, options: &ReadOptions) -> Result<Mea
     }
     for path in order {
         let blocks = Blocks::open(path, "a measurement file (CSV)")?;
-        reader.file(path, blocks).map_err(|error| beside(error, path, paths, reader.map))?;
+        reader
+            .file(path, blocks)
+            .map_err(|error| beside(error, path, paths, (reader.map, options.cameras.is_empty())))?;
     }
     reader.finish()
 }
@@ -67,7 +70,18 @@ fn has_readings_of_pictures(path: &Path, map: &ColumnMap) -> bool {
 }
 
 /// An error of a column that is in another of the files: tables that stand side by side, and not one below the other.
-fn beside(error: Error, path: &Path, paths: &[&Path], map: &ColumnMap) -> Error {
+fn beside(error: Error, path: &Path, paths: &[&Path], (map, without_camera): (&ColumnMap, bool)) -> Error {
+    // Readings of pictures without a camera are taken for measurements.
+    let has_corners = |other: &&&Path| {
+        let blocks = Blocks::open(other, "a measurement file (CSV)");
+        let table = blocks.and_then(|blocks| Table::open(other, blocks, map));
+        **other != path
+            && other.is_file()
+            && table.is_ok_and(|table| picture_files::are_corners(&table.header))
+    };
+    if without_camera && let Some(corners) = paths.iter().find(has_corners) {
+        return Error::new(ErrorKind::Measurement, picture_files::NO_CAMERA).in_file(corners);
+    }
     let missing = error.message().strip_prefix("found no column `").and_then(|rest| rest.split_once('`'));
     let Some((name, _)) = missing else { return error };
     let has = |other: &&&Path| {
@@ -388,6 +402,7 @@ impl<'a> Reader<'a> {
         }
         settle_faces(&mut found.data, self.robot);
         found.data.settle_pixels();
+        refuse_wrong_boards(&found.data)?;
         found.warnings.extend(settle_pictures(&mut found.data, self.robot));
         found.warnings.iter_mut().for_each(|warning| *warning = visible(warning).into_owned());
         Ok(found)
