@@ -256,3 +256,42 @@ fn the_error_of_the_configuration_is_found_and_weighs_pictures() {
         assert!(mm < 1.5 * own.hypot(0.25), "{mm} mm");
     }
 }
+
+/// Bounds of 95 % on pictures that were held out, with corners alone and with an error of each configuration beside.
+#[test]
+fn bounds_hold_on_pictures_that_were_not_fitted() {
+    const SESSIONS: u64 = 8;
+    for millis in [0.0, 0.1, 0.5] {
+        let common =
+            CommonError { shift_m: 1e-3 * millis, turn_rad: 1e-3 * millis, ..CommonError::default() };
+        let (mut inside, mut ratio) = ([0.0; 2], 0.0);
+        for seed in 0..SESSIONS {
+            let session = Simulation {
+                count: 60,
+                seed: 100 + seed,
+                error_rotation_rad: 3e-3,
+                error_position_m: 1e-3,
+                ..Simulation::default()
+            };
+            let simulated = PictureSimulation { common, ..PictureSimulation::usual(session, seed % 2 == 0) };
+            let mut made = simulated.run(&elbow()).unwrap();
+            settle_pictures(&mut made.data, &made.nominal);
+            let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default()).unwrap();
+            let kept = calibration.trust.held_out.unwrap();
+            let rotation = kept.rotation_deg().unwrap();
+            inside[0] += kept.position_mm().inside_bound95 / SESSIONS as f64;
+            inside[1] += rotation.inside_bound95 / SESSIONS as f64;
+            let error = calibration.accuracy.held_out.unwrap().calibrated.position_mm().rms;
+            ratio += (error / kept.position_mm().expected_rms).ln() / SESSIONS as f64;
+        }
+        println!(
+            "{millis} mm and mrad a configuration: {:.1} % of positions and {:.1} % of rotations inside, error over expected {:.2}",
+            100.0 * inside[0],
+            100.0 * inside[1],
+            ratio.exp()
+        );
+        // 8 sessions of 18 pictures: 95 % ± 1.8 %, and the pictures of a session share its fit.
+        assert!(inside.iter().all(|it| (0.88..1.0).contains(it)), "{inside:?}");
+        assert!((0.7..1.3).contains(&ratio.exp()), "{}", ratio.exp());
+    }
+}

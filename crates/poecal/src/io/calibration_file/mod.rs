@@ -14,6 +14,7 @@ mod known;
 mod link;
 mod original;
 mod outliers;
+mod pictures;
 mod refusal;
 mod repeatability;
 mod schema;
@@ -34,6 +35,7 @@ pub use frames::*;
 pub use keyed::*;
 pub use original::OriginalUrdf;
 pub use outliers::{OutlierEntry, OutlierSet, RobustEntry};
+pub use pictures::{CameraEntry, CommonEntry, PicturesEntry};
 pub use repeatability::{RepeatabilityEntry, RepeatedPoseEntry};
 pub use schema::*;
 pub(crate) use stages::only_target;
@@ -87,6 +89,7 @@ impl CalibrationFile {
             outliers: OutlierEntry::of(calibration, data),
             suspected_configurations: SuspectedConfigurationEntry::of(calibration, data),
             repeatability: RepeatabilityEntry::of(calibration, data),
+            pictures: PicturesEntry::of(data),
             warnings: calibration.warnings.clone(),
             diagnosis: calibration.diagnosis.iter().map(DiagnosisEntry::from).collect(),
             repairs: calibration.repairs.clone(),

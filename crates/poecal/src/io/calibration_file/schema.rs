@@ -15,7 +15,7 @@ use super::frames::{FrameEntry, JointEntry, PoseEntry, RobotEntry, StationEntry,
 use super::keyed::{Keyed, SigmaKeys};
 use super::original::OriginalUrdf;
 use super::trust::{CorrectionEntry, CrossValidationEntry, UncertaintyEntry};
-use super::{OutlierEntry, RepeatabilityEntry, RobustEntry};
+use super::{OutlierEntry, PicturesEntry, RepeatabilityEntry, RobustEntry};
 use crate::analysis::{Direction, Identifiability, JointCoverage, Observability};
 use crate::calibration::{Acceptance, Accuracy, Event, FormulationWords, NoiseSource, Verdict};
 use crate::error::Result;
@@ -88,6 +88,9 @@ pub struct CalibrationFile {
     /// Configurations that were measured several times; null if there are none.
     #[serde(default)]
     pub repeatability: Option<RepeatabilityEntry>,
+    /// The pictures, their noise and lenses; absent if there are none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub pictures: Option<PicturesEntry>,
     /// Warnings, a sentence each.
     #[serde(default)]
     pub warnings: Vec<String>,

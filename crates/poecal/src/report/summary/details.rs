@@ -7,8 +7,9 @@ use super::super::outliers;
 use super::super::table::{self, accuracy_table, joints_words, leading_words, line, lines, number};
 use super::{delivered, uncertainty};
 use crate::calibration::{FormulationWords, NoiseSource};
+use crate::camera::Centre;
 use crate::error::shown;
-use crate::io::calibration_file::CalibrationFile;
+use crate::io::calibration_file::{CalibrationFile, CommonEntry, PicturesEntry};
 use crate::solve::Termination;
 use crate::text::visible;
 
@@ -16,6 +17,9 @@ pub(super) fn all(out: &mut String, file: &CalibrationFile) {
     line(out, "robot", &robot_words(file));
     line(out, "measurements", &rows_words(file));
     line(out, "noise", &noise_words(file));
+    if let Some(pictures) = &file.pictures {
+        line(out, "pictures", &pictures_words(pictures));
+    }
     out.push('\n');
     let training = file.robust.training_without_suspected.as_ref().unwrap_or(&file.accuracy.training);
     let held_out = file.robust.held_out_without_suspected.as_ref().or(file.accuracy.held_out.as_ref());
@@ -54,6 +58,23 @@ fn rows_words(file: &CalibrationFile) -> String {
         count => format!(" of {count} targets"),
     };
     format!("{} rows{targets}: {fitted} fitted, {held_out} held out", fitted + held_out)
+}
+
+/// What is known of the noise of pictures.
+fn pictures_words(pictures: &PicturesEntry) -> String {
+    let CommonEntry { shift_mm, turn_deg, about } = pictures.common;
+    let about = match about {
+        Centre::Board => "the board",
+        Centre::Camera => "the camera",
+    };
+    format!(
+        "{} with {} corners to {} px; in each, all are off together by {} mm and {} deg about {about} (standard deviations of a component)",
+        pictures.count,
+        pictures.corners,
+        number(pictures.sigma_px),
+        number(shift_mm),
+        number(turn_deg)
+    )
 }
 
 fn noise_words(file: &CalibrationFile) -> String {
