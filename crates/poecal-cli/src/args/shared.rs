@@ -3,8 +3,10 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use poecal::io::disk::is_file;
 use poecal::io::measurements::{
-    ColumnMap, Frames, InstrumentNoise, PlaneContact, ReadOptions, SocketDistances, read_boards, read_cameras,
+    ColumnMap, Frames, InstrumentNoise, PlaneContact, ReadOptions, SocketDistances, camera_file, read_boards,
+    read_cameras,
 };
 use poecal::io::output::{Existing, FilePlace};
 use poecal::io::urdf::{ChainSelection, named_link};
@@ -111,11 +113,8 @@ pub(crate) struct Meaning {
 impl Meaning {
     /// The files that say what others mean.
     pub(crate) fn files(&self) -> impl Iterator<Item = &Path> {
-        let camera = self.camera.iter().map(|typed| match typed.rsplit_once('#') {
-            Some((file, _)) if !Path::new(typed).exists() => Path::new(file),
-            _ => Path::new(typed),
-        });
-        let markers = self.markers.iter().map(Path::new).filter(|path| path.is_file());
+        let camera = self.camera.iter().map(|typed| camera_file(typed).0);
+        let markers = self.markers.iter().map(Path::new).filter(|path| is_file(path));
         self.columns.columns.iter().map(PathBuf::as_path).chain(camera).chain(markers)
     }
 

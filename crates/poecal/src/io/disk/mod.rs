@@ -108,6 +108,12 @@ pub fn here() -> Arc<dyn Disk> {
     HERE.with_borrow(Arc::clone)
 }
 
+/// Whether a path leads to a regular file.
+#[must_use]
+pub fn is_file(path: &Path) -> bool {
+    here().follow(path).is_ok_and(|object| object.kind == ObjectKind::File)
+}
+
 /// Runs some work on another disk, as far as this thread does it.
 pub fn on<T>(disk: Arc<dyn Disk>, work: impl FnOnce() -> T) -> T {
     /// Restores the disk before, also after a panic.

@@ -10,6 +10,7 @@ use super::table::{Row, Table};
 use super::text::Blocks;
 use crate::camera::{Camera, Distortion, LENS_NAMES, Lens};
 use crate::error::{Error, ErrorKind, Result, first_few};
+use crate::io::disk::is_file;
 use crate::io::text_of;
 use crate::io::yaml::{Leaf, leaves};
 
@@ -21,11 +22,7 @@ const EXPECTED: &str = "a camera: CSV with name, fx, fy, cx, cy, k1, … in Open
 /// # Errors
 /// A file that cannot be read, or has no camera, a camera twice, or numbers that are none of a lens.
 pub fn read_cameras(typed: &str) -> Result<Vec<Camera>> {
-    let (file, version) = match typed.rsplit_once('#') {
-        Some((file, version)) if !Path::new(typed).exists() => (file, Some(version)),
-        _ => (typed, None),
-    };
-    let path = Path::new(file);
+    let (path, version) = camera_file(typed);
     let extension = path.extension().map(|it| it.to_ascii_lowercase());
     let is = |names: &[&str]| extension.as_ref().is_some_and(|it| names.iter().any(|name| it == name));
     let cameras = if is(&["yaml", "yml"]) {
@@ -39,6 +36,15 @@ pub fn read_cameras(typed: &str) -> Result<Vec<Camera>> {
         check(name, lens).map_err(|error| error.in_file(path))?;
     }
     Ok(cameras)
+}
+
+/// The file of cameras that was typed, and the version behind `#`, if that is no part of its name.
+#[must_use]
+pub fn camera_file(typed: &str) -> (&Path, Option<&str>) {
+    match typed.rsplit_once('#') {
+        Some((file, version)) if !is_file(Path::new(typed)) => (Path::new(file), Some(version)),
+        _ => (Path::new(typed), None),
+    }
 }
 
 /// Refuses numbers that are no lens's.

@@ -44,7 +44,7 @@ mod wrong_boards;
 
 pub use super::numbers::LARGEST_NUMBER;
 pub use boards::read_boards;
-pub use cameras::read_cameras;
+pub use cameras::{camera_file, read_cameras};
 pub use cells::Separator;
 pub(in crate::io) use cells::{Cell, split};
 pub use fit_where::FitWhere;

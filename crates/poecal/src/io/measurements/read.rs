@@ -21,6 +21,7 @@ use super::wrong_boards::refuse_wrong_boards;
 use super::{FitWhere, Frames, MeasurementFile, ReadOptions};
 use crate::camera::Board;
 use crate::error::{Error, ErrorKind, Result, shown};
+use crate::io::disk::is_file;
 use crate::measurement::{Dataset, Observation};
 use crate::robot::{Controller, Robot};
 use crate::start::{settle_faces, settle_pictures};
@@ -61,7 +62,7 @@ fn read_all(paths: &[&Path], robot: &Robot, options: &ReadOptions) -> Result<Mea
 /// Whether a file has readings of joints by picture. One that cannot be read is named when it is read.
 fn has_readings_of_pictures(path: &Path, map: &ColumnMap) -> bool {
     // A pipe is read once.
-    if !path.is_file() {
+    if !is_file(path) {
         return false;
     }
     let table =
@@ -76,7 +77,7 @@ fn beside(error: Error, path: &Path, paths: &[&Path], (map, without_camera): (&C
         let blocks = Blocks::open(other, "a measurement file (CSV)");
         let table = blocks.and_then(|blocks| Table::open(other, blocks, map));
         **other != path
-            && other.is_file()
+            && is_file(other)
             && table.is_ok_and(|table| picture_files::are_corners(&table.header))
     };
     if without_camera && let Some(corners) = paths.iter().find(has_corners) {
