@@ -51,6 +51,9 @@ pub struct Projection {
     pub by_lens: [[f64; LENS_NUMBERS]; 2],
 }
 
+/// The place of a point in the plane of a pinhole with focal length 1, its derivative by the point, and those by the coefficients of the distortion.
+type Place = (Vector2<f64>, Matrix2x3<f64>, [[f64; 8]; 2]);
+
 /// Where a ray of slopes x/z and y/z is in the plane of a pinhole with focal length 1, with derivatives.
 struct Bent {
     place: Vector2<f64>,
@@ -267,7 +270,7 @@ fn bent_angle(&[k1, k2, k3, k4]: &[f64; 4], angle: f64) -> (f64, f64) {
 }
 
 /// Kannala and Brandt: the place is `θ_d (x, y)/r` with `θ = atan2(r, z)` and `θ_d = θ (1 + k1 θ² + k2 θ⁴ + k3 θ⁶ + k4 θ⁸)`.
-fn fisheye(k: &[f64; 4], point: &Vector3<f64>) -> Option<(Vector2<f64>, Matrix2x3<f64>, [[f64; 8]; 2])> {
+fn fisheye(k: &[f64; 4], point: &Vector3<f64>) -> Option<Place> {
     let across = Vector2::new(point.x, point.y);
     let (r, d) = (across.norm(), point.norm_squared());
     let angle = r.atan2(point.z);
@@ -287,9 +290,10 @@ fn fisheye(k: &[f64; 4], point: &Vector3<f64>) -> Option<(Vector2<f64>, Matrix2x
     let unit = across / r;
     let s = angle * angle;
     let mut power = angle;
-    for k in 0..4 {
+    let [by_u, by_v] = &mut by_coefficients;
+    for (by_u, by_v) in by_u.iter_mut().zip(by_v).take(4) {
         power *= s;
-        (by_coefficients[0][k], by_coefficients[1][k]) = (unit.x * power, unit.y * power);
+        (*by_u, *by_v) = (unit.x * power, unit.y * power);
     }
     // θ moves by (z dr - r dz)/d, the unit vector across by (I - u uᵀ)/r.
     let around = (Matrix2::identity() - unit * unit.transpose()) * (bent / r);

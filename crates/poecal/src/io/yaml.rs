@@ -214,7 +214,14 @@ pub(super) fn leaves(text: &str, path: &Path, expected: &str) -> Result<Vec<Leaf
                 open.pop();
                 next(&mut open);
             }
-            _ => {}
+            Event::StreamStart
+            | Event::StreamEnd
+            | Event::DocumentStart(..)
+            | Event::DocumentEnd
+            | Event::Alias(_)
+            | Event::UnresolvedAlias(_)
+            | Event::Anchor(..)
+            | _ => {}
         }
     }
     Ok(found)

@@ -64,9 +64,9 @@ impl NoiseShape {
         let mut before = [[0.0; N]; NUMBERS];
         let own = channels.len();
         before[..own].copy_from_slice(&numbers[..own]);
-        for k in 0..own {
+        for (k, number) in numbers.iter_mut().enumerate().take(own) {
             let Some(row) = place(k) else { continue };
-            numbers[k] = std::array::from_fn(|part| {
+            *number = std::array::from_fn(|part| {
                 let of = |l: usize| place(l).map_or(0.0, |column| self.0[(row, column)] * before[l][part]);
                 (0..own).map(of).sum()
             });
