@@ -17,11 +17,11 @@ const ROUNDING: f64 = 1e-13;
 /// The prior is let go if what is left is smaller than any instrument's noise, as a share of the length of physical scaling.
 pub(super) const FINE: f64 = 1e-5;
 /// Weight of a prior that is let go, over that by the rule: small beside any residual, and large beside rounding.
-pub(super) const RELEASED: f64 = 1e-5;
+pub(super) const RELEASED: f64 = 1e-6;
 /// A fit without its prior ends so many times sooner: what it would still move is the rest of the pull.
-pub(super) const SOONER: f64 = 100.0;
-/// Mean square of exact residuals over that of rounding: ten picometres of some metres.
-pub(super) const EXACT: f64 = 1e8;
+pub(super) const SOONER: f64 = 1000.0;
+/// Mean square of exact residuals over that of rounding: three picometres.
+pub(super) const EXACT: f64 = 1e7;
 
 /// The share of the residuals' variance that is not the prior's pull, where that is little; `None` if they may be noise. `fitted` is the
 /// normal information of a fit, `believed` the prior's part of it, and `seen` gives that of the rows anew.
