@@ -29,6 +29,16 @@ export interface CalibrateOptions {
    * the line of sight for each metre; of all instruments without a name. For rows that state none; may be given again
    */
   instrumentNoise?: Value | readonly Value[];
+  /**
+   * Cameras of corners in pixels: CSV with name, fx, fy, cx, cy, k1, … in OpenCV's order (FILE#VERSION where it has several), YAML of
+   * OpenCV, ROS or Kalibr, XML of ViSP; may be given again
+   */
+  camera?: Value | readonly Value[];
+  /**
+   * Board or solid that cameras see: CSV with target, x[mm], y[mm], z[mm] of its points, or chessboard:10x7:27mm (squares along x and y,
+   * and their side); may be given again
+   */
+  markers?: Value | readonly Value[];
   /** Fit only rows whose COLUMN has one of these values, and hold out all others */
   fitWhere?: Value | readonly Value[];
   /** The measuring device's frame */
@@ -120,6 +130,16 @@ export interface ValidateOptions {
    * the line of sight for each metre; of all instruments without a name. For rows that state none; may be given again
    */
   instrumentNoise?: Value | readonly Value[];
+  /**
+   * Cameras of corners in pixels: CSV with name, fx, fy, cx, cy, k1, … in OpenCV's order (FILE#VERSION where it has several), YAML of
+   * OpenCV, ROS or Kalibr, XML of ViSP; may be given again
+   */
+  camera?: Value | readonly Value[];
+  /**
+   * Board or solid that cameras see: CSV with target, x[mm], y[mm], z[mm] of its points, or chessboard:10x7:27mm (squares along x and y,
+   * and their side); may be given again
+   */
+  markers?: Value | readonly Value[];
   /** Refit the measuring device's frame to these measurements */
   refitFrame?: boolean;
   /** Refit the targets to these measurements */
@@ -188,6 +208,16 @@ export interface CheckOptions {
    * the line of sight for each metre; of all instruments without a name. For rows that state none; may be given again
    */
   instrumentNoise?: Value | readonly Value[];
+  /**
+   * Cameras of corners in pixels: CSV with name, fx, fy, cx, cy, k1, … in OpenCV's order (FILE#VERSION where it has several), YAML of
+   * OpenCV, ROS or Kalibr, XML of ViSP; may be given again
+   */
+  camera?: Value | readonly Value[];
+  /**
+   * Board or solid that cameras see: CSV with target, x[mm], y[mm], z[mm] of its points, or chessboard:10x7:27mm (squares along x and y,
+   * and their side); may be given again
+   */
+  markers?: Value | readonly Value[];
   /** Fit only rows whose COLUMN has one of these values, and hold out all others */
   fitWhere?: Value | readonly Value[];
   /** The measuring device's frame: `base` looks for mistakes in it too */
@@ -315,6 +345,8 @@ export type CalibrationFile = {
   noise: NoiseEntry;
   /** Suspected rows, the worst first, at most 1,000; `robust` has their number. */
   outliers?: OutlierEntry[];
+  /** The pictures, their noise and lenses; absent if there are none. */
+  pictures?: PicturesEntry | null;
   /** Version of the program. */
   poecal_version: string;
   /** What is stated of the session; absent if nothing is. */
@@ -431,8 +463,27 @@ export type BootstrapEntry = {
   sigma_position_mm: number;
 };
 
+/** A camera with its lens. */
+export type CameraEntry = {
+  /** Where the axis meets the picture, pixels; the centre of the first pixel is (0, 0). */
+  centre_px: [number, number];
+  /** Coefficients of the distortion. */
+  distortion: number[];
+  /** Focal lengths along u and v, pixels. */
+  focal_px: [number, number];
+  /** `brown` with k1, k2, p1, p2, k3, k4, k5, k6 in OpenCV's order, or `fisheye` with k1 to k4. */
+  model: string;
+  /** Its name. */
+  name: string;
+  /** Width and height, pixels; null if they are not known. */
+  size_px?: [number, number] | null;
+};
+
 /** Why something is not determined. The words stand in `calibration.json` and do not change. */
 export type Cause = "own_axis" | "base_frame" | "joint_offsets" | "no_orientation" | "unseen" | "stood_still" | "too_few" | "point_on_axis" | "one_orientation" | "one_turning_direction" | "moved_together" | "small_motion" | "dependent_motion" | "no_length" | "seen_once" | "other";
+
+/** What the common error of the corners of a picture turns about. */
+export type Centre = "board" | "camera";
 
 /** A direction in which corrections of several joints are known only together. */
 export type CommonDirectionEntry = {
@@ -444,6 +495,16 @@ export type CommonDirectionEntry = {
   share: number;
   /** In words: one standard deviation of it, and what it does to predictions. */
   words: string;
+};
+
+/** The error that the corners of a picture share: standard deviations of each component. */
+export type CommonEntry = {
+  /** What it turns about. */
+  about: Centre;
+  /** Shift, millimetres. */
+  shift_mm: number;
+  /** Turn, degrees. */
+  turn_deg: number;
 };
 
 /**
@@ -633,7 +694,7 @@ export type DiagnosisEntry = {
 };
 
 /** Kind of a mistake. The words do not change between versions. */
-export type DiagnosisKind = "joint_unit" | "position_unit" | "joint_sign" | "joints_swapped" | "joints_coupled" | "joint_zero" | "quaternion_order" | "inverted_pose" | "euler_convention" | "left_handed" | "row_shift" | "targets_swapped" | "targets_unnamed" | "joint_scale" | "length_unit" | "distance_zero" | "known_length" | "height_sign" | "tilt_unit" | "places_swapped" | "duplicate_rows";
+export type DiagnosisKind = "joint_unit" | "position_unit" | "joint_sign" | "joints_swapped" | "joints_coupled" | "joint_zero" | "quaternion_order" | "inverted_pose" | "euler_convention" | "left_handed" | "row_shift" | "targets_swapped" | "targets_unnamed" | "joint_scale" | "board_size" | "length_unit" | "distance_zero" | "known_length" | "height_sign" | "tilt_unit" | "places_swapped" | "duplicate_rows";
 
 /** Unknowns that the measurements do not determine, or only weakly. */
 export type Direction = {
@@ -994,6 +1055,8 @@ export type ModelAccuracy = {
   contact_mm?: Statistic;
   distance_mm?: Statistic;
   height_mm?: Statistic;
+  /** Of the corners of all pictures; absent if there are none. */
+  pixels?: PixelAccuracy | null;
   position_mm?: Statistic;
   /**
    * Of all rows that a device without a frame of its own measured, millimetres, whatever their quantity: what their constraint leaves, as
@@ -1099,6 +1162,44 @@ export type OutlierEntry = {
 
 /** Set of a suspected row. */
 export type OutlierSet = "fit" | "held_out";
+
+/** The pictures of the session: their noise, and the lenses that they were read with. */
+export type PicturesEntry = {
+  /** The cameras. */
+  cameras: CameraEntry[];
+  /** What the corners of a picture share: the error of the configuration. */
+  common: CommonEntry;
+  /** Number of corners in them. */
+  corners: number;
+  /** Number of pictures. */
+  count: number;
+  /** Standard deviation of each coordinate of a corner that states none, pixels. */
+  sigma_px: number;
+  /** Those that lost their weight, since they do not fit the others of their picture. */
+  without_weight: number;
+};
+
+/** Distances of corners from where a model sees them: in the picture, and at the board, square to the ray. */
+export type PixelAccuracy = {
+  /** Number of corners. */
+  corners: number;
+  /** Largest, pixels. */
+  max_px: number;
+  /** Mean over the corners, pixels. */
+  mean_px: number;
+  /** Median over the pictures of the root mean square of each, pixels. */
+  median_picture_px: number;
+  /** Median over the corners, pixels. */
+  median_px: number;
+  /** Number of pictures. */
+  pictures: number;
+  /** Root mean square over the corners at the board, square to the ray, millimetres. */
+  rms_mm: number;
+  /** Root mean square over the corners, pixels. */
+  rms_px: number;
+  /** Corners that the model has behind the camera or beyond its lens; they are in no figure. */
+  unseen?: number;
+};
 
 /** A pose. */
 export type PoseEntry = {

@@ -100,7 +100,7 @@ pub(crate) struct Meaning {
     /// line of sight for each metre; of all instruments without a name. For rows that state none; may be given again
     #[arg(long, value_name = "[NAME:]LENGTH+LENGTH/m")]
     pub(crate) instrument_noise: Vec<InstrumentNoise>,
-    /// Cameras of corners in pixels: CSV with name, fx, fy, cx, cy, k1, … in OpenCV's order (FILE#VERSION where it has several), YAML of OpenCV,
+    /// Cameras of corners in pixels: CSV with name, fx, fy, cx, cy, k1 and so on in OpenCV's order (FILE#VERSION where it has several), YAML of OpenCV,
     /// ROS or Kalibr, XML of ViSP; may be given again
     #[arg(long, value_name = "FILE[#VERSION]")]
     pub(crate) camera: Vec<String>,

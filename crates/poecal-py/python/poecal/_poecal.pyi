@@ -388,6 +388,8 @@ class Measurements:
         socket_distance: str | None = None,
         contact: Literal["point", "flush"] = "point",
         instrument_noise: Sequence[str] | None = None,
+        cameras: Sequence[str] | None = None,
+        markers: Sequence[str] | None = None,
     ) -> Measurements:
         """Reads measurement files, joined in their order.
 
@@ -415,6 +417,10 @@ class Measurements:
         instrument_noise
             Noise of instruments that grows with the distance, like "tracker:10um+5um/m": a standard deviation in all directions, and one
             across the line of sight for each metre; of all instruments without a name. For rows that state none.
+        cameras
+            Files of the cameras that saw corners in pixels: CSV (FILE#VERSION where it has several), YAML of OpenCV, ROS or Kalibr, XML of ViSP.
+        markers
+            Boards or solids that they saw: CSV files of points, or "chessboard:10x7:27mm".
 
         Returns
         -------
@@ -492,6 +498,8 @@ class Measurements:
         socket_distance: str | None = None,
         contact: Literal["point", "flush"] = "point",
         instrument_noise: Sequence[str] | None = None,
+        cameras: Sequence[str] | None = None,
+        markers: Sequence[str] | None = None,
     ) -> Measurements:
         """Measurements of a table in memory: a data frame of pandas or polars, a dict of columns, or a structured array of NumPy.
 
@@ -519,6 +527,10 @@ class Measurements:
         instrument_noise
             Noise of instruments that grows with the distance, like "tracker:10um+5um/m": a standard deviation in all directions, and one
             across the line of sight for each metre; of all instruments without a name. For rows that state none.
+        cameras
+            Files of the cameras that saw corners in pixels: CSV (FILE#VERSION where it has several), YAML of OpenCV, ROS or Kalibr, XML of ViSP.
+        markers
+            Boards or solids that they saw: CSV files of points, or "chessboard:10x7:27mm".
 
         Returns
         -------

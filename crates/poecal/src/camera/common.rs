@@ -185,31 +185,32 @@ mod tests {
     #[test]
     fn the_common_error_is_found_among_the_noise_of_corners() {
         use rand_core::{Rng, SeedableRng};
-        let mut random = rand_chacha::ChaCha8Rng::seed_from_u64(3);
-        let mut uniform = || (random.next_u64() >> 11) as f64 / (1u64 << 53) as f64;
-        let mut normal = || (0..12).map(|_| uniform()).sum::<f64>() - 6.0;
+        const SESSIONS: u64 = 8;
         let truth = CommonError { shift_m: 0.4e-3, turn_rad: 0.8e-3, about: Centre::Board };
         let length_m = 0.3;
         let sigmas = [1e-4, 2e-4, 8e-4, 1e-3, 2e-3, 4e-4];
         let information = Matrix6::from_diagonal(&Vector6::from(sigmas.map(|it: f64| it.powi(-2))));
-        let seen: Vec<_> = (0..300)
-            .map(|_| {
-                let own = |k: usize| if k < 3 { truth.shift_m } else { truth.turn_rad };
-                (information, Vector6::from_fn(|k, _| normal() * sigmas[k] + normal() * own(k)))
-            })
-            .collect();
-        let (found, _) = CommonError::default().likeliest(&seen, 0.0, length_m);
-        println!("shift {:.3} mm, turn {:.3} mrad", 1e3 * found.shift_m, 1e3 * found.turn_rad);
-        // 900 numbers each: 3 % is about one standard deviation.
-        assert!(
-            (found.shift_m / truth.shift_m - 1.0).abs() < 0.12
-                && (found.turn_rad / truth.turn_rad - 1.0).abs() < 0.12
-        );
-        // What it whitens has the variance 1: as it was made.
-        let whitening = truth.whitening(&information, length_m);
-        let mean = seen.iter().map(|(_, it)| (whitening * it).norm_squared()).sum::<f64>()
-            / (6.0 * seen.len() as f64);
-        println!("variance {mean:.3}");
-        assert!((mean - 1.0).abs() < 0.1);
+        let (mut shift, mut turn, mut variance) = (0.0, 0.0, 0.0);
+        for seed in 0..SESSIONS {
+            let mut random = rand_chacha::ChaCha8Rng::seed_from_u64(seed);
+            let mut uniform = || (random.next_u64() >> 11) as f64 / (1u64 << 53) as f64;
+            let mut normal = || (0..12).map(|_| uniform()).sum::<f64>() - 6.0;
+            let seen: Vec<_> = (0..300)
+                .map(|_| {
+                    let own = |k: usize| if k < 3 { truth.shift_m } else { truth.turn_rad };
+                    (information, Vector6::from_fn(|k, _| normal() * sigmas[k] + normal() * own(k)))
+                })
+                .collect();
+            let (found, _) = CommonError::default().likeliest(&seen, 0.0, length_m);
+            shift += (found.shift_m / truth.shift_m).ln() / SESSIONS as f64;
+            turn += (found.turn_rad / truth.turn_rad).ln() / SESSIONS as f64;
+            let whitening = truth.whitening(&information, length_m);
+            let squares = seen.iter().map(|(_, it)| (whitening * it).norm_squared()).sum::<f64>();
+            variance += squares / (6.0 * seen.len() as f64) / SESSIONS as f64;
+        }
+        println!("shift {:.3}, turn {:.3} of the truth, variance {variance:.3}", shift.exp(), turn.exp());
+        // One session finds them to 3 and 5 %: eight to 1 and 2.
+        assert!(shift.abs() < 0.04 && turn.abs() < 0.06, "{shift} {turn}");
+        assert!((variance - 1.0).abs() < 0.03);
     }
 }
