@@ -37,8 +37,7 @@ fn options(
     strict: bool,
     frames: Frames,
     (socket_distance, contact): (Option<&str>, PlaneContact),
-    instrument_noise: Option<&[String]>,
-    (cameras, markers): (&[String], &[String]),
+    [instrument_noise, cameras, markers]: [Option<&[String]>; 3],
 ) -> poecal::Result<ReadOptions> {
     Ok(ReadOptions {
         frames,
@@ -53,8 +52,8 @@ fn options(
             .flatten()
             .map(|it| it.parse())
             .collect::<Result<_, _>>()?,
-        cameras: each(cameras, measurements::read_cameras)?,
-        boards: each(markers, measurements::read_boards)?,
+        cameras: each(cameras.unwrap_or_default(), measurements::read_cameras)?,
+        boards: each(markers.unwrap_or_default(), measurements::read_boards)?,
         ..ReadOptions::default()
     })
 }
@@ -140,8 +139,7 @@ impl Measurements {
                 strict,
                 frames,
                 (socket_distance, contact),
-                instrument_noise.as_deref(),
-                (cameras.as_deref().unwrap_or_default(), markers.as_deref().unwrap_or_default()),
+                [&instrument_noise, &cameras, &markers].map(|it| it.as_deref()),
             )?;
             let file = measurements::read(&paths, &robot.model.robot, &robot.model.reads(options))?;
             let mut sha256 = Inputs::checksums(columns.iter().map(PathBuf::as_path))?;
@@ -291,8 +289,7 @@ impl Measurements {
                 strict,
                 Frames::Common,
                 (socket_distance, contact),
-                instrument_noise.as_deref(),
-                (cameras.as_deref().unwrap_or_default(), markers.as_deref().unwrap_or_default()),
+                [&instrument_noise, &cameras, &markers].map(|it| it.as_deref()),
             )?;
             measurements::parse(&text, from_dataframe::NAME, &robot.model.robot, &options)
         };
