@@ -45,7 +45,6 @@ SHOWN = {
     "they have no quantities beside position and rotation": "crates/poecal/tests/it/calibration_file.rs",
     "the page has no address to send anything to": "web/test/app.test.mjs",
     "What has no control in the page": "web/test/app.test.mjs",
-    "It does not take images or pixels": HERE + "test_no_pictures_are_read",
     "It passes only if the rows show that": "crates/poecal-cli/tests/it/acceptance.rs::limits_are_kept_exceeded_or_neither",
     "It does not measure": ELSEWHERE,
     "only the results folder is written to": "tests/python/test_install.py",

@@ -30,8 +30,8 @@ export interface CalibrateOptions {
    */
   instrumentNoise?: Value | readonly Value[];
   /**
-   * Cameras of corners in pixels: CSV with name, fx, fy, cx, cy, k1, … in OpenCV's order (FILE#VERSION where it has several), YAML of
-   * OpenCV, ROS or Kalibr, XML of ViSP; may be given again
+   * Cameras of corners in pixels: CSV with name, fx, fy, cx, cy, k1 and so on in OpenCV's order (FILE#VERSION where it has several), YAML
+   * of OpenCV, ROS or Kalibr, XML of ViSP; may be given again
    */
   camera?: Value | readonly Value[];
   /**
@@ -131,8 +131,8 @@ export interface ValidateOptions {
    */
   instrumentNoise?: Value | readonly Value[];
   /**
-   * Cameras of corners in pixels: CSV with name, fx, fy, cx, cy, k1, … in OpenCV's order (FILE#VERSION where it has several), YAML of
-   * OpenCV, ROS or Kalibr, XML of ViSP; may be given again
+   * Cameras of corners in pixels: CSV with name, fx, fy, cx, cy, k1 and so on in OpenCV's order (FILE#VERSION where it has several), YAML
+   * of OpenCV, ROS or Kalibr, XML of ViSP; may be given again
    */
   camera?: Value | readonly Value[];
   /**
@@ -209,8 +209,8 @@ export interface CheckOptions {
    */
   instrumentNoise?: Value | readonly Value[];
   /**
-   * Cameras of corners in pixels: CSV with name, fx, fy, cx, cy, k1, … in OpenCV's order (FILE#VERSION where it has several), YAML of
-   * OpenCV, ROS or Kalibr, XML of ViSP; may be given again
+   * Cameras of corners in pixels: CSV with name, fx, fy, cx, cy, k1 and so on in OpenCV's order (FILE#VERSION where it has several), YAML
+   * of OpenCV, ROS or Kalibr, XML of ViSP; may be given again
    */
   camera?: Value | readonly Value[];
   /**
