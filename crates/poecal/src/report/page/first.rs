@@ -294,12 +294,25 @@ fn the_facts(file: &CalibrationFile, residuals: &Residuals) -> Vec<(&'static str
         @if let Some(set) = &file.accuracy.held_out { (count(set.count, "accuracy.held_out.count")) } @else { "none" }
         " held out"
     };
-    vec![
-        ("Model", path(&file.inputs.model, "inputs.model")),
-        ("Measurements", files),
-        ("Rows", rows),
-        ("Noise", noise(file)),
-    ]
+    let mut all =
+        vec![("Model", path(&file.inputs.model, "inputs.model")), ("Measurements", files), ("Rows", rows)];
+    all.extend(corners(file).map(|corners| ("Corners", corners)));
+    all.push(("Noise", noise(file)));
+    all
+}
+
+/// Errors of the corners of pictures that were held out, or if there are none of those fitted.
+fn corners(file: &CalibrationFile) -> Option<Markup> {
+    let (_, rows) = leading(file);
+    let mut models = rows.iter().filter(|(.., key)| key.starts_with("accuracy"));
+    let (before, after) = (models.next()?, models.next_back()?);
+    let (Some(was), Some(is)) = (before.1.pixels, after.1.pixels) else { return None };
+    let [of_before, of_after] = [&before.2, &after.2];
+    Some(html! {
+        (figure(was.rms_px, format_args!("{of_before}.pixels.rms_px"))) " px before, "
+        (figure(is.rms_px, format_args!("{of_after}.pixels.rms_px"))) " px after (RMS), "
+        (figure(is.rms_mm, format_args!("{of_after}.pixels.rms_mm"))) " mm at the board, square to the ray"
+    })
 }
 
 fn noise(file: &CalibrationFile) -> Markup {
