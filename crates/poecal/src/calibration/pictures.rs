@@ -1,12 +1,12 @@
-//! Pictures as a fit sees them: the common error of their corners, and the pose of each that is nearest to its prediction (theory.md §6,
+//! Pictures as a fit sees them: the common error of their corners, and the pose of each that is nearest to its prediction (theory.md §4,
 //! *Pictures*).
 
 use nalgebra::{Matrix6, Vector6};
 
 use super::robust::RobustFit;
 use super::run::Run;
+use crate::analysis::effective_unknowns;
 use crate::camera::{Centre, CommonError, Sighting};
-use crate::linalg;
 use crate::measurement::{Dataset, Noise, SightingAbout, deviation};
 use crate::solve::Normal;
 use crate::start::predicted_pose;
@@ -105,10 +105,10 @@ impl Run<'_> {
         let fitted = &fit.fitted;
         let n = fitted.normal.dim();
         let Some(prior) = &self.prior else { return n as f64 };
-        let mut believed = Normal::new(n);
-        prior.add(&fitted.estimate, &fitted.layout, 1.0, &mut believed);
-        let whole: Vec<f64> = fitted.normal.gram.iter().zip(&believed.gram).map(|(a, b)| a + b).collect();
-        let Some(factor) = linalg::cholesky(&whole, n, 0.0) else { return n as f64 };
-        n as f64 - linalg::trace_of_quotient(&factor, &believed.gram, n)
+        let (mut believed, mut whole) = (Normal::new(n), fitted.normal.clone());
+        for normal in [&mut believed, &mut whole] {
+            prior.add(&fitted.estimate, &fitted.layout, 1.0, normal);
+        }
+        n as f64 - effective_unknowns(&whole, &believed)
     }
 }

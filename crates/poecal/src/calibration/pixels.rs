@@ -43,6 +43,9 @@ fn is_none(count: &usize) -> bool {
 
 /// The errors of the pictures among some rows by the errors of these rows; `None` without a corner that is seen.
 pub(super) fn pixel_accuracy(data: &Dataset, rows: &[u32], errors: &[RowError]) -> Option<PixelAccuracy> {
+    if data.pictures.is_empty() {
+        return None;
+    }
     let (mut lengths, mut across, mut of_pictures) = (Vec::new(), 0.0, Vec::new());
     let mut unseen = 0;
     for (row, error) in rows.iter().zip(errors) {

@@ -157,8 +157,8 @@ impl<'a> View<'a> {
                 break;
             }
         }
-        let (information, ..) = self.sums(&pose, &weights);
-        Some(self.sighting_at(pose, information, weights))
+        let (information, _, cost) = self.sums(&pose, &weights);
+        Some(self.sighting_at(pose, information, cost, weights))
     }
 
     /// What the corners say near a pose, to first order, where their best pose is another one: that of a flat board which is tilted the other
@@ -172,11 +172,12 @@ impl<'a> View<'a> {
         if turn > MOST_TURN {
             step *= MOST_TURN / turn;
         }
-        Some(self.sighting_at(moved(pose, &step), information, weights))
+        let next = moved(pose, &step);
+        let (_, _, cost) = self.sums(&next, &weights);
+        Some(self.sighting_at(next, information, cost, weights))
     }
 
-    fn sighting_at(&self, pose: Pose, information: Matrix6<f64>, weights: Vec<f64>) -> Sighting {
-        let (_, _, cost) = self.sums(&pose, &weights);
+    fn sighting_at(&self, pose: Pose, information: Matrix6<f64>, cost: f64, weights: Vec<f64>) -> Sighting {
         let errors = self.errors(&pose);
         let squares = errors
             .iter()
@@ -220,11 +221,8 @@ impl<'a> View<'a> {
                 damping = (damping * 10.0).max(1e-6);
             }
         }
-        let seen = self
-            .corners
-            .iter()
-            .zip(weights)
-            .filter(|(corner, weight)| **weight > 0.0 && self.seen(corner, &pose).is_some());
+        let errors = self.errors(&pose);
+        let seen = errors.iter().zip(weights).filter(|(error, weight)| **weight > 0.0 && error.is_some());
         (seen.count() >= 3).then_some(pose)
     }
 }

@@ -6,7 +6,7 @@ use crate::camera::{Picture, Pictures};
 use crate::distributions::median;
 use crate::estimate::{Estimate, Packed, RowError, Session, delivered};
 use crate::lie::{Pose, rotation};
-use crate::measurement::{Dataset, Measurement, Noise, Quantity, deviation};
+use crate::measurement::{Dataset, Measurement, Noise, Quantity, Stated, deviation};
 use crate::robot::{Mount, Robot};
 
 /// Most rounds in which pictures take the other of their poses.
@@ -130,10 +130,7 @@ fn registered(data: &Dataset, robot: &Robot, packed: &Packed, rows: &[u32]) -> E
     let mut plain = data.clone();
     for &row in rows {
         let observation = &mut plain.observations[row as usize];
-        observation.noise_shape = None;
-        for quantity in [Quantity::Position, Quantity::Rotation] {
-            observation.stated.set(quantity, None);
-        }
+        (observation.noise_shape, observation.stated) = (None, Stated::default());
     }
     let session = Session::new(robot, &plain, packed, true);
     let registration = Registration { session, rows, noise: NOISE, targets_free: true, prior: None };

@@ -118,9 +118,7 @@ impl ColumnLayout {
         let id = builder.id_column()?;
         let set = set_rule(&mut builder, options, map)?;
         builder.optional_text_column("image")?;
-        let (ignored, controller) = (builder.ignored(), builder.controller(robot));
-        let Builder { inputs, numbered, missed, .. } = builder;
-        Ok(ColumnLayout { inputs, id, set, ignored, numbered, controller, missed, ..ColumnLayout::default() })
+        Ok(ColumnLayout { set, ignored: builder.ignored(), ..Self::of_joints(builder, id, robot) })
     }
 
     /// The layout of a file that is read for its joints alone.
@@ -133,9 +131,13 @@ impl ColumnLayout {
         let mut builder = Builder::new(header, robot, map, options.controller.as_ref())?;
         builder.check_distinct()?;
         let id = builder.id_column()?;
+        Ok(Self::of_joints(builder, id, robot))
+    }
+
+    fn of_joints(builder: Builder<'_>, id: Option<usize>, robot: &Robot) -> Self {
         let controller = builder.controller(robot);
         let Builder { inputs, numbered, missed, .. } = builder;
-        Ok(ColumnLayout { inputs, id, numbered, controller, missed, ..ColumnLayout::default() })
+        ColumnLayout { inputs, id, numbered, controller, missed, ..ColumnLayout::default() }
     }
 }
 
