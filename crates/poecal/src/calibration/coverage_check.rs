@@ -14,6 +14,8 @@ use crate::unit::Unit;
 
 /// Floor of the scatter of exact data: rounding.
 pub(super) const ROUNDING: f64 = 1e-12;
+/// Most held-out rows whose bounds are checked.
+const JUDGED: usize = 4000;
 
 /// Predicted uncertainty of a calibration, to be checked on measurements.
 #[derive(Clone, Copy, Debug)]
@@ -279,16 +281,15 @@ pub(super) fn promised_rows(
     Some(predicted.rows(&seen.session, &seen.estimate, &data.all_rows(), &seen.errors))
 }
 
-/// Coverage on held-out rows, at most so many, of a model with its uncertainty and sampled ranges; `None` without any that bounds promise.
+/// Coverage on held-out rows, at most [`JUDGED`], of a model with its uncertainty and sampled ranges; `None` without any that bounds promise.
 pub(super) fn held_out_check(
     (session, estimate): (&Session<'_>, &Estimate),
     (fitted, held_out): (&[u32], &[u32]),
     predicted: Option<(&Uncertainty, &[JointCoverage])>,
-    most: usize,
 ) -> Option<CoverageCheck> {
     let (uncertainty, coverage) = predicted?;
     let targets: Vec<usize> = (0..session.data.targets.len()).collect();
-    let rows = sample_rows(&rows_of_fitted_stations(session.data, fitted, held_out), most);
+    let rows = sample_rows(&rows_of_fitted_stations(session.data, fitted, held_out), JUDGED);
     let errors = session.errors(&rows, estimate);
     let predicted = PredictedUncertainty { uncertainty, targets: &targets, coverage };
     (!rows.is_empty()).then(|| predicted.check(session, estimate, &rows, &errors))

@@ -70,8 +70,7 @@ impl CalibratedFit<'_> {
         }
         let predicted = trust.uncertainty.as_ref().map(|it| (it, &trust.coverage[..]));
         let of_calibrated = (&session, &models.calibrated);
-        trust.held_out =
-            held_out_check(of_calibrated, (&run.fit_rows, &run.held_out_rows), predicted, usize::MAX);
+        trust.held_out = held_out_check(of_calibrated, (&run.fit_rows, &run.held_out_rows), predicted);
         let held_out = (!run.held_out_rows.is_empty()).then(|| of(&run.held_out_rows));
         let mut accuracy = Accuracy { training: of(&run.fit_rows), held_out };
         if let Some(found) = &correction {

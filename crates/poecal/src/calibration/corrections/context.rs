@@ -15,8 +15,8 @@ use crate::problem::Prior;
 use crate::robot::{CorrectionModel, Extent, JointTerm, Robot, Sizes, TermGroup};
 use crate::uncertainty::{PriorInformation, View, parts_to_leave_out};
 
-/// Most rows from which sizes are chosen.
-const SAMPLE: usize = 2000;
+/// Most measured numbers from which sizes are chosen.
+const NUMBERS: usize = 6000;
 
 /// Geometry with what a fit of terms needs beside it.
 pub(super) struct CorrectionContext<'a> {
@@ -91,7 +91,10 @@ impl<'g> CorrectionContext<'g> {
             variance: 1.0,
             estimate: calibrated,
         };
-        let (sample, parts) = parts_to_leave_out(&view, SAMPLE, options.seed);
+        let numbers = |row: &u32| of_geometry.observation(*row).measurement.dim();
+        let all: usize = self.rows.iter().map(numbers).sum();
+        let most = self.rows.len() * NUMBERS / all.max(NUMBERS);
+        let (sample, parts) = parts_to_leave_out(&view, most, options.seed);
         // The rows of the sample alone, so that terms are evaluated at no others.
         let data = of_geometry.data.only(&sample);
         let rows = data.all_rows();

@@ -18,9 +18,6 @@ use crate::measurement::{Dataset, Noise, Quantity};
 use crate::robot::{CorrectionModel, Robot, Sizes};
 use crate::uncertainty::{CrossValidation, Uncertainty};
 
-/// Most held-out rows whose bounds are checked.
-const JUDGED: usize = 4000;
-
 /// A fit of screws and terms together.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CorrectedFit {
@@ -95,7 +92,7 @@ impl CorrectedFit {
             effects(model, (&session, estimate), before, rows, (uncertainty, &deviations), *noise)
         });
         let predicted = uncertainty.as_ref().map(|it| (it, &coverage[..]));
-        let kept = held_out_check((&session, estimate), (rows, held_out_rows), predicted, JUDGED);
+        let kept = held_out_check((&session, estimate), (rows, held_out_rows), predicted);
         let frames = session.data.frames(rows);
         let (robot, targets) = place_tip(&model.robot, session.data, &frames, estimate, options.move_tip);
         Correction {

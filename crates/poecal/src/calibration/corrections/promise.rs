@@ -1,16 +1,22 @@
 //! Uncertainty of what screws and terms predict: the priors' part, and the errors of the parts that were left out (theory.md §9,
 //! *Corrected models*).
 
+use std::collections::BTreeMap;
+
 use crate::calibration::summary::FitSummary;
 use crate::calibration::task::Task;
 use crate::estimate::{Estimate, sample_rows};
-use crate::measurement::Noise;
+use crate::measurement::{Dataset, Noise};
 use crate::problem::{Prior, Problem};
 use crate::solve::{LeastSquares as _, Normal};
 use crate::uncertainty::{PriorInformation, Uncertainty, View, discrepancy};
 
 /// Rows of which residuals are searched for structure.
 const MANY: usize = 4000;
+/// Most rows that are summed for the information of all.
+const SUMMED: usize = 8000;
+/// Fewest rows of each target seen from each station among them.
+const FEWEST: usize = 200;
 
 /// Uncertainty of a fit with all terms that may be there. The priors' weight is that of the number of configurations times the variance of
 /// the whitened residuals; `growth` is the mean squared error of parts that were left out over what their fits let expect. `None` with no more
@@ -21,7 +27,10 @@ pub(super) fn uncertainty(
     (prior, [weight, variance]): (&Prior, [f64; 2]),
     growth: f64,
 ) -> Option<Uncertainty> {
-    let measured = Task { prior: None, ..*task };
+    // Thousands of rows determine the information to a few percent.
+    let (rows, weights) = representative(task.session.data, task.rows, task.weights).unzip();
+    let weights = weights.as_deref().or(task.weights);
+    let measured = Task { prior: None, rows: rows.as_deref().unwrap_or(task.rows), weights, ..*task };
     let problem = measured.problem(estimate, noise);
     let (layout, normal) = (problem.layout().clone(), problem.normal(estimate));
     let mut believed = Normal::new(layout.dim());
@@ -48,4 +57,29 @@ pub(super) fn uncertainty(
     let root = growth.sqrt();
     found.standard_deviation.values_mut().for_each(|(_, sigma)| *sigma *= root);
     Uncertainty::new(&view, summary.layout.clone(), &normal.gram, &found)
+}
+
+/// Rows of every target seen from every station that stand for all of them, and the weights of all rows with which their information is that of
+/// all; `None` of few.
+fn representative(data: &Dataset, rows: &[u32], weights: Option<&[f64]>) -> Option<(Vec<u32>, Vec<f64>)> {
+    if rows.len() <= SUMMED {
+        return None;
+    }
+    let mut groups: BTreeMap<(usize, usize), Vec<u32>> = BTreeMap::new();
+    for &row in rows {
+        let seen = &data.observations[row as usize];
+        groups.entry((seen.station, seen.target)).or_default().push(row);
+    }
+    let mut found = Vec::with_capacity(SUMMED);
+    let mut of_rows = vec![0.0; data.len()];
+    for group in groups.values() {
+        let some = sample_rows(group, (group.len() * SUMMED / rows.len()).max(FEWEST));
+        let each = group.len() as f64 / some.len() as f64;
+        for &row in &some {
+            of_rows[row as usize] = each * weights.map_or(1.0, |weights| weights[row as usize]);
+        }
+        found.extend(some);
+    }
+    found.sort_unstable();
+    Some((found, of_rows))
 }

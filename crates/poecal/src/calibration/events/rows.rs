@@ -105,7 +105,7 @@ impl Rows {
         }
         let mut weighted = self.fitted.clone();
         weighted.row_iter_mut().zip(each.iter()).for_each(|(mut row, weight)| row *= *weight);
-        let mut gram = self.fitted.tr_mul(&weighted) + &self.prior.0;
+        let mut gram = self.fitted.transpose() * &weighted + &self.prior.0;
         let largest = gram.diagonal().amax();
         (0..p).for_each(|at| gram[(at, at)] += RIDGE * largest);
         let pull = weighted.tr_mul(&self.residual) + &self.prior.1;
