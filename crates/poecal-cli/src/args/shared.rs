@@ -101,11 +101,12 @@ pub(crate) struct Meaning {
     #[arg(long, value_name = "[NAME:]LENGTH+LENGTH/m")]
     pub(crate) instrument_noise: Vec<InstrumentNoise>,
     /// Cameras of corners in pixels: CSV with name, fx, fy, cx, cy, k1 and so on in OpenCV's order (FILE#VERSION where it has several), YAML of OpenCV,
-    /// ROS or Kalibr, XML of ViSP; may be given again
-    #[arg(long, value_name = "FILE[#VERSION]")]
+    /// ROS or Kalibr, XML of ViSP, a calibration.json with what it found, or unknown:1920x1080 with the size of the pictures, for a lens that is
+    /// found from them; may be given again
+    #[arg(long, value_name = "FILE[#VERSION]|unknown:WxH")]
     pub(crate) camera: Vec<String>,
-    /// Board or solid that cameras see: CSV with target, x[mm], y[mm], z[mm] of its points, or chessboard:10x7:27mm (squares along x and y, and
-    /// their side); may be given again
+    /// Board or solid that cameras see: CSV with target, x[mm], y[mm], z[mm] of its points, chessboard:10x7:27mm (squares along x and y, and
+    /// their side), or a calibration.json with what it found; may be given again
     #[arg(long, value_name = "FILE|BOARD")]
     pub(crate) markers: Vec<String>,
 }
@@ -113,7 +114,7 @@ pub(crate) struct Meaning {
 impl Meaning {
     /// The files that say what others mean.
     pub(crate) fn files(&self) -> impl Iterator<Item = &Path> {
-        let camera = self.camera.iter().map(|typed| camera_file(typed).0);
+        let camera = self.camera.iter().filter_map(|typed| camera_file(typed)).map(|(path, _)| path);
         let markers = self.markers.iter().map(Path::new).filter(|path| is_file(path));
         self.columns.columns.iter().map(PathBuf::as_path).chain(camera).chain(markers)
     }

@@ -2,6 +2,7 @@
 
 use wildmatch::WildMatch;
 
+use crate::camera::{PictureUnknown, Pictures, is_flat_sheet};
 use crate::error::{Error, ErrorKind, Result};
 use crate::estimate::Unknowns;
 use crate::measurement::Dataset;
@@ -78,12 +79,18 @@ impl BlockChoice {
         let blocks = names.blocks();
         let usual = |block: &Block| !matches!(block, Block::Term(..) | Block::Range(..));
         let mut is_free: Vec<bool> = blocks.iter().map(usual).collect();
-        let mut further = Vec::new();
+        let (mut further, mut pictures) = (Vec::new(), Vec::new());
         for (words, value) in [(&self.fix, false), (&self.free, true)] {
             for word in words {
                 let chosen = chosen(&names, &blocks, word);
                 if let Some(term) = further_term(&names, word).filter(|_| value && !chosen.contains(&true)) {
                     further.push(term);
+                    continue;
+                }
+                let seen = picture_unknowns(data, word);
+                if value && !chosen.contains(&true) && !seen.is_empty() {
+                    refuse_bodies(data, word, &seen)?;
+                    pictures.extend(seen);
                     continue;
                 }
                 if !chosen.contains(&true) {
@@ -122,6 +129,12 @@ impl BlockChoice {
         further.dedup();
         let is_any = !further.is_empty() || is_free.contains(&true);
         unknowns.terms.extend(further);
+        // A lens that was guessed is unknown without being named.
+        let guessed = data.pictures.cameras.iter().enumerate().filter(|(_, camera)| camera.is_guessed);
+        pictures.extend(guessed.map(|(at, _)| PictureUnknown::Lens(at)));
+        pictures.sort_unstable();
+        pictures.dedup();
+        unknowns.pictures = pictures;
         if !is_any {
             return ErrorKind::Option
                 .refuse("found that every block is held, expected at least one that is unknown: fix fewer");
@@ -147,6 +160,41 @@ pub(super) fn refuse_frames(choice: &BlockChoice, robot: &Robot, data: &Dataset)
             ))
         }
         None => Ok(()),
+    }
+}
+
+/// Refuses the shape of a body that is no flat sheet.
+fn refuse_bodies(data: &Dataset, word: &str, seen: &[PictureUnknown]) -> Result<()> {
+    let board = |it: &PictureUnknown| match it {
+        PictureUnknown::Board(at) => data.pictures.boards.get(*at),
+        PictureUnknown::Lens(_) | PictureUnknown::Markers(_) => None,
+    };
+    match seen.iter().filter_map(board).find(|board| !is_flat_sheet(board)) {
+        Some(board) => ErrorKind::Option.refuse(format!(
+            "found `{word}` to be fitted, but the points of `{}` are not in one plane of its x and y, expected a flat board: free its points              (--free markers)",
+            board.name
+        )),
+        None => Ok(()),
+    }
+}
+
+/// What of the cameras and boards of a session's pictures a word frees: `lens`, `board`, `markers`, or one of these of a name.
+fn picture_unknowns(data: &Dataset, word: &str) -> Vec<PictureUnknown> {
+    let Pictures { cameras, boards, .. } = &data.pictures;
+    let (kind, name) = word.split_once('.').map_or((word, None), |(kind, name)| (kind, Some(name)));
+    let is_meant = |own: &str| name.is_none_or(|name| WildMatch::new(name).matches(own));
+    let of_boards = |unknown: fn(usize) -> PictureUnknown| -> Vec<PictureUnknown> {
+        let own = boards.iter().enumerate().filter(|(_, board)| is_meant(&board.name));
+        own.map(|(at, _)| unknown(at)).collect()
+    };
+    match kind {
+        "lens" => {
+            let own = cameras.iter().enumerate().filter(|(_, camera)| is_meant(&camera.name));
+            own.map(|(at, _)| PictureUnknown::Lens(at)).collect()
+        }
+        "board" => of_boards(PictureUnknown::Board),
+        "markers" => of_boards(PictureUnknown::Markers),
+        _ => Vec::new(),
     }
 }
 

@@ -5,6 +5,7 @@ use std::borrow::Cow;
 use super::found::Start;
 use super::instrument_noise::{ROUNDS, noise_ratios};
 use super::located::located;
+use super::optics::Optics;
 use super::pictures;
 use super::robust::{self, RobustFit};
 use super::run::Run;
@@ -23,6 +24,8 @@ pub(super) struct CalibratedFit<'a> {
     pub(super) robust: RobustFit,
     /// Noise of each instrument in units of the first one's; empty if all are alike.
     pub(super) noise_ratios: Vec<Noise>,
+    /// What of cameras and boards was found with the robot.
+    pub(super) optics: Option<Optics>,
     /// The calibrated model: the fit in the nominal base frame, with the frames of all stations.
     pub(super) estimate: Estimate,
 }
@@ -40,14 +43,18 @@ impl<'a> Run<'a> {
             fit = self.fit_with(&ratios, &again, self.options.robust)?;
         }
         // A loop where there are pictures: fit, what their corners share, fit.
+        let mut optics = Optics::of(&self);
         for _ in 0..pictures::ROUNDS {
-            let Some(data) = self.renewed_pictures(&ratios, &fit) else { break };
+            let Some(data) = self.renewed_pictures(&ratios, &fit, &mut optics) else { break };
             self.data = Cow::Owned(data);
             start = self.register();
             fit = self.fit_with(&ratios, &start, self.options.robust)?;
         }
+        if let Some(optics) = &optics {
+            self.data.to_mut().pictures.found = optics.numbers();
+        }
         let estimate = self.calibrated(&fit, &ratios);
-        Ok(CalibratedFit { run: self, start, robust: fit, noise_ratios: ratios, estimate })
+        Ok(CalibratedFit { run: self, start, robust: fit, noise_ratios: ratios, optics, estimate })
     }
 
     /// One fit of the screws.
@@ -121,10 +128,10 @@ impl CalibratedFit<'_> {
         if suspected.contains(&true) {
             return Ok(self.with_suspects(suspected));
         }
-        let CalibratedFit { run, start, noise_ratios, .. } = self;
+        let CalibratedFit { run, start, noise_ratios, optics, .. } = self;
         let robust = run.fit_with(&noise_ratios, &start, Robust::Off)?;
         let estimate = run.calibrated(&robust, &noise_ratios);
-        Ok(CalibratedFit { run, start, robust, noise_ratios, estimate }.with_suspects(suspected))
+        Ok(CalibratedFit { run, start, robust, noise_ratios, optics, estimate }.with_suspects(suspected))
     }
 
     fn with_suspects(mut self, suspected: &[bool]) -> Self {

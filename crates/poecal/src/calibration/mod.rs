@@ -26,6 +26,7 @@ mod located;
 mod moves;
 mod noise;
 mod noise_doubts;
+mod optics;
 mod options;
 mod pictures;
 mod pixels;

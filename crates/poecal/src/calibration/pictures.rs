@@ -3,6 +3,7 @@
 
 use nalgebra::{Matrix6, Vector6};
 
+use super::optics::Optics;
 use super::robust::RobustFit;
 use super::run::Run;
 use crate::analysis::effective_unknowns;
@@ -23,15 +24,22 @@ const AS_GOOD: f64 = 3.0;
 impl Run<'_> {
     /// The data with the noise of pictures as the residuals of a fit show it, and with each picture at the pose that is nearest to its
     /// prediction. `None` if that changes nothing.
-    pub(super) fn renewed_pictures(&self, ratios: &[Noise], fit: &RobustFit) -> Option<Dataset> {
-        let pictures = &self.data.pictures;
-        if pictures.is_empty() {
+    pub(super) fn renewed_pictures(
+        &self,
+        ratios: &[Noise],
+        fit: &RobustFit,
+        optics: &mut Option<Optics>,
+    ) -> Option<Dataset> {
+        if self.data.pictures.is_empty() {
             return None;
         }
+        let next = optics.as_mut().and_then(|it| it.advance(self, (ratios, fit), CHANGE));
+        let pictures = next.as_ref().map_or(&self.data.pictures, |(next, _)| &next.pictures);
+        let estimate = next.as_ref().map_or(&fit.fitted.estimate, |(_, estimate)| estimate);
         let session = self.session(ratios);
         let rows: Vec<u32> = pictures.all.iter().map(|it| it.row).collect();
-        let errors = session.errors(&rows, &fit.fitted.estimate);
-        let mut has_moved = false;
+        let errors = session.errors(&rows, estimate);
+        let mut has_moved = next.is_some();
         // Sightings with how far each is off its prediction, as motions of its row.
         let mut found: Vec<(Sighting, Vector6<f64>)> = Vec::with_capacity(rows.len());
         for (picture, error) in pictures.all.iter().zip(&errors) {
@@ -55,7 +63,8 @@ impl Run<'_> {
             has_moved |= (moved.transpose() * sighting.information * moved)[0] > CHANGE * CHANGE;
             found.push((sighting, deviation(&pose, &predicted)));
         }
-        let common = self.common_error(fit, &found, session.length_m);
+        let numbers = optics.as_ref().map_or(0.0, Optics::determined);
+        let common = self.common_error((fit, numbers), &found, session.length_m);
         let before = pictures.common;
         let differs = |a: f64, b: f64| (a / b).ln().abs() > CHANGE;
         let same = common.about == before.about
@@ -64,8 +73,12 @@ impl Run<'_> {
         if !has_moved && same {
             return None;
         }
-        let mut data = self.data.clone().into_owned();
+        let mut data = next.map(|(next, _)| next).unwrap_or_else(|| self.data.clone().into_owned());
         data.pictures.common = common;
+        if optics.is_some() {
+            let sightings: Vec<Sighting> = found.iter().map(|(sighting, _)| sighting.clone()).collect();
+            data.pictures.sigma_px = data.corner_noise(&sightings, numbers).unwrap_or(data.pictures.sigma_px);
+        }
         for (at, (sighting, _)) in found.iter().enumerate() {
             data.state_picture(at, sighting);
         }
@@ -75,18 +88,18 @@ impl Run<'_> {
     /// The likeliest common error of the corners of a picture, about the board or about the camera.
     fn common_error(
         &self,
-        fit: &RobustFit,
+        (fit, numbers): (&RobustFit, f64),
         found: &[(Sighting, Vector6<f64>)],
         length_m: f64,
     ) -> CommonError {
         let pictures = &self.data.pictures;
-        let unknowns = self.effective_unknowns(fit);
+        let unknowns = self.effective_unknowns(fit) + numbers;
         let counts =
             |row: u32| self.fit_rows.binary_search(&row).is_ok() && !fit.robustness.suspects_row(row);
         let seen = |about: Centre| -> Vec<(Matrix6<f64>, Vector6<f64>)> {
             let own = pictures.all.iter().zip(found).filter(|(picture, _)| counts(picture.row));
             own.map(|(picture, (sighting, deviation))| {
-                let sighting = SightingAbout::new(sighting, about);
+                let sighting = SightingAbout::new((&sighting.camera_from_board, sighting.information), about);
                 (sighting.information, sighting.from_row(picture.of_camera) * deviation)
             })
             .collect()

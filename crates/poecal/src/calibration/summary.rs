@@ -8,7 +8,7 @@ use super::{CalibrationOptions, Formulation};
 use crate::estimate::{Estimate, Session};
 use crate::measurement::{ByQuantity, Noise};
 use crate::parameters::Parameter;
-use crate::problem::Layout;
+use crate::problem::{Layout, Problem};
 use crate::solve::Normal;
 use crate::uncertainty::{CrossValidation, PriorInformation, Remainder, View, cross_validate, remainder};
 
@@ -80,6 +80,12 @@ impl FitSummary {
         } else {
             minimal(session, &kept, estimate, fitted.noise)
         };
+        let mut normal = normal;
+        if let Some(optics) = &fit.optics {
+            let free = layout.parameters().map(|(parameter, _)| *parameter).collect();
+            let problem = Problem::new(session, kept.clone(), free, fitted.noise);
+            optics.loosen(session.data, &problem, estimate, &mut normal);
+        }
         let prior = PriorInformation::new(run.prior.as_ref(), estimate, &layout, session.length_m);
         let information = (layout, normal);
         let mut summary =

@@ -2,17 +2,21 @@
 
 mod board;
 mod common;
+mod guess;
 mod lens;
 mod picture;
 mod pictures;
 mod pnp;
 mod poses;
 mod sighting;
+mod unknown;
 
 pub use board::{Board, dimensions, middle, normal};
 pub use common::{Centre, CommonError, motion_by_inverse};
+pub use guess::{FlatView, guessed_lens};
 pub use lens::{Distortion, LENS_NAMES, LENS_NUMBERS, Lens, Projection};
 pub use picture::{Camera, Corner, Picture};
 pub use pictures::Pictures;
 pub use pnp::poses_of_rays;
 pub use sighting::{Sighting, View, moved};
+pub use unknown::{OwnInformation, PictureNumber, PictureUnknown, PictureUnknowns, is_flat_sheet};

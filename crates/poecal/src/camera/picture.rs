@@ -13,6 +13,17 @@ pub struct Camera {
     pub name: String,
     /// Its lens.
     pub lens: Lens,
+    /// Whether the lens is a first guess from the pictures.
+    #[serde(default)]
+    pub is_guessed: bool,
+}
+
+impl Camera {
+    /// A camera whose lens is known.
+    #[must_use]
+    pub fn new(name: String, lens: Lens) -> Self {
+        Camera { name, lens, is_guessed: false }
+    }
 }
 
 /// A point of a board as it was seen.

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Board, Camera, CommonError, Picture, View};
+use super::{Board, Camera, CommonError, Picture, PictureNumber, View};
 
 /// Standard deviation of corners that state none, pixels, to begin with.
 const USUAL_PX: f64 = 0.3;
@@ -21,6 +21,9 @@ pub struct Pictures {
     pub sigma_px: f64,
     /// What the corners of a picture share.
     pub common: CommonError,
+    /// Numbers of cameras and boards that were found with the robot.
+    #[serde(default)]
+    pub found: Vec<PictureNumber>,
 }
 
 impl Default for Pictures {
@@ -31,6 +34,7 @@ impl Default for Pictures {
             all: Vec::new(),
             sigma_px: USUAL_PX,
             common: CommonError::default(),
+            found: Vec::new(),
         }
     }
 }

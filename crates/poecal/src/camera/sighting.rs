@@ -1,7 +1,8 @@
 //! The pose of a board that fits its corners best, with what the corners determine of it (theory.md §4, *Pictures*).
 
-use nalgebra::{Matrix2x6, Matrix3, Matrix6, Vector2, Vector3, Vector6};
+use nalgebra::{Matrix2x3, Matrix2x6, Matrix3, Matrix6, Vector2, Vector3, Vector6};
 
+use super::lens::LENS_NUMBERS;
 use super::{Board, Corner, Lens, Picture, dimensions};
 use crate::lie::{Pose, hat, rotation};
 use crate::linalg;
@@ -12,6 +13,8 @@ const FAR: f64 = 6.0;
 const MEDIAN: f64 = 1.177_410;
 /// Fewest corners of which some may lose their weight: below, any of them bends the pose to itself.
 const JUDGEABLE: usize = 8;
+/// Times their noise by which corners are off that are others.
+const ODD: f64 = 4.0;
 /// Most steps.
 const STEPS: usize = 40;
 
@@ -45,10 +48,13 @@ pub struct View<'a> {
     pub sigma_px: f64,
 }
 
-/// Residual of a corner with its derivative.
-struct Seen {
-    error: Vector2<f64>,
-    by_motion: Matrix2x6<f64>,
+/// Residual of a corner with its derivatives, in standard deviations.
+pub(super) struct Seen {
+    pub(super) error: Vector2<f64>,
+    pub(super) by_motion: Matrix2x6<f64>,
+    /// By a motion of the point in the camera's frame, and by the numbers of the lens.
+    pub(super) by_point: Matrix2x3<f64>,
+    pub(super) by_lens: [[f64; LENS_NUMBERS]; 2],
 }
 
 impl<'a> View<'a> {
@@ -92,7 +98,7 @@ impl<'a> View<'a> {
     }
 
     /// Residual and derivative of a corner, in standard deviations; `q = R P + p` moves by `δ + ω × R P`.
-    fn seen(&self, corner: &Corner, pose: &Pose) -> Option<Seen> {
+    pub(super) fn seen(&self, corner: &Corner, pose: &Pose) -> Option<Seen> {
         let point = self.board.points.get(corner.point as usize)?;
         let arm = pose.rotation * point;
         let found = self.lens.projection(&(arm + pose.translation))?;
@@ -100,7 +106,12 @@ impl<'a> View<'a> {
         let mut by_motion = Matrix2x6::zeros();
         by_motion.fixed_view_mut::<2, 3>(0, 0).copy_from(&(found.by_point * weight));
         by_motion.fixed_view_mut::<2, 3>(0, 3).copy_from(&(found.by_point * hat(&arm) * -weight));
-        Some(Seen { error: (corner.pixel - found.pixel) * weight, by_motion })
+        Some(Seen {
+            error: (corner.pixel - found.pixel) * weight,
+            by_motion,
+            by_point: found.by_point * weight,
+            by_lens: found.by_lens.map(|row| row.map(|value| value * weight)),
+        })
     }
 
     /// Weights by how far corners are off at a pose.
@@ -127,7 +138,7 @@ impl<'a> View<'a> {
     fn sums(&self, pose: &Pose, weights: &[f64]) -> (Matrix6<f64>, Vector6<f64>, f64) {
         let mut sums = (Matrix6::zeros(), Vector6::zeros(), 0.0);
         for (corner, weight) in self.corners.iter().zip(weights).filter(|(_, weight)| **weight > 0.0) {
-            let Some(Seen { error, by_motion }) = self.seen(corner, pose) else {
+            let Some(Seen { error, by_motion, .. }) = self.seen(corner, pose) else {
                 // A corner that the camera could not see costs more than any that it sees.
                 sums.2 += weight * UNSEEN * UNSEEN;
                 continue;
@@ -137,6 +148,21 @@ impl<'a> View<'a> {
             sums.2 += weight * error.norm_squared();
         }
         sums
+    }
+
+    /// Information of a pose by corners of the weights that they have.
+    #[must_use]
+    pub fn information(&self, pose: &Pose) -> Matrix6<f64> {
+        let weights: Vec<f64> = self.corners.iter().map(|corner| corner.weight).collect();
+        self.sums(pose, &weights).0
+    }
+
+    /// Whether corners are off a pose by so much more than their noise that one of them is another point.
+    #[must_use]
+    pub fn is_odd(&self, pose: &Pose) -> bool {
+        let weights: Vec<f64> = self.corners.iter().map(|corner| corner.weight).collect();
+        let freedom = 2.0 * weights.iter().sum::<f64>() - 6.0;
+        self.sums(pose, &weights).2 > ODD * ODD * freedom.max(1.0)
     }
 
     /// The nearest pose to a start that fits the corners best; `robust` takes weight off corners that do not fit the others. `None` where too

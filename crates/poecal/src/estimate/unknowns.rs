@@ -1,6 +1,7 @@
 //! Which parts of a session are unknown.
 
 use super::RangeTerm;
+use crate::camera::PictureUnknown;
 use crate::robot::Term;
 
 /// What a fit changes: the axes of all joints, all targets and all frames of instruments, but for what is held as in the model; and terms of
@@ -19,6 +20,8 @@ pub struct Unknowns {
     pub terms: Vec<(usize, Term)>,
     /// Zeros and scales of stations that are unknown beside those of which the rows say so.
     pub ranges: Vec<(usize, RangeTerm)>,
+    /// What of cameras and boards is unknown.
+    pub pictures: Vec<PictureUnknown>,
 }
 
 impl Unknowns {
@@ -30,12 +33,13 @@ impl Unknowns {
         held_frames: Vec::new(),
         terms: Vec::new(),
         ranges: Vec::new(),
+        pictures: Vec::new(),
     };
 
-    /// Whether they are the usual ones; what is known of them before is another question.
+    /// Whether those of the robot, its targets and instruments are the usual ones; what is known of them before is another question.
     #[must_use]
     pub fn are_usual(&self) -> bool {
-        Unknowns { open_targets: Vec::new(), ..self.clone() } == Unknowns::USUAL
+        Unknowns { open_targets: Vec::new(), pictures: Vec::new(), ..self.clone() } == Unknowns::USUAL
     }
 
     /// Whether the axis of a joint is unknown.

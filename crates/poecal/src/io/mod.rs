@@ -26,6 +26,7 @@ pub mod settings;
 pub mod shapes;
 mod source;
 mod source_text;
+mod stored_pictures;
 pub mod urdf;
 pub mod validation;
 mod xml;

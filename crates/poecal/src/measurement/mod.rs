@@ -31,6 +31,6 @@ pub use noise_shape::NoiseShape;
 pub use observation::{Observation, Set, Source};
 pub use other_pose::PoseResidual;
 pub(crate) use other_pose::Written;
-pub use pictures::{SightingAbout, deviation};
+pub use pictures::{SightingAbout, deviation, picture_whitening};
 pub use quantity::{ByQuantity, Measured, Noise, Quantity, Stated};
 pub use session::{Draw, Drawn, Kind, Session, Stands};

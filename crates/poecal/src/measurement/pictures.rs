@@ -3,7 +3,7 @@
 use nalgebra::{Matrix6, Vector6};
 
 use super::{Dataset, Measurement, NoiseShape, Observation, Quantity, Set, Source};
-use crate::camera::{Centre, Picture, Sighting, motion_by_inverse};
+use crate::camera::{Centre, CommonError, Picture, Sighting, motion_by_inverse};
 use crate::distributions::median;
 use crate::error::Result;
 use crate::lie::{Pose, rotation};
@@ -60,24 +60,31 @@ impl Dataset {
             data.pictures.view(picture)?.sighting(picture.poses.first()?, true)
         };
         let count = data.pictures.all.len();
-        let states_none =
-            data.pictures.all.iter().flat_map(|it| &it.corners).any(|corner| corner.sigma_px.is_none());
-        if states_none {
-            let of =
-                |at| sighting(data, at).filter(|it| it.freedom > 1.0).map(|it| (it.cost_px2, it.freedom));
-            let found: Vec<(f64, f64)> = (0..count).filter_map(of).collect();
-            let usual = median(found.iter().map(|(cost, freedom)| cost / freedom)).unwrap_or(0.0);
-            let usual_ones = found.iter().filter(|(cost, freedom)| cost / freedom <= ODD * ODD * usual);
-            let (cost, freedom) = usual_ones.fold((0.0, 0.0), |sum, it| (sum.0 + it.0, sum.1 + it.1));
-            if freedom > 0.0 {
-                data.pictures.sigma_px = (cost / freedom).sqrt().max(FINEST_PX);
-            }
+        let found: Vec<Sighting> = (0..count).filter_map(|at| sighting(data, at)).collect();
+        if let Some(sigma_px) = data.corner_noise(&found, 0.0) {
+            data.pictures.sigma_px = sigma_px;
         }
         for at in 0..count {
             if let Some(sighting) = sighting(data, at) {
                 data.state_picture(at, &sighting);
             }
         }
+    }
+
+    /// Noise of corners that state none, pixels, by what sightings of which a fit took so many unknowns leave; `None` if all state it.
+    pub(crate) fn corner_noise(&self, sightings: &[Sighting], unknowns: f64) -> Option<f64> {
+        let mut corners = self.pictures.all.iter().flat_map(|it| &it.corners);
+        if corners.all(|corner| corner.sigma_px.is_some()) {
+            return None;
+        }
+        let found = sightings.iter().filter(|it| it.freedom > 1.0).map(|it| (it.cost_px2, it.freedom));
+        let found: Vec<(f64, f64)> = found.collect();
+        let usual = median(found.iter().map(|(cost, freedom)| cost / freedom)).unwrap_or(0.0);
+        let usual_ones = found.iter().filter(|(cost, freedom)| cost / freedom <= ODD * ODD * usual);
+        let (cost, freedom) = usual_ones.fold((0.0, 0.0), |sum, it| (sum.0 + it.0, sum.1 + it.1));
+        // At least half of the numbers are left, whatever was taken.
+        let left = (freedom - unknowns).max(0.5 * freedom);
+        (left > 0.0).then(|| (cost / left).sqrt().max(FINEST_PX))
     }
 
     /// Makes the row of a picture the pose of a sighting, with its noise.
@@ -90,11 +97,8 @@ impl Dataset {
             .zip(&sighting.weights)
             .for_each(|(corner, weight)| corner.weight = *weight);
         let row = picture.row as usize;
-        let (common, about) =
-            (self.pictures.common, SightingAbout::new(sighting, self.pictures.common.about));
-        let length_m = sighting.camera_from_board.translation.norm();
-        let to_row = about.from_row(picture.of_camera);
-        let whitening = common.whitening(&about.information, length_m) * to_row;
+        let seen = (&sighting.camera_from_board, sighting.information);
+        let whitening = picture_whitening(self.pictures.common, seen, picture.of_camera);
         let sigmas = spread(&whitening);
         let shape = NoiseShape::of_pose(&whitening, sigmas);
         let [shift_m, turn_rad] = sigmas;
@@ -112,6 +116,17 @@ impl Dataset {
     }
 }
 
+/// What whitens the row of a picture: by the pose of its board in the camera's frame with its information, and by what the corners share.
+#[must_use]
+pub fn picture_whitening(
+    common: CommonError,
+    (camera_from_board, information): (&Pose, Matrix6<f64>),
+    of_camera: bool,
+) -> Matrix6<f64> {
+    let about = SightingAbout::new((camera_from_board, information), common.about);
+    common.whitening(&about.information, camera_from_board.translation.norm()) * about.from_row(of_camera)
+}
+
 /// A sighting as motions about a centre: of the board in the camera's frame, or of the camera in the board's.
 pub struct SightingAbout {
     /// What the corners determine of these motions.
@@ -123,13 +138,13 @@ pub struct SightingAbout {
 impl SightingAbout {
     /// About one of the two.
     #[must_use]
-    pub fn new(sighting: &Sighting, centre: Centre) -> Self {
-        let camera_from_board = sighting.camera_from_board;
+    pub fn new((camera_from_board, information): (&Pose, Matrix6<f64>), centre: Centre) -> Self {
+        let camera_from_board = *camera_from_board;
         let information = match centre {
-            Centre::Board => sighting.information,
+            Centre::Board => information,
             Centre::Camera => {
                 let back = motion_by_inverse(&camera_from_board);
-                back.transpose() * sighting.information * back
+                back.transpose() * information * back
             }
         };
         SightingAbout { information, centre, camera_from_board }

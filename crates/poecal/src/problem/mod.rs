@@ -103,6 +103,12 @@ impl<'a> Problem<'a> {
         self
     }
 
+    /// Weight of a row.
+    #[must_use]
+    pub fn weight(&self, row: u32) -> f64 {
+        self.weights.and_then(|weights| weights.get(row as usize)).copied().unwrap_or(1.0)
+    }
+
     /// The same problem with a prior of the axes, if there is one, and its weight: the variance of the whitened residuals
     /// (theory.md §6 (27a)).
     #[must_use]

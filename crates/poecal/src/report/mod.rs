@@ -3,6 +3,7 @@
 mod acceptance;
 mod check;
 mod compared;
+mod found;
 mod identify;
 mod judgement;
 mod offsets;

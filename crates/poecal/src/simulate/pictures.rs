@@ -111,7 +111,7 @@ impl PictureSimulation {
         let base_from_held = nominal.forward_kinematics(&first) * tip_from_held;
         let base_from_other = base_from_held * self.relative(&self.sight(&mut generator));
         let mut data = Dataset::new(nominal.reading_names());
-        data.pictures.cameras = vec![Camera { name: "camera".to_owned(), lens: self.lens }];
+        data.pictures.cameras = vec![Camera::new("camera".to_owned(), self.lens)];
         data.pictures.boards = vec![self.board.clone()];
         data.pictures.sigma_px = self.noise_px;
         let mut near = first;

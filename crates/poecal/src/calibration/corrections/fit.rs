@@ -182,7 +182,12 @@ impl CorrectionContext<'_> {
         let prior = options.prior_with_terms(&session).with_terms(priors(model, possible));
         let whole = self.task(session, (&prior, weight));
         CorrectedFit {
-            uncertainty: uncertainty(&whole, (&estimate, noise), (&prior, [weight, variance]), growth),
+            uncertainty: uncertainty(
+                &whole,
+                (&estimate, noise),
+                (&prior, [weight, variance]),
+                (growth, self.geometry.optics.as_ref()),
+            ),
             unknowns: unknowns(model, of_geometry.unknowns, &sizes),
             training: model_accuracy(of_geometry.data, fit_rows, &training),
             held_out: (!held_out_rows.is_empty())

@@ -3,6 +3,7 @@
 
 use std::collections::BTreeMap;
 
+use crate::calibration::optics::Optics;
 use crate::calibration::summary::FitSummary;
 use crate::calibration::task::Task;
 use crate::estimate::{Estimate, sample_rows};
@@ -25,14 +26,17 @@ pub(super) fn uncertainty(
     task: &Task<'_>,
     (estimate, noise): (&Estimate, Noise),
     (prior, [weight, variance]): (&Prior, [f64; 2]),
-    growth: f64,
+    (growth, optics): (f64, Option<&Optics>),
 ) -> Option<Uncertainty> {
     // Thousands of rows determine the information to a few percent.
     let (rows, weights) = representative(task.session.data, task.rows, task.weights).unzip();
     let weights = weights.as_deref().or(task.weights);
     let measured = Task { prior: None, rows: rows.as_deref().unwrap_or(task.rows), weights, ..*task };
     let problem = measured.problem(estimate, noise);
-    let (layout, normal) = (problem.layout().clone(), problem.normal(estimate));
+    let (layout, mut normal) = (problem.layout().clone(), problem.normal(estimate));
+    if let Some(optics) = optics {
+        optics.loosen(task.session.data, &problem, estimate, &mut normal);
+    }
     let mut believed = Normal::new(layout.dim());
     prior.add(estimate, &layout, 1.0, &mut believed);
     let prior = PriorInformation { normal: believed, is_fitted: true, weight: Some(weight * variance) };

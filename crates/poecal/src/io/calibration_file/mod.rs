@@ -14,7 +14,6 @@ mod known;
 mod link;
 mod original;
 mod outliers;
-mod pictures;
 mod refusal;
 mod repeatability;
 mod schema;
@@ -23,6 +22,9 @@ mod taught;
 mod trust;
 mod validation;
 
+pub use crate::io::stored_pictures::{
+    BoardEntry, CameraEntry, CommonEntry, FoundEntry, PicturesEntry, PointEntry,
+};
 pub use alike::SuspectedConfigurationEntry;
 pub use bodies::{BodyEntry, InstrumentEntry, MassEntry, MeasuredEntry};
 pub use changes::{CommonDirectionEntry, CorrelatedEntry, CorrelationsEntry, JointChangeEntry};
@@ -35,7 +37,6 @@ pub use frames::*;
 pub use keyed::*;
 pub use original::OriginalUrdf;
 pub use outliers::{OutlierEntry, OutlierSet, RobustEntry};
-pub use pictures::{CameraEntry, CommonEntry, PicturesEntry};
 pub use repeatability::{RepeatabilityEntry, RepeatedPoseEntry};
 pub use schema::*;
 pub(crate) use stages::only_target;

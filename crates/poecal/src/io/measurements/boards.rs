@@ -12,6 +12,7 @@ use super::text::Blocks;
 use super::units::{NamedUnit, positive_length_m};
 use crate::camera::Board;
 use crate::error::{Error, ErrorKind, Result};
+use crate::io::stored_pictures::stored_boards;
 use crate::unit::Unit;
 
 /// The board of all corners where no column names it.
@@ -24,6 +25,9 @@ const BOARD: &str = "board";
 pub fn read_boards(typed: &str) -> Result<Vec<Board>> {
     match typed.split_once(':') {
         Some((kind @ ("chessboard" | "charuco"), rest)) => Ok(vec![specified(kind, rest, typed)?]),
+        _ if Path::new(typed).extension().is_some_and(|it| it.eq_ignore_ascii_case("json")) => {
+            stored_boards(Path::new(typed))
+        }
         _ => of_table(Path::new(typed)),
     }
 }

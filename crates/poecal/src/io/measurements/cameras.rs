@@ -11,6 +11,7 @@ use super::text::Blocks;
 use crate::camera::{Camera, Distortion, LENS_NAMES, Lens};
 use crate::error::{Error, ErrorKind, Result, first_few};
 use crate::io::disk::is_file;
+use crate::io::stored_pictures::stored_cameras;
 use crate::io::text_of;
 use crate::io::yaml::{Leaf, leaves};
 
@@ -22,29 +23,57 @@ const EXPECTED: &str = "a camera: CSV with name, fx, fy, cx, cy, k1, … in Open
 /// # Errors
 /// A file that cannot be read, or has no camera, a camera twice, or numbers that are none of a lens.
 pub fn read_cameras(typed: &str) -> Result<Vec<Camera>> {
-    let (path, version) = camera_file(typed);
+    if let Some(size) = typed.strip_prefix(UNKNOWN) {
+        return Ok(vec![unknown(size, typed)?]);
+    }
+    let (path, version) = camera_file(typed).unwrap_or((Path::new(typed), None));
     let extension = path.extension().map(|it| it.to_ascii_lowercase());
     let is = |names: &[&str]| extension.as_ref().is_some_and(|it| names.iter().any(|name| it == name));
     let cameras = if is(&["yaml", "yml"]) {
         of_yaml(&text_of(path, "a camera (YAML)")?, path)?
+    } else if is(&["json"]) {
+        stored_cameras(path)?
     } else if is(&["xml"]) {
         of_visp(&text_of(path, "a camera (XML)")?, path)?
     } else {
         of_table(path, version)?
     };
-    for Camera { name, lens } in &cameras {
+    for Camera { name, lens, .. } in &cameras {
         check(name, lens).map_err(|error| error.in_file(path))?;
     }
     Ok(cameras)
 }
 
-/// The file of cameras that was typed, and the version behind `#`, if that is no part of its name.
+/// What begins the words of a camera whose lens is unknown.
+const UNKNOWN: &str = "unknown:";
+/// Name of a camera that has none.
+const NAMELESS: &str = "camera";
+/// Largest side of a picture, pixels.
+const LARGEST_SIDE: u32 = 100_000;
+
+/// A camera whose lens is to be found from its pictures, of which the size is known.
+fn unknown(size: &str, typed: &str) -> Result<Camera> {
+    let number = |text: &str| text.trim().parse::<u32>().ok().filter(|it| (1..=LARGEST_SIDE).contains(it));
+    let found =
+        size.split_once(['x', 'X']).and_then(|(width, height)| Some([number(width)?, number(height)?]));
+    let [width, height] = found.ok_or_else(|| {
+        let message =
+            format!("found the camera `{typed}`, expected the size of its pictures, as unknown:1920x1080");
+        Error::new(ErrorKind::Option, message)
+    })?;
+    // Any lens until the pictures say which.
+    let lens = Lens::pinhole([f64::from(width); 2], [0.5 * f64::from(width), 0.5 * f64::from(height)]);
+    let lens = Lens { size_px: Some([width, height]), ..lens };
+    Ok(Camera { is_guessed: true, ..Camera::new(NAMELESS.to_owned(), lens) })
+}
+
+/// The file of cameras that was typed, and the version behind `#`, if that is no part of its name; `None` of words that are no file.
 #[must_use]
-pub fn camera_file(typed: &str) -> (&Path, Option<&str>) {
-    match typed.rsplit_once('#') {
+pub fn camera_file(typed: &str) -> Option<(&Path, Option<&str>)> {
+    (!typed.starts_with(UNKNOWN)).then(|| match typed.rsplit_once('#') {
         Some((file, version)) if !is_file(Path::new(typed)) => (Path::new(file), Some(version)),
         _ => (Path::new(typed), None),
-    }
+    })
 }
 
 /// Refuses numbers that are no lens's.
@@ -122,7 +151,7 @@ fn of_table(path: &Path, version: Option<&str>) -> Result<Vec<Camera>> {
                 ["fisheye", "equidistant"].contains(&word(model).unwrap_or_default().to_lowercase().as_str());
             let lens = lens_of(&lens, is_fisheye, size_px);
             let own = word(versions).unwrap_or_default();
-            cameras.push((Camera { name: word(Some(name)).unwrap_or_default(), lens }, own, row.line));
+            cameras.push((Camera::new(word(Some(name)).unwrap_or_default(), lens), own, row.line));
         }
     }
     if let Some(version) = version {
@@ -230,10 +259,8 @@ fn of_yaml(text: &str, path: &Path) -> Result<Vec<Camera>> {
         let distortion = distortion(&kind, &bent, path)?;
         let size = list(&leaves, &under, &["resolution"], path)?;
         let size_px = if let [width, height] = size[..] { Some([width as u32, height as u32]) } else { None };
-        cameras.push(Camera {
-            name,
-            lens: Lens { focal_px: [fx, fy], centre_px: [cx, cy], distortion, size_px },
-        });
+        cameras
+            .push(Camera::new(name, Lens { focal_px: [fx, fy], centre_px: [cx, cy], distortion, size_px }));
     }
     if !cameras.is_empty() {
         return Ok(cameras);
@@ -289,7 +316,7 @@ fn of_yaml(text: &str, path: &Path) -> Result<Vec<Camera>> {
         distortion: distortion(&kind, &bent, path)?,
         size_px: width.zip(height).map(|(width, height)| [width, height]),
     };
-    Ok(vec![Camera { name: word(&none, &["camera_name"]).unwrap_or_default(), lens }])
+    Ok(vec![Camera::new(word(&none, &["camera_name"]).unwrap_or_default(), lens)])
 }
 
 /// As many numbers as a key must have.
@@ -367,7 +394,7 @@ fn of_visp(text: &str, path: &Path) -> Result<Vec<Camera>> {
             Lens { focal_px: [px, py], centre_px: [u0, v0], distortion: Distortion::Brown(k), size_px };
         let name = text(node, "name").unwrap_or_default();
         if !cameras.iter().any(|it| it.name == name) {
-            cameras.push(Camera { name, lens });
+            cameras.push(Camera::new(name, lens));
         }
     }
     if cameras.is_empty() {

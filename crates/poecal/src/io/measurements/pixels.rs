@@ -336,7 +336,8 @@ impl Reader<'_> {
         if let Some(at) = cameras.iter().position(|it| it.name == name) {
             return Ok(at);
         }
-        if column.is_none() || name.is_empty() {
+        let is_nameless = cameras.len() == 1 && cameras.iter().all(|it| it.is_guessed);
+        if column.is_none() || name.is_empty() || is_nameless {
             if cameras.len() == 1 {
                 return Ok(0);
             }

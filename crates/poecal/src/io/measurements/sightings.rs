@@ -9,7 +9,7 @@ use super::pixels::Gathered;
 use super::read::Reader;
 use super::table::Table;
 use super::understanding::{self, FileUnderstanding};
-use crate::camera::Picture;
+use crate::camera::{Corner, FlatView, Picture, guessed_lens, is_flat_sheet};
 use crate::error::{Error, ErrorKind, Result, first_few};
 use crate::measurement::Source;
 
@@ -20,6 +20,7 @@ impl Reader<'_> {
         let (mut left_out, mut found) = (Vec::new(), 0);
         self.found.data.pictures.cameras.clone_from(&self.options.cameras);
         self.found.data.pictures.boards.clone_from(&self.boards);
+        self.guess_lenses(&gathered)?;
         for one in gathered {
             let name = one.image.clone().unwrap_or_else(|| format!("of line {}", one.taken.place.1));
             let line = one.corners.first().map_or(0, |corner| corner.line);
@@ -56,6 +57,25 @@ impl Reader<'_> {
             let message =
                 "found no picture with a pose, expected at least four corners of a board in a picture";
             return Err(Error::new(ErrorKind::Measurement, message).in_file(path));
+        }
+        Ok(())
+    }
+
+    /// Finds the lenses that are unknown from the corners of flat boards.
+    fn guess_lenses(&mut self, gathered: &[Gathered]) -> Result<()> {
+        let pictures = &mut self.found.data.pictures;
+        for (at, camera) in pictures.cameras.iter_mut().enumerate().filter(|(_, it)| it.is_guessed) {
+            let view = |one: &Gathered| -> Option<FlatView> {
+                let board = pictures.boards.get(one.board).filter(|board| is_flat_sheet(board))?;
+                let of =
+                    |corner: &Corner| Some((board.points.get(corner.point as usize)?.xy(), corner.pixel));
+                Some(one.corners.iter().filter_map(of).unzip())
+            };
+            let views: Vec<FlatView> =
+                gathered.iter().filter(|one| one.camera == at).filter_map(view).collect();
+            let size_px = camera.lens.size_px.unwrap_or([1, 1]);
+            camera.lens =
+                guessed_lens(size_px, &views).map_err(|found| Error::new(ErrorKind::Measurement, found))?;
         }
         Ok(())
     }

@@ -14,6 +14,7 @@ use crate::calibration::{Event, Improvements, Level, ModelAccuracy, NoiseSource,
 use crate::io::calibration_file::CalibrationFile;
 use crate::io::residuals::Residuals;
 use crate::measurement::{Device, Quantity};
+use crate::report::found::found_words;
 use crate::report::summary::{
     ModelRow, Place, Point, SEE_ROBUST, delivered, expected, has_terms, leading, look_at,
 };
@@ -297,6 +298,13 @@ fn the_facts(file: &CalibrationFile, residuals: &Residuals) -> Vec<(&'static str
     let mut all =
         vec![("Model", path(&file.inputs.model, "inputs.model")), ("Measurements", files), ("Rows", rows)];
     all.extend(corners(file).map(|corners| ("Corners", corners)));
+    let found = found_words(file);
+    if !found.is_empty() {
+        all.push((
+            "Found",
+            html! { @for (k, words) in found.iter().enumerate() { @if k > 0 { br; } (words) } },
+        ));
+    }
     all.push(("Noise", noise(file)));
     all
 }

@@ -1,9 +1,12 @@
 //! The errors that count: of rows that were not fitted, before and after.
 
-use super::super::table::{STATISTICS, further_words, leading_words, line, number, number_or_dash, row};
+use super::super::found::found_words;
+use super::super::table::{
+    STATISTICS, further_words, leading_words, line, lines, number, number_or_dash, row,
+};
 use super::look::reasons;
 use super::{Expectation, expected};
-use crate::calibration::{DeviceFrameKnowledge, ModelAccuracy, SetAccuracy};
+use crate::calibration::{DeviceFrameKnowledge, ModelAccuracy, PixelAccuracy, SetAccuracy};
 use crate::io::calibration_file::CalibrationFile;
 
 /// Widths of the label and of each figure.
@@ -49,6 +52,11 @@ pub(in crate::report) fn has_terms(file: &CalibrationFile) -> bool {
     file.corrected.as_ref().is_some_and(|it| it.has_terms())
 }
 
+/// Errors of corners where all rows are pictures: the poses of these are known worse than their corners.
+pub(in crate::report) fn of_pictures(set: &SetAccuracy, model: &ModelAccuracy) -> Option<PixelAccuracy> {
+    model.pixels.filter(|pixels| pixels.pictures == set.count)
+}
+
 /// Before and after, where that is valid, and the rows that show it.
 pub(super) fn figures(out: &mut String, file: &CalibrationFile) {
     let (set, rows) = leading(file);
@@ -57,6 +65,10 @@ pub(super) fn figures(out: &mut String, file: &CalibrationFile) {
     let held_out = file.accuracy.held_out.is_some();
     let judging = if held_out { "held out" } else { "fitted" };
     let words = |model: &ModelAccuracy| {
+        if let Some(pixels) = of_pictures(set, model) {
+            let (px, mm) = (number(pixels.rms_px), number(pixels.rms_mm));
+            return format!("{px} px, {mm} mm at the board square to the ray");
+        }
         let each = model.iter().map(|(quantity, error)| {
             format!("{} {}{}", number(error.rms), quantity.unit().symbol(), further_words(quantity))
         });
@@ -89,19 +101,24 @@ pub(super) fn figures(out: &mut String, file: &CalibrationFile) {
     let rest = rows.iter().find(|(.., key)| key.starts_with("robust")).map(|(name, model, _)| {
         format!("; {}: {}", name.split_once(", ").map_or(name.as_str(), |it| it.1), words(model))
     });
-    let (largest, rest) = (largest.unwrap_or_default(), rest.unwrap_or_default());
-    line(out, judging, &format!("{} rows: {} (RMS){largest}{rest}", set.count, words(after.1)));
-    if let (Some(before), Some(after)) = (before.1.pixels, after.1.pixels) {
-        let words = format!(
-            "{} px before, {} px after (RMS), {} mm at the board square to the ray; median of {} pictures {} px",
-            number(before.rms_px),
-            number(after.rms_px),
-            number(after.rms_mm),
-            after.pictures,
-            number(after.median_picture_px)
-        );
+    let rest = rest.unwrap_or_default();
+    match of_pictures(set, after.1) {
+        Some(pixels) => {
+            let (count, median) = (pixels.pictures, number(pixels.median_picture_px));
+            let all = words(after.1);
+            line(out, judging, &format!("{count} pictures: {all} (RMS), median picture {median} px{rest}"));
+        }
+        None => {
+            let largest = largest.unwrap_or_default();
+            line(out, judging, &format!("{} rows: {} (RMS){largest}{rest}", set.count, words(after.1)));
+        }
+    }
+    if let (Some(before), Some(after), None) = (before.1.pixels, after.1.pixels, of_pictures(set, after.1)) {
+        let (was, is, mm) = (number(before.rms_px), number(after.rms_px), number(after.rms_mm));
+        let words = format!("{was} px before, {is} px after (RMS), {mm} mm at the board square to the ray");
         line(out, "corners", &words);
     }
+    lines(out, "found", found_words(file));
     if !held_out {
         let validated = file.cross_validation.as_ref().map(|it| leading_words(&it.random.rms));
         let validated = validated.map_or_else(String::new, |rms| format!("; cross-validation {rms} (RMS)"));

@@ -1,0 +1,172 @@
+//! Lenses, boards and markers that are unknown beside the robot (theory.md §4, *Pictures* (17d)).
+
+use nalgebra::{DMatrix, DVector};
+
+use super::RowJudgement;
+use super::corrections::whitened_rows;
+use super::robust::RobustFit;
+use super::run::Run;
+use crate::camera::{OwnInformation, PictureNumber, PictureUnknowns, Pictures, motion_by_inverse};
+use crate::estimate::Estimate;
+use crate::linalg;
+use crate::measurement::{Dataset, Noise, picture_whitening};
+use crate::parameters::Parameter;
+use crate::problem::Problem;
+use crate::solve::{LeastSquares as _, Normal};
+use crate::uncertainty::PriorInformation;
+
+/// Largest step of a number, standard deviations of its prior.
+const FARTHEST: f64 = 3.0;
+/// Rounding of the information of the robot, as a share of the largest.
+const ROUNDING: f64 = 1e-13;
+
+/// Unknown numbers of cameras and boards in a fit, and how far they are from what was given.
+#[derive(Clone)]
+pub(super) struct Optics {
+    unknowns: PictureUnknowns,
+    step: DVector<f64>,
+    deviations: Vec<f64>,
+}
+
+/// Information of the numbers beside the robot's unknowns: with those, alone with its prior, and its pull.
+struct Coupling {
+    mixed: DMatrix<f64>,
+    gram: DMatrix<f64>,
+    pull: DVector<f64>,
+}
+
+impl Optics {
+    /// Of the unknowns of a session with pictures, as they are given there.
+    pub(super) fn of(run: &Run<'_>) -> Option<Self> {
+        let pictures = &run.data.pictures;
+        if pictures.is_empty() || run.unknowns.pictures.is_empty() {
+            return None;
+        }
+        let unknowns = PictureUnknowns::new(pictures, &run.unknowns.pictures);
+        let count = unknowns.count();
+        Some(Optics { unknowns, step: DVector::zeros(count), deviations: vec![1.0; count] })
+    }
+
+    /// The numbers as they were found.
+    pub(super) fn numbers(&self) -> Vec<PictureNumber> {
+        self.unknowns.numbers(&self.step, &self.deviations)
+    }
+
+    /// How many numbers the pictures determine rather than the prior.
+    pub(super) fn determined(&self) -> f64 {
+        self.deviations.iter().map(|it| 1.0 - it * it).sum::<f64>().max(0.0)
+    }
+
+    /// Rows of pictures among some, as functions of the robot's unknowns and of these numbers.
+    fn coupling(&self, data: &Dataset, problem: &Problem<'_>, estimate: &Estimate) -> Coupling {
+        let pictures = &data.pictures;
+        let rows: Vec<u32> =
+            problem.rows().iter().copied().filter(|row| pictures.of_row(*row).is_some()).collect();
+        let (starts, jacobian, residuals) = whitened_rows(problem, estimate, &rows);
+        let count = self.unknowns.count();
+        let mut own = OwnInformation::none(count);
+        let mut by_numbers = DMatrix::zeros(residuals.len(), count);
+        for (at, row) in rows.iter().enumerate() {
+            let Some(picture) = pictures.of_row(*row).and_then(|at| pictures.all.get(at)) else { continue };
+            let Some(view) = pictures.view(picture) else { continue };
+            let pose = picture.directed(&data.observations[*row as usize].measurement.pose());
+            let information = view.information(&pose);
+            if view.is_odd(&pose) {
+                continue;
+            }
+            let of = (picture.camera, picture.board);
+            let mut follow = self.unknowns.add(of, &view, (&pose, &information), &mut own);
+            if picture.of_camera {
+                follow = motion_by_inverse(&pose.inverse()) * follow;
+            }
+            let whitening = picture_whitening(pictures.common, (&pose, information), picture.of_camera);
+            // The measured pose moves with the numbers: residuals fall by the opposite.
+            let weight = problem.weight(*row).sqrt();
+            by_numbers.rows_mut(starts[at], 6).copy_from(&(whitening * follow * -weight));
+        }
+        let gram = by_numbers.transpose() * &by_numbers + own.gram + DMatrix::identity(count, count);
+        let pull = by_numbers.tr_mul(&residuals) + own.pull - &self.step;
+        Coupling { mixed: jacobian.transpose() * by_numbers, gram, pull }
+    }
+
+    /// The data with the next numbers, from the optimum of a fit with the present ones, and the estimate as it follows them; `None` where they
+    /// change by less than so many standard deviations.
+    pub(super) fn advance(
+        &mut self,
+        run: &Run<'_>,
+        (ratios, fit): (&[Noise], &RobustFit),
+        least: f64,
+    ) -> Option<(Dataset, Estimate)> {
+        let session = run.session(ratios);
+        let fitted = &fit.fitted;
+        let counted = |row: &RowJudgement| if row.suspected { 0.0 } else { row.weight };
+        let weights: Vec<f64> = fit.robustness.rows.iter().map(counted).collect();
+        let free: Vec<Parameter> = fitted.layout.parameters().map(|(parameter, _)| *parameter).collect();
+        let problem = Problem::new(session, run.fit_rows.clone(), free, fitted.noise).with_weights(&weights);
+        let prior =
+            PriorInformation::new(run.prior.as_ref(), &fitted.estimate, &fitted.layout, session.length_m);
+        let normal = problem.normal(&fitted.estimate);
+        let robot = symmetric(&prior.with(&normal.gram, 1.0), normal.dim());
+        let of_robot =
+            normal.gradient.iter().zip(&prior.normal.gradient).map(|(measured, prior)| measured + prior);
+        let of_robot = DVector::from_iterator(normal.dim(), of_robot);
+        let Coupling { mixed, gram, pull } = self.coupling(&run.data, &problem, &fitted.estimate);
+        let follow = solved(&robot, &mixed)?;
+        let left = gram - mixed.transpose() * &follow;
+        let pull = pull - follow.tr_mul(&of_robot);
+        let count = self.unknowns.count();
+        let factor = factor_of(&left)?;
+        let inverse = DMatrix::from_row_slice(count, count, &linalg::inverse(&factor));
+        self.deviations = (0..count).map(|k| inverse[(k, k)].max(0.0).sqrt()).collect();
+        let mut step = &inverse * &pull;
+        let change = step.dot(&pull).max(0.0);
+        step *= (FARTHEST / step.amax().max(FARTHEST)).min(1.0);
+        if change < least * least {
+            return None;
+        }
+        let of_robot = solved(&robot, &DMatrix::from_column_slice(of_robot.len(), 1, of_robot.as_slice()))?
+            - follow * &step;
+        let estimate = fitted.layout.retract(&fitted.estimate, of_robot.as_slice());
+        self.step += step;
+        let mut data = run.data.clone().into_owned();
+        let (cameras, boards) = self.unknowns.at(&self.step);
+        data.pictures = Pictures { cameras, boards, ..data.pictures };
+        Some((data, estimate))
+    }
+
+    /// Takes from the information of the robot's unknowns what the numbers could explain of the rows as well.
+    pub(super) fn loosen(
+        &self,
+        data: &Dataset,
+        problem: &Problem<'_>,
+        estimate: &Estimate,
+        normal: &mut Normal,
+    ) {
+        let Coupling { mixed, gram, .. } = self.coupling(data, problem, estimate);
+        let Some(explained) = solved(&gram, &mixed.transpose()) else { return };
+        let explained = &mixed * explained;
+        let n = normal.dim();
+        for i in 0..n {
+            for j in i..n {
+                normal.gram[i * n + j] -= explained[(i, j)];
+            }
+        }
+    }
+}
+
+/// A symmetric matrix from its upper triangle.
+fn symmetric(upper: &[f64], n: usize) -> DMatrix<f64> {
+    DMatrix::from_fn(n, n, |i, j| upper[i.min(j) * n + i.max(j)])
+}
+
+fn factor_of(matrix: &DMatrix<f64>) -> Option<linalg::Factor> {
+    let largest = matrix.diagonal().iter().copied().fold(0.0, f64::max);
+    linalg::cholesky(matrix.as_slice(), matrix.nrows(), ROUNDING * largest)
+}
+
+/// `A⁻¹ B`.
+fn solved(matrix: &DMatrix<f64>, right: &DMatrix<f64>) -> Option<DMatrix<f64>> {
+    let n = matrix.nrows();
+    let factor = factor_of(matrix)?;
+    Some(DMatrix::from_row_slice(n, n, &linalg::inverse(&factor)) * right)
+}

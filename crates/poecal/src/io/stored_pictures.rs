@@ -1,0 +1,225 @@
+//! The pictures of a session in `calibration.json`, and its cameras and boards as input of another session.
+
+use std::path::Path;
+
+use nalgebra::Vector3;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::text_of;
+use crate::camera::{Board, Camera, Centre, Distortion, Lens, PictureNumber};
+use crate::error::{Error, ErrorKind, Result};
+use crate::measurement::Dataset;
+
+/// The pictures of the session: their noise, and the lenses that they were read with.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct PicturesEntry {
+    /// Number of pictures.
+    pub count: usize,
+    /// Number of corners in them.
+    pub corners: usize,
+    /// Those that lost their weight, since they do not fit the others of their picture.
+    pub without_weight: usize,
+    /// Standard deviation of each coordinate of a corner that states none, pixels.
+    pub sigma_px: f64,
+    /// What the corners of a picture share: the error of the configuration.
+    pub common: CommonEntry,
+    /// The cameras.
+    pub cameras: Vec<CameraEntry>,
+    /// The boards.
+    #[serde(default)]
+    pub boards: Vec<BoardEntry>,
+    /// Numbers of cameras and boards that were found with the robot (`--free lens`, `board`, `markers`), with what is above; absent if all were
+    /// given.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub found: Vec<FoundEntry>,
+}
+
+/// A body of known points.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct BoardEntry {
+    /// Its name.
+    pub name: String,
+    /// Its points.
+    pub points: Vec<PointEntry>,
+}
+
+/// A point of a body.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct PointEntry {
+    /// Its name.
+    pub name: String,
+    /// Its place in the frame of the body, millimetres.
+    pub place_mm: [f64; 3],
+}
+
+/// A number of a camera or of a board that was found.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct FoundEntry {
+    /// What it is: `lens`, `board` or `markers`, then a name, and the number's own, as `lens.left.fx`.
+    pub name: String,
+    /// Its unit, `px` or `mm`; empty of shares and of coefficients.
+    pub unit: String,
+    /// As it was given.
+    pub given: f64,
+    /// As it was found.
+    pub found: f64,
+    /// Standard deviation of what was known before.
+    pub prior: f64,
+    /// Standard deviation of what was found, by the corners and what was known before.
+    pub deviation: f64,
+}
+
+/// The error that the corners of a picture share: standard deviations of each component.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct CommonEntry {
+    /// Shift, millimetres.
+    pub shift_mm: f64,
+    /// Turn, degrees.
+    pub turn_deg: f64,
+    /// What it turns about.
+    pub about: Centre,
+}
+
+/// A camera with its lens.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct CameraEntry {
+    /// Its name.
+    pub name: String,
+    /// Focal lengths along u and v, pixels.
+    pub focal_px: [f64; 2],
+    /// Where the axis meets the picture, pixels; the centre of the first pixel is (0, 0).
+    pub centre_px: [f64; 2],
+    /// `brown` with k1, k2, p1, p2, k3, k4, k5, k6 in OpenCV's order, or `fisheye` with k1 to k4.
+    pub model: String,
+    /// Coefficients of the distortion.
+    pub distortion: Vec<f64>,
+    /// Width and height, pixels; null if they are not known.
+    pub size_px: Option<[u32; 2]>,
+}
+
+impl PicturesEntry {
+    /// Of a session; `None` without pictures.
+    pub(in crate::io) fn of(data: &Dataset) -> Option<Self> {
+        let pictures = &data.pictures;
+        if pictures.is_empty() {
+            return None;
+        }
+        let corners = || pictures.all.iter().flat_map(|picture| &picture.corners);
+        Some(PicturesEntry {
+            count: pictures.all.len(),
+            corners: corners().count(),
+            without_weight: corners().filter(|corner| corner.weight == 0.0).count(),
+            sigma_px: pictures.sigma_px,
+            common: CommonEntry {
+                shift_mm: 1e3 * pictures.common.shift_m,
+                turn_deg: pictures.common.turn_rad.to_degrees(),
+                about: pictures.common.about,
+            },
+            cameras: pictures.cameras.iter().map(CameraEntry::of).collect(),
+            boards: pictures.boards.iter().map(BoardEntry::of).collect(),
+            found: pictures.found.iter().map(FoundEntry::of).collect(),
+        })
+    }
+}
+
+impl BoardEntry {
+    fn of(board: &Board) -> Self {
+        let point = |(name, point): (&String, &Vector3<f64>)| PointEntry {
+            name: name.clone(),
+            place_mm: [0, 1, 2].map(|axis| 1e3 * point[axis]),
+        };
+        BoardEntry {
+            name: board.name.clone(),
+            points: board.names.iter().zip(&board.points).map(point).collect(),
+        }
+    }
+
+    fn board(&self) -> Board {
+        let place = |point: &PointEntry| Vector3::from(point.place_mm) * 1e-3;
+        Board {
+            name: self.name.clone(),
+            names: self.points.iter().map(|it| it.name.clone()).collect(),
+            points: self.points.iter().map(place).collect(),
+        }
+    }
+}
+
+impl FoundEntry {
+    fn of(number: &PictureNumber) -> Self {
+        let PictureNumber { name, unit, given, found, prior, deviation } = number.clone();
+        FoundEntry { name, unit, given, found, prior, deviation }
+    }
+}
+
+/// What a `calibration.json` holds of its pictures.
+#[derive(Deserialize)]
+struct Stored {
+    pictures: Option<PicturesEntry>,
+}
+
+/// The pictures of a `calibration.json`.
+fn stored(path: &Path) -> Result<PicturesEntry> {
+    let refuse = |message: String| Error::new(ErrorKind::Measurement, message).in_file(path);
+    let text = text_of(path, "a calibration.json with pictures")?;
+    let stored: Stored = serde_json::from_str(&text).map_err(|error| {
+        refuse(format!("found no calibration.json ({error}), expected one with pictures"))
+    })?;
+    let expected = "found a calibration without pictures, expected one of a session with a camera";
+    stored.pictures.ok_or_else(|| refuse(expected.to_owned()))
+}
+
+/// The cameras of a `calibration.json`, with their lenses as they were found.
+///
+/// # Errors
+/// A file that is none, or has no cameras.
+pub(in crate::io) fn stored_cameras(path: &Path) -> Result<Vec<Camera>> {
+    let refuse = |message: String| Error::new(ErrorKind::Measurement, message).in_file(path);
+    stored(path)?.cameras.iter().map(|it| it.camera().map_err(refuse)).collect()
+}
+
+/// The boards of a `calibration.json`, as they were found.
+///
+/// # Errors
+/// A file that is none, or has no boards.
+pub(in crate::io) fn stored_boards(path: &Path) -> Result<Vec<Board>> {
+    let boards: Vec<Board> = stored(path)?.boards.iter().map(BoardEntry::board).collect();
+    if boards.is_empty() {
+        let message = "found a calibration.json without boards, expected one that this version wrote";
+        return Err(Error::new(ErrorKind::Measurement, message).in_file(path));
+    }
+    Ok(boards)
+}
+
+impl CameraEntry {
+    fn camera(&self) -> std::result::Result<Camera, String> {
+        let own = &self.distortion;
+        let distortion = match self.model.as_str() {
+            "brown" => <[f64; 8]>::try_from(own.as_slice()).ok().map(Distortion::Brown),
+            "fisheye" => <[f64; 4]>::try_from(own.as_slice()).ok().map(Distortion::Fisheye),
+            _ => None,
+        };
+        let distortion = distortion.ok_or_else(|| {
+            let (count, model) = (own.len(), &self.model);
+            format!("found {count} coefficients of a distortion `{model}`, expected 8 of `brown` or 4 of `fisheye`")
+        })?;
+        let CameraEntry { focal_px, centre_px, size_px, .. } = *self;
+        Ok(Camera::new(self.name.clone(), Lens { focal_px, centre_px, distortion, size_px }))
+    }
+
+    fn of(camera: &Camera) -> Self {
+        let lens = &camera.lens;
+        let (model, distortion) = match lens.distortion {
+            Distortion::Brown(k) => ("brown", k.to_vec()),
+            Distortion::Fisheye(k) => ("fisheye", k.to_vec()),
+        };
+        CameraEntry {
+            name: camera.name.clone(),
+            focal_px: lens.focal_px,
+            centre_px: lens.centre_px,
+            model: model.to_owned(),
+            distortion,
+            size_px: lens.size_px,
+        }
+    }
+}
