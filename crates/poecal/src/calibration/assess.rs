@@ -8,6 +8,8 @@ use super::corrected::Found;
 use super::events::Events;
 use super::figures::Figures;
 use super::improvement::improvements;
+use super::one_zero::one_zero;
+use super::optics_doubts::optics_doubt;
 use super::placed::{place_tip, stations};
 use super::robust::RobustFit;
 use super::rounding::rounded;
@@ -111,6 +113,8 @@ impl CalibratedFit<'_> {
             warnings.extend(robustness.warning(&self.run.fit_rows, &self.run.held_out_rows));
         }
         warnings.extend(correction.as_ref().and_then(|it| it.doubt.clone()));
+        warnings.extend(one_zero(self));
+        warnings.extend(optics_doubt(self));
         warnings.extend(events.early.clone());
         warnings
     }

@@ -6,7 +6,10 @@ use super::RowJudgement;
 use super::corrections::whitened_rows;
 use super::robust::RobustFit;
 use super::run::Run;
-use crate::camera::{OwnInformation, PictureNumber, PictureUnknowns, Pictures, motion_by_inverse};
+use crate::camera::{
+    Board, Camera, OwnInformation, PictureNumber, PictureUnknown, PictureUnknowns, Pictures,
+    motion_by_inverse,
+};
 use crate::estimate::Estimate;
 use crate::linalg;
 use crate::measurement::{Dataset, Noise, picture_whitening};
@@ -35,21 +38,45 @@ struct Coupling {
     pull: DVector<f64>,
 }
 
+/// A step of the numbers with what it explains, in squared standard deviations, their covariance, and the step of the robot's unknowns without it
+/// and by it.
+pub(super) struct BestStep {
+    pub(super) step: DVector<f64>,
+    gain: f64,
+    pub(super) covariance: DMatrix<f64>,
+    still: DVector<f64>,
+    follow: DMatrix<f64>,
+}
+
 impl Optics {
     /// Of the unknowns of a session with pictures, as they are given there.
     pub(super) fn of(run: &Run<'_>) -> Option<Self> {
         let pictures = &run.data.pictures;
-        if pictures.is_empty() || run.unknowns.pictures.is_empty() {
-            return None;
-        }
-        let unknowns = PictureUnknowns::new(pictures, &run.unknowns.pictures);
+        let has_any = !pictures.is_empty() && !run.unknowns.pictures.is_empty();
+        has_any.then(|| Optics::from_here(pictures, &run.unknowns.pictures))
+    }
+
+    /// Of these unknowns, from cameras and boards as they are.
+    pub(super) fn from_here(pictures: &Pictures, unknowns: &[PictureUnknown]) -> Self {
+        let unknowns = PictureUnknowns::new(pictures, unknowns);
         let count = unknowns.count();
-        Some(Optics { unknowns, step: DVector::zeros(count), deviations: vec![1.0; count] })
+        Optics { unknowns, step: DVector::zeros(count), deviations: vec![1.0; count] }
     }
 
     /// The numbers as they were found.
     pub(super) fn numbers(&self) -> Vec<PictureNumber> {
         self.unknowns.numbers(&self.step, &self.deviations)
+    }
+
+    /// Cameras and boards after a step.
+    pub(super) fn after(&self, step: &DVector<f64>) -> (Vec<Camera>, Vec<Board>) {
+        self.unknowns.at(step)
+    }
+
+    /// The numbers after a step, with their standard deviations.
+    pub(super) fn numbers_after(&self, best: &BestStep) -> Vec<PictureNumber> {
+        let deviations: Vec<f64> = best.covariance.diagonal().iter().map(|it| it.max(0.0).sqrt()).collect();
+        self.unknowns.numbers(&best.step, &deviations)
     }
 
     /// How many numbers the pictures determine rather than the prior.
@@ -89,14 +116,8 @@ impl Optics {
         Coupling { mixed: jacobian.transpose() * by_numbers, gram, pull }
     }
 
-    /// The data with the next numbers, from the optimum of a fit with the present ones, and the estimate as it follows them; `None` where they
-    /// change by less than so many standard deviations.
-    pub(super) fn advance(
-        &mut self,
-        run: &Run<'_>,
-        (ratios, fit): (&[Noise], &RobustFit),
-        least: f64,
-    ) -> Option<(Dataset, Estimate)> {
+    /// The best step of the numbers from the optimum of a fit, with their standard deviations and how the robot's unknowns follow.
+    pub(super) fn best_step(&self, run: &Run<'_>, (ratios, fit): (&[Noise], &RobustFit)) -> Option<BestStep> {
         let session = run.session(ratios);
         let fitted = &fit.fitted;
         let counted = |row: &RowJudgement| if row.suspected { 0.0 } else { row.weight };
@@ -106,27 +127,38 @@ impl Optics {
         let prior =
             PriorInformation::new(run.prior.as_ref(), &fitted.estimate, &fitted.layout, session.length_m);
         let normal = problem.normal(&fitted.estimate);
-        let robot = symmetric(&prior.with(&normal.gram, 1.0), normal.dim());
+        let robot = factor_of(&symmetric(&prior.with(&normal.gram, 1.0), normal.dim()))?;
+        let gradient = normal.gradient.iter().zip(&prior.normal.gradient);
         let of_robot =
-            normal.gradient.iter().zip(&prior.normal.gradient).map(|(measured, prior)| measured + prior);
-        let of_robot = DVector::from_iterator(normal.dim(), of_robot);
+            DVector::from_iterator(normal.dim(), gradient.map(|(measured, prior)| measured + prior));
         let Coupling { mixed, gram, pull } = self.coupling(&run.data, &problem, &fitted.estimate);
-        let follow = solved(&robot, &mixed)?;
-        let left = gram - mixed.transpose() * &follow;
+        let follow = solved(&robot, &mixed);
         let pull = pull - follow.tr_mul(&of_robot);
+        let factor = factor_of(&(gram - mixed.transpose() * &follow))?;
         let count = self.unknowns.count();
-        let factor = factor_of(&left)?;
         let inverse = DMatrix::from_row_slice(count, count, &linalg::inverse(&factor));
-        self.deviations = (0..count).map(|k| inverse[(k, k)].max(0.0).sqrt()).collect();
-        let mut step = &inverse * &pull;
-        let change = step.dot(&pull).max(0.0);
+        let step = &inverse * &pull;
+        let gain = step.dot(&pull).max(0.0);
+        let still = DVector::from_vec(linalg::cholesky_solve(&robot, of_robot.as_slice()));
+        Some(BestStep { step, gain, covariance: inverse, still, follow })
+    }
+
+    /// The data with the next numbers, from the optimum of a fit with the present ones, and the estimate as it follows them; `None` where they
+    /// change by less than so many standard deviations.
+    pub(super) fn advance(
+        &mut self,
+        run: &Run<'_>,
+        (ratios, fit): (&[Noise], &RobustFit),
+        least: f64,
+    ) -> Option<(Dataset, Estimate)> {
+        let BestStep { mut step, gain, covariance, still, follow } = self.best_step(run, (ratios, fit))?;
+        self.deviations = covariance.diagonal().iter().map(|it| it.max(0.0).sqrt()).collect();
         step *= (FARTHEST / step.amax().max(FARTHEST)).min(1.0);
-        if change < least * least {
+        if gain < least * least {
             return None;
         }
-        let of_robot = solved(&robot, &DMatrix::from_column_slice(of_robot.len(), 1, of_robot.as_slice()))?
-            - follow * &step;
-        let estimate = fitted.layout.retract(&fitted.estimate, of_robot.as_slice());
+        let of_robot = still - follow * &step;
+        let estimate = fit.fitted.layout.retract(&fit.fitted.estimate, of_robot.as_slice());
         self.step += step;
         let mut data = run.data.clone().into_owned();
         let (cameras, boards) = self.unknowns.at(&self.step);
@@ -143,8 +175,8 @@ impl Optics {
         normal: &mut Normal,
     ) {
         let Coupling { mixed, gram, .. } = self.coupling(data, problem, estimate);
-        let Some(explained) = solved(&gram, &mixed.transpose()) else { return };
-        let explained = &mixed * explained;
+        let Some(factor) = factor_of(&gram) else { return };
+        let explained = &mixed * solved(&factor, &mixed.transpose());
         let n = normal.dim();
         for i in 0..n {
             for j in i..n {
@@ -164,9 +196,8 @@ fn factor_of(matrix: &DMatrix<f64>) -> Option<linalg::Factor> {
     linalg::cholesky(matrix.as_slice(), matrix.nrows(), ROUNDING * largest)
 }
 
-/// `A⁻¹ B`.
-fn solved(matrix: &DMatrix<f64>, right: &DMatrix<f64>) -> Option<DMatrix<f64>> {
-    let n = matrix.nrows();
-    let factor = factor_of(matrix)?;
-    Some(DMatrix::from_row_slice(n, n, &linalg::inverse(&factor)) * right)
+/// `A⁻¹ B` from the factor of A.
+fn solved(factor: &linalg::Factor, right: &DMatrix<f64>) -> DMatrix<f64> {
+    let n = right.nrows();
+    DMatrix::from_row_slice(n, n, &linalg::inverse(factor)) * right
 }

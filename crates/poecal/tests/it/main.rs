@@ -50,6 +50,7 @@ mod modern_robotics;
 mod moves;
 mod noise_free;
 mod offsets;
+mod optics;
 mod oracle;
 mod pictures;
 mod programs;
