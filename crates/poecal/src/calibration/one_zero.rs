@@ -16,7 +16,7 @@ const LEAVES: f64 = 0.5;
 /// How many times more any other zero leaves.
 const OTHERS: f64 = 1.3;
 /// Largest ratio to what the whole calibration leaves.
-const WORSE: f64 = 1.25;
+const WORSE: f64 = 1.6;
 /// Fewest held-out rows that show it.
 const FEWEST: usize = 5;
 

@@ -13,6 +13,8 @@ const FAR: f64 = 5.0;
 const UNEQUAL: f64 = 2e-3;
 /// Least sagitta of a bent board that is said, as a share of its radius.
 const BENT: f64 = 1e-3;
+/// Fewest numbers that are left of the corners of pictures that judge.
+const LEAST_FREEDOM: f64 = 30.0;
 /// Fewest corners of which something can be said.
 const FEWEST: usize = 100;
 
@@ -36,16 +38,14 @@ pub(super) fn optics_doubt(fit: &CalibratedFit<'_>) -> Option<String> {
         Some((after, unknown, optics, best))
     });
     let (after, unknown, optics, best) = tried.min_by(|a, b| a.0.total_cmp(&b.0))?;
-    // Numbers explain noise too.
-    let corners: usize = pictures.all.iter().map(|it| it.corners.len()).sum();
-    let by_chance = best.step.len() as f64 / (2 * corners) as f64;
-    if after > (1.0 - EVIDENT - 2.0 * by_chance) * before {
+    if after > (1.0 - EVIDENT) * before {
         return None;
     }
     words(pictures, unknown, (&optics, &best), [before, after].map(f64::sqrt))
 }
 
-/// Mean squared error of the coordinates of corners beside the best pose of each picture that was fitted, pixels².
+/// Mean squared error of the coordinates of corners beside the best pose of each picture that was held out, pixels²: the numbers were found without
+/// them.
 fn remaining(fit: &CalibratedFit<'_>, (cameras, boards): (&[Camera], &[Board])) -> Option<f64> {
     let data = &fit.run.data;
     let others = Pictures {
@@ -56,7 +56,7 @@ fn remaining(fit: &CalibratedFit<'_>, (cameras, boards): (&[Camera], &[Board])) 
     };
     let (mut squares, mut freedom) = (0.0, 0.0);
     for picture in &data.pictures.all {
-        if fit.run.fit_rows.binary_search(&picture.row).is_err()
+        if fit.run.held_out_rows.binary_search(&picture.row).is_err()
             || fit.robust.robustness.suspects_row(picture.row)
         {
             continue;
@@ -66,7 +66,7 @@ fn remaining(fit: &CalibratedFit<'_>, (cameras, boards): (&[Camera], &[Board])) 
         squares += found.cost_px2;
         freedom += found.freedom;
     }
-    (freedom > 0.0).then_some(squares / freedom)
+    (freedom > LEAST_FREEDOM).then_some(squares / freedom)
 }
 
 fn words(
