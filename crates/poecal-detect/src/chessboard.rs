@@ -1,0 +1,189 @@
+//! Plain chessboards: a grid of the right size, with both ends of both sides seen.
+
+use nalgebra::Vector2;
+
+use crate::detector::{Found, Rejected, found};
+use crate::gray::Gray;
+use crate::grid::{Grid, grids, middle_slope};
+use crate::growth::{Growth, Node, place_of};
+use crate::layout::Layout;
+
+/// Fewest corners that a grid begins with.
+const LEAST: usize = 6;
+
+/// Finds a chessboard whose corners reach over all its columns and rows.
+pub(crate) fn detect(gray: &Gray, layout: &Layout, noise: f64) -> Result<Found, Rejected> {
+    let mut most = 0;
+    let mut reason = Rejected::NoBoard;
+    for grid in grids(gray).iter().filter(|it| it.len() >= LEAST).take(3) {
+        let Some(growth) = grown(gray, layout, noise, grid) else { continue };
+        match named(gray, layout, noise, &growth) {
+            Ok(board) => return Ok(board),
+            Err(other) if growth.nodes.len() > most => {
+                most = growth.nodes.len();
+                reason = other;
+            }
+            Err(_) => {}
+        }
+    }
+    Err(reason)
+}
+
+/// All corners around a grid, up to one more than the board has on each side.
+fn grown<'a>(gray: &'a Gray, layout: &Layout, noise: f64, grid: &Grid) -> Option<Growth<'a>> {
+    let seeded = |first_dark: bool| {
+        let mut growth = Growth::new(gray, noise, layout.plain(), first_dark);
+        for (node, place) in grid {
+            let Some(slope) = slope_at(grid, *node) else { continue };
+            growth.seed(*node, *place, slope);
+        }
+        growth
+    };
+    let [one, other] = [seeded(true), seeded(false)];
+    let mut growth = if one.nodes.len() >= other.nodes.len() { one } else { other };
+    if growth.nodes.len() < LEAST {
+        return None;
+    }
+    growth.prune();
+    let longest = layout.inner().into_iter().max()? as i32;
+    let [low, high] = extent(&growth)?;
+    let span = |k: usize| {
+        let more = (longest - (high[k] - low[k])).max(1);
+        low[k] - more..=high[k] + more
+    };
+    let candidates: Vec<Node> = span(1).flat_map(|y| span(0).map(move |x| [x, y])).collect();
+    growth.grow(&candidates);
+    growth.prune();
+    Some(growth)
+}
+
+/// The slope at a corner of a grid, from its neighbours, or that of the whole grid.
+fn slope_at(grid: &Grid, node: Node) -> Option<nalgebra::Matrix2<f64>> {
+    let near: Grid = grid
+        .iter()
+        .filter(|(other, _)| (other[0] - node[0]).abs() <= 1 && (other[1] - node[1]).abs() <= 1)
+        .copied()
+        .collect();
+    middle_slope(&near).or_else(|| middle_slope(grid))
+}
+
+/// First and last columns and rows with corners.
+fn extent(growth: &Growth<'_>) -> Option<[Node; 2]> {
+    let nodes = || growth.nodes.keys();
+    let low = |k: usize| nodes().map(|it| it[k]).min();
+    let high = |k: usize| nodes().map(|it| it[k]).max();
+    Some([[low(0)?, low(1)?], [high(0)?, high(1)?]])
+}
+
+/// The board with its names, if the corners reach over all of it.
+fn named(gray: &Gray, layout: &Layout, noise: f64, growth: &Growth<'_>) -> Result<Found, Rejected> {
+    let [low, high] = extent(growth).ok_or(Rejected::NoBoard)?;
+    let size = [0, 1].map(|k| (high[k] - low[k] + 1) as usize);
+    let [columns, rows] = layout.inner();
+    let count = growth.nodes.len();
+    if size[0].min(size[1]) > columns.min(rows) || size[0].max(size[1]) > columns.max(rows) {
+        return Err(Rejected::Other);
+    }
+    if size != [columns, rows] && size != [rows, columns] || count * 2 < layout.corners() {
+        return Err(Rejected::Few(count));
+    }
+    if !is_plain(gray, growth) {
+        return Err(Rejected::Other);
+    }
+    let turns = turns(layout, growth, low, high);
+    let Some(turn) = turns.first() else { return Err(Rejected::Other) };
+    let id = |node: Node| {
+        let [x, y] = turned(node, low, high, *turn);
+        Some(y * columns + x)
+    };
+    Ok(Found { turnable: turns.len() > 1, ..found(growth, noise, id) })
+}
+
+/// Columns and rows from the first corner, of a board turned by so many right angles.
+fn turned(node: Node, low: Node, high: Node, turn: usize) -> [usize; 2] {
+    let [left, up] = [node[0] - low[0], node[1] - low[1]];
+    let [right, down] = [high[0] - node[0], high[1] - node[1]];
+    let place = match turn {
+        0 => [left, up],
+        1 => [up, right],
+        2 => [right, down],
+        _ => [down, left],
+    };
+    place.map(|it| it as usize)
+}
+
+/// The turns that make the grid the board, with dark and light where they are, the one with the first corner highest in the picture first.
+fn turns(layout: &Layout, growth: &Growth<'_>, low: Node, high: Node) -> Vec<usize> {
+    let inner = layout.inner();
+    let fits = |turn: &usize| {
+        let far = turned([high[0], high[1]], low, high, *turn);
+        let near = turned([low[0], low[1]], low, high, *turn);
+        let size = [0, 1].map(|k| far[k].max(near[k]) + 1);
+        if size != inner {
+            return false;
+        }
+        let Some(node) = growth.nodes.keys().next() else { return false };
+        let [x, y] = turned(*node, low, high, *turn);
+        // A quarter turn has another square before the corner: dark and light change.
+        let dark = growth.dark_before(*node) != (*turn % 2 == 1);
+        dark == layout.is_dark(x, y)
+    };
+    let mut found: Vec<usize> = (0..4).filter(fits).collect();
+    if found.is_empty() {
+        // A board that begins with a light square is the same board.
+        found = (0..4).filter(|turn| inner_size(low, high, *turn) == inner).collect();
+    }
+    let height = |turn: &usize| {
+        let first = [[low[0], low[1]], [low[0], high[1]], [high[0], high[1]], [high[0], low[1]]];
+        let corner = first.iter().find(|node| turned(**node, low, high, *turn) == [0, 0]);
+        let map = corner.and_then(|node| growth.map_near(place_of(*node)).map(|it| (it.0, place_of(*node))));
+        map.and_then(|(map, at)| map.map(at)).map_or(f64::INFINITY, |it| it.x + it.y)
+    };
+    found.sort_by(|a, b| height(a).total_cmp(&height(b)));
+    found
+}
+
+fn inner_size(low: Node, high: Node, turn: usize) -> [usize; 2] {
+    let size = [0, 1].map(|k| (high[k] - low[k] + 1) as usize);
+    if turn % 2 == 0 { size } else { [size[1], size[0]] }
+}
+
+/// Whether the light squares are plain, as those of a board with markers are not.
+fn is_plain(gray: &Gray, growth: &Growth<'_>) -> bool {
+    let mut kinds = [0, 0];
+    for (node, saddle) in &growth.nodes {
+        let opposite = growth.nodes.get(&[node[0] + 1, node[1] + 1]);
+        // The square after a corner is as the one before it.
+        let (Some(opposite), false) = (opposite, growth.dark_before(*node)) else { continue };
+        let at = |part: f64| gray.at(saddle.place + (opposite.place - saddle.place) * part);
+        let levels = [0.25, 0.3, 0.35, 0.4, 0.45, 0.5, 0.55, 0.6, 0.65, 0.7, 0.75].map(at);
+        let darkest = levels.iter().copied().fold(f64::INFINITY, f64::min);
+        let lightest = levels.iter().copied().fold(0.0, f64::max);
+        let contrast = saddle.half_contrast.min(opposite.half_contrast) * 2.0;
+        kinds[usize::from(lightest - darkest > 0.55 * contrast)] += 1;
+    }
+    kinds[1] * 2 <= kinds[0]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn turns_keep_the_hand() {
+        // x to the right and y down stay so: the corner after the first along x, and the one along y, are a right turn apart.
+        let (low, high) = ([2, 3], [5, 4]);
+        for turn in 0..4 {
+            let all: Vec<(Node, [usize; 2])> = (3..=4)
+                .flat_map(|y| (2..=5).map(move |x| [x, y]))
+                .map(|node| (node, turned(node, low, high, turn)))
+                .collect();
+            let at = |place: [usize; 2]| {
+                let node = all.iter().find(|it| it.1 == place).unwrap().0;
+                Vector2::new(node[0], node[1])
+            };
+            let (x, y) = (at([1, 0]) - at([0, 0]), at([0, 1]) - at([0, 0]));
+            assert_eq!(x.x * y.y - x.y * y.x, 1, "{turn}");
+        }
+    }
+}
