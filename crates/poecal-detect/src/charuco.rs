@@ -28,7 +28,7 @@ pub(crate) fn detect(gray: &Gray, layout: &Layout, reader: &Reader, noise: f64) 
         return first;
     }
     let mut best = first;
-    for grid in grids(gray).iter().take(4) {
+    for grid in grids(gray, noise).iter().take(4) {
         let markers = markers_of_grid(gray, layout, reader, grid);
         let other = of_markers(gray, layout, reader, noise, &markers);
         if other.is_ok() {

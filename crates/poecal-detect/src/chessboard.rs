@@ -1,7 +1,5 @@
 //! Plain chessboards: a grid of the right size, with both ends of both sides seen.
 
-use nalgebra::Vector2;
-
 use crate::detector::{Found, Rejected, found};
 use crate::gray::Gray;
 use crate::grid::{Grid, grids, middle_slope};
@@ -10,12 +8,14 @@ use crate::layout::Layout;
 
 /// Fewest corners that a grid begins with.
 const LEAST: usize = 6;
+/// Most grids that are tried.
+const GRIDS: usize = 6;
 
 /// Finds a chessboard whose corners reach over all its columns and rows.
 pub(crate) fn detect(gray: &Gray, layout: &Layout, noise: f64) -> Result<Found, Rejected> {
     let mut most = 0;
     let mut reason = Rejected::NoBoard;
-    for grid in grids(gray).iter().filter(|it| it.len() >= LEAST).take(3) {
+    for grid in grids(gray, noise).iter().filter(|it| it.len() >= LEAST).take(GRIDS) {
         let Some(growth) = grown(gray, layout, noise, grid) else { continue };
         match named(gray, layout, noise, &growth) {
             Ok(board) => return Ok(board),
@@ -167,6 +167,8 @@ fn is_plain(gray: &Gray, growth: &Growth<'_>) -> bool {
 
 #[cfg(test)]
 mod tests {
+    use nalgebra::Vector2;
+
     use super::*;
 
     #[test]

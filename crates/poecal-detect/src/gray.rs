@@ -92,4 +92,38 @@ impl Gray {
         let lower = level(row + 1, column) * (1.0 - a) + level(row + 1, column + 1) * a;
         upper * (1.0 - b) + lower * b
     }
+
+    /// The picture with a Gaussian blur, up to so many standard deviations.
+    #[must_use]
+    pub fn blurred(&self, sigma_px: f64, deviations: f64) -> Self {
+        let reach = (deviations * sigma_px).ceil().clamp(0.0, 1000.0) as usize;
+        if reach == 0 {
+            return self.clone();
+        }
+        let weight = |k: usize| (-0.5 * ((k as f64 - reach as f64) / sigma_px).powi(2)).exp();
+        let total: f64 = (0..=2 * reach).map(weight).sum();
+        let weights: Vec<f32> = (0..=2 * reach).map(|k| (weight(k) / total) as f32).collect();
+        let (width, height) = (self.width, self.height);
+        let mut across = Gray::filled(width, height, 0.0);
+        let mut padded = vec![0.0; width + 2 * reach];
+        for row in 0..height {
+            let levels = self.row(row);
+            for (at, place) in padded.iter_mut().enumerate() {
+                *place = levels[at.saturating_sub(reach).min(width - 1)];
+            }
+            let target = &mut across.levels[row * width..(row + 1) * width];
+            for (k, weight) in weights.iter().enumerate() {
+                target.iter_mut().zip(&padded[k..]).for_each(|(to, from)| *to += weight * from);
+            }
+        }
+        let mut whole = Gray::filled(width, height, 0.0);
+        for row in 0..height {
+            let target = &mut whole.levels[row * width..(row + 1) * width];
+            for (k, weight) in weights.iter().enumerate() {
+                let source = across.row((row + k).saturating_sub(reach).min(height - 1));
+                target.iter_mut().zip(source).for_each(|(to, from)| *to += weight * from);
+            }
+        }
+        whole
+    }
 }

@@ -1,8 +1,7 @@
-//! Grids of corners by the crate `calib-targets-chessboard`.
+//! Grids of squares: places where two edges cross, joined along the edges.
 
-use calib_targets_chessboard::{
-    ChessboardDetector, ChessboardParams, GrayImageView, default_chess_config, detect_corners,
-};
+use std::collections::{BTreeMap, VecDeque};
+
 use nalgebra::{Matrix2, Vector2};
 
 use crate::gray::Gray;
@@ -11,25 +10,238 @@ use crate::growth::Node;
 /// Corners of one grid, each with its column and row.
 pub(crate) type Grid = Vec<(Node, Vector2<f64>)>;
 
+/// Blur before second derivatives are taken, pixels.
+const BLUR_PX: f64 = 1.8;
+/// Least crossing beside what noise makes: its standard deviation in a second derivative is `0.244 / BLUR_PX³` of a pixel's.
+const BESIDE_NOISE: f64 = 5.0 * 0.244 / (BLUR_PX * BLUR_PX * BLUR_PX);
+/// Least crossing, gray levels per square pixel.
+const LEAST: f64 = 0.35;
+/// Least of the smaller curvature beside the larger one: edges at an angle of 28°.
+const NARROW: f64 = 0.06;
+/// Farthest place without slope from the strongest saddle, pixels.
+const LEVEL_PX: f64 = 1.4;
+/// Most places that are joined.
+const MOST: usize = 2000;
+/// Longest side of a square, as a part of the picture's longer side.
+const LONGEST: f64 = 0.25;
+/// Least cosine between an edge and the way to the next corner, and between the edges of both.
+const ALONG: f64 = 0.97;
+const ALIKE: f64 = 0.90;
+
+/// A place where two edges cross.
+struct Cross {
+    place: Vector2<f64>,
+    strength: f64,
+    /// Directions of both edges; the second is to the right of the first, and between them it is light.
+    edges: [Vector2<f64>; 2],
+    /// The next places along the first and the second edge, and against them.
+    next: [Option<usize>; 4],
+}
+
+impl Cross {
+    /// One of the four directions: along both edges, then against them.
+    fn direction(&self, k: usize) -> Vector2<f64> {
+        if k < 2 { self.edges[k] } else { -self.edges[k - 2] }
+    }
+}
+
 /// Grids of squares in a picture, the largest first: x and y as on a board that is seen from its front.
-pub(crate) fn grids(gray: &Gray) -> Vec<Grid> {
-    let bytes = gray.bytes();
-    let view = GrayImageView { width: gray.width(), height: gray.height(), data: &bytes };
-    let corners = detect_corners(&view, &default_chess_config());
-    let Ok(detector) = ChessboardDetector::new(ChessboardParams::default()) else { return Vec::new() };
-    let node = |it: &calib_targets_chessboard::ChessboardCorner| {
-        let place = Vector2::new(f64::from(it.position.x), f64::from(it.position.y));
-        ([it.grid.u, it.grid.v], place)
-    };
-    let all = detector.detect_all(&corners);
-    let mut grids: Vec<Grid> = all.iter().map(|it| it.corners.iter().map(node).collect()).collect();
-    grids.sort_by_key(|grid| std::cmp::Reverse(grid.len()));
-    for grid in &mut grids {
-        if middle_slope(grid).is_some_and(|slope| slope.determinant() < 0.0) {
-            grid.iter_mut().for_each(|(node, _)| node.swap(0, 1));
+pub(crate) fn grids(gray: &Gray, noise: f64) -> Vec<Grid> {
+    let smooth = gray.blurred(BLUR_PX, 2.6);
+    let mut crosses = crosses(&smooth, noise);
+    join(&smooth, &mut crosses);
+    let mut free = vec![true; crosses.len()];
+    let mut grids: Vec<Grid> = Vec::new();
+    for first in 0..crosses.len() {
+        if free[first] && crosses[first].next.iter().flatten().count() >= 2 {
+            grids.push(grid_from(&crosses, first, &mut free));
         }
     }
+    grids.retain(|grid| grid.len() >= 4);
+    eprintln!("crosses {} linked {:?} grids {:?}", crosses.len(), [0,1,2,3,4].map(|n| crosses.iter().filter(|c| c.next.iter().flatten().count()==n).count()), grids.iter().map(Vec::len).collect::<Vec<_>>());
+    grids.sort_by_key(|grid| std::cmp::Reverse(grid.len()));
     grids
+}
+
+/// Places where the second derivatives are those of a saddle, the strongest first.
+fn crosses(smooth: &Gray, noise: f64) -> Vec<Cross> {
+    let (width, height) = (smooth.width(), smooth.height());
+    let least = LEAST.max(BESIDE_NOISE * noise).powi(2) as f32;
+    let mut saddles = vec![0.0_f32; width * height];
+    for row in 2..height.saturating_sub(2) {
+        let rows = [row - 2, row - 1, row, row + 1, row + 2].map(|it| smooth.row(it));
+        let target = &mut saddles[row * width..(row + 1) * width];
+        for (x, saddle) in target.iter_mut().enumerate().take(width.saturating_sub(2)).skip(2) {
+            let [xx, xy, yy] = second(&rows, x);
+            *saddle = xy * xy - xx * yy;
+        }
+    }
+    const BESIDE: usize = 3;
+    let mut found = Vec::new();
+    for row in BESIDE + 1..height.saturating_sub(BESIDE + 1) {
+        for x in BESIDE + 1..width.saturating_sub(BESIDE + 1) {
+            let own = saddles[row * width + x];
+            if own < least {
+                continue;
+            }
+            let is_peak = (row - BESIDE..=row + BESIDE).all(|other| {
+                let first = other * width + x;
+                saddles[first - BESIDE..=first + BESIDE].iter().all(|it| *it <= own)
+            });
+            if is_peak {
+                found.extend(cross_at(smooth, x, row, own));
+            }
+        }
+    }
+    found.sort_by(|a, b| b.strength.total_cmp(&a.strength));
+    found.truncate(MOST);
+    found
+}
+
+/// Second derivatives by x twice, by both, and by y twice: differences of differences, so that a straight edge has none across itself.
+fn second(rows: &[&[f32]; 5], x: usize) -> [f32; 3] {
+    let middle = rows[2];
+    let xx = middle[x - 2] + middle[x + 2] - 2.0 * middle[x];
+    let xy = rows[1][x - 1] + rows[3][x + 1] - rows[1][x + 1] - rows[3][x - 1];
+    let yy = rows[0][x] + rows[4][x] - 2.0 * middle[x];
+    [0.25 * xx, 0.25 * xy, 0.25 * yy]
+}
+
+/// The edges of a saddle: the directions in which it has no curvature.
+fn cross_at(smooth: &Gray, x: usize, row: usize, own: f32) -> Option<Cross> {
+    let rows = [row - 2, row - 1, row, row + 1, row + 2].map(|it| smooth.row(it));
+    let [xx, xy, yy] = second(&rows, x).map(f64::from);
+    let eigen = Matrix2::new(xx, xy, xy, yy).symmetric_eigen();
+    let (valley, ridge) = if eigen.eigenvalues[0] > 0.0 { (0, 1) } else { (1, 0) };
+    let (up, down) = (eigen.eigenvalues[valley], -eigen.eigenvalues[ridge]);
+    if !(up.min(down) > NARROW * up.max(down)) {
+        return None;
+    }
+    // The slope is none there; on edges and at the ends of them it is.
+    let slope_x = 0.5 * f64::from(rows[2][x + 1] - rows[2][x - 1]);
+    let slope_y = 0.5 * f64::from(rows[3][x] - rows[1][x]);
+    let area = xx * yy - xy * xy;
+    let off = Vector2::new(yy * slope_x - xy * slope_y, xx * slope_y - xy * slope_x) / area;
+    if off.norm() > LEVEL_PX {
+        return None;
+    }
+    // Light lies along the valley's axis: both edges are as far from it.
+    let axis: Vector2<f64> = eigen.eigenvectors.column(valley).into();
+    let across = Vector2::new(-axis.y, axis.x);
+    let (a, b) = ((down / (up + down)).sqrt(), (up / (up + down)).sqrt());
+    let edges = [axis * a - across * b, axis * a + across * b];
+    let place = Vector2::new(x as f64, row as f64) - off;
+    Some(Cross { place, strength: f64::from(own), edges, next: [None; 4] })
+}
+
+/// Joins each place with the nearest ones along its edges, if both take each other.
+fn join(smooth: &Gray, crosses: &mut [Cross]) {
+    let longest = LONGEST * smooth.width().max(smooth.height()) as f64;
+    let nearest: Vec<[Option<usize>; 4]> =
+        (0..crosses.len()).map(|own| neighbours(smooth, crosses, own, longest)).collect();
+    for own in 0..crosses.len() {
+        for k in 0..4 {
+            let other = nearest[own][k].filter(|other| nearest[*other].contains(&Some(own)));
+            crosses[own].next[k] = other;
+        }
+    }
+}
+
+fn neighbours(smooth: &Gray, crosses: &[Cross], own: usize, longest: f64) -> [Option<usize>; 4] {
+    let from = &crosses[own];
+    let mut near: [Vec<(f64, usize)>; 4] = Default::default();
+    for (at, to) in crosses.iter().enumerate() {
+        let way = to.place - from.place;
+        let length = way.norm();
+        if at == own || length > longest || length < 6.0 {
+            continue;
+        }
+        // A corner that is near may be off its edge by some pixels.
+        let straight = (ALONG * length).min((length * length - 9.0).max(0.0).sqrt());
+        for (k, list) in near.iter_mut().enumerate() {
+            if from.direction(k).dot(&way) > straight {
+                list.push((length, at));
+            }
+        }
+    }
+    near.map(|mut list| {
+        list.sort_by(|a, b| a.0.total_cmp(&b.0));
+        list.iter().take(6).map(|it| it.1).find(|at| is_next(smooth, from, &crosses[*at]))
+    })
+}
+
+/// Whether two places are the ends of one edge: dark on the same side all along, and light and dark exchanged beyond.
+fn is_next(smooth: &Gray, from: &Cross, to: &Cross) -> bool {
+    let way = (to.place - from.place).normalize();
+    let which = |cross: &Cross| {
+        let along = [0, 1].map(|k| cross.edges[k].dot(&way).abs());
+        (usize::from(along[1] > along[0]), along[0].max(along[1]))
+    };
+    let ((own, _), (other, along)) = (which(from), which(to));
+    // The first edge of a corner is the second one of the next.
+    if own == other || along < ALIKE {
+        return false;
+    }
+    let similar = from.strength / to.strength;
+    if !(0.04..25.0).contains(&similar) {
+        return false;
+    }
+    let across = Vector2::new(-way.y, way.x);
+    let length = (to.place - from.place).norm();
+    let beside = across * (0.18 * length).clamp(2.5, 6.0);
+    let steps = [0.25, 0.4, 0.5, 0.6, 0.75].map(|part| {
+        let at = from.place + (to.place - from.place) * part;
+        smooth.at(at + beside) - smooth.at(at - beside)
+    });
+    let least = steps.iter().map(|it| it.abs()).fold(f64::INFINITY, f64::min);
+    let most = steps.iter().map(|it| it.abs()).fold(0.0, f64::max);
+    let one_sided = steps.iter().all(|it| *it > 0.0) || steps.iter().all(|it| *it < 0.0);
+    one_sided && least > 0.35 * most && least > 2.0
+}
+
+/// All places that are joined with one, with columns and rows.
+fn grid_from(crosses: &[Cross], first: usize, free: &mut [bool]) -> Grid {
+    // Of each place the axes x and y of the grid there.
+    let mut frames: BTreeMap<usize, (Node, [Vector2<f64>; 2])> = BTreeMap::new();
+    let mut taken: BTreeMap<Node, usize> = BTreeMap::new();
+    let [a, b] = crosses[first].edges;
+    frames.insert(first, ([0, 0], [a, b]));
+    taken.insert([0, 0], first);
+    free[first] = false;
+    let mut queue = VecDeque::from([first]);
+    while let Some(own) = queue.pop_front() {
+        let Some((node, [x, y])) = frames.get(&own).copied() else { continue };
+        for (k, other) in crosses[own].next.iter().enumerate() {
+            let Some(other) = other.filter(|it| free[*it]) else { continue };
+            let way = crosses[own].direction(k);
+            let (along, across) = (way.dot(&x), way.dot(&y));
+            let step = if along.abs() > across.abs() {
+                [along.signum() as i32, 0]
+            } else {
+                [0, across.signum() as i32]
+            };
+            let place = [node[0] + step[0], node[1] + step[1]];
+            if taken.contains_key(&place) {
+                continue;
+            }
+            taken.insert(place, other);
+            frames.insert(other, (place, [nearest_axis(&crosses[other], x), nearest_axis(&crosses[other], y)]));
+            free[other] = false;
+            queue.push_back(other);
+        }
+    }
+    taken.into_iter().map(|(node, at)| (node, crosses[at].place)).collect()
+}
+
+/// The direction of an edge that is nearest to another one.
+fn nearest_axis(cross: &Cross, axis: Vector2<f64>) -> Vector2<f64> {
+    let mut best = cross.direction(0);
+    for k in 1..4 {
+        if cross.direction(k).dot(&axis) > best.dot(&axis) {
+            best = cross.direction(k);
+        }
+    }
+    best
 }
 
 /// The affine map of a whole grid, pixels a square.

@@ -38,8 +38,8 @@ impl Default for Draw {
             blur_px: [0.5, 1.6],
             noise: [1.0, 6.0],
             tilt_deg: [0.0, 60.0],
-            square_px: [55.0, 110.0],
-            contrast: [50.0, 190.0],
+            square_px: [40.0, 110.0],
+            contrast: [40.0, 190.0],
             covered_each: 5,
         }
     }

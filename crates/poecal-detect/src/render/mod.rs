@@ -192,43 +192,9 @@ impl Scene {
 /// A picture with blur and noise, in whole levels.
 #[must_use]
 pub fn finished(mut picture: Gray, blur_px: f64, noise: f64, random: &mut Random) -> Gray {
-    picture = blurred(&picture, blur_px);
+    picture = picture.blurred(blur_px, 4.0);
     for level in picture.levels_mut() {
         *level = (*level + (noise * random.rough_normal()) as f32).round().clamp(0.0, 255.0);
     }
     picture
-}
-
-/// A picture with a Gaussian blur.
-#[must_use]
-pub fn blurred(picture: &Gray, sigma_px: f64) -> Gray {
-    let reach = (4.0 * sigma_px).ceil() as usize;
-    if reach == 0 {
-        return picture.clone();
-    }
-    let weight = |k: usize| (-0.5 * ((k as f64 - reach as f64) / sigma_px).powi(2)).exp();
-    let total: f64 = (0..=2 * reach).map(weight).sum();
-    let weights: Vec<f32> = (0..=2 * reach).map(|k| (weight(k) / total) as f32).collect();
-    let (width, height) = (picture.width(), picture.height());
-    let mut across = Gray::filled(width, height, 0.0);
-    let mut padded = vec![0.0; width + 2 * reach];
-    for row in 0..height {
-        let levels = picture.row(row);
-        for (at, place) in padded.iter_mut().enumerate() {
-            *place = levels[at.saturating_sub(reach).min(width - 1)];
-        }
-        let target = &mut across.levels_mut()[row * width..(row + 1) * width];
-        for (k, weight) in weights.iter().enumerate() {
-            target.iter_mut().zip(&padded[k..]).for_each(|(to, from)| *to += weight * from);
-        }
-    }
-    let mut whole = Gray::filled(width, height, 0.0);
-    for row in 0..height {
-        let target = &mut whole.levels_mut()[row * width..(row + 1) * width];
-        for (k, weight) in weights.iter().enumerate() {
-            let source = across.row((row + k).saturating_sub(reach).min(height - 1));
-            target.iter_mut().zip(source).for_each(|(to, from)| *to += weight * from);
-        }
-    }
-    whole
 }
