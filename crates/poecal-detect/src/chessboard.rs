@@ -16,6 +16,10 @@ pub(crate) fn detect(gray: &Gray, layout: &Layout, noise: f64) -> Result<Found, 
     let mut most = 0;
     let mut reason = Rejected::NoBoard;
     for grid in grids(gray, noise).iter().filter(|it| it.len() >= LEAST).take(GRIDS) {
+        if is_larger(layout, grid.iter().map(|it| it.0), 1) {
+            reason = Rejected::Other;
+            continue;
+        }
         let Some(growth) = grown(gray, layout, noise, grid) else { continue };
         match named(gray, layout, noise, &growth) {
             Ok(board) => return Ok(board),
@@ -46,7 +50,7 @@ fn grown<'a>(gray: &'a Gray, layout: &Layout, noise: f64, grid: &Grid) -> Option
     }
     growth.prune();
     let longest = layout.inner().into_iter().max()? as i32;
-    let [low, high] = extent(&growth)?;
+    let [low, high] = extent(growth.nodes.keys().copied())?;
     let span = |k: usize| {
         let more = (longest - (high[k] - low[k])).max(1);
         low[k] - more..=high[k] + more
@@ -68,26 +72,35 @@ fn slope_at(grid: &Grid, node: Node) -> Option<nalgebra::Matrix2<f64>> {
 }
 
 /// First and last columns and rows with corners.
-fn extent(growth: &Growth<'_>) -> Option<[Node; 2]> {
-    let nodes = || growth.nodes.keys();
-    let low = |k: usize| nodes().map(|it| it[k]).min();
-    let high = |k: usize| nodes().map(|it| it[k]).max();
-    Some([[low(0)?, low(1)?], [high(0)?, high(1)?]])
+fn extent(nodes: impl Iterator<Item = Node>) -> Option<[Node; 2]> {
+    nodes.fold(None, |found, node| {
+        let [low, high] = found.unwrap_or([node, node]);
+        Some([[0, 1].map(|k| low[k].min(node[k])), [0, 1].map(|k| high[k].max(node[k]))])
+    })
+}
+
+/// Whether corners reach farther than those of the board, and some more.
+fn is_larger(layout: &Layout, nodes: impl Iterator<Item = Node>, more: usize) -> bool {
+    let [columns, rows] = layout.inner();
+    extent(nodes).is_some_and(|[low, high]| {
+        let size = [0, 1].map(|k| (high[k] - low[k] + 1) as usize);
+        size[0].min(size[1]) > columns.min(rows) + more || size[0].max(size[1]) > columns.max(rows) + more
+    })
 }
 
 /// The board with its names, if the corners reach over all of it.
 fn named(gray: &Gray, layout: &Layout, noise: f64, growth: &Growth<'_>) -> Result<Found, Rejected> {
-    let [low, high] = extent(growth).ok_or(Rejected::NoBoard)?;
+    let [low, high] = extent(growth.nodes.keys().copied()).ok_or(Rejected::NoBoard)?;
     let size = [0, 1].map(|k| (high[k] - low[k] + 1) as usize);
     let [columns, rows] = layout.inner();
     let count = growth.nodes.len();
-    if size[0].min(size[1]) > columns.min(rows) || size[0].max(size[1]) > columns.max(rows) {
+    if is_larger(layout, growth.nodes.keys().copied(), 0) {
         return Err(Rejected::Other);
     }
     if size != [columns, rows] && size != [rows, columns] || count * 2 < layout.corners() {
         return Err(Rejected::Few(count));
     }
-    if !is_plain(gray, growth) {
+    if !is_plain(gray, growth) || !has_rim(gray, growth, low, high) {
         return Err(Rejected::Other);
     }
     let turns = turns(layout, growth, low, high);
@@ -164,6 +177,35 @@ fn is_plain(gray: &Gray, growth: &Growth<'_>) -> bool {
     }
     kinds[1] * 2 <= kinds[0]
 }
+
+/// Whether the outermost squares are as wide as the others, dark and light in turn: a field of tiles is cut off anywhere.
+fn has_rim(gray: &Gray, growth: &Growth<'_>, low: Node, high: Node) -> bool {
+    let mut kinds = [0, 0];
+    for (node, saddle) in &growth.nodes {
+        for k in 0..2 {
+            let outwards = [(node[k] == low[k], -1.0), (node[k] == high[k], 1.0)];
+            for (_, way) in outwards.iter().filter(|it| it.0) {
+                let Some((map, _)) = growth.map_near(place_of(*node)) else { continue };
+                // In the square before the corner and in the one after it, along the side.
+                let place = |beside: f64| {
+                    let mut off = nalgebra::Vector2::new(beside, beside);
+                    off[k] = way * RIM;
+                    map.map(place_of(*node) + off).filter(|it| gray.holds(*it, 2.0))
+                };
+                let (Some(before), Some(after)) = (place(-0.5), place(0.5)) else { continue };
+                let rise = gray.at(after) - gray.at(before);
+                // Outwards before the corner it is as in the square before it, or as beside that.
+                let is_dark_before = growth.dark_before(*node) == (*way < 0.0);
+                let right = if is_dark_before { rise } else { -rise };
+                kinds[usize::from(right > saddle.half_contrast)] += 1;
+            }
+        }
+    }
+    kinds[1] >= 3 * kinds[0]
+}
+
+/// How far out the outermost squares are looked at, squares.
+const RIM: f64 = 0.8;
 
 #[cfg(test)]
 mod tests {

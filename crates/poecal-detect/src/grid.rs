@@ -21,7 +21,11 @@ const NARROW: f64 = 0.06;
 /// Farthest place without slope from the strongest saddle, pixels.
 const LEVEL_PX: f64 = 1.4;
 /// Most places that are joined.
-const MOST: usize = 2000;
+const MOST: usize = 8000;
+/// Of more places than this, only those near each other are joined.
+const MANY: usize = 2000;
+/// How near the places are that are tried first, pixels.
+const NEAR_PX: f64 = 80.0;
 /// Longest side of a square, as a part of the picture's longer side.
 const LONGEST: f64 = 0.25;
 /// Least cosine between an edge and the way to the next corner, and between the edges of both.
@@ -58,7 +62,6 @@ pub(crate) fn grids(gray: &Gray, noise: f64) -> Vec<Grid> {
         }
     }
     grids.retain(|grid| grid.len() >= 4);
-    eprintln!("crosses {} linked {:?} grids {:?}", crosses.len(), [0,1,2,3,4].map(|n| crosses.iter().filter(|c| c.next.iter().flatten().count()==n).count()), grids.iter().map(Vec::len).collect::<Vec<_>>());
     grids.sort_by_key(|grid| std::cmp::Reverse(grid.len()));
     grids
 }
@@ -136,9 +139,19 @@ fn cross_at(smooth: &Gray, x: usize, row: usize, own: f32) -> Option<Cross> {
 
 /// Joins each place with the nearest ones along its edges, if both take each other.
 fn join(smooth: &Gray, crosses: &mut [Cross]) {
-    let longest = LONGEST * smooth.width().max(smooth.height()) as f64;
-    let nearest: Vec<[Option<usize>; 4]> =
-        (0..crosses.len()).map(|own| neighbours(smooth, crosses, own, longest)).collect();
+    let size = smooth.width().max(smooth.height()) as f64;
+    let longest = if crosses.len() > MANY { 3.0 * NEAR_PX } else { LONGEST * size };
+    let cells = Cells::new(crosses);
+    let nearest: Vec<[Option<usize>; 4]> = (0..crosses.len())
+        .map(|own| {
+            let mut found = [None; 4];
+            neighbours(smooth, crosses, own, &cells.near(crosses[own].place, NEAR_PX), &mut found);
+            if found.contains(&None) {
+                neighbours(smooth, crosses, own, &cells.near(crosses[own].place, longest), &mut found);
+            }
+            found
+        })
+        .collect();
     for own in 0..crosses.len() {
         for k in 0..4 {
             let other = nearest[own][k].filter(|other| nearest[*other].contains(&Some(own)));
@@ -147,13 +160,46 @@ fn join(smooth: &Gray, crosses: &mut [Cross]) {
     }
 }
 
-fn neighbours(smooth: &Gray, crosses: &[Cross], own: usize, longest: f64) -> [Option<usize>; 4] {
+/// Places by the cell of the picture in which they are.
+struct Cells(BTreeMap<(i32, i32), Vec<usize>>);
+
+impl Cells {
+    fn new(crosses: &[Cross]) -> Self {
+        let mut cells: BTreeMap<_, Vec<usize>> = BTreeMap::new();
+        for (at, cross) in crosses.iter().enumerate() {
+            cells.entry(Cells::cell(cross.place)).or_default().push(at);
+        }
+        Cells(cells)
+    }
+
+    fn cell(place: Vector2<f64>) -> (i32, i32) {
+        ((place.x / NEAR_PX) as i32, (place.y / NEAR_PX) as i32)
+    }
+
+    /// Places that may be so near to another one.
+    fn near(&self, place: Vector2<f64>, reach_px: f64) -> Vec<usize> {
+        let (x, y) = Cells::cell(place);
+        let reach = (reach_px / NEAR_PX).ceil() as i32;
+        let columns = (x - reach)..=(x + reach);
+        let cells = columns.flat_map(|x| self.0.range((x, y - reach)..=(x, y + reach)));
+        cells.flat_map(|it| it.1.iter().copied()).collect()
+    }
+}
+
+/// The nearest places along the edges of one, in the directions that have none yet.
+fn neighbours(
+    smooth: &Gray,
+    crosses: &[Cross],
+    own: usize,
+    candidates: &[usize],
+    found: &mut [Option<usize>; 4],
+) {
     let from = &crosses[own];
     let mut near: [Vec<(f64, usize)>; 4] = Default::default();
-    for (at, to) in crosses.iter().enumerate() {
-        let way = to.place - from.place;
+    for at in candidates.iter().copied() {
+        let way = crosses[at].place - from.place;
         let length = way.norm();
-        if at == own || length > longest || length < 6.0 {
+        if at == own || length < 6.0 {
             continue;
         }
         // A corner that is near may be off its edge by some pixels.
@@ -164,10 +210,14 @@ fn neighbours(smooth: &Gray, crosses: &[Cross], own: usize, longest: f64) -> [Op
             }
         }
     }
-    near.map(|mut list| {
+    for (k, list) in near.iter_mut().enumerate() {
+        if found[k].is_some() {
+            continue;
+        }
         list.sort_by(|a, b| a.0.total_cmp(&b.0));
-        list.iter().take(6).map(|it| it.1).find(|at| is_next(smooth, from, &crosses[*at]))
-    })
+        let next = list.iter().take(6).map(|it| it.1).find(|at| is_next(smooth, from, &crosses[*at]));
+        found[k] = next;
+    }
 }
 
 /// Whether two places are the ends of one edge: dark on the same side all along, and light and dark exchanged beyond.
