@@ -20,6 +20,8 @@ const LEAST: f64 = 0.35;
 const NARROW: f64 = 0.06;
 /// Farthest place without slope from the strongest saddle, pixels.
 const LEVEL_PX: f64 = 1.4;
+/// Radius at which edges are sought, pixels.
+const RING_PX: f64 = 6.0;
 /// Most places that are joined.
 const MOST: usize = 8000;
 /// Of more places than this, only those near each other are joined.
@@ -62,6 +64,7 @@ pub(crate) fn grids(gray: &Gray, noise: f64) -> Vec<Grid> {
         }
     }
     grids.retain(|grid| grid.len() >= 4);
+    if std::env::var("DUMP").is_ok() { eprintln!("crosses {} linked {:?} grids {:?}", crosses.len(), [0,1,2,3,4].map(|n| crosses.iter().filter(|c| c.next.iter().flatten().count()==n).count()), grids.iter().map(Vec::len).collect::<Vec<_>>()); for c in &crosses { eprintln!("C {} {} {} {:?} {:?}", c.place.x, c.place.y, c.strength.sqrt(), c.edges.map(|e| (e.x,e.y)), c.next); } }
     grids.sort_by_key(|grid| std::cmp::Reverse(grid.len()));
     grids
 }
@@ -110,13 +113,12 @@ fn second(rows: &[&[f32]; 5], x: usize) -> [f32; 3] {
     [0.25 * xx, 0.25 * xy, 0.25 * yy]
 }
 
-/// The edges of a saddle: the directions in which it has no curvature.
+/// A saddle with its edges.
 fn cross_at(smooth: &Gray, x: usize, row: usize, own: f32) -> Option<Cross> {
     let rows = [row - 2, row - 1, row, row + 1, row + 2].map(|it| smooth.row(it));
     let [xx, xy, yy] = second(&rows, x).map(f64::from);
-    let eigen = Matrix2::new(xx, xy, xy, yy).symmetric_eigen();
-    let (valley, ridge) = if eigen.eigenvalues[0] > 0.0 { (0, 1) } else { (1, 0) };
-    let (up, down) = (eigen.eigenvalues[valley], -eigen.eigenvalues[ridge]);
+    let (middle, half) = (0.5 * (xx + yy), (0.25 * (xx - yy).powi(2) + xy * xy).sqrt());
+    let (up, down) = (half + middle, half - middle);
     if !(up.min(down) > NARROW * up.max(down)) {
         return None;
     }
@@ -128,13 +130,42 @@ fn cross_at(smooth: &Gray, x: usize, row: usize, own: f32) -> Option<Cross> {
     if off.norm() > LEVEL_PX {
         return None;
     }
-    // Light lies along the valley's axis: both edges are as far from it.
-    let axis: Vector2<f64> = eigen.eigenvectors.column(valley).into();
-    let across = Vector2::new(-axis.y, axis.x);
-    let (a, b) = ((down / (up + down)).sqrt(), (up / (up + down)).sqrt());
-    let edges = [axis * a - across * b, axis * a + across * b];
     let place = Vector2::new(x as f64, row as f64) - off;
-    Some(Cross { place, strength: f64::from(own), edges, next: [None; 4] })
+    Some(Cross { place, strength: f64::from(own), edges: edges(smooth, place)?, next: [None; 4] })
+}
+
+/// The directions of the edges through a place: where a ring around it changes between dark and light, four times. Second derivatives would have
+/// them too, but ink that spreads, or light that does, moves those more.
+fn edges(smooth: &Gray, place: Vector2<f64>) -> Option<[Vector2<f64>; 2]> {
+    const POINTS: usize = 32;
+    let direction = |k: f64| {
+        let (sin, cos) = (k / POINTS as f64 * std::f64::consts::TAU).sin_cos();
+        Vector2::new(cos, sin)
+    };
+    let mut levels = [0.0; POINTS];
+    for (k, level) in levels.iter_mut().enumerate() {
+        *level = smooth.at(place + direction(k as f64) * RING_PX);
+    }
+    let limit = 0.5
+        * (levels.iter().copied().fold(f64::INFINITY, f64::min) + levels.iter().copied().fold(0.0, f64::max));
+    let mut changes = [(0.0, false); 4];
+    let mut count = 0;
+    for (k, level) in levels.iter().enumerate() {
+        let next = levels[(k + 1) % POINTS];
+        if (*level < limit) != (next < limit) {
+            let change = changes.get_mut(count)?;
+            *change = (k as f64 + (limit - level) / (next - level), next >= limit);
+            count += 1;
+        }
+    }
+    if count != 4 {
+        return None;
+    }
+    // Each edge goes through the middle: the directions of its two ends are opposite.
+    let edge = |k: usize| (direction(changes[k].0) - direction(changes[k + 2].0)).try_normalize(1.0);
+    let (one, other) = (edge(0)?, edge(1)?);
+    // Behind the first it becomes light, clockwise.
+    Some(if changes[0].1 { [one, other] } else { [other, -one] })
 }
 
 /// Joins each place with the nearest ones along its edges, if both take each other.
