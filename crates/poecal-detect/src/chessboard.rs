@@ -58,7 +58,23 @@ fn grown<'a>(gray: &'a Gray, layout: &Layout, noise: f64, grid: &Grid) -> Option
     let candidates: Vec<Node> = span(1).flat_map(|y| span(0).map(move |x| [x, y])).collect();
     growth.grow(&candidates);
     growth.prune();
+    peel(layout, &mut growth);
     Some(growth)
+}
+
+/// Takes single corners beyond the board away, where it has full lines within: what lies behind the board may look like a corner.
+fn peel(layout: &Layout, growth: &mut Growth<'_>) {
+    while is_larger(layout, growth.nodes.keys().copied(), 0) {
+        let Some([low, high]) = extent(growth.nodes.keys().copied()) else { return };
+        let lines = [(0, low[0]), (0, high[0]), (1, low[1]), (1, high[1])];
+        let count = |(k, at): (usize, i32)| growth.nodes.keys().filter(|node| node[k] == at).count();
+        let Some(line) = lines.into_iter().min_by_key(|line| count(*line)) else { return };
+        let across = (high[1 - line.0] - low[1 - line.0] + 1) as usize;
+        if count(line) * 4 > across {
+            return;
+        }
+        growth.nodes.retain(|node, _| node[line.0] != line.1);
+    }
 }
 
 /// The slope at a corner of a grid, from its neighbours, or that of the whole grid.
@@ -100,8 +116,11 @@ fn named(gray: &Gray, layout: &Layout, noise: f64, growth: &Growth<'_>) -> Resul
     if size != [columns, rows] && size != [rows, columns] || count * 2 < layout.corners() {
         return Err(Rejected::Few(count));
     }
-    if !is_plain(gray, growth) || !has_rim(gray, growth, low, high) {
+    if !is_plain(gray, growth) {
         return Err(Rejected::Other);
+    }
+    if !has_rim(gray, growth, low, high) {
+        return Err(Rejected::Few(count));
     }
     let turns = turns(layout, growth, low, high);
     let Some(turn) = turns.first() else { return Err(Rejected::Other) };
@@ -178,30 +197,35 @@ fn is_plain(gray: &Gray, growth: &Growth<'_>) -> bool {
     kinds[1] * 2 <= kinds[0]
 }
 
-/// Whether the outermost squares are as wide as the others, dark and light in turn: a field of tiles is cut off anywhere.
+/// Whether the outermost squares of all four sides are seen, as wide as the others, dark and light in turn: a field of tiles is cut off anywhere,
+/// and a larger board may go on outside of the picture.
 fn has_rim(gray: &Gray, growth: &Growth<'_>, low: Node, high: Node) -> bool {
-    let mut kinds = [0, 0];
-    for (node, saddle) in &growth.nodes {
-        for k in 0..2 {
-            let outwards = [(node[k] == low[k], -1.0), (node[k] == high[k], 1.0)];
-            for (_, way) in outwards.iter().filter(|it| it.0) {
-                let Some((map, _)) = growth.map_near(place_of(*node)) else { continue };
-                // In the square before the corner and in the one after it, along the side.
-                let place = |beside: f64| {
-                    let mut off = nalgebra::Vector2::new(beside, beside);
-                    off[k] = way * RIM;
-                    map.map(place_of(*node) + off).filter(|it| gray.holds(*it, 2.0))
-                };
-                let (Some(before), Some(after)) = (place(-0.5), place(0.5)) else { continue };
-                let rise = gray.at(after) - gray.at(before);
-                // Outwards before the corner it is as in the square before it, or as beside that.
-                let is_dark_before = growth.dark_before(*node) == (*way < 0.0);
-                let right = if is_dark_before { rise } else { -rise };
-                kinds[usize::from(right > saddle.half_contrast)] += 1;
+    let sides = [(0, low[0], -1.0), (0, high[0], 1.0), (1, low[1], -1.0), (1, high[1], 1.0)];
+    sides.into_iter().all(|(k, line, way)| {
+        let mut kinds = [0, 0];
+        for node in growth.nodes.keys().filter(|node| node[k] == line) {
+            if let Some(right) = is_rim(gray, growth, *node, k, way) {
+                kinds[usize::from(right)] += 1;
             }
         }
-    }
-    kinds[1] >= 3 * kinds[0]
+        kinds[1] >= 2 && kinds[1] >= 3 * kinds[0]
+    })
+}
+
+/// Whether the squares beyond a corner of the outermost ones go on to [`RIM`]; `None` outside of the picture.
+fn is_rim(gray: &Gray, growth: &Growth<'_>, node: Node, k: usize, way: f64) -> Option<bool> {
+    let (map, _) = growth.map_near(place_of(node))?;
+    // In the square before the corner and in the one after it, along the side.
+    let level = |beside: f64| {
+        let mut off = nalgebra::Vector2::new(beside, beside);
+        off[k] = way * RIM;
+        let place = map.map(place_of(node) + off).filter(|it| gray.holds(*it, 2.0))?;
+        Some(gray.at(place))
+    };
+    let rise = level(0.5)? - level(-0.5)?;
+    // Before the corner it is as in the square before it, beyond it the other way round.
+    let is_dark = growth.dark_before(node) == (way < 0.0);
+    Some(if is_dark { rise } else { -rise } > growth.nodes.get(&node)?.half_contrast)
 }
 
 /// How far out the outermost squares are looked at, squares.

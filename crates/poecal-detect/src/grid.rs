@@ -64,7 +64,6 @@ pub(crate) fn grids(gray: &Gray, noise: f64) -> Vec<Grid> {
         }
     }
     grids.retain(|grid| grid.len() >= 4);
-    if std::env::var("DUMP").is_ok() { eprintln!("crosses {} linked {:?} grids {:?}", crosses.len(), [0,1,2,3,4].map(|n| crosses.iter().filter(|c| c.next.iter().flatten().count()==n).count()), grids.iter().map(Vec::len).collect::<Vec<_>>()); for c in &crosses { eprintln!("C {} {} {} {:?} {:?}", c.place.x, c.place.y, c.strength.sqrt(), c.edges.map(|e| (e.x,e.y)), c.next); } }
     grids.sort_by_key(|grid| std::cmp::Reverse(grid.len()));
     grids
 }

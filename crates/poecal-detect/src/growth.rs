@@ -35,6 +35,9 @@ const STEP: f64 = 1.6;
 /// Largest distance of a corner from where its neighbours have it, pixels and squares.
 const OFF: (f64, f64) = (0.8, 0.035);
 
+/// Standard deviation of a corner beside the usual one from which on it is none.
+const VAGUE: f64 = 6.0;
+
 pub(crate) fn place_of(node: Node) -> Vector2<f64> {
     Vector2::new(f64::from(node[0]), f64::from(node[1]))
 }
@@ -134,6 +137,9 @@ impl<'a> Growth<'a> {
     }
 
     fn worst(&self) -> Option<Node> {
+        let mut sigmas: Vec<f64> = self.nodes.values().map(|it| it.sigma_px).collect();
+        sigmas.sort_by(f64::total_cmp);
+        let usual_px = sigmas.get(sigmas.len() / 2).copied()?.max(0.02);
         let off = |(node, saddle): (&Node, &Saddle)| {
             let point = place_of(*node);
             let predicted = self.map_near(point).and_then(|(map, nearest)| {
@@ -141,7 +147,7 @@ impl<'a> Growth<'a> {
                 Some((map.map(point)?, (OFF.0 + OFF.1 * square_px) * nearest.max(1.0)))
             });
             let part = predicted.map_or(f64::INFINITY, |(place, limit)| (place - saddle.place).norm() / limit);
-            (*node, part)
+            (*node, part.max(saddle.sigma_px / (VAGUE * usual_px)))
         };
         let worst = self.nodes.iter().map(off).max_by(|a, b| a.1.total_cmp(&b.1))?;
         (worst.1 > 1.0).then_some(worst.0)
