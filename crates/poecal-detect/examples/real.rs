@@ -25,6 +25,7 @@ fn main() {
         match r {
             Ok(f) => {
                 mine += f.corners.len();
+                for c in &f.corners { eprintln!("charuco/{k} {} {} {} {}", c.id, c.u_px, c.v_px, c.sigma_px); }
                 let mut c = 0; let mut s = 0.0; let mut miss = own.keys().copied().collect::<BTreeSet<_>>();
                 let mut worst: Vec<String> = vec![];
                 for x in &f.corners {
@@ -60,6 +61,7 @@ fn main() {
                 total += own.len();
                 match r {
                     Ok(x) => {
+                        for c in &x.corners { eprintln!("{set}/{f}/{name} {} {} {} {}", c.id, c.u_px, c.v_px, c.sigma_px); }
                         let off = |turn: bool, k: usize| x.corners.iter().filter_map(|c| { let o = own.get(&if turn { 53 - c.id } else { c.id })?; Some((o[k] - c.u_px).powi(2) + (o[k + 1] - c.v_px).powi(2)) }).sum::<f64>();
                         let turn = off(true, 0) < off(false, 0);
                         if own.len() > 0 { turned += usize::from(turn); n += x.corners.len(); sq[0] += off(turn, 0); sq[1] += off(turn, 2); }

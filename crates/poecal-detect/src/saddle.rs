@@ -197,8 +197,7 @@ impl Crossing {
             let (eh, gh) = sign_and_bell(h);
             let (ek, gk) = sign_and_bell(k);
             let both = std::f64::consts::FRAC_2_PI * gh * gk;
-            let skew = rho * (1.0 + rho * (0.5 * h * k + rho / 6.0 * (h * h - 1.0) * (k * k - 1.0)));
-            let sign = eh * ek + both * skew;
+            let sign = eh * ek + both * skew(rho, h, k);
             const ROOT: f64 = 0.797_884_560_802_865_4;
             let by_h = ROOT * gh * ek - h * both * rho;
             let by_k = ROOT * gk * eh - k * both * rho;
@@ -232,6 +231,38 @@ impl Crossing {
         sums
     }
 
+    /// How many pixels err together, as sharpened and compressed pictures have it: 1 plus twice the correlations of what is left with that of the
+    /// next pixels and those after them, in four directions.
+    fn alike(&self, pixels: &[(Vector2<f64>, f64)], middle: Vector2<f64>) -> f64 {
+        let left: Vec<(i32, i32, f64)> = pixels
+            .iter()
+            .map(|(place, level)| (place.x as i32, place.y as i32, level - self.level(*place, middle)))
+            .collect();
+        let squares: f64 = left.iter().map(|it| it.2 * it.2).sum();
+        let mut products = 0.0;
+        for (at, (x, y, own)) in left.iter().enumerate() {
+            // Row by row: those that follow in the row, and those in the next two.
+            for (other_x, other_y, other) in &left[at + 1..] {
+                if other_y - y > 2 {
+                    break;
+                }
+                if (other_x - x).abs() <= 2 {
+                    products += own * other;
+                }
+            }
+        }
+        1.0 + (2.0 * products / squares.max(1e-12)).max(0.0)
+    }
+
+    fn level(&self, pixel: Vector2<f64>, middle: Vector2<f64>) -> f64 {
+        let [(s1, c1), (s2, c2)] = self.turns.map(f64::sin_cos);
+        let (d, rho) = (pixel - self.place, -(c1 * c2 + s1 * s2));
+        let (h, k) = ((c1 * d.y - s1 * d.x) / self.blur, (s2 * d.x - c2 * d.y) / self.blur);
+        let ((eh, gh), (ek, gk)) = (sign_and_bell(h), sign_and_bell(k));
+        let sign = eh * ek + std::f64::consts::FRAC_2_PI * gh * gk * skew(rho, h, k);
+        (self.mean + self.half * sign) * (1.0 + self.light.dot(&(pixel - middle)))
+    }
+
     fn stepped(&self, step: &Unknowns) -> Self {
         // Beyond a pixel and a third of a radian the slopes say nothing.
         let long = (step[0].hypot(step[1]) / 1.5).max(step[2].abs().max(step[3].abs()) / 0.35).max(1.0);
@@ -245,6 +276,11 @@ impl Crossing {
             light: self.light + Vector2::new(step[7], step[8]),
         }
     }
+}
+
+/// What the blur adds where both lines are not at right angles: the first terms of Mehler's series.
+fn skew(rho: f64, h: f64, k: f64) -> f64 {
+    rho * (1.0 + rho * (0.5 * h * k + rho / 6.0 * (h * h - 1.0) * (k * k - 1.0)))
 }
 
 /// The mean of a sign at a distance of so many standard deviations, and exp(-x²/2): Abramowitz and Stegun 7.1.26, to 1.5e-7.
@@ -287,7 +323,7 @@ fn fit(
     }
     let sums = crossing.sums(&pixels, middle);
     let variance = sums.squares / (pixels.len() - UNKNOWNS) as f64;
-    let covariance = sums.normal.cholesky()?.inverse() * variance;
+    let covariance = sums.normal.cholesky()?.inverse() * (variance * crossing.alike(&pixels, middle));
     let sigma_px = (0.5 * (covariance[(0, 0)] + covariance[(1, 1)]) + FLOOR_PX * FLOOR_PX).sqrt();
     let half = if expected.dark_before { -crossing.half } else { crossing.half };
     let start = Crossing::start(expected, place, &pixels);
