@@ -21,9 +21,7 @@ const SIDE: f64 = 0.12;
 
 /// Finds a board by its markers; if they are too few, by the grid of its squares.
 pub(crate) fn detect(gray: &Gray, layout: &Layout, reader: &Reader, noise: f64) -> Result<Found, Rejected> {
-    let seen = quads(gray, noise);
-    let markers: Vec<Marker> = seen.iter().filter_map(|quad| reader.read(gray, quad)).collect();
-    let first = of_markers(gray, layout, reader, noise, &markers);
+    let first = of_quads(gray, layout, reader, noise, &quads(gray, noise));
     if first.is_ok() || matches!(first, Err(Rejected::Other)) {
         return first;
     }
@@ -39,6 +37,18 @@ pub(crate) fn detect(gray: &Gray, layout: &Layout, reader: &Reader, noise: f64) 
         }
     }
     best
+}
+
+/// Finds a board by the markers in quadrangles.
+pub(crate) fn of_quads(
+    gray: &Gray,
+    layout: &Layout,
+    reader: &Reader,
+    noise: f64,
+    quads: &[Quad],
+) -> Result<Found, Rejected> {
+    let markers: Vec<Marker> = quads.iter().filter_map(|quad| reader.read(gray, quad)).collect();
+    of_markers(gray, layout, reader, noise, &markers)
 }
 
 /// Markers in the light squares of a grid.
@@ -87,6 +97,9 @@ fn of_markers(
     growth.prune();
     growth.grow(&nodes);
     growth.prune();
+    if growth.nodes.is_empty() {
+        return Err(Rejected::NoBoard);
+    }
     if growth.nodes.len() < LEAST_CORNERS {
         return Err(Rejected::Few(growth.nodes.len()));
     }

@@ -95,7 +95,7 @@ impl fmt::Display for Rejected {
 /// Levels below which a picture is dark, edges beyond which it is blurred, and white parts beyond which it is overexposed.
 const DARK: f64 = 45.0;
 const WIDE_PX: f64 = 14.0;
-const WHITE: f64 = 0.2;
+const WHITE: f64 = 0.35;
 
 impl Detector {
     /// What finds a board.

@@ -34,12 +34,26 @@ impl Dictionary {
         Ok(Dictionary { inner })
     }
 
-    /// Every dictionary, each once: of those with the same markers in the beginning only the largest.
+    /// Of dictionaries with the same markers in the beginning the smallest one that has so many.
     #[must_use]
-    pub fn all() -> Vec<Self> {
-        let smaller = |name: &str| ["_50", "_100", "_250"].iter().any(|end| name.ends_with(end));
-        let names = builtins::BUILTIN_DICTIONARY_NAMES.iter().filter(|name| !smaller(name));
-        names.filter_map(|name| resolve_dictionary(name)).map(|inner| Dictionary { inner }).collect()
+    pub fn smallest(markers: usize) -> Vec<Self> {
+        let all = builtins::BUILTIN_DICTIONARY_NAMES.iter().filter_map(|name| resolve_dictionary(name));
+        let mut all: Vec<Dictionary> = all.map(|inner| Dictionary { inner }).collect();
+        all.retain(|it| it.len() >= markers);
+        all.sort_by_key(Dictionary::len);
+        let mut smallest: Vec<Dictionary> = Vec::new();
+        for dictionary in all {
+            if !smallest.iter().any(|it| it.is_alike(&dictionary)) {
+                smallest.push(dictionary);
+            }
+        }
+        smallest
+    }
+
+    /// Whether another one has the same markers in the beginning.
+    pub(crate) fn is_alike(&self, other: &Self) -> bool {
+        let (own, other) = (self.inner, other.inner);
+        own.marker_size() == other.marker_size() && own.codes().first() == other.codes().first()
     }
 
     /// Its name.

@@ -2,9 +2,13 @@
 
 use std::fmt;
 
-use crate::detector::{Detector, Found};
+use crate::charuco;
+use crate::chessboard;
+use crate::detector::{Detector, Found, Rejected};
 use crate::dictionary::Dictionary;
 use crate::gray::Gray;
+use crate::light::noise;
+use crate::quads::{Quad, quads};
 use crate::spec::{Charuco, Chessboard, Spec};
 
 /// A board that pictures show in place of the stated one.
@@ -27,22 +31,40 @@ impl fmt::Display for Suggestion {
 
 /// The board that has most corners, if any has some.
 pub(crate) fn suggest(detector: &Detector, pictures: &[&Gray]) -> Option<Suggestion> {
-    let tried = |spec: Spec| {
-        let other = Detector::new(&spec);
-        let found: Vec<Found> = pictures.iter().filter_map(|it| other.detect(it).ok()).collect();
-        let corners = found.iter().map(|it| it.corners.len()).sum();
-        Suggestion { spec, pictures: found.len(), corners }
+    let seen: Vec<(&Gray, f64)> = pictures.iter().map(|gray| (*gray, noise(gray))).collect();
+    let all: Vec<Suggestion> = match detector.spec() {
+        Spec::Chessboard(board) => {
+            let tried = |spec| suggestion(&spec, &seen, |it, at, noise| chessboard::detect(at, &it.layout, noise));
+            chessboards(board).into_iter().map(tried).collect()
+        }
+        Spec::Charuco(board) => {
+            // What is costly does not depend on the board.
+            let quads: Vec<Vec<Quad>> = seen.iter().map(|(gray, noise)| quads(gray, *noise)).collect();
+            let tried = |spec| {
+                let mut quads = quads.iter();
+                suggestion(&spec, &seen, |it, gray, noise| {
+                    let (Some(reader), Some(quads)) = (&it.reader, quads.next()) else {
+                        return Err(Rejected::NoBoard);
+                    };
+                    charuco::of_quads(gray, &it.layout, reader, noise, quads)
+                })
+            };
+            charucos(board).into_iter().map(tried).collect()
+        }
     };
-    let all = alternatives(detector.spec()).into_iter().map(tried);
-    all.filter(|it| it.corners > 0).max_by_key(|it| it.corners)
+    all.into_iter().filter(|it| it.corners > 0).max_by_key(|it| it.corners)
 }
 
-/// Boards that are taken for one another.
-fn alternatives(spec: &Spec) -> Vec<Spec> {
-    match spec {
-        Spec::Chessboard(board) => chessboards(board),
-        Spec::Charuco(board) => charucos(board),
-    }
+/// What a board has in pictures.
+fn suggestion(
+    spec: &Spec,
+    seen: &[(&Gray, f64)],
+    mut detect: impl FnMut(&Detector, &Gray, f64) -> Result<Found, Rejected>,
+) -> Suggestion {
+    let detector = Detector::new(spec);
+    let found = seen.iter().filter_map(|(gray, noise)| detect(&detector, gray, *noise).ok());
+    let (pictures, corners) = found.fold((0, 0), |sum, it| (sum.0 + 1, sum.1 + it.corners.len()));
+    Suggestion { spec: spec.clone(), pictures, corners }
 }
 
 /// Corners counted in place of squares, and the other way round.
@@ -54,25 +76,21 @@ fn chessboards(board: &Chessboard) -> Vec<Spec> {
 }
 
 fn charucos(board: &Charuco) -> Vec<Spec> {
-    let mut all = Vec::new();
     let own = board.dictionary;
-    let others = Dictionary::all().into_iter().filter(|it| !it.name().starts_with(family(own.name())));
+    let markers = board.columns * board.rows / 2;
+    let others = Dictionary::smallest(markers).into_iter().filter(|it| !it.is_alike(&own));
+    let mut all = Vec::new();
     for dictionary in std::iter::once(own).chain(others) {
         for [columns, rows] in [[board.columns, board.rows], [board.rows, board.columns]] {
             for legacy in [board.legacy, !board.legacy] {
                 let other = Charuco { columns, rows, dictionary, legacy, ..board.clone() };
+                // With an odd number of rows both patterns are one.
                 let alike = legacy != board.legacy && rows % 2 == 1;
-                if other != *board && !alike && columns * rows / 2 <= dictionary.len() {
+                if other != *board && !alike {
                     all.push(Spec::Charuco(other));
                 }
             }
         }
     }
     all
-}
-
-/// The part of a name that dictionaries with the same first markers share.
-fn family(name: &str) -> &str {
-    let ends = ["_1000", "_250", "_100", "_50"];
-    ends.iter().find_map(|end| name.strip_suffix(end)).unwrap_or(name)
 }
