@@ -28,7 +28,7 @@ impl Layout {
             Spec::Charuco(Charuco { marker_m, dictionary, legacy, rows, .. }) => Layout {
                 squares,
                 square_m,
-                markers: Some((*dictionary, marker_m / square_m)),
+                markers: Some((dictionary.clone(), marker_m / square_m)),
                 // The old pattern counts its squares from the last row.
                 first_dark: !(*legacy && rows % 2 == 0),
             },
@@ -89,7 +89,7 @@ impl Layout {
     /// The corners of a marker, squares: clockwise in the picture of the board from its upper left one.
     #[must_use]
     pub fn marker_corners(&self, marker: usize) -> Option<[Vector2<f64>; 4]> {
-        let (_, side) = self.markers?;
+        let (_, side) = self.markers.as_ref()?;
         let [column, row] = self.square_of(marker)?;
         let middle = Vector2::new(column as f64 + 0.5, row as f64 + 0.5);
         let signs = [[-0.5, -0.5], [0.5, -0.5], [0.5, 0.5], [-0.5, 0.5]];
@@ -98,6 +98,6 @@ impl Layout {
 
     /// How far from a corner its squares are plain, squares.
     pub(crate) fn plain(&self) -> f64 {
-        self.markers.map_or(1.0, |(_, side)| (1.0 - side) / 2.0)
+        self.markers.as_ref().map_or(1.0, |(_, side)| (1.0 - side) / 2.0)
     }
 }

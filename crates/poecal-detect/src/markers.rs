@@ -1,6 +1,5 @@
 //! Markers: what a quadrangle says.
 
-use calib_targets_aruco::Matcher;
 use nalgebra::Vector2;
 
 use crate::dictionary::Dictionary;
@@ -18,8 +17,7 @@ pub(crate) struct Marker {
 
 /// Reads markers of a dictionary.
 pub(crate) struct Reader {
-    matcher: Matcher,
-    bits: usize,
+    dictionary: Dictionary,
 }
 
 /// Least difference of light and dark, gray levels.
@@ -29,21 +27,20 @@ const DARK_BORDER: f64 = 0.9;
 
 impl Reader {
     pub(crate) fn new(dictionary: &Dictionary) -> Self {
-        Reader { matcher: dictionary.matcher(), bits: dictionary.bits() }
+        Reader { dictionary: dictionary.clone() }
     }
 
     /// The marker of a quadrangle, whichever way it is turned.
     pub(crate) fn read(&self, gray: &Gray, quad: &Quad) -> Option<Marker> {
-        let (code, _) = code(gray, quad, self.bits)?;
-        let found = self.matcher.match_code(code)?;
-        let turn = usize::from(found.rotation);
-        let corners = [0, 1, 2, 3].map(|k| quad[(k + turn) % 4]);
-        Some(Marker { id: found.id as usize, corners })
+        let code = code(gray, quad, self.dictionary.bits())?;
+        let (id, turns) = self.dictionary.find(code)?;
+        let corners = [0, 1, 2, 3].map(|k| quad[(k + turns) % 4]);
+        Some(Marker { id, corners })
     }
 }
 
-/// The bits inside of a quadrangle with a dark border, black as 1, row by row, and the contrast.
-pub(crate) fn code(gray: &Gray, quad: &Quad, bits: usize) -> Option<(u64, f64)> {
+/// The bits inside of a quadrangle with a dark border, black as 1, row by row.
+fn code(gray: &Gray, quad: &Quad, bits: usize) -> Option<u64> {
     let cells = bits + 2;
     let unit = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]].map(Vector2::from);
     let to_picture = Homography::of_corners(&unit, quad)?;
@@ -59,13 +56,12 @@ pub(crate) fn code(gray: &Gray, quad: &Quad, bits: usize) -> Option<(u64, f64)> 
         column == 0 || row == 0 || column + 1 == cells || row + 1 == cells
     };
     let border = (0..levels.len()).filter(|at| is_border(*at));
-    let dark = border.clone().filter(|at| levels[*at] < limit.0).count();
+    let dark = border.clone().filter(|at| levels[*at] < limit).count();
     if (dark as f64) < DARK_BORDER * border.count() as f64 {
         return None;
     }
     let inner = (0..levels.len()).filter(|at| !is_border(*at));
-    let code = inner.enumerate().fold(0, |code, (bit, at)| code | u64::from(levels[at] < limit.0) << bit);
-    Some((code, limit.1))
+    Some(inner.enumerate().fold(0, |code, (bit, at)| code | u64::from(levels[at] < limit) << bit))
 }
 
 /// Mean level of the middle of a cell.
@@ -81,8 +77,8 @@ fn cell(gray: &Gray, to_picture: &Homography, [column, row]: [usize; 2], cells: 
     Some(sum / 9.0)
 }
 
-/// The level between dark and light that parts levels best (Otsu), and how far apart they are.
-fn split(levels: &[f64]) -> Option<(f64, f64)> {
+/// The level between dark and light that parts levels best (Otsu), if they are far enough apart.
+fn split(levels: &[f64]) -> Option<f64> {
     let mut sorted = levels.to_vec();
     sorted.sort_by(f64::total_cmp);
     let total: f64 = sorted.iter().sum();
@@ -96,5 +92,5 @@ fn split(levels: &[f64]) -> Option<(f64, f64)> {
             best = (between, 0.5 * (below + above), above - below);
         }
     }
-    (best.2 >= LEAST_CONTRAST).then_some((best.1, best.2))
+    (best.2 >= LEAST_CONTRAST).then_some(best.1)
 }

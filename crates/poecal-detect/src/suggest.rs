@@ -76,14 +76,14 @@ fn chessboards(board: &Chessboard) -> Vec<Spec> {
 }
 
 fn charucos(board: &Charuco) -> Vec<Spec> {
-    let own = board.dictionary;
+    let own = board.dictionary.clone();
     let markers = board.columns * board.rows / 2;
     let others = Dictionary::smallest(markers).into_iter().filter(|it| !it.is_alike(&own));
     let mut all = Vec::new();
-    for dictionary in std::iter::once(own).chain(others) {
+    for dictionary in std::iter::once(own.clone()).chain(others) {
         for [columns, rows] in [[board.columns, board.rows], [board.rows, board.columns]] {
             for legacy in [board.legacy, !board.legacy] {
-                let other = Charuco { columns, rows, dictionary, legacy, ..board.clone() };
+                let other = Charuco { columns, rows, dictionary: dictionary.clone(), legacy, ..board.clone() };
                 // With an odd number of rows both patterns are one.
                 let alike = legacy != board.legacy && rows % 2 == 1;
                 if other != *board && !alike {

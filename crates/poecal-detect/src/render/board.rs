@@ -35,8 +35,8 @@ impl Shades {
             cells: 1,
             dark: vec![None; columns * rows],
         };
-        let Some((dictionary, side)) = layout.markers else { return shades };
-        (shades.marker, shades.cells) = (side, dictionary.bits() + 2);
+        let Some((dictionary, side)) = &layout.markers else { return shades };
+        (shades.marker, shades.cells) = (*side, dictionary.bits() + 2);
         for id in 0..layout.marker_count() {
             let Some([column, row]) = layout.square_of(id) else { continue };
             let cell = |at: usize| {
