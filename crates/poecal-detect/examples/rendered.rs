@@ -51,7 +51,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let folder = arguments.next();
     let only = arguments.next();
     let mut out = io::stdout();
-    writeln!(out, "| board | found of visible | no board | RMS px | median | <30°, 30-45, >45 | beyond 1 px | within sigma | chi | ms |")?;
+    writeln!(
+        out,
+        "| board | found of visible | no board | RMS px | median | <30°, 30-45, >45 | beyond 1 px | within sigma | chi | ms |"
+    )?;
     writeln!(out, "|---|---|---|---|---|---|---|---|---|---|")?;
     for (name, spec) in BOARDS {
         if only.as_ref().is_some_and(|it| it != name) {
@@ -89,7 +92,10 @@ fn tally(detector: &Detector, drawn: &[(usize, Drawn)]) -> Tally {
                 let contrast = scene.levels[1] - scene.levels[0];
                 eprintln!(
                     "{number}: {reason}; {visible} visible, tilt {:.0}, blur {:.2}, noise {:.1}, contrast {contrast:.0}, covered {}",
-                    it.tilt_deg, scene.blur_px, scene.noise, scene.patch.is_some()
+                    it.tilt_deg,
+                    scene.blur_px,
+                    scene.noise,
+                    scene.patch.is_some()
                 );
                 tally.none += 1;
                 continue;
@@ -106,7 +112,10 @@ fn tally(detector: &Detector, drawn: &[(usize, Drawn)]) -> Tally {
             own += usize::from(truth.visible && error < 1.0);
             if error > 1.0 {
                 tally.far += 1;
-                eprintln!("{number}: corner {} off by {error:.2} px, sigma {:.2}, visible {}", corner.id, corner.sigma_px, truth.visible);
+                eprintln!(
+                    "{number}: corner {} off by {error:.2} px, sigma {:.2}, visible {}",
+                    corner.id, corner.sigma_px, truth.visible
+                );
                 continue;
             }
             tally.squares += error * error;
@@ -122,7 +131,13 @@ fn tally(detector: &Detector, drawn: &[(usize, Drawn)]) -> Tally {
         }
         if own + 2 < visible {
             let scene = &it.scene;
-            eprintln!("{number}: {own} of {visible}, tilt {:.0}, blur {:.2}, noise {:.1}, contrast {:.0}", it.tilt_deg, scene.blur_px, scene.noise, scene.levels[1] - scene.levels[0]);
+            eprintln!(
+                "{number}: {own} of {visible}, tilt {:.0}, blur {:.2}, noise {:.1}, contrast {:.0}",
+                it.tilt_deg,
+                scene.blur_px,
+                scene.noise,
+                scene.levels[1] - scene.levels[0]
+            );
         }
         tally.found += own;
     }
@@ -192,7 +207,12 @@ fn false_corners(out: &mut impl Write, pictures: usize) -> Result<(), Box<dyn st
         eprintln!("picture {number}: detector {which} has {corners} corners on {other:?}");
     }
     let count = |which: usize| found.iter().filter(|it| it.1 == which && it.3 > 0).count();
-    writeln!(out, "{pictures} pictures without the board, a fifth with another one: corners in {} (ChArUco) and {} (chessboard)", count(0), count(1))?;
+    writeln!(
+        out,
+        "{pictures} pictures without the board, a fifth with another one: corners in {} (ChArUco) and {} (chessboard)",
+        count(0),
+        count(1)
+    )?;
     Ok(())
 }
 
@@ -208,7 +228,11 @@ fn keep(folder: &Path, drawn: &[(usize, Drawn)]) -> Result<(), Box<dyn std::erro
         image::save_buffer(path, &gray.bytes(), width, height, image::ExtendedColorType::L8)?;
         for corner in &it.truth {
             let (place, visible) = (corner.place_px, u8::from(corner.visible));
-            writeln!(truth, "{number},{},{:.5},{:.5},{visible},{:.1}", corner.id, place.x, place.y, it.tilt_deg)?;
+            writeln!(
+                truth,
+                "{number},{},{:.5},{:.5},{visible},{:.1}",
+                corner.id, place.x, place.y, it.tilt_deg
+            )?;
         }
     }
     Ok(())

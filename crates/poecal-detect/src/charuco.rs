@@ -4,7 +4,7 @@ use nalgebra::Vector2;
 
 use crate::detector::{Found, Rejected, found};
 use crate::gray::Gray;
-use crate::grid::{Grid, grids};
+use crate::grid::{Grid, SCALES_PX, grids};
 use crate::growth::{Growth, Node};
 use crate::homography::{Homography, Pair};
 use crate::layout::Layout;
@@ -14,6 +14,8 @@ use crate::quads::{Quad, quads};
 /// Fewest corners and markers that are a board.
 const LEAST_CORNERS: usize = 4;
 const LEAST_MARKERS: usize = 2;
+/// So many markers have to agree for each one on the board that does not. Of a board of the other pattern six of seven agree, one square aside.
+const DOUBT: usize = 12;
 /// Weight of a corner of a marker beside a corner of squares: five times as far off.
 const ANCHOR: f64 = 0.04;
 /// Largest deviation of a marker's side from what the board has, as a part.
@@ -26,7 +28,8 @@ pub(crate) fn detect(gray: &Gray, layout: &Layout, reader: &Reader, noise: f64) 
         return first;
     }
     let mut best = first;
-    for grid in grids(gray, noise).iter().take(4) {
+    for grid in SCALES_PX.iter().flat_map(|blur_px| grids(gray, noise, *blur_px).into_iter().take(4)) {
+        let grid = &grid;
         let markers = markers_of_grid(gray, layout, reader, grid);
         let other = of_markers(gray, layout, reader, noise, &markers);
         if other.is_ok() {
@@ -82,7 +85,7 @@ fn of_markers(
 ) -> Result<Found, Rejected> {
     let (map, agreeing) = consensus(layout, markers).ok_or(Rejected::NoBoard)?;
     let others = markers.len() - agreeing.len() - strangers_outside(layout, &map, markers, &agreeing);
-    if others * 3 > agreeing.len() {
+    if others * DOUBT > agreeing.len() {
         return Err(Rejected::Other);
     }
     let mut growth = Growth::new(gray, noise, layout.plain(), layout.first_dark);
@@ -104,7 +107,7 @@ fn of_markers(
         return Err(Rejected::Few(growth.nodes.len()));
     }
     let (right, wrong) = read_again(gray, layout, reader, &growth);
-    if wrong * 3 > right || !is_marker_side(layout, &growth, markers, &agreeing) {
+    if wrong * DOUBT > right || !is_marker_side(layout, &growth, markers, &agreeing) {
         return Err(Rejected::Other);
     }
     if right.max(agreeing.len()) < LEAST_MARKERS {
@@ -153,17 +156,17 @@ fn consensus(layout: &Layout, markers: &[Marker]) -> Option<(Homography, Vec<usi
 fn agrees(map: &Homography, corners: &[Vector2<f64>; 4], seen: &Quad, near: Vector2<f64>) -> bool {
     let side = (seen[2] - seen[0]).norm().max((seen[3] - seen[1]).norm()) * 0.7;
     let limit = side * (0.25 + 0.08 * (corners[0] - near).norm());
-    corners.iter().zip(seen).all(|(corner, place)| {
-        map.map(*corner).is_some_and(|predicted| (predicted - place).norm() < limit)
-    })
+    corners
+        .iter()
+        .zip(seen)
+        .all(|(corner, place)| map.map(*corner).is_some_and(|predicted| (predicted - place).norm() < limit))
 }
 
 /// How many markers that do not agree are far from the board: nothing against it.
 fn strangers_outside(layout: &Layout, map: &Homography, markers: &[Marker], agreeing: &[usize]) -> usize {
     let [columns, rows] = layout.squares.map(|it| it as f64);
     let around = [[-1.0, -1.0], [columns + 1.0, -1.0], [columns + 1.0, rows + 1.0], [-1.0, rows + 1.0]];
-    let outline: Vec<Vector2<f64>> =
-        around.iter().filter_map(|it| map.map(Vector2::from(*it))).collect();
+    let outline: Vec<Vector2<f64>> = around.iter().filter_map(|it| map.map(Vector2::from(*it))).collect();
     let inside = |place: Vector2<f64>| {
         (0..outline.len()).all(|k| {
             let (a, b) = (outline[k], outline[(k + 1) % outline.len()]);

@@ -2,7 +2,7 @@
 
 use crate::detector::{Found, Rejected, found};
 use crate::gray::Gray;
-use crate::grid::{Grid, grids, middle_slope};
+use crate::grid::{Grid, SCALES_PX, grids, middle_slope};
 use crate::growth::{Growth, Node, place_of};
 use crate::layout::Layout;
 
@@ -15,12 +15,13 @@ const GRIDS: usize = 6;
 pub(crate) fn detect(gray: &Gray, layout: &Layout, noise: f64) -> Result<Found, Rejected> {
     let mut most = 0;
     let mut reason = Rejected::NoBoard;
-    for grid in grids(gray, noise).iter().filter(|it| it.len() >= LEAST).take(GRIDS) {
+    let of_scale = |blur_px: &f64| grids(gray, noise, *blur_px).into_iter();
+    for grid in SCALES_PX.iter().flat_map(|it| of_scale(it).filter(|it| it.len() >= LEAST).take(GRIDS)) {
         if is_larger(layout, grid.iter().map(|it| it.0), 1) {
             reason = Rejected::Other;
             continue;
         }
-        let Some(growth) = grown(gray, layout, noise, grid) else { continue };
+        let Some(growth) = grown(gray, layout, noise, &grid) else { continue };
         match named(gray, layout, noise, &growth) {
             Ok(board) => return Ok(board),
             Err(other) if growth.nodes.len() > most => {
@@ -177,8 +178,11 @@ fn turns(layout: &Layout, growth: &Growth<'_>, low: Node, high: Node) -> Vec<usi
 
 fn inner_size(low: Node, high: Node, turn: usize) -> [usize; 2] {
     let size = [0, 1].map(|k| (high[k] - low[k] + 1) as usize);
-    if turn % 2 == 0 { size } else { [size[1], size[0]] }
+    if turn.is_multiple_of(2) { size } else { [size[1], size[0]] }
 }
+
+/// Standard deviation of the levels across a light square, as a part of half the contrast, from which on it is not plain.
+const UNEVEN: f64 = 0.45;
 
 /// Whether the light squares are plain, as those of a board with markers are not.
 fn is_plain(gray: &Gray, growth: &Growth<'_>) -> bool {
@@ -189,10 +193,10 @@ fn is_plain(gray: &Gray, growth: &Growth<'_>) -> bool {
         let (Some(opposite), false) = (opposite, growth.dark_before(*node)) else { continue };
         let at = |part: f64| gray.at(saddle.place + (opposite.place - saddle.place) * part);
         let levels = [0.25, 0.3, 0.35, 0.4, 0.45, 0.5, 0.55, 0.6, 0.65, 0.7, 0.75].map(at);
-        let darkest = levels.iter().copied().fold(f64::INFINITY, f64::min);
-        let lightest = levels.iter().copied().fold(0.0, f64::max);
-        let contrast = saddle.half_contrast.min(opposite.half_contrast) * 2.0;
-        kinds[usize::from(lightest - darkest > 0.55 * contrast)] += 1;
+        let mean = levels.iter().sum::<f64>() / levels.len() as f64;
+        let variance = levels.iter().map(|it| (it - mean).powi(2)).sum::<f64>() / levels.len() as f64;
+        let spread = (variance - growth.noise * growth.noise).max(0.0).sqrt();
+        kinds[usize::from(spread > UNEVEN * saddle.half_contrast.min(opposite.half_contrast))] += 1;
     }
     kinds[1] * 2 <= kinds[0]
 }
@@ -217,10 +221,15 @@ fn is_rim(gray: &Gray, growth: &Growth<'_>, node: Node, k: usize, way: f64) -> O
     let (map, _) = growth.map_near(place_of(node))?;
     // In the square before the corner and in the one after it, along the side.
     let level = |beside: f64| {
-        let mut off = nalgebra::Vector2::new(beside, beside);
-        off[k] = way * RIM;
-        let place = map.map(place_of(node) + off).filter(|it| gray.holds(*it, 2.0))?;
-        Some(gray.at(place))
+        let mut sum = 0.0;
+        // Some places, against noise.
+        for (aside, out) in [(-0.2, RIM), (0.0, RIM), (0.2, RIM), (-0.1, RIM - 0.15), (0.1, RIM - 0.15)] {
+            let mut off = nalgebra::Vector2::new(beside + aside, beside + aside);
+            off[k] = way * out;
+            let place = map.map(place_of(node) + off).filter(|it| gray.holds(*it, 1.0))?;
+            sum += gray.at(place) / 5.0;
+        }
+        Some(sum)
     };
     let rise = level(0.5)? - level(-0.5)?;
     // Before the corner it is as in the square before it, beyond it the other way round.

@@ -61,9 +61,10 @@ impl Dictionary {
     }
 
     fn read((name, family, count, correctable): &(&'static str, &str, usize, u32)) -> Option<Self> {
-        let mut words = CODES.lines().map(|line| line.split(' ')).find_map(|mut words| {
-            (words.next()? == *family).then_some(words)
-        })?;
+        let mut words = CODES
+            .lines()
+            .map(|line| line.split(' '))
+            .find_map(|mut words| (words.next()? == *family).then_some(words))?;
         let bits: usize = words.next()?.parse().ok()?;
         let digits = (bits * bits).div_ceil(4);
         let codes = words.next()?;

@@ -13,7 +13,9 @@ pub struct Error {
 
 impl Error {
     pub(crate) fn new(message: impl Into<String>) -> Self {
-        Error { message: message.into() }
+        // Of other crates some have several lines.
+        let message: String = message.into();
+        Error { message: message.split_whitespace().collect::<Vec<_>>().join(" ") }
     }
 }
 

@@ -10,18 +10,18 @@ use crate::growth::Node;
 /// Corners of one grid, each with its column and row.
 pub(crate) type Grid = Vec<(Node, Vector2<f64>)>;
 
-/// Blur before second derivatives are taken, pixels.
-const BLUR_PX: f64 = 1.8;
-/// Least crossing beside what noise makes: its standard deviation in a second derivative is `0.244 / BLUR_PX³` of a pixel's.
-const BESIDE_NOISE: f64 = 5.0 * 0.244 / (BLUR_PX * BLUR_PX * BLUR_PX);
-/// Least crossing, gray levels per square pixel.
-const LEAST: f64 = 0.35;
+/// Blurs before second derivatives are taken, pixels: for sharp pictures, and for dim or blurred ones.
+pub(crate) const SCALES_PX: [f64; 2] = [1.8, 3.6];
+/// Least crossing beside what noise makes.
+const BESIDE_NOISE: f64 = 5.0;
+/// Least crossing, gray levels, times the square of the blur.
+const LEAST: f64 = 1.1;
 /// Least of the smaller curvature beside the larger one: edges at an angle of 28°.
 const NARROW: f64 = 0.06;
-/// Farthest place without slope from the strongest saddle, pixels.
-const LEVEL_PX: f64 = 1.4;
-/// Radius at which edges are sought, pixels.
-const RING_PX: f64 = 6.0;
+/// Farthest place without slope from the strongest saddle, blurs.
+const LEVEL: f64 = 0.8;
+/// Radius at which edges are sought, blurs.
+const RING: f64 = 3.3;
 /// Most places that are joined.
 const MOST: usize = 8000;
 /// Of more places than this, only those near each other are joined.
@@ -52,9 +52,11 @@ impl Cross {
 }
 
 /// Grids of squares in a picture, the largest first: x and y as on a board that is seen from its front.
-pub(crate) fn grids(gray: &Gray, noise: f64) -> Vec<Grid> {
-    let smooth = gray.blurred(BLUR_PX, 2.6);
-    let mut crosses = crosses(&smooth, noise);
+pub(crate) fn grids(gray: &Gray, noise: f64, blur_px: f64) -> Vec<Grid> {
+    let smooth = gray.blurred(blur_px, 2.6);
+    // Noise has a standard deviation of `0.244 / σ³` of a pixel's in a second derivative.
+    let least = (LEAST / blur_px.powi(2)).max(BESIDE_NOISE * 0.244 / blur_px.powi(3) * noise);
+    let mut crosses = crosses(&smooth, least, blur_px);
     join(&smooth, &mut crosses);
     let mut free = vec![true; crosses.len()];
     let mut grids: Vec<Grid> = Vec::new();
@@ -69,9 +71,9 @@ pub(crate) fn grids(gray: &Gray, noise: f64) -> Vec<Grid> {
 }
 
 /// Places where the second derivatives are those of a saddle, the strongest first.
-fn crosses(smooth: &Gray, noise: f64) -> Vec<Cross> {
+fn crosses(smooth: &Gray, least: f64, blur_px: f64) -> Vec<Cross> {
     let (width, height) = (smooth.width(), smooth.height());
-    let least = LEAST.max(BESIDE_NOISE * noise).powi(2) as f32;
+    let least = least.powi(2) as f32;
     let mut saddles = vec![0.0_f32; width * height];
     for row in 2..height.saturating_sub(2) {
         let rows = [row - 2, row - 1, row, row + 1, row + 2].map(|it| smooth.row(it));
@@ -94,7 +96,7 @@ fn crosses(smooth: &Gray, noise: f64) -> Vec<Cross> {
                 saddles[first - BESIDE..=first + BESIDE].iter().all(|it| *it <= own)
             });
             if is_peak {
-                found.extend(cross_at(smooth, x, row, own));
+                found.extend(cross_at(smooth, [x, row], own, blur_px));
             }
         }
     }
@@ -113,12 +115,13 @@ fn second(rows: &[&[f32]; 5], x: usize) -> [f32; 3] {
 }
 
 /// A saddle with its edges.
-fn cross_at(smooth: &Gray, x: usize, row: usize, own: f32) -> Option<Cross> {
+fn cross_at(smooth: &Gray, [x, row]: [usize; 2], own: f32, blur_px: f64) -> Option<Cross> {
     let rows = [row - 2, row - 1, row, row + 1, row + 2].map(|it| smooth.row(it));
     let [xx, xy, yy] = second(&rows, x).map(f64::from);
     let (middle, half) = (0.5 * (xx + yy), (0.25 * (xx - yy).powi(2) + xy * xy).sqrt());
     let (up, down) = (half + middle, half - middle);
-    if !(up.min(down) > NARROW * up.max(down)) {
+    let is_saddle = up.min(down) > NARROW * up.max(down);
+    if !is_saddle {
         return None;
     }
     // The slope is none there; on edges and at the ends of them it is.
@@ -126,16 +129,21 @@ fn cross_at(smooth: &Gray, x: usize, row: usize, own: f32) -> Option<Cross> {
     let slope_y = 0.5 * f64::from(rows[3][x] - rows[1][x]);
     let area = xx * yy - xy * xy;
     let off = Vector2::new(yy * slope_x - xy * slope_y, xx * slope_y - xy * slope_x) / area;
-    if off.norm() > LEVEL_PX {
+    if off.norm() > LEVEL * blur_px {
         return None;
     }
     let place = Vector2::new(x as f64, row as f64) - off;
-    Some(Cross { place, strength: f64::from(own), edges: edges(smooth, place)?, next: [None; 4] })
+    Some(Cross {
+        place,
+        strength: f64::from(own),
+        edges: edges(smooth, place, RING * blur_px)?,
+        next: [None; 4],
+    })
 }
 
 /// The directions of the edges through a place: where a ring around it changes between dark and light, four times. Second derivatives would have
 /// them too, but ink that spreads, or light that does, moves those more.
-fn edges(smooth: &Gray, place: Vector2<f64>) -> Option<[Vector2<f64>; 2]> {
+fn edges(smooth: &Gray, place: Vector2<f64>, radius_px: f64) -> Option<[Vector2<f64>; 2]> {
     const POINTS: usize = 32;
     let direction = |k: f64| {
         let (sin, cos) = (k / POINTS as f64 * std::f64::consts::TAU).sin_cos();
@@ -143,7 +151,7 @@ fn edges(smooth: &Gray, place: Vector2<f64>) -> Option<[Vector2<f64>; 2]> {
     };
     let mut levels = [0.0; POINTS];
     for (k, level) in levels.iter_mut().enumerate() {
-        *level = smooth.at(place + direction(k as f64) * RING_PX);
+        *level = smooth.at(place + direction(k as f64) * radius_px);
     }
     let limit = 0.5
         * (levels.iter().copied().fold(f64::INFINITY, f64::min) + levels.iter().copied().fold(0.0, f64::max));
@@ -305,7 +313,8 @@ fn grid_from(crosses: &[Cross], first: usize, free: &mut [bool]) -> Grid {
                 continue;
             }
             taken.insert(place, other);
-            frames.insert(other, (place, [nearest_axis(&crosses[other], x), nearest_axis(&crosses[other], y)]));
+            frames
+                .insert(other, (place, [nearest_axis(&crosses[other], x), nearest_axis(&crosses[other], y)]));
             free[other] = false;
             queue.push_back(other);
         }

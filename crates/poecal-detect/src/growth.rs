@@ -14,7 +14,7 @@ pub(crate) type Node = [i32; 2];
 /// Corners that have been found on a board, and what they were found from.
 pub(crate) struct Growth<'a> {
     gray: &'a Gray,
-    noise: f64,
+    pub(crate) noise: f64,
     /// How far from a corner its squares are plain, squares.
     plain: f64,
     /// Whether the square (0, 0) is dark.
@@ -146,7 +146,8 @@ impl<'a> Growth<'a> {
                 let square_px = map.slope(point)?.determinant().abs().sqrt();
                 Some((map.map(point)?, (OFF.0 + OFF.1 * square_px) * nearest.max(1.0)))
             });
-            let part = predicted.map_or(f64::INFINITY, |(place, limit)| (place - saddle.place).norm() / limit);
+            let part =
+                predicted.map_or(f64::INFINITY, |(place, limit)| (place - saddle.place).norm() / limit);
             (*node, part.max(saddle.sigma_px / (VAGUE * usual_px)))
         };
         let worst = self.nodes.iter().map(off).max_by(|a, b| a.1.total_cmp(&b.1))?;

@@ -37,7 +37,8 @@ impl Homography {
         let trace = normal.trace();
         let factor = normal.cholesky()?;
         let least = (0..8).map(|k| factor.l_dirty()[(k, k)]).fold(f64::INFINITY, f64::min);
-        if !(least * least > 1e-10 * trace) {
+        let is_determined = least * least > 1e-10 * trace;
+        if !is_determined {
             return None;
         }
         let h = factor.solve(&right);
@@ -111,10 +112,14 @@ mod tests {
         let error = (found.map(at).unwrap() - truth.map(at).unwrap()).norm();
         let step = Vector2::new(1e-6, 0.0);
         let slope = (truth.map(at + step).unwrap() - truth.map(at).unwrap()) / 1e-6;
-        println!("error {error:.1e} px, slope off by {:.1e}", (slope - truth.slope(at).unwrap().column(0)).norm());
+        println!(
+            "error {error:.1e} px, slope off by {:.1e}",
+            (slope - truth.slope(at).unwrap().column(0)).norm()
+        );
         // Rounding, times the condition of eight unknowns; differences of 1e-6.
         assert!(error < 1e-8 && (slope - truth.slope(at).unwrap().column(0)).norm() < 1e-3);
-        let line: Vec<Pair> = (0..6).map(|k| (Vector2::new(f64::from(k), 0.0), Vector2::zeros(), 1.0)).collect();
+        let line: Vec<Pair> =
+            (0..6).map(|k| (Vector2::new(f64::from(k), 0.0), Vector2::zeros(), 1.0)).collect();
         assert!(Homography::fit(&line).is_none() && Homography::fit(&pairs[..3]).is_none());
     }
 }

@@ -38,7 +38,7 @@ impl Layout {
     /// Whether a square is dark.
     #[must_use]
     pub fn is_dark(&self, column: usize, row: usize) -> bool {
-        ((column + row) % 2 == 0) == self.first_dark
+        (column + row).is_multiple_of(2) == self.first_dark
     }
 
     /// Inner corners along x and y.

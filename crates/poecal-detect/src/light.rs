@@ -11,7 +11,11 @@ pub(crate) fn noise(gray: &Gray) -> f64 {
         for x in (1..width.saturating_sub(1)).step_by(4) {
             let sides = own[x - 1] + own[x + 1] + above[x] + below[x];
             let diagonal = above[x - 1] + above[x + 1] + below[x - 1] + below[x + 1];
-            found.push((4.0 * own[x] - 2.0 * sides + diagonal).abs());
+            let second = (4.0 * own[x] - 2.0 * sides + diagonal).abs();
+            // Where nothing differs, light or dark is cut off.
+            if second > 0.0 {
+                found.push(second);
+            }
         }
     }
     if found.is_empty() {
@@ -42,9 +46,11 @@ impl Light {
             let levels = gray.row(row);
             levels.iter().for_each(|level| counts[level.clamp(0.0, 255.0) as usize] += 1);
             // Means of pairs four pixels apart, so that noise is no edge.
-            slopes.extend((0..width.saturating_sub(5)).step_by(3).map(|x| {
-                (levels[x + 4] + levels[x + 5] - levels[x] - levels[x + 1]).abs() / 8.0
-            }));
+            slopes.extend(
+                (0..width.saturating_sub(5))
+                    .step_by(3)
+                    .map(|x| (levels[x + 4] + levels[x + 5] - levels[x] - levels[x + 1]).abs() / 8.0),
+            );
         }
         let total: usize = counts.iter().sum();
         let quantile = |part: f64| {

@@ -63,7 +63,8 @@ impl Picture {
     /// # Errors
     /// If the file cannot be read, or is no such picture: with its path.
     pub fn open(path: &Path) -> Result<Self> {
-        let unread = |reason: &dyn fmt::Display| Error::new(format!("{}: cannot be read: {reason}", path.display()));
+        let unread =
+            |reason: &dyn fmt::Display| Error::new(format!("{}: cannot be read: {reason}", path.display()));
         let no_picture = |reason: &dyn fmt::Display| {
             Error::new(format!("{}: found no picture, expected PNG or JPEG ({reason})", path.display()))
         };

@@ -283,7 +283,7 @@ fn edge(gray: &Gray, from: Vector2<f64>, to: Vector2<f64>) -> Option<(Vector2<f6
         let level = |step: i32| gray.at(at + inwards * (f64::from(step) * 0.5));
         let falls: Vec<f64> = (-steps..=steps).map(|step| level(step - 2) - level(step + 2)).collect();
         let (best, fall) = falls.iter().copied().enumerate().max_by(|a, b| a.1.total_cmp(&b.1))?;
-        if !(fall > 1.0) || best == 0 || best + 1 == falls.len() {
+        if fall <= 1.0 || best == 0 || best + 1 == falls.len() {
             continue;
         }
         let bend = falls[best - 1] + falls[best + 1] - 2.0 * fall;

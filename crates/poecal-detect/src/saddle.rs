@@ -50,7 +50,8 @@ const WORST_PX: f64 = 0.4;
 
 /// Finds a corner near its expected place. `None` if there is none: no two crossing edges, exchanged shades, another direction, too little contrast.
 pub(crate) fn refine(gray: &Gray, expected: &Expected, noise: f64) -> Option<Saddle> {
-    if !(expected.slope.determinant() > 0.0) {
+    let is_front = expected.slope.determinant() > 0.0;
+    if !is_front {
         return None;
     }
     let place = search(gray, expected)?;
@@ -120,7 +121,9 @@ fn search(gray: &Gray, expected: &Expected) -> Option<Vector2<f64>> {
     let quarter = |place: Vector2<f64>, x: f64, y: f64| {
         let sum: f64 = AT
             .iter()
-            .map(|[a, b]| gray.at(place + window.sides.column(0) * (a * x) + window.sides.column(1) * (b * y)))
+            .map(|[a, b]| {
+                gray.at(place + window.sides.column(0) * (a * x) + window.sides.column(1) * (b * y))
+            })
             .sum();
         sum / AT.len() as f64
     };
@@ -139,7 +142,7 @@ fn search(gray: &Gray, expected: &Expected) -> Option<Vector2<f64>> {
         .map(|place| (place, response(place)))
         .collect();
     let (best, most) = found.iter().copied().max_by(|a, b| a.1.total_cmp(&b.1))?;
-    if !(most > 0.0) {
+    if most <= 0.0 || most.is_nan() {
         return None;
     }
     // Beside the best: the top is flat.
@@ -185,8 +188,7 @@ impl Crossing {
     }
 
     fn sums(&self, pixels: &[(Vector2<f64>, f64)], middle: Vector2<f64>) -> Sums {
-        let mut sums =
-            Sums { normal: SMatrix::zeros(), right: Unknowns::zeros(), squares: 0.0 };
+        let mut sums = Sums { normal: SMatrix::zeros(), right: Unknowns::zeros(), squares: 0.0 };
         let [(s1, c1), (s2, c2)] = self.turns.map(f64::sin_cos);
         let rho = -(c1 * c2 + s1 * s2);
         let scale = 1.0 / self.blur;
@@ -295,13 +297,7 @@ fn sign_and_bell(x: f64) -> (f64, f64) {
 }
 
 /// Fits crossing lines in a window about a place.
-fn fit(
-    gray: &Gray,
-    expected: &Expected,
-    place: Vector2<f64>,
-    window: &Window,
-    noise: f64,
-) -> Option<Saddle> {
+fn fit(gray: &Gray, expected: &Expected, place: Vector2<f64>, window: &Window, noise: f64) -> Option<Saddle> {
     let mut middle = place;
     let mut pixels = window.pixels(gray, middle);
     if pixels.len() < 2 * UNKNOWNS {
@@ -337,12 +333,7 @@ fn fit(
         && sigma_px < WORST_PX
         && inside.amax() < 0.5
         && gray.holds(crossing.place, 1.0);
-    good.then_some(Saddle {
-        place: crossing.place,
-        sigma_px,
-        blur_px: crossing.blur,
-        half_contrast: half,
-    })
+    good.then_some(Saddle { place: crossing.place, sigma_px, blur_px: crossing.blur, half_contrast: half })
 }
 
 /// Levenberg-Marquardt from a start.

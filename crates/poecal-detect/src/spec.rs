@@ -101,7 +101,8 @@ fn charuco(size: &str, [square, marker]: [&str; 2], name: &str, legacy: bool) ->
     let [columns, rows] = size_of(size)?;
     let (square_m, marker_m) = (length_m("square", square)?, length_m("marker", marker)?);
     if marker_m >= square_m {
-        let message = format!("found markers of {marker} in squares of {square}, expected markers that are smaller");
+        let message =
+            format!("found markers of {marker} in squares of {square}, expected markers that are smaller");
         return Err(Error::new(message));
     }
     let dictionary = Dictionary::named(name)?;
@@ -123,7 +124,8 @@ fn size_of(text: &str) -> Result<[usize; 2]> {
         ))
     };
     let (columns, rows) = text.split_once(['x', 'X', '×']).ok_or_else(wrong)?;
-    let number = |part: &str| part.parse().ok().filter(|it| (3..=MOST_SQUARES).contains(it)).ok_or_else(wrong);
+    let number =
+        |part: &str| part.parse().ok().filter(|it| (3..=MOST_SQUARES).contains(it)).ok_or_else(wrong);
     Ok([number(columns)?, number(rows)?])
 }
 

@@ -34,7 +34,8 @@ pub(crate) fn suggest(detector: &Detector, pictures: &[&Gray]) -> Option<Suggest
     let seen: Vec<(&Gray, f64)> = pictures.iter().map(|gray| (*gray, noise(gray))).collect();
     let all: Vec<Suggestion> = match detector.spec() {
         Spec::Chessboard(board) => {
-            let tried = |spec| suggestion(&spec, &seen, |it, at, noise| chessboard::detect(at, &it.layout, noise));
+            let tried =
+                |spec| suggestion(&spec, &seen, |it, at, noise| chessboard::detect(at, &it.layout, noise));
             chessboards(board).into_iter().map(tried).collect()
         }
         Spec::Charuco(board) => {
@@ -83,7 +84,8 @@ fn charucos(board: &Charuco) -> Vec<Spec> {
     for dictionary in std::iter::once(own.clone()).chain(others) {
         for [columns, rows] in [[board.columns, board.rows], [board.rows, board.columns]] {
             for legacy in [board.legacy, !board.legacy] {
-                let other = Charuco { columns, rows, dictionary: dictionary.clone(), legacy, ..board.clone() };
+                let other =
+                    Charuco { columns, rows, dictionary: dictionary.clone(), legacy, ..board.clone() };
                 // With an odd number of rows both patterns are one.
                 let alike = legacy != board.legacy && rows % 2 == 1;
                 if other != *board && !alike {

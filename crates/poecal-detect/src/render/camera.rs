@@ -22,7 +22,9 @@ impl Camera {
         let plane = point.xy() / point.z;
         let [k1, k2] = self.distortion;
         let square = plane.norm_squared();
-        if !(point.z > 0.0) || !(1.0 + 3.0 * k1 * square + 5.0 * k2 * square * square > 0.0) {
+        let is_unfolded = 1.0 + 3.0 * k1 * square + 5.0 * k2 * square * square > 0.0;
+        let is_seen = point.z > 0.0 && is_unfolded;
+        if !is_seen {
             return None;
         }
         let seen = plane * (1.0 + square * (k1 + k2 * square));

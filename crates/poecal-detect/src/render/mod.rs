@@ -126,7 +126,7 @@ impl Scene {
             let ray = self.camera.ray(Vector2::new(column as f64 - 0.5, row as f64 - 0.5));
             let ray = back * ray;
             let reach = -origin.z / ray.z;
-            if !(reach > 0.0) {
+            if reach <= 0.0 || reach.is_nan() {
                 return Vector2::new(f64::MAX, f64::MAX);
             }
             let on_board = origin + ray * reach;
@@ -162,8 +162,7 @@ impl Scene {
                 let [a, b, c, d] = all.map(|it| lattice[it]);
                 let mut sum = 0.0;
                 for k in 0..SAMPLES * SAMPLES {
-                    let [x, y] =
-                        [k % SAMPLES, k / SAMPLES].map(|it| (it as f64 + 0.5) / SAMPLES as f64);
+                    let [x, y] = [k % SAMPLES, k / SAMPLES].map(|it| (it as f64 + 0.5) / SAMPLES as f64);
                     let place = (a * (1.0 - x) + b * x) * (1.0 - y) + (c * (1.0 - x) + d * x) * y;
                     sum += self.level(shades.at(place), behind);
                 }
