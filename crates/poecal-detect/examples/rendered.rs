@@ -1,5 +1,7 @@
 //! Draws pictures of boards with their truth, finds the corners, and prints how many and how well: `rendered [PICTURES [FOLDER]]`. In a folder the
-//! pictures and the truth are left, for other detectors.
+//! pictures and the truth are left, for other detectors. What is missing or off is told beside the table.
+
+#![allow(clippy::print_stderr)]
 
 use std::fs;
 use std::io::{self, Write};
@@ -49,11 +51,12 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut arguments = std::env::args().skip(1);
     let pictures: usize = arguments.next().map_or(Ok(40), |it| it.parse())?;
     let folder = arguments.next();
+    // One of the boards, for a look at it.
     let only = arguments.next();
     let mut out = io::stdout();
     writeln!(
         out,
-        "| board | found of visible | no board | RMS px | median | <30°, 30-45, >45 | beyond 1 px | within sigma | chi | ms |"
+        "| board | found of visible | no board | RMS px | median | <30°, 30-45, >45 | beyond 1 px | within one sigma | error by sigma | ms |"
     )?;
     writeln!(out, "|---|---|---|---|---|---|---|---|---|---|")?;
     for (name, spec) in BOARDS {
@@ -85,65 +88,60 @@ fn tally(detector: &Detector, drawn: &[(usize, Drawn)]) -> Tally {
         tally.cpu_s += start.elapsed().as_secs_f64();
         let visible = it.truth.iter().filter(|it| it.visible).count();
         tally.visible += visible;
-        let found = match found {
-            Ok(found) => found,
+        let seen = match found {
+            Ok(found) => tally.add(*number, &found, it),
             Err(reason) => {
-                let scene = &it.scene;
-                let contrast = scene.levels[1] - scene.levels[0];
-                eprintln!(
-                    "{number}: {reason}; {visible} visible, tilt {:.0}, blur {:.2}, noise {:.1}, contrast {contrast:.0}, covered {}",
-                    it.tilt_deg,
-                    scene.blur_px,
-                    scene.noise,
-                    scene.patch.is_some()
-                );
+                eprintln!("picture {number}: {reason}");
                 tally.none += 1;
-                continue;
+                0
             }
         };
-        let mut own = 0;
-        // A board that looks the same turned by half a turn may have its numbers from the other end.
-        let last = it.truth.len() - 1;
-        let place = |id: usize| &it.truth[if turned(&found, it) { last - id } else { id }];
-        for corner in &found.corners {
-            let truth = place(corner.id);
-            let off = Vector2::new(corner.u_px, corner.v_px) - truth.place_px;
-            let error = off.norm();
-            own += usize::from(truth.visible && error < 1.0);
-            if error > 1.0 {
-                tally.far += 1;
-                eprintln!(
-                    "{number}: corner {} off by {error:.2} px, sigma {:.2}, visible {}",
-                    corner.id, corner.sigma_px, truth.visible
-                );
-                continue;
-            }
-            tally.squares += error * error;
-            tally.corners += 1;
-            tally.errors.push(error);
-            for k in 0..2 {
-                tally.within += usize::from(off[k].abs() < corner.sigma_px);
-                tally.whitened += (off[k] / corner.sigma_px).powi(2);
-            }
-            let bin = usize::from(it.tilt_deg >= 30.0) + usize::from(it.tilt_deg >= 45.0);
-            tally.by_tilt[bin].0 += error * error;
-            tally.by_tilt[bin].1 += 1;
-        }
-        if own + 2 < visible {
-            let scene = &it.scene;
+        if seen + 2 < visible {
+            let (scene, tilt) = (&it.scene, it.tilt_deg);
+            let contrast = scene.levels[1] - scene.levels[0];
+            let (blur, noise) = (scene.blur_px, scene.noise);
             eprintln!(
-                "{number}: {own} of {visible}, tilt {:.0}, blur {:.2}, noise {:.1}, contrast {:.0}",
-                it.tilt_deg,
-                scene.blur_px,
-                scene.noise,
-                scene.levels[1] - scene.levels[0]
+                "picture {number}: {seen} of {visible}: tilt {tilt:.0}°, blur {blur:.2} px, noise {noise:.1} of {contrast:.0}"
             );
         }
-        tally.found += own;
     }
     tally
 }
 
+impl Tally {
+    /// Adds the corners of a picture; returns how many of the visible ones there are.
+    fn add(&mut self, number: usize, found: &Found, drawn: &Drawn) -> usize {
+        let last = drawn.truth.len() - 1;
+        let turn = turned(found, drawn);
+        let mut seen = 0;
+        for corner in &found.corners {
+            let truth = &drawn.truth[if turn { last - corner.id } else { corner.id }];
+            let off = Vector2::new(corner.u_px, corner.v_px) - truth.place_px;
+            let error = off.norm();
+            if error > 1.0 {
+                let (id, sigma, visible) = (corner.id, corner.sigma_px, truth.visible);
+                eprintln!(
+                    "picture {number}: corner {id} off by {error:.2} px, sigma {sigma:.2}, visible: {visible}"
+                );
+                self.far += 1;
+                continue;
+            }
+            seen += usize::from(truth.visible);
+            self.squares += error * error;
+            self.corners += 1;
+            self.errors.push(error);
+            self.within += off.iter().filter(|it| it.abs() < corner.sigma_px).count();
+            self.whitened += (off / corner.sigma_px).norm_squared();
+            let bin = usize::from(drawn.tilt_deg >= 30.0) + usize::from(drawn.tilt_deg >= 45.0);
+            self.by_tilt[bin].0 += error * error;
+            self.by_tilt[bin].1 += 1;
+        }
+        self.found += seen;
+        seen
+    }
+}
+
+/// Whether corners count from the other end: of a board that looks the same from both.
 fn turned(found: &Found, drawn: &Drawn) -> bool {
     let last = drawn.truth.len() - 1;
     let off = |turn: bool| {

@@ -14,6 +14,8 @@ use crate::quads::{Quad, quads};
 /// Fewest corners and markers that are a board.
 const LEAST_CORNERS: usize = 4;
 const LEAST_MARKERS: usize = 2;
+/// Corners that are enough to do without those of markers.
+const ENOUGH: usize = 9;
 /// So many markers have to agree for each one on the board that does not. Of a board of the other pattern six of seven agree, one square aside.
 const DOUBT: usize = 12;
 /// Weight of a corner of a marker beside a corner of squares: five times as far off.
@@ -96,7 +98,10 @@ fn of_markers(
     }
     let nodes = nodes_of(layout);
     growth.grow(&nodes);
-    growth.anchors.clear();
+    if growth.nodes.len() >= ENOUGH {
+        // Corners of squares are better, where they are enough to check each other.
+        growth.anchors.clear();
+    }
     growth.prune();
     growth.grow(&nodes);
     growth.prune();

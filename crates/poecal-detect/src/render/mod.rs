@@ -121,9 +121,14 @@ impl Scene {
         let [width, height] = self.camera.size;
         let back = self.rotation.transpose();
         let origin = back * -self.translation_m;
+        let [low, high] = self.around(layout);
         let corner = |at: usize| {
             let (column, row) = (at % (width + 1), at / (width + 1));
-            let ray = self.camera.ray(Vector2::new(column as f64 - 0.5, row as f64 - 0.5));
+            let (x, y) = (column as f64, row as f64);
+            if x < low.x || y < low.y || x > high.x || y > high.y {
+                return Vector2::new(f64::MAX, f64::MAX);
+            }
+            let ray = self.camera.ray(Vector2::new(x - 0.5, y - 0.5));
             let ray = back * ray;
             let reach = -origin.z / ray.z;
             if reach <= 0.0 || reach.is_nan() {
@@ -133,6 +138,29 @@ impl Scene {
             on_board.xy() / layout.square_m + Vector2::new(1.0, 1.0)
         };
         (0..(width + 1) * (height + 1)).map(corner).collect()
+    }
+
+    /// What the board, with its paper, is within of the picture: of points along its outline. Everything, if one of them is not seen.
+    fn around(&self, layout: &Layout) -> [Vector2<f64>; 2] {
+        const STEPS: usize = 24;
+        let [columns, rows] = layout.squares.map(|it| it as f64 + 2.0);
+        let mut limits = [Vector2::repeat(f64::INFINITY), Vector2::repeat(f64::NEG_INFINITY)];
+        for k in 0..4 * STEPS {
+            let part = (k % STEPS) as f64 / STEPS as f64;
+            let [x, y] = match k / STEPS {
+                0 => [part, 0.0],
+                1 => [1.0, part],
+                2 => [1.0 - part, 1.0],
+                _ => [0.0, 1.0 - part],
+            };
+            let at = Vector2::new(x * columns - 2.0, y * rows - 2.0) * layout.square_m;
+            let point = self.rotation * Vector3::new(at.x, at.y, 0.0) + self.translation_m;
+            let Some(place) = self.camera.project(&point) else {
+                return [Vector2::repeat(f64::NEG_INFINITY), Vector2::repeat(f64::INFINITY)];
+            };
+            limits = [limits[0].inf(&place), limits[1].sup(&place)];
+        }
+        [limits[0].add_scalar(-4.0), limits[1].add_scalar(4.0)]
     }
 
     fn sampled(&self, shades: &Shades, lattice: &[Vector2<f64>], background: &Gray) -> Gray {
