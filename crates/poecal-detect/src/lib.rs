@@ -36,3 +36,7 @@ pub use layout::Layout;
 pub use picture::{Picture, Turned};
 pub use spec::{Charuco, Chessboard, Spec};
 pub use suggest::Suggestion;
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -24,7 +24,7 @@ pub(crate) fn noise(gray: &Gray) -> f64 {
     let middle = found.len() / 2;
     let (_, median, _) = found.select_nth_unstable_by(middle, f32::total_cmp);
     // The weights have squares of 36; a median of magnitudes is 0.6745 standard deviations. Rounding has 0.29.
-    (f64::from(*median) / (6.0 * 0.6745)).max(0.3)
+    (f64::from(*median) / (6.0 * 0.6745)).clamp(0.3, 255.0)
 }
 
 /// What a picture looks like as a whole.
