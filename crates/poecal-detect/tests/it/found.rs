@@ -158,12 +158,12 @@ fn a_picture_takes_little_time() {
     let detector = Detector::new(&"charuco:7x5:36.195mm:18.256mm:DICT_6X6_250".parse().unwrap());
     let drawn = Draw::default().scene(detector.layout(), 11, 0);
     let took = (0..3).map(|_| {
-        let start = std::time::Instant::now();
+        let start = cpu_time::ThreadTime::now();
         detector.detect(&drawn.picture).unwrap();
         start.elapsed()
     });
     let least = took.min().unwrap();
-    println!("{least:.0?} of 1920 × 1200 pixels");
-    // 50 ms on an idle machine; others may build beside.
-    assert!(cfg!(debug_assertions) || least.as_millis() < 400);
+    println!("{least:.0?} of a processor for 1920 × 1200 pixels");
+    // 50 ms on an idle machine; others may take its caches.
+    assert!(cfg!(debug_assertions) || least.as_millis() < 200);
 }
