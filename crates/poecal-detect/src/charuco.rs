@@ -2,7 +2,7 @@
 
 use nalgebra::Vector2;
 
-use crate::detector::{Found, Rejected, found};
+use crate::found::{Found, Rejected, found};
 use crate::gray::Gray;
 use crate::grid::{Grid, SCALES_PX, grids};
 use crate::growth::{Growth, Node};

@@ -1,6 +1,6 @@
 //! Plain chessboards: a grid of the right size, with both ends of both sides seen.
 
-use crate::detector::{Found, Rejected, found};
+use crate::found::{Found, Rejected, found};
 use crate::gray::Gray;
 use crate::grid::{Grid, SCALES_PX, grids, middle_slope};
 use crate::growth::{Growth, Node, place_of};

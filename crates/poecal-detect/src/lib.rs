@@ -15,6 +15,7 @@ mod chessboard;
 mod detector;
 mod dictionary;
 mod error;
+mod found;
 mod gray;
 mod grid;
 mod growth;
@@ -29,8 +30,9 @@ mod saddle;
 mod spec;
 mod suggest;
 
-pub use detector::{Corner, Detector, Found, Rejected};
+pub use detector::Detector;
 pub use error::{Error, Result};
+pub use found::{Corner, Found, Rejected};
 pub use gray::Gray;
 pub use layout::Layout;
 pub use picture::{Picture, Turned};

@@ -4,10 +4,12 @@ use std::fmt;
 
 use crate::charuco;
 use crate::chessboard;
-use crate::detector::{Detector, Found, Rejected};
 use crate::dictionary::Dictionary;
+use crate::found::{Found, Rejected};
 use crate::gray::Gray;
+use crate::layout::Layout;
 use crate::light::noise;
+use crate::markers::Reader;
 use crate::quads::{Quad, quads};
 use crate::spec::{Charuco, Chessboard, Spec};
 
@@ -30,24 +32,23 @@ impl fmt::Display for Suggestion {
 }
 
 /// The board that has most corners, if any has some.
-pub(crate) fn suggest(detector: &Detector, pictures: &[&Gray]) -> Option<Suggestion> {
+pub(crate) fn suggest(spec: &Spec, pictures: &[&Gray]) -> Option<Suggestion> {
     let seen: Vec<(&Gray, f64)> = pictures.iter().map(|gray| (*gray, noise(gray))).collect();
-    let all: Vec<Suggestion> = match detector.spec() {
+    let all: Vec<Suggestion> = match spec {
         Spec::Chessboard(board) => {
             let tried =
-                |spec| suggestion(&spec, &seen, |it, at, noise| chessboard::detect(at, &it.layout, noise));
+                |spec| suggestion(spec, &seen, |layout, gray, noise| chessboard::detect(gray, layout, noise));
             chessboards(board).into_iter().map(tried).collect()
         }
         Spec::Charuco(board) => {
             // What is costly does not depend on the board.
             let quads: Vec<Vec<Quad>> = seen.iter().map(|(gray, noise)| quads(gray, *noise)).collect();
-            let tried = |spec| {
+            let tried = |board: Charuco| {
+                let reader = Reader::new(&board.dictionary);
                 let mut quads = quads.iter();
-                suggestion(&spec, &seen, |it, gray, noise| {
-                    let (Some(reader), Some(quads)) = (&it.reader, quads.next()) else {
-                        return Err(Rejected::NoBoard);
-                    };
-                    charuco::of_quads(gray, &it.layout, reader, noise, quads)
+                suggestion(Spec::Charuco(board), &seen, |layout, gray, noise| {
+                    let quads = quads.next().ok_or(Rejected::NoBoard)?;
+                    charuco::of_quads(gray, layout, &reader, noise, quads)
                 })
             };
             charucos(board).into_iter().map(tried).collect()
@@ -58,14 +59,14 @@ pub(crate) fn suggest(detector: &Detector, pictures: &[&Gray]) -> Option<Suggest
 
 /// What a board has in pictures.
 fn suggestion(
-    spec: &Spec,
+    spec: Spec,
     seen: &[(&Gray, f64)],
-    mut detect: impl FnMut(&Detector, &Gray, f64) -> Result<Found, Rejected>,
+    mut detect: impl FnMut(&Layout, &Gray, f64) -> Result<Found, Rejected>,
 ) -> Suggestion {
-    let detector = Detector::new(spec);
-    let found = seen.iter().filter_map(|(gray, noise)| detect(&detector, gray, *noise).ok());
+    let layout = Layout::new(&spec);
+    let found = seen.iter().filter_map(|(gray, noise)| detect(&layout, gray, *noise).ok());
     let (pictures, corners) = found.fold((0, 0), |sum, it| (sum.0 + 1, sum.1 + it.corners.len()));
-    Suggestion { spec: spec.clone(), pictures, corners }
+    Suggestion { spec, pictures, corners }
 }
 
 /// Corners counted in place of squares, and the other way round.
@@ -76,7 +77,7 @@ fn chessboards(board: &Chessboard) -> Vec<Spec> {
     sound.map(|(columns, rows)| Spec::Chessboard(Chessboard { columns, rows, square_m })).collect()
 }
 
-fn charucos(board: &Charuco) -> Vec<Spec> {
+fn charucos(board: &Charuco) -> Vec<Charuco> {
     let own = board.dictionary.clone();
     let markers = board.columns * board.rows / 2;
     let others = Dictionary::smallest(markers).into_iter().filter(|it| !it.is_alike(&own));
@@ -89,7 +90,7 @@ fn charucos(board: &Charuco) -> Vec<Spec> {
                 // With an odd number of rows both patterns are one.
                 let alike = legacy != board.legacy && rows % 2 == 1;
                 if other != *board && !alike {
-                    all.push(Spec::Charuco(other));
+                    all.push(other);
                 }
             }
         }
