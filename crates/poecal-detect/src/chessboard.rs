@@ -1,0 +1,266 @@
+//! Plain chessboards: a grid of the right size, with both ends of both sides seen.
+
+use crate::found::{Found, Rejected, found};
+use crate::gray::Gray;
+use crate::grid::{Grid, SCALES_PX, grids, middle_slope};
+use crate::growth::{Growth, Node, place_of};
+use crate::layout::Layout;
+
+/// Fewest corners that a grid begins with.
+const LEAST: usize = 6;
+/// Most grids that are tried.
+const GRIDS: usize = 6;
+
+/// Finds a chessboard whose corners reach over all its columns and rows.
+pub(crate) fn detect(gray: &Gray, layout: &Layout, noise: f64) -> Result<Found, Rejected> {
+    let mut most = 0;
+    let mut reason = Rejected::NoBoard;
+    let of_scale = |blur_px: &f64| grids(gray, noise, *blur_px).into_iter();
+    for grid in SCALES_PX.iter().flat_map(|it| of_scale(it).filter(|it| it.len() >= LEAST).take(GRIDS)) {
+        if is_larger(layout, grid.iter().map(|it| it.0), 1) {
+            reason = Rejected::Other;
+            continue;
+        }
+        let Some(growth) = grown(gray, layout, noise, &grid) else { continue };
+        match named(gray, layout, noise, &growth) {
+            Ok(board) => return Ok(board),
+            Err(other) if growth.nodes.len() > most => {
+                most = growth.nodes.len();
+                reason = other;
+            }
+            Err(_) => {}
+        }
+    }
+    Err(reason)
+}
+
+/// All corners around a grid, up to one more than the board has on each side.
+fn grown<'a>(gray: &'a Gray, layout: &Layout, noise: f64, grid: &Grid) -> Option<Growth<'a>> {
+    let seeded = |first_dark: bool| {
+        let mut growth = Growth::new(gray, noise, layout.plain(), first_dark);
+        for (node, place) in grid {
+            let Some(slope) = slope_at(grid, *node) else { continue };
+            growth.seed(*node, *place, slope);
+        }
+        growth
+    };
+    let [one, other] = [seeded(true), seeded(false)];
+    let mut growth = if one.nodes.len() >= other.nodes.len() { one } else { other };
+    if growth.nodes.len() < LEAST {
+        return None;
+    }
+    growth.prune();
+    let longest = layout.inner().into_iter().max()? as i32;
+    let [low, high] = extent(growth.nodes.keys().copied())?;
+    let span = |k: usize| {
+        let more = (longest - (high[k] - low[k])).max(1);
+        low[k] - more..=high[k] + more
+    };
+    let candidates: Vec<Node> = span(1).flat_map(|y| span(0).map(move |x| [x, y])).collect();
+    growth.grow(&candidates);
+    growth.prune();
+    peel(layout, &mut growth);
+    Some(growth)
+}
+
+/// Takes single corners beyond the board away, where it has full lines within: what lies behind the board may look like a corner.
+fn peel(layout: &Layout, growth: &mut Growth<'_>) {
+    while is_larger(layout, growth.nodes.keys().copied(), 0) {
+        let Some([low, high]) = extent(growth.nodes.keys().copied()) else { return };
+        let lines = [(0, low[0]), (0, high[0]), (1, low[1]), (1, high[1])];
+        let count = |(k, at): (usize, i32)| growth.nodes.keys().filter(|node| node[k] == at).count();
+        let Some(line) = lines.into_iter().min_by_key(|line| count(*line)) else { return };
+        let across = (high[1 - line.0] - low[1 - line.0] + 1) as usize;
+        if count(line) * 4 > across {
+            return;
+        }
+        growth.nodes.retain(|node, _| node[line.0] != line.1);
+    }
+}
+
+/// The slope at a corner of a grid, from its neighbours, or that of the whole grid.
+fn slope_at(grid: &Grid, node: Node) -> Option<nalgebra::Matrix2<f64>> {
+    let near: Grid = grid
+        .iter()
+        .filter(|(other, _)| (other[0] - node[0]).abs() <= 1 && (other[1] - node[1]).abs() <= 1)
+        .copied()
+        .collect();
+    middle_slope(&near).or_else(|| middle_slope(grid))
+}
+
+/// First and last columns and rows with corners.
+fn extent(nodes: impl Iterator<Item = Node>) -> Option<[Node; 2]> {
+    nodes.fold(None, |found, node| {
+        let [low, high] = found.unwrap_or([node, node]);
+        Some([[0, 1].map(|k| low[k].min(node[k])), [0, 1].map(|k| high[k].max(node[k]))])
+    })
+}
+
+/// Whether corners reach farther than those of the board, and some more.
+fn is_larger(layout: &Layout, nodes: impl Iterator<Item = Node>, more: usize) -> bool {
+    let [columns, rows] = layout.inner();
+    extent(nodes).is_some_and(|[low, high]| {
+        let size = [0, 1].map(|k| (high[k] - low[k] + 1) as usize);
+        size[0].min(size[1]) > columns.min(rows) + more || size[0].max(size[1]) > columns.max(rows) + more
+    })
+}
+
+/// The board with its names, if the corners reach over all of it.
+fn named(gray: &Gray, layout: &Layout, noise: f64, growth: &Growth<'_>) -> Result<Found, Rejected> {
+    let [low, high] = extent(growth.nodes.keys().copied()).ok_or(Rejected::NoBoard)?;
+    let size = [0, 1].map(|k| (high[k] - low[k] + 1) as usize);
+    let [columns, rows] = layout.inner();
+    let count = growth.nodes.len();
+    if is_larger(layout, growth.nodes.keys().copied(), 0) {
+        return Err(Rejected::Other);
+    }
+    if size != [columns, rows] && size != [rows, columns] || count * 2 < layout.corners() {
+        return Err(Rejected::Few(count));
+    }
+    if !is_plain(gray, growth) {
+        return Err(Rejected::Other);
+    }
+    if !has_rim(gray, growth, low, high) {
+        return Err(Rejected::Few(count));
+    }
+    let turns = turns(layout, growth, low, high);
+    let Some(turn) = turns.first() else { return Err(Rejected::Other) };
+    let id = |node: Node| {
+        let [x, y] = turned(node, low, high, *turn);
+        Some(y * columns + x)
+    };
+    Ok(Found { turnable: turns.len() > 1, ..found(growth, noise, id) })
+}
+
+/// Columns and rows from the first corner, of a board turned by so many right angles.
+fn turned(node: Node, low: Node, high: Node, turn: usize) -> [usize; 2] {
+    let [left, up] = [node[0] - low[0], node[1] - low[1]];
+    let [right, down] = [high[0] - node[0], high[1] - node[1]];
+    let place = match turn {
+        0 => [left, up],
+        1 => [up, right],
+        2 => [right, down],
+        _ => [down, left],
+    };
+    place.map(|it| it as usize)
+}
+
+/// The turns that make the grid the board, with dark and light where they are, the one with the first corner highest in the picture first.
+fn turns(layout: &Layout, growth: &Growth<'_>, low: Node, high: Node) -> Vec<usize> {
+    let inner = layout.inner();
+    let fits = |turn: &usize| {
+        let far = turned([high[0], high[1]], low, high, *turn);
+        let near = turned([low[0], low[1]], low, high, *turn);
+        let size = [0, 1].map(|k| far[k].max(near[k]) + 1);
+        if size != inner {
+            return false;
+        }
+        let Some(node) = growth.nodes.keys().next() else { return false };
+        let [x, y] = turned(*node, low, high, *turn);
+        // A quarter turn has another square before the corner: dark and light change.
+        let dark = growth.dark_before(*node) != (*turn % 2 == 1);
+        dark == layout.is_dark(x, y)
+    };
+    let mut found: Vec<usize> = (0..4).filter(fits).collect();
+    if found.is_empty() {
+        // A board that begins with a light square is the same board.
+        found = (0..4).filter(|turn| inner_size(low, high, *turn) == inner).collect();
+    }
+    let height = |turn: &usize| {
+        let first = [[low[0], low[1]], [low[0], high[1]], [high[0], high[1]], [high[0], low[1]]];
+        let corner = first.iter().find(|node| turned(**node, low, high, *turn) == [0, 0]);
+        let map = corner.and_then(|node| growth.map_near(place_of(*node)).map(|it| (it.0, place_of(*node))));
+        map.and_then(|(map, at)| map.map(at)).map_or(f64::INFINITY, |it| it.x + it.y)
+    };
+    found.sort_by(|a, b| height(a).total_cmp(&height(b)));
+    found
+}
+
+fn inner_size(low: Node, high: Node, turn: usize) -> [usize; 2] {
+    let size = [0, 1].map(|k| (high[k] - low[k] + 1) as usize);
+    if turn.is_multiple_of(2) { size } else { [size[1], size[0]] }
+}
+
+/// Standard deviation of the levels across a light square, as a part of half the contrast, from which on it is not plain.
+const UNEVEN: f64 = 0.45;
+
+/// Whether the light squares are plain, as those of a board with markers are not.
+fn is_plain(gray: &Gray, growth: &Growth<'_>) -> bool {
+    let mut kinds = [0, 0];
+    for (node, saddle) in &growth.nodes {
+        let opposite = growth.nodes.get(&[node[0] + 1, node[1] + 1]);
+        // The square after a corner is as the one before it.
+        let (Some(opposite), false) = (opposite, growth.dark_before(*node)) else { continue };
+        let at = |part: f64| gray.at(saddle.place + (opposite.place - saddle.place) * part);
+        let levels = [0.25, 0.3, 0.35, 0.4, 0.45, 0.5, 0.55, 0.6, 0.65, 0.7, 0.75].map(at);
+        let mean = levels.iter().sum::<f64>() / levels.len() as f64;
+        let variance = levels.iter().map(|it| (it - mean).powi(2)).sum::<f64>() / levels.len() as f64;
+        let spread = (variance - growth.noise * growth.noise).max(0.0).sqrt();
+        kinds[usize::from(spread > UNEVEN * saddle.half_contrast.min(opposite.half_contrast))] += 1;
+    }
+    kinds[1] * 2 <= kinds[0]
+}
+
+/// Whether the outermost squares of all four sides are seen, as wide as the others, dark and light in turn: a field of tiles is cut off anywhere,
+/// and a larger board may go on outside of the picture.
+fn has_rim(gray: &Gray, growth: &Growth<'_>, low: Node, high: Node) -> bool {
+    let sides = [(0, low[0], -1.0), (0, high[0], 1.0), (1, low[1], -1.0), (1, high[1], 1.0)];
+    sides.into_iter().all(|(k, line, way)| {
+        let mut kinds = [0, 0];
+        for node in growth.nodes.keys().filter(|node| node[k] == line) {
+            if let Some(right) = is_rim(gray, growth, *node, k, way) {
+                kinds[usize::from(right)] += 1;
+            }
+        }
+        kinds[1] >= 2 && kinds[1] >= 3 * kinds[0]
+    })
+}
+
+/// Whether the squares beyond a corner of the outermost ones go on to [`RIM`]; `None` outside of the picture.
+fn is_rim(gray: &Gray, growth: &Growth<'_>, node: Node, k: usize, way: f64) -> Option<bool> {
+    let (map, _) = growth.map_near(place_of(node))?;
+    // In the square before the corner and in the one after it, along the side.
+    let level = |beside: f64| {
+        let mut sum = 0.0;
+        // Some places, against noise.
+        for (aside, out) in [(-0.2, RIM), (0.0, RIM), (0.2, RIM), (-0.1, RIM - 0.15), (0.1, RIM - 0.15)] {
+            let mut off = nalgebra::Vector2::new(beside + aside, beside + aside);
+            off[k] = way * out;
+            let place = map.map(place_of(node) + off).filter(|it| gray.holds(*it, 1.0))?;
+            sum += gray.at(place) / 5.0;
+        }
+        Some(sum)
+    };
+    let rise = level(0.5)? - level(-0.5)?;
+    // Before the corner it is as in the square before it, beyond it the other way round.
+    let is_dark = growth.dark_before(node) == (way < 0.0);
+    Some(if is_dark { rise } else { -rise } > growth.nodes.get(&node)?.half_contrast)
+}
+
+/// How far out the outermost squares are looked at, squares.
+const RIM: f64 = 0.8;
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::Vector2;
+
+    use super::*;
+
+    #[test]
+    fn turns_keep_the_hand() {
+        // x to the right and y down stay so: the corner after the first along x, and the one along y, are a right turn apart.
+        let (low, high) = ([2, 3], [5, 4]);
+        for turn in 0..4 {
+            let all: Vec<(Node, [usize; 2])> = (3..=4)
+                .flat_map(|y| (2..=5).map(move |x| [x, y]))
+                .map(|node| (node, turned(node, low, high, turn)))
+                .collect();
+            let at = |place: [usize; 2]| {
+                let node = all.iter().find(|it| it.1 == place).unwrap().0;
+                Vector2::new(node[0], node[1])
+            };
+            let (x, y) = (at([1, 0]) - at([0, 0]), at([0, 1]) - at([0, 0]));
+            assert_eq!(x.x * y.y - x.y * y.x, 1, "{turn}");
+        }
+    }
+}

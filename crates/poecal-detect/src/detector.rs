@@ -1,0 +1,84 @@
+//! Corners of one board in pictures.
+
+use crate::charuco;
+use crate::chessboard;
+use crate::found::{Found, Rejected};
+use crate::gray::Gray;
+use crate::layout::Layout;
+use crate::light::{Light, noise};
+use crate::markers::Reader;
+use crate::spec::Spec;
+use crate::suggest::{self, Suggestion};
+
+/// Finds the corners of one board.
+pub struct Detector {
+    spec: Spec,
+    layout: Layout,
+    reader: Option<Reader>,
+}
+
+/// Levels below which a picture is dark, edges beyond which it is blurred, and white parts beyond which it is overexposed.
+const DARK: f64 = 45.0;
+const WIDE_PX: f64 = 14.0;
+const WHITE: f64 = 0.35;
+
+impl Detector {
+    /// What finds a board.
+    #[must_use]
+    pub fn new(spec: &Spec) -> Self {
+        let layout = Layout::new(spec);
+        let reader = layout.markers.as_ref().map(|(dictionary, _)| Reader::new(dictionary));
+        Detector { spec: spec.clone(), layout, reader }
+    }
+
+    /// The board.
+    #[must_use]
+    pub fn spec(&self) -> &Spec {
+        &self.spec
+    }
+
+    /// Its geometry.
+    #[must_use]
+    pub fn layout(&self) -> &Layout {
+        &self.layout
+    }
+
+    /// The corners of the board in a picture.
+    ///
+    /// # Errors
+    /// Why there are none.
+    pub fn detect(&self, gray: &Gray) -> Result<Found, Rejected> {
+        let noise = noise(gray);
+        let found = match &self.reader {
+            Some(reader) => charuco::detect(gray, &self.layout, reader, noise),
+            None => chessboard::detect(gray, &self.layout, noise),
+        };
+        found.map_err(|reason| match reason {
+            Rejected::NoBoard => because_of_light(gray),
+            Rejected::Few(_)
+            | Rejected::Other
+            | Rejected::Blurred(_)
+            | Rejected::Dark(_)
+            | Rejected::Overexposed(_) => reason,
+        })
+    }
+
+    /// Another board that pictures show in which this one was not found: with columns and rows exchanged, of the other pattern, with other markers.
+    #[must_use]
+    pub fn suggest(&self, pictures: &[&Gray]) -> Option<Suggestion> {
+        suggest::suggest(&self.spec, pictures)
+    }
+}
+
+fn because_of_light(gray: &Gray) -> Rejected {
+    let light = Light::new(gray);
+    if light.lightest < DARK {
+        Rejected::Dark(light.lightest)
+    } else if light.white > WHITE {
+        Rejected::Overexposed(light.white)
+    } else if light.edge_px > WIDE_PX {
+        Rejected::Blurred(light.edge_px)
+    } else {
+        Rejected::NoBoard
+    }
+}

@@ -1,0 +1,95 @@
+//! What a detector says of a picture.
+
+use std::fmt;
+
+use crate::growth::{Growth, Node};
+
+/// A corner in a picture.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Corner {
+    /// Its number among the inner corners, along x first; that of OpenCV on a ChArUco board.
+    pub id: usize,
+    /// Column, pixels from the centre of the first one.
+    pub u_px: f64,
+    /// Row, pixels from the centre of the first one.
+    pub v_px: f64,
+    /// Standard deviation of each of both, pixels.
+    pub sigma_px: f64,
+}
+
+impl Corner {
+    /// Its name on the board: `corner0`, `corner1`, …
+    #[must_use]
+    pub fn name(&self) -> String {
+        format!("corner{}", self.id)
+    }
+}
+
+/// A board that was found.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Found {
+    /// Its corners that are seen, by their numbers.
+    pub corners: Vec<Corner>,
+    /// Markers that agree with it.
+    pub markers: usize,
+    /// Whether it looks the same turned by 180°, so that its first corner may be its last: chessboards whose sides are both even or both odd.
+    pub turnable: bool,
+    /// Blur of the edges, pixels: median of the corners.
+    pub blur_px: f64,
+    /// Noise of a pixel, gray levels.
+    pub noise: f64,
+}
+
+/// Why a picture has no corners.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Rejected {
+    /// Nothing looks like the board.
+    NoBoard,
+    /// So many of its corners were seen, too few to know which.
+    Few(usize),
+    /// A board of other squares or other markers.
+    Other,
+    /// No board, and edges as wide as this, pixels.
+    Blurred(f64),
+    /// No board, and nothing is lighter than this level of 255.
+    Dark(f64),
+    /// No board, and so large a part of the picture is white.
+    Overexposed(f64),
+}
+
+impl fmt::Display for Rejected {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Rejected::NoBoard => formatter.write_str("no board"),
+            Rejected::Few(1) => formatter.write_str("only 1 corner"),
+            Rejected::Few(count) => write!(formatter, "only {count} corners"),
+            Rejected::Other => formatter.write_str("another board"),
+            Rejected::Blurred(edge_px) => {
+                write!(formatter, "blurred: its sharpest edges are {edge_px:.0} pixels wide")
+            }
+            Rejected::Dark(level) => {
+                write!(formatter, "too dark: nothing is lighter than {level:.0} of 255")
+            }
+            Rejected::Overexposed(part) => {
+                write!(formatter, "overexposed: {:.0} % of it are white", part * 100.0)
+            }
+        }
+    }
+}
+
+/// What a grown board is to the caller: with the number of each of its nodes.
+pub(crate) fn found(growth: &Growth<'_>, noise: f64, id: impl Fn(Node) -> Option<usize>) -> Found {
+    let mut corners: Vec<Corner> = growth
+        .nodes
+        .iter()
+        .filter_map(|(node, saddle)| {
+            let (u_px, v_px) = (saddle.place.x, saddle.place.y);
+            Some(Corner { id: id(*node)?, u_px, v_px, sigma_px: saddle.sigma_px })
+        })
+        .collect();
+    corners.sort_by_key(|it| it.id);
+    let mut blurs: Vec<f64> = growth.nodes.values().map(|it| it.blur_px).collect();
+    blurs.sort_by(f64::total_cmp);
+    let blur_px = blurs.get(blurs.len() / 2).copied().unwrap_or(0.0);
+    Found { corners, markers: 0, turnable: false, blur_px, noise }
+}

@@ -1,0 +1,134 @@
+//! A gray picture in memory.
+
+use nalgebra::Vector2;
+
+use crate::error::{Error, Result};
+
+/// A gray picture: levels from 0 (black) to 255 (white), row by row. Pictures of more than 8 bits keep their fractions.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Gray {
+    width: usize,
+    height: usize,
+    levels: Vec<f32>,
+}
+
+impl Gray {
+    /// A picture of levels, row by row.
+    ///
+    /// # Errors
+    /// If their number is not width times height, or nothing, or one is no number.
+    pub fn new(width: usize, height: usize, levels: Vec<f32>) -> Result<Self> {
+        if width == 0 || width.checked_mul(height) != Some(levels.len()) {
+            let found = levels.len();
+            return Err(Error::new(format!(
+                "found {found} levels, expected {width} × {height} of a picture"
+            )));
+        }
+        if levels.iter().any(|it| !it.is_finite()) {
+            return Err(Error::new("found a level that is no number, expected 0 to 255"));
+        }
+        Ok(Gray { width, height, levels })
+    }
+
+    /// A picture of bytes, row by row.
+    ///
+    /// # Errors
+    /// As of [`Gray::new`].
+    pub fn from_bytes(width: usize, height: usize, bytes: &[u8]) -> Result<Self> {
+        Gray::new(width, height, bytes.iter().map(|it| f32::from(*it)).collect())
+    }
+
+    pub(crate) fn filled(width: usize, height: usize, level: f32) -> Self {
+        Gray { width, height, levels: vec![level; width * height] }
+    }
+
+    /// Columns of pixels.
+    #[must_use]
+    pub fn width(&self) -> usize {
+        self.width
+    }
+
+    /// Rows of pixels.
+    #[must_use]
+    pub fn height(&self) -> usize {
+        self.height
+    }
+
+    /// All levels, row by row.
+    #[must_use]
+    pub fn levels(&self) -> &[f32] {
+        &self.levels
+    }
+
+    pub(crate) fn levels_mut(&mut self) -> &mut [f32] {
+        &mut self.levels
+    }
+
+    /// The levels of a row.
+    #[must_use]
+    pub fn row(&self, row: usize) -> &[f32] {
+        self.levels.get(row * self.width..(row + 1) * self.width).unwrap_or_default()
+    }
+
+    /// Levels rounded to bytes.
+    #[must_use]
+    pub fn bytes(&self) -> Vec<u8> {
+        self.levels.iter().map(|it| it.round().clamp(0.0, 255.0) as u8).collect()
+    }
+
+    /// Whether a place is at least so far within the centres of the outermost pixels.
+    pub(crate) fn holds(&self, place: Vector2<f64>, margin_px: f64) -> bool {
+        let [right, bottom] = [self.width, self.height].map(|it| it as f64 - 1.0 - margin_px);
+        place.x >= margin_px && place.y >= margin_px && place.x <= right && place.y <= bottom
+    }
+
+    /// The level at a place between pixels, bilinear; that of the nearest border outside.
+    pub(crate) fn at(&self, place: Vector2<f64>) -> f64 {
+        let x = place.x.clamp(0.0, self.width as f64 - 1.0);
+        let y = place.y.clamp(0.0, self.height as f64 - 1.0);
+        let column = (x as usize).min(self.width.saturating_sub(2));
+        let row = (y as usize).min(self.height.saturating_sub(2));
+        let (a, b) = (x - column as f64, y - row as f64);
+        let level = |row: usize, column: usize| {
+            let at = row.min(self.height - 1) * self.width + column.min(self.width - 1);
+            f64::from(self.levels[at])
+        };
+        let upper = level(row, column) * (1.0 - a) + level(row, column + 1) * a;
+        let lower = level(row + 1, column) * (1.0 - a) + level(row + 1, column + 1) * a;
+        upper * (1.0 - b) + lower * b
+    }
+
+    /// The picture with a Gaussian blur, up to so many standard deviations.
+    #[must_use]
+    pub fn blurred(&self, sigma_px: f64, deviations: f64) -> Self {
+        let reach = (deviations * sigma_px).ceil().clamp(0.0, 1000.0) as usize;
+        if reach == 0 {
+            return self.clone();
+        }
+        let weight = |k: usize| (-0.5 * ((k as f64 - reach as f64) / sigma_px).powi(2)).exp();
+        let total: f64 = (0..=2 * reach).map(weight).sum();
+        let weights: Vec<f32> = (0..=2 * reach).map(|k| (weight(k) / total) as f32).collect();
+        let (width, height) = (self.width, self.height);
+        let mut across = Gray::filled(width, height, 0.0);
+        let mut padded = vec![0.0; width + 2 * reach];
+        for row in 0..height {
+            let levels = self.row(row);
+            for (at, place) in padded.iter_mut().enumerate() {
+                *place = levels[at.saturating_sub(reach).min(width - 1)];
+            }
+            let target = &mut across.levels[row * width..(row + 1) * width];
+            for (k, weight) in weights.iter().enumerate() {
+                target.iter_mut().zip(&padded[k..]).for_each(|(to, from)| *to += weight * from);
+            }
+        }
+        let mut whole = Gray::filled(width, height, 0.0);
+        for row in 0..height {
+            let target = &mut whole.levels[row * width..(row + 1) * width];
+            for (k, weight) in weights.iter().enumerate() {
+                let source = across.row((row + k).saturating_sub(reach).min(height - 1));
+                target.iter_mut().zip(source).for_each(|(to, from)| *to += weight * from);
+            }
+        }
+        whole
+    }
+}

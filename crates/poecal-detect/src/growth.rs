@@ -1,0 +1,156 @@
+//! From some known points of a board to all its corners that are seen.
+
+use std::collections::BTreeMap;
+
+use nalgebra::Vector2;
+
+use crate::gray::Gray;
+use crate::homography::{Homography, Pair};
+use crate::saddle::{Expected, Saddle, refine};
+
+/// A corner of squares: columns and rows before it.
+pub(crate) type Node = [i32; 2];
+
+/// Corners that have been found on a board, and what they were found from.
+pub(crate) struct Growth<'a> {
+    gray: &'a Gray,
+    pub(crate) noise: f64,
+    /// How far from a corner its squares are plain, squares.
+    plain: f64,
+    /// Whether the square (0, 0) is dark.
+    first_dark: bool,
+    /// Points of the board that are known less well: corners of markers.
+    pub(crate) anchors: Vec<Pair>,
+    pub(crate) nodes: BTreeMap<Node, Saddle>,
+    /// Where corners were sought in vain.
+    tried: BTreeMap<Node, Vector2<f64>>,
+}
+
+/// Standard deviation of the weights of points by their distance, squares.
+const NEAR: f64 = 1.2;
+/// Farthest point that a map takes, squares.
+const FAR: f64 = 3.2;
+/// How far beyond known points a corner is sought, squares.
+const STEP: f64 = 1.6;
+/// Largest distance of a corner from where its neighbours have it, pixels and squares.
+const OFF: (f64, f64) = (0.8, 0.035);
+
+/// Standard deviation of a corner beside the usual one from which on it is none.
+const VAGUE: f64 = 6.0;
+
+pub(crate) fn place_of(node: Node) -> Vector2<f64> {
+    Vector2::new(f64::from(node[0]), f64::from(node[1]))
+}
+
+impl<'a> Growth<'a> {
+    pub(crate) fn new(gray: &'a Gray, noise: f64, plain: f64, first_dark: bool) -> Self {
+        let (anchors, nodes, tried) = (Vec::new(), BTreeMap::new(), BTreeMap::new());
+        Growth { gray, noise, plain, first_dark, anchors, nodes, tried }
+    }
+
+    /// Whether the square before a corner is dark.
+    pub(crate) fn dark_before(&self, node: Node) -> bool {
+        ((node[0] + node[1]) % 2 == 0) == self.first_dark
+    }
+
+    /// The map near a point of the board, from what is around it but not at it, and how far the nearest of it is, squares.
+    pub(crate) fn map_near(&self, point: Vector2<f64>) -> Option<(Homography, f64)> {
+        let mut pairs: Vec<Pair> = Vec::new();
+        let mut nearest = f64::INFINITY;
+        let mut add = |plane: Vector2<f64>, place: Vector2<f64>, weight: f64| {
+            let square = (plane - point).norm_squared();
+            if square > 1e-6 && square < FAR * FAR {
+                nearest = nearest.min(square);
+                pairs.push((plane, place, weight * (-0.5 * square / (NEAR * NEAR)).exp()));
+            }
+        };
+        for (node, saddle) in &self.nodes {
+            add(place_of(*node), saddle.place, 1.0);
+        }
+        for (plane, place, weight) in &self.anchors {
+            add(*plane, *place, *weight);
+        }
+        Some((Homography::fit(&pairs)?, nearest.sqrt()))
+    }
+
+    /// Seeks those of some corners that are not found, from the nearest outwards, until none is added.
+    pub(crate) fn grow(&mut self, candidates: &[Node]) {
+        const ROUNDS: usize = 40;
+        for _ in 0..ROUNDS {
+            let mut added = false;
+            for node in candidates {
+                if self.nodes.contains_key(node) {
+                    continue;
+                }
+                let Some(expected) = self.expected(*node) else { continue };
+                let known = self.tried.get(node);
+                if known.is_some_and(|it| (it - expected.place).norm() < 0.5) {
+                    continue;
+                }
+                match refine(self.gray, &expected, self.noise) {
+                    Some(saddle) => {
+                        self.nodes.insert(*node, saddle);
+                        added = true;
+                    }
+                    None => {
+                        self.tried.insert(*node, expected.place);
+                    }
+                }
+            }
+            if !added {
+                break;
+            }
+        }
+    }
+
+    fn expected(&self, node: Node) -> Option<Expected> {
+        let point = place_of(node);
+        let (map, nearest) = self.map_near(point)?;
+        if nearest > STEP {
+            return None;
+        }
+        let (place, slope) = (map.map(point)?, map.slope(point)?);
+        if !self.gray.holds(place, 1.0) {
+            return None;
+        }
+        let square_px = slope.determinant().abs().sqrt();
+        let search_px = (1.0 + 0.06 * square_px * nearest.max(0.5)).min(0.2 * square_px).max(1.0);
+        Some(Expected { place, slope, plain: self.plain, dark_before: self.dark_before(node), search_px })
+    }
+
+    /// A corner near a place, with a slope of the board there.
+    pub(crate) fn seed(&mut self, node: Node, place: Vector2<f64>, slope: nalgebra::Matrix2<f64>) -> bool {
+        let dark_before = self.dark_before(node);
+        let expected = Expected { place, slope, plain: self.plain, dark_before, search_px: 2.0 };
+        let found = refine(self.gray, &expected, self.noise);
+        if let Some(saddle) = found {
+            self.nodes.insert(node, saddle);
+        }
+        found.is_some()
+    }
+
+    /// Takes corners away that are not where their neighbours have them, the worst first; those without neighbours too.
+    pub(crate) fn prune(&mut self) {
+        while let Some(worst) = self.worst() {
+            self.nodes.remove(&worst);
+        }
+    }
+
+    fn worst(&self) -> Option<Node> {
+        let mut sigmas: Vec<f64> = self.nodes.values().map(|it| it.sigma_px).collect();
+        sigmas.sort_by(f64::total_cmp);
+        let usual_px = sigmas.get(sigmas.len() / 2).copied()?.max(0.02);
+        let off = |(node, saddle): (&Node, &Saddle)| {
+            let point = place_of(*node);
+            let predicted = self.map_near(point).and_then(|(map, nearest)| {
+                let square_px = map.slope(point)?.determinant().abs().sqrt();
+                Some((map.map(point)?, (OFF.0 + OFF.1 * square_px) * nearest.max(1.0)))
+            });
+            let part =
+                predicted.map_or(f64::INFINITY, |(place, limit)| (place - saddle.place).norm() / limit);
+            (*node, part.max(saddle.sigma_px / (VAGUE * usual_px)))
+        };
+        let worst = self.nodes.iter().map(off).max_by(|a, b| a.1.total_cmp(&b.1))?;
+        (worst.1 > 1.0).then_some(worst.0)
+    }
+}

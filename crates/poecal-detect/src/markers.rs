@@ -1,0 +1,96 @@
+//! Markers: what a quadrangle says.
+
+use nalgebra::Vector2;
+
+use crate::dictionary::Dictionary;
+use crate::gray::Gray;
+use crate::homography::Homography;
+use crate::quads::Quad;
+
+/// A marker in a picture.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Marker {
+    pub(crate) id: usize,
+    /// Its corners, clockwise from the upper left one of the marker as it is printed.
+    pub(crate) corners: Quad,
+}
+
+/// Reads markers of a dictionary.
+pub(crate) struct Reader {
+    dictionary: Dictionary,
+}
+
+/// Least difference of light and dark, gray levels.
+const LEAST_CONTRAST: f64 = 6.0;
+/// Part of the cells of the border that have to be dark.
+const DARK_BORDER: f64 = 0.9;
+
+impl Reader {
+    pub(crate) fn new(dictionary: &Dictionary) -> Self {
+        Reader { dictionary: dictionary.clone() }
+    }
+
+    /// The marker of a quadrangle, whichever way it is turned.
+    pub(crate) fn read(&self, gray: &Gray, quad: &Quad) -> Option<Marker> {
+        let code = code(gray, quad, self.dictionary.bits())?;
+        let (id, turns) = self.dictionary.find(code)?;
+        let corners = [0, 1, 2, 3].map(|k| quad[(k + turns) % 4]);
+        Some(Marker { id, corners })
+    }
+}
+
+/// The bits inside of a quadrangle with a dark border, black as 1, row by row.
+fn code(gray: &Gray, quad: &Quad, bits: usize) -> Option<u64> {
+    let cells = bits + 2;
+    let unit = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]].map(Vector2::from);
+    let to_picture = Homography::of_corners(&unit, quad)?;
+    let mut levels = Vec::with_capacity(cells * cells);
+    for row in 0..cells {
+        for column in 0..cells {
+            levels.push(cell(gray, &to_picture, [column, row], cells)?);
+        }
+    }
+    let limit = split(&levels)?;
+    let is_border = |at: usize| {
+        let (column, row) = (at % cells, at / cells);
+        column == 0 || row == 0 || column + 1 == cells || row + 1 == cells
+    };
+    let border = (0..levels.len()).filter(|at| is_border(*at));
+    let dark = border.clone().filter(|at| levels[*at] < limit).count();
+    if (dark as f64) < DARK_BORDER * border.count() as f64 {
+        return None;
+    }
+    let inner = (0..levels.len()).filter(|at| !is_border(*at));
+    Some(inner.enumerate().fold(0, |code, (bit, at)| code | u64::from(levels[at] < limit) << bit))
+}
+
+/// Mean level of the middle of a cell.
+fn cell(gray: &Gray, to_picture: &Homography, [column, row]: [usize; 2], cells: usize) -> Option<f64> {
+    const AT: [f64; 3] = [0.3, 0.5, 0.7];
+    let mut sum = 0.0;
+    for y in AT {
+        for x in AT {
+            let place = Vector2::new(column as f64 + x, row as f64 + y) / cells as f64;
+            sum += gray.at(to_picture.map(place)?);
+        }
+    }
+    Some(sum / 9.0)
+}
+
+/// The level between dark and light that parts levels best (Otsu), if they are far enough apart.
+fn split(levels: &[f64]) -> Option<f64> {
+    let mut sorted = levels.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    let total: f64 = sorted.iter().sum();
+    let count = sorted.len() as f64;
+    let (mut sum, mut best) = (0.0, (0.0, 0.0, 0.0));
+    for k in 1..sorted.len() {
+        sum += sorted[k - 1];
+        let (below, above) = (sum / k as f64, (total - sum) / (count - k as f64));
+        let between = k as f64 * (count - k as f64) * (above - below).powi(2);
+        if between > best.0 {
+            best = (between, 0.5 * (below + above), above - below);
+        }
+    }
+    (best.2 >= LEAST_CONTRAST).then_some(best.1)
+}

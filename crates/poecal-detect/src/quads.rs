@@ -1,0 +1,322 @@
+//! Dark quadrangles on light ground: where markers may be.
+
+use nalgebra::Vector2;
+
+use crate::gray::Gray;
+
+/// Corners of a quadrangle, clockwise in the picture.
+pub(crate) type Quad = [Vector2<f64>; 4];
+
+/// Shortest side, pixels.
+const SHORTEST_PX: f64 = 9.0;
+
+/// Dark quadrangles. Windows of two sizes tell dark from light.
+pub(crate) fn quads(gray: &Gray, noise: f64) -> Vec<Quad> {
+    let smooth = smoothed(gray);
+    let sums = sums(&smooth, gray.width());
+    let longest = gray.width().max(gray.height());
+    let mut found: Vec<Quad> = Vec::new();
+    for half in [longest / 110, longest / 36].map(|it| it.max(7)) {
+        let dark = dark(&smooth, &sums, gray.width(), half, (0.8 * noise).max(2.0) as i32);
+        for part in Parts::new(&dark, gray.width()).outlines() {
+            let Some(quad) = quad_of(&part).and_then(|it| on_edges(gray, &it)) else { continue };
+            let same = |other: &Quad| (0..4).all(|k| other.iter().any(|it| (it - quad[k]).norm() < 2.0));
+            if !found.iter().any(same) {
+                found.push(quad);
+            }
+        }
+    }
+    found
+}
+
+/// Levels times 16, smoothed over 3 × 3 pixels.
+fn smoothed(gray: &Gray) -> Vec<u16> {
+    let (width, height) = (gray.width(), gray.height());
+    let mut smooth = vec![0_u16; width * height];
+    for row in 0..height {
+        let above = gray.row(row.saturating_sub(1));
+        let own = gray.row(row);
+        let below = gray.row((row + 1).min(height - 1));
+        let columns: Vec<f32> = (0..width).map(|x| above[x] + 2.0 * own[x] + below[x]).collect();
+        let target = &mut smooth[row * width..(row + 1) * width];
+        for x in 0..width {
+            let sides = columns[x.saturating_sub(1)] + columns[(x + 1).min(width - 1)];
+            target[x] = (2.0 * columns[x] + sides) as u16;
+        }
+    }
+    smooth
+}
+
+/// Sums of levels above and before each pixel, one row and column more than the picture.
+fn sums(smooth: &[u16], width: usize) -> Vec<u64> {
+    let height = smooth.len() / width;
+    let mut sums = vec![0_u64; (width + 1) * (height + 1)];
+    for row in 0..height {
+        let mut own = 0;
+        for column in 0..width {
+            own += u64::from(smooth[row * width + column]);
+            let at = (row + 1) * (width + 1) + column + 1;
+            sums[at] = sums[at - width - 1] + own;
+        }
+    }
+    sums
+}
+
+/// Whether pixels are darker than the mean of a window around them.
+fn dark(smooth: &[u16], sums: &[u64], width: usize, half: usize, offset: i32) -> Vec<bool> {
+    let height = smooth.len() / width;
+    let mut dark = vec![false; smooth.len()];
+    for row in 0..height {
+        let (top, bottom) = (row.saturating_sub(half), (row + half + 1).min(height));
+        let (upper, lower) = (&sums[top * (width + 1)..], &sums[bottom * (width + 1)..]);
+        for column in 0..width {
+            let (left, right) = (column.saturating_sub(half), (column + half + 1).min(width));
+            let area = ((bottom - top) * (right - left)) as u64;
+            let sum = lower[right] + upper[left] - lower[left] - upper[right];
+            let level = u64::from(smooth[row * width + column]) + (offset * 16) as u64;
+            dark[row * width + column] = level * area < sum;
+        }
+    }
+    dark
+}
+
+/// Connected dark pixels, as runs in rows.
+struct Parts {
+    /// First and last column, row.
+    runs: Vec<[u32; 3]>,
+    /// The first run of the part of each run.
+    root: Vec<u32>,
+    size: [usize; 2],
+}
+
+impl Parts {
+    fn new(dark: &[bool], width: usize) -> Self {
+        let height = dark.len() / width;
+        let mut parts = Parts { runs: Vec::new(), root: Vec::new(), size: [width, height] };
+        let mut before = 0..0;
+        for row in 0..height {
+            let first = parts.runs.len();
+            let levels = &dark[row * width..(row + 1) * width];
+            let mut column = 0;
+            while let Some(from) = levels[column..].iter().position(|it| *it) {
+                let from = column + from;
+                let to = levels[from..].iter().position(|it| !*it).map_or(width, |it| from + it);
+                let own = parts.runs.len() as u32;
+                parts.runs.push([from as u32, to as u32 - 1, row as u32]);
+                parts.root.push(own);
+                column = to;
+                if column >= width {
+                    break;
+                }
+            }
+            parts.join(before.clone(), first..parts.runs.len());
+            before = first..parts.runs.len();
+        }
+        parts
+    }
+
+    /// Joins runs of a row with those of the row above that they touch by a side.
+    fn join(&mut self, above: std::ops::Range<usize>, own: std::ops::Range<usize>) {
+        let mut from = above.start;
+        for at in own {
+            let [left, right, _] = self.runs[at];
+            while from < above.end && self.runs[from][1] < left {
+                from += 1;
+            }
+            let mut other = from;
+            while other < above.end && self.runs[other][0] <= right {
+                let (a, b) = (self.find(other as u32), self.find(at as u32));
+                self.root[a.max(b) as usize] = a.min(b);
+                other += 1;
+            }
+        }
+    }
+
+    fn find(&mut self, mut at: u32) -> u32 {
+        while self.root[at as usize] != at {
+            let next = self.root[at as usize];
+            self.root[at as usize] = self.root[next as usize];
+            at = next;
+        }
+        at
+    }
+
+    /// Ends of the runs of each part that is neither small nor at the border.
+    fn outlines(mut self) -> Vec<Vec<Vector2<f64>>> {
+        let mut boxes: Vec<Option<[u32; 4]>> = vec![None; self.runs.len()];
+        for at in 0..self.runs.len() {
+            let root = self.find(at as u32) as usize;
+            let [left, right, row] = self.runs[at];
+            let own = boxes[root].get_or_insert([left, right, row, row]);
+            *own = [own[0].min(left), own[1].max(right), own[2], row];
+        }
+        let [width, height] = self.size.map(|it| it as u32);
+        let fits = |[left, right, top, bottom]: [u32; 4]| {
+            let (across, down) = (right - left + 1, bottom - top + 1);
+            let least = SHORTEST_PX as u32;
+            across >= least
+                && down >= least / 2
+                && across.max(down) < width.max(height) / 2
+                && left > 0
+                && top > 0
+                && right + 1 < width
+                && bottom + 1 < height
+        };
+        let mut outlines: Vec<Vec<Vector2<f64>>> = Vec::new();
+        let mut place = vec![usize::MAX; self.runs.len()];
+        for at in 0..self.runs.len() {
+            let root = self.find(at as u32) as usize;
+            if !boxes[root].is_some_and(fits) {
+                continue;
+            }
+            if place[root] == usize::MAX {
+                place[root] = outlines.len();
+                outlines.push(Vec::new());
+            }
+            let [left, right, row] = self.runs[at].map(f64::from);
+            outlines[place[root]].extend([Vector2::new(left, row), Vector2::new(right, row)]);
+        }
+        outlines
+    }
+}
+
+fn cross(a: Vector2<f64>, b: Vector2<f64>) -> f64 {
+    a.x * b.y - a.y * b.x
+}
+
+/// The convex hull of points that are sorted by rows, clockwise in the picture.
+fn hull(points: &[Vector2<f64>]) -> Vec<Vector2<f64>> {
+    let mut sorted = points.to_vec();
+    sorted.sort_by(|a, b| a.y.total_cmp(&b.y).then(a.x.total_cmp(&b.x)));
+    let half = |points: &mut dyn Iterator<Item = Vector2<f64>>| {
+        let mut chain: Vec<Vector2<f64>> = Vec::new();
+        for point in points {
+            while let [.., a, b] = chain.as_slice() {
+                if cross(b - a, point - b) > 0.0 {
+                    break;
+                }
+                chain.pop();
+            }
+            chain.push(point);
+        }
+        chain.pop();
+        chain
+    };
+    let mut whole = half(&mut sorted.iter().copied());
+    whole.extend(half(&mut sorted.iter().rev().copied()));
+    whole
+}
+
+/// Twice the area of a polygon, positive if it is clockwise in the picture.
+fn area(points: &[Vector2<f64>]) -> f64 {
+    let next = points.iter().cycle().skip(1);
+    points.iter().zip(next).map(|(a, b)| cross(*a, *b)).sum()
+}
+
+/// The quadrangle that an outline is, if it is nearly one: the largest one within its hull.
+fn quad_of(outline: &[Vector2<f64>]) -> Option<Quad> {
+    let hull = hull(outline);
+    let count = hull.len();
+    if count < 4 {
+        return None;
+    }
+    let whole = area(&hull);
+    let mut best: (f64, [usize; 4]) = (0.0, [0; 4]);
+    for first in 0..count - 2 {
+        let (mut second, mut fourth) = (first + 1, first + 2);
+        for third in first + 2..count {
+            let across = hull[third] - hull[first];
+            let off = |at: usize| cross(across, hull[at % count] - hull[first]);
+            // The farthest on each side moves on with the diagonal.
+            while second + 1 < third && off(second + 1) < off(second) {
+                second += 1;
+            }
+            fourth = fourth.max(third);
+            while fourth + 1 < first + count && off(fourth + 1) > off(fourth) {
+                fourth += 1;
+            }
+            let found = off(fourth) - off(second);
+            if found > best.0 {
+                best = (found, [first, second, third, fourth % count]);
+            }
+        }
+    }
+    let (largest, corners) = best;
+    let quad = corners.map(|at| hull[at]);
+    let shortest = (0..4).map(|k| (quad[(k + 1) % 4] - quad[k]).norm()).fold(f64::INFINITY, f64::min);
+    // A marker's ink fills its outline from border to border.
+    (largest > 0.84 * whole && shortest >= SHORTEST_PX * 0.6).then_some(quad)
+}
+
+/// A quadrangle with its sides on the edges in the picture.
+fn on_edges(gray: &Gray, quad: &Quad) -> Option<Quad> {
+    let sides: Vec<(Vector2<f64>, Vector2<f64>)> =
+        (0..4).map(|k| edge(gray, quad[k], quad[(k + 1) % 4])).collect::<Option<_>>()?;
+    let mut found = *quad;
+    for (k, corner) in found.iter_mut().enumerate() {
+        let ((a, along), (b, other)) = (sides[(k + 3) % 4], sides[k]);
+        let area = cross(along, other);
+        if area.abs() < 0.15 {
+            return None;
+        }
+        let place = a + along * (cross(b - a, other) / area);
+        if (place - *corner).norm() > 4.0 {
+            return None;
+        }
+        *corner = place;
+    }
+    (area(&found) > 0.0).then_some(found)
+}
+
+/// A point on the edge beside the line from one corner to the next, and its direction: where light falls to dark most, fitted.
+fn edge(gray: &Gray, from: Vector2<f64>, to: Vector2<f64>) -> Option<(Vector2<f64>, Vector2<f64>)> {
+    let length = (to - from).norm();
+    let along = (to - from) / length;
+    // Into the quadrangle: it is clockwise in the picture.
+    let inwards = Vector2::new(-along.y, along.x);
+    let samples = (length * 0.8).clamp(6.0, 40.0) as usize;
+    let reach = (length * 0.12).clamp(2.0, 4.0);
+    let steps = (reach * 2.0).ceil() as i32;
+    let mut points = Vec::with_capacity(samples);
+    for k in 0..samples {
+        let at = from + (to - from) * (0.1 + 0.8 * (k as f64 + 0.5) / samples as f64);
+        let level = |step: i32| gray.at(at + inwards * (f64::from(step) * 0.5));
+        let falls: Vec<f64> = (-steps..=steps).map(|step| level(step - 2) - level(step + 2)).collect();
+        let (best, fall) = falls.iter().copied().enumerate().max_by(|a, b| a.1.total_cmp(&b.1))?;
+        if fall <= 1.0 || best == 0 || best + 1 == falls.len() {
+            continue;
+        }
+        let bend = falls[best - 1] + falls[best + 1] - 2.0 * fall;
+        let shift = if bend < 0.0 { 0.5 * (falls[best - 1] - falls[best + 1]) / bend } else { 0.0 };
+        let step = (best as i32 - steps) as f64 + shift.clamp(-0.5, 0.5);
+        points.push((at + inwards * (step * 0.5), fall));
+    }
+    if points.len() * 2 < samples {
+        return None;
+    }
+    line(&points, along)
+}
+
+/// The line through weighted points, twice: the second time without those far off.
+fn line(points: &[(Vector2<f64>, f64)], along: Vector2<f64>) -> Option<(Vector2<f64>, Vector2<f64>)> {
+    let mut kept = points.to_vec();
+    let mut found = None;
+    for _ in 0..3 {
+        let total: f64 = kept.iter().map(|it| it.1).sum();
+        let middle = kept.iter().map(|it| it.0 * it.1).sum::<Vector2<f64>>() / total;
+        let across = Vector2::new(-along.y, along.x);
+        let (mut squares, mut products) = (0.0, 0.0);
+        for (point, weight) in &kept {
+            let off = point - middle;
+            squares += weight * off.dot(&along).powi(2);
+            products += weight * off.dot(&along) * off.dot(&across);
+        }
+        let direction = (along + across * (products / squares)).try_normalize(1e-9)?;
+        found = Some((middle, direction));
+        kept.retain(|(point, _)| cross(direction, point - middle).abs() < 0.7);
+        if kept.len() < 4 {
+            break;
+        }
+    }
+    found
+}

@@ -1,0 +1,72 @@
+//! Dark and light on the plane of a board.
+
+use nalgebra::Vector2;
+
+use crate::layout::Layout;
+
+/// What is not the board.
+pub(super) const BEHIND: i8 = 0;
+/// Ink.
+pub(super) const DARK: i8 = 1;
+/// Paper.
+pub(super) const LIGHT: i8 = 2;
+
+/// White paper around the squares, squares.
+const PAPER: f64 = 0.5;
+
+/// The shades of a board at places in squares.
+pub(super) struct Shades {
+    squares: [usize; 2],
+    first_dark: bool,
+    /// Side of a marker in squares, and cells along it.
+    marker: f64,
+    cells: usize,
+    /// The cells of the markers of all squares: whether they are dark.
+    dark: Vec<Option<Vec<bool>>>,
+}
+
+impl Shades {
+    pub(super) fn new(layout: &Layout) -> Self {
+        let [columns, rows] = layout.squares;
+        let mut shades = Shades {
+            squares: layout.squares,
+            first_dark: layout.first_dark,
+            marker: 0.0,
+            cells: 1,
+            dark: vec![None; columns * rows],
+        };
+        let Some((dictionary, side)) = &layout.markers else { return shades };
+        (shades.marker, shades.cells) = (*side, dictionary.bits() + 2);
+        for id in 0..layout.marker_count() {
+            let Some([column, row]) = layout.square_of(id) else { continue };
+            let cell = |at: usize| {
+                let (x, y) = (at % shades.cells, at / shades.cells);
+                // Cell 0 is border: `is_black` of what is outside is black.
+                dictionary.is_black(id, x.wrapping_sub(1), y.wrapping_sub(1))
+            };
+            shades.dark[row * columns + column] = Some((0..shades.cells * shades.cells).map(cell).collect());
+        }
+        shades
+    }
+
+    /// The shade at a place.
+    pub(super) fn at(&self, place: Vector2<f64>) -> i8 {
+        let [width, height] = self.squares.map(|it| it as f64);
+        let off = |value: f64, size: f64| (-value).max(value - size);
+        let outside = off(place.x, width).max(off(place.y, height));
+        if outside >= 0.0 {
+            return if outside < PAPER { LIGHT } else { BEHIND };
+        }
+        let (column, row) = (place.x as usize, place.y as usize);
+        if ((column + row) % 2 == 0) == self.first_dark {
+            return DARK;
+        }
+        let Some(Some(cells)) = self.dark.get(row * self.squares[0] + column) else { return LIGHT };
+        let in_marker = |value: f64| ((value.fract() - 0.5) / self.marker + 0.5) * self.cells as f64;
+        let (x, y) = (in_marker(place.x), in_marker(place.y));
+        if x < 0.0 || y < 0.0 || x >= self.cells as f64 || y >= self.cells as f64 {
+            return LIGHT;
+        }
+        if cells[y as usize * self.cells + x as usize] { DARK } else { LIGHT }
+    }
+}

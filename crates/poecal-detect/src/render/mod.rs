@@ -1,0 +1,227 @@
+//! Pictures of boards as a camera would take them, with the truth: for tests, and to plan a session.
+//!
+//! A pixel is the mean light on its area (8 × 8 samples where the board has an edge), blurred by a Gaussian, with noise, and rounded to a whole
+//! level as a camera does.
+
+mod board;
+mod camera;
+mod clutter;
+mod draw;
+mod random;
+
+use nalgebra::{Matrix3, Vector2, Vector3};
+
+pub use camera::Camera;
+pub use clutter::clutter;
+pub use draw::{Draw, Drawn};
+pub use random::Random;
+
+use crate::gray::Gray;
+use crate::layout::Layout;
+use board::Shades;
+
+/// What is in front of a camera, and how it takes the picture.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scene {
+    /// The camera.
+    pub camera: Camera,
+    /// From the board's axes (x along columns, y along rows, origin at the first inner corner) to the camera's.
+    pub rotation: Matrix3<f64>,
+    /// The first inner corner in the camera's frame, metres.
+    pub translation_m: Vector3<f64>,
+    /// Levels of dark and light squares.
+    pub levels: [f64; 2],
+    /// How much lighter the right and the lower border are than the middle, as a part.
+    pub gradient: [f64; 2],
+    /// Standard deviation of the Gaussian blur, pixels.
+    pub blur_px: f64,
+    /// Standard deviation of the noise of a pixel, gray levels.
+    pub noise: f64,
+    /// What covers a part of the board.
+    pub patch: Option<Patch>,
+}
+
+/// A rectangle in the picture that covers what is behind it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Patch {
+    /// Its middle, pixels.
+    pub middle_px: Vector2<f64>,
+    /// Half its sides, pixels.
+    pub half_px: [f64; 2],
+    /// Its turn, rad.
+    pub turn_rad: f64,
+    /// Its gray level.
+    pub level: f64,
+}
+
+impl Patch {
+    /// Whether it covers a place, or comes as near.
+    #[must_use]
+    pub fn covers(&self, place: Vector2<f64>, margin_px: f64) -> bool {
+        let (sin, cos) = self.turn_rad.sin_cos();
+        let off = place - self.middle_px;
+        let along = [cos * off.x + sin * off.y, cos * off.y - sin * off.x];
+        (0..2).all(|k| along[k].abs() <= self.half_px[k] + margin_px)
+    }
+}
+
+/// Where a corner is in truth.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct True {
+    /// Its id.
+    pub id: usize,
+    /// Its place, pixels.
+    pub place_px: Vector2<f64>,
+    /// Whether it is in the picture and not covered, with [`SEEN_PX`] around it.
+    pub visible: bool,
+}
+
+/// How much of its surroundings must be seen of a visible corner, pixels to each side.
+pub const SEEN_PX: f64 = 5.0;
+/// Samples along a side of a pixel at an edge.
+const SAMPLES: usize = 8;
+
+impl Scene {
+    /// Where the inner corners are in the picture.
+    #[must_use]
+    pub fn truth(&self, layout: &Layout) -> Vec<True> {
+        let [width, height] = self.camera.size.map(|it| it as f64 - 1.0 - SEEN_PX);
+        (0..layout.corners())
+            .filter_map(|id| {
+                let at = (layout.corner(id) - Vector2::new(1.0, 1.0)) * layout.square_m;
+                let point = self.rotation * Vector3::new(at.x, at.y, 0.0) + self.translation_m;
+                let place_px = self.camera.project(&point)?;
+                let covered = self.patch.is_some_and(|it| it.covers(place_px, SEEN_PX));
+                let (x, y) = (place_px.x, place_px.y);
+                let inside = x >= SEEN_PX && y >= SEEN_PX && x <= width && y <= height;
+                Some(True { id, place_px, visible: inside && !covered })
+            })
+            .collect()
+    }
+
+    /// The picture, before a background.
+    #[must_use]
+    pub fn render(&self, layout: &Layout, background: &Gray, random: &mut Random) -> Gray {
+        let shades = Shades::new(layout);
+        let lattice = self.lattice(layout);
+        let mut picture = self.sampled(&shades, &lattice, background);
+        if let Some(patch) = &self.patch {
+            let width = picture.width();
+            for (at, level) in picture.levels_mut().iter_mut().enumerate() {
+                if patch.covers(Vector2::new((at % width) as f64, (at / width) as f64), 0.0) {
+                    *level = patch.level as f32;
+                }
+            }
+        }
+        finished(picture, self.blur_px, self.noise, random)
+    }
+
+    /// Places on the board, squares, of the corners of all pixels.
+    fn lattice(&self, layout: &Layout) -> Vec<Vector2<f64>> {
+        let [width, height] = self.camera.size;
+        let back = self.rotation.transpose();
+        let origin = back * -self.translation_m;
+        let [low, high] = self.around(layout);
+        let corner = |at: usize| {
+            let (column, row) = (at % (width + 1), at / (width + 1));
+            let (x, y) = (column as f64, row as f64);
+            if x < low.x || y < low.y || x > high.x || y > high.y {
+                return Vector2::new(f64::MAX, f64::MAX);
+            }
+            let ray = self.camera.ray(Vector2::new(x - 0.5, y - 0.5));
+            let ray = back * ray;
+            let reach = -origin.z / ray.z;
+            if reach <= 0.0 || reach.is_nan() {
+                return Vector2::new(f64::MAX, f64::MAX);
+            }
+            let on_board = origin + ray * reach;
+            on_board.xy() / layout.square_m + Vector2::new(1.0, 1.0)
+        };
+        (0..(width + 1) * (height + 1)).map(corner).collect()
+    }
+
+    /// What the board, with its paper, is within of the picture: of points along its outline. Everything, if one of them is not seen.
+    fn around(&self, layout: &Layout) -> [Vector2<f64>; 2] {
+        const STEPS: usize = 24;
+        let [columns, rows] = layout.squares.map(|it| it as f64 + 2.0);
+        let mut limits = [Vector2::repeat(f64::INFINITY), Vector2::repeat(f64::NEG_INFINITY)];
+        for k in 0..4 * STEPS {
+            let part = (k % STEPS) as f64 / STEPS as f64;
+            let [x, y] = match k / STEPS {
+                0 => [part, 0.0],
+                1 => [1.0, part],
+                2 => [1.0 - part, 1.0],
+                _ => [0.0, 1.0 - part],
+            };
+            let at = Vector2::new(x * columns - 2.0, y * rows - 2.0) * layout.square_m;
+            let point = self.rotation * Vector3::new(at.x, at.y, 0.0) + self.translation_m;
+            let Some(place) = self.camera.project(&point) else {
+                return [Vector2::repeat(f64::NEG_INFINITY), Vector2::repeat(f64::INFINITY)];
+            };
+            limits = [limits[0].inf(&place), limits[1].sup(&place)];
+        }
+        [limits[0].add_scalar(-4.0), limits[1].add_scalar(4.0)]
+    }
+
+    fn sampled(&self, shades: &Shades, lattice: &[Vector2<f64>], background: &Gray) -> Gray {
+        let [width, height] = self.camera.size;
+        let at_corners: Vec<i8> = lattice.iter().map(|it| shades.at(*it)).collect();
+        let corners = |column: usize, row: usize| {
+            let first = row * (width + 1) + column;
+            [first, first + 1, first + width + 1, first + width + 2]
+        };
+        let is_edge = |column: usize, row: usize| {
+            let [a, b, c, d] = corners(column, row).map(|it| at_corners[it]);
+            a != b || a != c || a != d
+        };
+        let edges: Vec<bool> = (0..width * height).map(|at| is_edge(at % width, at / width)).collect();
+        let near_edge = |column: usize, row: usize| {
+            (row.saturating_sub(1)..=(row + 1).min(height - 1)).any(|row| {
+                let first = row * width;
+                edges[first + column.saturating_sub(1)..=first + (column + 1).min(width - 1)].contains(&true)
+            })
+        };
+        let mut picture = Gray::filled(width, height, 0.0);
+        for (at, level) in picture.levels_mut().iter_mut().enumerate() {
+            let (column, row) = (at % width, at / width);
+            let all = corners(column, row);
+            let behind = f64::from(background.levels().get(at).copied().unwrap_or(0.0));
+            let mean = if near_edge(column, row) {
+                let [a, b, c, d] = all.map(|it| lattice[it]);
+                let mut sum = 0.0;
+                for k in 0..SAMPLES * SAMPLES {
+                    let [x, y] = [k % SAMPLES, k / SAMPLES].map(|it| (it as f64 + 0.5) / SAMPLES as f64);
+                    let place = (a * (1.0 - x) + b * x) * (1.0 - y) + (c * (1.0 - x) + d * x) * y;
+                    sum += self.level(shades.at(place), behind);
+                }
+                sum / (SAMPLES * SAMPLES) as f64
+            } else {
+                self.level(at_corners[all[0]], behind)
+            };
+            let from_middle = |place: usize, size: usize| 2.0 * place as f64 / size as f64 - 1.0;
+            let light = 1.0
+                + self.gradient[0] * from_middle(column, width)
+                + self.gradient[1] * from_middle(row, height);
+            *level = (mean * light) as f32;
+        }
+        picture
+    }
+
+    fn level(&self, shade: i8, behind: f64) -> f64 {
+        match shade {
+            board::DARK => self.levels[0],
+            board::LIGHT => self.levels[1],
+            _ => behind,
+        }
+    }
+}
+
+/// A picture with blur and noise, in whole levels.
+#[must_use]
+pub fn finished(mut picture: Gray, blur_px: f64, noise: f64, random: &mut Random) -> Gray {
+    picture = picture.blurred(blur_px, 4.0);
+    for level in picture.levels_mut() {
+        *level = (*level + (noise * random.rough_normal()) as f32).round().clamp(0.0, 255.0);
+    }
+    picture
+}

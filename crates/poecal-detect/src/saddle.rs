@@ -1,0 +1,370 @@
+//! The place of a corner: two edges that cross, blurred, fitted to the levels of the pixels around.
+//!
+//! The model of the light at p is `(m + b S)(1 + g · (p - p₀))`, with S the mean of the product of the signs on both sides of two straight lines
+//! under a Gaussian blur. What it needs around a corner are plain squares. The fit is least squares, so its covariance is that of the corner; all
+//! that a homography does to straight edges keeps their crossing.
+
+use nalgebra::{Matrix2, SMatrix, SVector, Vector2};
+
+use crate::gray::Gray;
+
+/// What is known of a corner before.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Expected {
+    /// Its place, pixels.
+    pub(crate) place: Vector2<f64>,
+    /// How the place moves by x and y of the board, pixels a square.
+    pub(crate) slope: Matrix2<f64>,
+    /// How far its squares are plain, squares.
+    pub(crate) plain: f64,
+    /// Whether the square before it in x and y is dark.
+    pub(crate) dark_before: bool,
+    /// How far from its expected place it is sought, pixels.
+    pub(crate) search_px: f64,
+}
+
+/// A corner that was found.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Saddle {
+    pub(crate) place: Vector2<f64>,
+    /// Standard deviation of each coordinate, pixels.
+    pub(crate) sigma_px: f64,
+    /// Blur, pixels.
+    pub(crate) blur_px: f64,
+    /// Half of light minus dark, gray levels.
+    pub(crate) half_contrast: f64,
+}
+
+/// Largest distance of pixels that count from the corner, along each edge.
+const LARGEST_PX: f64 = 11.0;
+/// Smallest window that determines a corner.
+const LEAST_PX: f64 = 2.6;
+/// Largest part of the contrast that the model may leave beyond the noise.
+const MISFIT: f64 = 0.22;
+/// Largest turn of an edge from where the board has it, rad.
+const TURN: f64 = 0.45;
+/// What no fit is better than, pixels: curved edges, uneven ink.
+const FLOOR_PX: f64 = 0.006;
+/// Least certain corner that counts, pixels.
+const WORST_PX: f64 = 0.4;
+
+/// Finds a corner near its expected place. `None` if there is none: no two crossing edges, exchanged shades, another direction, too little contrast.
+pub(crate) fn refine(gray: &Gray, expected: &Expected, noise: f64) -> Option<Saddle> {
+    let is_front = expected.slope.determinant() > 0.0;
+    if !is_front {
+        return None;
+    }
+    let place = search(gray, expected)?;
+    let window = Window::new(expected, LARGEST_PX)?;
+    let whole = fit(gray, expected, place, &window, noise);
+    if whole.is_some() {
+        return whole;
+    }
+    // Something else may be near.
+    let smaller = Window::new(expected, LARGEST_PX * 0.45)?;
+    fit(gray, expected, place, &smaller, noise)
+}
+
+/// A parallelogram around a corner in which its squares are plain.
+struct Window {
+    /// From pixels to the sides of the parallelogram, which are at ±1.
+    inverse: Matrix2<f64>,
+    sides: Matrix2<f64>,
+}
+
+impl Window {
+    fn new(expected: &Expected, largest_px: f64) -> Option<Self> {
+        let area = expected.slope.determinant();
+        let mut sides = expected.slope;
+        for k in 0..2 {
+            let length = expected.slope.column(k).norm();
+            // Pixels across for a step along.
+            let across = area / expected.slope.column(1 - k).norm();
+            let free = expected.plain - BLURRED_PX / across;
+            let reach = free.max(LEAST_PX / across).min(expected.plain).min(largest_px / length);
+            if reach * across < LEAST_PX * 0.8 {
+                return None;
+            }
+            sides.column_mut(k).scale_mut(reach);
+        }
+        Some(Window { inverse: sides.try_inverse()?, sides })
+    }
+
+    fn pixels(&self, gray: &Gray, middle: Vector2<f64>) -> Vec<(Vector2<f64>, f64)> {
+        let reach = self.sides.column(0).abs() + self.sides.column(1).abs();
+        let span = |middle: f64, reach: f64, size: usize| {
+            let from = (middle - reach).ceil().max(0.0) as usize;
+            from..((middle + reach).floor().max(-1.0) + 1.0).min(size as f64) as usize
+        };
+        let mut pixels = Vec::with_capacity(400);
+        for row in span(middle.y, reach.y, gray.height()) {
+            let levels = gray.row(row);
+            for column in span(middle.x, reach.x, gray.width()) {
+                let place = Vector2::new(column as f64, row as f64);
+                let own = self.inverse * (place - middle);
+                if own.x.abs() <= 1.0 && own.y.abs() <= 1.0 {
+                    pixels.push((place, f64::from(levels[column])));
+                }
+            }
+        }
+        pixels
+    }
+}
+
+/// How far a marker is blurred beyond its border, pixels.
+const BLURRED_PX: f64 = 1.2;
+
+/// The place with the most contrast between the two pairs of squares.
+fn search(gray: &Gray, expected: &Expected) -> Option<Vector2<f64>> {
+    let window = Window::new(expected, LARGEST_PX)?;
+    const AT: [[f64; 2]; 4] = [[0.3, 0.3], [0.7, 0.7], [0.25, 0.65], [0.65, 0.25]];
+    let quarter = |place: Vector2<f64>, x: f64, y: f64| {
+        let sum: f64 = AT
+            .iter()
+            .map(|[a, b]| {
+                gray.at(place + window.sides.column(0) * (a * x) + window.sides.column(1) * (b * y))
+            })
+            .sum();
+        sum / AT.len() as f64
+    };
+    let response = |place: Vector2<f64>| {
+        let same = [quarter(place, 1.0, 1.0), quarter(place, -1.0, -1.0)];
+        let other = [quarter(place, 1.0, -1.0), quarter(place, -1.0, 1.0)];
+        let (dark, light) = if expected.dark_before { (same, other) } else { (other, same) };
+        light[0].min(light[1]) - dark[0].max(dark[1])
+    };
+    let reach = expected.search_px.ceil().clamp(0.0, 12.0) as i32;
+    let offsets = (-reach..=reach).flat_map(|y| (-reach..=reach).map(move |x| (x, y)));
+    let near = |(x, y): &(i32, i32)| x * x + y * y <= reach * reach;
+    let found: Vec<(Vector2<f64>, f64)> = offsets
+        .filter(near)
+        .map(|(x, y)| expected.place + Vector2::new(f64::from(x), f64::from(y)))
+        .map(|place| (place, response(place)))
+        .collect();
+    let (best, most) = found.iter().copied().max_by(|a, b| a.1.total_cmp(&b.1))?;
+    if most <= 0.0 || most.is_nan() {
+        return None;
+    }
+    // Beside the best: the top is flat.
+    let (mut sum, mut weights) = (Vector2::zeros(), 0.0);
+    for (place, response) in found.iter().filter(|it| it.1 > 0.75 * most && (it.0 - best).norm() < 3.5) {
+        sum += place * *response;
+        weights += response;
+    }
+    Some(sum / weights)
+}
+
+const UNKNOWNS: usize = 9;
+type Unknowns = SVector<f64, UNKNOWNS>;
+
+/// Crossing lines: place, directions, blur, levels, slope of the light.
+#[derive(Clone)]
+struct Crossing {
+    place: Vector2<f64>,
+    /// Directions of the lines along x and y of the board, rad.
+    turns: [f64; 2],
+    blur: f64,
+    /// Mean level, and half the contrast, positive where the square before the corner is light.
+    mean: f64,
+    half: f64,
+    light: Vector2<f64>,
+}
+
+/// Sums over pixels.
+struct Sums {
+    normal: SMatrix<f64, UNKNOWNS, UNKNOWNS>,
+    right: Unknowns,
+    squares: f64,
+}
+
+impl Crossing {
+    fn start(expected: &Expected, place: Vector2<f64>, pixels: &[(Vector2<f64>, f64)]) -> Self {
+        let count = pixels.len().max(1) as f64;
+        let mean = pixels.iter().map(|it| it.1).sum::<f64>() / count;
+        let spread = (pixels.iter().map(|it| (it.1 - mean).powi(2)).sum::<f64>() / count).sqrt();
+        let turn = |k: usize| expected.slope[(1, k)].atan2(expected.slope[(0, k)]);
+        let half = if expected.dark_before { -spread } else { spread };
+        Crossing { place, turns: [turn(0), turn(1)], blur: 1.3, mean, half, light: Vector2::zeros() }
+    }
+
+    fn sums(&self, pixels: &[(Vector2<f64>, f64)], middle: Vector2<f64>) -> Sums {
+        let mut sums = Sums { normal: SMatrix::zeros(), right: Unknowns::zeros(), squares: 0.0 };
+        let [(s1, c1), (s2, c2)] = self.turns.map(f64::sin_cos);
+        let rho = -(c1 * c2 + s1 * s2);
+        let scale = 1.0 / self.blur;
+        for (pixel, level) in pixels {
+            let d = pixel - self.place;
+            // Signed distances from both lines, in blurs.
+            let (h, k) = ((c1 * d.y - s1 * d.x) * scale, (s2 * d.x - c2 * d.y) * scale);
+            let (eh, gh) = sign_and_bell(h);
+            let (ek, gk) = sign_and_bell(k);
+            let both = std::f64::consts::FRAC_2_PI * gh * gk;
+            let sign = eh * ek + both * skew(rho, h, k);
+            const ROOT: f64 = 0.797_884_560_802_865_4;
+            let by_h = ROOT * gh * ek - h * both * rho;
+            let by_k = ROOT * gk * eh - k * both * rho;
+            let off = pixel - middle;
+            let light = 1.0 + self.light.dot(&off);
+            let base = self.mean + self.half * sign;
+            let slope = self.half * light;
+            let (to_h, to_k) = (slope * by_h * scale, slope * by_k * scale);
+            let row = Unknowns::from([
+                to_h * s1 - to_k * s2,
+                to_k * c2 - to_h * c1,
+                -to_h * (c1 * d.x + s1 * d.y),
+                to_k * (c2 * d.x + s2 * d.y),
+                -slope * (h * by_h + k * by_k),
+                light,
+                light * sign,
+                base * off.x,
+                base * off.y,
+            ]);
+            let residual = level - base * light;
+            for i in 0..UNKNOWNS {
+                let own = row[i];
+                sums.right[i] += own * residual;
+                for j in 0..=i {
+                    sums.normal[(i, j)] += own * row[j];
+                }
+            }
+            sums.squares += residual * residual;
+        }
+        sums.normal.fill_upper_triangle_with_lower_triangle();
+        sums
+    }
+
+    /// How many pixels err together, as sharpened and compressed pictures have it: 1 plus twice the correlations of what is left with that of the
+    /// next pixels and those after them, in four directions.
+    fn alike(&self, pixels: &[(Vector2<f64>, f64)], middle: Vector2<f64>) -> f64 {
+        let left: Vec<(i32, i32, f64)> = pixels
+            .iter()
+            .map(|(place, level)| (place.x as i32, place.y as i32, level - self.level(*place, middle)))
+            .collect();
+        let squares: f64 = left.iter().map(|it| it.2 * it.2).sum();
+        let mut products = 0.0;
+        for (at, (x, y, own)) in left.iter().enumerate() {
+            // Row by row: those that follow in the row, and those in the next two.
+            for (other_x, other_y, other) in &left[at + 1..] {
+                if other_y - y > 2 {
+                    break;
+                }
+                if (other_x - x).abs() <= 2 {
+                    products += own * other;
+                }
+            }
+        }
+        1.0 + (2.0 * products / squares.max(1e-12)).max(0.0)
+    }
+
+    fn level(&self, pixel: Vector2<f64>, middle: Vector2<f64>) -> f64 {
+        let [(s1, c1), (s2, c2)] = self.turns.map(f64::sin_cos);
+        let (d, rho) = (pixel - self.place, -(c1 * c2 + s1 * s2));
+        let (h, k) = ((c1 * d.y - s1 * d.x) / self.blur, (s2 * d.x - c2 * d.y) / self.blur);
+        let ((eh, gh), (ek, gk)) = (sign_and_bell(h), sign_and_bell(k));
+        let sign = eh * ek + std::f64::consts::FRAC_2_PI * gh * gk * skew(rho, h, k);
+        (self.mean + self.half * sign) * (1.0 + self.light.dot(&(pixel - middle)))
+    }
+
+    fn stepped(&self, step: &Unknowns) -> Self {
+        // Beyond a pixel and a third of a radian the slopes say nothing.
+        let long = (step[0].hypot(step[1]) / 1.5).max(step[2].abs().max(step[3].abs()) / 0.35).max(1.0);
+        let step = step / long;
+        Crossing {
+            place: self.place + Vector2::new(step[0], step[1]),
+            turns: [self.turns[0] + step[2], self.turns[1] + step[3]],
+            blur: (self.blur * step[4].clamp(-0.7, 0.7).exp()).clamp(0.25, 8.0),
+            mean: self.mean + step[5],
+            half: self.half + step[6],
+            light: self.light + Vector2::new(step[7], step[8]),
+        }
+    }
+}
+
+/// What the blur adds where both lines are not at right angles: the first terms of Mehler's series.
+fn skew(rho: f64, h: f64, k: f64) -> f64 {
+    rho * (1.0 + rho * (0.5 * h * k + rho / 6.0 * (h * h - 1.0) * (k * k - 1.0)))
+}
+
+/// The mean of a sign at a distance of so many standard deviations, and exp(-x²/2): Abramowitz and Stegun 7.1.26, to 1.5e-7.
+fn sign_and_bell(x: f64) -> (f64, f64) {
+    let bell = (-0.5 * x * x).exp();
+    let z = x.abs() * std::f64::consts::FRAC_1_SQRT_2;
+    let t = 1.0 / (1.0 + 0.327_591_1 * z);
+    let series = t
+        * (0.254_829_592
+            + t * (-0.284_496_736 + t * (1.421_413_741 + t * (-1.453_152_027 + t * 1.061_405_429))));
+    ((1.0 - series * bell).copysign(x), bell)
+}
+
+/// Fits crossing lines in a window about a place.
+fn fit(gray: &Gray, expected: &Expected, place: Vector2<f64>, window: &Window, noise: f64) -> Option<Saddle> {
+    let mut middle = place;
+    let mut pixels = window.pixels(gray, middle);
+    if pixels.len() < 2 * UNKNOWNS {
+        return None;
+    }
+    let mut crossing = Crossing::start(expected, place, &pixels);
+    for round in 0..2 {
+        crossing = descended(crossing, &pixels, middle, if round == 0 { 8 } else { 12 })?;
+        if (crossing.place - expected.place).norm() > expected.search_px + 2.0 {
+            return None;
+        }
+        if round == 0 && (crossing.place - middle).norm() > 0.4 {
+            middle = crossing.place;
+            pixels = window.pixels(gray, middle);
+            if pixels.len() < 2 * UNKNOWNS {
+                return None;
+            }
+        }
+    }
+    let sums = crossing.sums(&pixels, middle);
+    let variance = sums.squares / (pixels.len() - UNKNOWNS) as f64;
+    let covariance = sums.normal.cholesky()?.inverse() * (variance * crossing.alike(&pixels, middle));
+    let sigma_px = (0.5 * (covariance[(0, 0)] + covariance[(1, 1)]) + FLOOR_PX * FLOOR_PX).sqrt();
+    let half = if expected.dark_before { -crossing.half } else { crossing.half };
+    let start = Crossing::start(expected, place, &pixels);
+    let turned = (0..2).map(|k| (crossing.turns[k] - start.turns[k]).abs()).fold(0.0, f64::max);
+    let left = (variance - noise * noise).max(0.0).sqrt();
+    let inside = window.inverse * (crossing.place - middle);
+    let good = half > 2.0
+        && half > noise
+        && left < MISFIT * half
+        && turned < TURN
+        && sigma_px < WORST_PX
+        && inside.amax() < 0.5
+        && gray.holds(crossing.place, 1.0);
+    good.then_some(Saddle { place: crossing.place, sigma_px, blur_px: crossing.blur, half_contrast: half })
+}
+
+/// Levenberg-Marquardt from a start.
+fn descended(
+    mut crossing: Crossing,
+    pixels: &[(Vector2<f64>, f64)],
+    middle: Vector2<f64>,
+    steps: usize,
+) -> Option<Crossing> {
+    let mut sums = crossing.sums(pixels, middle);
+    let mut damping = 1e-3;
+    for _ in 0..steps {
+        let mut damped = sums.normal;
+        for k in 0..UNKNOWNS {
+            damped[(k, k)] = damped[(k, k)] * (1.0 + damping) + 1e-12;
+        }
+        let step = damped.cholesky()?.solve(&sums.right);
+        let next = crossing.stepped(&step);
+        let found = next.sums(pixels, middle);
+        if found.squares <= sums.squares {
+            let moved = (next.place - crossing.place).norm();
+            (crossing, sums, damping) = (next, found, damping * 0.1);
+            if moved < 1e-4 {
+                break;
+            }
+        } else {
+            damping *= 10.0;
+            if damping > 1e6 {
+                break;
+            }
+        }
+    }
+    Some(crossing)
+}

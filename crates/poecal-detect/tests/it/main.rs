@@ -1,0 +1,8 @@
+//! Corners of rendered pictures against the truth, reasons and suggestions, files, and real pictures where they are.
+
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
+
+mod files;
+mod found;
+mod real;
+mod rejected;

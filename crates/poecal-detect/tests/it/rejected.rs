@@ -1,0 +1,132 @@
+//! Pictures without the board: no corner, the reason, and what else it may be.
+
+use poecal_detect::render::{Draw, Random, clutter, finished};
+use poecal_detect::{Detector, Gray, Layout, Rejected};
+
+const CHARUCO: &str = "charuco:7x5:36.195mm:18.256mm:DICT_6X6_250";
+const CHESSBOARD: &str = "chessboard:10x7:28mm";
+
+fn detector(spec: &str) -> Detector {
+    Detector::new(&spec.parse().unwrap())
+}
+
+fn drawn(spec: &str, draw: &Draw, number: usize) -> Gray {
+    draw.scene(&Layout::new(&spec.parse().unwrap()), 3, number).picture
+}
+
+#[test]
+fn no_corner_where_there_is_no_board() {
+    let detectors = [detector(CHARUCO), detector(CHESSBOARD)];
+    let pictures = 60;
+    for number in 0..pictures {
+        let mut random = Random::new(40_000 + number);
+        let background = clutter([1280, 800], &mut random);
+        let picture = finished(background, random.uniform(0.4, 1.6), random.uniform(1.0, 6.0), &mut random);
+        for detector in &detectors {
+            let found = detector.detect(&picture);
+            assert!(found.is_err(), "picture {number}: {found:?}");
+        }
+    }
+    println!("no corner in {pictures} pictures");
+}
+
+#[test]
+fn no_corner_on_another_board() {
+    let detectors = [detector(CHARUCO), detector(CHESSBOARD)];
+    let others = [
+        "charuco:7x5:36mm:18mm:DICT_5X5_250",
+        "charuco:11x8:24mm:18mm:DICT_6X6_250",
+        "charuco:5x7:36.195mm:18.256mm:DICT_6X6_250",
+        "charuco:7x5:36mm:25mm:DICT_6X6_250",
+        "chessboard:12x9:24mm",
+        "chessboard:9x7:28mm",
+        "charuco:10x7:28mm:20mm:DICT_4X4_250",
+    ];
+    for (number, other) in others.into_iter().enumerate() {
+        let picture = drawn(other, &Draw::default(), number);
+        for detector in &detectors {
+            let found = detector.detect(&picture);
+            println!("{} on {other}: {}", detector.spec(), found.as_ref().err().unwrap());
+        }
+    }
+}
+
+#[test]
+fn what_the_board_may_be_is_suggested() {
+    let draw = Draw { covered_each: 0, ..Draw::default() };
+    for (stated, shown) in [
+        ("charuco:5x7:36mm:18mm:DICT_6X6_250", "charuco:7x5:36mm:18mm:DICT_6X6_250"),
+        ("charuco:7x6:30mm:22mm:DICT_4X4_50", "charuco:7x6:30mm:22mm:DICT_4X4_50:legacy"),
+        ("charuco:7x5:36mm:18mm:DICT_4X4_100", "charuco:7x5:36mm:18mm:DICT_6X6_50"),
+        ("charuco:6x8:30mm:22mm:DICT_4X4_50", "charuco:8x6:30mm:22mm:DICT_5X5_50:legacy"),
+        ("chessboard:9x6:28mm", "chessboard:10x7:28mm"),
+    ] {
+        let pictures: Vec<Gray> = (0..3).map(|number| drawn(shown, &draw, number)).collect();
+        let detector = detector(stated);
+        assert!(pictures.iter().all(|it| detector.detect(it).is_err()));
+        let suggestion = detector.suggest(&pictures.iter().collect::<Vec<_>>()).unwrap();
+        println!("{stated}: {suggestion}");
+        // What is seen by its squares first is not tried with every board.
+        assert!(suggestion.spec.to_string() == shown && suggestion.pictures >= 2);
+    }
+    let empty = Gray::new(200, 200, vec![128.0; 40_000]).unwrap();
+    assert_eq!(detector(CHARUCO).suggest(&[&empty]), None);
+}
+
+#[test]
+fn the_reason_is_told() {
+    let detector = detector(CHARUCO);
+    let reason = |picture: &Gray| detector.detect(picture).unwrap_err();
+    let draw = Draw { covered_each: 0, square_px: [60.0, 110.0], ..Draw::default() };
+    let picture = drawn(CHARUCO, &draw, 0);
+    let changed = |change: &dyn Fn(f32) -> f32| {
+        let levels = picture.levels().iter().map(|it| change(*it).clamp(0.0, 255.0).round()).collect();
+        Gray::new(picture.width(), picture.height(), levels).unwrap()
+    };
+    let dark = reason(&changed(&|it| it * 0.02));
+    let white = reason(&changed(&|it| it * 20.0 + 100.0));
+    let blurred = reason(&picture.blurred(25.0, 3.0));
+    println!("{dark}; {white}; {blurred}");
+    assert!(matches!(dark, Rejected::Dark(_)) && matches!(white, Rejected::Overexposed(_)));
+    assert!(matches!(blurred, Rejected::Blurred(_)));
+    let chessboard = Detector::new(&CHESSBOARD.parse().unwrap());
+    let draw = Draw { covered_each: 0, square_px: [60.0, 80.0], tilt_deg: [0.0, 10.0], ..Draw::default() };
+    let picture = drawn(CHESSBOARD, &draw, 0);
+    let corners = chessboard.detect(&picture).unwrap().corners;
+    // Only the upper half of it.
+    let cut = (corners.iter().map(|it| it.v_px).sum::<f64>() / corners.len() as f64) as usize;
+    let levels = picture.levels()[..cut * picture.width()].to_vec();
+    let part = chessboard.detect(&Gray::new(picture.width(), cut, levels).unwrap()).unwrap_err();
+    println!("{part}");
+    assert!(matches!(part, Rejected::Few(_)));
+}
+
+#[test]
+fn any_picture_is_borne() {
+    let detectors = [detector(CHARUCO), detector(CHESSBOARD)];
+    let mut random = Random::new(1);
+    for (width, height) in [(1, 1), (1, 40), (40, 1), (2, 3), (5, 5), (7, 30), (13, 13), (64, 64), (300, 200)]
+    {
+        for kind in 0..4 {
+            let levels = (0..width * height).map(|at| match kind {
+                0 => 0.0,
+                1 => random.uniform(0.0, 255.0) as f32,
+                2 => {
+                    if (at % width / 9 + at / width / 9) % 2 == 0 {
+                        0.0
+                    } else {
+                        255.0
+                    }
+                }
+                _ => random.uniform(-1e30, 1e30) as f32,
+            });
+            let picture = Gray::new(width, height, levels.collect()).unwrap();
+            for detector in &detectors {
+                let found = detector.detect(&picture);
+                assert!(found.is_err(), "{width} × {height}, {kind}: {found:?}");
+            }
+        }
+    }
+    assert!(Gray::new(0, 0, Vec::new()).is_err() && Gray::new(2, 2, vec![0.0; 3]).is_err());
+    assert!(Gray::new(1, 1, vec![f32::NAN]).is_err());
+}
