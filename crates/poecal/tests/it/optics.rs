@@ -1,12 +1,12 @@
 //! Lenses, boards and markers that are found with the robot, and those that corners contradict.
 
 use nalgebra::Vector3;
-use poecal::calibration::BlockChoice;
+use poecal::calibration::{BlockChoice, calibrate_repairing};
 use poecal::camera::{Board, Distortion, Lens, Pictures};
 use poecal::measurement::{Dataset, Source};
 use poecal::simulate::{Photographed, PictureSimulation, elbow};
 use poecal::start::settle_pictures;
-use poecal::{Calibration, CalibrationOptions, Simulation, calibrate_repairing};
+use poecal::{Calibration, CalibrationOptions, Simulation};
 
 /// A lens with distortion.
 fn bent() -> Lens {
