@@ -13,23 +13,37 @@ use poecal_detect::render::{Draw, Drawn, Random, clutter, finished};
 use poecal_detect::{Detector, Found, Gray, Layout, Rejected};
 use rayon::prelude::*;
 
-const BOARDS: [(&str, &str); 6] = [
+const BOARDS: [(&str, &str); 9] = [
     ("charuco", "charuco:7x5:36.195mm:18.256mm:DICT_6X6_250"),
     ("charuco-24mm", "charuco:11x8:24mm:18mm:DICT_5X5_250"),
     ("charuco-legacy", "charuco:7x6:30mm:22mm:DICT_4X4_50:legacy"),
     ("chessboard", "chessboard:10x7:28mm"),
     ("chessboard-even", "chessboard:8x6:30mm"),
     ("charuco-close", "charuco:7x5:36.195mm:28mm:DICT_4X4_50"),
+    ("circles", "circles:9x6:30mm"),
+    ("circles-odd", "circles:7x10:30mm"),
+    ("circles-asymmetric", "circles:4x11:20mm:asymmetric"),
+];
+
+/// Boards that are sought in pictures without them.
+const SOUGHT: [&str; 4] = [
+    "charuco:7x5:36.195mm:18.256mm:DICT_6X6_250",
+    "chessboard:10x7:28mm",
+    "circles:9x6:30mm",
+    "circles:4x11:20mm:asymmetric",
 ];
 
 /// Boards that are not the sought one.
-const OTHERS: [&str; 6] = [
+const OTHERS: [&str; 9] = [
     "charuco:7x5:36mm:18mm:DICT_5X5_250",
     "charuco:11x8:24mm:18mm:DICT_6X6_250",
     "charuco:5x7:36.195mm:18.256mm:DICT_6X6_250",
     "chessboard:12x9:24mm",
     "chessboard:9x7:28mm",
     "charuco:10x7:28mm:20mm:DICT_4X4_250",
+    "circles:10x7:30mm",
+    "circles:8x6:30mm",
+    "circles:5x9:20mm:asymmetric",
 ];
 
 #[derive(Default)]
@@ -66,7 +80,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let detector = Detector::new(&spec.parse()?);
         let drawn: Vec<(usize, Drawn)> = (0..pictures)
             .into_par_iter()
-            .map(|number| (number, Draw::default().scene(detector.layout(), 2026, number)))
+            .map(|number| (number, draw(name).scene(detector.layout(), 2026, number)))
             .collect();
         if let Some(folder) = &folder {
             keep(&Path::new(folder).join(name), &drawn)?;
@@ -78,6 +92,15 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         false_corners(&mut out, pictures * 25)?;
     }
     Ok(())
+}
+
+/// What scenes of a board have: a pitch of an asymmetric grid is shorter than the way between its dots.
+fn draw(name: &str) -> Draw {
+    let square_px = match name {
+        "circles-asymmetric" => [28.0, 78.0],
+        _ => Draw::default().square_px,
+    };
+    Draw { square_px, ..Draw::default() }
 }
 
 fn tally(detector: &Detector, drawn: &[(usize, Drawn)]) -> Tally {
@@ -172,7 +195,7 @@ fn print(out: &mut impl Write, name: &str, pictures: usize, mut tally: Tally) ->
 
 /// Pictures without the board, each fifth with another one.
 fn false_corners(out: &mut impl Write, pictures: usize) -> Result<(), Box<dyn std::error::Error>> {
-    let detectors: Vec<Detector> = ["charuco:7x5:36.195mm:18.256mm:DICT_6X6_250", "chessboard:10x7:28mm"]
+    let detectors: Vec<Detector> = SOUGHT
         .iter()
         .map(|spec| Ok(Detector::new(&spec.parse()?)))
         .collect::<Result<_, poecal_detect::Error>>()?;
@@ -204,13 +227,11 @@ fn false_corners(out: &mut impl Write, pictures: usize) -> Result<(), Box<dyn st
     for (number, which, other, corners) in found.iter().filter(|it| it.3 > 0) {
         eprintln!("picture {number}: detector {which} has {corners} corners on {other:?}");
     }
-    let count = |which: usize| found.iter().filter(|it| it.1 == which && it.3 > 0).count();
-    writeln!(
-        out,
-        "{pictures} pictures without the board, a fifth with another one: corners in {} (ChArUco) and {} (chessboard)",
-        count(0),
-        count(1)
-    )?;
+    writeln!(out, "{pictures} pictures without the board, a fifth with another one: corners in")?;
+    for (which, spec) in SOUGHT.iter().enumerate() {
+        let count = found.iter().filter(|it| it.1 == which && it.3 > 0).count();
+        writeln!(out, "- {count} of {spec}")?;
+    }
     Ok(())
 }
 

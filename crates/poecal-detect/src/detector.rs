@@ -2,6 +2,7 @@
 
 use crate::charuco;
 use crate::chessboard;
+use crate::circles;
 use crate::found::{Found, Rejected};
 use crate::gray::Gray;
 use crate::layout::Layout;
@@ -49,9 +50,10 @@ impl Detector {
     /// Why there are none.
     pub fn detect(&self, gray: &Gray) -> Result<Found, Rejected> {
         let noise = noise(gray);
-        let found = match &self.reader {
-            Some(reader) => charuco::detect(gray, &self.layout, reader, noise),
-            None => chessboard::detect(gray, &self.layout, noise),
+        let found = match (&self.spec, &self.reader) {
+            (Spec::Charuco(_), Some(reader)) => charuco::detect(gray, &self.layout, reader, noise),
+            (Spec::Chessboard(_) | Spec::Charuco(_), _) => chessboard::detect(gray, &self.layout, noise),
+            (Spec::Circles(_), _) => circles::detect(gray, &self.layout, noise),
         };
         found.map_err(|reason| match reason {
             Rejected::NoBoard => because_of_light(gray),

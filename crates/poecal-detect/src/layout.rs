@@ -3,9 +3,35 @@
 use nalgebra::Vector2;
 
 use crate::dictionary::Dictionary;
-use crate::spec::{Charuco, Spec};
+use crate::found::Kind;
+use crate::spec::{Charuco, Circles, Spec};
 
-/// The geometry of a board, in squares: x to the right, y downwards, from the outer corner of the first square.
+/// What a board shows.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Pattern {
+    /// Squares, dark and light in turn.
+    Squares,
+    /// Dots at the inner corners of what would be squares.
+    Dots {
+        /// Whether only every second corner has one, from the first on.
+        asymmetric: bool,
+        /// Their diameter as a part of a square: what is drawn. In pictures it is measured.
+        diameter: f64,
+    },
+}
+
+/// A point of a board.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Point {
+    /// Its name, as of a [`Corner`](crate::Corner) in a picture.
+    pub name: String,
+    /// Its place on the board, metres.
+    pub place_m: [f64; 2],
+}
+
+/// The geometry of a board, in squares: x to the right, y downwards, from the outer corner of the first square. Of a grid of dots a square is one
+/// of its pitch, with dots at inner corners.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Layout {
     /// Squares along x and y.
@@ -16,21 +42,29 @@ pub struct Layout {
     pub markers: Option<(Dictionary, f64)>,
     /// Whether the first square is dark.
     pub first_dark: bool,
+    /// What it shows.
+    pub pattern: Pattern,
 }
 
 impl Layout {
     /// The geometry of a board.
     #[must_use]
     pub fn new(spec: &Spec) -> Self {
-        let (squares, square_m) = (spec.squares(), spec.square_m());
+        let (squares, square_m, pattern) = (spec.squares(), spec.square_m(), Pattern::Squares);
         match spec {
-            Spec::Chessboard(_) => Layout { squares, square_m, markers: None, first_dark: true },
+            Spec::Chessboard(_) => Layout { squares, square_m, markers: None, first_dark: true, pattern },
+            Spec::Circles(Circles { asymmetric, .. }) => {
+                let diameter = if *asymmetric { 0.8 } else { 0.5 };
+                let pattern = Pattern::Dots { asymmetric: *asymmetric, diameter };
+                Layout { squares, square_m, markers: None, first_dark: true, pattern }
+            }
             Spec::Charuco(Charuco { marker_m, dictionary, legacy, rows, .. }) => Layout {
                 squares,
                 square_m,
                 markers: Some((dictionary.clone(), marker_m / square_m)),
                 // The old pattern counts its squares from the last row.
                 first_dark: !(*legacy && rows % 2 == 0),
+                pattern,
             },
         }
     }
@@ -47,18 +81,64 @@ impl Layout {
         self.squares.map(|it| it.saturating_sub(1))
     }
 
-    /// Number of inner corners.
+    /// Number of inner corners, or of dots.
     #[must_use]
     pub fn corners(&self) -> usize {
         let [columns, rows] = self.inner();
-        columns * rows
+        if self.is_asymmetric() { columns / 2 * rows } else { columns * rows }
     }
 
-    /// Place of an inner corner, squares.
+    /// Place of an inner corner, or of a dot, squares.
     #[must_use]
     pub fn corner(&self, id: usize) -> Vector2<f64> {
         let columns = self.inner()[0].max(1);
+        if self.is_asymmetric() {
+            let columns = (columns / 2).max(1);
+            let (column, row) = (id % columns, id / columns);
+            return Vector2::new((2 * column + row % 2 + 1) as f64, (row + 1) as f64);
+        }
         Vector2::new((id % columns + 1) as f64, (id / columns + 1) as f64)
+    }
+
+    /// All points with their names, metres: x to the right and y downwards from the first one, as the axes of `poecal`'s boards and OpenCV's.
+    #[must_use]
+    pub fn points(&self) -> Vec<Point> {
+        let kind = match self.pattern {
+            Pattern::Squares => Kind::Corner,
+            Pattern::Dots { .. } => Kind::Dot,
+        };
+        let point = |id: usize| {
+            let place = (self.corner(id) - Vector2::new(1.0, 1.0)) * self.square_m;
+            Point { name: kind.name(id), place_m: place.into() }
+        };
+        (0..self.corners()).map(point).collect()
+    }
+
+    /// Whether it has dots on every second corner.
+    pub(crate) fn is_asymmetric(&self) -> bool {
+        matches!(self.pattern, Pattern::Dots { asymmetric: true, .. })
+    }
+
+    /// Columns and rows on which dots may be.
+    pub(crate) fn dots(&self) -> [usize; 2] {
+        self.inner()
+    }
+
+    /// The number of the dot at a column and row.
+    pub(crate) fn dot_at(&self, [column, row]: [usize; 2]) -> Option<usize> {
+        let [columns, _] = self.inner();
+        if !self.is_asymmetric() {
+            return Some(row * columns + column);
+        }
+        (column % 2 == row % 2).then(|| row * (columns / 2) + column / 2)
+    }
+
+    /// Radius of dots, squares; 0 without.
+    pub(crate) fn dot_radius(&self) -> f64 {
+        match self.pattern {
+            Pattern::Squares => 0.0,
+            Pattern::Dots { diameter, .. } => 0.5 * diameter,
+        }
     }
 
     /// Whether the square between a corner and the origin's side in both directions is dark.

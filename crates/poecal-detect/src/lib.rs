@@ -10,19 +10,24 @@
 
 #![forbid(unsafe_code)]
 
+mod bias;
 mod charuco;
 mod chessboard;
+mod circles;
 mod detector;
 mod dictionary;
+mod ellipse;
 mod error;
 mod found;
 mod gray;
 mod grid;
 mod growth;
 mod homography;
+mod lattice;
 mod layout;
 mod light;
 mod markers;
+mod parts;
 mod picture;
 mod quads;
 pub mod render;
@@ -32,11 +37,11 @@ mod suggest;
 
 pub use detector::Detector;
 pub use error::{Error, Result};
-pub use found::{Corner, Found, Rejected};
+pub use found::{Corner, Found, Kind, Rejected};
 pub use gray::Gray;
-pub use layout::Layout;
+pub use layout::{Layout, Pattern, Point};
 pub use picture::{Picture, Turned};
-pub use spec::{Charuco, Chessboard, Spec};
+pub use spec::{Charuco, Chessboard, Circles, Spec};
 pub use suggest::Suggestion;
 
 #[cfg(doctest)]

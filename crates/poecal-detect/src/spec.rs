@@ -6,8 +6,8 @@ use std::str::FromStr;
 use crate::dictionary::Dictionary;
 use crate::error::{Error, Result};
 
-/// A board: `chessboard:COLSxROWS:SQUARE` or `charuco:COLSxROWS:SQUARE:MARKER:DICT[:legacy]`. Columns and rows count squares; lengths have a unit
-/// (mm, cm, m, in).
+/// A board: `chessboard:COLSxROWS:SQUARE`, `charuco:COLSxROWS:SQUARE:MARKER:DICT[:legacy]` or `circles:COLSxROWS:PITCH[:asymmetric]`. Columns and
+/// rows count squares or dots; lengths have a unit (mm, cm, m, in).
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Spec {
@@ -15,6 +15,8 @@ pub enum Spec {
     Chessboard(Chessboard),
     /// A chessboard with markers in its light squares.
     Charuco(Charuco),
+    /// A grid of dark dots on light ground.
+    Circles(Circles),
 }
 
 /// A plain chessboard.
@@ -45,28 +47,46 @@ pub struct Charuco {
     pub legacy: bool,
 }
 
+/// A grid of dark dots, in the layouts of OpenCV's `findCirclesGrid`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Circles {
+    /// Dots in a row.
+    pub columns: usize,
+    /// Rows of dots.
+    pub rows: usize,
+    /// From row to row, metres. In a row the dots are as far apart, or twice as far if the grid is asymmetric.
+    pub pitch_m: f64,
+    /// Whether every second row is moved by a pitch: dot `j` of row `i` is at `(2 j + i % 2, i)` pitches.
+    pub asymmetric: bool,
+}
+
 /// Most squares along a side, as of `poecal`'s boards.
 const MOST_SQUARES: usize = 250;
 /// What a specification looks like.
 const CHESSBOARD: &str = "chessboard:COLSxROWS:SQUARE, such as chessboard:10x7:28mm";
+const CIRCLES: &str = "circles:COLSxROWS:PITCH, such as circles:9x6:30mm or circles:4x11:20mm:asymmetric";
 const CHARUCO: &str = "charuco:COLSxROWS:SQUARE:MARKER:DICT, such as charuco:5x7:36mm:18mm:DICT_6X6_250";
 
 impl Spec {
-    /// Squares along x and y.
+    /// Squares along x and y; of a grid of dots those that have its dots at their inner corners.
     #[must_use]
     pub fn squares(&self) -> [usize; 2] {
         match self {
             Spec::Chessboard(board) => [board.columns, board.rows],
             Spec::Charuco(board) => [board.columns, board.rows],
+            Spec::Circles(Circles { columns, rows, asymmetric, .. }) => {
+                [columns * (1 + usize::from(*asymmetric)) + 1, rows + 1]
+            }
         }
     }
 
-    /// Side of a square, metres.
+    /// Side of a square, or the pitch of dots, metres.
     #[must_use]
     pub fn square_m(&self) -> f64 {
         match self {
             Spec::Chessboard(board) => board.square_m,
             Spec::Charuco(board) => board.square_m,
+            Spec::Circles(board) => board.pitch_m,
         }
     }
 }
@@ -78,17 +98,27 @@ impl FromStr for Spec {
         let parts: Vec<&str> = text.trim().split(':').collect();
         match parts.as_slice() {
             ["chessboard", size, square] => {
-                let [columns, rows] = size_of(size)?;
-                Ok(Spec::Chessboard(Chessboard { columns, rows, square_m: length_m("square", square)? }))
+                let [columns, rows] = size_of("squares", size, 3)?;
+                Ok(Spec::Chessboard(Chessboard {
+                    columns,
+                    rows,
+                    square_m: length_m("side of a square", square)?,
+                }))
             }
             ["chessboard", ..] => Err(wrong(text, CHESSBOARD)),
+            ["circles", size, pitch] => circles(size, pitch, false),
+            ["circles", size, pitch, "asymmetric"] => circles(size, pitch, true),
+            ["circles", _, _, last] => Err(Error::new(format!(
+                "found {last:?} at the end of a board, expected asymmetric or nothing"
+            ))),
+            ["circles", ..] => Err(wrong(text, CIRCLES)),
             ["charuco", size, square, marker, name] => charuco(size, [square, marker], name, false),
             ["charuco", size, square, marker, name, "legacy"] => charuco(size, [square, marker], name, true),
             ["charuco", _, _, _, _, last] => {
                 Err(Error::new(format!("found {last:?} at the end of a board, expected legacy or nothing")))
             }
             ["charuco", ..] => Err(wrong(text, CHARUCO)),
-            _ => Err(wrong(text, &format!("{CHESSBOARD}, or {CHARUCO}"))),
+            _ => Err(wrong(text, &format!("{CHESSBOARD}, {CHARUCO}, or {CIRCLES}"))),
         }
     }
 }
@@ -98,8 +128,8 @@ fn wrong(text: &str, expected: &str) -> Error {
 }
 
 fn charuco(size: &str, [square, marker]: [&str; 2], name: &str, legacy: bool) -> Result<Spec> {
-    let [columns, rows] = size_of(size)?;
-    let (square_m, marker_m) = (length_m("square", square)?, length_m("marker", marker)?);
+    let [columns, rows] = size_of("squares", size, 3)?;
+    let (square_m, marker_m) = (length_m("side of a square", square)?, length_m("side of a marker", marker)?);
     if marker_m >= square_m {
         let message =
             format!("found markers of {marker} in squares of {square}, expected markers that are smaller");
@@ -117,15 +147,20 @@ fn charuco(size: &str, [square, marker]: [&str; 2], name: &str, legacy: bool) ->
     Ok(Spec::Charuco(Charuco { columns, rows, square_m, marker_m, dictionary, legacy }))
 }
 
-fn size_of(text: &str) -> Result<[usize; 2]> {
+fn circles(size: &str, pitch: &str, asymmetric: bool) -> Result<Spec> {
+    let [columns, rows] = size_of("dots", size, if asymmetric { 2 } else { 3 })?;
+    Ok(Spec::Circles(Circles { columns, rows, pitch_m: length_m("pitch", pitch)?, asymmetric }))
+}
+
+fn size_of(what: &str, text: &str, least: usize) -> Result<[usize; 2]> {
     let wrong = || {
         Error::new(format!(
-            "found {text:?} for the squares of a board, expected columns x rows such as 10x7, each 3 to {MOST_SQUARES}"
+            "found {text:?} for the {what} of a board, expected columns x rows such as 10x7, each {least} to {MOST_SQUARES}"
         ))
     };
     let (columns, rows) = text.split_once(['x', 'X', '×']).ok_or_else(wrong)?;
     let number =
-        |part: &str| part.parse().ok().filter(|it| (3..=MOST_SQUARES).contains(it)).ok_or_else(wrong);
+        |part: &str| part.parse().ok().filter(|it| (least..=MOST_SQUARES).contains(it)).ok_or_else(wrong);
     Ok([number(columns)?, number(rows)?])
 }
 
@@ -133,7 +168,7 @@ fn length_m(what: &str, text: &str) -> Result<f64> {
     const UNITS: [(&str, f64); 4] = [("mm", 1e-3), ("cm", 1e-2), ("in", 25.4e-3), ("m", 1.0)];
     let wrong = || {
         Error::new(format!(
-            "found {text:?} for the side of a {what}, expected a length above 0 with its unit (mm, cm, m, in), such as 28mm"
+            "found {text:?} for the {what}, expected a length above 0 with its unit (mm, cm, m, in), such as 28mm"
         ))
     };
     let (number, unit) = UNITS
@@ -150,6 +185,10 @@ impl fmt::Display for Spec {
         match self {
             Spec::Chessboard(Chessboard { columns, rows, square_m }) => {
                 write!(formatter, "chessboard:{columns}x{rows}:{}mm", mm(*square_m))
+            }
+            Spec::Circles(Circles { columns, rows, pitch_m, asymmetric }) => {
+                let end = if *asymmetric { ":asymmetric" } else { "" };
+                write!(formatter, "circles:{columns}x{rows}:{}mm{end}", mm(*pitch_m))
             }
             Spec::Charuco(board) => {
                 let Charuco { columns, rows, square_m, marker_m, dictionary, legacy } = board;
@@ -171,6 +210,8 @@ mod tests {
             "charuco:5x7:36.195mm:18.256mm:DICT_6X6_250",
             "charuco:8x6:30mm:22mm:DICT_4X4_50:legacy",
             "chessboard:10x7:28mm",
+            "circles:9x6:30mm",
+            "circles:4x11:20mm:asymmetric",
         ] {
             assert_eq!(text.parse::<Spec>().unwrap().to_string(), text);
         }
@@ -189,6 +230,9 @@ mod tests {
             ("chessboard:10x7:28", "with its unit"),
             ("chessboard:10x7:-28mm", "above 0"),
             ("chessboard:10x7:infm", "above 0"),
+            ("circles:9x6", "expected circles:COLSxROWS:PITCH"),
+            ("circles:2x6:30mm", "each 3 to 250"),
+            ("circles:4x11:30mm:odd", "expected asymmetric"),
             ("charuco:5x7:36mm:18mm", "expected charuco:COLSxROWS:SQUARE:MARKER:DICT"),
             ("charuco:5x7:18mm:36mm:DICT_6X6_250", "smaller"),
             ("charuco:5x7:36mm:18mm:DICT_6X6_251", "found the dictionary \"DICT_6X6_251\""),

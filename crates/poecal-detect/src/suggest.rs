@@ -40,6 +40,8 @@ pub(crate) fn suggest(spec: &Spec, pictures: &[&Gray]) -> Option<Suggestion> {
                 |spec| suggestion(spec, &seen, |layout, gray, noise| chessboard::detect(gray, layout, noise));
             chessboards(board).into_iter().map(tried).collect()
         }
+        // Columns and rows are not told apart by dots.
+        Spec::Circles(_) => Vec::new(),
         Spec::Charuco(board) => {
             // What is costly does not depend on the board.
             let quads: Vec<Vec<Quad>> = seen.iter().map(|(gray, noise)| quads(gray, *noise)).collect();

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector2;
 
-use crate::layout::Layout;
+use crate::layout::{Layout, Pattern};
 
 /// What is not the board.
 pub(super) const BEHIND: i8 = 0;
@@ -23,6 +23,8 @@ pub(super) struct Shades {
     cells: usize,
     /// The cells of the markers of all squares: whether they are dark.
     dark: Vec<Option<Vec<bool>>>,
+    /// Radius of dots, squares, and whether they are on every second corner.
+    dots: Option<(f64, bool)>,
 }
 
 impl Shades {
@@ -34,6 +36,10 @@ impl Shades {
             marker: 0.0,
             cells: 1,
             dark: vec![None; columns * rows],
+            dots: match layout.pattern {
+                Pattern::Squares => None,
+                Pattern::Dots { asymmetric, diameter } => Some((0.5 * diameter, asymmetric)),
+            },
         };
         let Some((dictionary, side)) = &layout.markers else { return shades };
         (shades.marker, shades.cells) = (*side, dictionary.bits() + 2);
@@ -57,6 +63,9 @@ impl Shades {
         if outside >= 0.0 {
             return if outside < PAPER { LIGHT } else { BEHIND };
         }
+        if let Some((radius, asymmetric)) = self.dots {
+            return if self.is_dot(place, radius, asymmetric) { DARK } else { LIGHT };
+        }
         let (column, row) = (place.x as usize, place.y as usize);
         if ((column + row) % 2 == 0) == self.first_dark {
             return DARK;
@@ -68,5 +77,17 @@ impl Shades {
             return LIGHT;
         }
         if cells[y as usize * self.cells + x as usize] { DARK } else { LIGHT }
+    }
+
+    /// Whether a place is within a dot.
+    fn is_dot(&self, place: Vector2<f64>, radius: f64, asymmetric: bool) -> bool {
+        let [columns, rows] = self.squares.map(|it| it as f64 - 1.0);
+        [place.y.floor(), place.y.ceil()].into_iter().filter(|row| (1.0..=rows).contains(row)).any(|row| {
+            // Before the first dot of the row, and from dot to dot.
+            let (first, step) = if asymmetric { (1.0 + (row - 1.0) % 2.0, 2.0) } else { (1.0, 1.0) };
+            let last = first + columns - step;
+            let column = (first + ((place.x - first) / step).round() * step).clamp(first, last);
+            (place - Vector2::new(column, row)).norm() < radius
+        })
     }
 }

@@ -5,6 +5,8 @@ use poecal_detect::{Detector, Gray, Layout, Rejected};
 
 const CHARUCO: &str = "charuco:7x5:36.195mm:18.256mm:DICT_6X6_250";
 const CHESSBOARD: &str = "chessboard:10x7:28mm";
+const CIRCLES: &str = "circles:9x6:30mm";
+const ASYMMETRIC: &str = "circles:4x11:20mm:asymmetric";
 
 fn detector(spec: &str) -> Detector {
     Detector::new(&spec.parse().unwrap())
@@ -16,7 +18,7 @@ fn drawn(spec: &str, draw: &Draw, number: usize) -> Gray {
 
 #[test]
 fn no_corner_where_there_is_no_board() {
-    let detectors = [detector(CHARUCO), detector(CHESSBOARD)];
+    let detectors = [CHARUCO, CHESSBOARD, CIRCLES, ASYMMETRIC].map(detector);
     let pictures = 60;
     for number in 0..pictures {
         let mut random = Random::new(40_000 + number);
@@ -32,7 +34,7 @@ fn no_corner_where_there_is_no_board() {
 
 #[test]
 fn no_corner_on_another_board() {
-    let detectors = [detector(CHARUCO), detector(CHESSBOARD)];
+    let detectors = [CHARUCO, CHESSBOARD, CIRCLES, ASYMMETRIC].map(detector);
     let others = [
         "charuco:7x5:36mm:18mm:DICT_5X5_250",
         "charuco:11x8:24mm:18mm:DICT_6X6_250",
@@ -41,6 +43,9 @@ fn no_corner_on_another_board() {
         "chessboard:12x9:24mm",
         "chessboard:9x7:28mm",
         "charuco:10x7:28mm:20mm:DICT_4X4_250",
+        "circles:10x7:30mm",
+        "circles:8x6:30mm",
+        "circles:5x11:20mm:asymmetric",
     ];
     for (number, other) in others.into_iter().enumerate() {
         let picture = drawn(other, &Draw::default(), number);
@@ -103,7 +108,7 @@ fn the_reason_is_told() {
 
 #[test]
 fn any_picture_is_borne() {
-    let detectors = [detector(CHARUCO), detector(CHESSBOARD)];
+    let detectors = [CHARUCO, CHESSBOARD, CIRCLES, ASYMMETRIC].map(detector);
     let mut random = Random::new(1);
     for (width, height) in [(1, 1), (1, 40), (40, 1), (2, 3), (5, 5), (7, 30), (13, 13), (64, 64), (300, 200)]
     {
