@@ -13,7 +13,7 @@ use poecal_detect::render::{Draw, Drawn, Random, clutter, finished};
 use poecal_detect::{Detector, Found, Gray, Layout, Rejected};
 use rayon::prelude::*;
 
-const BOARDS: [(&str, &str); 9] = [
+const BOARDS: [(&str, &str); 12] = [
     ("charuco", "charuco:7x5:36.195mm:18.256mm:DICT_6X6_250"),
     ("charuco-24mm", "charuco:11x8:24mm:18mm:DICT_5X5_250"),
     ("charuco-legacy", "charuco:7x6:30mm:22mm:DICT_4X4_50:legacy"),
@@ -23,18 +23,24 @@ const BOARDS: [(&str, &str); 9] = [
     ("circles", "circles:9x6:30mm"),
     ("circles-odd", "circles:7x10:30mm"),
     ("circles-asymmetric", "circles:4x11:20mm:asymmetric"),
+    ("tags-36h11", "tags:36h11:50mm"),
+    ("tags-6x6", "tags:DICT_6X6_250:50mm"),
+    ("aprilgrid", "aprilgrid:6x6:88mm:0.3"),
 ];
 
 /// Boards that are sought in pictures without them.
-const SOUGHT: [&str; 4] = [
+const SOUGHT: [&str; 7] = [
     "charuco:7x5:36.195mm:18.256mm:DICT_6X6_250",
     "chessboard:10x7:28mm",
     "circles:9x6:30mm",
     "circles:4x11:20mm:asymmetric",
+    "tags:36h11:50mm",
+    "tags:DICT_4X4_50:50mm",
+    "aprilgrid:6x6:88mm:0.3",
 ];
 
 /// Boards that are not the sought one.
-const OTHERS: [&str; 9] = [
+const OTHERS: [&str; 10] = [
     "charuco:7x5:36mm:18mm:DICT_5X5_250",
     "charuco:11x8:24mm:18mm:DICT_6X6_250",
     "charuco:5x7:36.195mm:18.256mm:DICT_6X6_250",
@@ -44,6 +50,7 @@ const OTHERS: [&str; 9] = [
     "circles:10x7:30mm",
     "circles:8x6:30mm",
     "circles:5x9:20mm:asymmetric",
+    "tags:25h9:50mm",
 ];
 
 #[derive(Default)]

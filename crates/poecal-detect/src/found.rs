@@ -12,15 +12,19 @@ pub enum Kind {
     Corner,
     /// The middle of a dot.
     Dot,
+    /// A corner of a tag: four times the number of the tag, and 0 to 3 for the upper left, upper right, lower right and lower left one of the tag
+    /// as it is printed, which is the order of OpenCV.
+    Tag,
 }
 
 impl Kind {
-    /// The name of the point with a number: `corner0`, `dot0`, …
+    /// The name of the point with a number: `corner0`, `dot0`, `tag0.0`, …
     #[must_use]
     pub fn name(self, id: usize) -> String {
         match self {
             Kind::Corner => format!("corner{id}"),
             Kind::Dot => format!("dot{id}"),
+            Kind::Tag => format!("tag{}.{}", id / 4, id % 4),
         }
     }
 }
@@ -29,6 +33,7 @@ impl Kind {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Corner {
     /// Its number among the inner corners or dots, along x first; that of OpenCV on a ChArUco board and a grid of dots.
+    /// Of tags see [`Kind::Tag`].
     pub id: usize,
     /// What it is.
     pub kind: Kind,
@@ -41,7 +46,7 @@ pub struct Corner {
 }
 
 impl Corner {
-    /// Its name on the board: `corner0`, `corner1`, …, or `dot0`, …
+    /// Its name on the board: `corner0`, `corner1`, …, `dot0`, …, or `tag0.0`, …
     #[must_use]
     pub fn name(&self) -> String {
         self.kind.name(self.id)

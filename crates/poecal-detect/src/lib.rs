@@ -10,6 +10,7 @@
 
 #![forbid(unsafe_code)]
 
+mod aprilgrid;
 mod bias;
 mod charuco;
 mod chessboard;
@@ -34,14 +35,16 @@ pub mod render;
 mod saddle;
 mod spec;
 mod suggest;
+mod tagfit;
+mod tags;
 
 pub use detector::Detector;
 pub use error::{Error, Result};
 pub use found::{Corner, Found, Kind, Rejected};
 pub use gray::Gray;
-pub use layout::{Layout, Pattern, Point};
+pub use layout::{Layout, Pattern, Point, Tagged};
 pub use picture::{Picture, Turned};
-pub use spec::{Charuco, Chessboard, Circles, Spec};
+pub use spec::{AprilGrid, Charuco, Chessboard, Circles, Spec, Tags};
 pub use suggest::Suggestion;
 
 #[cfg(doctest)]

@@ -21,7 +21,12 @@ impl Shades {
 
     /// Parts darker than the mean of a window that reaches so many pixels to each side.
     pub(crate) fn dark_parts(&self, half: usize) -> Parts {
-        let dark = dark(&self.smooth, &self.sums, self.width, half, self.offset);
+        self.darker_parts(half, self.offset)
+    }
+
+    /// Parts darker than that by so many gray levels.
+    pub(crate) fn darker_parts(&self, half: usize, offset: i32) -> Parts {
+        let dark = dark(&self.smooth, &self.sums, self.width, half, offset);
         Parts::new(&dark, self.width)
     }
 }

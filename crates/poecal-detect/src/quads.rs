@@ -13,15 +13,27 @@ const SHORTEST_PX: f64 = 9.0;
 
 /// Dark quadrangles. Windows of two sizes tell dark from light.
 pub(crate) fn quads(gray: &Gray, noise: f64) -> Vec<Quad> {
+    of_limits(gray, &[(0.8 * noise).max(2.0)], noise)
+}
+
+/// Dark quadrangles that may touch others with their corners: darker limits part them.
+pub(crate) fn quads_apart(gray: &Gray, noise: f64) -> Vec<Quad> {
+    of_limits(gray, &[(0.8 * noise).max(2.0), 8.0_f64.max(noise), 22.0, 45.0], noise)
+}
+
+/// Those darker by some limits than the mean around them.
+fn of_limits(gray: &Gray, limits: &[f64], noise: f64) -> Vec<Quad> {
     let shades = Shades::new(gray, noise);
     let longest = gray.width().max(gray.height());
     let mut found: Vec<Quad> = Vec::new();
     for half in [longest / 110, longest / 36].map(|it| it.max(7)) {
-        for part in shades.dark_parts(half).outlines(SHORTEST_PX as u32) {
-            let Some(quad) = quad_of(&part).and_then(|it| on_edges(gray, &it)) else { continue };
-            let same = |other: &Quad| (0..4).all(|k| other.iter().any(|it| (it - quad[k]).norm() < 2.0));
-            if !found.iter().any(same) {
-                found.push(quad);
+        for limit in limits {
+            for part in shades.darker_parts(half, *limit as i32).outlines(SHORTEST_PX as u32) {
+                let Some(quad) = quad_of(&part).and_then(|it| on_edges(gray, &it)) else { continue };
+                let same = |other: &Quad| (0..4).all(|k| other.iter().any(|it| (it - quad[k]).norm() < 2.0));
+                if !found.iter().any(same) {
+                    found.push(quad);
+                }
             }
         }
     }

@@ -41,7 +41,7 @@ pub(crate) fn suggest(spec: &Spec, pictures: &[&Gray]) -> Option<Suggestion> {
             chessboards(board).into_iter().map(tried).collect()
         }
         // Columns and rows are not told apart by dots.
-        Spec::Circles(_) => Vec::new(),
+        Spec::Circles(_) | Spec::Tags(_) | Spec::AprilGrid(_) => Vec::new(),
         Spec::Charuco(board) => {
             // What is costly does not depend on the board.
             let quads: Vec<Vec<Quad>> = seen.iter().map(|(gray, noise)| quads(gray, *noise)).collect();

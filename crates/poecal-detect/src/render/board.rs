@@ -2,7 +2,7 @@
 
 use nalgebra::Vector2;
 
-use crate::layout::{Layout, Pattern};
+use crate::layout::{Layout, Pattern, Tagged};
 
 /// What is not the board.
 pub(super) const BEHIND: i8 = 0;
@@ -25,6 +25,7 @@ pub(super) struct Shades {
     dark: Vec<Option<Vec<bool>>>,
     /// Radius of dots, squares, and whether they are on every second corner.
     dots: Option<(f64, bool)>,
+    tags: Option<Tagged>,
 }
 
 impl Shades {
@@ -37,8 +38,12 @@ impl Shades {
             cells: 1,
             dark: vec![None; columns * rows],
             dots: match layout.pattern {
-                Pattern::Squares => None,
+                Pattern::Squares | Pattern::Tags(_) => None,
                 Pattern::Dots { asymmetric, diameter } => Some((0.5 * diameter, asymmetric)),
+            },
+            tags: match &layout.pattern {
+                Pattern::Tags(tags) => Some(tags.clone()),
+                Pattern::Squares | Pattern::Dots { .. } => None,
             },
         };
         let Some((dictionary, side)) = &layout.markers else { return shades };
@@ -66,6 +71,9 @@ impl Shades {
         if let Some((radius, asymmetric)) = self.dots {
             return if self.is_dot(place, radius, asymmetric) { DARK } else { LIGHT };
         }
+        if let Some(tags) = &self.tags {
+            return if is_tag(tags, place - Vector2::new(1.0, 1.0)) { DARK } else { LIGHT };
+        }
         let (column, row) = (place.x as usize, place.y as usize);
         if ((column + row) % 2 == 0) == self.first_dark {
             return DARK;
@@ -90,4 +98,32 @@ impl Shades {
             (place - Vector2::new(column, row)).norm() < radius
         })
     }
+}
+
+/// Whether a place is dark, in sides of a tag from the upper left one.
+fn is_tag(tags: &Tagged, place: Vector2<f64>) -> bool {
+    let pitch = 1.0 + tags.gap;
+    let at = |value: f64, count: usize| {
+        // Number of the tag, and place on it or in the gap after it.
+        let number = (value / pitch).floor().clamp(-1.0, count as f64);
+        (number, value - number * pitch)
+    };
+    let ((column, x), (row, y)) = (at(place.x, tags.columns), at(place.y, tags.rows));
+    let inside = |number: f64, count: usize| number >= 0.0 && number < count as f64;
+    if x >= 1.0 && y >= 1.0 {
+        // Between four tags, and outside of the last ones.
+        let near = |number: f64, own: f64, count: usize| number < count as f64 && own < pitch;
+        return tags.kalibr && near(column, x, tags.columns) && near(row, y, tags.rows);
+    }
+    if x >= 1.0 || y >= 1.0 || !inside(column, tags.columns) || !inside(row, tags.rows) {
+        return false;
+    }
+    let row = if tags.kalibr { tags.rows - 1 - row as usize } else { row as usize };
+    let id = row * tags.columns + column as usize;
+    let cells = tags.dictionary.bits() + 2 * tags.border;
+    let cell = |value: f64| ((value * cells as f64) as usize).min(cells - 1);
+    let (x, y) = (cell(x), cell(y));
+    let (x, y) = if tags.kalibr { (cells - 1 - x, cells - 1 - y) } else { (x, y) };
+    // Cells of the border are outside of the code: black.
+    tags.dictionary.is_black(id, x.wrapping_sub(tags.border), y.wrapping_sub(tags.border))
 }
