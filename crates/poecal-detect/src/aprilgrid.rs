@@ -85,7 +85,7 @@ fn expected(gray: &Gray, layout: &Layout, tags: &Tagged, pairs: &[Pair], id: usi
     let side_px = slope.determinant().abs().sqrt();
     let border = tags.border as f64 / (tags.dictionary.bits() + 2 * tags.border) as f64;
     // Before the upper left corner is a dark square, before the lower right one the tag.
-    let dark_before = id % 2 == 0;
+    let dark_before = id.is_multiple_of(2);
     let search_px = (1.0 + 0.03 * side_px * nearest.max(0.3)).min(0.12 * side_px).max(1.0);
     Some(Expected { place, slope, plain: border.min(tags.gap), dark_before, search_px })
 }

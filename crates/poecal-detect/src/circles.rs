@@ -22,11 +22,11 @@ const LATTICES: usize = 5;
 /// Largest distance of a dot from where its neighbours have it, pixels and parts of the unit.
 const OFF: (f64, f64) = (0.8, 0.035);
 /// Largest deviation of a dot's radius from that of the others, as a part and in pixels.
-const ROUND: (f64, f64) = (0.08, 0.3);
+const ROUND: (f64, f64) = (0.08, 0.5);
 /// One dot of so many may be beyond the board: something else that looks like one.
 const BEYOND: usize = 12;
 /// Largest misfit of a dot beside the median one, and beside the contrast: of more, something covers a part of it.
-const COVERED: (f64, f64) = (4.0, 0.02);
+const COVERED: (f64, f64) = (4.0, 0.03);
 /// How far beyond the outer dots there is paper, from their middles, units.
 const PAPER: f64 = 0.6;
 

@@ -33,7 +33,7 @@ type Unknowns = SVector<f64, UNKNOWNS>;
 type Pixel = (Vector2<f64>, f64);
 
 /// Largest part of the contrast that the model may leave beyond the noise.
-const MISFIT: f64 = 0.16;
+const MISFIT: f64 = 0.22;
 /// What no fit is better than, pixels: uneven ink and light, pixels of a finite size.
 const FLOOR_PX: f64 = 0.01;
 /// Least certain centre that counts, pixels.

@@ -18,8 +18,9 @@ const FARTHEST: f64 = 9.0;
 const NEAREST: f64 = 2.1;
 /// Largest deviation of a dot from where others have it, as a part of the pitch.
 const ASIDE: f64 = 0.22;
-/// Largest ratio of the sizes of neighbours.
-const ALIKE: f64 = 1.45;
+/// Largest ratio of the sizes of neighbours, and of their contrasts; and of those that are not the next to each other.
+const ALIKE: [f64; 2] = [1.45, 1.8];
+const ALIKE_FAR: [f64; 2] = [1.25, 1.35];
 /// Standard deviation of the weights of dots by their distance, and the farthest that counts, pitches.
 const NEAR: f64 = 1.6;
 const FAR: f64 = 4.2;
@@ -47,10 +48,10 @@ pub(crate) fn lattices(dots: &[Dot]) -> Vec<Lattice> {
     all
 }
 
-fn alike(a: &Dot, b: &Dot) -> bool {
+fn alike(a: &Dot, b: &Dot, [largest, strongest]: [f64; 2]) -> bool {
     let size = |it: &Dot| it.to_circle.determinant().sqrt();
     let (ratio, contrast) = (size(a) / size(b), a.half_contrast / b.half_contrast);
-    ratio.max(1.0 / ratio) < ALIKE && contrast.max(1.0 / contrast) < 1.8
+    ratio.max(1.0 / ratio) < largest && contrast.max(1.0 / contrast) < strongest
 }
 
 /// Steps of the lattice at a dot, pixels: to two neighbours at a right angle in the plane of the circle, as far away.
@@ -59,7 +60,7 @@ fn bases(dots: &[Dot], own: usize) -> Vec<Matrix2<f64>> {
     let mut near: Vec<(Vector2<f64>, Vector2<f64>)> = dots
         .iter()
         .enumerate()
-        .filter(|(at, it)| *at != own && alike(dot, it))
+        .filter(|(at, it)| *at != own && alike(dot, it, ALIKE))
         .map(|(_, it)| (dot.to_circle * (it.place - dot.place), it.place - dot.place))
         .filter(|it| (NEAREST..FARTHEST).contains(&it.0.norm()))
         .collect();
@@ -122,7 +123,9 @@ fn joined(
     let near = |other: usize| (dots[other].place - place).norm();
     let Some(own) = lattice.get(&node).map(|at| dots[*at]) else { return };
     let all = (0..dots.len()).filter(|other| !taken[*other] && near(*other) < ASIDE * pitch_px);
-    let best = all.filter(|other| alike(&dots[*other], &own)).min_by(|a, b| near(*a).total_cmp(&near(*b)));
+    let limits = if step[0].abs() + step[1].abs() > 1 { ALIKE_FAR } else { ALIKE };
+    let best =
+        all.filter(|other| alike(&dots[*other], &own, limits)).min_by(|a, b| near(*a).total_cmp(&near(*b)));
     if let Some(other) = best {
         taken[other] = true;
         lattice.insert(next, other);

@@ -7,3 +7,4 @@ mod files;
 mod found;
 mod real;
 mod rejected;
+mod tags;

@@ -90,9 +90,9 @@ fn the_dots_before_a_camera_on_an_arm() {
     for (name, own) in &known {
         let gray = Picture::open(&folder.join("images").join(name)).unwrap().gray;
         let Ok(found) = detector.detect(&gray) else { continue };
-        // A square grid looks the same at each quarter turn.
+        // A square grid looks the same at each quarter turn; the known rows count upwards.
         let turned = |id: usize, turns: usize| {
-            let (x, y) = (0..turns).fold((id % 10, id / 10), |(x, y), _| (y, 9 - x));
+            let (x, y) = (0..turns).fold((9 - id % 10, id / 10), |(x, y), _| (y, 9 - x));
             own.iter().find(|it| it.0 == y * 10 + x)
         };
         let offs = |turns: usize| -> Vec<f64> {
@@ -111,8 +111,9 @@ fn the_dots_before_a_camera_on_an_arm() {
     }
     let rms_px = (squares / near as f64).sqrt();
     println!("{both} of 1300 known dots, {near} of them near, RMS {rms_px:.3} px");
-    // The known ones are middles of ellipses, of whole pixels.
-    assert!(both >= 1235 && near + 5 >= both && rms_px < 0.3);
+    // The first dot is twice as large as the others, and left out. The known ones are middles of ellipses: 0.08 px was seen, up to 0.15 px in
+    // pictures with glossy dots.
+    assert!(both >= 1235 && near + 5 >= both && rms_px < 0.15);
 }
 
 #[test]

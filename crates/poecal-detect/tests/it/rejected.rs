@@ -6,6 +6,8 @@ use poecal_detect::{Detector, Gray, Layout, Rejected};
 const CHARUCO: &str = "charuco:7x5:36.195mm:18.256mm:DICT_6X6_250";
 const CHESSBOARD: &str = "chessboard:10x7:28mm";
 const CIRCLES: &str = "circles:9x6:30mm";
+const TAGS: &str = "tags:36h11:50mm";
+const APRILGRID: &str = "aprilgrid:6x6:88mm:0.3";
 const ASYMMETRIC: &str = "circles:4x11:20mm:asymmetric";
 
 fn detector(spec: &str) -> Detector {
@@ -18,7 +20,7 @@ fn drawn(spec: &str, draw: &Draw, number: usize) -> Gray {
 
 #[test]
 fn no_corner_where_there_is_no_board() {
-    let detectors = [CHARUCO, CHESSBOARD, CIRCLES, ASYMMETRIC].map(detector);
+    let detectors = [CHARUCO, CHESSBOARD, CIRCLES, ASYMMETRIC, TAGS, APRILGRID].map(detector);
     let pictures = 60;
     for number in 0..pictures {
         let mut random = Random::new(40_000 + number);
@@ -34,7 +36,7 @@ fn no_corner_where_there_is_no_board() {
 
 #[test]
 fn no_corner_on_another_board() {
-    let detectors = [CHARUCO, CHESSBOARD, CIRCLES, ASYMMETRIC].map(detector);
+    let detectors = [CHARUCO, CHESSBOARD, CIRCLES, ASYMMETRIC, TAGS, APRILGRID].map(detector);
     let others = [
         "charuco:7x5:36mm:18mm:DICT_5X5_250",
         "charuco:11x8:24mm:18mm:DICT_6X6_250",
@@ -108,7 +110,7 @@ fn the_reason_is_told() {
 
 #[test]
 fn any_picture_is_borne() {
-    let detectors = [CHARUCO, CHESSBOARD, CIRCLES, ASYMMETRIC].map(detector);
+    let detectors = [CHARUCO, CHESSBOARD, CIRCLES, ASYMMETRIC, TAGS, APRILGRID].map(detector);
     let mut random = Random::new(1);
     for (width, height) in [(1, 1), (1, 40), (40, 1), (2, 3), (5, 5), (7, 30), (13, 13), (64, 64), (300, 200)]
     {
