@@ -28,7 +28,7 @@ const BEYOND: usize = 12;
 /// Largest misfit of a dot beside the median one, and beside the contrast: of more, something covers a part of it.
 const COVERED: (f64, f64) = (4.0, 0.03);
 /// How far beyond the outer dots there is paper, from their middles, units.
-const PAPER: f64 = 0.6;
+const PAPER: f64 = 0.8;
 
 /// Finds a grid of dots that reaches over all its columns and rows.
 pub(crate) fn detect(gray: &Gray, layout: &Layout, noise: f64) -> Result<Found, Rejected> {
@@ -126,7 +126,7 @@ fn numbered(layout: &Layout, dots: &[Dot], lattice: &Lattice, turn: usize) -> Re
     if seen[0].min(seen[1]) > size[0].min(size[1]) || seen[0].max(seen[1]) > size[0].max(size[1]) {
         return Err(Rejected::Other);
     }
-    if seen != size || nodes.len() * 2 < layout.corners() {
+    if seen != size || nodes.len() * 5 < layout.corners() * 3 {
         return Err(Rejected::Few(nodes.len()));
     }
     let number = |node: Node| layout.dot_at([0, 1].map(|k| (node[k] - low[k]) as usize));
@@ -163,7 +163,7 @@ fn named(
     seek(gray, layout, noise, &mut named, radius);
     keep_round(layout, &mut named, radius);
     prune(layout, &mut named);
-    if named.len() * 2 < layout.corners() || named.len() < 6 {
+    if named.len() * 20 < layout.corners() * 13 || named.len() < 6 {
         return Err(Rejected::Few(named.len()));
     }
     if !has_paper(gray, layout, &named) {
@@ -271,7 +271,7 @@ fn has_paper(gray: &Gray, layout: &Layout, named: &Named) -> bool {
             if !is_outer {
                 continue;
             }
-            for part in [PAPER - 0.1, PAPER] {
+            for part in [PAPER - 0.15, PAPER] {
                 let Some(place) = map.map(point + Vector2::from(way) * part) else { continue };
                 if gray.holds(place, 1.0) {
                     kinds[usize::from(gray.at(place) > dot.mean)] += 1;
@@ -279,7 +279,7 @@ fn has_paper(gray: &Gray, layout: &Layout, named: &Named) -> bool {
             }
         }
     }
-    kinds[0] * 5 <= kinds[1]
+    kinds[0] * 9 <= kinds[1]
 }
 
 /// The middles of the circles: with what the tilt moves the middle of their pictures taken away.
