@@ -2,6 +2,8 @@
 
 mod calibrate;
 mod compensate;
+#[cfg(any(unix, windows))]
+mod detect;
 mod identify;
 mod init;
 mod offsets;
@@ -13,6 +15,8 @@ mod words;
 
 pub(crate) use calibrate::Calibrate;
 pub(crate) use compensate::Compensate;
+#[cfg(any(unix, windows))]
+pub(crate) use detect::Detect;
 pub(crate) use identify::Identify;
 pub(crate) use init::Init;
 pub(crate) use offsets::Offsets;
@@ -61,6 +65,9 @@ pub(crate) enum Command {
     Init(Init),
     /// Calibrate a robot from measurements
     Calibrate(Box<Calibrate>),
+    /// Find the corners of a board in pictures
+    #[cfg(any(unix, windows))]
+    Detect(Detect),
     /// Simulate a robot with errors and its measurements, for tests and for learning
     Simulate(Simulate),
     /// Write the report of a calibration again

@@ -24,6 +24,7 @@ mod layout;
 mod light;
 mod markers;
 mod picture;
+mod preview;
 mod quads;
 pub mod render;
 mod saddle;
@@ -36,6 +37,7 @@ pub use found::{Corner, Found, Rejected};
 pub use gray::Gray;
 pub use layout::Layout;
 pub use picture::{Picture, Turned};
+pub use preview::preview;
 pub use spec::{Charuco, Chessboard, Spec};
 pub use suggest::Suggestion;
 

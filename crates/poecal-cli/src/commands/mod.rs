@@ -6,6 +6,8 @@ mod compare;
 mod compensate;
 mod completions;
 mod convert;
+#[cfg(any(unix, windows))]
+mod detect;
 mod export;
 mod identify;
 mod init;
@@ -25,6 +27,8 @@ pub(crate) use compare::compare;
 pub(crate) use compensate::compensate;
 pub(crate) use completions::completions;
 pub(crate) use convert::convert;
+#[cfg(any(unix, windows))]
+pub(crate) use detect::detect;
 pub(crate) use export::{apply, export};
 pub(crate) use identify::identify;
 pub(crate) use init::init;

@@ -8,6 +8,8 @@ mod checks;
 mod commands;
 mod compensate;
 mod counted;
+#[cfg(any(unix, windows))]
+mod detect;
 mod diagnosis;
 mod example;
 mod exit_codes;

@@ -58,7 +58,7 @@ impl Optics {
 
     /// Of these unknowns, from cameras and boards as they are.
     pub(super) fn from_here(pictures: &Pictures, unknowns: &[PictureUnknown]) -> Self {
-        let unknowns = PictureUnknowns::new(pictures, unknowns);
+        let unknowns = PictureUnknowns::new(&pictures.cameras, &pictures.boards, unknowns);
         let count = unknowns.count();
         Optics { unknowns, step: DVector::zeros(count), deviations: vec![1.0; count] }
     }

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::board::{Board, dimensions, middle};
 use super::lens::{Distortion, LENS_NAMES, LENS_NUMBERS};
-use super::{Camera, Corner, Pictures, View};
+use super::{Camera, Corner, View};
 use crate::lie::Pose;
 use crate::linalg;
 
@@ -88,8 +88,7 @@ impl OwnInformation {
 impl PictureUnknowns {
     /// The numbers of some unknowns, from these cameras and boards on.
     #[must_use]
-    pub fn new(given: &Pictures, unknowns: &[PictureUnknown]) -> Self {
-        let Pictures { cameras, boards, .. } = given;
+    pub fn new(cameras: &[Camera], boards: &[Board], unknowns: &[PictureUnknown]) -> Self {
         let mut parts: Vec<Part> = Vec::new();
         let mut first = 0;
         for &of in unknowns {
@@ -104,7 +103,7 @@ impl PictureUnknowns {
             first += priors.len();
             parts.push(Part { of, first: first - priors.len(), places, priors });
         }
-        PictureUnknowns { cameras: cameras.clone(), boards: boards.clone(), parts }
+        PictureUnknowns { cameras: cameras.to_vec(), boards: boards.to_vec(), parts }
     }
 
     /// How many numbers are unknown.
@@ -372,11 +371,7 @@ mod tests {
             ..Lens::pinhole([1500.0, 1490.0], [955.0, 603.0])
         };
         let board = Board::chessboard("board", [7, 5], 0.036).unwrap();
-        let mut pictures = Pictures {
-            cameras: vec![Camera::new("left".to_owned(), lens)],
-            boards: vec![board.clone()],
-            ..Pictures::default()
-        };
+        let (mut cameras, mut boards) = (vec![Camera::new("left".to_owned(), lens)], vec![board.clone()]);
         let pose = Pose::from_xyz_rpy([-0.1, 0.05, 0.7], [0.5, -0.3, 0.2]);
         let corner = |off: f64| {
             move |(point, place): (u32, &Vector3<f64>)| {
@@ -386,7 +381,7 @@ mod tests {
             }
         };
         let all = [PictureUnknown::Lens(0), PictureUnknown::Board(0), PictureUnknown::Markers(0)];
-        let unknowns = PictureUnknowns::new(&pictures, &all);
+        let unknowns = PictureUnknowns::new(&cameras, &boards, &all);
         let count = unknowns.count();
         assert_eq!(count, 8 + 4 + 3 * 24);
         let (mut worst, mut worst_pull): (f64, f64) = (0.0, 0.0);
@@ -394,8 +389,8 @@ mod tests {
         for off in [0.0, 1.0] {
             let corners: Vec<Corner> = (0..).zip(&board.points).map(corner(off)).collect();
             let mut best = |step: &DVector<f64>| {
-                (pictures.cameras, pictures.boards) = unknowns.at(step);
-                let (lens, board) = (&pictures.cameras[0].lens, &pictures.boards[0]);
+                (cameras, boards) = unknowns.at(step);
+                let (lens, board) = (&cameras[0].lens, &boards[0]);
                 let view = View { lens, board, corners: &corners, sigma_px: 0.5 };
                 let found = view.sighting(&pose, false).unwrap();
                 (found.camera_from_board, found.information, found.cost)
