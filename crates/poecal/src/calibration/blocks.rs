@@ -238,7 +238,7 @@ fn unknown_word(names: &Names, blocks: &[Block], word: &str) -> Error {
         listed.extend(last);
     }
     ErrorKind::Option.error(format!(
-        "found `{word}`, expected what to free or fix: joints, targets, frames, or a block's name, in which `*` stands for any letters \
+        "found `{word}`, expected what to free or fix: joints, targets, frames, of pictures also lens, board or markers to free, or a block's name, in which `*` stands for any letters \
          ({})",
         listed.join(", ")
     ))

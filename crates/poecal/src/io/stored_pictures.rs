@@ -123,6 +123,45 @@ impl PicturesEntry {
     }
 }
 
+impl PicturesEntry {
+    /// What to say where pictures were read with another lens or board than those that the calibration found.
+    #[must_use]
+    pub fn read_otherwise(&self, data: &Dataset) -> Option<String> {
+        let mut found = self.found.iter().map(|it| it.name.split('.').next().unwrap_or_default());
+        let (mut lens, mut board) = (false, false);
+        found.by_ref().for_each(|kind| if kind == "lens" { lens = true } else { board = true });
+        let differs = |a: &f64, b: &f64| (a - b).abs() > 1e-9 * (1.0 + a.abs());
+        let other_lens = data.pictures.cameras.iter().map(CameraEntry::of).any(|own| {
+            let same = self.cameras.iter().find(|it| it.name == own.name);
+            same.is_some_and(|it| {
+                let numbers = |it: &CameraEntry| [&it.focal_px[..], &it.centre_px, &it.distortion].concat();
+                numbers(it).iter().zip(&numbers(&own)).any(|(a, b)| differs(a, b))
+            })
+        });
+        let other_board = data.pictures.boards.iter().map(BoardEntry::of).any(|own| {
+            let same = self.boards.iter().find(|it| it.name == own.name);
+            same.is_some_and(|it| {
+                let places = it.points.iter().flat_map(|it| it.place_mm);
+                places.zip(own.points.iter().flat_map(|it| it.place_mm)).any(|(a, b)| differs(&a, &b))
+            })
+        });
+        let mut options = Vec::new();
+        if lens && other_lens {
+            options.push("--camera");
+        }
+        if board && other_board {
+            options.push("--markers");
+        }
+        (!options.is_empty()).then(|| {
+            format!(
+                "these pictures were read with another {} than the calibration found: name its calibration.json by {}",
+                if options.len() == 2 { "lens and board" } else if lens && other_lens { "lens" } else { "board" },
+                options.join(" and ")
+            )
+        })
+    }
+}
+
 impl BoardEntry {
     fn of(board: &Board) -> Self {
         let point = |(name, point): (&String, &Vector3<f64>)| PointEntry {
