@@ -24,6 +24,7 @@ mod layout;
 mod light;
 mod markers;
 mod picture;
+pub mod print;
 mod quads;
 pub mod render;
 mod saddle;
