@@ -21,12 +21,12 @@ pub fn described(spec: &Spec) -> String {
     }
 }
 
-/// How OpenCV's functions name the board.
+/// How OpenCV names the board: in functions that number its corners as here.
 pub(super) fn opencv(spec: &Spec) -> String {
     let mm = |length_m: f64| decimal(length_m * 1e3, 3);
     match spec {
         Spec::Chessboard(Chessboard { columns, rows, .. }) => {
-            format!("OpenCV: findChessboardCornersSB(picture, ({}, {}))", columns - 1, rows - 1)
+            format!("OpenCV: findChessboardCorners(picture, ({}, {}))", columns - 1, rows - 1)
         }
         Spec::Charuco(Charuco { columns, rows, square_m, marker_m, dictionary, legacy }) => {
             let (square, marker, name) = (mm(*square_m), mm(*marker_m), dictionary.name());
