@@ -1,5 +1,7 @@
 //! The command line.
 
+#[cfg(any(unix, windows))]
+mod board;
 mod calibrate;
 mod compensate;
 #[cfg(any(unix, windows))]
@@ -13,6 +15,8 @@ mod shared;
 mod simulate;
 mod words;
 
+#[cfg(any(unix, windows))]
+pub(crate) use board::Board;
 pub(crate) use calibrate::Calibrate;
 pub(crate) use compensate::Compensate;
 #[cfg(any(unix, windows))]
@@ -92,6 +96,9 @@ pub(crate) enum Command {
     Compensate(Compensate),
     /// Explain how a robot differs from its model by joint offsets
     Offsets(Offsets),
+    /// Draw a calibration board to scale, for a camera; or correct its squares by what a ruler shows of the print
+    #[cfg(any(unix, windows))]
+    Board(Board),
     /// Repeat the experiment of a paper and check its claims, or show the effect of gross errors
     Reproduce(Reproduce),
     /// Show what measurements in given configurations would determine, before anything is measured

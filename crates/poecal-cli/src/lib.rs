@@ -148,6 +148,8 @@ fn run_to_code(arguments: impl IntoIterator<Item = OsString>) -> u8 {
         Command::Apply(options) => commands::apply(options, &console),
         Command::Compensate(options) => commands::compensate(options, &console),
         Command::Offsets(options) => commands::offsets(options, &console),
+        #[cfg(any(unix, windows))]
+        Command::Board(options) => commands::board(options, &console),
         Command::Reproduce(options) => commands::reproduce(options, &console),
         Command::Identify(options) => commands::identify(options, &console),
         Command::Report(options) => commands::report(options, &console),

@@ -25,6 +25,7 @@ mod light;
 mod markers;
 mod picture;
 mod preview;
+pub mod print;
 mod quads;
 pub mod render;
 mod saddle;

@@ -1,5 +1,7 @@
 //! The commands, one per file (and `typed`, the command line of a run, which several need).
 
+#[cfg(any(unix, windows))]
+mod board;
 mod calibrate;
 mod check;
 mod compare;
@@ -21,6 +23,8 @@ mod simulate;
 mod typed;
 mod validate;
 
+#[cfg(any(unix, windows))]
+pub(crate) use board::board;
 pub(crate) use calibrate::calibrate;
 pub(crate) use check::check;
 pub(crate) use compare::compare;

@@ -19,7 +19,7 @@ fn elbow() -> PathBuf {
 }
 
 /// Pictures of a camera in the hand of an arm, rendered, with the readings of its joints; those from `moved` on with the board 20 mm elsewhere.
-fn session(folder: &Folder, count: u32, moved: usize) {
+fn session(folder: &Folder, count: usize, moved: usize) {
     let model = Model::read(&elbow(), &ChainSelection::default()).unwrap();
     let lens = poecal::camera::Lens {
         size_px: Some([960, 600]),

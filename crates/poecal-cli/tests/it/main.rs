@@ -4,6 +4,7 @@
 
 mod acceptance;
 mod bad_input;
+mod board;
 mod checks;
 mod commands;
 mod compensate;

@@ -1,8 +1,9 @@
-//! Corners of rendered pictures against the truth, reasons and suggestions, files, and real pictures where they are.
+//! Corners of rendered pictures against the truth, boards on paper, reasons and suggestions, files, and real pictures where they are.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 mod files;
 mod found;
+mod print;
 mod real;
 mod rejected;
