@@ -4,8 +4,8 @@ use poecal::calibration::Corrections;
 use poecal::{CalibrationOptions, Error};
 use serde_json::{Value, json};
 
-use crate::information::least_errors;
-use crate::session::{all_rows, judged, session};
+use crate::information::Information;
+use crate::session::{all_rows, judged, places, registered, rms, session};
 
 /// Both places of the camera, with the noise of corners alone and with an error of each configuration.
 pub(crate) fn run(seed: u64) -> Result<Vec<Value>, Error> {
@@ -14,14 +14,20 @@ pub(crate) fn run(seed: u64) -> Result<Vec<Value>, Error> {
         for millis in [0.0, 0.1, 0.5] {
             let session = session(in_hand, millis, 1000 + seed)?;
             let geometry = CalibrationOptions { corrections: Corrections::Off, ..all_rows() };
-            let (_, _, [shift, turn]) = judged(&session, &session.data, &geometry)?;
-            let (usual, _, [usual_shift, _]) = judged(&session, &session.data, &all_rows())?;
-            let [least_shift, least_turn] = least_errors(&session);
+            let (_, data, geometric) = judged(&session, &session.data, &geometry)?;
+            let (usual, _, all) = judged(&session, &session.data, &all_rows())?;
+            let information = Information::of(&session, session.simulation.common);
+            let (least, least_registered) = (information.least(), information.registered(&session).least());
+            let at = places(&session);
+            let shown = |[shift, turn]: [f64; 2]| [1e3 * shift, 1e3 * turn];
+            let common = data.pictures.common;
             lines.push(json!({
                 "task": "accuracy", "seed": seed, "in_hand": in_hand, "millis": millis,
-                "mm": 1e3 * shift, "mrad": 1e3 * turn, "usual_mm": 1e3 * usual_shift,
-                "least_mm": 1e3 * least_shift, "least_mrad": 1e3 * least_turn,
-                "level": usual.verdict.level.words(),
+                "error": shown(rms(&geometric)), "least": shown(least),
+                "registered": shown(rms(&registered(&at, &geometric))), "least_registered": shown(least_registered),
+                "delivered": shown(rms(&registered(&at, &all))), "level": usual.verdict.level.words(),
+                "common": shown([common.shift_m, common.turn_rad]), "about": format!("{:?}", common.about),
+                "sigma_px": data.pictures.sigma_px,
             }));
         }
     }

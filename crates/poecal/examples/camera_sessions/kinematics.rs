@@ -16,8 +16,7 @@ const MILLIS: f64 = 0.5;
 pub(crate) fn run(seed: u64) -> Result<Vec<Value>, Error> {
     let in_hand = seed % 2 == 0;
     let base = simulation(in_hand, MILLIS, 5000 + seed);
-    let session =
-        Simulation { count: COUNT, error_rotation_rad: 0.0, error_position_m: 0.0, ..base.session };
+    let session = Simulation { count: COUNT, error_rotation_rad: 0.0, error_position_m: 0.0, ..base.session };
     let simulation = PictureSimulation { session, common: common(MILLIS, in_hand), ..base };
     let made = simulation.run(&elbow())?;
     let pictures = &made.data.pictures;
@@ -25,7 +24,8 @@ pub(crate) fn run(seed: u64) -> Result<Vec<Value>, Error> {
     hold_out_thirds(&mut data);
     let said = settle_pictures(&mut data, &made.nominal);
     let blocks = BlockChoice { fix: vec!["joints".to_owned()], ..BlockChoice::default() };
-    let (calibration, fitted) = calibrated(&made.nominal, &data, &CalibrationOptions { blocks, ..CalibrationOptions::default() })?;
+    let (calibration, fitted) =
+        calibrated(&made.nominal, &data, &CalibrationOptions { blocks, ..CalibrationOptions::default() })?;
     let lens = simulation.lens;
     let corners = |corners: &[Corner]| -> Vec<[f64; 3]> {
         corners.iter().map(|it| [f64::from(it.point), it.pixel.x, it.pixel.y]).collect()

@@ -29,7 +29,8 @@ fn main() {
         ("optics", optics::run),
         ("kinematics", kinematics::run),
     ];
-    let Some((_, task)) = tasks.iter().find(|(name, _)| words.first().is_some_and(|word| word == name)) else {
+    let Some((_, task)) = tasks.iter().find(|(name, _)| words.first().is_some_and(|word| word == name))
+    else {
         eprintln!("expected one of accuracy, bounds, setups, optics, kinematics");
         std::process::exit(2);
     };

@@ -1,5 +1,6 @@
 //! Lenses, boards and markers that are not what they are said to be.
 
+use nalgebra::Vector6;
 use poecal::calibration::BlockChoice;
 use poecal::camera::{Board, Camera, Distortion, Lens, PictureNumber};
 use poecal::simulate::random;
@@ -9,7 +10,9 @@ use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 use serde_json::{Value, json};
 
-use crate::session::{COUNT, Session, all_rows, judged, of, rebuilt, simulation};
+use crate::session::{
+    COUNT, Session, all_rows, judged, of, of_one_size, places, rebuilt, registered, rms, simulation,
+};
 
 /// The stretch of a board along x.
 const STRETCH: f64 = 1.004;
@@ -25,7 +28,8 @@ pub(crate) fn run(seed: u64) -> Result<Vec<Value>, Error> {
     let mut lines = Vec::new();
     let true_lens = poecal::simulate::PictureSimulation { lens, ..base };
     let session = of(true_lens)?;
-    let (_, _, [known, _]) = judged(&session, &session.data, &all_rows())?;
+    let (_, _, known) = judged(&session, &session.data, &all_rows())?;
+    let known = arm_m(&session, &known);
     let numbers = lens.numbers();
     let mut sign = || if random::uniform(&mut generator) < 0.5 { -1.0 } else { 1.0 };
     let mut wrong = numbers;
@@ -66,6 +70,11 @@ pub(crate) fn run(seed: u64) -> Result<Vec<Value>, Error> {
     Ok(lines)
 }
 
+/// Root mean square error of the arm, with the device's frame registered.
+fn arm_m(session: &Session, deviations: &[Vector6<f64>]) -> f64 {
+    rms(&registered(&places(session), deviations))[0]
+}
+
 fn with_points(board: &Board, mut change: impl FnMut(&mut nalgebra::Vector3<f64>)) -> Board {
     let mut found = board.clone();
     found.points.iter_mut().for_each(&mut change);
@@ -81,18 +90,22 @@ fn line(
 ) -> Result<Value, Error> {
     let mut data = rebuilt(&session.data, 0..COUNT, given)?;
     let said = settle_pictures(&mut data, &session.made.nominal);
-    let blocks = BlockChoice { free: free.iter().map(|it| (*it).to_owned()).collect(), ..BlockChoice::default() };
+    let blocks =
+        BlockChoice { free: free.iter().map(|it| (*it).to_owned()).collect(), ..BlockChoice::default() };
     let options = CalibrationOptions { blocks, ..all_rows() };
-    let (calibration, data, [shift, _]) = judged(session, &data, &options)?;
+    let (calibration, data, deviations) = judged(session, &data, &options)?;
+    let at = places(session);
+    let shape_m = rms(&of_one_size(&at, &registered(&at, &deviations)))[0];
     let found = &data.pictures.found;
     let off = |number: &PictureNumber| (number.found - truth(number)) / number.deviation;
-    let off: Vec<(String, f64)> = found.iter().map(|number| (number.name.clone(), off(number))).collect();
-    let farthest = off.iter().map(|(_, off)| off.abs()).fold(0.0, f64::max);
-    let inside = off.iter().filter(|(_, off)| off.abs() <= 3.0).count();
+    let off: Vec<(String, f64, f64)> =
+        found.iter().map(|number| (number.name.clone(), off(number), number.deviation)).collect();
+    let farthest = off.iter().map(|(_, off, _)| off.abs()).fold(0.0, f64::max);
+    let inside = off.iter().filter(|(_, off, _)| off.abs() <= 3.0).count();
     Ok(json!({
         "task": "optics", "seed": seed, "what": name, "in_hand": session.simulation.in_hand,
         "numbers": found.len(), "inside": inside, "farthest": farthest,
         "off": if found.len() < 20 { json!(off) } else { json!(off.len()) },
-        "mm": 1e3 * shift, "known_mm": 1e3 * known, "start": said, "level": calibration.verdict.level.words(),
+        "mm": 1e3 * arm_m(session, &deviations), "shape_mm": 1e3 * shape_m, "known_mm": 1e3 * known, "start": said, "level": calibration.verdict.level.words(),
     }))
 }

@@ -192,7 +192,8 @@ impl Drawn {
                 return None;
             }
             let noise =
-                Vector2::new(random::normal(&mut self.generator), random::normal(&mut self.generator)) * NOISE_PX;
+                Vector2::new(random::normal(&mut self.generator), random::normal(&mut self.generator))
+                    * NOISE_PX;
             corners.push(Corner { point, pixel: exact + noise, sigma_px: None, weight: 1.0, line: 0 });
         }
         Some(corners)
@@ -212,7 +213,11 @@ fn with_head(arm: &Robot, base_from_camera: &Pose, generator: &mut ChaCha8Rng) -
         (joint.limits, joint.stands_on) = (limits, stands_on);
         robot.joints.insert(arm.joints.len(), joint);
     }
-    let mount = |name: &str, body: usize| Mount { name: name.to_owned(), body: Body::Link(body), pose: Pose::identity() };
+    let mount = |name: &str, body: usize| Mount {
+        name: name.to_owned(),
+        body: Body::Link(body),
+        pose: Pose::identity(),
+    };
     robot.instruments.push(mount("camera", arm.joints.len() + 1));
     robot.mounted.push(mount("board", arm.joints.len() - 1));
     robot

@@ -1,9 +1,9 @@
 //! Sessions with their truth, and what a calibration says of configurations that were not measured.
 
-use nalgebra::{Matrix6, Vector6};
+use nalgebra::{Matrix6, SMatrix, Vector3, Vector6};
 use poecal::calibration::{Calibration, calibrate_repairing};
 use poecal::camera::{Board, Camera, Centre, CommonError, Picture};
-use poecal::lie::Pose;
+use poecal::lie::{Pose, hat};
 use poecal::measurement::{Dataset, Set, Source, deviation, picture_whitening};
 use poecal::robot::Robot;
 use poecal::simulate::{Photographed, PictureSimulation, elbow};
@@ -64,7 +64,7 @@ pub(crate) fn of(simulation: PictureSimulation) -> Result<Session, Error> {
     let mut others = part(COUNT..COUNT + FURTHER)?;
     settle_pictures(&mut data, &made.nominal);
     settle_pictures(&mut others, &made.nominal);
-    made.data.pictures.all.truncate(0);
+    made.data = Dataset::new(made.data.reading_names().to_vec());
     Ok(Session { simulation, made, data, others })
 }
 
@@ -80,8 +80,11 @@ pub(crate) fn rebuilt(
     for row in rows {
         let Picture { camera, board, image, corners, .. } = data.pictures.all[row].clone();
         let picture = Picture::new(camera, board, image, corners);
-        let added =
-            found.push_picture(data.readings(row), picture, (data.observations[row].set, Source::default()))?;
+        let added = found.push_picture(
+            data.readings(row),
+            picture,
+            (data.observations[row].set, Source::default()),
+        )?;
         added.map_err(|reason| Error::new(ErrorKind::Problem, reason))?;
     }
     found.settle_pixels();
@@ -122,6 +125,48 @@ pub(crate) fn deviations(session: &Session, poses: &[Pose]) -> Vec<Vector6<f64>>
     truth.zip(poses).map(|(truth, pose)| deviation(pose, &truth)).collect()
 }
 
+/// Deviations with the device's frame put where it makes the shifts smallest: what is left of the arm. Linear, since they are small.
+pub(crate) fn registered<const N: usize>(
+    places: &[Vector3<f64>],
+    deviations: &[SMatrix<f64, 6, N>],
+) -> Vec<SMatrix<f64, 6, N>> {
+    let by_frame = |place: &Vector3<f64>| {
+        let mut by = Matrix6::<f64>::identity();
+        by.fixed_view_mut::<3, 3>(0, 3).copy_from(&-hat(place));
+        by
+    };
+    let (mut gram, mut pull) = (Matrix6::<f64>::zeros(), SMatrix::<f64, 6, N>::zeros());
+    for (place, deviation) in places.iter().zip(deviations) {
+        let by = by_frame(place).fixed_rows::<3>(0).into_owned();
+        gram += by.transpose() * by;
+        pull += by.transpose() * deviation.fixed_rows::<3>(0);
+    }
+    let motion = gram.try_inverse().unwrap_or_else(Matrix6::zeros) * pull;
+    places.iter().zip(deviations).map(|(place, deviation)| deviation - by_frame(place) * motion).collect()
+}
+
+/// Registered deviations of shift without what a robot of another size makes.
+pub(crate) fn of_one_size(places: &[Vector3<f64>], deviations: &[Vector6<f64>]) -> Vec<Vector6<f64>> {
+    let middle = places.iter().sum::<Vector3<f64>>() / places.len().max(1) as f64;
+    let squares: f64 = places.iter().map(|place| (place - middle).norm_squared()).sum();
+    let along = places.iter().zip(deviations).map(|(place, it)| (place - middle).dot(&it.fixed_rows::<3>(0)));
+    let growth = along.sum::<f64>() / squares;
+    let of = |(place, deviation): (&Vector3<f64>, &Vector6<f64>)| {
+        let mut left = *deviation;
+        let own = (place - middle) * growth;
+        (0..3).for_each(|k| left[k] -= own[k]);
+        left
+    };
+    places.iter().zip(deviations).map(of).collect()
+}
+
+/// The places of the further true poses.
+pub(crate) fn places(session: &Session) -> Vec<Vector3<f64>> {
+    let Session { made, others, .. } = session;
+    let place = |row| true_pose(made, &made.actual, others.readings(row)).translation;
+    (0..others.len()).map(place).collect()
+}
+
 /// Root mean squares of shift and turn.
 pub(crate) fn rms(deviations: &[Vector6<f64>]) -> [f64; 2] {
     let mean = |first: usize| {
@@ -146,20 +191,19 @@ pub(crate) fn calibrated(
     Ok((found.calibration, found.data.into_owned()))
 }
 
-/// A calibration with its data, and its errors in the further configurations: shift (m) and turn (rad).
+/// A calibration with its data, and its deviations in the further configurations.
 pub(crate) fn judged(
     session: &Session,
     data: &Dataset,
     options: &CalibrationOptions,
-) -> Result<(Calibration, Dataset, [f64; 2]), Error> {
+) -> Result<(Calibration, Dataset, Vec<Vector6<f64>>), Error> {
     let (calibration, data) = calibrated(&session.made.nominal, data, options)?;
     let (poses, _) = delivered(&calibration, &data, session.others.all_readings())?;
-    let errors = rms(&deviations(session, &poses));
-    Ok((calibration, data, errors))
+    Ok((calibration, data, deviations(session, &poses)))
 }
 
-/// What whitens the rows of a session by the known noise at the true poses.
-pub(crate) fn whitenings(session: &Session) -> Vec<Matrix6<f64>> {
+/// What whitens the rows of a session by the known noise of corners at the true poses, with an error in common.
+pub(crate) fn whitenings(session: &Session, common: CommonError) -> Vec<Matrix6<f64>> {
     let Session { simulation, made, data, .. } = session;
     let of = |picture: &Picture| {
         let mut exact = picture.clone();
@@ -168,7 +212,7 @@ pub(crate) fn whitenings(session: &Session) -> Vec<Matrix6<f64>> {
         let seen = exact.directed(&pose);
         let pictures = poecal::camera::Pictures { sigma_px: simulation.noise_px, ..data.pictures.clone() };
         let information = pictures.view(&exact).map(|view| view.information(&seen)).unwrap_or_default();
-        picture_whitening(simulation.common, (&seen, information), exact.of_camera)
+        picture_whitening(common, (&seen, information), exact.of_camera)
     };
     data.pictures.all.iter().map(of).collect()
 }
