@@ -15,6 +15,8 @@ except ImportError:
 
 HAND_EYE = ("TSAI", "PARK", "HORAUD", "ANDREFF", "DANIILIDIS")
 ROBOT_WORLD = ("SHAH", "LI")
+# About so many fitted pictures at most: some methods take all pairs, and the time of their squares.
+MOST = 100
 
 
 def pose(rotation, translation):
@@ -51,7 +53,8 @@ class Pictures:
 
     def methods(self):
         """By the name of a method, the pose of the board in the camera's frame by the tip's."""
-        moving = [(tip if self.in_hand else np.linalg.inv(tip), self.seen(points, pixels)) for tip, points, pixels in self.fitted]
+        every = max(1, len(self.fitted) // MOST)
+        moving = [(tip if self.in_hand else np.linalg.inv(tip), self.seen(points, pixels)) for tip, points, pixels in self.fitted[::every]]
         ahead = [it[0] for it in moving]
         seen = [it[1] for it in moving]
         parts = lambda poses: ([it[:3, :3] for it in poses], [it[:3, 3] for it in poses])

@@ -11,7 +11,7 @@ use rand_core::SeedableRng;
 use serde_json::{Value, json};
 
 use crate::session::{
-    COUNT, Session, all_rows, judged, of, of_one_size, places, rebuilt, registered, rms, simulation,
+    COUNT, Session, all_rows, judged, of, places, rebuilt, registered, rms, shape, simulation,
 };
 
 /// The stretch of a board along x.
@@ -29,7 +29,7 @@ pub(crate) fn run(seed: u64) -> Result<Vec<Value>, Error> {
     let true_lens = poecal::simulate::PictureSimulation { lens, ..base };
     let session = of(true_lens)?;
     let (_, _, known) = judged(&session, &session.data, &all_rows())?;
-    let known = arm_m(&session, &known);
+    let known = rms(&shape(&session, &known))[0];
     let numbers = lens.numbers();
     let mut sign = || if random::uniform(&mut generator) < 0.5 { -1.0 } else { 1.0 };
     let mut wrong = numbers;
@@ -94,8 +94,7 @@ fn line(
         BlockChoice { free: free.iter().map(|it| (*it).to_owned()).collect(), ..BlockChoice::default() };
     let options = CalibrationOptions { blocks, ..all_rows() };
     let (calibration, data, deviations) = judged(session, &data, &options)?;
-    let at = places(session);
-    let shape_m = rms(&of_one_size(&at, &registered(&at, &deviations)))[0];
+    let shape_m = rms(&shape(session, &deviations))[0];
     let found = &data.pictures.found;
     let off = |number: &PictureNumber| (number.found - truth(number)) / number.deviation;
     let off: Vec<(String, f64, f64)> =

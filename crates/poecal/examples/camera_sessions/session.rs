@@ -1,6 +1,6 @@
 //! Sessions with their truth, and what a calibration says of configurations that were not measured.
 
-use nalgebra::{Matrix6, SMatrix, Vector3, Vector6};
+use nalgebra::{Matrix3, Matrix6, SMatrix, Vector3, Vector6};
 use poecal::calibration::{Calibration, calibrate_repairing};
 use poecal::camera::{Board, Camera, Centre, CommonError, Picture};
 use poecal::lie::{Pose, hat};
@@ -55,9 +55,11 @@ pub(crate) fn simulation(in_hand: bool, millis: f64, seed: u64) -> PictureSimula
     PictureSimulation { common: common(millis, in_hand), ..PictureSimulation::usual(session, in_hand) }
 }
 
-/// The session of a simulation.
+/// The session of a simulation; of another seed if the robot cannot be moved so that the camera sees the board.
 pub(crate) fn of(simulation: PictureSimulation) -> Result<Session, Error> {
-    let mut made = simulation.run(&elbow())?;
+    let other = Simulation { seed: simulation.session.seed + 1_000_000, ..simulation.session };
+    let again = PictureSimulation { session: other, ..simulation.clone() };
+    let mut made = simulation.run(&elbow()).or_else(|_| again.run(&elbow()))?;
     let (cameras, boards) = (made.data.pictures.cameras.clone(), made.data.pictures.boards.clone());
     let part = |rows| rebuilt(&made.data, rows, (&cameras, &boards));
     let mut data = part(0..COUNT)?;
@@ -145,19 +147,33 @@ pub(crate) fn registered<const N: usize>(
     places.iter().zip(deviations).map(|(place, deviation)| deviation - by_frame(place) * motion).collect()
 }
 
-/// Registered deviations of shift without what a robot of another size makes.
-pub(crate) fn of_one_size(places: &[Vector3<f64>], deviations: &[Vector6<f64>]) -> Vec<Vector6<f64>> {
-    let middle = places.iter().sum::<Vector3<f64>>() / places.len().max(1) as f64;
-    let squares: f64 = places.iter().map(|place| (place - middle).norm_squared()).sum();
-    let along = places.iter().zip(deviations).map(|(place, it)| (place - middle).dot(&it.fixed_rows::<3>(0)));
-    let growth = along.sum::<f64>() / squares;
-    let of = |(place, deviation): (&Vector3<f64>, &Vector6<f64>)| {
+/// What is left of shifts with the device's frame, the tool and the size of all put where they are least: a board that is free is known to no
+/// better size than the robot, and its frame is where its points are on the whole.
+pub(crate) fn shape(session: &Session, deviations: &[Vector6<f64>]) -> Vec<Vector6<f64>> {
+    let Session { made, others, .. } = session;
+    let columns = |row: usize| {
+        let pose = true_pose(made, &made.actual, others.readings(row));
+        let mut by = SMatrix::<f64, 3, 10>::zeros();
+        by.fixed_view_mut::<3, 3>(0, 0).copy_from(&Matrix3::identity());
+        by.fixed_view_mut::<3, 3>(0, 3).copy_from(&-hat(&pose.translation));
+        by.fixed_view_mut::<3, 3>(0, 6).copy_from(&pose.rotation);
+        by.set_column(9, &pose.translation);
+        by
+    };
+    let (mut gram, mut pull) = (SMatrix::<f64, 10, 10>::zeros(), SMatrix::<f64, 10, 1>::zeros());
+    for (row, deviation) in deviations.iter().enumerate() {
+        let by = columns(row);
+        gram += by.transpose() * by;
+        pull += by.transpose() * deviation.fixed_rows::<3>(0);
+    }
+    let fitted = gram.try_inverse().unwrap_or_else(SMatrix::zeros) * pull;
+    let of = |(row, deviation): (usize, &Vector6<f64>)| {
         let mut left = *deviation;
-        let own = (place - middle) * growth;
+        let own = columns(row) * fitted;
         (0..3).for_each(|k| left[k] -= own[k]);
         left
     };
-    places.iter().zip(deviations).map(of).collect()
+    deviations.iter().enumerate().map(of).collect()
 }
 
 /// The places of the further true poses.
