@@ -18,7 +18,7 @@ use crate::session::{Session, calibrated, delivered, deviations, rms, session, t
 pub(crate) fn run(seed: u64) -> Result<Vec<Value>, Error> {
     let mut lines = Vec::new();
     for millis in [0.0, 0.1, 0.5] {
-        let session = session(seed % 2 == 0, millis, 2000 + seed)?;
+        let session = session(seed.is_multiple_of(2), millis, 2000 + seed)?;
         // Sessions of the other rule are for comparison.
         for independent in [false, true].into_iter().take(if seed % 4 < 2 { 2 } else { 1 }) {
             let data = if independent { of_independent_corners(&session.data) } else { session.data.clone() };

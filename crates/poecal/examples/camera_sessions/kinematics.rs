@@ -14,7 +14,7 @@ use crate::session::{COUNT, calibrated, common, hold_out_thirds, rebuilt, simula
 const MILLIS: f64 = 0.5;
 
 pub(crate) fn run(seed: u64) -> Result<Vec<Value>, Error> {
-    let in_hand = seed % 2 == 0;
+    let in_hand = seed.is_multiple_of(2);
     let base = simulation(in_hand, MILLIS, 5000 + seed);
     let session = Simulation { count: COUNT, error_rotation_rad: 0.0, error_position_m: 0.0, ..base.session };
     let simulation = PictureSimulation { session, common: common(MILLIS, in_hand), ..base };

@@ -20,7 +20,7 @@ const STRETCH: f64 = 1.004;
 const MOVED_M: f64 = 0.5e-3;
 
 pub(crate) fn run(seed: u64) -> Result<Vec<Value>, Error> {
-    let in_hand = seed % 2 == 0;
+    let in_hand = seed.is_multiple_of(2);
     let k1 = -0.1;
     let base = simulation(in_hand, 0.0, 3000 + seed);
     let lens = Lens { distortion: Distortion::Brown([k1, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]), ..base.lens };

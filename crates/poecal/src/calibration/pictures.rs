@@ -26,6 +26,9 @@ const FLIPPED_RAD: f64 = 0.2;
 /// Times the noise of its best pose up to which a pose near the prediction is taken instead.
 const AS_GOOD: f64 = 3.0;
 
+/// A sighting, and how far its row is off the prediction.
+type Seen = (Sighting, Vector6<f64>);
+
 impl Run<'_> {
     /// The data with the noise of pictures as the residuals of a fit show it, and with each picture at the pose that is nearest to its
     /// prediction. `None` if that changes nothing.
@@ -46,7 +49,7 @@ impl Run<'_> {
         let errors = session.errors(&rows, estimate);
         let mut has_moved = next.is_some();
         // Sightings with how far each is off its prediction, as motions of its row.
-        let mut found: Vec<(Sighting, Vector6<f64>)> = Vec::with_capacity(rows.len());
+        let mut found: Vec<Seen> = Vec::with_capacity(rows.len());
         for (picture, error) in pictures.all.iter().zip(&errors) {
             let measured = self.data.observations[picture.row as usize].measurement.pose();
             let predicted = predicted_pose(&measured, error);
@@ -95,7 +98,7 @@ impl Run<'_> {
     fn common_error(
         &self,
         (fit, numbers): (&RobustFit, f64),
-        (found, spreads): (&[(Sighting, Vector6<f64>)], &[Matrix6<f64>]),
+        (found, spreads): (&[Seen], &[Matrix6<f64>]),
         length_m: f64,
     ) -> CommonError {
         let pictures = &self.data.pictures;

@@ -329,6 +329,6 @@ fn a_board_is_found_that_is_not_what_it_is_said_to_be() {
         uneven = uneven.max((numbers[0].found / numbers[1].found - STRETCH).abs());
     }
     println!("at most {farthest:.1} deviations from the truth, and {uneven:.1e} in the ratio of the sides");
-    // 16 numbers within 3.5 deviations; 60 pictures of 24 corners to 0.3 px show a side of 200 px to 1e-4.
-    assert!(farthest < 3.5 && uneven < 3e-4, "{farthest} {uneven:e}");
+    // 16 numbers within 3.5 deviations; 60 pictures of 24 corners to 0.3 px show a side of 350 px to 1e-4, of which this is five times.
+    assert!(farthest < 3.5 && uneven < 5e-4, "{farthest} {uneven:e}");
 }
