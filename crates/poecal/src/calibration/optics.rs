@@ -2,7 +2,6 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::RowJudgement;
 use super::corrections::whitened_rows;
 use super::robust::RobustFit;
 use super::run::Run;
@@ -12,10 +11,10 @@ use crate::camera::{
 };
 use crate::estimate::Estimate;
 use crate::linalg;
-use crate::measurement::{Dataset, Noise, picture_whitening};
-use crate::parameters::Parameter;
+use crate::measurement::{Dataset, Noise};
 use crate::problem::Problem;
 use crate::solve::{LeastSquares as _, Normal};
+use crate::start::predicted_pose;
 use crate::uncertainty::PriorInformation;
 
 /// Largest step of a number, standard deviations of its prior.
@@ -90,23 +89,26 @@ impl Optics {
         let rows: Vec<u32> =
             problem.rows().iter().copied().filter(|row| pictures.of_row(*row).is_some()).collect();
         let (starts, jacobian, residuals) = whitened_rows(problem, estimate, &rows);
+        let errors = problem.session().errors(&rows, estimate);
         let count = self.unknowns.count();
         let mut own = OwnInformation::none(count);
         let mut by_numbers = DMatrix::zeros(residuals.len(), count);
-        for (at, row) in rows.iter().enumerate() {
+        for (at, (row, error)) in rows.iter().zip(&errors).enumerate() {
             let Some(picture) = pictures.of_row(*row).and_then(|at| pictures.all.get(at)) else { continue };
             let Some(view) = pictures.view(picture) else { continue };
-            let pose = picture.directed(&data.observations[*row as usize].measurement.pose());
-            let information = view.information(&pose);
-            if view.is_odd(&pose) {
+            let Some(whitening) = data.whitening_of_picture(*row) else { continue };
+            let measured = data.observations[*row as usize].measurement.pose();
+            if view.is_odd(&picture.directed(&measured)) {
                 continue;
             }
+            // At the prediction: there a robot of another size and a board of another size are one direction, to the last digit.
+            let pose = picture.directed(&predicted_pose(&measured, error));
+            let information = view.information(&pose);
             let of = (picture.camera, picture.board);
             let mut follow = self.unknowns.add(of, &view, (&pose, &information), &mut own);
             if picture.of_camera {
                 follow = motion_by_inverse(&pose.inverse()) * follow;
             }
-            let whitening = picture_whitening(pictures.common, (&pose, information), picture.of_camera);
             // The measured pose moves with the numbers: residuals fall by the opposite.
             let weight = problem.weight(*row).sqrt();
             by_numbers.rows_mut(starts[at], 6).copy_from(&(whitening * follow * -weight));
@@ -120,10 +122,8 @@ impl Optics {
     pub(super) fn best_step(&self, run: &Run<'_>, (ratios, fit): (&[Noise], &RobustFit)) -> Option<BestStep> {
         let session = run.session(ratios);
         let fitted = &fit.fitted;
-        let counted = |row: &RowJudgement| if row.suspected { 0.0 } else { row.weight };
-        let weights: Vec<f64> = fit.robustness.rows.iter().map(counted).collect();
-        let free: Vec<Parameter> = fitted.layout.parameters().map(|(parameter, _)| *parameter).collect();
-        let problem = Problem::new(session, run.fit_rows.clone(), free, fitted.noise).with_weights(&weights);
+        let weights = fit.weights();
+        let problem = run.problem_of(session, fit, &weights);
         let prior =
             PriorInformation::new(run.prior.as_ref(), &fitted.estimate, &fitted.layout, session.length_m);
         let normal = problem.normal(&fitted.estimate);
@@ -187,7 +187,7 @@ impl Optics {
 }
 
 /// A symmetric matrix from its upper triangle.
-fn symmetric(upper: &[f64], n: usize) -> DMatrix<f64> {
+pub(super) fn symmetric(upper: &[f64], n: usize) -> DMatrix<f64> {
     DMatrix::from_fn(n, n, |i, j| upper[i.min(j) * n + i.max(j)])
 }
 
@@ -200,4 +200,10 @@ fn factor_of(matrix: &DMatrix<f64>) -> Option<linalg::Factor> {
 fn solved(factor: &linalg::Factor, right: &DMatrix<f64>) -> DMatrix<f64> {
     let n = right.nrows();
     DMatrix::from_row_slice(n, n, &linalg::inverse(factor)) * right
+}
+
+/// The inverse of a symmetric positive definite matrix.
+pub(super) fn inverse(matrix: &DMatrix<f64>) -> Option<DMatrix<f64>> {
+    let n = matrix.nrows();
+    Some(DMatrix::from_row_slice(n, n, &linalg::inverse(&factor_of(matrix)?)))
 }
