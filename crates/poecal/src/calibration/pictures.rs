@@ -9,6 +9,7 @@ use super::robust::RobustFit;
 use super::run::Run;
 use crate::camera::{Centre, CommonError, Sighting};
 use crate::estimate::Session;
+use crate::linalg;
 use crate::measurement::{Dataset, Noise, SightingAbout, deviation};
 use crate::parameters::Parameter;
 use crate::problem::Problem;
