@@ -20,7 +20,7 @@ fn elbow() -> PathBuf {
 
 /// Pictures of a camera in the hand of an arm, rendered, with the readings of its joints; those from `moved` on with the board 20 mm elsewhere.
 fn session(folder: &Folder, count: usize, moved: usize) {
-    let model = Model::read(&elbow(), &ChainSelection::default()).unwrap();
+    let model = Model::read(elbow(), &ChainSelection::default()).unwrap();
     let lens = poecal::camera::Lens {
         size_px: Some([960, 600]),
         ..poecal::camera::Lens::pinhole([800.0; 2], [479.5, 299.5])
@@ -50,7 +50,7 @@ fn session(folder: &Folder, count: usize, moved: usize) {
         let held = made.actual.forward_kinematics(readings) * made.tip_from_held;
         let pose = held.inverse() * made.base_from_other * shift;
         let scene = Scene {
-            camera: camera.clone(),
+            camera,
             rotation: pose.rotation,
             translation_m: pose.translation,
             levels: [40.0, 205.0],

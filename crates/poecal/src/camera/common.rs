@@ -207,7 +207,8 @@ mod tests {
             shift += (found.shift_m / truth.shift_m).ln() / SESSIONS as f64;
             turn += (found.turn_rad / truth.turn_rad).ln() / SESSIONS as f64;
             let whitening = truth.whitening(&information, length_m);
-            let squares = seen.iter().map(|(_, it)| (whitening * it).norm_squared()).sum::<f64>();
+            let squares =
+                seen.iter().map(|(_, it)| (whitening * it * whitening.transpose()).trace()).sum::<f64>();
             variance += squares / (6.0 * seen.len() as f64) / SESSIONS as f64;
         }
         println!("shift {:.3}, turn {:.3} of the truth, variance {variance:.3}", shift.exp(), turn.exp());
