@@ -23,7 +23,7 @@ fn photographed(seed: u64, board: Board) -> Photographed {
         error_position_m: 1e-3,
         ..Simulation::default()
     };
-    let usual = PictureSimulation::usual(session, seed % 2 == 0);
+    let usual = PictureSimulation::usual(session, seed.is_multiple_of(2));
     PictureSimulation { lens: bent(), board, ..usual }.run(&elbow()).unwrap()
 }
 
