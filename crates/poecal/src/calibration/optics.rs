@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::corrections::whitened_rows;
+use super::corrections::{ROUNDING_OF_TERMS, cholesky, solved, whitened_rows};
 use super::robust::RobustFit;
 use super::run::Run;
 use crate::camera::{
@@ -19,8 +19,6 @@ use crate::uncertainty::PriorInformation;
 
 /// Largest step of a number, standard deviations of its prior.
 const FARTHEST: f64 = 3.0;
-/// Rounding of the information of the robot, as a share of the largest.
-const ROUNDING: f64 = 1e-13;
 
 /// Unknown numbers of cameras and boards in a fit, and how far they are from what was given.
 #[derive(Clone)]
@@ -45,6 +43,13 @@ pub(super) struct BestStep {
     pub(super) covariance: DMatrix<f64>,
     still: DVector<f64>,
     follow: DMatrix<f64>,
+}
+
+impl BestStep {
+    /// Standard deviations of the numbers.
+    fn deviations(&self) -> Vec<f64> {
+        self.covariance.diagonal().iter().map(|it| it.max(0.0).sqrt()).collect()
+    }
 }
 
 impl Optics {
@@ -74,8 +79,7 @@ impl Optics {
 
     /// The numbers after a step, with their standard deviations.
     pub(super) fn numbers_after(&self, best: &BestStep) -> Vec<PictureNumber> {
-        let deviations: Vec<f64> = best.covariance.diagonal().iter().map(|it| it.max(0.0).sqrt()).collect();
-        self.unknowns.numbers(&best.step, &deviations)
+        self.unknowns.numbers(&best.step, &best.deviations())
     }
 
     /// How many numbers the pictures determine rather than the prior.
@@ -151,8 +155,10 @@ impl Optics {
         (ratios, fit): (&[Noise], &RobustFit),
         least: f64,
     ) -> Option<(Dataset, Estimate)> {
-        let BestStep { mut step, gain, covariance, still, follow } = self.best_step(run, (ratios, fit))?;
-        self.deviations = covariance.diagonal().iter().map(|it| it.max(0.0).sqrt()).collect();
+        let best = self.best_step(run, (ratios, fit))?;
+        let deviations = best.deviations();
+        let BestStep { mut step, gain, still, follow, .. } = best;
+        self.deviations = deviations;
         step *= (FARTHEST / step.amax().max(FARTHEST)).min(1.0);
         if gain < least * least {
             return None;
@@ -191,15 +197,9 @@ pub(super) fn symmetric(upper: &[f64], n: usize) -> DMatrix<f64> {
     DMatrix::from_fn(n, n, |i, j| upper[i.min(j) * n + i.max(j)])
 }
 
+/// Factor of an information, of robot or numbers.
 fn factor_of(matrix: &DMatrix<f64>) -> Option<linalg::Factor> {
-    let largest = matrix.diagonal().iter().copied().fold(0.0, f64::max);
-    linalg::cholesky(matrix.as_slice(), matrix.nrows(), ROUNDING * largest)
-}
-
-/// `A⁻¹ B` from the factor of A.
-fn solved(factor: &linalg::Factor, right: &DMatrix<f64>) -> DMatrix<f64> {
-    let n = right.nrows();
-    DMatrix::from_row_slice(n, n, &linalg::inverse(factor)) * right
+    cholesky(matrix, ROUNDING_OF_TERMS)
 }
 
 /// The inverse of a symmetric positive definite matrix.

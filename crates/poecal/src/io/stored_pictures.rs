@@ -127,9 +127,8 @@ impl PicturesEntry {
     /// What to say where pictures were read with another lens or board than those that the calibration found.
     #[must_use]
     pub fn read_otherwise(&self, data: &Dataset) -> Option<String> {
-        let mut found = self.found.iter().map(|it| it.name.split('.').next().unwrap_or_default());
-        let (mut lens, mut board) = (false, false);
-        found.by_ref().for_each(|kind| if kind == "lens" { lens = true } else { board = true });
+        let has = |kind: &str| self.found.iter().any(|it| it.name.starts_with(kind));
+        let (lens, board) = (has("lens."), has("board.") || has("markers."));
         let differs = |a: &f64, b: &f64| (a - b).abs() > 1e-9 * (1.0 + a.abs());
         let other_lens = data.pictures.cameras.iter().map(CameraEntry::of).any(|own| {
             let same = self.cameras.iter().find(|it| it.name == own.name);
