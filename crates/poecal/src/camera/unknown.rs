@@ -1,6 +1,7 @@
 //! What of cameras and boards is unknown beside the robot, and how corners depend on it (theory.md §4, *Pictures*).
 
 use nalgebra::{DMatrix, DVector, Matrix2x3, Matrix3x4, Matrix6, Matrix6xX, Vector2, Vector3, Vector6};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::board::{Board, dimensions, middle};
@@ -33,12 +34,13 @@ pub enum PictureUnknown {
     Markers(usize),
 }
 
-/// A number of these, found or to be found.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+/// A number of a camera or of a board that was found.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(rename = "FoundEntry")]
 pub struct PictureNumber {
-    /// Its name, as `lens.left.fx`.
+    /// What it is: `lens`, `board` or `markers`, then a name, and the number's own, as `lens.left.fx`.
     pub name: String,
-    /// Its unit: `px`, `mm`, or nothing.
+    /// Its unit, `px` or `mm`; empty of shares and of coefficients.
     pub unit: String,
     /// As it was given.
     pub given: f64,
@@ -46,7 +48,7 @@ pub struct PictureNumber {
     pub found: f64,
     /// Standard deviation of what was known before.
     pub prior: f64,
-    /// Standard deviation of what was found.
+    /// Standard deviation of what was found, by the corners and what was known before.
     pub deviation: f64,
 }
 
