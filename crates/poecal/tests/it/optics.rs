@@ -6,7 +6,9 @@ use poecal::camera::{Board, Distortion, Lens, Pictures};
 use poecal::measurement::{Dataset, Source};
 use poecal::simulate::{Photographed, PictureSimulation, elbow};
 use poecal::start::settle_pictures;
-use poecal::{Calibration, CalibrationOptions, Simulation};
+use poecal::{Calibration, CalibrationOptions};
+
+use crate::pictures::session;
 
 /// A lens with distortion.
 fn bent() -> Lens {
@@ -16,14 +18,7 @@ fn bent() -> Lens {
 
 /// A session of 60 pictures by an actual lens and board.
 fn photographed(seed: u64, board: Board) -> Photographed {
-    let session = Simulation {
-        count: 60,
-        seed,
-        error_rotation_rad: 3e-3,
-        error_position_m: 1e-3,
-        ..Simulation::default()
-    };
-    let usual = PictureSimulation::usual(session, seed.is_multiple_of(2));
+    let usual = PictureSimulation::usual(session(seed), seed.is_multiple_of(2));
     PictureSimulation { lens: bent(), board, ..usual }.run(&elbow()).unwrap()
 }
 

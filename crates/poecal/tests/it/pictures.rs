@@ -207,15 +207,14 @@ fn seen() -> [Seen; 3] {
     ]
 }
 
+/// 60 configurations of an arm that is off by milliradians and millimetres.
+pub(crate) fn session(seed: u64) -> Simulation {
+    Simulation { count: 60, seed, error_rotation_rad: 3e-3, error_position_m: 1e-3, ..Simulation::default() }
+}
+
 /// Held-out figures of simulated sessions, 60 pictures each: the error of the tip in other configurations, and of the verdict's promise.
 fn judged(in_hand: bool, common: CommonError, seed: u64) -> (f64, f64, usize) {
-    let session = Simulation {
-        count: 60,
-        seed,
-        error_rotation_rad: 3e-3,
-        error_position_m: 1e-3,
-        ..Simulation::default()
-    };
+    let session = session(seed);
     let simulated = PictureSimulation { common, ..PictureSimulation::usual(session, in_hand) };
     let mut made = simulated.run(&elbow()).unwrap();
     let said = settle_pictures(&mut made.data, &made.nominal);
@@ -267,13 +266,7 @@ fn bounds_hold_on_pictures_that_were_not_fitted() {
             CommonError { shift_m: 1e-3 * millis, turn_rad: 1e-3 * millis, ..CommonError::default() };
         let (mut inside, mut ratio) = ([0.0; 2], 0.0);
         for seed in 0..SESSIONS {
-            let session = Simulation {
-                count: 60,
-                seed: 100 + seed,
-                error_rotation_rad: 3e-3,
-                error_position_m: 1e-3,
-                ..Simulation::default()
-            };
+            let session = session(100 + seed);
             let simulated = PictureSimulation { common, ..PictureSimulation::usual(session, seed % 2 == 0) };
             let mut made = simulated.run(&elbow()).unwrap();
             settle_pictures(&mut made.data, &made.nominal);
@@ -303,13 +296,7 @@ fn a_board_is_found_that_is_not_what_it_is_said_to_be() {
     const STRETCH: f64 = 1.004;
     let (mut farthest, mut uneven): (f64, f64) = (0.0, 0.0);
     for seed in 0..4 {
-        let session = Simulation {
-            count: 60,
-            seed,
-            error_rotation_rad: 3e-3,
-            error_position_m: 1e-3,
-            ..Simulation::default()
-        };
+        let session = session(seed);
         let mut made = PictureSimulation::usual(session, seed % 2 == 0).run(&elbow()).unwrap();
         made.data.pictures.boards[0].points.iter_mut().for_each(|point| point.x /= STRETCH);
         for at in 0..made.data.pictures.all.len() {
