@@ -1,11 +1,12 @@
 //! What of cameras and boards is unknown beside the robot, and how corners depend on it (theory.md §4, *Pictures*).
 
-use nalgebra::{DMatrix, DVector, Matrix2x3, Matrix3x4, Matrix6, Matrix6xX, Vector2, Vector3, Vector6};
+use nalgebra::{DMatrix, DVector, Matrix2x3, Matrix6, Matrix6xX, Vector2, Vector3, Vector6};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::board::{Board, dimensions, middle};
+use super::board::Board;
 use super::lens::{Distortion, LENS_NAMES, LENS_NUMBERS};
+use super::shape::Shape;
 use super::{Camera, Corner, View};
 use crate::lie::Pose;
 use crate::linalg;
@@ -290,43 +291,6 @@ impl Part {
     }
 }
 
-/// The middle and half sides of a board in its plane.
-struct Shape {
-    middle: Vector3<f64>,
-    half_m: [f64; 2],
-}
-
-impl Shape {
-    fn of(board: &Board) -> Self {
-        let middle = middle(&board.points);
-        let half = |axis: usize| {
-            board.points.iter().map(|it| (it[axis] - middle[axis]).abs()).fold(f64::MIN_POSITIVE, f64::max)
-        };
-        Shape { middle, half_m: [half(0), half(1)] }
-    }
-
-    /// How high a parabola of sagitta 1 through the ends of the board is at a point, along x and y.
-    fn heights(&self, point: &Vector3<f64>) -> [f64; 2] {
-        [0, 1].map(|axis| 1.0 - ((point[axis] - self.middle[axis]) / self.half_m[axis]).powi(2))
-    }
-
-    /// A point with changes of scale (shares) and sagittas of the bend (m) along x and y.
-    fn bent(&self, point: &Vector3<f64>, [x, y, bend_x, bend_y]: [f64; 4]) -> Vector3<f64> {
-        let off = point - self.middle;
-        let [along_x, along_y] = self.heights(point);
-        let rise = bend_x * along_x + bend_y * along_y;
-        self.middle + Vector3::new(off.x * (1.0 + x), off.y * (1.0 + y), off.z + rise)
-    }
-
-    fn by_numbers(&self, point: &Vector3<f64>) -> Matrix3x4<f64> {
-        let off = point - self.middle;
-        let [along_x, along_y] = self.heights(point);
-        let mut by = Matrix3x4::zeros();
-        (by[(0, 0)], by[(1, 1)], by[(2, 2)], by[(2, 3)]) = (off.x, off.y, along_x, along_y);
-        by
-    }
-}
-
 /// Which numbers of a lens are unknown, and their priors: focal lengths, centre, and the distortion that it has, at least k1, k2, p1, p2.
 fn lens_priors(camera: &Camera) -> (Vec<usize>, Vec<f64>) {
     let lens = &camera.lens;
@@ -348,13 +312,6 @@ fn lens_priors(camera: &Camera) -> (Vec<usize>, Vec<f64>) {
 fn shape_priors(board: &Board) -> (Vec<usize>, Vec<f64>) {
     let Shape { half_m: [x, y], .. } = Shape::of(board);
     (Vec::new(), vec![SHAPE, SHAPE, SHAPE * x, SHAPE * y])
-}
-
-/// Whether a board is flat in the plane of its x and y: its scales and its bend are along these.
-#[must_use]
-pub fn is_flat_sheet(board: &Board) -> bool {
-    let z = board.points.first().map_or(0.0, |it| it.z);
-    dimensions(&board.points) == 2 && board.points.iter().all(|it| (it.z - z).abs() < 1e-6)
 }
 
 #[cfg(test)]
