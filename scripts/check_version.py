@@ -23,7 +23,7 @@ def one(pattern, name):
 def complaints(tag=None):
     """A sentence for each place that names another version than Cargo.toml."""
     version = one(r'^version = "([^"]+)"', "Cargo.toml")[1]
-    for name in ("poecal-arm", "poecal", "poecal-lou2009"):
+    for name in ("poecal-arm", "poecal", "poecal-detect", "poecal-lou2009"):
         found = one(rf'^{name} = {{ path = "[^"]+", version = "([^"]+)"', "Cargo.toml")[1]
         if found != version:
             yield f"Cargo.toml: found {name} {found} among the dependencies, expected {version}"

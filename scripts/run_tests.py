@@ -115,6 +115,7 @@ def change() -> list[Step]:
     return [
         Step("format", [["cargo", "fmt", "--all", "--check"]], shows="^Diff in", lacks=lack("rustfmt", has("cargo", "fmt", "--version"))),
         Step("imports", [[sys.executable, "scripts/check-imports"]], shows="^imports go| may name |^only "),
+        Step("recipes apply", [[sys.executable, "scripts/recipes", "--apply"]], shows=r"\.patch: "),
         rust_build(),
         *tools(),
         # Beside the long compilation of the library, in a folder of its own: it would wait there, and a processor with it.
@@ -160,8 +161,6 @@ def packages() -> list[Step]:
           for name in ("aarch64-unknown-linux-gnu", WASM)),
         Step(f"oldest Rust ({oldest})", [["cargo", f"+{oldest}", "check", "--locked", "--workspace"]], shows=CARGO_SHOWS, may_lack=True,
              lacks=lack(f"Rust {oldest} (rustup toolchain install {oldest} --profile minimal)", has("cargo", f"+{oldest}", "--version"))),
-        Step("recipes", [[PYTHON, "scripts/recipes"]], after=["Python tools"], shows=r"\.patch: |^laser line|^load side"),
-        Step("simulated disk", [[sys.executable, "scripts/rust_tests.py", "simulated_disk"]], after=["Rust build"], shows=r"^FAILED |^\d+ passed, |^\d+ (trials|stops)", env={"POECAL_TRIALS": "10000"}),
         Step("documentation site", [["scripts/build-docs"], [*PYTEST, SITE]], after=["Python tools", "npm build"] if node and not wasm else ["Python tools", "web tools"] if node else ["Python tools"],
              shows="^site: |^(WARNING|ERROR) |" + PYTEST_SHOWS, env={"POECAL_PAGE": "web/app/dist/poecal.html"} if node and not wasm else {}),
         Step("site in a browser", [in_browser(["site.test.mjs"])], after=["documentation site", "web tools", "Rust build"], shows=NODE_SHOWS, lacks=browser),

@@ -27,9 +27,9 @@ QUICK = {
     "CARGO_PROFILE_RELEASE_CODEGEN_UNITS": "256",
     "CARGO_PROFILE_RELEASE_DEBUG": "false",
 }
-CRATES = ["poecal-arm", "poecal-c", "poecal", "poecal-lou2009", "poecal-cli"]
+CRATES = ["poecal-arm", "poecal-c", "poecal", "poecal-detect", "poecal-lou2009", "poecal-cli"]
 LICENCES = ["LICENSE-APACHE", "LICENSE-MIT"]
-LARGEST_PROGRAM = 14_500_000
+LARGEST_PROGRAM = 16_000_000
 LINES = """
 import poecal
 robot = poecal.Robot.read("robot.urdf")

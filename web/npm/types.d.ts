@@ -31,12 +31,13 @@ export interface CalibrateOptions {
   instrumentNoise?: Value | readonly Value[];
   /**
    * Cameras of corners in pixels: CSV with name, fx, fy, cx, cy, k1 and so on in OpenCV's order (FILE#VERSION where it has several), YAML
-   * of OpenCV, ROS or Kalibr, XML of ViSP; may be given again
+   * of OpenCV, ROS or Kalibr, XML of ViSP, a calibration.json with what it found, or unknown:1920x1080 with the size of the pictures, for a
+   * lens that is found from them; may be given again
    */
   camera?: Value | readonly Value[];
   /**
-   * Board or solid that cameras see: CSV with target, x[mm], y[mm], z[mm] of its points, or chessboard:10x7:27mm (squares along x and y,
-   * and their side); may be given again
+   * Board or solid that cameras see: CSV with target, x[mm], y[mm], z[mm] of its points, chessboard:10x7:27mm (squares along x and y, and
+   * their side), or a calibration.json with what it found; may be given again
    */
   markers?: Value | readonly Value[];
   /** Fit only rows whose COLUMN has one of these values, and hold out all others */
@@ -132,12 +133,13 @@ export interface ValidateOptions {
   instrumentNoise?: Value | readonly Value[];
   /**
    * Cameras of corners in pixels: CSV with name, fx, fy, cx, cy, k1 and so on in OpenCV's order (FILE#VERSION where it has several), YAML
-   * of OpenCV, ROS or Kalibr, XML of ViSP; may be given again
+   * of OpenCV, ROS or Kalibr, XML of ViSP, a calibration.json with what it found, or unknown:1920x1080 with the size of the pictures, for a
+   * lens that is found from them; may be given again
    */
   camera?: Value | readonly Value[];
   /**
-   * Board or solid that cameras see: CSV with target, x[mm], y[mm], z[mm] of its points, or chessboard:10x7:27mm (squares along x and y,
-   * and their side); may be given again
+   * Board or solid that cameras see: CSV with target, x[mm], y[mm], z[mm] of its points, chessboard:10x7:27mm (squares along x and y, and
+   * their side), or a calibration.json with what it found; may be given again
    */
   markers?: Value | readonly Value[];
   /** Refit the measuring device's frame to these measurements */
@@ -210,12 +212,13 @@ export interface CheckOptions {
   instrumentNoise?: Value | readonly Value[];
   /**
    * Cameras of corners in pixels: CSV with name, fx, fy, cx, cy, k1 and so on in OpenCV's order (FILE#VERSION where it has several), YAML
-   * of OpenCV, ROS or Kalibr, XML of ViSP; may be given again
+   * of OpenCV, ROS or Kalibr, XML of ViSP, a calibration.json with what it found, or unknown:1920x1080 with the size of the pictures, for a
+   * lens that is found from them; may be given again
    */
   camera?: Value | readonly Value[];
   /**
-   * Board or solid that cameras see: CSV with target, x[mm], y[mm], z[mm] of its points, or chessboard:10x7:27mm (squares along x and y,
-   * and their side); may be given again
+   * Board or solid that cameras see: CSV with target, x[mm], y[mm], z[mm] of its points, chessboard:10x7:27mm (squares along x and y, and
+   * their side), or a calibration.json with what it found; may be given again
    */
   markers?: Value | readonly Value[];
   /** Fit only rows whose COLUMN has one of these values, and hold out all others */
@@ -446,6 +449,14 @@ export type BlocksEntry = {
   free: string[];
   /** Held as in the model; terms that are none are not listed. */
   held: string[];
+};
+
+/** A body of known points. */
+export type BoardEntry = {
+  /** Its name. */
+  name: string;
+  /** Its points. */
+  points: PointEntry[];
 };
 
 /** A body of the robot: `"base"`, or `{"link_of": "joint2"}`, the link that this joint moves. */
@@ -773,6 +784,22 @@ export type FactorReading = {
   name: string;
   /** Value at which its terms are zero. */
   reference: number;
+};
+
+/** A number of a camera or of a board that was found. */
+export type FoundEntry = {
+  /** Standard deviation of what was found, by the corners and what was known before. */
+  deviation: number;
+  /** As it was found. */
+  found: number;
+  /** As it was given. */
+  given: number;
+  /** What it is: `lens`, `board` or `markers`, then a name, and the number's own, as `lens.left.fx`. */
+  name: string;
+  /** Standard deviation of what was known before. */
+  prior: number;
+  /** Its unit, `px` or `mm`; empty of shares and of coefficients. */
+  unit: string;
 };
 
 /** Frame of the measuring device. */
@@ -1165,6 +1192,8 @@ export type OutlierSet = "fit" | "held_out";
 
 /** The pictures of the session: their noise, and the lenses that they were read with. */
 export type PicturesEntry = {
+  /** The boards. */
+  boards?: BoardEntry[];
   /** The cameras. */
   cameras: CameraEntry[];
   /** What the corners of a picture share: the error of the configuration. */
@@ -1173,6 +1202,11 @@ export type PicturesEntry = {
   corners: number;
   /** Number of pictures. */
   count: number;
+  /**
+   * Numbers of cameras and boards that were found with the robot (`--free lens`, `board`, `markers`), with what is above; absent if all
+   * were given.
+   */
+  found?: FoundEntry[];
   /** Standard deviation of each coordinate of a corner that states none, pixels. */
   sigma_px: number;
   /** Those that lost their weight, since they do not fit the others of their picture. */
@@ -1199,6 +1233,14 @@ export type PixelAccuracy = {
   rms_px: number;
   /** Corners that the model has behind the camera or beyond its lens; they are in no figure. */
   unseen?: number;
+};
+
+/** A point of a body. */
+export type PointEntry = {
+  /** Its name. */
+  name: string;
+  /** Its place in the frame of the body, millimetres. */
+  place_mm: [number, number, number];
 };
 
 /** A pose. */

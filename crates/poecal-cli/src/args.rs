@@ -1,7 +1,11 @@
 //! The command line.
 
+#[cfg(any(unix, windows))]
+mod board;
 mod calibrate;
 mod compensate;
+#[cfg(any(unix, windows))]
+mod detect;
 mod identify;
 mod init;
 mod offsets;
@@ -11,8 +15,12 @@ mod shared;
 mod simulate;
 mod words;
 
+#[cfg(any(unix, windows))]
+pub(crate) use board::Board;
 pub(crate) use calibrate::Calibrate;
 pub(crate) use compensate::Compensate;
+#[cfg(any(unix, windows))]
+pub(crate) use detect::Detect;
 pub(crate) use identify::Identify;
 pub(crate) use init::Init;
 pub(crate) use offsets::Offsets;
@@ -61,6 +69,9 @@ pub(crate) enum Command {
     Init(Init),
     /// Calibrate a robot from measurements
     Calibrate(Box<Calibrate>),
+    /// Find the corners of a board in pictures
+    #[cfg(any(unix, windows))]
+    Detect(Detect),
     /// Simulate a robot with errors and its measurements, for tests and for learning
     Simulate(Simulate),
     /// Write the report of a calibration again
@@ -85,6 +96,9 @@ pub(crate) enum Command {
     Compensate(Compensate),
     /// Explain how a robot differs from its model by joint offsets
     Offsets(Offsets),
+    /// Draw a calibration board to scale, for a camera; or correct its squares by what a ruler shows of the print
+    #[cfg(any(unix, windows))]
+    Board(Board),
     /// Repeat the experiment of a paper and check its claims, or show the effect of gross errors
     Reproduce(Reproduce),
     /// Show what measurements in given configurations would determine, before anything is measured

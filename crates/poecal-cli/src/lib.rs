@@ -115,8 +115,22 @@ pub fn run_captured(arguments: impl IntoIterator<Item = OsString>) -> Said {
     console::captured(|| run_to_code(arguments))
 }
 
+/// Refuses commands of pictures and drawings where the program has no part for them: without an operating system.
+fn need_pictures(typed: &[OsString]) -> Result<(), poecal::Error> {
+    match typed.get(1).and_then(|word| word.to_str()) {
+        Some(command @ ("detect" | "board")) if cfg!(not(any(unix, windows))) => ErrorKind::Option.refuse(format!(
+            "found {command}, which this build of the program does not have, expected the program of an operating system or of the Python package"
+        )),
+        _ => Ok(()),
+    }
+}
+
 fn run_to_code(arguments: impl IntoIterator<Item = OsString>) -> u8 {
     let typed: Vec<OsString> = arguments.into_iter().collect();
+    if let Err(error) = need_pictures(&typed) {
+        Console::new(false).error(&error);
+        return REFUSED;
+    }
     let (typed, arguments) = match understood(typed) {
         Ok(both) => both,
         Err(code) => return code,
@@ -136,6 +150,8 @@ fn run_to_code(arguments: impl IntoIterator<Item = OsString>) -> u8 {
     let result = match &arguments.command {
         Command::Init(options) => commands::init(options, &console),
         Command::Calibrate(options) => commands::calibrate(options, &typed, &console),
+        #[cfg(any(unix, windows))]
+        Command::Detect(options) => commands::detect(options, &console),
         Command::Simulate(options) => commands::simulate(options, &console),
         Command::Validate(options) => commands::validate(options, &typed, &console),
         Command::Compare(options) => commands::compare(options, &console),
@@ -146,6 +162,8 @@ fn run_to_code(arguments: impl IntoIterator<Item = OsString>) -> u8 {
         Command::Apply(options) => commands::apply(options, &console),
         Command::Compensate(options) => commands::compensate(options, &console),
         Command::Offsets(options) => commands::offsets(options, &console),
+        #[cfg(any(unix, windows))]
+        Command::Board(options) => commands::board(options, &console),
         Command::Reproduce(options) => commands::reproduce(options, &console),
         Command::Identify(options) => commands::identify(options, &console),
         Command::Report(options) => commands::report(options, &console),

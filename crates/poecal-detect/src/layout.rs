@@ -48,6 +48,21 @@ impl Tagged {
         let row = if self.kalibr { (self.rows as f64 - 1.0) - row as f64 } else { row as f64 };
         Vector2::new(column as f64, row) * (1.0 + self.gap) + Vector2::new(1.0, 1.0)
     }
+
+    /// Cells along a side of a tag with its border.
+    #[must_use]
+    pub fn cells(&self) -> usize {
+        self.dictionary.bits() + 2 * self.border
+    }
+
+    /// Whether a cell of a tag is black, as the board stands: they count from the upper left one, with the border. What is outside is black.
+    #[must_use]
+    pub fn is_black(&self, tag: usize, column: usize, row: usize) -> bool {
+        let last = self.cells() - 1;
+        let turned = |at: usize| if self.kalibr { last.wrapping_sub(at) } else { at };
+        let inner = |at: usize| turned(at).wrapping_sub(self.border);
+        self.dictionary.is_black(tag, inner(column), inner(row))
+    }
 }
 
 /// Corners of a tag from its first one, in its sides.

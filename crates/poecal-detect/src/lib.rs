@@ -33,6 +33,8 @@ mod light;
 mod markers;
 mod parts;
 mod picture;
+mod preview;
+pub mod print;
 mod quads;
 pub mod render;
 mod saddle;
@@ -47,6 +49,7 @@ pub use found::{Corner, Found, Kind, Rejected};
 pub use gray::Gray;
 pub use layout::{Layout, Pattern, Point, Tagged};
 pub use picture::{Picture, Turned};
+pub use preview::preview;
 pub use spec::{AprilGrid, Charuco, Chessboard, Circles, Spec, Tags};
 pub use suggest::Suggestion;
 

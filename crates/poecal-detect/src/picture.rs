@@ -1,6 +1,7 @@
 //! Pictures in files.
 
 use std::fmt;
+use std::io::Cursor;
 use std::path::Path;
 
 use image::metadata::Orientation;
@@ -65,11 +66,20 @@ impl Picture {
     pub fn open(path: &Path) -> Result<Self> {
         let unread =
             |reason: &dyn fmt::Display| Error::new(format!("{}: cannot be read: {reason}", path.display()));
+        let bytes = std::fs::read(path).map_err(|error| unread(&error))?;
+        Picture::decode(&bytes, path)
+    }
+
+    /// The same of the bytes of such a file; `path` is its name in messages.
+    ///
+    /// # Errors
+    /// If it is no such picture: with its path.
+    pub fn decode(bytes: &[u8], path: &Path) -> Result<Self> {
         let no_picture = |reason: &dyn fmt::Display| {
             Error::new(format!("{}: found no picture, expected PNG or JPEG ({reason})", path.display()))
         };
-        let reader = ImageReader::open(path).map_err(|error| unread(&error))?;
-        let reader = reader.with_guessed_format().map_err(|error| unread(&error))?;
+        let reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format();
+        let reader = reader.map_err(|error| no_picture(&error))?;
         let mut decoder = reader.into_decoder().map_err(|error| no_picture(&error))?;
         let orientation = decoder.orientation().map_err(|error| no_picture(&error))?;
         let mut image = DynamicImage::from_decoder(decoder).map_err(|error| no_picture(&error))?;

@@ -126,6 +126,36 @@ impl Spec {
             Spec::AprilGrid(board) => board.size_m,
         }
     }
+
+    /// What a ruler measures of a print along x and y, metres: all squares, or all tags of a grid, between their outer edges; dots from the middles of
+    /// the outer ones to each other; one of loose tags.
+    #[must_use]
+    pub fn ruled_m(&self) -> [f64; 2] {
+        match self {
+            Spec::Chessboard(_) | Spec::Charuco(_) => self.squares().map(|it| it as f64 * self.square_m()),
+            Spec::Circles(board) => self.squares().map(|it| it.saturating_sub(2) as f64 * board.pitch_m),
+            Spec::Tags(board) => [board.size_m; 2],
+            Spec::AprilGrid(AprilGrid { columns, rows, size_m, spacing, .. }) => {
+                [columns, rows].map(|it| (*it as f64 + it.saturating_sub(1) as f64 * spacing) * size_m)
+            }
+        }
+    }
+
+    /// The board so many times as large, with squares and markers to a micrometre.
+    pub(crate) fn scaled(&self, factor: f64) -> Self {
+        let scaled = |length_m: f64| (length_m * factor * 1e6).round() / 1e6;
+        let mut board = self.clone();
+        match &mut board {
+            Spec::Chessboard(board) => board.square_m = scaled(board.square_m),
+            Spec::Charuco(board) => {
+                (board.square_m, board.marker_m) = (scaled(board.square_m), scaled(board.marker_m));
+            }
+            Spec::Circles(board) => board.pitch_m = scaled(board.pitch_m),
+            Spec::Tags(board) => board.size_m = scaled(board.size_m),
+            Spec::AprilGrid(board) => board.size_m = scaled(board.size_m),
+        }
+        board
+    }
 }
 
 impl FromStr for Spec {
@@ -229,18 +259,20 @@ fn size_of(what: &str, text: &str, least: usize) -> Result<[usize; 2]> {
 }
 
 fn length_m(what: &str, text: &str) -> Result<f64> {
-    const UNITS: [(&str, f64); 4] = [("mm", 1e-3), ("cm", 1e-2), ("in", 25.4e-3), ("m", 1.0)];
-    let wrong = || {
+    length(text).ok_or_else(|| {
         Error::new(format!(
             "found {text:?} for the {what}, expected a length above 0 with its unit (mm, cm, m, in), such as 28mm"
         ))
-    };
-    let (number, unit) = UNITS
-        .iter()
-        .find_map(|(unit, metres)| text.strip_suffix(unit).map(|number| (number, *metres)))
-        .ok_or_else(wrong)?;
-    let value: f64 = number.trim_end().parse().map_err(|_| wrong())?;
-    Some(value * unit).filter(|it| *it > 0.0 && it.is_finite()).ok_or_else(wrong)
+    })
+}
+
+/// A length above 0 with its unit, metres.
+pub(crate) fn length(text: &str) -> Option<f64> {
+    const UNITS: [(&str, f64); 4] = [("mm", 1e-3), ("cm", 1e-2), ("in", 25.4e-3), ("m", 1.0)];
+    let (number, metres) =
+        UNITS.iter().find_map(|(unit, metres)| text.strip_suffix(unit).map(|number| (number, *metres)))?;
+    let value: f64 = number.trim_end().parse().ok()?;
+    Some(value * metres).filter(|it| *it > 0.0 && it.is_finite())
 }
 
 impl fmt::Display for Spec {

@@ -63,6 +63,11 @@ pub(crate) fn cholesky_6(matrix: Matrix6<f64>) -> Option<Factor6> {
     Cholesky::new(matrix)
 }
 
+/// The inverse of six rows; `None` if there is none.
+pub(crate) fn inverse_6(matrix: Matrix6<f64>) -> Option<Matrix6<f64>> {
+    matrix.try_inverse()
+}
+
 /// Solves `L Lᵀ x = b`.
 pub(crate) fn cholesky_solve(factor: &Factor, b: &[f64]) -> Vec<f64> {
     let mut x = b.to_vec();

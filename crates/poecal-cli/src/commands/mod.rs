@@ -1,11 +1,15 @@
 //! The commands, one per file (and `typed`, the command line of a run, which several need).
 
+#[cfg(any(unix, windows))]
+mod board;
 mod calibrate;
 mod check;
 mod compare;
 mod compensate;
 mod completions;
 mod convert;
+#[cfg(any(unix, windows))]
+mod detect;
 mod export;
 mod identify;
 mod init;
@@ -19,12 +23,16 @@ mod simulate;
 mod typed;
 mod validate;
 
+#[cfg(any(unix, windows))]
+pub(crate) use board::board;
 pub(crate) use calibrate::calibrate;
 pub(crate) use check::check;
 pub(crate) use compare::compare;
 pub(crate) use compensate::compensate;
 pub(crate) use completions::completions;
 pub(crate) use convert::convert;
+#[cfg(any(unix, windows))]
+pub(crate) use detect::detect;
 pub(crate) use export::{apply, export};
 pub(crate) use identify::identify;
 pub(crate) use init::init;

@@ -51,6 +51,9 @@ pub(crate) fn validate(arguments: &Validate, typed: &[OsString], console: &Conso
     let found = Validation::of(&file, &read.data, &judging, inputs).map_err(in_file)?;
     let found = Validation { record, ..found };
     console.warnings(&read.warnings);
+    if let Some(doubt) = file.pictures.as_ref().and_then(|it| it.read_otherwise(&read.data)) {
+        console.warning(doubt);
+    }
     let rows = JudgedRows { data: &read.data, robot: &calibrated, rows: &found.judgement.rows };
     let earlier: Vec<_> = own.iter().flat_map(|own| history.checks.before(&found, own)).collect();
     let (folder, report) = places.write(&found, rows, || report::validation_page(&found, &rows, &earlier))?;

@@ -4,10 +4,13 @@
 
 mod acceptance;
 mod bad_input;
+mod board;
 mod checks;
 mod commands;
 mod compensate;
 mod counted;
+#[cfg(any(unix, windows))]
+mod detect;
 mod diagnosis;
 mod example;
 mod exit_codes;

@@ -120,10 +120,7 @@ fn is_tag(tags: &Tagged, place: Vector2<f64>) -> bool {
     }
     let row = if tags.kalibr { tags.rows - 1 - row as usize } else { row as usize };
     let id = row * tags.columns + column as usize;
-    let cells = tags.dictionary.bits() + 2 * tags.border;
+    let cells = tags.cells();
     let cell = |value: f64| ((value * cells as f64) as usize).min(cells - 1);
-    let (x, y) = (cell(x), cell(y));
-    let (x, y) = if tags.kalibr { (cells - 1 - x, cells - 1 - y) } else { (x, y) };
-    // Cells of the border are outside of the code: black.
-    tags.dictionary.is_black(id, x.wrapping_sub(tags.border), y.wrapping_sub(tags.border))
+    tags.is_black(id, cell(x), cell(y))
 }

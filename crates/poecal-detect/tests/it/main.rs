@@ -1,10 +1,15 @@
-//! Corners of rendered pictures against the truth, reasons and suggestions, files, and real pictures where they are.
+//! Corners of rendered pictures against the truth, boards on paper, reasons and suggestions, files, and real pictures where they are.
 
-#![allow(clippy::unwrap_used, clippy::print_stdout)]
+#![allow(clippy::unwrap_used, clippy::print_stdout, clippy::panic)]
 
 mod dots;
 mod files;
 mod found;
+mod print;
 mod real;
 mod rejected;
 mod tags;
+// Each crate uses what it needs of it.
+#[allow(dead_code)]
+#[path = "../../../poecal/tests/trials/mod.rs"]
+mod trials;

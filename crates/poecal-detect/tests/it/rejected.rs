@@ -3,6 +3,8 @@
 use poecal_detect::render::{Draw, Random, clutter, finished};
 use poecal_detect::{Detector, Gray, Layout, Rejected};
 
+use crate::trials::trials;
+
 const CHARUCO: &str = "charuco:7x5:36.195mm:18.256mm:DICT_6X6_250";
 const CHESSBOARD: &str = "chessboard:10x7:28mm";
 const CIRCLES: &str = "circles:9x6:30mm";
@@ -21,7 +23,7 @@ fn drawn(spec: &str, draw: &Draw, number: usize) -> Gray {
 #[test]
 fn no_corner_where_there_is_no_board() {
     let detectors = [CHARUCO, CHESSBOARD, CIRCLES, ASYMMETRIC, TAGS, APRILGRID].map(detector);
-    let pictures = 60;
+    let pictures = trials(60).count as u64;
     for number in 0..pictures {
         let mut random = Random::new(40_000 + number);
         let background = clutter([1280, 800], &mut random);

@@ -171,7 +171,8 @@ fn refuse_bodies(data: &Dataset, word: &str, seen: &[PictureUnknown]) -> Result<
     };
     match seen.iter().filter_map(board).find(|board| !is_flat_sheet(board)) {
         Some(board) => ErrorKind::Option.refuse(format!(
-            "found `{word}` to be fitted, but the points of `{}` are not in one plane of its x and y, expected a flat board: free its points              (--free markers)",
+            "found `{word}` to be fitted, but the points of `{}` are not in one plane of its x and y, expected a flat board: free its points \
+             (--free markers)",
             board.name
         )),
         None => Ok(()),
@@ -238,8 +239,8 @@ fn unknown_word(names: &Names, blocks: &[Block], word: &str) -> Error {
         listed.extend(last);
     }
     ErrorKind::Option.error(format!(
-        "found `{word}`, expected what to free or fix: joints, targets, frames, or a block's name, in which `*` stands for any letters \
-         ({})",
+        "found `{word}`, expected what to free or fix: joints, targets, frames, of pictures also lens, board or markers to free, or a block's name, in \
+         which `*` stands for any letters ({})",
         listed.join(", ")
     ))
 }

@@ -7,6 +7,7 @@ use super::accuracy::{ModelAccuracy, model_accuracy};
 use super::located::rows_of_fitted_stations;
 use crate::analysis::{JointCoverage, inside};
 use crate::estimate::{Chain, Estimate, Linkage, RowError, Session, sample_rows};
+use crate::linalg;
 use crate::measurement::{ByQuantity, Dataset, Measured, NUMBERS, Noise, Quantity};
 use crate::parameters::Parameter;
 use crate::uncertainty::{Discrepancy, PredictedError, Refit, Uncertainty};
@@ -190,6 +191,8 @@ impl PredictedUncertainty<'_> {
                 // As many components as there are numbers.
                 let mut of_noise = Matrix3::zeros();
                 (0..error.part(quantity).len()).for_each(|k| of_noise[(k, k)] = own[quantity].powi(2));
+                let robot = self.uncertainty.discrepancy.standard_deviation[quantity];
+                let of_noise = of_picture(data, row, (quantity, robot)).unwrap_or(of_noise);
                 let covariance = of_robot + of_noise;
                 let bound = predicted.quantiles[quantity].bound(&covariance);
                 let promised = Some(Promise { variance: covariance.trace(), bound });
@@ -200,6 +203,30 @@ impl PredictedUncertainty<'_> {
         });
         all.collect()
     }
+}
+
+/// Covariance of what corners leave open of the pose of a picture, without the error of its configuration, which is the robot's; `None` of other
+/// rows.
+fn of_picture(data: &Dataset, row: u32, (quantity, robot): (Quantity, f64)) -> Option<Matrix3<f64>> {
+    data.pictures.of_row(row)?;
+    let first = [Quantity::Position, Quantity::Rotation].iter().position(|it| *it == quantity)? * 3;
+    let whitening = data.whitening_of_picture(row)?;
+    // A radian counts as many metres as makes both alike.
+    let size = |first: usize| whitening.fixed_columns::<3>(first).norm().max(f64::MIN_POSITIVE);
+    let length_m = size(3) / size(0);
+    let mut information = whitening.transpose() * whitening;
+    information.fixed_rows_mut::<3>(3).scale_mut(1.0 / length_m);
+    information.fixed_columns_mut::<3>(3).scale_mut(1.0 / length_m);
+    let all = linalg::cholesky_6(information)?.inverse();
+    let unit = if first == 0 { 1.0 } else { 1.0 / length_m };
+    let own = all.fixed_view::<3, 3>(first, first).into_owned() * (unit * unit);
+    let (values, vectors) = linalg::symmetric_eigen(own.as_slice(), 3);
+    let mut left = Matrix3::zeros();
+    for (k, value) in values.iter().enumerate() {
+        let vector = Vector3::from_fn(|i, _| vectors[(i, k)]);
+        left += vector * vector.transpose() * (value - robot * robot).max(0.0);
+    }
+    Some(left)
 }
 
 /// What rows show of their targets' uncertainty.

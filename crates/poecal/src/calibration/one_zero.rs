@@ -2,7 +2,7 @@
 
 use super::calibrated::CalibratedFit;
 use crate::error::shown;
-use crate::estimate::{Estimate, Session};
+use crate::estimate::{Estimate, Session, sample_rows};
 use crate::parameters::{Parameter, ValueTerm};
 use crate::problem::Problem;
 use crate::robot::{JointKind, Term};
@@ -17,6 +17,8 @@ const LEAVES: f64 = 0.5;
 const OTHERS: f64 = 1.3;
 /// Largest ratio to what the whole calibration leaves.
 const WORSE: f64 = 1.6;
+/// Most rows that are fitted, and that judge.
+const MOST: usize = 500;
 /// Fewest held-out rows that show it.
 const FEWEST: usize = 5;
 
@@ -35,11 +37,13 @@ pub(super) fn one_zero(fit: &CalibratedFit<'_>) -> Option<String> {
     if !is_usual || run.held_out_rows.len() < FEWEST {
         return None;
     }
-    let rows = fit.weighted_rows();
+    // Thousands of rows show it no better, and this is not worth their time.
+    let rows = sample_rows(&fit.weighted_rows(), MOST);
+    let held_out = sample_rows(&run.held_out_rows, MOST);
     let registration = run.registration(session, &rows, fit.noise(), true);
     let free = free_parameters(&registration, &rows);
     let squares = |estimate: &Estimate| {
-        Problem::new(session, run.held_out_rows.clone(), free.clone(), fit.noise()).normal(estimate).cost
+        Problem::new(session, held_out.clone(), free.clone(), fit.noise()).normal(estimate).cost
     };
     let registered = squares(&fit.start.registered);
     let whole = squares(&fit.estimate) / registered;

@@ -2,8 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::RowJudgement;
-use super::corrections::whitened_rows;
+use super::corrections::{ROUNDING_OF_TERMS, cholesky, solved, whitened_rows};
 use super::robust::RobustFit;
 use super::run::Run;
 use crate::camera::{
@@ -12,16 +11,14 @@ use crate::camera::{
 };
 use crate::estimate::Estimate;
 use crate::linalg;
-use crate::measurement::{Dataset, Noise, picture_whitening};
-use crate::parameters::Parameter;
+use crate::measurement::{Dataset, Noise};
 use crate::problem::Problem;
 use crate::solve::{LeastSquares as _, Normal};
+use crate::start::predicted_pose;
 use crate::uncertainty::PriorInformation;
 
 /// Largest step of a number, standard deviations of its prior.
 const FARTHEST: f64 = 3.0;
-/// Rounding of the information of the robot, as a share of the largest.
-const ROUNDING: f64 = 1e-13;
 
 /// Unknown numbers of cameras and boards in a fit, and how far they are from what was given.
 #[derive(Clone)]
@@ -48,6 +45,13 @@ pub(super) struct BestStep {
     follow: DMatrix<f64>,
 }
 
+impl BestStep {
+    /// Standard deviations of the numbers.
+    fn deviations(&self) -> Vec<f64> {
+        self.covariance.diagonal().iter().map(|it| it.max(0.0).sqrt()).collect()
+    }
+}
+
 impl Optics {
     /// Of the unknowns of a session with pictures, as they are given there.
     pub(super) fn of(run: &Run<'_>) -> Option<Self> {
@@ -58,7 +62,7 @@ impl Optics {
 
     /// Of these unknowns, from cameras and boards as they are.
     pub(super) fn from_here(pictures: &Pictures, unknowns: &[PictureUnknown]) -> Self {
-        let unknowns = PictureUnknowns::new(pictures, unknowns);
+        let unknowns = PictureUnknowns::new(&pictures.cameras, &pictures.boards, unknowns);
         let count = unknowns.count();
         Optics { unknowns, step: DVector::zeros(count), deviations: vec![1.0; count] }
     }
@@ -75,8 +79,7 @@ impl Optics {
 
     /// The numbers after a step, with their standard deviations.
     pub(super) fn numbers_after(&self, best: &BestStep) -> Vec<PictureNumber> {
-        let deviations: Vec<f64> = best.covariance.diagonal().iter().map(|it| it.max(0.0).sqrt()).collect();
-        self.unknowns.numbers(&best.step, &deviations)
+        self.unknowns.numbers(&best.step, &best.deviations())
     }
 
     /// How many numbers the pictures determine rather than the prior.
@@ -90,23 +93,26 @@ impl Optics {
         let rows: Vec<u32> =
             problem.rows().iter().copied().filter(|row| pictures.of_row(*row).is_some()).collect();
         let (starts, jacobian, residuals) = whitened_rows(problem, estimate, &rows);
+        let errors = problem.session().errors(&rows, estimate);
         let count = self.unknowns.count();
         let mut own = OwnInformation::none(count);
         let mut by_numbers = DMatrix::zeros(residuals.len(), count);
-        for (at, row) in rows.iter().enumerate() {
+        for (at, (row, error)) in rows.iter().zip(&errors).enumerate() {
             let Some(picture) = pictures.of_row(*row).and_then(|at| pictures.all.get(at)) else { continue };
             let Some(view) = pictures.view(picture) else { continue };
-            let pose = picture.directed(&data.observations[*row as usize].measurement.pose());
-            let information = view.information(&pose);
-            if view.is_odd(&pose) {
+            let Some(whitening) = data.whitening_of_picture(*row) else { continue };
+            let measured = data.observations[*row as usize].measurement.pose();
+            if view.is_odd(&picture.directed(&measured)) {
                 continue;
             }
+            // At the prediction: there a robot of another size and a board of another size are one direction, to the last digit.
+            let pose = picture.directed(&predicted_pose(&measured, error));
+            let information = view.information(&pose);
             let of = (picture.camera, picture.board);
             let mut follow = self.unknowns.add(of, &view, (&pose, &information), &mut own);
             if picture.of_camera {
                 follow = motion_by_inverse(&pose.inverse()) * follow;
             }
-            let whitening = picture_whitening(pictures.common, (&pose, information), picture.of_camera);
             // The measured pose moves with the numbers: residuals fall by the opposite.
             let weight = problem.weight(*row).sqrt();
             by_numbers.rows_mut(starts[at], 6).copy_from(&(whitening * follow * -weight));
@@ -120,10 +126,8 @@ impl Optics {
     pub(super) fn best_step(&self, run: &Run<'_>, (ratios, fit): (&[Noise], &RobustFit)) -> Option<BestStep> {
         let session = run.session(ratios);
         let fitted = &fit.fitted;
-        let counted = |row: &RowJudgement| if row.suspected { 0.0 } else { row.weight };
-        let weights: Vec<f64> = fit.robustness.rows.iter().map(counted).collect();
-        let free: Vec<Parameter> = fitted.layout.parameters().map(|(parameter, _)| *parameter).collect();
-        let problem = Problem::new(session, run.fit_rows.clone(), free, fitted.noise).with_weights(&weights);
+        let weights = fit.weights();
+        let problem = run.problem_of(session, fit, &weights);
         let prior =
             PriorInformation::new(run.prior.as_ref(), &fitted.estimate, &fitted.layout, session.length_m);
         let normal = problem.normal(&fitted.estimate);
@@ -151,8 +155,10 @@ impl Optics {
         (ratios, fit): (&[Noise], &RobustFit),
         least: f64,
     ) -> Option<(Dataset, Estimate)> {
-        let BestStep { mut step, gain, covariance, still, follow } = self.best_step(run, (ratios, fit))?;
-        self.deviations = covariance.diagonal().iter().map(|it| it.max(0.0).sqrt()).collect();
+        let best = self.best_step(run, (ratios, fit))?;
+        let deviations = best.deviations();
+        let BestStep { mut step, gain, still, follow, .. } = best;
+        self.deviations = deviations;
         step *= (FARTHEST / step.amax().max(FARTHEST)).min(1.0);
         if gain < least * least {
             return None;
@@ -187,17 +193,17 @@ impl Optics {
 }
 
 /// A symmetric matrix from its upper triangle.
-fn symmetric(upper: &[f64], n: usize) -> DMatrix<f64> {
+pub(super) fn symmetric(upper: &[f64], n: usize) -> DMatrix<f64> {
     DMatrix::from_fn(n, n, |i, j| upper[i.min(j) * n + i.max(j)])
 }
 
+/// Factor of an information, of robot or numbers.
 fn factor_of(matrix: &DMatrix<f64>) -> Option<linalg::Factor> {
-    let largest = matrix.diagonal().iter().copied().fold(0.0, f64::max);
-    linalg::cholesky(matrix.as_slice(), matrix.nrows(), ROUNDING * largest)
+    cholesky(matrix, ROUNDING_OF_TERMS)
 }
 
-/// `A⁻¹ B` from the factor of A.
-fn solved(factor: &linalg::Factor, right: &DMatrix<f64>) -> DMatrix<f64> {
-    let n = right.nrows();
-    DMatrix::from_row_slice(n, n, &linalg::inverse(factor)) * right
+/// The inverse of a symmetric positive definite matrix.
+pub(super) fn inverse(matrix: &DMatrix<f64>) -> Option<DMatrix<f64>> {
+    let n = matrix.nrows();
+    Some(DMatrix::from_row_slice(n, n, &linalg::inverse(&factor_of(matrix)?)))
 }

@@ -3,14 +3,19 @@
 
 use nalgebra::{Matrix6, Vector6};
 
-use super::optics::Optics;
+use super::corrections::whitened_rows;
+use super::optics::{Optics, inverse, symmetric};
 use super::robust::RobustFit;
 use super::run::Run;
-use crate::analysis::effective_unknowns;
 use crate::camera::{Centre, CommonError, Sighting};
+use crate::estimate::Session;
+use crate::linalg;
 use crate::measurement::{Dataset, Noise, SightingAbout, deviation};
-use crate::solve::Normal;
+use crate::parameters::Parameter;
+use crate::problem::Problem;
+use crate::solve::LeastSquares as _;
 use crate::start::predicted_pose;
+use crate::uncertainty::PriorInformation;
 
 /// Most fits with the noise of pictures found anew.
 pub(super) const ROUNDS: usize = 8;
@@ -20,6 +25,9 @@ const CHANGE: f64 = 0.05;
 const FLIPPED_RAD: f64 = 0.2;
 /// Times the noise of its best pose up to which a pose near the prediction is taken instead.
 const AS_GOOD: f64 = 3.0;
+
+/// A sighting, and how far its row is off the prediction.
+type Seen = (Sighting, Vector6<f64>);
 
 impl Run<'_> {
     /// The data with the noise of pictures as the residuals of a fit show it, and with each picture at the pose that is nearest to its
@@ -41,30 +49,30 @@ impl Run<'_> {
         let errors = session.errors(&rows, estimate);
         let mut has_moved = next.is_some();
         // Sightings with how far each is off its prediction, as motions of its row.
-        let mut found: Vec<(Sighting, Vector6<f64>)> = Vec::with_capacity(rows.len());
+        let mut found: Vec<Seen> = Vec::with_capacity(rows.len());
         for (picture, error) in pictures.all.iter().zip(&errors) {
             let measured = self.data.observations[picture.row as usize].measurement.pose();
             let predicted = predicted_pose(&measured, error);
             let view = pictures.view(picture)?;
             let kept = view.sighting(&picture.directed(&measured), true)?;
             let expected = picture.directed(&predicted);
-            let is_flipped = |it: &Sighting| expected.apart(&it.camera_from_board).1 > FLIPPED_RAD;
-            let near = view
-                .sighting(&expected, true)
-                .filter(|it| !is_flipped(it))
-                .or_else(|| view.near(&expected).filter(|_| view.dimensions() == 2 && is_flipped(&kept)));
+            let is_near = |it: &Sighting| expected.apart(&it.camera_from_board).1 <= FLIPPED_RAD;
+            // To first order at the prediction, where the rounds end at the fit of the pixels; far from it at the nearest best pose.
+            let near = || view.sighting(&expected, true).filter(is_near);
             let mean = |it: &Sighting| it.cost / it.freedom.max(1.0);
             let is_as_good = |near: &Sighting| {
                 mean(near) <= AS_GOOD * AS_GOOD * mean(&kept).max(1.0) && near.freedom >= kept.freedom - 1.0
             };
-            let sighting = near.filter(is_as_good).unwrap_or(kept);
+            let sighting = view.near(&expected).filter(is_as_good);
+            let sighting = sighting.or_else(|| near().filter(is_as_good)).unwrap_or(kept);
             let pose = picture.directed(&sighting.camera_from_board);
             let moved = deviation(&sighting.camera_from_board, &picture.directed(&measured));
             has_moved |= (moved.transpose() * sighting.information * moved)[0] > CHANGE * CHANGE;
             found.push((sighting, deviation(&pose, &predicted)));
         }
         let numbers = optics.as_ref().map_or(0.0, Optics::determined);
-        let common = self.common_error((fit, numbers), &found, session.length_m);
+        let spreads = self.spreads_of_pictures(ratios, fit);
+        let common = self.common_error((fit, numbers), (&found, &spreads), session.length_m);
         let before = pictures.common;
         let differs = |a: f64, b: f64| (a / b).ln().abs() > CHANGE;
         let same = common.about == before.about
@@ -85,27 +93,30 @@ impl Run<'_> {
         Some(data)
     }
 
-    /// The likeliest common error of the corners of a picture, about the board or about the camera.
+    /// The likeliest common error of the corners of a picture, about the board or about the camera: deviations from predictions are smaller than
+    /// from the truth by what the predictions are off themselves.
     fn common_error(
         &self,
         (fit, numbers): (&RobustFit, f64),
-        found: &[(Sighting, Vector6<f64>)],
+        (found, spreads): (&[Seen], &[Matrix6<f64>]),
         length_m: f64,
     ) -> CommonError {
         let pictures = &self.data.pictures;
-        let unknowns = self.effective_unknowns(fit) + numbers;
         let counts =
             |row: u32| self.fit_rows.binary_search(&row).is_ok() && !fit.robustness.suspects_row(row);
-        let seen = |about: Centre| -> Vec<(Matrix6<f64>, Vector6<f64>)> {
-            let own = pictures.all.iter().zip(found).filter(|(picture, _)| counts(picture.row));
-            own.map(|(picture, (sighting, deviation))| {
+        let seen = |about: Centre| -> Vec<(Matrix6<f64>, Matrix6<f64>)> {
+            let own =
+                pictures.all.iter().zip(found).zip(spreads).filter(|((picture, _), _)| counts(picture.row));
+            own.map(|((picture, (sighting, deviation)), spread)| {
                 let sighting = SightingAbout::new((&sighting.camera_from_board, sighting.information), about);
-                (sighting.information, sighting.from_row(picture.of_camera) * deviation)
+                let from_row = sighting.from_row(picture.of_camera);
+                let squares = deviation * deviation.transpose() + spread;
+                (sighting.information, from_row * squares * from_row.transpose())
             })
             .collect()
         };
         let likeliest = |about: Centre| {
-            CommonError { about, ..pictures.common }.likeliest(&seen(about), unknowns, length_m)
+            CommonError { about, ..pictures.common }.likeliest(&seen(about), numbers, length_m)
         };
         let (board, camera) = (likeliest(Centre::Board), likeliest(Centre::Camera));
         // What is known of the centre stays known unless the other is better.
@@ -113,15 +124,41 @@ impl Run<'_> {
         if camera.1 + margin < board.1 { camera.0 } else { board.0 }
     }
 
-    /// Effective number of unknowns that the measurements determine beside the prior (theory.md §6 (34)).
-    fn effective_unknowns(&self, fit: &RobustFit) -> f64 {
+    /// Covariance of the predicted pose of each picture by the unknowns of a fit, as motions of its row; none of those that are not fitted.
+    fn spreads_of_pictures(&self, ratios: &[Noise], fit: &RobustFit) -> Vec<Matrix6<f64>> {
+        let pictures = &self.data.pictures.all;
+        let mut spreads = vec![Matrix6::zeros(); pictures.len()];
+        let weights = fit.weights();
+        let problem = self.problem_of(self.session(ratios), fit, &weights);
         let fitted = &fit.fitted;
-        let n = fitted.normal.dim();
-        let Some(prior) = &self.prior else { return n as f64 };
-        let (mut believed, mut whole) = (Normal::new(n), fitted.normal.clone());
-        for normal in [&mut believed, &mut whole] {
-            prior.add(&fitted.estimate, &fitted.layout, 1.0, normal);
+        let (prior, length_m) = (self.prior.as_ref(), problem.session().length_m);
+        let prior = PriorInformation::new(prior, &fitted.estimate, &fitted.layout, length_m);
+        let normal = problem.normal(&fitted.estimate);
+        let Some(covariance) = inverse(&symmetric(&prior.with(&normal.gram, 1.0), normal.dim())) else {
+            return spreads;
+        };
+        let is_fitted = |row: u32| self.fit_rows.binary_search(&row).is_ok() && problem.weight(row) > 0.0;
+        let own: Vec<usize> = (0..pictures.len()).filter(|&at| is_fitted(pictures[at].row)).collect();
+        let rows: Vec<u32> = own.iter().map(|&at| pictures[at].row).collect();
+        let (starts, jacobian, _) = whitened_rows(&problem, &fitted.estimate, &rows);
+        for ((&at, &row), &start) in own.iter().zip(&rows).zip(&starts) {
+            let unwhitening = self.data.whitening_of_picture(row).and_then(linalg::inverse_6);
+            let Some(unwhitening) = unwhitening.filter(|_| start + 6 <= jacobian.nrows()) else { continue };
+            let by = unwhitening * jacobian.rows(start, 6).into_owned() / problem.weight(row).sqrt();
+            let spread = &by * &covariance * by.transpose();
+            spreads[at] = spread.fixed_view::<6, 6>(0, 0).into_owned();
         }
-        n as f64 - effective_unknowns(&whole, &believed)
+        spreads
+    }
+
+    /// The problem of a fit: its rows and unknowns, with the weights that it gave.
+    pub(super) fn problem_of<'s>(
+        &self,
+        session: Session<'s>,
+        fit: &RobustFit,
+        weights: &'s [f64],
+    ) -> Problem<'s> {
+        let free: Vec<Parameter> = fit.fitted.layout.parameters().map(|(parameter, _)| *parameter).collect();
+        Problem::new(session, self.fit_rows.clone(), free, fit.fitted.noise).with_weights(weights)
     }
 }

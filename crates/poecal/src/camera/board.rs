@@ -4,6 +4,7 @@ use nalgebra::{Matrix3, Vector3};
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, ErrorKind, Result};
+use crate::lie::{Pose, rotation};
 use crate::linalg;
 
 /// Points of one solid, in its own frame.
@@ -66,6 +67,22 @@ impl Board {
             (own - self.points[at]).norm() < 1e-6 * along.norm()
         });
         is_grid.then(|| Board { points: (0..self.points.len()).map(place).collect(), ..self.clone() })
+    }
+
+    /// The half turn that takes each point of a flat board to the one with the same place from the end: how a chessboard looks whose first corner was
+    /// taken for its last. `None` of points that lie otherwise.
+    #[must_use]
+    pub fn half_turn(&self) -> Option<Pose> {
+        let middle = middle(&self.points);
+        let radius = self.radius_m();
+        let mirrored = self.points.iter().zip(self.points.iter().rev());
+        let is_turned =
+            mirrored.clone().all(|(one, other)| ((one + other) * 0.5 - middle).norm() < 1e-6 * radius);
+        if dimensions(&self.points) != 2 || !is_turned {
+            return None;
+        }
+        let turn = rotation::exp(&(normal(&self.points) * std::f64::consts::PI));
+        Some(Pose::new(turn, middle - turn * middle))
     }
 
     /// Largest distance of a point from the middle, metres.

@@ -58,21 +58,23 @@ impl CommonError {
         whitening
     }
 
-    /// Of poses with their deviations from predicted ones (m, rad), each with the information of its corners, a number of which `unknowns` a fit
-    /// has taken: by maximum likelihood, beginning from this one. Returns `-2 log L` with it.
+    /// Of poses with the expected squares of their deviations from the true ones (m, rad), each with the information of its corners, a number of
+    /// which `unknowns` a fit has taken beside: by maximum likelihood, beginning from this one. Returns `-2 log L` with it.
     #[must_use]
     pub fn likeliest(
         &self,
-        seen: &[(Matrix6<f64>, Vector6<f64>)],
+        seen: &[(Matrix6<f64>, Matrix6<f64>)],
         unknowns: f64,
         length_m: f64,
     ) -> (Self, f64) {
-        let roots: Vec<(Matrix6<f64>, Vector6<f64>)> = seen
+        let roots: Vec<(Matrix6<f64>, Matrix6<f64>)> = seen
             .iter()
-            .map(|(information, deviation)| {
-                let mut scaled = *deviation;
+            .map(|(information, squares)| {
+                let mut scaled = *squares;
                 scaled.fixed_rows_mut::<3>(3).scale_mut(length_m);
-                (root_of(information, length_m), scaled)
+                scaled.fixed_columns_mut::<3>(3).scale_mut(length_m);
+                let root = root_of(information, length_m);
+                (root, root * scaled * root)
             })
             .collect();
         let numbers = 6.0 * seen.len() as f64;
@@ -81,12 +83,11 @@ impl CommonError {
         let surprise = |shift: f64, turn: f64| {
             let [a, b] = [shift.exp().powi(2), turn.exp().powi(2)];
             let spread = Matrix6::from_diagonal(&Vector6::new(a, a, a, b, b, b));
-            let of = |(root, deviation): &(Matrix6<f64>, Vector6<f64>)| {
+            let of = |(root, whitened): &(Matrix6<f64>, Matrix6<f64>)| {
                 let inner = Matrix6::identity() + root * spread * root;
                 let Some(factor) = linalg::cholesky_6(inner) else { return f64::INFINITY };
-                let whitened = root * deviation;
                 let logs: f64 = (0..6).map(|k| factor.l_dirty()[(k, k)].ln()).sum();
-                2.0 * logs + taken * bounded(whitened.dot(&factor.solve(&whitened)))
+                2.0 * logs + taken * bounded(factor.solve(whitened).trace())
             };
             roots.iter().map(of).sum::<f64>()
         };
@@ -198,14 +199,16 @@ mod tests {
             let seen: Vec<_> = (0..300)
                 .map(|_| {
                     let own = |k: usize| if k < 3 { truth.shift_m } else { truth.turn_rad };
-                    (information, Vector6::from_fn(|k, _| normal() * sigmas[k] + normal() * own(k)))
+                    let off = Vector6::from_fn(|k, _| normal() * sigmas[k] + normal() * own(k));
+                    (information, off * off.transpose())
                 })
                 .collect();
             let (found, _) = CommonError::default().likeliest(&seen, 0.0, length_m);
             shift += (found.shift_m / truth.shift_m).ln() / SESSIONS as f64;
             turn += (found.turn_rad / truth.turn_rad).ln() / SESSIONS as f64;
             let whitening = truth.whitening(&information, length_m);
-            let squares = seen.iter().map(|(_, it)| (whitening * it).norm_squared()).sum::<f64>();
+            let squares =
+                seen.iter().map(|(_, it)| (whitening * it * whitening.transpose()).trace()).sum::<f64>();
             variance += squares / (6.0 * seen.len() as f64) / SESSIONS as f64;
         }
         println!("shift {:.3}, turn {:.3} of the truth, variance {variance:.3}", shift.exp(), turn.exp());

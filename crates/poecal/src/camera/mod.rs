@@ -8,6 +8,7 @@ mod picture;
 mod pictures;
 mod pnp;
 mod poses;
+mod shape;
 mod sighting;
 mod unknown;
 
@@ -18,5 +19,6 @@ pub use lens::{Distortion, LENS_NAMES, LENS_NUMBERS, Lens, Projection};
 pub use picture::{Camera, Corner, Picture};
 pub use pictures::Pictures;
 pub use pnp::poses_of_rays;
+pub use shape::is_flat_sheet;
 pub use sighting::{Sighting, View, moved};
-pub use unknown::{OwnInformation, PictureNumber, PictureUnknown, PictureUnknowns, is_flat_sheet};
+pub use unknown::{OwnInformation, PictureNumber, PictureUnknown, PictureUnknowns};

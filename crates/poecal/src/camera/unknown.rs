@@ -1,11 +1,13 @@
 //! What of cameras and boards is unknown beside the robot, and how corners depend on it (theory.md §4, *Pictures*).
 
-use nalgebra::{DMatrix, DVector, Matrix2x3, Matrix3x4, Matrix6, Matrix6xX, Vector2, Vector3, Vector6};
+use nalgebra::{DMatrix, DVector, Matrix2x3, Matrix6, Matrix6xX, Vector2, Vector3, Vector6};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::board::{Board, dimensions, middle};
+use super::board::Board;
 use super::lens::{Distortion, LENS_NAMES, LENS_NUMBERS};
-use super::{Camera, Corner, Pictures, View};
+use super::shape::Shape;
+use super::{Camera, Corner, View};
 use crate::lie::Pose;
 use crate::linalg;
 
@@ -33,12 +35,13 @@ pub enum PictureUnknown {
     Markers(usize),
 }
 
-/// A number of these, found or to be found.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+/// A number of a camera or of a board that was found.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(rename = "FoundEntry")]
 pub struct PictureNumber {
-    /// Its name, as `lens.left.fx`.
+    /// What it is: `lens`, `board` or `markers`, then a name, and the number's own, as `lens.left.fx`.
     pub name: String,
-    /// Its unit: `px`, `mm`, or nothing.
+    /// Its unit, `px` or `mm`; empty of shares and of coefficients.
     pub unit: String,
     /// As it was given.
     pub given: f64,
@@ -46,7 +49,7 @@ pub struct PictureNumber {
     pub found: f64,
     /// Standard deviation of what was known before.
     pub prior: f64,
-    /// Standard deviation of what was found.
+    /// Standard deviation of what was found, by the corners and what was known before.
     pub deviation: f64,
 }
 
@@ -88,8 +91,7 @@ impl OwnInformation {
 impl PictureUnknowns {
     /// The numbers of some unknowns, from these cameras and boards on.
     #[must_use]
-    pub fn new(given: &Pictures, unknowns: &[PictureUnknown]) -> Self {
-        let Pictures { cameras, boards, .. } = given;
+    pub fn new(cameras: &[Camera], boards: &[Board], unknowns: &[PictureUnknown]) -> Self {
         let mut parts: Vec<Part> = Vec::new();
         let mut first = 0;
         for &of in unknowns {
@@ -104,7 +106,7 @@ impl PictureUnknowns {
             first += priors.len();
             parts.push(Part { of, first: first - priors.len(), places, priors });
         }
-        PictureUnknowns { cameras: cameras.clone(), boards: boards.clone(), parts }
+        PictureUnknowns { cameras: cameras.to_vec(), boards: boards.to_vec(), parts }
     }
 
     /// How many numbers are unknown.
@@ -289,43 +291,6 @@ impl Part {
     }
 }
 
-/// The middle and half sides of a board in its plane.
-struct Shape {
-    middle: Vector3<f64>,
-    half_m: [f64; 2],
-}
-
-impl Shape {
-    fn of(board: &Board) -> Self {
-        let middle = middle(&board.points);
-        let half = |axis: usize| {
-            board.points.iter().map(|it| (it[axis] - middle[axis]).abs()).fold(f64::MIN_POSITIVE, f64::max)
-        };
-        Shape { middle, half_m: [half(0), half(1)] }
-    }
-
-    /// How high a parabola of sagitta 1 through the ends of the board is at a point, along x and y.
-    fn heights(&self, point: &Vector3<f64>) -> [f64; 2] {
-        [0, 1].map(|axis| 1.0 - ((point[axis] - self.middle[axis]) / self.half_m[axis]).powi(2))
-    }
-
-    /// A point with changes of scale (shares) and sagittas of the bend (m) along x and y.
-    fn bent(&self, point: &Vector3<f64>, [x, y, bend_x, bend_y]: [f64; 4]) -> Vector3<f64> {
-        let off = point - self.middle;
-        let [along_x, along_y] = self.heights(point);
-        let rise = bend_x * along_x + bend_y * along_y;
-        self.middle + Vector3::new(off.x * (1.0 + x), off.y * (1.0 + y), off.z + rise)
-    }
-
-    fn by_numbers(&self, point: &Vector3<f64>) -> Matrix3x4<f64> {
-        let off = point - self.middle;
-        let [along_x, along_y] = self.heights(point);
-        let mut by = Matrix3x4::zeros();
-        (by[(0, 0)], by[(1, 1)], by[(2, 2)], by[(2, 3)]) = (off.x, off.y, along_x, along_y);
-        by
-    }
-}
-
 /// Which numbers of a lens are unknown, and their priors: focal lengths, centre, and the distortion that it has, at least k1, k2, p1, p2.
 fn lens_priors(camera: &Camera) -> (Vec<usize>, Vec<f64>) {
     let lens = &camera.lens;
@@ -349,13 +314,6 @@ fn shape_priors(board: &Board) -> (Vec<usize>, Vec<f64>) {
     (Vec::new(), vec![SHAPE, SHAPE, SHAPE * x, SHAPE * y])
 }
 
-/// Whether a board is flat in the plane of its x and y: its scales and its bend are along these.
-#[must_use]
-pub fn is_flat_sheet(board: &Board) -> bool {
-    let z = board.points.first().map_or(0.0, |it| it.z);
-    dimensions(&board.points) == 2 && board.points.iter().all(|it| (it.z - z).abs() < 1e-6)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -372,11 +330,7 @@ mod tests {
             ..Lens::pinhole([1500.0, 1490.0], [955.0, 603.0])
         };
         let board = Board::chessboard("board", [7, 5], 0.036).unwrap();
-        let mut pictures = Pictures {
-            cameras: vec![Camera::new("left".to_owned(), lens)],
-            boards: vec![board.clone()],
-            ..Pictures::default()
-        };
+        let (mut cameras, mut boards) = (vec![Camera::new("left".to_owned(), lens)], vec![board.clone()]);
         let pose = Pose::from_xyz_rpy([-0.1, 0.05, 0.7], [0.5, -0.3, 0.2]);
         let corner = |off: f64| {
             move |(point, place): (u32, &Vector3<f64>)| {
@@ -386,7 +340,7 @@ mod tests {
             }
         };
         let all = [PictureUnknown::Lens(0), PictureUnknown::Board(0), PictureUnknown::Markers(0)];
-        let unknowns = PictureUnknowns::new(&pictures, &all);
+        let unknowns = PictureUnknowns::new(&cameras, &boards, &all);
         let count = unknowns.count();
         assert_eq!(count, 8 + 4 + 3 * 24);
         let (mut worst, mut worst_pull): (f64, f64) = (0.0, 0.0);
@@ -394,8 +348,8 @@ mod tests {
         for off in [0.0, 1.0] {
             let corners: Vec<Corner> = (0..).zip(&board.points).map(corner(off)).collect();
             let mut best = |step: &DVector<f64>| {
-                (pictures.cameras, pictures.boards) = unknowns.at(step);
-                let (lens, board) = (&pictures.cameras[0].lens, &pictures.boards[0]);
+                (cameras, boards) = unknowns.at(step);
+                let (lens, board) = (&cameras[0].lens, &boards[0]);
                 let view = View { lens, board, corners: &corners, sigma_px: 0.5 };
                 let found = view.sighting(&pose, false).unwrap();
                 (found.camera_from_board, found.information, found.cost)

@@ -32,7 +32,7 @@ pub struct PicturesEntry {
     /// Numbers of cameras and boards that were found with the robot (`--free lens`, `board`, `markers`), with what is above; absent if all were
     /// given.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub found: Vec<FoundEntry>,
+    pub found: Vec<PictureNumber>,
 }
 
 /// A body of known points.
@@ -51,23 +51,6 @@ pub struct PointEntry {
     pub name: String,
     /// Its place in the frame of the body, millimetres.
     pub place_mm: [f64; 3],
-}
-
-/// A number of a camera or of a board that was found.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct FoundEntry {
-    /// What it is: `lens`, `board` or `markers`, then a name, and the number's own, as `lens.left.fx`.
-    pub name: String,
-    /// Its unit, `px` or `mm`; empty of shares and of coefficients.
-    pub unit: String,
-    /// As it was given.
-    pub given: f64,
-    /// As it was found.
-    pub found: f64,
-    /// Standard deviation of what was known before.
-    pub prior: f64,
-    /// Standard deviation of what was found, by the corners and what was known before.
-    pub deviation: f64,
 }
 
 /// The error that the corners of a picture share: standard deviations of each component.
@@ -118,7 +101,45 @@ impl PicturesEntry {
             },
             cameras: pictures.cameras.iter().map(CameraEntry::of).collect(),
             boards: pictures.boards.iter().map(BoardEntry::of).collect(),
-            found: pictures.found.iter().map(FoundEntry::of).collect(),
+            found: pictures.found.clone(),
+        })
+    }
+}
+
+impl PicturesEntry {
+    /// What to say where pictures were read with another lens or board than those that the calibration found.
+    #[must_use]
+    pub fn read_otherwise(&self, data: &Dataset) -> Option<String> {
+        let has = |kind: &str| self.found.iter().any(|it| it.name.starts_with(kind));
+        let (lens, board) = (has("lens."), has("board.") || has("markers."));
+        let differs = |a: &f64, b: &f64| (a - b).abs() > 1e-9 * (1.0 + a.abs());
+        let other_lens = data.pictures.cameras.iter().map(CameraEntry::of).any(|own| {
+            let same = self.cameras.iter().find(|it| it.name == own.name);
+            same.is_some_and(|it| {
+                let numbers = |it: &CameraEntry| [&it.focal_px[..], &it.centre_px, &it.distortion].concat();
+                numbers(it).iter().zip(&numbers(&own)).any(|(a, b)| differs(a, b))
+            })
+        });
+        let other_board = data.pictures.boards.iter().map(BoardEntry::of).any(|own| {
+            let same = self.boards.iter().find(|it| it.name == own.name);
+            same.is_some_and(|it| {
+                let places = it.points.iter().flat_map(|it| it.place_mm);
+                places.zip(own.points.iter().flat_map(|it| it.place_mm)).any(|(a, b)| differs(&a, &b))
+            })
+        });
+        let mut options = Vec::new();
+        if lens && other_lens {
+            options.push("--camera");
+        }
+        if board && other_board {
+            options.push("--markers");
+        }
+        (!options.is_empty()).then(|| {
+            format!(
+                "these pictures were read with another {} than the calibration found: name its calibration.json by {}",
+                if options.len() == 2 { "lens and board" } else if lens && other_lens { "lens" } else { "board" },
+                options.join(" and ")
+            )
         })
     }
 }
@@ -142,13 +163,6 @@ impl BoardEntry {
             names: self.points.iter().map(|it| it.name.clone()).collect(),
             points: self.points.iter().map(place).collect(),
         }
-    }
-}
-
-impl FoundEntry {
-    fn of(number: &PictureNumber) -> Self {
-        let PictureNumber { name, unit, given, found, prior, deviation } = number.clone();
-        FoundEntry { name, unit, given, found, prior, deviation }
     }
 }
 

@@ -40,6 +40,15 @@ impl NoiseShape {
         NoiseShape(shape)
     }
 
+    /// What whitens a pose, by the standard deviations of its components: the inverse of [`NoiseShape::of_pose`].
+    #[must_use]
+    pub fn whitening(&self, [shift_m, turn_rad]: [f64; 2]) -> Matrix6<f64> {
+        let mut whitening = self.0;
+        whitening.fixed_rows_mut::<3>(0).scale_mut(1.0 / shift_m);
+        whitening.fixed_rows_mut::<3>(3).scale_mut(1.0 / turn_rad);
+        whitening
+    }
+
     fn of_position(shape: &Matrix3<f64>) -> Self {
         let mut whole = Matrix6::identity();
         whole.fixed_view_mut::<3, 3>(0, 0).copy_from(shape);

@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix6, Vector6};
 
-use super::{Dataset, Measurement, NoiseShape, Observation, Quantity, Set, Source};
+use super::{Dataset, Measurement, Noise, NoiseShape, Observation, Quantity, Set, Source};
 use crate::camera::{Centre, CommonError, Picture, Sighting, motion_by_inverse};
 use crate::distributions::median;
 use crate::error::Result;
@@ -85,6 +85,14 @@ impl Dataset {
         // At least half of the numbers are left, whatever was taken.
         let left = (freedom - unknowns).max(0.5 * freedom);
         (left > 0.0).then(|| (cost / left).sqrt().max(FINEST_PX))
+    }
+
+    /// What whitens the row of a picture, as it is stated.
+    pub(crate) fn whitening_of_picture(&self, row: u32) -> Option<Matrix6<f64>> {
+        let observation = self.observations.get(row as usize)?;
+        let own = observation.noise_or(Noise::new(1.0, 1.0));
+        let shape = self.noise_shape(observation)?;
+        Some(shape.whitening([own[Quantity::Position], own[Quantity::Rotation]]))
     }
 
     /// Makes the row of a picture the pose of a sighting, with its noise.

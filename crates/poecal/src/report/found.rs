@@ -1,7 +1,8 @@
 //! Numbers of cameras and boards that were found with the robot, in words.
 
 use super::table::number;
-use crate::io::calibration_file::{CalibrationFile, FoundEntry};
+use crate::camera::PictureNumber;
+use crate::io::calibration_file::CalibrationFile;
 
 /// Most numbers that are named one by one.
 const FEW: usize = 12;
@@ -16,13 +17,13 @@ pub(super) fn found_words(file: &CalibrationFile) -> Vec<String> {
 }
 
 /// Kind and name of what a number is of.
-fn of_what(entry: &FoundEntry) -> Vec<&str> {
+fn of_what(entry: &PictureNumber) -> Vec<&str> {
     entry.name.splitn(3, '.').take(2).collect()
 }
 
-fn words(group: &[FoundEntry]) -> String {
+fn words(group: &[PictureNumber]) -> String {
     if group.len() > FEW {
-        let moved = |entry: &FoundEntry| entry.found - entry.given;
+        let moved = |entry: &PictureNumber| entry.found - entry.given;
         let points = group.len() / 3;
         let squares: f64 = group.iter().map(|it| moved(it).powi(2)).sum();
         let largest = group.chunks(3).map(|it| it.iter().map(|it| moved(it).powi(2)).sum::<f64>().sqrt());
@@ -32,7 +33,7 @@ fn words(group: &[FoundEntry]) -> String {
             number(largest.fold(0.0, f64::max))
         );
     }
-    let one = |it: &FoundEntry| {
+    let one = |it: &PictureNumber| {
         let own = it.name.rsplit('.').next().unwrap_or_default();
         let digits = if it.unit == "px" { 1 } else { 4 };
         let unit = if it.unit.is_empty() { String::new() } else { format!(" {}", it.unit) };

@@ -4,6 +4,7 @@ use super::registration::Registration;
 use super::stations::register;
 use crate::camera::{Picture, Pictures};
 use crate::distributions::median;
+use crate::error::first_few;
 use crate::estimate::{Estimate, Packed, RowError, Session, delivered};
 use crate::lie::{Pose, rotation};
 use crate::measurement::{Dataset, Measurement, Noise, Quantity, Stated, deviation};
@@ -17,6 +18,9 @@ const NOISE: Noise = Noise::new(2e-3, 5e-3);
 const ODD: f64 = 4.0;
 /// Fewest pictures of a registration.
 const FEWEST: usize = 4;
+/// Turns from a prediction beyond which a board may be turned by half a turn, and up to which it is one that is turned back, rad.
+const FAR_TURNED: f64 = 2.2;
+const NEAR: f64 = 0.7;
 /// How many times worse the other place of a camera must look, so that this one is evident.
 const EVIDENT: f64 = 1.5;
 
@@ -33,8 +37,9 @@ pub fn settle_pictures(data: &mut Dataset, robot: &Robot) -> Vec<String> {
         || boards.iter().any(|it| is_placed(&it.name, &robot.mounted));
     let (beside, beside_px) = settled(data, robot);
     if placed {
+        let said = turned_back(data, &beside);
         *data = beside;
-        return Vec::new();
+        return said;
     }
     let (in_hand, in_hand_px) = settled(&in_hand(data), robot);
     let (found, place, own, other) = if in_hand_px < beside_px {
@@ -42,14 +47,37 @@ pub fn settle_pictures(data: &mut Dataset, robot: &Robot) -> Vec<String> {
     } else {
         (beside, "beside the robot, and the board is on the last link", beside_px, in_hand_px)
     };
+    let mut said = turned_back(data, &found);
     *data = found;
     let doubt = if other < EVIDENT * own {
         "; that is not evident: say it with --instrument CAMERA=LINK and --target BOARD=LINK"
     } else {
         ""
     };
-    vec![format!(
+    said.insert(0, format!(
         "the camera is {place}: so the nominal robot misses half of the pictures by less than {own:.1} px, the other way {other:.1} px{doubt}"
+    ));
+    said
+}
+
+/// Which pictures had their corners taken the other way round.
+fn turned_back(before: &Dataset, after: &Dataset) -> Vec<String> {
+    let differs = |(old, new): &(&Picture, &Picture)| {
+        old.corners.first().map(|it| it.point) != new.corners.first().map(|it| it.point)
+    };
+    let turned = before.pictures.all.iter().zip(&after.pictures.all).filter(differs);
+    let names: Vec<String> = turned
+        .map(|(_, picture)| picture.image.clone().unwrap_or_else(|| format!("row {}", picture.row + 1)))
+        .collect();
+    if names.is_empty() {
+        return Vec::new();
+    }
+    vec![format!(
+        "took the corners of {} of {} pictures the other way round, the first for the last, since their board is turned by half a turn against the \
+         others: {}",
+        names.len(),
+        before.pictures.all.len(),
+        first_few(&names)
     )]
 }
 
@@ -109,6 +137,7 @@ fn settled(data: &Dataset, robot: &Robot) -> (Dataset, f64) {
         }
         let mut has_changed = false;
         for (at, predicted) in predicted.iter().enumerate() {
+            has_changed |= turn_back(&mut found, at, predicted);
             let before = found.pictures.all[at].poses.first().copied();
             choose(&mut found, at, |picture| nearest(picture, predicted));
             has_changed |= before != found.pictures.all[at].poses.first().copied();
@@ -179,6 +208,26 @@ fn choose(data: &mut Dataset, at: usize, pose: impl FnOnce(&Picture) -> Option<P
         Some(sighting) => data.state_picture(at, &sighting),
         None => data.observations[row].measurement = Measurement::of_pose(&measured),
     }
+}
+
+/// Takes the corners of a picture the other way round, the first for the last, where its board is predicted turned by half a turn.
+fn turn_back(data: &mut Dataset, at: usize, predicted: &Pose) -> bool {
+    let Some(picture) = data.pictures.all.get(at) else { return false };
+    let board = data.pictures.boards.get(picture.board);
+    let Some((board, half_turn)) = board.and_then(|board| Some((board, board.half_turn()?))) else {
+        return false;
+    };
+    let apart = |pose: &Pose| deviation(pose, predicted).fixed_rows::<3>(3).norm();
+    let least = picture.poses.iter().map(apart).fold(f64::INFINITY, f64::min);
+    let turned: Vec<Pose> = picture.poses.iter().map(|pose| *pose * half_turn).collect();
+    if least < FAR_TURNED || turned.iter().map(apart).fold(f64::INFINITY, f64::min) > NEAR {
+        return false;
+    }
+    let last = u32::try_from(board.points.len()).unwrap_or(u32::MAX).saturating_sub(1);
+    let Some(picture) = data.pictures.all.get_mut(at) else { return false };
+    picture.corners.iter_mut().for_each(|corner| corner.point = last.saturating_sub(corner.point));
+    picture.poses = turned;
+    true
 }
 
 /// The pose of a picture that is turned least from a predicted one.

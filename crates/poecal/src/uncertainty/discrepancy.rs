@@ -4,6 +4,7 @@ use super::folds::CrossValidation;
 use super::remainder::{Attribution, Remainder};
 use super::view::View;
 use super::{clusters, neighbours, order};
+use crate::camera::{Centre, CommonError, Picture};
 use crate::measurement::{ByQuantity, Noise, Quantity};
 use crate::solve::Normal;
 use crate::unit::Unit;
@@ -99,9 +100,16 @@ fn of_pictures(view: &View<'_>, quantity: Quantity) -> Option<f64> {
     if pictures.is_empty() || !view.rows.iter().all(is_picture) {
         return None;
     }
+    let CommonError { shift_m, turn_rad, about } = pictures.common;
+    // Where it turns about the other of camera and board, what the row is of is carried along: two thirds of the square in each direction.
+    let is_other = |picture: &&Picture| (about == Centre::Camera) != picture.of_camera;
+    let arms = pictures.all.iter().filter(is_other);
+    let arms = arms.filter_map(|it| view.session.data.observations.get(it.row as usize));
+    let squares: f64 = arms.map(|row| row.measurement.pose().translation.norm_squared()).sum();
+    let carried = turn_rad * turn_rad * squares / pictures.all.len() as f64 * 2.0 / 3.0;
     match quantity.unit() {
-        Unit::Metre => Some(pictures.common.shift_m),
-        Unit::Radian => Some(pictures.common.turn_rad),
+        Unit::Metre => Some((shift_m * shift_m + carried).sqrt()),
+        Unit::Radian => Some(turn_rad),
         Unit::One => None,
     }
 }

@@ -230,7 +230,7 @@ fn trial(case: &Case, faults: &Faults, chance: &mut Chance) -> &'static str {
     }
 }
 
-/// Trials of a week: `./test` makes a quarter, 1,000, and `./test packages` 10,000.
+/// Trials of a week: `./test` makes a quarter, 1,000.
 const WEEKLY: usize = 4000;
 
 /// What is done for each number up to `count`, on two threads. Not by rayon, which would begin one trial while another waits, on
@@ -270,7 +270,7 @@ fn whatever_fails_a_place_is_old_or_new_or_completed_by_the_next_run() {
 
 #[test]
 fn a_stop_before_every_single_operation() {
-    // Before every one weekly and in `./test packages`, before one in so many where fewer trials are required.
+    // Before every one weekly, before one in so many where fewer trials are required.
     let apart = 1000_usize.div_ceil(trials(1000).count);
     let cases = cases();
     let stops = on_two_threads(2 * cases.len(), |number| {

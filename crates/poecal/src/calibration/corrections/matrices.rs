@@ -8,7 +8,7 @@ use crate::solve::Normal;
 /// Rounding of a matrix, as a share of its largest diagonal element.
 const ROUNDING: f64 = 1e-16;
 /// The same where columns of terms and screws may be one.
-pub(super) const ROUNDING_OF_TERMS: f64 = 1e-13;
+pub(in crate::calibration) const ROUNDING_OF_TERMS: f64 = 1e-13;
 /// Information that is added to each unknown of geometry where the rows do not determine them all, as a share of the largest.
 const RIDGE: f64 = 1e-10;
 
@@ -31,7 +31,7 @@ pub(super) fn square(matrix: &DMatrix<f64>) -> DMatrix<f64> {
 }
 
 /// Factor of a symmetric matrix; rounding is a share of its largest diagonal element.
-pub(super) fn cholesky(matrix: &DMatrix<f64>, rounding: f64) -> Option<Factor> {
+pub(in crate::calibration) fn cholesky(matrix: &DMatrix<f64>, rounding: f64) -> Option<Factor> {
     let largest = matrix.diagonal().iter().copied().fold(0.0, f64::max);
     linalg::cholesky(matrix.as_slice(), matrix.nrows(), rounding * largest)
 }
@@ -46,7 +46,7 @@ pub(super) fn of_geometry(mut matrix: DMatrix<f64>) -> Option<Factor> {
 }
 
 /// `A⁻¹ B` from the factor of A, by one product.
-pub(super) fn solved(factor: &Factor, right: &DMatrix<f64>) -> DMatrix<f64> {
+pub(in crate::calibration) fn solved(factor: &Factor, right: &DMatrix<f64>) -> DMatrix<f64> {
     let n = right.nrows();
     DMatrix::from_column_slice(n, n, &linalg::inverse(factor)) * right
 }

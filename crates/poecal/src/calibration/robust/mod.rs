@@ -96,6 +96,12 @@ pub(super) fn fit_without(task: &Task<'_>, start: &Start, left_out: &[u32]) -> R
 }
 
 impl RobustFit {
+    /// Weights of all rows; suspected ones have none.
+    pub(super) fn weights(&self) -> Vec<f64> {
+        let counted = |row: &RowJudgement| if row.suspected { 0.0 } else { row.weight };
+        self.robustness.rows.iter().map(counted).collect()
+    }
+
     /// Whether a fitted row is suspected.
     fn is_evident(&self, task: &Task<'_>) -> bool {
         task.rows.iter().any(|&row| self.robustness.suspects_row(row))

@@ -22,9 +22,7 @@ mod taught;
 mod trust;
 mod validation;
 
-pub use crate::io::stored_pictures::{
-    BoardEntry, CameraEntry, CommonEntry, FoundEntry, PicturesEntry, PointEntry,
-};
+pub use crate::io::stored_pictures::{BoardEntry, CameraEntry, CommonEntry, PicturesEntry, PointEntry};
 pub use alike::SuspectedConfigurationEntry;
 pub use bodies::{BodyEntry, InstrumentEntry, MassEntry, MeasuredEntry};
 pub use changes::{CommonDirectionEntry, CorrelatedEntry, CorrelationsEntry, JointChangeEntry};

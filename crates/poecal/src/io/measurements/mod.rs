@@ -39,6 +39,7 @@ mod text;
 mod turns;
 mod understanding;
 mod units;
+mod unknown_camera;
 mod write;
 mod wrong_boards;
 

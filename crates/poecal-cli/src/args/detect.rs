@@ -1,0 +1,24 @@
+//! Arguments of `poecal detect`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::shared::OutFile;
+
+/// Arguments of `poecal detect`.
+#[derive(Args, Debug)]
+pub(crate) struct Detect {
+    /// Pictures (PNG, JPEG), or folders of them
+    #[arg(required = true)]
+    pub(crate) pictures: Vec<PathBuf>,
+    /// The board in them: charuco:5x7:36mm:18mm:DICT_6X6_250 (squares along x and y, their side, that of a marker, dictionary; :legacy for the pattern
+    /// of OpenCV before 4.6) or chessboard:10x7:27mm (squares, not corners)
+    #[arg(long, value_name = "BOARD")]
+    pub(crate) board: String,
+    /// Folder for pictures with rings around the corners that were found, to look at
+    #[arg(long, value_name = "FOLDER")]
+    pub(crate) preview: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) place: OutFile,
+}

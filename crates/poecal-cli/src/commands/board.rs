@@ -1,0 +1,105 @@
+//! `poecal board`: a board on paper, to scale, and what a ruler says of the print.
+
+use std::path::Path;
+
+use poecal::io::output::{Existing, FilePlace};
+use poecal::{ErrorKind, Result};
+use poecal_detect::Spec;
+use poecal_detect::print::{Measured, Sheet, described};
+
+use crate::DONE;
+use crate::args::Board;
+use crate::console::Console;
+use crate::style::{labelled, shown};
+
+/// What a drawing is written as.
+enum Form {
+    Svg,
+    Pdf,
+}
+
+pub(crate) fn board(arguments: &Board, console: &Console) -> Result<u8> {
+    if arguments.out.is_none() && arguments.measured.is_none() {
+        return ErrorKind::Option.refuse("found neither --out nor --measured, expected the file to draw, --out board.pdf or --out board.svg");
+    }
+    let mut code = DONE;
+    if let Some(out) = &arguments.out {
+        code = drawn(arguments, out, console)?;
+    }
+    if let Some(measured) = &arguments.measured {
+        corrected(&arguments.spec, measured, console)?;
+    }
+    Ok(code)
+}
+
+/// Writes the page, and says what is on it.
+fn drawn(arguments: &Board, out: &Path, console: &Console) -> Result<u8> {
+    let form = form(out)?;
+    let spec = &arguments.spec;
+    if let Some(measured) = &arguments.measured {
+        // What cannot be corrected is refused before anything is written.
+        measured.correct(spec).map_err(|error| refused("--measured", &error))?;
+    }
+    let sheet = Sheet::new(spec, &arguments.page).map_err(|error| refused("SPEC", &error))?;
+    let place = FilePlace::reserve(out, Existing::forced(arguments.force), &[], &mut console.warner())?;
+    let text = match form {
+        Form::Svg => sheet.svg(),
+        Form::Pdf => sheet.pdf(),
+    };
+    place.write(vec![text.into()])?;
+    if looks_alike_turned(spec) {
+        console.warning(format!(
+            "{} looks the same turned by 180 degrees, so that its first corner may be taken for its last: an even number of squares one way \
+             and an odd one the other tell both apart",
+            described(spec)
+        ));
+    }
+    let [width, height] = sheet.size_mm;
+    let words = labelled("written", &shown(out))
+        + &labelled("board", &described(spec))
+        + &labelled("page", &format!("{width} x {height} mm: print it at 100 %, and check both rulers"))
+        + &labelled("calibrate", &format!("--markers {spec}"));
+    Ok(console.say_of(&words, out))
+}
+
+/// Whether nothing tells the board from itself turned.
+fn looks_alike_turned(spec: &Spec) -> bool {
+    let [columns, rows] = spec.squares();
+    matches!(spec, Spec::Chessboard(_)) && (columns + rows).is_multiple_of(2)
+}
+
+fn form(out: &Path) -> Result<Form> {
+    let extension = out.extension().and_then(|it| it.to_str()).unwrap_or_default();
+    match extension.to_ascii_lowercase().as_str() {
+        "svg" => Ok(Form::Svg),
+        "pdf" => Ok(Form::Pdf),
+        _ => ErrorKind::Option
+            .refuse(format!("--out: found no form in the name `{}`, expected .svg or .pdf", shown(out))),
+    }
+}
+
+/// Prints the board that was measured, as data: it is to be pasted.
+fn corrected(spec: &Spec, measured: &Measured, console: &Console) -> Result<()> {
+    let found = measured.correct(spec).map_err(|error| refused("--measured", &error))?;
+    let [x, y] = found.factors.map(|it| (it - 1.0) * 100.0);
+    console.remark(format!("the print is {} along x, {} along y", larger(x), larger(y)));
+    if !found.agrees() {
+        console.warning(format!(
+            "along x and y the scales differ by {:.2} %, so that no square describes the print: run `poecal calibrate` with --free board, which finds \
+             both, or print it again at 100 %",
+            found.stretch().abs() * 100.0
+        ));
+    }
+    console.data(&format!("--markers {}\n", found.spec))
+}
+
+fn larger(percent: f64) -> String {
+    match format!("{:.2}", percent.abs()).as_str() {
+        "0.00" => "as large as stated".to_owned(),
+        part => format!("{part} % {}", if percent < 0.0 { "smaller" } else { "larger" }),
+    }
+}
+
+fn refused(option: &str, error: &poecal_detect::Error) -> poecal::Error {
+    ErrorKind::Option.error(format!("{option}: {error}"))
+}

@@ -1,0 +1,106 @@
+//! `poecal board`: pages with boards, and what a ruler says of them.
+
+use crate::folder::Folder;
+
+const SPEC: &str = "charuco:5x7:36mm:18mm:DICT_6X6_250";
+
+#[test]
+fn a_board_is_drawn_as_pdf_and_svg() {
+    let folder = Folder::new();
+    let out = folder.done(&format!("board {SPEC} --page a4 --out board.pdf"));
+    assert!(out.starts_with("written       board.pdf\n"), "{out}");
+    for words in
+        ["5 columns by 7 rows of 36 mm squares", "210 x 297 mm", &format!("calibrate     --markers {SPEC}\n")]
+    {
+        assert!(out.contains(words), "`{words}` is not in\n{out}");
+    }
+    let pdf = folder.read("board.pdf");
+    assert!(pdf.starts_with("%PDF-") && pdf.contains("/MediaBox [0 0 595.27559 841.88976]"));
+    assert_eq!(folder.done(&format!("board {SPEC} --page letter --out board.SVG --quiet")), "");
+    assert!(folder.read("board.SVG").contains("width=\"215.9mm\" height=\"279.4mm\""));
+}
+
+#[test]
+fn what_it_prints_is_a_board_of_calibrate() {
+    let folder = Folder::new();
+    let printed = folder.run(&format!("board {SPEC}:legacy --measured 179.4mm,251.16mm"));
+    assert_eq!(
+        (printed.code, printed.out.as_str()),
+        (0, "--markers charuco:5x7:35.88mm:17.94mm:DICT_6X6_250:legacy\n")
+    );
+    assert!(
+        printed.err.contains("the print is 0.33 % smaller along x, 0.33 % smaller along y")
+            && !printed.err.contains("--free board"),
+        "{}",
+        printed.err
+    );
+    assert!(folder.listing().is_empty());
+    let help = folder.done("board --help");
+    assert!(help.contains("--measured <X,Y>") && help.is_ascii(), "{help}");
+}
+
+#[test]
+fn a_print_of_two_scales_is_told_with_what_to_free() {
+    let run = Folder::new().run("board chessboard:10x7:27mm --measured 270mm,188mm");
+    assert_eq!((run.code, run.out.as_str()), (0, "--markers chessboard:10x7:26.953mm\n"));
+    let expected = "along x and y the scales differ by 0.53 %";
+    assert!(run.err.contains(expected) && run.err.contains("--free board"), "{}", run.err);
+}
+
+#[test]
+fn a_file_that_exists_stays_unless_forced() {
+    let folder = Folder::new();
+    folder.write("board.pdf", "mine");
+    let run = folder.run(&format!("board {SPEC} --out board.pdf"));
+    assert!(run.code == 2 && run.err.contains("board.pdf"), "{}", run.err);
+    assert_eq!(folder.read("board.pdf"), "mine");
+    folder.done(&format!("board {SPEC} --out board.pdf --force"));
+    assert!(folder.read("board.pdf").starts_with("%PDF-"));
+}
+
+#[test]
+fn bad_input_is_one_sentence_and_nothing_is_written() {
+    let folder = Folder::new();
+    for (arguments, part) in [
+        ("board checkers --out board.pdf", "expected chessboard:COLSxROWS:SQUARE"),
+        ("board chessboard:10x7:28 --out board.pdf", "with its unit"),
+        ("board chessboard:10x7:27mm", "found neither --out nor --measured"),
+        (
+            "board chessboard:10x7:27mm --out board.png",
+            "found no form in the name `board.png`, expected .svg or .pdf",
+        ),
+        ("board chessboard:10x7:27mm --out -", "expected .svg or .pdf"),
+        ("board chessboard:10x7:27mm --page a9 --out board.pdf", "--page: found the page \"a9\""),
+        ("board chessboard:10x7:27mm --page 400x300 --out board.pdf", "such as 400x300mm"),
+        (
+            "board charuco:5x7:60mm:40mm:DICT_6X6_250 --out board.pdf",
+            "expected a page of at least 320 x 440 mm, which leaves 10 mm on each side for rulers and words, or squares of at most 38 mm",
+        ),
+        ("board chessboard:10x7:0.1mm --out board.pdf", "at least 1 mm on paper"),
+        ("board chessboard:10x7:27mm --measured 270mm", "--measured: found \"270mm\""),
+        ("board chessboard:10x7:27mm --measured 270mm,0mm", "with their units"),
+        (
+            "board chessboard:10x7:27mm --measured 27mm,189mm --out board.pdf",
+            "found 27 mm along x, expected about 270 mm",
+        ),
+        ("board chessboard:10x7:27mm --out nowhere/board.pdf", "nowhere"),
+    ] {
+        let run = folder.run(arguments);
+        assert!(run.code == 2 && run.out.is_empty(), "{arguments}: {}{}", run.out, run.err);
+        assert!(run.err.starts_with("error: ") && run.err.contains(part), "{arguments}: {}", run.err);
+        assert_eq!(run.err.lines().count(), 1, "{arguments}: {}", run.err);
+    }
+    assert!(folder.listing().is_empty(), "{:?}", folder.listing());
+}
+
+#[test]
+fn a_chessboard_that_looks_the_same_turned_is_told() {
+    for (spec, told) in [
+        ("chessboard:9x7:20mm", true),
+        ("chessboard:9x6:20mm", false),
+        ("charuco:5x7:20mm:15mm:DICT_4X4_50", false),
+    ] {
+        let run = Folder::new().run(&format!("board {spec} --out board.svg"));
+        assert_eq!((run.code, run.err.contains("turned by 180 degrees")), (0, told), "{spec}: {}", run.err);
+    }
+}

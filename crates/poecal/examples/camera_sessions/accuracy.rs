@@ -1,0 +1,35 @@
+//! Errors of calibrated poses, beside the least that is possible.
+
+use poecal::calibration::Corrections;
+use poecal::{CalibrationOptions, Error};
+use serde_json::{Value, json};
+
+use crate::information::Information;
+use crate::session::{all_rows, judged, places, registered, rms, session};
+
+/// Both places of the camera, with the noise of corners alone and with an error of each configuration.
+pub(crate) fn run(seed: u64) -> Result<Vec<Value>, Error> {
+    let mut lines = Vec::new();
+    for in_hand in [true, false] {
+        for millis in [0.0, 0.1, 0.5] {
+            let session = session(in_hand, millis, 1000 + seed)?;
+            let geometry = CalibrationOptions { corrections: Corrections::Off, ..all_rows() };
+            let (_, data, geometric) = judged(&session, &session.data, &geometry)?;
+            let (usual, _, all) = judged(&session, &session.data, &all_rows())?;
+            let information = Information::of(&session, session.simulation.common);
+            let (least, least_registered) = (information.least(), information.registered(&session).least());
+            let at = places(&session);
+            let shown = |[shift, turn]: [f64; 2]| [1e3 * shift, 1e3 * turn];
+            let common = data.pictures.common;
+            lines.push(json!({
+                "task": "accuracy", "seed": seed, "in_hand": in_hand, "millis": millis,
+                "error": shown(rms(&geometric)), "least": shown(least),
+                "registered": shown(rms(&registered(&at, &geometric))), "least_registered": shown(least_registered),
+                "delivered": shown(rms(&registered(&at, &all))), "level": usual.verdict.level.words(),
+                "common": shown([common.shift_m, common.turn_rad]), "about": format!("{:?}", common.about),
+                "sigma_px": data.pictures.sigma_px,
+            }));
+        }
+    }
+    Ok(lines)
+}

@@ -1,0 +1,49 @@
+//! Sessions whose joints are held, with all that another program needs to find the same frames.
+
+use poecal::calibration::BlockChoice;
+use poecal::camera::Corner;
+use poecal::measurement::Set;
+use poecal::simulate::{PictureSimulation, elbow};
+use poecal::start::settle_pictures;
+use poecal::{CalibrationOptions, Error, Simulation};
+use serde_json::{Value, json};
+
+use crate::session::{COUNT, calibrated, common, hold_out_thirds, rebuilt, simulation};
+
+/// Errors of each configuration, mm and mrad.
+const MILLIS: f64 = 0.5;
+
+pub(crate) fn run(seed: u64) -> Result<Vec<Value>, Error> {
+    let in_hand = seed.is_multiple_of(2);
+    let base = simulation(in_hand, MILLIS, 5000 + seed);
+    let session = Simulation { count: COUNT, error_rotation_rad: 0.0, error_position_m: 0.0, ..base.session };
+    let simulation = PictureSimulation { session, common: common(MILLIS, in_hand), ..base };
+    let made = simulation.run(&elbow())?;
+    let pictures = &made.data.pictures;
+    let mut data = rebuilt(&made.data, 0..COUNT, (&pictures.cameras, &pictures.boards))?;
+    hold_out_thirds(&mut data);
+    let said = settle_pictures(&mut data, &made.nominal);
+    let blocks = BlockChoice { fix: vec!["joints".to_owned()], ..BlockChoice::default() };
+    let (calibration, fitted) =
+        calibrated(&made.nominal, &data, &CalibrationOptions { blocks, ..CalibrationOptions::default() })?;
+    let lens = simulation.lens;
+    let corners = |corners: &[Corner]| -> Vec<[f64; 3]> {
+        corners.iter().map(|it| [f64::from(it.point), it.pixel.x, it.pixel.y]).collect()
+    };
+    let rows: Vec<Value> = fitted.pictures.all.iter().map(|picture| {
+        let row = picture.row as usize;
+        let tip = made.nominal.forward_kinematics(fitted.readings(row));
+        json!({
+            "held_out": fitted.observations[row].set == Some(Set::HeldOut),
+            "tip": { "rotation": tip.rotation.transpose().as_slice(), "translation": tip.translation.as_slice() },
+            "corners": corners(&picture.corners),
+        })
+    }).collect();
+    let px = calibration.accuracy.held_out.as_ref().and_then(|it| it.calibrated.pixels);
+    Ok(vec![json!({
+        "task": "kinematics", "seed": seed, "in_hand": in_hand, "start": said, "px": px.map(|it| it.rms_px), "mm": px.map(|it| it.rms_mm),
+        "lens": { "focal": lens.focal_px, "centre": lens.centre_px },
+        "board": simulation.board.points.iter().map(|it| [it.x, it.y, it.z]).collect::<Vec<_>>(),
+        "pictures": rows,
+    })])
+}

@@ -1,0 +1,43 @@
+//! Random set-ups of a camera, calibrated without a guess.
+
+use poecal::start::settle_pictures;
+use poecal::{CalibrationOptions, Error};
+use serde_json::{Value, json};
+
+use crate::scene::{Place, Scene};
+use crate::session::calibrated;
+
+pub(crate) fn run(seed: u64) -> Result<Vec<Value>, Error> {
+    let Scene { place, nominal, mut data } = Scene::random(seed)?;
+    let said = settle_pictures(&mut data, &nominal);
+    let right = match place {
+        Place::Hand => said.first().is_some_and(|it| it.contains("on the last link, and the board stays")),
+        Place::Beside => said.first().is_some_and(|it| it.contains("beside the robot")),
+        Place::Head => said.is_empty(),
+    };
+    let prismatic = nominal.joints.iter().filter(|joint| joint.screw.is_prismatic()).count();
+    let mut line = json!({
+        "task": "setups", "seed": seed, "place": format!("{place:?}"), "joints": nominal.joints.len(),
+        "prismatic": prismatic, "pictures": data.len(), "right": right, "start": said,
+    });
+    match calibrated(&nominal, &data, &CalibrationOptions::default()) {
+        Ok((calibration, _)) => {
+            let accuracy = &calibration.accuracy;
+            let px =
+                |of: &poecal::ModelAccuracy| of.pixels.map(|it| [it.rms_px, it.median_picture_px, it.rms_mm]);
+            line["training"] = json!(px(&accuracy.training.calibrated));
+            line["held_out"] = json!(accuracy.held_out.as_ref().map(|it| px(&it.calibrated)));
+            line["registered"] = json!(accuracy.held_out.as_ref().map(|it| px(&it.registered)));
+            line["unseen"] =
+                json!(accuracy.held_out.as_ref().map(|it| it.calibrated.pixels.map(|it| it.unseen)));
+            line["expected_mm"] = json!(calibration.trust.held_out.map(|it| it.position_mm().expected_rms));
+            line["error_mm"] = json!(accuracy.held_out.as_ref().map(|it| it.calibrated.position_mm().rms));
+            line["level"] = json!(calibration.verdict.level.words());
+            line["suspected"] = json!(calibration.robustness.rows.iter().filter(|row| row.suspected).count());
+            line["determined"] =
+                json!([calibration.identifiability.rank, calibration.identifiability.parameters]);
+        }
+        Err(error) => line["refused"] = json!(error.to_string()),
+    }
+    Ok(vec![line])
+}
