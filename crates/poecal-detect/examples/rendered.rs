@@ -1,5 +1,5 @@
 //! Draws pictures of boards with their truth, finds the corners, and prints how many and how well: `rendered [PICTURES [FOLDER]]`. In a folder the
-//! pictures and the truth are left, for other detectors. What is missing or off is told beside the table.
+//! pictures and the truth are left, for other detectors; `-` is none. What is missing or off is told beside the table.
 
 #![allow(clippy::print_stderr)]
 
@@ -71,7 +71,7 @@ struct Tally {
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut arguments = std::env::args().skip(1);
     let pictures: usize = arguments.next().map_or(Ok(40), |it| it.parse())?;
-    let folder = arguments.next();
+    let folder = arguments.next().filter(|it| it != "-");
     // One of the boards, for a look at it; `none` for pictures without them.
     let only = arguments.next();
     let mut out = io::stdout();

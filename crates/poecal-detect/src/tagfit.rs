@@ -15,6 +15,29 @@ pub(crate) struct Cells {
     pub(crate) dark: Vec<bool>,
 }
 
+impl Cells {
+    /// The dark part of an upright rectangle: its middle, and half of its sides, in sides of the tag.
+    fn dark_part(&self, middle: Vector2<f64>, half: Vector2<f64>) -> f64 {
+        let side = self.side as f64;
+        let half = half.sup(&Vector2::repeat(1e-6)) * side;
+        let (low, high) = (middle * side - half, middle * side + half);
+        // Where the rectangle is on a row or column of cells, and how long it is there.
+        let within = |axis: usize| {
+            let cells = low[axis].clamp(0.0, side) as usize..high[axis].clamp(0.0, side).ceil() as usize;
+            cells.map(move |at| (at, high[axis].min(at as f64 + 1.0) - low[axis].max(at as f64)))
+        };
+        let mut sum = 0.0;
+        for (row, down) in within(1) {
+            for (column, across) in within(0) {
+                if self.dark.get(row * self.side + column).is_some_and(|it| *it) {
+                    sum += down * across;
+                }
+            }
+        }
+        sum / (4.0 * half.x * half.y)
+    }
+}
+
 /// A tag that was fitted.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Fitted {
@@ -85,8 +108,6 @@ struct Patch {
     size: [usize; 2],
     levels: Vec<f64>,
     middle: Vector2<f64>,
-    /// Samples along a side of a pixel.
-    samples: usize,
     /// Variance of the noise.
     variance: f64,
 }
@@ -120,7 +141,6 @@ impl Patch {
             size,
             levels,
             middle,
-            samples: if side < 70.0 { 4 } else { 3 },
             variance: noise * noise,
         })
     }
@@ -133,8 +153,7 @@ impl Patch {
     /// How light the pixels are by a model, blurred, from 0 to 1.
     fn seen(&self, model: &Model, cells: &Cells) -> Option<Seen> {
         let back = model.back()?;
-        let samples = self.samples;
-        let (rim, side) = (RIM / cells.side as f64, cells.side as f64);
+        let rim = RIM / cells.side as f64;
         let mut at = Vec::with_capacity(self.levels.len());
         let mut shade = Vec::with_capacity(self.levels.len());
         for k in 0..self.levels.len() {
@@ -142,24 +161,11 @@ impl Patch {
             let counts = own.filter(|it| it.min() > -rim && it.max() < 1.0 + rim);
             at.push(counts);
             // A cell farther off than the pixel is wide has one shade.
-            let Some(middle) = own else {
+            let Some(middle) = own.filter(|it| it.min() > -0.3 && it.max() < 1.3) else {
                 shade.push(1.0);
                 continue;
             };
-            if middle.min() < -0.3 || middle.max() > 1.3 {
-                shade.push(1.0);
-                continue;
-            }
-            let mut sum = 0.0;
-            for k in 0..samples * samples {
-                let [x, y] = [k % samples, k / samples].map(|it| (it as f64 + 0.5) / samples as f64 - 0.5);
-                let place = middle + back.slopes(middle) * Vector2::new(x, y);
-                let is_in = place.min() >= 0.0 && place.max() < 1.0;
-                let (column, row) = ((place.x * side) as usize, (place.y * side) as usize);
-                let dark = is_in && cells.dark.get(row * cells.side + column).is_some_and(|it| *it);
-                sum += if dark { 0.0 } else { 1.0 };
-            }
-            shade.push((sum / (samples * samples) as f64) as f32);
+            shade.push((1.0 - cells.dark_part(middle, back.half_pixel(middle))) as f32);
         }
         let shade = Gray::new(self.size[0], self.size[1], shade).ok()?.blurred(model.blur, 3.2);
         Some(Seen { shade, at })
@@ -173,9 +179,10 @@ struct Back {
 }
 
 impl Back {
-    /// How the place on the tag moves with the pixel.
-    fn slopes(&self, at: Vector2<f64>) -> nalgebra::Matrix2<f64> {
-        self.forth.slope(at).and_then(|it| it.try_inverse()).unwrap_or_default()
+    /// Half the sides of the upright rectangle on the tag that spreads as far along both of its axes as a pixel does there.
+    fn half_pixel(&self, at: Vector2<f64>) -> Vector2<f64> {
+        let slope = self.forth.slope(at).and_then(|it| it.try_inverse()).unwrap_or_default();
+        Vector2::new(slope.row(0).norm(), slope.row(1).norm()) * 0.5
     }
 }
 
