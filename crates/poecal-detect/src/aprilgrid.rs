@@ -11,7 +11,7 @@ use crate::homography::Pair;
 use crate::lattice::map_near;
 use crate::layout::{Layout, Pattern, Tagged};
 use crate::markers::{Marker, Reader};
-use crate::quads::quads_apart;
+use crate::quads::{Quad, quads_apart};
 use crate::saddle::{Expected, Saddle, refine};
 
 /// Fewest tags that are a board.
@@ -25,8 +25,18 @@ const TURNS: usize = 2;
 
 /// Finds the corners of a grid of tags.
 pub(crate) fn detect(gray: &Gray, layout: &Layout, reader: &Reader, noise: f64) -> Result<Found, Rejected> {
+    of_quads(gray, layout, (reader, noise), &quads_apart(gray, noise))
+}
+
+/// The same of quadrangles that were found apart from the squares at their corners.
+pub(crate) fn of_quads(
+    gray: &Gray,
+    layout: &Layout,
+    (reader, noise): (&Reader, f64),
+    quads: &[Quad],
+) -> Result<Found, Rejected> {
     let Pattern::Tags(tags) = &layout.pattern else { return Err(Rejected::NoBoard) };
-    let read = quads_apart(gray, noise).into_iter().filter_map(|quad| reader.read(gray, &quad));
+    let read = quads.iter().filter_map(|quad| reader.read(gray, quad));
     let turned = |it: Marker| Marker { corners: [0, 1, 2, 3].map(|k| it.corners[(k + TURNS) % 4]), ..it };
     let markers: Vec<Marker> = read.map(turned).collect();
     let (_, agreeing) = consensus(layout, &markers).ok_or(Rejected::NoBoard)?;

@@ -32,10 +32,14 @@ const PAPER: f64 = 0.8;
 
 /// Finds a grid of dots that reaches over all its columns and rows.
 pub(crate) fn detect(gray: &Gray, layout: &Layout, noise: f64) -> Result<Found, Rejected> {
-    let dots = dots(gray, noise);
+    of_dots(gray, layout, noise, &dots(gray, noise))
+}
+
+/// The same of dots that were found.
+pub(crate) fn of_dots(gray: &Gray, layout: &Layout, noise: f64, dots: &[Dot]) -> Result<Found, Rejected> {
     let (mut most, mut reason) = (0, Rejected::NoBoard);
-    for lattice in lattices(&dots).into_iter().take(LATTICES) {
-        match named(gray, layout, noise, &dots, &lattice) {
+    for lattice in lattices(dots).into_iter().take(LATTICES) {
+        match named(gray, layout, noise, dots, &lattice) {
             Ok(found) => return Ok(found),
             Err(other) if lattice.len() > most => (most, reason) = (lattice.len(), other),
             Err(_) => {}
@@ -45,7 +49,7 @@ pub(crate) fn detect(gray: &Gray, layout: &Layout, noise: f64) -> Result<Found, 
 }
 
 /// Dark dots of any size.
-fn dots(gray: &Gray, noise: f64) -> Vec<Dot> {
+pub(crate) fn dots(gray: &Gray, noise: f64) -> Vec<Dot> {
     let shades = Shades::new(gray, noise);
     let longest = gray.width().max(gray.height());
     let mut found: Vec<Dot> = Vec::new();

@@ -6,7 +6,7 @@ use crate::dictionary::Dictionary;
 use crate::found::{Corner, Found, Kind, Rejected};
 use crate::gray::Gray;
 use crate::markers::{Marker, Reader};
-use crate::quads::quads;
+use crate::quads::{Quad, quads};
 use crate::tagfit::{Cells, Fitted, fit};
 
 /// Bits below which a code with a wrong bit is none: too many quadrangles look like one.
@@ -19,9 +19,19 @@ pub(crate) fn detect(
     reader: &Reader,
     noise: f64,
 ) -> Result<Found, Rejected> {
+    of_quads(gray, (dictionary, reader), noise, &quads(gray, noise))
+}
+
+/// The same of quadrangles that were found.
+pub(crate) fn of_quads(
+    gray: &Gray,
+    (dictionary, reader): (&Dictionary, &Reader),
+    noise: f64,
+    quads: &[Quad],
+) -> Result<Found, Rejected> {
     let mut tags: Vec<(usize, Fitted)> = Vec::new();
-    for quad in quads(gray, noise) {
-        let Some(marker) = reader.read(gray, &quad) else { continue };
+    for quad in quads {
+        let Some(marker) = reader.read(gray, quad) else { continue };
         let near = |it: &Fitted| (middle(&it.corners) - middle(&marker.corners)).norm() < 4.0;
         if tags.iter().any(|it| near(&it.1)) || (dictionary.bits() < FEW_BITS && !marker.exact) {
             continue;

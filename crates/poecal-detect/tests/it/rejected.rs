@@ -69,6 +69,14 @@ fn what_the_board_may_be_is_suggested() {
         ("charuco:7x5:36mm:18mm:DICT_4X4_100", "charuco:7x5:36mm:18mm:DICT_6X6_50"),
         ("charuco:6x8:30mm:22mm:DICT_4X4_50", "charuco:8x6:30mm:22mm:DICT_5X5_50:legacy"),
         ("chessboard:9x6:28mm", "chessboard:10x7:28mm"),
+        ("circles:11x4:20mm:asymmetric", "circles:4x11:20mm:asymmetric"),
+        ("circles:4x11:20mm", "circles:4x11:20mm:asymmetric"),
+        ("circles:9x6:30mm:asymmetric", "circles:9x6:30mm"),
+        ("circles:10x7:30mm", "circles:9x6:30mm"),
+        ("tags:25h9:50mm", "tags:DICT_APRILTAG_36h11:50mm"),
+        ("tags:36h11:50mm", "tags:DICT_5X5_50:50mm"),
+        ("aprilgrid:5x4:88mm:0.3", "aprilgrid:4x5:88mm:0.3:DICT_APRILTAG_36h11"),
+        ("aprilgrid:5x4:88mm:0.3", "aprilgrid:5x4:88mm:0.3:DICT_APRILTAG_25h9"),
     ] {
         let pictures: Vec<Gray> = (0..3).map(|number| drawn(shown, &draw, number)).collect();
         let detector = detector(stated);
