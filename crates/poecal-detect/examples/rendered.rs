@@ -95,8 +95,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let tally = tally(&detector, &drawn);
         print(&mut out, name, pictures, tally)?;
     }
-    if only.is_none_or(|it| it == "none") {
-        false_corners(&mut out, pictures * 25)?;
+    if only.as_ref().is_none_or(|it| it.starts_with("none")) {
+        // Of one kind: `none-circles`.
+        let kind = only.as_deref().and_then(|it| it.strip_prefix("none-")).unwrap_or_default();
+        false_corners(&mut out, pictures * 25, kind)?;
     }
     Ok(())
 }
@@ -201,8 +203,9 @@ fn print(out: &mut impl Write, name: &str, pictures: usize, mut tally: Tally) ->
 }
 
 /// Pictures without the board, each fifth with another one.
-fn false_corners(out: &mut impl Write, pictures: usize) -> Result<(), Box<dyn std::error::Error>> {
-    let detectors: Vec<Detector> = SOUGHT
+fn false_corners(out: &mut impl Write, pictures: usize, kind: &str) -> Result<(), Box<dyn std::error::Error>> {
+    let sought: Vec<&str> = SOUGHT.into_iter().filter(|it| it.starts_with(kind)).collect();
+    let detectors: Vec<Detector> = sought
         .iter()
         .map(|spec| Ok(Detector::new(&spec.parse()?)))
         .collect::<Result<_, poecal_detect::Error>>()?;
@@ -235,7 +238,7 @@ fn false_corners(out: &mut impl Write, pictures: usize) -> Result<(), Box<dyn st
         eprintln!("picture {number}: detector {which} has {corners} corners on {other:?}");
     }
     writeln!(out, "{pictures} pictures without the board, a fifth with another one: corners in")?;
-    for (which, spec) in SOUGHT.iter().enumerate() {
+    for (which, spec) in sought.iter().enumerate() {
         let count = found.iter().filter(|it| it.1 == which && it.3 > 0).count();
         writeln!(out, "- {count} of {spec}")?;
     }

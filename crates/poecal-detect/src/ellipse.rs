@@ -35,11 +35,13 @@ type Pixel = (Vector2<f64>, f64);
 /// Largest part of the contrast that the model may leave beyond the noise.
 const MISFIT: f64 = 0.22;
 /// What no fit is better than, pixels: uneven ink and light, pixels of a finite size.
-const FLOOR_PX: f64 = 0.01;
+const FLOOR_PX: f64 = 0.008;
 /// Least certain centre that counts, pixels.
 const WORST_PX: f64 = 0.4;
 /// Shortest half axis, pixels.
 const SHORTEST_PX: f64 = 1.6;
+/// Least half contrast, gray levels.
+const LEAST_HALF: f64 = 2.0;
 /// Most pixels that are fitted.
 const MOST: usize = 40_000;
 
@@ -47,6 +49,10 @@ const MOST: usize = 40_000;
 pub(crate) fn fit(gray: &Gray, place: Vector2<f64>, to_circle: Matrix2<f64>, noise: f64) -> Option<Dot> {
     let mut pixels = window(gray, place, &to_circle)?;
     let mut model = Model::start(place, to_circle, &pixels);
+    // Blur takes a part of the contrast of a small dot, but not so much.
+    if model.half < 0.5 * noise.max(LEAST_HALF) {
+        return None;
+    }
     let mut middle = place;
     for round in 0..3 {
         let before = model;
@@ -193,7 +199,7 @@ impl Model {
         let sigma_px = (0.5 * (covariance[(0, 0)] + covariance[(1, 1)]) + FLOOR_PX * FLOOR_PX).sqrt();
         let left = (variance - noise * noise).max(0.0).sqrt();
         let axes = self.to_circle.symmetric_eigenvalues();
-        let good = self.half > 2.0
+        let good = self.half > LEAST_HALF
             && self.half > noise
             && left < MISFIT * self.half
             && sigma_px < WORST_PX
