@@ -203,7 +203,11 @@ fn print(out: &mut impl Write, name: &str, pictures: usize, mut tally: Tally) ->
 }
 
 /// Pictures without the board, each fifth with another one.
-fn false_corners(out: &mut impl Write, pictures: usize, kind: &str) -> Result<(), Box<dyn std::error::Error>> {
+fn false_corners(
+    out: &mut impl Write,
+    pictures: usize,
+    kind: &str,
+) -> Result<(), Box<dyn std::error::Error>> {
     let sought: Vec<&str> = SOUGHT.into_iter().filter(|it| it.starts_with(kind)).collect();
     let detectors: Vec<Detector> = sought
         .iter()

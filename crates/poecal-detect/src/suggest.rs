@@ -40,69 +40,76 @@ pub(crate) fn suggest(spec: &Spec, pictures: &[&Gray]) -> Option<Suggestion> {
     let seen: Vec<(&Gray, f64)> = pictures.iter().map(|gray| (*gray, noise(gray))).collect();
     let all: Vec<Suggestion> = match spec {
         Spec::Chessboard(board) => {
-            let tried =
-                |spec| suggestion(spec, &seen, |layout, gray, noise| chessboard::detect(gray, layout, noise));
-            chessboards(board).into_iter().map(tried).collect()
+            let seen = with(&seen, |_, _| ());
+            let detect =
+                |layout: &Layout, one: &Seen<'_, ()>| chessboard::detect(one.gray, layout, one.noise);
+            chessboards(board).into_iter().map(|spec| suggestion(spec, &seen, detect)).collect()
         }
+        Spec::Charuco(board) => charucos_in(board, &with(&seen, quads)),
         Spec::Circles(board) => {
-            let dots: Vec<Vec<Dot>> = seen.iter().map(|(gray, noise)| circles::dots(gray, *noise)).collect();
-            let tried = |spec| {
-                let mut dots = dots.iter();
-                suggestion(spec, &seen, |layout, gray, noise| {
-                    circles::of_dots(gray, layout, noise, dots.next().ok_or(Rejected::NoBoard)?)
-                })
+            let seen = with(&seen, circles::dots);
+            let detect = |layout: &Layout, one: &Seen<'_, Vec<Dot>>| {
+                circles::of_dots(one.gray, layout, one.noise, &one.parts)
             };
-            grids_of_dots(board).into_iter().map(tried).collect()
+            grids_of_dots(board).into_iter().map(|spec| suggestion(spec, &seen, detect)).collect()
         }
-        Spec::Tags(board) => {
-            let quads: Vec<Vec<Quad>> = seen.iter().map(|(gray, noise)| quads(gray, *noise)).collect();
-            let tried = |board: Tags| {
-                let (dictionary, reader) = (board.dictionary.clone(), Reader::new(&board.dictionary));
-                let mut quads = quads.iter();
-                suggestion(Spec::Tags(board), &seen, |_, gray, noise| {
-                    let quads = quads.next().ok_or(Rejected::NoBoard)?;
-                    tags::of_quads(gray, (&dictionary, &reader), noise, quads)
-                })
-            };
-            families(&board.dictionary, 1).map(|dictionary| Tags { dictionary, ..*board }).map(tried).collect()
-        }
-        Spec::AprilGrid(board) => {
-            let quads: Vec<Vec<Quad>> = seen.iter().map(|(gray, noise)| quads_apart(gray, *noise)).collect();
-            let tried = |board: AprilGrid| {
-                let reader = Reader::with_border(&board.dictionary, 2);
-                let mut quads = quads.iter();
-                suggestion(Spec::AprilGrid(board), &seen, |layout, gray, noise| {
-                    let quads = quads.next().ok_or(Rejected::NoBoard)?;
-                    aprilgrid::of_quads(gray, layout, (&reader, noise), quads)
-                })
-            };
-            april_grids(board).into_iter().map(tried).collect()
-        }
-        Spec::Charuco(board) => {
-            // What is costly does not depend on the board.
-            let quads: Vec<Vec<Quad>> = seen.iter().map(|(gray, noise)| quads(gray, *noise)).collect();
-            let tried = |board: Charuco| {
-                let reader = Reader::new(&board.dictionary);
-                let mut quads = quads.iter();
-                suggestion(Spec::Charuco(board), &seen, |layout, gray, noise| {
-                    let quads = quads.next().ok_or(Rejected::NoBoard)?;
-                    charuco::of_quads(gray, layout, &reader, noise, quads)
-                })
-            };
-            charucos(board).into_iter().map(tried).collect()
-        }
+        Spec::Tags(board) => tags_in(board, &with(&seen, quads)),
+        Spec::AprilGrid(board) => april_grids_in(board, &with(&seen, quads_apart)),
     };
     all.into_iter().filter(|it| it.corners > 0).rev().max_by_key(|it| it.corners)
 }
 
+/// A picture, its noise, and what is costly to find in it and does not depend on the board.
+struct Seen<'a, P> {
+    gray: &'a Gray,
+    noise: f64,
+    parts: P,
+}
+
+fn with<'a, P>(seen: &[(&'a Gray, f64)], parts: impl Fn(&Gray, f64) -> P) -> Vec<Seen<'a, P>> {
+    let one = |(gray, noise): &(&'a Gray, f64)| Seen { gray, noise: *noise, parts: parts(gray, *noise) };
+    seen.iter().map(one).collect()
+}
+
+fn charucos_in(board: &Charuco, seen: &[Seen<'_, Vec<Quad>>]) -> Vec<Suggestion> {
+    let tried = |board: Charuco| {
+        let reader = Reader::new(&board.dictionary);
+        suggestion(Spec::Charuco(board), seen, |layout, one| {
+            charuco::of_quads(one.gray, layout, &reader, one.noise, &one.parts)
+        })
+    };
+    charucos(board).into_iter().map(tried).collect()
+}
+
+fn tags_in(board: &Tags, seen: &[Seen<'_, Vec<Quad>>]) -> Vec<Suggestion> {
+    let tried = |dictionary: Dictionary| {
+        let reader = Reader::new(&dictionary);
+        let spec = Spec::Tags(Tags { dictionary: dictionary.clone(), ..*board });
+        suggestion(spec, seen, |_, one| {
+            tags::of_quads(one.gray, (&dictionary, &reader), one.noise, &one.parts)
+        })
+    };
+    families(&board.dictionary, 1).map(tried).collect()
+}
+
+fn april_grids_in(board: &AprilGrid, seen: &[Seen<'_, Vec<Quad>>]) -> Vec<Suggestion> {
+    let tried = |board: AprilGrid| {
+        let reader = Reader::with_border(&board.dictionary, 2);
+        suggestion(Spec::AprilGrid(board), seen, |layout, one| {
+            aprilgrid::of_quads(one.gray, layout, (&reader, one.noise), &one.parts)
+        })
+    };
+    april_grids(board).into_iter().map(tried).collect()
+}
+
 /// What a board has in pictures.
-fn suggestion(
+fn suggestion<P>(
     spec: Spec,
-    seen: &[(&Gray, f64)],
-    mut detect: impl FnMut(&Layout, &Gray, f64) -> Result<Found, Rejected>,
+    seen: &[Seen<'_, P>],
+    detect: impl Fn(&Layout, &Seen<'_, P>) -> Result<Found, Rejected>,
 ) -> Suggestion {
     let layout = Layout::new(&spec);
-    let found = seen.iter().filter_map(|(gray, noise)| detect(&layout, gray, *noise).ok());
+    let found = seen.iter().filter_map(|one| detect(&layout, one).ok());
     let (pictures, corners) = found.fold((0, 0), |sum, it| (sum.0 + 1, sum.1 + it.corners.len()));
     Suggestion { spec, pictures, corners }
 }

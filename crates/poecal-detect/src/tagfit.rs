@@ -136,13 +136,7 @@ impl Patch {
             .flat_map(|row| gray.row(row)[first[0]..first[0] + size[0]].iter().map(|it| f64::from(*it)))
             .collect();
         let middle = quad.iter().sum::<Vector2<f64>>() * 0.25;
-        Some(Patch {
-            first,
-            size,
-            levels,
-            middle,
-            variance: noise * noise,
-        })
+        Some(Patch { first, size, levels, middle, variance: noise * noise })
     }
 
     fn place(&self, at: usize) -> Vector2<f64> {

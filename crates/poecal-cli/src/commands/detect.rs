@@ -237,7 +237,12 @@ fn nothing(detector: &Detector, all: &[Seen]) -> Error {
     let why: Vec<String> =
         all.iter().filter_map(|it| Some(format!("{}: {}", it.name, it.found.as_ref().err()?))).collect();
     let help = match detector.suggest(&tried) {
-        Some(other) => format!("but {} shows in {}: take --board {}", other.spec, plural(other.pictures, "picture"), other.spec),
+        Some(other) => format!(
+            "but {} shows in {}: take --board {}",
+            other.spec,
+            plural(other.pictures, "picture"),
+            other.spec
+        ),
         None => format!("nor {}: check the board, and look at the pictures", tried_too(detector.spec())),
     };
     let message = format!(
@@ -252,7 +257,9 @@ fn nothing(detector: &Detector, all: &[Seen]) -> Error {
 /// What is tried in place of a board.
 fn tried_too(spec: &Spec) -> &'static str {
     match spec {
-        Spec::Circles(_) => "one with columns and rows exchanged, of the other kind, or with one dot more or fewer each way",
+        Spec::Circles(_) => {
+            "one with columns and rows exchanged, of the other kind, or with one dot more or fewer each way"
+        }
         Spec::Tags(_) => "tags of other families",
         Spec::AprilGrid(_) => "one with columns and rows exchanged, or with tags of other families",
         _ => "one with columns and rows exchanged, of the other pattern or with other markers",

@@ -46,9 +46,8 @@ fn squares(page: &OnPage<'_>) -> Vec<Rectangle> {
     let Some((dictionary, _)) = &layout.markers else { return black };
     for id in 0..layout.marker_count() {
         // Cell 0 is border: `is_black` of what is outside is black.
-        let is_black = |column: usize, row: usize| {
-            dictionary.is_black(id, column.wrapping_sub(1), row.wrapping_sub(1))
-        };
+        let is_black =
+            |column: usize, row: usize| dictionary.is_black(id, column.wrapping_sub(1), row.wrapping_sub(1));
         black.extend(marker(page, id, dictionary.bits() + 2, is_black));
     }
     black

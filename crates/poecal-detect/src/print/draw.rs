@@ -27,8 +27,7 @@ impl Sheet {
         let square_mm = spec.square_m() * 1e3;
         if square_mm < LEAST_MM {
             let unit = unit(spec);
-            let message =
-                format!("found {unit} of {square_mm} mm, expected at least {LEAST_MM} mm on paper");
+            let message = format!("found {unit} of {square_mm} mm, expected at least {LEAST_MM} mm on paper");
             return Err(Error::new(message));
         }
         let ways = page.ways().into_iter().map(|size| (layout(spec, size), size));
@@ -110,8 +109,11 @@ fn too_large(spec: &Spec, page: &Page) -> Error {
     let most = page.ways().into_iter().map(room).fold(0.0, f64::max);
     // A tenth of a millimetre, or what a page of a given size leaves to the hair.
     let most = ((most * 10.0 + 1e-6).floor() / 10.0).max(0.0);
-    let smaller =
-        if most >= LEAST_MM { format!(", or {} of at most {} mm", unit(spec), mm(most)) } else { String::new() };
+    let smaller = if most >= LEAST_MM {
+        format!(", or {} of at most {} mm", unit(spec), mm(most))
+    } else {
+        String::new()
+    };
     let [width, height] = sides.map(mm);
     let [wide, high] = sides.map(|it| mm(it + 2.0 * MARGIN_MM));
     Error::new(format!(

@@ -19,7 +19,8 @@ pub fn described(spec: &Spec) -> String {
             )
         }
         Spec::Circles(Circles { columns, rows, pitch_m, asymmetric }) => {
-            let (pitch, kind) = (mm(*pitch_m), if *asymmetric { "Asymmetric circle grid" } else { "Circle grid" });
+            let (pitch, kind) =
+                (mm(*pitch_m), if *asymmetric { "Asymmetric circle grid" } else { "Circle grid" });
             format!("{kind}, {columns} columns by {rows} rows of dots, {pitch} mm from row to row")
         }
         Spec::Tags(Tags { dictionary, size_m }) => {
@@ -51,11 +52,16 @@ pub(super) fn elsewhere(spec: &Spec) -> String {
             format!("OpenCV: findCirclesGrid(picture, ({columns}, {rows}), flags=CALIB_CB_{kind}_GRID)")
         }
         Spec::Tags(Tags { dictionary, .. }) => {
-            format!("OpenCV: ArucoDetector(getPredefinedDictionary({})).detectMarkers(picture)", dictionary.name())
+            format!(
+                "OpenCV: ArucoDetector(getPredefinedDictionary({})).detectMarkers(picture)",
+                dictionary.name()
+            )
         }
         Spec::AprilGrid(AprilGrid { columns, rows, size_m, spacing, .. }) => {
             let size = decimal(*size_m, 6);
-            format!("Kalibr: target_type: aprilgrid, tagCols: {columns}, tagRows: {rows}, tagSize: {size}, tagSpacing: {spacing}")
+            format!(
+                "Kalibr: target_type: aprilgrid, tagCols: {columns}, tagRows: {rows}, tagSize: {size}, tagSpacing: {spacing}"
+            )
         }
     }
 }
@@ -76,10 +82,16 @@ pub(super) fn spans(spec: &Spec) -> String {
 /// The same places, as a refusal names them.
 pub(super) fn ends(spec: &Spec) -> &'static str {
     match spec {
-        Spec::Chessboard(_) | Spec::Charuco(_) => "from the outer edge of the first square to that of the last one",
-        Spec::Circles(_) => "from the left edge of the leftmost dot to that of the rightmost one, and likewise downwards",
+        Spec::Chessboard(_) | Spec::Charuco(_) => {
+            "from the outer edge of the first square to that of the last one"
+        }
+        Spec::Circles(_) => {
+            "from the left edge of the leftmost dot to that of the rightmost one, and likewise downwards"
+        }
         Spec::Tags(_) => "from edge to edge of the black border of one tag",
-        Spec::AprilGrid(_) => "from the outer edge of the first tag to that of the last one, without the small squares",
+        Spec::AprilGrid(_) => {
+            "from the outer edge of the first tag to that of the last one, without the small squares"
+        }
     }
 }
 

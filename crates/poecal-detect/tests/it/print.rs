@@ -144,7 +144,10 @@ fn rulers_and_words_stand_between_board_and_edge() {
         let (names, bars): (Vec<Rectangle>, Vec<Rectangle>) = bars.into_iter().partition(inside);
         // Names of loose tags stand between them.
         assert!(names.is_empty() || spec.starts_with("tags"), "{spec} on {page}: words on the board");
-        assert!(names.iter().all(|name| sheet.rectangles.iter().all(|it| apart(name, it))), "{spec} on {page}");
+        assert!(
+            names.iter().all(|name| sheet.rectangles.iter().all(|it| apart(name, it))),
+            "{spec} on {page}"
+        );
         for it in lines.chain(bars.iter().copied()) {
             assert!(apart(&it, &board), "{spec} on {page}: {it:?} is on the board");
             let within =
@@ -253,7 +256,8 @@ fn dots_are_discs_in_both_files() {
     assert!((first.middle_mm[0] - sheet.board.from_mm[0] - 24.0).abs() < 1e-9 && first.radius_mm == 6.0);
     assert_eq!(sheet.place_mm(0), first.middle_mm);
     let svg = sheet.svg();
-    let arcs: Vec<&str> = svg.lines().filter(|line| line.contains("a6 6 0 0 1 12 0a6 6 0 0 1 -12 0Z")).collect();
+    let arcs: Vec<&str> =
+        svg.lines().filter(|line| line.contains("a6 6 0 0 1 12 0a6 6 0 0 1 -12 0Z")).collect();
     assert!(arcs.len() == 54 && arcs[0].starts_with(&format!("M{} ", first.middle_mm[0] - 6.0)), "{arcs:?}");
     let pdf = sheet.pdf();
     let curves: Vec<Vec<f64>> = pdf
@@ -281,7 +285,8 @@ fn a_page_of_tags_has_as_many_as_fit() {
     assert_eq!(sheet("tags:16h5:20mm", "3000x2000mm").points(), 4 * 30);
     let refused = Sheet::new(&"tags:36h11:250mm".parse().unwrap(), &"a4".parse().unwrap()).unwrap_err();
     assert!(
-        refused.to_string().contains("at least 270 x 370 mm") && refused.to_string().ends_with("tags of at most 190 mm"),
+        refused.to_string().contains("at least 270 x 370 mm")
+            && refused.to_string().ends_with("tags of at most 190 mm"),
         "{refused}"
     );
 }

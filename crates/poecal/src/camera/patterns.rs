@@ -51,7 +51,8 @@ impl Board {
     ) -> Result<Self> {
         counted("dots", [columns, rows], if is_asymmetric { 2 } else { 3 })?;
         long("a pitch", pitch_m)?;
-        let along = move |column: usize, row: usize| if is_asymmetric { 2 * column + row % 2 } else { column };
+        let along =
+            move |column: usize, row: usize| if is_asymmetric { 2 * column + row % 2 } else { column };
         let places = (0..rows).flat_map(|row| (0..columns).map(move |column| [along(column, row), row]));
         Ok(grid(name, "dot", places, pitch_m))
     }
@@ -114,7 +115,10 @@ mod tests {
     #[test]
     fn points_are_where_opencv_and_kalibr_have_them() {
         let circles = Board::circles("board", [4, 11], 0.02, true).unwrap();
-        assert_eq!((circles.names.len(), at(&circles, "dot5"), at(&circles, "dot8")), (44, [0.06, 0.02], [0.0, 0.04]));
+        assert_eq!(
+            (circles.names.len(), at(&circles, "dot5"), at(&circles, "dot8")),
+            (44, [0.06, 0.02], [0.0, 0.04])
+        );
         assert_eq!(at(&Board::circles("board", [5, 4], 0.01, false).unwrap(), "dot6"), [0.01, 0.01]);
         let grid = Board::april_grid("board", [6, 5], 0.088, 0.3).unwrap();
         assert_eq!((grid.names.len(), at(&grid, "tag0.3")), (120, [0.0, 0.0]));

@@ -20,11 +20,7 @@ fn board_before<'a>(board: &Board, name: &'a str) -> Option<&'a str> {
 
 impl Reader<'_> {
     /// Index of the row's board, by the columns of its name and of the corner's.
-    pub(super) fn board(
-        &mut self,
-        row: &Row<'_>,
-        (column, target): (Option<usize>, usize),
-    ) -> Result<usize> {
+    pub(super) fn board(&mut self, row: &Row<'_>, (column, target): (Option<usize>, usize)) -> Result<usize> {
         let only = self.options.boards.first().filter(|_| self.options.boards.len() == 1);
         let corner = text(row, Some(target)).unwrap_or_default();
         let name = text(row, column)
