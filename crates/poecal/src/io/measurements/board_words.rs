@@ -1,9 +1,11 @@
 //! Boards in words, as `poecal detect` has them: what moves the points of a board. Which markers it has, or in which pattern, does not.
 
-use super::boards::BOARD;
 use super::units::positive_length_m;
 use crate::camera::Board;
 use crate::error::{Error, ErrorKind, Result};
+
+/// The board of all corners where no column names it.
+pub(super) const BOARD: &str = "board";
 
 /// A kind of board: its name, what is expected, and its reader.
 struct Kind {

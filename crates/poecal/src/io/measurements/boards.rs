@@ -4,7 +4,7 @@ use std::path::Path;
 
 use nalgebra::Vector3;
 
-use super::board_words::in_words;
+use super::board_words::{BOARD, in_words};
 use super::header::{Header, unit_in_name};
 use super::mapping::ColumnMap;
 use super::number::Numbers;
@@ -15,9 +15,6 @@ use crate::camera::Board;
 use crate::error::{Error, ErrorKind, Result};
 use crate::io::stored_pictures::stored_boards;
 use crate::unit::Unit;
-
-/// The board of all corners where no column names it.
-pub(super) const BOARD: &str = "board";
 
 /// The boards of a file of points, or of a specification such as `chessboard:10x7:27mm` (squares along x and y, and their side); the others are
 /// `charuco:…`, `circles:…`, `aprilgrid:…` and `tags:…`, as `poecal detect` has them.
