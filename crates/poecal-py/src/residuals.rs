@@ -1,7 +1,9 @@
 //! Residuals of each row as arrays and as tables of other packages.
 
 use numpy::{PyArray1, PyArray2};
-use poecal::io::residuals::{ModelErrors, ResidualRow, Residuals as Rows, RowDiagnostics, columns as names};
+use poecal::io::residuals::{
+    ResidualRow, Residuals as Rows, RowDiagnostics, columns as names, corner_columns,
+};
 use poecal::measurement::Quantity;
 use pyo3::exceptions::PyModuleNotFoundError;
 use pyo3::prelude::*;
@@ -21,7 +23,7 @@ pub(crate) struct Residuals {
     calibration: Py<Calibration>,
 }
 
-/// Index of a model in [`ModelErrors::models`].
+/// A model whose errors a row has.
 #[derive(Clone, Copy)]
 enum OfModel {
     Nominal,
@@ -72,7 +74,9 @@ impl Residuals {
         quantity: Quantity,
         model: OfModel,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        self.numbers(py, |row| row.errors.get(quantity).map(|errors| model.of(&errors)))
+        self.numbers(py, |row| {
+            row.errors.get(quantity).map(|errors| model.of(errors.models, errors.corrected))
+        })
     }
 
     /// Residuals of a quantity by component.
@@ -99,13 +103,12 @@ impl OfModel {
         ("corrected", OfModel::Corrected),
     ];
 
-    fn of(self, errors: &ModelErrors) -> f64 {
-        let [nominal, registered, calibrated] = errors.models;
+    fn of(self, [nominal, registered, calibrated]: [f64; 3], corrected: Option<f64>) -> f64 {
         match self {
             OfModel::Nominal => nominal,
             OfModel::Registered => registered,
             OfModel::Calibrated => calibrated,
-            OfModel::Corrected => errors.corrected.unwrap_or(f64::NAN),
+            OfModel::Corrected => corrected.unwrap_or(f64::NAN),
         }
     }
 }
@@ -278,6 +281,27 @@ impl Residuals {
         self.errors_of(py, quantity_word(quantity)?, chosen("model", model, &OfModel::ALL)?)
     }
 
+    /// Root mean square distance of the corners of each picture from where a model sees them.
+    ///
+    /// Parameters
+    /// ----------
+    /// model
+    ///     "nominal", "registered", "calibrated", or "corrected": NaN without such a model.
+    ///
+    /// Returns
+    /// -------
+    /// numpy.ndarray
+    ///     Shape (m,), pixels; NaN of rows that are no pictures.
+    #[pyo3(signature = (*, model="calibrated"))]
+    fn corners_px<'py>(
+        &self,
+        py: Python<'py>,
+        #[pyo3(from_py_with = arg::model)] model: &str,
+    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let model = chosen("model", model, &OfModel::ALL)?;
+        self.numbers(py, |row| row.corners.map(|corners| model.of(corners.models_px, corners.corrected_px)))
+    }
+
     /// Weight of each row in the fit, shape (m,); of a held-out row the weight that it would have had.
     #[getter]
     fn weight<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
@@ -321,6 +345,11 @@ impl Residuals {
             for (at, name) in names(quantity, rows.has_corrected).enumerate() {
                 columns
                     .set_item(name, self.numbers(py, |row| row.errors.get(quantity)?.numbers().nth(at))?)?;
+            }
+        }
+        if rows.has_corners {
+            for (at, name) in corner_columns(rows.has_corrected).enumerate() {
+                columns.set_item(name, self.numbers(py, |row| row.corners?.numbers().nth(at))?)?;
             }
         }
         columns.set_item("weight", self.weight(py)?)?;

@@ -30,7 +30,10 @@ pub(crate) fn validate(arguments: &Validate, typed: &[OsString], console: &Conso
     let calibrated = file.robot().map_err(in_file)?;
     // Every row counts, whatever its set.
     let controller = file.controller.clone();
-    let options = ReadOptions { ignore_sets: true, controller, ..arguments.meaning.options()? };
+    let mut options = ReadOptions { ignore_sets: true, controller, ..arguments.meaning.options()? };
+    if let Some(known) = &file.pictures {
+        known.complete(&mut options).map_err(|error| error.in_file(&arguments.calibration))?;
+    }
     let read = measurements::read(&arguments.measurements, &calibrated, &options)?;
     let limits = AcceptanceLimits::chosen(arguments.accept.clone(), arguments.accept_model)?;
     let judging = Judging {

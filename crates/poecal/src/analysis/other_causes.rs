@@ -91,6 +91,10 @@ impl Rules<'_> {
             return;
         }
         let joints = self.unexplained_joints();
+        // Of tool and device alone: described by its parts.
+        if joints.is_empty() {
+            return;
+        }
         let several = joints.len() > 1;
         let (open, subject) = if several {
             ("cannot be separated", "their screws")

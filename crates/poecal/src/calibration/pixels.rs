@@ -49,18 +49,10 @@ pub(super) fn pixel_accuracy(data: &Dataset, rows: &[u32], errors: &[RowError]) 
     let (mut lengths, mut across, mut of_pictures) = (Vec::new(), 0.0, Vec::new());
     let mut unseen = 0;
     for (row, error) in rows.iter().zip(errors) {
-        let Some(picture) = data.pictures.of_row(*row).and_then(|at| data.pictures.all.get(at)) else {
-            continue;
-        };
-        let measured = data.observations.get(*row as usize)?.measurement.pose();
-        let pose = picture.directed(&predicted_pose(&measured, error));
-        let own = corners(data, picture, &pose);
-        unseen += picture.corners.len() - own.len();
-        if own.is_empty() {
-            continue;
-        }
-        let squares: f64 = own.iter().map(|(px, _)| px * px).sum();
-        of_pictures.push((squares / own.len() as f64).sqrt());
+        let Some((all, own)) = seen_corners(data, *row, error) else { continue };
+        unseen += all - own.len();
+        let Some(picture) = CornerError::of(&own) else { continue };
+        of_pictures.push(picture.rms_px);
         across += own.iter().map(|(_, m)| m * m).sum::<f64>();
         lengths.extend(own.iter().map(|(px, _)| *px));
     }
@@ -76,6 +68,36 @@ pub(super) fn pixel_accuracy(data: &Dataset, rows: &[u32], errors: &[RowError]) 
         median_picture_px: median(of_pictures.iter().copied())?,
         rms_mm: 1e3 * (across / count).sqrt(),
     })
+}
+
+/// Root mean square distance of the corners of one picture from where a model sees them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CornerError {
+    /// In the picture, pixels.
+    pub rms_px: f64,
+    /// At the board, square to the ray, millimetres.
+    pub rms_mm: f64,
+}
+
+impl CornerError {
+    fn of(corners: &[(f64, f64)]) -> Option<Self> {
+        let mean = |of: fn(&(f64, f64)) -> f64| corners.iter().map(of).sum::<f64>() / corners.len() as f64;
+        let [px, m] = [mean(|it| it.0 * it.0), mean(|it| it.1 * it.1)].map(f64::sqrt);
+        (!corners.is_empty()).then_some(CornerError { rms_px: px, rms_mm: 1e3 * m })
+    }
+}
+
+/// The error of the corners of a row by the error of the row; `None` of a row that is no picture, or none of whose corners the model sees.
+pub(crate) fn corner_error(data: &Dataset, row: u32, error: &RowError) -> Option<CornerError> {
+    CornerError::of(&seen_corners(data, row, error)?.1)
+}
+
+/// Number of the corners of a row, and the errors of those that the model sees; `None` of a row that is no picture.
+fn seen_corners(data: &Dataset, row: u32, error: &RowError) -> Option<(usize, Vec<(f64, f64)>)> {
+    let picture = data.pictures.all.get(data.pictures.of_row(row)?)?;
+    let measured = data.observations.get(row as usize)?.measurement.pose();
+    let pose = picture.directed(&predicted_pose(&measured, error));
+    Some((picture.corners.len(), corners(data, picture, &pose)))
 }
 
 /// Of each corner that a pose of the board lets the camera see, how far it is off: pixels, and metres at its depth.

@@ -6,8 +6,9 @@ use nalgebra::Vector3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::measurements::ReadOptions;
 use super::text_of;
-use crate::camera::{Board, Camera, Centre, Distortion, Lens, PictureNumber};
+use crate::camera::{Board, Camera, Centre, CommonError, Distortion, Lens, PictureNumber};
 use crate::error::{Error, ErrorKind, Result};
 use crate::measurement::Dataset;
 
@@ -107,6 +108,32 @@ impl PicturesEntry {
 }
 
 impl PicturesEntry {
+    /// Cameras and boards of the calibration for pictures that are read with none.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Measurement`] if a camera is none.
+    pub fn complete(&self, options: &mut ReadOptions) -> Result<()> {
+        if options.cameras.is_empty() {
+            options.cameras =
+                self.known_cameras().map_err(|found| Error::new(ErrorKind::Measurement, found))?;
+        }
+        if options.boards.is_empty() {
+            options.boards = self.boards.iter().map(BoardEntry::board).collect();
+        }
+        Ok(())
+    }
+
+    fn known_cameras(&self) -> std::result::Result<Vec<Camera>, String> {
+        self.cameras.iter().map(CameraEntry::camera).collect()
+    }
+
+    /// What the corners of a picture share.
+    #[must_use]
+    pub(in crate::io) fn common_error(&self) -> CommonError {
+        let CommonEntry { shift_mm, turn_deg, about } = self.common;
+        CommonError { shift_m: 1e-3 * shift_mm, turn_rad: turn_deg.to_radians(), about }
+    }
+
     /// What to say where pictures were read with another lens or board than those that the calibration found.
     #[must_use]
     pub fn read_otherwise(&self, data: &Dataset) -> Option<String> {
@@ -189,7 +216,7 @@ fn stored(path: &Path) -> Result<PicturesEntry> {
 /// A file that is none, or has no cameras.
 pub(in crate::io) fn stored_cameras(path: &Path) -> Result<Vec<Camera>> {
     let refuse = |message: String| Error::new(ErrorKind::Measurement, message).in_file(path);
-    stored(path)?.cameras.iter().map(|it| it.camera().map_err(refuse)).collect()
+    stored(path)?.known_cameras().map_err(refuse)
 }
 
 /// The boards of a `calibration.json`, as they were found.

@@ -1,5 +1,7 @@
 //! Pictures among the rows of a session.
 
+use std::borrow::Cow;
+
 use nalgebra::{Matrix6, Vector6};
 
 use super::{Dataset, Measurement, Noise, NoiseShape, Observation, Quantity, Set, Source};
@@ -55,18 +57,36 @@ impl Dataset {
         if data.pictures.is_empty() {
             return;
         }
-        let sighting = |data: &Dataset, at: usize| {
-            let picture = data.pictures.all.get(at)?;
-            data.pictures.view(picture)?.sighting(picture.poses.first()?, true)
-        };
         let count = data.pictures.all.len();
-        let found: Vec<Sighting> = (0..count).filter_map(|at| sighting(data, at)).collect();
+        let found: Vec<Sighting> = (0..count).filter_map(|at| data.sighting(at)).collect();
         if let Some(sigma_px) = data.corner_noise(&found, 0.0) {
             data.pictures.sigma_px = sigma_px;
         }
-        for at in 0..count {
-            if let Some(sighting) = sighting(data, at) {
-                data.state_picture(at, &sighting);
+        data.state_pictures();
+    }
+
+    /// What the corners of a picture share, as another session has shown it.
+    pub(crate) fn with_common(&self, common: CommonError) -> Cow<'_, Self> {
+        if self.pictures.is_empty() || self.pictures.common == common {
+            return Cow::Borrowed(self);
+        }
+        let mut data = self.clone();
+        data.pictures.common = common;
+        data.state_pictures();
+        Cow::Owned(data)
+    }
+
+    /// A picture as its row has it.
+    fn sighting(&self, at: usize) -> Option<Sighting> {
+        let picture = self.pictures.all.get(at)?;
+        let measured = self.observations.get(picture.row as usize)?.measurement.pose();
+        self.pictures.view(picture)?.sighting(&picture.directed(&measured), true)
+    }
+
+    fn state_pictures(&mut self) {
+        for at in 0..self.pictures.all.len() {
+            if let Some(sighting) = self.sighting(at) {
+                self.state_picture(at, &sighting);
             }
         }
     }

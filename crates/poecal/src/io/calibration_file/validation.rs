@@ -120,6 +120,8 @@ impl CalibrationFile {
         to: impl FnOnce(&Subject<'_>, &Dataset) -> Result<T>,
     ) -> Result<T> {
         let (calibrated, nominal) = (self.robot()?, self.nominal_robot()?);
+        let shared = self.pictures.as_ref().map(|known| data.with_common(known.common_error()));
+        let data = shared.as_deref().unwrap_or(data);
         if !refit_tool {
             self.check_targets(data)?;
         }

@@ -6,5 +6,5 @@ mod source;
 mod text;
 mod write;
 
-pub use rows::{ModelErrors, ResidualRow, Residuals, RowDiagnostics, columns};
+pub use rows::{CornerErrors, ModelErrors, ResidualRow, Residuals, RowDiagnostics, columns, corner_columns};
 pub use write::ResidualRows;

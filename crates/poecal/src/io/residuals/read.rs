@@ -4,7 +4,8 @@ use std::borrow::Cow;
 use std::path::Path;
 
 use super::rows::{
-    DIAGNOSTICS, FIRST, INSTRUMENT, MODELS, ModelErrors, ResidualRow, Residuals, RowDiagnostics, columns,
+    CornerErrors, DIAGNOSTICS, FIRST, INSTRUMENT, MODELS, ModelErrors, ResidualRow, Residuals,
+    RowDiagnostics, columns, corner_columns,
 };
 use crate::error::{ErrorKind, Result};
 use crate::io::measurements::{Cell, Separator, split};
@@ -73,6 +74,12 @@ impl Residuals {
                 self.further.extend((!quantity.is_of_pose()).then_some(quantity));
             }
         }
+        self.has_corners =
+            corner_columns(false).next().is_some_and(|it| cells.get(first) == Some(&it.into()));
+        if self.has_corners {
+            let mut all = corner_columns(self.has_corrected);
+            all.try_for_each(|column| expect(cells, &mut first, &column))?;
+        }
         DIAGNOSTICS.into_iter().try_for_each(|column| expect(cells, &mut first, column))?;
         let cells = match cells.split_last() {
             Some((last, rest)) if last == INSTRUMENT => {
@@ -108,6 +115,7 @@ impl Residuals {
         };
         let target = index_of(&mut self.targets, cells.text()?);
         let errors = cells.errors(self.quantities(), self.has_corrected)?;
+        let corners = if self.has_corners { cells.corners(self.has_corrected)? } else { None };
         let judged = cells.judged()?;
         for _ in 0..self.readings.len() {
             self.values.push(cells.number()?);
@@ -117,7 +125,7 @@ impl Residuals {
             cells.next += 1;
             return Err(cells.wrong(extra, "no further cell"));
         }
-        self.push(ResidualRow { file, line, id, held_out, target, station, errors, judged });
+        self.push(ResidualRow { file, line, id, held_out, target, station, errors, corners, judged });
         Ok(())
     }
 }
@@ -245,6 +253,16 @@ impl<'a> Cells<'a> {
         }
         let found = ModelErrors::new(models, residual.get(..components).unwrap_or_default());
         Ok(Some(found.with_corrected(corrected)))
+    }
+
+    fn corners(&mut self, has_corrected: bool) -> std::result::Result<Option<CornerErrors>, Wrong> {
+        if self.are_empty(MODELS + usize::from(has_corrected) + 1) {
+            return Ok(None);
+        }
+        let mut number = || if self.are_empty(1) { Ok(f64::NAN) } else { self.number() };
+        let models_px = [number()?, number()?, number()?];
+        let corrected_px = if has_corrected { Some(number()?) } else { None };
+        Ok(Some(CornerErrors { models_px, corrected_px, at_board_mm: number()? }))
     }
 
     fn judged(&mut self) -> std::result::Result<Option<RowDiagnostics>, Wrong> {

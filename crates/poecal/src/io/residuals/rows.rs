@@ -65,10 +65,35 @@ impl ModelErrors {
 /// calibrated model by component.
 pub fn columns(quantity: Quantity, has_corrected: bool) -> impl Iterator<Item = String> {
     let (name, unit) = (quantity.name(), quantity.unit().symbol());
-    let models =
-        ["nominal", "registered", "calibrated"].into_iter().chain(has_corrected.then_some("corrected"));
     let components = quantity.component_names().iter().map(move |component| format!("{component}[{unit}]"));
-    models.map(move |model| format!("{name}_{model}[{unit}]")).chain(components)
+    model_names(has_corrected).map(move |model| format!("{name}_{model}[{unit}]")).chain(components)
+}
+
+/// Errors of the corners of a picture by the nominal, registered and calibrated model; NaN where a model sees none of them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CornerErrors {
+    /// Root mean square distance in the picture by each model, pixels.
+    pub models_px: [f64; MODELS],
+    /// By the corrected model, if there is one.
+    pub corrected_px: Option<f64>,
+    /// By the calibrated model at the board, square to the ray, millimetres.
+    pub at_board_mm: f64,
+}
+
+impl CornerErrors {
+    /// All numbers, in the order of [`corner_columns`].
+    pub fn numbers(&self) -> impl Iterator<Item = f64> {
+        self.models_px.iter().chain(&self.corrected_px).chain([&self.at_board_mm]).copied()
+    }
+}
+
+/// Names of the columns of corners.
+pub fn corner_columns(has_corrected: bool) -> impl Iterator<Item = String> {
+    model_names(has_corrected).map(|model| format!("corners_{model}[px]")).chain(["corners[mm]".to_owned()])
+}
+
+fn model_names(has_corrected: bool) -> impl Iterator<Item = &'static str> {
+    ["nominal", "registered", "calibrated"].into_iter().chain(has_corrected.then_some("corrected"))
 }
 
 /// Diagnostics of a row.
@@ -101,6 +126,8 @@ pub struct ResidualRow {
     pub station: usize,
     /// Errors of each measured quantity, millimetres or degrees.
     pub errors: Measured<ModelErrors>,
+    /// Errors of the corners of a picture.
+    pub corners: Option<CornerErrors>,
     /// Diagnostics.
     pub judged: Option<RowDiagnostics>,
 }
@@ -133,6 +160,8 @@ pub struct Residuals {
     pub further: Vec<Quantity>,
     /// Whether the rows have errors of a corrected model.
     pub has_corrected: bool,
+    /// Whether some rows are pictures.
+    pub has_corners: bool,
     /// The rows.
     pub(super) rows: Vec<ResidualRow>,
     /// How many rows measured which quantities, in the order of the first row of each kind.

@@ -2,8 +2,8 @@
 
 use std::ops::Range;
 
-use super::{ModelErrors, ResidualRow, Residuals, RowDiagnostics};
-use crate::calibration::{Calibration, RowError, RowInfluence};
+use super::{CornerErrors, ModelErrors, ResidualRow, Residuals, RowDiagnostics};
+use crate::calibration::{Calibration, RowError, RowInfluence, corner_error};
 use crate::estimate::Estimate;
 use crate::measurement::{Dataset, Measured, Quantity};
 
@@ -30,6 +30,7 @@ impl<'a> RowSource<'a> {
             stations: stations(data),
             readings: readings.map(|name| (name.clone(), calibration.nominal.reading_kind(name))).collect(),
             has_corrected: calibration.correction.is_some(),
+            has_corners: !data.pictures.is_empty(),
             further: Quantity::ALL.into_iter().filter(|it| !it.is_of_pose() && data.has(*it)).collect(),
             ..Residuals::default()
         };
@@ -62,6 +63,7 @@ impl<'a> RowSource<'a> {
                     let corrected = corrected.map(|value| quantity.unit().shown(value));
                     Some(errors_of(errors, quantity)?.with_corrected(corrected))
                 }),
+                corners: self.corners(row as u32, errors, corrected.as_ref().map(|all| &all[at])),
                 judged: robustness.rows.get(row).map(|found| RowDiagnostics {
                     weight: found.weight,
                     leverage: influences[at].leverage,
@@ -76,6 +78,20 @@ impl<'a> RowSource<'a> {
         let mut found = Residuals { rows: Vec::with_capacity(indices.len()), values, ..self.names.clone() };
         indices.iter().enumerate().map(row).for_each(|row| found.push(row));
         found
+    }
+
+    /// Errors of the corners of a row that is a picture, by the errors of the row by each model.
+    fn corners(
+        &self,
+        row: u32,
+        errors: [&RowError; 3],
+        corrected: Option<&RowError>,
+    ) -> Option<CornerErrors> {
+        self.data.pictures.of_row(row)?;
+        let of = |error: &RowError| corner_error(self.data, row, error);
+        let px = |error: &RowError| of(error).map_or(f64::NAN, |it| it.rms_px);
+        let at_board_mm = of(errors[2]).map_or(f64::NAN, |it| it.rms_mm);
+        Some(CornerErrors { models_px: errors.map(px), corrected_px: corrected.map(px), at_board_mm })
     }
 }
 

@@ -4,7 +4,10 @@ use std::fmt::Write as _;
 use std::io::Write;
 use std::ops::Range;
 
-use super::rows::{DIAGNOSTICS, FIRST, INSTRUMENT, MODELS, ModelErrors, Residuals, RowDiagnostics, columns};
+use super::rows::{
+    CornerErrors, DIAGNOSTICS, FIRST, INSTRUMENT, MODELS, ModelErrors, Residuals, RowDiagnostics, columns,
+    corner_columns,
+};
 use super::source::RowSource;
 use crate::calibration::Calibration;
 use crate::io::csv_text::cell;
@@ -79,7 +82,10 @@ pub(super) fn in_pieces<T: Send, E: Send>(
 /// The line of column names.
 fn head(residuals: &Residuals) -> String {
     let quantities = residuals.quantities().flat_map(|quantity| columns(quantity, residuals.has_corrected));
-    let names = FIRST.map(str::to_owned).into_iter().chain(quantities).chain(DIAGNOSTICS.map(str::to_owned));
+    let corners =
+        residuals.has_corners.then(|| corner_columns(residuals.has_corrected)).into_iter().flatten();
+    let names = FIRST.map(str::to_owned).into_iter().chain(quantities).chain(corners);
+    let names = names.chain(DIAGNOSTICS.map(str::to_owned));
     let mut text = names.collect::<Vec<_>>().join(",");
     for (name, kind) in &residuals.readings {
         text.push(',');
@@ -108,6 +114,9 @@ fn text(residuals: &Residuals, range: Range<usize>) -> String {
         text.push_str(targets.get(row.target).map_or("", |name| name));
         let has_corrected = residuals.has_corrected;
         quantities.iter().for_each(|&it| push_errors(&mut text, (it, has_corrected), &row.errors));
+        if residuals.has_corners {
+            push_corners(&mut text, row.corners.as_ref(), has_corrected);
+        }
         match &row.judged {
             Some(RowDiagnostics { weight, leverage, studentized, suspected }) => {
                 [*weight, *leverage, *studentized]
@@ -151,6 +160,17 @@ fn push_errors(
         }
     }
     out.push_str(EMPTY.get(..empty).unwrap_or_default());
+}
+
+/// The cells of the corners, empty of a row that is no picture.
+fn push_corners(out: &mut String, corners: Option<&CornerErrors>, has_corrected: bool) {
+    let numbers: Vec<f64> = corners.map_or_else(Vec::new, |it| it.numbers().collect());
+    for at in 0..=MODELS + usize::from(has_corrected) {
+        match numbers.get(at) {
+            Some(&number) if !number.is_nan() => push_cell(out, number),
+            _ => out.push(','),
+        }
+    }
 }
 
 fn push_cell(out: &mut String, number: f64) {

@@ -4,6 +4,7 @@ use maud::{Markup, Render, html};
 
 use super::advice::told;
 use super::certificate::{limits, stated};
+use super::corners;
 use super::devices::devices;
 use super::figures;
 use super::html::{HtmlTable, count, facts, figure, figure_or, list, path, plots, quoted};
@@ -56,7 +57,7 @@ pub(super) fn screen(file: &CalibrationFile, residuals: &Residuals) -> Markup {
         });
         std::iter::once(all).chain(rest)
     });
-    let tables: Vec<HtmlTable> = tables.collect();
+    let tables: Vec<HtmlTable> = corners::table(&rows, &on).into_iter().chain(tables).collect();
     let caption = html! { (count(set.count, key)) " " (of) ". Registered: tool and device fitted to the nominal axes." };
     html! {
         header {
@@ -69,8 +70,14 @@ pub(super) fn screen(file: &CalibrationFile, residuals: &Residuals) -> Markup {
         (verdict(file))
         div.first {
             div {
-                (before_after(set, &rows, &on))
+                (corners::before_after(set, &rows, &on).unwrap_or_else(|| before_after(set, &rows, &on)))
                 @for table in &tables { (table) }
+                @if corners::are_all(set) {
+                    p.note {
+                        "Position and rotation are those of the pose that fits the corners of a picture, which is uncertain along the ray: the corners "
+                        "judge."
+                    }
+                }
                 @if let (None, Some(found)) = (held_out, &file.cross_validation) {
                     @if let Some((quantity, key, rms)) = found.random.rms.leading_key() {
                         p.note {
@@ -297,7 +304,7 @@ fn the_facts(file: &CalibrationFile, residuals: &Residuals) -> Vec<(&'static str
     };
     let mut all =
         vec![("Model", path(&file.inputs.model, "inputs.model")), ("Measurements", files), ("Rows", rows)];
-    all.extend(corners(file).map(|corners| ("Corners", corners)));
+    all.extend(corners::fact(file).map(|corners| ("Corners", corners)));
     let found = found_words(file);
     if !found.is_empty() {
         all.push((
@@ -307,20 +314,6 @@ fn the_facts(file: &CalibrationFile, residuals: &Residuals) -> Vec<(&'static str
     }
     all.push(("Noise", noise(file)));
     all
-}
-
-/// Errors of the corners of pictures that were held out, or if there are none of those fitted.
-fn corners(file: &CalibrationFile) -> Option<Markup> {
-    let (_, rows) = leading(file);
-    let mut models = rows.iter().filter(|(.., key)| key.starts_with("accuracy"));
-    let (before, after) = (models.next()?, models.next_back()?);
-    let (Some(was), Some(is)) = (before.1.pixels, after.1.pixels) else { return None };
-    let [of_before, of_after] = [&before.2, &after.2];
-    Some(html! {
-        (figure(was.rms_px, format_args!("{of_before}.pixels.rms_px"))) " px before, "
-        (figure(is.rms_px, format_args!("{of_after}.pixels.rms_px"))) " px after (RMS), "
-        (figure(is.rms_mm, format_args!("{of_after}.pixels.rms_mm"))) " mm at the board, square to the ray"
-    })
 }
 
 fn noise(file: &CalibrationFile) -> Markup {

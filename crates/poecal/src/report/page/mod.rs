@@ -3,6 +3,7 @@
 mod advice;
 mod certificate;
 mod compensation;
+mod corners;
 mod corrected;
 mod data;
 mod devices;

@@ -1,5 +1,7 @@
 //! What of a calibration needs attention.
 
+use std::collections::BTreeSet;
+
 use super::super::table::number;
 use super::names;
 use crate::analysis::{Cause, Direction};
@@ -73,6 +75,9 @@ pub(in crate::report) fn look_at(file: &CalibrationFile) -> Vec<Point> {
         let weak = known.weak.iter().enumerate().filter(|(_, it)| !is_told(it));
         points.extend(weak.map(|(k, it)| point(Place::Weak(k), &direction_words("weakly determined", it))));
     }
+    // Directions of the same joints for the same cause have the same few words.
+    let mut told = BTreeSet::new();
+    points.retain(|point| told.insert(point.text.clone()));
     points
 }
 
