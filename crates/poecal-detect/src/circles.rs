@@ -27,6 +27,8 @@ const ROUND: (f64, f64) = (0.08, 0.5);
 const BEYOND: usize = 12;
 /// Largest misfit of a dot beside the median one, and beside the contrast: of more, something covers a part of it.
 const COVERED: (f64, f64) = (4.0, 0.03);
+/// Least part of the outer dots that must be seen.
+const OUTLINE: f64 = 0.55;
 /// How far beyond the outer dots there is paper, from their middles, units.
 const PAPER: f64 = 0.8;
 
@@ -170,7 +172,7 @@ fn named(
     if named.len() * 20 < layout.corners() * 13 || named.len() < 6 {
         return Err(Rejected::Few(named.len()));
     }
-    if !has_paper(gray, layout, &named) {
+    if !has_outline(layout, &named) || !has_paper(gray, layout, &named) {
         return Err(Rejected::Other);
     }
     let corners = corrected(layout, &named, radius);
@@ -256,6 +258,19 @@ fn seek(gray: &Gray, layout: &Layout, noise: f64, named: &mut Named, radius: f64
             named.insert(id, dot);
         }
     }
+}
+
+/// Whether most of the outer dots are seen: a board that is cut out of a field across its rows has corners of it only.
+fn has_outline(layout: &Layout, named: &Named) -> bool {
+    let [columns, rows] = layout.dots().map(|it| it as f64);
+    // In every second row of an asymmetric grid the outer dots are a column further inside.
+    let inside = if layout.is_asymmetric() { 1.5 } else { 0.5 };
+    let is_outer = |id: &usize| {
+        let point = layout.corner(*id);
+        point.x < 1.0 + inside || point.x > columns - inside || point.y < 1.5 || point.y > rows - 0.5
+    };
+    let outer = (0..layout.corners()).filter(is_outer).count();
+    named.keys().filter(|id| is_outer(id)).count() as f64 >= OUTLINE * outer as f64
 }
 
 /// Whether there is paper around the outer dots: what is cut off from a field of dots has none.

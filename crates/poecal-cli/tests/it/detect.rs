@@ -124,7 +124,18 @@ fn grids_of_dots_and_of_tags_calibrate_an_arm() {
         let found = folder.run(&format!("detect pictures --board {spec} --out corners.csv"));
         assert_eq!(found.code, 0, "{}", found.err);
         println!("{}", found.err);
-        assert!(found.err.contains(" in 24 of 24 pictures"), "{}", found.err);
+        // A grid that the border of a picture cuts is left out.
+        let pictures: usize = found
+            .err
+            .split(" of 24 pictures, to")
+            .next()
+            .unwrap()
+            .rsplit(' ')
+            .next()
+            .unwrap()
+            .parse()
+            .unwrap();
+        assert!(pictures >= 20, "{}", found.err);
         let words = format!(
             "calibrate robot.urdf joints.csv corners.csv --camera lens.csv --markers {spec} --out results"
         );
@@ -136,7 +147,7 @@ fn grids_of_dots_and_of_tags_calibrate_an_arm() {
 fn loose_tags_calibrate_an_arm_each_at_a_place_of_its_own() {
     let folder = Folder::new();
     let spec = "tags:36h11:25mm";
-    session_of(&folder, (spec, Board::chessboard("board", [10, 7], 0.025).unwrap()), 24, usize::MAX);
+    session_of(&folder, (spec, Board::chessboard("board", [10, 7], 0.025).unwrap()), 48, usize::MAX);
     folder.done(&format!("detect pictures --board {spec} --out corners.csv"));
     assert!(folder.read("corners.csv").contains("\n0.png,tag7.3,"));
     let words = format!(
