@@ -67,14 +67,14 @@ fn looks_alike(spec: &Spec) -> Option<(&'static str, &'static str)> {
     const DOTS: &str =
         "an asymmetric grid with an odd number of rows, a ChArUco board and an AprilGrid have no such doubt";
     let half = "180 degrees";
-    match spec {
-        Spec::Chessboard(board) if (board.columns + board.rows).is_multiple_of(2) => Some((half, ODD)),
-        Spec::Circles(board) if !board.asymmetric && board.columns == board.rows => {
-            Some(("90 degrees", DOTS))
-        }
-        Spec::Circles(board) if !board.asymmetric || board.rows.is_multiple_of(2) => Some((half, DOTS)),
-        _ => None,
+    if let Spec::Chessboard(board) = spec {
+        return (board.columns + board.rows).is_multiple_of(2).then_some((half, ODD));
     }
+    let Spec::Circles(board) = spec else { return None };
+    if !board.asymmetric && board.columns == board.rows {
+        return Some(("90 degrees", DOTS));
+    }
+    (!board.asymmetric || board.rows.is_multiple_of(2)).then_some((half, DOTS))
 }
 
 fn form(out: &Path) -> Result<Form> {

@@ -256,13 +256,14 @@ fn nothing(detector: &Detector, all: &[Seen]) -> Error {
 
 /// What is tried in place of a board.
 fn tried_too(spec: &Spec) -> &'static str {
-    match spec {
-        Spec::Circles(_) => {
-            "one with columns and rows exchanged, of the other kind, or with one dot more or fewer each way"
-        }
-        Spec::Tags(_) => "tags of other families",
-        Spec::AprilGrid(_) => "one with columns and rows exchanged, or with tags of other families",
-        _ => "one with columns and rows exchanged, of the other pattern or with other markers",
+    if matches!(spec, Spec::Circles(_)) {
+        "one with columns and rows exchanged, of the other kind, or with one dot more or fewer each way"
+    } else if matches!(spec, Spec::Tags(_)) {
+        "tags of other families"
+    } else if matches!(spec, Spec::AprilGrid(_)) {
+        "one with columns and rows exchanged, or with tags of other families"
+    } else {
+        "one with columns and rows exchanged, of the other pattern or with other markers"
     }
 }
 
@@ -320,15 +321,12 @@ fn conclude(spec: &Spec, all: &[Seen], corners: usize, (arguments, console): (&D
         plural(all.len(), "picture")
     ));
     if found.iter().any(|it| it.turnable) {
-        console.remark(match spec {
-            Spec::Circles(_) => {
-                "this board looks the same turned: its first dot is the one nearest to the upper left of each picture; an asymmetric grid with an odd \
-                 number of rows has no such doubt"
-            }
-            _ => {
-                "this board looks the same turned by half a turn: its first corner is the one nearest to the upper left of each picture; a board of \
-                 which one side counts an even and the other an odd number of squares has no such doubt"
-            }
+        console.remark(if matches!(spec, Spec::Circles(_)) {
+            "this board looks the same turned: its first dot is the one nearest to the upper left of each picture; an asymmetric grid with an odd \
+             number of rows has no such doubt"
+        } else {
+            "this board looks the same turned by half a turn: its first corner is the one nearest to the upper left of each picture; a board of \
+             which one side counts an even and the other an odd number of squares has no such doubt"
         });
     }
     if let Some(out) = &arguments.place.out {
