@@ -38,7 +38,7 @@ pub use found::{Corner, Found, Rejected};
 pub use gray::Gray;
 pub use layout::Layout;
 pub use picture::{Picture, Turned};
-pub use preview::preview;
+pub use preview::{png, preview};
 pub use spec::{Charuco, Chessboard, Spec};
 pub use suggest::Suggestion;
 

@@ -22,6 +22,10 @@ pub(crate) fn simulate(arguments: &Simulate, console: &Console) -> Result<u8> {
         &mut console.warner(),
     )?;
     let model = Model::read(&arguments.model, &arguments.chain.selection(None)?)?;
+    #[cfg(any(unix, windows))]
+    if let Some(camera) = arguments.camera {
+        return super::photograph::photograph((arguments, camera), (&model, place), console);
+    }
     let simulation = Simulation {
         error_rotation_rad: arguments.errors.angle_rad,
         error_position_m: arguments.errors.length_m,
@@ -53,7 +57,7 @@ pub(crate) fn simulate(arguments: &Simulate, console: &Console) -> Result<u8> {
 }
 
 /// The command that reproduces the files: all options that they depend on, and no output folder.
-fn command(arguments: &Simulate) -> String {
+pub(super) fn command(arguments: &Simulate) -> String {
     let TreeArgs { chain, instrument, target } = &arguments.chain;
     let mut words = vec!["poecal simulate".to_owned(), arguments.model.display().to_string()];
     for (option, link) in [("--base-link", &chain.base_link), ("--tip-link", &chain.tip_link)] {
@@ -63,7 +67,14 @@ fn command(arguments: &Simulate) -> String {
         words.extend(named.iter().map(|(name, link)| format!("{option} {name}={link}")));
     }
     let (kind, count, seed) = (arguments.kind.word(), arguments.count, arguments.seed);
-    words.push(format!("--kind {kind} --count {count} --seed {seed}"));
+    #[cfg(any(unix, windows))]
+    let kind = match arguments.camera {
+        Some(camera) => format!("--camera {} --board {}", super::photograph::word(camera), arguments.board),
+        None => format!("--kind {kind}"),
+    };
+    #[cfg(not(any(unix, windows)))]
+    let kind = format!("--kind {kind}");
+    words.push(format!("{kind} --count {count} --seed {seed}"));
     words.push(format!("--errors {} --noise {}", arguments.errors.text, arguments.noise.text));
     if arguments.terms != Sizes::NONE {
         let used = TermGroup::ALL.into_iter().filter(|&group| arguments.terms[group] > 0.0);
