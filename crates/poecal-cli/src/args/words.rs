@@ -25,6 +25,14 @@ pub(crate) enum CameraPlace {
     Beside,
 }
 
+#[cfg(any(unix, windows))]
+impl CameraPlace {
+    /// Its word on the command line.
+    pub(crate) fn word(self) -> &'static str {
+        CAMERA.iter().find(|(.., place)| *place == self).map_or("", |(word, ..)| word)
+    }
+}
+
 /// What is known of the measuring device's frame.
 pub(super) const FRAME: Words<DeviceFrameKnowledge> = &[
     ("unknown", "The device frame is unknown", DeviceFrameKnowledge::Unknown),

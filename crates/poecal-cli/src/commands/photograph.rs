@@ -11,7 +11,6 @@ use poecal_detect::render::{Camera, Random, Scene, clutter};
 use poecal_detect::{Layout, png};
 use rayon::prelude::*;
 
-use super::simulate::command;
 use crate::args::{CameraPlace, Simulate};
 use crate::console::Console;
 use crate::style;
@@ -27,17 +26,9 @@ const LEVELS: [f64; 2] = [35.0, 200.0];
 const BLUR_PX: f64 = 0.8;
 const NOISE: f64 = 2.0;
 
-/// The word of a place of the camera.
-pub(super) fn word(camera: CameraPlace) -> &'static str {
-    match camera {
-        CameraPlace::InHand => "in-hand",
-        CameraPlace::Beside => "beside",
-    }
-}
-
 pub(super) fn photograph(
     (arguments, camera): (&Simulate, CameraPlace),
-    (model, place): (&Model, FolderPlace),
+    (model, place, command): (&Model, FolderPlace, &str),
     console: &Console,
 ) -> Result<u8> {
     if arguments.count > MOST {
@@ -73,13 +64,12 @@ pub(super) fn photograph(
         .map(|(at, pose)| picture(&layout, pose, arguments.seed.wrapping_mul(1000).wrapping_add(at as u64)))
         .collect::<std::result::Result<_, _>>()
         .map_err(|error| ErrorKind::Option.error(error.to_string()))?;
-    let command = command(arguments);
     let session = PhotographedSession {
         simulation: &simulation,
         made: &made,
         pictures: &pictures,
         board: &board,
-        command: &command,
+        command,
     };
     let written = write_photographs(place, model, &session)?;
     console.warnings(&written.notes);

@@ -24,7 +24,11 @@ pub(crate) fn simulate(arguments: &Simulate, console: &Console) -> Result<u8> {
     let model = Model::read(&arguments.model, &arguments.chain.selection(None)?)?;
     #[cfg(any(unix, windows))]
     if let Some(camera) = arguments.camera {
-        return super::photograph::photograph((arguments, camera), (&model, place), console);
+        return super::photograph::photograph(
+            (arguments, camera),
+            (&model, place, &command(arguments)),
+            console,
+        );
     }
     let simulation = Simulation {
         error_rotation_rad: arguments.errors.angle_rad,
@@ -57,7 +61,7 @@ pub(crate) fn simulate(arguments: &Simulate, console: &Console) -> Result<u8> {
 }
 
 /// The command that reproduces the files: all options that they depend on, and no output folder.
-pub(super) fn command(arguments: &Simulate) -> String {
+fn command(arguments: &Simulate) -> String {
     let TreeArgs { chain, instrument, target } = &arguments.chain;
     let mut words = vec!["poecal simulate".to_owned(), arguments.model.display().to_string()];
     for (option, link) in [("--base-link", &chain.base_link), ("--tip-link", &chain.tip_link)] {
@@ -69,7 +73,7 @@ pub(super) fn command(arguments: &Simulate) -> String {
     let (kind, count, seed) = (arguments.kind.word(), arguments.count, arguments.seed);
     #[cfg(any(unix, windows))]
     let kind = match arguments.camera {
-        Some(camera) => format!("--camera {} --board {}", super::photograph::word(camera), arguments.board),
+        Some(camera) => format!("--camera {} --board {}", camera.word(), arguments.board),
         None => format!("--kind {kind}"),
     };
     #[cfg(not(any(unix, windows)))]
