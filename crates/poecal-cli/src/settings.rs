@@ -30,8 +30,15 @@ const OUTPUTS: [&str; 2] = ["out", "report"];
 const FILES: [&str; 8] =
     ["model", "measurements", "columns", "camera", "markers", "validate", "out", "report"];
 /// Values of these that are words and no files.
-const NO_FILES: [(&str, &str); 4] =
-    [("report", "none"), ("camera", "unknown:"), ("markers", "chessboard:"), ("markers", "charuco:")];
+const NO_FILES: [(&str, &str); 7] = [
+    ("report", "none"),
+    ("camera", "unknown:"),
+    ("markers", "chessboard:"),
+    ("markers", "charuco:"),
+    ("markers", "circles:"),
+    ("markers", "tags:"),
+    ("markers", "aprilgrid:"),
+];
 
 /// A command line with the settings in it, and their source.
 pub(crate) struct Completed {

@@ -1,5 +1,5 @@
 //! Draws pictures of boards with their truth, finds the corners, and prints how many and how well: `rendered [PICTURES [FOLDER]]`. In a folder the
-//! pictures and the truth are left, for other detectors. What is missing or off is told beside the table.
+//! pictures and the truth are left, for other detectors; `-` is none. What is missing or off is told beside the table.
 
 #![allow(clippy::print_stderr)]
 
@@ -13,23 +13,44 @@ use poecal_detect::render::{Draw, Drawn, Random, clutter, finished};
 use poecal_detect::{Detector, Found, Gray, Layout, Rejected};
 use rayon::prelude::*;
 
-const BOARDS: [(&str, &str); 6] = [
+const BOARDS: [(&str, &str); 12] = [
     ("charuco", "charuco:7x5:36.195mm:18.256mm:DICT_6X6_250"),
     ("charuco-24mm", "charuco:11x8:24mm:18mm:DICT_5X5_250"),
     ("charuco-legacy", "charuco:7x6:30mm:22mm:DICT_4X4_50:legacy"),
     ("chessboard", "chessboard:10x7:28mm"),
     ("chessboard-even", "chessboard:8x6:30mm"),
     ("charuco-close", "charuco:7x5:36.195mm:28mm:DICT_4X4_50"),
+    ("circles", "circles:9x6:30mm"),
+    ("circles-odd", "circles:7x10:30mm"),
+    ("circles-asymmetric", "circles:4x11:20mm:asymmetric"),
+    ("tags-36h11", "tags:36h11:50mm"),
+    ("tags-6x6", "tags:DICT_6X6_250:50mm"),
+    ("aprilgrid", "aprilgrid:6x6:88mm:0.3"),
+];
+
+/// Boards that are sought in pictures without them.
+const SOUGHT: [&str; 7] = [
+    "charuco:7x5:36.195mm:18.256mm:DICT_6X6_250",
+    "chessboard:10x7:28mm",
+    "circles:9x6:30mm",
+    "circles:4x11:20mm:asymmetric",
+    "tags:36h11:50mm",
+    "tags:DICT_4X4_50:50mm",
+    "aprilgrid:6x6:88mm:0.3",
 ];
 
 /// Boards that are not the sought one.
-const OTHERS: [&str; 6] = [
+const OTHERS: [&str; 10] = [
     "charuco:7x5:36mm:18mm:DICT_5X5_250",
     "charuco:11x8:24mm:18mm:DICT_6X6_250",
     "charuco:5x7:36.195mm:18.256mm:DICT_6X6_250",
     "chessboard:12x9:24mm",
     "chessboard:9x7:28mm",
     "charuco:10x7:28mm:20mm:DICT_4X4_250",
+    "circles:10x7:30mm",
+    "circles:8x6:30mm",
+    "circles:5x9:20mm:asymmetric",
+    "tags:25h9:50mm",
 ];
 
 #[derive(Default)]
@@ -50,8 +71,8 @@ struct Tally {
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut arguments = std::env::args().skip(1);
     let pictures: usize = arguments.next().map_or(Ok(40), |it| it.parse())?;
-    let folder = arguments.next();
-    // One of the boards, for a look at it.
+    let folder = arguments.next().filter(|it| it != "-");
+    // One of the boards, for a look at it; `none` for pictures without them.
     let only = arguments.next();
     let mut out = io::stdout();
     writeln!(
@@ -66,7 +87,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let detector = Detector::new(&spec.parse()?);
         let drawn: Vec<(usize, Drawn)> = (0..pictures)
             .into_par_iter()
-            .map(|number| (number, Draw::default().scene(detector.layout(), 2026, number)))
+            .map(|number| (number, draw(name).scene(detector.layout(), 2026, number)))
             .collect();
         if let Some(folder) = &folder {
             keep(&Path::new(folder).join(name), &drawn)?;
@@ -74,10 +95,21 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let tally = tally(&detector, &drawn);
         print(&mut out, name, pictures, tally)?;
     }
-    if only.is_none() {
-        false_corners(&mut out, pictures * 25)?;
+    if only.as_ref().is_none_or(|it| it.starts_with("none")) {
+        // Of one kind: `none-circles`.
+        let kind = only.as_deref().and_then(|it| it.strip_prefix("none-")).unwrap_or_default();
+        false_corners(&mut out, pictures * 25, kind)?;
     }
     Ok(())
+}
+
+/// What scenes of a board have: a pitch of an asymmetric grid is shorter than the way between its dots.
+fn draw(name: &str) -> Draw {
+    let square_px = match name {
+        "circles-asymmetric" => [28.0, 78.0],
+        _ => Draw::default().square_px,
+    };
+    Draw { square_px, ..Draw::default() }
 }
 
 fn tally(detector: &Detector, drawn: &[(usize, Drawn)]) -> Tally {
@@ -171,8 +203,13 @@ fn print(out: &mut impl Write, name: &str, pictures: usize, mut tally: Tally) ->
 }
 
 /// Pictures without the board, each fifth with another one.
-fn false_corners(out: &mut impl Write, pictures: usize) -> Result<(), Box<dyn std::error::Error>> {
-    let detectors: Vec<Detector> = ["charuco:7x5:36.195mm:18.256mm:DICT_6X6_250", "chessboard:10x7:28mm"]
+fn false_corners(
+    out: &mut impl Write,
+    pictures: usize,
+    kind: &str,
+) -> Result<(), Box<dyn std::error::Error>> {
+    let sought: Vec<&str> = SOUGHT.into_iter().filter(|it| it.starts_with(kind)).collect();
+    let detectors: Vec<Detector> = sought
         .iter()
         .map(|spec| Ok(Detector::new(&spec.parse()?)))
         .collect::<Result<_, poecal_detect::Error>>()?;
@@ -204,13 +241,11 @@ fn false_corners(out: &mut impl Write, pictures: usize) -> Result<(), Box<dyn st
     for (number, which, other, corners) in found.iter().filter(|it| it.3 > 0) {
         eprintln!("picture {number}: detector {which} has {corners} corners on {other:?}");
     }
-    let count = |which: usize| found.iter().filter(|it| it.1 == which && it.3 > 0).count();
-    writeln!(
-        out,
-        "{pictures} pictures without the board, a fifth with another one: corners in {} (ChArUco) and {} (chessboard)",
-        count(0),
-        count(1)
-    )?;
+    writeln!(out, "{pictures} pictures without the board, a fifth with another one: corners in")?;
+    for (which, spec) in sought.iter().enumerate() {
+        let count = found.iter().filter(|it| it.1 == which && it.3 > 0).count();
+        writeln!(out, "- {count} of {spec}")?;
+    }
     Ok(())
 }
 

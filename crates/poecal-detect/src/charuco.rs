@@ -129,7 +129,7 @@ fn nodes_of(layout: &Layout) -> Vec<Node> {
 }
 
 /// The markers, by their places in the list, that one map of the board explains, and the map: of a pair of them, or of the only one.
-fn consensus(layout: &Layout, markers: &[Marker]) -> Option<(Homography, Vec<usize>)> {
+pub(crate) fn consensus(layout: &Layout, markers: &[Marker]) -> Option<(Homography, Vec<usize>)> {
     let known: Vec<(usize, [Vector2<f64>; 4], Quad)> = markers
         .iter()
         .enumerate()

@@ -1,14 +1,17 @@
 //! Corners of one board in pictures.
 
+use crate::aprilgrid;
 use crate::charuco;
 use crate::chessboard;
+use crate::circles;
 use crate::found::{Found, Rejected};
 use crate::gray::Gray;
 use crate::layout::Layout;
 use crate::light::{Light, noise};
 use crate::markers::Reader;
-use crate::spec::Spec;
+use crate::spec::{AprilGrid, Charuco, Spec, Tags};
 use crate::suggest::{self, Suggestion};
+use crate::tags;
 
 /// Finds the corners of one board.
 pub struct Detector {
@@ -27,7 +30,13 @@ impl Detector {
     #[must_use]
     pub fn new(spec: &Spec) -> Self {
         let layout = Layout::new(spec);
-        let reader = layout.markers.as_ref().map(|(dictionary, _)| Reader::new(dictionary));
+        let reader = match spec {
+            Spec::Charuco(Charuco { dictionary, .. }) | Spec::Tags(Tags { dictionary, .. }) => {
+                Some(Reader::new(dictionary))
+            }
+            Spec::AprilGrid(AprilGrid { dictionary, .. }) => Some(Reader::with_border(dictionary, 2)),
+            Spec::Chessboard(_) | Spec::Circles(_) => None,
+        };
         Detector { spec: spec.clone(), layout, reader }
     }
 
@@ -49,9 +58,15 @@ impl Detector {
     /// Why there are none.
     pub fn detect(&self, gray: &Gray) -> Result<Found, Rejected> {
         let noise = noise(gray);
-        let found = match &self.reader {
-            Some(reader) => charuco::detect(gray, &self.layout, reader, noise),
-            None => chessboard::detect(gray, &self.layout, noise),
+        let found = match (&self.spec, &self.reader) {
+            (Spec::Charuco(_), Some(reader)) => charuco::detect(gray, &self.layout, reader, noise),
+            (Spec::Tags(Tags { dictionary, .. }), Some(reader)) => {
+                tags::detect(gray, dictionary, reader, noise)
+            }
+            (Spec::AprilGrid(_), Some(reader)) => aprilgrid::detect(gray, &self.layout, reader, noise),
+            (Spec::Chessboard(_), _) => chessboard::detect(gray, &self.layout, noise),
+            (Spec::Charuco(_) | Spec::Tags(_) | Spec::AprilGrid(_), None) => Err(Rejected::NoBoard),
+            (Spec::Circles(_), _) => circles::detect(gray, &self.layout, noise),
         };
         found.map_err(|reason| match reason {
             Rejected::NoBoard => because_of_light(gray),

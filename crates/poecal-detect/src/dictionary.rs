@@ -44,7 +44,7 @@ const KNOWN: [(&str, &str, usize, u32); 22] = [
 const CODES: &str = include_str!("dictionaries.txt");
 
 impl Dictionary {
-    /// The dictionary with a name, in any case, with or without `DICT_`.
+    /// The dictionary with a name, in any case, with or without `DICT_` or `DICT_APRILTAG_`.
     ///
     /// # Errors
     /// If there is none, with the names that there are.
@@ -52,6 +52,7 @@ impl Dictionary {
         let same = |known: &str| {
             known.eq_ignore_ascii_case(name)
                 || known.strip_prefix("DICT_").is_some_and(|it| it.eq_ignore_ascii_case(name))
+                || known.strip_prefix("DICT_APRILTAG_").is_some_and(|it| it.eq_ignore_ascii_case(name))
         };
         let known = KNOWN.iter().find(|it| same(it.0));
         known.and_then(Dictionary::read).ok_or_else(|| {
@@ -126,8 +127,9 @@ impl Dictionary {
         self.codes.get(id).is_none_or(|code| code >> (row * self.bits + column) & 1 == 1)
     }
 
-    /// The marker that a code is, with few wrong bits, and by how many quarter turns clockwise it is turned.
-    pub(crate) fn find(&self, code: u64) -> Option<(usize, usize)> {
+    /// The marker that a code is, with few wrong bits, and by how many quarter turns clockwise it is turned, and
+    /// how many bits are wrong.
+    pub(crate) fn find(&self, code: u64) -> Option<(usize, usize, u32)> {
         // Half of what the dictionary bears: a marker is found beside others, and a wrong one costs more than a missing one.
         let most = self.correctable.div_ceil(2).min(2);
         let mut back = code;
@@ -141,7 +143,7 @@ impl Dictionary {
             }
             back = turned_back(back, self.bits);
         }
-        (best.0 <= most).then_some((best.1, best.2))
+        (best.0 <= most).then_some((best.1, best.2, best.0))
     }
 }
 
@@ -164,7 +166,7 @@ mod tests {
             for id in [0, 7, 16] {
                 let mut code = dictionary.codes[id];
                 for turns in 0..4 {
-                    assert_eq!(dictionary.find(code), Some((id, turns)), "{}", dictionary.name());
+                    assert_eq!(dictionary.find(code), Some((id, turns, 0)), "{}", dictionary.name());
                     // Three quarter turns back are one on.
                     for _ in 0..3 {
                         code = turned_back(code, bits);

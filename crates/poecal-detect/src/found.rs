@@ -4,11 +4,39 @@ use std::fmt;
 
 use crate::growth::{Growth, Node};
 
-/// A corner in a picture.
+/// What a point of a board is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Kind {
+    /// A corner of squares.
+    Corner,
+    /// The middle of a dot.
+    Dot,
+    /// A corner of a tag: four times the number of the tag, and 0 to 3 for the upper left, upper right, lower right and lower left one of the tag
+    /// as it is printed, which is the order of OpenCV.
+    Tag,
+}
+
+impl Kind {
+    /// The name of the point with a number: `corner0`, `dot0`, `tag0.0`, …
+    #[must_use]
+    pub fn name(self, id: usize) -> String {
+        match self {
+            Kind::Corner => format!("corner{id}"),
+            Kind::Dot => format!("dot{id}"),
+            Kind::Tag => format!("tag{}.{}", id / 4, id % 4),
+        }
+    }
+}
+
+/// A corner in a picture, or the middle of a dot.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Corner {
-    /// Its number among the inner corners, along x first; that of OpenCV on a ChArUco board.
+    /// Its number among the inner corners or dots, along x first; that of OpenCV on a ChArUco board and a grid of dots.
+    /// Of tags see [`Kind::Tag`].
     pub id: usize,
+    /// What it is.
+    pub kind: Kind,
     /// Column, pixels from the centre of the first one.
     pub u_px: f64,
     /// Row, pixels from the centre of the first one.
@@ -18,10 +46,10 @@ pub struct Corner {
 }
 
 impl Corner {
-    /// Its name on the board: `corner0`, `corner1`, …
+    /// Its name on the board: `corner0`, `corner1`, …, `dot0`, …, or `tag0.0`, …
     #[must_use]
     pub fn name(&self) -> String {
-        format!("corner{}", self.id)
+        self.kind.name(self.id)
     }
 }
 
@@ -32,7 +60,8 @@ pub struct Found {
     pub corners: Vec<Corner>,
     /// Markers that agree with it.
     pub markers: usize,
-    /// Whether it looks the same turned by 180°, so that its first corner may be its last: chessboards whose sides are both even or both odd.
+    /// Whether it looks the same turned by 180°, so that its first corner may be its last: chessboards whose sides are both even or both odd,
+    /// grids of dots but asymmetric ones with an odd number of rows. A square grid of dots looks the same at each quarter turn.
     pub turnable: bool,
     /// Blur of the edges, pixels: median of the corners.
     pub blur_px: f64,
@@ -84,7 +113,7 @@ pub(crate) fn found(growth: &Growth<'_>, noise: f64, id: impl Fn(Node) -> Option
         .iter()
         .filter_map(|(node, saddle)| {
             let (u_px, v_px) = (saddle.place.x, saddle.place.y);
-            Some(Corner { id: id(*node)?, u_px, v_px, sigma_px: saddle.sigma_px })
+            Some(Corner { id: id(*node)?, kind: Kind::Corner, u_px, v_px, sigma_px: saddle.sigma_px })
         })
         .collect();
     corners.sort_by_key(|it| it.id);

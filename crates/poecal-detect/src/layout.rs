@@ -3,9 +3,82 @@
 use nalgebra::Vector2;
 
 use crate::dictionary::Dictionary;
-use crate::spec::{Charuco, Spec};
+use crate::found::Kind;
+use crate::spec::{AprilGrid, Charuco, Circles, Spec, Tags};
 
-/// The geometry of a board, in squares: x to the right, y downwards, from the outer corner of the first square.
+/// What a board shows.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Pattern {
+    /// Squares, dark and light in turn.
+    Squares,
+    /// Dots at the inner corners of what would be squares.
+    Dots {
+        /// Whether only every second corner has one, from the first on.
+        asymmetric: bool,
+        /// Their diameter as a part of a square: what is drawn. In pictures it is measured.
+        diameter: f64,
+    },
+    /// Tags in columns and rows.
+    Tags(Tagged),
+}
+
+/// Tags in columns and rows: what is drawn. The first one is a side of a tag from both borders of the board.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Tagged {
+    /// Tags along x.
+    pub columns: usize,
+    /// Tags along y.
+    pub rows: usize,
+    /// From tag to tag, in sides of a tag.
+    pub gap: f64,
+    /// Cells of the dark border.
+    pub border: usize,
+    /// Whether it is Kalibr's: tags count from the lower left one, with dark squares at their corners, and are turned by 180° against OpenCV's.
+    pub kalibr: bool,
+    /// The tags.
+    pub dictionary: Dictionary,
+}
+
+impl Tagged {
+    /// The upper left corner of a tag, in sides of a tag from the corner of the board.
+    #[must_use]
+    pub fn first_corner(&self, tag: usize) -> Vector2<f64> {
+        let (column, row) = (tag % self.columns.max(1), tag / self.columns.max(1));
+        let row = if self.kalibr { (self.rows as f64 - 1.0) - row as f64 } else { row as f64 };
+        Vector2::new(column as f64, row) * (1.0 + self.gap) + Vector2::new(1.0, 1.0)
+    }
+
+    /// Cells along a side of a tag with its border.
+    #[must_use]
+    pub fn cells(&self) -> usize {
+        self.dictionary.bits() + 2 * self.border
+    }
+
+    /// Whether a cell of a tag is black, as the board stands: they count from the upper left one, with the border. What is outside is black.
+    #[must_use]
+    pub fn is_black(&self, tag: usize, column: usize, row: usize) -> bool {
+        let last = self.cells() - 1;
+        let turned = |at: usize| if self.kalibr { last.wrapping_sub(at) } else { at };
+        let inner = |at: usize| turned(at).wrapping_sub(self.border);
+        self.dictionary.is_black(tag, inner(column), inner(row))
+    }
+}
+
+/// Corners of a tag from its first one, in its sides.
+const AROUND: [[f64; 2]; 4] = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
+
+/// A point of a board.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Point {
+    /// Its name, as of a [`Corner`](crate::Corner) in a picture.
+    pub name: String,
+    /// Its place on the board, metres.
+    pub place_m: [f64; 2],
+}
+
+/// The geometry of a board, in squares: x to the right, y downwards, from the outer corner of the first square. Of a grid of dots a square is one
+/// of its pitch, with dots at inner corners.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Layout {
     /// Squares along x and y.
@@ -16,21 +89,41 @@ pub struct Layout {
     pub markers: Option<(Dictionary, f64)>,
     /// Whether the first square is dark.
     pub first_dark: bool,
+    /// What it shows.
+    pub pattern: Pattern,
 }
 
 impl Layout {
     /// The geometry of a board.
     #[must_use]
     pub fn new(spec: &Spec) -> Self {
-        let (squares, square_m) = (spec.squares(), spec.square_m());
+        let (squares, square_m, pattern) = (spec.squares(), spec.square_m(), Pattern::Squares);
         match spec {
-            Spec::Chessboard(_) => Layout { squares, square_m, markers: None, first_dark: true },
+            Spec::Chessboard(_) => Layout { squares, square_m, markers: None, first_dark: true, pattern },
+            Spec::Circles(Circles { asymmetric, .. }) => {
+                let diameter = if *asymmetric { 0.8 } else { 0.5 };
+                let pattern = Pattern::Dots { asymmetric: *asymmetric, diameter };
+                Layout { squares, square_m, markers: None, first_dark: true, pattern }
+            }
+            Spec::Tags(Tags { dictionary, .. }) => {
+                let (columns, rows, gap, border) = (5, 3, 0.75, 1);
+                let pattern =
+                    Tagged { columns, rows, gap, border, kalibr: false, dictionary: dictionary.clone() };
+                Layout { squares, square_m, markers: None, first_dark: true, pattern: Pattern::Tags(pattern) }
+            }
+            Spec::AprilGrid(AprilGrid { columns, rows, spacing, dictionary, .. }) => {
+                let (columns, rows, gap, border) = (*columns, *rows, *spacing, 2);
+                let pattern =
+                    Tagged { columns, rows, gap, border, kalibr: true, dictionary: dictionary.clone() };
+                Layout { squares, square_m, markers: None, first_dark: true, pattern: Pattern::Tags(pattern) }
+            }
             Spec::Charuco(Charuco { marker_m, dictionary, legacy, rows, .. }) => Layout {
                 squares,
                 square_m,
                 markers: Some((dictionary.clone(), marker_m / square_m)),
                 // The old pattern counts its squares from the last row.
                 first_dark: !(*legacy && rows % 2 == 0),
+                pattern,
             },
         }
     }
@@ -47,18 +140,83 @@ impl Layout {
         self.squares.map(|it| it.saturating_sub(1))
     }
 
-    /// Number of inner corners.
+    /// Number of inner corners, of dots, or of corners of tags.
     #[must_use]
     pub fn corners(&self) -> usize {
+        if let Pattern::Tags(tags) = &self.pattern {
+            return 4 * tags.columns * tags.rows;
+        }
         let [columns, rows] = self.inner();
-        columns * rows
+        if self.is_asymmetric() { columns / 2 * rows } else { columns * rows }
     }
 
-    /// Place of an inner corner, squares.
+    /// Place of an inner corner, of a dot, or of the corner of a tag, squares.
     #[must_use]
     pub fn corner(&self, id: usize) -> Vector2<f64> {
+        if let Pattern::Tags(tags) = &self.pattern {
+            let [x, y] = AROUND[id % 4];
+            return tags.first_corner(id / 4) + Vector2::new(x, y);
+        }
         let columns = self.inner()[0].max(1);
+        if self.is_asymmetric() {
+            let columns = (columns / 2).max(1);
+            let (column, row) = (id % columns, id / columns);
+            return Vector2::new((2 * column + row % 2 + 1) as f64, (row + 1) as f64);
+        }
         Vector2::new((id % columns + 1) as f64, (id / columns + 1) as f64)
+    }
+
+    /// All points with their names, metres. Of chessboards and dots x is to the right and y downwards from the first one, as the axes of `poecal`'s
+    /// boards and OpenCV's; of Kalibr's grid of tags x is to the right and y upwards from the lower left corner of tag 0. A loose tag is where it is:
+    /// of each its own corners are told, from its middle, with y upwards.
+    #[must_use]
+    pub fn points(&self) -> Vec<Point> {
+        let point = |kind: Kind, id: usize, place: Vector2<f64>| Point {
+            name: kind.name(id),
+            place_m: (place * self.square_m).into(),
+        };
+        let first = Vector2::new(1.0, 1.0);
+        let all = 0..self.corners();
+        match &self.pattern {
+            Pattern::Squares => all.map(|id| point(Kind::Corner, id, self.corner(id) - first)).collect(),
+            Pattern::Dots { .. } => all.map(|id| point(Kind::Dot, id, self.corner(id) - first)).collect(),
+            Pattern::Tags(tags) if tags.kalibr => {
+                let origin = self.corner(3);
+                let off = |id: usize| self.corner(id) - origin;
+                all.map(|id| point(Kind::Tag, id, Vector2::new(off(id).x, -off(id).y))).collect()
+            }
+            Pattern::Tags(tags) => {
+                let off = |id: usize| Vector2::new(AROUND[id % 4][0] - 0.5, 0.5 - AROUND[id % 4][1]);
+                (0..4 * tags.dictionary.len()).map(|id| point(Kind::Tag, id, off(id))).collect()
+            }
+        }
+    }
+
+    /// Whether it has dots on every second corner.
+    pub(crate) fn is_asymmetric(&self) -> bool {
+        matches!(self.pattern, Pattern::Dots { asymmetric: true, .. })
+    }
+
+    /// Columns and rows on which dots may be.
+    pub(crate) fn dots(&self) -> [usize; 2] {
+        self.inner()
+    }
+
+    /// The number of the dot at a column and row.
+    pub(crate) fn dot_at(&self, [column, row]: [usize; 2]) -> Option<usize> {
+        let [columns, _] = self.inner();
+        if !self.is_asymmetric() {
+            return Some(row * columns + column);
+        }
+        (column % 2 == row % 2).then(|| row * (columns / 2) + column / 2)
+    }
+
+    /// Radius of dots, squares; 0 without.
+    pub(crate) fn dot_radius(&self) -> f64 {
+        match self.pattern {
+            Pattern::Squares | Pattern::Tags(_) => 0.0,
+            Pattern::Dots { diameter, .. } => 0.5 * diameter,
+        }
     }
 
     /// Whether the square between a corner and the origin's side in both directions is dark.
@@ -79,6 +237,9 @@ impl Layout {
     /// How many markers it has.
     #[must_use]
     pub fn marker_count(&self) -> usize {
+        if let Pattern::Tags(tags) = &self.pattern {
+            return tags.columns * tags.rows;
+        }
         let [columns, rows] = self.squares;
         match self.markers {
             Some(_) => (columns * rows + usize::from(!self.first_dark)) / 2,
@@ -89,6 +250,9 @@ impl Layout {
     /// The corners of a marker, squares: clockwise in the picture of the board from its upper left one.
     #[must_use]
     pub fn marker_corners(&self, marker: usize) -> Option<[Vector2<f64>; 4]> {
+        if matches!(self.pattern, Pattern::Tags(_)) {
+            return Some([0, 1, 2, 3].map(|k| self.corner(4 * marker + k)));
+        }
         let (_, side) = self.markers.as_ref()?;
         let [column, row] = self.square_of(marker)?;
         let middle = Vector2::new(column as f64 + 0.5, row as f64 + 0.5);

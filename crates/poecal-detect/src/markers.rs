@@ -13,11 +13,15 @@ pub(crate) struct Marker {
     pub(crate) id: usize,
     /// Its corners, clockwise from the upper left one of the marker as it is printed.
     pub(crate) corners: Quad,
+    /// Whether all its bits are right.
+    pub(crate) exact: bool,
 }
 
 /// Reads markers of a dictionary.
 pub(crate) struct Reader {
     dictionary: Dictionary,
+    /// Cells of the dark border.
+    border: usize,
 }
 
 /// Least difference of light and dark, gray levels.
@@ -27,21 +31,26 @@ const DARK_BORDER: f64 = 0.9;
 
 impl Reader {
     pub(crate) fn new(dictionary: &Dictionary) -> Self {
-        Reader { dictionary: dictionary.clone() }
+        Reader { dictionary: dictionary.clone(), border: 1 }
+    }
+
+    /// One of markers with a border of so many cells.
+    pub(crate) fn with_border(dictionary: &Dictionary, border: usize) -> Self {
+        Reader { dictionary: dictionary.clone(), border }
     }
 
     /// The marker of a quadrangle, whichever way it is turned.
     pub(crate) fn read(&self, gray: &Gray, quad: &Quad) -> Option<Marker> {
-        let code = code(gray, quad, self.dictionary.bits())?;
-        let (id, turns) = self.dictionary.find(code)?;
+        let code = code(gray, quad, self.dictionary.bits(), self.border)?;
+        let (id, turns, wrong) = self.dictionary.find(code)?;
         let corners = [0, 1, 2, 3].map(|k| quad[(k + turns) % 4]);
-        Some(Marker { id, corners })
+        Some(Marker { id, corners, exact: wrong == 0 })
     }
 }
 
 /// The bits inside of a quadrangle with a dark border, black as 1, row by row.
-fn code(gray: &Gray, quad: &Quad, bits: usize) -> Option<u64> {
-    let cells = bits + 2;
+fn code(gray: &Gray, quad: &Quad, bits: usize, border: usize) -> Option<u64> {
+    let cells = bits + 2 * border;
     let unit = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]].map(Vector2::from);
     let to_picture = Homography::of_corners(&unit, quad)?;
     let mut levels = Vec::with_capacity(cells * cells);
@@ -53,7 +62,7 @@ fn code(gray: &Gray, quad: &Quad, bits: usize) -> Option<u64> {
     let limit = split(&levels)?;
     let is_border = |at: usize| {
         let (column, row) = (at % cells, at / cells);
-        column == 0 || row == 0 || column + 1 == cells || row + 1 == cells
+        column.min(row) < border || column.max(row) + border >= cells
     };
     let border = (0..levels.len()).filter(|at| is_border(*at));
     let dark = border.clone().filter(|at| levels[*at] < limit).count();

@@ -58,13 +58,14 @@ pub fn png(gray: &Gray) -> Result<Vec<u8>> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::found::Kind;
 
     #[test]
     fn a_preview_is_a_png_of_the_size_of_the_picture_with_rings() {
         let gray = Gray::filled(40, 30, 128.0);
         let corners = [
-            Corner { id: 0, u_px: 20.0, v_px: 15.0, sigma_px: 0.1 },
-            Corner { id: 1, u_px: 1.0, v_px: 1.0, sigma_px: 0.1 },
+            Corner { id: 0, kind: Kind::Corner, u_px: 20.0, v_px: 15.0, sigma_px: 0.1 },
+            Corner { id: 1, kind: Kind::Corner, u_px: 1.0, v_px: 1.0, sigma_px: 0.1 },
         ];
         let bytes = preview(&gray, &corners).unwrap();
         let image = image::load_from_memory(&bytes).unwrap().to_rgb8();

@@ -286,7 +286,7 @@ fn skew(rho: f64, h: f64, k: f64) -> f64 {
 }
 
 /// The mean of a sign at a distance of so many standard deviations, and exp(-x²/2): Abramowitz and Stegun 7.1.26, to 1.5e-7.
-fn sign_and_bell(x: f64) -> (f64, f64) {
+pub(crate) fn sign_and_bell(x: f64) -> (f64, f64) {
     let bell = (-0.5 * x * x).exp();
     let z = x.abs() * std::f64::consts::FRAC_1_SQRT_2;
     let t = 1.0 / (1.0 + 0.327_591_1 * z);

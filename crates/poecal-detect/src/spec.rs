@@ -6,8 +6,9 @@ use std::str::FromStr;
 use crate::dictionary::Dictionary;
 use crate::error::{Error, Result};
 
-/// A board: `chessboard:COLSxROWS:SQUARE` or `charuco:COLSxROWS:SQUARE:MARKER:DICT[:legacy]`. Columns and rows count squares; lengths have a unit
-/// (mm, cm, m, in).
+/// A board: `chessboard:COLSxROWS:SQUARE`, `charuco:COLSxROWS:SQUARE:MARKER:DICT[:legacy]`, `circles:COLSxROWS:PITCH[:asymmetric]`,
+/// `tags:FAMILY:SIZE` or `aprilgrid:COLSxROWS:SIZE:SPACING[:FAMILY]`. Columns and rows count squares, dots or tags; lengths have a unit (mm, cm, m,
+/// in).
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Spec {
@@ -15,6 +16,12 @@ pub enum Spec {
     Chessboard(Chessboard),
     /// A chessboard with markers in its light squares.
     Charuco(Charuco),
+    /// A grid of dark dots on light ground.
+    Circles(Circles),
+    /// Loose tags, each with its corners.
+    Tags(Tags),
+    /// A grid of tags with dark squares at their corners, as of Kalibr.
+    AprilGrid(AprilGrid),
 }
 
 /// A plain chessboard.
@@ -45,28 +52,92 @@ pub struct Charuco {
     pub legacy: bool,
 }
 
+/// A grid of dark dots, in the layouts of OpenCV's `findCirclesGrid`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Circles {
+    /// Dots in a row.
+    pub columns: usize,
+    /// Rows of dots.
+    pub rows: usize,
+    /// From row to row, metres. In a row the dots are as far apart, or twice as far if the grid is asymmetric.
+    pub pitch_m: f64,
+    /// Whether every second row is moved by a pitch: dot `j` of row `i` is at `(2 j + i % 2, i)` pitches.
+    pub asymmetric: bool,
+}
+
+/// Loose tags of one family and size.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Tags {
+    /// The tags.
+    pub dictionary: Dictionary,
+    /// Side of a tag with its black border of one cell, metres.
+    pub size_m: f64,
+}
+
+/// The grid of tags of Kalibr: tag 0 is at the lower left, with a border of two cells and dark squares in the corners between tags.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AprilGrid {
+    /// Tags in a row.
+    pub columns: usize,
+    /// Rows of tags.
+    pub rows: usize,
+    /// Side of a tag with its black border, metres.
+    pub size_m: f64,
+    /// From tag to tag, as a part of the side of a tag.
+    pub spacing: f64,
+    /// The tags.
+    pub dictionary: Dictionary,
+}
+
 /// Most squares along a side, as of `poecal`'s boards.
 const MOST_SQUARES: usize = 250;
 /// What a specification looks like.
 const CHESSBOARD: &str = "chessboard:COLSxROWS:SQUARE, such as chessboard:10x7:28mm";
+const CIRCLES: &str = "circles:COLSxROWS:PITCH, such as circles:9x6:30mm or circles:4x11:20mm:asymmetric";
+const TAGS: &str = "tags:FAMILY:SIZE, such as tags:36h11:50mm";
+const APRILGRID: &str = "aprilgrid:COLSxROWS:SIZE:SPACING, such as aprilgrid:6x6:88mm:0.3";
 const CHARUCO: &str = "charuco:COLSxROWS:SQUARE:MARKER:DICT, such as charuco:5x7:36mm:18mm:DICT_6X6_250";
 
 impl Spec {
-    /// Squares along x and y.
+    /// Squares along x and y; of a grid of dots those that have its dots at their inner corners,
+    /// of tags what holds those that are drawn, in sides of a tag.
     #[must_use]
     pub fn squares(&self) -> [usize; 2] {
         match self {
             Spec::Chessboard(board) => [board.columns, board.rows],
             Spec::Charuco(board) => [board.columns, board.rows],
+            Spec::Circles(Circles { columns, rows, asymmetric, .. }) => {
+                [columns * (1 + usize::from(*asymmetric)) + 1, rows + 1]
+            }
+            Spec::Tags(_) => [10, 7],
+            Spec::AprilGrid(AprilGrid { columns, rows, spacing, .. }) => [columns, rows]
+                .map(|it| (*it as f64 + it.saturating_sub(1) as f64 * spacing + 2.0).ceil() as usize),
         }
     }
 
-    /// Side of a square, metres.
+    /// Side of a square or a tag, or the pitch of dots, metres.
     #[must_use]
     pub fn square_m(&self) -> f64 {
         match self {
             Spec::Chessboard(board) => board.square_m,
             Spec::Charuco(board) => board.square_m,
+            Spec::Circles(board) => board.pitch_m,
+            Spec::Tags(board) => board.size_m,
+            Spec::AprilGrid(board) => board.size_m,
+        }
+    }
+
+    /// What a ruler measures of a print along x and y, metres: all squares, or all tags of a grid, between their outer edges; dots from the middles of
+    /// the outer ones to each other; one of loose tags.
+    #[must_use]
+    pub fn ruled_m(&self) -> [f64; 2] {
+        match self {
+            Spec::Chessboard(_) | Spec::Charuco(_) => self.squares().map(|it| it as f64 * self.square_m()),
+            Spec::Circles(board) => self.squares().map(|it| it.saturating_sub(2) as f64 * board.pitch_m),
+            Spec::Tags(board) => [board.size_m; 2],
+            Spec::AprilGrid(AprilGrid { columns, rows, size_m, spacing, .. }) => {
+                [columns, rows].map(|it| (*it as f64 + it.saturating_sub(1) as f64 * spacing) * size_m)
+            }
         }
     }
 
@@ -79,6 +150,9 @@ impl Spec {
             Spec::Charuco(board) => {
                 (board.square_m, board.marker_m) = (scaled(board.square_m), scaled(board.marker_m));
             }
+            Spec::Circles(board) => board.pitch_m = scaled(board.pitch_m),
+            Spec::Tags(board) => board.size_m = scaled(board.size_m),
+            Spec::AprilGrid(board) => board.size_m = scaled(board.size_m),
         }
         board
     }
@@ -91,17 +165,35 @@ impl FromStr for Spec {
         let parts: Vec<&str> = text.trim().split(':').collect();
         match parts.as_slice() {
             ["chessboard", size, square] => {
-                let [columns, rows] = size_of(size)?;
-                Ok(Spec::Chessboard(Chessboard { columns, rows, square_m: length_m("square", square)? }))
+                let [columns, rows] = size_of("squares", size, 3)?;
+                Ok(Spec::Chessboard(Chessboard {
+                    columns,
+                    rows,
+                    square_m: length_m("side of a square", square)?,
+                }))
             }
             ["chessboard", ..] => Err(wrong(text, CHESSBOARD)),
+            ["circles", size, pitch] => circles(size, pitch, false),
+            ["circles", size, pitch, "asymmetric"] => circles(size, pitch, true),
+            ["circles", _, _, last] => Err(Error::new(format!(
+                "found {last:?} at the end of a board, expected asymmetric or nothing"
+            ))),
+            ["circles", ..] => Err(wrong(text, CIRCLES)),
+            ["tags", family, size] => {
+                let dictionary = Dictionary::named(family)?;
+                Ok(Spec::Tags(Tags { dictionary, size_m: length_m("side of a tag", size)? }))
+            }
+            ["tags", ..] => Err(wrong(text, TAGS)),
+            ["aprilgrid", size, tag, spacing] => aprilgrid(size, tag, spacing, "DICT_APRILTAG_36h11"),
+            ["aprilgrid", size, tag, spacing, family] => aprilgrid(size, tag, spacing, family),
+            ["aprilgrid", ..] => Err(wrong(text, APRILGRID)),
             ["charuco", size, square, marker, name] => charuco(size, [square, marker], name, false),
             ["charuco", size, square, marker, name, "legacy"] => charuco(size, [square, marker], name, true),
             ["charuco", _, _, _, _, last] => {
                 Err(Error::new(format!("found {last:?} at the end of a board, expected legacy or nothing")))
             }
             ["charuco", ..] => Err(wrong(text, CHARUCO)),
-            _ => Err(wrong(text, &format!("{CHESSBOARD}, or {CHARUCO}"))),
+            _ => Err(wrong(text, &format!("{CHESSBOARD}, {CHARUCO}, {CIRCLES}, {TAGS}, or {APRILGRID}"))),
         }
     }
 }
@@ -111,8 +203,8 @@ fn wrong(text: &str, expected: &str) -> Error {
 }
 
 fn charuco(size: &str, [square, marker]: [&str; 2], name: &str, legacy: bool) -> Result<Spec> {
-    let [columns, rows] = size_of(size)?;
-    let (square_m, marker_m) = (length_m("square", square)?, length_m("marker", marker)?);
+    let [columns, rows] = size_of("squares", size, 3)?;
+    let (square_m, marker_m) = (length_m("side of a square", square)?, length_m("side of a marker", marker)?);
     if marker_m >= square_m {
         let message =
             format!("found markers of {marker} in squares of {square}, expected markers that are smaller");
@@ -130,22 +222,46 @@ fn charuco(size: &str, [square, marker]: [&str; 2], name: &str, legacy: bool) ->
     Ok(Spec::Charuco(Charuco { columns, rows, square_m, marker_m, dictionary, legacy }))
 }
 
-fn size_of(text: &str) -> Result<[usize; 2]> {
+fn circles(size: &str, pitch: &str, asymmetric: bool) -> Result<Spec> {
+    let [columns, rows] = size_of("dots", size, if asymmetric { 2 } else { 3 })?;
+    Ok(Spec::Circles(Circles { columns, rows, pitch_m: length_m("pitch", pitch)?, asymmetric }))
+}
+
+fn aprilgrid(size: &str, tag: &str, spacing: &str, family: &str) -> Result<Spec> {
+    let [columns, rows] = size_of("tags", size, 1)?;
+    let size_m = length_m("side of a tag", tag)?;
+    let part = spacing.parse().ok().filter(|it| (0.05..=1.0).contains(it)).ok_or_else(|| {
+        Error::new(format!(
+            "found {spacing:?} for the spacing of tags, expected a part of their side from 0.05 to 1, such as 0.3"
+        ))
+    })?;
+    let dictionary = Dictionary::named(family)?;
+    if columns * rows > dictionary.len() {
+        return Err(Error::new(format!(
+            "found a board of {columns}x{rows} tags, expected one with at most the {} of {}",
+            dictionary.len(),
+            dictionary.name()
+        )));
+    }
+    Ok(Spec::AprilGrid(AprilGrid { columns, rows, size_m, spacing: part, dictionary }))
+}
+
+fn size_of(what: &str, text: &str, least: usize) -> Result<[usize; 2]> {
     let wrong = || {
         Error::new(format!(
-            "found {text:?} for the squares of a board, expected columns x rows such as 10x7, each 3 to {MOST_SQUARES}"
+            "found {text:?} for the {what} of a board, expected columns x rows such as 10x7, each {least} to {MOST_SQUARES}"
         ))
     };
     let (columns, rows) = text.split_once(['x', 'X', '×']).ok_or_else(wrong)?;
     let number =
-        |part: &str| part.parse().ok().filter(|it| (3..=MOST_SQUARES).contains(it)).ok_or_else(wrong);
+        |part: &str| part.parse().ok().filter(|it| (least..=MOST_SQUARES).contains(it)).ok_or_else(wrong);
     Ok([number(columns)?, number(rows)?])
 }
 
 fn length_m(what: &str, text: &str) -> Result<f64> {
     length(text).ok_or_else(|| {
         Error::new(format!(
-            "found {text:?} for the side of a {what}, expected a length above 0 with its unit (mm, cm, m, in), such as 28mm"
+            "found {text:?} for the {what}, expected a length above 0 with its unit (mm, cm, m, in), such as 28mm"
         ))
     })
 }
@@ -165,6 +281,22 @@ impl fmt::Display for Spec {
         match self {
             Spec::Chessboard(Chessboard { columns, rows, square_m }) => {
                 write!(formatter, "chessboard:{columns}x{rows}:{}mm", mm(*square_m))
+            }
+            Spec::Circles(Circles { columns, rows, pitch_m, asymmetric }) => {
+                let end = if *asymmetric { ":asymmetric" } else { "" };
+                write!(formatter, "circles:{columns}x{rows}:{}mm{end}", mm(*pitch_m))
+            }
+            Spec::Tags(Tags { dictionary, size_m }) => {
+                write!(formatter, "tags:{}:{}mm", dictionary.name(), mm(*size_m))
+            }
+            Spec::AprilGrid(board) => {
+                let AprilGrid { columns, rows, size_m, spacing, dictionary } = board;
+                write!(
+                    formatter,
+                    "aprilgrid:{columns}x{rows}:{}mm:{spacing}:{}",
+                    mm(*size_m),
+                    dictionary.name()
+                )
             }
             Spec::Charuco(board) => {
                 let Charuco { columns, rows, square_m, marker_m, dictionary, legacy } = board;
@@ -186,6 +318,10 @@ mod tests {
             "charuco:5x7:36.195mm:18.256mm:DICT_6X6_250",
             "charuco:8x6:30mm:22mm:DICT_4X4_50:legacy",
             "chessboard:10x7:28mm",
+            "circles:9x6:30mm",
+            "circles:4x11:20mm:asymmetric",
+            "tags:DICT_APRILTAG_36h11:50mm",
+            "aprilgrid:6x6:88mm:0.3:DICT_APRILTAG_36h11",
         ] {
             assert_eq!(text.parse::<Spec>().unwrap().to_string(), text);
         }
@@ -204,6 +340,12 @@ mod tests {
             ("chessboard:10x7:28", "with its unit"),
             ("chessboard:10x7:-28mm", "above 0"),
             ("chessboard:10x7:infm", "above 0"),
+            ("tags:36h11", "expected tags:FAMILY:SIZE"),
+            ("aprilgrid:6x6:88mm:30", "expected a part of their side"),
+            ("aprilgrid:30x30:88mm:0.3", "at most the 587"),
+            ("circles:9x6", "expected circles:COLSxROWS:PITCH"),
+            ("circles:2x6:30mm", "each 3 to 250"),
+            ("circles:4x11:30mm:odd", "expected asymmetric"),
             ("charuco:5x7:36mm:18mm", "expected charuco:COLSxROWS:SQUARE:MARKER:DICT"),
             ("charuco:5x7:18mm:36mm:DICT_6X6_250", "smaller"),
             ("charuco:5x7:36mm:18mm:DICT_6X6_251", "found the dictionary \"DICT_6X6_251\""),

@@ -2,16 +2,20 @@
 
 use std::fmt;
 
+use crate::aprilgrid;
 use crate::charuco;
 use crate::chessboard;
+use crate::circles;
 use crate::dictionary::Dictionary;
+use crate::ellipse::Dot;
 use crate::found::{Found, Rejected};
 use crate::gray::Gray;
 use crate::layout::Layout;
 use crate::light::noise;
 use crate::markers::Reader;
-use crate::quads::{Quad, quads};
-use crate::spec::{Charuco, Chessboard, Spec};
+use crate::quads::{Quad, quads, quads_apart};
+use crate::spec::{AprilGrid, Charuco, Chessboard, Circles, Spec, Tags};
+use crate::tags;
 
 /// A board that pictures show in place of the stated one.
 #[derive(Clone, Debug, PartialEq)]
@@ -31,40 +35,81 @@ impl fmt::Display for Suggestion {
     }
 }
 
-/// The board that has most corners, if any has some.
+/// The board that has most corners, if any has some: of several the first that is tried.
 pub(crate) fn suggest(spec: &Spec, pictures: &[&Gray]) -> Option<Suggestion> {
     let seen: Vec<(&Gray, f64)> = pictures.iter().map(|gray| (*gray, noise(gray))).collect();
     let all: Vec<Suggestion> = match spec {
         Spec::Chessboard(board) => {
-            let tried =
-                |spec| suggestion(spec, &seen, |layout, gray, noise| chessboard::detect(gray, layout, noise));
-            chessboards(board).into_iter().map(tried).collect()
+            let seen = with(&seen, |_, _| ());
+            let detect =
+                |layout: &Layout, one: &Seen<'_, ()>| chessboard::detect(one.gray, layout, one.noise);
+            chessboards(board).into_iter().map(|spec| suggestion(spec, &seen, detect)).collect()
         }
-        Spec::Charuco(board) => {
-            // What is costly does not depend on the board.
-            let quads: Vec<Vec<Quad>> = seen.iter().map(|(gray, noise)| quads(gray, *noise)).collect();
-            let tried = |board: Charuco| {
-                let reader = Reader::new(&board.dictionary);
-                let mut quads = quads.iter();
-                suggestion(Spec::Charuco(board), &seen, |layout, gray, noise| {
-                    let quads = quads.next().ok_or(Rejected::NoBoard)?;
-                    charuco::of_quads(gray, layout, &reader, noise, quads)
-                })
+        Spec::Charuco(board) => charucos_in(board, &with(&seen, quads)),
+        Spec::Circles(board) => {
+            let seen = with(&seen, circles::dots);
+            let detect = |layout: &Layout, one: &Seen<'_, Vec<Dot>>| {
+                circles::of_dots(one.gray, layout, one.noise, &one.parts)
             };
-            charucos(board).into_iter().map(tried).collect()
+            grids_of_dots(board).into_iter().map(|spec| suggestion(spec, &seen, detect)).collect()
         }
+        Spec::Tags(board) => tags_in(board, &with(&seen, quads)),
+        Spec::AprilGrid(board) => april_grids_in(board, &with(&seen, quads_apart)),
     };
-    all.into_iter().filter(|it| it.corners > 0).max_by_key(|it| it.corners)
+    all.into_iter().filter(|it| it.corners > 0).rev().max_by_key(|it| it.corners)
+}
+
+/// A picture, its noise, and what is costly to find in it and does not depend on the board.
+struct Seen<'a, P> {
+    gray: &'a Gray,
+    noise: f64,
+    parts: P,
+}
+
+fn with<'a, P>(seen: &[(&'a Gray, f64)], parts: impl Fn(&Gray, f64) -> P) -> Vec<Seen<'a, P>> {
+    let one = |(gray, noise): &(&'a Gray, f64)| Seen { gray, noise: *noise, parts: parts(gray, *noise) };
+    seen.iter().map(one).collect()
+}
+
+fn charucos_in(board: &Charuco, seen: &[Seen<'_, Vec<Quad>>]) -> Vec<Suggestion> {
+    let tried = |board: Charuco| {
+        let reader = Reader::new(&board.dictionary);
+        suggestion(Spec::Charuco(board), seen, |layout, one| {
+            charuco::of_quads(one.gray, layout, &reader, one.noise, &one.parts)
+        })
+    };
+    charucos(board).into_iter().map(tried).collect()
+}
+
+fn tags_in(board: &Tags, seen: &[Seen<'_, Vec<Quad>>]) -> Vec<Suggestion> {
+    let tried = |dictionary: Dictionary| {
+        let reader = Reader::new(&dictionary);
+        let spec = Spec::Tags(Tags { dictionary: dictionary.clone(), ..*board });
+        suggestion(spec, seen, |_, one| {
+            tags::of_quads(one.gray, (&dictionary, &reader), one.noise, &one.parts)
+        })
+    };
+    families(&board.dictionary, 1).map(tried).collect()
+}
+
+fn april_grids_in(board: &AprilGrid, seen: &[Seen<'_, Vec<Quad>>]) -> Vec<Suggestion> {
+    let tried = |board: AprilGrid| {
+        let reader = Reader::with_border(&board.dictionary, 2);
+        suggestion(Spec::AprilGrid(board), seen, |layout, one| {
+            aprilgrid::of_quads(one.gray, layout, (&reader, one.noise), &one.parts)
+        })
+    };
+    april_grids(board).into_iter().map(tried).collect()
 }
 
 /// What a board has in pictures.
-fn suggestion(
+fn suggestion<P>(
     spec: Spec,
-    seen: &[(&Gray, f64)],
-    mut detect: impl FnMut(&Layout, &Gray, f64) -> Result<Found, Rejected>,
+    seen: &[Seen<'_, P>],
+    detect: impl Fn(&Layout, &Seen<'_, P>) -> Result<Found, Rejected>,
 ) -> Suggestion {
     let layout = Layout::new(&spec);
-    let found = seen.iter().filter_map(|(gray, noise)| detect(&layout, gray, *noise).ok());
+    let found = seen.iter().filter_map(|one| detect(&layout, one).ok());
     let (pictures, corners) = found.fold((0, 0), |sum, it| (sum.0 + 1, sum.1 + it.corners.len()));
     Suggestion { spec, pictures, corners }
 }
@@ -77,10 +122,42 @@ fn chessboards(board: &Chessboard) -> Vec<Spec> {
     sound.map(|(columns, rows)| Spec::Chessboard(Chessboard { columns, rows, square_m })).collect()
 }
 
+/// Rows and columns exchanged, the other kind, and dots counted as the squares between them, or the other way round.
+fn grids_of_dots(board: &Circles) -> Vec<Spec> {
+    let Circles { columns, rows, pitch_m, asymmetric } = *board;
+    let counts = [(columns, rows), (rows, columns), (columns + 1, rows + 1), (columns - 1, rows - 1)];
+    let kinds = counts.into_iter().flat_map(|count| [(count, asymmetric), (count, !asymmetric)]);
+    let sound = kinds.filter(|((columns, rows), asymmetric)| {
+        let least = if *asymmetric { 2 } else { 3 };
+        (*columns).min(*rows) >= least
+    });
+    let circles = |((columns, rows), asymmetric)| Circles { columns, rows, pitch_m, asymmetric };
+    sound.map(circles).filter(|it| it != board).map(Spec::Circles).collect()
+}
+
+/// The other dictionaries that have so many markers.
+fn families(own: &Dictionary, markers: usize) -> impl Iterator<Item = Dictionary> {
+    Dictionary::smallest(markers).into_iter().filter(move |it| !it.is_alike(own))
+}
+
+fn april_grids(board: &AprilGrid) -> Vec<AprilGrid> {
+    let own = &board.dictionary;
+    let all = std::iter::once(own.clone()).chain(families(own, board.columns * board.rows));
+    let ways = all.flat_map(|dictionary| {
+        [[board.columns, board.rows], [board.rows, board.columns]].map(|[columns, rows]| AprilGrid {
+            columns,
+            rows,
+            dictionary: dictionary.clone(),
+            ..board.clone()
+        })
+    });
+    ways.filter(|it| it != board).collect()
+}
+
 fn charucos(board: &Charuco) -> Vec<Charuco> {
     let own = board.dictionary.clone();
     let markers = board.columns * board.rows / 2;
-    let others = Dictionary::smallest(markers).into_iter().filter(|it| !it.is_alike(&own));
+    let others = families(&own, markers);
     let mut all = Vec::new();
     for dictionary in std::iter::once(own.clone()).chain(others) {
         for [columns, rows] in [[board.columns, board.rows], [board.rows, board.columns]] {

@@ -106,7 +106,7 @@ pub(crate) struct Meaning {
     #[arg(long, value_name = "FILE[#VERSION]|unknown:WxH")]
     pub(crate) camera: Vec<String>,
     /// Board or solid that cameras see: CSV with target, x[mm], y[mm], z[mm] of its points, chessboard:10x7:27mm (squares along x and y, and
-    /// their side), or a calibration.json with what it found; may be given again
+    /// their side), charuco:, circles:, aprilgrid: or tags: as poecal detect has them, or a calibration.json with what it found; may be given again
     #[arg(long, value_name = "FILE|BOARD")]
     pub(crate) markers: Vec<String>,
 }

@@ -47,10 +47,9 @@ fn drawn(arguments: &Board, out: &Path, console: &Console) -> Result<u8> {
         Form::Pdf => sheet.pdf(),
     };
     place.write(vec![text.into()])?;
-    if looks_alike_turned(spec) {
+    if let Some((turned, instead)) = looks_alike(spec) {
         console.warning(format!(
-            "{} looks the same turned by 180 degrees, so that its first corner may be taken for its last: an even number of squares one way \
-             and an odd one the other tell both apart",
+            "{} looks the same turned by {turned}, so that its first point may be taken for another one: {instead}",
             described(spec)
         ));
     }
@@ -62,10 +61,20 @@ fn drawn(arguments: &Board, out: &Path, console: &Console) -> Result<u8> {
     Ok(console.say_of(&words, out))
 }
 
-/// Whether nothing tells the board from itself turned.
-fn looks_alike_turned(spec: &Spec) -> bool {
-    let [columns, rows] = spec.squares();
-    matches!(spec, Spec::Chessboard(_)) && (columns + rows).is_multiple_of(2)
+/// How a board may be turned that nothing tells from itself, and what to take instead.
+fn looks_alike(spec: &Spec) -> Option<(&'static str, &'static str)> {
+    const ODD: &str = "an even number of squares one way and an odd one the other tell both apart";
+    const DOTS: &str =
+        "an asymmetric grid with an odd number of rows, a ChArUco board and an AprilGrid have no such doubt";
+    let half = "180 degrees";
+    if let Spec::Chessboard(board) = spec {
+        return (board.columns + board.rows).is_multiple_of(2).then_some((half, ODD));
+    }
+    let Spec::Circles(board) = spec else { return None };
+    if !board.asymmetric && board.columns == board.rows {
+        return Some(("90 degrees", DOTS));
+    }
+    (!board.asymmetric || board.rows.is_multiple_of(2)).then_some((half, DOTS))
 }
 
 fn form(out: &Path) -> Result<Form> {
@@ -85,7 +94,7 @@ fn corrected(spec: &Spec, measured: &Measured, console: &Console) -> Result<()> 
     console.remark(format!("the print is {} along x, {} along y", larger(x), larger(y)));
     if !found.agrees() {
         console.warning(format!(
-            "along x and y the scales differ by {:.2} %, so that no square describes the print: run `poecal calibrate` with --free board, which finds \
+            "along x and y the scales differ by {:.2} %, so that no single size describes the print: run `poecal calibrate` with --free board, which finds \
              both, or print it again at 100 %",
             found.stretch().abs() * 100.0
         ));

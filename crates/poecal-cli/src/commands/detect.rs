@@ -237,9 +237,13 @@ fn nothing(detector: &Detector, all: &[Seen]) -> Error {
     let why: Vec<String> =
         all.iter().filter_map(|it| Some(format!("{}: {}", it.name, it.found.as_ref().err()?))).collect();
     let help = match detector.suggest(&tried) {
-        Some(other) => format!("but {} shows in {}: take --board {}", other.spec, plural(other.pictures, "picture"), other.spec),
-        None => "nor one with columns and rows exchanged, of the other pattern or with other markers: check the board, and look at the pictures"
-            .to_owned(),
+        Some(other) => format!(
+            "but {} shows in {}: take --board {}",
+            other.spec,
+            plural(other.pictures, "picture"),
+            other.spec
+        ),
+        None => format!("nor {}: check the board, and look at the pictures", tried_too(detector.spec())),
     };
     let message = format!(
         "found the board {} in none of {} ({}), {help}",
@@ -250,12 +254,32 @@ fn nothing(detector: &Detector, all: &[Seen]) -> Error {
     Error::new(ErrorKind::Option, message)
 }
 
+/// What is tried in place of a board.
+fn tried_too(spec: &Spec) -> &'static str {
+    if matches!(spec, Spec::Circles(_)) {
+        "one with columns and rows exchanged, of the other kind, or with one dot more or fewer each way"
+    } else if matches!(spec, Spec::Tags(_)) {
+        "tags of other families"
+    } else if matches!(spec, Spec::AprilGrid(_)) {
+        "one with columns and rows exchanged, or with tags of other families"
+    } else {
+        "one with columns and rows exchanged, of the other pattern or with other markers"
+    }
+}
+
+/// What the points of a board are.
+fn points(spec: &Spec) -> &'static str {
+    if matches!(spec, Spec::Circles(_)) { "dots" } else { "corners" }
+}
+
 /// The corners as `poecal calibrate` reads them.
 fn table(spec: &Spec, all: &[Seen]) -> String {
     let size = all.first().map_or([0, 0], |it| it.size_px);
     let mut text = format!(
-        "# corners of {spec} in pictures of {} x {} pixels\nimage,target,u[px],v[px],sigma[px]\n",
-        size[0], size[1]
+        "# {} of {spec} in pictures of {} x {} pixels\nimage,target,u[px],v[px],sigma[px]\n",
+        points(spec),
+        size[0],
+        size[1]
     );
     for one in all {
         let Ok(found) = &one.found else { continue };
@@ -291,15 +315,19 @@ fn conclude(spec: &Spec, all: &[Seen], corners: usize, (arguments, console): (&D
     sigmas.sort_by(f64::total_cmp);
     let sigma = sigmas.get(sigmas.len() / 2).copied().unwrap_or(0.0);
     console.remark(format!(
-        "found {corners} corners in {} of {}, to {sigma:.2} px in the median",
+        "found {corners} {} in {} of {}, to {sigma:.2} px in the median",
+        points(spec),
         found.len(),
         plural(all.len(), "picture")
     ));
     if found.iter().any(|it| it.turnable) {
-        console.remark(
+        console.remark(if matches!(spec, Spec::Circles(_)) {
+            "this board looks the same turned: its first dot is the one nearest to the upper left of each picture; an asymmetric grid with an odd \
+             number of rows has no such doubt"
+        } else {
             "this board looks the same turned by half a turn: its first corner is the one nearest to the upper left of each picture; a board of \
-             which one side counts an even and the other an odd number of squares has no such doubt",
-        );
+             which one side counts an even and the other an odd number of squares has no such doubt"
+        });
     }
     if let Some(out) = &arguments.place.out {
         let [width, height] = all.first().map_or([0, 0], |it| it.size_px);

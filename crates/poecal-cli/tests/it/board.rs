@@ -21,6 +21,38 @@ fn a_board_is_drawn_as_pdf_and_svg() {
 }
 
 #[test]
+fn dots_and_tags_are_drawn_and_measured_too() {
+    for (spec, words, measured, printed) in [
+        (
+            "circles:4x11:20mm:asymmetric",
+            "Asymmetric circle grid, 4 columns by 11 rows of dots, 20 mm",
+            "139.3mm,199mm",
+            "circles:4x11:19.9mm:asymmetric",
+        ),
+        (
+            "aprilgrid:6x6:22mm:0.3",
+            "AprilGrid, 6 columns by 6 rows of 22 mm tags of DICT_APRILTAG_36h11",
+            "164.175mm,164.175mm",
+            "aprilgrid:6x6:21.89mm:0.3:DICT_APRILTAG_36h11",
+        ),
+        (
+            "tags:36h11:50mm",
+            "Tags of DICT_APRILTAG_36h11, 50 mm from edge to edge of the black border",
+            "50.2mm,50.2mm",
+            "tags:DICT_APRILTAG_36h11:50.2mm",
+        ),
+    ] {
+        let folder = Folder::new();
+        let out = folder.done(&format!("board {spec} --out board.pdf")).replace("\n              ", " ");
+        assert!(out.contains(words) && folder.read("board.pdf").starts_with("%PDF-"), "{out}");
+        folder.done(&format!("board {spec} --out board.svg --quiet"));
+        assert!(folder.read("board.svg").contains("check the rulers"));
+        let run = folder.run(&format!("board {spec} --measured {measured}"));
+        assert_eq!((run.code, run.out), (0, format!("--markers {printed}\n")), "{}", run.err);
+    }
+}
+
+#[test]
 fn what_it_prints_is_a_board_of_calibrate() {
     let folder = Folder::new();
     let printed = folder.run(&format!("board {SPEC}:legacy --measured 179.4mm,251.16mm"));
@@ -77,6 +109,13 @@ fn bad_input_is_one_sentence_and_nothing_is_written() {
             "expected a page of at least 320 x 440 mm, which leaves 10 mm on each side for rulers and words, or squares of at most 38 mm",
         ),
         ("board chessboard:10x7:0.1mm --out board.pdf", "at least 1 mm on paper"),
+        ("board circles:9x6:30mm:odd --out board.pdf", "expected asymmetric or nothing"),
+        ("board aprilgrid:6x6:88mm:0.3 --out board.pdf", "or tags of at most 23.4 mm"),
+        ("board tags:36h11:250mm --out board.pdf", "or tags of at most 190 mm"),
+        (
+            "board circles:9x6:20mm --measured 200mm,10mm",
+            "from the left edge of the leftmost dot to that of the rightmost one",
+        ),
         ("board chessboard:10x7:27mm --measured 270mm", "--measured: found \"270mm\""),
         ("board chessboard:10x7:27mm --measured 270mm,0mm", "with their units"),
         (
@@ -99,6 +138,11 @@ fn a_chessboard_that_looks_the_same_turned_is_told() {
         ("chessboard:9x7:20mm", true),
         ("chessboard:9x6:20mm", false),
         ("charuco:5x7:20mm:15mm:DICT_4X4_50", false),
+        ("circles:9x6:20mm", true),
+        ("circles:4x10:18mm:asymmetric", true),
+        ("circles:4x11:18mm:asymmetric", false),
+        ("aprilgrid:6x6:20mm:0.3", false),
+        ("tags:36h11:50mm", false),
     ] {
         let run = Folder::new().run(&format!("board {spec} --out board.svg"));
         assert_eq!((run.code, run.err.contains("turned by 180 degrees")), (0, told), "{spec}: {}", run.err);

@@ -4,10 +4,11 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use poecal::camera::Board;
+use poecal::io::measurements::read_boards;
 use poecal::io::model::Model;
 use poecal::io::urdf::ChainSelection;
 use poecal::simulate::{PictureSimulation, Simulation};
-use poecal_detect::render::{Camera, Random, Scene};
+use poecal_detect::render::{Camera, Draw, Random, Scene};
 use poecal_detect::{Gray, Layout, preview};
 
 use crate::folder::Folder;
@@ -20,6 +21,11 @@ fn elbow() -> PathBuf {
 
 /// Pictures of a camera in the hand of an arm, rendered, with the readings of its joints; those from `moved` on with the board 20 mm elsewhere.
 fn session(folder: &Folder, count: usize, moved: usize) {
+    session_of(folder, (SPEC, Board::chessboard("board", [7, 5], 0.036).unwrap()), count, moved);
+}
+
+/// The same of another board, drawn by its words; the arm looks at its points.
+fn session_of(folder: &Folder, (spec, board): (&str, Board), count: usize, moved: usize) {
     let model = Model::read(elbow(), &ChainSelection::default()).unwrap();
     let lens = poecal::camera::Lens {
         size_px: Some([960, 600]),
@@ -32,11 +38,10 @@ fn session(folder: &Folder, count: usize, moved: usize) {
         error_position_m: 1e-3,
         ..Simulation::default()
     };
-    let board = Board::chessboard("board", [7, 5], 0.036).unwrap();
     let simulated =
         PictureSimulation { lens, board, distance_m: [0.35, 0.5], ..PictureSimulation::usual(session, true) };
     let made = simulated.run(&model.robot).unwrap();
-    let layout = Layout::new(&SPEC.parse().unwrap());
+    let layout = Layout::new(&spec.parse().unwrap());
     let camera =
         Camera { size: [960, 600], focal_px: lens.focal_px, centre_px: lens.centre_px, distortion: [0.0; 2] };
     let names = made.data.reading_names().join("[rad],");
@@ -101,6 +106,120 @@ fn pictures_calibrate_an_arm_in_three_commands() {
     assert!((focal - 800.0).abs() < 3.0, "{line}");
 }
 
+/// The root mean square that the held-out pictures of a calibration are off, pixels.
+fn held_out_px(out: &str) -> f64 {
+    let line = out.lines().find(|line| line.starts_with("held out")).unwrap();
+    println!("{line}");
+    line.split_whitespace().nth(4).unwrap().parse().unwrap()
+}
+
+#[test]
+fn grids_of_dots_and_of_tags_calibrate_an_arm() {
+    for (spec, board) in [
+        ("circles:4x7:26mm:asymmetric", Board::circles("board", [4, 7], 0.026, true).unwrap()),
+        ("aprilgrid:3x2:60mm:0.3", Board::april_grid("board", [3, 2], 0.06, 0.3).unwrap()),
+    ] {
+        let folder = Folder::new();
+        session_of(&folder, (spec, board), 24, usize::MAX);
+        let found = folder.run(&format!("detect pictures --board {spec} --out corners.csv"));
+        assert_eq!(found.code, 0, "{}", found.err);
+        println!("{}", found.err);
+        // A grid that the border of a picture cuts is left out.
+        let pictures: usize = found
+            .err
+            .split(" of 24 pictures, to")
+            .next()
+            .unwrap()
+            .rsplit(' ')
+            .next()
+            .unwrap()
+            .parse()
+            .unwrap();
+        assert!(pictures >= 20, "{}", found.err);
+        let words = format!(
+            "calibrate robot.urdf joints.csv corners.csv --camera lens.csv --markers {spec} --out results"
+        );
+        assert!(held_out_px(&folder.done(&words)) < 0.3, "{spec}");
+    }
+}
+
+#[test]
+fn loose_tags_calibrate_an_arm_each_at_a_place_of_its_own() {
+    let folder = Folder::new();
+    let spec = "tags:36h11:25mm";
+    session_of(&folder, (spec, Board::chessboard("board", [10, 7], 0.025).unwrap()), 48, usize::MAX);
+    folder.done(&format!("detect pictures --board {spec} --out corners.csv"));
+    assert!(folder.read("corners.csv").contains("\n0.png,tag7.3,"));
+    let words = format!(
+        "calibrate robot.urdf joints.csv corners.csv --camera lens.csv --markers {spec} --out results"
+    );
+    assert!(held_out_px(&folder.done(&words)) < 0.5);
+}
+
+#[test]
+fn the_table_has_the_points_where_they_are() {
+    let camera =
+        Camera { size: [960, 600], focal_px: [800.0; 2], centre_px: [479.5, 299.5], distortion: [-0.1, 0.0] };
+    let draw =
+        Draw { camera, square_px: [38.0, 42.0], tilt_deg: [0.0, 40.0], covered_each: 0, ..Draw::default() };
+    for spec in
+        ["circles:9x6:30mm", "circles:4x7:20mm:asymmetric", "aprilgrid:4x3:40mm:0.3", "tags:36h11:50mm"]
+    {
+        let layout = Layout::new(&spec.parse().unwrap());
+        let drawn = draw.scene(&layout, 3, 2);
+        let folder = Folder::new();
+        fs::write(folder.path("one.png"), preview(&drawn.picture, &[]).unwrap()).unwrap();
+        folder.done(&format!("detect one.png --board {spec} --out corners.csv"));
+        let table = folder.read("corners.csv");
+        // Grids of dots that look the same turned may begin at their other end.
+        let last = drawn.truth.len() - 1;
+        let names: Vec<String> = layout.points().into_iter().map(|it| it.name).collect();
+        let off = |turn: bool| {
+            let rows = table.lines().skip(2).map(|row| row.split(',').collect::<Vec<_>>());
+            let offs = rows.map(|cells| {
+                let id = names.iter().position(|it| it == cells[1]).unwrap();
+                let truth = drawn.truth[if turn { last - id } else { id }].place_px;
+                let at = [cells[2], cells[3]].map(|it| it.parse::<f64>().unwrap());
+                (at[0] - truth.x).hypot(at[1] - truth.y)
+            });
+            offs.fold((0, 0.0_f64), |(count, most), it| (count + 1, most.max(it)))
+        };
+        let (count, most) =
+            if spec == "circles:9x6:30mm" && off(true).1 < off(false).1 { off(true) } else { off(false) };
+        println!("{spec}: {count} of {} points, at most {most:.3} px off", drawn.truth.len());
+        assert!(count * 10 >= 9 * drawn.truth.iter().filter(|it| it.visible).count() && most < 0.5, "{spec}");
+    }
+}
+
+#[test]
+fn both_programs_have_the_points_of_a_board_at_the_same_places() {
+    for spec in [
+        "chessboard:10x7:27mm",
+        "charuco:5x7:36mm:18mm:DICT_6X6_250",
+        "circles:9x6:30mm",
+        "circles:4x11:20mm:asymmetric",
+        "aprilgrid:6x5:88mm:0.3",
+    ] {
+        let points = Layout::new(&spec.parse().unwrap()).points();
+        let board = read_boards(spec).unwrap().remove(0);
+        assert_eq!(
+            points.iter().map(|it| &it.name).collect::<Vec<_>>(),
+            board.names.iter().collect::<Vec<_>>()
+        );
+        for (one, other) in points.iter().zip(&board.points) {
+            let off = (one.place_m[0] - other.x).hypot(one.place_m[1] - other.y);
+            assert!(off < 1e-12, "{spec}: {} is {off} m off", one.name);
+        }
+    }
+    // Of loose tags each is a board of its own.
+    let tag = read_boards("tags:36h11:50mm").unwrap().remove(0);
+    let points = Layout::new(&"tags:36h11:50mm".parse().unwrap()).points();
+    for (one, (name, other)) in points[48..52].iter().zip(tag.names.iter().zip(&tag.points)) {
+        assert_eq!(one.name, format!("tag12.{name}"));
+        assert!((one.place_m[0] - other.x).hypot(one.place_m[1] - other.y) < 1e-12);
+    }
+}
+
 #[test]
 fn a_board_that_moved_once_is_named() {
     let folder = Folder::new();
@@ -151,6 +270,15 @@ fn what_is_wrong_with_pictures_is_said_in_one_line_and_nothing_is_written() {
         ),
         ("detect pictures --board 7x5 --out c.csv", "expected chessboard:COLSxROWS:SQUARE"),
         ("detect pictures --board charuco:7x5:36:26mm:DICT_4X4_50 --out c.csv", "unit"),
+        (
+            "detect pictures --board circles:9x6:30mm --out c.csv",
+            "of the other kind, or with one dot more or fewer each way: check the board",
+        ),
+        ("detect pictures --board tags:36h11:30mm --out c.csv", "take --board tags:DICT_4X4_50:30mm"),
+        (
+            "detect pictures --board aprilgrid:6x6:88mm --out c.csv",
+            "expected aprilgrid:COLSxROWS:SIZE:SPACING",
+        ),
     ] {
         let run = folder.run(&words.replace("BOARD", SPEC));
         println!("{}", run.err);

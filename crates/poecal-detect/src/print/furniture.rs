@@ -2,8 +2,9 @@
 
 use super::decimal;
 use super::helvetica::{CAPITALS, width};
-use super::sheet::{Rectangle, Words};
-use super::words::{described, opencv};
+use super::sheet::{Rectangle, Words, placed};
+use super::words::{described, elsewhere, spans};
+use crate::layout::{Layout, Pattern};
 use crate::spec::Spec;
 
 /// What printers leave white at the edge of the page, millimetres.
@@ -22,6 +23,8 @@ const SIZES_MM: [f64; 7] = [3.2, 2.9, 2.6, 2.3, 2.1, 1.9, 1.7];
 const LINE: f64 = 1.25;
 /// The smallest type in which sentences have lines of their own, before they share them.
 const ALONE_MM: f64 = 2.3;
+/// Size of the names of tags, millimetres.
+const LABEL_MM: f64 = 2.6;
 /// What is between words on one line.
 const BETWEEN: &str = "   |   ";
 
@@ -79,14 +82,11 @@ pub(super) fn rulers(size_mm: [f64; 2], board: &Rectangle, square_mm: f64) -> (V
 
 /// What the board is, above it: as many of the sentences as there is room for, in type as large as fits.
 pub(super) fn texts(spec: &Spec, size_mm: [f64; 2], board: &Rectangle, square_mm: f64) -> Vec<Words> {
-    let [across, along] = [0, 1].map(|axis| decimal(board.to_mm[axis] - board.from_mm[axis], 2));
     let sentences = [
         described(spec),
         format!("poecal: --markers {spec}"),
-        format!(
-            "Print at 100 % (actual size). All squares together measure {across} mm by {along} mm; check the rulers."
-        ),
-        opencv(spec),
+        format!("Print at 100 % (actual size). {}; check the rulers.", spans(spec)),
+        elsewhere(spec),
     ];
     let margin = board.from_mm[1];
     let wide = size_mm[0] - 2.0 * EDGE_MM;
@@ -102,6 +102,20 @@ pub(super) fn texts(spec: &Spec, size_mm: [f64; 2], board: &Rectangle, square_mm
     let top = margin - gap(margin, deep, square_mm) - deep;
     let base = |at: usize| top + (at as f64 * LINE + 1.0) * size;
     lines.into_iter().enumerate().map(|(at, line)| line_of(line, [left, base(at)], size, false)).collect()
+}
+
+/// The names of loose tags, below each.
+pub(super) fn labels(layout: &Layout, origin_mm: [f64; 2]) -> Vec<Words> {
+    let tags = match &layout.pattern {
+        Pattern::Tags(tags) if !tags.kalibr => tags,
+        Pattern::Tags(_) | Pattern::Squares | Pattern::Dots { .. } => return Vec::new(),
+    };
+    let label = |id: usize| {
+        let [x, y] = placed(layout, origin_mm, layout.corner(4 * id + 3).into());
+        let middle = y + 0.5 * (tags.gap * layout.square_m * 1e3 + LABEL_MM * CAPITALS);
+        line_of(format!("tag{id}"), [x, middle], LABEL_MM, false)
+    };
+    (0..tags.columns * tags.rows).map(label).collect()
 }
 
 /// Sentences in lines of a width, together as high as there is room for, and the size of their type: each on its own, else side by side,

@@ -3,13 +3,14 @@
 use std::str::FromStr;
 
 use super::decimal;
+use super::words::ends;
 use crate::error::{Error, Result};
 use crate::spec::{Spec, length};
 
-/// How long the squares of a print are together, along x and along y: `180.0mm,251.3mm`.
+/// What a ruler shows on a print along x and along y, between the places that [`Spec::ruled_m`] names: `180.0mm,251.3mm`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Measured {
-    /// Between the outer edges along x and y, metres.
+    /// Along x and y, metres.
     pub sides_m: [f64; 2],
 }
 
@@ -47,14 +48,15 @@ impl Measured {
     /// # Errors
     /// If a side is not about as long as it was meant to be.
     pub fn correct(&self, spec: &Spec) -> Result<Corrected> {
-        let stated = spec.squares().map(|it| it as f64 * spec.square_m());
+        let stated = spec.ruled_m();
         let mut factors = [1.0; 2];
         for (axis, name) in ["x", "y"].into_iter().enumerate() {
             let factor = self.sides_m[axis] / stated[axis];
             if !(1.0 / MOST..=MOST).contains(&factor) {
                 let [found, expected] = [self.sides_m, stated].map(|it| decimal(it[axis] * 1e3, 2));
                 return Err(Error::new(format!(
-                    "found {found} mm along {name}, expected about {expected} mm, from the outer edge of the first square to that of the last one"
+                    "found {found} mm along {name}, expected about {expected} mm, {}",
+                    ends(spec)
                 )));
             }
             factors[axis] = factor;
@@ -71,7 +73,7 @@ impl FromStr for Measured {
     fn from_str(text: &str) -> Result<Self> {
         let wrong = || {
             Error::new(format!(
-                "found {text:?}, expected the lengths of all squares along x and along y with their units, such as 180.0mm,251.3mm"
+                "found {text:?}, expected the lengths of the print along x and along y with their units, such as 180.0mm,251.3mm"
             ))
         };
         let (x, y) = text.split_once(',').ok_or_else(wrong)?;

@@ -1,8 +1,9 @@
-//! A board on paper, to scale: a page as rectangles and words, written as SVG or PDF, and what a ruler says of the print.
+//! A board on paper, to scale: a page as rectangles, discs and words, written as SVG or PDF, and what a ruler says of the print.
 //!
 //! A [`Sheet`] is drawn from the [`Layout`](crate::Layout) that the detector finds, so that both agree on which square is dark and where each
-//! marker is.
+//! marker or dot is.
 
+mod black;
 mod draw;
 mod furniture;
 mod helvetica;
@@ -15,7 +16,7 @@ mod words;
 
 pub use measured::{Corrected, Measured};
 pub use page::Page;
-pub use sheet::{Rectangle, Sheet, Words};
+pub use sheet::{Disc, Rectangle, Sheet, Words};
 pub use words::described;
 
 /// A number with at most so many decimals, without zeros behind them.

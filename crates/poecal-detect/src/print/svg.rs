@@ -8,7 +8,7 @@ use super::sheet::Sheet;
 /// Decimals of millimetres.
 const DIGITS: usize = 4;
 
-/// The page in millimetres. What is black is one path, so that nothing shines through between rectangles that touch.
+/// The page in millimetres. What is black is one path, so that nothing shines through between parts that touch.
 pub(super) fn written(sheet: &Sheet) -> String {
     let mm = |value: f64| decimal(value, DIGITS);
     let [width, height] = sheet.size_mm.map(mm);
@@ -21,6 +21,13 @@ pub(super) fn written(sheet: &Sheet) -> String {
     for it in &sheet.rectangles {
         let ([left, upper], [right, lower]) = (it.from_mm.map(mm), it.to_mm.map(mm));
         let _ = writeln!(out, "M{left} {upper}H{right}V{lower}H{left}Z");
+    }
+    for it in &sheet.discs {
+        let [x, y] = it.middle_mm;
+        let (left, y, radius, across) =
+            (mm(x - it.radius_mm), mm(y), mm(it.radius_mm), mm(2.0 * it.radius_mm));
+        let half = |way: &str| format!("a{radius} {radius} 0 0 1 {way}{across} 0");
+        let _ = writeln!(out, "M{left} {y}{}{}Z", half(""), half("-"));
     }
     out += "\"/>\n<g fill=\"#000\" font-family=\"Helvetica, Arial, 'Liberation Sans', sans-serif\">\n";
     for words in &sheet.words {

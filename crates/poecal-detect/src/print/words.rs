@@ -1,7 +1,7 @@
 //! A board in words.
 
 use super::decimal;
-use crate::spec::{Charuco, Chessboard, Spec};
+use crate::spec::{AprilGrid, Charuco, Chessboard, Circles, Spec, Tags};
 
 /// What a board is, in words: `ChArUco board, 5 columns by 7 rows of 36 mm squares, …`.
 #[must_use]
@@ -18,11 +18,23 @@ pub fn described(spec: &Spec) -> String {
                 "ChArUco board, {columns} columns by {rows} rows of {square} mm squares, {marker} mm markers of {name}{pattern}"
             )
         }
+        Spec::Circles(Circles { columns, rows, pitch_m, asymmetric }) => {
+            let (pitch, kind) =
+                (mm(*pitch_m), if *asymmetric { "Asymmetric circle grid" } else { "Circle grid" });
+            format!("{kind}, {columns} columns by {rows} rows of dots, {pitch} mm from row to row")
+        }
+        Spec::Tags(Tags { dictionary, size_m }) => {
+            format!("Tags of {}, {} mm from edge to edge of the black border", dictionary.name(), mm(*size_m))
+        }
+        Spec::AprilGrid(AprilGrid { columns, rows, size_m, spacing, dictionary }) => {
+            let (size, gap, name) = (mm(*size_m), mm(size_m * spacing), dictionary.name());
+            format!("AprilGrid, {columns} columns by {rows} rows of {size} mm tags of {name}, {gap} mm apart")
+        }
     }
 }
 
-/// How OpenCV names the board: in functions that number its corners as here.
-pub(super) fn opencv(spec: &Spec) -> String {
+/// How other programs name the board: OpenCV in functions that number its points as here, Kalibr in its file of a target.
+pub(super) fn elsewhere(spec: &Spec) -> String {
     let mm = |length_m: f64| decimal(length_m * 1e3, 3);
     match spec {
         Spec::Chessboard(Chessboard { columns, rows, .. }) => {
@@ -35,5 +47,59 @@ pub(super) fn opencv(spec: &Spec) -> String {
                 "OpenCV: CharucoBoard(({columns}, {rows}), {square}, {marker}, getPredefinedDictionary({name})){then}"
             )
         }
+        Spec::Circles(Circles { columns, rows, asymmetric, .. }) => {
+            let kind = if *asymmetric { "ASYMMETRIC" } else { "SYMMETRIC" };
+            format!("OpenCV: findCirclesGrid(picture, ({columns}, {rows}), flags=CALIB_CB_{kind}_GRID)")
+        }
+        Spec::Tags(Tags { dictionary, .. }) => {
+            format!(
+                "OpenCV: ArucoDetector(getPredefinedDictionary({})).detectMarkers(picture)",
+                dictionary.name()
+            )
+        }
+        Spec::AprilGrid(AprilGrid { columns, rows, size_m, spacing, .. }) => {
+            let size = decimal(*size_m, 6);
+            format!(
+                "Kalibr: target_type: aprilgrid, tagCols: {columns}, tagRows: {rows}, tagSize: {size}, tagSpacing: {spacing}"
+            )
+        }
+    }
+}
+
+/// What a ruler has to show between which places of the print, along x and along y.
+pub(super) fn spans(spec: &Spec) -> String {
+    let [across, along] = spec.ruled_m().map(|it| decimal(it * 1e3, 2));
+    match spec {
+        Spec::Chessboard(_) | Spec::Charuco(_) => {
+            format!("All squares together measure {across} mm by {along} mm")
+        }
+        Spec::Circles(_) => format!("From the first to the last dot it is {across} mm by {along} mm"),
+        Spec::Tags(_) => format!("Each tag measures {across} mm by {along} mm"),
+        Spec::AprilGrid(_) => format!("All tags together measure {across} mm by {along} mm"),
+    }
+}
+
+/// The same places, as a refusal names them.
+pub(super) fn ends(spec: &Spec) -> &'static str {
+    match spec {
+        Spec::Chessboard(_) | Spec::Charuco(_) => {
+            "from the outer edge of the first square to that of the last one"
+        }
+        Spec::Circles(_) => {
+            "from the left edge of the leftmost dot to that of the rightmost one, and likewise downwards"
+        }
+        Spec::Tags(_) => "from edge to edge of the black border of one tag",
+        Spec::AprilGrid(_) => {
+            "from the outer edge of the first tag to that of the last one, without the small squares"
+        }
+    }
+}
+
+/// What a length in the spec is the side of, or the distance between.
+pub(super) fn unit(spec: &Spec) -> &'static str {
+    match spec {
+        Spec::Chessboard(_) | Spec::Charuco(_) => "squares",
+        Spec::Circles(_) => "a pitch",
+        Spec::Tags(_) | Spec::AprilGrid(_) => "tags",
     }
 }

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector2;
 
-use crate::layout::Layout;
+use crate::layout::{Layout, Pattern, Tagged};
 
 /// What is not the board.
 pub(super) const BEHIND: i8 = 0;
@@ -23,6 +23,9 @@ pub(super) struct Shades {
     cells: usize,
     /// The cells of the markers of all squares: whether they are dark.
     dark: Vec<Option<Vec<bool>>>,
+    /// Radius of dots, squares, and whether they are on every second corner.
+    dots: Option<(f64, bool)>,
+    tags: Option<Tagged>,
 }
 
 impl Shades {
@@ -34,6 +37,14 @@ impl Shades {
             marker: 0.0,
             cells: 1,
             dark: vec![None; columns * rows],
+            dots: match layout.pattern {
+                Pattern::Squares | Pattern::Tags(_) => None,
+                Pattern::Dots { asymmetric, diameter } => Some((0.5 * diameter, asymmetric)),
+            },
+            tags: match &layout.pattern {
+                Pattern::Tags(tags) => Some(tags.clone()),
+                Pattern::Squares | Pattern::Dots { .. } => None,
+            },
         };
         let Some((dictionary, side)) = &layout.markers else { return shades };
         (shades.marker, shades.cells) = (*side, dictionary.bits() + 2);
@@ -57,6 +68,12 @@ impl Shades {
         if outside >= 0.0 {
             return if outside < PAPER { LIGHT } else { BEHIND };
         }
+        if let Some((radius, asymmetric)) = self.dots {
+            return if self.is_dot(place, radius, asymmetric) { DARK } else { LIGHT };
+        }
+        if let Some(tags) = &self.tags {
+            return if is_tag(tags, place - Vector2::new(1.0, 1.0)) { DARK } else { LIGHT };
+        }
         let (column, row) = (place.x as usize, place.y as usize);
         if ((column + row) % 2 == 0) == self.first_dark {
             return DARK;
@@ -69,4 +86,41 @@ impl Shades {
         }
         if cells[y as usize * self.cells + x as usize] { DARK } else { LIGHT }
     }
+
+    /// Whether a place is within a dot.
+    fn is_dot(&self, place: Vector2<f64>, radius: f64, asymmetric: bool) -> bool {
+        let [columns, rows] = self.squares.map(|it| it as f64 - 1.0);
+        [place.y.floor(), place.y.ceil()].into_iter().filter(|row| (1.0..=rows).contains(row)).any(|row| {
+            // Before the first dot of the row, and from dot to dot.
+            let (first, step) = if asymmetric { (1.0 + (row - 1.0) % 2.0, 2.0) } else { (1.0, 1.0) };
+            let last = first + columns - step;
+            let column = (first + ((place.x - first) / step).round() * step).clamp(first, last);
+            (place - Vector2::new(column, row)).norm() < radius
+        })
+    }
+}
+
+/// Whether a place is dark, in sides of a tag from the upper left one.
+fn is_tag(tags: &Tagged, place: Vector2<f64>) -> bool {
+    let pitch = 1.0 + tags.gap;
+    let at = |value: f64, count: usize| {
+        // Number of the tag, and place on it or in the gap after it.
+        let number = (value / pitch).floor().clamp(-1.0, count as f64);
+        (number, value - number * pitch)
+    };
+    let ((column, x), (row, y)) = (at(place.x, tags.columns), at(place.y, tags.rows));
+    let inside = |number: f64, count: usize| number >= 0.0 && number < count as f64;
+    if x >= 1.0 && y >= 1.0 {
+        // Between four tags, and outside of the last ones.
+        let near = |number: f64, own: f64, count: usize| number < count as f64 && own < pitch;
+        return tags.kalibr && near(column, x, tags.columns) && near(row, y, tags.rows);
+    }
+    if x >= 1.0 || y >= 1.0 || !inside(column, tags.columns) || !inside(row, tags.rows) {
+        return false;
+    }
+    let row = if tags.kalibr { tags.rows - 1 - row as usize } else { row as usize };
+    let id = row * tags.columns + column as usize;
+    let cells = tags.cells();
+    let cell = |value: f64| ((value * cells as f64) as usize).min(cells - 1);
+    tags.is_black(id, cell(x), cell(y))
 }

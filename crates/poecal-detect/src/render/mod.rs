@@ -65,14 +65,14 @@ impl Patch {
     }
 }
 
-/// Where a corner is in truth.
+/// Where a corner, or the middle of a dot, is in truth.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct True {
     /// Its id.
     pub id: usize,
     /// Its place, pixels.
     pub place_px: Vector2<f64>,
-    /// Whether it is in the picture and not covered, with [`SEEN_PX`] around it.
+    /// Whether it, and all of a dot, is in the picture and not covered, with [`SEEN_PX`] around it.
     pub visible: bool,
 }
 
@@ -82,18 +82,25 @@ pub const SEEN_PX: f64 = 5.0;
 const SAMPLES: usize = 8;
 
 impl Scene {
-    /// Where the inner corners are in the picture.
+    /// Where the inner corners or the dots are in the picture.
     #[must_use]
     pub fn truth(&self, layout: &Layout) -> Vec<True> {
-        let [width, height] = self.camera.size.map(|it| it as f64 - 1.0 - SEEN_PX);
+        let [width, height] = self.camera.size.map(|it| it as f64 - 1.0);
+        let dot_m = layout.dot_radius() * layout.square_m;
         (0..layout.corners())
             .filter_map(|id| {
                 let at = (layout.corner(id) - Vector2::new(1.0, 1.0)) * layout.square_m;
                 let point = self.rotation * Vector3::new(at.x, at.y, 0.0) + self.translation_m;
                 let place_px = self.camera.project(&point)?;
-                let covered = self.patch.is_some_and(|it| it.covers(place_px, SEEN_PX));
+                // Of a dot all has to be seen.
+                let beside = [[1.0, 0.0], [0.0, 1.0]]
+                    .map(|it| self.rotation * Vector3::new(it[0], it[1], 0.0) * dot_m);
+                let reach_px =
+                    beside.map(|it| self.camera.project(&(point + it)).map(|it| (it - place_px).norm()));
+                let seen_px = SEEN_PX + reach_px.into_iter().flatten().fold(0.0, f64::max);
+                let covered = self.patch.is_some_and(|it| it.covers(place_px, seen_px));
                 let (x, y) = (place_px.x, place_px.y);
-                let inside = x >= SEEN_PX && y >= SEEN_PX && x <= width && y <= height;
+                let inside = x >= seen_px && y >= seen_px && x + seen_px <= width && y + seen_px <= height;
                 Some(True { id, place_px, visible: inside && !covered })
             })
             .collect()

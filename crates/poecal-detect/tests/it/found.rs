@@ -8,17 +8,17 @@ use crate::trials::trials;
 
 /// What was found in some pictures.
 #[derive(Default)]
-struct Tally {
+pub(crate) struct Tally {
     visible: usize,
     found: usize,
     squares: f64,
     corners: usize,
     within: usize,
-    farthest: f64,
+    pub(crate) farthest: f64,
 }
 
 impl Tally {
-    fn of(spec: &str, draw: &Draw, pictures: usize) -> Self {
+    pub(crate) fn of(spec: &str, draw: &Draw, pictures: usize) -> Self {
         let detector = Detector::new(&spec.parse().unwrap());
         let mut tally = Tally::default();
         for number in 0..pictures {
@@ -59,15 +59,15 @@ impl Tally {
         }
     }
 
-    fn rms_px(&self) -> f64 {
+    pub(crate) fn rms_px(&self) -> f64 {
         (self.squares / self.corners as f64).sqrt()
     }
 
-    fn part(&self) -> f64 {
+    pub(crate) fn part(&self) -> f64 {
         self.found as f64 / self.visible as f64
     }
 
-    fn within(&self) -> f64 {
+    pub(crate) fn within(&self) -> f64 {
         self.within as f64 / (2 * self.corners) as f64
     }
 }

@@ -2,11 +2,13 @@
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, clippy::panic)]
 
+mod dots;
 mod files;
 mod found;
 mod print;
 mod real;
 mod rejected;
+mod tags;
 // Each crate uses what it needs of it.
 #[allow(dead_code)]
 #[path = "../../../poecal/tests/trials/mod.rs"]

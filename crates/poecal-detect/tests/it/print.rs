@@ -3,7 +3,7 @@
 use poecal_detect::print::{Page, Rectangle, Sheet, Words};
 use poecal_detect::{Detector, Gray, Layout, Spec};
 
-const BOARDS: [&str; 10] = [
+const BOARDS: [&str; 17] = [
     "charuco:5x7:36mm:18mm:DICT_6X6_250",
     "charuco:5x7:36mm:18mm:DICT_6X6_250:legacy",
     "charuco:7x5:36mm:27mm:DICT_4X4_50",
@@ -14,6 +14,13 @@ const BOARDS: [&str; 10] = [
     "chessboard:10x7:27mm",
     "chessboard:7x10:25mm",
     "chessboard:6x9:30mm",
+    "circles:9x6:24mm",
+    "circles:5x9:27mm",
+    "circles:4x11:20mm:asymmetric",
+    "tags:36h11:50mm",
+    "tags:DICT_4X4_50:24mm",
+    "aprilgrid:6x6:23mm:0.3",
+    "aprilgrid:4x7:25mm:0.25:25h9",
 ];
 
 fn sheet(spec: &str, page: &str) -> Sheet {
@@ -51,6 +58,20 @@ fn picture(sheet: &Sheet, px_per_mm: f64) -> Gray {
             }
         }
     }
+    for disc in &sheet.discs {
+        // Where the disc is dark, in pixels of 8 × 8 parts.
+        let [x, y] = disc.middle_mm.map(|it| it * px_per_mm);
+        let radius = disc.radius_mm * px_per_mm;
+        for row in (y - radius) as usize..=(y + radius) as usize {
+            for column in (x - radius) as usize..=(x + radius) as usize {
+                let part = |at: usize| (at as f64 + 0.5) / 8.0;
+                let is_in = |at: usize| {
+                    (column as f64 + part(at % 8) - x).hypot(row as f64 + part(at / 8) - y) < radius
+                };
+                levels[row * width + column] -= 205.0 / 64.0 * (0..64).filter(|at| is_in(*at)).count() as f32;
+            }
+        }
+    }
     Gray::new(width, height, levels).unwrap().blurred(0.7, 4.0)
 }
 
@@ -62,18 +83,23 @@ fn the_detector_finds_every_corner_of_what_is_drawn() {
         let layout = Layout::new(&spec);
         let sheet = sheet(text, "a4");
         let found = Detector::new(&spec).detect(&picture(&sheet, PX_PER_MM)).unwrap();
-        assert_eq!((found.corners.len(), found.markers), (layout.corners(), layout.marker_count()), "{text}");
+        // Of loose tags there are as many as the page has room for.
+        let markers = if matches!(spec, Spec::Tags(_)) { sheet.points() / 4 } else { layout.marker_count() };
+        assert_eq!((found.corners.len(), found.markers), (sheet.points(), markers), "{text}");
         let mut farthest = 0.0_f64;
         for corner in &found.corners {
-            let place = layout.corner(corner.id) * spec.square_m() * 1e3;
+            let place = sheet.place_mm(corner.id);
             for (axis, pixel) in [corner.u_px, corner.v_px].into_iter().enumerate() {
                 // The centre of the first pixel is zero.
-                let drawn = (sheet.board.from_mm[axis] + place[axis]) * PX_PER_MM - 0.5;
+                let drawn = place[axis] * PX_PER_MM - 0.5;
                 farthest = farthest.max((pixel - drawn).abs());
             }
         }
         println!("{text}: at most {farthest:.3} px");
-        assert!(farthest < 0.1 && !found.turnable, "{text}: {farthest} px");
+        // Lattices of dots look the same turned, but the page is upright.
+        let turns = text.starts_with("circles") && !text.ends_with("4x11:20mm:asymmetric");
+        let limit = if matches!(spec, Spec::Chessboard(_) | Spec::Charuco(_)) { 0.1 } else { 0.05 };
+        assert!(farthest < limit && found.turnable == turns, "{text}: {farthest} px");
     }
 }
 
@@ -94,7 +120,12 @@ fn apart(one: &Rectangle, other: &Rectangle) -> bool {
 #[test]
 fn rulers_and_words_stand_between_board_and_edge() {
     let pages = ["a4", "a3", "letter", "290x290mm", "3000x2000mm"];
-    let tight = [("chessboard:10x7:27.1mm", "a4"), ("charuco:3x3:10mm:7mm:DICT_4X4_50", "60x60mm")];
+    let tight = [
+        ("chessboard:10x7:27.1mm", "a4"),
+        ("charuco:3x3:10mm:7mm:DICT_4X4_50", "60x60mm"),
+        ("tags:36h11:20mm", "60x60mm"),
+        ("tags:36h11:190mm", "a4"),
+    ];
     let all = BOARDS.iter().flat_map(|spec| pages.map(|page| (*spec, page))).chain(tight);
     let mut drawn = 0;
     for (spec, page) in all {
@@ -110,18 +141,27 @@ fn rulers_and_words_stand_between_board_and_edge() {
         };
         let lines = sheet.rectangles.iter().copied().filter(|it| !inside(it));
         let bars: Vec<Rectangle> = sheet.words.iter().map(bar).collect();
+        let (names, bars): (Vec<Rectangle>, Vec<Rectangle>) = bars.into_iter().partition(inside);
+        // Names of loose tags stand between them.
+        assert!(names.is_empty() || spec.starts_with("tags"), "{spec} on {page}: words on the board");
+        assert!(
+            names.iter().all(|name| sheet.rectangles.iter().all(|it| apart(name, it))),
+            "{spec} on {page}"
+        );
         for it in lines.chain(bars.iter().copied()) {
             assert!(apart(&it, &board), "{spec} on {page}: {it:?} is on the board");
             let within =
                 (0..2).all(|axis| it.from_mm[axis] >= 3.5 && it.to_mm[axis] <= sheet.size_mm[axis] - 4.5);
             assert!(within, "{spec} on {page}: {it:?} is at the edge");
         }
+        let bars: Vec<Rectangle> = bars.into_iter().chain(names).collect();
         for (at, one) in bars.iter().enumerate() {
             assert!(bars[..at].iter().all(|other| apart(one, other)), "{spec} on {page}: words overlap");
         }
         let text: String = sheet.words.iter().map(|it| format!("{} ", it.text)).collect();
         assert!(text.is_ascii());
-        assert!(text.contains(&format!("--markers {spec}")), "{spec} on {page}: {text}");
+        let stated: Spec = spec.parse().unwrap();
+        assert!(text.contains(&format!("--markers {stated}")), "{spec} on {page}: {text}");
         assert!(text.contains("100 mm") || page == "60x60mm", "{spec} on {page}");
     }
     assert!(drawn > 30, "{drawn}");
@@ -205,6 +245,50 @@ fn object(pdf: &str, number: usize) -> &str {
     let object = &pdf[place..];
     assert!(object.starts_with(&format!("{number} 0 obj\n")), "object {number} is not at {place}");
     &object[..object.find("endobj").unwrap()]
+}
+
+#[test]
+fn dots_are_discs_in_both_files() {
+    let sheet = sheet("circles:9x6:24mm", "a4");
+    assert_eq!((sheet.discs.len(), sheet.points()), (54, 54));
+    let first = sheet.discs[0];
+    // A pitch from the edge of the board, and half of it wide.
+    assert!((first.middle_mm[0] - sheet.board.from_mm[0] - 24.0).abs() < 1e-9 && first.radius_mm == 6.0);
+    assert_eq!(sheet.place_mm(0), first.middle_mm);
+    let svg = sheet.svg();
+    let arcs: Vec<&str> =
+        svg.lines().filter(|line| line.contains("a6 6 0 0 1 12 0a6 6 0 0 1 -12 0Z")).collect();
+    assert!(arcs.len() == 54 && arcs[0].starts_with(&format!("M{} ", first.middle_mm[0] - 6.0)), "{arcs:?}");
+    let pdf = sheet.pdf();
+    let curves: Vec<Vec<f64>> = pdf
+        .lines()
+        .filter_map(|line| line.strip_suffix(" c"))
+        .map(|line| line.split(' ').map(|it| it.parse().unwrap()).collect())
+        .collect();
+    assert_eq!(curves.len(), 4 * 54);
+    // Halfway along the first quarter, which begins to the right of the middle.
+    let [x, y] = first.middle_mm;
+    let half = [(x + 6.0, 0), (y, 1)].map(|(begin, axis)| {
+        (begin + 3.0 * curves[0][axis] + 3.0 * curves[0][2 + axis] + curves[0][4 + axis]) / 8.0
+    });
+    assert!(((half[0] - x).hypot(half[1] - y) - 6.0).abs() < 0.002, "{half:?}");
+}
+
+#[test]
+fn a_page_of_tags_has_as_many_as_fit() {
+    let a4 = sheet("tags:36h11:50mm", "a4");
+    let names: Vec<&str> =
+        a4.words.iter().map(|it| it.text.as_str()).filter(|it| it.starts_with("tag")).collect();
+    // Pitches of 70 mm: two and a tag beside each other, three below.
+    assert_eq!((a4.points(), names.len(), names[0], names[8]), (4 * 9, 9, "tag0", "tag8"));
+    // No more than there are.
+    assert_eq!(sheet("tags:16h5:20mm", "3000x2000mm").points(), 4 * 30);
+    let refused = Sheet::new(&"tags:36h11:250mm".parse().unwrap(), &"a4".parse().unwrap()).unwrap_err();
+    assert!(
+        refused.to_string().contains("at least 270 x 370 mm")
+            && refused.to_string().ends_with("tags of at most 190 mm"),
+        "{refused}"
+    );
 }
 
 #[test]

@@ -81,6 +81,43 @@ fn the_charuco_board_before_a_fixed_camera() {
 
 #[test]
 #[ignore = "needs the data sets: set POECAL_DATASETS"]
+fn the_dots_before_a_camera_on_an_arm() {
+    let Some(folder) = folder() else { return };
+    let folder = folder.join("handeye_images/circlegrid_eye_in_hand");
+    let known = known(&folder.join("corners.csv"), ["image", "corner_id", "u_px", "v_px"]);
+    let detector = Detector::new(&"circles:10x10:25.4mm".parse().unwrap());
+    let (mut both, mut squares, mut near) = (0, 0.0, 0);
+    for (name, own) in &known {
+        let gray = Picture::open(&folder.join("images").join(name)).unwrap().gray;
+        let Ok(found) = detector.detect(&gray) else { continue };
+        // A square grid looks the same at each quarter turn; the known rows count upwards.
+        let turned = |id: usize, turns: usize| {
+            let (x, y) = (0..turns).fold((9 - id % 10, id / 10), |(x, y), _| (y, 9 - x));
+            own.iter().find(|it| it.0 == y * 10 + x)
+        };
+        let offs = |turns: usize| -> Vec<f64> {
+            let off = |it: &poecal_detect::Corner| {
+                let (_, u, v) = turned(it.id, turns)?;
+                Some((u - it.u_px).hypot(v - it.v_px))
+            };
+            found.corners.iter().filter_map(off).collect()
+        };
+        let sum = |turns: &usize| offs(*turns).iter().sum::<f64>();
+        let best = (0..4).min_by(|a, b| sum(a).total_cmp(&sum(b))).unwrap();
+        let offs = offs(best);
+        both += offs.len();
+        squares += offs.iter().filter(|it| **it < 1.0).map(|it| it * it).sum::<f64>();
+        near += offs.iter().filter(|it| **it < 1.0).count();
+    }
+    let rms_px = (squares / near as f64).sqrt();
+    println!("{both} of 1300 known dots, {near} of them near, RMS {rms_px:.3} px");
+    // The first dot is twice as large as the others, and left out. The known ones are middles of ellipses: 0.08 px was seen, up to 0.15 px in
+    // pictures with glossy dots.
+    assert!(both >= 1235 && near + 5 >= both && rms_px < 0.15);
+}
+
+#[test]
+#[ignore = "needs the data sets: set POECAL_DATASETS"]
 fn the_chessboards_before_two_arms() {
     let Some(folder) = folder() else { return };
     let detector = Detector::new(&"chessboard:10x7:27mm".parse().unwrap());

@@ -7,6 +7,10 @@ use crate::trials::trials;
 
 const CHARUCO: &str = "charuco:7x5:36.195mm:18.256mm:DICT_6X6_250";
 const CHESSBOARD: &str = "chessboard:10x7:28mm";
+const CIRCLES: &str = "circles:9x6:30mm";
+const TAGS: &str = "tags:36h11:50mm";
+const APRILGRID: &str = "aprilgrid:6x6:88mm:0.3";
+const ASYMMETRIC: &str = "circles:4x11:20mm:asymmetric";
 
 fn detector(spec: &str) -> Detector {
     Detector::new(&spec.parse().unwrap())
@@ -18,8 +22,8 @@ fn drawn(spec: &str, draw: &Draw, number: usize) -> Gray {
 
 #[test]
 fn no_corner_where_there_is_no_board() {
-    let detectors = [detector(CHARUCO), detector(CHESSBOARD)];
-    let pictures = trials(100).count as u64;
+    let detectors = [CHARUCO, CHESSBOARD, CIRCLES, ASYMMETRIC, TAGS, APRILGRID].map(detector);
+    let pictures = trials(40).count as u64;
     for number in 0..pictures {
         let mut random = Random::new(40_000 + number);
         let background = clutter([1280, 800], &mut random);
@@ -34,7 +38,7 @@ fn no_corner_where_there_is_no_board() {
 
 #[test]
 fn no_corner_on_another_board() {
-    let detectors = [detector(CHARUCO), detector(CHESSBOARD)];
+    let detectors = [CHARUCO, CHESSBOARD, CIRCLES, ASYMMETRIC, TAGS, APRILGRID].map(detector);
     let others = [
         "charuco:7x5:36mm:18mm:DICT_5X5_250",
         "charuco:11x8:24mm:18mm:DICT_6X6_250",
@@ -43,6 +47,9 @@ fn no_corner_on_another_board() {
         "chessboard:12x9:24mm",
         "chessboard:9x7:28mm",
         "charuco:10x7:28mm:20mm:DICT_4X4_250",
+        "circles:10x7:30mm",
+        "circles:8x6:30mm",
+        "circles:5x11:20mm:asymmetric",
     ];
     for (number, other) in others.into_iter().enumerate() {
         let picture = drawn(other, &Draw::default(), number);
@@ -62,6 +69,14 @@ fn what_the_board_may_be_is_suggested() {
         ("charuco:7x5:36mm:18mm:DICT_4X4_100", "charuco:7x5:36mm:18mm:DICT_6X6_50"),
         ("charuco:6x8:30mm:22mm:DICT_4X4_50", "charuco:8x6:30mm:22mm:DICT_5X5_50:legacy"),
         ("chessboard:9x6:28mm", "chessboard:10x7:28mm"),
+        ("circles:11x4:20mm:asymmetric", "circles:4x11:20mm:asymmetric"),
+        ("circles:4x11:20mm", "circles:4x11:20mm:asymmetric"),
+        ("circles:9x6:30mm:asymmetric", "circles:9x6:30mm"),
+        ("circles:10x7:30mm", "circles:9x6:30mm"),
+        ("tags:25h9:50mm", "tags:DICT_APRILTAG_36h11:50mm"),
+        ("tags:36h11:50mm", "tags:DICT_5X5_50:50mm"),
+        ("aprilgrid:5x4:88mm:0.3", "aprilgrid:4x5:88mm:0.3:DICT_APRILTAG_36h11"),
+        ("aprilgrid:5x4:88mm:0.3", "aprilgrid:5x4:88mm:0.3:DICT_APRILTAG_25h9"),
     ] {
         let pictures: Vec<Gray> = (0..3).map(|number| drawn(shown, &draw, number)).collect();
         let detector = detector(stated);
@@ -105,7 +120,7 @@ fn the_reason_is_told() {
 
 #[test]
 fn any_picture_is_borne() {
-    let detectors = [detector(CHARUCO), detector(CHESSBOARD)];
+    let detectors = [CHARUCO, CHESSBOARD, CIRCLES, ASYMMETRIC, TAGS, APRILGRID].map(detector);
     let mut random = Random::new(1);
     for (width, height) in [(1, 1), (1, 40), (40, 1), (2, 3), (5, 5), (7, 30), (13, 13), (64, 64), (300, 200)]
     {

@@ -3,7 +3,6 @@
 use nalgebra::{Matrix3, Vector3};
 use serde::{Deserialize, Serialize};
 
-use crate::error::{Error, ErrorKind, Result};
 use crate::lie::{Pose, rotation};
 use crate::linalg;
 
@@ -19,28 +18,6 @@ pub struct Board {
 }
 
 impl Board {
-    /// A chessboard of so many squares along x and y: its inner corners `corner0`, `corner1`, … along x first, in metres from the first one.
-    ///
-    /// # Errors
-    /// [`ErrorKind::Option`] if it has fewer than two corners along a side, or its squares have no size.
-    pub fn chessboard(name: &str, [columns, rows]: [usize; 2], square_m: f64) -> Result<Self> {
-        if columns < 3 || rows < 3 || columns > MOST_SQUARES || rows > MOST_SQUARES {
-            let message = format!(
-                "found a board of {columns} × {rows} squares, expected 3 to {MOST_SQUARES} along each side"
-            );
-            return Err(Error::new(ErrorKind::Option, message));
-        }
-        if !(square_m > 0.0 && square_m.is_finite()) {
-            let message = format!("found squares of {square_m:?} m, expected a length above 0");
-            return Err(Error::new(ErrorKind::Option, message));
-        }
-        let places = (0..rows - 1).flat_map(|row| (0..columns - 1).map(move |column| (column, row)));
-        let points: Vec<Vector3<f64>> =
-            places.map(|(x, y)| Vector3::new(x as f64 * square_m, y as f64 * square_m, 0.0)).collect();
-        let names = (0..points.len()).map(|at| format!("corner{at}")).collect();
-        Ok(Board { name: name.to_owned(), names, points })
-    }
-
     /// The point with a name.
     #[must_use]
     pub fn find(&self, name: &str) -> Option<usize> {
@@ -98,9 +75,6 @@ impl Board {
         Board { points: self.points.iter().map(|point| point * factor).collect(), ..self.clone() }
     }
 }
-
-/// Most squares along a side: 250 of 4 mm make a metre.
-const MOST_SQUARES: usize = 250;
 
 /// Mean of some points.
 #[must_use]

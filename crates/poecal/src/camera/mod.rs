@@ -4,6 +4,7 @@ mod board;
 mod common;
 mod guess;
 mod lens;
+mod patterns;
 mod picture;
 mod pictures;
 mod pnp;

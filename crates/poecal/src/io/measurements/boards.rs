@@ -4,51 +4,31 @@ use std::path::Path;
 
 use nalgebra::Vector3;
 
+use super::board_words::{BOARD, in_words};
 use super::header::{Header, unit_in_name};
 use super::mapping::ColumnMap;
 use super::number::Numbers;
 use super::table::Table;
 use super::text::Blocks;
-use super::units::{NamedUnit, positive_length_m};
+use super::units::NamedUnit;
 use crate::camera::Board;
 use crate::error::{Error, ErrorKind, Result};
 use crate::io::stored_pictures::stored_boards;
 use crate::unit::Unit;
 
-/// The board of all corners where no column names it.
-const BOARD: &str = "board";
-
-/// The boards of a file of points, or of a specification such as `chessboard:10x7:27mm` (squares along x and y, and their side).
+/// The boards of a file of points, or of a specification such as `chessboard:10x7:27mm` (squares along x and y, and their side); the others are
+/// `charuco:…`, `circles:…`, `aprilgrid:…` and `tags:…`, as `poecal detect` has them.
 ///
 /// # Errors
 /// A file that cannot be read or has no points, or a specification that is none.
 pub fn read_boards(typed: &str) -> Result<Vec<Board>> {
-    match typed.split_once(':') {
-        Some((kind @ ("chessboard" | "charuco"), rest)) => Ok(vec![specified(kind, rest, typed)?]),
-        _ if Path::new(typed).extension().is_some_and(|it| it.eq_ignore_ascii_case("json")) => {
+    match in_words(typed) {
+        Some(board) => Ok(vec![board?]),
+        None if Path::new(typed).extension().is_some_and(|it| it.eq_ignore_ascii_case("json")) => {
             stored_boards(Path::new(typed))
         }
-        _ => of_table(Path::new(typed)),
+        None => of_table(Path::new(typed)),
     }
-}
-
-/// `COLSxROWS:SQUARE`, and of a ChArUco board what its markers are, which does not move the corners.
-fn specified(kind: &str, rest: &str, typed: &str) -> Result<Board> {
-    let refuse = || {
-        let message = format!(
-            "found the board `{typed}`, expected squares along x and y and their side, as chessboard:10x7:27mm or charuco:5x7:36mm:18mm:DICT_6X6_250"
-        );
-        Error::new(ErrorKind::Option, message)
-    };
-    let mut parts = rest.split(':');
-    let (columns, rows) = parts.next().and_then(|it| it.split_once(['x', 'X'])).ok_or_else(refuse)?;
-    let count = |text: &str| text.trim().parse::<usize>().map_err(|_| refuse());
-    let square = parts.next().ok_or_else(refuse)?;
-    let square_m = positive_length_m(square)?.ok_or_else(refuse)?;
-    if kind == "chessboard" && parts.next().is_some() {
-        return Err(refuse());
-    }
-    Board::chessboard(BOARD, [count(columns)?, count(rows)?], square_m)
 }
 
 /// A column of a coordinate, with its unit: `x[mm]`, `x_mm`.

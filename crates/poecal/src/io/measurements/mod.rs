@@ -4,10 +4,12 @@
 //! (`layout` and `builder`, from header, mapping and robot), numbers in SI (`inputs`), without those of lost beams (`lost`), and at
 //! last measurements (`row`, [`read()`]), which are judged for their scale (`scale`, `spread`, `turns`).
 
+mod board_words;
 mod boards;
 mod builder;
 mod cameras;
 mod cells;
+mod corner_names;
 mod counted;
 mod fit_where;
 mod header;

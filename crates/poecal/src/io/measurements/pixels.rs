@@ -291,7 +291,7 @@ impl Reader<'_> {
         mut corner: Corner,
     ) -> Result<()> {
         let camera = self.camera(row, columns.camera)?;
-        let board = self.board(row, columns.board)?;
+        let board = self.board(row, (columns.board, columns.target))?;
         corner.point = self.point(row, columns.target, board)?;
         let own = image.is_none().then_some(&taken.readings);
         let key = format!("{} {} {own:?}", image.as_deref().unwrap_or_default(), taken.id);
@@ -363,44 +363,6 @@ impl Reader<'_> {
         Ok(*at)
     }
 
-    /// Index of the row's board.
-    fn board(&mut self, row: &Row<'_>, column: Option<usize>) -> Result<usize> {
-        let boards = &mut self.boards;
-        let name = text(row, column).filter(|name| !name.is_empty());
-        match name {
-            None => Ok(0),
-            Some(name) => match boards.iter().position(|it| it.name == name) {
-                Some(at) => Ok(at),
-                // One board that is at several places, by its names there.
-                None if self.options.boards.len() == 1 => {
-                    let again = self.options.boards.first().cloned().unwrap_or_default();
-                    boards.push(crate::camera::Board { name, ..again });
-                    Ok(boards.len() - 1)
-                }
-                None => {
-                    let names: Vec<&str> = boards.iter().map(|it| it.name.as_str()).collect();
-                    let message = format!("found the board `{name}`, expected one of {}", first_few(&names));
-                    Err(row.error(column.unwrap_or(0), message))
-                }
-            },
-        }
-    }
-
-    /// Index of the row's corner on its board.
-    fn point(&self, row: &Row<'_>, column: usize, board: usize) -> Result<u32> {
-        let name = text(row, Some(column)).unwrap_or_default();
-        let Some(own) = self.boards.get(board) else { return Ok(0) };
-        let Some(at) = own.find(&name) else {
-            let message = format!(
-                "found the corner `{name}`, expected one of the board's {}: {}",
-                own.names.len(),
-                first_few(&own.names)
-            );
-            return Err(row.error(column, message));
-        };
-        Ok(u32::try_from(at).unwrap_or(u32::MAX))
-    }
-
     fn say_once(&mut self, sentence: String) {
         if !self.found.warnings.contains(&sentence) {
             self.found.warnings.push(sentence);
@@ -409,6 +371,6 @@ impl Reader<'_> {
 }
 
 /// Text of a cell.
-fn text(row: &Row<'_>, column: Option<usize>) -> Option<String> {
+pub(super) fn text(row: &Row<'_>, column: Option<usize>) -> Option<String> {
     Some(row.cells.get(column?)?.text().trim().to_owned())
 }

@@ -1,0 +1,120 @@
+//! Kalibr's grid of tags: where the corners of tags and of the dark squares between them meet, two edges cross as on a chessboard.
+
+use std::collections::BTreeMap;
+
+use nalgebra::Vector2;
+
+use crate::charuco::consensus;
+use crate::found::{Corner, Found, Kind, Rejected};
+use crate::gray::Gray;
+use crate::homography::Pair;
+use crate::lattice::map_near;
+use crate::layout::{Layout, Pattern, Tagged};
+use crate::markers::{Marker, Reader};
+use crate::quads::{Quad, quads_apart};
+use crate::saddle::{Expected, Saddle, refine};
+
+/// Fewest tags that are a board.
+const LEAST: usize = 2;
+/// Weight of a corner of a tag as it was read beside a corner where edges cross.
+const ANCHOR: f64 = 0.04;
+/// Largest distance of a corner from where others have it, pixels and sides of a tag.
+const OFF: (f64, f64) = (0.8, 0.02);
+/// Quarter turns of Kalibr's tags against OpenCV's.
+const TURNS: usize = 2;
+
+/// Finds the corners of a grid of tags.
+pub(crate) fn detect(gray: &Gray, layout: &Layout, reader: &Reader, noise: f64) -> Result<Found, Rejected> {
+    of_quads(gray, layout, (reader, noise), &quads_apart(gray, noise))
+}
+
+/// The same of quadrangles that were found apart from the squares at their corners.
+pub(crate) fn of_quads(
+    gray: &Gray,
+    layout: &Layout,
+    (reader, noise): (&Reader, f64),
+    quads: &[Quad],
+) -> Result<Found, Rejected> {
+    let Pattern::Tags(tags) = &layout.pattern else { return Err(Rejected::NoBoard) };
+    let read = quads.iter().filter_map(|quad| reader.read(gray, quad));
+    let turned = |it: Marker| Marker { corners: [0, 1, 2, 3].map(|k| it.corners[(k + TURNS) % 4]), ..it };
+    let markers: Vec<Marker> = read.map(turned).collect();
+    let (_, agreeing) = consensus(layout, &markers).ok_or(Rejected::NoBoard)?;
+    if agreeing.len() < LEAST || agreeing.len() * 2 < markers.len() {
+        return Err(if markers.len() > 2 { Rejected::Other } else { Rejected::Few(4 * agreeing.len()) });
+    }
+    let corner = |id: usize, place: Vector2<f64>, weight: f64| (layout.corner(id), place, weight);
+    let anchors: Vec<Pair> = agreeing
+        .iter()
+        .filter_map(|at| markers.get(*at))
+        .flat_map(|it| [0, 1, 2, 3].map(|k| corner(4 * it.id + k, it.corners[k], ANCHOR)))
+        .collect();
+    let mut found: BTreeMap<usize, Saddle> = BTreeMap::new();
+    for _ in 0..3 {
+        let before = found.len();
+        let mut pairs = anchors.clone();
+        pairs.extend(found.iter().map(|(id, it)| corner(*id, it.place, 1.0)));
+        for id in 0..layout.corners() {
+            if found.contains_key(&id) {
+                continue;
+            }
+            let saddle = expected(gray, layout, tags, &pairs, id).and_then(|it| refine(gray, &it, noise));
+            found.extend(saddle.map(|it| (id, it)));
+        }
+        prune(layout, &mut found);
+        if found.len() == before {
+            break;
+        }
+    }
+    if found.len() < 4 {
+        return Err(Rejected::Few(found.len()));
+    }
+    let mut blurs: Vec<f64> = found.values().map(|it| it.blur_px).collect();
+    blurs.sort_by(f64::total_cmp);
+    let blur_px = blurs.get(blurs.len() / 2).copied().unwrap_or(0.0);
+    let named = |(id, it): (&usize, &Saddle)| Corner {
+        id: *id,
+        kind: Kind::Tag,
+        u_px: it.place.x,
+        v_px: it.place.y,
+        sigma_px: it.sigma_px,
+    };
+    let corners = found.iter().map(named).collect();
+    Ok(Found { corners, markers: agreeing.len(), turnable: false, blur_px, noise })
+}
+
+/// What is known of a corner by others.
+fn expected(gray: &Gray, layout: &Layout, tags: &Tagged, pairs: &[Pair], id: usize) -> Option<Expected> {
+    let point = layout.corner(id);
+    // Its own corner of a tag counts too: from beside it.
+    let (map, nearest) = map_near(pairs, point + Vector2::new(0.01, 0.01))?;
+    let (place, slope) = (map.map(point)?, map.slope(point)?);
+    if nearest > 1.8 || !gray.holds(place, 1.0) {
+        return None;
+    }
+    let side_px = slope.determinant().abs().sqrt();
+    let border = tags.border as f64 / (tags.dictionary.bits() + 2 * tags.border) as f64;
+    // Before the upper left corner is a dark square, before the lower right one the tag.
+    let dark_before = id.is_multiple_of(2);
+    let search_px = (1.0 + 0.03 * side_px * nearest.max(0.3)).min(0.12 * side_px).max(1.0);
+    Some(Expected { place, slope, plain: border.min(tags.gap), dark_before, search_px })
+}
+
+/// Takes corners away that are not where the others have them, the worst first.
+fn prune(layout: &Layout, found: &mut BTreeMap<usize, Saddle>) {
+    loop {
+        let pairs: Vec<Pair> = found.iter().map(|(id, it)| (layout.corner(*id), it.place, 1.0)).collect();
+        let off = |(id, saddle): (&usize, &Saddle)| {
+            let point = layout.corner(*id);
+            let part = map_near(&pairs, point).and_then(|(map, nearest)| {
+                let side_px = map.slope(point)?.determinant().abs().sqrt();
+                Some((map.map(point)? - saddle.place).norm() / ((OFF.0 + OFF.1 * side_px) * nearest.max(1.0)))
+            });
+            (*id, part.unwrap_or(f64::INFINITY))
+        };
+        match found.iter().map(off).max_by(|a, b| a.1.total_cmp(&b.1)) {
+            Some((worst, part)) if part > 1.0 => found.remove(&worst),
+            _ => return,
+        };
+    }
+}

@@ -1,0 +1,100 @@
+//! From the middle of a circle's picture to the picture of its middle.
+//!
+//! A circle's picture is an ellipse, but its middle is not the picture of the circle's middle: that is nearer to the far side. How much follows from
+//! how the plane is seen around: by a pinhole, and by what a lens adds, to second order.
+
+use nalgebra::{Matrix2, SMatrix, SVector, Vector2};
+
+use crate::homography::{Homography, Pair};
+
+/// Standard deviation of the weights of points by their distance, and the farthest that counts, units of the plane.
+const NEAR: f64 = 1.8;
+const FAR: f64 = 4.5;
+/// Points on a circle.
+const AROUND: usize = 16;
+
+/// How the plane is seen near a point: a homography, and a polynomial of second order on top.
+struct Local {
+    map: Homography,
+    point: Vector2<f64>,
+    bend: SMatrix<f64, 6, 2>,
+}
+
+fn powers(off: Vector2<f64>) -> SVector<f64, 6> {
+    SVector::from([1.0, off.x, off.y, off.x * off.x, off.x * off.y, off.y * off.y])
+}
+
+impl Local {
+    fn new(pairs: &[Pair], point: Vector2<f64>) -> Option<Self> {
+        let weighed = |(plane, place, weight): &Pair| {
+            let square = (plane - point).norm_squared();
+            (square < FAR * FAR).then_some((*plane, *place, weight * (-0.5 * square / (NEAR * NEAR)).exp()))
+        };
+        let near: Vec<Pair> = pairs.iter().filter_map(weighed).collect();
+        let map = Homography::fit(&near)?;
+        let (mut normal, mut right) = (SMatrix::<f64, 6, 6>::zeros(), SMatrix::<f64, 6, 2>::zeros());
+        for (plane, place, weight) in &near {
+            let (row, left) = (powers(plane - point), place - map.map(*plane)?);
+            normal += row * row.transpose() * *weight;
+            right += row * left.transpose() * *weight;
+        }
+        // Where points do not determine the second order, it is none.
+        normal += SMatrix::identity() * (1e-6 * normal.trace());
+        let bend = normal.cholesky()?.solve(&right);
+        Some(Local { map, point, bend })
+    }
+
+    fn at(&self, off: Vector2<f64>) -> Option<Vector2<f64>> {
+        Some(self.map.map(self.point + off)? + self.bend.transpose() * powers(off))
+    }
+
+    fn slope(&self) -> Option<Matrix2<f64>> {
+        Some(self.map.slope(self.point)? + self.bend.fixed_rows::<2>(1).transpose())
+    }
+}
+
+/// From the picture of a circle's middle to the middle of the ellipse that fits its picture, pixels: by points of the plane and their places.
+pub(crate) fn bias(pairs: &[Pair], middle: Vector2<f64>, radius: f64) -> Option<Vector2<f64>> {
+    let local = Local::new(pairs, middle)?;
+    let (own, slope) = (local.at(Vector2::zeros())?, local.slope()? * radius);
+    let back = slope.try_inverse()?;
+    let mut shift = Vector2::zeros();
+    for k in 0..AROUND {
+        let (sin, cos) = (k as f64 * std::f64::consts::TAU / AROUND as f64).sin_cos();
+        let outwards = Vector2::new(cos, sin);
+        // How far the outline is from a circle there, in radii; the first harmonic of it moves the ellipse.
+        let off = back * (local.at(outwards * radius)? - own) - outwards;
+        shift += outwards * (outwards.dot(&off) * 2.0 / AROUND as f64);
+    }
+    let bias = slope * shift;
+    (bias.x.is_finite() && bias.y.is_finite()).then_some(bias)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_middle_of_an_ellipse_is_not_that_of_the_circle() {
+        let corners = [[0.0, 0.0], [7.0, 0.0], [7.0, 7.0], [0.0, 7.0]].map(Vector2::from);
+        let seen = [[100.0, 100.0], [620.0, 110.0], [560.0, 400.0], [180.0, 360.0]].map(Vector2::from);
+        let map = Homography::of_corners(&corners, &seen).unwrap();
+        let (middle, radius) = (Vector2::new(3.0, 2.0), 0.3);
+        // The mean of an ellipse is the middle between the tangents of any direction.
+        let points: Vec<Vector2<f64>> = (0..20_000)
+            .map(|k| f64::from(k) * std::f64::consts::TAU / 20_000.0)
+            .map(|angle| map.map(middle + Vector2::new(angle.cos(), angle.sin()) * radius).unwrap())
+            .collect();
+        let ends = |k: usize| {
+            let values = points.iter().map(|it| it[k]);
+            0.5 * (values.clone().fold(f64::INFINITY, f64::min) + values.fold(f64::NEG_INFINITY, f64::max))
+        };
+        let expected = Vector2::new(ends(0), ends(1)) - map.map(middle).unwrap();
+        let plane = (0..8).flat_map(|y| (0..8).map(move |x| Vector2::new(f64::from(x), f64::from(y))));
+        let pairs: Vec<Pair> = plane.map(|it| (it, map.map(it).unwrap(), 1.0)).collect();
+        let found = bias(&pairs, middle, radius).unwrap();
+        println!("{found:?}, by its tangents {expected:?}");
+        // To second order: the next is smaller by the square of the depth of a circle beside its distance.
+        assert!((found - expected).norm() < 0.01 * expected.norm() && expected.norm() > 0.1);
+    }
+}

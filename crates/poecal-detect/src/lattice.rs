@@ -1,0 +1,172 @@
+//! Dots joined to square lattices: a circle seen as an ellipse tells how its plane is tilted, and so where its neighbours are.
+
+use std::collections::BTreeMap;
+
+use nalgebra::{Matrix2, Vector2};
+
+use crate::ellipse::Dot;
+use crate::grid::middle_slope;
+use crate::growth::Node;
+use crate::homography::{Homography, Pair};
+
+/// Dots with their columns and rows.
+pub(crate) type Lattice = BTreeMap<Node, usize>;
+
+/// Farthest neighbour, in radii of the dot.
+const FARTHEST: f64 = 9.0;
+/// Nearest neighbour, in radii: dots that touch have 2.
+const NEAREST: f64 = 2.1;
+/// Largest deviation of a dot from where others have it, as a part of the pitch.
+const ASIDE: f64 = 0.22;
+/// Largest ratio of the sizes of neighbours, and of their contrasts; and of those that are not the next to each other.
+const ALIKE: [f64; 2] = [1.45, 1.8];
+const ALIKE_FAR: [f64; 2] = [1.25, 1.35];
+/// Standard deviation of the weights of dots by their distance, and the farthest that counts, pitches.
+const NEAR: f64 = 1.6;
+const FAR: f64 = 4.2;
+
+/// The next places of a lattice, and those beyond: where something covers a part of the board.
+const STEPS: [Node; 12] =
+    [[1, 0], [0, 1], [-1, 0], [0, -1], [1, 1], [-1, 1], [-1, -1], [1, -1], [2, 0], [0, 2], [-2, 0], [0, -2]];
+
+/// Lattices of dots, the largest first: x and y as on a board that is seen from its front.
+pub(crate) fn lattices(dots: &[Dot]) -> Vec<Lattice> {
+    let mut free = vec![true; dots.len()];
+    let mut all: Vec<Lattice> = Vec::new();
+    for first in 0..dots.len() {
+        if !free[first] {
+            continue;
+        }
+        let found = bases(dots, first).into_iter().map(|basis| flooded(dots, first, basis));
+        let Some(lattice) = found.max_by_key(Lattice::len) else { continue };
+        if lattice.len() >= 6 {
+            lattice.values().for_each(|at| free[*at] = false);
+            all.push(lattice);
+        }
+    }
+    all.sort_by_key(|it| std::cmp::Reverse(it.len()));
+    all
+}
+
+fn alike(a: &Dot, b: &Dot, [largest, strongest]: [f64; 2]) -> bool {
+    let size = |it: &Dot| it.to_circle.determinant().sqrt();
+    let (ratio, contrast) = (size(a) / size(b), a.half_contrast / b.half_contrast);
+    ratio.max(1.0 / ratio) < largest && contrast.max(1.0 / contrast) < strongest
+}
+
+/// Steps of the lattice at a dot, pixels: to two neighbours at a right angle in the plane of the circle, as far away.
+fn bases(dots: &[Dot], own: usize) -> Vec<Matrix2<f64>> {
+    let dot = &dots[own];
+    let mut near: Vec<(Vector2<f64>, Vector2<f64>)> = dots
+        .iter()
+        .enumerate()
+        .filter(|(at, it)| *at != own && alike(dot, it, ALIKE))
+        .map(|(_, it)| (dot.to_circle * (it.place - dot.place), it.place - dot.place))
+        .filter(|it| (NEAREST..FARTHEST).contains(&it.0.norm()))
+        .collect();
+    near.sort_by(|a, b| a.0.norm().total_cmp(&b.0.norm()));
+    near.truncate(6);
+    let mut found = Vec::new();
+    for (k, a) in near.iter().enumerate() {
+        for b in &near[k + 1..] {
+            let (along, across) = (a.0.dot(&b.0), a.0.x * b.0.y - a.0.y * b.0.x);
+            let product = a.0.norm() * b.0.norm();
+            let ratio = b.0.norm() / a.0.norm();
+            if along.abs() > 0.35 * product || !(0.7..1.43).contains(&ratio) {
+                continue;
+            }
+            let (x, y) = if across > 0.0 { (a.1, b.1) } else { (b.1, a.1) };
+            found.push(Matrix2::from_columns(&[x, y]));
+        }
+    }
+    found.truncate(3);
+    found
+}
+
+/// All dots that are joined with one.
+fn flooded(dots: &[Dot], first: usize, basis: Matrix2<f64>) -> Lattice {
+    let mut lattice = Lattice::from([([0, 0], first)]);
+    let mut places = vec![([0, 0], dots[first].place)];
+    let mut taken = vec![false; dots.len()];
+    taken[first] = true;
+    let mut tried = 0;
+    // Near steps from all places first.
+    while tried < places.len() * 2 {
+        let (far, at) = (tried >= places.len(), tried % places.len());
+        tried += 1;
+        let (before, node) = (places.len(), places[at].0);
+        let steps = if far { &STEPS[4..] } else { &STEPS[..4] };
+        for step in steps {
+            joined(dots, &mut lattice, &mut places, &mut taken, (node, *step), &basis);
+        }
+        if far && places.len() > before {
+            tried = before;
+        }
+    }
+    lattice
+}
+
+/// Joins the dot that is a step from another one, if one is there.
+fn joined(
+    dots: &[Dot],
+    lattice: &mut Lattice,
+    places: &mut Vec<(Node, Vector2<f64>)>,
+    taken: &mut [bool],
+    (node, step): (Node, Node),
+    basis: &Matrix2<f64>,
+) {
+    let next = [node[0] + step[0], node[1] + step[1]];
+    if lattice.contains_key(&next) {
+        return;
+    }
+    let Some((place, pitch_px)) = predicted(places, node, next, basis) else { return };
+    let near = |other: usize| (dots[other].place - place).norm();
+    let Some(own) = lattice.get(&node).map(|at| dots[*at]) else { return };
+    let all = (0..dots.len()).filter(|other| !taken[*other] && near(*other) < ASIDE * pitch_px);
+    let limits = if step[0].abs() + step[1].abs() > 1 { ALIKE_FAR } else { ALIKE };
+    let best =
+        all.filter(|other| alike(&dots[*other], &own, limits)).min_by(|a, b| near(*a).total_cmp(&near(*b)));
+    if let Some(other) = best {
+        taken[other] = true;
+        lattice.insert(next, other);
+        places.push((next, dots[other].place));
+    }
+}
+
+/// Where a node beside another one is, by the nodes around, and the length of the way there.
+fn predicted(
+    places: &[(Node, Vector2<f64>)],
+    own: Node,
+    next: Node,
+    basis: &Matrix2<f64>,
+) -> Option<(Vector2<f64>, f64)> {
+    let near: Vec<(Node, Vector2<f64>)> = places
+        .iter()
+        .filter(|it| (it.0[0] - own[0]).abs() <= 2 && (it.0[1] - own[1]).abs() <= 2)
+        .copied()
+        .collect();
+    let place = near.iter().find(|it| it.0 == own)?.1;
+    let slope = if near.len() >= 3 { middle_slope(&near).unwrap_or(*basis) } else { *basis };
+    let step = Vector2::new(f64::from(next[0] - own[0]), f64::from(next[1] - own[1]));
+    let mut way = slope * step;
+    // Two dots in a row tell more than their mean.
+    let before = [2 * own[0] - next[0], 2 * own[1] - next[1]];
+    if let Some((_, before)) = near.iter().find(|it| it.0 == before) {
+        way = place - before;
+    }
+    Some((place + way, way.norm() / step.norm()))
+}
+
+/// The map near a point of the plane, from what is around it but not at it, and how far the nearest of it is.
+pub(crate) fn map_near(pairs: &[Pair], point: Vector2<f64>) -> Option<(Homography, f64)> {
+    let mut nearest = f64::INFINITY;
+    let mut near: Vec<Pair> = Vec::new();
+    for (plane, place, weight) in pairs {
+        let square = (plane - point).norm_squared();
+        if square > 1e-6 && square < FAR * FAR {
+            nearest = nearest.min(square);
+            near.push((*plane, *place, weight * (-0.5 * square / (NEAR * NEAR)).exp()));
+        }
+    }
+    Some((Homography::fit(&near)?, nearest.sqrt()))
+}

@@ -1,0 +1,72 @@
+//! Loose tags: each marker that is read, with its four corners.
+
+use nalgebra::Vector2;
+
+use crate::dictionary::Dictionary;
+use crate::found::{Corner, Found, Kind, Rejected};
+use crate::gray::Gray;
+use crate::markers::{Marker, Reader};
+use crate::quads::{Quad, quads};
+use crate::tagfit::{Cells, Fitted, fit};
+
+/// Bits below which a code with a wrong bit is none: too many quadrangles look like one.
+const FEW_BITS: usize = 6;
+
+/// Finds all tags of a dictionary.
+pub(crate) fn detect(
+    gray: &Gray,
+    dictionary: &Dictionary,
+    reader: &Reader,
+    noise: f64,
+) -> Result<Found, Rejected> {
+    of_quads(gray, (dictionary, reader), noise, &quads(gray, noise))
+}
+
+/// The same of quadrangles that were found.
+pub(crate) fn of_quads(
+    gray: &Gray,
+    (dictionary, reader): (&Dictionary, &Reader),
+    noise: f64,
+    quads: &[Quad],
+) -> Result<Found, Rejected> {
+    let mut tags: Vec<(usize, Fitted)> = Vec::new();
+    for quad in quads {
+        let Some(marker) = reader.read(gray, quad) else { continue };
+        let near = |it: &Fitted| (middle(&it.corners) - middle(&marker.corners)).norm() < 4.0;
+        if tags.iter().any(|it| near(&it.1)) || (dictionary.bits() < FEW_BITS && !marker.exact) {
+            continue;
+        }
+        tags.extend(fit(gray, &cells(dictionary, &marker), &marker.corners, noise).map(|it| (marker.id, it)));
+    }
+    // A tag that is there twice is none: nobody knows which is meant.
+    let once = |id: usize| tags.iter().filter(|it| it.0 == id).count() == 1;
+    let mut blurs: Vec<f64> = tags.iter().map(|it| it.1.blur_px).collect();
+    blurs.sort_by(f64::total_cmp);
+    let kept = tags.iter().filter(|it| once(it.0));
+    let corner = |(id, tag): &(usize, Fitted), k: usize| Corner {
+        id: 4 * id + k,
+        kind: Kind::Tag,
+        u_px: tag.corners[k].x,
+        v_px: tag.corners[k].y,
+        sigma_px: tag.sigma_px[k],
+    };
+    let mut corners: Vec<Corner> = kept.flat_map(|tag| (0..4).map(|k| corner(tag, k))).collect();
+    if corners.is_empty() {
+        return Err(Rejected::NoBoard);
+    }
+    corners.sort_by_key(|it| it.id);
+    let blur_px = blurs.get(blurs.len() / 2).copied().unwrap_or(0.0);
+    Ok(Found { markers: corners.len() / 4, corners, turnable: false, blur_px, noise })
+}
+
+fn middle(quad: &[Vector2<f64>; 4]) -> Vector2<f64> {
+    quad.iter().sum::<Vector2<f64>>() * 0.25
+}
+
+fn cells(dictionary: &Dictionary, marker: &Marker) -> Cells {
+    let side = dictionary.bits() + 2;
+    // `is_black` of what is outside is black.
+    let cell =
+        |at: usize| dictionary.is_black(marker.id, (at % side).wrapping_sub(1), (at / side).wrapping_sub(1));
+    Cells { side, dark: (0..side * side).map(cell).collect() }
+}
