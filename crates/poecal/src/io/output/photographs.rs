@@ -16,6 +16,9 @@ use crate::io::model::Model;
 use crate::io::numbers::push_number;
 use crate::simulate::{Photographed, PictureSimulation};
 
+/// Steps of a reading in a degree or a millimetre.
+const STEPS: f64 = 1e4;
+
 /// A simulated session of pictures and its origin.
 #[derive(Clone, Copy, Debug)]
 pub struct PhotographedSession<'a> {
@@ -107,7 +110,7 @@ fn joints(session: &PhotographedSession<'_>) -> String {
         text.push_str(&picture_name(at));
         for (value, kind) in data.readings(at).iter().zip(&kinds) {
             text.push(',');
-            push_number(&mut text, kind.shown(*value));
+            push_number(&mut text, (kind.shown(*value) * STEPS).round() / STEPS);
         }
     }
     text.push('\n');
