@@ -8,7 +8,7 @@ use poecal::lie::Pose;
 use poecal::simulate::{PictureSimulation, Simulation};
 use poecal::{ErrorKind, Result};
 use poecal_detect::render::{Camera, Random, Scene, clutter};
-use poecal_detect::{Layout, png};
+use poecal_detect::{Layout, Spec, png};
 use rayon::prelude::*;
 
 use crate::args::{CameraPlace, Simulate};
@@ -35,6 +35,12 @@ pub(super) fn photograph(
         return ErrorKind::Option.refuse(format!(
             "found --count {} with --camera, expected at most {MOST} pictures",
             arguments.count
+        ));
+    }
+    if let Spec::Tags(_) = arguments.board {
+        return ErrorKind::Option.refuse(format!(
+            "found --board {}, whose tags may be anywhere, expected a board of known places, as charuco, chessboard, circles or aprilgrid",
+            arguments.board
         ));
     }
     let board = arguments.board.to_string();
