@@ -131,9 +131,9 @@ def change() -> list[Step]:
         Step("Rust tests", [[sys.executable, "scripts/rust_tests.py"]], after=["Rust build"], shows=r"^FAILED |^\d+ passed, |^fuzz "),
         Step("doc examples", [["cargo", "test", "--locked", "--profile", "tested", "--workspace", "--doc"]], after=["package build"], shows="^test result: .* [1-9][0-9]* passed"),
         Step("scripts and types", [["node", "web/build.mjs", "--check"], ["node", "web/npm/types.mjs", "--check"]], after=["web tools"], shows="^report.(js|css): |^types"),
-        Step("web without a browser", [in_browser(alone)], after=["Rust build", "web tools"], shows=NODE_SHOWS),
-        Step("report in a browser", [in_browser(name for name in pages if not name.startswith("app."))], after=["Rust build", "scripts and types"], shows=NODE_SHOWS, lacks=browser),
-        Step("page in a browser", [in_browser(name for name in pages if name.startswith("app."))], after=["Rust build", "page build"], shows=NODE_SHOWS, lacks=browser,
+        Step("web without a browser", [in_browser(alone)], after=["Rust build", "web tools"], shows=NODE_SHOWS, waits=True),
+        Step("report in a browser", [in_browser(name for name in pages if not name.startswith("app."))], after=["Rust build", "scripts and types"], shows=NODE_SHOWS, lacks=browser, waits=True),
+        Step("page in a browser", [in_browser(name for name in pages if name.startswith("app."))], after=["Rust build", "page build"], shows=NODE_SHOWS, lacks=browser, waits=True,
              env={"POECAL_APP": str(ROOT / "web/app/dist-tested-web/poecal.html")}),
         Step("digits at every level", [[sys.executable, "scripts/run_tests.py", "levels"]], after=["package build"], shows=r"^level |" + PYTEST_SHOWS + r"|^FAILED |^\d+ passed, "),
     ]  # fmt: skip
@@ -154,8 +154,8 @@ def packages() -> list[Step]:
         Step("installation", [[*PYTEST, INSTALL]], after=["package build"], shows=PYTEST_SHOWS + "|^static program"),
         Step("C on a controller", [[*PYTEST, "tests/python/test_c.py"]], after=["package build"], shows=PYTEST_SHOWS, env={"POECAL_CONTROLLER": "controller"}),
         Step("npm package", [in_browser(["npm.test.mjs"])], after=["npm build", "Rust build"], shows=NODE_SHOWS),
-        Step("report of every real robot", [in_browser(["report.test.mjs"])], after=["Rust build", "web tools"], shows=NODE_SHOWS, lacks=browser, env={"POECAL_REPORTS": "all"}),
-        Step("page in a browser", [in_browser(["app.test.mjs"])], after=["npm build", "Rust build"], shows=NODE_SHOWS, lacks=browser),
+        Step("report of every real robot", [in_browser(["report.test.mjs"])], after=["Rust build", "web tools"], shows=NODE_SHOWS, lacks=browser, waits=True, env={"POECAL_REPORTS": "all"}),
+        Step("page in a browser", [in_browser(["app.test.mjs"])], after=["npm build", "Rust build"], shows=NODE_SHOWS, lacks=browser, waits=True),
         *(Step(f"lints of {name}", [["cargo", "clippy", "--locked", "--profile", "tested", "-p", "poecal", "-p", "poecal-wasm", "--target", name, "--", "-D", "warnings"]], shows=CARGO_SHOWS,
                lacks=lack("clippy", clippy) or lack(f"standard library of {name} (rustup target add {name})", has_standard_library(name)))
           for name in ("aarch64-unknown-linux-gnu", WASM)),
@@ -163,7 +163,7 @@ def packages() -> list[Step]:
              lacks=lack(f"Rust {oldest} (rustup toolchain install {oldest} --profile minimal)", has("cargo", f"+{oldest}", "--version"))),
         Step("documentation site", [["scripts/build-docs"], [*PYTEST, SITE]], after=["Python tools", "npm build"] if node and not wasm else ["Python tools", "web tools"] if node else ["Python tools"],
              shows="^site: |^(WARNING|ERROR) |" + PYTEST_SHOWS, env={"POECAL_PAGE": "web/app/dist/poecal.html"} if node and not wasm else {}),
-        Step("site in a browser", [in_browser(["site.test.mjs"])], after=["documentation site", "web tools", "Rust build"], shows=NODE_SHOWS, lacks=browser),
+        Step("site in a browser", [in_browser(["site.test.mjs"])], after=["documentation site", "web tools", "Rust build"], shows=NODE_SHOWS, lacks=browser, waits=True),
     ]  # fmt: skip
 
 

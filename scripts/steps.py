@@ -33,12 +33,14 @@ class Step:
     lacks: str | None = None
     # The same for a tool that no other step brings: left out, also with CI=true.
     may_lack: bool = False
+    # It waits more than it works, as a browser does: it begins beside as many that work as there are processors, one such at a time.
+    waits: bool = False
     # Variables of its own.
     env: dict[str, str] = dataclasses.field(default_factory=dict)
 
 
 class Run:
-    """All steps: each begins when those that it needs have passed and a processor is free, in the order of the list."""
+    """All steps: each begins when those that it needs have passed and there is room for it, in the order of the list."""
 
     def __init__(self, steps: list[Step]):
         for at, step in enumerate(steps):
@@ -66,9 +68,14 @@ class Run:
             elif step.lacks:
                 is_failure = os.environ.get("CI") == "true" and not step.may_lack
                 self.end(step, "failed" if is_failure else "skipped", f"{'FAILED' if is_failure else 'skipped'}, found no {step.lacks}")
-            elif all(state == "passed" for state in needed):
+            elif all(state == "passed" for state in needed) and self.has_room(step):
                 return step
         return None
+
+    def has_room(self, step: Step) -> bool:
+        """Whether a processor is free, or, for a step that waits, no other one runs."""
+        same = sum(self.state[other.name] == "running" for other in self.steps if other.waits == step.waits)
+        return same < (1 if step.waits else max(2, PROCESSORS))
 
     def end(self, step: Step, state: str, words: str) -> None:
         self.state[step.name] = state
@@ -153,7 +160,7 @@ class Run:
         for number in (signal.SIGTERM, signal.SIGHUP):
             signal.signal(number, lambda number, _: sys.exit(128 + number))
         try:
-            threads = [threading.Thread(target=self.work, daemon=True) for _ in range(max(2, PROCESSORS))]
+            threads = [threading.Thread(target=self.work, daemon=True) for _ in range(max(2, PROCESSORS) + 1)]
             for thread in threads:
                 thread.start()
             for thread in threads:

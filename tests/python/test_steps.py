@@ -6,6 +6,7 @@ import pytest
 from program import ROOT
 
 sys.path.insert(0, str(ROOT / "scripts"))
+import steps  # noqa: E402
 from steps import Run, Step  # noqa: E402
 
 SAYS = [sys.executable, "-c", "print('twelve of them')"]
@@ -60,6 +61,20 @@ def test_steps_run_side_by_side_with_variables_of_their_own(capsys, tmp_path):
     command = [sys.executable, "-c", MEETS]
     code, _ = whole(capsys, Step("one", [command], env={"OWN": one, "OTHER": other}), Step("other", [command], env={"OWN": other, "OTHER": one}))
     assert code == 0
+
+
+# Says when it ran.
+TIMED = [sys.executable, "-c", "import time; begin = time.time(); time.sleep(0.5); print('ran', begin, time.time())"]
+
+
+@pytest.mark.parametrize("waits", [False, True])
+def test_a_step_that_waits_takes_no_processor_and_runs_alone_of_its_kind(capsys, monkeypatch, waits):
+    monkeypatch.setattr(steps, "PROCESSORS", 2)
+    many = [Step(f"step {k}", [TIMED], waits=waits) for k in range(4)]
+    code, said = whole(capsys, *many, Step("other", [TIMED], waits=not waits))
+    spans = sorted(tuple(map(float, line.split()[1:])) for line in said.splitlines() if line.startswith("ran "))
+    at_once = max(sum(begin <= at < end for begin, end in spans) for at, _ in spans)
+    assert code == 0 and len(spans) == 5 and at_once == (2 if waits else 3)
 
 
 def test_a_step_is_listed_behind_those_that_it_needs():

@@ -37,7 +37,8 @@ export interface CalibrateOptions {
   camera?: Value | readonly Value[];
   /**
    * Board or solid that cameras see: CSV with target, x[mm], y[mm], z[mm] of its points, chessboard:10x7:27mm (squares along x and y, and
-   * their side), or a calibration.json with what it found; may be given again
+   * their side), charuco:, circles:, aprilgrid: or tags: as poecal detect has them, or a calibration.json with what it found; may be given
+   * again
    */
   markers?: Value | readonly Value[];
   /** Fit only rows whose COLUMN has one of these values, and hold out all others */
@@ -139,7 +140,8 @@ export interface ValidateOptions {
   camera?: Value | readonly Value[];
   /**
    * Board or solid that cameras see: CSV with target, x[mm], y[mm], z[mm] of its points, chessboard:10x7:27mm (squares along x and y, and
-   * their side), or a calibration.json with what it found; may be given again
+   * their side), charuco:, circles:, aprilgrid: or tags: as poecal detect has them, or a calibration.json with what it found; may be given
+   * again
    */
   markers?: Value | readonly Value[];
   /** Refit the measuring device's frame to these measurements */
@@ -218,7 +220,8 @@ export interface CheckOptions {
   camera?: Value | readonly Value[];
   /**
    * Board or solid that cameras see: CSV with target, x[mm], y[mm], z[mm] of its points, chessboard:10x7:27mm (squares along x and y, and
-   * their side), or a calibration.json with what it found; may be given again
+   * their side), charuco:, circles:, aprilgrid: or tags: as poecal detect has them, or a calibration.json with what it found; may be given
+   * again
    */
   markers?: Value | readonly Value[];
   /** Fit only rows whose COLUMN has one of these values, and hold out all others */
@@ -284,7 +287,7 @@ export interface SimulateOptions {
   target?: Value | readonly Value[];
   /** Angle and distance by which every axis, and the tip, is off [default: 1deg,2mm] */
   errors?: Value | readonly Value[];
-  /** Standard deviations of each measured component [default: 0.05mm,0.01deg] */
+  /** Standard deviations of each measured component; with --camera, of what the arm is off in each configuration [default: 0.05mm,0.01deg] */
   noise?: Value | readonly Value[];
   /**
    * What the joints do beyond geometry: groups of terms with the standard deviations of their random coefficients in radians or metres,
@@ -303,6 +306,10 @@ export interface SimulateOptions {
   frame?: "unknown" | "base";
   /** Number of further measurements, free of noise, to judge a calibration by [default: 0] */
   heldOutCount?: Value | readonly Value[];
+  /** Pictures of a board and the readings of each, in place of measurements: where the camera is */
+  camera?: "in-hand" | "beside";
+  /** The board in the pictures, as poecal board draws it [default: charuco:7x5:36mm:26mm:DICT_4X4_50] */
+  board?: Value | readonly Value[];
 }
 
 /** A finished calibration. */

@@ -28,6 +28,8 @@ pub(crate) use report::{Report, ReportPlace};
 pub(crate) use reproduce::{Experiment, Reproduce};
 pub(crate) use shared::{TreeArgs, with_mapping};
 pub(crate) use simulate::Simulate;
+#[cfg(any(unix, windows))]
+pub(crate) use words::CameraPlace;
 pub(crate) use words::{ExportForm, ProgramLanguage};
 
 use std::path::{Path, PathBuf};

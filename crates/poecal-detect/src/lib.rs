@@ -49,7 +49,7 @@ pub use found::{Corner, Found, Kind, Rejected};
 pub use gray::Gray;
 pub use layout::{Layout, Pattern, Point, Tagged};
 pub use picture::{Picture, Turned};
-pub use preview::preview;
+pub use preview::{png, preview};
 pub use spec::{AprilGrid, Charuco, Chessboard, Circles, Spec, Tags};
 pub use suggest::Suggestion;
 

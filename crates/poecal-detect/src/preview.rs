@@ -2,7 +2,7 @@
 
 use std::io::Cursor;
 
-use image::{ImageFormat, Rgb, RgbImage};
+use image::{GrayImage, ImageFormat, Rgb, RgbImage};
 
 use crate::error::{Error, Result};
 use crate::found::Corner;
@@ -37,6 +37,19 @@ pub fn preview(gray: &Gray, corners: &[Corner]) -> Result<Vec<u8>> {
             }
         }
     }
+    let mut bytes = Cursor::new(Vec::new());
+    image.write_to(&mut bytes, ImageFormat::Png).map_err(|error| Error::new(error.to_string()))?;
+    Ok(bytes.into_inner())
+}
+
+/// A picture as PNG, as a camera saves it: 8 bits of gray.
+///
+/// # Errors
+/// If it cannot be encoded.
+pub fn png(gray: &Gray) -> Result<Vec<u8>> {
+    let (width, height) = (gray.width() as u32, gray.height() as u32);
+    let image = GrayImage::from_raw(width, height, gray.bytes())
+        .ok_or_else(|| Error::new("found a picture of another size than its levels"))?;
     let mut bytes = Cursor::new(Vec::new());
     image.write_to(&mut bytes, ImageFormat::Png).map_err(|error| Error::new(error.to_string()))?;
     Ok(bytes.into_inner())

@@ -6,8 +6,12 @@ use clap::Args;
 use poecal::calibration::DeviceFrameKnowledge;
 use poecal::robot::Sizes;
 use poecal::simulate::Kind;
+#[cfg(any(unix, windows))]
+use poecal_detect::Spec;
 
 use super::shared::TreeArgs;
+#[cfg(any(unix, windows))]
+use super::words::{CAMERA, CameraPlace};
 use super::words::{FRAME, one_of, simulated};
 use crate::quantity::{LengthAndAngle, direction, terms};
 
@@ -21,7 +25,7 @@ pub(crate) struct Simulate {
     /// Angle and distance by which every axis, and the tip, is off
     #[arg(long, value_name = "ANGLE,LENGTH", default_value = "1deg,2mm", allow_hyphen_values = true)]
     pub(crate) errors: LengthAndAngle,
-    /// Standard deviations of each measured component
+    /// Standard deviations of each measured component; with --camera, of what the arm is off in each configuration
     #[arg(long, value_name = "LENGTH,ANGLE", default_value = "0.05mm,0.01deg", allow_hyphen_values = true)]
     pub(crate) noise: LengthAndAngle,
     /// What the joints do beyond geometry: groups of terms with the standard deviations of their random coefficients in radians or metres,
@@ -46,6 +50,19 @@ pub(crate) struct Simulate {
     /// Number of further measurements, free of noise, to judge a calibration by
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(..=10_000_000))]
     pub(crate) held_out_count: u32,
+    /// Pictures of a board and the readings of each, in place of measurements: where the camera is
+    #[cfg(any(unix, windows))]
+    #[arg(long, value_parser = one_of(CAMERA), conflicts_with_all = ["kind", "frame", "held_out_count", "terms", "gravity"])]
+    pub(crate) camera: Option<CameraPlace>,
+    /// The board in the pictures, as poecal board draws it
+    #[cfg(any(unix, windows))]
+    #[arg(
+        long,
+        value_name = "SPEC",
+        default_value = "charuco:7x5:36mm:26mm:DICT_4X4_50",
+        requires = "camera"
+    )]
+    pub(crate) board: Spec,
     /// Folder for the files
     #[arg(long, value_name = "DIR")]
     pub(crate) out: PathBuf,

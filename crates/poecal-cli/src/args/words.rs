@@ -15,10 +15,35 @@ use poecal_lou2009::{Formulation, Method, Residual};
 /// Words, each with its help and its meaning.
 type Words<T> = &'static [(&'static str, &'static str, T)];
 
+/// Where a camera is.
+#[cfg(any(unix, windows))]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum CameraPlace {
+    /// On the tip.
+    InHand,
+    /// Beside the robot.
+    Beside,
+}
+
+#[cfg(any(unix, windows))]
+impl CameraPlace {
+    /// Its word on the command line.
+    pub(crate) fn word(self) -> &'static str {
+        CAMERA.iter().find(|(.., place)| *place == self).map_or("", |(word, ..)| word)
+    }
+}
+
 /// What is known of the measuring device's frame.
 pub(super) const FRAME: Words<DeviceFrameKnowledge> = &[
     ("unknown", "The device frame is unknown", DeviceFrameKnowledge::Unknown),
     ("base", "Measurements are in the robot's base frame", DeviceFrameKnowledge::Base),
+];
+
+/// Where the camera of simulated pictures is.
+#[cfg(any(unix, windows))]
+pub(super) const CAMERA: Words<CameraPlace> = &[
+    ("in-hand", "On the tip, and the board stays", CameraPlace::InHand),
+    ("beside", "Beside the robot, and the board is on the tip", CameraPlace::Beside),
 ];
 
 /// Which rows share a device frame.

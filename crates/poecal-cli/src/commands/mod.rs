@@ -15,6 +15,8 @@ mod identify;
 mod init;
 mod man;
 mod offsets;
+#[cfg(any(unix, windows))]
+mod photograph;
 mod predict;
 mod report;
 mod reproduce;

@@ -22,6 +22,14 @@ pub(crate) fn simulate(arguments: &Simulate, console: &Console) -> Result<u8> {
         &mut console.warner(),
     )?;
     let model = Model::read(&arguments.model, &arguments.chain.selection(None)?)?;
+    #[cfg(any(unix, windows))]
+    if let Some(camera) = arguments.camera {
+        return super::photograph::photograph(
+            (arguments, camera),
+            (&model, place, &command(arguments)),
+            console,
+        );
+    }
     let simulation = Simulation {
         error_rotation_rad: arguments.errors.angle_rad,
         error_position_m: arguments.errors.length_m,
@@ -63,7 +71,14 @@ fn command(arguments: &Simulate) -> String {
         words.extend(named.iter().map(|(name, link)| format!("{option} {name}={link}")));
     }
     let (kind, count, seed) = (arguments.kind.word(), arguments.count, arguments.seed);
-    words.push(format!("--kind {kind} --count {count} --seed {seed}"));
+    #[cfg(any(unix, windows))]
+    let kind = match arguments.camera {
+        Some(camera) => format!("--camera {} --board {}", camera.word(), arguments.board),
+        None => format!("--kind {kind}"),
+    };
+    #[cfg(not(any(unix, windows)))]
+    let kind = format!("--kind {kind}");
+    words.push(format!("{kind} --count {count} --seed {seed}"));
     words.push(format!("--errors {} --noise {}", arguments.errors.text, arguments.noise.text));
     if arguments.terms != Sizes::NONE {
         let used = TermGroup::ALL.into_iter().filter(|&group| arguments.terms[group] > 0.0);

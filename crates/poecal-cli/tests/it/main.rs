@@ -25,6 +25,8 @@ mod init;
 mod lost_beams;
 mod offsets;
 mod original_urdf;
+#[cfg(any(unix, windows))]
+mod photographs;
 #[cfg(unix)]
 mod places;
 mod project;

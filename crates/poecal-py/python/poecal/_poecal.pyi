@@ -798,7 +798,7 @@ class Residuals:
         numpy.ndarray
             Shape (m, n), millimetres or degrees; NaN where it was not measured.
         """
-    def errors(self, quantity: str, *, model: Literal["nominal", "registered", "calibrated"] = "calibrated") -> _Array:
+    def errors(self, quantity: str, *, model: Literal["nominal", "registered", "calibrated", "corrected"] = "calibrated") -> _Array:
         """Error of any quantity of a model.
 
         Parameters
@@ -812,6 +812,19 @@ class Residuals:
         -------
         numpy.ndarray
             Shape (m,), millimetres or degrees; NaN where it was not measured.
+        """
+    def corners_px(self, *, model: Literal["nominal", "registered", "calibrated", "corrected"] = "calibrated") -> _Array:
+        """Root mean square distance of the corners of each picture from where a model sees them.
+
+        Parameters
+        ----------
+        model
+            "nominal", "registered", "calibrated", or "corrected": NaN without such a model.
+
+        Returns
+        -------
+        numpy.ndarray
+            Shape (m,), pixels; NaN of rows that are no pictures.
         """
     @property
     def weight(self) -> _Array:

@@ -18,19 +18,25 @@ pub(super) fn doubts(
 ) -> Vec<String> {
     let mut doubts = Vec::new();
     let spread_mm = data.spread_m(rows) * 1e3;
-    let error_mm = registered.position_mm().rms;
+    // The pose of a small board in its picture is uncertain along the ray and in its turn: its corners judge.
+    let pixels = registered.pixels.filter(|it| it.pictures == rows.len());
+    let (what, error_mm) = match pixels {
+        Some(pixels) => ("error of the corners at the board", pixels.rms_mm),
+        None => ("position error", registered.position_mm().rms),
+    };
     if error_mm > MISFIT * spread_mm {
         let base = match frame {
             DeviceFrameKnowledge::Base => ", a device that does not stand at the base (--frame base)",
             DeviceFrameKnowledge::Unknown => "",
         };
         doubts.push(format!(
-            "with nominal screws the position error is {error_mm:.1} mm (RMS), {:.0} % of the measurements' spread: \
+            "with nominal screws the {what} is {error_mm:.1} mm (RMS), {:.0} % of the measurements' spread: \
              check for a wrong unit, exchanged or misnamed joint columns, mirrored coordinates{base}, or another robot",
             100.0 * error_mm / spread_mm
         ));
     }
-    if let Some(rotation) = registered.rotation_deg().filter(|rotation| rotation.rms > TURNED_DEG) {
+    let turned = registered.rotation_deg().filter(|it| pixels.is_none() && it.rms > TURNED_DEG);
+    if let Some(rotation) = turned {
         doubts.push(format!(
             "with nominal screws the orientation error is {:.0} deg (RMS): check the quaternion's order (x, y, z, w), \
              inverted poses, or another Euler convention",

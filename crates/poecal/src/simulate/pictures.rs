@@ -61,6 +61,8 @@ pub struct Photographed {
     pub tip_from_held: Pose,
     /// Pose of what stays, board or camera, in the base.
     pub base_from_other: Pose,
+    /// Pose of the board in the camera's frame in each picture, with the error of the arm there.
+    pub camera_from_board: Vec<Pose>,
     /// The pictures.
     pub data: Dataset,
 }
@@ -85,6 +87,15 @@ impl PictureSimulation {
             noise_px: 0.3,
             common: CommonError { shift_m: 0.0, turn_rad: 0.0, ..CommonError::default() },
         }
+    }
+
+    /// The same of another board and lens, with the board from a third to a half of the height of the picture.
+    #[must_use]
+    pub fn before(self, board: Board, lens: Lens) -> Self {
+        let height_px = lens.size_px.map_or(1000.0, |[_, height]| f64::from(height));
+        let distance_m =
+            [0.54, 0.33].map(|part| lens.focal_px[0] * 2.0 * board.radius_m() / (part * height_px));
+        PictureSimulation { board, lens, distance_m, ..self }
     }
 
     /// Simulates a robot that deviates from a nominal one, and pictures in configurations from which all of the board is seen.
@@ -114,6 +125,7 @@ impl PictureSimulation {
         data.pictures.cameras = vec![Camera::new("camera".to_owned(), self.lens)];
         data.pictures.boards = vec![self.board.clone()];
         data.pictures.sigma_px = self.noise_px;
+        let mut camera_from_boards = Vec::with_capacity(self.session.count);
         let mut near = first;
         for _ in 0..self.session.count {
             let mut found = None;
@@ -141,18 +153,20 @@ impl PictureSimulation {
                     base_from_other.inverse() * held
                 };
                 if let Some(corners) = self.corners(&camera_from_board, &mut generator) {
-                    found = Some((all, corners));
+                    found = Some((all, camera_from_board, corners));
                     break;
                 }
             }
-            let (all, corners) = found.ok_or_else(refuse)?;
+            let (all, camera_from_board, corners) = found.ok_or_else(refuse)?;
             let image = Some(format!("{:03}.png", data.len()));
             let picture = Picture::new(0, 0, image, corners);
             data.push_picture(&all, picture, (None, Source::default()))?.map_err(|_| refuse())?;
+            camera_from_boards.push(camera_from_board);
             near = all;
         }
         data.settle_pixels();
-        Ok(Photographed { nominal: nominal.clone(), actual, tip_from_held, base_from_other, data })
+        let (nominal, camera_from_board) = (nominal.clone(), camera_from_boards);
+        Ok(Photographed { nominal, actual, tip_from_held, base_from_other, camera_from_board, data })
     }
 
     /// A pose of the board in the camera's frame.

@@ -3,6 +3,7 @@
 mod averaging;
 mod faces;
 mod hand_eye;
+mod misread;
 mod one_station;
 mod others;
 mod pictures;

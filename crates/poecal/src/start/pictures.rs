@@ -1,5 +1,6 @@
 //! Which end of the robot a camera is on, and which of two poses a board has in a picture, with nominal screws.
 
+use super::misread::misread;
 use super::registration::Registration;
 use super::stations::register;
 use crate::camera::{Picture, Pictures};
@@ -37,17 +38,20 @@ pub fn settle_pictures(data: &mut Dataset, robot: &Robot) -> Vec<String> {
         || boards.iter().any(|it| is_placed(&it.name, &robot.mounted));
     let (beside, beside_px) = settled(data, robot);
     if placed {
-        let said = turned_back(data, &beside);
+        let mut said = turned_back(data, &beside);
+        said.extend(misread(data, beside_px, |other| settled(other, robot).1));
         *data = beside;
         return said;
     }
-    let (in_hand, in_hand_px) = settled(&in_hand(data), robot);
-    let (found, place, own, other) = if in_hand_px < beside_px {
-        (in_hand, "on the last link, and the board stays", in_hand_px, beside_px)
+    let (held, held_px) = settled(&in_hand(data), robot);
+    let (found, place, own, other) = if held_px < beside_px {
+        (held, "on the last link, and the board stays", held_px, beside_px)
     } else {
-        (beside, "beside the robot, and the board is on the last link", beside_px, in_hand_px)
+        (beside, "beside the robot, and the board is on the last link", beside_px, held_px)
     };
     let mut said = turned_back(data, &found);
+    let missed = |read: &Dataset| settled(read, robot).1.min(settled(&in_hand(read), robot).1);
+    said.extend(misread(data, own, missed));
     *data = found;
     let doubt = if other < EVIDENT * own {
         "; that is not evident: say it with --instrument CAMERA=LINK and --target BOARD=LINK"

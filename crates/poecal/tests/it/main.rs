@@ -41,6 +41,7 @@ mod measurement_choices;
 mod measurement_errors;
 mod measurement_forms;
 mod measurement_long;
+mod misread_pictures;
 mod mistakes;
 mod mistakes_of_places;
 mod mixed_cell;

@@ -1,12 +1,13 @@
 //! Pictures: lenses and poses beside OpenCV, and arms calibrated from corners.
 
 use nalgebra::{Vector2, Vector3};
-use poecal::calibration::{BlockChoice, calibrate_repairing};
 use poecal::camera::{Board, CommonError, Corner, Distortion, Lens, View, poses_of_rays};
 use poecal::lie::{Pose, rotation};
 use poecal::simulate::{PictureSimulation, elbow};
 use poecal::start::settle_pictures;
 use poecal::{CalibrationOptions, Simulation, calibrate};
+
+use crate::trials::trials;
 
 fn lens(k: [f64; 8]) -> Lens {
     Lens { distortion: Distortion::Brown(k), ..Lens::pinhole([1510.0, 1490.0], [960.0, 610.0]) }
@@ -260,12 +261,13 @@ fn the_error_of_the_configuration_is_found_and_weighs_pictures() {
 /// Bounds of 95 % on pictures that were held out, with corners alone and with an error of each configuration beside.
 #[test]
 fn bounds_hold_on_pictures_that_were_not_fitted() {
-    const SESSIONS: u64 = 8;
+    let sessions = trials(16);
+    let part = 1.0 / sessions.count as f64;
     for millis in [0.0, 0.1, 0.5] {
         let common =
             CommonError { shift_m: 1e-3 * millis, turn_rad: 1e-3 * millis, ..CommonError::default() };
         let (mut inside, mut ratio) = ([0.0; 2], 0.0);
-        for seed in 0..SESSIONS {
+        for seed in sessions.seeds() {
             let session = session(100 + seed);
             let simulated = PictureSimulation { common, ..PictureSimulation::usual(session, seed % 2 == 0) };
             let mut made = simulated.run(&elbow()).unwrap();
@@ -273,10 +275,10 @@ fn bounds_hold_on_pictures_that_were_not_fitted() {
             let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default()).unwrap();
             let kept = calibration.trust.held_out.unwrap();
             let rotation = kept.rotation_deg().unwrap();
-            inside[0] += kept.position_mm().inside_bound95 / SESSIONS as f64;
-            inside[1] += rotation.inside_bound95 / SESSIONS as f64;
+            inside[0] += kept.position_mm().inside_bound95 * part;
+            inside[1] += rotation.inside_bound95 * part;
             let error = calibration.accuracy.held_out.unwrap().calibrated.position_mm().rms;
-            ratio += (error / kept.position_mm().expected_rms).ln() / SESSIONS as f64;
+            ratio += (error / kept.position_mm().expected_rms).ln() * part;
         }
         println!(
             "{millis} mm and mrad a configuration: {:.1} % of positions and {:.1} % of rotations inside, error over expected {:.2}",
@@ -284,38 +286,9 @@ fn bounds_hold_on_pictures_that_were_not_fitted() {
             100.0 * inside[1],
             ratio.exp()
         );
-        // 8 sessions of 18 pictures: 95 % ± 1.8 %, and the pictures of a session share its fit.
-        assert!(inside.iter().all(|it| (0.88..1.0).contains(it)), "{inside:?}");
+        // 16 sessions of 18 pictures: 95 % ± 1.3 %, and the pictures of a session share its fit.
+        let least = 0.89 - sessions.more(0.07);
+        assert!(inside.iter().all(|it| (least..=1.0).contains(it)), "{inside:?}");
         assert!((0.7..1.3).contains(&ratio.exp()), "{}", ratio.exp());
     }
-}
-
-/// A board printed 0.4 % too long along x: its size is known as well as the robot's, its shape by the corners.
-#[test]
-fn a_board_is_found_that_is_not_what_it_is_said_to_be() {
-    const STRETCH: f64 = 1.004;
-    let (mut farthest, mut uneven): (f64, f64) = (0.0, 0.0);
-    for seed in 0..4 {
-        let session = session(seed);
-        let mut made = PictureSimulation::usual(session, seed % 2 == 0).run(&elbow()).unwrap();
-        made.data.pictures.boards[0].points.iter_mut().for_each(|point| point.x /= STRETCH);
-        for at in 0..made.data.pictures.all.len() {
-            let pictures = &made.data.pictures;
-            let poses = pictures.view(&pictures.all[at]).unwrap().poses().unwrap();
-            made.data.pictures.all[at].poses = poses;
-        }
-        made.data.settle_pixels();
-        settle_pictures(&mut made.data, &made.nominal);
-        let blocks = BlockChoice { free: vec!["board".to_owned()], ..BlockChoice::default() };
-        let options = CalibrationOptions { blocks, held_out: 0.0, ..CalibrationOptions::default() };
-        let found = calibrate_repairing(&made.nominal, &made.data, &options, &mut |_| {}).unwrap();
-        let numbers = &found.data.pictures.found;
-        for (number, truth) in numbers.iter().zip([STRETCH, 1.0, 0.0, 0.0]) {
-            farthest = farthest.max((number.found - truth).abs() / number.deviation);
-        }
-        uneven = uneven.max((numbers[0].found / numbers[1].found - STRETCH).abs());
-    }
-    println!("at most {farthest:.1} deviations from the truth, and {uneven:.1e} in the ratio of the sides");
-    // 16 numbers within 3.5 deviations; 60 pictures of 24 corners to 0.3 px show a side of 350 px to 1e-4, of which this is five times.
-    assert!(farthest < 3.5 && uneven < 5e-4, "{farthest} {uneven:e}");
 }

@@ -8,13 +8,15 @@ const CALIBRATION: [&str; 5] =
 /// File names of a check.
 const VALIDATION: [&str; 3] = ["validation.json", "errors.csv", REPORT];
 /// File names of a simulated session.
-const SIMULATION: [&str; 7] = [
+const SIMULATION: [&str; 9] = [
     "nominal.urdf",
     "nominal.toml",
     "actual.urdf",
     "actual.toml",
     "measurements.csv",
     "held_out.csv",
+    "joints.csv",
+    "cameras.csv",
     "truth.json",
 ];
 /// File names of every project.
@@ -65,11 +67,21 @@ impl Contents {
         match self {
             Contents::Calibration => CALIBRATION.contains(&name),
             Contents::Validation => VALIDATION.contains(&name),
-            Contents::Simulation => SIMULATION.contains(&name),
+            Contents::Simulation => SIMULATION.contains(&name) || is_picture(name),
             Contents::Reproduction => is_of_reproduction(name),
             Contents::Project => PROJECT.contains(&name),
         }
     }
+}
+
+/// Name of a simulated picture.
+pub(super) fn picture_name(at: usize) -> String {
+    format!("picture-{:03}.png", at + 1)
+}
+
+fn is_picture(name: &str) -> bool {
+    let number = name.strip_prefix("picture-").and_then(|rest| rest.strip_suffix(".png"));
+    number.is_some_and(|it| it.len() >= 3 && it.bytes().all(|c| c.is_ascii_digit()))
 }
 
 /// Whether a reproduction may have a file of this name.

@@ -12,6 +12,7 @@ mod file;
 mod interrupted;
 mod journal;
 mod leftovers;
+mod photographs;
 mod place;
 mod project;
 mod reproduction;
@@ -24,6 +25,7 @@ pub use contents::{Contents, REPORT};
 pub use existing::Existing;
 pub use file::FilePlace;
 pub use leftovers::clean_up;
+pub use photographs::{PhotographedSession, write_photographs};
 pub use place::FolderPlace;
 pub use project::{Project, write_project};
 pub use reproduction::write_reproduction;
@@ -68,6 +70,7 @@ enum Content<'a> {
     Text(Page),
     /// Rows, written in parts: there may be many.
     Rows(ResidualRows<'a>),
+    Bytes(&'a [u8]),
 }
 
 /// A file to be written.
@@ -91,6 +94,10 @@ impl<'a> NewFile<'a> {
         NewFile { name: name.to_owned(), content: Content::Rows(rows), model_of: None }
     }
 
+    fn of_bytes(name: String, bytes: &'a [u8]) -> Self {
+        NewFile { name, content: Content::Bytes(bytes), model_of: None }
+    }
+
     fn of_robot(name: String, text: String, robot: &'a Robot) -> Self {
         NewFile::of_urdf(name, text, Cow::Borrowed(robot), ChainSelection::default())
     }
@@ -103,6 +110,7 @@ impl<'a> NewFile<'a> {
         match &self.content {
             Content::Text(pieces) => pieces.iter().try_for_each(|piece| out.write_all(piece.as_bytes())),
             Content::Rows(rows) => rows.write_to(out),
+            Content::Bytes(bytes) => out.write_all(bytes),
         }
     }
 

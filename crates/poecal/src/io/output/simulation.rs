@@ -13,10 +13,11 @@ use crate::io::measurements;
 use crate::io::model::Model;
 use crate::io::proof::Difference;
 use crate::measurement::{Dataset, Noise};
+use crate::robot::Robot;
 use crate::simulate::{Kind, Simulated, Simulation};
 
 /// Version word of `truth.json`.
-const SCHEMA: &str = "poecal-truth-1";
+pub(super) const SCHEMA: &str = "poecal-truth-1";
 
 /// A simulated session and its origin.
 #[derive(Clone, Copy, Debug)]
@@ -58,13 +59,13 @@ struct TruthFile {
 }
 
 #[derive(Serialize)]
-struct Magnitudes {
+pub(super) struct Magnitudes {
     position_mm: f64,
     rotation_deg: f64,
 }
 
 impl Magnitudes {
-    fn new(position_m: f64, rotation_rad: f64) -> Self {
+    pub(super) fn new(position_m: f64, rotation_rad: f64) -> Self {
         Magnitudes { position_mm: position_m * 1e3, rotation_deg: rotation_rad.to_degrees() }
     }
 }
@@ -117,15 +118,7 @@ pub fn write_simulation(place: FolderPlace, model: &Model, session: &SimulatedSe
     let mut files = robot_files("nominal", model, &made.nominal, &mut notes)?;
     let mut rigid = made.actual.rigid();
     rigid.terms.truncate(made.nominal.terms.len());
-    if rigid.joints.len() < made.actual.joints.len() {
-        let off = Difference::of(&made.actual, &rigid, CONFIGURATIONS).position_m * 1e3;
-        notes.push(format!(
-            "the actual model is written without what its joints do beyond geometry, which moves the tip by up to {off:.3} mm: truth.json has it"
-        ));
-    }
-    files.extend(robot_files("actual", model, &rigid, &mut notes)?);
-    notes.sort();
-    notes.dedup();
+    files.extend(actual_files(model, &made.actual, &rigid, &mut notes)?);
     let comment = format!("simulated by: {command}");
     let measured = measurements::text(&made.data, &made.nominal, &noise, &comment)?;
     files.push(NewFile::new("measurements.csv", measured));
@@ -136,4 +129,23 @@ pub fn write_simulation(place: FolderPlace, model: &Model, session: &SimulatedSe
     }
     files.push(NewFile::new("truth.json", json_text(&TruthFile::new(session), "truth")?));
     write_files(place, &files, None, notes)
+}
+
+/// The actual robot in the form of `model`, without what its joints do beyond geometry, which is said.
+pub(super) fn actual_files<'a>(
+    model: &Model,
+    actual: &Robot,
+    rigid: &'a Robot,
+    notes: &mut Vec<String>,
+) -> Result<Vec<NewFile<'a>>> {
+    if rigid.joints.len() < actual.joints.len() {
+        let off = Difference::of(actual, rigid, CONFIGURATIONS).position_m * 1e3;
+        notes.push(format!(
+            "the actual model is written without what its joints do beyond geometry, which moves the tip by up to {off:.3} mm: truth.json has it"
+        ));
+    }
+    let files = robot_files("actual", model, rigid, notes)?;
+    notes.sort();
+    notes.dedup();
+    Ok(files)
 }
