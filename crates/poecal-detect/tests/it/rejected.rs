@@ -80,7 +80,9 @@ fn what_the_board_may_be_is_suggested() {
         ("aprilgrid:5x4:88mm:0.3", "aprilgrid:4x5:88mm:0.3:DICT_APRILTAG_36h11"),
         ("aprilgrid:5x4:88mm:0.3", "aprilgrid:5x4:88mm:0.3:DICT_APRILTAG_25h9"),
     ] {
-        let pictures: Vec<Gray> = (0..2).map(|number| drawn(shown, &draw, number)).collect();
+        // One of the first two is too far away for small markers.
+        let count = if shown.starts_with('c') && shown.contains("DICT") { 3 } else { 2 };
+        let pictures: Vec<Gray> = (0..count).map(|number| drawn(shown, &draw, number)).collect();
         let detector = detector(stated);
         assert!(pictures.iter().all(|it| detector.detect(it).is_err()));
         let suggestion = detector.suggest(&pictures.iter().collect::<Vec<_>>()).unwrap();
