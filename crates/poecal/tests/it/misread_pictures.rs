@@ -18,7 +18,7 @@ fn photographed(seed: u64) -> Photographed {
         ..Simulation::default()
     };
     let common = CommonError { shift_m: 2e-4, turn_rad: 3e-4, ..CommonError::default() };
-    let simulated = PictureSimulation { common, ..PictureSimulation::usual(session, seed % 2 == 0) };
+    let simulated = PictureSimulation { common, ..PictureSimulation::usual(session, seed.is_multiple_of(2)) };
     simulated.run(&elbow()).unwrap()
 }
 
