@@ -10,7 +10,7 @@ const MODEL: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/elbow/r
 #[test]
 fn simulated_pictures_calibrate_the_robot_wherever_the_camera_is() {
     for (place, spec) in
-        [("in-hand", "charuco:7x5:36mm:26mm:DICT_4X4_50"), ("beside", "circles:7x4:30mm:asymmetric")]
+        [("in-hand", "charuco:7x5:36mm:26mm:DICT_4X4_50"), ("beside", "circles:4x7:26mm:asymmetric")]
     {
         let folder = Folder::new();
         fs::copy(Path::new(MODEL), folder.path("robot.urdf")).unwrap();
