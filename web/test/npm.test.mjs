@@ -161,7 +161,7 @@ test("wrong input: sentence and exit code of the program, and nothing written", 
     // A system adds the number of its error, and begins with a capital; the module has no commands of pictures and drawings.
     const err = there.err
       .replace(/\((\w)([^()]*) \(os error \d+\)\)/g, (_, first, rest) => `(${first.toLowerCase()}${rest})`)
-      .replace(/^ {2}(detect|board) .*\n/gm, "");
+      .replace(/^ {2}(detect|board) .*\n( {10,}.*\n)*/gm, "");
     assert.deepEqual([here.code, here.out, here.err], [there.code, there.out, err], name);
     assert.deepEqual([here.files, here.removed], [{}, []], name);
   }
