@@ -8,9 +8,10 @@ use crate::charuco::consensus;
 use crate::found::{Corner, Found, Kind, Rejected};
 use crate::gray::Gray;
 use crate::homography::Pair;
-use crate::lattice::map_near;
+use crate::lattice::{map_near, prune};
 use crate::layout::{Layout, Pattern, Tagged};
 use crate::markers::{Marker, Reader};
+use crate::median::median;
 use crate::quads::{Quad, quads_apart};
 use crate::saddle::{Expected, Saddle, refine};
 
@@ -61,7 +62,7 @@ pub(crate) fn of_quads(
             let saddle = expected(gray, layout, tags, &pairs, id).and_then(|it| refine(gray, &it, noise));
             found.extend(saddle.map(|it| (id, it)));
         }
-        prune(layout, &mut found);
+        prune(layout, &mut found, |it| it.place, OFF);
         if found.len() == before {
             break;
         }
@@ -69,9 +70,7 @@ pub(crate) fn of_quads(
     if found.len() < 4 {
         return Err(Rejected::Few(found.len()));
     }
-    let mut blurs: Vec<f64> = found.values().map(|it| it.blur_px).collect();
-    blurs.sort_by(f64::total_cmp);
-    let blur_px = blurs.get(blurs.len() / 2).copied().unwrap_or(0.0);
+    let blur_px = median(found.values().map(|it| it.blur_px)).unwrap_or(0.0);
     let named = |(id, it): (&usize, &Saddle)| Corner {
         id: *id,
         kind: Kind::Tag,
@@ -98,23 +97,4 @@ fn expected(gray: &Gray, layout: &Layout, tags: &Tagged, pairs: &[Pair], id: usi
     let dark_before = id.is_multiple_of(2);
     let search_px = (1.0 + 0.03 * side_px * nearest.max(0.3)).min(0.12 * side_px).max(1.0);
     Some(Expected { place, slope, plain: border.min(tags.gap), dark_before, search_px })
-}
-
-/// Takes corners away that are not where the others have them, the worst first.
-fn prune(layout: &Layout, found: &mut BTreeMap<usize, Saddle>) {
-    loop {
-        let pairs: Vec<Pair> = found.iter().map(|(id, it)| (layout.corner(*id), it.place, 1.0)).collect();
-        let off = |(id, saddle): (&usize, &Saddle)| {
-            let point = layout.corner(*id);
-            let part = map_near(&pairs, point).and_then(|(map, nearest)| {
-                let side_px = map.slope(point)?.determinant().abs().sqrt();
-                Some((map.map(point)? - saddle.place).norm() / ((OFF.0 + OFF.1 * side_px) * nearest.max(1.0)))
-            });
-            (*id, part.unwrap_or(f64::INFINITY))
-        };
-        match found.iter().map(off).max_by(|a, b| a.1.total_cmp(&b.1)) {
-            Some((worst, part)) if part > 1.0 => found.remove(&worst),
-            _ => return,
-        };
-    }
 }

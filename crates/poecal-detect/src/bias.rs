@@ -5,11 +5,10 @@
 
 use nalgebra::{Matrix2, SMatrix, SVector, Vector2};
 
-use crate::homography::{Homography, Pair};
+use crate::homography::{Homography, Pair, near};
 
 /// Standard deviation of the weights of points by their distance, and the farthest that counts, units of the plane.
-const NEAR: f64 = 1.8;
-const FAR: f64 = 4.5;
+const REACH: [f64; 2] = [1.8, 4.5];
 /// Points on a circle.
 const AROUND: usize = 16;
 
@@ -26,11 +25,7 @@ fn powers(off: Vector2<f64>) -> SVector<f64, 6> {
 
 impl Local {
     fn new(pairs: &[Pair], point: Vector2<f64>) -> Option<Self> {
-        let weighed = |(plane, place, weight): &Pair| {
-            let square = (plane - point).norm_squared();
-            (square < FAR * FAR).then_some((*plane, *place, weight * (-0.5 * square / (NEAR * NEAR)).exp()))
-        };
-        let near: Vec<Pair> = pairs.iter().filter_map(weighed).collect();
+        let near = near(pairs.iter().copied(), point, REACH);
         let map = Homography::fit(&near)?;
         let (mut normal, mut right) = (SMatrix::<f64, 6, 6>::zeros(), SMatrix::<f64, 6, 2>::zeros());
         for (plane, place, weight) in &near {

@@ -9,6 +9,7 @@ use crate::growth::{Growth, Node};
 use crate::homography::{Homography, Pair};
 use crate::layout::Layout;
 use crate::markers::{Marker, Reader};
+use crate::median::median;
 use crate::quads::{Quad, quads};
 
 /// Fewest corners and markers that are a board.
@@ -217,13 +218,9 @@ fn predicted(layout: &Layout, growth: &Growth<'_>, id: usize) -> Option<Quad> {
 /// Whether the markers are as large as the board has them, beside its squares.
 fn is_marker_side(layout: &Layout, growth: &Growth<'_>, markers: &[Marker], agreeing: &[usize]) -> bool {
     let diagonals = |quad: &Quad| (quad[2] - quad[0]).norm() + (quad[3] - quad[1]).norm();
-    let mut parts: Vec<f64> = agreeing
-        .iter()
-        .filter_map(|at| {
-            let marker = markers.get(*at)?;
-            Some(diagonals(&marker.corners) / diagonals(&predicted(layout, growth, marker.id)?))
-        })
-        .collect();
-    parts.sort_by(f64::total_cmp);
-    parts.get(parts.len() / 2).is_none_or(|it| (it - 1.0).abs() < SIDE)
+    let parts = agreeing.iter().filter_map(|at| {
+        let marker = markers.get(*at)?;
+        Some(diagonals(&marker.corners) / diagonals(&predicted(layout, growth, marker.id)?))
+    });
+    median(parts).is_none_or(|it| (it - 1.0).abs() < SIDE)
 }

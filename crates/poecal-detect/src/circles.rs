@@ -10,8 +10,9 @@ use crate::found::{Corner, Found, Kind, Rejected};
 use crate::gray::Gray;
 use crate::growth::Node;
 use crate::homography::Pair;
-use crate::lattice::{Lattice, lattices, map_near};
+use crate::lattice::{Lattice, lattices, map_near, prune};
 use crate::layout::Layout;
+use crate::median::median;
 use crate::parts::{Blob, Shades};
 
 /// Dots by their numbers on the board.
@@ -99,7 +100,7 @@ fn on_board(layout: &Layout, node: Node, turn: usize) -> Node {
 fn peeled(layout: &Layout, lattice: &Lattice, turn: usize) -> Vec<(Node, usize)> {
     let mut nodes: Vec<(Node, usize)> =
         lattice.iter().map(|(node, dot)| (on_board(layout, *node, turn), *dot)).collect();
-    let size = layout.dots();
+    let size = layout.inner();
     let least = nodes.len() - nodes.len() / BEYOND;
     while let Some([low, high]) = extent(&nodes) {
         let beyond = (0..2).filter(|k| (high[*k] - low[*k] + 1) as usize > size[*k]);
@@ -128,7 +129,7 @@ fn extent(nodes: &[(Node, usize)]) -> Option<[Node; 2]> {
 fn numbered(layout: &Layout, dots: &[Dot], lattice: &Lattice, turn: usize) -> Result<Named, Rejected> {
     let nodes = peeled(layout, lattice, turn);
     let [low, high] = extent(&nodes).ok_or(Rejected::NoBoard)?;
-    let (seen, size) = ([0, 1].map(|k| (high[k] - low[k] + 1) as usize), layout.dots());
+    let (seen, size) = ([0, 1].map(|k| (high[k] - low[k] + 1) as usize), layout.inner());
     if seen[0].min(seen[1]) > size[0].min(size[1]) || seen[0].max(seen[1]) > size[0].max(size[1]) {
         return Err(Rejected::Other);
     }
@@ -163,12 +164,12 @@ fn named(
     }
     let turnable = fitting.len() > 1;
     let (_, mut named) = fitting.into_iter().min_by(|a, b| a.0.total_cmp(&b.0)).ok_or(reason)?;
-    prune(layout, &mut named);
+    prune(layout, &mut named, |it| it.place, OFF);
     let radius = radius(layout, &named).ok_or(Rejected::NoBoard)?;
     keep_round(layout, &mut named, radius);
     seek(gray, layout, noise, &mut named, radius);
     keep_round(layout, &mut named, radius);
-    prune(layout, &mut named);
+    prune(layout, &mut named, |it| it.place, OFF);
     if named.len() * 20 < layout.corners() * 13 || named.len() < 6 {
         return Err(Rejected::Few(named.len()));
     }
@@ -176,33 +177,12 @@ fn named(
         return Err(Rejected::Other);
     }
     let corners = corrected(layout, &named, radius);
-    let mut blurs: Vec<f64> = named.values().map(|it| it.blur_px).collect();
-    blurs.sort_by(f64::total_cmp);
-    let blur_px = blurs.get(blurs.len() / 2).copied().unwrap_or(0.0);
+    let blur_px = median(named.values().map(|it| it.blur_px)).unwrap_or(0.0);
     Ok(Found { corners, markers: 0, turnable, blur_px, noise })
 }
 
 fn pairs(layout: &Layout, named: &Named) -> Vec<Pair> {
     named.iter().map(|(id, dot)| (layout.corner(*id), dot.place, 1.0)).collect()
-}
-
-/// Takes dots away that are not where their neighbours have them, the worst first.
-fn prune(layout: &Layout, named: &mut Named) {
-    loop {
-        let all = pairs(layout, named);
-        let off = |(id, dot): (&usize, &Dot)| {
-            let point = layout.corner(*id);
-            let part = map_near(&all, point).and_then(|(map, nearest)| {
-                let unit_px = map.slope(point)?.determinant().abs().sqrt();
-                Some((map.map(point)? - dot.place).norm() / ((OFF.0 + OFF.1 * unit_px) * nearest.max(1.0)))
-            });
-            (*id, part.unwrap_or(f64::INFINITY))
-        };
-        match named.iter().map(off).max_by(|a, b| a.1.total_cmp(&b.1)) {
-            Some((worst, part)) if part > 1.0 => named.remove(&worst),
-            _ => return,
-        };
-    }
 }
 
 /// The radius of a dot, units, and pixels of a unit.
@@ -215,19 +195,15 @@ fn radius_of(all: &[Pair], point: Vector2<f64>, dot: &Dot) -> Option<[f64; 2]> {
 fn radius(layout: &Layout, named: &Named) -> Option<f64> {
     let all = pairs(layout, named);
     let radius = |(id, dot): (&usize, &Dot)| Some(radius_of(&all, layout.corner(*id), dot)?[0]);
-    let mut radii: Vec<f64> = named.iter().filter_map(radius).collect();
-    radii.sort_by(f64::total_cmp);
-    radii.get(radii.len() / 2).copied()
+    median(named.iter().filter_map(radius))
 }
 
 /// Takes dots away that are not as large as the others.
 fn keep_round(layout: &Layout, named: &mut Named, radius: f64) {
     let all = pairs(layout, named);
     named.retain(|id, dot| is_alike(&all, layout.corner(*id), dot, radius));
-    let mut misfits: Vec<f64> = named.values().map(|it| it.misfit).collect();
-    misfits.sort_by(f64::total_cmp);
-    let median = misfits.get(misfits.len() / 2).copied().unwrap_or(0.0);
-    named.retain(|_, dot| dot.misfit < COVERED.0 * median + COVERED.1);
+    let usual = median(named.values().map(|it| it.misfit)).unwrap_or(0.0);
+    named.retain(|_, dot| dot.misfit < COVERED.0 * usual + COVERED.1);
 }
 
 fn is_alike(all: &[Pair], point: Vector2<f64>, dot: &Dot, radius: f64) -> bool {
@@ -262,7 +238,7 @@ fn seek(gray: &Gray, layout: &Layout, noise: f64, named: &mut Named, radius: f64
 
 /// Whether most of the outer dots are seen: a board that is cut out of a field across its rows has corners of it only.
 fn has_outline(layout: &Layout, named: &Named) -> bool {
-    let [columns, rows] = layout.dots().map(|it| it as f64);
+    let [columns, rows] = layout.inner().map(|it| it as f64);
     // In every second row of an asymmetric grid the outer dots are a column further inside.
     let inside = if layout.is_asymmetric() { 1.5 } else { 0.5 };
     let is_outer = |id: &usize| {
@@ -276,7 +252,7 @@ fn has_outline(layout: &Layout, named: &Named) -> bool {
 /// Whether there is paper around the outer dots: what is cut off from a field of dots has none.
 fn has_paper(gray: &Gray, layout: &Layout, named: &Named) -> bool {
     let all = pairs(layout, named);
-    let [columns, rows] = layout.dots().map(|it| it as f64);
+    let [columns, rows] = layout.inner().map(|it| it as f64);
     let mut kinds = [0, 0];
     for (id, dot) in named {
         let point = layout.corner(*id);

@@ -3,6 +3,7 @@
 use std::fmt;
 
 use crate::growth::{Growth, Node};
+use crate::median::median;
 
 /// What a point of a board is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -117,8 +118,6 @@ pub(crate) fn found(growth: &Growth<'_>, noise: f64, id: impl Fn(Node) -> Option
         })
         .collect();
     corners.sort_by_key(|it| it.id);
-    let mut blurs: Vec<f64> = growth.nodes.values().map(|it| it.blur_px).collect();
-    blurs.sort_by(f64::total_cmp);
-    let blur_px = blurs.get(blurs.len() / 2).copied().unwrap_or(0.0);
+    let blur_px = median(growth.nodes.values().map(|it| it.blur_px)).unwrap_or(0.0);
     Found { corners, markers: 0, turnable: false, blur_px, noise }
 }

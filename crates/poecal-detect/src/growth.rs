@@ -5,7 +5,8 @@ use std::collections::BTreeMap;
 use nalgebra::Vector2;
 
 use crate::gray::Gray;
-use crate::homography::{Homography, Pair};
+use crate::homography::{Homography, Pair, map_near};
+use crate::median::median;
 use crate::saddle::{Expected, Saddle, refine};
 
 /// A corner of squares: columns and rows before it.
@@ -26,10 +27,8 @@ pub(crate) struct Growth<'a> {
     tried: BTreeMap<Node, Vector2<f64>>,
 }
 
-/// Standard deviation of the weights of points by their distance, squares.
-const NEAR: f64 = 1.2;
-/// Farthest point that a map takes, squares.
-const FAR: f64 = 3.2;
+/// Standard deviation of the weights of points by their distance, and the farthest that a map takes, squares.
+const REACH: [f64; 2] = [1.2, 3.2];
 /// How far beyond known points a corner is sought, squares.
 const STEP: f64 = 1.6;
 /// Largest distance of a corner from where its neighbours have it, pixels and squares.
@@ -55,22 +54,8 @@ impl<'a> Growth<'a> {
 
     /// The map near a point of the board, from what is around it but not at it, and how far the nearest of it is, squares.
     pub(crate) fn map_near(&self, point: Vector2<f64>) -> Option<(Homography, f64)> {
-        let mut pairs: Vec<Pair> = Vec::new();
-        let mut nearest = f64::INFINITY;
-        let mut add = |plane: Vector2<f64>, place: Vector2<f64>, weight: f64| {
-            let square = (plane - point).norm_squared();
-            if square > 1e-6 && square < FAR * FAR {
-                nearest = nearest.min(square);
-                pairs.push((plane, place, weight * (-0.5 * square / (NEAR * NEAR)).exp()));
-            }
-        };
-        for (node, saddle) in &self.nodes {
-            add(place_of(*node), saddle.place, 1.0);
-        }
-        for (plane, place, weight) in &self.anchors {
-            add(*plane, *place, *weight);
-        }
-        Some((Homography::fit(&pairs)?, nearest.sqrt()))
+        let nodes = self.nodes.iter().map(|(node, saddle)| (place_of(*node), saddle.place, 1.0));
+        map_near(nodes.chain(self.anchors.iter().copied()), point, REACH)
     }
 
     /// Seeks those of some corners that are not found, from the nearest outwards, until none is added.
@@ -137,9 +122,7 @@ impl<'a> Growth<'a> {
     }
 
     fn worst(&self) -> Option<Node> {
-        let mut sigmas: Vec<f64> = self.nodes.values().map(|it| it.sigma_px).collect();
-        sigmas.sort_by(f64::total_cmp);
-        let usual_px = sigmas.get(sigmas.len() / 2).copied()?.max(0.02);
+        let usual_px = median(self.nodes.values().map(|it| it.sigma_px))?.max(0.02);
         let off = |(node, saddle): (&Node, &Saddle)| {
             let point = place_of(*node);
             let predicted = self.map_near(point).and_then(|(map, nearest)| {

@@ -11,6 +11,32 @@ pub(crate) struct Homography {
 /// A point of the plane, its place in the picture, and its weight.
 pub(crate) type Pair = (Vector2<f64>, Vector2<f64>, f64);
 
+/// Pairs near a point of the plane, with weights that fall with their distance from it: by their standard deviation, and the farthest that counts.
+pub(crate) fn near(
+    pairs: impl IntoIterator<Item = Pair>,
+    point: Vector2<f64>,
+    [deviation, farthest]: [f64; 2],
+) -> Vec<Pair> {
+    let weighed = |(plane, place, weight): Pair| {
+        let square = (plane - point).norm_squared();
+        let fallen = weight * (-0.5 * square / (deviation * deviation)).exp();
+        (square < farthest * farthest).then_some((plane, place, fallen))
+    };
+    pairs.into_iter().filter_map(weighed).collect()
+}
+
+/// The map near a point of the plane, from what is around it but not at it, and how far the nearest of it is.
+pub(crate) fn map_near(
+    pairs: impl IntoIterator<Item = Pair>,
+    point: Vector2<f64>,
+    reach: [f64; 2],
+) -> Option<(Homography, f64)> {
+    let square = |it: &Pair| (it.0 - point).norm_squared();
+    let around = near(pairs.into_iter().filter(|it| square(it) > 1e-6), point, reach);
+    let nearest = around.iter().map(square).fold(f64::INFINITY, f64::min);
+    Some((Homography::fit(&around)?, nearest.sqrt()))
+}
+
 impl Homography {
     /// The map that fits pairs best: linear, with both sides moved and scaled. `None` below four pairs, or of pairs on a line.
     pub(crate) fn fit(pairs: &[Pair]) -> Option<Self> {

@@ -7,7 +7,8 @@ use nalgebra::{Matrix2, Vector2};
 use crate::ellipse::Dot;
 use crate::grid::middle_slope;
 use crate::growth::Node;
-use crate::homography::{Homography, Pair};
+use crate::homography::{self, Homography, Pair};
+use crate::layout::Layout;
 
 /// Dots with their columns and rows.
 pub(crate) type Lattice = BTreeMap<Node, usize>;
@@ -22,8 +23,7 @@ const ASIDE: f64 = 0.22;
 const ALIKE: [f64; 2] = [1.45, 1.8];
 const ALIKE_FAR: [f64; 2] = [1.25, 1.35];
 /// Standard deviation of the weights of dots by their distance, and the farthest that counts, pitches.
-const NEAR: f64 = 1.6;
-const FAR: f64 = 4.2;
+const REACH: [f64; 2] = [1.6, 4.2];
 
 /// The next places of a lattice, and those beyond: where something covers a part of the board.
 const STEPS: [Node; 12] =
@@ -157,16 +157,32 @@ fn predicted(
     Some((place + way, way.norm() / step.norm()))
 }
 
-/// The map near a point of the plane, from what is around it but not at it, and how far the nearest of it is.
+/// The map near a point of a board of dots or tags.
 pub(crate) fn map_near(pairs: &[Pair], point: Vector2<f64>) -> Option<(Homography, f64)> {
-    let mut nearest = f64::INFINITY;
-    let mut near: Vec<Pair> = Vec::new();
-    for (plane, place, weight) in pairs {
-        let square = (plane - point).norm_squared();
-        if square > 1e-6 && square < FAR * FAR {
-            nearest = nearest.min(square);
-            near.push((*plane, *place, weight * (-0.5 * square / (NEAR * NEAR)).exp()));
-        }
+    homography::map_near(pairs.iter().copied(), point, REACH)
+}
+
+/// Takes points of a board away that are not where the others have them, the worst first. `off` is the largest distance: pixels, and parts of the
+/// unit.
+pub(crate) fn prune<T>(
+    layout: &Layout,
+    found: &mut BTreeMap<usize, T>,
+    place: impl Fn(&T) -> Vector2<f64>,
+    off: (f64, f64),
+) {
+    loop {
+        let pairs: Vec<Pair> = found.iter().map(|(id, it)| (layout.corner(*id), place(it), 1.0)).collect();
+        let part = |(id, it): (&usize, &T)| {
+            let point = layout.corner(*id);
+            let part = map_near(&pairs, point).and_then(|(map, nearest)| {
+                let unit_px = map.slope(point)?.determinant().abs().sqrt();
+                Some((map.map(point)? - place(it)).norm() / ((off.0 + off.1 * unit_px) * nearest.max(1.0)))
+            });
+            (*id, part.unwrap_or(f64::INFINITY))
+        };
+        match found.iter().map(part).max_by(|a, b| a.1.total_cmp(&b.1)) {
+            Some((worst, part)) if part > 1.0 => found.remove(&worst),
+            _ => return,
+        };
     }
-    Some((Homography::fit(&near)?, nearest.sqrt()))
 }

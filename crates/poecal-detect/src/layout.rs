@@ -197,11 +197,6 @@ impl Layout {
         matches!(self.pattern, Pattern::Dots { asymmetric: true, .. })
     }
 
-    /// Columns and rows on which dots may be.
-    pub(crate) fn dots(&self) -> [usize; 2] {
-        self.inner()
-    }
-
     /// The number of the dot at a column and row.
     pub(crate) fn dot_at(&self, [column, row]: [usize; 2]) -> Option<usize> {
         let [columns, _] = self.inner();

@@ -31,6 +31,7 @@ mod lattice;
 mod layout;
 mod light;
 mod markers;
+mod median;
 mod parts;
 mod picture;
 mod preview;

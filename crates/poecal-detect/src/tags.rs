@@ -6,6 +6,7 @@ use crate::dictionary::Dictionary;
 use crate::found::{Corner, Found, Kind, Rejected};
 use crate::gray::Gray;
 use crate::markers::{Marker, Reader};
+use crate::median::median;
 use crate::quads::{Quad, quads};
 use crate::tagfit::{Cells, Fitted, fit};
 
@@ -40,8 +41,6 @@ pub(crate) fn of_quads(
     }
     // A tag that is there twice is none: nobody knows which is meant.
     let once = |id: usize| tags.iter().filter(|it| it.0 == id).count() == 1;
-    let mut blurs: Vec<f64> = tags.iter().map(|it| it.1.blur_px).collect();
-    blurs.sort_by(f64::total_cmp);
     let kept = tags.iter().filter(|it| once(it.0));
     let corner = |(id, tag): &(usize, Fitted), k: usize| Corner {
         id: 4 * id + k,
@@ -55,7 +54,7 @@ pub(crate) fn of_quads(
         return Err(Rejected::NoBoard);
     }
     corners.sort_by_key(|it| it.id);
-    let blur_px = blurs.get(blurs.len() / 2).copied().unwrap_or(0.0);
+    let blur_px = median(tags.iter().map(|it| it.1.blur_px)).unwrap_or(0.0);
     Ok(Found { markers: corners.len() / 4, corners, turnable: false, blur_px, noise })
 }
 
