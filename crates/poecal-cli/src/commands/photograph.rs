@@ -4,7 +4,7 @@ use poecal::camera::{CommonError, Distortion, Lens};
 use poecal::io::measurements::read_boards;
 use poecal::io::model::Model;
 use poecal::io::output::{FolderPlace, PhotographedSession, write_photographs};
-use poecal::lie::Pose;
+use poecal::lie::{Pose, rotation};
 use poecal::simulate::{PictureSimulation, Simulation};
 use poecal::{ErrorKind, Result};
 use poecal_detect::render::{Camera, Random, Scene, clutter};
@@ -44,7 +44,10 @@ pub(super) fn photograph(
         ));
     }
     let board = arguments.board.to_string();
-    let body = read_boards(&board)?.into_iter().next().unwrap_or_default();
+    let layout = Layout::new(&arguments.board);
+    let scene_from_board = scene_from_board(&layout);
+    let mut body = read_boards(&board)?.into_iter().next().unwrap_or_default();
+    body.points.iter_mut().for_each(|point| *point = scene_from_board.act(point));
     let session = Simulation {
         error_rotation_rad: arguments.errors.angle_rad,
         error_position_m: arguments.errors.length_m,
@@ -63,13 +66,17 @@ pub(super) fn photograph(
         ..CommonError::default()
     };
     let simulation = PictureSimulation { common: noise, ..usual.before(body, lens) };
-    let made = simulation.run(&model.robot)?;
-    let layout = Layout::new(&arguments.board);
+    let mut made = simulation.run(&model.robot)?;
     let poses = made.camera_from_board.par_iter().enumerate();
     let pictures: Vec<Vec<u8>> = poses
-        .map(|(at, pose)| picture(&layout, pose, arguments.seed.wrapping_mul(1000).wrapping_add(at as u64)))
+        .map(|(at, pose)| {
+            picture((&layout, &lens), pose, arguments.seed.wrapping_mul(1000).wrapping_add(at as u64))
+        })
         .collect::<std::result::Result<_, _>>()
         .map_err(|error| ErrorKind::Option.error(error.to_string()))?;
+    // Of the board as calibrate has it.
+    let of_board = if simulation.in_hand { &mut made.base_from_other } else { &mut made.tip_from_held };
+    *of_board = *of_board * scene_from_board;
     let session = PhotographedSession {
         simulation: &simulation,
         made: &made,
@@ -85,12 +92,26 @@ pub(super) fn photograph(
     Ok(console.say_of(&style::written(&written.folder, &files), &written.folder))
 }
 
+/// Pose of the axes in which a board has its points in those in which it is drawn, whose y is downwards from the first corner: Kalibr's are upwards.
+fn scene_from_board(layout: &Layout) -> Pose {
+    let drawn = |id: usize| {
+        let at = layout.corner(id);
+        [at.x - 1.0, at.y - 1.0].map(|it| it * layout.square_m)
+    };
+    let points = layout.points();
+    let (Some(first), Some(last)) = (points.first(), points.last()) else { return Pose::identity() };
+    let end = drawn(points.len() - 1);
+    let is_upwards = (last.place_m[1] - first.place_m[1]) * (end[1] - drawn(0)[1]) < 0.0;
+    let turn = rotation::about(0, if is_upwards { std::f64::consts::PI } else { 0.0 });
+    let shifted = |[x, y]: [f64; 2]| Pose::new(rotation::about(0, 0.0), [x, y, 0.0].into());
+    shifted(drawn(0)) * Pose::new(turn, [0.0; 3].into()) * shifted(first.place_m.map(|it| -it))
+}
+
 /// A picture of the board in a pose in the camera's frame.
-fn picture(layout: &Layout, pose: &Pose, seed: u64) -> poecal_detect::Result<Vec<u8>> {
+fn picture((layout, lens): (&Layout, &Lens), pose: &Pose, seed: u64) -> poecal_detect::Result<Vec<u8>> {
     let mut random = Random::new(seed);
     let size = SIZE_PX.map(|size| size as usize);
-    let middle_px = SIZE_PX.map(|size| 0.5 * (f64::from(size) - 1.0));
-    let camera = Camera { size, focal_px: [FOCAL_PX; 2], centre_px: middle_px, distortion: [K1, 0.0] };
+    let camera = Camera { size, focal_px: lens.focal_px, centre_px: lens.centre_px, distortion: [K1, 0.0] };
     let background = clutter(size, &mut random);
     let scene = Scene {
         camera,
