@@ -1,11 +1,12 @@
 //! Simulated sessions of a camera and a board, calibrated and judged by their truth: a JSON object a line, which `validation/camera` sums up.
 //!
-//!     camera_sessions accuracy|bounds|setups|optics|kinematics [DRAWS] [FIRST SEED]
+//!     camera_sessions accuracy|bounds|setups|optics|kinematics|degenerate [DRAWS] [FIRST SEED]
 
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "its lines are read by a command")]
 
 mod accuracy;
 mod bounds;
+mod degenerate;
 mod information;
 mod kinematics;
 mod optics;
@@ -22,16 +23,17 @@ type Task = fn(u64) -> Result<Vec<Value>, poecal::Error>;
 fn main() {
     let words: Vec<String> = std::env::args().skip(1).collect();
     let number = |at: usize, usual: u64| words.get(at).and_then(|word| word.parse().ok()).unwrap_or(usual);
-    let tasks: [(&str, Task); 5] = [
+    let tasks: [(&str, Task); 6] = [
         ("accuracy", accuracy::run),
         ("bounds", bounds::run),
         ("setups", setups::run),
         ("optics", optics::run),
         ("kinematics", kinematics::run),
+        ("degenerate", degenerate::run),
     ];
     let Some((_, task)) = tasks.iter().find(|(name, _)| words.first().is_some_and(|word| word == name))
     else {
-        eprintln!("expected one of accuracy, bounds, setups, optics, kinematics");
+        eprintln!("expected one of accuracy, bounds, setups, optics, kinematics, degenerate");
         std::process::exit(2);
     };
     let (draws, first) = (number(1, 4), number(2, 0));

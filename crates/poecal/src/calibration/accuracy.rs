@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::pixels::{PixelAccuracy, pixel_accuracy};
 use crate::estimate::{Estimate, RowError, Session};
-use crate::measurement::{Dataset, Measured};
+use crate::measurement::{Dataset, Measured, Quantity};
 use crate::unit::Unit;
 
 /// The three models of every result, as estimates.
@@ -91,6 +91,41 @@ impl Deref for ModelAccuracy {
 
     fn deref(&self) -> &Measured<Statistic> {
         &self.quantities
+    }
+}
+
+impl ModelAccuracy {
+    /// Errors of the corners where all of so many rows are pictures: the pose of a small board in its picture is uncertain along the ray and in its
+    /// turn, so its corners judge.
+    pub(crate) fn of_pictures(&self, rows: usize) -> Option<PixelAccuracy> {
+        self.pixels.filter(|pixels| pixels.pictures == rows)
+    }
+
+    /// By what the model is judged on so many rows.
+    pub(super) fn judging(&self, rows: usize) -> JudgingError {
+        if let Some(pixels) = self.of_pictures(rows) {
+            let (what, rms) = (CORNERS.to_owned(), pixels.rms_mm);
+            return JudgingError { what, rms, unit: Unit::Metre };
+        }
+        let (quantity, rms) = self.leading().map_or((Quantity::Position, 0.0), |(it, found)| (it, found.rms));
+        JudgingError { what: format!("{} error", quantity.name()), rms, unit: quantity.unit() }
+    }
+}
+
+/// What the error of corners in millimetres is called.
+pub(super) const CORNERS: &str = "error of the corners at the board";
+
+/// The error by which a model is judged, root mean square in the unit in which people read it.
+pub(super) struct JudgingError {
+    pub(super) what: String,
+    pub(super) rms: f64,
+    pub(super) unit: Unit,
+}
+
+impl JudgingError {
+    /// In metres; zero of what is no length.
+    pub(super) fn metres(&self) -> f64 {
+        if self.unit == Unit::Metre { 1e-3 * self.rms } else { 0.0 }
     }
 }
 

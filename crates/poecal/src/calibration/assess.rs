@@ -16,6 +16,7 @@ use super::rounding::rounded;
 use super::run::Run;
 use super::signs::Signs;
 use super::verdict::{Grounds, Judged, judged};
+use super::view_doubts::view_doubts;
 use super::{CalibratedTarget, Calibration, Corrections, Level, Repaired};
 use crate::error::Result;
 use crate::forensics::Diagnosis;
@@ -59,7 +60,10 @@ impl<'a> Found<'a> {
         let Figures { models, accuracy, robustness, trust, identifiability, correction } = figures;
         let judged = events.against.into_iter().fold(judged, Judged::against);
         let verdict = match correction.as_ref().filter(|it| it.has_terms()) {
-            Some(found) => judged.of_corrected(found.judging_errors(), &found.expected),
+            Some(found) => {
+                let rows = accuracy.held_out.map_or(accuracy.training.count, |set| set.count);
+                judged.of_corrected(&found.judging_errors().judging(rows), &found.expected)
+            }
             None => judged.of_calibrated(&trust.expected),
         };
         let CalibratedFit { run, robust: RobustFit { fitted, .. }, noise_ratios, .. } = fit;
@@ -115,6 +119,7 @@ impl CalibratedFit<'_> {
         warnings.extend(correction.as_ref().and_then(|it| it.doubt.clone()));
         warnings.extend(one_zero(self));
         warnings.extend(optics_doubt(self));
+        warnings.extend(view_doubts(self));
         warnings.extend(events.early.clone());
         warnings
     }

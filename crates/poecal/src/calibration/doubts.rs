@@ -1,5 +1,6 @@
 //! Signs of mistakes in the input. A fit can absorb them, a registration cannot.
 
+use super::accuracy::CORNERS;
 use super::{DeviceFrameKnowledge, ModelAccuracy};
 use crate::measurement::Dataset;
 
@@ -18,10 +19,9 @@ pub(super) fn doubts(
 ) -> Vec<String> {
     let mut doubts = Vec::new();
     let spread_mm = data.spread_m(rows) * 1e3;
-    // The pose of a small board in its picture is uncertain along the ray and in its turn: its corners judge.
-    let pixels = registered.pixels.filter(|it| it.pictures == rows.len());
+    let pixels = registered.of_pictures(rows.len());
     let (what, error_mm) = match pixels {
-        Some(pixels) => ("error of the corners at the board", pixels.rms_mm),
+        Some(pixels) => (CORNERS, pixels.rms_mm),
         None => ("position error", registered.position_mm().rms),
     };
     if error_mm > MISFIT * spread_mm {

@@ -52,6 +52,7 @@ mod together;
 mod tolerance;
 mod trust;
 mod verdict;
+mod view_doubts;
 mod workspace;
 
 pub use crate::robot::{CorrectionModel, Corrections, Sizes, TermGroup};

@@ -2,14 +2,14 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::accuracy::JudgingError;
 use super::calibrated::CalibratedFit;
 use super::figures::Figures;
 use super::signs::Signs;
 use super::summary::FitSummary;
-use super::{AcceptedModel, Expectations, ModelAccuracy};
+use super::{AcceptedModel, Expectations};
 use crate::analysis::Direction;
 use crate::forensics::DiagnosisKind;
-use crate::measurement::Quantity;
 
 /// Level of a verdict.
 #[derive(
@@ -91,8 +91,8 @@ pub(super) struct Judged {
 }
 
 /// Whether errors are larger than those of any rigid robot of this reach.
-fn is_too_large(set: &ModelAccuracy, reach_m: f64) -> bool {
-    set.leading_m() > TOO_LARGE * reach_m
+fn is_too_large(error: &JudgingError, reach_m: f64) -> bool {
+    error.metres() > TOO_LARGE * reach_m
 }
 
 impl Judged {
@@ -107,11 +107,11 @@ impl Judged {
         self.verdict(AcceptedModel::Calibrated, self.too_large.as_ref(), expected)
     }
 
-    /// The verdict on the corrected model, with these errors of rows that were not fitted (or of those that were, without such) and these
-    /// expected errors.
-    pub(super) fn of_corrected(&self, errors: &ModelAccuracy, expected: &Expectations) -> Verdict {
+    /// The verdict on the corrected model, with its error on rows that were not fitted (or on those that were, without such) and these expected
+    /// errors.
+    pub(super) fn of_corrected(&self, error: &JudgingError, expected: &Expectations) -> Verdict {
         // Terms may describe what no rigid robot does.
-        let too_large = self.too_large.as_ref().filter(|_| is_too_large(errors, self.reach_m));
+        let too_large = self.too_large.as_ref().filter(|_| is_too_large(error, self.reach_m));
         self.verdict(AcceptedModel::Corrected, too_large, expected)
     }
 
@@ -192,10 +192,8 @@ pub(super) fn judged(grounds: &Grounds<'_>) -> Judged {
         Some(set) => (robustness.held_out_rest.as_ref().unwrap_or(set), "held-out"),
         None => (robustness.training_rest.as_ref().unwrap_or(&accuracy.training), "fitted"),
     };
-    let leading = set.calibrated.leading().map(|(quantity, _)| quantity).unwrap_or(Quantity::Position);
-    let of = |model: &ModelAccuracy| model.get(leading).unwrap_or_default().rms;
-    let (registered, calibrated) = (of(&set.registered), of(&set.calibrated));
-    let (what, unit) = (leading.name(), leading.unit().symbol());
+    let [before, after] = [&set.registered, &set.calibrated].map(|model| model.judging(set.count));
+    let (registered, calibrated, unit) = (before.rms, after.rms, after.unit.symbol());
     let moves_joints = run.unknowns.moves_joints(run.robot.joints.len());
     let is_no_better = moves_joints && calibrated > (1.0 - WORTH) * registered;
     let no_better = is_no_better.then(|| {
@@ -203,9 +201,10 @@ pub(super) fn judged(grounds: &Grounds<'_>) -> Judged {
             "on {name} rows the calibrated screws are no better than the nominal ones ({calibrated:.3} {unit} against {registered:.3} {unit})"
         )
     });
-    let too_large = is_too_large(&set.calibrated, reach_m).then(|| {
+    let too_large = is_too_large(&after, reach_m).then(|| {
         format!(
-            "the {what} error of the calibrated model on {name} rows is {calibrated:.1} {unit} (RMS), more than 1 % of the robot's reach"
+            "the {} of the calibrated model on {name} rows is {calibrated:.1} {unit} (RMS), more than 1 % of the robot's reach",
+            after.what
         )
     });
     Judged {

@@ -12,6 +12,7 @@ mod poses;
 mod shape;
 mod sighting;
 mod unknown;
+mod views;
 
 pub use board::{Board, dimensions, middle, normal};
 pub use common::{Centre, CommonError, motion_by_inverse};
@@ -23,3 +24,4 @@ pub use pnp::poses_of_rays;
 pub use shape::is_flat_sheet;
 pub use sighting::{Sighting, View, moved};
 pub use unknown::{OwnInformation, PictureNumber, PictureUnknown, PictureUnknowns};
+pub use views::Views;

@@ -32,8 +32,12 @@ pub struct PictureSimulation {
     pub in_hand: bool,
     /// Nearest and farthest distance of the board from the camera, metres.
     pub distance_m: [f64; 2],
-    /// Largest angle between the board's normal and the line of sight, rad.
-    pub tilt_rad: f64,
+    /// Least and largest angle between the board's normal and the optical axis, rad.
+    pub tilt_rad: [f64; 2],
+    /// Whether the board is tilted in all directions and turned at will; otherwise it is only tilted to and fro about one line.
+    pub turns: bool,
+    /// Where the middle of the board is in the picture: from and to, shares of width and of height.
+    pub part: [[f64; 2]; 2],
     /// Standard deviation of each coordinate of a corner, pixels.
     pub noise_px: f64,
     /// What the corners of a picture share: the error of the arm in each configuration, about what is on its tip.
@@ -83,7 +87,9 @@ impl PictureSimulation {
             board: Board::chessboard("board", [7, 5], 0.036).unwrap_or_default(),
             in_hand,
             distance_m: [0.6, 1.0],
-            tilt_rad: 0.7,
+            tilt_rad: [0.0, 0.7],
+            turns: true,
+            part: [[0.2, 0.8]; 2],
             noise_px: 0.3,
             common: CommonError { shift_m: 0.0, turn_rad: 0.0, ..CommonError::default() },
         }
@@ -171,20 +177,20 @@ impl PictureSimulation {
 
     /// A pose of the board in the camera's frame.
     fn sight(&self, generator: &mut ChaCha8Rng) -> Pose {
-        let [nearest, farthest] = self.distance_m;
-        let depth = nearest + (farthest - nearest) * random::uniform(generator);
+        let mut between = |[from, to]: [f64; 2]| from + (to - from) * random::uniform(generator);
+        let depth = between(self.distance_m);
         let [width, height] = self.lens.size_px.unwrap_or([1000, 1000]).map(f64::from);
-        let pixel = Vector2::new(
-            (0.2 + 0.6 * random::uniform(generator)) * width,
-            (0.2 + 0.6 * random::uniform(generator)) * height,
-        );
+        let pixel = Vector2::new(between(self.part[0]) * width, between(self.part[1]) * height);
         let ray = self.lens.ray(&pixel).unwrap_or_else(Vector3::z);
         // Tilted about a line across the sight, turned about it.
-        let across = std::f64::consts::TAU * random::uniform(generator);
-        let tilt = rotation::exp(
-            &(Vector3::new(across.cos(), across.sin(), 0.0) * self.tilt_rad * random::uniform(generator)),
-        );
-        let turn = tilt * rotation::about(2, std::f64::consts::TAU * random::uniform(generator));
+        let across = between([0.0, std::f64::consts::TAU]);
+        let (tilt, turned) = (between(self.tilt_rad), between([0.0, std::f64::consts::TAU]));
+        let turn = if self.turns {
+            rotation::exp(&(Vector3::new(across.cos(), across.sin(), 0.0) * tilt))
+                * rotation::about(2, turned)
+        } else {
+            rotation::about(0, tilt * across.cos().signum())
+        };
         let middle = middle(&self.board.points);
         Pose::new(turn, ray * (depth / ray.z) - turn * middle)
     }

@@ -5,7 +5,7 @@ use maud::{Markup, Render, html};
 use super::html::{HtmlTable, figure};
 use crate::calibration::{PixelAccuracy, SetAccuracy};
 use crate::io::calibration_file::CalibrationFile;
-use crate::report::summary::{ModelRow, leading, of_pictures};
+use crate::report::summary::{ModelRow, leading};
 
 /// A statistic of corners: its column, its name in the file, and its value.
 type Statistic = (&'static str, &'static str, fn(&PixelAccuracy) -> f64);
@@ -22,7 +22,7 @@ const COLUMNS: [Statistic; 6] = [
 
 /// Whether all rows of a set are pictures.
 pub(super) fn are_all(set: &SetAccuracy) -> bool {
-    of_pictures(set, &set.calibrated).is_some()
+    set.calibrated.of_pictures(set.count).is_some()
 }
 
 /// The mean distance of the corners by each model, where all rows are pictures: these are known better than the poses of the pictures.

@@ -6,7 +6,7 @@ use super::super::table::{
 };
 use super::look::reasons;
 use super::{Expectation, expected};
-use crate::calibration::{DeviceFrameKnowledge, ModelAccuracy, PixelAccuracy, SetAccuracy};
+use crate::calibration::{DeviceFrameKnowledge, ModelAccuracy, SetAccuracy};
 use crate::io::calibration_file::CalibrationFile;
 
 /// Widths of the label and of each figure.
@@ -52,11 +52,6 @@ pub(in crate::report) fn has_terms(file: &CalibrationFile) -> bool {
     file.corrected.as_ref().is_some_and(|it| it.has_terms())
 }
 
-/// Errors of corners where all rows are pictures: the poses of these are known worse than their corners.
-pub(in crate::report) fn of_pictures(set: &SetAccuracy, model: &ModelAccuracy) -> Option<PixelAccuracy> {
-    model.pixels.filter(|pixels| pixels.pictures == set.count)
-}
-
 /// Before and after, where that is valid, and the rows that show it.
 pub(super) fn figures(out: &mut String, file: &CalibrationFile) {
     let (set, rows) = leading(file);
@@ -65,7 +60,7 @@ pub(super) fn figures(out: &mut String, file: &CalibrationFile) {
     let held_out = file.accuracy.held_out.is_some();
     let judging = if held_out { "held out" } else { "fitted" };
     let words = |model: &ModelAccuracy| {
-        if let Some(pixels) = of_pictures(set, model) {
+        if let Some(pixels) = model.of_pictures(set.count) {
             let (px, mm) = (number(pixels.rms_px), number(pixels.rms_mm));
             return format!("{px} px, {mm} mm at the board square to the ray");
         }
@@ -102,7 +97,7 @@ pub(super) fn figures(out: &mut String, file: &CalibrationFile) {
         format!("; {}: {}", name.split_once(", ").map_or(name.as_str(), |it| it.1), words(model))
     });
     let rest = rest.unwrap_or_default();
-    match of_pictures(set, after.1) {
+    match after.1.of_pictures(set.count) {
         Some(pixels) => {
             let (count, median) = (pixels.pictures, number(pixels.median_picture_px));
             let all = words(after.1);
@@ -113,7 +108,9 @@ pub(super) fn figures(out: &mut String, file: &CalibrationFile) {
             line(out, judging, &format!("{} rows: {} (RMS){largest}{rest}", set.count, words(after.1)));
         }
     }
-    if let (Some(before), Some(after), None) = (before.1.pixels, after.1.pixels, of_pictures(set, after.1)) {
+    if let (Some(before), Some(after), None) =
+        (before.1.pixels, after.1.pixels, after.1.of_pictures(set.count))
+    {
         let (was, is, mm) = (number(before.rms_px), number(after.rms_px), number(after.rms_mm));
         let words = format!("{was} px before, {is} px after (RMS), {mm} mm at the board square to the ray");
         line(out, "corners", &words);

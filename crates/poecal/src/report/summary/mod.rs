@@ -7,7 +7,7 @@ mod names;
 
 use std::mem::discriminant;
 
-pub(super) use errors::{ModelRow, has_terms, leading, of_pictures};
+pub(super) use errors::{ModelRow, has_terms, leading};
 use look::reasons;
 pub(super) use look::{Place, Point, SEE_ROBUST, look_at};
 pub(super) use names::{MOST, names};
