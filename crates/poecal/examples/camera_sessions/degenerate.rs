@@ -39,7 +39,7 @@ const KINDS: [Kind; 8] = [
     Kind {
         name: "focal length",
         is_free: true,
-        of: |it| PictureSimulation { tilt_rad: [0.0, 0.03], distance_m: [0.8, 0.805], ..it },
+        of: |it| PictureSimulation { tilt_rad: [0.0, 0.01], distance_m: [0.8, 0.801], ..it },
     },
     Kind {
         name: "centre",

@@ -166,3 +166,55 @@ fn clean_sessions_free_nothing() {
         assert!(!clean.warnings.iter().any(|it| it.contains("--free")), "{:?}", clean.warnings);
     }
 }
+
+/// What the pictures leave open is named, and nothing of clean ones.
+#[test]
+fn what_pictures_cannot_determine_is_named() {
+    type Views = (
+        &'static str,
+        &'static [&'static str],
+        &'static [&'static str],
+        fn(PictureSimulation) -> PictureSimulation,
+    );
+    const PARALLEL: &str = "parallel to the image";
+    let kinds: [Views; 6] = [
+        ("clean", &["lens"], &[], |it| it),
+        ("parallel", &[], &[PARALLEL, "about one axis only"], |it| PictureSimulation {
+            tilt_rad: [0.0, 0.03],
+            ..it
+        }),
+        ("one axis", &[], &["about one axis only"], |it| PictureSimulation {
+            turns: false,
+            tilt_rad: [0.0, 0.7],
+            ..it
+        }),
+        ("one part", &[], &["in one part of the image"], |it| PictureSimulation {
+            part: [[0.2, 0.4]; 2],
+            distance_m: [1.2, 1.6],
+            ..it
+        }),
+        ("focal length", &["lens"], &[PARALLEL, "focal lengths"], |it| PictureSimulation {
+            tilt_rad: [0.0, 0.01],
+            distance_m: [0.8, 0.801],
+            ..it
+        }),
+        ("centre", &["lens"], &["centre of the lens"], |it| PictureSimulation {
+            lens: Lens { size_px: Some([320, 240]), ..Lens::pinhole([1500.0; 2], [159.5, 119.5]) },
+            board: Board::chessboard("board", [7, 5], 0.006).unwrap_or_default(),
+            ..it
+        }),
+    ];
+    for seed in trials(8).seeds() {
+        for (name, free, expected, change) in &kinds {
+            let usual = PictureSimulation::usual(session(300 + seed), seed.is_multiple_of(2));
+            let made = change(usual).run(&elbow()).unwrap();
+            let data = read_with(&made, |_| ());
+            let (calibration, _) = calibrated(&made, &data, free);
+            let said = calibration.warnings.join("\n");
+            println!("{name}: {said}");
+            assert!(expected.iter().all(|it| said.contains(it)), "{name}: {said}");
+            // Of clean pictures nothing; of others nothing that they show.
+            assert!(!expected.is_empty() || said.is_empty(), "{said}");
+        }
+    }
+}
