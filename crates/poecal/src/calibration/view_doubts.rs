@@ -10,7 +10,7 @@ const PARALLEL_RAD: f64 = 0.1;
 /// Turn about further axes (root mean square) below which a board turns about one axis only, rad.
 const ONE_AXIS_RAD: f64 = 0.05;
 /// Share of width or height of the image within which corners are in one part of it.
-const PART: f64 = 0.5;
+const PART: f64 = 0.4;
 /// Standard deviations above which focal lengths (of these) and the centre (of the width) are not determined: half of what is known of any lens.
 const FOCAL: f64 = 0.01;
 const CENTRE: f64 = 0.01;
