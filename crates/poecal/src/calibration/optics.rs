@@ -1,21 +1,21 @@
 //! Lenses, boards and markers that are unknown beside the robot (theory.md §4, *Pictures* (17d)).
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{DMatrix, DVector, Matrix2xX};
 
-use super::corrections::{ROUNDING_OF_TERMS, cholesky, solved, whitened_rows};
+use super::corrections::{solved, whitened_rows};
+use super::information::{FitInformation, factor_of};
 use super::robust::RobustFit;
 use super::run::Run;
 use crate::camera::{
-    Board, Camera, OwnInformation, PictureNumber, PictureUnknown, PictureUnknowns, Pictures,
+    Board, Camera, OwnInformation, PictureNumber, PictureUnknown, PictureUnknowns, Pictures, Projection,
     motion_by_inverse,
 };
 use crate::estimate::Estimate;
 use crate::linalg;
 use crate::measurement::{Dataset, Noise};
 use crate::problem::Problem;
-use crate::solve::{LeastSquares as _, Normal};
+use crate::solve::Normal;
 use crate::start::predicted_pose;
-use crate::uncertainty::PriorInformation;
 
 /// Largest step of a number, standard deviations of its prior.
 const FARTHEST: f64 = 3.0;
@@ -42,7 +42,7 @@ pub(super) struct BestStep {
     gain: f64,
     pub(super) covariance: DMatrix<f64>,
     still: DVector<f64>,
-    follow: DMatrix<f64>,
+    pub(super) follow: DMatrix<f64>,
 }
 
 impl BestStep {
@@ -123,28 +123,22 @@ impl Optics {
     }
 
     /// The best step of the numbers from the optimum of a fit, with their standard deviations and how the robot's unknowns follow.
-    pub(super) fn best_step(&self, run: &Run<'_>, (ratios, fit): (&[Noise], &RobustFit)) -> Option<BestStep> {
-        let session = run.session(ratios);
-        let fitted = &fit.fitted;
-        let weights = fit.weights();
-        let problem = run.problem_of(session, fit, &weights);
-        let prior =
-            PriorInformation::new(run.prior.as_ref(), &fitted.estimate, &fitted.layout, session.length_m);
-        let normal = problem.normal(&fitted.estimate);
-        let robot = factor_of(&symmetric(&prior.with(&normal.gram, 1.0), normal.dim()))?;
-        let gradient = normal.gradient.iter().zip(&prior.normal.gradient);
-        let of_robot =
-            DVector::from_iterator(normal.dim(), gradient.map(|(measured, prior)| measured + prior));
-        let Coupling { mixed, gram, pull } = self.coupling(&run.data, &problem, &fitted.estimate);
-        let follow = solved(&robot, &mixed);
-        let pull = pull - follow.tr_mul(&of_robot);
+    pub(super) fn best_step(&self, run: &Run<'_>, information: &FitInformation<'_>) -> Option<BestStep> {
+        let Coupling { mixed, gram, pull } =
+            self.coupling(&run.data, &information.problem, information.estimate);
+        let follow = information.solved(&mixed);
+        let pull = pull - follow.tr_mul(information.gradient());
         let factor = factor_of(&(gram - mixed.transpose() * &follow))?;
         let count = self.unknowns.count();
         let inverse = DMatrix::from_row_slice(count, count, &linalg::inverse(&factor));
         let step = &inverse * &pull;
         let gain = step.dot(&pull).max(0.0);
-        let still = DVector::from_vec(linalg::cholesky_solve(&robot, of_robot.as_slice()));
-        Some(BestStep { step, gain, covariance: inverse, still, follow })
+        Some(BestStep { step, gain, covariance: inverse, still: information.step(), follow })
+    }
+
+    /// Derivative of a pixel of a camera by the numbers, in deviations of their prior.
+    pub(super) fn by_lens(&self, camera: usize, found: &Projection) -> Matrix2xX<f64> {
+        self.unknowns.by_lens(camera, found)
     }
 
     /// The data with the next numbers, from the optimum of a fit with the present ones, and the estimate as it follows them; `None` where they
@@ -155,7 +149,8 @@ impl Optics {
         (ratios, fit): (&[Noise], &RobustFit),
         least: f64,
     ) -> Option<(Dataset, Estimate)> {
-        let best = self.best_step(run, (ratios, fit))?;
+        let weights = fit.weights();
+        let best = self.best_step(run, &FitInformation::of(run, ratios, (fit, &weights))?)?;
         let deviations = best.deviations();
         let BestStep { mut step, gain, still, follow, .. } = best;
         self.deviations = deviations;
@@ -190,20 +185,4 @@ impl Optics {
             }
         }
     }
-}
-
-/// A symmetric matrix from its upper triangle.
-pub(super) fn symmetric(upper: &[f64], n: usize) -> DMatrix<f64> {
-    DMatrix::from_fn(n, n, |i, j| upper[i.min(j) * n + i.max(j)])
-}
-
-/// Factor of an information, of robot or numbers.
-fn factor_of(matrix: &DMatrix<f64>) -> Option<linalg::Factor> {
-    cholesky(matrix, ROUNDING_OF_TERMS)
-}
-
-/// The inverse of a symmetric positive definite matrix.
-pub(super) fn inverse(matrix: &DMatrix<f64>) -> Option<DMatrix<f64>> {
-    let n = matrix.nrows();
-    Some(DMatrix::from_row_slice(n, n, &linalg::inverse(&factor_of(matrix)?)))
 }

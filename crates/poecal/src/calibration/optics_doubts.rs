@@ -1,6 +1,7 @@
 //! Lenses and boards that the corners of single pictures contradict (theory.md §4, *Pictures*).
 
 use super::calibrated::CalibratedFit;
+use super::information::FitInformation;
 use super::optics::{BestStep, Optics};
 use crate::camera::{Board, Camera, PictureNumber, PictureUnknown, Pictures, is_flat_sheet};
 use crate::error::shown;
@@ -30,9 +31,11 @@ pub(super) fn optics_doubt(fit: &CalibratedFit<'_>) -> Option<String> {
         if is_flat_sheet(board) { PictureUnknown::Board(at) } else { PictureUnknown::Markers(at) }
     });
     let before = remaining(fit, (&pictures.cameras, &pictures.boards))?;
+    let weights = fit.robust.weights();
+    let information = FitInformation::of(&fit.run, &fit.noise_ratios, (&fit.robust, &weights))?;
     let tried = lenses.chain(boards).filter(held).filter_map(|unknown| {
         let optics = Optics::from_here(pictures, &[unknown]);
-        let best = optics.best_step(&fit.run, (&fit.noise_ratios, &fit.robust))?;
+        let best = optics.best_step(&fit.run, &information)?;
         let (cameras, boards) = optics.after(&best.step);
         let after = remaining(fit, (&cameras, &boards))?;
         Some((after, unknown, optics, best))

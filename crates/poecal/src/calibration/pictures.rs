@@ -3,19 +3,13 @@
 
 use nalgebra::{Matrix6, Vector6};
 
-use super::corrections::whitened_rows;
-use super::optics::{Optics, inverse, symmetric};
+use super::information::FitInformation;
+use super::optics::Optics;
 use super::robust::RobustFit;
 use super::run::Run;
 use crate::camera::{Centre, CommonError, Sighting};
-use crate::estimate::Session;
-use crate::linalg;
 use crate::measurement::{Dataset, Noise, SightingAbout, deviation};
-use crate::parameters::Parameter;
-use crate::problem::Problem;
-use crate::solve::LeastSquares as _;
 use crate::start::predicted_pose;
-use crate::uncertainty::PriorInformation;
 
 /// Most fits with the noise of pictures found anew.
 pub(super) const ROUNDS: usize = 8;
@@ -129,36 +123,11 @@ impl Run<'_> {
         let pictures = &self.data.pictures.all;
         let mut spreads = vec![Matrix6::zeros(); pictures.len()];
         let weights = fit.weights();
-        let problem = self.problem_of(self.session(ratios), fit, &weights);
-        let fitted = &fit.fitted;
-        let (prior, length_m) = (self.prior.as_ref(), problem.session().length_m);
-        let prior = PriorInformation::new(prior, &fitted.estimate, &fitted.layout, length_m);
-        let normal = problem.normal(&fitted.estimate);
-        let Some(covariance) = inverse(&symmetric(&prior.with(&normal.gram, 1.0), normal.dim())) else {
-            return spreads;
-        };
-        let is_fitted = |row: u32| self.fit_rows.binary_search(&row).is_ok() && problem.weight(row) > 0.0;
-        let own: Vec<usize> = (0..pictures.len()).filter(|&at| is_fitted(pictures[at].row)).collect();
-        let rows: Vec<u32> = own.iter().map(|&at| pictures[at].row).collect();
-        let (starts, jacobian, _) = whitened_rows(&problem, &fitted.estimate, &rows);
-        for ((&at, &row), &start) in own.iter().zip(&rows).zip(&starts) {
-            let unwhitening = self.data.whitening_of_picture(row).and_then(linalg::inverse_6);
-            let Some(unwhitening) = unwhitening.filter(|_| start + 6 <= jacobian.nrows()) else { continue };
-            let by = unwhitening * jacobian.rows(start, 6).into_owned() / problem.weight(row).sqrt();
-            let spread = &by * &covariance * by.transpose();
-            spreads[at] = spread.fixed_view::<6, 6>(0, 0).into_owned();
+        let Some(information) = FitInformation::of(self, ratios, (fit, &weights)) else { return spreads };
+        let covariance = information.covariance();
+        for (at, by) in information.of_pictures(self) {
+            spreads[at] = &by * &covariance * by.transpose();
         }
         spreads
-    }
-
-    /// The problem of a fit: its rows and unknowns, with the weights that it gave.
-    pub(super) fn problem_of<'s>(
-        &self,
-        session: Session<'s>,
-        fit: &RobustFit,
-        weights: &'s [f64],
-    ) -> Problem<'s> {
-        let free: Vec<Parameter> = fit.fitted.layout.parameters().map(|(parameter, _)| *parameter).collect();
-        Problem::new(session, self.fit_rows.clone(), free, fit.fitted.noise).with_weights(weights)
     }
 }

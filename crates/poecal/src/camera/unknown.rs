@@ -1,11 +1,11 @@
 //! What of cameras and boards is unknown beside the robot, and how corners depend on it (theory.md §4, *Pictures*).
 
-use nalgebra::{DMatrix, DVector, Matrix2x3, Matrix6, Matrix6xX, Vector2, Vector3, Vector6};
+use nalgebra::{DMatrix, DVector, Matrix2x3, Matrix2xX, Matrix6, Matrix6xX, Vector2, Vector3, Vector6};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::board::Board;
-use super::lens::{Distortion, LENS_NAMES, LENS_NUMBERS};
+use super::lens::{Distortion, LENS_NAMES, LENS_NUMBERS, Projection};
 use super::shape::Shape;
 use super::{Camera, Corner, View};
 use crate::lie::Pose;
@@ -186,6 +186,18 @@ impl PictureUnknowns {
         own.gram += mixed.transpose() * &follow;
         own.pull += follow.transpose() * by_pose;
         follow
+    }
+
+    /// Derivative of a pixel of a camera by all numbers, in deviations of their prior: by those of its lens.
+    #[must_use]
+    pub fn by_lens(&self, camera: usize, found: &Projection) -> Matrix2xX<f64> {
+        let mut by = Matrix2xX::zeros(self.count());
+        for part in self.parts.iter().filter(|part| part.of == PictureUnknown::Lens(camera)) {
+            for (k, (&place, prior)) in part.places.iter().zip(&part.priors).enumerate() {
+                (0..2).for_each(|axis| by[(axis, part.first + k)] = found.by_lens[axis][place] * prior);
+            }
+        }
+        by
     }
 
     /// The numbers after a step, with their standard deviations in those of the prior.

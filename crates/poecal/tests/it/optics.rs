@@ -1,12 +1,14 @@
 //! Lenses, boards and markers that are found with the robot, and those that corners contradict.
 
-use nalgebra::Vector3;
+use nalgebra::{Vector2, Vector3};
 use poecal::calibration::{BlockChoice, calibrate_repairing};
 use poecal::camera::{Board, Distortion, Lens, Pictures};
 use poecal::measurement::{Dataset, Source};
 use poecal::simulate::{Photographed, PictureSimulation, elbow};
 use poecal::start::settle_pictures;
-use poecal::{Calibration, CalibrationOptions};
+use poecal::{
+    Calibration, CalibrationFile, CalibrationOptions, Inputs, Model, ModelSource, PredictionFrame, predicted,
+};
 
 use crate::pictures::session;
 use crate::trials::trials;
@@ -215,6 +217,54 @@ fn what_pictures_cannot_determine_is_named() {
             assert!(expected.iter().all(|it| said.contains(it)), "{name}: {said}");
             // Of clean pictures nothing; of others nothing that they show.
             assert!(!expected.is_empty() || said.is_empty(), "{said}");
+        }
+    }
+}
+
+/// Squares of how far off pixels of a grid are predicted, and of what the map says, at the middle and at the corners of the image.
+fn projection_squares(seed: u64, free: &[&str]) -> [[f64; 2]; 2] {
+    let made = photographed(seed, usual());
+    let (calibration, data) = calibrated(&made, &read_with(&made, |_| ()), free);
+    let map = &data.pictures.projections[0];
+    let [columns, rows] = map.size;
+    let file = CalibrationFile::new(&calibration, &data, Inputs::default());
+    let (robot, path) = (file.robot().unwrap(), "calibration.json".into());
+    let model = Model { robot, source: ModelSource::Calibration(Box::new(file)), path };
+    let found = predicted(&model, data.all_readings(), PredictionFrame::Device, None, false).unwrap();
+    let (truth, lens) = (bent(), data.pictures.cameras[0].lens);
+    let mut squares = [[0.0; 2]; 2];
+    let corners = [0, columns - 1, (rows - 1) * columns, rows * columns - 1];
+    for (part, places) in [vec![rows / 2 * columns + columns / 2], corners.to_vec()].into_iter().enumerate() {
+        for &place in &places {
+            let at = |k: usize, count: usize, size: f64| k as f64 / (count - 1) as f64 * (size - 1.0);
+            let pixel = Vector2::new(at(place % columns, columns, 1920.0), at(place / columns, rows, 1200.0));
+            let ray = truth.ray(&pixel).unwrap();
+            let point = ray * (map.distance_m / ray.z);
+            let mean = |squares: f64| squares / (places.len() * data.len()) as f64;
+            for (picture, (exact, row)) in
+                data.pictures.all.iter().zip(made.camera_from_board.iter().zip(&found.poses))
+            {
+                let on_board = exact.inverse().act(&point);
+                let seen = lens.pixel(&picture.directed(row).act(&on_board)).unwrap();
+                squares[part][0] += mean((seen - pixel).norm_squared());
+            }
+            squares[part][1] += map.off_px[place].unwrap().powi(2) / places.len() as f64;
+        }
+    }
+    squares
+}
+
+#[test]
+fn pixels_are_predicted_as_well_as_the_map_says() {
+    for (name, free) in [("lens known", vec![]), ("lens free", vec!["lens"])] {
+        let all: Vec<_> =
+            trials(40).at_least(10).seeds().map(|seed| projection_squares(400 + seed, &free)).collect();
+        for (part, place) in ["the middle", "the corners"].into_iter().enumerate() {
+            let sum = |k: usize| all.iter().map(|it| it[part][k]).sum::<f64>() / all.len() as f64;
+            let ([found, said], count) = ([sum(0), sum(1)].map(f64::sqrt), all.len());
+            println!("{name}: {found:.3} px at {place}, the map says {said:.3}, of {count} sessions");
+            // The noise of one session is half of its square: 10 sessions show the root to 15 %.
+            assert!((found / said).ln().abs() < 0.4, "{found} {said}");
         }
     }
 }
