@@ -7,6 +7,7 @@ use super::calibrated::CalibratedFit;
 use super::corrected::Found;
 use super::events::Events;
 use super::figures::Figures;
+use super::image_map::image_maps;
 use super::improvement::improvements;
 use super::one_zero::one_zero;
 use super::optics_doubts::optics_doubt;
@@ -56,6 +57,7 @@ impl<'a> Found<'a> {
         }
         figures.explain_suspicions(&fit.run.robot);
         let warnings = fit.warnings(&figures, &signs, &events);
+        let images = image_maps(&fit, &figures);
         let stations = stations(&fit.session(), &fit.estimate, fit.noise());
         let Figures { models, accuracy, robustness, trust, identifiability, correction } = figures;
         let judged = events.against.into_iter().fold(judged, Judged::against);
@@ -95,6 +97,7 @@ impl<'a> Found<'a> {
             fit_rows: run.fit_rows.clone(),
             held_out_rows: run.held_out_rows.clone(),
             correction: correction.map(Box::new),
+            images,
             packed: Arc::clone(&run.packed),
         };
         (calibration, run)

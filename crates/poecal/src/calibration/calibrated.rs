@@ -50,12 +50,8 @@ impl<'a> Run<'a> {
             start = self.register();
             fit = self.fit_with(&ratios, &start, self.options.robust)?;
         }
-        if !self.data.pictures.is_empty() {
-            let projections = self.projection_maps(&ratios, &fit, optics.as_ref());
-            let pictures = &mut self.data.to_mut().pictures;
-            pictures.projections = projections;
-            pictures.found =
-                optics.as_ref().map_or_else(|| std::mem::take(&mut pictures.found), Optics::numbers);
+        if let Some(optics) = &optics {
+            self.data.to_mut().pictures.found = optics.numbers();
         }
         let estimate = self.calibrated(&fit, &ratios);
         Ok(CalibratedFit { run: self, start, robust: fit, noise_ratios: ratios, optics, estimate })

@@ -100,6 +100,21 @@ fn seen_corners(data: &Dataset, row: u32, error: &RowError) -> Option<(usize, Ve
     Some((picture.corners.len(), corners(data, picture, &pose)))
 }
 
+/// The pixel of each corner of a row that has weight, and how far it is off by the error of the row, if it is seen; `None` of a row that is no
+/// picture.
+pub(super) fn seen_pixels(
+    data: &Dataset,
+    row: u32,
+    error: &RowError,
+) -> Option<Vec<(Vector2<f64>, Option<Vector2<f64>>)>> {
+    let picture = data.pictures.all.get(data.pictures.of_row(row)?)?;
+    let measured = data.observations.get(row as usize)?.measurement.pose();
+    let pose = picture.directed(&predicted_pose(&measured, error));
+    let errors = data.pictures.view(picture)?.errors(&pose);
+    let own = picture.corners.iter().zip(errors).filter(|(corner, _)| corner.weight > 0.0);
+    Some(own.map(|(corner, error)| (corner.pixel, error)).collect())
+}
+
 /// Of each corner that a pose of the board lets the camera see, how far it is off: pixels, and metres at its depth.
 fn corners(data: &Dataset, picture: &Picture, pose: &Pose) -> Vec<(f64, f64)> {
     let Some(view) = data.pictures.view(picture) else { return Vec::new() };

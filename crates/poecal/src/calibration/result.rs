@@ -3,6 +3,7 @@
 use std::borrow::Cow;
 use std::sync::Arc;
 
+use super::image_map::ImageMap;
 use super::placed::{CalibratedStation, CalibratedTarget};
 use super::{
     Acceptance, Accuracy, CalibrationOptions, Correction, DeviceFrameKnowledge, Event, Formulation, Models,
@@ -86,6 +87,8 @@ pub struct Calibration {
     pub held_out_rows: Vec<u32>,
     /// The corrected model: screws and terms fitted together; none if no terms were asked for.
     pub correction: Option<Box<Correction>>,
+    /// Errors of corners over the image of each camera whose picture has a known size.
+    pub images: Vec<ImageMap>,
     /// Joint values of its measurements with their sines and cosines.
     pub(super) packed: Arc<Packed>,
 }

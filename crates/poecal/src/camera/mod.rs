@@ -19,7 +19,7 @@ pub use common::{Centre, CommonError, motion_by_inverse};
 pub use guess::{FlatView, guessed_lens};
 pub use lens::{Distortion, LENS_NAMES, LENS_NUMBERS, Lens, Projection};
 pub use picture::{Camera, Corner, Picture};
-pub use pictures::{Pictures, ProjectionMap};
+pub use pictures::Pictures;
 pub use pnp::poses_of_rays;
 pub use shape::is_flat_sheet;
 pub use sighting::{Sighting, View, moved};

@@ -24,22 +24,6 @@ pub struct Pictures {
     /// Numbers of cameras and boards that were found with the robot.
     #[serde(default)]
     pub found: Vec<PictureNumber>,
-    /// How well pixels are predicted, of each camera whose picture has a known size.
-    #[serde(default)]
-    pub projections: Vec<ProjectionMap>,
-}
-
-/// How far off a calibration predicts the pixels of points in front of a camera, over its image: by the covariance of robot, camera and board.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct ProjectionMap {
-    /// Index of the camera.
-    pub camera: usize,
-    /// Depth of the points, metres: the median of the boards'.
-    pub distance_m: f64,
-    /// Places along the width and the height, from the first pixel to the last.
-    pub size: [usize; 2],
-    /// Root mean square distance at these places, row by row, pixels; none beyond the lens.
-    pub off_px: Vec<Option<f64>>,
 }
 
 impl Default for Pictures {
@@ -51,7 +35,6 @@ impl Default for Pictures {
             sigma_px: USUAL_PX,
             common: CommonError::default(),
             found: Vec::new(),
-            projections: Vec::new(),
         }
     }
 }

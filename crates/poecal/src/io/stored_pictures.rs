@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::measurements::ReadOptions;
 use super::text_of;
+use crate::calibration::ImageMap;
 use crate::camera::{Board, Camera, Centre, CommonError, Distortion, Lens, PictureNumber};
 use crate::error::{Error, ErrorKind, Result};
 use crate::measurement::Dataset;
@@ -34,6 +35,9 @@ pub struct PicturesEntry {
     /// given.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub found: Vec<PictureNumber>,
+    /// Errors of corners over the image of each camera whose picture has a known size.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub images: Vec<ImageMap>,
 }
 
 /// A body of known points.
@@ -84,7 +88,7 @@ pub struct CameraEntry {
 
 impl PicturesEntry {
     /// Of a session; `None` without pictures.
-    pub(in crate::io) fn of(data: &Dataset) -> Option<Self> {
+    pub(in crate::io) fn of(data: &Dataset, images: &[ImageMap]) -> Option<Self> {
         let pictures = &data.pictures;
         if pictures.is_empty() {
             return None;
@@ -103,6 +107,7 @@ impl PicturesEntry {
             cameras: pictures.cameras.iter().map(CameraEntry::of).collect(),
             boards: pictures.boards.iter().map(BoardEntry::of).collect(),
             found: pictures.found.clone(),
+            images: images.to_vec(),
         })
     }
 }

@@ -225,8 +225,8 @@ fn what_pictures_cannot_determine_is_named() {
 fn projection_squares(seed: u64, free: &[&str]) -> [[f64; 2]; 2] {
     let made = photographed(seed, usual());
     let (calibration, data) = calibrated(&made, &read_with(&made, |_| ()), free);
-    let map = &data.pictures.projections[0];
-    let [columns, rows] = map.size;
+    let map = &calibration.images[0];
+    let [columns, rows] = map.cells.last().unwrap().at.map(|it| it + 1);
     let file = CalibrationFile::new(&calibration, &data, Inputs::default());
     let (robot, path) = (file.robot().unwrap(), "calibration.json".into());
     let model = Model { robot, source: ModelSource::Calibration(Box::new(file)), path };
@@ -236,10 +236,11 @@ fn projection_squares(seed: u64, free: &[&str]) -> [[f64; 2]; 2] {
     let corners = [0, columns - 1, (rows - 1) * columns, rows * columns - 1];
     for (part, places) in [vec![rows / 2 * columns + columns / 2], corners.to_vec()].into_iter().enumerate() {
         for &place in &places {
-            let at = |k: usize, count: usize, size: f64| k as f64 / (count - 1) as f64 * (size - 1.0);
-            let pixel = Vector2::new(at(place % columns, columns, 1920.0), at(place / columns, rows, 1200.0));
+            let cell = map.cells[place];
+            let [u, v] = cell.at.map(|it| (it as f64 + 0.5) * map.cell_px - 0.5);
+            let pixel = Vector2::new(u, v.min(1199.0));
             let ray = truth.ray(&pixel).unwrap();
-            let point = ray * (map.distance_m / ray.z);
+            let point = ray * (1e-3 * map.distance_mm / ray.z);
             let mean = |squares: f64| squares / (places.len() * data.len()) as f64;
             for (picture, (exact, row)) in
                 data.pictures.all.iter().zip(made.camera_from_board.iter().zip(&found.poses))
@@ -248,7 +249,7 @@ fn projection_squares(seed: u64, free: &[&str]) -> [[f64; 2]; 2] {
                 let seen = lens.pixel(&picture.directed(row).act(&on_board)).unwrap();
                 squares[part][0] += mean((seen - pixel).norm_squared());
             }
-            squares[part][1] += map.off_px[place].unwrap().powi(2) / places.len() as f64;
+            squares[part][1] += cell.predicted_px.unwrap().powi(2) / places.len() as f64;
         }
     }
     squares
@@ -257,14 +258,14 @@ fn projection_squares(seed: u64, free: &[&str]) -> [[f64; 2]; 2] {
 #[test]
 fn pixels_are_predicted_as_well_as_the_map_says() {
     for (name, free) in [("lens known", vec![]), ("lens free", vec!["lens"])] {
-        let all: Vec<_> =
-            trials(40).at_least(10).seeds().map(|seed| projection_squares(400 + seed, &free)).collect();
+        let sessions = trials(40).at_least(8);
+        let all: Vec<_> = sessions.seeds().map(|seed| projection_squares(400 + seed, &free)).collect();
         for (part, place) in ["the middle", "the corners"].into_iter().enumerate() {
             let sum = |k: usize| all.iter().map(|it| it[part][k]).sum::<f64>() / all.len() as f64;
             let ([found, said], count) = ([sum(0), sum(1)].map(f64::sqrt), all.len());
             println!("{name}: {found:.3} px at {place}, the map says {said:.3}, of {count} sessions");
-            // The noise of one session is half of its square: 10 sessions show the root to 15 %.
-            assert!((found / said).ln().abs() < 0.4, "{found} {said}");
+            // One or two directions of a free lens are most of it: a session shows the root to 60 %.
+            assert!((found / said).ln().abs() < 0.25 + sessions.more(0.6), "{found} {said}");
         }
     }
 }

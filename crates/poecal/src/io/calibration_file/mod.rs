@@ -88,7 +88,7 @@ impl CalibrationFile {
             outliers: OutlierEntry::of(calibration, data),
             suspected_configurations: SuspectedConfigurationEntry::of(calibration, data),
             repeatability: RepeatabilityEntry::of(calibration, data),
-            pictures: PicturesEntry::of(data),
+            pictures: PicturesEntry::of(data, &calibration.images),
             warnings: calibration.warnings.clone(),
             diagnosis: calibration.diagnosis.iter().map(DiagnosisEntry::from).collect(),
             repairs: calibration.repairs.clone(),

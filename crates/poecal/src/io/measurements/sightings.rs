@@ -24,6 +24,7 @@ impl Reader<'_> {
         for one in gathered {
             let name = one.image.clone().unwrap_or_else(|| format!("of line {}", one.taken.place.1));
             let line = one.corners.first().map_or(0, |corner| corner.line);
+            let image = one.image.clone();
             let picture = Picture::new(one.camera, one.board, one.image, one.corners);
             let taken = (one.taken.set, Source { file, line });
             let data = &mut self.found.data;
@@ -38,9 +39,10 @@ impl Reader<'_> {
                     return Err(Error::new(kind, error.message()).at_line(path, line as usize));
                 }
             }
-            if !one.taken.id.is_empty() || !data.ids.is_empty() {
+            let id = if one.taken.id.is_empty() { image.unwrap_or_default() } else { one.taken.id };
+            if !id.is_empty() || !data.ids.is_empty() {
                 data.ids.resize(data.len() - 1, String::new());
-                data.ids.push(one.taken.id);
+                data.ids.push(id);
             }
             found += 1;
         }

@@ -115,6 +115,7 @@ fn heat_map(
         Some(HeatCell {
             at: [step(it.radius_m), step(it.height_m)],
             value: factor * value(it)?,
+            arrow: None,
             told: told(found, it),
         })
     };
@@ -123,7 +124,9 @@ fn heat_map(
         description,
         axes: [format!("distance from {}, m", axis_words(found)), "height above the base, m".to_owned()],
         cell: found.cell_m,
+        downwards: false,
         values: format!("{unit} {what}"),
+        arrows: String::new(),
         cells: found.cells.iter().filter_map(cell).collect(),
     };
     PreEscaped(map.svg())

@@ -341,7 +341,9 @@ fn contents(file: &CalibrationFile) -> Markup {
     let repairs = (!file.repairs.is_empty()).then_some(("repairs", "Repairs"));
     let sections =
         repairs.into_iter().chain([("view", "In 3D"), ("joints", "Joints")]).chain(corrected).chain(gain);
+    let pictures = file.pictures.as_ref().map(|_| ("pictures", "Pictures"));
     let rows = [("errors", "Errors of the rows"), ("suspects", "Suspected rows")];
+    let rows = pictures.into_iter().chain(rows);
     let rest = [("trust", "How far to trust it"), ("told", "Unknowns"), ("method", "Method and inputs")];
     html! {
         nav aria-label="Contents" {

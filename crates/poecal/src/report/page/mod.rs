@@ -14,6 +14,7 @@ mod html;
 mod joints;
 mod lead;
 mod method;
+mod pictures;
 mod repairs;
 mod rows;
 mod shapes;
@@ -83,6 +84,7 @@ pub fn calibration_page_with(file: &CalibrationFile, residuals: &Residuals, shap
             (joints::sections(file, shapes))
             (corrected::sections(file))
             (compensation::sections(file))
+            (pictures::sections(file, residuals))
             (rows::sections(file, residuals))
             (trust::sections(file))
             (method::sections(file))

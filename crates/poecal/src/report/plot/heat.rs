@@ -12,6 +12,9 @@ const RIGHT: f64 = 24.0;
 /// Room for the scale below the axis, px.
 const SCALE: f64 = 34.0;
 const MARGIN: f64 = 10.0;
+/// Longest arrow as a part of a cell, and the angle of its head, rad.
+const ARROW: f64 = 0.75;
+const HEAD: f64 = 0.5;
 /// Steps of colour.
 const LEVELS: f64 = 10.0;
 /// Distance of labels along an axis, px.
@@ -19,9 +22,11 @@ const APART: f64 = 44.0;
 
 /// A cell of a [`HeatMap`].
 pub struct HeatCell {
-    /// Steps from the origin to its lower left corner.
+    /// Steps from the origin to its corner that is nearest to it.
     pub at: [i64; 2],
     pub value: f64,
+    /// What is drawn as an arrow in it, along the axes.
+    pub arrow: Option<[f64; 2]>,
     /// What is said of it where a pointer rests.
     pub told: String,
 }
@@ -34,8 +39,12 @@ pub struct HeatMap {
     pub axes: [String; 2],
     /// Side of a cell, in the unit of the axes.
     pub cell: f64,
+    /// Whether the vertical axis counts downwards, as the rows of an image.
+    pub downwards: bool,
     /// What the values are, with their unit.
     pub values: String,
+    /// The same of the arrows, if there are any.
+    pub arrows: String,
     pub cells: Vec<HeatCell>,
 }
 
@@ -63,18 +72,38 @@ impl HeatMap {
         let (least, largest) = range.fold((f64::INFINITY, 0.0), |(least, most), value| {
             (f64::min(least, value), f64::max(most, value))
         });
+        // Values that are nearly alike look alike.
+        let least = if least > 0.5 * largest { 0.0 } else { least };
+        let longest = self.longest();
         for cell in &self.cells {
             let [column, row] = [cell.at[0] - ends[0].0, cell.at[1] - ends[1].0].map(|it| it as f64);
-            let (left, bottom) = (area.left + side * column, area.bottom - side * row);
-            canvas.cell([left, bottom - side], side, level(cell.value, (least, largest)), &cell.told);
+            let down = if self.downwards { row } else { rows - 1.0 - row };
+            let (left, top) = (area.left + side * column, area.top + side * down);
+            canvas.cell([left, top], side, level(cell.value, (least, largest)), &cell.told);
             let text = shown(cell.value, largest);
+            let middle = if longest > 0.0 { 0.82 } else { 0.5 };
             if text_width(&text) <= 1.15 * side {
-                canvas.small_text([left + 0.5 * side, bottom - 0.5 * side + 3.5], Anchor::Middle, &text);
+                canvas.small_text([left + 0.5 * side, top + middle * side + 3.5], Anchor::Middle, &text);
+            }
+            if let Some(arrow) = cell.arrow.filter(|_| longest > 0.0) {
+                let down = if self.downwards { arrow[1] } else { -arrow[1] };
+                let reach = ARROW * side / longest;
+                draw_arrow(
+                    &mut canvas,
+                    [left + 0.5 * side, top + 0.4 * side],
+                    [reach * arrow[0], reach * down],
+                );
             }
         }
         self.axes(&mut canvas, &area, side, ends);
         let bottom = self.scale(&mut canvas, area.bottom + 33.0, (least.min(largest), largest));
         canvas.finish(WIDTH, bottom + MARGIN, &self.title, &self.description)
+    }
+
+    /// Length of the longest arrow.
+    fn longest(&self) -> f64 {
+        let lengths = self.cells.iter().filter_map(|cell| cell.arrow).map(|[x, y]| x.hypot(y));
+        lengths.filter(|it| it.is_finite()).fold(0.0, f64::max)
     }
 
     /// Lines and labels of both axes, at the edges of cells.
@@ -89,7 +118,8 @@ impl HeatMap {
             canvas.text([x, area.bottom + 16.0], Anchor::Middle, &label(step));
         }
         for step in labelled(ends[1]) {
-            let y = area.bottom - side * (step - ends[1].0) as f64;
+            let along = side * (step - ends[1].0) as f64;
+            let y = if self.downwards { area.top + along } else { area.bottom - along };
             canvas.axis_line([area.left - 4.0, y], [area.left, y]);
             canvas.text([area.left - 7.0, y + 4.0], Anchor::End, &label(step));
         }
@@ -110,12 +140,26 @@ impl HeatMap {
             canvas.cell([x, y], BOX, level, "");
             x += BOX;
         }
-        canvas.text(
-            [x + 6.0, y + 10.0],
-            Anchor::Start,
-            &format!("{} {}", shown(largest, largest), self.values),
-        );
+        let longest = self.longest();
+        let arrows = if longest > 0.0 {
+            format!("; arrows to {} {}", shown(longest, longest), self.arrows)
+        } else {
+            String::new()
+        };
+        let words = format!("{} {}{arrows}", shown(largest, largest), self.values);
+        canvas.text([x + 6.0, y + 10.0], Anchor::Start, &words);
         y + BOX
+    }
+}
+
+/// A line from its middle to both sides, with a head.
+fn draw_arrow(canvas: &mut Canvas, [x, y]: [f64; 2], [along, down]: [f64; 2]) {
+    let (from, to) = ([x - 0.5 * along, y - 0.5 * down], [x + 0.5 * along, y + 0.5 * down]);
+    canvas.axis_line(from, to);
+    for side in [HEAD, -HEAD] {
+        let (sin, cos) = side.sin_cos();
+        let back = [cos * along - sin * down, sin * along + cos * down].map(|it| 0.3 * it);
+        canvas.axis_line(to, [to[0] - back[0], to[1] - back[1]]);
     }
 }
 
@@ -133,6 +177,7 @@ mod tests {
         let cell = |(k, &value): (usize, &f64)| HeatCell {
             at: [k as i64 % 3, k as i64 / 3 - 1],
             value,
+            arrow: Some([value, -1.0]).filter(|_| k % 2 == 0),
             told: "a < b".to_owned(),
         };
         HeatMap {
@@ -140,7 +185,9 @@ mod tests {
             description: String::new(),
             axes: ["r, m".to_owned(), "z, m".to_owned()],
             cell: 0.2,
+            downwards: values.len() == 2,
             values: "mm".to_owned(),
+            arrows: "mm".to_owned(),
             cells: values.iter().enumerate().map(cell).collect(),
         }
     }
