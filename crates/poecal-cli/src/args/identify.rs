@@ -6,7 +6,7 @@ use clap::Args;
 use poecal::calibration::DeviceFrameKnowledge;
 use poecal::simulate::Kind;
 
-use super::shared::{ColumnArgs, TreeArgs};
+use super::shared::{CameraArgs, ColumnArgs, TreeArgs};
 use super::words::{FRAME, one_of, simulated};
 use crate::quantity::{sigma_m, sigma_rad};
 
@@ -16,21 +16,23 @@ pub(crate) struct Identify {
     /// Robot model: URDF, MJCF, SDF, TOML, a maker's YAML or conf, or calibration.json
     pub(crate) model: PathBuf,
     /// Joint readings (CSV), joined; other columns than the joints' and `id` are ignored, but for kinds that touch something: these need the
-    /// columns that name it
+    /// columns that name it. With --camera and --markers pictures that were taken: the files that calibrate reads
     #[arg(required = true)]
     pub(crate) joints: Vec<PathBuf>,
     #[command(flatten)]
     pub(crate) chain: TreeArgs,
     #[command(flatten)]
     pub(crate) columns: ColumnArgs,
+    #[command(flatten)]
+    pub(crate) cameras: CameraArgs,
     /// Kind of the measurements of the tip
-    #[arg(long, value_parser = simulated(), default_value = "pose")]
+    #[arg(long, value_parser = simulated(), default_value = "pose", conflicts_with = "camera")]
     pub(crate) kind: Kind,
     /// Standard deviation of each measured position component [default: 0.05mm]
-    #[arg(long, value_name = "LENGTH", value_parser = sigma_m, allow_hyphen_values = true)]
+    #[arg(long, value_name = "LENGTH", value_parser = sigma_m, allow_hyphen_values = true, conflicts_with = "camera")]
     pub(crate) sigma_position: Option<f64>,
     /// Standard deviation of each measured rotation component [default: 0.01deg]
-    #[arg(long, value_name = "ANGLE", value_parser = sigma_rad, allow_hyphen_values = true)]
+    #[arg(long, value_name = "ANGLE", value_parser = sigma_rad, allow_hyphen_values = true, conflicts_with = "camera")]
     pub(crate) sigma_rotation: Option<f64>,
     /// The measuring device's frame
     #[arg(long, value_parser = one_of(FRAME), default_value = "unknown")]

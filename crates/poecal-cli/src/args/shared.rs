@@ -79,6 +79,39 @@ impl ColumnArgs {
     }
 }
 
+/// Cameras and boards of corners in pixels.
+#[derive(Args, Debug)]
+pub(crate) struct CameraArgs {
+    /// Cameras of corners in pixels: CSV with name, fx, fy, cx, cy, k1 and so on in OpenCV's order (FILE#VERSION where it has several), YAML of OpenCV,
+    /// ROS or Kalibr, XML of ViSP, a calibration.json with what it found, or unknown:1920x1080 with the size of the pictures, for a lens that is
+    /// found from them; may be given again
+    #[arg(long, value_name = "FILE[#VERSION]|unknown:WxH")]
+    pub(crate) camera: Vec<String>,
+    /// Board or solid that cameras see: CSV with target, x[mm], y[mm], z[mm] of its points, chessboard:10x7:27mm (squares along x and y, and
+    /// their side), charuco:, circles:, aprilgrid: or tags: as poecal detect has them, or a calibration.json with what it found; may be given again
+    #[arg(long, value_name = "FILE|BOARD")]
+    pub(crate) markers: Vec<String>,
+}
+
+impl CameraArgs {
+    /// The files that they are read from.
+    pub(crate) fn files(&self) -> impl Iterator<Item = &Path> {
+        let camera = self.camera.iter().filter_map(|typed| camera_file(typed)).map(|(path, _)| path);
+        camera.chain(self.markers.iter().map(Path::new).filter(|path| is_file(path)))
+    }
+
+    /// The same options with these cameras and boards.
+    pub(crate) fn add(&self, mut options: ReadOptions) -> poecal::Result<ReadOptions> {
+        for typed in &self.camera {
+            options.cameras.extend(read_cameras(typed)?);
+        }
+        for typed in &self.markers {
+            options.boards.extend(read_boards(typed)?);
+        }
+        Ok(options)
+    }
+}
+
 /// What measurement files mean.
 #[derive(Args, Debug)]
 pub(crate) struct Meaning {
@@ -100,46 +133,29 @@ pub(crate) struct Meaning {
     /// line of sight for each metre; of all instruments without a name. For rows that state none; may be given again
     #[arg(long, value_name = "[NAME:]LENGTH+LENGTH/m")]
     pub(crate) instrument_noise: Vec<InstrumentNoise>,
-    /// Cameras of corners in pixels: CSV with name, fx, fy, cx, cy, k1 and so on in OpenCV's order (FILE#VERSION where it has several), YAML of OpenCV,
-    /// ROS or Kalibr, XML of ViSP, a calibration.json with what it found, or unknown:1920x1080 with the size of the pictures, for a lens that is
-    /// found from them; may be given again
-    #[arg(long, value_name = "FILE[#VERSION]|unknown:WxH")]
-    pub(crate) camera: Vec<String>,
-    /// Board or solid that cameras see: CSV with target, x[mm], y[mm], z[mm] of its points, chessboard:10x7:27mm (squares along x and y, and
-    /// their side), charuco:, circles:, aprilgrid: or tags: as poecal detect has them, or a calibration.json with what it found; may be given again
-    #[arg(long, value_name = "FILE|BOARD")]
-    pub(crate) markers: Vec<String>,
+    #[command(flatten)]
+    pub(crate) cameras: CameraArgs,
 }
 
 impl Meaning {
     /// The files that say what others mean.
     pub(crate) fn files(&self) -> impl Iterator<Item = &Path> {
-        let camera = self.camera.iter().filter_map(|typed| camera_file(typed)).map(|(path, _)| path);
-        let markers = self.markers.iter().map(Path::new).filter(|path| is_file(path));
-        self.columns.columns.iter().map(PathBuf::as_path).chain(camera).chain(markers)
+        self.columns.columns.iter().map(PathBuf::as_path).chain(self.cameras.files())
     }
 
     pub(crate) fn options(&self) -> poecal::Result<ReadOptions> {
         let (strict, frames, contact) = (self.strict, self.frames, self.contact);
         let socket_distances = self.socket_distance.clone();
         let instrument_noise = self.instrument_noise.clone();
-        let (mut cameras, mut boards) = (Vec::new(), Vec::new());
-        for typed in &self.camera {
-            cameras.extend(read_cameras(typed)?);
-        }
-        for typed in &self.markers {
-            boards.extend(read_boards(typed)?);
-        }
-        Ok(ReadOptions {
+        let options = ReadOptions {
             strict,
             frames,
             contact,
             socket_distances,
             instrument_noise,
-            cameras,
-            boards,
             ..self.columns.options()?
-        })
+        };
+        self.cameras.add(options)
     }
 }
 

@@ -1,12 +1,12 @@
 //! `poecal identify`: identifiability by measurements in given configurations.
 
-use poecal::analysis::{PlannedSession, identify as foresee, identify_touching};
+use poecal::analysis::{PlannedSession, identify as foresee, identify_measured};
 use poecal::calibration::DeviceFrameKnowledge;
 use poecal::io::measurements;
 use poecal::io::model::Model;
 use poecal::io::named_files::refuse_repeats;
 use poecal::measurement::{Noise, Quantity};
-use poecal::{Result, report};
+use poecal::{Error, ErrorKind, Result, report};
 
 use crate::DONE;
 use crate::args::Identify;
@@ -14,7 +14,7 @@ use crate::console::Console;
 
 pub(crate) fn identify(arguments: &Identify, console: &Console) -> Result<u8> {
     refuse_repeats(&arguments.joints)?;
-    let options = arguments.columns.options();
+    let options = arguments.columns.options().and_then(|options| arguments.cameras.add(options));
     let model = Model::read(&arguments.model, &arguments.chain.selection(options.as_ref().ok())?)?;
     let options = model.reads(options?);
     let usual = PlannedSession::default();
@@ -26,10 +26,17 @@ pub(crate) fn identify(arguments: &Identify, console: &Console) -> Result<u8> {
         ),
         device_free: arguments.frame == DeviceFrameKnowledge::Unknown,
     };
-    let found = if session.kind.is_touched() {
+    let has_pictures = !options.cameras.is_empty() || !options.boards.is_empty();
+    let found = if session.kind.is_touched() || has_pictures {
         let file = measurements::read(&arguments.joints, &model.robot, &options)?;
         console.warnings(&file.warnings);
-        identify_touching(&model.robot, &file.data, &session)?
+        if has_pictures && file.data.pictures.is_empty() {
+            return Err(Error::new(
+                ErrorKind::Option,
+                "found --camera or --markers and rows without pixels, expected corners with u[px] and v[px] beside the joints",
+            ));
+        }
+        identify_measured(&model.robot, &file.data, &session)?
     } else {
         let mut readings = Vec::new();
         for path in &arguments.joints {

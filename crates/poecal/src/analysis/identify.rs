@@ -8,6 +8,7 @@ use super::coverage::{JointCoverage, coverage};
 use super::identifiability::{Identifiability, identifiability};
 use super::setup::Setup;
 use super::spectrum::PLAUSIBLE;
+use crate::camera::CommonError;
 use crate::error::{ErrorKind, Result};
 use crate::estimate::{Chain, Estimate, Linkage, Packed, Session, delivered};
 use crate::lie::Pose;
@@ -86,6 +87,21 @@ pub struct Foresight {
     pub expected: ExpectedError,
     /// Metres that a radian counts.
     pub length_m: f64,
+    /// The pictures by which the configurations are judged, if there are any.
+    pub pictures: Option<MeasuredPictures>,
+}
+
+/// Pictures whose corners say how well they determine a pose.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MeasuredPictures {
+    /// Their number.
+    pub count: usize,
+    /// Number of corners in all of them.
+    pub corners: usize,
+    /// Standard deviation of each coordinate of a corner that states none, pixels.
+    pub sigma_px: f64,
+    /// What the corners of a picture share: before a calibration what is usual.
+    pub common: CommonError,
 }
 
 /// Judges configurations, in which every instrument on the robot measures every target of the model, or a device beside it the tip (readings one after the other, in the order of [`Robot::reading_names`]; radians, metres) before they are
@@ -122,12 +138,13 @@ pub fn identify(robot: &Robot, readings: &[f64], planned: &PlannedSession) -> Re
     Ok(Foresight { count, ..foresee(robot, &data, estimate, planned)? })
 }
 
-/// The same for rows that touch something, by the measurements that name it: balls in sockets, points and faces on planes, points of spheres
-/// (`poecal::io::measurements` reads them). What they touch is where the nominal robot touches it best.
+/// The same for rows that name more than a configuration, by the measurements (`poecal::io::measurements` reads them): pictures, as their corners
+/// determine their poses, and rows that touch something: balls in sockets, points and faces on planes, points of spheres. Cameras, boards and what
+/// is touched are where the nominal robot has them best.
 ///
 /// # Errors
 /// As [`identify`].
-pub fn identify_touching(robot: &Robot, data: &Dataset, planned: &PlannedSession) -> Result<Foresight> {
+pub fn identify_measured(robot: &Robot, data: &Dataset, planned: &PlannedSession) -> Result<Foresight> {
     check_unknowns(robot, data.station_count() + data.targets.len())?;
     let packed = Packed::of(robot, data);
     let rows: Vec<u32> = data.all_rows();
@@ -135,7 +152,13 @@ pub fn identify_touching(robot: &Robot, data: &Dataset, planned: &PlannedSession
     let registration =
         Registration { session, rows: &rows, noise: planned.noise, targets_free: false, prior: None };
     let estimate = register(&registration, &delivered(robot, data)).0;
-    foresee(robot, data, estimate, planned)
+    let pictures = (!data.pictures.is_empty()).then(|| MeasuredPictures {
+        count: data.pictures.all.len(),
+        corners: data.pictures.all.iter().map(|it| it.corners.len()).sum(),
+        sigma_px: data.pictures.sigma_px,
+        common: data.pictures.common,
+    });
+    Ok(Foresight { pictures, ..foresee(robot, data, estimate, planned)? })
 }
 
 /// Refuses robots with more unknowns than one fit allows.
@@ -183,6 +206,7 @@ fn foresee(
         identifiability,
         expected,
         length_m: session.length_m,
+        pictures: None,
     })
 }
 
@@ -269,7 +293,7 @@ mod tests {
     fn balls_in_sockets_have_the_rank_of_the_closed_form() {
         let made = Simulation { count: 40, ..Simulation::default() }.run(&elbow(), Kind::SOCKET).unwrap();
         let planned = PlannedSession { kind: Kind::SOCKET, ..PlannedSession::default() };
-        let found = identify_touching(&elbow(), &made.data, &planned).unwrap();
+        let found = identify_measured(&elbow(), &made.data, &planned).unwrap();
         assert_eq!(found.identifiability.rank, 26);
     }
 }

@@ -19,7 +19,7 @@ pub use coverage::{JointCoverage, coverage};
 pub(crate) use coverage::{inside, ranges, within_sampled};
 pub use direction::{Cause, Direction};
 pub use identifiability::{Identifiability, effective_unknowns, identifiability, residual_variance};
-pub use identify::{ExpectedError, Foresight, PlannedSession, identify, identify_touching};
+pub use identify::{ExpectedError, Foresight, MeasuredPictures, PlannedSession, identify, identify_measured};
 pub use influence::{Influence, influence};
 pub use observability::Observability;
 pub use setup::Setup;

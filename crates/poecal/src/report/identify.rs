@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use serde::Serialize;
 
 use super::table::{kinds_words, line, noise_words, number, robot_words};
-use crate::analysis::{Cause, Foresight, JointCoverage, PlannedSession};
+use crate::analysis::{Cause, Foresight, JointCoverage, MeasuredPictures, PlannedSession};
 use crate::io::calibration_file::{IdentifiabilityEntry, Keyed, SigmaKeys};
 use crate::io::model::Model;
 use crate::measurement::{Measured, Quantity};
@@ -24,6 +24,8 @@ pub struct Identify {
     frame: &'static str,
     configurations: usize,
     noise: Keyed<SigmaKeys>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pictures: Option<PicturesEntry>,
     identifiability: IdentifiabilityEntry,
     expected_error: ExpectedEntry,
     coverage: Vec<JointCoverage>,
@@ -42,19 +44,39 @@ struct ExpectedEntry {
     position_worst_mm: Option<f64>,
 }
 
+/// The pictures, and what is known of their corners.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+struct PicturesEntry {
+    count: usize,
+    corners: usize,
+    sigma_px: f64,
+    common_shift_mm: f64,
+    common_turn_deg: f64,
+}
+
+impl PicturesEntry {
+    fn of(found: &MeasuredPictures) -> Self {
+        let MeasuredPictures { count, corners, sigma_px, common } = *found;
+        let (common_shift_mm, common_turn_deg) = (1e3 * common.shift_m, common.turn_rad.to_degrees());
+        PicturesEntry { count, corners, sigma_px, common_shift_mm, common_turn_deg }
+    }
+}
+
 impl Identify {
     /// What `identify` found of a model in the configurations of some files, named as the user named them.
     #[must_use]
     pub fn new(model: &Model, files: &[String], session: &PlannedSession, found: &Foresight) -> Self {
         let sigma = |quantity: Quantity| quantity.unit().shown(session.noise[quantity]);
-        let sigma = Measured::of(|quantity| session.kind.has(quantity).then(|| sigma(quantity)));
+        let is_stated = |quantity: Quantity| found.pictures.is_none() && session.kind.has(quantity);
+        let sigma = Measured::of(|quantity| is_stated(quantity).then(|| sigma(quantity)));
         Identify {
             model: model.path.display().to_string(),
             files: files.to_vec(),
-            kind: session.kind.word(),
+            kind: if found.pictures.is_some() { "picture" } else { session.kind.word() },
             frame: if session.device_free { "unknown" } else { "base" },
             configurations: found.count,
             noise: sigma.into(),
+            pictures: found.pictures.as_ref().map(PicturesEntry::of),
             identifiability: IdentifiabilityEntry::of(&found.identifiability),
             expected_error: ExpectedEntry {
                 configurations: found.expected.configurations,
@@ -82,8 +104,26 @@ impl Identify {
             "pose" | "point" | "mixed" => kinds_words(poses, points),
             kind => format!("{} configurations, {kind}", self.configurations),
         };
-        line(&mut out, "to measure", &format!("{what}: {}", self.files.join(", ")));
-        line(&mut out, "noise", &noise_words(&self.noise));
+        let files = self.files.join(", ");
+        match &self.pictures {
+            Some(found) => {
+                line(
+                    &mut out,
+                    "measured",
+                    &format!("{} pictures, {} corners: {files}", found.count, found.corners),
+                );
+                let (shift, turn) = (number(found.common_shift_mm), number(found.common_turn_deg));
+                let noise = format!(
+                    "{} px of each coordinate of a corner, and {shift} mm and {turn} deg that the corners of a picture share, as is usual before a calibration",
+                    number(found.sigma_px)
+                );
+                line(&mut out, "noise", &noise);
+            }
+            None => {
+                line(&mut out, "to measure", &format!("{what}: {files}"));
+                line(&mut out, "noise", &noise_words(&self.noise));
+            }
+        }
         identifiability_lines(&mut out, &self.identifiability);
         line(&mut out, "observability", &self.observability_words());
         line(&mut out, "expected", &self.expected_words());

@@ -394,6 +394,14 @@ impl<'a> Reader<'a> {
                 _ => error,
             });
         }
+        if let Some(taken) = self.taken.values().next().filter(|_| self.found.data.is_empty()) {
+            let message = format!(
+                "found the joint readings of {} pictures and no corners, expected a second file with these: image, target, u[px], v[px], as \
+                 `poecal detect` writes it",
+                self.taken.len()
+            );
+            return Err(Error::new(ErrorKind::Measurement, message).in_file(&taken.place.0));
+        }
         let mut found = self.found;
         if let Some(distances) = &self.options.socket_distances {
             found.data.lengths = distances.lengths(&self.sockets)?;
