@@ -27,6 +27,7 @@ mod offsets;
 mod original_urdf;
 #[cfg(any(unix, windows))]
 mod photographs;
+mod pictures;
 #[cfg(unix)]
 mod places;
 mod project;

@@ -8,7 +8,6 @@ use super::coverage::{JointCoverage, coverage};
 use super::identifiability::{Identifiability, identifiability};
 use super::setup::Setup;
 use super::spectrum::PLAUSIBLE;
-use crate::camera::CommonError;
 use crate::error::{ErrorKind, Result};
 use crate::estimate::{Chain, Estimate, Linkage, Packed, Session, delivered};
 use crate::lie::Pose;
@@ -100,8 +99,9 @@ pub struct MeasuredPictures {
     pub corners: usize,
     /// Standard deviation of each coordinate of a corner that states none, pixels.
     pub sigma_px: f64,
-    /// What the corners of a picture share: before a calibration what is usual.
-    pub common: CommonError,
+    /// Standard deviations of each component of the shift (m) and the turn (rad) that the corners of a picture share: before a calibration what is
+    /// usual.
+    pub shared: [f64; 2],
 }
 
 /// Judges configurations, in which every instrument on the robot measures every target of the model, or a device beside it the tip (readings one after the other, in the order of [`Robot::reading_names`]; radians, metres) before they are
@@ -156,7 +156,7 @@ pub fn identify_measured(robot: &Robot, data: &Dataset, planned: &PlannedSession
         count: data.pictures.all.len(),
         corners: data.pictures.all.iter().map(|it| it.corners.len()).sum(),
         sigma_px: data.pictures.sigma_px,
-        common: data.pictures.common,
+        shared: [data.pictures.common.shift_m, data.pictures.common.turn_rad],
     });
     Ok(Foresight { pictures, ..foresee(robot, data, estimate, planned)? })
 }

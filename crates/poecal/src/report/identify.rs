@@ -56,8 +56,8 @@ struct PicturesEntry {
 
 impl PicturesEntry {
     fn of(found: &MeasuredPictures) -> Self {
-        let MeasuredPictures { count, corners, sigma_px, common } = *found;
-        let (common_shift_mm, common_turn_deg) = (1e3 * common.shift_m, common.turn_rad.to_degrees());
+        let MeasuredPictures { count, corners, sigma_px, shared: [shift_m, turn_rad] } = *found;
+        let (common_shift_mm, common_turn_deg) = (1e3 * shift_m, turn_rad.to_degrees());
         PicturesEntry { count, corners, sigma_px, common_shift_mm, common_turn_deg }
     }
 }
