@@ -1,7 +1,7 @@
 // The arm in three dimensions with its controls.
 import { offBy, readingsOf, shown, withUnit } from "./data.js";
 import { CALIBRATED, NOMINAL, configure, subtract } from "./kinematics.js";
-import { kindWords } from "./places.js";
+import { kindWords, wordOf } from "./places.js";
 import { Scene } from "./scene.js";
 import { onColours } from "./theme.js";
 
@@ -103,8 +103,8 @@ function describe({ rows, targets, instruments, draws_instruments }, row) {
   const set = rows.held_out[row] ? "held out" : "fitted";
   const target = targets[rows.target[row]].name;
   const instrument = instruments[rows.instrument[row]];
-  const kind = instrument.kind ?? "instrument";
-  const from = draws_instruments && kind !== "pair" && instrument.name && `${kind} ${instrument.name}`;
+  const kind = wordOf(instrument);
+  const from = draws_instruments && kind !== "pair" && instrument.name && (instrument.name === kind ? `the ${kind}` : `${kind} ${instrument.name}`);
   return `${rows.place[row]}, ${set}${target ? `, target ${target}` : ""}${from ? `, ${from}` : ""}: off by ${offBy(rows, row)}`;
 }
 

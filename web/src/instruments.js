@@ -2,6 +2,7 @@
 import { BufferAttribute, BufferGeometry, CylinderGeometry, Group, LineSegments, Matrix4, Mesh, SphereGeometry, Vector3 } from "three";
 import { act } from "./kinematics.js";
 import { flat, solid } from "./materials.js";
+import { linesOf, opticsOf, raysOf } from "./optics.js";
 import { drawingOf, hasPlace, isSeenFromAfar } from "./places.js";
 
 const DASHES = 24;
@@ -12,18 +13,24 @@ const IN_BASE = 1e-6;
 
 export class Instruments {
   constructor(data, size, labels) {
-    const { instruments, mounted, draws_instruments } = data;
+    const { instruments, targets, mounted, draws_instruments } = data;
     this.materials = { body: solid(), x: solid(), y: solid(), z: solid(), sight: flat(), plumb: flat(), wire: flat(), sheet: solid(0.22, true), edge: flat() };
     this.group = new Group();
     this.kinds = instruments;
     this.isUnknown = instruments.map(({ on, pose: { t } }) => !draws_instruments && on === null && Math.hypot(...t) < IN_BASE);
     this.frames = instruments.map((it) => (it.kind ? drawingOf(it, data, size, this.materials) : frame(this.materials, size)));
     this.frames.forEach((it, k) => (it.visible = !this.isUnknown[k]));
+    // Cameras and boards as what they are, whichever of the two measures the other.
+    instruments.forEach((it, k) => this.frames[k].add(...[opticsOf(it, size, this.materials)].filter(Boolean)));
+    this.seen = targets;
+    this.held = targets.map((it) => opticsOf(it, size, this.materials));
+    this.rays = new LineSegments(linesOf([]), this.materials.sight);
+    this.rays.frustumCulled = false;
     const dashes = new BufferGeometry();
     dashes.setAttribute("position", new BufferAttribute(new Float32Array(6 * DASHES), 3));
     this.sight = new LineSegments(dashes, this.materials.sight);
     this.sight.frustumCulled = false;
-    this.group.add(...this.frames, this.sight);
+    this.group.add(...this.frames, this.sight, this.rays, ...this.held.filter(Boolean));
     // Those beside the robot stand above or below a place on the grid.
     const stand = (it, k) => it.on === null && hasPlace(it) && it.kind !== "plane" && !this.isUnknown[k];
     const beside = instruments.filter(stand).flatMap(({ pose: { t: [x, y, z] } }) => [x, y, z, x, y, 0]);
@@ -35,18 +42,23 @@ export class Instruments {
   }
 
   /** Puts instruments and names to their places, and the line of sight from the chosen instrument to the target's place `seen`, if there is one. */
-  pose(poses, places, chosen, { seen, tip }) {
+  pose(poses, places, chosen, { seen, tip, held, target }) {
     const chosenPlace = seen ?? tip;
+    this.held.forEach((it, k) => it?.matrix.copy(matrixOf(held[k])));
+    const pair = seen !== null && [[this.kinds[chosen], poses[chosen]], [this.seen[target], held[target]]];
+    this.rays.geometry.dispose();
+    this.rays.geometry = linesOf(pair ? raysOf(...pair) : []);
     poses.forEach((pose, k) => {
       const it = this.kinds[k];
       // A direction has no place: it stands at what shows it.
       const { r, t } = it.kind === "direction" ? { r: pose.r, t: chosenPlace } : pose;
-      this.frames[k].matrix.copy(new Matrix4().set(...r[0], t[0], ...r[1], t[1], ...r[2], t[2], 0, 0, 0, 1));
+      this.frames[k].matrix.copy(matrixOf({ r, t }));
       this.instruments[k].place.set(...(it.kind === "plane" ? act({ r, t }, [it.patch.x, it.patch.y, 0]) : t));
       this.instruments[k].isOff = this.isUnknown[k] || it.kind === "pair" || (poses.length > MOST_NAMES && k !== chosen);
     });
     places.forEach((place, k) => this.targets[k].place.set(...place));
-    this.sight.visible = seen !== null && !this.isUnknown[chosen] && isSeenFromAfar(this.kinds[chosen]);
+    const hasRays = this.rays.geometry.attributes.position.count > 0;
+    this.sight.visible = seen !== null && !hasRays && !this.isUnknown[chosen] && isSeenFromAfar(this.kinds[chosen]);
     if (!this.sight.visible) return;
     const from = this.instruments[chosen].place;
     const points = this.sight.geometry.attributes.position;
@@ -61,6 +73,10 @@ export class Instruments {
     this.group.visible = on;
     this.labels.element.hidden = !on;
   }
+}
+
+function matrixOf({ r, t }) {
+  return new Matrix4().set(...r[0], t[0], ...r[1], t[1], ...r[2], t[2], 0, 0, 0, 1);
 }
 
 /** Axes of a frame, with a ball at its origin. */

@@ -1,16 +1,22 @@
 // Anchors, sockets, planes, spheres and directions as what they are: each a group in the axes of its device.
-import { BufferGeometry, ConeGeometry, CylinderGeometry, Float32BufferAttribute, Group, LineSegments, Matrix4, Mesh, PlaneGeometry, SphereGeometry } from "three";
+import { ConeGeometry, CylinderGeometry, Group, LineSegments, Matrix4, Mesh, PlaneGeometry, SphereGeometry } from "three";
 import { act, invert } from "./kinematics.js";
+import { linesOf, roleOf } from "./optics.js";
 
 /** Words for several of a kind. */
-const PLURALS = { instrument: "instruments", anchor: "anchors", socket: "sockets", plane: "planes", sphere: "spheres", direction: "directions" };
+const PLURALS = { camera: "cameras", board: "boards", instrument: "instruments", anchor: "anchors", socket: "sockets", plane: "planes", sphere: "spheres", direction: "directions" };
 /** Lines from an anchor to places that it measured, at most. */
 const WIRES = 8;
 
+/** What an instrument is, in a word. */
+export function wordOf(it) {
+  return roleOf(it) ?? it.kind ?? "instrument";
+}
+
 /** Kinds of what is drawn beside the robot, in words: `anchors and planes`. */
-export function kindWords({ instruments }) {
-  const kinds = [...new Set(instruments.filter((it) => it.kind !== "pair").map((it) => it.kind ?? "instrument"))];
-  const words = kinds.map((kind) => (instruments.filter((it) => (it.kind ?? "instrument") === kind).length > 1 || kind === "instrument" ? PLURALS[kind] : kind));
+export function kindWords({ instruments, targets }) {
+  const drawn = [...instruments.filter((it) => it.kind !== "pair"), ...targets.filter(roleOf)].map(wordOf);
+  const words = [...new Set(drawn)].map((kind) => (drawn.filter((it) => it === kind).length > 1 || kind === "instrument" ? PLURALS[kind] : kind));
   return words.length > 1 ? `${words.slice(0, -1).join(", ")} and ${words[words.length - 1]}` : words.join("");
 }
 
@@ -107,8 +113,4 @@ function arrow(group, size, material, [x, y, z]) {
   const turn = new Matrix4().makeTranslation(x, y, z).multiply(new Matrix4().makeRotationX(Math.PI / 2));
   group.add(new Mesh(new CylinderGeometry(size * 0.004, size * 0.004, length, 8).translate(0, length / 2, 0).applyMatrix4(turn), material));
   group.add(new Mesh(new ConeGeometry(size * 0.011, head, 12).translate(0, length + head / 2, 0).applyMatrix4(turn), material));
-}
-
-function linesOf(ends) {
-  return new BufferGeometry().setAttribute("position", new Float32BufferAttribute(ends.flat(), 3));
 }

@@ -201,7 +201,8 @@ export class Scene {
     const seen = row === null ? null : rows.predicted[row];
     this.chosen.visible = row !== null;
     if (seen) this.chosen.position.set(...seen);
-    this.instruments.pose(instruments.map(calibrated.at), mounted.map(placeOf), rows.instrument[row], { seen, tip: placeOf(tip) });
+    const shownAs = { seen, tip: placeOf(tip), held: targets.map(calibrated.at), target: rows.target[row] };
+    this.instruments.pose(instruments.map(calibrated.at), mounted.map(placeOf), rows.instrument[row], shownAs);
     this.arrows.place(this.arrowScale);
     this.render();
   }

@@ -49,6 +49,12 @@ fn arrow_words(device: Device) -> Option<&'static str> {
     })
 }
 
+/// Whether nothing but cameras measured.
+fn is_of_pictures(file: &CalibrationFile) -> bool {
+    let count = file.accuracy.training.count + file.accuracy.held_out.as_ref().map_or(0, |set| set.count);
+    file.pictures.as_ref().is_some_and(|pictures| pictures.count == count)
+}
+
 /// What the picture shows, in sentences.
 pub(super) fn picture_words(file: &CalibrationFile, draws_places: bool) -> Markup {
     let all = devices(file);
@@ -69,7 +75,11 @@ pub(super) fn picture_words(file: &CalibrationFile, draws_places: bool) -> Marku
             " Dots are at the places of targets " @if !arrows.is_empty() { "whose residual is no shift in the picture" } @else { "that were measured" }
             ": the stronger the colour, the larger the error."
         }
-        @if draws_places && !drawn.is_empty() {
+        @if file.pictures.is_some() {
+            " A camera is drawn as the pyramid of what it sees, a board with its points; lines go from the camera of the chosen picture to the corners \
+             of its board."
+        }
+        @if draws_places && !drawn.is_empty() && !is_of_pictures(file) {
             " Also drawn: " (drawn.join("; ")) "."
             @if let Some(seeing) = seeing {
                 " A dashed line goes from the " (seeing) " of the chosen measurement to its target."

@@ -7,7 +7,7 @@ use serde::Serialize;
 use super::devices::{device_of, devices};
 use super::short;
 use crate::error::Result;
-use crate::io::calibration_file::{CalibrationFile, PoseEntry, StationEntry};
+use crate::io::calibration_file::{BoardEntry, CalibrationFile, CameraEntry, PoseEntry, StationEntry};
 use crate::io::residuals::Residuals;
 use crate::lie::Pose;
 use crate::measurement::Device;
@@ -31,6 +31,12 @@ pub(super) struct FrameData<'a> {
     /// Radius of a sphere, metres.
     #[serde(skip_serializing_if = "Option::is_none")]
     radius_m: Option<f64>,
+    /// Of a camera the directions to the corners of its image, in its frame, in order around it, with z = 1.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    camera: Option<[[f64; 3]; 4]>,
+    /// Of a board its points in its frame, metres.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    board: Option<Vec<[f64; 3]>>,
 }
 
 impl<'a> FrameData<'a> {
@@ -42,7 +48,20 @@ impl<'a> FrameData<'a> {
             nominal_pose: nominal.map(PoseEntry::from),
             kind: None,
             radius_m: None,
+            camera: None,
+            board: None,
         }
+    }
+
+    /// The same as what it is in pictures, by its name in the file.
+    fn seen_as(self, file: &CalibrationFile, name: &str) -> Self {
+        let Some(pictures) = &file.pictures else { return self };
+        let camera = pictures.cameras.iter().find(|it| it.name == name).map(corners_of);
+        let points = |board: &BoardEntry| {
+            board.points.iter().map(|it| it.place_mm.map(|mm| (1e3 * mm).round() / 1e6)).collect()
+        };
+        let board = pictures.boards.iter().find(|it| it.name == name).map(points);
+        FrameData { camera, board, ..self }
     }
 
     /// The same as what a station is.
@@ -54,6 +73,16 @@ impl<'a> FrameData<'a> {
             ..self
         }
     }
+}
+
+/// Directions to the corners of a camera's image, without its distortion.
+fn corners_of(camera: &CameraEntry) -> [[f64; 3]; 4] {
+    let [cx, cy] = camera.centre_px;
+    let [width, height] = camera.size_px.map_or([2.0 * cx, 2.0 * cy], |size| size.map(f64::from));
+    let [fx, fy] = camera.focal_px;
+    let round = |value: f64| (1e4 * value).round() / 1e4;
+    [[0.0, 0.0], [width, 0.0], [width, height], [0.0, height]]
+        .map(|[u, v]| [round((u - cx) / fx), round((v - cy) / fy), 1.0])
 }
 
 /// All frames of a calibration.
@@ -71,7 +100,8 @@ impl<'a> Frames<'a> {
         let places = robot.places_of_targets();
         let target = |name: &'a String| {
             let (body, pose) = places(Some(name));
-            FrameData::new(name, body, &pose, mount(&nominal, &nominal.mounted, name).map(|it| it.1).as_ref())
+            let nominal = mount(&nominal, &nominal.mounted, name).map(|it| it.1);
+            FrameData::new(name, body, &pose, nominal.as_ref()).seen_as(file, name)
         };
         let unseen =
             file.targets.iter().filter(|(name, it)| it.on.is_some() && !residuals.targets.contains(name));
@@ -89,11 +119,13 @@ impl<'a> Frames<'a> {
             let station = file.stations.iter().find(own);
             if let Some((body, pose)) = mount(robot, &robot.instruments, name) {
                 let nominal = mount(&nominal, &nominal.instruments, name).map_or(pose, |it| it.1);
-                return Ok(FrameData::new(shown, body, &pose, Some(&nominal)).of_station(station));
+                let frame = FrameData::new(shown, body, &pose, Some(&nominal));
+                return Ok(frame.of_station(station).seen_as(file, name));
             }
             let pose =
                 station.map_or(&file.measurement_frame.base_from_device, |it| &it.base_from_device).pose()?;
-            Ok(FrameData::new(shown, Body::Base, &pose, Some(&pose)).of_station(station))
+            let frame = FrameData::new(shown, Body::Base, &pose, Some(&pose));
+            Ok(frame.of_station(station).seen_as(file, name))
         };
         let instruments = seeing.iter().copied().chain(unused).map(instrument).collect::<Result<_>>()?;
         let tip = FrameData::new("tip", robot.tip_body(), &robot.home, Some(&nominal.home));
@@ -107,12 +139,13 @@ fn mount(robot: &Robot, mounts: &[Mount], name: &str) -> Option<(Body, Pose)> {
     Some((found.body, robot.base_from(found)))
 }
 
-/// Whether instruments are drawn: not a single one with a frame beside a robot without branches, whose place says little, and no pairs.
+/// Whether instruments are drawn: cameras and boards, but not a single other one with a frame beside a robot without branches, whose place says
+/// little, and no pairs.
 pub(super) fn draws_instruments(file: &CalibrationFile) -> bool {
     let has_branches = file.joints.iter().any(|joint| joint.on.is_some()) || file.robot.tip_on.is_some();
     let has_mounts = !file.instruments.is_empty() || file.targets.values().any(|target| target.on.is_some());
     let places = devices(file);
     let has_places = places.iter().any(|it| ![Device::Instrument, Device::Pair].contains(it));
     let drawn = file.stations.iter().filter(|it| device_of(it) != Device::Pair).count();
-    has_branches || has_mounts || has_places || drawn > 1
+    file.pictures.is_some() || has_branches || has_mounts || has_places || drawn > 1
 }
