@@ -3,6 +3,7 @@
 use nalgebra::{Matrix3, Vector3};
 use serde::Serialize;
 
+use super::CornerError;
 use super::accuracy::{ModelAccuracy, model_accuracy};
 use super::located::rows_of_fitted_stations;
 use crate::analysis::{JointCoverage, inside};
@@ -124,6 +125,8 @@ pub struct JudgedRow {
     pub errors: Measured<JudgedError>,
     /// Whether every joint was inside the sampled range; `true` if none was stated.
     pub inside_sampled_range: bool,
+    /// Of the corners of a picture; none of other rows, and where the model sees none of them.
+    pub corners: Option<CornerError>,
 }
 
 impl JudgedRow {
@@ -131,7 +134,7 @@ impl JudgedRow {
     pub(super) fn of(error: &RowError) -> Self {
         let errors =
             Measured::of(|quantity| Some(JudgedError { length: error.length(quantity)?, promised: None }));
-        JudgedRow { errors, inside_sampled_range: true }
+        JudgedRow { errors, inside_sampled_range: true, corners: None }
     }
 }
 
@@ -199,7 +202,7 @@ impl PredictedUncertainty<'_> {
                 Some(JudgedError { length, promised })
             });
             let inside_sampled_range = inside(robot, self.coverage, data.readings(row as usize));
-            JudgedRow { errors, inside_sampled_range }
+            JudgedRow { errors, inside_sampled_range, corners: None }
         });
         all.collect()
     }

@@ -10,7 +10,7 @@ use super::coverage_check::{
     coverage_checks, promised_rows,
 };
 use super::verdict::Level;
-use super::{DeviceFrameKnowledge, delivered};
+use super::{DeviceFrameKnowledge, corner_error, delivered};
 use crate::error::{ErrorKind, Result};
 use crate::estimate::{Packed, Range, Session};
 use crate::lie::Freedom;
@@ -177,13 +177,16 @@ pub fn judge(subject: &Subject<'_>, data: &Dataset) -> Result<Judgement> {
     let rows = judged_rows(subject, subject.calibrated, data, &packed);
     let promised =
         subject.uncertainty.and_then(|predicted| promised_rows(&predicted, subject.refit_tool, &rows));
-    let (promised, in_sampled_range, each) = match promised {
-        None => (None, None, rows.errors.iter().map(JudgedRow::of).collect()),
+    let (promised, in_sampled_range, mut each) = match promised {
+        None => (None, None, rows.errors.iter().map(JudgedRow::of).collect::<Vec<_>>()),
         Some(each) => {
             let (all, some) = coverage_checks(data, &each, &rows.errors);
             (Some(all), some, each)
         }
     };
+    for (row, (judged, error)) in (0..).zip(each.iter_mut().zip(&rows.errors)) {
+        judged.corners = corner_error(data, row, error);
+    }
     let calibrated = model_accuracy(data, &data.all_rows(), &rows.errors);
     Ok(Judgement {
         count: data.len(),

@@ -19,6 +19,14 @@ pub fn judgement(calibration: &str, measurements: &str, judgement: &Judgement) -
         let words = format!("the device stands {shift} mm and {turn} deg from where the calibration has it");
         line(&mut out, "", &words);
     }
+    if let Some(found) = judgement.delivered().errors.pixels {
+        let (px, mm, median) = (number(found.rms_px), number(found.rms_mm), number(found.median_picture_px));
+        let words = format!(
+            "{} pictures: {px} px, {mm} mm at the board square to the ray (RMS), median picture {median} px",
+            found.pictures
+        );
+        line(&mut out, "corners", &words);
+    }
     out.push('\n');
     for (k, (quantity, _)) in judgement.calibrated.iter().enumerate() {
         if k > 0 {

@@ -42,6 +42,10 @@ impl JudgedRows<'_> {
                 out.push_str(&format!(",{name}_{what}[{unit}]"));
             }
         }
+        let has_pictures = !self.data.pictures.is_empty();
+        if has_pictures {
+            out.push_str(",corners[px],corners[mm]");
+        }
         for (name, kind) in names.iter().zip(&kinds) {
             out.push(',');
             out.push_str(&cell(&format!("{name}[{}]", kind.symbol())));
@@ -61,6 +65,12 @@ impl JudgedRows<'_> {
             for quantity in &quantities {
                 let numbers = row.errors.get(*quantity).map_or([None; 3], |found| shown(*quantity, found));
                 for number in numbers {
+                    out.push(',');
+                    number.into_iter().for_each(|number| push_number(&mut out, number));
+                }
+            }
+            if has_pictures {
+                for number in [row.corners.map(|it| it.rms_px), row.corners.map(|it| it.rms_mm)] {
                     out.push(',');
                     number.into_iter().for_each(|number| push_number(&mut out, number));
                 }
