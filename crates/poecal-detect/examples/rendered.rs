@@ -46,7 +46,7 @@ const OTHERS: [&str; 10] = [
     "charuco:5x7:36.195mm:18.256mm:DICT_6X6_250",
     "chessboard:12x9:24mm",
     "chessboard:9x7:28mm",
-    "charuco:10x7:28mm:20mm:DICT_4X4_250",
+    "charuco:10x7:28mm:20mm:DICT_7X7_250",
     "circles:10x7:30mm",
     "circles:8x6:30mm",
     "circles:5x9:20mm:asymmetric",

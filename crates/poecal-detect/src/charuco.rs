@@ -19,6 +19,8 @@ const LEAST_MARKERS: usize = 2;
 const ENOUGH: usize = 9;
 /// So many markers have to agree for each one on the board that does not. Of a board of the other pattern six of seven agree, one square aside.
 const DOUBT: usize = 12;
+/// One of so many markers among the corners that were found has to be read, unless the whole board is found.
+const READ: usize = 3;
 /// Weight of a corner of a marker beside a corner of squares: five times as far off.
 const ANCHOR: f64 = 0.04;
 /// Largest deviation of a marker's side from what the board has, as a part.
@@ -112,16 +114,19 @@ fn of_markers(
     if growth.nodes.len() < LEAST_CORNERS {
         return Err(Rejected::Few(growth.nodes.len()));
     }
-    let (right, wrong) = read_again(gray, layout, reader, &growth);
+    let Again { right, wrong, unread } = read_again(gray, layout, reader, &growth);
     if wrong * DOUBT > right || !is_marker_side(layout, &growth, markers, &agreeing) {
         return Err(Rejected::Other);
     }
-    if right.max(agreeing.len()) < LEAST_MARKERS {
+    // Another board with the same markers agrees in a few: of blurred ones no others may be left to say so, but all corners of this one are not there.
+    let markers = right.max(agreeing.len());
+    let is_doubtful = growth.nodes.len() < nodes.len() && markers * READ < right + unread;
+    if markers < LEAST_MARKERS || is_doubtful {
         return Err(Rejected::Few(growth.nodes.len()));
     }
     let [columns, _] = layout.inner();
     let id = |[x, y]: Node| Some((y - 1) as usize * columns + (x - 1) as usize);
-    Ok(Found { markers: right.max(agreeing.len()), ..found(&growth, noise, id) })
+    Ok(Found { markers, ..found(&growth, noise, id) })
 }
 
 fn nodes_of(layout: &Layout) -> Vec<Node> {
@@ -184,21 +189,29 @@ fn strangers_outside(layout: &Layout, map: &Homography, markers: &[Marker], agre
     strangers.filter(|(_, marker)| !inside(marker.corners.iter().sum::<Vector2<f64>>() * 0.25)).count()
 }
 
-/// Reads the markers where the corners have them: how many are right, and how many say something else.
-fn read_again(gray: &Gray, layout: &Layout, reader: &Reader, growth: &Growth<'_>) -> (usize, usize) {
-    let (mut right, mut wrong) = (0, 0);
+/// The markers where the corners have them: how many are right, how many say something else, and how many say nothing.
+struct Again {
+    right: usize,
+    wrong: usize,
+    unread: usize,
+}
+
+fn read_again(gray: &Gray, layout: &Layout, reader: &Reader, growth: &Growth<'_>) -> Again {
+    let mut again = Again { right: 0, wrong: 0, unread: 0 };
     for id in 0..layout.marker_count() {
         let Some(quad) = predicted(layout, growth, id) else { continue };
         if !quad.iter().all(|it| gray.holds(*it, 0.0)) {
             continue;
         }
         match reader.read(gray, &quad) {
-            Some(marker) if marker.id == id && (marker.corners[0] - quad[0]).norm() < 1e-9 => right += 1,
-            Some(_) => wrong += 1,
-            None => {}
+            Some(marker) if marker.id == id && (marker.corners[0] - quad[0]).norm() < 1e-9 => {
+                again.right += 1
+            }
+            Some(_) => again.wrong += 1,
+            None => again.unread += 1,
         }
     }
-    (right, wrong)
+    again
 }
 
 fn predicted(layout: &Layout, growth: &Growth<'_>, id: usize) -> Option<Quad> {
