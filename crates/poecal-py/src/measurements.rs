@@ -39,7 +39,7 @@ fn options(
     (socket_distance, contact): (Option<&str>, PlaneContact),
     [instrument_noise, cameras, markers]: [Option<&[String]>; 3],
 ) -> poecal::Result<ReadOptions> {
-    Ok(ReadOptions {
+    let mut options = ReadOptions {
         frames,
         mapping: columns.map(ColumnMap::read).transpose()?,
         fit_where: fit_where.map(str::parse).transpose()?,
@@ -52,16 +52,15 @@ fn options(
             .flatten()
             .map(|it| it.parse())
             .collect::<Result<_, _>>()?,
-        cameras: each(cameras.unwrap_or_default(), measurements::read_cameras)?,
-        boards: each(markers.unwrap_or_default(), measurements::read_boards)?,
         ..ReadOptions::default()
-    })
-}
-
-/// What several files or specifications hold, in their order.
-fn each<T>(typed: &[String], read: fn(&str) -> poecal::Result<Vec<T>>) -> poecal::Result<Vec<T>> {
-    let found: Vec<Vec<T>> = typed.iter().map(|typed| read(typed)).collect::<Result<_, _>>()?;
-    Ok(found.into_iter().flatten().collect())
+    };
+    for typed in cameras.unwrap_or_default() {
+        options.cameras.extend(measurements::read_cameras(typed)?);
+    }
+    for typed in markers.unwrap_or_default() {
+        options.add_boards(typed)?;
+    }
+    Ok(options)
 }
 
 #[pymethods]

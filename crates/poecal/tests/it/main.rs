@@ -27,6 +27,7 @@ mod field;
 #[path = "../files/mod.rs"]
 mod files;
 mod fk_reference;
+mod foreign_corners;
 mod foreign_models;
 mod forensics;
 mod gauge;
