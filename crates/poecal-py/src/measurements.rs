@@ -92,7 +92,8 @@ impl Measurements {
     ///     Noise of instruments that grows with the distance, like "tracker:10um+5um/m": a standard deviation in all directions, and one
     ///     across the line of sight for each metre; of all instruments without a name. For rows that state none.
     /// cameras
-    ///     Files of the cameras that saw corners in pixels: CSV (FILE#VERSION where it has several), YAML of OpenCV, ROS or Kalibr, XML of ViSP.
+    ///     Files of the cameras that saw corners in pixels: CSV (FILE#VERSION where it has several), YAML of OpenCV, ROS, Kalibr or
+    ///     industrial_calibration, XML of ViSP.
     /// markers
     ///     Boards or solids that they saw: CSV files of points, or "chessboard:10x7:27mm".
     ///
@@ -248,7 +249,8 @@ impl Measurements {
     ///     Noise of instruments that grows with the distance, like "tracker:10um+5um/m": a standard deviation in all directions, and one
     ///     across the line of sight for each metre; of all instruments without a name. For rows that state none.
     /// cameras
-    ///     Files of the cameras that saw corners in pixels: CSV (FILE#VERSION where it has several), YAML of OpenCV, ROS or Kalibr, XML of ViSP.
+    ///     Files of the cameras that saw corners in pixels: CSV (FILE#VERSION where it has several), YAML of OpenCV, ROS, Kalibr or
+    ///     industrial_calibration, XML of ViSP.
     /// markers
     ///     Boards or solids that they saw: CSV files of points, or "chessboard:10x7:27mm".
     ///

@@ -67,7 +67,7 @@ impl Node {
 /// All documents of a text: YAML with `---` between them, or JSON, one value after the other. `expected` describes the file in messages.
 pub(super) fn documents(text: &str, path: &Path, expected: &str) -> Result<Vec<Node>> {
     let text = text.trim_start_matches('\u{feff}');
-    match json_values(text) {
+    match json_values(text, path, expected)? {
         Some(values) => {
             let mut found = Vec::new();
             for (before, value) in values {
@@ -79,21 +79,29 @@ pub(super) fn documents(text: &str, path: &Path, expected: &str) -> Result<Vec<N
     }
 }
 
-/// The values of a text of JSON, each with the number of lines before it; `None` of another text.
-fn json_values(text: &str) -> Option<Vec<(usize, &str)>> {
+/// The values of a text of JSON, each with the number of lines before it; `None` of YAML, which may begin as JSON does.
+fn json_values<'a>(text: &'a str, path: &Path, expected: &str) -> Result<Option<Vec<(usize, &'a str)>>> {
     if !text.trim_start().starts_with(['{', '[']) {
-        return None;
+        return Ok(None);
     }
     let mut values = serde_json::Deserializer::from_str(text).into_iter::<IgnoredAny>();
     let (mut found, mut start, mut lines) = (Vec::new(), 0, 0);
     while let Some(value) = values.next() {
-        value.ok()?;
-        let piece = text.get(start..values.byte_offset())?;
+        let rest = text.get(start..).unwrap_or_default();
+        if let Err(error) = value {
+            let words: String = rest.chars().filter(|it| !it.is_whitespace()).take(3).collect();
+            if !words.starts_with("{\"") && words != "[{\"" {
+                return Ok(None);
+            }
+            let message = format!("found broken JSON ({}), expected {expected}", visible(&error.to_string()));
+            return Err(Error::new(ErrorKind::Syntax, message).at_line(path, error.line()));
+        }
+        let piece = rest.get(..values.byte_offset() - start).unwrap_or_default();
         found.push((lines, piece));
         lines += piece.matches('\n').count();
         start = values.byte_offset();
     }
-    Some(found)
+    Ok(Some(found))
 }
 
 /// A list or mapping that has begun.

@@ -28,6 +28,7 @@ mod field;
 mod files;
 mod fk_reference;
 mod foreign_corners;
+mod foreign_messages;
 mod foreign_models;
 mod forensics;
 mod gauge;

@@ -87,7 +87,9 @@ fn is_measured(header: &Header<'_>, map: &ColumnMap) -> bool {
     let has = |name: &str| header.cells.iter().any(|cell| cell.name == name && !key(cell).ends_with("px"));
     let position = ["x", "y", "z"].iter().all(|name| has(name));
     let is_vector = header.cells.iter().any(|cell| key(cell) == "pz");
-    position || is_vector || map.position.is_some() || !map.targets.is_empty() || kinds::names().any(has)
+    let numbers = kinds::kinds().filter(|kind| kind.needs_numbers()).flat_map(|kind| kind.columns.numbers);
+    let is_other = numbers.copied().any(has);
+    position || is_vector || is_other || map.position.is_some() || !map.targets.is_empty()
 }
 
 /// The columns of the pixel; those of another name than ours only where nothing else is measured.

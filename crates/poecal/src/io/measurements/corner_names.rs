@@ -98,7 +98,10 @@ impl Reader<'_> {
         let is_stated = !self.options.boards.is_empty();
         let Some(own) = self.boards.get_mut(board) else { return Ok(0) };
         let index = |at: usize| u32::try_from(at).unwrap_or(u32::MAX);
-        let named = name.as_ref().and_then(|name| own.find(name));
+        // A point without a name is called by its place, which stays its name where the board is bent by a calibration.
+        let [x, y, z] = [place.x, place.y, place.z].map(|it| (1e6 * it).round() / 1e3 + 0.0);
+        let called = name.clone().unwrap_or_else(|| format!("{x}/{y}/{z}"));
+        let named = own.find(&called);
         let near = |at: &usize| own.points.get(*at).is_some_and(|it| (it - place).norm() <= SAME_M);
         if let (Some(named), Some(name)) = (named.filter(|at| !near(at)), &name) {
             let message = format!(
@@ -114,7 +117,7 @@ impl Reader<'_> {
         if is_stated {
             return Err(far_from(row, at, &place, own));
         }
-        own.names.push(name.unwrap_or_else(|| format!("point{}", own.points.len())));
+        own.names.push(called);
         own.points.push(place);
         Ok(index(own.points.len() - 1))
     }
@@ -172,7 +175,8 @@ fn far_from(row: &Row<'_>, at: usize, place: &Vector3<f64>, board: &Board) -> Er
     let distance = |index: &usize| board.points.get(*index).map_or(f64::MAX, |it| (it - place).norm());
     let nearest = (0..board.points.len()).min_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap_or(0);
     let message = format!(
-        "found a corner at {} on its board, where the board of --markers has no point (the nearest is `{}` at {}), expected the same points in the same          frame: leave --markers out to take the board from this file",
+        "found a corner at {} on its board, where the board of --markers has no point (the nearest is `{}` at {}), expected the same points in its \
+         frame: leave --markers out to take the board from this file",
         millimetres(place),
         board.names.get(nearest).map_or("", String::as_str),
         board.points.get(nearest).map(millimetres).unwrap_or_default()

@@ -80,45 +80,49 @@ fn same_numbers<'a>(seen: &BTreeSet<&'a String>, taken: &'a TakenByImage) -> Vec
 
 impl Gathering {
     /// The points that numbers mean: as the names of the board count, or from 1 where the file does. Says which.
-    pub(super) fn settle_numbers(&mut self, path: &Path, boards: &[Board]) -> Result<Vec<String>> {
-        let mut said = Vec::new();
-        for (at, numbers) in &self.numbers {
-            let Some(board) = boards.get(*at) else { continue };
-            let own = board.numbered();
-            let from_one = |number: u32| own.get(&number.checked_sub(1)?).copied();
-            let as_named = |number: u32| own.get(&number).copied();
-            let shifted = !numbers.keys().all(|it| as_named(*it).is_some());
-            let points: BTreeMap<u32, u32> = numbers
-                .keys()
-                .filter_map(|it| Some((*it, if shifted { from_one(*it) } else { as_named(*it) }?)))
-                .collect();
-            let wrong = numbers.iter().find(|(number, _)| !points.contains_key(number));
-            let beyond = numbers.iter().find(|(number, _)| as_named(**number).is_none());
-            if let Some((number, (line, column))) = wrong.and(beyond).or(wrong) {
-                return Err(not_a_point(&number.to_string(), board).at(path, *line, *column));
-            }
-            if let (Some((name, (line, column))), Some(number)) = (self.named.get(at), numbers.keys().next())
-            {
-                let message = format!(
-                    "found the corner `{name}` beside ones that are numbered, as `{number}`, expected names or numbers alone"
-                );
-                return Err(Error::new(ErrorKind::Measurement, message).at(path, *line, *column));
-            }
-            for picture in self.pictures.iter_mut().filter(|it| it.board == *at) {
-                for corner in &mut picture.corners {
-                    corner.point = points.get(&corner.point).copied().unwrap_or(corner.point);
-                }
-            }
-            if let Some((number, point)) = points.iter().next() {
-                let name = board.names.get(*point as usize).map_or("", String::as_str);
-                let counted = if shifted { "1" } else { "they stand" };
-                said.push(format!(
-                    "{}: took the numbers of corners for the points of the board as counted from {counted}: `{number}` is `{name}`",
-                    path.display()
-                ));
+    pub(super) fn settle_numbers(&mut self, path: &Path, boards: &[Board]) -> Result<Option<String>> {
+        let Gathering { pictures, numbers, named, .. } = self;
+        let own: Vec<BTreeMap<u32, u32>> = boards.iter().map(Board::numbered).collect();
+        let point = |board: usize, number: u32| own.get(board)?.get(&number).copied();
+        let all =
+            || numbers.iter().flat_map(|(at, all)| all.iter().map(|(number, place)| (*at, *number, *place)));
+        let beyond = all().find(|(at, number, _)| point(*at, *number).is_none());
+        let from_one = |board: usize, number: u32| point(board, number.checked_sub(1)?);
+        let of = |board: usize, number: u32| match beyond {
+            Some(_) => from_one(board, number),
+            None => point(board, number),
+        };
+        let wrong = all().find(|(at, number, _)| of(*at, *number).is_none());
+        if let (Some(_), Some((at, number, (line, column)))) = (wrong, beyond)
+            && let Some(board) = boards.get(at)
+        {
+            return Err(not_a_point(&number.to_string(), board).at(path, line, column));
+        }
+        let Some((at, number, _)) = all().next() else { return Ok(None) };
+        if let Some((name, (line, column))) = named.get(&at) {
+            let message = format!(
+                "found the corner `{name}` beside ones that are numbered, as `{number}`, expected names or numbers alone"
+            );
+            return Err(Error::new(ErrorKind::Measurement, message).at(path, *line, *column));
+        }
+        for picture in pictures.iter_mut().filter(|it| numbers.contains_key(&it.board)) {
+            for corner in &mut picture.corners {
+                corner.point = of(picture.board, corner.point).unwrap_or(corner.point);
             }
         }
-        Ok(said)
+        let name = of(at, number).and_then(|point| boards.get(at)?.names.get(point as usize));
+        let name = name.map_or("", String::as_str);
+        let first = own.get(at).and_then(|own| own.keys().next().copied());
+        let counted = match (beyond, first) {
+            (Some(_), _) => "as counted from 1",
+            (None, Some(first)) if first < number => {
+                "as the board counts them (if they count from 1, write them as names)"
+            }
+            (None, _) => "as the board counts them",
+        };
+        Ok(Some(format!(
+            "took the numbers of corners for the points of the board, {counted}: `{number}` is `{name}`"
+        )))
     }
 
     /// The pictures with the readings of their joints, which another file has by picture unless the rows have their own: those of the same name, and

@@ -101,7 +101,7 @@ impl Reader<'_> {
         }
         let own = |words: String| format!("{}: {words}", path.display());
         self.found.warnings.extend(columns.words(&table.header).map(own));
-        self.found.warnings.extend(gathering.settle_numbers(path, &self.boards)?);
+        self.found.warnings.extend(gathering.settle_numbers(path, &self.boards)?.map(own));
         let joined = gathering.joined(path, (!has_joints).then_some(&self.taken))?;
         self.found.warnings.extend(joined.words.into_iter().map(own));
         self.found.warnings.extend(self.board_of_file(&columns, has_boards).map(own));

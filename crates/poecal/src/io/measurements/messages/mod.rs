@@ -14,6 +14,7 @@ use self::parsed::{CameraInfo, Message, Observation};
 pub(super) use self::refused::are_messages;
 use super::cameras::{check, distortion};
 use super::mapping::ColumnMap;
+use super::picture_files::NO_CAMERA;
 use super::read::Reader;
 use super::table::Table;
 use super::text::Blocks;
@@ -57,6 +58,9 @@ impl Reader<'_> {
         }
         bodies.refuse_moving(path)?;
         let said = self.take_cameras(&messages, path)?;
+        if self.cameras.is_empty() {
+            return Err(Error::new(ErrorKind::Measurement, NO_CAMERA).in_file(path));
+        }
         let board = self.take_boards(&bodies, path)?;
         let is_one_camera = self.options.cameras.len() == 1 && sensors(&messages, path)?.len() == 1;
         let mut rows = Rows::of(&joints);
@@ -81,7 +85,10 @@ impl Reader<'_> {
         }
         let map = ColumnMap::default();
         let table = Table::open(path, Blocks::new(path, rows.text.as_bytes()), &map)?;
-        self.corners(path, table.with_lines(rows.lines))?;
+        // A column of the header is none of the file.
+        let column = |error: &Error| error.place().and_then(|place| place.column);
+        self.corners(path, table.with_lines(rows.lines))
+            .map_err(|error| if column(&error).is_some() { error.without_line() } else { error })?;
         self.found.sha256.extend(blocks.sha256().map(|sha256| (path.display().to_string(), sha256)));
         let others = unused(&messages, &joints);
         let say = |words: String| self.found.warnings.push(format!("{}: {words}", path.display()));
@@ -142,7 +149,7 @@ impl Reader<'_> {
             return Ok(None);
         }
         if !self.options.cameras.is_empty() {
-            return Ok(Some("took the lens of --camera, and not that of ext_camera_info".to_owned()));
+            return Ok(Some("took the stated lens, and not that of ext_camera_info".to_owned()));
         }
         let mut names = Vec::new();
         for (name, info) in infos {
@@ -173,7 +180,7 @@ impl Reader<'_> {
             let sensors: Vec<&str> = bodies.0.iter().map(|body| body.sensor.as_str()).collect();
             let sensors = first_few(&sensors);
             return Ok(Some(format!(
-                "took the board of --markers, by the order of its points, and not those of {sensors}"
+                "took the stated board, by the order of its points, and not those of {sensors}"
             )));
         }
         let mut names = Vec::new();
@@ -206,22 +213,34 @@ impl Reader<'_> {
         points: &[(usize, Vec<usize>)],
         path: &Path,
     ) -> Result<(String, Vec<String>)> {
-        let [stated, ..] = self.options.boards.as_slice() else {
-            let (body, points) = partner(message, observation, points, path)?;
-            let Some(body) = bodies.0.get(*body) else { return Ok(Default::default()) };
-            let names = points.iter().filter_map(|at| body.board.names.get(*at).cloned()).collect();
-            return Ok((body.board.name.clone(), names));
-        };
-        let (count, all) = (observation.features.len(), stated.names.len());
-        if self.options.boards.len() > 1 || count != all {
-            let message = format!(
-                "found {count} features of `{}`, expected one board of --markers with as many points, not {} of {all}: features go by order",
-                observation.sensor,
-                self.options.boards.len()
-            );
-            return Err(observation.node.error(path, message));
+        let stated = &self.options.boards;
+        if stated.len() == 1
+            && let Some(board) = stated.first()
+        {
+            let (count, all) = (observation.features.len(), board.names.len());
+            if count != all {
+                let message = format!(
+                    "found {count} features of `{}`, expected the {all} points of the board: features go by order",
+                    observation.sensor
+                );
+                return Err(observation.node.error(path, message));
+            }
+            return Ok((String::new(), board.names.clone()));
         }
-        Ok((String::new(), stated.names.clone()))
+        let (body, points) = partner(message, observation, points, path)?;
+        let Some(body) = bodies.0.get(*body) else { return Ok(Default::default()) };
+        let name = body.board.name.clone();
+        let names = match stated.iter().find(|board| board.name == name) {
+            Some(board) => &board.names,
+            None if stated.is_empty() => &body.board.names,
+            None => {
+                let names: Vec<&str> = stated.iter().map(|board| board.name.as_str()).collect();
+                let message = format!("found the board `{name}`, expected one of {}", first_few(&names));
+                return Err(observation.node.error(path, message));
+            }
+        };
+        let names = points.iter().filter_map(|at| names.get(*at).cloned()).collect();
+        Ok((name, names))
     }
 }
 
