@@ -39,7 +39,7 @@ fn options(
     (socket_distance, contact): (Option<&str>, PlaneContact),
     [instrument_noise, cameras, markers]: [Option<&[String]>; 3],
 ) -> poecal::Result<ReadOptions> {
-    Ok(ReadOptions {
+    let mut options = ReadOptions {
         frames,
         mapping: columns.map(ColumnMap::read).transpose()?,
         fit_where: fit_where.map(str::parse).transpose()?,
@@ -52,16 +52,15 @@ fn options(
             .flatten()
             .map(|it| it.parse())
             .collect::<Result<_, _>>()?,
-        cameras: each(cameras.unwrap_or_default(), measurements::read_cameras)?,
-        boards: each(markers.unwrap_or_default(), measurements::read_boards)?,
         ..ReadOptions::default()
-    })
-}
-
-/// What several files or specifications hold, in their order.
-fn each<T>(typed: &[String], read: fn(&str) -> poecal::Result<Vec<T>>) -> poecal::Result<Vec<T>> {
-    let found: Vec<Vec<T>> = typed.iter().map(|typed| read(typed)).collect::<Result<_, _>>()?;
-    Ok(found.into_iter().flatten().collect())
+    };
+    for typed in cameras.unwrap_or_default() {
+        options.cameras.extend(measurements::read_cameras(typed)?);
+    }
+    for typed in markers.unwrap_or_default() {
+        options.add_boards(typed)?;
+    }
+    Ok(options)
 }
 
 #[pymethods]
@@ -93,7 +92,8 @@ impl Measurements {
     ///     Noise of instruments that grows with the distance, like "tracker:10um+5um/m": a standard deviation in all directions, and one
     ///     across the line of sight for each metre; of all instruments without a name. For rows that state none.
     /// cameras
-    ///     Files of the cameras that saw corners in pixels: CSV (FILE#VERSION where it has several), YAML of OpenCV, ROS or Kalibr, XML of ViSP.
+    ///     Files of the cameras that saw corners in pixels: CSV (FILE#VERSION where it has several), YAML of OpenCV, ROS, Kalibr or
+    ///     industrial_calibration, XML of ViSP.
     /// markers
     ///     Boards or solids that they saw: CSV files of points, or "chessboard:10x7:27mm".
     ///
@@ -249,7 +249,8 @@ impl Measurements {
     ///     Noise of instruments that grows with the distance, like "tracker:10um+5um/m": a standard deviation in all directions, and one
     ///     across the line of sight for each metre; of all instruments without a name. For rows that state none.
     /// cameras
-    ///     Files of the cameras that saw corners in pixels: CSV (FILE#VERSION where it has several), YAML of OpenCV, ROS or Kalibr, XML of ViSP.
+    ///     Files of the cameras that saw corners in pixels: CSV (FILE#VERSION where it has several), YAML of OpenCV, ROS, Kalibr or
+    ///     industrial_calibration, XML of ViSP.
     /// markers
     ///     Boards or solids that they saw: CSV files of points, or "chessboard:10x7:27mm".
     ///

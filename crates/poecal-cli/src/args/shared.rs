@@ -5,8 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use poecal::io::disk::is_file;
 use poecal::io::measurements::{
-    ColumnMap, Frames, InstrumentNoise, PlaneContact, ReadOptions, SocketDistances, camera_file, read_boards,
-    read_cameras,
+    ColumnMap, Frames, InstrumentNoise, PlaneContact, ReadOptions, SocketDistances, camera_file, read_cameras,
 };
 use poecal::io::output::{Existing, FilePlace};
 use poecal::io::urdf::{ChainSelection, named_link};
@@ -83,12 +82,13 @@ impl ColumnArgs {
 #[derive(Args, Debug)]
 pub(crate) struct CameraArgs {
     /// Cameras of corners in pixels: CSV with name, fx, fy, cx, cy, k1 and so on in OpenCV's order (FILE#VERSION where it has several), YAML of OpenCV,
-    /// ROS or Kalibr, XML of ViSP, a calibration.json with what it found, or unknown:1920x1080 with the size of the pictures, for a lens that is
-    /// found from them; may be given again
+    /// ROS, Kalibr or industrial_calibration, XML of ViSP, a calibration.json with what it found, or unknown:1920x1080 with the size of the pictures,
+    /// for a lens that is found from them; may be given again
     #[arg(long, value_name = "FILE[#VERSION]|unknown:WxH")]
     pub(crate) camera: Vec<String>,
     /// Board or solid that cameras see: CSV with target, x[mm], y[mm], z[mm] of its points, chessboard:10x7:27mm (squares along x and y, and
-    /// their side), charuco:, circles:, aprilgrid: or tags: as poecal detect has them, or a calibration.json with what it found; may be given again
+    /// their side), charuco:, circles:, aprilgrid: or tags: as poecal detect has them, YAML of Kalibr or industrial_calibration, settings of OpenCV
+    /// (YAML, XML), or a calibration.json with what it found; may be given again
     #[arg(long, value_name = "FILE|BOARD")]
     pub(crate) markers: Vec<String>,
 }
@@ -106,7 +106,7 @@ impl CameraArgs {
             options.cameras.extend(read_cameras(typed)?);
         }
         for typed in &self.markers {
-            options.boards.extend(read_boards(typed)?);
+            options.add_boards(typed)?;
         }
         Ok(options)
     }

@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 
 use poecal::error::ErrorKind;
 use poecal::io::disk::{self, ObjectKind};
+use poecal::io::measurements::board_of_file;
 use poecal::io::output::{Existing, FilePlace};
 use poecal::{Error, Result};
 use poecal_detect::{Detector, Found, Gray, Picture, Rejected, Spec, Turned, preview};
@@ -38,9 +39,15 @@ struct Seen {
 }
 
 pub(crate) fn detect(arguments: &Detect, console: &Console) -> Result<u8> {
-    let spec: Spec = arguments.board.parse().map_err(|error| refused(&error))?;
+    let of_file = board_of_file(&arguments.board)?;
+    let words = of_file.as_ref().map_or(arguments.board.as_str(), |board| &board.words);
+    let spec: Spec = words.parse().map_err(|error| refused(&error))?;
+    if let Some(board) = &of_file {
+        console.remark(&board.said);
+    }
     let paths = pictures(&arguments.pictures)?;
-    let inputs: Vec<&Path> = paths.iter().map(PathBuf::as_path).collect();
+    let board = of_file.as_ref().map(|_| Path::new(&arguments.board));
+    let inputs: Vec<&Path> = paths.iter().map(PathBuf::as_path).chain(board).collect();
     let place = arguments.place.reserve(&inputs, console)?;
     let names = names(&paths)?;
     let previews = previews(arguments, &names, (&inputs, console))?;

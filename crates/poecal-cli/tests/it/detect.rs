@@ -106,6 +106,26 @@ fn pictures_calibrate_an_arm_in_three_commands() {
     assert!((focal - 800.0).abs() < 3.0, "{line}");
 }
 
+#[test]
+fn a_board_in_a_file_is_the_one_in_words() {
+    let folder = Folder::new();
+    session(&folder, 2, usize::MAX);
+    let board = "target_finder:\n  type: CharucoGridTargetFinder\n  cols: 7\n  rows: 5\n  chessboard_dim: 0.036\n  aruco_marker_dim: 0.026\n  \
+                 dictionary: DICT_4X4_50\ndata:\n  - image: 0.png\n    pose: 0.yaml\n";
+    folder.write("cal_data.yaml", board);
+    let stated = folder.run(&format!("detect pictures --board {SPEC} --out stated.csv"));
+    let read = folder.run("detect pictures --board cal_data.yaml --out read.csv");
+    assert_eq!((stated.code, read.code), (0, 0), "{} {}", stated.err, read.err);
+    println!("{}", read.err);
+    assert!(read.err.contains(&format!("cal_data.yaml: read the board `{SPEC}` (industrial_calibration)")));
+    assert_eq!(folder.read("read.csv"), folder.read("stated.csv"));
+    let refused = folder
+        .run(&format!("calibrate robot.urdf cal_data.yaml --camera lens.csv --markers {SPEC} --out results"));
+    println!("{}", refused.err);
+    assert!(refused.code == 2 && refused.err.contains("expected the joint readings of each picture"));
+    assert!(!folder.path("results").exists());
+}
+
 /// The root mean square that the held-out pictures of a calibration are off, pixels.
 fn held_out_px(out: &str) -> f64 {
     let line = out.lines().find(|line| line.starts_with("held out")).unwrap();

@@ -100,13 +100,12 @@ fn seen_corners(data: &Dataset, row: u32, error: &RowError) -> Option<(usize, Ve
     Some((picture.corners.len(), corners(data, picture, &pose)))
 }
 
+/// The pixel of a corner, and how far it is from where a model sees it; none where that does not see it.
+pub(super) type SeenPixel = (Vector2<f64>, Option<Vector2<f64>>);
+
 /// The pixel of each corner of a row that has weight, and how far it is off by the error of the row, if it is seen; `None` of a row that is no
 /// picture.
-pub(super) fn seen_pixels(
-    data: &Dataset,
-    row: u32,
-    error: &RowError,
-) -> Option<Vec<(Vector2<f64>, Option<Vector2<f64>>)>> {
+pub(super) fn seen_pixels(data: &Dataset, row: u32, error: &RowError) -> Option<Vec<SeenPixel>> {
     let picture = data.pictures.all.get(data.pictures.of_row(row)?)?;
     let measured = data.observations.get(row as usize)?.measurement.pose();
     let pose = picture.directed(&predicted_pose(&measured, error));

@@ -1,5 +1,7 @@
 //! Bodies of known points: boards, cubes of tags, frames of markers.
 
+use std::collections::BTreeMap;
+
 use nalgebra::{Matrix3, Vector3};
 use serde::{Deserialize, Serialize};
 
@@ -22,6 +24,18 @@ impl Board {
     #[must_use]
     pub fn find(&self, name: &str) -> Option<usize> {
         self.names.iter().position(|own| own == name)
+    }
+
+    /// Its points by their numbers, where all of their names are one word with a number behind it, such as `corner0` and `dot12`; none of others.
+    #[must_use]
+    pub fn numbered(&self) -> BTreeMap<u32, u32> {
+        let word = |name: &str| name.trim_end_matches(|it: char| it.is_ascii_digit()).len();
+        let first = self.names.first().and_then(|name| name.get(..word(name)));
+        let Some(first) = first.filter(|first| !first.ends_with('.')) else { return BTreeMap::new() };
+        let number = |name: &String| name.strip_prefix(first)?.parse::<u32>().ok();
+        let all: Option<BTreeMap<u32, u32>> =
+            self.names.iter().map(number).zip(0..).map(|(number, at)| Some((number?, at))).collect();
+        all.filter(|all| all.len() == self.names.len()).unwrap_or_default()
     }
 
     /// The same points in the order of a grid that counts along its other side first: what corners are where columns and rows of a board are

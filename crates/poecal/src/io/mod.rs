@@ -31,6 +31,7 @@ pub mod urdf;
 pub mod validation;
 mod xml;
 mod yaml;
+mod yaml_tree;
 
 pub use proof::Difference;
 

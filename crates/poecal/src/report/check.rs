@@ -344,7 +344,8 @@ fn unit_words(column: &ColumnUnderstanding) -> String {
         Some(UnitSource::Header) => format!("{unit}, header"),
         Some(UnitSource::UnitsLine) => format!("{unit}, units line"),
         Some(UnitSource::Mapping) => format!("{unit}, mapping"),
-        Some(UnitSource::Si) | None => format!("{unit}, SI"),
+        Some(UnitSource::Si) => format!("{unit}, SI"),
+        None => unit.to_owned(),
     }
 }
 

@@ -27,6 +27,8 @@ mod field;
 #[path = "../files/mod.rs"]
 mod files;
 mod fk_reference;
+mod foreign_corners;
+mod foreign_messages;
 mod foreign_models;
 mod forensics;
 mod gauge;

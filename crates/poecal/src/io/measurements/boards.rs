@@ -4,6 +4,7 @@ use std::path::Path;
 
 use nalgebra::Vector3;
 
+use super::board_files::board_of_file;
 use super::board_words::{BOARD, in_words};
 use super::header::{Header, unit_in_name};
 use super::mapping::ColumnMap;
@@ -17,13 +18,18 @@ use crate::io::stored_pictures::stored_boards;
 use crate::unit::Unit;
 
 /// The boards of a file of points, or of a specification such as `chessboard:10x7:27mm` (squares along x and y, and their side); the others are
-/// `charuco:…`, `circles:…`, `aprilgrid:…` and `tags:…`, as `poecal detect` has them.
+/// `charuco:…`, `circles:…`, `aprilgrid:…` and `tags:…`, as `poecal detect` has them. Files of Kalibr, industrial_calibration and OpenCV's settings
+/// (YAML, XML) do as well, and a `calibration.json` with what it found.
 ///
 /// # Errors
 /// A file that cannot be read or has no points, or a specification that is none.
 pub fn read_boards(typed: &str) -> Result<Vec<Board>> {
-    match in_words(typed) {
-        Some(board) => Ok(vec![board?]),
+    let of_file = board_of_file(typed)?;
+    match in_words(of_file.as_ref().map_or(typed, |it| &it.words)) {
+        Some(board) => Ok(vec![match of_file {
+            Some(_) => board.map_err(|error| error.in_file(Path::new(typed)))?,
+            None => board?,
+        }]),
         None if Path::new(typed).extension().is_some_and(|it| it.eq_ignore_ascii_case("json")) => {
             stored_boards(Path::new(typed))
         }
@@ -108,4 +114,4 @@ fn of_table(path: &Path) -> Result<Vec<Board>> {
 }
 
 /// Largest coordinate of a point of a board, metres.
-const FARTHEST_M: f64 = 10.0;
+pub(super) const FARTHEST_M: f64 = 10.0;

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use roxmltree::Document;
 
+use super::intrinsics::of_intrinsics;
 use super::mapping::ColumnMap;
 use super::number::Numbers;
 use super::table::{Row, Table};
@@ -55,7 +56,7 @@ pub fn camera_file(typed: &str) -> Option<(&Path, Option<&str>)> {
 }
 
 /// Refuses numbers that are no lens's.
-fn check(name: &str, lens: &Lens) -> Result<()> {
+pub(super) fn check(name: &str, lens: &Lens) -> Result<()> {
     let of = || if name.is_empty() { String::new() } else { format!(" of camera `{name}`") };
     let [fx, fy] = lens.focal_px;
     let refuse = |found: String, expected: &str| {
@@ -244,6 +245,9 @@ fn of_yaml(text: &str, path: &Path) -> Result<Vec<Camera>> {
         return Ok(cameras);
     }
     let none: [String; 0] = [];
+    if let Some(lens) = of_intrinsics(&leaves, path)? {
+        return Ok(vec![Camera::new(word(&none, &["camera_name"]).unwrap_or_default(), lens)]);
+    }
     let first = |ways: &[&[&str]]| -> Result<Vec<f64>> {
         for keys in ways {
             let found = list(&leaves, &none, keys, path)?;
@@ -306,7 +310,7 @@ fn exact<const N: usize>(numbers: Vec<f64>, key: &str, path: &Path) -> Result<[f
 }
 
 /// A distortion by the name of its model and its coefficients.
-fn distortion(kind: &str, numbers: &[f64], path: &Path) -> Result<Distortion> {
+pub(super) fn distortion(kind: &str, numbers: &[f64], path: &Path) -> Result<Distortion> {
     let refuse = |expected: &str| {
         let message =
             format!("found the distortion `{kind}` with {} coefficients, expected {expected}", numbers.len());

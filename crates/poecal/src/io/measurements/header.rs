@@ -54,6 +54,13 @@ impl HeaderCell {
     }
 }
 
+impl HeaderCell {
+    /// Its units as they are written, in brackets and in the line of units.
+    pub(super) fn units(&self) -> impl Iterator<Item = &str> {
+        self.unit.as_deref().into_iter().chain(self.below.iter().map(|(_, unit)| bare(unit)))
+    }
+}
+
 /// A text that ends with brackets: the parts before and in them.
 fn bracketed(text: &str, open: char, close: char) -> Option<(&str, &str)> {
     text.strip_suffix(close)?.rsplit_once(open)

@@ -134,6 +134,11 @@ impl ColumnLayout {
         Ok(Self::of_joints(builder, id, robot))
     }
 
+    /// The layout of a file that has none of these, and so many columns without meaning.
+    pub(super) fn without(ignored: Vec<(String, Option<String>)>) -> Self {
+        ColumnLayout { ignored, ..ColumnLayout::default() }
+    }
+
     fn of_joints(builder: Builder<'_>, id: Option<usize>, robot: &Robot) -> Self {
         let controller = builder.controller(robot);
         let Builder { inputs, numbered, missed, .. } = builder;

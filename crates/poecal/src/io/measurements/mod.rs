@@ -4,22 +4,28 @@
 //! (`layout` and `builder`, from header, mapping and robot), numbers in SI (`inputs`), without those of lost beams (`lost`), and at
 //! last measurements (`row`, [`read()`]), which are judged for their scale (`scale`, `spread`, `turns`).
 
+mod beside;
+mod board_files;
 mod board_words;
 mod boards;
 mod builder;
 mod cameras;
 mod cells;
+mod corner_columns;
 mod corner_names;
 mod counted;
 mod fit_where;
+mod gathering;
 mod header;
 mod inputs;
 mod instrument_noise;
+mod intrinsics;
 mod joints;
 mod kinds;
 mod layout;
 mod lost;
 mod mapping;
+mod messages;
 mod naming;
 mod number;
 mod numbered;
@@ -46,6 +52,7 @@ mod write;
 mod wrong_boards;
 
 pub use super::numbers::LARGEST_NUMBER;
+pub use board_files::{BoardOfFile, board_of_file};
 pub use boards::read_boards;
 pub use cameras::{camera_file, read_cameras};
 pub use cells::Separator;
@@ -67,6 +74,7 @@ pub(in crate::io) use write::text;
 use std::collections::BTreeMap;
 
 use crate::camera::{Board, Camera};
+use crate::error::Result;
 use crate::measurement::Dataset;
 use crate::robot::Controller;
 
@@ -104,6 +112,20 @@ pub struct ReadOptions {
     pub boards: Vec<Board>,
     /// Noise of instruments that depends on the distance, for rows that state none.
     pub instrument_noise: Vec<InstrumentNoise>,
+    /// What was understood of files of boards, a sentence each, for the warnings.
+    pub said: Vec<String>,
+}
+
+impl ReadOptions {
+    /// Adds the boards of a file or of words ([`read_boards`]), with what was understood of them.
+    ///
+    /// # Errors
+    /// As [`read_boards`].
+    pub fn add_boards(&mut self, typed: &str) -> Result<()> {
+        self.boards.extend(read_boards(typed)?);
+        self.said.extend(board_of_file(typed)?.map(|board| board.said));
+        Ok(())
+    }
 }
 
 /// How a target touches a plane.

@@ -3,22 +3,11 @@
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-use super::header::Header;
 use crate::measurement::Set;
 
 /// What is said of corners where no camera is stated.
 pub(super) const NO_CAMERA: &str =
     "found corners in pixels and no camera, expected --camera FILE with its focal lengths and centre";
-
-/// Whether the columns of a file are those of corners.
-pub(super) fn are_corners(header: &Header<'_>) -> bool {
-    header.count("u") > 0 && header.count("v") > 0
-}
-
-/// Whether a file has readings of joints by picture, and nothing that was measured.
-pub(super) fn are_readings_of_pictures(header: &Header<'_>) -> bool {
-    header.count("image") > 0 && ["u", "v", "x", "y", "z"].iter().all(|name| header.count(name) == 0)
-}
 
 /// The configuration of a picture.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,11 +1,12 @@
 //! Files of corners as cameras saw them: a row a corner, `u` and `v` in pixels, with the readings of the joints in each row, or in another file
 //! that has them by picture (docs/file-formats.md, "Pixels").
 
-use std::collections::BTreeMap;
 use std::path::Path;
 
+use super::corner_columns::{self, CornerColumns};
+use super::gathering::{Gathering, Sight};
 use super::header::Header;
-use super::inputs::InputReader;
+use super::inputs::{InputReader, Range};
 use super::layout::ColumnLayout;
 use super::number::Numbers;
 use super::picture_files::{NO_CAMERA, Taken};
@@ -19,62 +20,16 @@ use nalgebra::Vector2;
 /// Largest pixel coordinate.
 const LARGEST_PX: f64 = 1e6;
 
-/// Columns of a file of corners.
-struct CornerColumns {
-    u: usize,
-    v: usize,
-    sigma: Option<usize>,
-    target: usize,
-    camera: Option<usize>,
-    board: Option<usize>,
-    image: Option<usize>,
-}
-
-impl CornerColumns {
-    fn new(header: &Header<'_>, pixels_px: [&str; 2]) -> Result<Self> {
-        let [u, v] = pixels_px.map(|name| header.require(name, "for the pixel", |_| false, ""));
-        let found = CornerColumns {
-            u: u?,
-            v: v?,
-            sigma: header.find("sigma")?,
-            target: header.require("target", "for the name of the corner", |_| false, "")?,
-            camera: header.find("camera")?,
-            board: header.find("board")?,
-            image: header.find("image")?,
-        };
-        for column in [Some(found.u), Some(found.v), found.sigma].into_iter().flatten() {
-            header.only_unit(column, "px")?;
-        }
-        Ok(found)
-    }
-
-    fn all(&self) -> impl Iterator<Item = usize> {
-        let more = [self.sigma, self.camera, self.board, self.image];
-        [self.u, self.v, self.target].into_iter().chain(more.into_iter().flatten())
-    }
-}
-
-/// A board in a picture, as its corners were read.
-pub(super) struct Gathered {
-    pub(super) taken: Taken,
-    pub(super) image: Option<String>,
-    pub(super) camera: usize,
-    pub(super) board: usize,
-    pub(super) corners: Vec<Corner>,
-}
-
-/// Pictures of a file, in the order in which they begin.
-#[derive(Default)]
-struct Gathering {
-    pictures: Vec<Gathered>,
-    known: BTreeMap<(String, usize, usize), usize>,
-}
-
 impl Reader<'_> {
     /// Reads a file of readings by picture, whose corners are in another one.
     pub(super) fn readings_of_pictures(&mut self, path: &Path, mut table: Table<'_>) -> Result<()> {
-        let layout = ColumnLayout::pictures(&table.header, self.robot, self.options, self.map)?;
-        let image = table.header.require("image", "for the name of the picture", |_| false, "")?;
+        let mut layout = ColumnLayout::pictures(&table.header, self.robot, self.options, self.map)?;
+        let image = match corner_columns::picture(&table.header, self.found.data.reading_names())? {
+            Some(image) => image,
+            None => table.header.require("image", "for the name of the picture", |_| false, "")?,
+        };
+        let column = table.header.cells.get(image).map_or(String::new(), |cell| cell.text.clone());
+        layout.ignored.retain(|(name, _)| *name != column);
         let numbers = Numbers::new(self.map.decimal);
         let mut inputs = InputReader::new(&layout.inputs, layout.inputs.len(), numbers);
         let mut watch = JointWatch::new(self.robot);
@@ -83,10 +38,9 @@ impl Reader<'_> {
                 let taken = self.taken(&row, &layout, &mut inputs, &mut watch)?;
                 let name = text(&row, Some(image)).unwrap_or_default();
                 if name.is_empty() {
-                    return Err(row.error(
-                        image,
-                        "found an empty cell in column `image`, expected the name of a picture",
-                    ));
+                    let message =
+                        format!("found an empty cell in column `{column}`, expected the name of a picture");
+                    return Err(row.error(image, message));
                 }
                 if let Some(first) = self.taken.get(&name) {
                     let message = format!(
@@ -99,6 +53,10 @@ impl Reader<'_> {
                 self.taken.insert(name, taken);
             }
         }
+        if column != "image" {
+            self.found.warnings.push(format!("{}: took `{column}` for image", path.display()));
+        }
+        self.warn_of_ignored(path, &layout);
         self.found.warnings.extend(watch.finish(path, &layout, &inputs.ranges)?);
         self.found.sha256.extend(table.sha256().map(|sha256| (path.display().to_string(), sha256)));
         Ok(())
@@ -106,50 +64,33 @@ impl Reader<'_> {
 
     /// Reads a file of corners.
     pub(super) fn corners(&mut self, path: &Path, mut table: Table<'_>) -> Result<()> {
-        self.refuse_without_cameras(&table.header)?;
-        let columns = CornerColumns::new(&table.header, ["u", "v"])?;
-        let has_joints = {
-            let names = self.found.data.reading_names();
-            self.taken.is_empty() || names.iter().all(|name| table.header.count(name) > 0)
-        };
-        let mut layout = match has_joints {
-            true => ColumnLayout::pictures(&table.header, self.robot, self.options, self.map)?,
-            false => ColumnLayout::default(),
-        };
-        if !has_joints && columns.image.is_none() {
-            table.header.require("image", "for the name of the picture", |_| false, "")?;
-        }
-        let own: Vec<String> =
-            columns.all().filter_map(|at| table.header.cells.get(at)).map(|cell| cell.text.clone()).collect();
-        layout.ignored.retain(|(name, _)| !own.contains(name));
+        let joints = self.found.data.reading_names().to_vec();
+        let has_boards = !self.boards.is_empty();
+        let columns = CornerColumns::new(&table.header, &joints, (self.map, has_boards))?;
+        let Some(columns) = columns else { return Ok(()) };
+        self.refuse_without_cameras(&table.header, &columns)?;
+        let has_joints = self.taken.is_empty() || joints.iter().all(|name| table.header.count(name) > 0);
+        let layout = self.layout_of_corners(&table.header, &columns, has_joints)?;
         let mut numbers = Numbers::new(self.map.decimal);
         let mut inputs =
             InputReader::new(&layout.inputs, layout.inputs.len(), Numbers::new(self.map.decimal));
         let mut watch = JointWatch::new(self.robot);
-        let (mut gathering, mut rows, mut unknown) = (Gathering::default(), 0, BTreeMap::new());
+        let (mut gathering, mut rows, mut seen) = (Gathering::default(), 0, [Range::default(); 3]);
         while let Some(mut some) = table.next_block()? {
             while let Some(row) = some.next()? {
                 rows += 1;
                 refuse_more_rows(rows, &row)?;
                 let image = text(&row, columns.image).filter(|name| !name.is_empty());
-                let taken = match (&image, has_joints) {
-                    (_, true) => self.taken(&row, &layout, &mut inputs, &mut watch)?,
-                    (Some(name), false) => match self.taken.get(name) {
-                        Some(taken) => taken.clone(),
-                        None => {
-                            unknown.entry(name.clone()).or_insert(row.line);
-                            continue;
-                        }
-                    },
-                    (None, false) => {
-                        let at = columns.image.unwrap_or(0);
-                        return Err(row.error(
-                            at,
-                            "found an empty cell in column `image`, expected the name of a picture",
-                        ));
-                    }
+                let taken = match has_joints {
+                    true => Some(self.taken(&row, &layout, &mut inputs, &mut watch)?),
+                    false if image.is_none() => return Err(no_picture(&row, columns.image)),
+                    false => None,
                 };
                 if let Some(corner) = self.corner(&row, &columns, &mut numbers)? {
+                    let numbers = [Some(corner.pixel.x), Some(corner.pixel.y), corner.sigma_px];
+                    for (range, number) in seen.iter_mut().zip(numbers) {
+                        number.into_iter().for_each(|number| range.include(number));
+                    }
                     self.gather(&row, &columns, &mut gathering, (image, taken), corner)?;
                 }
             }
@@ -158,55 +99,54 @@ impl Reader<'_> {
             let message = "found a header and no rows, expected at least one corner";
             return Err(Error::new(ErrorKind::Measurement, message).at_line(path, table.header.line));
         }
-        self.warn_of_unpaired(path, has_joints, &gathering, &unknown);
+        let own = |words: String| format!("{}: {words}", path.display());
+        self.found.warnings.extend(columns.words(&table.header).map(own));
+        self.found.warnings.extend(gathering.settle_numbers(path, &self.boards)?.map(own));
+        let joined = gathering.joined(path, (!has_joints).then_some(&self.taken))?;
+        self.found.warnings.extend(joined.words.into_iter().map(own));
+        self.found.warnings.extend(self.board_of_file(&columns, has_boards).map(own));
         self.found.sha256.extend(table.sha256().map(|sha256| (path.display().to_string(), sha256)));
         self.found.warnings.extend(watch.finish(path, &layout, &inputs.ranges)?);
         self.found.data.files.push(path.to_path_buf());
         let first = self.found.data.len();
-        self.take_pictures(path, gathering.pictures)?;
-        self.understand_pictures(&table, &layout, &inputs, (first, rows))
+        self.take_pictures(path, joined.pictures)?;
+        let own = columns.understood(&table.header, &seen);
+        self.understand_pictures(&table, &layout, &inputs, (first, rows, own))
     }
 
-    /// Names the pictures of which one file has the joints and the other has the corners, but not both.
-    fn warn_of_unpaired(
-        &mut self,
-        path: &Path,
+    /// The columns of the joints beside those of the corners, and what is ignored.
+    fn layout_of_corners(
+        &self,
+        header: &Header<'_>,
+        columns: &CornerColumns,
         has_joints: bool,
-        gathering: &Gathering,
-        unknown: &BTreeMap<String, usize>,
-    ) {
-        if has_joints {
-            return;
+    ) -> Result<ColumnLayout> {
+        let mut layout = match has_joints {
+            true => ColumnLayout::pictures(header, self.robot, self.options, self.map)?,
+            false => {
+                let cells = header.cells.iter().filter(|cell| !cell.text.is_empty());
+                ColumnLayout::without(cells.map(|cell| (cell.text.clone(), None)).collect())
+            }
+        };
+        if !has_joints && columns.image.is_none() {
+            header.require("image", "for the name of the picture", |_| false, "")?;
         }
-        let named = |names: Vec<&String>| format!("{} ({})", names.len(), first_few(&names));
-        if !unknown.is_empty() {
-            let names = named(unknown.keys().collect());
-            self.found.warnings.push(format!(
-                "{}: left out the pictures that have corners and no joint readings: {names}",
-                path.display()
-            ));
-        }
-        let has_corners = |name: &String| gathering.pictures.iter().any(|it| it.image.as_ref() == Some(name));
-        let without: Vec<&String> = self.taken.keys().filter(|name| !has_corners(name)).collect();
-        if !without.is_empty() {
-            let names = named(without);
-            self.found.warnings.push(format!(
-                "{}: left out the pictures that have joint readings and no corners: {names}",
-                path.display()
-            ));
-        }
+        layout.id = layout.id.filter(|at| !columns.has(*at));
+        let own = header.cells.iter().enumerate().filter(|(at, _)| columns.has(*at));
+        let own: Vec<&str> = own.map(|(_, cell)| cell.text.as_str()).collect();
+        layout.ignored.retain(|(name, _)| !own.contains(&name.as_str()));
+        Ok(layout)
     }
 
-    fn refuse_without_cameras(&self, header: &Header<'_>) -> Result<()> {
-        let at = header.find("u")?.unwrap_or(0);
-        let missing = if self.options.cameras.is_empty() {
+    fn refuse_without_cameras(&self, header: &Header<'_>, columns: &CornerColumns) -> Result<()> {
+        let missing = if self.cameras.is_empty() {
             NO_CAMERA
-        } else if self.options.boards.is_empty() {
+        } else if self.boards.is_empty() && columns.place.is_none() {
             "found corners in pixels and no board, expected --markers with its points: a CSV file, or chessboard:10x7:27mm"
         } else {
             return Ok(());
         };
-        Err(header.error(ErrorKind::Measurement, at, missing))
+        Err(header.error(ErrorKind::Measurement, columns.u, missing))
     }
 
     /// The configuration of a row.
@@ -287,43 +227,40 @@ impl Reader<'_> {
         row: &Row<'_>,
         columns: &CornerColumns,
         gathering: &mut Gathering,
-        (image, taken): (Option<String>, Taken),
+        (image, taken): (Option<String>, Option<Taken>),
         mut corner: Corner,
     ) -> Result<()> {
         let camera = self.camera(row, columns.camera)?;
-        let board = self.board(row, (columns.board, columns.target))?;
-        corner.point = self.point(row, columns.target, board)?;
-        let own = image.is_none().then_some(&taken.readings);
-        let key = format!("{} {} {own:?}", image.as_deref().unwrap_or_default(), taken.id);
-        let Gathering { pictures, known } = gathering;
+        let board = self.board(row, columns)?;
+        corner.point = self.point(row, columns, (board, gathering))?;
+        let own = taken.as_ref().filter(|_| image.is_none()).map(|taken| &taken.readings);
+        let id = taken.as_ref().map_or("", |taken| taken.id.as_str());
+        let key = format!("{} {id} {own:?}", image.as_deref().unwrap_or_default());
+        let Gathering { pictures, known, .. } = gathering;
         let at = *known.entry((key, camera, board)).or_insert_with(|| {
-            pictures.push(Gathered {
-                taken: taken.clone(),
-                image: image.clone(),
-                camera,
-                board,
-                corners: Vec::new(),
-            });
+            let (taken, image) = (taken.clone(), image.clone());
+            pictures.push(Sight { taken, image, camera, board, corners: Vec::new() });
             pictures.len() - 1
         });
         let Some(picture) = pictures.get_mut(at) else { return Ok(()) };
-        let first = &picture.taken;
-        if first.readings != taken.readings || first.set != taken.set {
+        if let (Some(first), Some(taken)) = (&picture.taken, &taken)
+            && (first.readings != taken.readings || first.set != taken.set)
+        {
             let what = if first.set == taken.set { "joint readings" } else { "set" };
             let message = format!(
                 "found another {what} of picture `{}` than in line {}, expected the same for all corners of a picture",
                 image.unwrap_or_default(),
                 first.place.1
             );
-            return Err(row.error(columns.target, message));
+            return Err(row.error(columns.corner(), message));
         }
         if let Some(other) = picture.corners.iter().find(|it| it.point == corner.point) {
             let message = format!(
                 "found the corner `{}` a second time in one picture (line {} is the first), expected it once",
-                text(row, Some(columns.target)).unwrap_or_default(),
+                text(row, Some(columns.corner())).unwrap_or_default(),
                 other.line
             );
-            return Err(row.error(columns.target, message));
+            return Err(row.error(columns.corner(), message));
         }
         picture.corners.push(corner);
         Ok(())
@@ -331,7 +268,7 @@ impl Reader<'_> {
 
     /// Index of the row's camera among those that are known.
     fn camera(&mut self, row: &Row<'_>, column: Option<usize>) -> Result<usize> {
-        let cameras = &self.options.cameras;
+        let cameras = &self.cameras;
         let name = text(row, column).unwrap_or_default();
         if let Some(at) = cameras.iter().position(|it| it.name == name) {
             return Ok(at);
@@ -368,6 +305,13 @@ impl Reader<'_> {
             self.found.warnings.push(sentence);
         }
     }
+}
+
+fn no_picture(row: &Row<'_>, image: Option<usize>) -> Error {
+    row.error(
+        image.unwrap_or(0),
+        "found an empty cell in the column of the picture, expected the name of a picture",
+    )
 }
 
 /// Text of a cell.

@@ -3,13 +3,16 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
+use super::beside::{beside, has_readings_of_pictures};
+use super::corner_columns::{are_corners, are_readings_of_pictures};
 use super::inputs::InputReader;
 use super::layout::ColumnLayout;
 use super::lost::{self, LostBeams};
 use super::mapping::ColumnMap;
+use super::messages::are_messages;
 use super::naming::Names;
 use super::number::Numbers;
-use super::picture_files::{self, TakenByImage};
+use super::picture_files::TakenByImage;
 use super::scale::{self, JointWatch};
 use super::socket_distance::Sockets;
 use super::spread;
@@ -19,9 +22,8 @@ use super::turns::{self, TurnWatch};
 use super::understanding::{self, FileUnderstanding};
 use super::wrong_boards::refuse_wrong_boards;
 use super::{FitWhere, Frames, MeasurementFile, ReadOptions};
-use crate::camera::Board;
-use crate::error::{Error, ErrorKind, Result, shown};
-use crate::io::disk::is_file;
+use crate::camera::{Board, Camera};
+use crate::error::{ErrorKind, Result, shown};
 use crate::measurement::{Dataset, Observation};
 use crate::robot::{Controller, Robot};
 use crate::start::{settle_faces, settle_pictures};
@@ -48,62 +50,15 @@ fn read_all(paths: &[&Path], robot: &Robot, options: &ReadOptions) -> Result<Mea
     // Readings by picture come before the corners of the pictures, in whatever order the files are named.
     let mut order = paths.to_vec();
     if !options.cameras.is_empty() {
-        order.sort_by_key(|path| !has_readings_of_pictures(path, reader.map));
+        order.sort_by_key(|path| !has_readings_of_pictures(path, robot, reader.map));
     }
     for path in order {
         let blocks = Blocks::open(path, "a measurement file (CSV)")?;
         reader
             .file(path, blocks)
-            .map_err(|error| beside(error, path, paths, (reader.map, options.cameras.is_empty())))?;
+            .map_err(|error| beside(error, path, paths, (robot, reader.map, options.cameras.is_empty())))?;
     }
     reader.finish()
-}
-
-/// Whether a file has readings of joints by picture. One that cannot be read is named when it is read.
-fn has_readings_of_pictures(path: &Path, map: &ColumnMap) -> bool {
-    // A pipe is read once.
-    if !is_file(path) {
-        return false;
-    }
-    let table =
-        Blocks::open(path, "a measurement file (CSV)").and_then(|blocks| Table::open(path, blocks, map));
-    table.is_ok_and(|table| picture_files::are_readings_of_pictures(&table.header))
-}
-
-/// An error of a column that is in another of the files: tables that stand side by side, and not one below the other.
-fn beside(error: Error, path: &Path, paths: &[&Path], (map, without_camera): (&ColumnMap, bool)) -> Error {
-    // Readings of pictures without a camera are taken for measurements.
-    let has_corners = |other: &&&Path| {
-        let blocks = Blocks::open(other, "a measurement file (CSV)");
-        let table = blocks.and_then(|blocks| Table::open(other, blocks, map));
-        **other != path
-            && is_file(other)
-            && table.is_ok_and(|table| picture_files::are_corners(&table.header))
-    };
-    if without_camera && let Some(corners) = paths.iter().find(has_corners) {
-        return Error::new(ErrorKind::Measurement, picture_files::NO_CAMERA).in_file(corners);
-    }
-    let missing = error.message().strip_prefix("found no column `").and_then(|rest| rest.split_once('`'));
-    let Some((name, _)) = missing else { return error };
-    let has = |other: &&&Path| {
-        let blocks = Blocks::open(other, "a measurement file (CSV)");
-        let table = blocks
-            .and_then(|blocks| Table::open(other, blocks, map).map(|table| table.header.count(name) > 0));
-        **other != path && table.unwrap_or(false)
-    };
-    let Some(other) = paths.iter().find(has) else { return error };
-    let message = format!(
-        "found no column `{name}`, expected it beside the others: {} has it, so the two are parts of one table; join them row by row into one file \
-         (`paste -d, {} {}`)",
-        other.display(),
-        path.display(),
-        other.display()
-    );
-    let moved = Error::new(error.kind(), message);
-    match error.place().and_then(|place| place.line) {
-        Some(line) => moved.at_line(path, line),
-        None => moved.in_file(path),
-    }
 }
 
 /// Reads the text of a measurement file; `path` is for the messages only.
@@ -165,6 +120,8 @@ pub(super) struct Reader<'a> {
     pub(super) begun: BTreeMap<String, (Option<u32>, usize)>,
     /// Readings of joints by picture.
     pub(super) taken: TakenByImage,
+    /// The cameras.
+    pub(super) cameras: Vec<Camera>,
     /// The boards, one that is at several places by its names there.
     pub(super) boards: Vec<Board>,
     /// The sockets of each place.
@@ -185,22 +142,29 @@ impl<'a> Reader<'a> {
             places: BTreeMap::new(),
             begun: BTreeMap::new(),
             taken: TakenByImage::new(),
+            cameras: options.cameras.clone(),
             boards: options.boards.clone(),
             sockets: Sockets::new(),
             fit_values_seen: Vec::new(),
             found: MeasurementFile {
                 data: Dataset::new(robot.reading_names()).with_factors(robot.factors.len()),
+                warnings: options.said.clone(),
                 ..MeasurementFile::default()
             },
         }
     }
 
-    fn file<'p>(&mut self, path: &'p Path, blocks: Blocks<'p>) -> Result<()> {
+    fn file<'p>(&mut self, path: &'p Path, mut blocks: Blocks<'p>) -> Result<()> {
+        blocks.begin()?;
+        if are_messages(path, blocks.text())? {
+            return self.messages(path, blocks);
+        }
         let mut table = Table::open(path, blocks, self.map)?;
-        if picture_files::are_corners(&table.header) {
+        let joints = self.found.data.reading_names();
+        if are_corners(&table.header, joints, self.map)? {
             return self.corners(path, table);
         }
-        if !self.options.cameras.is_empty() && picture_files::are_readings_of_pictures(&table.header) {
+        if !self.cameras.is_empty() && are_readings_of_pictures(&table.header, joints, self.map) {
             return self.readings_of_pictures(path, table);
         }
         let layout = ColumnLayout::new(&table.header, self.robot, self.options, self.map)?;
@@ -400,7 +364,7 @@ impl<'a> Reader<'a> {
                  `poecal detect` writes it",
                 self.taken.len()
             );
-            return Err(Error::new(ErrorKind::Measurement, message).in_file(&taken.place.0));
+            return Err(ErrorKind::Measurement.error(message).in_file(&taken.place.0));
         }
         let mut found = self.found;
         if let Some(distances) = &self.options.socket_distances {

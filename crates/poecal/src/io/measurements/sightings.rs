@@ -3,12 +3,12 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
+use super::gathering::Gathered;
 use super::inputs::InputReader;
 use super::layout::ColumnLayout;
-use super::pixels::Gathered;
 use super::read::Reader;
 use super::table::Table;
-use super::understanding::{self, FileUnderstanding};
+use super::understanding::{self, ColumnUnderstanding, FileUnderstanding};
 use crate::camera::{Corner, FlatView, Picture, guessed_lens, is_flat_sheet};
 use crate::error::{Error, ErrorKind, Result, first_few};
 use crate::measurement::Source;
@@ -18,7 +18,7 @@ impl Reader<'_> {
     pub(super) fn take_pictures(&mut self, path: &Path, gathered: Vec<Gathered>) -> Result<()> {
         let file = u32::try_from(self.found.data.files.len().saturating_sub(1)).unwrap_or(u32::MAX);
         let (mut left_out, mut found) = (Vec::new(), 0);
-        self.found.data.pictures.cameras.clone_from(&self.options.cameras);
+        self.found.data.pictures.cameras.clone_from(&self.cameras);
         self.found.data.pictures.boards.clone_from(&self.boards);
         self.guess_lenses(&gathered)?;
         for one in gathered {
@@ -88,12 +88,14 @@ impl Reader<'_> {
         table: &Table<'_>,
         layout: &ColumnLayout,
         inputs: &InputReader<'_>,
-        (first, rows): (usize, usize),
+        (first, rows, own): (usize, usize, Vec<ColumnUnderstanding>),
     ) -> Result<()> {
         let path = table.header.path;
         let pictures = self.found.data.len() - first;
         self.warn_of_ignored(path, layout);
         self.take_controller(path, layout)?;
+        let mut columns = understanding::columns(&table.header, layout, &inputs.ranges);
+        columns.extend(own);
         self.found.understood.push(FileUnderstanding {
             path: path.to_path_buf(),
             rows,
@@ -105,7 +107,7 @@ impl Reader<'_> {
             separator_line: table.separator_line,
             units_line: table.header.units_line,
             decimal_sign: inputs.numbers.sign(),
-            columns: understanding::columns(&table.header, layout, &inputs.ranges),
+            columns,
             orientation: None,
             pose: understanding::pose_word(layout.pose),
             ignored: layout.ignored.iter().map(|(name, _)| name.clone()).collect(),

@@ -18,6 +18,8 @@ pub(super) struct Row<'t> {
     pub(super) line: usize,
     pub(super) text: &'t str,
     pub(super) cells: &'t [Cell<'t>],
+    /// Whether the text is another one than that of the file, so that columns mean nothing.
+    is_copy: bool,
 }
 
 /// A file, read block by block.
@@ -27,6 +29,8 @@ pub(super) struct Table<'a> {
     /// The line that states the separator, as `sep=;`.
     pub(super) separator_line: Option<usize>,
     blocks: Blocks<'a>,
+    /// Of rows that were made of another file, its line of each.
+    lines: Option<Vec<usize>>,
     /// Whether the rows of the current block are still to be returned.
     unread: bool,
 }
@@ -37,6 +41,7 @@ pub(super) struct TableRows<'t> {
     pub(super) text: &'t str,
     header: &'t Header<'t>,
     separator: Separator,
+    made_of: Option<&'t [usize]>,
     lines: Lines<'t>,
     cells: Vec<Cell<'t>>,
 }
@@ -44,7 +49,7 @@ pub(super) struct TableRows<'t> {
 impl<'a> Table<'a> {
     /// Reads the header with the lines of separator and units; the separator is the mapping's, stated or recognised.
     pub(super) fn open(path: &'a Path, mut blocks: Blocks<'a>, map: &ColumnMap) -> Result<Self> {
-        blocks.advance()?;
+        blocks.begin()?;
         let none =
             || ErrorKind::Syntax.error("found no line with text, expected a header and rows").in_file(path);
         let (mut line, mut text) = next_line(&mut blocks, map.skip_lines)?.ok_or_else(none)?;
@@ -73,7 +78,12 @@ impl<'a> Table<'a> {
                 header.take_names(&cells);
             }
         }
-        Ok(Table { header, separator, separator_line, blocks, unread: true })
+        Ok(Table { header, separator, separator_line, blocks, lines: None, unread: true })
+    }
+
+    /// The same with rows that were made of the lines of another file.
+    pub(super) fn with_lines(self, lines: Vec<usize>) -> Self {
+        Table { lines: Some(lines), ..self }
     }
 
     /// The text before the first block of rows, of blocks that hold what they pass.
@@ -96,10 +106,11 @@ impl<'a> Table<'a> {
         if !std::mem::take(&mut self.unread) && !self.blocks.advance()? {
             return Ok(None);
         }
-        let Table { header, separator, blocks, .. } = self;
+        let Table { header, separator, blocks, lines: made_of, .. } = self;
         let lines = blocks.lines(header.last_line());
         let text = blocks.text();
-        Ok(Some(TableRows { text, header, separator: *separator, lines, cells: Vec::new() }))
+        let made_of = made_of.as_deref();
+        Ok(Some(TableRows { text, header, separator: *separator, made_of, lines, cells: Vec::new() }))
     }
 }
 
@@ -138,7 +149,8 @@ impl TableRows<'_> {
                     return Err(ErrorKind::Measurement.error(message).at(path, line, place));
                 }
             }
-            return Ok(Some(Row { path, line, text, cells: &self.cells }));
+            let line = self.made_of.and_then(|lines| lines.get(line - 1)).copied().unwrap_or(line);
+            return Ok(Some(Row { path, line, text, cells: &self.cells, is_copy: self.made_of.is_some() }));
         }
     }
 
@@ -227,7 +239,8 @@ impl Row<'_> {
     /// An error at a cell.
     pub(super) fn error(&self, index: usize, message: impl Into<String>) -> Error {
         let (line, column) = self.place(index);
-        ErrorKind::Measurement.error(message).at(self.path, line, column)
+        let error = ErrorKind::Measurement.error(message);
+        if self.is_copy { error.at_line(self.path, line) } else { error.at(self.path, line, column) }
     }
 }
 
@@ -237,7 +250,7 @@ mod tests {
 
     #[test]
     fn a_row_too_many_is_refused() {
-        let row = Row { path: Path::new(PATH), line: 7, text: "", cells: &[] };
+        let row = Row { path: Path::new(PATH), line: 7, text: "", cells: &[], is_copy: false };
         assert!(refuse_more_rows(MOST_ROWS, &row).is_ok());
         let error = refuse_more_rows(MOST_ROWS + 1, &row).unwrap_err().to_string();
         assert!(error.starts_with("x.csv:7: found more than 10,000,000 measurements"), "{error}");

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::io::hashes::Hashing;
-use crate::io::source::{self, Input, LARGEST_TABLE, unreadable};
+use crate::io::source::{self, Input, LARGEST_TABLE, LARGEST_TEXT, unreadable};
 use crate::io::source_text::position;
 
 /// Approximate number of bytes held at a time.
@@ -127,6 +127,28 @@ impl<'a> Blocks<'a> {
             self.is_marked = true;
         }
         Ok(!self.text.is_empty())
+    }
+
+    /// Reads the first block, if it has not been read.
+    pub(super) fn begin(&mut self) -> Result<bool> {
+        if self.newline.is_none() { self.advance() } else { Ok(!self.text.is_empty()) }
+    }
+
+    /// The current block with all that follow, of a text that is held whole.
+    pub(super) fn rest(&mut self) -> Result<String> {
+        self.begin()?;
+        let mut all = String::new();
+        loop {
+            all.push_str(&self.text);
+            if all.len() as u64 > LARGEST_TEXT {
+                let message =
+                    format!("found more than {} MiB, expected {}", LARGEST_TEXT >> 20, self.expected);
+                return Err(ErrorKind::File.error(message).in_file(self.path));
+            }
+            if !self.advance()? {
+                return Ok(all);
+            }
+        }
     }
 
     /// Checksum of the bytes read so far; `None` for a text.

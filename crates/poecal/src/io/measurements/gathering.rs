@@ -1,0 +1,220 @@
+//! The corners of a file by picture, and the joint readings of each picture.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+
+use super::picture_files::{Taken, TakenByImage};
+use crate::camera::{Board, Corner};
+use crate::error::{Error, ErrorKind, Result, first_few};
+
+/// A board in a picture, as its corners were read.
+pub(super) struct Gathered {
+    pub(super) taken: Taken,
+    pub(super) image: Option<String>,
+    pub(super) camera: usize,
+    pub(super) board: usize,
+    pub(super) corners: Vec<Corner>,
+}
+
+/// The same before the readings of its joints are known.
+pub(super) struct Sight {
+    pub(super) taken: Option<Taken>,
+    pub(super) image: Option<String>,
+    pub(super) camera: usize,
+    pub(super) board: usize,
+    pub(super) corners: Vec<Corner>,
+}
+
+/// Line and column.
+type Place = (usize, usize);
+
+/// Pictures of a file, in the order in which they begin.
+#[derive(Default)]
+pub(super) struct Gathering {
+    pub(super) pictures: Vec<Sight>,
+    pub(super) known: BTreeMap<(String, usize, usize), usize>,
+    /// Of each board the numbers by which its points are called, and where each stands first.
+    pub(super) numbers: BTreeMap<usize, BTreeMap<u32, Place>>,
+    /// Of each board the first point that is called by its name.
+    pub(super) named: BTreeMap<usize, (String, Place)>,
+}
+
+/// How the pictures of two files were joined, in words, and what was left out.
+#[derive(Default)]
+pub(super) struct Joined {
+    pub(super) pictures: Vec<Gathered>,
+    pub(super) words: Vec<String>,
+}
+
+/// The number at the end of a picture's name, without its folder and the ending of a file.
+fn number_at_end(name: &str) -> Option<u64> {
+    let file = name.rsplit(['/', '\\']).next().unwrap_or(name);
+    let stem = match file.rsplit_once('.') {
+        Some((stem, end)) if end.contains(|it: char| it.is_ascii_alphabetic()) => stem,
+        _ => file,
+    };
+    let start = stem.trim_end_matches(|it: char| it.is_ascii_digit());
+    stem.get(start.len()..)?.parse().ok()
+}
+
+/// Of names with a number at their end the one of each number, if no other has it.
+fn by_number<'a>(names: impl Iterator<Item = &'a String>) -> BTreeMap<u64, Option<&'a String>> {
+    let mut found: BTreeMap<u64, Option<&String>> = BTreeMap::new();
+    for name in names {
+        let Some(number) = number_at_end(name) else { continue };
+        found.entry(number).and_modify(|one| *one = None).or_insert(Some(name));
+    }
+    found
+}
+
+/// The other name of each picture that has one by its number.
+fn same_numbers<'a>(seen: &BTreeSet<&'a String>, taken: &'a TakenByImage) -> Vec<(&'a String, &'a String)> {
+    let (own, others) = (by_number(seen.iter().copied()), by_number(taken.keys()));
+    let pair = |(number, name): (u64, Option<&'a String>)| {
+        let name = name.filter(|name| !taken.contains_key(*name))?;
+        let other = others.get(&number).copied().flatten().filter(|other| !seen.contains(other))?;
+        Some((name, other))
+    };
+    own.into_iter().filter_map(pair).collect()
+}
+
+impl Gathering {
+    /// The points that numbers mean: as the names of the board count, or from 1 where the file does. Says which.
+    pub(super) fn settle_numbers(&mut self, path: &Path, boards: &[Board]) -> Result<Option<String>> {
+        let Gathering { pictures, numbers, named, .. } = self;
+        let own: Vec<BTreeMap<u32, u32>> = boards.iter().map(Board::numbered).collect();
+        let point = |board: usize, number: u32| own.get(board)?.get(&number).copied();
+        let all =
+            || numbers.iter().flat_map(|(at, all)| all.iter().map(|(number, place)| (*at, *number, *place)));
+        let beyond = all().find(|(at, number, _)| point(*at, *number).is_none());
+        let from_one = |board: usize, number: u32| point(board, number.checked_sub(1)?);
+        let of = |board: usize, number: u32| match beyond {
+            Some(_) => from_one(board, number),
+            None => point(board, number),
+        };
+        let wrong = all().find(|(at, number, _)| of(*at, *number).is_none());
+        if let (Some(_), Some((at, number, (line, column)))) = (wrong, beyond)
+            && let Some(board) = boards.get(at)
+        {
+            return Err(not_a_point(&number.to_string(), board).at(path, line, column));
+        }
+        let Some((at, number, _)) = all().next() else { return Ok(None) };
+        if let Some((name, (line, column))) = named.get(&at) {
+            let message = format!(
+                "found the corner `{name}` beside ones that are numbered, as `{number}`, expected names or numbers alone"
+            );
+            return Err(Error::new(ErrorKind::Measurement, message).at(path, *line, *column));
+        }
+        for picture in pictures.iter_mut().filter(|it| numbers.contains_key(&it.board)) {
+            for corner in &mut picture.corners {
+                corner.point = of(picture.board, corner.point).unwrap_or(corner.point);
+            }
+        }
+        let name = of(at, number).and_then(|point| boards.get(at)?.names.get(point as usize));
+        let name = name.map_or("", String::as_str);
+        let first = own.get(at).and_then(|own| own.keys().next().copied());
+        let counted = match (beyond, first) {
+            (Some(_), _) => "as counted from 1",
+            (None, Some(first)) if first < number => {
+                "as the board counts them (if they count from 1, write them as names)"
+            }
+            (None, _) => "as the board counts them",
+        };
+        Ok(Some(format!(
+            "took the numbers of corners for the points of the board, {counted}: `{number}` is `{name}`"
+        )))
+    }
+
+    /// The pictures with the readings of their joints, which another file has by picture unless the rows have their own: those of the same name, and
+    /// of the others those that end in the same number, if no other picture does.
+    pub(super) fn joined(self, path: &Path, others: Option<&TakenByImage>) -> Result<Joined> {
+        let Some(others) = others else {
+            let own = |it: Sight| with(it.taken.clone()?, it);
+            return Ok(Joined {
+                pictures: self.pictures.into_iter().filter_map(|it| own(it)).collect(),
+                words: Vec::new(),
+            });
+        };
+        let seen: BTreeSet<&String> = self.pictures.iter().filter_map(|it| it.image.as_ref()).collect();
+        let pairs = same_numbers(&seen, others);
+        let alike: BTreeMap<String, String> =
+            pairs.iter().map(|(name, other)| ((*name).clone(), (*other).clone())).collect();
+        let paired = |name: &String| others.contains_key(name) || alike.contains_key(name);
+        let mut words = Vec::new();
+        if let Some((name, other)) = pairs.first() {
+            words.push(format!(
+                "took the pictures whose names end in the same number for the same, {} of {}: `{name}` is `{other}` of the joint readings",
+                pairs.len(),
+                seen.len()
+            ));
+        }
+        let named = |names: Vec<&String>| format!("{} ({})", names.len(), first_few(&names));
+        let unknown: Vec<&String> = seen.iter().copied().filter(|name| !paired(name)).collect();
+        let is_used = |name: &&String| seen.contains(name) || alike.values().any(|other| other == *name);
+        let without: Vec<&String> = others.keys().filter(|name| !is_used(name)).collect();
+        if unknown.len() == seen.len()
+            && let (Some(one), Some(other)) = (unknown.first(), without.first())
+        {
+            let message = format!(
+                "found no picture that has joint readings, as `{one}` beside `{other}`, expected the same names in both files, or ones that end in the \
+                 same number, each once"
+            );
+            return Err(Error::new(ErrorKind::Measurement, message).in_file(path));
+        }
+        if !unknown.is_empty() {
+            words.push(format!(
+                "left out the pictures that have corners and no joint readings: {}",
+                named(unknown)
+            ));
+        }
+        if !without.is_empty() {
+            words.push(format!(
+                "left out the pictures that have joint readings and no corners: {}",
+                named(without)
+            ));
+        }
+        let taken = |sight: &Sight| {
+            let name = sight.image.as_ref()?;
+            others.get(name).or_else(|| others.get(alike.get(name)?)).cloned()
+        };
+        let pictures = self.pictures.into_iter().filter_map(|it| with(taken(&it)?, it)).collect();
+        Ok(Joined { pictures, words })
+    }
+}
+
+fn with(taken: Taken, sight: Sight) -> Option<Gathered> {
+    let Sight { image, camera, board, corners, .. } = sight;
+    Some(Gathered { taken, image, camera, board, corners })
+}
+
+/// The error of a name that is no point of a board.
+pub(super) fn not_a_point(name: &str, board: &Board) -> Error {
+    let message = format!(
+        "found the corner `{name}`, expected one of the board's {}: {}",
+        board.names.len(),
+        first_few(&board.names)
+    );
+    Error::new(ErrorKind::Measurement, message)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_end_in_a_number_whatever_their_folder_and_ending() {
+        for (name, number) in [
+            ("image-12.png", Some(12)),
+            ("configuration_12", Some(12)),
+            ("joints/configuration_12.yaml", Some(12)),
+            ("12", Some(12)),
+            (r"C:\seen\IMG_0012.JPG", Some(12)),
+            ("image-12a.png", None),
+            ("left.png", None),
+            ("", None),
+            ("99999999999999999999999", None),
+        ] {
+            assert_eq!(number_at_end(name), number, "{name}");
+        }
+    }
+}
