@@ -131,7 +131,7 @@ impl Gathering {
         let Some(others) = others else {
             let own = |it: Sight| with(it.taken.clone()?, it);
             return Ok(Joined {
-                pictures: self.pictures.into_iter().filter_map(|it| own(it)).collect(),
+                pictures: self.pictures.into_iter().filter_map(own).collect(),
                 words: Vec::new(),
             });
         };
