@@ -31,14 +31,14 @@ export interface CalibrateOptions {
   instrumentNoise?: Value | readonly Value[];
   /**
    * Cameras of corners in pixels: CSV with name, fx, fy, cx, cy, k1 and so on in OpenCV's order (FILE#VERSION where it has several), YAML
-   * of OpenCV, ROS or Kalibr, XML of ViSP, a calibration.json with what it found, or unknown:1920x1080 with the size of the pictures, for a
-   * lens that is found from them; may be given again
+   * of OpenCV, ROS, Kalibr or industrial_calibration, XML of ViSP, a calibration.json with what it found, or unknown:1920x1080 with the
+   * size of the pictures, for a lens that is found from them; may be given again
    */
   camera?: Value | readonly Value[];
   /**
    * Board or solid that cameras see: CSV with target, x[mm], y[mm], z[mm] of its points, chessboard:10x7:27mm (squares along x and y, and
-   * their side), charuco:, circles:, aprilgrid: or tags: as poecal detect has them, or a calibration.json with what it found; may be given
-   * again
+   * their side), charuco:, circles:, aprilgrid: or tags: as poecal detect has them, YAML of Kalibr or industrial_calibration, settings of
+   * OpenCV (YAML, XML), or a calibration.json with what it found; may be given again
    */
   markers?: Value | readonly Value[];
   /** Fit only rows whose COLUMN has one of these values, and hold out all others */
@@ -134,14 +134,14 @@ export interface ValidateOptions {
   instrumentNoise?: Value | readonly Value[];
   /**
    * Cameras of corners in pixels: CSV with name, fx, fy, cx, cy, k1 and so on in OpenCV's order (FILE#VERSION where it has several), YAML
-   * of OpenCV, ROS or Kalibr, XML of ViSP, a calibration.json with what it found, or unknown:1920x1080 with the size of the pictures, for a
-   * lens that is found from them; may be given again
+   * of OpenCV, ROS, Kalibr or industrial_calibration, XML of ViSP, a calibration.json with what it found, or unknown:1920x1080 with the
+   * size of the pictures, for a lens that is found from them; may be given again
    */
   camera?: Value | readonly Value[];
   /**
    * Board or solid that cameras see: CSV with target, x[mm], y[mm], z[mm] of its points, chessboard:10x7:27mm (squares along x and y, and
-   * their side), charuco:, circles:, aprilgrid: or tags: as poecal detect has them, or a calibration.json with what it found; may be given
-   * again
+   * their side), charuco:, circles:, aprilgrid: or tags: as poecal detect has them, YAML of Kalibr or industrial_calibration, settings of
+   * OpenCV (YAML, XML), or a calibration.json with what it found; may be given again
    */
   markers?: Value | readonly Value[];
   /** Refit the measuring device's frame to these measurements */
@@ -214,14 +214,14 @@ export interface CheckOptions {
   instrumentNoise?: Value | readonly Value[];
   /**
    * Cameras of corners in pixels: CSV with name, fx, fy, cx, cy, k1 and so on in OpenCV's order (FILE#VERSION where it has several), YAML
-   * of OpenCV, ROS or Kalibr, XML of ViSP, a calibration.json with what it found, or unknown:1920x1080 with the size of the pictures, for a
-   * lens that is found from them; may be given again
+   * of OpenCV, ROS, Kalibr or industrial_calibration, XML of ViSP, a calibration.json with what it found, or unknown:1920x1080 with the
+   * size of the pictures, for a lens that is found from them; may be given again
    */
   camera?: Value | readonly Value[];
   /**
    * Board or solid that cameras see: CSV with target, x[mm], y[mm], z[mm] of its points, chessboard:10x7:27mm (squares along x and y, and
-   * their side), charuco:, circles:, aprilgrid: or tags: as poecal detect has them, or a calibration.json with what it found; may be given
-   * again
+   * their side), charuco:, circles:, aprilgrid: or tags: as poecal detect has them, YAML of Kalibr or industrial_calibration, settings of
+   * OpenCV (YAML, XML), or a calibration.json with what it found; may be given again
    */
   markers?: Value | readonly Value[];
   /** Fit only rows whose COLUMN has one of these values, and hold out all others */

@@ -95,7 +95,7 @@ impl Measurements {
     ///     Files of the cameras that saw corners in pixels: CSV (FILE#VERSION where it has several), YAML of OpenCV, ROS, Kalibr or
     ///     industrial_calibration, XML of ViSP.
     /// markers
-    ///     Boards or solids that they saw: CSV files of points, or "chessboard:10x7:27mm".
+    ///     Boards or solids that they saw: CSV files of points, "chessboard:10x7:27mm", or files of Kalibr, industrial_calibration or OpenCV.
     ///
     /// Returns
     /// -------
@@ -252,7 +252,7 @@ impl Measurements {
     ///     Files of the cameras that saw corners in pixels: CSV (FILE#VERSION where it has several), YAML of OpenCV, ROS, Kalibr or
     ///     industrial_calibration, XML of ViSP.
     /// markers
-    ///     Boards or solids that they saw: CSV files of points, or "chessboard:10x7:27mm".
+    ///     Boards or solids that they saw: CSV files of points, "chessboard:10x7:27mm", or files of Kalibr, industrial_calibration or OpenCV.
     ///
     /// Returns
     /// -------

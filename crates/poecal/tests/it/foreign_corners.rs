@@ -218,6 +218,24 @@ fn tables_of_other_programs_are_the_same_session() {
     }
 }
 
+/// Joints in each row, beside columns that count rows or name something else.
+#[test]
+fn rows_with_joints_need_no_other_file() {
+    let session = Session::new();
+    let names = session.data.reading_names().join(",");
+    for (header, cell) in [("index,frame", "base"), ("id,File", "all.png")] {
+        let count = std::cell::Cell::new(0);
+        let corners = session.corners(&format!("{header},X[mm],Y[mm],Z[mm],row,col,{names}"), |at, it| {
+            let (place, readings) = (session.place_mm(it).join(","), session.readings(at).join(","));
+            count.set(count.get() + 1);
+            format!("{},{cell},{place},{:.4},{:.4},{readings}", count.get(), it.pixel.y, it.pixel.x)
+        });
+        let found = session.read(&[("corners.csv", &corners)], &session.without_boards()).unwrap();
+        says(&found, "ignored the columns `i");
+        same(&session, header, &found, 0.0);
+    }
+}
+
 #[test]
 fn pictures_with_the_same_number_are_the_same() {
     let session = Session::new();

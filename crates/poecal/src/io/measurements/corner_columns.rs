@@ -161,6 +161,11 @@ fn of_length(header: &Header<'_>, name: &str) -> Option<Result<Coordinate>> {
     Some(stated.map(|stated| (at, stated.map_or(unit, |(unit, _)| unit))))
 }
 
+/// Whether a column may as well count rows.
+fn is_count(header: &Header<'_>, at: usize) -> bool {
+    header.cells.get(at).is_some_and(|cell| ["id", "index"].contains(&key(cell).as_str()))
+}
+
 /// Whether a unit is that of pixels.
 fn is_pixel(unit: &str) -> bool {
     ["px", "pixel", "pixels"].contains(&unit.to_lowercase().as_str())
@@ -182,8 +187,8 @@ impl CornerColumns {
         }
         let place = place(header)?;
         let name = match column(header, &CORNER, joints)? {
-            // The id of a row, where the file says where the corner is.
-            Some(at) if place.is_some() && header.cells.get(at).is_some_and(|it| key(it) == "id") => None,
+            // What counts rows, where the file says where the corner is.
+            Some(at) if place.is_some() && is_count(header, at) => None,
             name => name,
         };
         if name.is_none() && place.is_none() {
@@ -226,6 +231,11 @@ impl CornerColumns {
     /// Whether a column is one of these.
     pub(super) fn has(&self, index: usize) -> bool {
         self.all().iter().any(|(_, at)| *at == index)
+    }
+
+    /// Whether the column of the picture has our name, so that its rows have one configuration.
+    pub(super) fn names_pictures(&self, header: &Header<'_>) -> bool {
+        self.image.and_then(|at| header.cells.get(at)).is_some_and(|cell| cell.name == "image")
     }
 
     /// What was taken for what, of columns whose name is not ours; `None` if all are ours.

@@ -76,8 +76,9 @@ impl Reader<'_> {
             return Ok(u32::try_from(at).unwrap_or(u32::MAX));
         }
         let is_number = !name.is_empty() && name.bytes().all(|it| it.is_ascii_digit());
+        let has_numbers = gathering.numbers.contains_key(&board) || !own.numbered().is_empty();
         match name.parse::<u32>() {
-            Ok(number) if is_number && !own.numbered().is_empty() => {
+            Ok(number) if is_number && has_numbers => {
                 gathering.numbers.entry(board).or_default().entry(number).or_insert(place);
                 Ok(number)
             }

@@ -150,8 +150,8 @@ impl Gathering {
         }
         let named = |names: Vec<&String>| format!("{} ({})", names.len(), first_few(&names));
         let unknown: Vec<&String> = seen.iter().copied().filter(|name| !paired(name)).collect();
-        let is_used = |name: &&String| seen.contains(name) || alike.values().any(|other| other == *name);
-        let without: Vec<&String> = others.keys().filter(|name| !is_used(name)).collect();
+        let used: BTreeSet<&String> = seen.iter().copied().chain(alike.values()).collect();
+        let without: Vec<&String> = others.keys().filter(|name| !used.contains(name)).collect();
         if unknown.len() == seen.len()
             && let (Some(one), Some(other)) = (unknown.first(), without.first())
         {

@@ -75,6 +75,7 @@ impl Reader<'_> {
         let mut inputs =
             InputReader::new(&layout.inputs, layout.inputs.len(), Numbers::new(self.map.decimal));
         let mut watch = JointWatch::new(self.robot);
+        let is_named = columns.names_pictures(&table.header);
         let (mut gathering, mut rows, mut seen) = (Gathering::default(), 0, [Range::default(); 3]);
         while let Some(mut some) = table.next_block()? {
             while let Some(row) = some.next()? {
@@ -91,7 +92,8 @@ impl Reader<'_> {
                     for (range, number) in seen.iter_mut().zip(numbers) {
                         number.into_iter().for_each(|number| range.include(number));
                     }
-                    self.gather(&row, &columns, &mut gathering, (image, taken), corner)?;
+                    let picture = (image, taken, is_named);
+                    self.gather(&row, &columns, &mut gathering, picture, corner)?;
                 }
             }
         }
@@ -131,7 +133,11 @@ impl Reader<'_> {
         if !has_joints && columns.image.is_none() {
             header.require("image", "for the name of the picture", |_| false, "")?;
         }
-        layout.id = layout.id.filter(|at| !columns.has(*at));
+        // What counts corners is no id of their picture.
+        if let Some(id) = layout.id.filter(|at| columns.has(*at) || columns.place.is_some()) {
+            layout.ignored.extend(header.cells.get(id).map(|cell| (cell.text.clone(), None)));
+            layout.id = None;
+        }
         let own = header.cells.iter().enumerate().filter(|(at, _)| columns.has(*at));
         let own: Vec<&str> = own.map(|(_, cell)| cell.text.as_str()).collect();
         layout.ignored.retain(|(name, _)| !own.contains(&name.as_str()));
@@ -227,13 +233,14 @@ impl Reader<'_> {
         row: &Row<'_>,
         columns: &CornerColumns,
         gathering: &mut Gathering,
-        (image, taken): (Option<String>, Option<Taken>),
+        (image, taken, is_named): (Option<String>, Option<Taken>, bool),
         mut corner: Corner,
     ) -> Result<()> {
         let camera = self.camera(row, columns.camera)?;
         let board = self.board(row, columns)?;
         corner.point = self.point(row, columns, (board, gathering))?;
-        let own = taken.as_ref().filter(|_| image.is_none()).map(|taken| &taken.readings);
+        // A column that may have another meaning than the picture does not join configurations.
+        let own = taken.as_ref().filter(|_| image.is_none() || !is_named).map(|taken| &taken.readings);
         let id = taken.as_ref().map_or("", |taken| taken.id.as_str());
         let key = format!("{} {id} {own:?}", image.as_deref().unwrap_or_default());
         let Gathering { pictures, known, .. } = gathering;
