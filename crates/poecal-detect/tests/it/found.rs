@@ -74,7 +74,11 @@ impl Tally {
 
 #[test]
 fn corners_of_a_charuco_board() {
-    let tally = Tally::of("charuco:7x5:36.195mm:18.256mm:DICT_6X6_250", &Draw::default(), trials(40).count);
+    let tally = Tally::of(
+        "charuco:7x5:36.195mm:18.256mm:DICT_6X6_250",
+        &Draw::default(),
+        trials(40).at_least(10).count,
+    );
     // The figures that the detector is made for: OpenCV has 83 % and 0.076 px of such pictures.
     assert!(tally.part() >= 0.95 && tally.rms_px() <= 0.06 && tally.farthest < 1.0);
     // 68 % of a normal error, within what 700 numbers leave open, and the smallest sigma, which is a floor.
@@ -83,7 +87,7 @@ fn corners_of_a_charuco_board() {
 
 #[test]
 fn corners_of_a_chessboard() {
-    let tally = Tally::of("chessboard:10x7:28mm", &Draw::default(), trials(40).count);
+    let tally = Tally::of("chessboard:10x7:28mm", &Draw::default(), trials(40).at_least(10).count);
     // As above: OpenCV has 72 % and 0.12 px.
     assert!(tally.part() >= 0.97 && tally.rms_px() <= 0.05 && tally.farthest < 1.0);
     assert!((0.60..0.78).contains(&tally.within()));
@@ -91,13 +95,14 @@ fn corners_of_a_chessboard() {
 
 #[test]
 fn corners_of_a_board_that_looks_the_same_from_both_ends() {
-    let tally = Tally::of("chessboard:8x6:30mm", &Draw::default(), trials(20).count);
+    let tally = Tally::of("chessboard:8x6:30mm", &Draw::default(), trials(20).at_least(5).count);
     assert!(tally.part() >= 0.97 && tally.rms_px() <= 0.05 && tally.farthest < 1.0);
 }
 
 #[test]
 fn corners_of_the_old_pattern() {
-    let tally = Tally::of("charuco:7x6:30mm:22mm:DICT_4X4_50:legacy", &Draw::default(), trials(20).count);
+    let tally =
+        Tally::of("charuco:7x6:30mm:22mm:DICT_4X4_50:legacy", &Draw::default(), trials(20).at_least(5).count);
     // Markers leave a fifth of a square plain: fewer pixels than on the first board.
     assert!(tally.part() >= 0.95 && tally.rms_px() <= 0.08 && tally.farthest < 1.0);
 }
@@ -124,7 +129,7 @@ fn corners_of_half_a_board() {
     let detector = Detector::new(&"charuco:7x5:36.195mm:18.256mm:DICT_6X6_250".parse().unwrap());
     let draw = Draw { covered_each: 0, ..Draw::default() };
     let (mut visible, mut seen) = (0, 0);
-    for number in 0..trials(16).count {
+    for number in 0..trials(16).at_least(4).count {
         let drawn = draw.scene(detector.layout(), 5, number);
         let whole = detector.detect(&drawn.picture).unwrap();
         // Every pixel left of half of the corners is gone.

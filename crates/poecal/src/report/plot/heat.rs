@@ -85,7 +85,8 @@ impl HeatMap {
             if text_width(&text) <= 1.15 * side {
                 canvas.small_text([left + 0.5 * side, top + middle * side + 3.5], Anchor::Middle, &text);
             }
-            if let Some(arrow) = cell.arrow.filter(|_| longest > 0.0) {
+            let is_drawn = |arrow: &[f64; 2]| longest > 0.0 && arrow.iter().all(|it| it.is_finite());
+            if let Some(arrow) = cell.arrow.filter(is_drawn) {
                 let down = if self.downwards { arrow[1] } else { -arrow[1] };
                 let reach = ARROW * side / longest;
                 draw_arrow(
