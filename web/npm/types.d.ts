@@ -243,6 +243,18 @@ export interface IdentifyOptions {
   instrument?: Value | readonly Value[];
   /** Target, as rows name it, and its link in a URDF (repeatable), likewise. Without --tip-link, the first that a joint moves is the tip */
   target?: Value | readonly Value[];
+  /**
+   * Cameras of corners in pixels: CSV with name, fx, fy, cx, cy, k1 and so on in OpenCV's order (FILE#VERSION where it has several), YAML
+   * of OpenCV, ROS, Kalibr or industrial_calibration, XML of ViSP, a calibration.json with what it found, or unknown:1920x1080 with the
+   * size of the pictures, for a lens that is found from them; may be given again
+   */
+  camera?: Value | readonly Value[];
+  /**
+   * Board or solid that cameras see: CSV with target, x[mm], y[mm], z[mm] of its points, chessboard:10x7:27mm (squares along x and y, and
+   * their side), charuco:, circles:, aprilgrid: or tags: as poecal detect has them, YAML of Kalibr or industrial_calibration, settings of
+   * OpenCV (YAML, XML), or a calibration.json with what it found; may be given again
+   */
+  markers?: Value | readonly Value[];
   /** Kind of the measurements of the tip */
   kind?: "pose" | "mixed" | "relative" | "point" | "component" | "distance" | "ball-bar" | "distance-change" | "sphere" | "socket" | "plane" | "height" | "flush" | "direction";
   /** Standard deviation of each measured position component [default: 0.05mm] */
@@ -860,6 +872,37 @@ export type IdentifiabilityEntry = {
   weak?: Direction[];
 };
 
+/** A cell of an image: corners in pictures that are not suspected, fitted or held out. */
+export type ImageCellEntry = {
+  /** The same of the model that is delivered. */
+  after_px?: number | null;
+  /** Column and row, from 0. */
+  at: [number, number];
+  /** Their root mean square distance from where the registered model sees them, pixels; null without any. */
+  before_px?: number | null;
+  /** Number of corners. */
+  corners: number;
+  /** Mean of measured minus predicted pixel by that model, along u and v. */
+  mean_px?: [number, number] | null;
+  /**
+   * Root mean square distance by which a point before the middle of the cell is predicted off, by the covariance of robot, camera and
+   * board; null beyond the lens.
+   */
+  predicted_px?: number | null;
+};
+
+/** Errors of corners over the image of a camera, and how well the calibration predicts pixels there. */
+export type ImageEntry = {
+  /** The camera. */
+  camera: string;
+  /** Side of the square cells, pixels; the first begins at the corner of the first pixel. */
+  cell_px: number;
+  /** The cells, row by row. */
+  cells: ImageCellEntry[];
+  /** Depth of the points whose prediction is judged, millimetres: the median of the boards'. */
+  distance_mm: number;
+};
+
 /** Root mean square error of the registered model over that of another, on the same rows. */
 export type Improvement = {
   /** The factor. */
@@ -1214,6 +1257,8 @@ export type PicturesEntry = {
    * were given.
    */
   found?: FoundEntry[];
+  /** Errors of corners over the image of each camera whose picture has a known size. */
+  images?: ImageEntry[];
   /** Standard deviation of each coordinate of a corner that states none, pixels. */
   sigma_px: number;
   /** Those that lost their weight, since they do not fit the others of their picture. */
