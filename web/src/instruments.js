@@ -21,7 +21,10 @@ export class Instruments {
     this.frames = instruments.map((it) => (it.kind ? drawingOf(it, data, size, this.materials) : frame(this.materials, size)));
     this.frames.forEach((it, k) => (it.visible = !this.isUnknown[k]));
     // Cameras and boards as what they are, whichever of the two measures the other.
-    instruments.forEach((it, k) => this.frames[k].add(...[opticsOf(it, size, this.materials)].filter(Boolean)));
+    instruments.forEach((it, k) => {
+      const drawn = opticsOf(it, size, this.materials);
+      if (drawn) this.frames[k].add(drawn);
+    });
     this.seen = targets;
     this.held = targets.map((it) => opticsOf(it, size, this.materials));
     this.rays = new LineSegments(linesOf([]), this.materials.sight);

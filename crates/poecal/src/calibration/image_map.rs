@@ -74,7 +74,7 @@ struct Grid {
 
 impl Grid {
     fn of(camera: &Camera) -> Option<Self> {
-        let [width, height] = camera.lens.size_px?.map(f64::from);
+        let [width, height] = camera.lens.size_px.filter(|size| !size.contains(&0))?.map(f64::from);
         let cell_px = (width.max(height) / ALONG / ROUND_PX).ceil() * ROUND_PX;
         Some(Grid { cell_px, size: [width, height].map(|it| (it / cell_px).ceil() as usize) })
     }
