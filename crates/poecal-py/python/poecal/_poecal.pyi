@@ -74,7 +74,7 @@ class _DataFrame(Protocol):
 
 _Table: TypeAlias = _DataFrame | Mapping[str, Iterable[object]] | NDArray[np.void]
 
-final
+@final
 class Robot:
     """A serial robot: joints with screws, and a home pose. It never changes.
 
@@ -368,7 +368,7 @@ class Robot:
     def __reduce__(self) -> tuple[Callable[[bytes], Robot], tuple[bytes]]: ...
     __hash__: None  # type: ignore[assignment]
 
-final
+@final
 class Measurements:
     """Measurements of a robot: in each row a configuration and the measurement of a target. Immutable.
 
@@ -608,7 +608,7 @@ class Measurements:
     def __reduce__(self) -> tuple[Callable[[bytes], Measurements], tuple[bytes]]: ...
     __hash__: None  # type: ignore[assignment]
 
-final
+@final
 class Statistic:
     """Mean, root mean square, 95th percentile and maximum of errors."""
     @property
@@ -627,7 +627,7 @@ class Statistic:
     def __ne__(self, other: object, /) -> bool: ...
     __hash__: None  # type: ignore[assignment]
 
-final
+@final
 class ModelAccuracy:
     """Errors of one model on one set of rows."""
     @property
@@ -640,7 +640,7 @@ class ModelAccuracy:
     def __ne__(self, other: object, /) -> bool: ...
     __hash__: None  # type: ignore[assignment]
 
-final
+@final
 class SetAccuracy:
     """Errors of the nominal, registered, calibrated and corrected model on one set of rows."""
     @property
@@ -662,7 +662,7 @@ class SetAccuracy:
     def __ne__(self, other: object, /) -> bool: ...
     __hash__: None  # type: ignore[assignment]
 
-final
+@final
 class Accuracy:
     """Errors on the rows that were fitted and on those that were held out."""
     @property
@@ -675,7 +675,7 @@ class Accuracy:
     def __ne__(self, other: object, /) -> bool: ...
     __hash__: None  # type: ignore[assignment]
 
-final
+@final
 class Verdict:
     """Verdict: how far a calibration may be used, and why no farther."""
     @property
@@ -710,7 +710,7 @@ class Verdict:
     def __ne__(self, other: object, /) -> bool: ...
     __hash__: None  # type: ignore[assignment]
 
-final
+@final
 class Prediction:
     """Predicted poses of m configurations, and the expected error of each."""
     @property
@@ -730,7 +730,7 @@ class Prediction:
         """Whether every joint lies within the range that was sampled, shape (m,)."""
     def __len__(self) -> int: ...
 
-final
+@final
 class Residuals:
     """Residuals and diagnostics of each row, fitted or held out, in the order of the measurements.
 
@@ -866,7 +866,7 @@ class Residuals:
         """
     def __len__(self) -> int: ...
 
-final
+@final
 class Covariance:
     """Covariance of the unknowns of a calibration: shifts and turns of each joint's axis, and of each target.
 
@@ -894,7 +894,7 @@ class Covariance:
         """Frames base_from_axis at zero joint values, z along the joint, shape (n, 4, 4)."""
     def __len__(self) -> int: ...
 
-final
+@final
 class Findings:
     """A result: `str` is the program's table, `to_dict` what the program prints with `--json`, and `found["key"]` a part of it."""
     def to_dict(self) -> dict[str, Any]:
@@ -923,7 +923,7 @@ class Findings:
     def __reduce__(self) -> tuple[Callable[[bytes], Findings], tuple[bytes]]: ...
     __hash__: None  # type: ignore[assignment]
 
-final
+@final
 class Calibration:
     """A calibration: the calibrated robot, its errors on fitted and held-out rows, and how far to trust it.
 
@@ -1499,7 +1499,7 @@ class Calibration:
     def __reduce__(self) -> tuple[Callable[[bytes], Calibration], tuple[bytes]]: ...
     __hash__: None  # type: ignore[assignment]
 
-final
+@final
 class Simulation:
     """A simulated session: nominal and actual robot, and measurements of the actual one."""
     @property
