@@ -78,7 +78,8 @@ mod tests {
         // Differences of evenly spaced angles: √(2 · variance), over pairs that are two pictures.
         let expected = 0.1 * (2.0 * (20.0_f64 * 20.0 - 1.0) / 12.0 * 20.0 / 19.0).sqrt();
         println!("turns {most:.6} of {expected:.6}, {other:.1e} about others");
-        assert!((most - expected).abs() < 1e-12 && other < 1e-12);
+        // The root of an eigenvalue that is rounding alone.
+        assert!((most - expected).abs() < 1e-12 && other < 1e-7);
         let mut both = poses;
         both.push(about(Vector3::x(), 0.7) * fixed);
         assert!(Views { poses: vec![both], ..Views::default() }.turns()[1] > 0.1);

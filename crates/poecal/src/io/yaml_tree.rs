@@ -205,7 +205,7 @@ mod tests {
 
     #[test]
     fn what_is_no_tree_is_told_with_its_place() {
-        let deep = "[".repeat(80);
+        let deep = format!("{}{}", "[".repeat(80), "]".repeat(80));
         for (text, part) in [
             ("a: *b", "x:1:4: found"),
             ("a: 1\na: 2", "x:2:1: found the key `a` twice"),
