@@ -12,7 +12,7 @@ use crate::camera::{
 };
 use crate::estimate::Estimate;
 use crate::linalg;
-use crate::measurement::{Dataset, Noise};
+use crate::measurement::Dataset;
 use crate::problem::Problem;
 use crate::solve::Normal;
 use crate::start::predicted_pose;
@@ -146,11 +146,10 @@ impl Optics {
     pub(super) fn advance(
         &mut self,
         run: &Run<'_>,
-        (ratios, fit): (&[Noise], &RobustFit),
+        (information, fit): (&FitInformation<'_>, &RobustFit),
         least: f64,
     ) -> Option<(Dataset, Estimate)> {
-        let weights = fit.weights();
-        let best = self.best_step(run, &FitInformation::of(run, ratios, (fit, &weights))?)?;
+        let best = self.best_step(run, information)?;
         let deviations = best.deviations();
         let BestStep { mut step, gain, still, follow, .. } = best;
         self.deviations = deviations;

@@ -35,7 +35,10 @@ impl Run<'_> {
         if self.data.pictures.is_empty() {
             return None;
         }
-        let next = optics.as_mut().and_then(|it| it.advance(self, (ratios, fit), CHANGE));
+        let weights = fit.weights();
+        let information = FitInformation::of(self, ratios, (fit, &weights));
+        let advance = |it: &mut Optics| it.advance(self, (information.as_ref()?, fit), CHANGE);
+        let next = optics.as_mut().and_then(advance);
         let pictures = next.as_ref().map_or(&self.data.pictures, |(next, _)| &next.pictures);
         let estimate = next.as_ref().map_or(&fit.fitted.estimate, |(_, estimate)| estimate);
         let session = self.session(ratios);
@@ -65,7 +68,7 @@ impl Run<'_> {
             found.push((sighting, deviation(&pose, &predicted)));
         }
         let numbers = optics.as_ref().map_or(0.0, Optics::determined);
-        let spreads = self.spreads_of_pictures(ratios, fit);
+        let spreads = self.spreads_of_pictures(information.as_ref());
         let common = self.common_error((fit, numbers), (&found, &spreads), session.length_m);
         let before = pictures.common;
         let differs = |a: f64, b: f64| (a / b).ln().abs() > CHANGE;
@@ -119,11 +122,10 @@ impl Run<'_> {
     }
 
     /// Covariance of the predicted pose of each picture by the unknowns of a fit, as motions of its row; none of those that are not fitted.
-    fn spreads_of_pictures(&self, ratios: &[Noise], fit: &RobustFit) -> Vec<Matrix6<f64>> {
+    fn spreads_of_pictures(&self, information: Option<&FitInformation<'_>>) -> Vec<Matrix6<f64>> {
         let pictures = &self.data.pictures.all;
         let mut spreads = vec![Matrix6::zeros(); pictures.len()];
-        let weights = fit.weights();
-        let Some(information) = FitInformation::of(self, ratios, (fit, &weights)) else { return spreads };
+        let Some(information) = information else { return spreads };
         let covariance = information.covariance();
         for (at, by) in information.of_pictures(self) {
             spreads[at] = &by * &covariance * by.transpose();

@@ -92,11 +92,21 @@ pub(crate) fn corner_error(data: &Dataset, row: u32, error: &RowError) -> Option
     CornerError::of(&seen_corners(data, row, error)?.1)
 }
 
-/// Number of the corners of a row, and the errors of those that the model sees; `None` of a row that is no picture.
-fn seen_corners(data: &Dataset, row: u32, error: &RowError) -> Option<(usize, Vec<(f64, f64)>)> {
+/// The picture of a row with the pose of its board in the camera's frame as the model predicts it, by the error of the row; `None` of a row that is
+/// no picture.
+pub(super) fn predicted_picture<'a>(
+    data: &'a Dataset,
+    row: u32,
+    error: &RowError,
+) -> Option<(&'a Picture, Pose)> {
     let picture = data.pictures.all.get(data.pictures.of_row(row)?)?;
     let measured = data.observations.get(row as usize)?.measurement.pose();
-    let pose = picture.directed(&predicted_pose(&measured, error));
+    Some((picture, picture.directed(&predicted_pose(&measured, error))))
+}
+
+/// Number of the corners of a row, and the errors of those that the model sees; `None` of a row that is no picture.
+fn seen_corners(data: &Dataset, row: u32, error: &RowError) -> Option<(usize, Vec<(f64, f64)>)> {
+    let (picture, pose) = predicted_picture(data, row, error)?;
     Some((picture.corners.len(), corners(data, picture, &pose)))
 }
 
@@ -106,9 +116,7 @@ pub(super) type SeenPixel = (Vector2<f64>, Option<Vector2<f64>>);
 /// The pixel of each corner of a row that has weight, and how far it is off by the error of the row, if it is seen; `None` of a row that is no
 /// picture.
 pub(super) fn seen_pixels(data: &Dataset, row: u32, error: &RowError) -> Option<Vec<SeenPixel>> {
-    let picture = data.pictures.all.get(data.pictures.of_row(row)?)?;
-    let measured = data.observations.get(row as usize)?.measurement.pose();
-    let pose = picture.directed(&predicted_pose(&measured, error));
+    let (picture, pose) = predicted_picture(data, row, error)?;
     let errors = data.pictures.view(picture)?.errors(&pose);
     let own = picture.corners.iter().zip(errors).filter(|(corner, _)| corner.weight > 0.0);
     Some(own.map(|(corner, error)| (corner.pixel, error)).collect())

@@ -5,12 +5,12 @@ use nalgebra::{DMatrix, Matrix2x6, Matrix6xX, Vector3};
 use super::calibrated::CalibratedFit;
 use super::information::FitInformation;
 use super::optics::{BestStep, Optics};
+use super::pixels::predicted_picture;
 use super::run::Run;
 use crate::camera::{Camera, middle, motion_by_inverse};
 use crate::distributions::median;
 use crate::lie::{Pose, hat};
 use crate::measurement::Noise;
-use crate::start::predicted_pose;
 
 /// Most pictures over which the squares are averaged.
 const PICTURES: usize = 24;
@@ -83,10 +83,9 @@ impl Run<'_> {
             motions.iter().filter(|(at, _)| pictures.all[*at].camera == camera).collect();
         let step = own.len().div_ceil(PICTURES).max(1);
         let of = |(at, motion): &&(usize, Matrix6xX<f64>)| {
-            let picture = pictures.all.get(*at)?;
-            let error = self.session(ratios).errors(&[picture.row], information.estimate).pop()?;
-            let measured = self.data.observations.get(picture.row as usize)?.measurement.pose();
-            let pose = picture.directed(&predicted_pose(&measured, &error));
+            let row = pictures.all.get(*at)?.row;
+            let error = self.session(ratios).errors(&[row], information.estimate).pop()?;
+            let (picture, pose) = predicted_picture(&self.data, row, &error)?;
             let by_unknowns =
                 if picture.of_camera { motion_by_inverse(&pose) * motion } else { motion.clone() };
             let depth_m = pose.act(&middle(&pictures.boards.get(picture.board)?.points)).z;

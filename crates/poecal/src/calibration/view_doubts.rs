@@ -1,9 +1,9 @@
 //! What the pictures of a camera cannot determine, whatever the robot is (theory.md §4, *Pictures*).
 
 use super::calibrated::CalibratedFit;
+use super::pixels::predicted_picture;
 use crate::camera::{PictureUnknown, Views, is_flat_sheet};
 use crate::error::shown;
-use crate::start::predicted_pose;
 
 /// Angle to the image below which a board is parallel to it, rad.
 const PARALLEL_RAD: f64 = 0.1;
@@ -42,12 +42,11 @@ impl<'a> OneCamera<'a> {
         // As the robot predicts them: a single picture says little of the tilt of a board that it sees from the front.
         let errors = fit.session().errors(&rows, &fit.robust.fitted.estimate);
         for (row, error) in rows.iter().zip(&errors) {
-            let picture = pictures.all.get(pictures.of_row(*row)?)?;
-            let measured = data.observations.get(*row as usize)?.measurement.pose();
+            let (picture, pose) = predicted_picture(data, *row, error)?;
             if picture.camera != camera {
                 continue;
             }
-            views.poses.get_mut(picture.board)?.push(picture.directed(&predicted_pose(&measured, error)));
+            views.poses.get_mut(picture.board)?.push(pose);
             views.pixels.extend(picture.corners.iter().map(|corner| corner.pixel));
         }
         let mut seen = pictures.boards.iter().zip(&views.poses).filter(|(_, poses)| !poses.is_empty());

@@ -1,7 +1,7 @@
 //! The table of a calibration judged on other measurements.
 
 use super::acceptance;
-use super::table::{STATISTICS, WIDTHS, line, lines, number, number_or_dash, row};
+use super::table::{STATISTICS, WIDTHS, line, lines, number, number_or_dash, pictures_words, row};
 use crate::calibration::{Judgement, Level, ModelAccuracy, PartCoverage, Refitted, Statistic};
 use crate::measurement::Quantity;
 
@@ -20,12 +20,7 @@ pub fn judgement(calibration: &str, measurements: &str, judgement: &Judgement) -
         line(&mut out, "", &words);
     }
     if let Some(found) = judgement.delivered().errors.pixels {
-        let (px, mm, median) = (number(found.rms_px), number(found.rms_mm), number(found.median_picture_px));
-        let words = format!(
-            "{} pictures: {px} px, {mm} mm at the board square to the ray (RMS), median picture {median} px",
-            found.pictures
-        );
-        line(&mut out, "corners", &words);
+        line(&mut out, "corners", &pictures_words(&found));
     }
     out.push('\n');
     for (k, (quantity, _)) in judgement.calibrated.iter().enumerate() {

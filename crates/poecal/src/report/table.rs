@@ -2,7 +2,7 @@
 
 use std::fmt::{Display, Write as _};
 
-use crate::calibration::{ModelAccuracy, SetAccuracy, Statistic};
+use crate::calibration::{ModelAccuracy, PixelAccuracy, SetAccuracy, Statistic};
 use crate::error::shown;
 use crate::measurement::{Measured, Quantity};
 use crate::robot::{JointKind, Robot};
@@ -209,4 +209,14 @@ pub fn broken(text: &str, before: usize, indent: usize, width: usize) -> String 
         used += length;
     }
     out
+}
+/// How far corners are off: in the picture, and at the board.
+pub(super) fn corner_words(found: &PixelAccuracy) -> String {
+    format!("{} px, {} mm at the board square to the ray", number(found.rms_px), number(found.rms_mm))
+}
+
+/// The same of some pictures, with the median one.
+pub(super) fn pictures_words(found: &PixelAccuracy) -> String {
+    let median = number(found.median_picture_px);
+    format!("{} pictures: {} (RMS), median picture {median} px", found.pictures, corner_words(found))
 }

@@ -9,7 +9,7 @@ use super::board_words::{BOARD, in_words};
 use super::header::{Header, unit_in_name};
 use super::mapping::ColumnMap;
 use super::number::Numbers;
-use super::table::Table;
+use super::table::{Row, Table};
 use super::text::Blocks;
 use super::units::NamedUnit;
 use crate::camera::Board;
@@ -75,18 +75,8 @@ fn of_table(path: &Path) -> Result<Vec<Board>> {
                 |at: usize| row.cells.get(at).map(|cell| cell.text().trim().to_owned()).unwrap_or_default();
             let mut point = Vector3::zeros();
             for ((value, (at, unit)), axis) in point.iter_mut().zip(columns).zip(["x", "y", "z"]) {
-                let raw = text(at);
-                let found = numbers.parse(&raw, row.line);
-                let found = found.map_err(|expected| {
-                    row.error(at, format!("found `{raw}` for `{axis}`, expected {expected}"))
-                })?;
-                *value = unit.to_si(found);
-                if value.abs() > FARTHEST_M {
-                    let message = format!(
-                        "found `{raw}` for `{axis}`, {value} m, expected a point of a board: state the unit of the column, as {axis}[mm]"
-                    );
-                    return Err(row.error(at, message));
-                }
+                let words = (format!("`{axis}`"), axis);
+                *value = length_on_board(&row, (at, &text(at)), unit, (&mut numbers, (&words.0, words.1)))?;
             }
             let own = of_board.map(text).filter(|it| !it.is_empty()).unwrap_or_else(|| BOARD.to_owned());
             let at = boards.iter().position(|it| it.name == own).unwrap_or_else(|| {
@@ -115,3 +105,23 @@ fn of_table(path: &Path) -> Result<Vec<Board>> {
 
 /// Largest coordinate of a point of a board, metres.
 pub(super) const FARTHEST_M: f64 = 10.0;
+
+/// A coordinate of a point of a board in a cell, metres; `of` says of what, and `axis` how its column is called.
+pub(super) fn length_on_board(
+    row: &Row<'_>,
+    (at, raw): (usize, &str),
+    unit: NamedUnit,
+    (numbers, (of, axis)): (&mut Numbers, (&str, &str)),
+) -> Result<f64> {
+    let found = numbers.parse(raw, row.line);
+    let found =
+        found.map_err(|expected| row.error(at, format!("found `{raw}` for {of}, expected {expected}")))?;
+    let value = unit.to_si(found);
+    if value.abs() > FARTHEST_M {
+        let message = format!(
+            "found `{raw}` for {of}, {value} m, expected a point of a board: state the unit of the column, as {axis}[mm]"
+        );
+        return Err(row.error(at, message));
+    }
+    Ok(value)
+}

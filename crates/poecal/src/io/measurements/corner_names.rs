@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 
 use super::board_words::BOARD;
-use super::boards::FARTHEST_M;
+use super::boards::length_on_board;
 use super::corner_columns::CornerColumns;
 use super::gathering::{Gathering, not_a_point};
 use super::number::Numbers;
@@ -151,17 +151,7 @@ fn place(
     let mut point = Vector3::zeros();
     for (value, (at, unit)) in point.iter_mut().zip(own) {
         let raw = row.cells.get(at).map_or("", |cell| cell.raw);
-        let found = numbers.parse(raw, row.line);
-        let found = found.map_err(|expected| {
-            row.error(at, format!("found `{raw}` for a place on the board, expected {expected}"))
-        })?;
-        *value = unit.to_si(found);
-        if value.abs() > FARTHEST_M {
-            let message = format!(
-                "found `{raw}` for a place on the board, {value} m, expected a point of a board: state the unit of the column, as X[mm]"
-            );
-            return Err(row.error(at, message));
-        }
+        *value = length_on_board(row, (at, raw), unit, (&mut *numbers, ("a place on the board", "X")))?;
     }
     Ok(Some((point, own.map(|(at, _)| at)[0])))
 }

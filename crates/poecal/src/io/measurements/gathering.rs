@@ -7,23 +7,17 @@ use super::picture_files::{Taken, TakenByImage};
 use crate::camera::{Board, Corner};
 use crate::error::{Error, ErrorKind, Result, first_few};
 
-/// A board in a picture, as its corners were read.
-pub(super) struct Gathered {
-    pub(super) taken: Taken,
+/// A board in a picture, as its corners were read, with the readings of its joints.
+pub(super) struct Sight<T> {
+    pub(super) taken: T,
     pub(super) image: Option<String>,
     pub(super) camera: usize,
     pub(super) board: usize,
     pub(super) corners: Vec<Corner>,
 }
 
-/// The same before the readings of its joints are known.
-pub(super) struct Sight {
-    pub(super) taken: Option<Taken>,
-    pub(super) image: Option<String>,
-    pub(super) camera: usize,
-    pub(super) board: usize,
-    pub(super) corners: Vec<Corner>,
-}
+/// With readings that are known.
+pub(super) type Gathered = Sight<Taken>;
 
 /// Line and column.
 type Place = (usize, usize);
@@ -31,7 +25,7 @@ type Place = (usize, usize);
 /// Pictures of a file, in the order in which they begin.
 #[derive(Default)]
 pub(super) struct Gathering {
-    pub(super) pictures: Vec<Sight>,
+    pub(super) pictures: Vec<Sight<Option<Taken>>>,
     pub(super) known: BTreeMap<(String, usize, usize), usize>,
     /// Of each board the numbers by which its points are called, and where each stands first.
     pub(super) numbers: BTreeMap<usize, BTreeMap<u32, Place>>,
@@ -129,7 +123,7 @@ impl Gathering {
     /// of the others those that end in the same number, if no other picture does.
     pub(super) fn joined(self, path: &Path, others: Option<&TakenByImage>) -> Result<Joined> {
         let Some(others) = others else {
-            let own = |it: Sight| with(it.taken.clone()?, it);
+            let own = |it: Sight<Option<Taken>>| it.taken.clone().map(|taken| it.with(taken));
             return Ok(Joined {
                 pictures: self.pictures.into_iter().filter_map(own).collect(),
                 words: Vec::new(),
@@ -173,18 +167,21 @@ impl Gathering {
                 named(without)
             ));
         }
-        let taken = |sight: &Sight| {
+        let taken = |sight: &Sight<Option<Taken>>| {
             let name = sight.image.as_ref()?;
             others.get(name).or_else(|| others.get(alike.get(name)?)).cloned()
         };
-        let pictures = self.pictures.into_iter().filter_map(|it| with(taken(&it)?, it)).collect();
+        let pictures =
+            self.pictures.into_iter().filter_map(|it| taken(&it).map(|taken| it.with(taken))).collect();
         Ok(Joined { pictures, words })
     }
 }
 
-fn with(taken: Taken, sight: Sight) -> Option<Gathered> {
-    let Sight { image, camera, board, corners, .. } = sight;
-    Some(Gathered { taken, image, camera, board, corners })
+impl Sight<Option<Taken>> {
+    fn with(self, taken: Taken) -> Gathered {
+        let Sight { image, camera, board, corners, .. } = self;
+        Sight { taken, image, camera, board, corners }
+    }
 }
 
 /// The error of a name that is no point of a board.

@@ -2,7 +2,8 @@
 
 use super::super::found::found_words;
 use super::super::table::{
-    STATISTICS, further_words, leading_words, line, lines, number, number_or_dash, row,
+    STATISTICS, corner_words, further_words, leading_words, line, lines, number, number_or_dash,
+    pictures_words, row,
 };
 use super::look::reasons;
 use super::{Expectation, expected};
@@ -61,8 +62,7 @@ pub(super) fn figures(out: &mut String, file: &CalibrationFile) {
     let judging = if held_out { "held out" } else { "fitted" };
     let words = |model: &ModelAccuracy| {
         if let Some(pixels) = model.of_pictures(set.count) {
-            let (px, mm) = (number(pixels.rms_px), number(pixels.rms_mm));
-            return format!("{px} px, {mm} mm at the board square to the ray");
+            return corner_words(&pixels);
         }
         let each = model.iter().map(|(quantity, error)| {
             format!("{} {}{}", number(error.rms), quantity.unit().symbol(), further_words(quantity))
@@ -99,9 +99,7 @@ pub(super) fn figures(out: &mut String, file: &CalibrationFile) {
     let rest = rest.unwrap_or_default();
     match after.1.of_pictures(set.count) {
         Some(pixels) => {
-            let (count, median) = (pixels.pictures, number(pixels.median_picture_px));
-            let all = words(after.1);
-            line(out, judging, &format!("{count} pictures: {all} (RMS), median picture {median} px{rest}"));
+            line(out, judging, &format!("{}{rest}", pictures_words(&pixels)));
         }
         None => {
             let largest = largest.unwrap_or_default();
