@@ -7,7 +7,6 @@ use crate::gray::Gray;
 /// A picture made ready to tell dark from light.
 pub(crate) struct Shades {
     smooth: Vec<u16>,
-    sums: Vec<u64>,
     width: usize,
     offset: i32,
 }
@@ -15,8 +14,7 @@ pub(crate) struct Shades {
 impl Shades {
     pub(crate) fn new(gray: &Gray, noise: f64) -> Self {
         let smooth = smoothed(gray);
-        let sums = sums(&smooth, gray.width());
-        Shades { smooth, sums, width: gray.width(), offset: (0.8 * noise).max(2.0) as i32 }
+        Shades { smooth, width: gray.width(), offset: (0.8 * noise).max(2.0) as i32 }
     }
 
     /// Parts darker than the mean of a window that reaches so many pixels to each side.
@@ -26,7 +24,7 @@ impl Shades {
 
     /// Parts darker than that by so many gray levels.
     pub(crate) fn darker_parts(&self, half: usize, offset: i32) -> Parts {
-        let dark = dark(&self.smooth, &self.sums, self.width, half, offset);
+        let dark = dark(&self.smooth, self.width, half, offset);
         Parts::new(&dark, self.width)
     }
 }
@@ -63,37 +61,60 @@ fn smoothed(gray: &Gray) -> Vec<u16> {
     smooth
 }
 
-/// Sums of levels above and before each pixel, one row and column more than the picture.
-fn sums(smooth: &[u16], width: usize) -> Vec<u64> {
-    let height = smooth.len() / width;
-    let mut sums = vec![0_u64; (width + 1) * (height + 1)];
-    for row in 0..height {
-        let mut own = 0;
-        for column in 0..width {
-            own += u64::from(smooth[row * width + column]);
-            let at = (row + 1) * (width + 1) + column + 1;
-            sums[at] = sums[at - width - 1] + own;
-        }
-    }
-    sums
-}
-
 /// Whether pixels are darker than the mean of a window around them.
-fn dark(smooth: &[u16], sums: &[u64], width: usize, half: usize, offset: i32) -> Vec<bool> {
+fn dark(smooth: &[u16], width: usize, half: usize, offset: i32) -> Vec<bool> {
     let height = smooth.len() / width;
     let mut dark = vec![false; smooth.len()];
+    // Sums of the rows of the window by columns, and of the columns before each: whole numbers, which are exact in either form.
+    let mut columns = vec![0_u32; width];
+    let mut before = vec![0.0; width + 1];
+    let row_of = |row: usize| &smooth[row * width..(row + 1) * width];
+    let add = |columns: &mut [u32], row: usize| {
+        columns.iter_mut().zip(row_of(row)).for_each(|(sum, it)| *sum += u32::from(*it));
+    };
+    (0..half.min(height)).for_each(|row| add(&mut columns, row));
     for row in 0..height {
-        let (top, bottom) = (row.saturating_sub(half), (row + half + 1).min(height));
-        let (upper, lower) = (&sums[top * (width + 1)..], &sums[bottom * (width + 1)..]);
-        for column in 0..width {
-            let (left, right) = (column.saturating_sub(half), (column + half + 1).min(width));
-            let area = ((bottom - top) * (right - left)) as u64;
-            let sum = lower[right] + upper[left] - lower[left] - upper[right];
-            let level = u64::from(smooth[row * width + column]) + (offset * 16) as u64;
-            dark[row * width + column] = level * area < sum;
+        if row + half < height {
+            add(&mut columns, row + half);
         }
+        if row > half {
+            let past = row_of(row - half - 1);
+            columns.iter_mut().zip(past).for_each(|(sum, it)| *sum -= u32::from(*it));
+        }
+        let mut sum = 0.0;
+        for (place, column) in before[1..].iter_mut().zip(&columns) {
+            sum += f64::from(*column);
+            *place = sum;
+        }
+        let rows = (row + half + 1).min(height) - row.saturating_sub(half);
+        let target = &mut dark[row * width..(row + 1) * width];
+        darker(row_of(row), &before, (rows, half), f64::from(offset * 16), target);
     }
     dark
+}
+
+/// The same of a row, by the sums of its window before each column.
+fn darker(levels: &[u16], before: &[f64], (rows, half): (usize, usize), offset: f64, target: &mut [bool]) {
+    let width = levels.len();
+    let inner = half.min(width)..width.saturating_sub(half).max(half.min(width));
+    for column in (0..inner.start).chain(inner.end..width) {
+        let (left, right) = (column.saturating_sub(half), (column + half + 1).min(width));
+        let area = (rows * (right - left)) as f64;
+        target[column] = (f64::from(levels[column]) + offset) * area < before[right] - before[left];
+    }
+    let area = (rows * (2 * half + 1)) as f64;
+    let ends = before.iter().zip(&before[(2 * half + 1).min(width)..]);
+    let all = target[inner.clone()].iter_mut().zip(&levels[inner]).zip(ends);
+    all.for_each(|((dark, level), (left, right))| *dark = (f64::from(*level) + offset) * area < right - left);
+}
+
+/// The next pixel that is dark, or not, from one on.
+fn next(levels: &[bool], from: usize, dark: bool) -> Option<usize> {
+    // Many at once, while none is.
+    const MANY: usize = 16;
+    let rest = levels.get(from..)?;
+    let skipped = rest.chunks_exact(MANY).take_while(|it| it.iter().all(|it| *it != dark)).count() * MANY;
+    rest[skipped..].iter().position(|it| *it == dark).map(|it| from + skipped + it)
 }
 
 /// Connected dark pixels, as runs in rows.
@@ -114,16 +135,12 @@ impl Parts {
             let first = parts.runs.len();
             let levels = &dark[row * width..(row + 1) * width];
             let mut column = 0;
-            while let Some(from) = levels[column..].iter().position(|it| *it) {
-                let from = column + from;
-                let to = levels[from..].iter().position(|it| !*it).map_or(width, |it| from + it);
+            while let Some(from) = next(levels, column, true) {
+                let to = next(levels, from, false).unwrap_or(width);
                 let own = parts.runs.len() as u32;
                 parts.runs.push([from as u32, to as u32 - 1, row as u32]);
                 parts.root.push(own);
                 column = to;
-                if column >= width {
-                    break;
-                }
             }
             parts.join(before.clone(), first..parts.runs.len());
             before = first..parts.runs.len();
@@ -213,5 +230,37 @@ impl Parts {
             Blob { middle, spread: spread + Matrix2::identity() / 12.0, area }
         };
         sums.into_iter().filter(|it| it[0] > 0.0).map(blob).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn dark_pixels_are_below_the_mean_of_their_window() {
+        let (width, height) = (23, 9);
+        let smooth: Vec<u16> = (0..width * height).map(|k| (k * k * 37 % 4001) as u16).collect();
+        for half in [1, 4, 7, 11, 30] {
+            let found = dark(&smooth, width, half, 3);
+            for (at, is_dark) in found.iter().enumerate() {
+                let (x, y) = (at % width, at / width);
+                let inside =
+                    |it: &usize| (it % width).abs_diff(x) <= half && (it / width).abs_diff(y) <= half;
+                let window: Vec<u64> = (0..smooth.len()).filter(inside).map(|it| smooth[it].into()).collect();
+                let mean = window.iter().sum::<u64>() as f64 / window.len() as f64;
+                assert_eq!(*is_dark, f64::from(smooth[at]) + 48.0 < mean, "{half} {at}");
+            }
+        }
+    }
+
+    #[test]
+    fn runs_end_where_they_end() {
+        let levels: Vec<bool> = (0..70).map(|k| (20..53).contains(&k) || k == 69).collect();
+        assert_eq!([next(&levels, 0, true), next(&levels, 20, false)], [Some(20), Some(53)]);
+        assert_eq!(
+            [next(&levels, 53, true), next(&levels, 69, false), next(&levels, 70, true)],
+            [Some(69), None, None]
+        );
     }
 }
