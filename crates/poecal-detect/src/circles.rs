@@ -28,6 +28,8 @@ const ROUND: (f64, f64) = (0.08, 0.5);
 const BEYOND: usize = 12;
 /// Largest misfit of a dot beside the median one, and beside the contrast: of more, something covers a part of it.
 const COVERED: (f64, f64) = (4.0, 0.03);
+/// Difference of middles, pixels, and of shapes, as a part, up to which two parts are one.
+const SAME: (f64, f64) = (0.3, 0.03);
 /// Least part of the outer dots that must be seen.
 const OUTLINE: f64 = 0.55;
 /// How far beyond the outer dots there is paper, from their middles, units.
@@ -56,14 +58,22 @@ pub(crate) fn dots(gray: &Gray, noise: f64) -> Vec<Dot> {
     let shades = Shades::new(gray, noise);
     let longest = gray.width().max(gray.height());
     let mut found: Vec<Dot> = Vec::new();
+    // What is no dot is a part of several windows, too.
+    let mut refused: Vec<(Vector2<f64>, Matrix2<f64>)> = Vec::new();
     for half in [longest / 110, longest / 36, longest / 12].map(|it| it.max(7)) {
         for blob in shades.dark_parts(half).blobs() {
             let Some(to_circle) = round(&blob) else { continue };
             let known = |it: &Dot| (it.to_circle * (it.place - blob.middle)).norm() < 0.5;
-            if found.iter().any(known) {
+            let same = |it: &(Vector2<f64>, Matrix2<f64>)| {
+                (it.0 - blob.middle).norm() < SAME.0 && (it.1 - to_circle).norm() < SAME.1 * to_circle.norm()
+            };
+            if found.iter().any(known) || refused.iter().any(same) {
                 continue;
             }
-            found.extend(ellipse::fit(gray, blob.middle, to_circle, noise));
+            match ellipse::fit(gray, blob.middle, to_circle, noise) {
+                Some(dot) => found.push(dot),
+                None => refused.push((blob.middle, to_circle)),
+            }
         }
     }
     found

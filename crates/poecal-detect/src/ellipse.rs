@@ -6,6 +6,7 @@
 use nalgebra::{Matrix2, SMatrix, SVector, Vector2};
 
 use crate::gray::Gray;
+use crate::normal::Normal;
 use crate::saddle::sign_and_bell;
 
 /// A dot that was found.
@@ -28,6 +29,8 @@ pub(crate) struct Dot {
 }
 
 const UNKNOWNS: usize = 10;
+/// Those of the shades.
+const SHADES: usize = 4;
 type Unknowns = SVector<f64, UNKNOWNS>;
 /// A pixel and its level.
 type Pixel = (Vector2<f64>, f64);
@@ -42,34 +45,61 @@ const WORST_PX: f64 = 0.4;
 const SHORTEST_PX: f64 = 1.6;
 /// Least half contrast, gray levels.
 const LEAST_HALF: f64 = 2.0;
+/// Pixels that find most of the way.
+const ENOUGH: usize = 200;
+/// The same of a fit to a part of the pixels, which is not at its end.
+const COARSE_MISFIT: f64 = 0.28;
+/// Longest last step, pixels, and what it may gain, as a part of the squares: of a first fit, and of the last one.
+const COARSE: [f64; 2] = [0.05, 0.02];
+const FINE: [f64; 2] = [2e-3, 1e-4];
+/// Distance from the edge beyond which a pixel is dark or light, standard deviations of the blur: to 1e-5 of the contrast.
+const PLAIN: f64 = 4.5;
 /// Most pixels that are fitted.
 const MOST: usize = 40_000;
 
 /// Finds a dot near where an ellipse is: its middle, and what makes a unit circle of it. `None` if none is there.
 pub(crate) fn fit(gray: &Gray, place: Vector2<f64>, to_circle: Matrix2<f64>, noise: f64) -> Option<Dot> {
-    let mut pixels = window(gray, place, &to_circle)?;
-    let mut model = Model::start(place, to_circle, &pixels);
-    // Blur takes a part of the contrast of a small dot, but not so much.
-    if model.half < 0.5 * noise.max(LEAST_HALF) {
-        return None;
-    }
-    let mut middle = place;
-    for round in 0..3 {
-        let before = model;
-        model = descended(model, &pixels, middle)?;
-        let moved = (model.place - before.place).norm();
-        let grown = (model.to_circle - before.to_circle).norm() / before.to_circle.norm();
-        if round < 2 && (moved > 0.3 || grown > 0.03) {
-            middle = model.place;
-            pixels = window(gray, middle, &model.to_circle)?;
-        } else {
-            break;
-        }
-    }
+    let pixels = window(gray, place, &to_circle)?;
+    let start = Model::start(place, to_circle, &pixels);
     let reach = to_circle.try_inverse()?.norm() * 0.35 + 1.5;
-    let dot = model.judged(&pixels, middle, noise)?;
+    let coarse = begun(start, &pixels, noise).filter(|it| (it.place - place).norm() < 1.2 * reach)?;
+    let mut middle = coarse.place;
+    let mut pixels = window(gray, middle, &coarse.to_circle)?;
+    let (mut model, mut sums) = descended(coarse, &pixels, middle, FINE)?;
+    // A window that is off leaves out pixels that tell much, and has some of other dots.
+    if is_far(&coarse, &model) {
+        middle = model.place;
+        pixels = window(gray, middle, &model.to_circle)?;
+        (model, sums) = descended(model, &pixels, middle, FINE)?;
+    }
+    let dot = model.judged(&sums, pixels.len(), noise)?;
     let sound = (dot.place - place).norm() < reach && gray.holds(dot.place, 1.0);
     sound.then_some(dot)
+}
+
+/// A fit to a part of the pixels, which goes most of the way, and tells most of what is no dot: that is most of what is tried.
+fn begun(start: Model, pixels: &[Pixel], noise: f64) -> Option<Model> {
+    // Blur takes a part of the contrast of a small dot, but not so much.
+    if start.half < 0.5 * noise.max(LEAST_HALF) {
+        return None;
+    }
+    let few = thinned(pixels);
+    let (model, sums) = descended(start, &few, start.place, COARSE)?;
+    let most = 1.5 * noise * noise + (COARSE_MISFIT * model.half).powi(2);
+    (model.half > 0.0 && sums.squares < most * few.len() as f64).then_some(model)
+}
+
+/// Whether a fit is farther from its start than the window of its pixels may be.
+fn is_far(start: &Model, fit: &Model) -> bool {
+    let grown = (fit.to_circle - start.to_circle).norm() / start.to_circle.norm();
+    (fit.place - start.place).norm() > 0.3 || grown > 0.03
+}
+
+/// Pixels that are spread evenly, if there are many.
+fn thinned(pixels: &[Pixel]) -> Vec<Pixel> {
+    let step = [10, 5, 2].into_iter().find(|step| pixels.len() >= step * ENOUGH).unwrap_or(1);
+    let kept = |it: &&Pixel| (it.0.x as usize + 3 * it.0.y as usize).is_multiple_of(step);
+    pixels.iter().filter(kept).copied().collect()
 }
 
 /// The pixels of an ellipse, and of the light around it as far as another dot is not near.
@@ -91,7 +121,7 @@ fn window(gray: &Gray, middle: Vector2<f64>, to_circle: &Matrix2<f64>) -> Option
         let levels = gray.row(row);
         for column in (middle.x - reach.x).ceil() as usize..=(middle.x + reach.x) as usize {
             let place = Vector2::new(column as f64, row as f64);
-            let (off, _, _) = distance(to_circle, place - middle);
+            let off = distance(to_circle, place - middle).off;
             // Deep within there is nothing that tells the place.
             if off < beyond && off > -within {
                 pixels.push((place, f64::from(*levels.get(column)?)));
@@ -101,13 +131,24 @@ fn window(gray: &Gray, middle: Vector2<f64>, to_circle: &Matrix2<f64>) -> Option
     (pixels.len() >= 3 * UNKNOWNS).then_some(pixels)
 }
 
-/// Distance from an ellipse, positive outside, to first order; how it changes with the place, and the radius in the circle.
-fn distance(to_circle: &Matrix2<f64>, off: Vector2<f64>) -> (f64, Vector2<f64>, f64) {
+/// How far a place is from an ellipse.
+struct Off {
+    /// To first order, positive outside.
+    off: f64,
+    /// Which way it grows.
+    outwards: Vector2<f64>,
+    /// The way there in the circle, of length 1, and how fast the radius grows along `outwards`.
+    circle: Vector2<f64>,
+    steep: f64,
+}
+
+fn distance(to_circle: &Matrix2<f64>, off: Vector2<f64>) -> Off {
     let circle = to_circle * off;
     let radius = circle.norm().max(1e-6);
-    let slope = to_circle * circle / radius;
+    let circle = circle / radius;
+    let slope = to_circle * circle;
     let steep = slope.norm().max(1e-9);
-    ((radius - 1.0) / steep, slope / steep, radius)
+    Off { off: (radius - 1.0) / steep, outwards: slope / steep, circle, steep }
 }
 
 #[derive(Clone, Copy)]
@@ -129,7 +170,7 @@ struct Sums {
 impl Model {
     fn start(place: Vector2<f64>, to_circle: Matrix2<f64>, pixels: &[Pixel]) -> Self {
         let mean_of = |inside: bool| {
-            let side = pixels.iter().filter(|it| (distance(&to_circle, it.0 - place).0 < 0.0) == inside);
+            let side = pixels.iter().filter(|it| (distance(&to_circle, it.0 - place).off < 0.0) == inside);
             let (sum, count) = side.fold((0.0, 0.0), |sum, it| (sum.0 + it.1, sum.1 + 1.0));
             sum / f64::max(count, 1.0)
         };
@@ -140,40 +181,44 @@ impl Model {
 
     fn sums(&self, pixels: &[Pixel], middle: Vector2<f64>) -> Sums {
         const ROOT: f64 = 0.797_884_560_802_865_4;
-        let mut sums = Sums { normal: SMatrix::zeros(), right: Unknowns::zeros(), squares: 0.0 };
+        // Pixels far from the edge tell of the shades alone: the last unknowns.
+        let (mut edge, mut plain) = (Normal::<UNKNOWNS>::new(), Normal::<SHADES>::new());
+        let (plain_px, by_blur) = (PLAIN * self.blur, 1.0 / self.blur);
         for (pixel, level) in pixels {
             let d = pixel - self.place;
-            let (off, outwards, radius) = distance(&self.to_circle, d);
-            let (sign, bell) = sign_and_bell(off / self.blur);
-            let circle = self.to_circle * d / radius;
-            let steep = (self.to_circle * circle).norm().max(1e-9);
+            let Off { off, outwards, circle, steep } = distance(&self.to_circle, d);
             let shift = pixel - middle;
             let light = 1.0 + self.light.dot(&shift);
+            if off.abs() > plain_px {
+                let sign = 1.0_f64.copysign(off);
+                let base = self.mean + self.half * sign;
+                plain.add([light, light * sign, base * shift.x, base * shift.y], level - base * light);
+                continue;
+            }
+            let (sign, bell) = sign_and_bell(off * by_blur);
             let base = self.mean + self.half * sign;
-            let slope = self.half * light * ROOT * bell / self.blur;
-            let row = Unknowns::from([
+            let slope = self.half * light * ROOT * bell * by_blur;
+            let along = circle * (slope / steep);
+            let row = [
                 -slope * outwards.x,
                 -slope * outwards.y,
-                slope * circle.x * d.x / steep,
-                slope * (circle.x * d.y + circle.y * d.x) / steep,
-                slope * circle.y * d.y / steep,
+                along.x * d.x,
+                along.x * d.y + along.y * d.x,
+                along.y * d.y,
                 -slope * off,
                 light,
                 light * sign,
                 base * shift.x,
                 base * shift.y,
-            ]);
-            let residual = level - base * light;
-            for i in 0..UNKNOWNS {
-                sums.right[i] += row[i] * residual;
-                for j in 0..=i {
-                    sums.normal[(i, j)] += row[i] * row[j];
-                }
-            }
-            sums.squares += residual * residual;
+            ];
+            edge.add(row, level - base * light);
         }
-        sums.normal.fill_upper_triangle_with_lower_triangle();
-        sums
+        let ((mut normal, mut right, squares), plain) = (edge.finished(), plain.finished());
+        let mut shades = normal.fixed_view_mut::<SHADES, SHADES>(UNKNOWNS - SHADES, UNKNOWNS - SHADES);
+        shades += plain.0;
+        let mut last = right.fixed_rows_mut::<SHADES>(UNKNOWNS - SHADES);
+        last += plain.1;
+        Sums { normal, right, squares: squares + plain.2 }
     }
 
     fn stepped(&self, step: &Unknowns) -> Self {
@@ -192,9 +237,8 @@ impl Model {
     }
 
     /// The dot, if the model explains the pixels.
-    fn judged(&self, pixels: &[Pixel], middle: Vector2<f64>, noise: f64) -> Option<Dot> {
-        let sums = self.sums(pixels, middle);
-        let variance = sums.squares / (pixels.len() - UNKNOWNS) as f64;
+    fn judged(&self, sums: &Sums, pixels: usize, noise: f64) -> Option<Dot> {
+        let variance = sums.squares / pixels.saturating_sub(UNKNOWNS).max(1) as f64;
         let covariance = sums.normal.cholesky()?.inverse() * variance;
         let sigma_px = (0.5 * (covariance[(0, 0)] + covariance[(1, 1)]) + FLOOR_PX * FLOOR_PX).sqrt();
         let left = (variance - noise * noise).max(0.0).sqrt();
@@ -207,15 +251,20 @@ impl Model {
             && axes.max() < 1.0 / SHORTEST_PX
             && self.blur * axes.max() < 0.75;
         // How far beyond the noise it is by more than chance.
-        let chance = 1.0 + 2.5 * (2.0 / pixels.len() as f64).sqrt();
+        let chance = 1.0 + 2.5 * (2.0 / pixels as f64).sqrt();
         let beyond = (variance - noise * noise * chance).max(0.0).sqrt();
         let (Model { place, to_circle, blur, mean, half, .. }, misfit) = (*self, beyond / self.half);
         good.then_some(Dot { place, to_circle, sigma_px, blur_px: blur, half_contrast: half, mean, misfit })
     }
 }
 
-/// Levenberg-Marquardt from a start.
-fn descended(mut model: Model, pixels: &[Pixel], middle: Vector2<f64>) -> Option<Model> {
+/// Levenberg-Marquardt from a start, until a step is short and gains little.
+fn descended(
+    mut model: Model,
+    pixels: &[Pixel],
+    middle: Vector2<f64>,
+    [short_px, little]: [f64; 2],
+) -> Option<(Model, Sums)> {
     let mut sums = model.sums(pixels, middle);
     let mut damping = 1e-3;
     for _ in 0..10 {
@@ -229,7 +278,7 @@ fn descended(mut model: Model, pixels: &[Pixel], middle: Vector2<f64>) -> Option
             let moved = (next.place - model.place).norm();
             let gained = sums.squares - found.squares;
             (model, sums, damping) = (next, found, damping * 0.1);
-            if moved < 2e-3 && gained < 1e-4 * sums.squares {
+            if moved < short_px && gained < little * sums.squares {
                 break;
             }
         } else {
@@ -239,5 +288,5 @@ fn descended(mut model: Model, pixels: &[Pixel], middle: Vector2<f64>) -> Option
             }
         }
     }
-    Some(model)
+    Some((model, sums))
 }

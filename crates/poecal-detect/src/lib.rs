@@ -32,6 +32,7 @@ mod layout;
 mod light;
 mod markers;
 mod median;
+mod normal;
 mod parts;
 mod picture;
 mod preview;
