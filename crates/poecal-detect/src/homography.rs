@@ -89,10 +89,11 @@ impl Homography {
     /// How a place in the picture moves with its point: columns are by x and y of the plane.
     pub(crate) fn slope(&self, point: Vector2<f64>) -> Option<Matrix2<f64>> {
         let mapped = self.matrix * Vector3::new(point.x, point.y, 1.0);
-        let place = mapped.xy() / mapped.z;
+        let scale = 1.0 / mapped.z;
+        let place = mapped.xy() * scale;
         let part = |column: usize| {
             let by = self.matrix.column(column);
-            Vector2::new(by.x - place.x * by.z, by.y - place.y * by.z) / mapped.z
+            Vector2::new(by.x - place.x * by.z, by.y - place.y * by.z) * scale
         };
         let slope = Matrix2::from_columns(&[part(0), part(1)]);
         slope.iter().all(|it| it.is_finite()).then_some(slope)

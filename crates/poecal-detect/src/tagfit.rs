@@ -7,6 +7,7 @@ use nalgebra::{SMatrix, SVector, Vector2};
 
 use crate::gray::Gray;
 use crate::homography::Homography;
+use crate::normal::Normal;
 use crate::quads::Quad;
 
 /// The cells of a tag with its border, row by row: whether they are dark.
@@ -21,16 +22,27 @@ impl Cells {
         let side = self.side as f64;
         let half = half.sup(&Vector2::repeat(1e-6)) * side;
         let (low, high) = (middle * side - half, middle * side + half);
-        // Where the rectangle is on a row or column of cells, and how long it is there.
-        let within = |axis: usize| {
-            let cells = low[axis].clamp(0.0, side) as usize..high[axis].clamp(0.0, side).ceil() as usize;
-            cells.map(move |at| (at, high[axis].min(at as f64 + 1.0) - low[axis].max(at as f64)))
+        // The first cell of each axis, and the one behind the last. Short whole numbers are turned into others faster.
+        let first = |at: f64| at.clamp(0.0, side) as i32;
+        let end = |at: f64| first(at) + i32::from(at.min(side) > f64::from(first(at)));
+        let columns = first(low.x)..end(high.x);
+        let rows = first(low.y)..end(high.y);
+        let is_dark = |row: i32, column: i32| {
+            self.dark.get(row as usize * self.side + column as usize).is_some_and(|it| *it)
         };
+        // Most rectangles are within a cell.
+        let inside = low.min() >= 0.0 && high.max() <= side;
+        if inside && columns.len() == 1 && rows.len() == 1 {
+            return f64::from(u8::from(is_dark(rows.start, columns.start)));
+        }
+        // How long the rectangle is on a row or column of cells.
+        let part = |at: i32, [low, high]: [f64; 2]| high.min(f64::from(at) + 1.0) - low.max(f64::from(at));
         let mut sum = 0.0;
-        for (row, down) in within(1) {
-            for (column, across) in within(0) {
-                if self.dark.get(row * self.side + column).is_some_and(|it| *it) {
-                    sum += down * across;
+        for row in rows {
+            let down = part(row, [low.y, high.y]);
+            for column in columns.clone() {
+                if is_dark(row, column) {
+                    sum += down * part(column, [low.x, high.x]);
                 }
             }
         }
@@ -48,6 +60,9 @@ pub(crate) struct Fitted {
 }
 
 const UNKNOWNS: usize = 15;
+/// Those of the shape, which are first, and of the shades.
+const SHAPE: usize = 11;
+const SHADES: usize = UNKNOWNS - SHAPE;
 type Unknowns = SVector<f64, UNKNOWNS>;
 
 /// Width of the light rim that is fitted with the tag, cells.
@@ -60,6 +75,8 @@ const MISFIT: f64 = 0.25;
 const FLOOR_PX: f64 = 0.012;
 /// Least certain corner that counts, pixels.
 const WORST_PX: f64 = 0.5;
+/// Round after which pixels that something covers count no more. The first finds the shades.
+const LIMITED: usize = 2;
 /// Pixels left around a tag for the blur.
 const AROUND: f64 = 6.0;
 /// Most pixels around a tag.
@@ -89,11 +106,10 @@ pub(crate) fn fit(gray: &Gray, cells: &Cells, quad: &Quad, noise: f64) -> Option
         } else {
             damping *= 8.0;
         }
-        if (moved < 0.004 && round > 4) || damping > 1e4 {
+        if (moved < 0.004 && round > LIMITED) || damping > 1e4 {
             break;
         }
-        if round == 3 {
-            // Pixels that something covers count no more.
+        if round == LIMITED {
             let half = 0.5 * (model.light - model.dark);
             limit = (5.0 * noise).max(0.7 * half).max(1.0);
             sums = model.sums(&patch, &seen, limit);
@@ -151,33 +167,26 @@ impl Patch {
         let mut at = Vec::with_capacity(self.levels.len());
         let mut shade = Vec::with_capacity(self.levels.len());
         for k in 0..self.levels.len() {
-            let own = model.on_tag(&back, self.place(k));
+            let flat = model.flat(&back, self.place(k));
+            let own = flat.and_then(|it| back.map(it));
             let counts = own.filter(|it| it.min() > -rim && it.max() < 1.0 + rim);
             at.push(counts);
             // A cell farther off than the pixel is wide has one shade.
-            let Some(middle) = own.filter(|it| it.min() > -0.3 && it.max() < 1.3) else {
+            let Some((place, middle)) = flat.zip(own.filter(|it| it.min() > -0.3 && it.max() < 1.3)) else {
                 shade.push(1.0);
                 continue;
             };
-            shade.push((1.0 - cells.dark_part(middle, back.half_pixel(middle))) as f32);
+            shade.push((1.0 - cells.dark_part(middle, half_pixel(&back, place))) as f32);
         }
         let shade = Gray::new(self.size[0], self.size[1], shade).ok()?.blurred(model.blur, 3.2);
         Some(Seen { shade, at })
     }
 }
 
-/// From the picture to the tag.
-struct Back {
-    map: Homography,
-    forth: Homography,
-}
-
-impl Back {
-    /// Half the sides of the upright rectangle on the tag that spreads as far along both of its axes as a pixel does there.
-    fn half_pixel(&self, at: Vector2<f64>) -> Vector2<f64> {
-        let slope = self.forth.slope(at).and_then(|it| it.try_inverse()).unwrap_or_default();
-        Vector2::new(slope.row(0).norm(), slope.row(1).norm()) * 0.5
-    }
+/// Half the sides of the upright rectangle on the tag that spreads as far along both of its axes as a pixel does there.
+fn half_pixel(back: &Homography, place: Vector2<f64>) -> Vector2<f64> {
+    let slope = back.slope(place).unwrap_or_default();
+    Vector2::new(slope.row(0).norm(), slope.row(1).norm()) * 0.5
 }
 
 #[derive(Clone, Copy)]
@@ -206,10 +215,9 @@ impl Model {
         Model { corners, bend: Vector2::zeros(), blur: 1.1, dark: 0.0, light: 0.0, slope }
     }
 
-    fn back(&self) -> Option<Back> {
-        let unit = SIGNS.map(Vector2::from);
-        let map = Homography::of_corners(&self.corners, &unit)?;
-        Some(Back { map, forth: Homography::of_corners(&unit, &self.corners)? })
+    /// From the picture to the tag, without the bend.
+    fn back(&self) -> Option<Homography> {
+        Homography::of_corners(&self.corners, &SIGNS.map(Vector2::from))
     }
 
     /// How much a place on the tag is bent: nothing at corners.
@@ -219,23 +227,14 @@ impl Model {
         -(at.x * (1.0 - at.x) * x + at.y * (1.0 - at.y) * y)
     }
 
-    fn on_tag(&self, back: &Back, place: Vector2<f64>) -> Option<Vector2<f64>> {
-        let first = back.map.map(place)?;
-        if first.amax() > 3.0 {
-            return None;
-        }
-        back.map.map(place - self.bend * self.bent(first))
+    /// Where a place in the picture would be without the bend, near the tag.
+    fn flat(&self, back: &Homography, place: Vector2<f64>) -> Option<Vector2<f64>> {
+        let first = back.map(place).filter(|it| it.amax() <= 3.0)?;
+        Some(place - self.bend * self.bent(first))
     }
 
     fn sums(&self, patch: &Patch, seen: &Seen, limit: f64) -> Sums {
-        let mut sums = Sums {
-            normal: SMatrix::zeros(),
-            right: Unknowns::zeros(),
-            squares: 0.0,
-            left: 0.0,
-            count: 0,
-            kept: 0,
-        };
+        let mut adder = Adder::new(limit);
         let (width, height) = (patch.size[0], patch.size[1]);
         let shades = seen.shade.levels();
         let shade = |at: usize| f64::from(shades[at]);
@@ -251,27 +250,27 @@ impl Model {
             let light = 1.0 + self.slope.dot(&off);
             let base = self.dark + (self.light - self.dark) * s;
             let contrast = (self.light - self.dark) * light;
+            let residual = patch.levels[at] - base * light;
+            let shades = [light * (1.0 - s), light * s, base * off.x, base * off.y];
+            let curve = left + right + up + down - 4.0 * s;
+            if left == right && up == down && curve == 0.0 {
+                adder.plain(shades, residual);
+                continue;
+            }
             // Where the tag moves by a step, the pixel sees what was before it.
             let (by_x, by_y) = (-0.5 * (right - left) * contrast, -0.5 * (down - up) * contrast);
             let weights =
                 [(1.0 - own.x) * (1.0 - own.y), own.x * (1.0 - own.y), own.x * own.y, (1.0 - own.x) * own.y];
-            let bent = self.bent(own);
-            let mut row = Unknowns::zeros();
-            for (k, weight) in weights.into_iter().enumerate() {
+            let mut row = [0.0; UNKNOWNS];
+            for (k, weight) in weights.into_iter().chain([self.bent(own)]).enumerate() {
                 row[2 * k] = by_x * weight;
                 row[2 * k + 1] = by_y * weight;
             }
-            row[8] = by_x * bent;
-            row[9] = by_y * bent;
-            row[10] = contrast * self.blur * self.blur * (left + right + up + down - 4.0 * s);
-            row[11] = light * (1.0 - s);
-            row[12] = light * s;
-            row[13] = base * off.x;
-            row[14] = base * off.y;
-            let residual = patch.levels[at] - base * light;
-            sums.add(&row, residual, limit);
+            row[10] = contrast * self.blur * self.blur * curve;
+            row[SHAPE..].copy_from_slice(&shades);
+            adder.edge(row, residual);
         }
-        sums.normal.fill_upper_triangle_with_lower_triangle();
+        let mut sums = adder.finished();
         let stiff = patch.variance / (BEND * BEND);
         for k in 0..2 {
             sums.normal[(8 + k, 8 + k)] += stiff;
@@ -319,21 +318,50 @@ impl Model {
     }
 }
 
-impl Sums {
-    fn add(&mut self, row: &Unknowns, residual: f64, limit: f64) {
+/// Adds pixels up: those near no edge between cells tell of the shades alone, the last unknowns.
+struct Adder {
+    edge: Normal<UNKNOWNS>,
+    plain: Normal<SHADES>,
+    limit: f64,
+    count: usize,
+    kept: usize,
+}
+
+impl Adder {
+    fn new(limit: f64) -> Self {
+        Adder { edge: Normal::new(), plain: Normal::new(), limit, count: 0, kept: 0 }
+    }
+
+    /// Whether a pixel counts by more than its number.
+    fn keeps(&mut self, residual: f64) -> bool {
+        let keeps = residual.abs() <= self.limit;
         self.count += 1;
-        if residual.abs() > limit {
-            self.squares += limit * limit;
-            return;
+        self.kept += usize::from(keeps);
+        keeps
+    }
+
+    fn edge(&mut self, row: [f64; UNKNOWNS], residual: f64) {
+        if self.keeps(residual) {
+            self.edge.add(row, residual);
         }
-        for i in 0..UNKNOWNS {
-            self.right[i] += row[i] * residual;
-            for j in 0..=i {
-                self.normal[(i, j)] += row[i] * row[j];
-            }
+    }
+
+    fn plain(&mut self, row: [f64; SHADES], residual: f64) {
+        if self.keeps(residual) {
+            self.plain.add(row, residual);
         }
-        self.squares += residual * residual;
-        self.left += residual * residual;
-        self.kept += 1;
+    }
+
+    fn finished(self) -> Sums {
+        let Adder { limit, count, kept, .. } = self;
+        let ((mut normal, mut right, squares), plain) = (self.edge.finished(), self.plain.finished());
+        let mut shades = normal.fixed_view_mut::<SHADES, SHADES>(SHAPE, SHAPE);
+        shades += plain.0;
+        let mut last = right.fixed_rows_mut::<SHADES>(SHAPE);
+        last += plain.1;
+        let left = squares + plain.2;
+        // Without a limit none is beyond it.
+        let beyond = if count > kept { (count - kept) as f64 * limit * limit } else { 0.0 };
+        Sums { normal, right, squares: left + beyond, left, count, kept }
     }
 }
