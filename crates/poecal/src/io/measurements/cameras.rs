@@ -13,6 +13,7 @@ use super::unknown_camera::{UNKNOWN, unknown};
 use crate::camera::{Camera, Distortion, LENS_NAMES, Lens};
 use crate::error::{Error, ErrorKind, Result, first_few};
 use crate::io::disk::is_file;
+use crate::io::numbers::LARGEST_NUMBER;
 use crate::io::stored_pictures::stored_cameras;
 use crate::io::text_of;
 use crate::io::yaml::{Leaf, leaves};
@@ -62,6 +63,13 @@ pub(super) fn check(name: &str, lens: &Lens) -> Result<()> {
     let refuse = |found: String, expected: &str| {
         Err(Error::new(ErrorKind::Measurement, format!("found {found}{}, expected {expected}", of())))
     };
+    let is_none = |number: f64| !number.is_finite() || number.abs() > LARGEST_NUMBER;
+    if let Some((own, number)) = LENS_NAMES.iter().zip(lens.numbers()).find(|it| is_none(it.1)) {
+        return refuse(
+            format!("{number:?} for `{own}`"),
+            &format!("a finite number of at most {LARGEST_NUMBER:e}"),
+        );
+    }
     if !(fx > 0.0 && fy > 0.0) {
         return refuse(format!("the focal lengths {fx} and {fy}"), "pixels above 0");
     }
