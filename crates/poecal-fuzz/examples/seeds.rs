@@ -8,12 +8,14 @@ use std::fs;
 use std::path::Path;
 
 use poecal::calibration::{CalibrationOptions, calibrate};
+use poecal::camera::{Corner, Lens, Picture};
 use poecal::io::calibration_file::{CalibrationFile, Inputs};
+use poecal::io::measurements::read_boards;
 use poecal::io::residuals::Residuals;
 use poecal::io::robot_toml;
 use poecal::measurement::Dataset;
 use poecal::robot::Robot;
-use poecal::simulate::{Kind, Simulation, elbow, gantry, scara};
+use poecal::simulate::{Kind, PictureSimulation, Simulation, elbow, gantry, scara};
 use poecal_fuzz::BETWEEN;
 
 const DOCUMENT: &str = include_str!("../../../docs/file-formats.md");
@@ -104,6 +106,20 @@ fn main() {
         "\u{feff}# c\r\n\"id\";joint1[deg];joint2[deg];joint3[mm];joint4;x[mm];y[mm];z[mm];target;set\r\n1;12,5;-40;100;0;512,3;-40;130,5;\"a \"\"b\"\"\";fit\r\n2;3;15,25;50;1;540,7;102;112;b;held_out\r\n",
     );
     put("measurements", "mapped", &both(MAPPED, OTHER_MAP));
+    for (name, text) in CAMERAS {
+        put("cameras", name, text);
+    }
+    for (name, text) in BOARDS {
+        put("boards", name, text);
+    }
+    let all = messages();
+    put("messages", "lines", &all.join("\n"));
+    // Blocks, and without the lens.
+    put(
+        "messages",
+        "blocks",
+        &format!("---\n{}", all.iter().map(|it| block(it)).collect::<Vec<_>>().join("\n---\n")),
+    );
     put("joints", "points", &points);
     put("joints", "ids", "id,joint1,joint2,joint3,joint4\na,0.1,0.2,0.1,1\n\"b,c\",0.2,0.1,0,-1\n");
     for (name, robot, kind, count) in [
@@ -188,3 +204,117 @@ const OTHER_MAP: &str = "separator = \";\"\ndecimal = \",\"\npose = \"target_fro
 /// What it reads; `joint4` says whose joints they are.
 const MAPPED: &str = "run;phase;A1;A2;joint4;A4;px;py;pz;a;b;c;s\n1;train;12,5;-40;100;10;512,31;-40,02;130,9;1;2;3;0,1\n\
      2;test;-3;15,25;50;20;540,77;102,4;112,18;4;5;6;0,1\n";
+
+const CAMERAS: [(&str, &str); 8] = [
+    (
+        "opencv",
+        "yaml\n%YAML:1.0\n---\nimage_width: 1920\nimage_height: 1200\ncamera_matrix: !!opencv-matrix\n   rows: 3\n   cols: 3\n   dt: d\n   \
+         data: [ 1.4e+03, 0., 960.5, 0., 1400., 600.25, 0., 0., 1. ]\ndistortion_coefficients: !!opencv-matrix\n   rows: 1\n   cols: 5\n   dt: d\n   \
+         data: [ -0.1, 0.02, 1e-4, -2e-4, 0. ]\n",
+    ),
+    (
+        "ros",
+        "yaml\nimage_width: 640\nimage_height: 480\ncamera_name: wrist\ncamera_matrix:\n  rows: 3\n  cols: 3\n  data: [600, 0, 320, 0, 601, 240, 0, 0, 1]\n\
+         distortion_model: rational_polynomial\ndistortion_coefficients:\n  rows: 1\n  cols: 8\n  data: [0.1, 0.01, 0, 0, 0, 0.2, 0.01, 0]\n",
+    ),
+    (
+        "message",
+        "yaml\nheight: 480\nwidth: 640\ndistortion_model: plumb_bob\nd: [0.1, 0, 0, 0, 0]\nk: [600.0, 0.0, 320.0, 0.0, 601.0, 240.0, 0.0, 0.0, 1.0]\n",
+    ),
+    (
+        "kalibr",
+        "yaml\ncam0:\n  camera_model: pinhole\n  intrinsics: [461.6, 460.1, 362.7, 246.9]\n  distortion_model: equidistant\n  \
+         distortion_coeffs: [-0.01, 0.02, -0.03, 0.01]\n  resolution: [752, 480]\ncam1:\n  camera_model: pinhole\n  intrinsics: [461, 460, 362, 246]\n  \
+         distortion_model: radtan\n  distortion_coeffs: [-0.27, 0.06, 1e-4, 1e-5]\n  resolution: [752, 480]\n",
+    ),
+    ("industrial", "yaml\nintrinsics:\n  fx: 550.0\n  fy: 551.0\n  cx: 320.0\n  cy: 240.0\n"),
+    (
+        "visp",
+        "xml\n<?xml version=\"1.0\"?>\n<root>\n  <camera>\n    <name>hand</name>\n    <image_width>640</image_width>\n    <image_height>480</image_height>\n    \
+         <model>\n      <type>perspectiveProjWithDistortion</type>\n      <px>600.5</px>\n      <py>601.5</py>\n      <u0>320.1</u0>\n      <v0>240.2</v0>\n      \
+         <kud>0.12</kud>\n      <kdu>-0.11</kdu>\n    </model>\n  </camera>\n</root>\n",
+    ),
+    (
+        "table",
+        "csv\nname,fx,fy,cx,cy,k1,k2,p1,p2,k3,width,height\nleft,1400,1401,960,600,-0.1,0.01,1e-4,0,0,1920,1200\nright,1400,1401,960,600,,,,,,,\n",
+    ),
+    (
+        "versions",
+        "csv\n# two lenses\ncamera;version;model;fx;fy;cx;cy;k1;k2;k3;k4\na;1;fisheye;500,5;501;320;240;0,1;0;0;0\nb;2;;500;501;320;240;0;0;0;0\n",
+    ),
+];
+
+const BOARDS: [(&str, &str); 8] = [
+    (
+        "aprilgrid",
+        "yaml\ntarget_type: 'aprilgrid' # tags\ntagCols: 6\ntagRows: 5\ntagSize: 0.088\ntagSpacing: 0.3\ncodeOffset: 0\n",
+    ),
+    (
+        "checkerboard",
+        "yaml\ntarget_type: checkerboard\ntargetCols: 6\ntargetRows: 7\nrowSpacingMeters: 0.06\ncolSpacingMeters: 0.06\n",
+    ),
+    (
+        "circlegrid",
+        "yaml\ntarget_type: circlegrid\ntargetCols: 4\ntargetRows: 11\nspacingMeters: 0.02\nasymmetricGrid: true\n",
+    ),
+    (
+        "industrial",
+        "yaml\ntarget_finder:\n  type: ModifiedCircleGridTargetFinder\n  rows: 10\n  cols: 12\n  spacing: 0.0254 # m\n",
+    ),
+    (
+        "charuco",
+        "yaml\ntarget_finder:\n  type: CharucoGridTargetFinder\n  rows: 7\n  cols: 5\n  chessboard_dim: 0.036\n  aruco_marker_dim: 0.018\n  dictionary: 10\n",
+    ),
+    (
+        "opencv",
+        "xml\n<?xml version=\"1.0\"?>\n<opencv_storage><Settings>\n<BoardSize_Width>9</BoardSize_Width>\n<BoardSize_Height>6</BoardSize_Height>\n\
+         <Square_Size>25</Square_Size>\n<Marker_Size>18</Marker_Size>\n<ArUco_Dict_Name>DICT_4X4_50</ArUco_Dict_Name>\n\
+         <Calibrate_Pattern>\"CHARUCOBOARD\"</Calibrate_Pattern>\n</Settings></opencv_storage>\n",
+    ),
+    (
+        "points",
+        "csv\nboard,target,x[mm],y[mm],z[mm]\ncube,a,0,0,0\ncube,b,30,0,0\ncube,7,30,30.5,1\nother,a,0,0,0\n",
+    ),
+    ("corners", "csv\ncorner;x_mm;y_mm;z_mm\n0;0;0;0\n1;27,5;0;0\n2;0;27,5;0\n"),
+];
+
+/// Messages of robot_calibration in JSON: pictures of a board before a camera, and where an arm has its corners.
+fn messages() -> Vec<String> {
+    let session = Simulation { count: 6, seed: 5, ..Simulation::default() };
+    let usual = PictureSimulation::usual(session, true);
+    let board = read_boards("chessboard:6x5:40mm").unwrap().remove(0);
+    let lens = Lens::pinhole([1400.0, 1400.0], [960.0, 600.0]);
+    let made = usual.before(board.clone(), lens).run(&elbow()).unwrap();
+    let list = |all: Vec<String>| all.join(", ");
+    let point = |frame: &str, [x, y]: [f64; 2]| {
+        format!(
+            "{{\"header\": {{\"frame_id\": \"{frame}\"}}, \"point\": {{\"x\": {x:.4}, \"y\": {y:.4}, \"z\": 0.0}}}}"
+        )
+    };
+    let message = |(at, picture): (usize, &Picture)| {
+        let names = list(made.data.reading_names().iter().map(|it| format!("\"{it}\"")).collect());
+        let readings = list(made.data.readings(at).iter().map(|it| format!("{it:.6}")).collect());
+        let seen =
+            list(picture.corners.iter().map(|it| point("optical", [it.pixel.x, it.pixel.y])).collect());
+        let place = |it: &Corner| {
+            let point_m = board.points[it.point as usize];
+            point("checkerboard", [point_m.x, point_m.y])
+        };
+        let own = list(picture.corners.iter().map(place).collect());
+        format!(
+            "{{\"joint_states\": {{\"name\": [\"head_pan\", {names}], \"position\": [0.5, {readings}]}}, \"observations\": [\
+             {{\"sensor_name\": \"eye\", \"features\": [{seen}], \"ext_camera_info\": {{\"camera_info\": {{\"width\": 1920, \"height\": 1200, \
+             \"distortion_model\": \"plumb_bob\", \"d\": [0.0, 0.0, 0.0, 0.0, 0.0], \"k\": [1400.0, 0, 960.0, 0, 1400.0, 600.0, 0, 0, 1]}}}}}}, \
+             {{\"sensor_name\": \"arm\", \"features\": [{own}]}}]}}"
+        )
+    };
+    made.data.pictures.all.iter().enumerate().map(message).collect()
+}
+
+/// A message with its outer keys on lines of their own, without the lens and the arm.
+fn block(message: &str) -> String {
+    let (states, rest) = message.split_once(", \"observations\": ").unwrap();
+    let states = states.strip_prefix("{\"joint_states\": ").unwrap();
+    let (seen, _) = rest.split_once(", \"ext_camera_info\"").unwrap();
+    format!("joint_states: {states}\nobservations:\n  {seen}}}]")
+}

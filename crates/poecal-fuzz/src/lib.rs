@@ -8,6 +8,7 @@
 #![allow(clippy::panic, clippy::expect_used, clippy::unwrap_used)]
 
 mod mutator;
+mod one_file;
 mod properties;
 pub mod targets;
 
@@ -31,13 +32,16 @@ pub struct Target {
 }
 
 /// All of them.
-pub const TARGETS: [Target; 12] = [
+pub const TARGETS: [Target; 15] = [
     Target { name: "urdf", run: targets::urdf, trials: 1500 },
     Target { name: "robot_toml", run: targets::robot_toml, trials: 1500 },
     Target { name: "foreign", run: targets::foreign, trials: 3000 },
     Target { name: "measurements", run: targets::measurements, trials: 6000 },
     Target { name: "mapping", run: targets::mapping, trials: 10000 },
     Target { name: "joints", run: targets::joints, trials: 10000 },
+    Target { name: "cameras", run: targets::cameras, trials: 20000 },
+    Target { name: "boards", run: targets::boards, trials: 60000 },
+    Target { name: "messages", run: targets::messages, trials: 300 },
     Target { name: "residuals", run: targets::residuals, trials: 5000 },
     Target { name: "settings", run: targets::settings, trials: 20000 },
     Target { name: "calibration", run: targets::calibration, trials: 1000 },

@@ -3,6 +3,7 @@
 mod calibration;
 mod mapping;
 mod models;
+mod pictures;
 mod pipeline;
 mod programs;
 mod residuals;
@@ -12,6 +13,7 @@ mod tables;
 pub use calibration::{calibration, report};
 pub use mapping::mapping;
 pub use models::{foreign, robot_toml, urdf};
+pub use pictures::{boards, cameras, messages};
 pub use pipeline::pipeline;
 pub use programs::programs;
 pub use residuals::residuals;
