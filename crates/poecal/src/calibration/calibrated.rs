@@ -43,9 +43,9 @@ impl<'a> Run<'a> {
             fit = self.fit_with(&ratios, &again, self.options.robust)?;
         }
         // A loop where there are pictures: fit, what their corners share, fit.
-        let mut optics = Optics::of(&self);
+        let (mut optics, mut pace) = (Optics::of(&self), pictures::Pace::default());
         for _ in 0..pictures::ROUNDS {
-            let Some(data) = self.renewed_pictures(&ratios, &fit, &mut optics) else { break };
+            let Some(data) = self.renewed_pictures(&ratios, &fit, (&mut optics, &mut pace)) else { break };
             self.data = Cow::Owned(data);
             start = self.register();
             fit = self.fit_with(&ratios, &start, self.options.robust)?;

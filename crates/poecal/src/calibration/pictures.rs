@@ -20,6 +20,36 @@ const FLIPPED_RAD: f64 = 0.2;
 /// Times the noise of its best pose up to which a pose near the prediction is taken instead.
 const AS_GOOD: f64 = 3.0;
 
+/// Most times its step that a round goes.
+const FASTEST: f64 = 4.0;
+
+/// How fast the rounds approach the common error that they agree with: each alone goes a share of the way, the smaller the less its pictures say of
+/// it.
+#[derive(Default)]
+pub(super) struct Pace {
+    /// Where the last round began, as logarithms of shift and turn, and its step.
+    last: Option<([f64; 2], [f64; 2])>,
+}
+
+impl Pace {
+    /// The common error at which the steps of this round and the last would end, if they shrink evenly: between the step and [`FASTEST`] times it.
+    fn ahead(&mut self, from: CommonError, to: CommonError) -> CommonError {
+        let logs = |it: CommonError| [it.shift_m, it.turn_rad].map(f64::ln);
+        let (begin, end) = (logs(from), logs(to));
+        let step = [end[0] - begin[0], end[1] - begin[1]];
+        let last = self.last.replace((begin, step));
+        let Some((last_begin, last_step)) = last.filter(|_| from.about == to.about) else { return to };
+        let next = [0, 1].map(|k| {
+            let factor = (begin[k] - last_begin[k]) / (last_step[k] - step[k]);
+            let is_even = last_step[k] * step[k] > 0.0 && factor.is_finite();
+            let factor = if is_even && factor < 0.0 { FASTEST } else { factor };
+            begin[k] + step[k] * if is_even { factor.clamp(1.0, FASTEST) } else { 1.0 }
+        });
+        let [shift_m, turn_rad] = next.map(|it| it.exp().max(CommonError::FINEST));
+        CommonError { shift_m, turn_rad, ..to }
+    }
+}
+
 /// A sighting, and how far its row is off the prediction.
 type Seen = (Sighting, Vector6<f64>);
 
@@ -30,7 +60,7 @@ impl Run<'_> {
         &self,
         ratios: &[Noise],
         fit: &RobustFit,
-        optics: &mut Option<Optics>,
+        (optics, pace): (&mut Option<Optics>, &mut Pace),
     ) -> Option<Dataset> {
         if self.data.pictures.is_empty() {
             return None;
@@ -71,6 +101,7 @@ impl Run<'_> {
         let spreads = self.spreads_of_pictures(information.as_ref());
         let common = self.common_error((fit, numbers), (&found, &spreads), session.length_m);
         let before = pictures.common;
+        let common = pace.ahead(before, common);
         let differs = |a: f64, b: f64| (a / b).ln().abs() > CHANGE;
         let same = common.about == before.about
             && !differs(common.shift_m, before.shift_m)

@@ -41,6 +41,11 @@ impl Default for CommonError {
 const UNDETERMINED: f64 = 1e-12;
 
 impl CommonError {
+    /// Corners whose errors are their own.
+    pub const NONE: CommonError = CommonError { shift_m: 0.0, turn_rad: 0.0, about: Centre::Board };
+    /// Below it a common error is none, m and rad.
+    pub const FINEST: f64 = 1e-6;
+
     /// `W = (H⁻¹ + Q)^{-1/2}`, what whitens the pose of a picture whose corners have the information H (1/m², 1/rad²) and share an error of the
     /// covariance Q; directions that the corners do not determine have no weight. Symmetric where a radian counts `length_m`.
     #[must_use]
@@ -116,7 +121,7 @@ impl CommonError {
 }
 
 /// Smallest and largest standard deviations that are sought, metres.
-const SMALLEST: f64 = 1e-6;
+const SMALLEST: f64 = CommonError::FINEST;
 const LARGEST: f64 = 0.1;
 
 /// Squares of six numbers as a loss that a picture of another configuration does not move: linear beyond 5 standard deviations of each.

@@ -63,22 +63,39 @@ impl NoiseShape {
 
     /// The same for numbers of a measurement: those of its pose change, others stay. Each of them has `N` parts.
     pub(crate) fn whiten<const N: usize>(&self, channels: &Channels, numbers: &mut [[f64; N]]) {
-        let firsts = [(Quantity::Position, 0), (Quantity::Rotation, 3)];
-        let place = |k: usize| {
-            let of = |&(quantity, first): &(Quantity, usize)| {
-                (channels[k].quantity == quantity).then(|| first + channels[k].component())
-            };
-            firsts.iter().find_map(of)
-        };
-        let mut before = [[0.0; N]; NUMBERS];
         let own = channels.len();
+        let mut before = [[0.0; N]; NUMBERS];
         before[..own].copy_from_slice(&numbers[..own]);
-        for (k, number) in numbers.iter_mut().enumerate().take(own) {
-            let Some(row) = place(k) else { continue };
-            *number = std::array::from_fn(|part| {
-                let of = |l: usize| place(l).map_or(0.0, |column| self.0[(row, column)] * before[l][part]);
-                (0..own).map(of).sum()
-            });
+        if channels.of(Quantity::Position) == (0..3) && channels.of(Quantity::Rotation) == (3..NUMBERS) {
+            self.whiten_places(std::array::from_fn(Some), &before, numbers);
+            return;
+        }
+        let mut places = [None; NUMBERS];
+        for (quantity, first) in [(Quantity::Position, 0), (Quantity::Rotation, 3)] {
+            for k in channels.of(quantity) {
+                places[k] = Some(first + channels[k].component());
+            }
+        }
+        self.whiten_places(places, &before, numbers);
+    }
+
+    /// The same by the row of the shape that each number belongs to, if it belongs to one.
+    #[inline]
+    fn whiten_places<const N: usize>(
+        &self,
+        places: [Option<usize>; NUMBERS],
+        before: &[[f64; N]; NUMBERS],
+        numbers: &mut [[f64; N]],
+    ) {
+        for (number, row) in numbers.iter_mut().zip(places) {
+            let Some(row) = row else { continue };
+            let mut sum = [0.0; N];
+            for (before, column) in before.iter().zip(places) {
+                let Some(column) = column else { continue };
+                let factor = self.0[(row, column)];
+                sum.iter_mut().zip(before).for_each(|(sum, value)| *sum += factor * value);
+            }
+            *number = sum;
         }
     }
 }
