@@ -92,37 +92,51 @@ def poecal_peer(poecal: Path) -> Peer:
     return Peer("poecal", ("pose", "point"), calibrate)
 
 
-def poecal_monte_carlo() -> tuple[list[Peer], str | None]:
-    """The benchmark `monte_carlo` of the library, which prints what the peers print."""
-    command = ["cargo", "bench", "-p", "poecal", "--bench", "monte_carlo", "--no-run", "--message-format", "json"]
+def built_bench(name: str) -> tuple[str | None, str | None]:
+    """A benchmark of the library that prints what the peers print, or why there is none."""
+    command = ["cargo", "bench", "-p", "poecal", "--bench", name, "--no-run", "--message-format", "json"]
     try:
         built = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
     except OSError:
-        return [], "poecal, Monte Carlo: found no cargo, which builds it"
+        return None, "found no cargo, which builds it"
     artifacts = [json.loads(line) for line in built.stdout.splitlines() if line.startswith("{")]
-    programs = [one["executable"] for one in artifacts if one.get("executable") and one["target"]["name"] == "monte_carlo"]
-    if not programs:
-        return [], f"poecal, Monte Carlo: cannot be built: {built.stderr.strip().splitlines()[-1]}"
+    programs = [one["executable"] for one in artifacts if one.get("executable") and one["target"]["name"] == name]
+    return (programs[0], None) if programs else (None, f"cannot be built: {built.stderr.strip().splitlines()[-1]}")
+
+
+def poecal_monte_carlo() -> tuple[list[Peer], str | None]:
+    """The benchmark `monte_carlo`."""
+    program, missing = built_bench("monte_carlo")
+    if program is None:
+        return [], f"poecal, Monte Carlo: {missing}"
 
     def repeat(problem: Problem, folder: Path) -> dict:
-        return printed([programs[0], problem.model, folder / "exact.csv", folder / "held_out.csv", problem.fits], problem)
+        return printed([program, problem.model, folder / "exact.csv", folder / "held_out.csv", problem.fits], problem)
 
     return [Peer("poecal", ("monte_carlo",), repeat)], None
 
 
-def ceres_peers() -> tuple[list[Peer], str | None]:
+def compiled(name: str) -> tuple[Path | None, str | None]:
+    """A program with Ceres, or why there is none."""
     install = "apt-get install g++ libceres-dev libeigen3-dev"
     compiler = os.environ.get("CXX", "g++")
     if shutil.which(compiler) is None:
-        return [], f"Ceres: found no {compiler}; {install}"
+        return None, f"Ceres: found no {compiler}; {install}"
     BUILD.mkdir(parents=True, exist_ok=True)
-    program = BUILD / "ceres_peer"
+    program = BUILD / name
     flags = ["-std=c++17", "-O3", "-march=native", "-DNDEBUG", "-I/usr/include/eigen3"]
-    command = [compiler, *flags, HERE / "ceres_peer.cpp", "-o", program, "-lceres", "-lglog"]
+    command = [compiler, *flags, HERE / f"{name}.cpp", "-o", program, "-lceres", "-lglog"]
     built = subprocess.run([str(word) for word in command], capture_output=True, text=True)
     if built.returncode != 0:
         reason = next((line for line in built.stderr.splitlines() if "error" in line), "the compiler failed")
-        return [], f"Ceres: {reason.strip()}; {install}"
+        return None, f"Ceres: {reason.strip()}; {install}"
+    return program, None
+
+
+def ceres_peers() -> tuple[list[Peer], str | None]:
+    program, missing = compiled("ceres_peer")
+    if program is None:
+        return [], missing
 
     def peer(solver: str) -> Peer:
         def solve(problem: Problem, folder: Path) -> dict:

@@ -161,6 +161,22 @@ impl Lens {
         Lens { focal_px: [fx, fy], centre_px: [cx, cy], distortion, ..*self }
     }
 
+    /// Square of the slope from the axis at which the places of a lens of Brown and Conrady turn back.
+    pub(crate) fn turn(&self) -> f64 {
+        const PARTS: u32 = 512;
+        const HALVINGS: usize = 50;
+        let Distortion::Brown(k) = self.distortion else { return STEEPEST * STEEPEST };
+        let at = |part: u32| STEEPEST * f64::from(part) / f64::from(PARTS);
+        let is_seen = |slope: f64| brown(&k, slope, 0.0).is_some();
+        let Some(part) = (1..=PARTS).find(|part| !is_seen(at(*part))) else { return STEEPEST * STEEPEST };
+        let (mut inside, mut outside) = (at(part - 1), at(part));
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (inside + outside);
+            if is_seen(middle) { inside = middle } else { outside = middle }
+        }
+        inside * inside
+    }
+
     /// Mean focal length, pixels.
     #[must_use]
     pub fn focal(&self) -> f64 {
@@ -213,7 +229,10 @@ fn brown(&[k1, k2, p1, p2, k3, k4, k5, k6]: &[f64; 8], a: f64, b: f64) -> Option
 /// Whether the place of a ray turns back before this square of its slope.
 fn turns_back(&[k1, k2, k3, k4, k5, k6]: &[f64; 6], s: f64) -> bool {
     const PARTS: usize = 16;
-    let is_plain = k1 >= 0.0 && k2 >= 0.0 && k3 >= 0.0 && k4 == 0.0 && k5 == 0.0 && k6 == 0.0;
+    // `1 + 3 k1 s + 5 k2 s² + 7 k3 s³` without what adds to it falls all the way: above zero here, it is so before.
+    let is_polynomial = k4 == 0.0 && k5 == 0.0 && k6 == 0.0;
+    let least = 1.0 + s * (3.0 * k1.min(0.0) + s * (5.0 * k2.min(0.0) + s * 7.0 * k3.min(0.0)));
+    let is_plain = is_polynomial && least > 0.0;
     !is_plain
         && (1..PARTS).any(|part| {
             let s = s * (part as f64 / PARTS as f64).powi(2);

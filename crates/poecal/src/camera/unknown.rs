@@ -200,6 +200,42 @@ impl PictureUnknowns {
         by
     }
 
+    /// The unknown numbers of a camera's lens: place among all, place among those of the lens, and prior.
+    pub(crate) fn of_lens(&self, camera: usize) -> impl Iterator<Item = (usize, usize, f64)> {
+        let own = self.parts.iter().filter(move |part| part.of == PictureUnknown::Lens(camera));
+        own.flat_map(|part| {
+            let both = part.places.iter().zip(&part.priors).enumerate();
+            both.map(|(k, (&place, &prior))| (part.first + k, place, prior))
+        })
+    }
+
+    /// How each point of a board moves with the numbers, metres by a deviation of their prior: place among all and direction; empty if they are
+    /// known.
+    pub(crate) fn by_points(&self, board: usize) -> Vec<Vec<(usize, Vector3<f64>)>> {
+        let Some(given) = self.boards.get(board) else { return Vec::new() };
+        let is_own = |part: &&Part| matches!(part.of, PictureUnknown::Board(at) | PictureUnknown::Markers(at) if at == board);
+        let parts: Vec<&Part> = self.parts.iter().filter(is_own).collect();
+        if parts.is_empty() {
+            return Vec::new();
+        }
+        let shape = Shape::of(given);
+        let of = |(at, point): (usize, &Vector3<f64>)| {
+            let columns = parts.iter().flat_map(|part| {
+                let first = if let PictureUnknown::Markers(_) = part.of { 3 * at } else { 0 };
+                let by: Vec<Vector3<f64>> = match part.of {
+                    PictureUnknown::Markers(_) => (0..3).map(|k| Vector3::ith(k, 1.0)).collect(),
+                    PictureUnknown::Lens(_) | PictureUnknown::Board(_) => {
+                        shape.by_numbers(point).column_iter().map(Into::into).collect()
+                    }
+                };
+                let all = by.into_iter().enumerate();
+                all.map(move |(k, by)| (part.first + first + k, by * part.priors[first + k]))
+            });
+            columns.collect()
+        };
+        given.points.iter().enumerate().map(of).collect()
+    }
+
     /// The numbers after a step, with their standard deviations in those of the prior.
     #[must_use]
     pub fn numbers(&self, step: &DVector<f64>, deviations: &[f64]) -> Vec<PictureNumber> {

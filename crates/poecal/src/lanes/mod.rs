@@ -1,5 +1,6 @@
 //! The hot path of a fit: several rows at a time, by vector instructions.
 mod columns;
+mod corners;
 mod dense;
 mod errors;
 mod frame;
@@ -17,6 +18,7 @@ mod turn;
 mod vector;
 mod work;
 
+pub(crate) use corners::{Brown, CornerProducts, Corners, MOTIONS};
 pub(crate) use dense::Factor;
 pub(crate) use errors::Frames;
 pub(crate) use gram::TILE;
@@ -25,8 +27,8 @@ pub(crate) use plan::{Along, Arm, DevicePlan, FixedMotion, JointPlan, PackedRows
 pub(crate) use rows::{Shape, ShapedRow};
 pub use simd::{SimdLevel, simd_levels, stated_level};
 pub(crate) use simd::{
-    by_best, cholesky, cosines_and_sines, errors, influences, inverse, last_links, solve, sum_gradient,
-    sum_plain_gradient, sum_plain_products, sum_products, whitened_columns,
+    by_best, cholesky, corner_products, cosines_and_sines, errors, influences, inverse, last_links, solve,
+    sum_gradient, sum_plain_gradient, sum_plain_products, sum_products, whitened_columns,
 };
 pub(crate) use totals::{Tiles, Totals};
 pub(crate) use vector::{WIDTH, Wide};

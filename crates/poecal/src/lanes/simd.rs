@@ -11,6 +11,7 @@ use pulp::wasm::Simd128;
 use pulp::x86::{V3, V3_512b, V4};
 
 use super::columns;
+use super::corners::{self, Brown, CornerProducts, Corners};
 use super::dense::{self, Factor};
 use super::errors::{self, Frames};
 use super::influence::{self, NUMBERS};
@@ -234,6 +235,16 @@ dispatch!(
         places: &[(usize, f64)],
         jacobian: &mut [[Wide; NUMBERS]],
         residual: &mut [Wide; NUMBERS]
+    )
+);
+dispatch!(
+    /// Products of the changes of the corners of one picture at a pose; with those of each corner's point if it is unknown.
+    corners::corner_products(
+        lens: &Brown,
+        pose: &[[f64; 4]; 3],
+        corners: &[Corners],
+        with_points: bool,
+        out: &mut CornerProducts
     )
 );
 dispatch!(

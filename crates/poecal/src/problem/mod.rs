@@ -1,6 +1,9 @@
 //! Rows × columns: the only place where measurements and parameters meet. Assembly of the normal equations, no algorithms.
 
 mod arranged;
+mod bundle;
+mod bundle_desk;
+mod bundle_solve;
 mod column_map;
 mod curvature;
 mod deviations;
@@ -17,6 +20,8 @@ mod scatter;
 mod without_effect;
 
 pub use crate::lanes::{SimdLevel, simd_levels, stated_level};
+pub use bundle::Bundle;
+pub use bundle_solve::Bundled;
 pub use layout::Layout;
 pub use prior::{Prior, TermPrior};
 pub use refit::Refit;

@@ -7,6 +7,7 @@
 mod arms;
 mod basin;
 mod blocks;
+mod bundle;
 mod calibration_file;
 mod cell;
 mod common;
