@@ -9,7 +9,7 @@ use crate::ellipse::{self, Dot};
 use crate::found::{Corner, Found, Kind, Rejected};
 use crate::gray::Gray;
 use crate::growth::Node;
-use crate::homography::Pair;
+use crate::homography::{Homography, Pair};
 use crate::lattice::{Lattice, lattices, map_near, prune};
 use crate::layout::Layout;
 use crate::median::median;
@@ -32,6 +32,11 @@ const COVERED: (f64, f64) = (4.0, 0.03);
 const SAME: (f64, f64) = (0.3, 0.03);
 /// Least part of the outer dots that must be seen.
 const OUTLINE: f64 = 0.55;
+/// How far from its middle a missing dot is looked at, units; largest difference from the paper of what is bare, as a part of half the contrast; and
+/// how many missing dots may be bare.
+const INSIDE: f64 = 0.12;
+const EVEN: f64 = 0.3;
+const GAPS: usize = 2;
 /// How far beyond the outer dots there is paper, from their middles, units.
 const PAPER: f64 = 0.8;
 
@@ -183,7 +188,7 @@ fn named(
     if named.len() * 20 < layout.corners() * 13 || named.len() < 6 {
         return Err(Rejected::Few(named.len()));
     }
-    if !has_outline(layout, &named) || !has_paper(gray, layout, &named) {
+    if !has_outline(layout, &named) || !has_paper(gray, layout, &named) || has_gaps(gray, layout, &named) {
         return Err(Rejected::Other);
     }
     let corners = corrected(layout, &named, radius);
@@ -285,6 +290,35 @@ fn has_paper(gray: &Gray, layout: &Layout, named: &Named) -> bool {
         }
     }
     kinds[0] * 9 <= kinds[1]
+}
+
+/// Whether there is bare paper where several dots should be: a part of another grid has its dots elsewhere, and what covers a board is seldom as even
+/// and as light as its paper.
+fn has_gaps(gray: &Gray, layout: &Layout, named: &Named) -> bool {
+    let all = pairs(layout, named);
+    let bare = |id: &usize| {
+        let point = layout.corner(*id);
+        let (map, _) = map_near(&all, point).filter(|it| it.1 < 2.1)?;
+        let near = named.iter().min_by(|a, b| {
+            let far = |it: &usize| (layout.corner(*it) - point).norm();
+            far(a.0).total_cmp(&far(b.0))
+        })?;
+        let paper = near.1.mean + near.1.half_contrast;
+        let own = levels(gray, &map, point, INSIDE)?;
+        Some(own.iter().all(|it| (it - paper).abs() < EVEN * near.1.half_contrast))
+    };
+    let missing = (0..layout.corners()).filter(|id| !named.contains_key(id));
+    missing.filter(|id| bare(id) == Some(true)).count() > GAPS
+}
+
+/// Levels at four places around a point of the board, so many units from it; `None` if one is not in the picture.
+fn levels(gray: &Gray, map: &Homography, point: Vector2<f64>, way: f64) -> Option<[f64; 4]> {
+    let mut found = [0.0; 4];
+    for (out, way) in found.iter_mut().zip([[way, 0.0], [-way, 0.0], [0.0, way], [0.0, -way]]) {
+        let place = map.map(point + Vector2::from(way)).filter(|it| gray.holds(*it, 1.0))?;
+        *out = gray.at(place);
+    }
+    Some(found)
 }
 
 /// The middles of the circles: with what the tilt moves the middle of their pictures taken away.

@@ -12,6 +12,8 @@ use crate::tagfit::{Cells, Fitted, fit};
 
 /// Bits below which a code with a wrong bit is none: too many quadrangles look like one.
 const FEW_BITS: usize = 6;
+/// Bits up to which clutter has codes without a wrong bit.
+const FEWEST_BITS: usize = 4;
 
 /// Finds all tags of a dictionary.
 pub(crate) fn detect(
@@ -37,7 +39,9 @@ pub(crate) fn of_quads(
         if tags.iter().any(|it| near(&it.1)) || (dictionary.bits() < FEW_BITS && !marker.exact) {
             continue;
         }
-        tags.extend(fit(gray, &cells(dictionary, &marker), &marker.corners, noise).map(|it| (marker.id, it)));
+        let fitted = fit(gray, &cells(dictionary, &marker), &marker.corners, noise);
+        let is_tag = |it: &Fitted| dictionary.bits() > FEWEST_BITS || it.is_evident();
+        tags.extend(fitted.filter(is_tag).map(|it| (marker.id, it)));
     }
     // A tag that is there twice is none: nobody knows which is meant.
     let once = |id: usize| tags.iter().filter(|it| it.0 == id).count() == 1;
