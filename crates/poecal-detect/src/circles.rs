@@ -32,6 +32,8 @@ const COVERED: (f64, f64) = (4.0, 0.03);
 const SAME: (f64, f64) = (0.3, 0.03);
 /// Least part of the outer dots that must be seen.
 const OUTLINE: f64 = 0.55;
+/// How far a missing dot may be from the nearest one that was found, units.
+const NEAR: f64 = 2.1;
 /// How far from its middle a missing dot is looked at, units; largest difference from the paper of what is bare, as a part of half the contrast; and
 /// how many missing dots may be bare.
 const INSIDE: f64 = 0.12;
@@ -234,7 +236,7 @@ fn seek(gray: &Gray, layout: &Layout, noise: f64, named: &mut Named, radius: f64
             continue;
         }
         let point = layout.corner(id);
-        let Some((map, nearest)) = map_near(&all, point).filter(|it| it.1 < 2.1) else { continue };
+        let Some((map, nearest)) = map_near(&all, point).filter(|it| it.1 < NEAR) else { continue };
         let (Some(place), Some(slope)) = (map.map(point), map.slope(point)) else { continue };
         let spread = slope * slope.transpose() * (radius * radius);
         let axes = spread.symmetric_eigen();
@@ -296,9 +298,9 @@ fn has_paper(gray: &Gray, layout: &Layout, named: &Named) -> bool {
 /// and as light as its paper.
 fn has_gaps(gray: &Gray, layout: &Layout, named: &Named) -> bool {
     let all = pairs(layout, named);
-    let bare = |id: &usize| {
+    let is_bare = |id: &usize| -> Option<bool> {
         let point = layout.corner(*id);
-        let (map, _) = map_near(&all, point).filter(|it| it.1 < 2.1)?;
+        let (map, _) = map_near(&all, point).filter(|it| it.1 < NEAR)?;
         let near = named.iter().min_by(|a, b| {
             let far = |it: &usize| (layout.corner(*it) - point).norm();
             far(a.0).total_cmp(&far(b.0))
@@ -308,7 +310,7 @@ fn has_gaps(gray: &Gray, layout: &Layout, named: &Named) -> bool {
         Some(own.iter().all(|it| (it - paper).abs() < EVEN * near.1.half_contrast))
     };
     let missing = (0..layout.corners()).filter(|id| !named.contains_key(id));
-    missing.filter(|id| bare(id) == Some(true)).count() > GAPS
+    missing.filter(|id| is_bare(id).unwrap_or(false)).count() > GAPS
 }
 
 /// Levels at four places around a point of the board, so many units from it; `None` if one is not in the picture.

@@ -213,12 +213,8 @@ impl Model {
             ];
             edge.add(row, level - base * light);
         }
-        let ((mut normal, mut right, squares), plain) = (edge.finished(), plain.finished());
-        let mut shades = normal.fixed_view_mut::<SHADES, SHADES>(UNKNOWNS - SHADES, UNKNOWNS - SHADES);
-        shades += plain.0;
-        let mut last = right.fixed_rows_mut::<SHADES>(UNKNOWNS - SHADES);
-        last += plain.1;
-        Sums { normal, right, squares: squares + plain.2 }
+        let (normal, right, squares) = edge.finished_with(plain);
+        Sums { normal, right, squares }
     }
 
     fn stepped(&self, step: &Unknowns) -> Self {

@@ -68,6 +68,19 @@ impl<const N: usize> Normal<N> {
         let right = SVector::from(self.right.map(|it| it[0] + it[1]));
         (SMatrix::from_fn(product), right, self.squares[0] + self.squares[1])
     }
+
+    /// The same with rows that have the last unknowns alone.
+    pub(crate) fn finished_with<const M: usize>(
+        self,
+        last: Normal<M>,
+    ) -> (SMatrix<f64, N, N>, SVector<f64, N>, f64) {
+        let ((mut normal, mut right, squares), last) = (self.finished(), last.finished());
+        let mut own = normal.fixed_view_mut::<M, M>(N - M, N - M);
+        own += last.0;
+        let mut own = right.fixed_rows_mut::<M>(N - M);
+        own += last.1;
+        (normal, right, squares + last.2)
+    }
 }
 
 #[cfg(test)]

@@ -369,13 +369,8 @@ impl Adder {
     }
 
     fn finished(self) -> Sums {
-        let Adder { limit, count, kept, .. } = self;
-        let ((mut normal, mut right, squares), plain) = (self.edge.finished(), self.plain.finished());
-        let mut shades = normal.fixed_view_mut::<SHADES, SHADES>(SHAPE, SHAPE);
-        shades += plain.0;
-        let mut last = right.fixed_rows_mut::<SHADES>(SHAPE);
-        last += plain.1;
-        let left = squares + plain.2;
+        let Adder { edge, plain, limit, count, kept } = self;
+        let (normal, right, left) = edge.finished_with(plain);
         // Without a limit none is beyond it.
         let beyond = if count > kept { (count - kept) as f64 * limit * limit } else { 0.0 };
         Sums { normal, right, squares: left + beyond, left, count, kept }

@@ -164,3 +164,24 @@ impl Run<'_> {
         spreads
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn steps_that_shrink_evenly_are_gone_at_once() {
+        let at = |log: f64| CommonError { shift_m: log.exp(), turn_rad: log.exp(), about: Centre::Board };
+        let mut pace = Pace::default();
+        // The first step alone, then half of it: together they end at -4 - 1.
+        assert_eq!(pace.ahead(at(-3.0), at(-4.0)), at(-4.0));
+        let ahead = pace.ahead(at(-4.0), at(-4.5));
+        println!("steps of 1 and 1/2 end at {:.6}", ahead.shift_m.ln());
+        assert!((ahead.shift_m.ln() + 5.0).abs() < 1e-12 && (ahead.turn_rad.ln() + 5.0).abs() < 1e-12);
+        // Steps that turn back go their own way.
+        assert!((pace.ahead(at(-5.0), at(-4.75)).shift_m.ln() + 4.75).abs() < 1e-12);
+        // Another centre is another error.
+        let other = CommonError { about: Centre::Camera, ..at(-4.9) };
+        assert_eq!(pace.ahead(at(-4.75), other), other);
+    }
+}

@@ -43,8 +43,8 @@ const UNDETERMINED: f64 = 1e-12;
 impl CommonError {
     /// Corners whose errors are their own.
     pub const NONE: CommonError = CommonError { shift_m: 0.0, turn_rad: 0.0, about: Centre::Board };
-    /// Below it a common error is none, m and rad.
-    pub const FINEST: f64 = 1e-6;
+    /// Smallest standard deviation that is sought, m and rad.
+    pub(crate) const FINEST: f64 = 1e-6;
 
     /// `W = (H⁻¹ + Q)^{-1/2}`, what whitens the pose of a picture whose corners have the information H (1/m², 1/rad²) and share an error of the
     /// covariance Q; directions that the corners do not determine have no weight. Symmetric where a radian counts `length_m`.
@@ -98,14 +98,14 @@ impl CommonError {
         };
         // Coordinate by coordinate, with steps that halve: two unknowns, and no derivative to get wrong.
         let (mut at, mut step) =
-            ([self.shift_m, self.turn_rad * length_m].map(|it| it.max(SMALLEST).ln()), 1.0);
+            ([self.shift_m, self.turn_rad * length_m].map(|it| it.max(Self::FINEST).ln()), 1.0);
         let mut best = surprise(at[0], at[1]);
         while step > 1e-2 {
             let mut moved = false;
             for k in 0..2 {
                 for sign in [step, -step] {
                     let mut other = at;
-                    other[k] = (other[k] + sign).clamp(SMALLEST.ln(), LARGEST.ln());
+                    other[k] = (other[k] + sign).clamp(Self::FINEST.ln(), LARGEST.ln());
                     let found = surprise(other[0], other[1]);
                     if found < best - 1e-9 {
                         (best, at, moved) = (found, other, true);
@@ -120,8 +120,7 @@ impl CommonError {
     }
 }
 
-/// Smallest and largest standard deviations that are sought, metres.
-const SMALLEST: f64 = CommonError::FINEST;
+/// Largest standard deviation that is sought, metres.
 const LARGEST: f64 = 0.1;
 
 /// Squares of six numbers as a loss that a picture of another configuration does not move: linear beyond 5 standard deviations of each.

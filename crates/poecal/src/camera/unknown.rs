@@ -192,10 +192,8 @@ impl PictureUnknowns {
     #[must_use]
     pub fn by_lens(&self, camera: usize, found: &Projection) -> Matrix2xX<f64> {
         let mut by = Matrix2xX::zeros(self.count());
-        for part in self.parts.iter().filter(|part| part.of == PictureUnknown::Lens(camera)) {
-            for (k, (&place, prior)) in part.places.iter().zip(&part.priors).enumerate() {
-                (0..2).for_each(|axis| by[(axis, part.first + k)] = found.by_lens[axis][place] * prior);
-            }
+        for (own, place, prior) in self.of_lens(camera) {
+            (0..2).for_each(|axis| by[(axis, own)] = found.by_lens[axis][place] * prior);
         }
         by
     }
@@ -203,10 +201,7 @@ impl PictureUnknowns {
     /// The unknown numbers of a camera's lens: place among all, place among those of the lens, and prior.
     pub(crate) fn of_lens(&self, camera: usize) -> impl Iterator<Item = (usize, usize, f64)> {
         let own = self.parts.iter().filter(move |part| part.of == PictureUnknown::Lens(camera));
-        own.flat_map(|part| {
-            let both = part.places.iter().zip(&part.priors).enumerate();
-            both.map(|(k, (&place, &prior))| (part.first + k, place, prior))
-        })
+        own.flat_map(Part::lens)
     }
 
     /// How each point of a board moves with the numbers, metres by a deviation of their prior: place among all and direction; empty if they are
@@ -220,18 +215,11 @@ impl PictureUnknowns {
         }
         let shape = Shape::of(given);
         let of = |(at, point): (usize, &Vector3<f64>)| {
-            let columns = parts.iter().flat_map(|part| {
-                let first = if let PictureUnknown::Markers(_) = part.of { 3 * at } else { 0 };
-                let by: Vec<Vector3<f64>> = match part.of {
-                    PictureUnknown::Markers(_) => (0..3).map(|k| Vector3::ith(k, 1.0)).collect(),
-                    PictureUnknown::Lens(_) | PictureUnknown::Board(_) => {
-                        shape.by_numbers(point).column_iter().map(Into::into).collect()
-                    }
-                };
-                let all = by.into_iter().enumerate();
-                all.map(move |(k, by)| (part.first + first + k, by * part.priors[first + k]))
-            });
-            columns.collect()
+            let mut columns = Vec::new();
+            for part in &parts {
+                part.moves(at, (point, &shape), |place, way, prior| columns.push((place, way * prior)));
+            }
+            columns
         };
         given.points.iter().enumerate().map(of).collect()
     }
@@ -314,26 +302,44 @@ impl Part {
         (pose, shape, given): (&Pose, Option<&Shape>, &[Board]),
         out: &mut Vec<(usize, Vector2<f64>)>,
     ) {
+        if let PictureUnknown::Lens(_) = self.of {
+            out.extend(self.lens().map(|(own, place, prior)| {
+                (own, Vector2::new(seen.by_lens[0][place], seen.by_lens[1][place]) * prior)
+            }));
+            return;
+        }
         let on_board: Matrix2x3<f64> = seen.by_point * pose.rotation;
         let at = corner.point as usize;
+        let (PictureUnknown::Lens(board) | PictureUnknown::Board(board) | PictureUnknown::Markers(board)) =
+            self.of;
+        let point = given.get(board).and_then(|it| it.points.get(at));
+        let Some((shape, point)) = shape.zip(point) else { return };
+        self.moves(at, (point, shape), |own, way, prior| out.push((own, on_board * way * prior)));
+    }
+
+    /// The numbers of a lens: place among all, place among those of the lens, and prior.
+    fn lens(&self) -> impl Iterator<Item = (usize, usize, f64)> {
+        let both = self.places.iter().zip(&self.priors).enumerate();
+        both.map(|(k, (&place, &prior))| (self.first + k, place, prior))
+    }
+
+    /// How a point of a board moves with its numbers: place among all, direction, and prior of each.
+    fn moves(
+        &self,
+        at: usize,
+        (point, shape): (&Vector3<f64>, &Shape),
+        mut each: impl FnMut(usize, Vector3<f64>, f64),
+    ) {
         match self.of {
-            PictureUnknown::Lens(_) => {
-                out.extend(self.places.iter().zip(&self.priors).enumerate().map(|(k, (&place, prior))| {
-                    let by = Vector2::new(seen.by_lens[0][place], seen.by_lens[1][place]);
-                    (self.first + k, by * *prior)
-                }));
-            }
-            PictureUnknown::Board(board) => {
-                let point = given.get(board).and_then(|it| it.points.get(at));
-                let Some((shape, point)) = shape.zip(point) else { return };
-                let by = on_board * shape.by_numbers(point);
-                out.extend(
-                    self.priors.iter().enumerate().map(|(k, prior)| (self.first + k, by.column(k) * *prior)),
-                );
+            PictureUnknown::Lens(_) => {}
+            PictureUnknown::Board(_) => {
+                let ways = shape.by_numbers(point);
+                let all = ways.column_iter().zip(&self.priors).enumerate();
+                all.for_each(|(k, (way, prior))| each(self.first + k, way.into(), *prior));
             }
             PictureUnknown::Markers(_) => {
                 let first = self.first + 3 * at;
-                out.extend((0..3).map(|k| (first + k, on_board.column(k) * PLACE_M)));
+                (0..3).for_each(|k| each(first + k, Vector3::ith(k, 1.0), PLACE_M));
             }
         }
     }

@@ -84,22 +84,15 @@ impl RowError {
     /// The components of a quantity as a vector, zero where one was not measured and beyond those that it has.
     #[must_use]
     pub fn vector(&self, quantity: Quantity) -> Vector3<f64> {
-        let part = self.part(quantity);
         let mut vector = Vector3::zeros();
-        if part.len() == quantity.components() {
-            vector.iter_mut().zip(part).for_each(|(to, from)| *to = *from);
-        } else {
-            let own = self.numbers().filter(|(channel, _)| channel.quantity == quantity);
-            own.for_each(|(channel, value)| vector[channel.component()] = value);
-        }
+        self.channels.components(quantity).for_each(|(k, component)| vector[component] = self.values[k]);
         vector
     }
 
     /// Which components of a quantity were measured.
     pub(crate) fn measured(&self, quantity: Quantity) -> [bool; Quantity::MOST_COMPONENTS] {
         let mut found = [false; Quantity::MOST_COMPONENTS];
-        let own = self.channels.iter().filter(|channel| channel.quantity == quantity);
-        own.for_each(|channel| found[channel.component()] = true);
+        self.channels.components(quantity).for_each(|(_, component)| found[component] = true);
         found
     }
 

@@ -3,6 +3,7 @@
 use pulp::Simd;
 
 use super::gram::{TILE, add_products, sums_len};
+use super::plan::FixedMotion;
 use super::vector::{Lanes, Vectors, WIDTH, Wide, parts};
 
 /// Motions of a board in its camera's frame: shifts, and turns about its origin.
@@ -70,12 +71,12 @@ impl CornerProducts {
     }
 }
 
-/// Makes the products of a picture at a pose (rows of the 3 × 4 matrix); with those of each corner's point if it is unknown.
+/// Makes the products of a picture at a pose; with those of each corner's point if it is unknown.
 #[inline(always)]
 pub(super) fn corner_products<S: Simd>(
     simd: S,
     lens: &Brown,
-    pose: &[[f64; 4]; 3],
+    pose: &FixedMotion,
     corners: &[Corners],
     with_points: bool,
     out: &mut CornerProducts,
@@ -179,7 +180,7 @@ fn pair<S: Simd>(simd: S, columns: &[Wide], at: usize, part: usize) -> [Lanes<S>
 #[inline(always)]
 fn write<S: Simd>(
     simd: S,
-    (lens, pose): (&Brown, &[[f64; 4]; 3]),
+    (lens, pose): (&Brown, &FixedMotion),
     corners: &Corners,
     (out, stride, columns): (&mut [Wide], usize, usize),
     part: usize,
@@ -195,7 +196,7 @@ fn write<S: Simd>(
     let two = Lanes::splat(simd, 2.0);
     let root = Lanes::load(simd, &corners.root, part);
     let point = Vectors::load(simd, &corners.point, part);
-    let [[a, b, c, p], [d, e, f, q], [g, h, i, r]] = *pose;
+    let FixedMotion { columns: [[a, d, g], [b, e, h], [c, f, i]], translation: [p, q, r] } = *pose;
     let turn = [
         Vectors::splat(simd, &[a, b, c]),
         Vectors::splat(simd, &[d, e, f]),

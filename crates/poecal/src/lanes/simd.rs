@@ -241,7 +241,7 @@ dispatch!(
     /// Products of the changes of the corners of one picture at a pose; with those of each corner's point if it is unknown.
     corners::corner_products(
         lens: &Brown,
-        pose: &[[f64; 4]; 3],
+        pose: &FixedMotion,
         corners: &[Corners],
         with_points: bool,
         out: &mut CornerProducts

@@ -62,6 +62,14 @@ impl Channels {
         usize::from(first)..usize::from(first + count)
     }
 
+    /// Places of the numbers of a quantity with their components: in order where all are measured, else by name.
+    #[inline]
+    pub(crate) fn components(&self, quantity: Quantity) -> impl Iterator<Item = (usize, usize)> {
+        let own = self.of(quantity);
+        let (first, all) = (own.start, own.len() == quantity.components());
+        own.map(move |k| (k, if all { k - first } else { self.all[k].component() }))
+    }
+
     /// Whether a number of this quantity is measured.
     #[must_use]
     #[inline]

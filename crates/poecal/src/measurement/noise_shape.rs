@@ -63,39 +63,22 @@ impl NoiseShape {
 
     /// The same for numbers of a measurement: those of its pose change, others stay. Each of them has `N` parts.
     pub(crate) fn whiten<const N: usize>(&self, channels: &Channels, numbers: &mut [[f64; N]]) {
-        let own = channels.len();
         let mut before = [[0.0; N]; NUMBERS];
-        before[..own].copy_from_slice(&numbers[..own]);
-        if channels.of(Quantity::Position) == (0..3) && channels.of(Quantity::Rotation) == (3..NUMBERS) {
-            self.whiten_places(std::array::from_fn(Some), &before, numbers);
-            return;
-        }
-        let mut places = [None; NUMBERS];
+        before[..channels.len()].copy_from_slice(&numbers[..channels.len()]);
+        // Numbers of the pose, each with its row of the shape.
+        let (mut rows, mut count) = ([(0, 0); NUMBERS], 0);
         for (quantity, first) in [(Quantity::Position, 0), (Quantity::Rotation, 3)] {
-            for k in channels.of(quantity) {
-                places[k] = Some(first + channels[k].component());
+            for (k, component) in channels.components(quantity) {
+                rows[count] = (k, first + component);
+                count += 1;
             }
         }
-        self.whiten_places(places, &before, numbers);
-    }
-
-    /// The same by the row of the shape that each number belongs to, if it belongs to one.
-    #[inline]
-    fn whiten_places<const N: usize>(
-        &self,
-        places: [Option<usize>; NUMBERS],
-        before: &[[f64; N]; NUMBERS],
-        numbers: &mut [[f64; N]],
-    ) {
-        for (number, row) in numbers.iter_mut().zip(places) {
-            let Some(row) = row else { continue };
-            let mut sum = [0.0; N];
-            for (before, column) in before.iter().zip(places) {
-                let Some(column) = column else { continue };
+        for &(k, row) in &rows[..count] {
+            numbers[k] = [0.0; N];
+            for &(l, column) in &rows[..count] {
                 let factor = self.0[(row, column)];
-                sum.iter_mut().zip(before).for_each(|(sum, value)| *sum += factor * value);
+                numbers[k].iter_mut().zip(before[l]).for_each(|(sum, value)| *sum += factor * value);
             }
-            *number = sum;
         }
     }
 }

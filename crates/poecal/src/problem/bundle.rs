@@ -3,13 +3,12 @@
 
 use nalgebra::{DVector, Matrix6, Vector6};
 
+use super::Layout;
 use super::bundle_desk::{Desk, MOST_COLUMNS, PointMotions, add_points, add_products, shared_root};
-use super::{Layout, Problem};
-use crate::camera::{Board, Camera, CommonError, Distortion, Lens, Picture, PictureUnknowns};
+use crate::camera::{Board, Camera, CommonError, Distortion, Picture, PictureUnknowns};
 use crate::estimate::{Estimate, Linkage, Session};
-use crate::lanes::{self, Brown, MOTIONS, SimdLevel};
+use crate::lanes::{self, Brown, FixedMotion, MOTIONS, SimdLevel};
 use crate::lie::Pose;
-use crate::measurement::Noise;
 use crate::parameters::Parameter;
 use crate::solve::Normal;
 use crate::threads;
@@ -22,14 +21,15 @@ const UNSEEN: f64 = 1e4;
 
 /// Cameras and boards of one pass, as the kernel needs them.
 struct Scene {
-    lenses: Vec<Option<Brown>>,
+    lenses: Vec<Brown>,
     boards: Vec<Board>,
 }
 
 /// A bundle of pictures, ready for a fit.
 pub struct Bundle<'a> {
     session: Session<'a>,
-    rows: Vec<u32>,
+    /// Indices of the pictures.
+    pictures: Vec<usize>,
     pub(super) layout: Layout,
     numbers: PictureUnknowns,
     /// Of each point of each board.
@@ -52,15 +52,16 @@ impl<'a> Bundle<'a> {
     ) -> Option<Self> {
         let pictures = &session.data.pictures;
         let is_brown = |it: &Camera| matches!(it.lens.distortion, Distortion::Brown(_));
-        let rows: Vec<u32> = rows.iter().copied().filter(|row| pictures.of_row(*row).is_some()).collect();
-        let problem = Problem::new(session, rows.clone(), free, Noise::new(1.0, 1.0));
-        let layout = problem.layout().clone();
-        let common = pictures.common;
-        let by_points = (0..pictures.boards.len()).map(|board| numbers.by_points(board)).collect();
-        let of_lenses = (0..pictures.cameras.len()).map(|it| numbers.of_lens(it).collect()).collect();
-        let level = SimdLevel::best();
-        let found = Bundle { session, rows, layout, numbers, by_points, of_lenses, common, level };
-        pictures.cameras.iter().all(is_brown).then_some(found)
+        pictures.cameras.iter().all(is_brown).then(|| Bundle {
+            pictures: rows.iter().filter_map(|row| pictures.of_row(*row)).collect(),
+            layout: Layout::new(free, session.length_m),
+            by_points: (0..pictures.boards.len()).map(|board| numbers.by_points(board)).collect(),
+            of_lenses: (0..pictures.cameras.len()).map(|it| numbers.of_lens(it).collect()).collect(),
+            common: pictures.common,
+            level: SimdLevel::best(),
+            session,
+            numbers,
+        })
     }
 
     /// The same with another error that the corners of a picture share.
@@ -79,16 +80,19 @@ impl<'a> Bundle<'a> {
     #[must_use]
     pub fn normal(&self, estimate: &Estimate, numbers: &DVector<f64>) -> Normal {
         let (cameras, boards) = self.numbers.at(numbers);
-        let unknown = |camera: usize| self.of_lenses.get(camera).map_or(0, Vec::len);
-        let lenses = cameras.iter().enumerate().map(|(at, it)| brown(&it.lens, unknown(at))).collect();
-        let scene = Scene { lenses, boards };
+        let lens = |(camera, lens): (&Camera, &Vec<_>)| Brown {
+            numbers: camera.lens.numbers(),
+            unknown: lens.len(),
+            turn: camera.lens.turn(),
+        };
+        let scene = Scene { lenses: cameras.iter().zip(&self.of_lenses).map(lens).collect(), boards };
         let linkage = Linkage::new(estimate);
         let robot = self.layout.dim();
         let n = robot + numbers.len();
-        let parts = threads::map_chunks(&self.rows, CHUNK, |_, rows| {
+        let parts = threads::map_chunks(&self.pictures, CHUNK, |_, pictures| {
             let mut sums = Normal::new(n);
             let mut desk = Desk::new(robot, n, scene.lenses.len());
-            rows.iter().for_each(|row| self.add(*row, (&scene, &linkage), &mut desk, &mut sums));
+            pictures.iter().for_each(|at| self.add(*at, (&scene, &linkage), &mut desk, &mut sums));
             self.add_lens_points(&desk.points, &mut sums);
             sums
         });
@@ -99,31 +103,30 @@ impl<'a> Bundle<'a> {
             total.gradient[robot + k] -= value;
             total.cost += 0.5 * value * value;
         }
+        total.residuals += numbers.len();
         total
     }
 }
 
 impl Bundle<'_> {
     /// Adds the corners of one picture.
-    fn add(&self, row: u32, (scene, linkage): (&Scene, &Linkage), desk: &mut Desk, sums: &mut Normal) {
+    fn add(&self, at: usize, (scene, linkage): (&Scene, &Linkage), desk: &mut Desk, sums: &mut Normal) {
         let data = self.session.data;
-        let Some(picture) = data.pictures.of_row(row).and_then(|at| data.pictures.all.get(at)) else {
-            return;
-        };
-        let observation = &data.observations[row as usize];
-        let lens = scene.lenses.get(picture.camera).copied().flatten();
+        let picture = &data.pictures.all[at];
+        let row = picture.row as usize;
+        let observation = &data.observations[row];
+        let lens = scene.lenses.get(picture.camera);
         let Some((lens, board)) = lens.zip(scene.boards.get(picture.board)) else { return };
-        desk.chain.evaluate(linkage, self.session.packed, row as usize, observation);
+        desk.chain.evaluate(linkage, self.session.packed, row, observation);
         let pose = picture.directed(&desk.chain.target);
         desk.pack(picture, board, data.pictures.sigma_px);
         let has_points = self.by_points.get(picture.board).is_some_and(|it| !it.is_empty());
-        let rows = [0, 1, 2].map(|i| {
-            [pose.rotation[(i, 0)], pose.rotation[(i, 1)], pose.rotation[(i, 2)], pose.translation[i]]
-        });
         let Desk { corners, products, .. } = desk;
-        lanes::corner_products(self.level, &lens, &rows, corners, has_points, products);
+        let motion = FixedMotion::from(&pose);
+        lanes::corner_products(self.level, lens, &motion, corners, has_points, products);
         self.layout.target_twists(&desk.chain, observation.target, &mut desk.twists);
         desk.direct(&pose, picture.of_camera);
+        sums.residuals += 2 * picture.corners.iter().filter(|corner| corner.weight > 0.0).count();
         self.weigh(picture, desk, sums);
         self.eliminate(&pose, desk, sums);
     }
@@ -226,13 +229,4 @@ impl Bundle<'_> {
         }
         *pull -= back * explained;
     }
-}
-
-/// The lens of the kernel, with the first so many numbers unknown.
-fn brown(lens: &Lens, unknown: usize) -> Option<Brown> {
-    matches!(lens.distortion, Distortion::Brown(_)).then(|| Brown {
-        numbers: lens.numbers(),
-        unknown,
-        turn: lens.turn(),
-    })
 }

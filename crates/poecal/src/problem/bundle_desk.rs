@@ -172,7 +172,7 @@ mod tests {
 
     use super::*;
     use crate::camera::{Distortion, Lens};
-    use crate::lanes::{Brown, corner_products, simd_levels};
+    use crate::lanes::{Brown, FixedMotion, corner_products, simd_levels};
     use crate::lie::hat;
 
     /// The products of a picture by every level of instructions beside those of the corners one by one.
@@ -184,9 +184,6 @@ mod tests {
         };
         let brown = Brown { numbers: lens.numbers(), unknown: 12, turn: 4.0 };
         let pose = Pose::from_xyz_rpy([-0.1, 0.05, 0.7], [0.5, -0.3, 0.2]);
-        let rows = [0, 1, 2].map(|i| {
-            [pose.rotation[(i, 0)], pose.rotation[(i, 1)], pose.rotation[(i, 2)], pose.translation[i]]
-        });
         // Two blocks, of which the last is padded; one point is behind the camera.
         let count = 13;
         let mut corners = vec![Corners::NONE; 2];
@@ -225,7 +222,7 @@ mod tests {
         let mut worst: f64 = 0.0;
         for level in simd_levels() {
             let mut products = CornerProducts::default();
-            corner_products(level, &brown, &rows, &corners, true, &mut products);
+            corner_products(level, &brown, &FixedMotion::from(&pose), &corners, true, &mut products);
             for a in 0..19 {
                 for b in a..19 {
                     let size = (sums[a * 19 + a] * sums[b * 19 + b]).sqrt().max(1e-30);

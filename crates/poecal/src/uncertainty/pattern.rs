@@ -71,10 +71,9 @@ pub fn strongest_pattern(view: &View<'_>, normal: &Normal) -> Option<(usize, Pat
             // What the first quantity shows of it.
             let mut motion = Vector3::zeros();
             let channels = observation.measurement.channels();
-            let own = sensitivity.iter().zip(channels).filter(|(_, channel)| channel.quantity == quantity);
-            for ([a, b, c, p, q, r], channel) in own {
-                motion[channel.component()] =
-                    Vector3::new(*a, *b, *c).dot(&moved) + Vector3::new(*p, *q, *r).dot(&turned);
+            for (k, component) in channels.components(quantity) {
+                let [a, b, c, p, q, r] = sensitivity[k];
+                motion[component] = Vector3::new(a, b, c).dot(&moved) + Vector3::new(p, q, r).dot(&turned);
             }
             let shapes = shapes(joint.kind, sign * joint.value, ranges[joint.joint]);
             sums[joint.joint].add(&shapes, &(motion * sign / sigma), &error);

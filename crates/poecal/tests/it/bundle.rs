@@ -63,6 +63,9 @@ fn the_gradient_is_that_of_differences() {
         let robot = bundle.layout().dim();
         let numbers = DVector::from_fn(self::numbers(session, &ALL).count(), |k, _| 0.1 * (k as f64).sin());
         let sums = bundle.normal(&start, &numbers);
+        let corners = made.data.pictures.all.iter().flat_map(|it| &it.corners);
+        let seen = corners.filter(|corner| corner.weight > 0.0).count();
+        assert_eq!(sums.residuals, 2 * seen + numbers.len());
         let scale = sums.gradient.iter().fold(0.0, |most: f64, it| most.max(it.abs()));
         for k in 0..sums.gradient.len() {
             let at = |h: f64| {
