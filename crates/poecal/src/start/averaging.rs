@@ -20,7 +20,7 @@ pub(super) fn rigid_motion(from: &[Vector3<f64>], to: &[Vector3<f64>]) -> Pose {
 }
 
 /// The rotation `R` that maximises `tr(R S)` for `S = Σ x yᵀ`: it turns the x onto the y.
-pub(super) fn rotation_maximising(s: &Matrix3<f64>) -> Matrix3<f64> {
+pub(crate) fn rotation_maximising(s: &Matrix3<f64>) -> Matrix3<f64> {
     let (d, e, f) = (s[(1, 2)] - s[(2, 1)], s[(2, 0)] - s[(0, 2)], s[(0, 1)] - s[(1, 0)]);
     let trace = s.trace();
     let mut n = Matrix4::zeros();

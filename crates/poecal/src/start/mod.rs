@@ -11,7 +11,7 @@ mod registration;
 mod robust;
 mod stations;
 
-pub(crate) use averaging::mean_rotation;
+pub(crate) use averaging::{mean_rotation, rotation_maximising};
 pub use faces::{faces_on_known_planes, settle_faces};
 pub(crate) use pictures::predicted_pose;
 pub use pictures::settle_pictures;

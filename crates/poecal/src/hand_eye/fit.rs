@@ -1,0 +1,277 @@
+//! The fit: a start that bears gross errors, noise by its parts, rows without outliers, and the point of the target that is seen best.
+
+use nalgebra::{Matrix3, Vector3};
+
+use super::equations::{Frames, NUMBERS, Pair, UNKNOWNS, derivatives, errors, in_closed_form, minimised, sight_axes};
+use super::noise::Noise;
+use crate::distributions::{chi_square_median, f_quantile, median};
+use crate::lie::{Pose, hat, rotation};
+use crate::linalg::{cholesky, cholesky_solve};
+
+/// Starts from a few poses each.
+const STARTS: usize = 80;
+/// Poses of such a start.
+const POSES_OF_START: usize = 4;
+/// Probability with which a session without outliers loses a row.
+const LOST: f64 = 0.01;
+/// Rounds of fit, noise and outliers.
+const ROUNDS: usize = 30;
+/// Probability by chance at which a point of the target counts as seen better than its origin.
+const OTHER_POINT: f64 = 1e-3;
+/// Fewest rows with which such a point is sought.
+const ROWS_OF_POINT: usize = 8;
+
+/// A finished fit.
+#[derive(Clone, Debug)]
+pub(super) struct Fit {
+    pub(super) frames: Frames,
+    pub(super) noise: Noise,
+    /// Which rows count.
+    pub(super) kept: Vec<bool>,
+    /// The point of the target, in its frame, whose place and orientation are seen independently of each other.
+    pub(super) point: Vector3<f64>,
+}
+
+impl Fit {
+    /// Fits all rows. `None` where they do not determine the frames.
+    pub(super) fn of(pairs: &[Pair]) -> Option<Self> {
+        let frames = start(pairs)?;
+        let noise = rough_noise(pairs, &frames);
+        let mut fit = Fit { frames, noise, kept: vec![true; pairs.len()], point: Vector3::zeros() };
+        fit.choose(pairs);
+        fit.settle(pairs, false)?;
+        // Twice, since the first point is found with the noise of the origin.
+        for _ in 0..2 {
+            let about = fit.seen_about(pairs);
+            let Some(further) = fit.better_point(&fit.rows(&about)) else { break };
+            fit.move_point(further);
+            fit.settle(pairs, true)?;
+        }
+        fit.settle(pairs, true)?;
+        Some(fit)
+    }
+
+    /// The same model on other rows, which all count, from these frames, with this noise.
+    pub(super) fn again(&self, pairs: &[Pair]) -> Option<Frames> {
+        let about = self.seen_about(pairs);
+        let weights = self.noise.weights();
+        minimised(&about, self.frames, &|_, _| weights)
+    }
+
+    /// What is seen of the point, in place of the target's origin.
+    pub(super) fn seen_about(&self, pairs: &[Pair]) -> Vec<Pair> {
+        let to = Pose::from_translation(self.point);
+        pairs.iter().map(|it| Pair { seen: it.seen * to, ..*it }).collect()
+    }
+
+    /// The frames of the target itself.
+    pub(super) fn own_frames(&self) -> Frames {
+        self.of_target(&self.frames)
+    }
+
+    /// Frames of the point as those of the target itself.
+    pub(super) fn of_target(&self, frames: &Frames) -> Frames {
+        Frames { inner: frames.inner * Pose::from_translation(-self.point), ..*frames }
+    }
+
+    fn move_point(&mut self, further: Vector3<f64>) {
+        self.point += further;
+        self.frames.inner = self.frames.inner * Pose::from_translation(further);
+    }
+
+    /// Rows that count.
+    pub(super) fn rows(&self, pairs: &[Pair]) -> Vec<Pair> {
+        pairs.iter().zip(&self.kept).filter(|(_, kept)| **kept).map(|(pair, _)| *pair).collect()
+    }
+
+    /// Rounds of fit, noise and outliers until no row changes.
+    fn settle(&mut self, pairs: &[Pair], parts: bool) -> Option<()> {
+        let about = self.seen_about(pairs);
+        for round in 0..ROUNDS {
+            let rows = self.rows(&about);
+            let weights = self.noise.weights();
+            self.frames = minimised(&rows, self.frames, &|_, _| weights)?;
+            let before = self.noise.variance.clone();
+            self.noise = self.noise.estimated(&rows, &self.frames).unwrap_or_else(|| self.noise.clone());
+            if parts {
+                self.noise = self.noise.apart_where_they_differ(&rows, &self.frames);
+            }
+            let changed = self.choose(&about);
+            let still = before.len() == self.noise.variance.len()
+                && before.iter().zip(&self.noise.variance).all(|(a, b)| (a / b).ln().abs() < 1e-6);
+            if !changed && still || round + 1 == ROUNDS {
+                break;
+            }
+        }
+        let rows = self.rows(&about);
+        let weights = self.noise.weights();
+        self.frames = minimised(&rows, self.frames, &|_, _| weights)?;
+        Some(())
+    }
+
+    /// Chooses the rows that count; whether another choice came out.
+    fn choose(&mut self, about: &[Pair]) -> bool {
+        let cut = self.cut(about.len());
+        let distances = self.distances(about);
+        let mut kept: Vec<bool> = distances.iter().map(|distance| *distance <= cut).collect();
+        // Never so few that nothing is tested.
+        let fewest = (about.len() / 2 + 1).min(about.len()).max(3);
+        if kept.iter().filter(|it| **it).count() < fewest {
+            let mut order: Vec<usize> = (0..about.len()).collect();
+            order.sort_by(|&a, &b| distances[a].total_cmp(&distances[b]).then(a.cmp(&b)));
+            kept.fill(false);
+            order.iter().take(fewest).for_each(|&k| kept[k] = true);
+        }
+        let changed = kept != self.kept;
+        self.kept = kept;
+        changed
+    }
+
+    /// Mean square of a row's errors beyond which it is an outlier.
+    fn cut(&self, rows: usize) -> f64 {
+        let freedom = self.noise.freedom.iter().copied().fold(f64::INFINITY, f64::min).min(1e6);
+        f_quantile(LOST / rows as f64, NUMBERS as f64, freedom)
+    }
+
+    /// Mean square of the errors of each row in units of what they scatter by: less of a row that was fitted.
+    pub(super) fn distances(&self, about: &[Pair]) -> Vec<f64> {
+        let leverages = self.leverages(about);
+        let rows = about.iter().zip(&self.kept).zip(leverages);
+        rows.map(|((pair, kept), leverage)| {
+            let squares = self.noise.squares(&errors(pair, &self.frames)) / NUMBERS as f64;
+            squares / if *kept { (1.0 - leverage).max(0.05) } else { 1.0 + leverage }
+        })
+        .collect()
+    }
+
+    /// Mean variance of the six predicted numbers of each row in units of their noise.
+    fn leverages(&self, about: &[Pair]) -> Vec<f64> {
+        let weights = self.noise.weights();
+        let rows = self.rows(about);
+        let normal = super::equations::normal(rows.iter().map(|it| (it, weights)), &self.frames);
+        let Some(known) = normal.covariance() else { return vec![0.0; about.len()] };
+        let of = |pair: &Pair| {
+            let numbers = derivatives(pair, &self.frames).into_iter().zip(weights);
+            let sum: f64 = numbers.map(|(row, weight)| weight * variance_along(&known, &row)).sum();
+            sum / NUMBERS as f64
+        };
+        about.iter().map(of).collect()
+    }
+
+    /// A point of the target, from the present one, at which errors of place are independent of those of orientation; `None` where it is no
+    /// better than the present one by more than chance.
+    fn better_point(&self, rows: &[Pair]) -> Option<Vector3<f64>> {
+        if rows.len() < ROWS_OF_POINT {
+            return None;
+        }
+        let weights = self.noise.weights();
+        let (mut gram, mut right, mut before) = ([0.0; 9], [0.0; 3], 0.0);
+        let mut columns = Vec::with_capacity(rows.len());
+        for pair in rows {
+            let found = errors(pair, &self.frames);
+            let axes = sight_axes(&pair.seen);
+            let turn = axes.transpose() * Vector3::new(found[3], found[4], found[5]);
+            // The place of the point errs by shift + turn × (R point).
+            let by_point: Matrix3<f64> = axes * hat(&turn) * pair.seen.rotation;
+            for i in 0..3 {
+                before += weights[i] * found[i] * found[i];
+                for a in 0..3 {
+                    right[a] -= weights[i] * by_point[(i, a)] * found[i];
+                    for b in 0..3 {
+                        gram[3 * a + b] += weights[i] * by_point[(i, a)] * by_point[(i, b)];
+                    }
+                }
+            }
+            columns.push((by_point, found));
+        }
+        let damping = 1e-9 * (gram[0] + gram[4] + gram[8]);
+        let found = cholesky_solve(&cholesky(&gram, 3, damping)?, &right);
+        let point = Vector3::new(found[0], found[1], found[2]);
+        let after: f64 = columns
+            .iter()
+            .map(|(by_point, errors)| {
+                let left = Vector3::new(errors[0], errors[1], errors[2]) + by_point * point;
+                (0..3).map(|i| weights[i] * left[i] * left[i]).sum::<f64>()
+            })
+            .sum();
+        let freedom = 3.0 * rows.len() as f64 - 0.5 * UNKNOWNS as f64 - 3.0;
+        let gained = (before - after) / 3.0 / (after / freedom);
+        (gained > f_quantile(OTHER_POINT, 3.0, freedom)).then_some(point)
+    }
+}
+
+/// `rᵀ C r`.
+pub(super) fn variance_along(covariance: &[f64], row: &[f64; UNKNOWNS]) -> f64 {
+    let rows = covariance.chunks_exact(UNKNOWNS).zip(row);
+    rows.map(|(line, a)| a * line.iter().zip(row).map(|(c, b)| c * b).sum::<f64>()).sum()
+}
+
+/// Lengths and angles of the errors of a row.
+pub(super) fn sizes(errors: &[f64; NUMBERS]) -> (f64, f64) {
+    let of = |at: usize| Vector3::new(errors[at], errors[at + 1], errors[at + 2]).norm();
+    (of(0), of(3))
+}
+
+/// Medians of lengths and angles of errors.
+pub(super) fn medians(pairs: &[Pair], frames: &Frames) -> (f64, f64) {
+    let all: Vec<(f64, f64)> = pairs.iter().map(|pair| sizes(&errors(pair, frames))).collect();
+    let of = |values: Vec<f64>| median(values.into_iter()).unwrap_or_default();
+    (of(all.iter().map(|it| it.0).collect()), of(all.iter().map(|it| it.1).collect()))
+}
+
+/// The best start: of all poses, or of a few of them, by the median errors of all.
+pub(super) fn start(pairs: &[Pair]) -> Option<Frames> {
+    let all: Vec<&Pair> = pairs.iter().collect();
+    let mut best: Option<(f64, Frames)> = None;
+    let mut consider = |frames: Option<Frames>| {
+        let Some(frames) = frames else { return };
+        let (shift, turn) = medians(pairs, &frames);
+        let score = shift.max(1e-12).ln() + turn.max(1e-12).ln();
+        if score.is_finite() && best.is_none_or(|(least, _)| score < least) {
+            best = Some((score, frames));
+        }
+    };
+    consider(in_closed_form(&all));
+    let mut draw = Draw(1);
+    for _ in 0..if pairs.len() > POSES_OF_START { STARTS } else { 0 } {
+        let few: Vec<&Pair> = draw.few(pairs.len()).into_iter().filter_map(|k| pairs.get(k)).collect();
+        consider(in_closed_form(&few));
+    }
+    best.map(|(_, frames)| frames)
+}
+
+/// Numbers that are the same in every run.
+struct Draw(u64);
+
+impl Draw {
+    fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        self.0 >> 33
+    }
+
+    /// A few different numbers below a count.
+    fn few(&mut self, count: usize) -> Vec<usize> {
+        let mut few = Vec::with_capacity(POSES_OF_START);
+        while few.len() < POSES_OF_START.min(count) {
+            let next = (self.next() % count.max(1) as u64) as usize;
+            if !few.contains(&next) {
+                few.push(next);
+            }
+        }
+        few
+    }
+}
+
+/// Noise by the median errors of a start.
+fn rough_noise(pairs: &[Pair], frames: &Frames) -> Noise {
+    let (shift, turn) = medians(pairs, frames);
+    let scale = 1.0 / chi_square_median(3).sqrt();
+    // Four poses fit themselves.
+    let few = (1.0 + 4.0 / pairs.len() as f64).min(2.0);
+    Noise::of(few * scale * shift, few * scale * turn)
+}
+
+/// Angle between two poses and distance of their origins, rad and m.
+pub(super) fn turned_between(one: &Pose, other: &Pose) -> Vector3<f64> {
+    rotation::log(&(one.rotation.transpose() * other.rotation))
+}

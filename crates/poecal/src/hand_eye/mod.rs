@@ -1,0 +1,63 @@
+//! Where a camera is on a robot's flange, or beside the robot, from poses of the flange and of what the camera saw, without joint readings.
+//!
+//! The arm is taken as it is, so that the problem has twelve unknowns, two frames between known motions (`equations`). Beside the general
+//! fit of [`calibrate`](crate::calibrate), it knows more of a camera: that it errs otherwise along its line of sight than across it
+//! (`noise`), that a board is seen best in its middle (`fit`), and which mistakes people make with two lists of poses (`directions`,
+//! `readings`, `moved`).
+
+mod bounds;
+mod directions;
+mod equations;
+mod findings;
+mod fit;
+mod moved;
+mod noise;
+mod readings;
+mod result;
+#[cfg(test)]
+mod tests;
+mod verdict;
+
+pub use bounds::Placed;
+pub use directions::Directions;
+pub use findings::{Finding, FindingKind};
+pub use readings::{PoseList, Reading};
+pub use result::{HandEye, HandEyeOptions, HeldOut, Level, Outlier, RowError, Turns, hand_eye};
+
+/// Where the camera is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CameraPlace {
+    /// On the flange; the target stays.
+    InHand,
+    /// Beside the robot; the target is on the flange.
+    Beside,
+}
+
+impl CameraPlace {
+    /// The word in files and on the command line.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            CameraPlace::InHand => "in-hand",
+            CameraPlace::Beside => "beside",
+        }
+    }
+
+    /// Name of the frame on the flange.
+    #[must_use]
+    pub fn on_flange(self) -> &'static str {
+        match self {
+            CameraPlace::InHand => "camera",
+            CameraPlace::Beside => "target",
+        }
+    }
+
+    /// Name of the frame that stays.
+    #[must_use]
+    pub fn in_base(self) -> &'static str {
+        match self {
+            CameraPlace::InHand => "target",
+            CameraPlace::Beside => "camera",
+        }
+    }
+}

@@ -1,0 +1,73 @@
+//! Whether the camera or the target moved during the session: frames of the rows before and after differ by more than noise.
+
+use super::CameraPlace;
+use super::bounds::{Side, difference, placed};
+use super::equations::Pair;
+use super::fit::{Fit, medians, start};
+use super::noise::Spread;
+use crate::lie::Pose;
+
+/// Fewest rows of a part.
+const PART: usize = 5;
+/// Most places between rows that are tried.
+const PLACES: usize = 40;
+/// Probability by chance, over all places.
+const CHANCE: f64 = 1e-4;
+
+/// A move between two rows.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Move {
+    /// First row after it.
+    pub(super) from: usize,
+    /// What moved.
+    pub(super) side: Side,
+    pub(super) shift_m: f64,
+    pub(super) turn_rad: f64,
+}
+
+/// The move that the rows show, if they show one.
+pub(super) fn found(pairs: &[Pair]) -> Option<Move> {
+    let count = pairs.len();
+    if count < 2 * PART {
+        return None;
+    }
+    let every = ((count - 2 * PART) / PLACES + 1).max(1);
+    let places = (PART..=count - PART).step_by(every);
+    let scores = places.filter_map(|at| Some((scored(&pairs[..at])? + scored(&pairs[at..])?, at)));
+    let (_, at) = scores.min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)))?;
+    let (first, second) = (Fit::of(&pairs[..at])?, Fit::of(&pairs[at..])?);
+    let [before, after] = [(&first, &pairs[..at]), (&second, &pairs[at..])].map(|(fit, rows)| {
+        Spread::of(&fit.noise, &fit.rows(&fit.seen_about(rows)), &fit.frames)
+    });
+    let (before, after) = (before?, after?);
+    let chance = CHANCE / (count / every) as f64;
+    let ratio = |side: Side| {
+        let one = (&first.frames, &first.point, &before, &first.noise);
+        difference(one, (&second.frames, &second.point, &after, &second.noise), side, chance)
+    };
+    let sides = [Side::Camera, Side::Target].map(|side| (ratio(side).unwrap_or(0.0), side));
+    let (most, side) = if sides[0].0 > sides[1].0 { sides[0] } else { sides[1] };
+    if most <= 1.0 {
+        return None;
+    }
+    let pose = |fit: &Fit| placed(&fit.frames, &fit.point, side).0;
+    let (shift_m, turn_rad) = Pose::apart(&pose(&first), &pose(&second));
+    Some(Move { from: at, side, shift_m, turn_rad })
+}
+
+/// How well rows fit by themselves: counted times the logarithms of their median errors.
+fn scored(pairs: &[Pair]) -> Option<f64> {
+    let frames = start(pairs)?;
+    let (shift, turn) = medians(pairs, &frames);
+    Some(pairs.len() as f64 * (shift.max(1e-9).ln() + turn.max(1e-9).ln()))
+}
+
+/// What moved, in words.
+pub(super) fn words(side: Side, camera: CameraPlace) -> &'static str {
+    match (side, camera) {
+        (Side::Camera, CameraPlace::InHand) => "the camera on the flange",
+        (Side::Target, CameraPlace::InHand) => "the target",
+        (Side::Camera, CameraPlace::Beside) => "the camera",
+        (Side::Target, CameraPlace::Beside) => "the target on the flange",
+    }
+}

@@ -1,0 +1,418 @@
+//! The steps in order, and their result.
+
+use nalgebra::Vector3;
+
+use super::bounds::{Placed, Side, bounded};
+use super::directions::{Directions, found, pairs};
+use super::equations::{Pair, errors, sight_axes};
+use super::findings::{Finding, FindingKind, listed};
+use super::fit::{Fit, sizes};
+use super::noise::Spread;
+use super::readings::{PoseList, least_score, mistaken, refuse_other_lengths};
+use super::{CameraPlace, moved, verdict};
+use crate::error::{ErrorKind, Result};
+use crate::lie::{Pose, rotation};
+
+pub use super::verdict::Level;
+
+/// What is asked, and what is known.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct HandEyeOptions {
+    /// Where the camera is.
+    pub camera: CameraPlace,
+    /// Whether the arm's poses are `flange_from_base`; found if it is not stated.
+    pub flange_inverted: Option<bool>,
+    /// Whether the camera's poses are `target_from_camera`; found if it is not stated.
+    pub target_inverted: Option<bool>,
+}
+
+impl HandEyeOptions {
+    /// With directions that are found.
+    #[must_use]
+    pub fn of(camera: CameraPlace) -> Self {
+        HandEyeOptions { camera, flange_inverted: None, target_inverted: None }
+    }
+}
+
+/// A row that contradicts the others.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Outlier {
+    /// The row, from 0.
+    pub row: usize,
+    /// How far the target is from where the others predict it, metres.
+    pub shift_m: f64,
+    /// By which angle it is turned, radians.
+    pub turn_rad: f64,
+    /// Whether it is the pose of a flat board from the other of its two sides.
+    pub is_flipped: bool,
+}
+
+/// Error of a row.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RowError {
+    /// How far the target is from where it is predicted, metres.
+    pub shift_m: f64,
+    /// By which angle it is turned, radians.
+    pub turn_rad: f64,
+    /// Whether the row counts in the fit.
+    pub is_fitted: bool,
+}
+
+/// Errors of rows, each predicted by a fit without it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct HeldOut {
+    /// Number of rows.
+    pub rows: usize,
+    /// Root mean square distance, metres.
+    pub rms_m: f64,
+    /// Root mean square angle, radians.
+    pub rms_rad: f64,
+}
+
+/// How far the flange turned between its poses: standard deviations of its turns about the three directions of greatest, middle and least,
+/// and these directions in its own frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Turns {
+    /// Standard deviations, radians.
+    pub spread_rad: [f64; 3],
+    /// Directions in the flange's frame.
+    pub directions: [Vector3<f64>; 3],
+}
+
+/// Where camera and target are.
+#[derive(Clone, Debug, PartialEq)]
+pub struct HandEye {
+    /// Where the camera is.
+    pub camera: CameraPlace,
+    /// What is on the flange: camera or target, in the flange's frame.
+    pub on_flange: Placed,
+    /// What stays: target or camera, in the base frame.
+    pub in_base: Placed,
+    /// Which way round the lists were.
+    pub directions: Directions,
+    /// How far to use it.
+    pub level: Level,
+    /// Why, a sentence each.
+    pub reasons: Vec<String>,
+    /// Standard deviations of the camera's poses: across and along the line of sight (metres), tilts and turn about it (radians).
+    pub noise: [f64; 4],
+    /// The point of the target, in its frame, of which the noise of the place is.
+    pub noise_about: Vector3<f64>,
+    /// Root mean square errors of the rows that count, metres and radians.
+    pub residual: (f64, f64),
+    /// Errors of rows that were left out in turn; none with fewer than six.
+    pub held_out: Option<HeldOut>,
+    /// Errors of all rows.
+    pub rows: Vec<RowError>,
+    /// Rows that contradict the others.
+    pub outliers: Vec<Outlier>,
+    /// How far the flange turned.
+    pub turns: Turns,
+    /// What was found beside, a sentence each.
+    pub findings: Vec<Finding>,
+}
+
+/// Fewest poses.
+const FEWEST: usize = 4;
+/// Difference below which numbers of two rows are the same, m and rad.
+const SAME: f64 = 1e-9;
+/// Standard deviation of turns about the second axis, radians, below which there is one axis only.
+const ONE_AXIS: f64 = 8e-3;
+
+/// Where a camera is, from poses of the flange and of a target that were taken together. `name` says of a row what messages call it.
+///
+/// # Errors
+/// [`ErrorKind::Problem`] if the poses are too few, turn about one axis only, or do not fit together for a reason that can be named: their
+/// units, conventions, order or directions.
+///
+/// ```
+/// use poecal::hand_eye::{CameraPlace, HandEyeOptions, hand_eye};
+/// use poecal::lie::Pose;
+/// let (camera, board) = (Pose::from_xyz_rpy([0.04, -0.06, 0.09], [0.1, 0.0, 1.5]), Pose::from_xyz_rpy([0.6, 0.1, 0.0], [3.1, 0.0, 0.2]));
+/// let flange: Vec<Pose> = (0..10).map(|k| f64::from(k)).map(|k| {
+///     Pose::from_xyz_rpy([0.5 + 0.02 * k, 0.1 * k.sin(), 0.6], [3.0 + 0.3 * (1.3 * k).sin(), 0.3 * (2.1 * k).cos(), 0.4 * k.sin()])
+/// }).collect();
+/// let seen: Vec<Pose> = flange.iter().map(|it| (*it * camera).inverse() * board).collect();
+/// let found = hand_eye(&flange.into(), &seen.into(), &HandEyeOptions::of(CameraPlace::InHand), &|row| format!("row {}", row + 1))?;
+/// assert!((found.on_flange.pose.translation - camera.translation).norm() < 1e-9);
+/// # Ok::<(), poecal::Error>(())
+/// ```
+pub fn hand_eye(
+    flange: &PoseList,
+    target: &PoseList,
+    options: &HandEyeOptions,
+    name: &dyn Fn(usize) -> String,
+) -> Result<HandEye> {
+    let count = flange.poses.len();
+    if count != target.poses.len() {
+        return ErrorKind::Problem.refuse(format!(
+            "found {count} poses of the arm and {} of the target, expected as many: join them by a column of names",
+            target.poses.len()
+        ));
+    }
+    refuse_other_lengths(&flange.poses, &target.poses)?;
+    let mut findings = Vec::new();
+    let mut counted = once_each(flange, target, name, &mut findings);
+    refuse_few(flange, &counted)?;
+    let turns = turns(&flange.poses, &counted);
+    refuse_one_axis(&turns)?;
+    let part = |poses: &[Pose], rows: &[usize]| -> Vec<Pose> { rows.iter().map(|&row| poses[row]).collect() };
+    let [arm, seen] = [&flange.poses, &target.poses].map(|poses| part(poses, &counted));
+    if let Some(error) = mistake(flange, target, options) {
+        return Err(error);
+    }
+    let (directions, said) = found(&arm, &seen, options)?;
+    findings.extend(said.map(|said| Finding::new(FindingKind::Inverted, said, Vec::new())));
+    let all = pairs(&flange.poses, &target.poses, options.camera, &directions);
+    let of = |rows: &[usize]| -> Vec<Pair> { rows.iter().map(|&row| all[row]).collect() };
+    if let Some(step) = moved::found(&of(&counted)) {
+        let row = counted[step.from];
+        let (before, after) = counted.split_at(step.from);
+        let (longer, left_out) = if before.len() >= after.len() { (before, after) } else { (after, before) };
+        let statement = format!(
+            "{} moved by {:.2} mm and {:.2} deg before {}: the {} poses {} it were left out; fix it, and measure again",
+            moved::words(step.side, options.camera),
+            1e3 * step.shift_m,
+            step.turn_rad.to_degrees(),
+            name(row),
+            left_out.len(),
+            if before.len() >= after.len() { "from" } else { "before" }
+        );
+        findings.push(Finding::new(FindingKind::Moved, statement, left_out.to_vec()));
+        counted = longer.to_vec();
+    }
+    let Some(fit) = Fit::of(&of(&counted)) else {
+        return ErrorKind::Problem.refuse(
+            "found poses that do not determine where the camera is, expected turns about two axes or more: add poses that turn about a second axis",
+        );
+    };
+    finished(&all, &counted, (&fit, directions, turns), options.camera, findings, name)
+}
+
+/// All that is said of a fit.
+fn finished(
+    all: &[Pair],
+    counted: &[usize],
+    (fit, directions, turns): (&Fit, Directions, Turns),
+    camera: CameraPlace,
+    mut findings: Vec<Finding>,
+    name: &dyn Fn(usize) -> String,
+) -> Result<HandEye> {
+    let rows: Vec<Pair> = counted.iter().map(|&row| all[row]).collect();
+    let kept = fit.rows(&fit.seen_about(&rows));
+    let Some(spread) = Spread::of(&fit.noise, &kept, &fit.frames) else {
+        return ErrorKind::Problem.refuse(
+            "found poses that determine the camera's place in some directions only, expected turns about two axes or more: add such poses",
+        );
+    };
+    let side = |side: Side| bounded(&spread, &fit.frames, &fit.point, side);
+    let (on_flange, in_base) = match camera {
+        CameraPlace::InHand => (side(Side::Camera), side(Side::Target)),
+        CameraPlace::Beside => (side(Side::Target), side(Side::Camera)),
+    };
+    let is_kept = |row: usize| counted.iter().position(|it| *it == row).is_some_and(|at| fit.kept[at]);
+    let frames = fit.own_frames();
+    let rows_errors: Vec<RowError> = (all.iter().enumerate())
+        .map(|(row, pair)| {
+            let (shift_m, turn_rad) = sizes(&errors(pair, &frames));
+            RowError { shift_m, turn_rad, is_fitted: is_kept(row) }
+        })
+        .collect();
+    let outliers: Vec<Outlier> = counted
+        .iter()
+        .filter(|row| !is_kept(**row))
+        .map(|&row| {
+            let RowError { shift_m, turn_rad, .. } = rows_errors[row];
+            Outlier { row, shift_m, turn_rad, is_flipped: is_flipped(&all[row], fit) }
+        })
+        .collect();
+    say_outliers(&outliers, name, &mut findings);
+    let scale = verdict::scale(&kept, fit);
+    let held_out = held_out(&rows, fit);
+    let noise = [0, 2, 3, 5].map(|number| fit.noise.sigma(number));
+    let mut result = HandEye {
+        camera,
+        on_flange,
+        in_base,
+        directions,
+        level: Level::Good,
+        reasons: Vec::new(),
+        noise,
+        noise_about: fit.point,
+        residual: root_mean_squares(&rows_errors),
+        held_out,
+        rows: rows_errors,
+        outliers,
+        turns,
+        findings,
+    };
+    verdict::judge(&mut result, scale);
+    Ok(result)
+}
+
+/// Rows without those that repeat an earlier one.
+fn once_each(flange: &PoseList, target: &PoseList, name: &dyn Fn(usize) -> String, findings: &mut Vec<Finding>) -> Vec<usize> {
+    let same = |one: &Pose, other: &Pose| {
+        let (shift, turn) = one.apart(other);
+        shift < SAME && turn < 1e-7
+    };
+    let mut counted: Vec<usize> = Vec::new();
+    let mut repeated = Vec::new();
+    for row in 0..flange.poses.len() {
+        let earlier = counted.iter().find(|&&it| {
+            same(&flange.poses[it], &flange.poses[row]) && same(&target.poses[it], &target.poses[row])
+        });
+        match earlier {
+            Some(&it) => repeated.push((row, it)),
+            None => counted.push(row),
+        }
+    }
+    if !repeated.is_empty() {
+        let words: Vec<String> = repeated.iter().take(4).map(|&(row, it)| format!("{} repeats {}", name(row), name(it))).collect();
+        let more = if repeated.len() > 4 { format!(" and {} more", repeated.len() - 4) } else { String::new() };
+        let statement = format!("{}{more}: the same numbers of arm and target count once; measure each pose anew", words.join(", "));
+        findings.push(Finding::new(FindingKind::Repeated, statement, repeated.iter().map(|it| it.0).collect()));
+    }
+    counted
+}
+
+/// Refuses fewer different poses than determine anything that can be tested.
+fn refuse_few(flange: &PoseList, counted: &[usize]) -> Result<()> {
+    let mut different: Vec<&Pose> = Vec::new();
+    for &row in counted {
+        let pose = &flange.poses[row];
+        let is_new = different.iter().all(|it| {
+            let (shift, turn) = it.apart(pose);
+            shift > 1e-5 || turn > 1e-4
+        });
+        if is_new {
+            different.push(pose);
+        }
+        if different.len() >= FEWEST {
+            return Ok(());
+        }
+    }
+    let count = different.len();
+    ErrorKind::Problem.refuse(format!(
+        "found {count} different pose{}, expected {FEWEST} or more, and 15 to 30 for a good result: three poses fit themselves, and show no error; \
+         add poses that turn about different axes",
+        if count == 1 { "" } else { "s" }
+    ))
+}
+
+/// How far the flange turned about its own axes.
+fn turns(flange: &[Pose], counted: &[usize]) -> Turns {
+    let middle = crate::start::mean_rotation(counted.iter().map(|&row| flange[row].rotation));
+    let turned: Vec<Vector3<f64>> =
+        counted.iter().map(|&row| rotation::log(&(middle.transpose() * flange[row].rotation))).collect();
+    let mean = turned.iter().sum::<Vector3<f64>>() / turned.len().max(1) as f64;
+    let mut upper = [0.0; 9];
+    for turn in &turned {
+        let off = turn - mean;
+        for i in 0..3 {
+            for j in 0..3 {
+                upper[3 * i + j] += off[i] * off[j] / turned.len() as f64;
+            }
+        }
+    }
+    let (values, vectors) = crate::linalg::symmetric_eigen(&upper, 3);
+    Turns {
+        spread_rad: [2, 1, 0].map(|k| values[k].max(0.0).sqrt()),
+        directions: [2, 1, 0].map(|k| Vector3::new(vectors[(0, k)], vectors[(1, k)], vectors[(2, k)])),
+    }
+}
+
+/// Refuses turns about one axis.
+fn refuse_one_axis(turns: &Turns) -> Result<()> {
+    let [most, second, _] = turns.spread_rad;
+    let axis = turns.directions[0];
+    if second >= ONE_AXIS {
+        return Ok(());
+    }
+    if most < ONE_AXIS {
+        return ErrorKind::Problem.refuse(
+            "found poses of the arm that do not turn, expected turns about two axes or more: by shifts alone only the orientation of the camera can be \
+             found; turn the flange by 20 deg and more about different axes",
+        );
+    }
+    ErrorKind::Problem.refuse(format!(
+        "found poses of the arm that turn about one axis only ({:.2} {:.2} {:.2} of the flange), expected two or more: the place of the camera along \
+         that axis is not determined; turn the flange by 20 deg and more about a second axis across it",
+        axis.x, axis.y, axis.z
+    ))
+}
+
+/// Median errors, m times rad, above which other readings are tried: 3 mm and 0.3 deg.
+const SUSPICIOUS: f64 = 3e-3 * 5e-3;
+
+/// The mistake of which the poses look, if they fit badly as they are.
+fn mistake(flange: &PoseList, target: &PoseList, options: &HandEyeOptions) -> Option<crate::error::Error> {
+    let score = least_score(&flange.poses, &target.poses, options)?;
+    (score > SUSPICIOUS.ln()).then(|| mistaken(flange, target, options, score)).flatten()
+}
+
+/// Whether a row is right once its board is turned to the other of the two sides that look alike from afar.
+fn is_flipped(pair: &Pair, fit: &Fit) -> bool {
+    let predicted = fit.own_frames().predicted(&pair.moved);
+    let normal = pair.seen.rotation.column(2).into_owned();
+    let along: Vector3<f64> = sight_axes(&pair.seen).row(2).transpose();
+    let other = 2.0 * normal.dot(&along) * along - normal;
+    let turned = rotation::shortest_arc(&normal, &other) * pair.seen.rotation;
+    let off = |seen: &nalgebra::Matrix3<f64>| rotation::log(&(seen * predicted.rotation.transpose())).norm();
+    let (as_read, as_other) = (off(&pair.seen.rotation), off(&turned));
+    as_read > 0.1 && as_other < 0.35 * as_read
+}
+
+fn say_outliers(outliers: &[Outlier], name: &dyn Fn(usize) -> String, findings: &mut Vec<Finding>) {
+    let rows = |flipped: bool| -> Vec<usize> {
+        outliers.iter().filter(|it| it.is_flipped == flipped).map(|it| it.row).collect()
+    };
+    let (flipped, others) = (rows(true), rows(false));
+    let verb = |count: usize| if count == 1 { "is" } else { "are" };
+    if !flipped.is_empty() {
+        let statement = format!(
+            "{} {} flipped: a flat board seen from its other side would look the same; left out; take the other solution (OpenCV: solvePnPGeneric with \
+             SOLVEPNP_IPPE), or tilt the board further",
+            listed(&flipped, name),
+            verb(flipped.len())
+        );
+        findings.push(Finding::new(FindingKind::Flipped, statement, flipped));
+    }
+    if !others.is_empty() {
+        let worst = outliers.iter().filter(|it| !it.is_flipped).max_by(|a, b| a.shift_m.total_cmp(&b.shift_m));
+        let size = worst.map_or(String::new(), |it| format!(" (up to {:.1} mm and {:.2} deg)", 1e3 * it.shift_m, it.turn_rad.to_degrees()));
+        let statement = format!("{} contradict{} all others{size} and {} left out: look at these pictures and poses", listed(&others, name), if others.len() == 1 { "s" } else { "" }, verb(others.len()));
+        findings.push(Finding::new(FindingKind::Outliers, statement, others));
+    }
+}
+
+/// Errors of rows in five parts, each predicted by the others.
+fn held_out(rows: &[Pair], fit: &Fit) -> Option<HeldOut> {
+    let kept = fit.rows(rows);
+    if kept.len() < 6 {
+        return None;
+    }
+    let folds = if kept.len() < 10 { kept.len() } else { 5 };
+    let (mut squares_m, mut squares_rad) = (0.0, 0.0);
+    for fold in 0..folds {
+        let of = |held: bool| -> Vec<Pair> {
+            kept.iter().enumerate().filter(|(k, _)| (k % folds == fold) == held).map(|(_, it)| *it).collect()
+        };
+        let frames = fit.of_target(&fit.again(&of(false))?);
+        for pair in of(true) {
+            let (shift, turn) = sizes(&errors(&pair, &frames));
+            squares_m += shift * shift;
+            squares_rad += turn * turn;
+        }
+    }
+    let count = kept.len() as f64;
+    Some(HeldOut { rows: kept.len(), rms_m: (squares_m / count).sqrt(), rms_rad: (squares_rad / count).sqrt() })
+}
+
+fn root_mean_squares(rows: &[RowError]) -> (f64, f64) {
+    let fitted: Vec<&RowError> = rows.iter().filter(|it| it.is_fitted).collect();
+    let of = |size: &dyn Fn(&RowError) -> f64| {
+        (fitted.iter().map(|it| size(it).powi(2)).sum::<f64>() / fitted.len().max(1) as f64).sqrt()
+    };
+    (of(&|it| it.shift_m), of(&|it| it.turn_rad))
+}
