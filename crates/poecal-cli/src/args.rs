@@ -6,6 +6,7 @@ mod calibrate;
 mod compensate;
 #[cfg(any(unix, windows))]
 mod detect;
+mod hand_eye;
 mod identify;
 mod init;
 mod offsets;
@@ -21,6 +22,7 @@ pub(crate) use calibrate::Calibrate;
 pub(crate) use compensate::Compensate;
 #[cfg(any(unix, windows))]
 pub(crate) use detect::Detect;
+pub(crate) use hand_eye::HandEye;
 pub(crate) use identify::Identify;
 pub(crate) use init::Init;
 pub(crate) use offsets::Offsets;
@@ -71,6 +73,8 @@ pub(crate) enum Command {
     Init(Init),
     /// Calibrate a robot from measurements
     Calibrate(Box<Calibrate>),
+    /// Find where a camera is on the flange, or beside the robot, from poses of the flange and of what the camera saw
+    HandEye(Box<HandEye>),
     /// Find the corners of a board in pictures
     #[cfg(any(unix, windows))]
     Detect(Detect),

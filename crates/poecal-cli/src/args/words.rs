@@ -46,6 +46,24 @@ pub(super) const CAMERA: Words<CameraPlace> = &[
     ("beside", "Beside the robot, and the board is on the tip", CameraPlace::Beside),
 ];
 
+/// Where the camera of a hand-eye calibration is.
+pub(super) const HAND_EYE_CAMERA: Words<poecal::hand_eye::CameraPlace> = &[
+    ("in-hand", "On the flange, and the target stays", poecal::hand_eye::CameraPlace::InHand),
+    ("beside", "Beside the robot, and the target is on the flange", poecal::hand_eye::CameraPlace::Beside),
+];
+
+/// Whether the arm's poses are inverted.
+pub(super) const FLANGE_POSES: Words<bool> = &[
+    ("base-from-flange", "The flange in the base, as controllers show it", false),
+    ("flange-from-base", "The base in the flange", true),
+];
+
+/// Whether the target's poses are inverted.
+pub(super) const TARGET_POSES: Words<bool> = &[
+    ("camera-from-target", "The target as the camera sees it, as OpenCV's rvec and tvec", false),
+    ("target-from-camera", "The camera in the target's frame", true),
+];
+
 /// Which rows share a device frame.
 pub(super) const FRAMES: Words<Frames> = &[
     ("common", "All, or those of one name in the column `instrument`", Frames::Common),

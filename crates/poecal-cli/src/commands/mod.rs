@@ -11,6 +11,7 @@ mod convert;
 #[cfg(any(unix, windows))]
 mod detect;
 mod export;
+mod hand_eye;
 mod identify;
 mod init;
 mod man;
@@ -36,6 +37,7 @@ pub(crate) use convert::convert;
 #[cfg(any(unix, windows))]
 pub(crate) use detect::detect;
 pub(crate) use export::{apply, export};
+pub(crate) use hand_eye::hand_eye;
 pub(crate) use identify::identify;
 pub(crate) use init::init;
 pub(crate) use man::man;

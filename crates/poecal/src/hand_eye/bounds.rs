@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, Matrix3, SMatrix, Vector3};
 
-use super::equations::{Frames, Pair, UNKNOWNS};
+use super::equations::{Frames, UNKNOWNS};
 use super::noise::{Noise, Spread};
 use crate::distributions::f_quantile;
 use crate::lie::{Pose, hat};
@@ -126,9 +126,4 @@ pub(super) fn difference(
     let least = |noise: &Noise| noise.freedom.iter().copied().fold(f64::INFINITY, f64::min);
     let freedom = least(one.3).min(least(other.3)).clamp(1.0, 1e6);
     Some(squares / f_quantile(probability, 6.0, freedom))
-}
-
-/// A pair with the numbers of its own place.
-pub(super) fn distance_of(pairs: &[Pair]) -> f64 {
-    crate::distributions::median(pairs.iter().map(|it| it.seen.translation.norm())).unwrap_or_default()
 }

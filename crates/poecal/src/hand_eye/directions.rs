@@ -2,7 +2,7 @@
 
 use super::CameraPlace;
 use super::equations::{Frames, Pair};
-use super::fit::{medians, start};
+use super::fit::{STARTS, medians, start};
 use super::result::HandEyeOptions;
 use crate::error::{ErrorKind, Result};
 use crate::lie::Pose;
@@ -38,7 +38,7 @@ pub(super) fn pairs(flange: &[Pose], target: &[Pose], camera: CameraPlace, by: &
 
 /// How well poses fit in a direction: the sum of the logarithms of the median errors, in mm and degrees.
 pub(super) fn score(pairs: &[Pair]) -> Option<(f64, Frames)> {
-    let frames = start(pairs)?;
+    let frames = start(pairs, STARTS)?;
     let (shift, turn) = medians(pairs, &frames);
     Some((shift.max(1e-9).ln() + turn.max(1e-9).ln(), frames))
 }

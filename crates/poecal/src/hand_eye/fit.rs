@@ -5,11 +5,13 @@ use nalgebra::{Matrix3, Vector3};
 use super::equations::{Frames, NUMBERS, Pair, UNKNOWNS, derivatives, errors, in_closed_form, minimised, sight_axes};
 use super::noise::Noise;
 use crate::distributions::{chi_square_median, f_quantile, median};
-use crate::lie::{Pose, hat, rotation};
+use crate::lie::{Pose, hat};
 use crate::linalg::{cholesky, cholesky_solve};
 
 /// Starts from a few poses each.
-const STARTS: usize = 80;
+pub(super) const STARTS: usize = 80;
+/// The same where many sessions are compared.
+pub(super) const FEW_STARTS: usize = 12;
 /// Poses of such a start.
 const POSES_OF_START: usize = 4;
 /// Probability with which a session without outliers loses a row.
@@ -35,7 +37,7 @@ pub(super) struct Fit {
 impl Fit {
     /// Fits all rows. `None` where they do not determine the frames.
     pub(super) fn of(pairs: &[Pair]) -> Option<Self> {
-        let frames = start(pairs)?;
+        let frames = start(pairs, STARTS)?;
         let noise = rough_noise(pairs, &frames);
         let mut fit = Fit { frames, noise, kept: vec![true; pairs.len()], point: Vector3::zeros() };
         fit.choose(pairs);
@@ -220,7 +222,7 @@ pub(super) fn medians(pairs: &[Pair], frames: &Frames) -> (f64, f64) {
 }
 
 /// The best start: of all poses, or of a few of them, by the median errors of all.
-pub(super) fn start(pairs: &[Pair]) -> Option<Frames> {
+pub(super) fn start(pairs: &[Pair], starts: usize) -> Option<Frames> {
     let all: Vec<&Pair> = pairs.iter().collect();
     let mut best: Option<(f64, Frames)> = None;
     let mut consider = |frames: Option<Frames>| {
@@ -233,7 +235,7 @@ pub(super) fn start(pairs: &[Pair]) -> Option<Frames> {
     };
     consider(in_closed_form(&all));
     let mut draw = Draw(1);
-    for _ in 0..if pairs.len() > POSES_OF_START { STARTS } else { 0 } {
+    for _ in 0..if pairs.len() > POSES_OF_START { starts } else { 0 } {
         let few: Vec<&Pair> = draw.few(pairs.len()).into_iter().filter_map(|k| pairs.get(k)).collect();
         consider(in_closed_form(&few));
     }
@@ -269,9 +271,4 @@ fn rough_noise(pairs: &[Pair], frames: &Frames) -> Noise {
     // Four poses fit themselves.
     let few = (1.0 + 4.0 / pairs.len() as f64).min(2.0);
     Noise::of(few * scale * shift, few * scale * turn)
-}
-
-/// Angle between two poses and distance of their origins, rad and m.
-pub(super) fn turned_between(one: &Pose, other: &Pose) -> Vector3<f64> {
-    rotation::log(&(one.rotation.transpose() * other.rotation))
 }

@@ -2,8 +2,8 @@
 
 use super::CameraPlace;
 use super::bounds::{Side, difference, placed};
-use super::equations::Pair;
-use super::fit::{Fit, medians, start};
+use super::equations::{Pair, errors};
+use super::fit::{FEW_STARTS, Fit, sizes, start};
 use super::noise::Spread;
 use crate::lie::Pose;
 
@@ -55,11 +55,12 @@ pub(super) fn found(pairs: &[Pair]) -> Option<Move> {
     Some(Move { from: at, side, shift_m, turn_rad })
 }
 
-/// How well rows fit by themselves: counted times the logarithms of their median errors.
+/// How well rows fit by themselves: counted times the logarithms of their mean errors.
 fn scored(pairs: &[Pair]) -> Option<f64> {
-    let frames = start(pairs)?;
-    let (shift, turn) = medians(pairs, &frames);
-    Some(pairs.len() as f64 * (shift.max(1e-9).ln() + turn.max(1e-9).ln()))
+    let frames = start(pairs, FEW_STARTS)?;
+    let count = pairs.len() as f64;
+    let sums = pairs.iter().map(|pair| sizes(&errors(pair, &frames))).fold((0.0, 0.0), |sum, it| (sum.0 + it.0, sum.1 + it.1));
+    Some(count * ((sums.0 / count).max(1e-9).ln() + (sums.1 / count).max(1e-9).ln()))
 }
 
 /// What moved, in words.

@@ -25,6 +25,16 @@ pub struct Reading {
     pub poses: Vec<Pose>,
 }
 
+impl PoseList {
+    /// The list of some rows, in this order.
+    #[must_use]
+    pub fn of_rows(&self, rows: &[usize]) -> Self {
+        let of = |poses: &[Pose]| rows.iter().filter_map(|&row| poses.get(row)).copied().collect();
+        let others = self.others.iter().map(|it| Reading { advice: it.advice.clone(), poses: of(&it.poses) });
+        PoseList { poses: of(&self.poses), others: others.collect() }
+    }
+}
+
 impl From<Vec<Pose>> for PoseList {
     fn from(poses: Vec<Pose>) -> Self {
         PoseList { poses, others: Vec::new() }

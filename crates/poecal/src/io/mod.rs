@@ -6,6 +6,8 @@ mod csv_text;
 pub mod disk;
 pub mod export;
 mod foreign;
+pub mod frame_texts;
+pub mod hand_eye;
 mod hashes;
 mod limits;
 mod looks_like;

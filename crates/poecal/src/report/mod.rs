@@ -4,6 +4,7 @@ mod acceptance;
 mod check;
 mod compared;
 mod found;
+mod hand_eye;
 mod identify;
 mod judgement;
 mod offsets;
@@ -18,6 +19,7 @@ pub mod table;
 
 pub use check::{Check, SetCounts};
 pub use compared::Comparison;
+pub use hand_eye::hand_eye;
 pub use identify::Identify;
 pub use judgement::judgement;
 pub use offsets::Offsets;

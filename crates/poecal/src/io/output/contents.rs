@@ -19,6 +19,11 @@ const SIMULATION: [&str; 9] = [
     "cameras.csv",
     "truth.json",
 ];
+/// File names of a hand-eye calibration.
+const HAND_EYE: [&str; 6] =
+    ["hand_eye.json", "transforms.txt", "easy_handeye2.calib", "static_transform.launch.py", "opencv.yml", "rows.csv"];
+/// File names of a tool's tip.
+const TIP: [&str; 3] = ["tcp.json", "transforms.txt", "rows.csv"];
 /// File names of every project.
 pub(super) const PROJECT: [&str; 4] = ["measurements.csv", "joints.csv", "poecal.toml", "README.md"];
 /// File names of its model, one of which it has.
@@ -35,6 +40,10 @@ pub enum Contents {
     Simulation,
     /// The report of a reproduction.
     Reproduction,
+    /// Where a camera is.
+    HandEye,
+    /// Where a tool's tip is.
+    Tip,
     /// A project to start from.
     Project,
 }
@@ -47,6 +56,8 @@ impl Contents {
             Contents::Validation,
             Contents::Simulation,
             Contents::Reproduction,
+            Contents::HandEye,
+            Contents::Tip,
             Contents::Project,
         ];
         all.into_iter().any(|contents| contents.is_own(name)) || MODELS.contains(&name)
@@ -57,7 +68,11 @@ impl Contents {
         match self {
             Contents::Calibration => Some(VALIDATION[0]),
             Contents::Validation => Some(CALIBRATION[0]),
-            Contents::Simulation | Contents::Reproduction | Contents::Project => None,
+            Contents::Simulation
+            | Contents::Reproduction
+            | Contents::HandEye
+            | Contents::Tip
+            | Contents::Project => None,
         }
     }
 
@@ -69,6 +84,8 @@ impl Contents {
             Contents::Validation => VALIDATION.contains(&name),
             Contents::Simulation => SIMULATION.contains(&name) || is_picture(name),
             Contents::Reproduction => is_of_reproduction(name),
+            Contents::HandEye => HAND_EYE.contains(&name),
+            Contents::Tip => TIP.contains(&name),
             Contents::Project => PROJECT.contains(&name),
         }
     }
