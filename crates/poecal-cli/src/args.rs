@@ -22,7 +22,7 @@ pub(crate) use calibrate::Calibrate;
 pub(crate) use compensate::Compensate;
 #[cfg(any(unix, windows))]
 pub(crate) use detect::Detect;
-pub(crate) use hand_eye::HandEye;
+pub(crate) use hand_eye::{HandEye, Tcp};
 pub(crate) use identify::Identify;
 pub(crate) use init::Init;
 pub(crate) use offsets::Offsets;
@@ -75,6 +75,8 @@ pub(crate) enum Command {
     Calibrate(Box<Calibrate>),
     /// Find where a camera is on the flange, or beside the robot, from poses of the flange and of what the camera saw
     HandEye(Box<HandEye>),
+    /// Find where the tip of a tool is, from poses of the flange in which it touches a fixed point
+    Tcp(Tcp),
     /// Find the corners of a board in pictures
     #[cfg(any(unix, windows))]
     Detect(Detect),

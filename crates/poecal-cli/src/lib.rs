@@ -150,6 +150,7 @@ fn run_to_code(arguments: impl IntoIterator<Item = OsString>) -> u8 {
     let result = match &arguments.command {
         Command::Init(options) => commands::init(options, &console),
         Command::Calibrate(options) => commands::calibrate(options, &typed, &console),
+        Command::Tcp(options) => commands::tcp(options, &typed, &console),
         Command::HandEye(options) => commands::hand_eye(options, &typed, &console),
         #[cfg(any(unix, windows))]
         Command::Detect(options) => commands::detect(options, &console),

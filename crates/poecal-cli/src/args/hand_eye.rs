@@ -59,13 +59,37 @@ pub(super) fn units(text: &str) -> Result<PoseUnits, String> {
 
 /// Parser of the names of frames for clap.
 fn names(text: &str) -> Result<FrameNames, String> {
-    let is_plain = |name: &&str| !name.is_empty() && name.chars().all(|c| c.is_ascii_alphanumeric() || "_-/.".contains(c));
+    let is_plain = |name: &&str| {
+        !name.is_empty() && name.chars().all(|c| c.is_ascii_alphanumeric() || "_-/.".contains(c))
+    };
     let names: Vec<&str> = text.split(',').map(str::trim).filter(is_plain).collect();
     match names.as_slice() {
         [base, flange, camera, target] => {
             let [base, flange, camera, target] = [base, flange, camera, target].map(|it| (*it).to_owned());
             Ok(FrameNames { base, flange, camera, target })
         }
-        _ => Err(format!("found `{text}`, expected four names of letters, digits, `_`, `-`, `/` and `.`, like base_link,tool0,camera,board")),
+        _ => Err(format!(
+            "found `{text}`, expected four names of letters, digits, `_`, `-`, `/` and `.`, like base_link,tool0,camera,board"
+        )),
     }
+}
+
+/// Arguments of `poecal tcp`.
+#[derive(Args, Debug)]
+pub(crate) struct Tcp {
+    /// Poses of the flange (CSV) in which the tip touched a fixed point; a column `point` for several points, a column `tip` for two tips along the
+    /// tool, which show its direction
+    pub(crate) poses: PathBuf,
+    /// Units of columns that state none, like mm,deg
+    #[arg(long, value_name = "LENGTH[,ANGLE]", default_value = "", hide_default_value = true, value_parser = units)]
+    pub(crate) units: PoseUnits,
+    /// Folder for the results
+    #[arg(short, long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    /// Overwrite the results of an earlier run in the folder
+    #[arg(long)]
+    pub(crate) force: bool,
+    /// Print tcp.json instead of the table
+    #[arg(long)]
+    pub(crate) json: bool,
 }

@@ -23,6 +23,7 @@ mod report;
 mod reproduce;
 mod schema;
 mod simulate;
+mod tcp;
 mod typed;
 mod validate;
 
@@ -47,4 +48,5 @@ pub(crate) use report::report;
 pub(crate) use reproduce::reproduce;
 pub(crate) use schema::schema;
 pub(crate) use simulate::simulate;
+pub(crate) use tcp::tcp;
 pub(crate) use validate::validate;

@@ -81,7 +81,8 @@ pub(super) fn bounded(spread: &Spread, frames: &Frames, point: &Vector3<f64>, si
         spread.by_part.iter().map(|(part, freedom)| (mapped(&map, part), *freedom)).collect();
     let of = |at: usize| {
         let block = |of: &SMatrix<f64, 6, 6>| of.fixed_view::<3, 3>(at, at).into_owned();
-        let by_part: Vec<(f64, f64)> = parts.iter().map(|(part, freedom)| (block(part).trace(), *freedom)).collect();
+        let by_part: Vec<(f64, f64)> =
+            parts.iter().map(|(part, freedom)| (block(part).trace(), *freedom)).collect();
         (length_within(&block(&all), &by_part), block(&all).diagonal().map(|it| it.max(0.0).sqrt()))
     };
     let ((bound95_m, sigma_m), (bound95_rad, sigma_rad)) = (of(0), of(3));

@@ -33,7 +33,8 @@ pub(super) fn pairs(flange: &[Pose], target: &[Pose], camera: CameraPlace, by: &
     let inverts = by.flange_inverted != (camera == CameraPlace::InHand);
     let turned = |pose: &Pose, inverts: bool| if inverts { pose.inverse() } else { *pose };
     let both = flange.iter().zip(target);
-    both.map(|(arm, seen)| Pair { moved: turned(arm, inverts), seen: turned(seen, by.target_inverted) }).collect()
+    both.map(|(arm, seen)| Pair { moved: turned(arm, inverts), seen: turned(seen, by.target_inverted) })
+        .collect()
 }
 
 /// How well poses fit in a direction: the sum of the logarithms of the median errors, in mm and degrees.
@@ -59,7 +60,11 @@ struct Candidate {
 ///
 /// Both lists the other way round fit as well, with the two frames exchanged: then what is on the flange is nearer to it than what stays
 /// is to the base.
-pub(super) fn found(flange: &[Pose], target: &[Pose], options: &HandEyeOptions) -> Result<(Directions, Option<String>)> {
+pub(super) fn found(
+    flange: &[Pose],
+    target: &[Pose],
+    options: &HandEyeOptions,
+) -> Result<(Directions, Option<String>)> {
     let camera = options.camera;
     let stated = options.flange_inverted.is_some() && options.target_inverted.is_some();
     let allowed = |stated: Option<bool>| match stated {
@@ -115,9 +120,14 @@ fn exchanged(usual: &Candidate, camera: CameraPlace) -> Option<String> {
 }
 
 /// Where the usual directions do not fit: the others, if it can be said which list is inverted.
-fn other_directions(good: &[&Candidate], target: &[Pose], camera: CameraPlace) -> Result<(Directions, Option<String>)> {
+fn other_directions(
+    good: &[&Candidate],
+    target: &[Pose],
+    camera: CameraPlace,
+) -> Result<(Directions, Option<String>)> {
     let (Some(first), rest) = (good.first(), good.get(1)) else {
-        return ErrorKind::Problem.refuse("found poses that fit in no direction, expected poses of one session: check both lists");
+        return ErrorKind::Problem
+            .refuse("found poses that fit in no direction, expected poses of one session: check both lists");
     };
     let other_place = match camera {
         CameraPlace::InHand => CameraPlace::Beside,

@@ -93,8 +93,7 @@ impl Normal {
 
     /// Adds a number with its derivatives and weight.
     pub(super) fn add(&mut self, row: &[f64; UNKNOWNS], error: f64, weight: f64) {
-        for (i, (gram, gradient)) in
-            self.gram.chunks_exact_mut(UNKNOWNS).zip(&mut self.gradient).enumerate()
+        for (i, (gram, gradient)) in self.gram.chunks_exact_mut(UNKNOWNS).zip(&mut self.gradient).enumerate()
         {
             *gradient += weight * row[i] * error;
             for (g, other) in gram.iter_mut().zip(row) {
@@ -144,7 +143,13 @@ pub(super) fn minimised(
             break;
         }
     }
-    frames.outer.translation.iter().chain(frames.inner.translation.iter()).all(|it| it.is_finite()).then_some(frames)
+    frames
+        .outer
+        .translation
+        .iter()
+        .chain(frames.inner.translation.iter())
+        .all(|it| it.is_finite())
+        .then_some(frames)
 }
 
 /// Axis of a rotation times twice the sine of its angle.

@@ -2,7 +2,9 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::equations::{Frames, NUMBERS, Pair, UNKNOWNS, derivatives, errors, in_closed_form, minimised, sight_axes};
+use super::equations::{
+    Frames, NUMBERS, Pair, UNKNOWNS, derivatives, errors, in_closed_form, minimised, sight_axes,
+};
 use super::noise::Noise;
 use crate::distributions::{chi_square_median, f_quantile, median};
 use crate::lie::{Pose, hat};

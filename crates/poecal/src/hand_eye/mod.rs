@@ -16,6 +16,7 @@ mod readings;
 mod result;
 #[cfg(test)]
 mod tests;
+mod tip;
 mod verdict;
 
 pub use bounds::Placed;
@@ -23,6 +24,7 @@ pub use directions::Directions;
 pub use findings::{Finding, FindingKind};
 pub use readings::{PoseList, Reading};
 pub use result::{HandEye, HandEyeOptions, HeldOut, Level, Outlier, RowError, Turns, hand_eye};
+pub use tip::{Tip, Tool, Touches, tool_tip};
 
 /// Where the camera is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

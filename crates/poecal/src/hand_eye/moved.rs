@@ -36,9 +36,8 @@ pub(super) fn found(pairs: &[Pair]) -> Option<Move> {
     let scores = places.filter_map(|at| Some((scored(&pairs[..at])? + scored(&pairs[at..])?, at)));
     let (_, at) = scores.min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)))?;
     let (first, second) = (Fit::of(&pairs[..at])?, Fit::of(&pairs[at..])?);
-    let [before, after] = [(&first, &pairs[..at]), (&second, &pairs[at..])].map(|(fit, rows)| {
-        Spread::of(&fit.noise, &fit.rows(&fit.seen_about(rows)), &fit.frames)
-    });
+    let [before, after] = [(&first, &pairs[..at]), (&second, &pairs[at..])]
+        .map(|(fit, rows)| Spread::of(&fit.noise, &fit.rows(&fit.seen_about(rows)), &fit.frames));
     let (before, after) = (before?, after?);
     let chance = CHANCE / (count / every) as f64;
     let ratio = |side: Side| {
@@ -59,7 +58,10 @@ pub(super) fn found(pairs: &[Pair]) -> Option<Move> {
 fn scored(pairs: &[Pair]) -> Option<f64> {
     let frames = start(pairs, FEW_STARTS)?;
     let count = pairs.len() as f64;
-    let sums = pairs.iter().map(|pair| sizes(&errors(pair, &frames))).fold((0.0, 0.0), |sum, it| (sum.0 + it.0, sum.1 + it.1));
+    let sums = pairs
+        .iter()
+        .map(|pair| sizes(&errors(pair, &frames)))
+        .fold((0.0, 0.0), |sum, it| (sum.0 + it.0, sum.1 + it.1));
     Some(count * ((sums.0 / count).max(1e-9).ln() + (sums.1 / count).max(1e-9).ln()))
 }
 

@@ -87,7 +87,8 @@ impl Noise {
             apart.freedom.push(0.0);
             let Some(apart) = apart.estimated(pairs, frames) else { continue };
             let last = apart.variance.len() - 1;
-            let (mut a, mut b) = ((apart.variance[part], apart.freedom[part]), (apart.variance[last], apart.freedom[last]));
+            let (mut a, mut b) =
+                ((apart.variance[part], apart.freedom[part]), (apart.variance[last], apart.freedom[last]));
             if a.0 < b.0 {
                 std::mem::swap(&mut a, &mut b);
             }
@@ -108,7 +109,11 @@ struct Parts {
 
 impl Parts {
     fn of(part_of: [usize; NUMBERS], parts: usize, pairs: &[Pair], frames: &Frames) -> Self {
-        let mut all = Parts { normals: vec![Normal::zero(); parts], squares: vec![0.0; parts], counts: vec![0.0; parts] };
+        let mut all = Parts {
+            normals: vec![Normal::zero(); parts],
+            squares: vec![0.0; parts],
+            counts: vec![0.0; parts],
+        };
         for pair in pairs {
             let errors = errors(pair, frames);
             for ((row, error), part) in derivatives(pair, frames).iter().zip(errors).zip(part_of) {

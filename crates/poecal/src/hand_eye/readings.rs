@@ -52,27 +52,42 @@ const NEAREST_SEEN: f64 = 2e-3;
 
 /// Refuses lengths that only another unit explains.
 pub(super) fn refuse_other_lengths(flange: &[Pose], target: &[Pose]) -> Result<()> {
-    for (list, poses, nearest) in [("arm", flange, NEAREST), ("target", target, NEAREST_SEEN)] {
-        let Some(middle) = crate::distributions::median(poses.iter().map(|it| it.translation.norm())) else { continue };
-        if middle > FARTHEST {
-            return ErrorKind::Problem.refuse(format!(
+    refuse_lengths("arm", flange, NEAREST)?;
+    refuse_lengths("target", target, NEAREST_SEEN)
+}
+
+/// The same of an arm alone.
+pub(super) fn refuse_arm_lengths(flange: &[Pose]) -> Result<()> {
+    refuse_lengths("arm", flange, NEAREST)
+}
+
+fn refuse_lengths(list: &str, poses: &[Pose], nearest: f64) -> Result<()> {
+    let Some(middle) = crate::distributions::median(poses.iter().map(|it| it.translation.norm())) else {
+        return Ok(());
+    };
+    if middle > FARTHEST {
+        return ErrorKind::Problem.refuse(format!(
                 "found positions of the {list} {middle:.0} m away (median), expected those of a robot: if they are millimetres, write `[mm]` behind \
                  the names of their columns, or --units mm"
             ));
-        }
-        if middle < nearest && middle > 0.0 {
-            return ErrorKind::Problem.refuse(format!(
+    }
+    if middle < nearest && middle > 0.0 {
+        return ErrorKind::Problem.refuse(format!(
                 "found positions of the {list} {:.2} mm away (median), expected those of a robot: if they are metres, write `[m]` behind the names \
                  of their columns, or --units m",
                 1e3 * middle
             ));
-        }
     }
     Ok(())
 }
 
 /// The error that names another reading which fits evidently better than the stated one, in whatever direction; none if there is none.
-pub(super) fn mistaken(flange: &PoseList, target: &PoseList, options: &HandEyeOptions, found: f64) -> Option<Error> {
+pub(super) fn mistaken(
+    flange: &PoseList,
+    target: &PoseList,
+    options: &HandEyeOptions,
+    found: f64,
+) -> Option<Error> {
     let mut best: Option<(f64, String)> = None;
     let mut consider = |flange: &[Pose], target: &[Pose], advice: &str| {
         let Some(score) = least_score(flange, target, options) else { return };
@@ -81,7 +96,9 @@ pub(super) fn mistaken(flange: &PoseList, target: &PoseList, options: &HandEyeOp
         }
     };
     for (first, second, advice) in orders(flange.poses.len()) {
-        let of = |poses: &[Pose], rows: &[usize]| -> Vec<Pose> { rows.iter().filter_map(|&row| poses.get(row)).copied().collect() };
+        let of = |poses: &[Pose], rows: &[usize]| -> Vec<Pose> {
+            rows.iter().filter_map(|&row| poses.get(row)).copied().collect()
+        };
         consider(&of(&flange.poses, &first), &of(&target.poses, &second), &advice);
     }
     for reading in &flange.others {
@@ -92,24 +109,49 @@ pub(super) fn mistaken(flange: &PoseList, target: &PoseList, options: &HandEyeOp
     }
     for (list, poses) in [("arm", &flange.poses), ("target", &target.poses)] {
         for (poses, what) in mirrored(poses) {
-            let advice = format!("{what} of the {list}: its frame is left-handed, or a sign is wrong; export it in a right-handed frame");
-            if list == "arm" { consider(&poses, &target.poses, &advice) } else { consider(&flange.poses, &poses, &advice) }
+            let advice = format!(
+                "{what} of the {list}: its frame is left-handed, or a sign is wrong; export it in a right-handed frame"
+            );
+            if list == "arm" {
+                consider(&poses, &target.poses, &advice)
+            } else {
+                consider(&flange.poses, &poses, &advice)
+            }
         }
-        for (factor, what) in [(1e3, "1000 times as long"), (1e-3, "a thousandth"), (0.0254, "inches"), (10.0, "ten times as long"), (0.1, "a tenth")] {
-            let poses: Vec<Pose> = poses.iter().map(|it| Pose::new(it.rotation, it.translation * factor)).collect();
-            let advice = format!("lengths of the {list} that are {what}: check their unit, and state it in the header or by --units");
-            if list == "arm" { consider(&poses, &target.poses, &advice) } else { consider(&flange.poses, &poses, &advice) }
+        for (factor, what) in [
+            (1e3, "1000 times as long"),
+            (1e-3, "a thousandth"),
+            (0.0254, "inches"),
+            (10.0, "ten times as long"),
+            (0.1, "a tenth"),
+        ] {
+            let poses: Vec<Pose> =
+                poses.iter().map(|it| Pose::new(it.rotation, it.translation * factor)).collect();
+            let advice = format!(
+                "lengths of the {list} that are {what}: check their unit, and state it in the header or by --units"
+            );
+            if list == "arm" {
+                consider(&poses, &target.poses, &advice)
+            } else {
+                consider(&flange.poses, &poses, &advice)
+            }
         }
     }
     best.map(|(_, advice)| {
-        ErrorKind::Problem.error(format!("found poses that do not fit together as they are, expected one session; they fit with {advice}"))
+        ErrorKind::Problem.error(format!(
+            "found poses that do not fit together as they are, expected one session; they fit with {advice}"
+        ))
     })
 }
 
 /// The best score over the directions that are allowed.
 pub(super) fn least_score(flange: &[Pose], target: &[Pose], options: &HandEyeOptions) -> Option<f64> {
     let of = |flange_inverted: bool| {
-        let directions = Directions { flange_inverted, target_inverted: options.target_inverted.unwrap_or(false), stated: false };
+        let directions = Directions {
+            flange_inverted,
+            target_inverted: options.target_inverted.unwrap_or(false),
+            stated: false,
+        };
         Some(score(&pairs(flange, target, CameraPlace::Beside, &directions))?.0)
     };
     [of(false), of(true)].into_iter().flatten().reduce(f64::min)
@@ -132,7 +174,11 @@ fn orders(count: usize) -> Vec<(Vec<usize>, Vec<usize>, String)> {
         orders.push((end, start, later("later")));
     }
     let advice = "join them by a column of names, as `image`, in both";
-    orders.push((all(), all().into_iter().rev().collect(), format!("the target's poses in reverse order: {advice}")));
+    orders.push((
+        all(),
+        all().into_iter().rev().collect(),
+        format!("the target's poses in reverse order: {advice}"),
+    ));
     for first in [0, 1] {
         let mut sorted = all();
         sorted.sort_by_key(|row| (row + first).to_string());
@@ -157,7 +203,11 @@ fn mirrored(poses: &[Pose]) -> Vec<(Vec<Pose>, &'static str)> {
         poses.iter().map(|it| Pose::new(whole * it.rotation * whole, whole * it.translation)).collect(),
         "an axis mirrored in the poses",
     )];
-    for (axis, what) in ["x mirrored in the positions", "y mirrored in the positions", "z mirrored in the positions"].iter().enumerate() {
+    for (axis, what) in
+        ["x mirrored in the positions", "y mirrored in the positions", "z mirrored in the positions"]
+            .iter()
+            .enumerate()
+    {
         let by = mirror(axis);
         all.push((poses.iter().map(|it| Pose::new(it.rotation, by * it.translation)).collect(), *what));
     }

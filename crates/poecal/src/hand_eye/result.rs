@@ -251,7 +251,12 @@ fn finished(
 }
 
 /// Rows without those that repeat an earlier one.
-fn once_each(flange: &PoseList, target: &PoseList, name: &dyn Fn(usize) -> String, findings: &mut Vec<Finding>) -> Vec<usize> {
+fn once_each(
+    flange: &PoseList,
+    target: &PoseList,
+    name: &dyn Fn(usize) -> String,
+    findings: &mut Vec<Finding>,
+) -> Vec<usize> {
     let same = |one: &Pose, other: &Pose| {
         let (shift, turn) = one.apart(other);
         shift < SAME && turn < 1e-7
@@ -268,10 +273,19 @@ fn once_each(flange: &PoseList, target: &PoseList, name: &dyn Fn(usize) -> Strin
         }
     }
     if !repeated.is_empty() {
-        let words: Vec<String> = repeated.iter().take(4).map(|&(row, it)| format!("{} repeats {}", name(row), name(it))).collect();
-        let more = if repeated.len() > 4 { format!(" and {} more", repeated.len() - 4) } else { String::new() };
-        let statement = format!("{}{more}: the same numbers of arm and target count once; measure each pose anew", words.join(", "));
-        findings.push(Finding::new(FindingKind::Repeated, statement, repeated.iter().map(|it| it.0).collect()));
+        let words: Vec<String> =
+            repeated.iter().take(4).map(|&(row, it)| format!("{} repeats {}", name(row), name(it))).collect();
+        let more =
+            if repeated.len() > 4 { format!(" and {} more", repeated.len() - 4) } else { String::new() };
+        let statement = format!(
+            "{}{more}: the same numbers of arm and target count once; measure each pose anew",
+            words.join(", ")
+        );
+        findings.push(Finding::new(
+            FindingKind::Repeated,
+            statement,
+            repeated.iter().map(|it| it.0).collect(),
+        ));
     }
     counted
 }
@@ -379,9 +393,17 @@ fn say_outliers(outliers: &[Outlier], name: &dyn Fn(usize) -> String, findings: 
         findings.push(Finding::new(FindingKind::Flipped, statement, flipped));
     }
     if !others.is_empty() {
-        let worst = outliers.iter().filter(|it| !it.is_flipped).max_by(|a, b| a.shift_m.total_cmp(&b.shift_m));
-        let size = worst.map_or(String::new(), |it| format!(" (up to {:.1} mm and {:.2} deg)", 1e3 * it.shift_m, it.turn_rad.to_degrees()));
-        let statement = format!("{} contradict{} all others{size} and {} left out: look at these pictures and poses", listed(&others, name), if others.len() == 1 { "s" } else { "" }, verb(others.len()));
+        let worst =
+            outliers.iter().filter(|it| !it.is_flipped).max_by(|a, b| a.shift_m.total_cmp(&b.shift_m));
+        let size = worst.map_or(String::new(), |it| {
+            format!(" (up to {:.1} mm and {:.2} deg)", 1e3 * it.shift_m, it.turn_rad.to_degrees())
+        });
+        let statement = format!(
+            "{} contradict{} all others{size} and {} left out: look at these pictures and poses",
+            listed(&others, name),
+            if others.len() == 1 { "s" } else { "" },
+            verb(others.len())
+        );
         findings.push(Finding::new(FindingKind::Outliers, statement, others));
     }
 }
@@ -406,7 +428,11 @@ fn held_out(rows: &[Pair], fit: &Fit) -> Option<HeldOut> {
         }
     }
     let count = kept.len() as f64;
-    Some(HeldOut { rows: kept.len(), rms_m: (squares_m / count).sqrt(), rms_rad: (squares_rad / count).sqrt() })
+    Some(HeldOut {
+        rows: kept.len(),
+        rms_m: (squares_m / count).sqrt(),
+        rms_rad: (squares_rad / count).sqrt(),
+    })
 }
 
 fn root_mean_squares(rows: &[RowError]) -> (f64, f64) {

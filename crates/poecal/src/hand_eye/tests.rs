@@ -52,8 +52,12 @@ pub(super) fn session(camera: CameraPlace, count: usize, noise: (f64, f64), seed
         let turn = rotation::exp(&draw.vector(0.35));
         let seen = match camera {
             // The camera looks down on the board from 0.4 m.
-            CameraPlace::InHand => Pose::new(turn * rotation::about(0, 3.0), Vector3::new(0.0, 0.0, 0.4) + draw.vector(0.06)),
-            CameraPlace::Beside => Pose::new(turn * rotation::about(1, 2.9), Vector3::new(0.0, 0.0, 1.1) + draw.vector(0.12)),
+            CameraPlace::InHand => {
+                Pose::new(turn * rotation::about(0, 3.0), Vector3::new(0.0, 0.0, 0.4) + draw.vector(0.06))
+            }
+            CameraPlace::Beside => {
+                Pose::new(turn * rotation::about(1, 2.9), Vector3::new(0.0, 0.0, 1.1) + draw.vector(0.12))
+            }
         };
         let arm = match camera {
             CameraPlace::InHand => in_base * seen.inverse() * on_flange.inverse(),
@@ -78,7 +82,10 @@ impl Session {
     }
 
     fn refused(&self, flange: Vec<Pose>, target: Vec<Pose>) -> String {
-        self.read(flange.into(), target.into()).map(|it| format!("{:?} {:?}", it.level, it.findings)).unwrap_err().to_string()
+        self.read(flange.into(), target.into())
+            .map(|it| format!("{:?} {:?}", it.level, it.findings))
+            .unwrap_err()
+            .to_string()
     }
 }
 
@@ -89,13 +96,19 @@ fn frames_are_within_their_bounds_as_often_as_promised() {
     let (mut inside_m, mut inside_rad, mut all, mut lost) = (0, 0, 0, 0);
     for seed in 0..240 {
         let count = [8, 12, 20, 40][seed % 4];
-        let session = session(BOTH[seed / 4 % 2], count, [(2e-4, 2e-3), (3e-5, 2e-4), (1e-3, 8e-3)][seed % 3], seed as u64);
+        let session = session(
+            BOTH[seed / 4 % 2],
+            count,
+            [(2e-4, 2e-3), (3e-5, 2e-4), (1e-3, 8e-3)][seed % 3],
+            seed as u64,
+        );
         let found = session.solved().unwrap();
         let (off_m, off_rad) = found.on_flange.pose.apart(&session.on_flange);
         inside_m += usize::from(off_m <= found.on_flange.bound95_m);
         inside_rad += usize::from(off_rad <= found.on_flange.bound95_rad);
         all += 1;
-        lost += found.outliers.len() + found.findings.iter().filter(|it| it.kind != FindingKind::MissingMoves).count();
+        lost += found.outliers.len()
+            + found.findings.iter().filter(|it| it.kind != FindingKind::MissingMoves).count();
         assert_ne!(found.level, Level::DoNotUse, "{:?}", found.reasons);
     }
     println!("{inside_m} and {inside_rad} of {all} inside, {lost} rows lost");
@@ -124,12 +137,16 @@ fn lists_the_other_way_round_are_found() {
             let found = session.read(inverted(&session.flange).into(), session.target.clone().into());
             match found {
                 Ok(found) => {
-                    assert!(found.directions.flange_inverted && !found.directions.target_inverted, "{camera:?}");
+                    assert!(
+                        found.directions.flange_inverted && !found.directions.target_inverted,
+                        "{camera:?}"
+                    );
                     assert!(found.on_flange.pose.apart(&session.on_flange).0 < 5e-3);
                 }
                 Err(error) => assert!(error.to_string().contains("--camera"), "{error}"),
             }
-            let found = session.read(session.flange.clone().into(), inverted(&session.target).into()).unwrap();
+            let found =
+                session.read(session.flange.clone().into(), inverted(&session.target).into()).unwrap();
             assert!(found.directions.target_inverted, "{camera:?}");
             assert!(found.on_flange.pose.apart(&session.on_flange).0 < 5e-3);
         }
@@ -156,7 +173,9 @@ fn mirrored_frames_and_other_units_are_named() {
         let by = nalgebra::Matrix3::from_diagonal(&Vector3::new(1.0, -1.0, 1.0));
         poses.iter().map(|it| Pose::new(by * it.rotation * by, by * it.translation)).collect()
     };
-    let scaled = |poses: &[Pose], by: f64| -> Vec<Pose> { poses.iter().map(|it| Pose::new(it.rotation, by * it.translation)).collect() };
+    let scaled = |poses: &[Pose], by: f64| -> Vec<Pose> {
+        poses.iter().map(|it| Pose::new(it.rotation, by * it.translation)).collect()
+    };
     for seed in 0..4 {
         for camera in BOTH {
             let session = session(camera, 15, (2e-4, 2e-3), seed);
@@ -168,7 +187,8 @@ fn mirrored_frames_and_other_units_are_named() {
             assert!(error.contains("millimetres"), "{error}");
             let error = session.refused(session.flange.clone(), scaled(&session.target, 1e-3));
             assert!(error.contains("metres"), "{error}");
-            let found = session.read(session.flange.clone().into(), scaled(&session.target, 1.05).into()).unwrap();
+            let found =
+                session.read(session.flange.clone().into(), scaled(&session.target, 1.05).into()).unwrap();
             assert_eq!(found.level, Level::DoNotUse);
             assert!(found.reasons[0].contains("longer than the arm's"), "{:?}", found.reasons);
         }
@@ -208,7 +228,11 @@ fn outliers_flips_repeats_and_moves_are_named() {
             session.target[7].rotation = rotation::shortest_arc(&normal, &other) * seen.rotation;
             let found = session.solved().unwrap();
             if normal.cross(&along).norm() > 0.15 {
-                assert!(found.findings.iter().any(|it| it.kind == FindingKind::Flipped), "{:?}", found.findings);
+                assert!(
+                    found.findings.iter().any(|it| it.kind == FindingKind::Flipped),
+                    "{:?}",
+                    found.findings
+                );
             }
             session.target.clone_from(&good);
             (session.flange[9], session.target[9]) = (session.flange[2], session.target[2]);

@@ -113,7 +113,9 @@ pub(super) fn judge(result: &mut HandEye, scale: Option<f64>) {
     }
     let missing = missing_moves(result);
     weak.extend(missing.iter().cloned());
-    result.findings.extend(missing.into_iter().map(|it| Finding::new(FindingKind::MissingMoves, it, Vec::new())));
+    result
+        .findings
+        .extend(missing.into_iter().map(|it| Finding::new(FindingKind::MissingMoves, it, Vec::new())));
     if result.findings.iter().any(|it| it.kind == FindingKind::Moved) {
         weak.push("something moved during the session".to_owned());
     }

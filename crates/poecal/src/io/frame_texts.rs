@@ -18,7 +18,11 @@ pub struct NamedFrame {
 /// Nine decimals, without `-0`.
 fn number(value: f64) -> String {
     let text = format!("{value:.9}");
-    if text.trim_start_matches(['-', '0', '.']).is_empty() { text.trim_start_matches('-').to_owned() } else { text }
+    if text.trim_start_matches(['-', '0', '.']).is_empty() {
+        text.trim_start_matches('-').to_owned()
+    } else {
+        text
+    }
 }
 
 fn listed(values: &[f64], separator: &str) -> String {
@@ -60,7 +64,8 @@ impl NamedFrame {
     /// The line that publishes it in ROS 2.
     #[must_use]
     pub fn static_transform_publisher(&self) -> String {
-        let numbers: String = self.arguments().iter().map(|(name, value)| format!(" --{name} {}", number(*value))).collect();
+        let numbers: String =
+            self.arguments().iter().map(|(name, value)| format!(" --{name} {}", number(*value))).collect();
         format!(
             "ros2 run tf2_ros static_transform_publisher{numbers} --frame-id {} --child-frame-id {}",
             self.parent, self.child
@@ -129,7 +134,8 @@ impl NamedFrame {
     /// All short forms, each under its name.
     #[must_use]
     pub fn short_forms(&self) -> String {
-        let rows: Vec<String> = self.matrix().iter().map(|row| format!("  [{}]", listed(row, ", "))).collect();
+        let rows: Vec<String> =
+            self.matrix().iter().map(|row| format!("  [{}]", listed(row, ", "))).collect();
         let millimetres: Vec<f64> = self.pose.translation.iter().map(|it| 1e3 * it).collect();
         let [a, b, c] = self.rpy().map(f64::to_degrees);
         let [qx, qy, qz, qw] = self.pose.quaternion_xyzw();

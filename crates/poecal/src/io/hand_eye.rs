@@ -194,14 +194,26 @@ impl HandEyeResult<'_> {
         let file = File {
             schema: SCHEMA,
             poecal_version: env!("CARGO_PKG_VERSION"),
-            inputs: InputsEntry { command: self.command, sha256: &self.poses.sha256, understood: &self.poses.understood },
+            inputs: InputsEntry {
+                command: self.command,
+                sha256: &self.poses.sha256,
+                understood: &self.poses.understood,
+            },
             camera: found.camera.word(),
             verdict: VerdictEntry { level: found.level.word(), reasons: &found.reasons },
             camera_frame: FrameEntry::new(&camera.0, &camera.1),
             target_frame: FrameEntry::new(&target.0, &target.1),
             directions: DirectionsEntry {
-                flange: if found.directions.flange_inverted { "flange_from_base" } else { "base_from_flange" },
-                target: if found.directions.target_inverted { "target_from_camera" } else { "camera_from_target" },
+                flange: if found.directions.flange_inverted {
+                    "flange_from_base"
+                } else {
+                    "base_from_flange"
+                },
+                target: if found.directions.target_inverted {
+                    "target_from_camera"
+                } else {
+                    "camera_from_target"
+                },
                 stated: found.directions.stated,
             },
             poses: found.rows.len(),
@@ -213,8 +225,16 @@ impl HandEyeResult<'_> {
                 turn_deg: turn.to_degrees(),
                 about_m: found.noise_about.into(),
             },
-            residual: ErrorEntry { rows: fitted, rms_mm: 1e3 * found.residual.0, rms_deg: found.residual.1.to_degrees() },
-            held_out: found.held_out.map(|it| ErrorEntry { rows: it.rows, rms_mm: 1e3 * it.rms_m, rms_deg: it.rms_rad.to_degrees() }),
+            residual: ErrorEntry {
+                rows: fitted,
+                rms_mm: 1e3 * found.residual.0,
+                rms_deg: found.residual.1.to_degrees(),
+            },
+            held_out: found.held_out.map(|it| ErrorEntry {
+                rows: it.rows,
+                rms_mm: 1e3 * it.rms_m,
+                rms_deg: it.rms_rad.to_degrees(),
+            }),
             turns: TurnsEntry {
                 sigma_deg: found.turns.spread_rad.map(f64::to_degrees),
                 directions: found.turns.directions.map(Into::into),
@@ -249,7 +269,12 @@ impl HandEyeResult<'_> {
         for (row, error) in self.found.rows.iter().enumerate() {
             let name = super::csv_text::cell(self.name(row));
             let fitted = u8::from(error.is_fitted);
-            text += &format!("{},{name},{fitted},{:.6},{:.6}\n", row + 1, 1e3 * error.shift_m, error.turn_rad.to_degrees());
+            text += &format!(
+                "{},{name},{fitted},{:.6},{:.6}\n",
+                row + 1,
+                1e3 * error.shift_m,
+                error.turn_rad.to_degrees()
+            );
         }
         text
     }
@@ -263,7 +288,10 @@ impl HandEyeResult<'_> {
         let what = if is_in_hand { "EYE-IN-HAND" } else { "EYE-TO-HAND" };
         vec![
             ("transforms.txt", camera.short_forms() + "\n" + &target.short_forms()),
-            ("easy_handeye2.calib", camera.easy_handeye2(is_in_hand, [base, flange, camera_name, target_name])),
+            (
+                "easy_handeye2.calib",
+                camera.easy_handeye2(is_in_hand, [base, flange, camera_name, target_name]),
+            ),
             ("static_transform.launch.py", camera.launch_file(what)),
             ("opencv.yml", camera.opencv()),
             ("rows.csv", self.rows_text()),

@@ -29,6 +29,7 @@ pub mod shapes;
 mod source;
 mod source_text;
 mod stored_pictures;
+pub mod tcp;
 pub mod urdf;
 pub mod validation;
 mod xml;

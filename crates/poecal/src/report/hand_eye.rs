@@ -43,7 +43,11 @@ fn said(found: &HandEye, kind: FindingKind) -> bool {
     match kind {
         FindingKind::MissingMoves => found.level != crate::hand_eye::Level::DoNotUse,
         FindingKind::Scale | FindingKind::Inconsistent => true,
-        FindingKind::Inverted | FindingKind::Repeated | FindingKind::Moved | FindingKind::Flipped | FindingKind::Outliers => false,
+        FindingKind::Inverted
+        | FindingKind::Repeated
+        | FindingKind::Moved
+        | FindingKind::Flipped
+        | FindingKind::Outliers => false,
     }
 }
 
@@ -67,7 +71,12 @@ fn noise(found: &HandEye) -> String {
     let [across, along, tilt, turn] = found.noise;
     let about = found.noise_about;
     let point = if about.norm() > 0.0 {
-        format!(", of the point ({:.0}, {:.0}, {:.0}) mm of the target", 1e3 * about.x, 1e3 * about.y, 1e3 * about.z)
+        format!(
+            ", of the point ({:.0}, {:.0}, {:.0}) mm of the target",
+            1e3 * about.x,
+            1e3 * about.y,
+            1e3 * about.z
+        )
     } else {
         String::new()
     };

@@ -16,6 +16,7 @@ mod sight;
 mod summary;
 #[doc(hidden)]
 pub mod table;
+mod tcp;
 
 pub use check::{Check, SetCounts};
 pub use compared::Comparison;
@@ -25,6 +26,7 @@ pub use judgement::judgement;
 pub use offsets::Offsets;
 pub use page::{calibration_page, calibration_page_with, validation_page};
 pub use summary::{Detail, summary, unsaid};
+pub use tcp::tool_tip;
 
 use serde::Serialize;
 

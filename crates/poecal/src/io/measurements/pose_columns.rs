@@ -47,14 +47,34 @@ const CONTROLLER: Option<(&str, &str)> = Some(("mm", "deg"));
 
 const FORMS: [Form; 10] = [
     form(&["qx", "qy", "qz", "qw"], OrientationForm::QuaternionXyzw, None, "quaternion by names"),
-    form(&["q1", "q2", "q3", "q4"], OrientationForm::QuaternionWxyz, Some(("mm", "1")), "ABB's quaternion, q1 real"),
+    form(
+        &["q1", "q2", "q3", "q4"],
+        OrientationForm::QuaternionWxyz,
+        Some(("mm", "1")),
+        "ABB's quaternion, q1 real",
+    ),
     form(&["q0", "q1", "q2", "q3"], OrientationForm::QuaternionWxyz, None, "quaternion, q0 real"),
-    form(&["rvx", "rvy", "rvz"], OrientationForm::RotationVector, Some(("m", "rad")), "OpenCV's rvec and tvec"),
+    form(
+        &["rvx", "rvy", "rvz"],
+        OrientationForm::RotationVector,
+        Some(("m", "rad")),
+        "OpenCV's rvec and tvec",
+    ),
     form(&["a", "b", "c"], ZYX, CONTROLLER, "KUKA's A, B, C"),
     form(&["w", "p", "r"], OrientationForm::ROLL_PITCH_YAW, CONTROLLER, "FANUC's W, P, R"),
     form(&["o", "a", "t"], ZYZ, CONTROLLER, "Kawasaki's O, A, T"),
-    form(&["roll", "pitch", "yaw"], OrientationForm::ROLL_PITCH_YAW, None, "roll, pitch, yaw about fixed axes x, y, z"),
-    form(&["rx", "ry", "rz"], OrientationForm::RotationVector, Some(("m", "rad")), "Universal Robots' rotation vector"),
+    form(
+        &["roll", "pitch", "yaw"],
+        OrientationForm::ROLL_PITCH_YAW,
+        None,
+        "roll, pitch, yaw about fixed axes x, y, z",
+    ),
+    form(
+        &["rx", "ry", "rz"],
+        OrientationForm::RotationVector,
+        Some(("m", "rad")),
+        "Universal Robots' rotation vector",
+    ),
     form(MATRIX, OrientationForm::MatrixByRows, None, "matrix by rows"),
 ];
 
@@ -94,18 +114,32 @@ fn key_of(name: &str) -> Option<String> {
         _ => None,
     };
     for (start, key) in [
-        ("position", ""), ("pos", ""), ("tvec", ""), ("translation", ""), ("trans", ""), ("rvec", "rv"), ("rotvec", "rv"), ("orientation", "q"),
-        ("quaternion", "q"), ("quat", "q"), ("rotation", "q"),
+        ("position", ""),
+        ("pos", ""),
+        ("tvec", ""),
+        ("translation", ""),
+        ("trans", ""),
+        ("rvec", "rv"),
+        ("rotvec", "rv"),
+        ("orientation", "q"),
+        ("quaternion", "q"),
+        ("quat", "q"),
+        ("rotation", "q"),
     ] {
         if let Some(axis) = squeezed.strip_prefix(start).and_then(axis) {
             return Some(format!("{key}{axis}"));
         }
     }
     let digits: String = squeezed.chars().filter(char::is_ascii_digit).collect();
-    if digits.len() == 2 && matches!(squeezed.trim_end_matches(|c: char| c.is_ascii_digit()), "r" | "m" | "t" | "h") {
+    if digits.len() == 2
+        && matches!(squeezed.trim_end_matches(|c: char| c.is_ascii_digit()), "r" | "m" | "t" | "h")
+    {
         return Some(format!("m{digits}"));
     }
-    let known = ["x", "y", "z", "qx", "qy", "qz", "qw", "q0", "q1", "q2", "q3", "q4", "rx", "ry", "rz", "a", "b", "c", "w", "p", "r", "o", "t", "roll", "pitch", "yaw"];
+    let known = [
+        "x", "y", "z", "qx", "qy", "qz", "qw", "q0", "q1", "q2", "q3", "q4", "rx", "ry", "rz", "a", "b", "c",
+        "w", "p", "r", "o", "t", "roll", "pitch", "yaw",
+    ];
     let plain = match squeezed.as_str() {
         "tx" | "px" => "x",
         "ty" | "py" => "y",
@@ -130,7 +164,9 @@ fn prefixed(name: &str) -> (Option<Whose>, String) {
     let lower = name.to_lowercase().replace(['.', ' ', '-', '/'], "_");
     for (whose, prefixes) in [(Whose::Arm, &ARM[..]), (Whose::Target, &TARGET[..])] {
         for prefix in prefixes {
-            let rest = lower.strip_prefix(&format!("{prefix}_pose_")).or_else(|| lower.strip_prefix(&format!("{prefix}_")));
+            let rest = lower
+                .strip_prefix(&format!("{prefix}_pose_"))
+                .or_else(|| lower.strip_prefix(&format!("{prefix}_")));
             if let Some(rest) = rest.filter(|rest| key_of(rest).is_some()) {
                 return (Some(whose), rest.to_owned());
             }
@@ -162,7 +198,11 @@ pub(super) struct StatedUnits {
 }
 
 /// Columns of a header by whose poses they are; `alone` says whose all are that do not say it, in a file of one list.
-pub(super) fn found(header: &Header<'_>, alone: Option<Whose>, stated: StatedUnits) -> Result<Vec<(Whose, PoseColumns)>> {
+pub(super) fn found(
+    header: &Header<'_>,
+    alone: Option<Whose>,
+    stated: StatedUnits,
+) -> Result<Vec<(Whose, PoseColumns)>> {
     let name = name_column(header);
     let texts = ["point", "tip"].map(|it| text_column(header, it));
     let mut named: Vec<Named> = Vec::new();
@@ -176,7 +216,9 @@ pub(super) fn found(header: &Header<'_>, alone: Option<Whose>, stated: StatedUni
             named.push(Named { at, whose, key });
         }
     }
-    let one_list = alone.is_some() && !(named.iter().any(|it| it.whose == Some(Whose::Arm)) && named.iter().any(|it| it.whose == Some(Whose::Target)));
+    let one_list = alone.is_some()
+        && !(named.iter().any(|it| it.whose == Some(Whose::Arm))
+            && named.iter().any(|it| it.whose == Some(Whose::Target)));
     if let Some(whose) = alone.filter(|_| one_list) {
         named.iter_mut().for_each(|it| it.whose = Some(whose));
     }
@@ -197,7 +239,9 @@ fn settle(named: &mut [Named]) {
     let has = |named: &[Named], whose: Whose, keys: &[&str]| {
         named.iter().any(|it| it.whose == Some(whose) && keys.contains(&it.key.as_str()))
     };
-    let all = |named: &[Named], keys: &[&str]| keys.iter().all(|key| named.iter().any(|it| it.whose.is_none() && it.key == *key));
+    let all = |named: &[Named], keys: &[&str]| {
+        keys.iter().all(|key| named.iter().any(|it| it.whose.is_none() && it.key == *key))
+    };
     for keys in FORMS.iter().map(|it| it.columns).chain([&["x", "y", "z"][..]]) {
         if !all(named, keys) {
             continue;
@@ -213,7 +257,9 @@ fn settle(named: &mut [Named]) {
     }
     // A quaternion that came first, beside the arm's own angles and the place of the camera.
     let quaternion = |it: &Named| it.key.starts_with('q');
-    let letters = named.iter().any(|it| it.whose == Some(Whose::Arm) && matches!(it.key.as_str(), "a" | "b" | "w" | "p" | "o"));
+    let letters = named
+        .iter()
+        .any(|it| it.whose == Some(Whose::Arm) && matches!(it.key.as_str(), "a" | "b" | "w" | "p" | "o"));
     if letters && !has(named, Whose::Target, &["qx", "rvx", "rx", "roll", "m00"]) {
         for it in named.iter_mut().filter(|it| it.whose == Some(Whose::Arm) && quaternion(it)) {
             it.whose = Some(Whose::Target);
@@ -241,7 +287,14 @@ fn columns(header: &Header<'_>, whose: Whose, named: &[&Named], stated: StatedUn
     let find = |wanted: &str| named.iter().find(|it| key(it) == wanted).map(|it| it.at);
     let all = |wanted: &[&str]| wanted.iter().map(|it| find(it)).collect::<Option<Vec<usize>>>();
     let who = list_words(whose);
-    let names = || named.iter().filter_map(|it| header.cells.get(it.at)).map(|it| it.name.clone()).collect::<Vec<_>>().join(", ");
+    let names = || {
+        named
+            .iter()
+            .filter_map(|it| header.cells.get(it.at))
+            .map(|it| it.name.clone())
+            .collect::<Vec<_>>()
+            .join(", ")
+    };
     let position = all(&["x", "y", "z"]).or_else(|| all(&["m03", "m13", "m23"]));
     let position = match position.as_deref() {
         Some([x, y, z]) => [*x, *y, *z],
@@ -262,20 +315,26 @@ fn columns(header: &Header<'_>, whose: Whose, named: &[&Named], stated: StatedUn
             .at_line(header.path, header.line));
     };
     let usual = form.usual.unwrap_or(("m", "rad"));
-    let number = |at: usize, quantity: Unit, stated: Option<NamedUnit>, usual: &str| -> Result<NumberColumn> {
-        let purpose = format!("for {who}");
-        let in_name = header.cells.get(at).and_then(|cell| without_unit(&cell.name).1).filter(|unit| unit.of() == quantity);
-        let unit = match header.unit(at, quantity, &purpose)? {
-            Some((unit, _)) => unit,
-            None => match in_name.or(stated) {
-                Some(unit) => unit,
-                None => NamedUnit::parse(usual, quantity)?,
-            },
+    let number =
+        |at: usize, quantity: Unit, stated: Option<NamedUnit>, usual: &str| -> Result<NumberColumn> {
+            let purpose = format!("for {who}");
+            let in_name = header
+                .cells
+                .get(at)
+                .and_then(|cell| without_unit(&cell.name).1)
+                .filter(|unit| unit.of() == quantity);
+            let unit = match header.unit(at, quantity, &purpose)? {
+                Some((unit, _)) => unit,
+                None => match in_name.or(stated) {
+                    Some(unit) => unit,
+                    None => NamedUnit::parse(usual, quantity)?,
+                },
+            };
+            Ok(NumberColumn { at, unit })
         };
-        Ok(NumberColumn { at, unit })
-    };
     let quantity = form.form.quantity();
-    let angle = stated.angle.filter(|_| quantity == Unit::Radian && form.form != OrientationForm::RotationVector);
+    let angle =
+        stated.angle.filter(|_| quantity == Unit::Radian && form.form != OrientationForm::RotationVector);
     let usual_angle = if quantity == Unit::Radian { usual.1 } else { "1" };
     let position = [
         number(position[0], Unit::Metre, stated.length, usual.0)?,

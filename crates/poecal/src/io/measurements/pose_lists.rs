@@ -34,7 +34,9 @@ impl std::str::FromStr for PoseUnits {
             let unit = NamedUnit::parse_any(symbol)?;
             let place = if unit.of() == Unit::Radian { &mut units.angle } else { &mut units.length };
             if place.replace(unit).is_some() {
-                return ErrorKind::Option.refuse(format!("found `{text}`, expected one unit of lengths and one of angles, like mm,deg"));
+                return ErrorKind::Option.refuse(format!(
+                    "found `{text}`, expected one unit of lengths and one of angles, like mm,deg"
+                ));
             }
         }
         Ok(units)
@@ -62,7 +64,7 @@ pub struct PosePairs {
 #[derive(Clone, Debug, Default)]
 pub struct FlangePoses {
     /// `base_from_flange`.
-    pub poses: Vec<Pose>,
+    pub poses: PoseList,
     /// The point that the row touched, empty if no column says it.
     pub points: Vec<String>,
     /// The tip with which it did.
@@ -123,7 +125,14 @@ pub fn read_flange_poses(path: &Path, units: PoseUnits) -> Result<FlangePoses> {
     let names = row_names(&file);
     let sha256 = file.sha256.iter().map(|it| (path.display().to_string(), it.clone())).collect();
     let Some((_, list)) = file.lists.into_iter().next() else { return no_list(path, Whose::Arm) };
-    Ok(FlangePoses { poses: list.poses, points: file.points, tips: file.tips, names, understood: vec![list.columns.words], sha256 })
+    Ok(FlangePoses {
+        understood: vec![list.columns.words.clone()],
+        poses: list.list(),
+        points: file.points,
+        tips: file.tips,
+        names,
+        sha256,
+    })
 }
 
 fn no_list<T>(path: &Path, whose: Whose) -> Result<T> {
@@ -175,7 +184,9 @@ fn joined(first: PoseFile, second: PoseFile) -> Result<PosePairs> {
     let mut warnings = Vec::new();
     let rows: Vec<(usize, usize)> = match (&first.names, &second.names) {
         (Some(one), Some(other)) => by_name(&first, one, &second, other, &mut warnings)?,
-        _ if first.lines.len() == second.lines.len() => (0..first.lines.len()).map(|row| (row, row)).collect(),
+        _ if first.lines.len() == second.lines.len() => {
+            (0..first.lines.len()).map(|row| (row, row)).collect()
+        }
         _ => {
             return Err(ErrorKind::Measurement
                 .error(format!(
@@ -189,10 +200,13 @@ fn joined(first: PoseFile, second: PoseFile) -> Result<PosePairs> {
     };
     let all_names = row_names(&first);
     let files = [&first, &second];
-    let sha256 = files.iter().filter_map(|it| Some((it.path.display().to_string(), it.sha256.clone()?))).collect();
+    let sha256 =
+        files.iter().filter_map(|it| Some((it.path.display().to_string(), it.sha256.clone()?))).collect();
     let (first_path, second_path) = (first.path.clone(), second.path.clone());
     let Some((one, flange)) = first.lists.into_iter().next() else { return no_list(&first_path, Whose::Arm) };
-    let Some((other, target)) = second.lists.into_iter().next() else { return no_list(&second_path, Whose::Target) };
+    let Some((other, target)) = second.lists.into_iter().next() else {
+        return no_list(&second_path, Whose::Target);
+    };
     let names = rows.iter().filter_map(|(row, _)| all_names.get(*row).cloned()).collect();
     let understood = vec![flange.columns.words.clone(), target.columns.words.clone()];
     let pick = |list: List, rows: &[usize]| list.list().of_rows(rows);
@@ -205,13 +219,32 @@ fn joined(first: PoseFile, second: PoseFile) -> Result<PosePairs> {
 }
 
 /// Rows of the same name, or whose names end in the same number.
-fn by_name(first: &PoseFile, one: &[String], second: &PoseFile, other: &[String], warnings: &mut Vec<String>) -> Result<Vec<(usize, usize)>> {
+fn by_name(
+    first: &PoseFile,
+    one: &[String],
+    second: &PoseFile,
+    other: &[String],
+    warnings: &mut Vec<String>,
+) -> Result<Vec<(usize, usize)>> {
     let number = |name: &String| -> String {
         let stem = name.rsplit(['/', '\\']).next().unwrap_or(name);
         let stem = stem.split('.').next().unwrap_or(stem);
-        let digits: String = stem.chars().rev().take_while(char::is_ascii_digit).collect::<Vec<_>>().into_iter().rev().collect();
+        let digits: String = stem
+            .chars()
+            .rev()
+            .take_while(char::is_ascii_digit)
+            .collect::<Vec<_>>()
+            .into_iter()
+            .rev()
+            .collect();
         let plain = digits.trim_start_matches('0');
-        if digits.is_empty() { name.clone() } else if plain.is_empty() { "0".to_owned() } else { plain.to_owned() }
+        if digits.is_empty() {
+            name.clone()
+        } else if plain.is_empty() {
+            "0".to_owned()
+        } else {
+            plain.to_owned()
+        }
     };
     let exact = one.iter().any(|name| other.contains(name));
     let key = |name: &String| if exact { name.clone() } else { number(name) };
@@ -232,7 +265,10 @@ fn by_name(first: &PoseFile, one: &[String], second: &PoseFile, other: &[String]
     }
     let alone = one.len() + other.len() - 2 * rows.len();
     if alone > 0 {
-        warnings.push(format!("{alone} poses are in one of the two files only, and left out; {} are in both", rows.len()));
+        warnings.push(format!(
+            "{alone} poses are in one of the two files only, and left out; {} are in both",
+            rows.len()
+        ));
     }
     Ok(rows)
 }
@@ -248,14 +284,23 @@ impl List {
     fn others(&self) -> Vec<Reading> {
         let degree = std::f64::consts::PI / 180.0;
         let zyx = OrientationForm::Intrinsic([2, 1, 0]);
-        let (xyz, zyz, fixed) = (OrientationForm::Intrinsic([0, 1, 2]), OrientationForm::Intrinsic([2, 1, 2]), OrientationForm::ROLL_PITCH_YAW);
+        let (xyz, zyz, fixed) = (
+            OrientationForm::Intrinsic([0, 1, 2]),
+            OrientationForm::Intrinsic([2, 1, 2]),
+            OrientationForm::ROLL_PITCH_YAW,
+        );
         let who = list_words(self.columns.whose_words());
         let mut ways: Vec<(OrientationForm, f64, String)> = Vec::new();
         if self.columns.form.quantity() == Unit::Radian {
             let symbol = self.columns.orientation.first().map_or("rad", |it| it.unit.symbol());
-            let (other, factor) = if symbol == "deg" { ("radians", 1.0 / degree) } else { ("degrees", degree) };
+            let (other, factor) =
+                if symbol == "deg" { ("radians", 1.0 / degree) } else { ("degrees", degree) };
             let short = if symbol == "deg" { "rad" } else { "deg" };
-            ways.push((self.columns.form, factor, format!("angles of {who} in {other}: write `[{short}]` behind the names of these columns")));
+            ways.push((
+                self.columns.form,
+                factor,
+                format!("angles of {who} in {other}: write `[{short}]` behind the names of these columns"),
+            ));
             for (form, words) in [
                 (zyx, "angles about z, y, x as turned (KUKA)"),
                 (fixed, "roll, pitch, yaw about fixed axes (FANUC, URDF)"),
@@ -269,9 +314,21 @@ impl List {
             }
         }
         match self.columns.form {
-            OrientationForm::QuaternionXyzw => ways.push((OrientationForm::QuaternionWxyz, 1.0, format!("quaternions of {who} with the real part first: exchange the names of the columns"))),
-            OrientationForm::QuaternionWxyz => ways.push((OrientationForm::QuaternionXyzw, 1.0, format!("quaternions of {who} with the real part last: name the columns qx, qy, qz, qw"))),
-            OrientationForm::MatrixByRows => ways.push((OrientationForm::MatrixByColumns, 1.0, format!("matrices of {who} written column by column: exchange rows and columns"))),
+            OrientationForm::QuaternionXyzw => ways.push((
+                OrientationForm::QuaternionWxyz,
+                1.0,
+                format!("quaternions of {who} with the real part first: exchange the names of the columns"),
+            )),
+            OrientationForm::QuaternionWxyz => ways.push((
+                OrientationForm::QuaternionXyzw,
+                1.0,
+                format!("quaternions of {who} with the real part last: name the columns qx, qy, qz, qw"),
+            )),
+            OrientationForm::MatrixByRows => ways.push((
+                OrientationForm::MatrixByColumns,
+                1.0,
+                format!("matrices of {who} written column by column: exchange rows and columns"),
+            )),
             _ => {}
         }
         let read = |form: OrientationForm, factor: f64| -> Option<Vec<Pose>> {
@@ -282,7 +339,9 @@ impl List {
             })
             .collect()
         };
-        ways.into_iter().filter_map(|(form, factor, advice)| Some(Reading { advice, poses: read(form, factor)? })).collect()
+        ways.into_iter()
+            .filter_map(|(form, factor, advice)| Some(Reading { advice, poses: read(form, factor)? }))
+            .collect()
     }
 }
 
@@ -305,7 +364,9 @@ fn read(path: &Path, alone: Option<Whose>, units: PoseUnits) -> Result<PoseFile>
         path: path.to_owned(),
         lists: lists
             .into_iter()
-            .map(|(whose, columns)| (whose, List { columns, positions: Vec::new(), numbers: Vec::new(), poses: Vec::new() }))
+            .map(|(whose, columns)| {
+                (whose, List { columns, positions: Vec::new(), numbers: Vec::new(), poses: Vec::new() })
+            })
             .collect(),
         lines: Vec::new(),
         names: name.map(|_| Vec::new()),
@@ -324,7 +385,9 @@ fn read(path: &Path, alone: Option<Whose>, units: PoseUnits) -> Result<PoseFile>
             }
             file.lines.push(row.line);
             refuse_more_rows(file.lines.len(), &row)?;
-            let text = |at: Option<usize>| at.and_then(|at| row.cells.get(at)).map_or(String::new(), |cell| cell.text().into_owned());
+            let text = |at: Option<usize>| {
+                at.and_then(|at| row.cells.get(at)).map_or(String::new(), |cell| cell.text().into_owned())
+            };
             if let Some(names) = &mut file.names {
                 names.push(text(name));
             }
@@ -346,25 +409,34 @@ impl List {
     fn add(&mut self, row: &Row<'_>, numbers: &mut Numbers) -> Result<()> {
         let mut number = |column: &super::pose_columns::NumberColumn| -> Result<f64> {
             let text = row.cells.get(column.at).map(|cell| cell.text()).unwrap_or_default();
-            let value = numbers.parse(&text, row.line).map_err(|expected| {
-                row.error(column.at, format!("found `{text}`, expected {expected}"))
-            })?;
+            let value = numbers
+                .parse(&text, row.line)
+                .map_err(|expected| row.error(column.at, format!("found `{text}`, expected {expected}")))?;
             Ok(column.unit.to_si(value))
         };
         let [x, y, z] = &self.columns.position;
         let place = Vector3::new(number(x)?, number(y)?, number(z)?);
         let parts: Vec<f64> = self.columns.orientation.iter().map(number).collect::<Result<_>>()?;
         let first = self.columns.orientation.first().map_or(0, |it| it.at);
-        if self.columns.form.quantity() == Unit::Radian && parts.iter().any(|it| it.abs() > 2.01 * std::f64::consts::PI) {
+        if self.columns.form.quantity() == Unit::Radian
+            && parts.iter().any(|it| it.abs() > 2.01 * std::f64::consts::PI)
+        {
             let message = format!(
                 "found the angle {:.3} rad, expected at most a full turn: if the column is in degrees, write `[deg]` behind its name, or --units deg",
-                parts.iter().copied().fold(0.0, |most: f64, it| if it.abs() > most.abs() { it } else { most })
+                parts.iter().copied().fold(0.0, |most: f64, it| if it.abs() > most.abs() {
+                    it
+                } else {
+                    most
+                })
             );
             return Err(row.error(first, message));
         }
         let rotation = self.columns.form.rotation(&parts).map_err(|message| row.error(first, message))?;
         if !(place.iter().all(|it| it.abs() <= super::LARGEST_NUMBER)) {
-            return Err(row.error(x.at, format!("found a position {:.0} m away, expected one within a million metres", place.norm())));
+            return Err(row.error(
+                x.at,
+                format!("found a position {:.0} m away, expected one within a million metres", place.norm()),
+            ));
         }
         self.positions.push(place);
         self.poses.push(Pose::new(rotation, place));

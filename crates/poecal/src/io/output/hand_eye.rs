@@ -7,7 +7,11 @@ use crate::error::Result;
 ///
 /// # Errors
 /// [`ErrorKind::File`](crate::ErrorKind::File) if something cannot be written. Nothing is left behind then.
-pub fn write_texts(place: FolderPlace, json: (&str, String), texts: Vec<(&'static str, String)>) -> Result<Written> {
+pub fn write_texts(
+    place: FolderPlace,
+    json: (&str, String),
+    texts: Vec<(&'static str, String)>,
+) -> Result<Written> {
     let mut files = vec![NewFile::new(json.0, json.1)];
     files.extend(texts.into_iter().map(|(name, text)| NewFile::new(name, text)));
     write_files(place, &files, None, Vec::new())
