@@ -3,17 +3,25 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use poecal::hand_eye::CameraPlace;
 use poecal::simulate::Kind;
 
 use super::shared::TreeArgs;
-use super::words::measured;
+use super::words::{HAND_EYE_CAMERA, measured, one_of};
 use crate::quantity::whole;
 
 /// Arguments of `poecal init`.
 #[derive(Args, Debug)]
 pub(crate) struct Init {
     /// Robot model: URDF, MJCF, SDF, TOML, a maker's YAML or conf, or calibration.json
-    pub(crate) model: PathBuf,
+    #[arg(required_unless_present_any = ["hand_eye", "tcp"])]
+    pub(crate) model: Option<PathBuf>,
+    /// Instead of a project with a model: the file of poses for `poecal hand-eye`
+    #[arg(long, value_parser = one_of(HAND_EYE_CAMERA), conflicts_with_all = ["model", "tcp"])]
+    pub(crate) hand_eye: Option<CameraPlace>,
+    /// Instead of a project with a model: the file of touches for `poecal tcp`
+    #[arg(long, conflicts_with = "model")]
+    pub(crate) tcp: bool,
     #[command(flatten)]
     pub(crate) chain: TreeArgs,
     /// Kind of the measurements

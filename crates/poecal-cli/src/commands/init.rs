@@ -1,16 +1,27 @@
 //! `poecal init`: a project folder.
 
-use poecal::Result;
+use poecal::io::measurements::pose_table;
 use poecal::io::model::Model;
-use poecal::io::output::{Contents, Existing, FolderPlace, Project, write_project};
+use poecal::io::output::{Contents, Existing, FolderPlace, Project, write_project, write_texts};
+use poecal::{ErrorKind, Result};
 
 use crate::args::Init;
 use crate::console::Console;
 use crate::style::{self, labelled, shown};
 
 pub(crate) fn init(arguments: &Init, console: &Console) -> Result<u8> {
+    if let Some(camera) = arguments.hand_eye {
+        let words = format!("hand-eye {{}} --camera {}", camera.word());
+        return table(arguments, ("poses.csv", pose_table(true)), &words, console);
+    }
+    if arguments.tcp {
+        return table(arguments, ("touches.csv", pose_table(false)), "tcp {}", console);
+    }
+    let Some(path) = &arguments.model else {
+        return ErrorKind::Option.refuse("found no model, expected `poecal init MODEL`, --hand-eye or --tcp");
+    };
     let chain = arguments.chain.selection(None)?;
-    let model = Model::read(&arguments.model, &chain)?;
+    let model = Model::read(path, &chain)?;
     let project = Project {
         model: &model,
         chain: &chain,
@@ -26,6 +37,22 @@ pub(crate) fn init(arguments: &Init, console: &Console) -> Result<u8> {
         "read {}: measure, fill in measurements.csv, and run `poecal calibrate` in that folder",
         shown(&written.folder.join("README.md"))
     );
+    let words = style::written(&written.folder, &written.files) + &labelled("next", &next);
+    Ok(console.say_of(&words, &written.folder))
+}
+
+/// Writes a table to fill, and says which command reads it; `{}` is its place there.
+fn table(
+    arguments: &Init,
+    (name, text): (&'static str, String),
+    words: &str,
+    console: &Console,
+) -> Result<u8> {
+    let (contents, existing) = (Contents::Project, Existing::Kept);
+    let place = FolderPlace::reserve(&arguments.out, contents, existing, &[], &mut console.warner())?;
+    let written = write_texts(place, (name, text), Vec::new())?;
+    let file = shown(&written.folder.join(name));
+    let next = format!("fill in a row for each pose, and run `poecal {}`", words.replace("{}", &file));
     let words = style::written(&written.folder, &written.files) + &labelled("next", &next);
     Ok(console.say_of(&words, &written.folder))
 }

@@ -65,7 +65,7 @@ pub use joints::{JointsTable, parse_joints, read_joints};
 pub use lost::LostBeams;
 pub use mapping::ColumnMap;
 pub use number::DecimalSign;
-pub use pose_lists::{FlangePoses, PosePairs, PoseUnits, read_flange_poses, read_pose_pairs};
+pub use pose_lists::{FlangePoses, PosePairs, PoseUnits, pose_table, read_flange_poses, read_pose_pairs};
 pub use read::{parse, read};
 pub use rewritten::{JointRow, RewrittenTable, rewrite_joints};
 pub use socket_distance::SocketDistances;

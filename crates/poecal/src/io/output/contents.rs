@@ -31,7 +31,8 @@ const HAND_EYE: [&str; 6] = [
 /// File names of a tool's tip.
 const TIP: [&str; 3] = ["tcp.json", "transforms.txt", "rows.csv"];
 /// File names of every project.
-pub(super) const PROJECT: [&str; 4] = ["measurements.csv", "joints.csv", "poecal.toml", "README.md"];
+pub(super) const PROJECT: [&str; 6] =
+    ["measurements.csv", "joints.csv", "poecal.toml", "README.md", "poses.csv", "touches.csv"];
 /// File names of its model, one of which it has.
 const MODELS: [&str; 3] = ["robot.urdf", "robot.toml", "robot.json"];
 
