@@ -85,15 +85,20 @@ pub(super) fn found(
             "found poses from which no frame can be computed, expected poses that turn about two axes or more: turn the flange further",
         );
     };
-    let least = candidates.iter().map(|it| it.score).fold(f64::INFINITY, f64::min);
-    let is_good = |it: &Candidate| it.score < least + BETTER.ln();
+    // Both lists inverted are the same equations as none, and one is the same as the other.
+    let is_mixed = |it: &Candidate| it.directions.flange_inverted != it.directions.target_inverted;
+    let least = |mixed: bool| {
+        let own = candidates.iter().filter(|it| is_mixed(it) == mixed);
+        own.map(|it| it.score).fold(f64::INFINITY, f64::min)
+    };
+    let mixed_is_better = least(true) < least(false) - BETTER.ln();
     if candidates.len() == 1 {
         return Ok((usual.directions, None));
     }
-    if is_good(usual) {
+    if !mixed_is_better && !is_mixed(usual) {
         return Ok((usual.directions, exchanged(usual, camera)));
     }
-    let good: Vec<&Candidate> = candidates.iter().filter(|it| is_good(it)).collect();
+    let good: Vec<&Candidate> = candidates.iter().filter(|it| is_mixed(it) == mixed_is_better).collect();
     other_directions(&good, target, camera)
 }
 
@@ -136,25 +141,29 @@ fn other_directions(
     let Some(second) = rest else {
         return Ok((first.directions, Some(inverted(&first.directions, other_place))));
     };
-    let near = |it: &Candidate| {
-        let (on_flange, in_base) = distances(&it.frames, camera);
-        on_flange / in_base.max(1e-9)
-    };
-    let (one, other) = (near(first), near(second));
-    let (chosen, ratio) = if one <= other { (first, other / one) } else { (second, one / other) };
-    // A camera sees what is before it: then its list is as it should be, and the camera is elsewhere.
+    // A camera sees what is before it: then the target's list is as it should be.
     let is_before = |it: &Pose| it.translation.z > 0.0 && it.translation.xy().norm() < it.translation.z;
     let as_read = target.iter().all(is_before);
     let turned = target.iter().all(|it| is_before(&it.inverse()));
-    if as_read && !turned && chosen.directions.target_inverted && !chosen.directions.flange_inverted {
+    if as_read && !turned {
         return ErrorKind::Problem.refuse(format!(
-            "found poses that do not fit a camera {} and do fit one {}, expected those of --camera {}: run with --camera {}, or state --target \
-             target-from-camera if the second list is inverted",
+            "found poses that do not fit a camera {} and do fit one {}, expected those of --camera {}: run with --camera {}, or state --flange \
+             flange-from-base if the poses of the arm are inverted",
             place(camera),
             place(other_place),
             camera.word(),
             other_place.word()
         ));
+    }
+    let near = |it: &Candidate| {
+        let (on_flange, in_base) = distances(&it.frames, camera);
+        on_flange / in_base.max(1e-9)
+    };
+    let target_first = turned && !as_read;
+    let (one, other) = (near(first), near(second));
+    let (mut chosen, mut ratio) = if one <= other { (first, other / one) } else { (second, one / other) };
+    if target_first && let Some(candidate) = good.iter().find(|it| it.directions.target_inverted) {
+        (chosen, ratio) = (candidate, f64::INFINITY);
     }
     if ratio < NEARER {
         return ErrorKind::Problem.refuse(format!(

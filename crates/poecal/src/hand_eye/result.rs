@@ -154,13 +154,14 @@ pub fn hand_eye(
     let mut findings = Vec::new();
     let mut counted = once_each(flange, target, name, &mut findings);
     refuse_few(flange, &counted)?;
+    // First: angles in another unit turn hardly at all.
+    if let Some(error) = mistake(flange, target, options) {
+        return Err(error);
+    }
     let turns = turns(&flange.poses, &counted);
     refuse_one_axis(&turns)?;
     let part = |poses: &[Pose], rows: &[usize]| -> Vec<Pose> { rows.iter().map(|&row| poses[row]).collect() };
     let [arm, seen] = [&flange.poses, &target.poses].map(|poses| part(poses, &counted));
-    if let Some(error) = mistake(flange, target, options) {
-        return Err(error);
-    }
     let (directions, said) = found(&arm, &seen, options)?;
     findings.extend(said.map(|said| Finding::new(FindingKind::Inverted, said, Vec::new())));
     let all = pairs(&flange.poses, &target.poses, options.camera, &directions);
