@@ -2,6 +2,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
+use super::draw::Draw;
 use super::equations::{
     Frames, NUMBERS, Pair, UNKNOWNS, derivatives, errors, in_closed_form, minimised, sight_axes,
 };
@@ -21,9 +22,9 @@ const LOST: f64 = 0.01;
 /// Rounds of fit, noise and outliers.
 const ROUNDS: usize = 30;
 /// Probability by chance at which a point of the target counts as seen better than its origin.
-const OTHER_POINT: f64 = 1e-3;
+const OTHER_POINT: f64 = 0.05;
 /// Fewest rows with which such a point is sought.
-const ROWS_OF_POINT: usize = 8;
+const ROWS_OF_POINT: usize = 6;
 
 /// A finished fit.
 #[derive(Clone, Debug)]
@@ -39,7 +40,11 @@ pub(super) struct Fit {
 impl Fit {
     /// Fits all rows. `None` where they do not determine the frames.
     pub(super) fn of(pairs: &[Pair]) -> Option<Self> {
-        let frames = start(pairs, STARTS)?;
+        Fit::from_start(pairs, start(pairs, STARTS)?)
+    }
+
+    /// The same from a start.
+    pub(super) fn from_start(pairs: &[Pair], frames: Frames) -> Option<Self> {
         let noise = rough_noise(pairs, &frames);
         let mut fit = Fit { frames, noise, kept: vec![true; pairs.len()], point: Vector3::zeros() };
         fit.choose(pairs);
@@ -80,6 +85,7 @@ impl Fit {
 
     fn move_point(&mut self, further: Vector3<f64>) {
         self.point += further;
+        self.noise.spent = 3.0;
         self.frames.inner = self.frames.inner * Pose::from_translation(further);
     }
 
@@ -236,34 +242,13 @@ pub(super) fn start(pairs: &[Pair], starts: usize) -> Option<Frames> {
         }
     };
     consider(in_closed_form(&all));
-    let mut draw = Draw(1);
+    let mut draw = Draw::new(1);
     for _ in 0..if pairs.len() > POSES_OF_START { starts } else { 0 } {
-        let few: Vec<&Pair> = draw.few(pairs.len()).into_iter().filter_map(|k| pairs.get(k)).collect();
+        let few: Vec<&Pair> =
+            draw.few(POSES_OF_START, pairs.len()).into_iter().filter_map(|k| pairs.get(k)).collect();
         consider(in_closed_form(&few));
     }
     best.map(|(_, frames)| frames)
-}
-
-/// Numbers that are the same in every run.
-struct Draw(u64);
-
-impl Draw {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        self.0 >> 33
-    }
-
-    /// A few different numbers below a count.
-    fn few(&mut self, count: usize) -> Vec<usize> {
-        let mut few = Vec::with_capacity(POSES_OF_START);
-        while few.len() < POSES_OF_START.min(count) {
-            let next = (self.next() % count.max(1) as u64) as usize;
-            if !few.contains(&next) {
-                few.push(next);
-            }
-        }
-        few
-    }
 }
 
 /// Noise by the median errors of a start.

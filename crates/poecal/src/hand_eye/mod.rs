@@ -7,6 +7,7 @@
 
 mod bounds;
 mod directions;
+mod draw;
 mod equations;
 mod findings;
 mod fit;
@@ -14,6 +15,7 @@ mod moved;
 mod noise;
 mod readings;
 mod result;
+mod simulated;
 #[cfg(test)]
 mod tests;
 mod tip;

@@ -20,6 +20,8 @@ pub(super) struct Noise {
     pub(super) variance: Vec<f64>,
     /// Degrees of freedom with which it is known.
     pub(super) freedom: Vec<f64>,
+    /// Degrees of freedom of places that the point of the target has spent.
+    pub(super) spent: f64,
 }
 
 /// Places and turns, each alike in all directions.
@@ -29,7 +31,7 @@ impl Noise {
     /// Of stated standard deviations.
     pub(super) fn of(sigma_m: f64, sigma_rad: f64) -> Self {
         let variance = [sigma_m, sigma_rad].map(|it| it.max(LEAST).powi(2)).to_vec();
-        Noise { part_of: ALIKE, variance, freedom: vec![f64::INFINITY; 2] }
+        Noise { part_of: ALIKE, variance, freedom: vec![f64::INFINITY; 2], spent: 0.0 }
     }
 
     /// The weights of the six numbers.
@@ -58,7 +60,9 @@ impl Noise {
             let mut change: f64 = 0.0;
             for (part, normal) in parts.normals.iter().enumerate() {
                 let variance = noise.variance[part];
-                let freedom = parts.counts[part] - product_trace(&known, &normal.gram) / variance;
+                let places = self.part_of.iter().take(3).filter(|it| **it == part).count() as f64 / 3.0;
+                let told = product_trace(&known, &normal.gram) / variance;
+                let freedom = parts.counts[part] - told - self.spent * places;
                 if freedom < 0.5 {
                     return None;
                 }

@@ -9,7 +9,7 @@ use super::findings::{Finding, FindingKind, listed};
 use super::fit::{Fit, sizes};
 use super::noise::Spread;
 use super::readings::{PoseList, least_score, mistaken, refuse_other_lengths};
-use super::{CameraPlace, moved, verdict};
+use super::{CameraPlace, moved, simulated, verdict};
 use crate::error::{ErrorKind, Result};
 use crate::lie::{Pose, rotation};
 
@@ -206,7 +206,12 @@ fn finished(
             "found poses that determine the camera's place in some directions only, expected turns about two axes or more: add such poses",
         );
     };
-    let side = |side: Side| bounded(&spread, &fit.frames, &fit.point, side);
+    let factors = simulated::factors(&fit.rows(&rows), fit);
+    let side = |side: Side| {
+        let (by_m, by_rad) = factors.of(side);
+        let placed = bounded(&spread, &fit.frames, &fit.point, side);
+        Placed { bound95_m: by_m * placed.bound95_m, bound95_rad: by_rad * placed.bound95_rad, ..placed }
+    };
     let (on_flange, in_base) = match camera {
         CameraPlace::InHand => (side(Side::Camera), side(Side::Target)),
         CameraPlace::Beside => (side(Side::Target), side(Side::Camera)),

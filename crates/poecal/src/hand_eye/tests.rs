@@ -2,28 +2,10 @@
 
 use nalgebra::Vector3;
 
+use super::draw::Draw;
 use super::{CameraPlace, FindingKind, HandEye, HandEyeOptions, Level, PoseList, hand_eye};
 use crate::error::Result;
 use crate::lie::{Pose, rotation};
-
-/// Numbers that are the same in every run.
-pub(super) struct Draw(pub(super) u64);
-
-impl Draw {
-    fn uniform(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 11) as f64 / (1u64 << 53) as f64
-    }
-
-    fn normal(&mut self) -> f64 {
-        let radius = (-2.0 * self.uniform().max(1e-300).ln()).sqrt();
-        radius * (std::f64::consts::TAU * self.uniform()).cos()
-    }
-
-    fn vector(&mut self, sigma: f64) -> Vector3<f64> {
-        Vector3::from_fn(|_, _| sigma * self.normal())
-    }
-}
 
 /// A simulated session.
 pub(super) struct Session {
@@ -36,7 +18,7 @@ pub(super) struct Session {
 
 /// Poses that look at a board from all sides; noise of places (m) and of orientations (rad), three times as large along the view.
 pub(super) fn session(camera: CameraPlace, count: usize, noise: (f64, f64), seed: u64) -> Session {
-    let mut draw = Draw(seed.wrapping_mul(77) + 5);
+    let mut draw = Draw::new(seed + 5);
     let (on_flange, in_base) = match camera {
         CameraPlace::InHand => (
             Pose::from_xyz_rpy([0.04, -0.06, 0.09], [0.05, -0.1, 1.5]),
