@@ -3,30 +3,9 @@
 use super::CameraPlace;
 use super::equations::{Frames, Pair};
 use super::fit::{STARTS, medians, start};
-use super::result::HandEyeOptions;
+use super::types::{Directions, HandEyeOptions};
 use crate::error::{ErrorKind, Result};
 use crate::lie::Pose;
-
-/// Directions of the poses of two lists.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Directions {
-    /// Whether the arm's poses are `flange_from_base`, and not `base_from_flange`.
-    pub flange_inverted: bool,
-    /// Whether the camera's poses are `target_from_camera`, and not `camera_from_target`.
-    pub target_inverted: bool,
-    /// Whether both were stated.
-    pub stated: bool,
-}
-
-impl Directions {
-    /// Words for both.
-    #[must_use]
-    pub fn words(&self) -> String {
-        let flange = if self.flange_inverted { "flange from base" } else { "base from flange" };
-        let target = if self.target_inverted { "target from camera" } else { "camera from target" };
-        format!("{flange}, {target}")
-    }
-}
 
 /// The pairs of two lists, read in these directions.
 pub(super) fn pairs(flange: &[Pose], target: &[Pose], camera: CameraPlace, by: &Directions) -> Vec<Pair> {

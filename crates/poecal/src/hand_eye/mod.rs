@@ -19,14 +19,17 @@ mod simulated;
 #[cfg(test)]
 mod tests;
 mod tip;
+mod touches;
+mod types;
 mod verdict;
 
 pub use bounds::Placed;
-pub use directions::Directions;
 pub use findings::{Finding, FindingKind};
 pub use readings::{PoseList, Reading};
-pub use result::{HandEye, HandEyeOptions, HeldOut, Level, Outlier, RowError, Turns, hand_eye};
-pub use tip::{Tip, Tool, Touches, tool_tip};
+pub use result::hand_eye;
+pub use tip::{Tip, Tool, tool_tip};
+pub use touches::Touches;
+pub use types::{Directions, HandEye, HandEyeOptions, HeldOut, Level, Outlier, RowError, Turns};
 
 /// Where the camera is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

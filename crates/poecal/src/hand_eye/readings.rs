@@ -1,8 +1,8 @@
 //! Lists of poses, how else they could be read, and which of these readings fits where the stated one does not.
 
+use super::CameraPlace;
 use super::directions::{pairs, score};
-use super::result::HandEyeOptions;
-use super::{CameraPlace, Directions};
+use super::types::{Directions, HandEyeOptions};
 use crate::error::{Error, ErrorKind, Result};
 use crate::lie::Pose;
 use nalgebra::{Matrix3, Vector3};

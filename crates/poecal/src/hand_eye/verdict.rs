@@ -3,41 +3,8 @@
 use super::equations::{NUMBERS, Pair, UNKNOWNS, derivatives, errors, normal, sight_axes};
 use super::findings::{Finding, FindingKind};
 use super::fit::Fit;
-use super::result::HandEye;
+use super::types::{HandEye, Level};
 use crate::distributions::f_quantile;
-
-/// How far a result may be used.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Level {
-    /// Not at all: the frames may be off by more than their bounds.
-    DoNotUse,
-    /// Within its bounds, which further poses would make smaller.
-    WithinBounds,
-    /// As it is.
-    Good,
-}
-
-impl Level {
-    /// Words for people.
-    #[must_use]
-    pub fn words(self) -> &'static str {
-        match self {
-            Level::DoNotUse => "do not use",
-            Level::WithinBounds => "use within its bounds",
-            Level::Good => "good",
-        }
-    }
-
-    /// The word in files.
-    #[must_use]
-    pub fn word(self) -> &'static str {
-        match self {
-            Level::DoNotUse => "do_not_use",
-            Level::WithinBounds => "within_bounds",
-            Level::Good => "good",
-        }
-    }
-}
 
 /// Rows from which on a result is tested well.
 const ENOUGH: usize = 10;

@@ -93,6 +93,7 @@ pub(super) struct PoseColumns {
     pub(super) form: OrientationForm,
     /// How it was understood.
     pub(super) words: String,
+    pub(super) whose: Whose,
 }
 
 /// A column that belongs to a pose: whose it is if its name says so, and its name without that.
@@ -350,5 +351,5 @@ fn columns(header: &Header<'_>, whose: Whose, named: &[&Named], stated: StatedUn
         position[0].unit.symbol(),
         symbol.map_or(String::new(), |it| format!(", {it}"))
     );
-    Ok(PoseColumns { position, orientation, form: form.form, words })
+    Ok(PoseColumns { position, orientation, form: form.form, words, whose })
 }

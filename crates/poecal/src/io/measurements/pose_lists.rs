@@ -5,13 +5,14 @@ use std::path::{Path, PathBuf};
 
 use super::mapping::ColumnMap;
 use super::number::Numbers;
-use super::orientation::OrientationForm;
 use super::pose_columns::{PoseColumns, StatedUnits, Whose, found, list_words, name_column, text_column};
+use super::pose_names::{Named, by_name};
+use super::pose_readings::others;
 use super::table::{Row, Table, refuse_more_rows};
 use super::text::Blocks;
 use super::units::NamedUnit;
 use crate::error::{ErrorKind, Result};
-use crate::hand_eye::{PoseList, Reading};
+use crate::hand_eye::PoseList;
 use crate::lie::Pose;
 use crate::unit::Unit;
 use nalgebra::Vector3;
@@ -183,7 +184,10 @@ fn row_names(file: &PoseFile) -> Vec<String> {
 fn joined(first: PoseFile, second: PoseFile) -> Result<PosePairs> {
     let mut warnings = Vec::new();
     let rows: Vec<(usize, usize)> = match (&first.names, &second.names) {
-        (Some(one), Some(other)) => by_name(&first, one, &second, other, &mut warnings)?,
+        (Some(one), Some(other)) => {
+            let one = Named { path: &first.path, names: one, lines: &first.lines };
+            by_name(&one, &Named { path: &second.path, names: other, lines: &second.lines }, &mut warnings)?
+        }
         _ if first.lines.len() == second.lines.len() => {
             (0..first.lines.len()).map(|row| (row, row)).collect()
         }
@@ -218,156 +222,11 @@ fn joined(first: PoseFile, second: PoseFile) -> Result<PosePairs> {
     Ok(PosePairs { flange, target, names, understood, warnings, sha256 })
 }
 
-/// Rows of the same name, or whose names end in the same number.
-fn by_name(
-    first: &PoseFile,
-    one: &[String],
-    second: &PoseFile,
-    other: &[String],
-    warnings: &mut Vec<String>,
-) -> Result<Vec<(usize, usize)>> {
-    let number = |name: &String| -> String {
-        let stem = name.rsplit(['/', '\\']).next().unwrap_or(name);
-        let stem = stem.split('.').next().unwrap_or(stem);
-        let digits: String = stem
-            .chars()
-            .rev()
-            .take_while(char::is_ascii_digit)
-            .collect::<Vec<_>>()
-            .into_iter()
-            .rev()
-            .collect();
-        let plain = digits.trim_start_matches('0');
-        if digits.is_empty() {
-            name.clone()
-        } else if plain.is_empty() {
-            "0".to_owned()
-        } else {
-            plain.to_owned()
-        }
-    };
-    let exact = one.iter().any(|name| other.contains(name));
-    let key = |name: &String| if exact { name.clone() } else { number(name) };
-    let mut places: BTreeMap<String, usize> = BTreeMap::new();
-    for (row, name) in other.iter().enumerate() {
-        if places.insert(key(name), row).is_some() {
-            return Err(ErrorKind::Measurement
-                .error(format!("found the name `{name}` a second time, expected each pose once: rename it"))
-                .at_line(&second.path, second.lines.get(row).copied().unwrap_or(1)));
-        }
-    }
-    let rows: Vec<(usize, usize)> =
-        one.iter().enumerate().filter_map(|(row, name)| Some((row, *places.get(&key(name))?))).collect();
-    if rows.is_empty() {
-        return Err(ErrorKind::Measurement
-            .error(format!("found no name that is in {} too, expected the same names in both files: join them by one column", second.path.display()))
-            .in_file(&first.path));
-    }
-    let alone = one.len() + other.len() - 2 * rows.len();
-    if alone > 0 {
-        warnings.push(format!(
-            "{alone} poses are in one of the two files only, and left out; {} are in both",
-            rows.len()
-        ));
-    }
-    Ok(rows)
-}
-
-/// A table of poses to fill: of arm and target side by side, or of the arm's touches of a point.
-#[must_use]
-pub fn pose_table(has_target: bool) -> String {
-    let flange = "flange_x[mm],flange_y[mm],flange_z[mm],flange_A[deg],flange_B[deg],flange_C[deg]";
-    let forms = "# A, B, C are KUKA's; instead: W, P, R (FANUC), rx, ry, rz in [rad] (Universal Robots), q1 to q4 (ABB), qx, qy, qz, qw (ROS), r11 to r33\n";
-    if has_target {
-        let target =
-            "target_rvec_x,target_rvec_y,target_rvec_z,target_tvec_x[mm],target_tvec_y[mm],target_tvec_z[mm]";
-        format!(
-            "# A row for each pose: the flange in the base as the controller shows it, and the target as the camera sees it; 15 to 30 poses, turned by 20 deg \
-             and more about two axes\n{forms}image,{flange},{target}\n"
-        )
-    } else {
-        format!(
-            "# A row for each touch of a fixed point by the tip: the flange in the base, with the controller's tool set to zero; 6 to 10 touches, tilted by \
-             20 deg and more to all sides\n# point: name of the point, if there are several; tip: two tips along the tool show its direction\n{forms}{flange},point,tip\n"
-        )
-    }
-}
-
 impl List {
     /// The poses, with other readings of their numbers.
     fn list(self) -> PoseList {
-        let others = self.others();
+        let others = others(&self.columns, &self.positions, &self.numbers);
         PoseList { poses: self.poses, others }
-    }
-
-    /// How else the orientations could be read.
-    fn others(&self) -> Vec<Reading> {
-        let degree = std::f64::consts::PI / 180.0;
-        let zyx = OrientationForm::Intrinsic([2, 1, 0]);
-        let (xyz, zyz, fixed) = (
-            OrientationForm::Intrinsic([0, 1, 2]),
-            OrientationForm::Intrinsic([2, 1, 2]),
-            OrientationForm::ROLL_PITCH_YAW,
-        );
-        let who = list_words(self.columns.whose_words());
-        let mut ways: Vec<(OrientationForm, f64, String)> = Vec::new();
-        if self.columns.form.quantity() == Unit::Radian {
-            let symbol = self.columns.orientation.first().map_or("rad", |it| it.unit.symbol());
-            let (other, factor) =
-                if symbol == "deg" { ("radians", 1.0 / degree) } else { ("degrees", degree) };
-            let short = if symbol == "deg" { "rad" } else { "deg" };
-            ways.push((
-                self.columns.form,
-                factor,
-                format!("angles of {who} in {other}: write `[{short}]` behind the names of these columns"),
-            ));
-            for (form, words) in [
-                (zyx, "angles about z, y, x as turned (KUKA)"),
-                (fixed, "roll, pitch, yaw about fixed axes (FANUC, URDF)"),
-                (xyz, "angles about x, y, z as turned (Stäubli)"),
-                (zyz, "angles about z, y, z as turned (Kawasaki)"),
-                (OrientationForm::RotationVector, "rotation vectors (Universal Robots, OpenCV)"),
-            ] {
-                if form != self.columns.form {
-                    ways.push((form, 1.0, format!("orientations of {who} as {words}: name the columns as that form has them (docs/howto/hand-eye.md)")));
-                }
-            }
-        }
-        match self.columns.form {
-            OrientationForm::QuaternionXyzw => ways.push((
-                OrientationForm::QuaternionWxyz,
-                1.0,
-                format!("quaternions of {who} with the real part first: exchange the names of the columns"),
-            )),
-            OrientationForm::QuaternionWxyz => ways.push((
-                OrientationForm::QuaternionXyzw,
-                1.0,
-                format!("quaternions of {who} with the real part last: name the columns qx, qy, qz, qw"),
-            )),
-            OrientationForm::MatrixByRows => ways.push((
-                OrientationForm::MatrixByColumns,
-                1.0,
-                format!("matrices of {who} written column by column: exchange rows and columns"),
-            )),
-            _ => {}
-        }
-        let read = |form: OrientationForm, factor: f64| -> Option<Vec<Pose>> {
-            let rows = self.numbers.iter().zip(&self.positions);
-            rows.map(|(numbers, place)| {
-                let numbers: Vec<f64> = numbers.iter().map(|it| it * factor).collect();
-                Some(Pose::new(form.rotation(&numbers).ok()?, *place))
-            })
-            .collect()
-        };
-        ways.into_iter()
-            .filter_map(|(form, factor, advice)| Some(Reading { advice, poses: read(form, factor)? }))
-            .collect()
-    }
-}
-
-impl PoseColumns {
-    fn whose_words(&self) -> Whose {
-        if self.words.starts_with(list_words(Whose::Target)) { Whose::Target } else { Whose::Arm }
     }
 }
 
