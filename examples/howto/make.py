@@ -210,6 +210,20 @@ def corners(robot, folder):
     write(folder / "lens.csv", [["name", "fx", "fy", "cx", "cy", "k1", "width", "height"], ["wrist", focal, focal, *centre, k1, *size]])
 
 
+def touches(robot, path):
+    """A pointed tool that touches the tip of a fixed pin in eight orientations: the flange's X, Y, Z and KUKA's A, B, C."""
+    tip, pin = np.array([0.012, -0.003, 0.152]), np.array([0.6, 0.1, 0.05])
+    rows = []
+    for number in range(8):
+        turn = rotation([0, 0, 0.7 * number]) @ rotation(robot.noise(0.35, 0.35, 0.0)) @ rotation([np.pi, 0, 0])
+        place = pin - turn @ tip + robot.noise(0.0001, 0.0001, 0.0001)
+        # One touch beside the pin.
+        place = place + [0.0, 0.003, 0.0] if number == 5 else place
+        abc = np.degrees([np.arctan2(turn[1, 0], turn[0, 0]), np.arcsin(-turn[2, 0]), np.arctan2(turn[2, 1], turn[2, 2])])
+        rows.append([*(f"{1e3 * value:.3f}" for value in place), *(f"{value:.4f}" for value in abc)])
+    write(path, [["X", "Y", "Z", "A", "B", "C"], *rows])
+
+
 def write(path, rows):
     with path.open("w", encoding="utf-8", newline="") as file:
         csv.writer(file, lineterminator="\n").writerows(rows)
@@ -225,6 +239,7 @@ def main(poecal, folder):
         motion_capture(robot, folder / "joints.csv", folder / "take.csv")
         hand_eye(robot, folder / "hand_eye.csv")
         corners(robot, folder)
+        touches(robot, folder / "touches.csv")
 
 
 if __name__ == "__main__":

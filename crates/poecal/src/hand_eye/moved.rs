@@ -12,7 +12,7 @@ const PART: usize = 5;
 /// Most places between rows that are tried.
 const PLACES: usize = 40;
 /// Probability by chance, over all places.
-const CHANCE: f64 = 1e-4;
+const CHANCE: f64 = 1e-3;
 
 /// A move between two rows.
 #[derive(Clone, Copy, Debug)]
