@@ -19,6 +19,7 @@ mod exit_codes;
 #[path = "../../../poecal/tests/files/mod.rs"]
 mod files;
 mod folder;
+mod hand_eye;
 mod hostile;
 mod identify;
 mod init;

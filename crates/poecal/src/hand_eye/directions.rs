@@ -16,11 +16,14 @@ pub(super) fn pairs(flange: &[Pose], target: &[Pose], camera: CameraPlace, by: &
         .collect()
 }
 
-/// How well poses fit in a direction: the sum of the logarithms of the median errors, in mm and degrees.
-pub(super) fn score(pairs: &[Pair]) -> Option<(f64, Frames)> {
+/// Errors below which nothing is compared, metres and radians.
+const EXACT: f64 = 1e-6;
+
+/// How well poses fit: the sum of the logarithms of the median errors, with the frames and these errors, metres and radians.
+pub(super) fn score(pairs: &[Pair]) -> Option<(f64, Frames, (f64, f64))> {
     let frames = start(pairs, STARTS)?;
     let (shift, turn) = medians(pairs, &frames);
-    Some((shift.max(1e-9).ln() + turn.max(1e-9).ln(), frames))
+    Some((shift.max(EXACT).ln() + turn.max(EXACT).ln(), frames, (shift, turn)))
 }
 
 /// How much smaller the product of the median errors must be for a direction to be the better one.
@@ -54,7 +57,7 @@ pub(super) fn found(
     for flange_inverted in allowed(options.flange_inverted) {
         for target_inverted in allowed(options.target_inverted) {
             let directions = Directions { flange_inverted, target_inverted, stated };
-            if let Some((score, frames)) = score(&pairs(flange, target, camera, &directions)) {
+            if let Some((score, frames, _)) = score(&pairs(flange, target, camera, &directions)) {
                 candidates.push(Candidate { directions, score, frames });
             }
         }

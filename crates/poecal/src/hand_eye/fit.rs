@@ -206,7 +206,9 @@ impl Fit {
             .sum();
         let freedom = 3.0 * rows.len() as f64 - 0.5 * UNKNOWNS as f64 - 3.0;
         let gained = (before - after) / 3.0 / (after / freedom);
-        (gained > f_quantile(OTHER_POINT, 3.0, freedom)).then_some(point)
+        // No target is larger than the distance from which it is seen.
+        let far = median(rows.iter().map(|it| it.seen.translation.norm())).unwrap_or_default();
+        (gained > f_quantile(OTHER_POINT, 3.0, freedom) && point.norm() < far).then_some(point)
     }
 }
 

@@ -90,7 +90,7 @@ pub(super) fn mistaken(
 ) -> Option<Error> {
     let mut best: Option<(f64, String)> = None;
     let mut consider = |flange: &[Pose], target: &[Pose], advice: &str| {
-        let Some(score) = least_score(flange, target, options) else { return };
+        let Some((score, _)) = least_score(flange, target, options) else { return };
         if score < found - EVIDENT.ln() && best.as_ref().is_none_or(|(least, _)| score < least - 0.1) {
             best = Some((score, advice.to_owned()));
         }
@@ -144,17 +144,22 @@ pub(super) fn mistaken(
     })
 }
 
-/// The best score over the directions that are allowed.
-pub(super) fn least_score(flange: &[Pose], target: &[Pose], options: &HandEyeOptions) -> Option<f64> {
+/// The best score over the directions that are allowed, and its median errors.
+pub(super) fn least_score(
+    flange: &[Pose],
+    target: &[Pose],
+    options: &HandEyeOptions,
+) -> Option<(f64, (f64, f64))> {
     let of = |flange_inverted: bool| {
         let directions = Directions {
             flange_inverted,
             target_inverted: options.target_inverted.unwrap_or(false),
             stated: false,
         };
-        Some(score(&pairs(flange, target, CameraPlace::Beside, &directions))?.0)
+        score(&pairs(flange, target, CameraPlace::Beside, &directions))
+            .map(|(score, _, errors)| (score, errors))
     };
-    [of(false), of(true)].into_iter().flatten().reduce(f64::min)
+    [of(false), of(true)].into_iter().flatten().min_by(|a, b| a.0.total_cmp(&b.0))
 }
 
 /// Other orders of the second list: rows of both, and what to do.

@@ -154,7 +154,8 @@ fn finished(
         turns,
         findings,
     };
-    verdict::judge(&mut result, scale);
+    let distance = crate::distributions::median(kept.iter().map(|it| it.seen.translation.norm()));
+    verdict::judge(&mut result, scale, distance.unwrap_or_default());
     Ok(result)
 }
 
@@ -264,13 +265,13 @@ fn refuse_one_axis(turns: &Turns) -> Result<()> {
     ))
 }
 
-/// Median errors, m times rad, above which other readings are tried: 3 mm and 0.3 deg.
-const SUSPICIOUS: f64 = 3e-3 * 5e-3;
+/// Median errors, metres and radians, above which other readings are tried.
+const SUSPICIOUS: (f64, f64) = (3e-3, 5e-3);
 
 /// The mistake of which the poses look, if they fit badly as they are.
 fn mistake(flange: &PoseList, target: &PoseList, options: &HandEyeOptions) -> Option<crate::error::Error> {
-    let score = least_score(&flange.poses, &target.poses, options)?;
-    (score > SUSPICIOUS.ln()).then(|| mistaken(flange, target, options, score)).flatten()
+    let (score, (shift, turn)) = least_score(&flange.poses, &target.poses, options)?;
+    (shift > SUSPICIOUS.0 || turn > SUSPICIOUS.1).then(|| mistaken(flange, target, options, score)).flatten()
 }
 
 /// Whether a row is right once its board is turned to the other of the two sides that look alike from afar.

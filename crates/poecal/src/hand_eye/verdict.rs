@@ -15,6 +15,8 @@ const FEW: f64 = 0.2;
 const MANY: f64 = 0.4;
 /// Noise of orientations, radians, that no camera has.
 const NO_CAMERA: f64 = 0.1;
+/// The same of places, as a share of the distance.
+const NO_CAMERA_M: f64 = 0.06;
 /// Smallest difference of scales that is said.
 const OTHER_SCALE: f64 = 3e-3;
 /// Probability by chance at which scales differ.
@@ -46,7 +48,7 @@ pub(super) fn scale(kept: &[Pair], fit: &Fit) -> Option<f64> {
 }
 
 /// Sets level and reasons, and says which moves are missing.
-pub(super) fn judge(result: &mut HandEye, scale: Option<f64>) {
+pub(super) fn judge(result: &mut HandEye, scale: Option<f64>, distance_m: f64) {
     let fitted = result.rows.iter().filter(|it| it.is_fitted).count();
     let outliers = result.outliers.len();
     let share = outliers as f64 / (fitted + outliers).max(1) as f64;
@@ -57,6 +59,15 @@ pub(super) fn judge(result: &mut HandEye, scale: Option<f64>) {
             "the poses do not fit together: orientations are off by {:.1} deg, more than the noise of any camera; check that both lists are of the same \
              poses, their conventions of angles, and --camera",
             noise.to_degrees()
+        );
+        result.findings.push(Finding::new(FindingKind::Inconsistent, statement.clone(), Vec::new()));
+        against.push(statement);
+    }
+    let places = result.noise[0].max(result.noise[1]);
+    if against.is_empty() && places > (NO_CAMERA_M * distance_m).max(0.01) {
+        let statement = format!(
+            "the poses do not fit together: places are off by {:.0} mm, more than the noise of any camera; check units, signs and origins of both lists",
+            1e3 * places
         );
         result.findings.push(Finding::new(FindingKind::Inconsistent, statement.clone(), Vec::new()));
         against.push(statement);

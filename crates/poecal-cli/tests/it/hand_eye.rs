@@ -1,0 +1,257 @@
+//! `poecal hand-eye` and `poecal tcp`: every form of poses gives the same frames, and mistakes are named.
+
+use std::fs;
+
+use poecal::lie::{Pose, rotation};
+
+use crate::folder::Folder;
+
+/// Poses of the flange and of the target, from numbers without noise but for one thousandth of a degree.
+fn session(count: usize) -> Vec<(Pose, Pose)> {
+    let camera = Pose::from_xyz_rpy([0.04, -0.06, 0.09], [0.05, -0.1, 1.5]);
+    let board = Pose::from_xyz_rpy([0.7, 0.1, 0.02], [0.02, 0.03, 0.4]);
+    (0..count)
+        .map(|k| {
+            let at = k as f64;
+            let turn = [3.0 + 0.4 * (1.7 * at).sin(), 0.4 * (2.9 * at).cos(), 0.5 * (0.8 * at).sin()];
+            let seen = Pose::from_xyz_rpy(
+                [0.05 * (3.1 * at).sin(), 0.04 * at.cos(), 0.4 + 0.05 * (2.3 * at).sin()],
+                turn,
+            );
+            let arm = board * seen.inverse() * camera.inverse();
+            let off = [(9.1 * at).sin(), (7.7 * at).sin(), (5.3 * at).sin()].map(|it| 2e-5 * it);
+            (arm, seen * Pose::from_xyz_rpy([0.0; 3], off))
+        })
+        .collect()
+}
+
+fn abc(pose: &Pose) -> [f64; 3] {
+    let [c, b, a] = rotation::to_rpy(&pose.rotation).map(f64::to_degrees);
+    [a, b, c]
+}
+
+fn text(numbers: impl IntoIterator<Item = f64>) -> String {
+    numbers.into_iter().map(|it| format!("{it}")).collect::<Vec<_>>().join(",")
+}
+
+fn place(pose: &Pose, factor: f64) -> Vec<f64> {
+    pose.translation.iter().map(|it| factor * it).collect()
+}
+
+fn rvec(pose: &Pose) -> Vec<f64> {
+    rotation::log(&pose.rotation).iter().copied().collect()
+}
+
+/// OpenCV's columns.
+const SEEN: &str = "rvec_x,rvec_y,rvec_z,tvec_x[mm],tvec_y[mm],tvec_z[mm]";
+
+fn seen(pose: &Pose) -> Vec<f64> {
+    [rvec(pose), place(pose, 1e3)].concat()
+}
+
+fn table(folder: &Folder, name: &str, header: &str, rows: impl IntoIterator<Item = Vec<f64>>) {
+    let rows: Vec<String> = rows.into_iter().map(text).collect();
+    fs::write(folder.path(name), format!("{header}\n{}\n", rows.join("\n"))).unwrap();
+}
+
+/// Position of the camera, and its bound.
+fn camera(json: &str) -> (Vec<f64>, f64) {
+    let all: serde_json::Value = serde_json::from_str(json).unwrap();
+    let frame = &all["camera_frame"];
+    let numbers = |key: &str| -> Vec<f64> {
+        frame[key].as_array().unwrap().iter().map(|it| it.as_f64().unwrap()).collect()
+    };
+    ([numbers("position_m"), numbers("quaternion_xyzw")].concat(), frame["bound95_mm"].as_f64().unwrap())
+}
+
+#[test]
+fn every_form_of_poses_gives_the_same_camera() {
+    let folder = Folder::new();
+    let rows = session(12);
+    let all = |form: &dyn Fn(&Pose, &Pose) -> Vec<f64>| {
+        rows.iter().map(|(arm, board)| form(arm, board)).collect::<Vec<_>>()
+    };
+    let quaternion = |pose: &Pose| pose.quaternion_xyzw().to_vec();
+    table(
+        &folder,
+        "kuka.csv",
+        &format!("X,Y,Z,A,B,C,{SEEN}"),
+        all(&|arm, board| [place(arm, 1e3), abc(arm).to_vec(), seen(board)].concat()),
+    );
+    table(
+        &folder,
+        "fanuc.csv",
+        &format!("X,Y,Z,W,P,R,{SEEN}"),
+        all(&|arm, board| {
+            let [a, b, c] = abc(arm);
+            [place(arm, 1e3), vec![c, b, a], seen(board)].concat()
+        }),
+    );
+    table(
+        &folder,
+        "ur.csv",
+        &format!("x,y,z,rx,ry,rz,{SEEN}"),
+        all(&|arm, board| [place(arm, 1.0), rvec(arm), seen(board)].concat()),
+    );
+    table(
+        &folder,
+        "abb.csv",
+        &format!("x,y,z,q1,q2,q3,q4,{SEEN}"),
+        all(&|arm, board| {
+            let [x, y, z, w] = arm.quaternion_xyzw();
+            [place(arm, 1e3), vec![w, x, y, z], seen(board)].concat()
+        }),
+    );
+    let ros = "flange.position.x,flange.position.y,flange.position.z,flange.orientation.x,flange.orientation.y,flange.orientation.z,flange.orientation.w";
+    let marker = "marker_x,marker_y,marker_z,marker_qx,marker_qy,marker_qz,marker_qw";
+    table(
+        &folder,
+        "ros.csv",
+        &format!("{ros},{marker}"),
+        all(&|arm, board| [place(arm, 1.0), quaternion(arm), place(board, 1.0), quaternion(board)].concat()),
+    );
+    let matrix: Vec<String> = (0..16).map(|k| format!("robot_m{}{}", k / 4, k % 4)).collect();
+    table(
+        &folder,
+        "matrix.csv",
+        &format!("{},{SEEN}", matrix.join(",")),
+        all(&|arm, board| {
+            let row = |i: usize| {
+                [arm.rotation[(i, 0)], arm.rotation[(i, 1)], arm.rotation[(i, 2)], arm.translation[i]]
+            };
+            [row(0).to_vec(), row(1).to_vec(), row(2).to_vec(), vec![0.0, 0.0, 0.0, 1.0], seen(board)]
+                .concat()
+        }),
+    );
+    let first = camera(&folder.done("hand-eye kuka.csv --camera in-hand --json")).0;
+    assert!(
+        (first[0] - 0.04).abs() < 1e-4 && (first[1] + 0.06).abs() < 1e-4 && (first[2] - 0.09).abs() < 1e-4,
+        "{first:?}"
+    );
+    for name in ["fanuc", "ur", "abb", "ros", "matrix"] {
+        let found = camera(&folder.done(&format!("hand-eye {name}.csv --camera in-hand --json"))).0;
+        assert!(first.iter().zip(&found).all(|(a, b)| (a - b).abs() < 1e-9), "{name}: {first:?} {found:?}");
+    }
+}
+
+#[test]
+fn two_files_are_joined_by_names_and_results_are_written_once() {
+    let folder = Folder::new();
+    let rows = session(12);
+    let arm: Vec<String> = rows
+        .iter()
+        .enumerate()
+        .map(|(k, (arm, _))| format!("shot{k}.png,{},{}", text(place(arm, 1e3)), text(abc(arm))))
+        .collect();
+    fs::write(folder.path("arm.csv"), format!("image,X,Y,Z,A,B,C\n{}\n", arm.join("\n"))).unwrap();
+    let board: Vec<String> = rows
+        .iter()
+        .enumerate()
+        .rev()
+        .map(|(k, (_, board))| format!("{k:04},{}", text(seen(board))))
+        .collect();
+    fs::write(folder.path("board.csv"), format!("image,{SEEN}\n{}\n", board.join("\n"))).unwrap();
+    let said =
+        folder.done("hand-eye arm.csv board.csv --camera in-hand --out out --frames base,flange,eye,board");
+    assert!(said.contains("12 of 12 fitted") && said.contains("eye in flange: (4"), "{said}");
+    for name in [
+        "hand_eye.json",
+        "transforms.txt",
+        "easy_handeye2.calib",
+        "static_transform.launch.py",
+        "opencv.yml",
+        "rows.csv",
+    ] {
+        assert!(!folder.read(&format!("out/{name}")).is_empty(), "{name}");
+    }
+    let again = folder.run("hand-eye arm.csv board.csv --camera in-hand --out out");
+    assert_eq!((again.code, again.err.contains("--force")), (2, true), "{}", again.err);
+    folder.done("hand-eye arm.csv board.csv --camera in-hand --out out --force");
+}
+
+#[test]
+fn mistakes_are_refused_in_one_line_and_nothing_is_written() {
+    let folder = Folder::new();
+    let rows = session(14);
+    let kuka = format!("X,Y,Z,A,B,C,{SEEN}");
+    let write = |name: &str, header: &str, form: &dyn Fn(usize) -> Vec<f64>| {
+        table(&folder, name, header, (0..rows.len()).map(form));
+    };
+    let usual = |k: usize| [place(&rows[k].0, 1e3), abc(&rows[k].0).to_vec(), seen(&rows[k].1)].concat();
+    write("radians.csv", &kuka, &|k| {
+        [place(&rows[k].0, 1e3), abc(&rows[k].0).map(f64::to_radians).to_vec(), seen(&rows[k].1)].concat()
+    });
+    write("order.csv", &kuka, &|k| {
+        [place(&rows[k].0, 1e3), abc(&rows[k].0).to_vec(), seen(&rows[13 - k].1)].concat()
+    });
+    write("metres.csv", &kuka.replace("X,Y,Z", "X[m],Y[m],Z[m]"), &usual);
+    write("degrees.csv", &kuka.replace("A,B,C", "A[rad],B[rad],C[rad]"), &usual);
+    write("names.csv", "a1,b1,c1", &|_| vec![0.0; 3]);
+    table(&folder, "three.csv", &kuka, (0..3).map(usual));
+    write("left.csv", &kuka, &|k| {
+        // The sign of y, wherever it is.
+        let mut arm = rows[k].0;
+        arm.translation.y *= -1.0;
+        for other in [0, 2] {
+            arm.rotation[(1, other)] *= -1.0;
+            arm.rotation[(other, 1)] *= -1.0;
+        }
+        [place(&arm, 1e3), abc(&arm).to_vec(), seen(&rows[k].1)].concat()
+    });
+    let before = folder.listing();
+    for (name, expected) in [
+        ("radians", "angles of the arm in radians"),
+        ("order", "in reverse order"),
+        ("metres", "if they are millimetres"),
+        ("degrees", "if the column is in degrees"),
+        ("names", "found no poses of the arm"),
+        ("three", "found 3 different poses"),
+        ("left", "left-handed"),
+    ] {
+        let run = folder.run(&format!("hand-eye {name}.csv --camera in-hand --out out --quiet"));
+        assert_eq!(
+            (run.code, run.err.lines().count(), run.out.as_str()),
+            (2, 1, ""),
+            "{name}: {}{}",
+            run.out,
+            run.err
+        );
+        assert!(run.err.contains(expected), "{name}: {}", run.err);
+    }
+    assert!(folder.listing() == before);
+}
+
+#[test]
+fn tips_of_tools_are_found_with_their_direction_and_wrong_touches() {
+    let folder = Folder::new();
+    folder.done("init --tcp --out touches");
+    assert!(folder.read("touches/touches.csv").contains("point,tip"));
+    folder.done("init --hand-eye beside --out poses");
+    let (end, shaft, pin) = ([0.012, -0.003, 0.152], [0.012, -0.003, 0.092], [0.6, 0.1, 0.05]);
+    let mut lines = vec!["X,Y,Z,A,B,C,tip".to_owned()];
+    for (name, tip) in [("end", end), ("shaft", shaft)] {
+        for k in 0..7 {
+            let at = f64::from(k);
+            let turned = Pose::from_xyz_rpy(
+                [0.0; 3],
+                [3.1 + 0.4 * (1.7 * at).sin(), 0.4 * (2.9 * at).cos(), 0.9 * at],
+            );
+            let back = Pose::from_xyz_rpy(tip.map(|it: f64| -it), [0.0; 3]);
+            let mut arm = Pose::from_xyz_rpy(pin, [0.0; 3]) * turned * back;
+            arm.translation.x += 1e-5 * (5.0 * at).sin() + if name == "end" && k == 4 { 0.003 } else { 0.0 };
+            lines.push(format!("{},{},{name}", text(place(&arm, 1e3)), text(abc(&arm))));
+        }
+    }
+    fs::write(folder.path("touches.csv"), lines.join("\n")).unwrap();
+    let found: serde_json::Value = serde_json::from_str(&folder.done("tcp touches.csv --json")).unwrap();
+    let number = |value: &serde_json::Value| value.as_f64().unwrap();
+    assert!((number(&found["tips"][0]["position_m"][2]) - 0.152).abs() < 5e-5, "{found}");
+    assert!(number(&found["axis"]["direction"][2]) > 0.9999, "{found}");
+    assert_eq!(found["outliers"], serde_json::json!(["line 6"]));
+    let two: Vec<&String> = lines.iter().take(3).collect();
+    fs::write(folder.path("two.csv"), two.iter().map(|it| it.as_str()).collect::<Vec<_>>().join("\n"))
+        .unwrap();
+    let run = folder.run("tcp two.csv --quiet");
+    assert_eq!(run.code, 2);
+    assert!(run.err.contains("found 2 touches"), "{}", run.err);
+}
