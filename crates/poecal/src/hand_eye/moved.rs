@@ -28,11 +28,13 @@ pub(super) struct Move {
 /// The move that the rows show, if they show one.
 pub(super) fn found(pairs: &[Pair]) -> Option<Move> {
     let count = pairs.len();
-    if count < 2 * PART {
+    // The ends of a long session are no parts of it.
+    let part = PART.max(count / 8);
+    if count < 2 * part {
         return None;
     }
-    let every = ((count - 2 * PART) / PLACES + 1).max(1);
-    let places = (PART..=count - PART).step_by(every);
+    let every = ((count - 2 * part) / PLACES + 1).max(1);
+    let places = (part..=count - part).step_by(every);
     let scores = places.filter_map(|at| Some((scored(&pairs[..at])? + scored(&pairs[at..])?, at)));
     let (_, at) = scores.min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)))?;
     let (first, second) = (Fit::of(&pairs[..at])?, Fit::of(&pairs[at..])?);

@@ -154,15 +154,43 @@ impl Spread {
     /// Of rows about their fit.
     pub(super) fn of(noise: &Noise, pairs: &[Pair], frames: &Frames) -> Option<Self> {
         let parts = Parts::of(noise.part_of, noise.variance.len(), pairs, frames);
-        let covariance = parts.covariance(&noise.variance)?;
+        let mut covariance = parts.covariance(&noise.variance)?;
+        let wider = follows(noise, pairs, frames);
         let by_part = parts.normals.iter().zip(&noise.variance).zip(&noise.freedom);
         let by_part = by_part.map(|((normal, variance), freedom)| {
             let share = product(&product(&covariance, &normal.gram), &covariance);
-            (share.iter().map(|it| it / variance).collect(), *freedom)
+            (share.iter().map(|it| wider * it / variance).collect(), freedom / wider)
         });
         let by_part = by_part.collect();
+        covariance.iter_mut().for_each(|it| *it *= wider);
         Some(Spread { covariance, by_part })
     }
+}
+
+/// Fewest rows in which errors that follow each other are sought.
+const ROWS_IN_ORDER: usize = 20;
+
+/// By how much variances grow because errors of consecutive rows are alike, as those of an arm along its way are: 1 where they are not by
+/// more than chance.
+fn follows(noise: &Noise, pairs: &[Pair], frames: &Frames) -> f64 {
+    if pairs.len() < ROWS_IN_ORDER {
+        return 1.0;
+    }
+    let weights = noise.weights();
+    let rows: Vec<[f64; NUMBERS]> = pairs
+        .iter()
+        .map(|pair| {
+            let mut errors = errors(pair, frames);
+            errors.iter_mut().zip(weights).for_each(|(error, weight)| *error *= weight.sqrt());
+            errors
+        })
+        .collect();
+    let product = |a: &[f64; NUMBERS], b: &[f64; NUMBERS]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+    let squares: f64 = rows.iter().map(|row| product(row, row)).sum();
+    let next: f64 = rows.iter().zip(rows.iter().skip(1)).map(|(row, next)| product(row, next)).sum();
+    let alike = (next / squares.max(f64::MIN_POSITIVE)).min(0.95);
+    let chance = 2.0 / ((NUMBERS * pairs.len()) as f64).sqrt();
+    if alike > chance { (1.0 + alike) / (1.0 - alike) } else { 1.0 }
 }
 
 /// Product of two square matrices of the unknowns.

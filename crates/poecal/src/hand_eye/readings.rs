@@ -43,6 +43,8 @@ impl From<Vec<Pose>> for PoseList {
 
 /// How much smaller the product of the median errors must be for another reading to be the right one.
 const EVIDENT: f64 = 8.0;
+/// Median errors, metres and radians, above which nothing fits.
+const GOOD: (f64, f64) = (0.03, 0.1);
 /// Median distance from the base, metres, beyond which no arm reaches.
 const FARTHEST: f64 = 25.0;
 /// Median distances, metres, below which an arm does not move.
@@ -90,8 +92,12 @@ pub(super) fn mistaken(
 ) -> Option<Error> {
     let mut best: Option<(f64, String)> = None;
     let mut consider = |flange: &[Pose], target: &[Pose], advice: &str| {
-        let Some((score, _)) = least_score(flange, target, options) else { return };
-        if score < found - EVIDENT.ln() && best.as_ref().is_none_or(|(least, _)| score < least - 0.1) {
+        let Some((score, (shift, turn))) = least_score(flange, target, options) else { return };
+        if shift < GOOD.0
+            && turn < GOOD.1
+            && score < found - EVIDENT.ln()
+            && best.as_ref().is_none_or(|(least, _)| score < least - 0.1)
+        {
             best = Some((score, advice.to_owned()));
         }
     };
@@ -118,30 +124,28 @@ pub(super) fn mistaken(
                 consider(&flange.poses, &poses, &advice)
             }
         }
-        for (factor, what) in [
-            (1e3, "1000 times as long"),
-            (1e-3, "a thousandth"),
-            (0.0254, "inches"),
-            (10.0, "ten times as long"),
-            (0.1, "a tenth"),
-        ] {
-            let poses: Vec<Pose> =
-                poses.iter().map(|it| Pose::new(it.rotation, it.translation * factor)).collect();
-            let advice = format!(
-                "lengths of the {list} that are {what}: check their unit, and state it in the header or by --units"
-            );
-            if list == "arm" {
-                consider(&poses, &target.poses, &advice)
-            } else {
-                consider(&flange.poses, &poses, &advice)
-            }
-        }
     }
     best.map(|(_, advice)| {
         ErrorKind::Problem.error(format!(
             "found poses that do not fit together as they are, expected one session; they fit with {advice}"
         ))
     })
+}
+
+/// The error that names another reading of the arm's orientations, if poses that turn about one axis turn about several by it, and then fit.
+pub(super) fn misread_angles(
+    flange: &PoseList,
+    target: &PoseList,
+    options: &HandEyeOptions,
+) -> Option<Error> {
+    let fits = flange.others.iter().filter_map(|reading| {
+        let (score, (shift, turn)) = least_score(&reading.poses, &target.poses, options)?;
+        (shift < GOOD.0 && turn < GOOD.1).then_some((score, &reading.advice))
+    });
+    let (_, advice) = fits.min_by(|a, b| a.0.total_cmp(&b.0))?;
+    Some(ErrorKind::Problem.error(format!(
+        "found poses of the arm that hardly turn, or about one axis only, expected turns about two axes or more; the poses fit with {advice}"
+    )))
 }
 
 /// The best score over the directions that are allowed, and its median errors.

@@ -8,7 +8,7 @@ use super::equations::{Pair, errors, sight_axes};
 use super::findings::{Finding, FindingKind, listed};
 use super::fit::{Fit, sizes};
 use super::noise::Spread;
-use super::readings::{PoseList, least_score, mistaken, refuse_other_lengths};
+use super::readings::{PoseList, least_score, misread_angles, mistaken, refuse_other_lengths};
 use super::types::{Directions, HandEye, HandEyeOptions, HeldOut, Level, Outlier, RowError, Turns};
 use super::{CameraPlace, moved, simulated, verdict};
 use crate::error::{ErrorKind, Result};
@@ -56,12 +56,12 @@ pub fn hand_eye(
     let mut findings = Vec::new();
     let mut counted = once_each(flange, target, name, &mut findings);
     refuse_few(flange, &counted)?;
-    // First: angles in another unit turn hardly at all.
+    let turns = turns(&flange.poses, &counted);
+    // Angles in another unit turn hardly at all.
+    refuse_one_axis(&turns).map_err(|error| misread_angles(flange, target, options).unwrap_or(error))?;
     if let Some(error) = mistake(flange, target, options) {
         return Err(error);
     }
-    let turns = turns(&flange.poses, &counted);
-    refuse_one_axis(&turns)?;
     let part = |poses: &[Pose], rows: &[usize]| -> Vec<Pose> { rows.iter().map(|&row| poses[row]).collect() };
     let [arm, seen] = [&flange.poses, &target.poses].map(|poses| part(poses, &counted));
     let (directions, said) = found(&arm, &seen, options)?;
