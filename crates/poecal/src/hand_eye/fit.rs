@@ -19,6 +19,8 @@ pub(super) const FEW_STARTS: usize = 12;
 const POSES_OF_START: usize = 4;
 /// Probability with which a session without outliers loses a row.
 const LOST: f64 = 0.01;
+/// Factor of the bound of outliers at first: of gross ones.
+const SLACK: f64 = 4.0;
 /// Rounds of fit, noise and outliers.
 const ROUNDS: usize = 30;
 /// Probability by chance at which a point of the target counts as seen better than its origin.
@@ -35,6 +37,8 @@ pub(super) struct Fit {
     pub(super) kept: Vec<bool>,
     /// The point of the target, in its frame, whose place and orientation are seen independently of each other.
     pub(super) point: Vector3<f64>,
+    /// Factor of the bound beyond which a row is an outlier: above 1 until the parts of the noise are known.
+    slack: f64,
 }
 
 impl Fit {
@@ -46,7 +50,8 @@ impl Fit {
     /// The same from a start.
     pub(super) fn from_start(pairs: &[Pair], frames: Frames) -> Option<Self> {
         let noise = rough_noise(pairs, &frames);
-        let mut fit = Fit { frames, noise, kept: vec![true; pairs.len()], point: Vector3::zeros() };
+        let mut fit =
+            Fit { frames, noise, kept: vec![true; pairs.len()], point: Vector3::zeros(), slack: SLACK };
         fit.choose(pairs);
         fit.settle(pairs, false)?;
         // Twice, since the first point is found with the noise of the origin.
@@ -56,6 +61,7 @@ impl Fit {
             fit.move_point(further);
             fit.settle(pairs, true)?;
         }
+        fit.slack = 1.0;
         fit.settle(pairs, true)?;
         Some(fit)
     }
@@ -140,7 +146,7 @@ impl Fit {
     /// Mean square of a row's errors beyond which it is an outlier.
     fn cut(&self, rows: usize) -> f64 {
         let freedom = self.noise.freedom.iter().copied().fold(f64::INFINITY, f64::min).min(1e6);
-        f_quantile(LOST / rows as f64, NUMBERS as f64, freedom)
+        self.slack * f_quantile(LOST / rows as f64, NUMBERS as f64, freedom)
     }
 
     /// Mean square of the errors of each row in units of what they scatter by: less of a row that was fitted.
