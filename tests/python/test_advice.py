@@ -57,6 +57,10 @@ FOLLOWED = {
     "which are not all here: took these": "crates/poecal-cli/tests/it/counted.rs::tables_are_read_and_written_as_the_controller_counts",
     "they are ignored and the rows read as points: a mapping (--columns) with {} reads them as poses": HERE + "test_angles_of_makers",
     "they are these, a mapping (--columns) with {} has them read so": HERE + "test_angles_of_makers",
+    "if they are millimetres, write `[mm]` behind the names of their columns, or --units mm": HERE + "test_lengths_of_poses",
+    "if they are metres, write `[m]` behind the names of their columns, or --units m": HERE + "test_lengths_of_poses",
+    "if the column is in degrees, write `[deg]` behind its name, or --units deg": HERE + "test_angles_of_poses",
+    "write `[{short}]` behind the names of these columns": HERE + "test_angles_of_poses",
     "(`paste -d,": HERE + "test_two_tables_side_by_side",
 }
 
@@ -345,6 +349,43 @@ def test_two_tables_side_by_side(here):
     command = re.search(r"\(`(paste [^`]+)`\)", said)[1]
     (here / "points.csv").write_text(subprocess.run(["sh", "-c", command], cwd=here, capture_output=True, text=True, check=True).stdout)
     calibrates(here)
+
+
+def hand_eye(folder: Path, header: str, rows: list[list[float]], *words: str, code: int = 0) -> str:
+    (folder / "poses.csv").write_text("\n".join([header, *(",".join(map(repr, row)) for row in rows)]) + "\n")
+    return run(folder, "hand-eye", "poses.csv", "--camera", "in-hand", *words, code=code)
+
+
+HAND_EYE, *POSES = (ROOT / "examples/howto/hand_eye.csv").read_text().splitlines()
+POSES = [[float(it) for it in row.split(",")] for row in POSES]
+
+
+def test_lengths_of_poses(here):
+    seen = HAND_EYE.replace("tvec_x,tvec_y,tvec_z", "tvec_x[mm],tvec_y[mm],tvec_z[mm]")
+    for wrong, right in (("m", "mm"), ("mm", "m")):
+        factor = 1 if right == "mm" else 1e-3
+        rows = [[*(factor * it for it in row[:3]), *row[3:]] for row in POSES]
+        header = seen.replace("X,Y,Z", f"X[{wrong}],Y[{wrong}],Z[{wrong}]")
+        said = hand_eye(here, header, rows, code=2)
+        unit, option = re.search(r"write `\[(\w+)\]` behind the names of their columns, or --units (\w+)", said).groups()
+        assert unit == option == right
+        assert hand_eye(here, header.replace(f"[{wrong}],", f"[{unit}],", 3), rows).startswith("verdict good")
+        assert hand_eye(here, seen, rows, "--units", option).startswith("verdict good")
+
+
+def test_angles_of_poses(here):
+    import math
+
+    header = HAND_EYE.replace("tvec_x,tvec_y,tvec_z", "tvec_x[mm],tvec_y[mm],tvec_z[mm]")
+    named = header.replace("A,B,C", "A[rad],B[rad],C[rad]")
+    said = hand_eye(here, named, POSES, code=2)
+    unit, option = re.search(r"in degrees, write `\[(\w+)\]` behind its name, or --units (\w+)", said).groups()
+    assert hand_eye(here, named.replace("[rad]", f"[{unit}]"), POSES).startswith("verdict good")
+    assert hand_eye(here, header, POSES, "--units", option).startswith("verdict good")
+    rows = [[*row[:3], *(math.radians(it) for it in row[3:6]), *row[6:]] for row in POSES]
+    said = hand_eye(here, header, rows, code=2)
+    unit = re.search(r"write `\[(\w+)\]` behind the names of these columns", said)[1]
+    assert hand_eye(here, header.replace("A,B,C", f"A[{unit}],B[{unit}],C[{unit}]"), rows).startswith("verdict good")
 
 
 def test_options_of_programs(here):

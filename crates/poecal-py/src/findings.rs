@@ -35,9 +35,14 @@ pub(crate) struct Findings {
 }
 
 impl Findings {
-    pub(crate) fn new(text: String, found: &impl Serialize, warnings: Vec<String>) -> PyResult<Self> {
+    /// Of a result's own JSON.
+    pub(crate) fn of_text(text: String, json: String, warnings: Vec<String>) -> PyResult<Self> {
         let warnings = warnings.iter().map(|warning| crate::errors::python_words(warning)).collect();
-        Ok(Findings { text, json: report::json(found).map_err(raise)?, warnings })
+        Ok(Findings { text, json, warnings })
+    }
+
+    pub(crate) fn new(text: String, found: &impl Serialize, warnings: Vec<String>) -> PyResult<Self> {
+        Self::of_text(text, report::json(found).map_err(raise)?, warnings)
     }
 }
 

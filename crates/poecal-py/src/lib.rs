@@ -12,6 +12,7 @@ mod errors;
 mod findings;
 mod from_arrays;
 mod from_dataframe;
+mod hand_eye;
 mod measurements;
 mod notebook;
 mod pickle;
@@ -59,6 +60,8 @@ mod _poecal {
     use crate::covariance::Covariance;
     #[pymodule_export]
     use crate::findings::{Findings, check, compare, identify, offsets, reproduce};
+    #[pymodule_export]
+    use crate::hand_eye::{hand_eye, tcp};
     #[pymodule_export]
     use crate::measurements::Measurements;
     #[pymodule_export]

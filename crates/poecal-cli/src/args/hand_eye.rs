@@ -4,16 +4,18 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use poecal::hand_eye::CameraPlace;
+use poecal::io::disk::is_file;
 use poecal::io::hand_eye::FrameNames;
-use poecal::io::measurements::PoseUnits;
+use poecal::io::measurements::{PoseUnits, ReadOptions, camera_file, read_cameras};
 
+use super::shared::ChainArgs;
 use super::words::{FLANGE_POSES, HAND_EYE_CAMERA, TARGET_POSES, one_of};
 
 /// Arguments of `poecal hand-eye`.
 #[derive(Args, Debug)]
 pub(crate) struct HandEye {
     /// Poses (CSV): one file with those of the arm and of the target side by side, or two files, the arm's and the target's, joined by a column
-    /// `image` or row by row
+    /// `image` or row by row. Instead of the target's poses the corners of its pictures, with --lens and --markers
     #[arg(required = true, num_args = 1..=2, value_name = "POSES")]
     pub(crate) poses: Vec<PathBuf>,
     /// Where the camera is
@@ -28,9 +30,21 @@ pub(crate) struct HandEye {
     /// Which way round the target's poses are [default: found]
     #[arg(long, value_parser = one_of(TARGET_POSES))]
     pub(crate) target: Option<bool>,
-    /// Names of base, flange, camera and target in what is written
-    #[arg(long, value_name = "BASE,FLANGE,CAMERA,TARGET", value_parser = names, default_value = "base_link,tool0,camera_color_optical_frame,target")]
-    pub(crate) frames: FrameNames,
+    /// Robot whose joint readings the file of the arm has instead of poses (URDF, MJCF, SDF or TOML). Then it is said too whether poses are predicted
+    /// better if the arm is fitted with the camera
+    #[arg(long, value_name = "MODEL")]
+    pub(crate) model: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) chain: ChainArgs,
+    /// Lens of corners in pixels, in the forms of --camera of poecal calibrate
+    #[arg(long, value_name = "FILE[#VERSION]|unknown:WxH")]
+    pub(crate) lens: Option<String>,
+    /// Board of corners in pixels, as poecal calibrate has it
+    #[arg(long, value_name = "FILE|BOARD")]
+    pub(crate) markers: Option<String>,
+    /// Names of base, flange, camera and target in what is written [default: base_link,tool0,camera_color_optical_frame,target; of a model its own]
+    #[arg(long, value_name = "BASE,FLANGE,CAMERA,TARGET")]
+    pub(crate) frames: Option<FrameNames>,
     /// Folder for the results
     #[arg(short, long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
@@ -45,7 +59,21 @@ pub(crate) struct HandEye {
 impl HandEye {
     /// The input files.
     pub(crate) fn inputs(&self) -> Vec<&Path> {
-        self.poses.iter().map(PathBuf::as_path).collect()
+        let lens = self.lens.iter().filter_map(|typed| camera_file(typed)).map(|(path, _)| path);
+        let board = self.markers.iter().map(Path::new).filter(|path| is_file(path));
+        self.poses.iter().chain(&self.model).map(PathBuf::as_path).chain(lens).chain(board).collect()
+    }
+
+    /// Lens and board of corners.
+    pub(crate) fn pictures(&self) -> poecal::Result<ReadOptions> {
+        let mut options = ReadOptions::default();
+        if let Some(typed) = &self.lens {
+            options.cameras = read_cameras(typed)?;
+        }
+        if let Some(typed) = &self.markers {
+            options.add_boards(typed)?;
+        }
+        Ok(options)
     }
 }
 
@@ -57,29 +85,17 @@ pub(super) fn units(text: &str) -> Result<PoseUnits, String> {
     text.parse().map_err(|error: poecal::Error| error.to_string())
 }
 
-/// Parser of the names of frames for clap.
-fn names(text: &str) -> Result<FrameNames, String> {
-    let is_plain = |name: &&str| {
-        !name.is_empty() && name.chars().all(|c| c.is_ascii_alphanumeric() || "_-/.".contains(c))
-    };
-    let names: Vec<&str> = text.split(',').map(str::trim).filter(is_plain).collect();
-    match names.as_slice() {
-        [base, flange, camera, target] => {
-            let [base, flange, camera, target] = [base, flange, camera, target].map(|it| (*it).to_owned());
-            Ok(FrameNames { base, flange, camera, target })
-        }
-        _ => Err(format!(
-            "found `{text}`, expected four names of letters, digits, `_`, `-`, `/` and `.`, like base_link,tool0,camera,board"
-        )),
-    }
-}
-
 /// Arguments of `poecal tcp`.
 #[derive(Args, Debug)]
 pub(crate) struct Tcp {
     /// Poses of the flange (CSV) in which the tip touched a fixed point; a column `point` for several points, a column `tip` for two tips along the
     /// tool, which show its direction
     pub(crate) poses: PathBuf,
+    /// Robot whose joint readings the file has instead of poses (URDF, MJCF, SDF or TOML)
+    #[arg(long, value_name = "MODEL")]
+    pub(crate) model: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) chain: ChainArgs,
     /// Units of columns that state none, like mm,deg
     #[arg(long, value_name = "LENGTH[,ANGLE]", default_value = "", hide_default_value = true, value_parser = units)]
     pub(crate) units: PoseUnits,

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use poecal::ErrorKind;
 use poecal::io::disk::is_file;
 use poecal::io::measurements::{
     ColumnMap, Frames, InstrumentNoise, PlaneContact, ReadOptions, SocketDistances, camera_file, read_cameras,
@@ -28,6 +29,15 @@ impl ChainArgs {
     pub(crate) fn selection(&self) -> ChainSelection {
         let (base_link, tip_link) = (self.base_link.clone(), self.tip_link.clone());
         ChainSelection { base_link, tip_link, ..ChainSelection::default() }
+    }
+
+    /// Refuses links of a model that is not stated.
+    pub(crate) fn refuse_without(&self, model: Option<&Path>) -> poecal::Result<()> {
+        if model.is_none() && (self.base_link.is_some() || self.tip_link.is_some()) {
+            let message = "found --base-link or --tip-link and no model, expected --model MODEL with them";
+            return ErrorKind::Option.refuse(message);
+        }
+        Ok(())
     }
 }
 

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use poecal::hand_eye::{Level, Touches, tool_tip};
 use poecal::io::measurements::read_flange_poses;
+use poecal::io::model::Model;
 use poecal::io::output::{Contents, Existing, FolderPlace, write_texts};
 use poecal::io::tcp::ToolResult;
 use poecal::{Result, report};
@@ -21,7 +22,13 @@ pub(crate) fn tcp(arguments: &Tcp, typed: &[OsString], console: &Console) -> Res
         FolderPlace::reserve(out, Contents::Tip, existing, &[&arguments.poses], &mut console.warner())
     };
     let place = arguments.out.as_ref().map(reserve).transpose()?;
-    let poses = read_flange_poses(&arguments.poses, arguments.units)?;
+    let model = match &arguments.model {
+        Some(path) => Some(Model::read(path, &arguments.chain.selection())?),
+        None => None,
+    };
+    arguments.chain.refuse_without(arguments.model.as_deref())?;
+    let poses = read_flange_poses(&arguments.poses, arguments.units, model.as_ref().map(|it| &it.robot))?;
+    console.warnings(&poses.warnings);
     poses.understood.iter().for_each(|it| console.remark(it));
     let touches =
         Touches { flange: poses.poses.clone(), points: poses.points.clone(), tips: poses.tips.clone() };

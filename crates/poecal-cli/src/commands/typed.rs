@@ -32,7 +32,7 @@ pub(super) fn command(arguments: &[OsString]) -> String {
 }
 
 /// A word, quoted for a shell.
-fn shell_word(word: &str) -> String {
+pub(super) fn shell_word(word: &str) -> String {
     let plain = |c: char| c.is_ascii_alphanumeric() || "-_./=,:+@%".contains(c);
     if !word.is_empty() && word.chars().all(plain) {
         return word.to_owned();

@@ -255,3 +255,112 @@ fn tips_of_tools_are_found_with_their_direction_and_wrong_touches() {
     assert_eq!(run.code, 2);
     assert!(run.err.contains("found 2 touches"), "{}", run.err);
 }
+
+/// Pixels of a board's 5 x 4 inner corners, 30 mm apart, by a camera of 800 pixels; `turned` names the last corner first.
+fn corners(image: &str, seen: &Pose, turned: bool) -> Vec<String> {
+    (0..20)
+        .map(|k| {
+            let at = f64::from(k);
+            let point = Pose::from_xyz_rpy([0.03 * (at % 5.0), 0.03 * (at / 5.0).floor(), 0.0], [0.0; 3]);
+            let it = (*seen * point).translation;
+            let name = if turned { 19 - k } else { k };
+            let (u, v) = (800.0 * it.x / it.z + 319.5, 800.0 * it.y / it.z + 239.5);
+            let off = [
+                0.02 * (7.3 * at + seen.translation.x * 1e3).sin(),
+                0.02 * (5.1 * at + seen.translation.y * 1e3).cos(),
+            ];
+            format!("{image},corner{name},{},{}", u + off[0], v + off[1])
+        })
+        .collect()
+}
+
+#[test]
+fn corners_of_pictures_give_the_same_camera_whichever_corner_is_named_first() {
+    let folder = Folder::new();
+    let rows = session(16);
+    let arm: Vec<String> = rows
+        .iter()
+        .enumerate()
+        .map(|(k, (arm, _))| format!("{k}.png,{},{}", text(place(arm, 1e3)), text(abc(arm))))
+        .collect();
+    fs::write(folder.path("arm.csv"), format!("image,X,Y,Z,A,B,C\n{}\n", arm.join("\n"))).unwrap();
+    fs::write(
+        folder.path("nameless.csv"),
+        format!(
+            "X,Y,Z,A,B,C\n{}\n",
+            arm.iter().filter_map(|it| it.split_once(',')).map(|it| it.1).collect::<Vec<_>>().join("\n")
+        ),
+    )
+    .unwrap();
+    fs::write(folder.path("lens.csv"), "name,fx,fy,cx,cy,width,height\neye,800,800,319.5,239.5,640,480\n")
+        .unwrap();
+    let all = |turned: &dyn Fn(usize) -> bool| -> String {
+        let lines = rows
+            .iter()
+            .enumerate()
+            .flat_map(|(k, (_, board))| corners(&format!("{k}.png"), board, turned(k)));
+        format!("image,target,u[px],v[px]\n{}\n", lines.collect::<Vec<_>>().join("\n"))
+    };
+    fs::write(folder.path("corners.csv"), all(&|_| false)).unwrap();
+    fs::write(folder.path("turned.csv"), all(&|k| k % 5 == 2)).unwrap();
+    let run = "--camera in-hand --lens lens.csv --markers chessboard:6x5:30mm --json";
+    let plain: serde_json::Value =
+        serde_json::from_str(&folder.done(&format!("hand-eye arm.csv corners.csv {run}"))).unwrap();
+    let of = |found: &serde_json::Value, k: usize| found["camera_frame"]["position_m"][k].as_f64().unwrap();
+    for (k, truth) in [0.04, -0.06, 0.09].into_iter().enumerate() {
+        let bound = plain["camera_frame"]["bound95_mm"].as_f64().unwrap();
+        assert!((of(&plain, k) - truth).abs() < 1.5e-3 * bound, "{plain}");
+        assert!(bound < 1.0, "{bound}");
+    }
+    let turned: serde_json::Value = serde_json::from_str(
+        &folder.done(&format!("hand-eye corners.csv arm.csv {run}").replace("corners.csv", "turned.csv")),
+    )
+    .unwrap();
+    for k in 0..3 {
+        assert!((of(&plain, k) - of(&turned, k)).abs() < 1e-6, "{plain} {turned}");
+    }
+    assert_eq!(turned["findings"][0]["kind"], "other_pose", "{turned}");
+    for (words, expected) in [
+        (
+            "hand-eye arm.csv corners.csv --camera in-hand --markers chessboard:6x5:30mm",
+            "expected --lens FILE",
+        ),
+        ("hand-eye arm.csv corners.csv --camera in-hand --lens lens.csv", "expected --markers"),
+        (
+            "hand-eye nameless.csv corners.csv --camera in-hand --lens lens.csv --markers chessboard:6x5:30mm",
+            "a column `image`",
+        ),
+        (
+            "hand-eye corners.csv turned.csv --camera in-hand --lens lens.csv --markers chessboard:6x5:30mm",
+            "in both files",
+        ),
+    ] {
+        let run = folder.run(&format!("{words} --quiet"));
+        assert_eq!((run.code, run.err.lines().count()), (2, 1), "{words}: {}{}", run.out, run.err);
+        assert!(run.err.contains(expected), "{words}: {}", run.err);
+    }
+}
+
+#[test]
+fn joint_readings_stand_for_the_arms_poses_and_say_whether_to_fit_the_arm() {
+    let folder = Folder::new();
+    let examples = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples");
+    let robot = format!("{examples}/elbow/robot.urdf");
+    let found: serde_json::Value = serde_json::from_str(&folder.done(&format!(
+        "hand-eye {examples}/howto/camera.csv --units mm --camera in-hand --model {robot} --out out --json"
+    )))
+    .unwrap();
+    let number = |value: &serde_json::Value| value.as_f64().unwrap();
+    let (held, fitted) = (number(&found["arm"]["held"]["rms_mm"]), number(&found["arm"]["fitted"]["rms_mm"]));
+    println!("other poses: {held:.3} mm with the arm as it is, {fitted:.3} mm with it fitted");
+    assert!(fitted < 0.5 * held, "{found}");
+    assert_eq!(found["camera_frame"]["parent"], "tool");
+    // The advice, as it is printed.
+    let command = found["arm"]["command"].as_str().unwrap();
+    let command = command.strip_prefix("poecal ").unwrap();
+    let said = folder.done(&format!("{command} --out fitted"));
+    assert!(said.contains("held out"), "{said}");
+    let run = folder
+        .run(&format!("hand-eye {examples}/howto/hand_eye.csv --camera in-hand --tip-link tool --quiet"));
+    assert_eq!((run.code, run.err.contains("no model")), (2, true), "{}", run.err);
+}

@@ -49,6 +49,7 @@ from ._poecal import (
     check,
     compare,
     convert,
+    hand_eye,
     identify,
     init,
     offsets,
@@ -57,6 +58,7 @@ from ._poecal import (
     schema,
     set_threads,
     simulate,
+    tcp,
     version,
 )
 
@@ -93,6 +95,7 @@ __all__ = [
     "check",
     "compare",
     "convert",
+    "hand_eye",
     "identify",
     "init",
     "offsets",
@@ -101,6 +104,7 @@ __all__ = [
     "schema",
     "set_threads",
     "simulate",
+    "tcp",
     "version",
 ]
 

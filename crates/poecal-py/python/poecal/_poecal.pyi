@@ -31,6 +31,7 @@ __all__ = [
     "check",
     "compare",
     "convert",
+    "hand_eye",
     "identify",
     "init",
     "offsets",
@@ -40,6 +41,7 @@ __all__ = [
     "schema",
     "set_threads",
     "simulate",
+    "tcp",
     "version",
 ]
 
@@ -1695,6 +1697,41 @@ def convert(
     str
         The text.
     """
+def hand_eye(
+    base_from_flange: ArrayLike,
+    camera_from_target: ArrayLike,
+    *,
+    camera: Literal["in-hand", "beside"],
+    flange: Literal["base-from-flange", "flange-from-base"] | None = None,
+    target: Literal["camera-from-target", "target-from-camera"] | None = None,
+    names: Sequence[str] | None = None,
+    frames: Sequence[str] | None = None,
+) -> Findings:
+    """Where a camera is on the flange, or beside the robot, from poses of the flange and of a board that the camera saw, with bounds of 95 %; mistakes in
+    the poses are named.
+
+    Parameters
+    ----------
+    base_from_flange
+        Poses of the arm's flange, shape (m, 4, 4), metres; of joint readings `robot.forward_kinematics(joints)`.
+    camera_from_target
+        Poses of the board or marker as the camera saw it there, shape (m, 4, 4), metres.
+    camera
+        Where the camera is: "in-hand" or "beside".
+    flange, target
+        Which way round the poses are: "base-from-flange" or "flange-from-base", "camera-from-target" or "target-from-camera"; by default it is found, and
+        said under "findings".
+    names
+        What messages call each row.
+    frames
+        Names of base, flange, camera and target in the result.
+
+    Returns
+    -------
+    Findings
+        The frame of the camera, "camera_frame", and of the board, "target_frame", each with "matrix", "bound95_mm" and "bound95_deg"; the "verdict", what
+        was held out, and "findings": all that `hand_eye.json` has.
+    """
 def identify(
     robot: Robot,
     joints: ArrayLike,
@@ -1919,6 +1956,31 @@ def simulate(
     -------
     Simulation
         Both robots, and the measurements of the actual one.
+    """
+def tcp(
+    base_from_flange: ArrayLike,
+    *,
+    points: Sequence[str] | None = None,
+    tips: Sequence[str] | None = None,
+    names: Sequence[str] | None = None,
+) -> Findings:
+    """The tip of a tool from poses of the flange in which it touched a fixed point, with bounds of 95 %; wrong touches are named and left out.
+
+    Parameters
+    ----------
+    base_from_flange
+        Poses of the arm's flange at the touches, shape (m, 4, 4), metres.
+    points
+        Which point each touch is of, if there are several.
+    tips
+        With which of two tips along the tool it was, for the tool's direction.
+    names
+        What messages call each row.
+
+    Returns
+    -------
+    Findings
+        The "tips", with "position_m" and "bound95_mm", the "axis" of two, and the "verdict": all that `tcp.json` has.
     """
 def version() -> str:
     """The version of poecal.

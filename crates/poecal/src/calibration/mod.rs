@@ -3,6 +3,7 @@
 mod acceptance;
 mod accepted;
 mod accuracy;
+mod arm_too;
 mod assess;
 mod blocks;
 mod calibrate;
@@ -67,6 +68,7 @@ pub use accepted::accepted_by;
 pub use accuracy::{
     Accuracy, Improvement, Improvements, ModelAccuracy, Models, SetAccuracy, Statistic, set_accuracy,
 };
+pub use arm_too::{ArmToo, arm_too, session_of};
 pub use blocks::BlockChoice;
 pub(crate) use blocks::names;
 pub use calibrate::{calibrate, calibrate_repairing};

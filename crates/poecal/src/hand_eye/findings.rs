@@ -7,6 +7,8 @@ pub enum FindingKind {
     Inverted,
     /// Rows that repeat earlier ones, and count once.
     Repeated,
+    /// Pictures whose corners fit several poses, and another one than the best fits the other pictures.
+    OtherPose,
     /// Something moved during the session; the longer part was taken.
     Moved,
     /// Poses of a flat board from the other of its two sides.
@@ -28,6 +30,7 @@ impl FindingKind {
         match self {
             FindingKind::Inverted => "inverted",
             FindingKind::Repeated => "repeated",
+            FindingKind::OtherPose => "other_pose",
             FindingKind::Moved => "moved",
             FindingKind::Flipped => "flipped",
             FindingKind::Outliers => "outliers",

@@ -13,6 +13,7 @@ mod findings;
 mod fit;
 mod moved;
 mod noise;
+mod other_poses;
 mod readings;
 mod result;
 mod simulated;
@@ -20,6 +21,7 @@ mod simulated;
 mod tests;
 mod tip;
 mod touches;
+mod turns;
 mod types;
 mod verdict;
 

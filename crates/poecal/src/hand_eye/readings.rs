@@ -2,6 +2,7 @@
 
 use super::CameraPlace;
 use super::directions::{pairs, score};
+use super::turns::{refuse_one_axis, turns};
 use super::types::{Directions, HandEyeOptions};
 use crate::error::{Error, ErrorKind, Result};
 use crate::lie::Pose;
@@ -14,6 +15,8 @@ pub struct PoseList {
     pub poses: Vec<Pose>,
     /// Other readings of the same numbers, to be named where they fit and this one does not.
     pub others: Vec<Reading>,
+    /// Of each row other poses that what was seen fits nearly as well, as the second one of a flat board; empty if there are none at all.
+    pub other_poses: Vec<Vec<Pose>>,
 }
 
 /// Another reading of a list.
@@ -31,13 +34,17 @@ impl PoseList {
     pub fn of_rows(&self, rows: &[usize]) -> Self {
         let of = |poses: &[Pose]| rows.iter().filter_map(|&row| poses.get(row)).copied().collect();
         let others = self.others.iter().map(|it| Reading { advice: it.advice.clone(), poses: of(&it.poses) });
-        PoseList { poses: of(&self.poses), others: others.collect() }
+        let other_poses = match self.other_poses.is_empty() {
+            true => Vec::new(),
+            false => rows.iter().filter_map(|&row| self.other_poses.get(row)).cloned().collect(),
+        };
+        PoseList { poses: of(&self.poses), others: others.collect(), other_poses }
     }
 }
 
 impl From<Vec<Pose>> for PoseList {
     fn from(poses: Vec<Pose>) -> Self {
-        PoseList { poses, others: Vec::new() }
+        PoseList { poses, ..PoseList::default() }
     }
 }
 
@@ -138,9 +145,13 @@ pub(super) fn misread_angles(
     target: &PoseList,
     options: &HandEyeOptions,
 ) -> Option<Error> {
+    let (as_read, _) = least_score(&flange.poses, &target.poses, options)?;
     let fits = flange.others.iter().filter_map(|reading| {
+        let all: Vec<usize> = (0..reading.poses.len()).collect();
+        let turns_enough = refuse_one_axis(&turns(&reading.poses, &all)).is_ok();
         let (score, (shift, turn)) = least_score(&reading.poses, &target.poses, options)?;
-        (shift < GOOD.0 && turn < GOOD.1).then_some((score, &reading.advice))
+        let fits = shift < GOOD.0 && turn < GOOD.1 && score < as_read - EVIDENT.ln();
+        (turns_enough && fits).then_some((score, &reading.advice))
     });
     let (_, advice) = fits.min_by(|a, b| a.0.total_cmp(&b.0))?;
     Some(ErrorKind::Problem.error(format!(

@@ -9,8 +9,9 @@ use super::findings::{Finding, FindingKind, listed};
 use super::fit::{Fit, sizes};
 use super::noise::Spread;
 use super::readings::{PoseList, least_score, misread_angles, mistaken, refuse_other_lengths};
+use super::turns::{refuse_one_axis, turns};
 use super::types::{Directions, HandEye, HandEyeOptions, HeldOut, Level, Outlier, RowError, Turns};
-use super::{CameraPlace, moved, simulated, verdict};
+use super::{CameraPlace, moved, other_poses, simulated, verdict};
 use crate::error::{ErrorKind, Result};
 use crate::lie::{Pose, rotation};
 
@@ -18,8 +19,6 @@ use crate::lie::{Pose, rotation};
 const FEWEST: usize = 4;
 /// Difference below which numbers of two rows are the same, m and rad.
 const SAME: f64 = 1e-9;
-/// Standard deviation of turns about the second axis, radians, below which there is one axis only.
-const ONE_AXIS: f64 = 8e-3;
 
 /// Where a camera is, from poses of the flange and of a target that were taken together. `name` says of a row what messages call it.
 ///
@@ -54,6 +53,15 @@ pub fn hand_eye(
     }
     refuse_other_lengths(&flange.poses, &target.poses)?;
     let mut findings = Vec::new();
+    let (poses, rows) = other_poses::settled(&flange.poses, target, options);
+    if !rows.is_empty() {
+        let statement = format!(
+            "took another pose of the board by the same corners in {}: so the pictures agree",
+            listed(&rows, name)
+        );
+        findings.push(Finding::new(FindingKind::OtherPose, statement, rows));
+    }
+    let target = &PoseList { poses, ..target.clone() };
     let mut counted = once_each(flange, target, name, &mut findings);
     refuse_few(flange, &counted)?;
     let turns = turns(&flange.poses, &counted);
@@ -220,48 +228,6 @@ fn refuse_few(flange: &PoseList, counted: &[usize]) -> Result<()> {
         "found {count} different pose{}, expected {FEWEST} or more, and 15 to 30 for a good result: three poses fit themselves, and show no error; \
          add poses that turn about different axes",
         if count == 1 { "" } else { "s" }
-    ))
-}
-
-/// How far the flange turned about its own axes.
-fn turns(flange: &[Pose], counted: &[usize]) -> Turns {
-    let middle = crate::start::mean_rotation(counted.iter().map(|&row| flange[row].rotation));
-    let turned: Vec<Vector3<f64>> =
-        counted.iter().map(|&row| rotation::log(&(middle.transpose() * flange[row].rotation))).collect();
-    let mean = turned.iter().sum::<Vector3<f64>>() / turned.len().max(1) as f64;
-    let mut upper = [0.0; 9];
-    for turn in &turned {
-        let off = turn - mean;
-        for i in 0..3 {
-            for j in 0..3 {
-                upper[3 * i + j] += off[i] * off[j] / turned.len() as f64;
-            }
-        }
-    }
-    let (values, vectors) = crate::linalg::symmetric_eigen(&upper, 3);
-    Turns {
-        spread_rad: [2, 1, 0].map(|k| values[k].max(0.0).sqrt()),
-        directions: [2, 1, 0].map(|k| Vector3::new(vectors[(0, k)], vectors[(1, k)], vectors[(2, k)])),
-    }
-}
-
-/// Refuses turns about one axis.
-fn refuse_one_axis(turns: &Turns) -> Result<()> {
-    let [most, second, _] = turns.spread_rad;
-    let axis = turns.directions[0];
-    if second >= ONE_AXIS {
-        return Ok(());
-    }
-    if most < ONE_AXIS {
-        return ErrorKind::Problem.refuse(
-            "found poses of the arm that do not turn, expected turns about two axes or more: by shifts alone only the orientation of the camera can be \
-             found; turn the flange by 20 deg and more about different axes",
-        );
-    }
-    ErrorKind::Problem.refuse(format!(
-        "found poses of the arm that turn about one axis only ({:.2} {:.2} {:.2} of the flange), expected two or more: the place of the camera along \
-         that axis is not determined; turn the flange by 20 deg and more about a second axis across it",
-        axis.x, axis.y, axis.z
     ))
 }
 

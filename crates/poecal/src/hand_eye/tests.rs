@@ -76,7 +76,8 @@ const BOTH: [CameraPlace; 2] = [CameraPlace::InHand, CameraPlace::Beside];
 #[test]
 fn frames_are_within_their_bounds_as_often_as_promised() {
     let (mut inside_m, mut inside_rad, mut all, mut lost) = (0, 0, 0, 0);
-    for seed in 0..240 {
+    // Few, since `validation/hand_eye` runs 300: of 40 the share of 95 % is below 80 % once in 4,000.
+    for seed in 0..40 {
         let count = [8, 12, 20, 40][seed % 4];
         let session = session(
             BOTH[seed / 4 % 2],
@@ -94,8 +95,8 @@ fn frames_are_within_their_bounds_as_often_as_promised() {
         assert_ne!(found.level, Level::DoNotUse, "{:?}", found.reasons);
     }
     println!("{inside_m} and {inside_rad} of {all} inside, {lost} rows lost");
-    assert!(inside_m * 100 >= 90 * all && inside_rad * 100 >= 90 * all, "{inside_m} {inside_rad} {all}");
-    assert!(lost < 15, "{lost}");
+    assert!(inside_m * 100 >= 80 * all && inside_rad * 100 >= 80 * all, "{inside_m} {inside_rad} {all}");
+    assert!(lost < 4, "{lost}");
 }
 
 #[test]

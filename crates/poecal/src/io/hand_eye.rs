@@ -6,9 +6,12 @@ use serde::Serialize;
 
 use super::frame_texts::NamedFrame;
 use super::json_text;
-use super::measurements::PosePairs;
-use crate::error::Result;
+use super::measurements::{self, PosePairs};
+use crate::calibration::{ArmToo, arm_too, session_of};
+use crate::error::{ErrorKind, Result};
 use crate::hand_eye::{CameraPlace, HandEye, Placed};
+use crate::measurement::Noise;
+use crate::robot::Robot;
 
 /// Version word of `hand_eye.json`.
 pub const SCHEMA: &str = "poecal-hand-eye-1";
@@ -34,6 +37,33 @@ impl Default for FrameNames {
     }
 }
 
+impl std::str::FromStr for FrameNames {
+    type Err = crate::error::Error;
+
+    /// Four names in this order, with commas between them.
+    fn from_str(text: &str) -> Result<Self> {
+        let is_plain = |name: &&str| {
+            !name.is_empty() && name.chars().all(|c| c.is_ascii_alphanumeric() || "_-/.".contains(c))
+        };
+        let names: Vec<&str> = text.split(',').map(str::trim).filter(is_plain).collect();
+        let [base, flange, camera, target] = names[..] else {
+            return ErrorKind::Option.refuse(format!(
+                "found `{text}`, expected four names of letters, digits, `_`, `-`, `/` and `.`, like base_link,tool0,camera,board"
+            ));
+        };
+        let [base, flange, camera, target] = [base, flange, camera, target].map(str::to_owned);
+        Ok(FrameNames { base, flange, camera, target })
+    }
+}
+
+impl FrameNames {
+    /// With base and flange as a robot calls them.
+    #[must_use]
+    pub fn of(robot: &Robot) -> Self {
+        FrameNames { base: robot.base_name.clone(), flange: robot.tip_name.clone(), ..FrameNames::default() }
+    }
+}
+
 /// A result with its input, for its files.
 #[derive(Clone, Copy, Debug)]
 pub struct HandEyeResult<'a> {
@@ -43,8 +73,41 @@ pub struct HandEyeResult<'a> {
     pub poses: &'a PosePairs,
     /// Names of frames.
     pub names: &'a FrameNames,
-    /// The command that makes the same result.
+    /// The command that makes the same result; empty if there is none.
     pub command: &'a str,
+    /// What joint readings add.
+    pub arm: Option<&'a ArmByJoints>,
+}
+
+/// What joint readings add to a hand-eye calibration.
+#[derive(Clone, Debug)]
+pub struct ArmByJoints {
+    /// The session as `calibrate` reads it.
+    pub session: String,
+    /// Errors of held-out poses with the arm as it is and fitted too, or why the arm was not fitted.
+    pub errors: std::result::Result<ArmToo, String>,
+    /// The command that fits the arm with the camera.
+    pub command: String,
+}
+
+impl ArmByJoints {
+    /// Of the joint readings of a result, and the session that they make.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Measurement`](crate::ErrorKind::Measurement) if the readings are not those of the robot.
+    pub fn new(robot: &Robot, poses: &PosePairs, found: &HandEye, command: String) -> Result<Self> {
+        let data = session_of(robot, &poses.joints, &poses.target, found)?;
+        let [across, along, tilt, turn] = found.noise;
+        let noise = Noise::new(across.min(along), tilt.min(turn));
+        let session =
+            measurements::text(&data, robot, &noise, "The poses of a hand-eye calibration that count")?;
+        let errors = match arm_too(robot, &data) {
+            Ok(Some(errors)) => Ok(errors),
+            Ok(None) => Err("no poses could be held out".to_owned()),
+            Err(error) => Err(error.message().to_owned()),
+        };
+        Ok(ArmByJoints { session, errors, command })
+    }
 }
 
 #[derive(Serialize)]
@@ -66,10 +129,13 @@ struct File<'a> {
     turns: TurnsEntry,
     outliers: Vec<OutlierEntry<'a>>,
     findings: Vec<FindingEntry<'a>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    arm: Option<ArmEntry<'a>>,
 }
 
 #[derive(Serialize)]
 struct InputsEntry<'a> {
+    #[serde(skip_serializing_if = "str::is_empty")]
     command: &'a str,
     sha256: &'a BTreeMap<String, String>,
     understood: &'a [String],
@@ -120,6 +186,26 @@ struct ErrorEntry {
     rows: usize,
     rms_mm: f64,
     rms_deg: f64,
+}
+
+#[derive(Serialize)]
+#[serde(untagged)]
+enum ArmEntry<'a> {
+    Compared { held: ErrorEntry, fitted: ErrorEntry, command: &'a str },
+    NotFitted { not_fitted: &'a str, command: &'a str },
+}
+
+impl ArmEntry<'_> {
+    fn new(arm: &ArmByJoints) -> ArmEntry<'_> {
+        match &arm.errors {
+            Ok(ArmToo { rows, held, fitted }) => {
+                let of =
+                    |errors: &(f64, f64)| ErrorEntry { rows: *rows, rms_mm: errors.0, rms_deg: errors.1 };
+                ArmEntry::Compared { held: of(held), fitted: of(fitted), command: &arm.command }
+            }
+            Err(reason) => ArmEntry::NotFitted { not_fitted: reason, command: &arm.command },
+        }
+    }
 }
 
 #[derive(Serialize)]
@@ -258,6 +344,7 @@ impl HandEyeResult<'_> {
                     rows: it.rows.iter().map(|row| self.name(*row)).collect(),
                 })
                 .collect(),
+            arm: self.arm.map(ArmEntry::new),
         };
         json_text(&file, "result")
     }
@@ -286,7 +373,7 @@ impl HandEyeResult<'_> {
         let FrameNames { base, flange, camera: camera_name, target: target_name } = self.names;
         let is_in_hand = self.found.camera == CameraPlace::InHand;
         let what = if is_in_hand { "EYE-IN-HAND" } else { "EYE-TO-HAND" };
-        vec![
+        let mut texts = vec![
             ("transforms.txt", camera.short_forms() + "\n" + &target.short_forms()),
             (
                 "easy_handeye2.calib",
@@ -295,6 +382,8 @@ impl HandEyeResult<'_> {
             ("static_transform.launch.py", camera.launch_file(what)),
             ("opencv.yml", camera.opencv()),
             ("rows.csv", self.rows_text()),
-        ]
+        ];
+        texts.extend(self.arm.map(|arm| ("session.csv", arm.session.clone())));
+        texts
     }
 }

@@ -20,7 +20,7 @@ pub struct ToolResult<'a> {
     pub found: &'a Tool,
     /// The touches.
     pub poses: &'a FlangePoses,
-    /// The command that makes the same result.
+    /// The command that makes the same result; empty if there is none.
     pub command: &'a str,
 }
 
@@ -44,6 +44,7 @@ struct File<'a> {
 
 #[derive(Serialize)]
 struct InputsEntry<'a> {
+    #[serde(skip_serializing_if = "str::is_empty")]
     command: &'a str,
     sha256: &'a BTreeMap<String, String>,
     understood: &'a [String],

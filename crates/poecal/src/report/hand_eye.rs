@@ -3,7 +3,7 @@
 use super::table::lines;
 use crate::hand_eye::{FindingKind, HandEye, Placed};
 use crate::io::frame_texts::NamedFrame;
-use crate::io::hand_eye::HandEyeResult;
+use crate::io::hand_eye::{ArmByJoints, HandEyeResult};
 
 /// The table of a result.
 #[must_use]
@@ -32,10 +32,34 @@ pub fn hand_eye(result: &HandEyeResult<'_>) -> String {
     say("noise", &noise(found));
     let fitted = found.rows.iter().filter(|it| it.is_fitted).count();
     say("poses", &format!("{fitted} of {} fitted; {}", found.rows.len(), found.directions.words()));
+    if let Some(arm) = result.arm {
+        say("arm", &arm_words(arm));
+    }
     for finding in found.findings.iter().filter(|it| !said(found, it.kind)) {
         say("look at", &finding.statement);
     }
     out
+}
+
+/// Which arm predicts poses better, and the command that fits it.
+fn arm_words(arm: &ArmByJoints) -> String {
+    let command = &arm.command;
+    match &arm.errors {
+        Ok(errors) => {
+            let of = |(mm, deg): (f64, f64)| format!("{mm:.3} mm, {deg:.4} deg");
+            let (held, fitted, rows) = (of(errors.held), of(errors.fitted), errors.rows);
+            if errors.is_better() {
+                format!(
+                    "fitted with the camera it predicts {rows} other poses better: {fitted} (RMS) instead of {held} as it is:\n{command}"
+                )
+            } else {
+                format!(
+                    "as it is, it predicts {rows} other poses to {held} (RMS); fitted with the camera, to {fitted}: hold it"
+                )
+            }
+        }
+        Err(reason) => format!("as it is; it was not fitted with the camera: {reason}"),
+    }
 }
 
 /// Whether a finding is among the reasons of the verdict.
@@ -45,6 +69,7 @@ fn said(found: &HandEye, kind: FindingKind) -> bool {
         FindingKind::Scale | FindingKind::Inconsistent => true,
         FindingKind::Inverted
         | FindingKind::Repeated
+        | FindingKind::OtherPose
         | FindingKind::Moved
         | FindingKind::Flipped
         | FindingKind::Outliers => false,

@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use super::picture_files::{Taken, TakenByImage};
+use super::picture_names::same_numbers;
 use crate::camera::{Board, Corner};
 use crate::error::{Error, ErrorKind, Result, first_few};
 
@@ -38,38 +39,6 @@ pub(super) struct Gathering {
 pub(super) struct Joined {
     pub(super) pictures: Vec<Gathered>,
     pub(super) words: Vec<String>,
-}
-
-/// The number at the end of a picture's name, without its folder and the ending of a file.
-fn number_at_end(name: &str) -> Option<u64> {
-    let file = name.rsplit(['/', '\\']).next().unwrap_or(name);
-    let stem = match file.rsplit_once('.') {
-        Some((stem, end)) if end.contains(|it: char| it.is_ascii_alphabetic()) => stem,
-        _ => file,
-    };
-    let start = stem.trim_end_matches(|it: char| it.is_ascii_digit());
-    stem.get(start.len()..)?.parse().ok()
-}
-
-/// Of names with a number at their end the one of each number, if no other has it.
-fn by_number<'a>(names: impl Iterator<Item = &'a String>) -> BTreeMap<u64, Option<&'a String>> {
-    let mut found: BTreeMap<u64, Option<&String>> = BTreeMap::new();
-    for name in names {
-        let Some(number) = number_at_end(name) else { continue };
-        found.entry(number).and_modify(|one| *one = None).or_insert(Some(name));
-    }
-    found
-}
-
-/// The other name of each picture that has one by its number.
-fn same_numbers<'a>(seen: &BTreeSet<&'a String>, taken: &'a TakenByImage) -> Vec<(&'a String, &'a String)> {
-    let (own, others) = (by_number(seen.iter().copied()), by_number(taken.keys()));
-    let pair = |(number, name): (u64, Option<&'a String>)| {
-        let name = name.filter(|name| !taken.contains_key(*name))?;
-        let other = others.get(&number).copied().flatten().filter(|other| !seen.contains(other))?;
-        Some((name, other))
-    };
-    own.into_iter().filter_map(pair).collect()
 }
 
 impl Gathering {
@@ -121,8 +90,8 @@ impl Gathering {
 
     /// The pictures with the readings of their joints, which another file has by picture unless the rows have their own: those of the same name, and
     /// of the others those that end in the same number, if no other picture does.
-    pub(super) fn joined(self, path: &Path, others: Option<&TakenByImage>) -> Result<Joined> {
-        let Some(others) = others else {
+    pub(super) fn joined(self, path: &Path, others: Option<(&TakenByImage, &str)>) -> Result<Joined> {
+        let Some((others, what)) = others else {
             let own = |it: Sight<Option<Taken>>| it.taken.clone().map(|taken| it.with(taken));
             return Ok(Joined {
                 pictures: self.pictures.into_iter().filter_map(own).collect(),
@@ -130,14 +99,14 @@ impl Gathering {
             });
         };
         let seen: BTreeSet<&String> = self.pictures.iter().filter_map(|it| it.image.as_ref()).collect();
-        let pairs = same_numbers(&seen, others);
+        let pairs = same_numbers(&seen, &others.keys().collect());
         let alike: BTreeMap<String, String> =
             pairs.iter().map(|(name, other)| ((*name).clone(), (*other).clone())).collect();
         let paired = |name: &String| others.contains_key(name) || alike.contains_key(name);
         let mut words = Vec::new();
         if let Some((name, other)) = pairs.first() {
             words.push(format!(
-                "took the pictures whose names end in the same number for the same, {} of {}: `{name}` is `{other}` of the joint readings",
+                "took the pictures whose names end in the same number for the same, {} of {}: `{name}` is `{other}` of the {what}",
                 pairs.len(),
                 seen.len()
             ));
@@ -150,22 +119,16 @@ impl Gathering {
             && let (Some(one), Some(other)) = (unknown.first(), without.first())
         {
             let message = format!(
-                "found no picture that has joint readings, as `{one}` beside `{other}`, expected the same names in both files, or ones that end in the \
+                "found no picture that has {what}, as `{one}` beside `{other}`, expected the same names in both files, or ones that end in the \
                  same number, each once"
             );
             return Err(Error::new(ErrorKind::Measurement, message).in_file(path));
         }
         if !unknown.is_empty() {
-            words.push(format!(
-                "left out the pictures that have corners and no joint readings: {}",
-                named(unknown)
-            ));
+            words.push(format!("left out the pictures that have corners and no {what}: {}", named(unknown)));
         }
         if !without.is_empty() {
-            words.push(format!(
-                "left out the pictures that have joint readings and no corners: {}",
-                named(without)
-            ));
+            words.push(format!("left out the pictures that have {what} and no corners: {}", named(without)));
         }
         let taken = |sight: &Sight<Option<Taken>>| {
             let name = sight.image.as_ref()?;
@@ -192,26 +155,4 @@ pub(super) fn not_a_point(name: &str, board: &Board) -> Error {
         first_few(&board.names)
     );
     Error::new(ErrorKind::Measurement, message)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn names_end_in_a_number_whatever_their_folder_and_ending() {
-        for (name, number) in [
-            ("image-12.png", Some(12)),
-            ("configuration_12", Some(12)),
-            ("joints/configuration_12.yaml", Some(12)),
-            ("12", Some(12)),
-            (r"C:\seen\IMG_0012.JPG", Some(12)),
-            ("image-12a.png", None),
-            ("left.png", None),
-            ("", None),
-            ("99999999999999999999999", None),
-        ] {
-            assert_eq!(number_at_end(name), number, "{name}");
-        }
-    }
 }

@@ -104,7 +104,7 @@ impl Reader<'_> {
         let own = |words: String| format!("{}: {words}", path.display());
         self.found.warnings.extend(columns.words(&table.header).map(own));
         self.found.warnings.extend(gathering.settle_numbers(path, &self.boards)?.map(own));
-        let joined = gathering.joined(path, (!has_joints).then_some(&self.taken))?;
+        let joined = gathering.joined(path, (!has_joints).then_some((&self.taken, self.taken_as)))?;
         self.found.warnings.extend(joined.words.into_iter().map(own));
         self.found.warnings.extend(self.board_of_file(&columns, has_boards).map(own));
         self.found.sha256.extend(table.sha256().map(|sha256| (path.display().to_string(), sha256)));

@@ -198,9 +198,10 @@ pub(super) struct StatedUnits {
     pub(super) angle: Option<NamedUnit>,
 }
 
-/// Columns of a header by whose poses they are; `alone` says whose all are that do not say it, in a file of one list.
+/// Columns of a header by whose poses they are, but for those of joints; `alone` says whose all are that do not say it, in a file of one list.
 pub(super) fn found(
     header: &Header<'_>,
+    joints: &[String],
     alone: Option<Whose>,
     stated: StatedUnits,
 ) -> Result<Vec<(Whose, PoseColumns)>> {
@@ -208,7 +209,7 @@ pub(super) fn found(
     let texts = ["point", "tip"].map(|it| text_column(header, it));
     let mut named: Vec<Named> = Vec::new();
     for (at, cell) in header.cells.iter().enumerate() {
-        if Some(at) == name || texts.contains(&Some(at)) {
+        if Some(at) == name || texts.contains(&Some(at)) || joints.contains(&cell.name) {
             continue;
         }
         let (stem, _) = without_unit(&cell.name);

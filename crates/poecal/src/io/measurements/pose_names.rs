@@ -1,8 +1,9 @@
-//! Rows of two files that have the same name.
+//! Rows of two files that are of the same picture.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
+use super::picture_names::same_numbers;
 use crate::error::{ErrorKind, Result};
 
 /// The names of the rows of a file, and their lines.
@@ -12,49 +13,52 @@ pub(super) struct Named<'a> {
     pub(super) lines: &'a [usize],
 }
 
-/// Rows of the same name, or whose names end in the same number.
+impl<'a> Named<'a> {
+    /// The row of each name.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Measurement`] if a name comes twice, with its line.
+    pub(super) fn rows(&self) -> Result<BTreeMap<&'a String, usize>> {
+        let mut rows = BTreeMap::new();
+        for (row, name) in self.names.iter().enumerate() {
+            if rows.insert(name, row).is_some() {
+                return Err(ErrorKind::Measurement
+                    .error(format!(
+                        "found the name `{name}` a second time, expected each pose once: rename it"
+                    ))
+                    .at_line(self.path, self.lines.get(row).copied().unwrap_or(1)));
+            }
+        }
+        Ok(rows)
+    }
+}
+
+/// Rows of the same name, or whose names end in the same number, in the order of the first file.
 pub(super) fn by_name(
     first: &Named<'_>,
     second: &Named<'_>,
     warnings: &mut Vec<String>,
 ) -> Result<Vec<(usize, usize)>> {
-    let (one, other) = (first.names, second.names);
-    let number = |name: &String| -> String {
-        let stem = name.rsplit(['/', '\\']).next().unwrap_or(name);
-        let stem = stem.split('.').next().unwrap_or(stem);
-        let digits: String = stem
-            .chars()
-            .rev()
-            .take_while(char::is_ascii_digit)
-            .collect::<Vec<_>>()
-            .into_iter()
-            .rev()
-            .collect();
-        let plain = digits.trim_start_matches('0');
-        if digits.is_empty() {
-            name.clone()
-        } else if plain.is_empty() {
-            "0".to_owned()
-        } else {
-            plain.to_owned()
-        }
-    };
-    let exact = one.iter().any(|name| other.contains(name));
-    let key = |name: &String| if exact { name.clone() } else { number(name) };
-    let mut places: BTreeMap<String, usize> = BTreeMap::new();
-    for (row, name) in other.iter().enumerate() {
-        if places.insert(key(name), row).is_some() {
-            return Err(ErrorKind::Measurement
-                .error(format!("found the name `{name}` a second time, expected each pose once: rename it"))
-                .at_line(second.path, second.lines.get(row).copied().unwrap_or(1)));
-        }
-    }
+    let (one, other) = (first.rows()?, second.rows()?);
+    let names = |rows: &BTreeMap<_, usize>| rows.keys().copied().collect::<BTreeSet<&String>>();
+    let alike: BTreeMap<&String, &String> = same_numbers(&names(&one), &names(&other)).into_iter().collect();
+    let row_of = |name: &String| other.get(name).or_else(|| other.get(alike.get(name)?)).copied();
     let rows: Vec<(usize, usize)> =
-        one.iter().enumerate().filter_map(|(row, name)| Some((row, *places.get(&key(name))?))).collect();
+        first.names.iter().enumerate().filter_map(|(row, name)| Some((row, row_of(name)?))).collect();
     if rows.is_empty() {
         return Err(ErrorKind::Measurement
-            .error(format!("found no name that is in {} too, expected the same names in both files: join them by one column", second.path.display()))
+            .error(format!(
+                "found no name that is in {} too, expected the same names in both files, or ones that end in the same number, each once",
+                second.path.display()
+            ))
             .in_file(first.path));
+    }
+    if let Some((name, other)) = alike.first_key_value() {
+        warnings.push(format!(
+            "took the poses whose names end in the same number for the same, {} of {}: `{name}` is `{other}`",
+            alike.len(),
+            rows.len()
+        ));
     }
     let alone = one.len() + other.len() - 2 * rows.len();
     if alone > 0 {

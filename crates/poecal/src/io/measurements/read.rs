@@ -120,6 +120,8 @@ pub(super) struct Reader<'a> {
     pub(super) begun: BTreeMap<String, (Option<u32>, usize)>,
     /// Readings of joints by picture.
     pub(super) taken: TakenByImage,
+    /// What messages call one of these.
+    pub(super) taken_as: &'static str,
     /// The cameras.
     pub(super) cameras: Vec<Camera>,
     /// The boards, one that is at several places by its names there.
@@ -132,7 +134,7 @@ pub(super) struct Reader<'a> {
 }
 
 impl<'a> Reader<'a> {
-    fn new(robot: &'a Robot, options: &'a ReadOptions, no_map: &'a ColumnMap) -> Self {
+    pub(super) fn new(robot: &'a Robot, options: &'a ReadOptions, no_map: &'a ColumnMap) -> Self {
         Reader {
             robot,
             options,
@@ -142,6 +144,7 @@ impl<'a> Reader<'a> {
             places: BTreeMap::new(),
             begun: BTreeMap::new(),
             taken: TakenByImage::new(),
+            taken_as: "joint readings",
             cameras: options.cameras.clone(),
             boards: options.boards.clone(),
             sockets: Sockets::new(),
@@ -154,7 +157,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    fn file<'p>(&mut self, path: &'p Path, mut blocks: Blocks<'p>) -> Result<()> {
+    pub(super) fn file<'p>(&mut self, path: &'p Path, mut blocks: Blocks<'p>) -> Result<()> {
         blocks.begin()?;
         if are_messages(path, blocks.text())? {
             return self.messages(path, blocks);

@@ -20,13 +20,14 @@ const SIMULATION: [&str; 9] = [
     "truth.json",
 ];
 /// File names of a hand-eye calibration.
-const HAND_EYE: [&str; 6] = [
+const HAND_EYE: [&str; 7] = [
     "hand_eye.json",
     "transforms.txt",
     "easy_handeye2.calib",
     "static_transform.launch.py",
     "opencv.yml",
     "rows.csv",
+    "session.csv",
 ];
 /// File names of a tool's tip.
 const TIP: [&str; 3] = ["tcp.json", "transforms.txt", "rows.csv"];

@@ -1,0 +1,160 @@
+//! `hand_eye` and `tcp`: a camera, or the tip of a tool, from poses of the flange.
+
+use std::collections::BTreeMap;
+
+use poecal::hand_eye::{self as solved, CameraPlace, HandEyeOptions, Touches};
+use poecal::io::hand_eye::{FrameNames, HandEyeResult};
+use poecal::io::measurements::{FlangePoses, PosePairs};
+use poecal::io::tcp::ToolResult;
+use poecal::lie::Pose;
+use poecal::report;
+use pyo3::prelude::*;
+
+use crate::arguments as arg;
+use crate::arrays::{Numbers, pose_of};
+use crate::errors::{argument, raise};
+use crate::findings::Findings;
+use crate::words::chosen;
+
+/// Poses of an array of shape (m, 4, 4).
+fn stacked(value: &Bound<'_, PyAny>, name: &str, count: Option<usize>) -> PyResult<Vec<Pose>> {
+    let many = count.map_or("m".to_owned(), |count| count.to_string());
+    let expected = format!("shape ({many}, 4, 4): a pose in each row, metres");
+    let numbers = Numbers::finite_of(value, name, &[count, Some(4), Some(4)], &expected)?;
+    let rows = numbers.values.chunks_exact(16).enumerate();
+    rows.map(|(row, numbers)| {
+        pose_of(numbers).map_err(|message| argument(name, format!("row {row}: {message}")))
+    })
+    .collect()
+}
+
+/// Names of rows, one for each.
+fn texts(value: Option<Vec<String>>, name: &str, count: usize) -> PyResult<Vec<String>> {
+    let value = value.unwrap_or_default();
+    if !value.is_empty() && value.len() != count {
+        return Err(argument(name, format!("found {}, expected {count}: one for each pose", value.len())));
+    }
+    Ok(value)
+}
+
+/// What messages call a row of arrays.
+fn row_names(names: Vec<String>, count: usize) -> Vec<String> {
+    if names.is_empty() { (0..count).map(|row| format!("row {row}")).collect() } else { names }
+}
+
+/// What an inversion is called.
+fn inverted(name: &str, word: Option<&str>, words: [&'static str; 2]) -> PyResult<Option<bool>> {
+    word.map(|word| chosen(name, word, &[(words[0], false), (words[1], true)])).transpose()
+}
+
+/// Where a camera is on the flange or beside the robot, from poses of the flange and of a board that it saw.
+///
+/// With bounds of 95 %; mistakes in the poses are named, wrong ones left out.
+///
+/// Parameters
+/// ----------
+/// base_from_flange
+///     Poses of the arm's flange, shape (m, 4, 4), metres; of joint readings `robot.forward_kinematics(joints)`.
+/// camera_from_target
+///     Poses of the board or marker as the camera saw it there, shape (m, 4, 4), metres.
+/// camera
+///     Where the camera is: "in-hand" or "beside".
+/// flange, target
+///     Which way round the poses are: "base-from-flange" or "flange-from-base", "camera-from-target" or "target-from-camera"; by default it is found, and
+///     said under "findings".
+/// names
+///     What messages call each row.
+/// frames
+///     Names of base, flange, camera and target in the result.
+///
+/// Returns
+/// -------
+/// Findings
+///     The frame of the camera, "camera_frame", and of the board, "target_frame", each with "matrix", "bound95_mm" and "bound95_deg"; the "verdict", what
+///     was held out, and "findings": all that `hand_eye.json` has.
+#[pyfunction]
+#[pyo3(signature = (base_from_flange, camera_from_target, *, camera, flange=None, target=None, names=None, frames=None))]
+pub(crate) fn hand_eye(
+    py: Python<'_>,
+    base_from_flange: &Bound<'_, PyAny>,
+    camera_from_target: &Bound<'_, PyAny>,
+    #[pyo3(from_py_with = arg::camera)] camera: &str,
+    #[pyo3(from_py_with = arg::flange)] flange: Option<&str>,
+    #[pyo3(from_py_with = arg::target)] target: Option<&str>,
+    #[pyo3(from_py_with = arg::names)] names: Option<Vec<String>>,
+    #[pyo3(from_py_with = arg::frames)] frames: Option<Vec<String>>,
+) -> PyResult<Findings> {
+    let arm = stacked(base_from_flange, "base_from_flange", None)?;
+    let seen = stacked(camera_from_target, "camera_from_target", Some(arm.len()))?;
+    let places = [CameraPlace::InHand, CameraPlace::Beside].map(|place| (place.word(), place));
+    let options = HandEyeOptions {
+        camera: chosen("camera", camera, &places)?,
+        flange_inverted: inverted("flange", flange, ["base-from-flange", "flange-from-base"])?,
+        target_inverted: inverted("target", target, ["camera-from-target", "target-from-camera"])?,
+    };
+    let names = row_names(texts(names, "names", arm.len())?, arm.len());
+    let frames = match frames {
+        None => FrameNames::default(),
+        Some(frames) => {
+            frames.join(",").parse().map_err(|error: poecal::Error| argument("frames", error.message()))?
+        }
+    };
+    let poses = PosePairs { flange: arm.into(), target: seen.into(), names, ..PosePairs::default() };
+    let name = |row: usize| poses.names.get(row).cloned().unwrap_or_default();
+    let found =
+        py.detach(|| solved::hand_eye(&poses.flange, &poses.target, &options, &name)).map_err(raise)?;
+    let result = HandEyeResult { found: &found, poses: &poses, names: &frames, command: "", arm: None };
+    let text = report::hand_eye(&result);
+    Findings::of_text(text, result.to_text().map_err(raise)?, sentences(&found.findings))
+}
+
+/// The tip of a tool from poses of the flange in which it touched a fixed point.
+///
+/// With bounds of 95 %; wrong touches are named and left out.
+///
+/// Parameters
+/// ----------
+/// base_from_flange
+///     Poses of the arm's flange at the touches, shape (m, 4, 4), metres.
+/// points
+///     Which point each touch is of, if there are several.
+/// tips
+///     With which of two tips along the tool it was, for the tool's direction.
+/// names
+///     What messages call each row.
+///
+/// Returns
+/// -------
+/// Findings
+///     The "tips", with "position_m" and "bound95_mm", the "axis" of two, and the "verdict": all that `tcp.json` has.
+#[pyfunction]
+#[pyo3(signature = (base_from_flange, *, points=None, tips=None, names=None))]
+pub(crate) fn tcp(
+    py: Python<'_>,
+    base_from_flange: &Bound<'_, PyAny>,
+    #[pyo3(from_py_with = arg::points)] points: Option<Vec<String>>,
+    #[pyo3(from_py_with = arg::tips)] tips: Option<Vec<String>>,
+    #[pyo3(from_py_with = arg::names)] names: Option<Vec<String>>,
+) -> PyResult<Findings> {
+    let arm = stacked(base_from_flange, "base_from_flange", None)?;
+    let count = arm.len();
+    let poses = FlangePoses {
+        poses: arm.into(),
+        points: texts(points, "points", count)?,
+        tips: texts(tips, "tips", count)?,
+        names: row_names(texts(names, "names", count)?, count),
+        understood: Vec::new(),
+        warnings: Vec::new(),
+        sha256: BTreeMap::new(),
+    };
+    let touches =
+        Touches { flange: poses.poses.clone(), points: poses.points.clone(), tips: poses.tips.clone() };
+    let name = |row: usize| poses.names.get(row).cloned().unwrap_or_default();
+    let found = py.detach(|| solved::tool_tip(&touches, &name)).map_err(raise)?;
+    let result = ToolResult { found: &found, poses: &poses, command: "" };
+    Findings::of_text(report::tool_tip(&result), result.to_text().map_err(raise)?, sentences(&found.findings))
+}
+
+fn sentences(findings: &[solved::Finding]) -> Vec<String> {
+    findings.iter().map(|it| it.statement.clone()).collect()
+}
