@@ -73,6 +73,7 @@ fn inverted(name: &str, word: Option<&str>, words: [&'static str; 2]) -> PyResul
 ///     The frame of the camera, "camera_frame", and of the board, "target_frame", each with "matrix", "bound95_mm" and "bound95_deg"; the "verdict", what
 ///     was held out, and "findings": all that `hand_eye.json` has.
 #[pyfunction]
+#[expect(clippy::too_many_arguments, reason = "the options of a Python function")]
 #[pyo3(signature = (base_from_flange, camera_from_target, *, camera, flange=None, target=None, names=None, frames=None))]
 pub(crate) fn hand_eye(
     py: Python<'_>,

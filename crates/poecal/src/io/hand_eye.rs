@@ -7,10 +7,10 @@ use serde::Serialize;
 use super::frame_texts::NamedFrame;
 use super::json_text;
 use super::measurements::{self, PosePairs};
-use crate::calibration::{ArmToo, arm_too, session_of};
+use crate::calibration::ArmToo;
 use crate::error::{ErrorKind, Result};
 use crate::hand_eye::{CameraPlace, HandEye, Placed};
-use crate::measurement::Noise;
+use crate::measurement::{Dataset, Noise};
 use crate::robot::Robot;
 
 /// Version word of `hand_eye.json`.
@@ -91,17 +91,21 @@ pub struct ArmByJoints {
 }
 
 impl ArmByJoints {
-    /// Of the joint readings of a result, and the session that they make.
+    /// Of the session of a robot's joint readings, and the errors that were found with it.
     ///
     /// # Errors
-    /// [`ErrorKind::Measurement`](crate::ErrorKind::Measurement) if the readings are not those of the robot.
-    pub fn new(robot: &Robot, poses: &PosePairs, found: &HandEye, command: String) -> Result<Self> {
-        let data = session_of(robot, &poses.joints, &poses.target, found)?;
+    /// As of any unit that is not known.
+    pub fn new(
+        (robot, data): (&Robot, &Dataset),
+        found: &HandEye,
+        errors: Result<Option<ArmToo>>,
+        command: String,
+    ) -> Result<Self> {
         let [across, along, tilt, turn] = found.noise;
         let noise = Noise::new(across.min(along), tilt.min(turn));
         let session =
-            measurements::text(&data, robot, &noise, "The poses of a hand-eye calibration that count")?;
-        let errors = match arm_too(robot, &data) {
+            measurements::text(data, robot, &noise, "The poses of a hand-eye calibration that count")?;
+        let errors = match errors {
             Ok(Some(errors)) => Ok(errors),
             Ok(None) => Err("no poses could be held out".to_owned()),
             Err(error) => Err(error.message().to_owned()),

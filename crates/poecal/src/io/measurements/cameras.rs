@@ -102,8 +102,8 @@ fn of_table(path: &Path, version: Option<&str>) -> Result<Vec<Camera>> {
     let header = &table.header;
     let place = |name: &str| header.require(name, "for the camera", |_| false, "");
     let name = match header.find("name")? {
-        Some(at) => at,
-        None => header.find("camera")?.map_or_else(|| place("name"), Ok)?,
+        Some(at) => Some(at),
+        None => header.find("camera")?,
     };
     let first = [place("fx")?, place("fy")?, place("cx")?, place("cy")?];
     let mut numbers: Vec<Option<usize>> = first.map(Some).to_vec();
@@ -138,7 +138,9 @@ fn of_table(path: &Path, version: Option<&str>) -> Result<Vec<Camera>> {
                 ["fisheye", "equidistant"].contains(&word(model).unwrap_or_default().to_lowercase().as_str());
             let lens = lens_of(&lens, is_fisheye, size_px);
             let own = word(versions).unwrap_or_default();
-            cameras.push((Camera::new(word(Some(name)).unwrap_or_default(), lens), own, row.line));
+            // The only one needs no name.
+            let name = name.map_or_else(|| "camera".to_owned(), |at| word(Some(at)).unwrap_or_default());
+            cameras.push((Camera::new(name, lens), own, row.line));
         }
     }
     if let Some(version) = version {
@@ -151,6 +153,9 @@ fn of_table(path: &Path, version: Option<&str>) -> Result<Vec<Camera>> {
     }
     for (at, (camera, own, line)) in cameras.iter().enumerate() {
         if let Some((_, other, first)) = cameras.iter().take(at).find(|it| it.0.name == camera.name) {
+            if name.is_none() && own == other {
+                return Err(header_without_names(&table));
+            }
             let file = path.display();
             let advice = if own == other {
                 String::new()
@@ -169,6 +174,12 @@ fn of_table(path: &Path, version: Option<&str>) -> Result<Vec<Camera>> {
         return Err(Error::new(ErrorKind::Measurement, message).at_line(path, table.header.line));
     }
     Ok(cameras.into_iter().map(|(camera, ..)| camera).collect())
+}
+
+/// The error of several cameras without names.
+fn header_without_names(table: &Table<'_>) -> Error {
+    let missing = table.header.require("name", "for the name of each camera", |_| false, "");
+    missing.err().unwrap_or_else(|| Error::new(ErrorKind::Measurement, "found cameras without names"))
 }
 
 /// The number of a cell; `None` of an empty one.

@@ -56,7 +56,7 @@ pub(super) fn poses_of_pictures(path: &Path, arm: &PoseFile, options: &ReadOptio
     )?;
     let map = ColumnMap::default();
     let mut reader = Reader::new(&stand_in, options, &map);
-    reader.taken_as = "pose of the arm";
+    reader.taken_as = "poses of the arm";
     for (name, row) in named.rows()? {
         let place = (arm.path.clone(), arm.lines.get(row).copied().unwrap_or(1));
         let taken = Taken { readings: vec![row as f64], set: None, id: String::new(), place };
