@@ -3,12 +3,14 @@
 use std::ffi::OsString;
 use std::path::PathBuf;
 
-use poecal::hand_eye::{HandEyeOptions, Level, hand_eye as calibrated};
+use poecal::calibration::{arm_too, session_of};
+use poecal::hand_eye::{HandEye as Found, HandEyeOptions, Level, hand_eye as calibrated};
 use poecal::io::hand_eye::{ArmByJoints, FrameNames, HandEyeResult};
-use poecal::io::measurements::{PoseSource, read_pose_pairs};
+use poecal::io::measurements::{PosePairs, PoseSource, read_pose_pairs};
 use poecal::io::model::Model;
 use poecal::io::named_files::refuse_repeats;
 use poecal::io::output::{Contents, Existing, FolderPlace, write_texts};
+use poecal::robot::Robot;
 use poecal::{ErrorKind, Result, report};
 
 use super::typed::{command, shell_word};
@@ -43,7 +45,7 @@ pub(crate) fn hand_eye(arguments: &HandEye, typed: &[OsString], console: &Consol
     let name = |row: usize| poses.names.get(row).cloned().unwrap_or_else(|| format!("row {}", row + 1));
     let found = calibrated(&poses.flange, &poses.target, &options, &name)?;
     let command = command(typed);
-    let arm = robot.map(|robot| ArmByJoints::new(robot, &poses, &found, with_arm(arguments))).transpose()?;
+    let arm = robot.map(|robot| by_joints(robot, &poses, &found, arguments)).transpose()?;
     let names =
         arguments.frames.clone().unwrap_or_else(|| robot.map_or_else(FrameNames::default, FrameNames::of));
     let result =
@@ -62,6 +64,12 @@ pub(crate) fn hand_eye(arguments: &HandEye, typed: &[OsString], console: &Consol
         (None, false) => console.say(&text).map(|()| DONE)?,
     };
     Ok(if found.level == Level::DoNotUse { WORSE } else { told })
+}
+
+/// What the joint readings of the poses add.
+fn by_joints(robot: &Robot, poses: &PosePairs, found: &Found, arguments: &HandEye) -> Result<ArmByJoints> {
+    let data = session_of(robot, &poses.joints, &poses.target, found)?;
+    ArmByJoints::new((robot, &data), found, arm_too(robot, &data), with_arm(arguments))
 }
 
 /// The command that fits the arm with the camera: from the same pixels, or from the session that is written with --out.
