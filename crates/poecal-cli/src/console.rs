@@ -7,6 +7,7 @@ use std::path::Path;
 
 use anstream::{AutoStream, ColorChoice};
 use poecal::Result;
+use poecal::io::measurements::MeasurementFile;
 use poecal::io::output::FilePlace;
 use poecal::text::{visible, visible_lines};
 
@@ -144,6 +145,12 @@ impl Console {
 
     pub(crate) fn warnings(&self, messages: &[String]) {
         messages.iter().for_each(|message| self.warning(message));
+    }
+
+    /// What reading files found, and its warnings.
+    pub(crate) fn said_of(&self, file: &MeasurementFile) {
+        file.notes.iter().for_each(|note| self.remark(note));
+        self.warnings(&file.warnings);
     }
 
     /// What a result is made of, on standard error, unless `--quiet` suppresses it.

@@ -413,6 +413,12 @@ impl Measurements {
         self.data().files.iter().map(|path| path.display().to_string()).collect()
     }
 
+    /// What was found in the files, such as where a camera is, a sentence each.
+    #[getter]
+    fn notes(&self) -> Vec<String> {
+        self.file.notes.iter().map(|note| python_words(note)).collect()
+    }
+
     /// Warnings about the files, a sentence each.
     #[getter]
     fn warnings(&self) -> Vec<String> {
@@ -431,15 +437,17 @@ impl Measurements {
         other.cast::<Measurements>().is_ok_and(|other| {
             let other = other.get();
             self.file.data == other.file.data
+                && self.file.notes == other.file.notes
                 && self.file.warnings == other.file.warnings
                 && self.source == other.source
         })
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
-        let MeasurementFile { data, warnings, .. } = &*self.file;
+        let MeasurementFile { data, notes, warnings, .. } = &*self.file;
         let state = MeasurementState {
             data: data.clone(),
+            notes: notes.clone(),
             warnings: warnings.clone(),
             source: (*self.source).clone(),
         };

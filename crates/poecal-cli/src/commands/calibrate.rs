@@ -150,8 +150,8 @@ fn read_measurements(
     let mut read = |paths: &[PathBuf]| -> Result<Dataset> {
         let file = measurements::read(paths, &model.robot, &options)?;
         inputs.measurements.extend(paths.iter().map(|path| path.display().to_string()));
+        console.said_of(&file);
         inputs.sha256.extend(file.sha256);
-        console.warnings(&file.warnings);
         Ok(file.data)
     };
     let mut data = read(&arguments.measurements)?;

@@ -29,7 +29,7 @@ pub(crate) fn identify(arguments: &Identify, console: &Console) -> Result<u8> {
     let has_pictures = !options.cameras.is_empty() || !options.boards.is_empty();
     let found = if session.kind.is_touched() || has_pictures {
         let file = measurements::read(&arguments.joints, &model.robot, &options)?;
-        console.warnings(&file.warnings);
+        console.said_of(&file);
         if has_pictures && file.data.pictures.is_empty() {
             return Err(Error::new(
                 ErrorKind::Option,

@@ -47,13 +47,13 @@ pub(crate) fn validate(arguments: &Validate, typed: &[OsString], console: &Conso
     let inputs = ValidationInputs {
         calibration: arguments.calibration.display().to_string(),
         measurements: arguments.measurements.iter().map(|path| path.display().to_string()).collect(),
-        sha256: sha256.into_iter().chain(read.sha256).collect(),
+        sha256: sha256.into_iter().chain(read.sha256.clone()).collect(),
         command: Some(command(typed)),
     };
     let record = Record::of(arguments.record.iter().map(|(key, text)| (key.as_str(), text.as_str())))?;
     let found = Validation::of(&file, &read.data, &judging, inputs).map_err(in_file)?;
     let found = Validation { record, ..found };
-    console.warnings(&read.warnings);
+    console.said_of(&read);
     if let Some(doubt) = file.pictures.as_ref().and_then(|it| it.read_otherwise(&read.data)) {
         console.warning(doubt);
     }

@@ -595,6 +595,9 @@ class Measurements:
     def files(self) -> list[str]:
         """The files that the rows came from, as they were named."""
     @property
+    def notes(self) -> list[str]:
+        """What was found in the files, such as where a camera is, a sentence each."""
+    @property
     def warnings(self) -> list[str]:
         """Warnings about the files, a sentence each."""
     def _repr_html_(self) -> str: ...

@@ -40,6 +40,7 @@ pub(crate) struct MeasurementSource {
 #[derive(Serialize, Deserialize)]
 pub(super) struct MeasurementState {
     pub(super) data: Dataset,
+    pub(super) notes: Vec<String>,
     pub(super) warnings: Vec<String>,
     pub(super) source: MeasurementSource,
 }
@@ -77,9 +78,9 @@ impl Measurements {
     }
 
     pub(crate) fn of_state(state: &[u8]) -> PyResult<Self> {
-        let MeasurementState { data, warnings, source } = pickle::value(state)?;
+        let MeasurementState { data, notes, warnings, source } = pickle::value(state)?;
         data.check().map_err(raise)?;
-        let file = MeasurementFile { data, warnings, ..MeasurementFile::default() };
+        let file = MeasurementFile { data, notes, warnings, ..MeasurementFile::default() };
         Ok(Measurements::new(file, source))
     }
 
@@ -87,6 +88,7 @@ impl Measurements {
     pub(super) fn part(&self, rows: &[usize]) -> PyResult<Self> {
         let file = MeasurementFile {
             data: rows::part(self.data(), rows)?,
+            notes: self.file.notes.clone(),
             warnings: self.file.warnings.clone(),
             ..MeasurementFile::default()
         };
@@ -96,7 +98,7 @@ impl Measurements {
     /// The rows of all parts.
     pub(super) fn joined(parts: &[&Self]) -> PyResult<Self> {
         let data: Vec<&Dataset> = parts.iter().map(|part| part.data()).collect();
-        let (mut source, mut warnings) = (MeasurementSource::default(), Vec::new());
+        let (mut source, mut notes, mut warnings) = (MeasurementSource::default(), Vec::new(), Vec::new());
         let add = |known: &mut Vec<String>, more: &[String]| {
             more.iter().for_each(|it| {
                 if !known.contains(it) {
@@ -106,11 +108,12 @@ impl Measurements {
         };
         for part in parts {
             add(&mut source.names, &part.source.names);
+            add(&mut notes, &part.file.notes);
             add(&mut warnings, &part.file.warnings);
             source.sha256.extend(part.source.sha256.clone());
             source.fit_where |= part.source.fit_where;
         }
-        let file = MeasurementFile { data: rows::joined(&data)?, warnings, ..MeasurementFile::default() };
+        let file = MeasurementFile { data: rows::joined(&data)?, notes, warnings, ..MeasurementFile::default() };
         Ok(Measurements::new(file, source))
     }
 

@@ -74,7 +74,7 @@ fn line(seed: u64, kind: &Kind) -> Result<Value, Error> {
         .or_else(|_| PictureSimulation { session: other, ..usual.clone() }.run(&elbow()))?;
     let camera = Camera { is_guessed: false, ..made.data.pictures.cameras[0].clone() };
     let mut data = rebuilt(&made.data, 0..COUNT, (&[camera], &made.data.pictures.boards))?;
-    let start = settle_pictures(&mut data, &made.nominal);
+    let start = settle_pictures(&mut data, &made.nominal).all();
     let free = if kind.is_free { vec!["lens".to_owned()] } else { Vec::new() };
     let options = CalibrationOptions {
         blocks: BlockChoice { free, ..BlockChoice::default() },

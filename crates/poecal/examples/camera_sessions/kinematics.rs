@@ -22,7 +22,7 @@ pub(crate) fn run(seed: u64) -> Result<Vec<Value>, Error> {
     let pictures = &made.data.pictures;
     let mut data = rebuilt(&made.data, 0..COUNT, (&pictures.cameras, &pictures.boards))?;
     hold_out_thirds(&mut data);
-    let said = settle_pictures(&mut data, &made.nominal);
+    let said = settle_pictures(&mut data, &made.nominal).all();
     let blocks = BlockChoice { fix: vec!["joints".to_owned()], ..BlockChoice::default() };
     let (calibration, fitted) =
         calibrated(&made.nominal, &data, &CalibrationOptions { blocks, ..CalibrationOptions::default() })?;

@@ -89,7 +89,7 @@ fn line(
     (known, truth): (f64, impl Fn(&PictureNumber) -> f64),
 ) -> Result<Value, Error> {
     let mut data = rebuilt(&session.data, 0..COUNT, given)?;
-    let said = settle_pictures(&mut data, &session.made.nominal);
+    let said = settle_pictures(&mut data, &session.made.nominal).all();
     let blocks =
         BlockChoice { free: free.iter().map(|it| (*it).to_owned()).collect(), ..BlockChoice::default() };
     let options = CalibrationOptions { blocks, ..all_rows() };

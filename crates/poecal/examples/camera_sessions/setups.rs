@@ -9,7 +9,7 @@ use crate::session::calibrated;
 
 pub(crate) fn run(seed: u64) -> Result<Vec<Value>, Error> {
     let Scene { place, nominal, mut data } = Scene::random(seed)?;
-    let said = settle_pictures(&mut data, &nominal);
+    let said = settle_pictures(&mut data, &nominal).all();
     let right = match place {
         Place::Hand => said.first().is_some_and(|it| it.contains("on the last link, and the board stays")),
         Place::Beside => said.first().is_some_and(|it| it.contains("beside the robot")),

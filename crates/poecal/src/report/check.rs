@@ -28,6 +28,8 @@ pub struct Check {
     model: ModelCheck,
     files: Vec<FileUnderstanding>,
     sets: Option<SetCounts>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    notes: Vec<String>,
     warnings: Vec<String>,
     /// What sees what, of a robot with branches or with instruments and targets on named bodies.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -121,6 +123,7 @@ impl Check {
             files: measurements.map_or_else(Vec::new, |file| file.understood.clone()),
             sets: measurements.map(SetCounts::of),
             sight: SightCheck::of(robot, measurements.map(|file| &file.data)),
+            notes: measurements.map_or_else(Vec::new, |file| file.notes.clone()),
             warnings: {
                 let of_model = model.doubts().into_iter().map(|it| format!("{}: {it}", model.path.display()));
                 of_model.chain(measurements.map_or_else(Vec::new, |file| file.warnings.clone())).collect()
@@ -164,6 +167,7 @@ impl Check {
             out.push('\n');
             line(&mut out, "sets", &sets.words());
         }
+        lines(&mut out, "notes", &self.notes);
         lines(&mut out, "warnings", &self.warnings);
         lines(&mut out, "diagnosis", self.diagnosis.iter().map(|found| &found.statement));
         out

@@ -14,7 +14,7 @@ mod stations;
 pub(crate) use averaging::{mean_rotation, rotation_maximising};
 pub use faces::{faces_on_known_planes, settle_faces};
 pub(crate) use pictures::predicted_pose;
-pub use pictures::settle_pictures;
+pub use pictures::{SettledPictures, settle_pictures};
 pub use registration::{Registration, register_again};
 pub(crate) use registration::{device_parameter, free_parameters, range_parameters, target_parameters};
 pub use robust::register_robustly;

@@ -25,12 +25,29 @@ const NEAR: f64 = 0.7;
 /// How many times worse the other place of a camera must look, so that this one is evident.
 const EVIDENT: f64 = 1.5;
 
+/// What was found of pictures, a sentence each.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct SettledPictures {
+    /// Where the camera was taken to be, if that is evident.
+    pub notes: Vec<String>,
+    /// What may be wrong.
+    pub warnings: Vec<String>,
+}
+
+impl SettledPictures {
+    /// All of it.
+    #[must_use]
+    pub fn all(self) -> Vec<String> {
+        self.notes.into_iter().chain(self.warnings).collect()
+    }
+}
+
 /// Finds for each picture that has two poses the one that the other pictures agree with, and for cameras and boards that are not placed on the
 /// robot by name whether the camera is beside it, with the board in its hand, or in its hand, with the board beside: the place from which the
-/// corners look more as they were seen, with the robot as it is (theory.md §6, *Start*). Returns what was found, a sentence each.
-pub fn settle_pictures(data: &mut Dataset, robot: &Robot) -> Vec<String> {
+/// corners look more as they were seen, with the robot as it is (theory.md §6, *Start*).
+pub fn settle_pictures(data: &mut Dataset, robot: &Robot) -> SettledPictures {
     if data.pictures.is_empty() {
-        return Vec::new();
+        return SettledPictures::default();
     }
     let is_placed = |name: &str, mounts: &[Mount]| mounts.iter().any(|mount| mount.name == name);
     let Pictures { cameras, boards, .. } = &data.pictures;
@@ -38,10 +55,10 @@ pub fn settle_pictures(data: &mut Dataset, robot: &Robot) -> Vec<String> {
         || boards.iter().any(|it| is_placed(&it.name, &robot.mounted));
     let (beside, beside_px) = settled(data, robot);
     if placed {
-        let mut said = turned_back(data, &beside);
-        said.extend(misread(data, beside_px, |other| settled(other, robot).1));
+        let mut warnings = turned_back(data, &beside);
+        warnings.extend(misread(data, beside_px, |other| settled(other, robot).1));
         *data = beside;
-        return said;
+        return SettledPictures { warnings, notes: Vec::new() };
     }
     let (held, held_px) = settled(&in_hand(data), robot);
     let (found, place, own, other) = if held_px < beside_px {
@@ -49,19 +66,19 @@ pub fn settle_pictures(data: &mut Dataset, robot: &Robot) -> Vec<String> {
     } else {
         (beside, "beside the robot, and the board is on the last link", beside_px, held_px)
     };
-    let mut said = turned_back(data, &found);
+    let mut warnings = turned_back(data, &found);
     let missed = |read: &Dataset| settled(read, robot).1.min(settled(&in_hand(read), robot).1);
-    said.extend(misread(data, own, missed));
+    warnings.extend(misread(data, own, missed));
     *data = found;
-    let doubt = if other < EVIDENT * own {
-        "; that is not evident: say it with --instrument CAMERA=LINK and --target BOARD=LINK"
-    } else {
-        ""
-    };
-    said.insert(0, format!(
-        "the camera is {place}: so the nominal robot misses half of the pictures by less than {own:.1} px, the other way {other:.1} px{doubt}"
-    ));
-    said
+    let mut placed = format!(
+        "the camera is {place}: so the nominal robot misses half of the pictures by less than {own:.1} px, the other way {other:.1} px"
+    );
+    if other >= EVIDENT * own {
+        return SettledPictures { notes: vec![placed], warnings };
+    }
+    placed.push_str("; that is not evident: say it with --instrument CAMERA=LINK and --target BOARD=LINK");
+    warnings.insert(0, placed);
+    SettledPictures { notes: Vec::new(), warnings }
 }
 
 /// Which pictures had their corners taken the other way round.

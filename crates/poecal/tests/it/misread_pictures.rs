@@ -38,7 +38,7 @@ fn changed(data: &Dataset, reading: impl Fn(usize) -> usize, corner: impl Fn(&Co
 }
 
 fn said(mut data: Dataset, robot: &Robot) -> String {
-    settle_pictures(&mut data, robot).join("\n")
+    settle_pictures(&mut data, robot).all().join("\n")
 }
 
 #[test]

@@ -218,7 +218,7 @@ fn judged(in_hand: bool, common: CommonError, seed: u64) -> (f64, f64, usize) {
     let session = session(seed);
     let simulated = PictureSimulation { common, ..PictureSimulation::usual(session, in_hand) };
     let mut made = simulated.run(&elbow()).unwrap();
-    let said = settle_pictures(&mut made.data, &made.nominal);
+    let said = settle_pictures(&mut made.data, &made.nominal).notes;
     assert_eq!(said[0].contains("on the last link, and the board stays"), in_hand, "{said:?}");
     let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default()).unwrap();
     let held_out = calibration.accuracy.held_out.unwrap();

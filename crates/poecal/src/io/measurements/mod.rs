@@ -195,6 +195,8 @@ pub struct MeasurementFile {
     pub understood: Vec<FileUnderstanding>,
     /// SHA-256 of each file by its name, of the bytes that were read.
     pub sha256: BTreeMap<String, String>,
+    /// What was found in the rows and is nothing to be looked after, a sentence each.
+    pub notes: Vec<String>,
     /// Warnings, a sentence each.
     pub warnings: Vec<String>,
 }

@@ -379,8 +379,11 @@ impl<'a> Reader<'a> {
         settle_faces(&mut found.data, self.robot);
         found.data.settle_pixels();
         refuse_wrong_boards(&found.data)?;
-        found.warnings.extend(settle_pictures(&mut found.data, self.robot));
-        found.warnings.iter_mut().for_each(|warning| *warning = visible(warning).into_owned());
+        let settled = settle_pictures(&mut found.data, self.robot);
+        found.notes.extend(settled.notes);
+        found.warnings.extend(settled.warnings);
+        let said = found.notes.iter_mut().chain(&mut found.warnings);
+        said.for_each(|words| *words = visible(words).into_owned());
         Ok(found)
     }
 }
