@@ -32,6 +32,7 @@ mod layout;
 mod light;
 mod markers;
 mod median;
+mod named;
 mod normal;
 mod parts;
 mod picture;
@@ -44,6 +45,7 @@ mod spec;
 mod suggest;
 mod tagfit;
 mod tags;
+mod whole;
 
 pub use detector::Detector;
 pub use error::{Error, Result};

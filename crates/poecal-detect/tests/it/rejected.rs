@@ -1,5 +1,6 @@
 //! Pictures without the board: no corner, the reason, and what else it may be.
 
+use nalgebra::Vector2;
 use poecal_detect::render::{Draw, Random, clutter, finished};
 use poecal_detect::{Detector, Gray, Layout, Rejected};
 
@@ -60,6 +61,33 @@ fn no_corner_on_another_board() {
             let found = detector.detect(&picture);
             println!("{} on {other}: {}", detector.spec(), found.as_ref().err().unwrap());
         }
+    }
+}
+
+/// Dots on paper at columns and rows, of an asymmetric grid at those whose sum is even.
+fn dots_at(places: impl Iterator<Item = [i32; 2]>) -> Gray {
+    const UNIT_PX: f64 = 24.0;
+    let places: Vec<Vector2<f64>> =
+        places.map(|[x, y]| Vector2::new(f64::from(x), f64::from(y)).add_scalar(3.0) * UNIT_PX).collect();
+    let level = |at: usize| {
+        let pixel = Vector2::new((at % 400) as f64, (at / 400) as f64);
+        let nearest = places.iter().map(|it| (it - pixel).norm()).fold(f64::INFINITY, f64::min);
+        130.0 + 140.0 * (nearest - 0.42 * UNIT_PX).clamp(-0.5, 0.5)
+    };
+    let sharp = Gray::new(400, 460, (0..400 * 460).map(|at| level(at) as f32).collect()).unwrap();
+    finished(sharp, 0.8, 2.0, &mut Random::new(1))
+}
+
+#[test]
+fn dots_that_go_on_are_no_board() {
+    let detector = detector(ASYMMETRIC);
+    let board = (1..=11).flat_map(|y| (1..=8).map(move |x| [x, y])).filter(|[x, y]| (x + y) % 2 == 0);
+    let with = |more: &[[i32; 2]]| detector.detect(&dots_at(board.clone().chain(more.iter().copied())));
+    // One may be something else, two are the next column of a field of which most is not seen.
+    for (more, is_board) in [(&[][..], true), (&[[0, 4]][..], true), (&[[0, 4], [0, 6]][..], false)] {
+        let found = with(more);
+        println!("{} beyond: {:?}", more.len(), found.as_ref().map(|it| it.corners.len()));
+        assert_eq!(found.is_ok(), is_board);
     }
 }
 

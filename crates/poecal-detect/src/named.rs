@@ -1,0 +1,78 @@
+//! Dots with their numbers on a board: how large they are, and where one is that was not found.
+
+use std::collections::BTreeMap;
+
+use nalgebra::{Matrix2, Vector2};
+
+use crate::ellipse::{self, Dot};
+use crate::gray::Gray;
+use crate::homography::Pair;
+use crate::lattice::map_near;
+use crate::layout::Layout;
+use crate::median::median;
+
+/// Dots by their numbers on the board.
+pub(crate) type Named = BTreeMap<usize, Dot>;
+
+/// Largest distance of a dot from where its neighbours have it, pixels and parts of the unit.
+pub(crate) const OFF: (f64, f64) = (0.8, 0.035);
+/// Largest deviation of a dot's radius from that of the others, as a part and in pixels.
+const ROUND: (f64, f64) = (0.08, 0.5);
+/// Largest misfit of a dot beside the median one, and beside the contrast: of more, something covers a part of it.
+const COVERED: (f64, f64) = (4.0, 0.03);
+/// How far a missing dot may be from the nearest one that was found, units.
+pub(crate) const NEAR: f64 = 2.1;
+
+pub(crate) fn pairs(layout: &Layout, named: &Named) -> Vec<Pair> {
+    named.iter().map(|(id, dot)| (layout.corner(*id), dot.place, 1.0)).collect()
+}
+
+/// The radius of a dot, units, and pixels of a unit.
+pub(crate) fn radius_of(all: &[Pair], point: Vector2<f64>, dot: &Dot) -> Option<[f64; 2]> {
+    let slope = map_near(all, point)?.0.slope(point)?.determinant();
+    (slope > 0.0).then_some([(1.0 / (dot.to_circle.determinant() * slope)).sqrt(), slope.sqrt()])
+}
+
+/// The median radius of the dots, units.
+pub(crate) fn radius(layout: &Layout, named: &Named) -> Option<f64> {
+    let all = pairs(layout, named);
+    let radius = |(id, dot): (&usize, &Dot)| Some(radius_of(&all, layout.corner(*id), dot)?[0]);
+    median(named.iter().filter_map(radius))
+}
+
+/// Takes dots away that are not as large as the others.
+pub(crate) fn keep_round(layout: &Layout, named: &mut Named, radius: f64) {
+    let all = pairs(layout, named);
+    named.retain(|id, dot| is_alike(&all, layout.corner(*id), dot, radius));
+    let usual = median(named.values().map(|it| it.misfit)).unwrap_or(0.0);
+    named.retain(|_, dot| dot.misfit < COVERED.0 * usual + COVERED.1);
+}
+
+pub(crate) fn is_alike(all: &[Pair], point: Vector2<f64>, dot: &Dot, radius: f64) -> bool {
+    radius_of(all, point, dot)
+        .is_some_and(|[own, unit_px]| (own / radius - 1.0).abs() < ROUND.0 + ROUND.1 / (radius * unit_px))
+}
+
+/// Seeks dots that were not found, where the others have them.
+pub(crate) fn seek(gray: &Gray, layout: &Layout, noise: f64, named: &mut Named, radius: f64) {
+    let all = pairs(layout, named);
+    let missing = (0..layout.corners()).filter(|id| !named.contains_key(id));
+    let sought = missing.filter_map(|id| Some((id, dot_at(gray, noise, &all, layout.corner(id), radius)?)));
+    named.extend(sought.collect::<Vec<_>>());
+}
+
+/// The dot at a point of the board's plane, if one is there that is as large as the others, where they have it.
+pub(crate) fn dot_at(gray: &Gray, noise: f64, all: &[Pair], point: Vector2<f64>, radius: f64) -> Option<Dot> {
+    let (map, nearest) = map_near(all, point).filter(|it| it.1 < NEAR)?;
+    let (place, slope) = (map.map(point)?, map.slope(point)?);
+    let spread = slope * slope.transpose() * (radius * radius);
+    let axes = spread.symmetric_eigen();
+    if axes.eigenvalues.min() <= 0.0 {
+        return None;
+    }
+    let scale = Matrix2::from_diagonal(&axes.eigenvalues.map(|it| 1.0 / it.sqrt()));
+    let to_circle = axes.eigenvectors * scale * axes.eigenvectors.transpose();
+    let dot = ellipse::fit(gray, place, to_circle, noise)?;
+    let limit = (OFF.0 + OFF.1 * slope.determinant().abs().sqrt()) * nearest.max(1.0);
+    ((dot.place - place).norm() < limit && is_alike(all, point, &dot, radius)).then_some(dot)
+}
