@@ -8,6 +8,7 @@ mod board;
 mod checks;
 mod commands;
 mod compensate;
+mod configurations;
 mod counted;
 #[cfg(any(unix, windows))]
 mod detect;

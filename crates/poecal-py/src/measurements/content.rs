@@ -113,7 +113,8 @@ impl Measurements {
             source.sha256.extend(part.source.sha256.clone());
             source.fit_where |= part.source.fit_where;
         }
-        let file = MeasurementFile { data: rows::joined(&data)?, notes, warnings, ..MeasurementFile::default() };
+        let file =
+            MeasurementFile { data: rows::joined(&data)?, notes, warnings, ..MeasurementFile::default() };
         Ok(Measurements::new(file, source))
     }
 

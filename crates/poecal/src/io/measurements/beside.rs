@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use super::configurations::is_folder;
 use super::corner_columns::{are_corners, are_readings_of_pictures};
 use super::mapping::ColumnMap;
 use super::picture_files::NO_CAMERA;
@@ -14,11 +15,11 @@ use crate::robot::Robot;
 /// Whether a file has readings of joints by picture. One that cannot be read is named when it is read.
 pub(super) fn has_readings_of_pictures(path: &Path, robot: &Robot, map: &ColumnMap) -> bool {
     // A pipe is read once.
-    if !is_file(path) {
+    if !is_file(path) && !is_folder(path) {
         return false;
     }
-    let table =
-        Blocks::open(path, "a measurement file (CSV)").and_then(|blocks| Table::open(path, blocks, map));
+    let table = Blocks::open_or_join(path, "a measurement file (CSV)")
+        .and_then(|blocks| Table::open(path, blocks, map));
     table.is_ok_and(|table| are_readings_of_pictures(&table.header, &robot.reading_names(), map))
 }
 

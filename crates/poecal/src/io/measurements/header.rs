@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use super::cells::{Cell, Separator, character_column, split, split_line};
+use super::configurations::advice;
 use super::units::{NamedUnit, UnitSource};
 use crate::error::{Error, ErrorKind, Result, first_few, nearest};
 use crate::unit::Unit;
@@ -114,10 +115,11 @@ impl<'a> Header<'a> {
         split_line(path, line, text, separator, &mut cells)?;
         if cells.iter().all(|cell| is_number(&cell.text())) {
             return Err(ErrorKind::Syntax
-                .error(
+                .error(format!(
                     "found a line of numbers, expected a header that names the columns \
-                           (a line that begins with `#` is a comment)",
-                )
+                     (a line that begins with `#` is a comment){}",
+                    advice(path)
+                ))
                 .at_line(path, line));
         }
         let cells = header_cells(text, &cells);

@@ -35,7 +35,7 @@ pub struct JointsTable {
 /// As [`super::read`], of what concerns joints.
 pub fn read_joints(path: impl AsRef<Path>, robot: &Robot, options: &ReadOptions) -> Result<JointsTable> {
     let path = path.as_ref();
-    of_blocks(path, Blocks::open(path, "a file of joint readings (CSV)")?, robot, options)
+    of_blocks(path, Blocks::open_or_join(path, "a file of joint readings (CSV)")?, robot, options)
 }
 
 /// Reads the text of such a file; `path` is for the messages only.

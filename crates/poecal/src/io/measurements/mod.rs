@@ -11,6 +11,7 @@ mod boards;
 mod builder;
 mod cameras;
 mod cells;
+mod configurations;
 mod corner_columns;
 mod corner_names;
 mod counted;

@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 /// The number at the end of a picture's name, without its folder and the ending of a file.
-fn number_at_end(name: &str) -> Option<u64> {
+pub(super) fn number_at_end(name: &str) -> Option<u64> {
     let file = name.rsplit(['/', '\\']).next().unwrap_or(name);
     let stem = match file.rsplit_once('.') {
         Some((stem, end)) if end.contains(|it: char| it.is_ascii_alphabetic()) => stem,

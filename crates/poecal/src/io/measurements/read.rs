@@ -53,7 +53,7 @@ fn read_all(paths: &[&Path], robot: &Robot, options: &ReadOptions) -> Result<Mea
         order.sort_by_key(|path| !has_readings_of_pictures(path, robot, reader.map));
     }
     for path in order {
-        let blocks = Blocks::open(path, "a measurement file (CSV)")?;
+        let blocks = Blocks::open_or_join(path, "a measurement file (CSV)")?;
         reader
             .file(path, blocks)
             .map_err(|error| beside(error, path, paths, (robot, reader.map, options.cameras.is_empty())))?;

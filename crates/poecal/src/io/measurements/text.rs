@@ -1,8 +1,9 @@
 //! Text of a file and its lines.
 
-use std::io::Read;
+use std::io::{Cursor, Read};
 use std::path::Path;
 
+use super::configurations::{self, Configurations};
 use crate::error::{Error, ErrorKind, Result};
 use crate::io::hashes::Hashing;
 use crate::io::source::{self, Input, LARGEST_TABLE, LARGEST_TEXT, unreadable};
@@ -18,6 +19,8 @@ const LONGEST_LINE: usize = 16 << 20;
 enum TextSource<'a> {
     File(Hashing<Input>),
     Text(&'a [u8]),
+    /// Made of the files of a folder, with their checksum.
+    Folder(Cursor<Vec<u8>>, String),
 }
 
 /// A text in blocks of whole lines, so that large files are never held whole.
@@ -47,6 +50,15 @@ impl<'a> Blocks<'a> {
     pub(super) fn open(path: &'a Path, expected: &'a str) -> Result<Self> {
         let source = TextSource::File(Hashing::new(source::open(path, expected, LARGEST_TABLE)?));
         Ok(Blocks::of(path, expected, source, BLOCK))
+    }
+
+    /// The same, and of a folder the table that its files make.
+    pub(super) fn open_or_join(path: &'a Path, expected: &'a str) -> Result<Self> {
+        if !configurations::is_folder(path) {
+            return Blocks::open(path, expected);
+        }
+        let Configurations { text, sha256 } = configurations::read(path)?;
+        Ok(Blocks::of(path, expected, TextSource::Folder(Cursor::new(text.into_bytes()), sha256), BLOCK))
     }
 
     /// The blocks of a text; messages call it `path`.
@@ -91,6 +103,7 @@ impl<'a> Blocks<'a> {
             let more = match &mut self.source {
                 TextSource::File(file) => file.take(size).read_to_end(&mut bytes),
                 TextSource::Text(text) => text.take(size).read_to_end(&mut bytes),
+                TextSource::Folder(text, _) => text.take(size).read_to_end(&mut bytes),
             };
             let more = more.map_err(|error| unreadable(self.path, &error, self.expected))?;
             let end = memchr::memrchr(b'\n', bytes.get(known..).unwrap_or_default());
@@ -156,6 +169,7 @@ impl<'a> Blocks<'a> {
         match &self.source {
             TextSource::File(file) => Some(file.sha256()),
             TextSource::Text(_) => None,
+            TextSource::Folder(_, sha256) => Some(sha256.clone()),
         }
     }
 

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use crate::error::{Error, ErrorKind, Result};
 
+use super::super::configurations::advice;
 use super::parsed::EXPECTED;
 
 /// How messages begin.
@@ -31,7 +32,7 @@ pub(in crate::io::measurements) fn are_messages(path: &Path, head: &str) -> Resu
              detect --board"
                 .to_owned()
         } else {
-            format!("found YAML without `{JOINTS}`, expected a table (CSV), or {EXPECTED}")
+            format!("found YAML without `{JOINTS}`, expected a table (CSV), or {EXPECTED}{}", advice(path))
         };
         return Err(Error::new(ErrorKind::Measurement, message).in_file(path));
     }
