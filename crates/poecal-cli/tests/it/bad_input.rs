@@ -213,7 +213,7 @@ fn bad_use_gets_one_sentence_each() {
         case("calibrate robot.urdf missing.csv", "",
              "missing.csv: found no such file, expected…"),
         case("calibrate robot.urdf results", "",
-             "results: found a directory, expected a measurement file (CSV)"),
+             "results: found a directory without text files whose names end in a number, expected a table (CSV), or…"),
         case("calibrate robot.urdf good.csv --out results", "",
              "results: the output folder exists, expected a new one: choose another with --out, or overwrite its results with --force"),
         case("calibrate robot.urdf good.csv --out good.csv", "",

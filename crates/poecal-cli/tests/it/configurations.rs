@@ -92,15 +92,16 @@ fn joints_go_by_name_and_unit_where_files_have_them() {
 fn what_is_wrong_in_a_folder_is_said_in_one_sentence() {
     let six = "0.1 0.2 0.3 0.4 0.5 0.6";
     for (files, part) in [
-        (&[][..], "folder: found no text file whose name ends in a number"),
-        (&[("notes.txt", six)][..], "folder: found no text file whose name ends in a number"),
+        (&[][..], "folder: found a directory without text files"),
+        (&[("notes.txt", six)][..], "folder: found a directory without text files"),
         (&[("a_1", six), ("b_01.yaml", six)][..], "found two files with the number 1, `a_1` and `b_01.yaml`"),
         (&[("a_1", six), ("a_2", "0.1 0.2")][..], "a_2: found 2 joint readings, expected 6 as in"),
         (&[("a_1", six), ("a_2", "0.1\nhome")][..], "a_2:2: found `home`, expected the joint readings"),
         (&[("a_1", six), ("a_2", "")][..], "a_2: the file is empty"),
         (&[("a_1", "a: 1\nb: 2"), ("a_2", "1 2")][..], "a_2: found readings without names"),
         (&[("a_1", "a: 1\nb: 2"), ("a_2", "a: 1\nc: 2")][..], "a_2: found no reading of `b`"),
-        (&[("a_1", "0.1 0.2"), ("a_2", "0.1 0.2")][..], "folder:1: found no column"),
+        (&[("a_1", "0.1 0.2"), ("a_2", "0.1 0.2")][..], "folder: found no column"),
+        (&[("a_1", "10 20 30 40 50 60"), ("a_2", "20 -70 80 90 100 110")][..], "folder/a_"),
     ] {
         let folder = Folder::new();
         fs::create_dir(folder.path("folder")).unwrap();

@@ -43,6 +43,18 @@ pub(super) fn is_folder(path: &Path) -> bool {
     !source::is_standard_input(path) && disk::here().follow(path).is_ok_and(is_folder)
 }
 
+/// An error in the table of a folder, in the file that made the line.
+pub(super) fn in_its_file(error: Error, folder: &Path) -> Error {
+    let is_of_table = |place: &&crate::error::Place| place.path == folder && is_folder(folder);
+    let Some(line) = error.place().filter(is_of_table).and_then(|place| place.line) else { return error };
+    let files = numbered(folder).unwrap_or_default();
+    // Below the header.
+    match line.checked_sub(2).and_then(|at| files.get(at)) {
+        Some(name) => error.without_line().with_path(&folder.join(name)),
+        None => error.without_line(),
+    }
+}
+
 /// What to do with a file of such a folder that is read alone.
 pub(super) fn advice(path: &Path) -> &'static str {
     let name = path.file_name().and_then(|it| it.to_str()).unwrap_or_default().to_ascii_lowercase();
@@ -106,7 +118,9 @@ fn numbered(folder: &Path) -> Result<Vec<String>> {
         found.insert(number, name);
     }
     if found.is_empty() {
-        return Err(error(format!("found no text file whose name ends in a number, expected {EXPECTED}")));
+        return Err(error(format!(
+            "found a directory without text files whose names end in a number, expected a table (CSV), or {EXPECTED}"
+        )));
     }
     Ok(found.into_values().collect())
 }

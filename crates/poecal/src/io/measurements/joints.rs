@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use super::ReadOptions;
+use super::configurations::in_its_file;
 use super::inputs::InputReader;
 use super::layout::ColumnLayout;
 use super::mapping::ColumnMap;
@@ -35,7 +36,8 @@ pub struct JointsTable {
 /// As [`super::read`], of what concerns joints.
 pub fn read_joints(path: impl AsRef<Path>, robot: &Robot, options: &ReadOptions) -> Result<JointsTable> {
     let path = path.as_ref();
-    of_blocks(path, Blocks::open_or_join(path, "a file of joint readings (CSV)")?, robot, options)
+    let blocks = Blocks::open_or_join(path, "a file of joint readings (CSV)")?;
+    of_blocks(path, blocks, robot, options).map_err(|error| in_its_file(error, path))
 }
 
 /// Reads the text of such a file; `path` is for the messages only.

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use super::beside::{beside, has_readings_of_pictures};
+use super::configurations::in_its_file;
 use super::corner_columns::{are_corners, are_readings_of_pictures};
 use super::inputs::InputReader;
 use super::layout::ColumnLayout;
@@ -56,6 +57,7 @@ fn read_all(paths: &[&Path], robot: &Robot, options: &ReadOptions) -> Result<Mea
         let blocks = Blocks::open_or_join(path, "a measurement file (CSV)")?;
         reader
             .file(path, blocks)
+            .map_err(|error| in_its_file(error, path))
             .map_err(|error| beside(error, path, paths, (robot, reader.map, options.cameras.is_empty())))?;
     }
     reader.finish()
