@@ -63,6 +63,8 @@ fn a_file_for_each_picture_is_the_same_as_a_table() {
         serde_json::from_str(&folder.read(&format!("{out}/calibration.json"))).unwrap()
     };
     let (of_folder, of_table) = (calibrated("session", "one"), calibrated("table.csv", "other"));
+    let said = folder.run(&words("check", "session", "--json")).out;
+    assert!(said.contains("session: no column has the name of a joint; took `q1` to `q6`"), "{said}");
     assert_eq!(of_folder["joints"], of_table["joints"]);
     assert_eq!(of_folder["verdict"], of_table["verdict"]);
     assert!(of_folder["inputs"]["sha256"]["session"].is_string(), "{}", of_folder["inputs"]);

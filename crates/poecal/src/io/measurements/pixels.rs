@@ -57,6 +57,8 @@ impl Reader<'_> {
             self.found.warnings.push(format!("{}: took `{column}` for image", path.display()));
         }
         self.warn_of_ignored(path, &layout);
+        let words = layout.joint_words().into_iter().map(|words| format!("{}: {words}", path.display()));
+        self.found.warnings.extend(words);
         self.found.warnings.extend(watch.finish(path, &layout, &inputs.ranges)?);
         self.found.sha256.extend(table.sha256().map(|sha256| (path.display().to_string(), sha256)));
         Ok(())
