@@ -22,7 +22,7 @@ pub(crate) use calibrate::Calibrate;
 pub(crate) use compensate::Compensate;
 #[cfg(any(unix, windows))]
 pub(crate) use detect::Detect;
-pub(crate) use hand_eye::{HandEye, Tcp};
+pub(crate) use hand_eye::{HandEye, OutFrames, Tcp};
 pub(crate) use identify::Identify;
 pub(crate) use init::Init;
 pub(crate) use offsets::Offsets;
@@ -43,7 +43,8 @@ use poecal::io::predictions::PredictionFrame;
 use poecal::io::record::Record;
 
 use crate::quantity::{sigma_m, threads};
-use shared::{ChainArgs, ColumnArgs, Meaning, OutFile, Reading};
+pub(crate) use shared::ChainArgs;
+use shared::{ColumnArgs, Meaning, OutFile, Reading};
 use words::{EXPORT_FORMAT, FORM, FRAME, MODEL, PREDICT_IN, REFIT, REQUIRED_LEVEL, one_of};
 
 /// What the program ends with.

@@ -1,7 +1,5 @@
 //! `hand_eye` and `tcp`: a camera, or the tip of a tool, from poses of the flange.
 
-use std::collections::BTreeMap;
-
 use poecal::hand_eye::{self as solved, CameraPlace, HandEyeOptions, Touches};
 use poecal::io::hand_eye::{FrameNames, HandEyeResult};
 use poecal::io::measurements::{FlangePoses, PosePairs};
@@ -140,18 +138,16 @@ pub(crate) fn tcp(
     let arm = stacked(base_from_flange, "base_from_flange", None)?;
     let count = arm.len();
     let poses = FlangePoses {
-        poses: arm.into(),
-        points: texts(points, "points", count)?,
-        tips: texts(tips, "tips", count)?,
+        touches: Touches {
+            flange: arm.into(),
+            points: texts(points, "points", count)?,
+            tips: texts(tips, "tips", count)?,
+        },
         names: row_names(texts(names, "names", count)?, count),
-        understood: Vec::new(),
-        warnings: Vec::new(),
-        sha256: BTreeMap::new(),
+        ..FlangePoses::default()
     };
-    let touches =
-        Touches { flange: poses.poses.clone(), points: poses.points.clone(), tips: poses.tips.clone() };
     let name = |row: usize| poses.names.get(row).cloned().unwrap_or_default();
-    let found = py.detach(|| solved::tool_tip(&touches, &name)).map_err(raise)?;
+    let found = py.detach(|| solved::tool_tip(&poses.touches, &name)).map_err(raise)?;
     let result = ToolResult { found: &found, poses: &poses, command: "" };
     Findings::of_text(report::tool_tip(&result), result.to_text().map_err(raise)?, sentences(&found.findings))
 }

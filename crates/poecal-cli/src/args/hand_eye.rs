@@ -45,15 +45,8 @@ pub(crate) struct HandEye {
     /// Names of base, flange, camera and target in what is written [default: base_link,tool0,camera_color_optical_frame,target; of a model its own]
     #[arg(long, value_name = "BASE,FLANGE,CAMERA,TARGET")]
     pub(crate) frames: Option<FrameNames>,
-    /// Folder for the results
-    #[arg(short, long, value_name = "DIR")]
-    pub(crate) out: Option<PathBuf>,
-    /// Overwrite the results of an earlier run in the folder
-    #[arg(long)]
-    pub(crate) force: bool,
-    /// Print hand_eye.json instead of the table
-    #[arg(long)]
-    pub(crate) json: bool,
+    #[command(flatten)]
+    pub(crate) out: OutFrames,
 }
 
 impl HandEye {
@@ -99,13 +92,27 @@ pub(crate) struct Tcp {
     /// Units of columns that state none, like mm,deg
     #[arg(long, value_name = "LENGTH[,ANGLE]", default_value = "", hide_default_value = true, value_parser = units)]
     pub(crate) units: PoseUnits,
+    #[command(flatten)]
+    pub(crate) out: OutFrames,
+}
+
+impl Tcp {
+    /// The input files.
+    pub(crate) fn inputs(&self) -> Vec<&Path> {
+        std::iter::once(&self.poses).chain(&self.model).map(PathBuf::as_path).collect()
+    }
+}
+
+/// Where the frames that were found go.
+#[derive(Args, Debug)]
+pub(crate) struct OutFrames {
     /// Folder for the results
     #[arg(short, long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
     /// Overwrite the results of an earlier run in the folder
     #[arg(long)]
     pub(crate) force: bool,
-    /// Print tcp.json instead of the table
+    /// Print the result as JSON, as the folder has it, instead of the table
     #[arg(long)]
     pub(crate) json: bool,
 }

@@ -4,32 +4,23 @@ use std::ffi::OsString;
 use std::path::PathBuf;
 
 use poecal::calibration::{arm_too, session_of};
-use poecal::hand_eye::{HandEye as Found, HandEyeOptions, Level, hand_eye as calibrated};
+use poecal::hand_eye::{HandEye as Found, HandEyeOptions, hand_eye as calibrated};
 use poecal::io::hand_eye::{ArmByJoints, FrameNames, HandEyeResult};
 use poecal::io::measurements::{PosePairs, PoseSource, read_pose_pairs};
-use poecal::io::model::Model;
 use poecal::io::named_files::refuse_repeats;
-use poecal::io::output::{Contents, Existing, FolderPlace, write_texts};
+use poecal::io::output::Contents;
 use poecal::robot::Robot;
 use poecal::{ErrorKind, Result, report};
 
+use super::frames::{Frames, model, row_name};
 use super::typed::{command, shell_word};
 use crate::args::HandEye;
 use crate::console::Console;
-use crate::style;
-use crate::{DONE, WORSE};
 
 pub(crate) fn hand_eye(arguments: &HandEye, typed: &[OsString], console: &Console) -> Result<u8> {
     refuse_repeats(&arguments.poses)?;
-    let existing = Existing::forced(arguments.force);
-    let reserve = |out: &std::path::PathBuf| {
-        FolderPlace::reserve(out, Contents::HandEye, existing, &arguments.inputs(), &mut console.warner())
-    };
-    let place = arguments.out.as_ref().map(reserve).transpose()?;
-    let model = match &arguments.model {
-        Some(path) => Some(Model::read(path, &arguments.chain.selection())?),
-        None => None,
-    };
+    let place = arguments.out.reserve(Contents::HandEye, &arguments.inputs(), console)?;
+    let model = model(arguments.model.as_ref(), &arguments.chain)?;
     refuse_without_use(arguments)?;
     let pictures = arguments.pictures()?;
     let robot = model.as_ref().map(|it| &it.robot);
@@ -37,33 +28,27 @@ pub(crate) fn hand_eye(arguments: &HandEye, typed: &[OsString], console: &Consol
     let poses = read_pose_pairs(&arguments.poses, &source)?;
     console.warnings(&poses.warnings);
     poses.understood.iter().for_each(|it| console.remark(it));
+    let is_of_corners = !poses.target.other_poses.is_empty();
+    refuse_unread(arguments, is_of_corners)?;
     let options = HandEyeOptions {
         camera: arguments.camera,
         flange_inverted: arguments.flange.or(model.is_some().then_some(false)),
-        target_inverted: arguments.target.or((!poses.target.other_poses.is_empty()).then_some(false)),
+        target_inverted: arguments.target.or(is_of_corners.then_some(false)),
     };
-    let name = |row: usize| poses.names.get(row).cloned().unwrap_or_else(|| format!("row {}", row + 1));
-    let found = calibrated(&poses.flange, &poses.target, &options, &name)?;
+    let found = calibrated(&poses.flange, &poses.target, &options, &row_name(&poses.names))?;
     let command = command(typed);
     let arm = robot.map(|robot| by_joints(robot, &poses, &found, arguments)).transpose()?;
     let names =
         arguments.frames.clone().unwrap_or_else(|| robot.map_or_else(FrameNames::default, FrameNames::of));
     let result =
         HandEyeResult { found: &found, poses: &poses, names: &names, command: &command, arm: arm.as_ref() };
-    let json = result.to_text()?;
-    let written = match place {
-        Some(place) => Some(write_texts(place, ("hand_eye.json", json.clone()), result.texts())?),
-        None => None,
+    let found = Frames {
+        json: ("hand_eye.json", result.to_text()?),
+        table: report::hand_eye(&result),
+        texts: result.texts(),
+        level: found.level,
     };
-    let words = written.as_ref().map_or_else(String::new, |it| style::written(&it.folder, &it.files));
-    let text = if arguments.json { json } else { report::hand_eye(&result) + &words };
-    let told = match (&written, arguments.json) {
-        (Some(it), true) => console.data_of(&text, &it.folder),
-        (Some(it), false) => console.say_of(&text, &it.folder),
-        (None, true) => console.data(&text).map(|()| DONE)?,
-        (None, false) => console.say(&text).map(|()| DONE)?,
-    };
-    Ok(if found.level == Level::DoNotUse { WORSE } else { told })
+    arguments.out.put(place, found, console)
 }
 
 /// What the joint readings of the poses add.
@@ -86,7 +71,7 @@ fn with_arm(arguments: &HandEye) -> String {
             words.extend(["--camera", lens, "--markers", board].map(str::to_owned));
         }
         _ => {
-            let folder = arguments.out.clone().unwrap_or_else(|| PathBuf::from("DIR"));
+            let folder = arguments.out.out.clone().unwrap_or_else(|| PathBuf::from("DIR"));
             words.push(folder.join("session.csv").display().to_string());
         }
     }
@@ -94,12 +79,25 @@ fn with_arm(arguments: &HandEye) -> String {
     words.join(" ")
 }
 
-/// Refuses options that would have no effect.
+/// Refuses a direction of what has none.
 fn refuse_without_use(arguments: &HandEye) -> Result<()> {
-    arguments.chain.refuse_without(arguments.model.as_deref())?;
     if arguments.model.is_some() && arguments.flange.is_some() {
         return ErrorKind::Option
             .refuse("found --flange beside --model, expected one of the two: by joint readings the arm's poses are base from flange");
+    }
+    Ok(())
+}
+
+/// Refuses options of corners where there are none, and of poses where there are corners.
+fn refuse_unread(arguments: &HandEye, is_of_corners: bool) -> Result<()> {
+    if is_of_corners && arguments.target.is_some() {
+        return ErrorKind::Option
+            .refuse("found --target beside corners in pixels, expected one of the two: by corners the target's poses are camera from target");
+    }
+    if !is_of_corners && (arguments.lens.is_some() || arguments.markers.is_some()) {
+        return ErrorKind::Option.refuse(
+            "found --lens or --markers and no corners in pixels, expected a second file with image, target, u[px], v[px]",
+        );
     }
     Ok(())
 }

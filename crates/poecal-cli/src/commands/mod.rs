@@ -11,6 +11,7 @@ mod convert;
 #[cfg(any(unix, windows))]
 mod detect;
 mod export;
+mod frames;
 mod hand_eye;
 mod identify;
 mod init;

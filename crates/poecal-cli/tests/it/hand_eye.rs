@@ -303,6 +303,12 @@ fn corners_of_pictures_give_the_same_camera_whichever_corner_is_named_first() {
     };
     fs::write(folder.path("corners.csv"), all(&|_| false)).unwrap();
     fs::write(folder.path("turned.csv"), all(&|k| k % 5 == 2)).unwrap();
+    table(
+        &folder,
+        "poses.csv",
+        &format!("X,Y,Z,A,B,C,{SEEN}"),
+        rows.iter().map(|(arm, board)| [place(arm, 1e3), abc(arm).to_vec(), seen(board)].concat()),
+    );
     let run = "--camera in-hand --lens lens.csv --markers chessboard:6x5:30mm --json";
     let plain: serde_json::Value =
         serde_json::from_str(&folder.done(&format!("hand-eye arm.csv corners.csv {run}"))).unwrap();
@@ -330,6 +336,11 @@ fn corners_of_pictures_give_the_same_camera_whichever_corner_is_named_first() {
             "hand-eye nameless.csv corners.csv --camera in-hand --lens lens.csv --markers chessboard:6x5:30mm",
             "a column `image`",
         ),
+        (
+            "hand-eye arm.csv corners.csv --camera in-hand --lens lens.csv --markers chessboard:6x5:30mm --target target-from-camera",
+            "found --target beside corners",
+        ),
+        ("hand-eye poses.csv --camera in-hand --lens lens.csv", "no corners in pixels"),
         (
             "hand-eye corners.csv turned.csv --camera in-hand --lens lens.csv --markers chessboard:6x5:30mm",
             "in both files",

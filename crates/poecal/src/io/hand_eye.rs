@@ -1,9 +1,8 @@
 //! `hand_eye.json`: where a camera is, with its bounds, and the texts of the files beside it.
 
-use std::collections::BTreeMap;
-
 use serde::Serialize;
 
+use super::frame_entries::{FindingEntry, InputsEntry, VerdictEntry, name_of};
 use super::frame_texts::NamedFrame;
 use super::json_text;
 use super::measurements::{self, PosePairs};
@@ -137,20 +136,6 @@ struct File<'a> {
     arm: Option<ArmEntry<'a>>,
 }
 
-#[derive(Serialize)]
-struct InputsEntry<'a> {
-    #[serde(skip_serializing_if = "str::is_empty")]
-    command: &'a str,
-    sha256: &'a BTreeMap<String, String>,
-    understood: &'a [String],
-}
-
-#[derive(Serialize)]
-struct VerdictEntry<'a> {
-    level: &'static str,
-    reasons: &'a [String],
-}
-
 /// A frame in all forms, with its bounds.
 #[derive(Serialize)]
 pub(super) struct FrameEntry {
@@ -226,13 +211,6 @@ struct OutlierEntry<'a> {
     flipped: bool,
 }
 
-#[derive(Serialize)]
-struct FindingEntry<'a> {
-    kind: &'static str,
-    statement: &'a str,
-    rows: Vec<&'a str>,
-}
-
 impl FrameEntry {
     pub(super) fn new(frame: &NamedFrame, placed: &Placed) -> Self {
         FrameEntry {
@@ -269,7 +247,7 @@ impl HandEyeResult<'_> {
     }
 
     fn name(&self, row: usize) -> &str {
-        self.poses.names.get(row).map_or("", String::as_str)
+        name_of(&self.poses.names, row)
     }
 
     /// The contents of `hand_eye.json`.
@@ -290,7 +268,7 @@ impl HandEyeResult<'_> {
                 understood: &self.poses.understood,
             },
             camera: found.camera.word(),
-            verdict: VerdictEntry { level: found.level.word(), reasons: &found.reasons },
+            verdict: VerdictEntry::new(found.level, &found.reasons),
             camera_frame: FrameEntry::new(&camera.0, &camera.1),
             target_frame: FrameEntry::new(&target.0, &target.1),
             directions: DirectionsEntry {
@@ -339,15 +317,7 @@ impl HandEyeResult<'_> {
                     flipped: it.is_flipped,
                 })
                 .collect(),
-            findings: found
-                .findings
-                .iter()
-                .map(|it| FindingEntry {
-                    kind: it.kind.word(),
-                    statement: &it.statement,
-                    rows: it.rows.iter().map(|row| self.name(*row)).collect(),
-                })
-                .collect(),
+            findings: FindingEntry::all(&found.findings, &self.poses.names),
             arm: self.arm.map(ArmEntry::new),
         };
         json_text(&file, "result")

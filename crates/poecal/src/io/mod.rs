@@ -6,6 +6,7 @@ mod csv_text;
 pub mod disk;
 pub mod export;
 mod foreign;
+mod frame_entries;
 pub mod frame_texts;
 pub mod hand_eye;
 mod hashes;

@@ -1,9 +1,8 @@
 //! `tcp.json`: where the tip of a tool is, with its bounds, and the texts of the files beside it.
 
-use std::collections::BTreeMap;
-
 use serde::Serialize;
 
+use super::frame_entries::{FindingEntry, InputsEntry, VerdictEntry, name_of};
 use super::frame_texts::{NamedFrame, tool_forms};
 use super::json_text;
 use super::measurements::FlangePoses;
@@ -43,20 +42,6 @@ struct File<'a> {
 }
 
 #[derive(Serialize)]
-struct InputsEntry<'a> {
-    #[serde(skip_serializing_if = "str::is_empty")]
-    command: &'a str,
-    sha256: &'a BTreeMap<String, String>,
-    understood: &'a [String],
-}
-
-#[derive(Serialize)]
-struct VerdictEntry<'a> {
-    level: &'static str,
-    reasons: &'a [String],
-}
-
-#[derive(Serialize)]
 struct TipEntry<'a> {
     name: &'a str,
     position_m: [f64; 3],
@@ -78,13 +63,6 @@ struct ToolEntry {
     controllers: String,
 }
 
-#[derive(Serialize)]
-struct FindingEntry<'a> {
-    kind: &'static str,
-    statement: &'a str,
-    rows: Vec<&'a str>,
-}
-
 impl ToolResult<'_> {
     /// The tool's frame in the flange's.
     #[must_use]
@@ -93,7 +71,7 @@ impl ToolResult<'_> {
     }
 
     fn name(&self, row: usize) -> &str {
-        self.poses.names.get(row).map_or("", String::as_str)
+        name_of(&self.poses.names, row)
     }
 
     /// The contents of `tcp.json`.
@@ -111,7 +89,7 @@ impl ToolResult<'_> {
                 sha256: &self.poses.sha256,
                 understood: &self.poses.understood,
             },
-            verdict: VerdictEntry { level: found.level.word(), reasons: &found.reasons },
+            verdict: VerdictEntry::new(found.level, &found.reasons),
             tips: found
                 .tips
                 .iter()
@@ -137,15 +115,7 @@ impl ToolResult<'_> {
             rms_mm: 1e3 * found.rms_m,
             sigma_mm: 1e3 * found.sigma_m,
             outliers: found.outliers.iter().map(|row| self.name(*row)).collect(),
-            findings: found
-                .findings
-                .iter()
-                .map(|it| FindingEntry {
-                    kind: it.kind.word(),
-                    statement: &it.statement,
-                    rows: it.rows.iter().map(|row| self.name(*row)).collect(),
-                })
-                .collect(),
+            findings: FindingEntry::all(&found.findings, &self.poses.names),
         };
         json_text(&file, "result")
     }

@@ -10,7 +10,7 @@ use super::pose_file::{PoseFile, read_poses};
 use super::pose_names::by_name;
 use super::units::NamedUnit;
 use crate::error::{ErrorKind, Result};
-use crate::hand_eye::PoseList;
+use crate::hand_eye::{PoseList, Touches};
 use crate::robot::Robot;
 use crate::unit::Unit;
 
@@ -77,15 +77,11 @@ pub struct PosePairs {
     pub sha256: BTreeMap<String, String>,
 }
 
-/// Poses of an arm, with texts of its rows.
+/// Poses of an arm in which a tip touched points.
 #[derive(Clone, Debug, Default)]
 pub struct FlangePoses {
-    /// `base_from_flange`.
-    pub poses: PoseList,
-    /// The point that the row touched, empty if no column says it.
-    pub points: Vec<String>,
-    /// The tip with which it did.
-    pub tips: Vec<String>,
+    /// The poses, with the point that each touched and the tip with which it did.
+    pub touches: Touches,
     /// What messages call each row.
     pub names: Vec<String>,
     /// How the columns were understood, a sentence each.
@@ -134,11 +130,9 @@ pub fn read_flange_poses(path: &Path, units: PoseUnits, robot: Option<&Robot>) -
     let list = file.take(Whose::Arm)?;
     Ok(FlangePoses {
         understood: vec![list.words],
-        poses: list.poses,
         names: file.row_names(),
         sha256: checksums([&file]),
-        points: file.points,
-        tips: file.tips,
+        touches: Touches { flange: list.poses, points: file.points, tips: file.tips },
         warnings: file.warnings,
     })
 }

@@ -1,0 +1,65 @@
+//! What `poecal hand-eye` and `poecal tcp` have in common.
+
+use std::path::{Path, PathBuf};
+
+use poecal::Result;
+use poecal::hand_eye::Level;
+use poecal::io::model::Model;
+use poecal::io::output::{Contents, Existing, FolderPlace, write_texts};
+
+use crate::args::{ChainArgs, OutFrames};
+use crate::console::Console;
+use crate::style;
+use crate::{DONE, WORSE};
+
+/// The model whose joint readings are read, if one is stated.
+pub(super) fn model(path: Option<&PathBuf>, chain: &ChainArgs) -> Result<Option<Model>> {
+    chain.refuse_without(path.map(PathBuf::as_path))?;
+    path.map(|path| Model::read(path, &chain.selection())).transpose()
+}
+
+/// Name of a row in messages.
+pub(super) fn row_name(names: &[String]) -> impl Fn(usize) -> String {
+    move |row| names.get(row).cloned().unwrap_or_else(|| format!("row {}", row + 1))
+}
+
+/// What is printed and written.
+pub(super) struct Frames {
+    /// Name and text of the result as JSON.
+    pub(super) json: (&'static str, String),
+    /// The table.
+    pub(super) table: String,
+    /// The other files.
+    pub(super) texts: Vec<(&'static str, String)>,
+    pub(super) level: Level,
+}
+
+impl OutFrames {
+    /// The folder, if one is stated.
+    pub(super) fn reserve(
+        &self,
+        contents: Contents,
+        inputs: &[&Path],
+        console: &Console,
+    ) -> Result<Option<FolderPlace>> {
+        let existing = Existing::forced(self.force);
+        let reserve =
+            |out: &PathBuf| FolderPlace::reserve(out, contents, existing, inputs, &mut console.warner());
+        self.out.as_ref().map(reserve).transpose()
+    }
+
+    /// Writes and prints a result.
+    pub(super) fn put(&self, place: Option<FolderPlace>, found: Frames, console: &Console) -> Result<u8> {
+        let Frames { json: (name, json), table, texts, level } = found;
+        let written = place.map(|place| write_texts(place, (name, json.clone()), texts)).transpose()?;
+        let words = written.as_ref().map_or_else(String::new, |it| style::written(&it.folder, &it.files));
+        let text = if self.json { json } else { table + &words };
+        let told = match (&written, self.json) {
+            (Some(it), true) => console.data_of(&text, &it.folder),
+            (Some(it), false) => console.say_of(&text, &it.folder),
+            (None, true) => console.data(&text).map(|()| DONE)?,
+            (None, false) => console.say(&text).map(|()| DONE)?,
+        };
+        Ok(if level == Level::DoNotUse { WORSE } else { told })
+    }
+}
