@@ -83,6 +83,7 @@ pub mod forensics;
 pub mod forms;
 #[cfg_attr(doc, doc(hidden))]
 pub mod gauge;
+#[cfg_attr(doc, doc(hidden))]
 pub mod hand_eye;
 #[cfg_attr(doc, doc(hidden))]
 pub mod io;

@@ -1710,8 +1710,9 @@ def hand_eye(
     names: Sequence[str] | None = None,
     frames: Sequence[str] | None = None,
 ) -> Findings:
-    """Where a camera is on the flange, or beside the robot, from poses of the flange and of a board that the camera saw, with bounds of 95 %; mistakes in
-    the poses are named.
+    """Where a camera is on the flange or beside the robot, from poses of the flange and of a board that it saw.
+
+    With bounds of 95 %; mistakes in the poses are named, wrong ones left out.
 
     Parameters
     ----------
@@ -1967,7 +1968,9 @@ def tcp(
     tips: Sequence[str] | None = None,
     names: Sequence[str] | None = None,
 ) -> Findings:
-    """The tip of a tool from poses of the flange in which it touched a fixed point, with bounds of 95 %; wrong touches are named and left out.
+    """The tip of a tool from poses of the flange in which it touched a fixed point.
+
+    With bounds of 95 %; wrong touches are named and left out.
 
     Parameters
     ----------
