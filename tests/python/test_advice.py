@@ -17,7 +17,7 @@ MODEL = (ELBOW / "robot.urdf").read_text()
 POINTS = [line for line in (ELBOW / "points.csv").read_text().splitlines() if line and not line.startswith("#")]
 CRATES = ["crates/poecal/src", "crates/poecal-cli/src"]
 # What a sentence looks like that says what to write.
-ADVICE = re.compile(r"write `|write \{|state it by|in a mapping\b|into a mapping|a mapping file|put `#`|expand the file|expected another: take|: take `|\(--columns\)|by --start|`--third-axis|paste -d")
+ADVICE = re.compile(r"write `|write \{|state it by|in a mapping\b|into a mapping|a mapping file|put `#`|expand the file|expected another: take|: take `|\(--columns\)|by --start|`--third-axis")
 
 HERE = "test_advice.py::"
 FOLLOWED = {
@@ -61,7 +61,6 @@ FOLLOWED = {
     "if they are metres, write `[m]` behind the names of their columns, or --units m": HERE + "test_lengths_of_poses",
     "if the column is in degrees, write `[deg]` behind its name, or --units deg": HERE + "test_angles_of_poses",
     "write `[{short}]` behind the names of these columns": HERE + "test_angles_of_poses",
-    "(`paste -d,": HERE + "test_two_tables_side_by_side",
 }
 
 
@@ -339,16 +338,6 @@ def test_degrees_in_a_urdf(here):
     rpy = re.search(r'write `(rpy="[^"]+")`', said)[1]
     (here / "robot.urdf").write_text(wrong.replace('lower="-170" upper="170"', limits).replace('rpy="0 0 90"', rpy))
     assert "look like degrees" not in run(here, "check", "robot.urdf") and "1.570796" in rpy
-
-
-def test_two_tables_side_by_side(here):
-    halves = [[row.split(",") for row in POINTS] for _ in range(2)]
-    (here / "joints.csv").write_text("\n".join(",".join(row[:6]) for row in halves[0]) + "\n")
-    (here / "places.csv").write_text("\n".join(",".join(row[6:]) for row in halves[1]) + "\n")
-    said = run(here, "calibrate", "robot.urdf", "joints.csv", "places.csv", "--out", "out", code=2)
-    command = re.search(r"\(`(paste [^`]+)`\)", said)[1]
-    (here / "points.csv").write_text(subprocess.run(["sh", "-c", command], cwd=here, capture_output=True, text=True, check=True).stdout)
-    calibrates(here)
 
 
 def hand_eye(folder: Path, header: str, rows: list[list[float]], *words: str, code: int = 0) -> str:

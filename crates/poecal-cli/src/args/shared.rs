@@ -6,12 +6,13 @@ use clap::Args;
 use poecal::ErrorKind;
 use poecal::io::disk::is_file;
 use poecal::io::measurements::{
-    ColumnMap, Frames, InstrumentNoise, PlaneContact, ReadOptions, SocketDistances, camera_file, read_cameras,
+    ColumnMap, Frames, InstrumentNoise, Join, PlaneContact, ReadOptions, SocketDistances, camera_file,
+    read_cameras,
 };
 use poecal::io::output::{Existing, FilePlace};
 use poecal::io::urdf::{ChainSelection, named_link};
 
-use super::words::{CONTACT, FRAMES, one_of};
+use super::words::{CONTACT, FRAMES, JOIN, one_of};
 use crate::console::Console;
 
 /// Which chain of a URDF.
@@ -133,6 +134,10 @@ pub(crate) struct Meaning {
     /// Which rows share a frame of the measuring device: per-file if it was moved between the files
     #[arg(long, value_parser = one_of(FRAMES), default_value = "common")]
     pub(crate) frames: Frames,
+    /// How a file of joint readings and one of measurements find each other [default: by name, else by their order, if the nominal robot agrees with
+    /// no other one as well]
+    #[arg(long, value_parser = one_of(JOIN))]
+    pub(crate) join: Option<Join>,
     /// Known distance between the two sockets of each place, like 50mm, or of pairs by name, like A-B=50mm,B-C=70mm+-0.02mm
     #[arg(long, value_name = "LENGTH|A-B=LENGTH,...")]
     pub(crate) socket_distance: Option<SocketDistances>,
@@ -160,6 +165,7 @@ impl Meaning {
         let options = ReadOptions {
             strict,
             frames,
+            join: self.join,
             contact,
             socket_distances,
             instrument_noise,

@@ -4,7 +4,7 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use poecal::calibration::{AcceptedModel, DeviceFrameKnowledge, Level, Loss, Repairs, Robust};
 use poecal::compensate::Language;
 use poecal::io::export::ExportFormat;
-use poecal::io::measurements::{Frames, PlaneContact};
+use poecal::io::measurements::{Frames, Join, PlaneContact};
 use poecal::io::model::ModelFormat;
 use poecal::io::predictions::PredictionFrame;
 use poecal::offsets::End;
@@ -68,6 +68,16 @@ pub(super) const TARGET_POSES: Words<bool> = &[
 pub(super) const FRAMES: Words<Frames> = &[
     ("common", "All, or those of one name in the column `instrument`", Frames::Common),
     ("per-file", "Those of a file", Frames::PerFile),
+];
+
+/// How two files are joined.
+pub(super) const JOIN: Words<Join> = &[
+    ("name", "By the names of their rows (`id`), or the numbers at the end of these", Join::Name),
+    (
+        "rows",
+        "By their order; where their numbers differ, by what the nominal robot misses by least",
+        Join::Rows,
+    ),
 ];
 
 /// From where third axes count.

@@ -24,6 +24,7 @@ mod hand_eye;
 mod hostile;
 mod identify;
 mod init;
+mod joining;
 mod lost_beams;
 mod offsets;
 mod original_urdf;

@@ -6,6 +6,7 @@ mod hand_eye;
 mod misread;
 mod one_station;
 mod others;
+mod pairing;
 mod pictures;
 mod registration;
 mod robust;
@@ -13,6 +14,7 @@ mod stations;
 
 pub(crate) use averaging::{mean_rotation, rotation_maximising};
 pub use faces::{faces_on_known_planes, settle_faces};
+pub use pairing::{Agreement, Aligned, Order, Pair, Unpaired};
 pub(crate) use pictures::predicted_pose;
 pub use pictures::{SettledPictures, settle_pictures};
 pub use registration::{Registration, register_again};

@@ -23,7 +23,7 @@ pub(super) fn has_readings_of_pictures(path: &Path, robot: &Robot, map: &ColumnM
     table.is_ok_and(|table| are_readings_of_pictures(&table.header, &robot.reading_names(), map))
 }
 
-/// An error of a column that is in another of the files: tables that stand side by side, and not one below the other.
+/// The error of readings of pictures that are read without a camera, where another file has their corners.
 pub(super) fn beside(
     error: Error,
     path: &Path,
@@ -43,25 +43,5 @@ pub(super) fn beside(
     if without_camera && let Some(corners) = paths.iter().find(has_corners) {
         return Error::new(ErrorKind::Measurement, NO_CAMERA).in_file(corners);
     }
-    let missing = error.message().strip_prefix("found no column `").and_then(|rest| rest.split_once('`'));
-    let Some((name, _)) = missing else { return error };
-    let has = |other: &&&Path| {
-        let blocks = Blocks::open(other, "a measurement file (CSV)");
-        let table = blocks
-            .and_then(|blocks| Table::open(other, blocks, map).map(|table| table.header.count(name) > 0));
-        **other != path && table.unwrap_or(false)
-    };
-    let Some(other) = paths.iter().find(has) else { return error };
-    let message = format!(
-        "found no column `{name}`, expected it beside the others: {} has it, so the two are parts of one table; join them row by row into one file \
-         (`paste -d, {} {}`)",
-        other.display(),
-        path.display(),
-        other.display()
-    );
-    let moved = Error::new(error.kind(), message);
-    match error.place().and_then(|place| place.line) {
-        Some(line) => moved.at_line(path, line),
-        None => moved.in_file(path),
-    }
+    error
 }

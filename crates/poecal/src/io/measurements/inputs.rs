@@ -180,6 +180,13 @@ impl<'a> InputReader<'a> {
         Ok(())
     }
 
+    /// Takes the joint readings of the current row from elsewhere.
+    pub(super) fn put_readings(&mut self, readings: &[f64]) {
+        for (value, reading) in self.values.iter_mut().zip(readings) {
+            *value = Some(*reading);
+        }
+    }
+
     /// Takes whole turns off a joint reading of the current row.
     pub(super) fn unwind(&mut self, input: usize, turns: f64) {
         if let (Some(Some(value)), Some(taken)) = (self.values.get_mut(input), self.turns.get_mut(input)) {

@@ -21,6 +21,7 @@ mod header;
 mod inputs;
 mod instrument_noise;
 mod intrinsics;
+mod joining;
 mod joints;
 mod kinds;
 mod layout;
@@ -113,6 +114,8 @@ pub struct ReadOptions {
     pub strict: bool,
     /// Rows with a common device frame.
     pub frames: Frames,
+    /// How joint readings and measurements in two files find each other; found if it is not stated.
+    pub join: Option<Join>,
     /// Known distances between the sockets of a place.
     pub socket_distances: Option<SocketDistances>,
     /// What rows with a `plane` are that do not say it in `contact`.
@@ -158,6 +161,15 @@ impl PlaneContact {
             PlaneContact::Flush => "flush",
         }
     }
+}
+
+/// How the rows of a file of joint readings and of one of measurements find each other.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Join {
+    /// By the names of their rows.
+    Name,
+    /// By their order.
+    Rows,
 }
 
 /// Rows with a common device frame.

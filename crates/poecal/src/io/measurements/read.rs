@@ -7,6 +7,7 @@ use super::beside::{beside, has_readings_of_pictures};
 use super::configurations::in_its_file;
 use super::corner_columns::{are_corners, are_readings_of_pictures};
 use super::inputs::InputReader;
+use super::joining::{Plan, ReadingsByLine};
 use super::layout::ColumnLayout;
 use super::lost::{self, LostBeams};
 use super::mapping::ColumnMap;
@@ -47,6 +48,11 @@ fn read_all(paths: &[&Path], robot: &Robot, options: &ReadOptions) -> Result<Mea
         return ErrorKind::Option.refuse("found no measurement file, expected at least one");
     }
     let no_map = ColumnMap::default();
+    if let Some(plan) = Plan::of(&paths, robot, options, options.mapping.as_ref().unwrap_or(&no_map)) {
+        let mut reader = Reader::new(robot, options, &no_map);
+        reader.joined(&plan)?;
+        return reader.finish();
+    }
     let mut reader = Reader::new(robot, options, &no_map);
     // Readings by picture come before the corners of the pictures, in whatever order the files are named.
     let mut order = paths.to_vec();
@@ -124,6 +130,8 @@ pub(super) struct Reader<'a> {
     pub(super) taken: TakenByImage,
     /// What messages call one of these.
     pub(super) taken_as: &'static str,
+    /// The joint readings of each line, where another file has them.
+    pub(super) readings: Option<ReadingsByLine>,
     /// The cameras.
     pub(super) cameras: Vec<Camera>,
     /// The boards, one that is at several places by its names there.
@@ -147,6 +155,7 @@ impl<'a> Reader<'a> {
             begun: BTreeMap::new(),
             taken: TakenByImage::new(),
             taken_as: "joint readings",
+            readings: None,
             cameras: options.cameras.clone(),
             boards: options.boards.clone(),
             sockets: Sockets::new(),
@@ -172,7 +181,10 @@ impl<'a> Reader<'a> {
         if !self.cameras.is_empty() && are_readings_of_pictures(&table.header, joints, self.map) {
             return self.readings_of_pictures(path, table);
         }
-        let layout = ColumnLayout::new(&table.header, self.robot, self.options, self.map)?;
+        let mut layout = ColumnLayout::new(&table.header, self.robot, self.options, self.map)?;
+        if let Some(by_line) = &self.readings {
+            layout.controller.clone_from(&by_line.controller);
+        }
         if let Some(column) = layout.instrument.filter(|_| self.options.frames == Frames::PerFile) {
             let message = "found a column that names the instrument beside --frames per-file, expected one of the two: leave the option \
                            out, or the column";
@@ -204,6 +216,18 @@ impl<'a> Reader<'a> {
         self.understand(&table, &layout, &inputs, (first, rows, lost))
     }
 
+    /// Takes the rows of a file and judges nothing.
+    pub(super) fn rows_alone(&mut self, path: &Path) -> Result<()> {
+        let mut table = Table::open(path, Blocks::open(path, "a measurement file (CSV)")?, self.map)?;
+        let layout = ColumnLayout::new(&table.header, self.robot, self.options, self.map)?;
+        let numbers = Numbers::new(self.map.decimal);
+        let mut inputs = InputReader::new(&layout.inputs, self.found.data.reading_names().len(), numbers);
+        self.found.data.files.push(path.to_path_buf());
+        self.rows(&mut table, &layout, &mut inputs)?;
+        self.found.data.ids.resize(self.found.data.len(), String::new());
+        Ok(())
+    }
+
     /// Takes all rows of a file, and counts them with the lost beams among them.
     fn rows(
         &mut self,
@@ -217,6 +241,11 @@ impl<'a> Reader<'a> {
             while let Some(row) = some.next()? {
                 rows += 1;
                 inputs.read(&row)?;
+                if let Some(by_line) = &self.readings {
+                    // A line without readings has no partner.
+                    let Some(readings) = by_line.lines.get(&row.line) else { continue };
+                    inputs.put_readings(readings);
+                }
                 watch.0.unwind(&row, inputs);
                 inputs.take_readings(&row)?;
                 if self.begins_pair(&row, layout, inputs)?

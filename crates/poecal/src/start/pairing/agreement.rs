@@ -1,0 +1,111 @@
+//! Whether pairs are evidently right, wrong, or no better than others.
+
+use super::{Pair, Unpaired};
+
+/// How many times smaller the error of the right order is at least.
+const EVIDENT: f64 = 2.0;
+/// Rows by which one file may begin later.
+const SHIFTS: usize = 3;
+/// Orders by chance with which pairs are compared.
+const BY_CHANCE: usize = 3;
+
+/// Another order of joint readings and measurements.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Order {
+    /// The measurements begin so many rows later than the joint readings.
+    MeasuredLater(usize),
+    /// The joint readings begin so many rows later than the measurements.
+    JointsLater(usize),
+    /// One of them is in reverse order.
+    Reversed,
+}
+
+/// How pairs agree with the nominal robot; errors are medians, metres.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Agreement {
+    /// Evidently, and no other order does.
+    Right {
+        /// Their error.
+        missed_m: f64,
+    },
+    /// Another order evidently agrees better.
+    Other {
+        /// Their error.
+        missed_m: f64,
+        /// The order.
+        order: Order,
+        /// Its error.
+        other_m: f64,
+    },
+    /// Another order agrees as well.
+    Alike {
+        /// Their error.
+        missed_m: f64,
+        /// The order.
+        order: Order,
+        /// Its error.
+        other_m: f64,
+    },
+    /// No better than chance.
+    None {
+        /// Their error.
+        missed_m: f64,
+    },
+}
+
+impl Unpaired<'_> {
+    /// How pairs agree with the nominal robot, beside their other orders; `None` if nothing can be compared.
+    #[must_use]
+    pub fn agreement(&self, pairs: &[Pair]) -> Option<Agreement> {
+        let missed_m = self.missed(pairs)?;
+        let others = orders(pairs.len()).into_iter().filter_map(|order| {
+            let other = reordered(pairs, order);
+            (other.len() * 2 >= pairs.len()).then(|| Some((order, self.missed(&other)?)))?
+        });
+        let best = others.min_by(|a, b| a.1.total_cmp(&b.1));
+        let by_chance = (0..BY_CHANCE).filter_map(|k| self.missed(&shuffled(pairs, k)));
+        let by_chance = by_chance.fold(f64::INFINITY, f64::min);
+        let least = best.map_or(missed_m, |it| it.1.min(missed_m));
+        if EVIDENT * least > by_chance {
+            return Some(Agreement::None { missed_m });
+        }
+        Some(match best {
+            Some((order, other_m)) if EVIDENT * other_m < missed_m => {
+                Agreement::Other { missed_m, order, other_m }
+            }
+            Some((order, other_m)) if other_m < EVIDENT * missed_m => {
+                Agreement::Alike { missed_m, order, other_m }
+            }
+            _ => Agreement::Right { missed_m },
+        })
+    }
+}
+
+fn orders(count: usize) -> Vec<Order> {
+    let shifts = 1..=SHIFTS.min(count.saturating_sub(1));
+    shifts
+        .flat_map(|by| [Order::MeasuredLater(by), Order::JointsLater(by)])
+        .chain([Order::Reversed])
+        .collect()
+}
+
+/// Pairs in another order.
+fn reordered(pairs: &[Pair], order: Order) -> Vec<Pair> {
+    let joints = || pairs.iter().map(|it| it.0);
+    let shots = || pairs.iter().map(|it| it.1);
+    match order {
+        Order::MeasuredLater(by) => joints().skip(by).zip(shots()).collect(),
+        Order::JointsLater(by) => joints().zip(shots().skip(by)).collect(),
+        Order::Reversed => joints().rev().zip(shots()).collect(),
+    }
+}
+
+/// Pairs in an order by chance, the same in every run.
+fn shuffled(pairs: &[Pair], seed: usize) -> Vec<Pair> {
+    let mut joints: Vec<usize> = pairs.iter().map(|it| it.0).collect();
+    // A step that has no divisor in common with the number of pairs takes every one once.
+    let count = joints.len().max(1);
+    let step = [7, 11, 13, 17, 19, 23].into_iter().filter(|it| count % it != 0).nth(seed % 4).unwrap_or(1);
+    joints = (0..count).filter_map(|at| joints.get((at * step + count / 2) % count)).copied().collect();
+    joints.into_iter().zip(pairs.iter().map(|it| it.1)).collect()
+}
