@@ -42,7 +42,10 @@ impl HeaderCell {
     fn new(text: &str, column: usize) -> Self {
         // Round brackets may be part of a name.
         let is_unit = |unit: &str| NamedUnit::parse_any(unit.trim()).is_ok();
+        // A number in brackets is one of a list, as in `q[0]`.
+        let is_index = |unit: &str| !unit.is_empty() && unit.bytes().all(|it| it.is_ascii_digit());
         let (name, unit) = bracketed(text, '[', ']')
+            .filter(|(_, unit)| !is_index(unit.trim()))
             .or_else(|| bracketed(text, '(', ')').filter(|(_, unit)| is_unit(unit)))
             .map_or((text, None), |(name, unit)| (name.trim_end(), Some(unit.trim().to_owned())));
         HeaderCell {

@@ -21,7 +21,7 @@ use super::spread;
 use super::table::{Table, refuse_more_rows};
 use super::text::Blocks;
 use super::turns::{self, TurnWatch};
-use super::understanding::{self, FileUnderstanding};
+use super::understanding::{self, ColumnUnderstanding, FileUnderstanding};
 use super::wrong_boards::refuse_wrong_boards;
 use super::{FitWhere, Frames, MeasurementFile, ReadOptions};
 use crate::camera::{Board, Camera};
@@ -334,12 +334,18 @@ impl<'a> Reader<'a> {
             separator_line: table.separator_line,
             units_line: table.header.units_line,
             decimal_sign: inputs.numbers.sign(),
-            columns: understanding::columns(&table.header, layout, &inputs.ranges),
+            columns: self.own_columns(understanding::columns(&table.header, layout, &inputs.ranges)),
             orientation: understanding::orientation(layout),
             pose: understanding::pose_word(layout.pose),
             ignored: layout.ignored.iter().map(|(name, _)| name.clone()).collect(),
         });
         Ok(())
+    }
+
+    /// Columns without those of joints whose readings another file has.
+    fn own_columns(&self, columns: Vec<ColumnUnderstanding>) -> Vec<ColumnUnderstanding> {
+        let skipped = if self.readings.is_some() { self.found.data.reading_names().len() } else { 0 };
+        columns.into_iter().skip(skipped).collect()
     }
 
     /// How the files' readings are made of columns, which must be the same in all.

@@ -162,10 +162,7 @@ impl<'a> Unpaired<'a> {
     }
 }
 
-/// Size of a row's error, metres; of turns alone, on an arm of half a metre.
+/// Size of a row's error: of its position or distance, metres; of others, of what is measured first.
 fn size(error: &RowError) -> f64 {
-    const ARM_M: f64 = 0.5;
-    let turn = error.rotation_rad().map(|it| it.norm() * ARM_M);
-    let other = error.leading().and_then(|quantity| error.length(quantity)).unwrap_or_default();
-    turn.map_or(other, |turn| other.hypot(turn))
+    error.leading().and_then(|quantity| error.length(quantity)).unwrap_or_default()
 }
