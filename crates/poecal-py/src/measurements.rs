@@ -9,7 +9,7 @@ use std::path::PathBuf;
 
 use numpy::{PyArray1, PyArray2, PyArray3};
 use poecal::io::calibration_file::Inputs;
-use poecal::io::measurements::{self, ColumnMap, Frames, MeasurementFile, PlaneContact, ReadOptions};
+use poecal::io::measurements::{self, ColumnMap, Frames, Join, MeasurementFile, PlaneContact, ReadOptions};
 use poecal::io::named_files::refuse_repeats;
 use poecal::measurement::Set;
 use pyo3::prelude::*;
@@ -35,12 +35,13 @@ fn options(
     fit_where: Option<&str>,
     ignore_sets: bool,
     strict: bool,
-    frames: Frames,
+    (frames, join): (Frames, Option<Join>),
     (socket_distance, contact): (Option<&str>, PlaneContact),
     [instrument_noise, cameras, markers]: [Option<&[String]>; 3],
 ) -> poecal::Result<ReadOptions> {
     let mut options = ReadOptions {
         frames,
+        join,
         mapping: columns.map(ColumnMap::read).transpose()?,
         fit_where: fit_where.map(str::parse).transpose()?,
         ignore_sets,
@@ -84,6 +85,9 @@ impl Measurements {
     /// frames
     ///     Which rows share a frame of the measuring device: "common", all (or those of one name in the column `instrument`), or
     ///     "per-file", those of a file.
+    /// join
+    ///     How joint readings and measurements in two files find each other: "name" or "rows"; by default by name, else by their order, if the nominal
+    ///     robot agrees with no other one as well.
     /// socket_distance
     ///     Known distance between the two sockets of each place, "50mm", or of pairs by name, "A-B=50mm,B-C=70mm+-0.02mm".
     /// contact
@@ -109,7 +113,7 @@ impl Measurements {
     /// MeasurementError
     ///     It holds no measurements of this robot; the error tells the line and the column.
     #[staticmethod]
-    #[pyo3(signature = (paths, robot, *, columns=None, fit_where=None, ignore_sets=false, strict=false, frames="common", socket_distance=None, contact="point", instrument_noise=None, cameras=None, markers=None))]
+    #[pyo3(signature = (paths, robot, *, columns=None, fit_where=None, ignore_sets=false, strict=false, frames="common", join=None, socket_distance=None, contact="point", instrument_noise=None, cameras=None, markers=None))]
     #[expect(clippy::too_many_arguments, reason = "the options of a Python function")]
     fn from_csv(
         py: Python<'_>,
@@ -120,6 +124,7 @@ impl Measurements {
         #[pyo3(from_py_with = arg::ignore_sets)] ignore_sets: bool,
         #[pyo3(from_py_with = arg::strict)] strict: bool,
         #[pyo3(from_py_with = arg::frames)] frames: &str,
+        #[pyo3(from_py_with = arg::join)] join: Option<&str>,
         #[pyo3(from_py_with = arg::socket_distance)] socket_distance: Option<&str>,
         #[pyo3(from_py_with = arg::contact)] contact: &str,
         #[pyo3(from_py_with = arg::instrument_noise)] instrument_noise: Option<Vec<String>>,
@@ -129,6 +134,8 @@ impl Measurements {
         let contact = chosen("contact", contact, &CONTACTS)?;
         let words = [("common", Frames::Common), ("per-file", Frames::PerFile)];
         let frames = chosen("frames", frames, &words)?;
+        let joins = [("name", Join::Name), ("rows", Join::Rows)];
+        let join = join.map(|word| chosen("join", word, &joins)).transpose()?;
         let Paths(paths) = paths;
         let read = || {
             refuse_repeats(&paths)?;
@@ -137,7 +144,7 @@ impl Measurements {
                 fit_where,
                 ignore_sets,
                 strict,
-                frames,
+                (frames, join),
                 (socket_distance, contact),
                 [&instrument_noise, &cameras, &markers].map(|it| it.as_deref()),
             )?;
@@ -288,7 +295,7 @@ impl Measurements {
                 fit_where,
                 ignore_sets,
                 strict,
-                Frames::Common,
+                (Frames::Common, None),
                 (socket_distance, contact),
                 [&instrument_noise, &cameras, &markers].map(|it| it.as_deref()),
             )?;

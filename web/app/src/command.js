@@ -1,7 +1,7 @@
 // The program's command line, from files with their roles and from options.
 
 /** Options of `poecal calibrate` that `poecal check` and `poecal validate` take too. */
-const READING = ["--columns", "--strict", "--frames", "--socket-distance", "--contact", "--instrument-noise"];
+const READING = ["--columns", "--strict", "--frames", "--join", "--socket-distance", "--contact", "--instrument-noise"];
 const CHECKING = [...READING, "--base-link", "--tip-link", "--instrument", "--target", "--fit-where", "--frame"];
 const JUDGING = [...READING, "--refit-frame", "--refit-tool", "--require", "--accept", "--accept-model"];
 

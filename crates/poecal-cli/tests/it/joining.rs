@@ -104,7 +104,10 @@ fn wrong_orders_are_refused_with_what_fits() {
     table(&folder, "four.csv", &header[..joints], &left[..4], None);
     let before = folder.listing();
     for (files, expected) in [
-        ("joints.csv later.csv", "later: remove the first row of the joint readings"),
+        (
+            "joints.csv later.csv",
+            "with the measurements one row later, expected no other order to fit better: remove the first row",
+        ),
         ("joints.csv turned.csv", "in reverse order, expected no other order to fit better"),
         ("joints.csv mixed.csv", "no less than by chance"),
         ("four.csv few.csv", "in two ways"),

@@ -387,6 +387,7 @@ class Measurements:
         ignore_sets: bool = False,
         strict: bool = False,
         frames: Literal["common", "per-file"] = "common",
+        join: Literal["name", "rows"] | None = None,
         socket_distance: str | None = None,
         contact: Literal["point", "flush"] = "point",
         instrument_noise: Sequence[str] | None = None,

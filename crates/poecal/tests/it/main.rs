@@ -56,6 +56,7 @@ mod noise_free;
 mod offsets;
 mod optics;
 mod oracle;
+mod pairing;
 mod pictures;
 mod programs;
 mod promises;

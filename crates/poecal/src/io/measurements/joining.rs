@@ -358,6 +358,7 @@ impl Pairing<'_> {
             )),
             Some(Agreement::Right { .. }) => {}
         }
+        self.refuse_exchanged(pairs)?;
         let missed = match found {
             Some(Agreement::Right { missed_m }) => {
                 format!(
@@ -371,6 +372,21 @@ impl Pairing<'_> {
             format!("{joints} and {path} were joined {by_name}: {} configurations{missed}", pairs.len());
         warnings.extend(self.left_out(pairs));
         Ok(Joined { readings: self.readings(pairs), notes: vec![note], warnings })
+    }
+
+    /// Refuses rows that fit each other's readings.
+    fn refuse_exchanged(&self, pairs: &[Pair]) -> Result<()> {
+        let exchanged = self.rows.exchanged(pairs);
+        let Some((one, other)) = exchanged.first() else { return Ok(()) };
+        let (Some(one), Some(other)) = (pairs.get(*one), pairs.get(*other)) else { return Ok(()) };
+        let all: BTreeSet<usize> = exchanged.iter().filter_map(|it| Some(pairs.get(it.0)?.1)).collect();
+        self.refuse(format!(
+            "found the measurements of {} in another order than their joint readings, as {} that fits the readings of {}, expected the same order: \
+             exchange them",
+            self.shot_lines(&all.into_iter().collect::<Vec<_>>()),
+            self.shot_lines(&[one.1]),
+            self.joint_lines(&[other.0])
+        ))
     }
 
     /// What a diagnosis of mistakes says of pairs.

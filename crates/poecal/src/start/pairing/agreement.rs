@@ -81,6 +81,31 @@ impl Unpaired<'_> {
     }
 }
 
+/// Times the usual error beyond which a pair is wrong, and up to which one is right.
+const WRONG: f64 = 8.0;
+const RIGHT: f64 = 3.0;
+
+impl Unpaired<'_> {
+    /// Pairs whose measurements belong to each other's joint readings: indices into the pairs, each with the one whose readings it fits.
+    #[must_use]
+    pub fn exchanged(&self, pairs: &[Pair]) -> Vec<(usize, usize)> {
+        let Some((estimate, usual)) = self.registered(pairs) else { return Vec::new() };
+        let errors = self.errors_of(pairs, &estimate);
+        let wrong: Vec<usize> =
+            errors.iter().enumerate().filter(|it| *it.1 > WRONG * usual).map(|it| it.0).collect();
+        // More than some are no exchange.
+        if wrong.len() > pairs.len() / 4 {
+            return Vec::new();
+        }
+        let crossed: Vec<(usize, usize)> = (wrong.iter())
+            .flat_map(|one| wrong.iter().filter(move |other| *other != one).map(move |other| (*one, *other)))
+            .collect();
+        let tried: Vec<Pair> = crossed.iter().map(|(one, other)| (pairs[*other].0, pairs[*one].1)).collect();
+        let found = self.errors_of(&tried, &estimate);
+        crossed.into_iter().zip(found).filter(|it| it.1 < RIGHT * usual).map(|it| it.0).collect()
+    }
+}
+
 fn orders(count: usize) -> Vec<Order> {
     let shifts = 1..=SHIFTS.min(count.saturating_sub(1));
     shifts
