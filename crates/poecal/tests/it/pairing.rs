@@ -14,6 +14,9 @@ fn below(random: &mut ChaCha8Rng, count: usize) -> usize {
     (random.next_u64() % count as u64) as usize
 }
 
+/// The order in which was measured.
+type Shots = dyn Fn(&mut ChaCha8Rng) -> Vec<usize>;
+
 /// Joint readings of a session, and its measurements in some order without them.
 struct Session {
     robot: Robot,
@@ -22,12 +25,7 @@ struct Session {
 }
 
 /// A robot that is off by 0.2 degrees and 1 mm a joint, measured with noise of 0.05 mm and 0.01 degrees.
-fn session(
-    kind: Kind,
-    count: usize,
-    seed: u64,
-    shots: &dyn Fn(&mut ChaCha8Rng) -> Vec<usize>,
-) -> (Session, Vec<usize>) {
+fn session(kind: Kind, count: usize, seed: u64, shots: &Shots) -> (Session, Vec<usize>) {
     let simulation = Simulation {
         error_rotation_rad: 0.2_f64.to_radians(),
         error_position_m: 1e-3,
@@ -93,7 +91,7 @@ fn wrong_orders_of_equal_counts_are_named() {
             rows.swap(one, one + 1 + below(random, 59 - one));
             rows
         };
-        let orders: [&dyn Fn(&mut ChaCha8Rng) -> Vec<usize>; 4] = [
+        let orders: [&Shots; 4] = [
             &|_| (0..60).collect(),
             &|_| (0..60).map(|row| (row + 1) % 60).collect(),
             &|_| (0..60).rev().collect(),

@@ -21,6 +21,8 @@ mod header;
 mod inputs;
 mod instrument_noise;
 mod intrinsics;
+mod join_pairs;
+mod join_plan;
 mod joining;
 mod joints;
 mod kinds;

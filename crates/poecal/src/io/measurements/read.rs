@@ -7,7 +7,7 @@ use super::beside::{beside, has_readings_of_pictures};
 use super::configurations::in_its_file;
 use super::corner_columns::{are_corners, are_readings_of_pictures};
 use super::inputs::InputReader;
-use super::joining::{Plan, ReadingsByLine};
+use super::join_plan::{Plan, ReadingsByLine};
 use super::layout::ColumnLayout;
 use super::lost::{self, LostBeams};
 use super::mapping::ColumnMap;
@@ -48,7 +48,7 @@ fn read_all(paths: &[&Path], robot: &Robot, options: &ReadOptions) -> Result<Mea
         return ErrorKind::Option.refuse("found no measurement file, expected at least one");
     }
     let no_map = ColumnMap::default();
-    if let Some(plan) = Plan::of(&paths, robot, options, options.mapping.as_ref().unwrap_or(&no_map)) {
+    if let Some(plan) = Plan::of(paths, robot, options, options.mapping.as_ref().unwrap_or(&no_map)) {
         let mut reader = Reader::new(robot, options, &no_map);
         reader.joined(&plan)?;
         return reader.finish();

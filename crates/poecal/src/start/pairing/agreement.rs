@@ -130,7 +130,11 @@ fn shuffled(pairs: &[Pair], seed: usize) -> Vec<Pair> {
     let mut joints: Vec<usize> = pairs.iter().map(|it| it.0).collect();
     // A step that has no divisor in common with the number of pairs takes every one once.
     let count = joints.len().max(1);
-    let step = [7, 11, 13, 17, 19, 23].into_iter().filter(|it| count % it != 0).nth(seed % 4).unwrap_or(1);
+    let step = [7, 11, 13, 17, 19, 23]
+        .into_iter()
+        .filter(|it| !count.is_multiple_of(*it))
+        .nth(seed % 4)
+        .unwrap_or(1);
     joints = (0..count).filter_map(|at| joints.get((at * step + count / 2) % count)).copied().collect();
     joints.into_iter().zip(pairs.iter().map(|it| it.1)).collect()
 }

@@ -14,6 +14,8 @@ const MOST: f64 = 6.0;
 const GAP: f64 = 25.0;
 /// Rounds of registration and alignment.
 const ROUNDS: usize = 12;
+/// Most rows of the one times rows of the other that are aligned.
+const MOST_CELLS: usize = 4_000_000;
 /// How many times larger the error of a neighbour must be, so that a pair is evident.
 const EVIDENT: f64 = 2.0;
 
@@ -48,6 +50,9 @@ impl Unpaired<'_> {
     #[must_use]
     pub fn aligned(&self) -> Option<Aligned> {
         let (joints, shots) = (self.joint_rows(), self.shots.len());
+        if joints.saturating_mul(shots) > MOST_CELLS {
+            return None;
+        }
         let band = joints.abs_diff(shots) + BEYOND;
         let (mut estimate, mut usual) = self.best_window(band)?;
         let mut pairs: Vec<Pair> = Vec::new();
@@ -183,8 +188,8 @@ impl Costs {
                     shot -= 1;
                 }
                 Step::SkipShot if shot > 0 => shot -= 1,
-                _ if joint > 0 => joint -= 1,
-                _ => shot = shot.saturating_sub(1),
+                Step::Pair | Step::Again | Step::SkipJoints | Step::SkipShot if joint > 0 => joint -= 1,
+                Step::Pair | Step::Again | Step::SkipJoints | Step::SkipShot => shot -= 1,
             }
         }
         pairs.reverse();

@@ -1,0 +1,311 @@
+//! Which joint readings of one file belong to which measurements of another, and what is said of it.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+
+use super::Join;
+use super::join_plan::ReadingsByLine;
+use super::picture_names::same_numbers;
+use crate::error::{Error, ErrorKind, Result, first_few};
+use crate::forensics::{DiagnosisOptions, diagnose};
+use crate::measurement::Dataset;
+use crate::robot::{Controller, Robot};
+use crate::start::{Agreement, Aligned, Order, Pair, Unpaired};
+
+/// Joint readings of a file.
+#[derive(Clone, Debug)]
+pub(super) struct JointRows {
+    pub(super) path: PathBuf,
+    pub(super) readings: Vec<f64>,
+    pub(super) ids: Vec<String>,
+    pub(super) lines: Vec<usize>,
+    pub(super) controller: Option<Controller>,
+}
+
+/// A file of joint readings and one of measurements.
+pub(super) struct Pairing<'a> {
+    pub(super) joints: &'a JointRows,
+    pub(super) path: &'a Path,
+    pub(super) data: &'a Dataset,
+    pub(super) rows: Unpaired<'a>,
+    pub(super) robot: &'a Robot,
+}
+
+/// Readings by line, and what is said of them.
+pub(super) struct Joined {
+    pub(super) readings: ReadingsByLine,
+    pub(super) notes: Vec<String>,
+    pub(super) warnings: Vec<String>,
+}
+
+impl Pairing<'_> {
+    /// The readings of each line, by names or by the order.
+    pub(super) fn found(&self, join: Option<Join>) -> Result<Joined> {
+        let by_names = if join == Some(Join::Rows) { None } else { self.by_names() };
+        let (joints, shots) = (self.rows.joint_rows(), self.rows.shots().len());
+        match (join, by_names) {
+            (Some(Join::Name), None) => self.refuse(
+                "found no name that is in both, expected a column `id` in each, with the same names, or names that end in the same number"
+                    .to_owned(),
+            ),
+            (_, Some(pairs)) => match self.judged(&pairs, "name", join.is_some()) {
+                // Numbers may count the points only.
+                Err(_) if join.is_none() => self.by_rows(None),
+                judged => judged,
+            },
+            (Some(Join::Rows), None) if joints != shots => self.by_alignment(),
+            (_, None) => self.by_rows(join),
+        }
+    }
+
+    fn by_rows(&self, join: Option<Join>) -> Result<Joined> {
+        let (joints, shots) = (self.rows.joint_rows(), self.rows.shots().len());
+        if joints != shots {
+            return self.by_alignment();
+        }
+        let pairs: Vec<Pair> = (0..joints).map(|row| (row, row)).collect();
+        self.judged(&pairs, "row by row", join.is_some())
+    }
+
+    /// The error of files that cannot be joined.
+    fn refuse<T>(&self, message: String) -> Result<T> {
+        let words = format!("{message} ({} has the joint readings)", self.joints.path.display());
+        Err(Error::new(ErrorKind::Measurement, words).in_file(self.path))
+    }
+
+    /// Pairs of the same names, or of names that end in the same number.
+    fn by_names(&self) -> Option<Vec<Pair>> {
+        let name_of = |shot: &Vec<u32>| self.data.ids.get(*shot.first()? as usize);
+        let seen: Vec<Option<&String>> = self.rows.shots().iter().map(name_of).collect();
+        let own: BTreeSet<&String> = seen.iter().flatten().copied().filter(|it| !it.is_empty()).collect();
+        let others: BTreeSet<&String> = self.joints.ids.iter().filter(|it| !it.is_empty()).collect();
+        // A name that comes twice names no row.
+        if others.len() != self.joints.ids.iter().filter(|it| !it.is_empty()).count() {
+            return None;
+        }
+        let alike: BTreeMap<&String, &String> = same_numbers(&own, &others).into_iter().collect();
+        let row_of = |name: &String| {
+            let other = others.get(name).or_else(|| alike.get(name))?;
+            self.joints.ids.iter().position(|it| it == *other)
+        };
+        let pairs: Vec<Pair> = (seen.iter().enumerate())
+            .filter_map(|(shot, name)| Some((row_of(name.as_ref()?)?, shot)))
+            .collect();
+        (2 * pairs.len() >= seen.len() && !pairs.is_empty()).then_some(pairs)
+    }
+
+    /// Pairs of one order, if the nominal robot agrees with them and with no other order; `is_stated` where the user said that they are right.
+    fn judged(&self, pairs: &[Pair], how: &str, is_stated: bool) -> Result<Joined> {
+        let (joints, path) = (self.joints.path.display(), self.path.display());
+        let by_name = if how == "name" { "by name" } else { how };
+        let found = self.rows.agreement(pairs);
+        let mm = |metres: f64| format!("{:.3} mm", 1e3 * metres);
+        let mut warnings = Vec::new();
+        match found {
+            Some(Agreement::Other { missed_m, order, other_m }) => {
+                return self.refuse(format!(
+                    "found measurements that the nominal robot misses by {} (median) if they are joined {by_name}, and by {} {}, expected no other \
+                     order to fit better: {}",
+                    mm(missed_m),
+                    mm(other_m),
+                    words(order),
+                    advice(order)
+                ));
+            }
+            Some(Agreement::Alike { missed_m, order, other_m }) => {
+                let message = format!(
+                    "the nominal robot misses the measurements by {} (median) if they are joined {by_name}, and by {} {}, which is no evident difference",
+                    mm(missed_m),
+                    mm(other_m),
+                    words(order)
+                );
+                if !is_stated {
+                    return self.refuse(format!(
+                        "found files that can be joined in two ways: {message}; state the order by --join {}, or give both files a column `id`",
+                        if how == "name" { "name" } else { "rows" }
+                    ));
+                }
+                warnings.push(format!("{joints}, {path}: {message}"));
+            }
+            Some(Agreement::None { missed_m }) => {
+                let reason = self.diagnosis(pairs).unwrap_or_else(|| {
+                    "look at the units, the signs and the order of joints and measurements".to_owned()
+                });
+                let message = format!(
+                    "the nominal robot misses the measurements by {} (median) if they are joined {by_name}, no less than by chance: {reason}",
+                    mm(missed_m)
+                );
+                if !is_stated {
+                    return self.refuse(format!("found measurements that do not fit the joint readings: {message}"));
+                }
+                warnings.push(format!("{joints}, {path}: {message}"));
+            }
+            None => warnings.push(format!(
+                "{joints}, {path}: nothing shows whether the rows belong together: too few, or of a kind that one frame does not place"
+            )),
+            Some(Agreement::Right { .. }) => {}
+        }
+        self.refuse_exchanged(pairs)?;
+        let missed = match found {
+            Some(Agreement::Right { missed_m }) => {
+                format!(
+                    "; the nominal robot misses them by {} (median), and by more than twice that in any other order",
+                    mm(missed_m)
+                )
+            }
+            _ => String::new(),
+        };
+        let note =
+            format!("{joints} and {path} were joined {by_name}: {} configurations{missed}", pairs.len());
+        warnings.extend(self.left_out(pairs));
+        Ok(Joined { readings: self.readings(pairs), notes: vec![note], warnings })
+    }
+
+    /// Refuses rows that fit each other's readings.
+    fn refuse_exchanged(&self, pairs: &[Pair]) -> Result<()> {
+        let exchanged = self.rows.exchanged(pairs);
+        let Some((one, other)) = exchanged.first() else { return Ok(()) };
+        let (Some(one), Some(other)) = (pairs.get(*one), pairs.get(*other)) else { return Ok(()) };
+        let all: BTreeSet<usize> = exchanged.iter().filter_map(|it| Some(pairs.get(it.0)?.1)).collect();
+        self.refuse(format!(
+            "found the measurements of {} in another order than their joint readings, as {} that fits the readings of {}, expected the same order: \
+             exchange them",
+            self.shot_lines(&all.into_iter().collect::<Vec<_>>()),
+            self.shot_lines(&[one.1]),
+            self.joint_lines(&[other.0])
+        ))
+    }
+
+    /// What a diagnosis of mistakes says of pairs.
+    fn diagnosis(&self, pairs: &[Pair]) -> Option<String> {
+        let data = self.rows.session_of(pairs);
+        let found = diagnose(self.robot, &data, &data.all_rows(), &DiagnosisOptions::default());
+        found.first().map(|it| it.statement.clone())
+    }
+
+    /// What has no partner.
+    fn left_out(&self, pairs: &[Pair]) -> Vec<String> {
+        let joints: BTreeSet<usize> = pairs.iter().map(|it| it.0).collect();
+        let shots: BTreeSet<usize> = pairs.iter().map(|it| it.1).collect();
+        let alone = (0..self.rows.joint_rows()).filter(|it| !joints.contains(it)).collect::<Vec<_>>();
+        let unread = (0..self.rows.shots().len()).filter(|it| !shots.contains(it)).collect::<Vec<_>>();
+        let mut said = Vec::new();
+        if !alone.is_empty() {
+            said.push(format!(
+                "{}: nothing was measured at {}",
+                self.joints.path.display(),
+                self.joint_lines(&alone)
+            ));
+        }
+        if !unread.is_empty() {
+            said.push(format!(
+                "{}: left out {}, which have no joint readings",
+                self.path.display(),
+                self.shot_lines(&unread)
+            ));
+        }
+        said
+    }
+
+    /// Lists of unequal length, by the errors of the nominal robot.
+    fn by_alignment(&self) -> Result<Joined> {
+        let (joints, shots) = (self.rows.joint_rows(), self.rows.shots().len());
+        let counts = format!("found {shots} measured configurations and {joints} rows of joint readings");
+        let Some(found) = self.rows.aligned() else {
+            return self.refuse(format!(
+                "{counts}, expected as many, or names in both (a column `id`): nothing shows which belong together"
+            ));
+        };
+        let Aligned { pairs, unmeasured, repeated, unread, unclear, missed_m } = &found;
+        if 2 * pairs.len() < shots.min(joints) {
+            return self.refuse(format!(
+                "{counts}, expected as many, or names in both (a column `id`): only {} of them fit the nominal robot in this order",
+                pairs.len()
+            ));
+        }
+        if let Some(Agreement::None { .. } | Agreement::Other { .. } | Agreement::Alike { .. }) =
+            self.rows.agreement(pairs)
+        {
+            return self.refuse(format!(
+                "{counts}, expected as many, or names in both (a column `id`): no order fits evidently better than others"
+            ));
+        }
+        let mut warnings = Vec::new();
+        let (own, path) = (self.joints.path.display(), self.path.display());
+        if !unmeasured.is_empty() {
+            warnings.push(format!("{own}: nothing was measured at {}", self.joint_lines(unmeasured)));
+        }
+        if !repeated.is_empty() {
+            warnings.push(format!("{own}: more than once was measured at {}", self.joint_lines(repeated)));
+        }
+        if !unread.is_empty() {
+            warnings
+                .push(format!("{path}: left out {}, which fit no joint readings", self.shot_lines(unread)));
+        }
+        if !unclear.is_empty() {
+            warnings.push(format!(
+                "{path}: left out {}, which fit two neighbouring rows of joint readings",
+                self.shot_lines(unclear)
+            ));
+        }
+        let note = format!(
+            "{own} and {path} were joined in their order, since they have {joints} and {shots} rows: {} configurations; the nominal robot misses them by \
+             {:.3} mm (median)",
+            pairs.len(),
+            1e3 * missed_m
+        );
+        Ok(Joined { readings: self.readings(pairs), notes: vec![note], warnings })
+    }
+
+    fn readings(&self, pairs: &[Pair]) -> ReadingsByLine {
+        let mut found =
+            ReadingsByLine { controller: self.joints.controller.clone(), ..ReadingsByLine::default() };
+        for (joint, shot) in pairs {
+            for &row in self.rows.shots().get(*shot).into_iter().flatten() {
+                if let Some(observation) = self.data.observations.get(row as usize) {
+                    found.lines.insert(observation.source.line as usize, self.rows.readings(*joint).to_vec());
+                }
+            }
+        }
+        found
+    }
+
+    fn joint_lines(&self, rows: &[usize]) -> String {
+        let lines: Vec<String> =
+            rows.iter().filter_map(|row| self.joints.lines.get(*row)).map(ToString::to_string).collect();
+        numbered(&lines)
+    }
+
+    fn shot_lines(&self, shots: &[usize]) -> String {
+        let line = |shot: &usize| {
+            let row = *self.rows.shots().get(*shot)?.first()?;
+            Some(self.data.observations.get(row as usize)?.source.line.to_string())
+        };
+        numbered(&shots.iter().filter_map(line).collect::<Vec<_>>())
+    }
+}
+
+/// Lines in words.
+fn numbered(lines: &[String]) -> String {
+    format!("{} {}", if lines.len() == 1 { "line" } else { "lines" }, first_few(lines))
+}
+
+/// An order in words.
+fn words(order: Order) -> String {
+    let rows = |by: usize| if by == 1 { "one row".to_owned() } else { format!("{by} rows") };
+    match order {
+        Order::MeasuredLater(by) => format!("with the measurements {} later", rows(by)),
+        Order::JointsLater(by) => format!("with the joint readings {} later", rows(by)),
+        Order::Reversed => "in reverse order".to_owned(),
+    }
+}
+
+/// What to do where an order fits better.
+fn advice(order: Order) -> String {
+    let rows = |by: usize| if by == 1 { "the first row".to_owned() } else { format!("the first {by} rows") };
+    match order {
+        Order::MeasuredLater(by) => format!("remove {} of the joint readings", rows(by)),
+        Order::JointsLater(by) => format!("remove {} of the measurements", rows(by)),
+        Order::Reversed => "turn one of the files round".to_owned(),
+    }
+}

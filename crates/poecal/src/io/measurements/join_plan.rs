@@ -1,0 +1,118 @@
+//! Which of the files that are read together have joint readings alone, and which measurements alone.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use super::corner_columns::{are_corners, are_readings_of_pictures};
+use super::layout::ColumnLayout;
+use super::mapping::{ColumnMap, ColumnSpec};
+use super::messages::are_messages;
+use super::table::Table;
+use super::text::Blocks;
+use super::{Frames, ReadOptions};
+use crate::error::Result;
+use crate::io::disk::is_file;
+use crate::robot::{Controller, ReadingKind, Robot};
+
+/// What a file has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Part {
+    /// Joint readings and nothing that was measured.
+    Joints,
+    /// What was measured, without joint readings; whether it names its targets.
+    Measured { is_named: bool },
+    /// All that belongs together, or something else.
+    Whole,
+}
+
+/// The readings of each line of a file of measurements, from another file.
+#[derive(Clone, Debug, Default)]
+pub(super) struct ReadingsByLine {
+    pub(super) lines: BTreeMap<usize, Vec<f64>>,
+    /// How they are made of columns.
+    pub(super) controller: Option<Controller>,
+}
+
+/// Files of which some have the joint readings of others.
+pub(super) struct Plan<'p> {
+    pub(super) files: Vec<Planned<'p>>,
+}
+
+/// A file, and what it has.
+pub(super) struct Planned<'p> {
+    pub(super) path: &'p Path,
+    pub(super) part: Part,
+    /// How one without readings is read.
+    pub(super) map: ColumnMap,
+}
+
+impl<'p> Plan<'p> {
+    /// The plan of files, if there are some to join.
+    pub(super) fn of(
+        paths: &[&'p Path],
+        robot: &Robot,
+        options: &ReadOptions,
+        map: &ColumnMap,
+    ) -> Option<Self> {
+        let parts: Vec<Part> = paths.iter().map(|path| part(path, robot, options, map)).collect();
+        let measured = parts.iter().filter(|it| matches!(it, Part::Measured { .. })).count();
+        let joints = parts.iter().filter(|it| **it == Part::Joints).count();
+        if joints == 0 || measured == 0 {
+            return None;
+        }
+        let several = joints == 1 && measured > 1;
+        let planned = |(path, part): (&&'p Path, Part)| {
+            let mut map = without_joints(map, robot);
+            // Several files that were measured at the same configurations are of several targets, or of several instruments.
+            if several && part == (Part::Measured { is_named: false }) && options.frames == Frames::Common {
+                map.target_name = path.file_stem().map(|it| it.to_string_lossy().into_owned());
+            }
+            Planned { path, part, map }
+        };
+        Some(Plan { files: paths.iter().zip(parts).map(planned).collect() })
+    }
+}
+
+/// What a file has; one that cannot be read is named when it is.
+fn part(path: &Path, robot: &Robot, options: &ReadOptions, map: &ColumnMap) -> Part {
+    // A pipe is read once.
+    if !is_file(path) {
+        return Part::Whole;
+    }
+    let kind = || -> Result<Part> {
+        let mut blocks = Blocks::open(path, "a measurement file (CSV)")?;
+        blocks.begin()?;
+        if are_messages(path, blocks.text())? {
+            return Ok(Part::Whole);
+        }
+        let table = Table::open(path, blocks, map)?;
+        let names = robot.reading_names();
+        if are_corners(&table.header, &names, map)?
+            || !options.cameras.is_empty() && are_readings_of_pictures(&table.header, &names, map)
+        {
+            return Ok(Part::Whole);
+        }
+        let joints = ColumnLayout::joints(&table.header, robot, options, map).is_ok();
+        let measured = ColumnLayout::new(&table.header, robot, options, &without_joints(map, robot));
+        Ok(match (joints, measured) {
+            (true, Err(_)) => Part::Joints,
+            (false, Ok(layout)) => {
+                let is_named =
+                    layout.target_column.is_some() || layout.targets.len() > 1 || map.target_name.is_some();
+                Part::Measured { is_named }
+            }
+            (true, Ok(_)) | (false, Err(_)) => Part::Whole,
+        })
+    };
+    kind().unwrap_or(Part::Whole)
+}
+
+/// A mapping of a file that has no readings: those of joints are numbers that mean nothing.
+fn without_joints(map: &ColumnMap, robot: &Robot) -> ColumnMap {
+    let names = robot.reading_names();
+    let joints = names.into_iter().filter(|name| robot.reading_kind(name) != ReadingKind::Factor);
+    let zero = || ColumnSpec { value: Some(0.0), ..ColumnSpec::default() };
+    let mut own = map.clone();
+    (own.joints, own.third_axis) = (joints.map(|name| (name, zero())).collect(), None);
+    own
+}
