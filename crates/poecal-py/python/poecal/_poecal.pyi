@@ -413,6 +413,9 @@ class Measurements:
         frames
             Which rows share a frame of the measuring device: "common", all (or those of one name in the column `instrument`), or
             "per-file", those of a file.
+        join
+            How joint readings and measurements in two files find each other: "name" or "rows"; by default by name, else by their order, if the nominal
+            robot agrees with no other one as well.
         socket_distance
             Known distance between the two sockets of each place, "50mm", or of pairs by name, "A-B=50mm,B-C=70mm+-0.02mm".
         contact
