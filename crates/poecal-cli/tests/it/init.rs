@@ -263,7 +263,7 @@ fn mistakes_in_settings_are_told_with_line_and_column() {
             "sigma-position = '0.05mm'",
             "4:1: found the key `sigma-position`, expected a setting: the nearest is `sigma_position`",
         ),
-        ("json = true", "4:1: found the key `json`, expected a setting: there are "),
+        ("verbatim = true", "4:1: found the key `verbatim`, expected a setting: there are "),
         (
             "sigma_position = 0.05",
             "4:18: sigma_position: found `0.05` without a unit, expected a number with a unit, like 0.05mm",

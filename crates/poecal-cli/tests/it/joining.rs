@@ -110,7 +110,10 @@ fn wrong_orders_are_refused_with_what_fits() {
         ),
         ("joints.csv turned.csv", "in reverse order, expected no other order to fit better"),
         ("joints.csv mixed.csv", "no less than by chance"),
-        ("four.csv few.csv", "in two ways"),
+        (
+            "four.csv few.csv",
+            "found 4 configurations, with which nothing shows whether the rows belong together",
+        ),
         ("joints.csv later.csv --join name", "found no name that is in both"),
     ] {
         let run = folder.run(&format!("calibrate {MODEL} {files} --out out --quiet"));

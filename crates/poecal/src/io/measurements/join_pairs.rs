@@ -140,6 +140,13 @@ impl Pairing<'_> {
                 }
                 warnings.push(format!("{joints}, {path}: {message}"));
             }
+            None if how != "name" && !is_stated => {
+                return self.refuse(format!(
+                    "found {}, with which nothing shows whether the rows belong together, expected more, names in both (a column `id`), or \
+                     --join rows",
+                    counted(pairs.len())
+                ));
+            }
             None => warnings.push(format!(
                 "{joints}, {path}: nothing shows whether the rows belong together: too few, or of a kind that one frame does not place"
             )),
@@ -155,8 +162,7 @@ impl Pairing<'_> {
             }
             _ => String::new(),
         };
-        let note =
-            format!("{joints} and {path} were joined {by_name}: {} configurations{missed}", pairs.len());
+        let note = format!("{joints} and {path} were joined {by_name}: {}{missed}", counted(pairs.len()));
         warnings.extend(self.left_out(pairs));
         Ok(Joined { readings: self.readings(pairs), notes: vec![note], warnings })
     }
@@ -223,9 +229,7 @@ impl Pairing<'_> {
                 pairs.len()
             ));
         }
-        if let Some(Agreement::None { .. } | Agreement::Other { .. } | Agreement::Alike { .. }) =
-            self.rows.agreement(pairs)
-        {
+        if !matches!(self.rows.agreement(pairs), Some(Agreement::Right { .. })) {
             return self.refuse(format!(
                 "{counts}, expected as many, or names in both (a column `id`): no order fits evidently better than others"
             ));
@@ -282,6 +286,15 @@ impl Pairing<'_> {
             Some(self.data.observations.get(row as usize)?.source.line.to_string())
         };
         numbered(&shots.iter().filter_map(line).collect::<Vec<_>>())
+    }
+}
+
+/// Configurations in words.
+fn counted(configurations: usize) -> String {
+    if configurations == 1 {
+        "one configuration".to_owned()
+    } else {
+        format!("{configurations} configurations")
     }
 }
 

@@ -6,6 +6,8 @@ use super::{Pair, Unpaired};
 const EVIDENT: f64 = 2.0;
 /// Rows by which one file may begin later.
 const SHIFTS: usize = 3;
+/// Fewest pairs that show anything: five points determine device and target, and leave no error.
+const FEWEST: usize = 7;
 /// Orders by chance with which pairs are compared.
 const BY_CHANCE: usize = 3;
 
@@ -54,13 +56,16 @@ pub enum Agreement {
 }
 
 impl Unpaired<'_> {
-    /// How pairs agree with the nominal robot, beside their other orders; `None` if nothing can be compared.
+    /// How pairs agree with the nominal robot, beside their other orders; `None` if nothing can be compared, as of few pairs.
     #[must_use]
     pub fn agreement(&self, pairs: &[Pair]) -> Option<Agreement> {
+        if pairs.len() < FEWEST {
+            return None;
+        }
         let missed_m = self.missed(pairs)?;
         let others = orders(pairs.len()).into_iter().filter_map(|order| {
             let other = reordered(pairs, order);
-            (other.len() * 2 >= pairs.len()).then(|| Some((order, self.missed(&other)?)))?
+            (other.len() >= FEWEST).then(|| Some((order, self.missed(&other)?)))?
         });
         let best = others.min_by(|a, b| a.1.total_cmp(&b.1));
         let by_chance = (0..BY_CHANCE).filter_map(|k| self.missed(&shuffled(pairs, k)));
