@@ -20,6 +20,11 @@ export interface CalibrateOptions {
   strict?: boolean;
   /** Which rows share a frame of the measuring device: per-file if it was moved between the files */
   frames?: "common" | "per-file";
+  /**
+   * How a file of joint readings and one of measurements find each other [default: by name, else by their order, if the nominal robot
+   * agrees with no other one as well]
+   */
+  join?: "name" | "rows";
   /** Known distance between the two sockets of each place, like 50mm, or of pairs by name, like A-B=50mm,B-C=70mm+-0.02mm */
   socketDistance?: Value | readonly Value[];
   /** What rows with a plane are that do not say it in the column contact: touched by a point, or by a face that lies flush */
@@ -123,6 +128,11 @@ export interface ValidateOptions {
   strict?: boolean;
   /** Which rows share a frame of the measuring device: per-file if it was moved between the files */
   frames?: "common" | "per-file";
+  /**
+   * How a file of joint readings and one of measurements find each other [default: by name, else by their order, if the nominal robot
+   * agrees with no other one as well]
+   */
+  join?: "name" | "rows";
   /** Known distance between the two sockets of each place, like 50mm, or of pairs by name, like A-B=50mm,B-C=70mm+-0.02mm */
   socketDistance?: Value | readonly Value[];
   /** What rows with a plane are that do not say it in the column contact: touched by a point, or by a face that lies flush */
@@ -203,6 +213,11 @@ export interface CheckOptions {
   strict?: boolean;
   /** Which rows share a frame of the measuring device: per-file if it was moved between the files */
   frames?: "common" | "per-file";
+  /**
+   * How a file of joint readings and one of measurements find each other [default: by name, else by their order, if the nominal robot
+   * agrees with no other one as well]
+   */
+  join?: "name" | "rows";
   /** Known distance between the two sockets of each place, like 50mm, or of pairs by name, like A-B=50mm,B-C=70mm+-0.02mm */
   socketDistance?: Value | readonly Value[];
   /** What rows with a plane are that do not say it in the column contact: touched by a point, or by a face that lies flush */
