@@ -125,16 +125,11 @@ const STEPS: usize = 30;
 /// Size of a step, metres and radians, at which a fit ends.
 const SMALL: f64 = 1e-13;
 
-/// The frames that fit rows best by their weights, which follow from the errors of each row. `None` where they do not determine them.
-pub(super) fn minimised(
-    pairs: &[Pair],
-    start: Frames,
-    weights: &dyn Fn(usize, &[f64; NUMBERS]) -> [f64; NUMBERS],
-) -> Option<Frames> {
+/// The frames that fit rows best by the weights of their numbers. `None` where they do not determine them.
+pub(super) fn minimised(pairs: &[Pair], start: Frames, weights: &[f64; NUMBERS]) -> Option<Frames> {
     let mut frames = start;
     for _ in 0..STEPS {
-        let weighted = pairs.iter().enumerate().map(|(k, pair)| (pair, weights(k, &errors(pair, &frames))));
-        let normal = normal(weighted, &frames);
+        let normal = normal(pairs.iter().map(|pair| (pair, *weights)), &frames);
         // Directions that nothing determines stay where they are.
         let damping = 1e-12 * (0..UNKNOWNS).map(|k| normal.gram[k * (UNKNOWNS + 1)]).fold(0.0, f64::max);
         let step = cholesky_solve(&cholesky(&normal.gram, UNKNOWNS, damping)?, &normal.gradient);

@@ -70,7 +70,7 @@ impl Fit {
     pub(super) fn again(&self, pairs: &[Pair]) -> Option<Frames> {
         let about = self.seen_about(pairs);
         let weights = self.noise.weights();
-        minimised(&about, self.frames, &|_, _| weights)
+        minimised(&about, self.frames, &weights)
     }
 
     /// What is seen of the point, in place of the target's origin.
@@ -106,7 +106,7 @@ impl Fit {
         for round in 0..ROUNDS {
             let rows = self.rows(&about);
             let weights = self.noise.weights();
-            self.frames = minimised(&rows, self.frames, &|_, _| weights)?;
+            self.frames = minimised(&rows, self.frames, &weights)?;
             let before = self.noise.variance.clone();
             self.noise = self.noise.estimated(&rows, &self.frames).unwrap_or_else(|| self.noise.clone());
             if parts {
@@ -121,7 +121,7 @@ impl Fit {
         }
         let rows = self.rows(&about);
         let weights = self.noise.weights();
-        self.frames = minimised(&rows, self.frames, &|_, _| weights)?;
+        self.frames = minimised(&rows, self.frames, &weights)?;
         Some(())
     }
 

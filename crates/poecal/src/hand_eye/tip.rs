@@ -243,9 +243,5 @@ fn judge(tool: &mut Tool, weak: &Vector3<f64>, spread: f64, name: &dyn Fn(usize)
         reasons.push(statement.clone());
         tool.findings.push(Finding::new(FindingKind::MissingMoves, statement, Vec::new()));
     }
-    (tool.level, tool.reasons) = match (against.is_empty(), reasons.is_empty()) {
-        (false, _) => (Level::DoNotUse, against),
-        (true, false) => (Level::WithinBounds, reasons),
-        (true, true) => (Level::Good, Vec::new()),
-    };
+    (tool.level, tool.reasons) = Level::of(against, reasons);
 }

@@ -39,6 +39,15 @@ pub enum Level {
 }
 
 impl Level {
+    /// The level, with what speaks against any use, else with what speaks against use without its bounds.
+    pub(super) fn of(against: Vec<String>, weak: Vec<String>) -> (Self, Vec<String>) {
+        match (against.is_empty(), weak.is_empty()) {
+            (false, _) => (Level::DoNotUse, against),
+            (true, false) => (Level::WithinBounds, weak),
+            (true, true) => (Level::Good, Vec::new()),
+        }
+    }
+
     /// Words for people.
     #[must_use]
     pub fn words(self) -> &'static str {

@@ -97,11 +97,7 @@ pub(super) fn judge(result: &mut HandEye, scale: Option<f64>, distance_m: f64) {
     if result.findings.iter().any(|it| it.kind == FindingKind::Moved) {
         weak.push("something moved during the session".to_owned());
     }
-    (result.level, result.reasons) = match (against.is_empty(), weak.is_empty()) {
-        (false, _) => (Level::DoNotUse, against),
-        (true, false) => (Level::WithinBounds, weak),
-        (true, true) => (Level::Good, Vec::new()),
-    };
+    (result.level, result.reasons) = Level::of(against, weak);
 }
 
 /// Turns that would help.

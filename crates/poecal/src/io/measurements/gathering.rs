@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use super::picture_files::{Taken, TakenByImage};
-use super::picture_names::same_numbers;
+use super::picture_names::Partners;
 use crate::camera::{Board, Corner};
 use crate::error::{Error, ErrorKind, Result, first_few};
 
@@ -99,21 +99,18 @@ impl Gathering {
             });
         };
         let seen: BTreeSet<&String> = self.pictures.iter().filter_map(|it| it.image.as_ref()).collect();
-        let pairs = same_numbers(&seen, &others.keys().collect());
-        let alike: BTreeMap<String, String> =
-            pairs.iter().map(|(name, other)| ((*name).clone(), (*other).clone())).collect();
-        let paired = |name: &String| others.contains_key(name) || alike.contains_key(name);
+        let partners = Partners::new(&seen, others.keys().collect());
         let mut words = Vec::new();
-        if let Some((name, other)) = pairs.first() {
+        if let Some((name, other)) = partners.first {
             words.push(format!(
                 "took the pictures whose names end in the same number for the same, {} of {}: `{name}` is `{other}` of the {what}",
-                pairs.len(),
+                partners.alike.len(),
                 seen.len()
             ));
         }
         let named = |names: Vec<&String>| format!("{} ({})", names.len(), first_few(&names));
-        let unknown: Vec<&String> = seen.iter().copied().filter(|name| !paired(name)).collect();
-        let used: BTreeSet<&String> = seen.iter().copied().chain(alike.values()).collect();
+        let unknown: Vec<&String> = seen.iter().copied().filter(|name| partners.of(name).is_none()).collect();
+        let used: BTreeSet<&String> = seen.iter().copied().chain(partners.alike.values().copied()).collect();
         let without: Vec<&String> = others.keys().filter(|name| !used.contains(name)).collect();
         if unknown.len() == seen.len()
             && let (Some(one), Some(other)) = (unknown.first(), without.first())
@@ -130,12 +127,10 @@ impl Gathering {
         if !without.is_empty() {
             words.push(format!("left out the pictures that have {what} and no corners: {}", named(without)));
         }
-        let taken = |sight: &Sight<Option<Taken>>| {
-            let name = sight.image.as_ref()?;
-            others.get(name).or_else(|| others.get(alike.get(name)?)).cloned()
-        };
+        let taken = |sight: &Sight<Option<Taken>>| others.get(partners.of(sight.image.as_ref()?)?).cloned();
+        let taken: Vec<Option<Taken>> = self.pictures.iter().map(taken).collect();
         let pictures =
-            self.pictures.into_iter().filter_map(|it| taken(&it).map(|taken| it.with(taken))).collect();
+            self.pictures.into_iter().zip(taken).filter_map(|(it, taken)| Some(it.with(taken?))).collect();
         Ok(Joined { pictures, words })
     }
 }

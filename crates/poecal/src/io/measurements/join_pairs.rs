@@ -1,11 +1,11 @@
 //! Which joint readings of one file belong to which measurements of another, and what is said of it.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use super::Join;
 use super::join_plan::ReadingsByLine;
-use super::picture_names::same_numbers;
+use super::picture_names::Partners;
 use crate::error::{Error, ErrorKind, Result, first_few};
 use crate::forensics::{DiagnosisOptions, diagnose};
 use crate::measurement::Dataset;
@@ -42,29 +42,27 @@ impl Pairing<'_> {
     /// The readings of each line, by names or by the order.
     pub(super) fn found(&self, join: Option<Join>) -> Result<Joined> {
         let by_names = if join == Some(Join::Rows) { None } else { self.by_names() };
-        let (joints, shots) = (self.rows.joint_rows(), self.rows.shots().len());
         match (join, by_names) {
             (Some(Join::Name), None) => self.refuse(
                 "found no name that is in both, expected a column `id` in each, with the same names, or names that end in the same number"
                     .to_owned(),
             ),
-            (_, Some(pairs)) => match self.judged(&pairs, "name", join.is_some()) {
+            (_, Some(pairs)) => match self.judged(&pairs, Join::Name, join.is_some()) {
                 // Numbers may count the points only.
-                Err(_) if join.is_none() => self.by_rows(None),
+                Err(_) if join.is_none() => self.by_rows(false),
                 judged => judged,
             },
-            (Some(Join::Rows), None) if joints != shots => self.by_alignment(),
-            (_, None) => self.by_rows(join),
+            (_, None) => self.by_rows(join.is_some()),
         }
     }
 
-    fn by_rows(&self, join: Option<Join>) -> Result<Joined> {
+    fn by_rows(&self, is_stated: bool) -> Result<Joined> {
         let (joints, shots) = (self.rows.joint_rows(), self.rows.shots().len());
         if joints != shots {
             return self.by_alignment();
         }
         let pairs: Vec<Pair> = (0..joints).map(|row| (row, row)).collect();
-        self.judged(&pairs, "row by row", join.is_some())
+        self.judged(&pairs, Join::Rows, is_stated)
     }
 
     /// The error of files that cannot be joined.
@@ -83,10 +81,10 @@ impl Pairing<'_> {
         if others.len() != self.joints.ids.iter().filter(|it| !it.is_empty()).count() {
             return None;
         }
-        let alike: BTreeMap<&String, &String> = same_numbers(&own, &others).into_iter().collect();
+        let partners = Partners::new(&own, others);
         let row_of = |name: &String| {
-            let other = others.get(name).or_else(|| alike.get(name))?;
-            self.joints.ids.iter().position(|it| it == *other)
+            let other = partners.of(name)?;
+            self.joints.ids.iter().position(|it| it == other)
         };
         let pairs: Vec<Pair> = (seen.iter().enumerate())
             .filter_map(|(shot, name)| Some((row_of(name.as_ref()?)?, shot)))
@@ -95,9 +93,12 @@ impl Pairing<'_> {
     }
 
     /// Pairs of one order, if the nominal robot agrees with them and with no other order; `is_stated` where the user said that they are right.
-    fn judged(&self, pairs: &[Pair], how: &str, is_stated: bool) -> Result<Joined> {
+    fn judged(&self, pairs: &[Pair], how: Join, is_stated: bool) -> Result<Joined> {
         let (joints, path) = (self.joints.path.display(), self.path.display());
-        let by_name = if how == "name" { "by name" } else { how };
+        let (by_name, option) = match how {
+            Join::Name => ("by name", "name"),
+            Join::Rows => ("row by row", "rows"),
+        };
         let found = self.rows.agreement(pairs);
         let mm = |metres: f64| format!("{:.3} mm", 1e3 * metres);
         let mut warnings = Vec::new();
@@ -121,8 +122,7 @@ impl Pairing<'_> {
                 );
                 if !is_stated {
                     return self.refuse(format!(
-                        "found files that can be joined in two ways: {message}; state the order by --join {}, or give both files a column `id`",
-                        if how == "name" { "name" } else { "rows" }
+                        "found files that can be joined in two ways: {message}; state the order by --join {option}, or give both files a column `id`"
                     ));
                 }
                 warnings.push(format!("{joints}, {path}: {message}"));
@@ -140,7 +140,7 @@ impl Pairing<'_> {
                 }
                 warnings.push(format!("{joints}, {path}: {message}"));
             }
-            None if how != "name" && !is_stated => {
+            None if how == Join::Rows && !is_stated => {
                 return self.refuse(format!(
                     "found {}, with which nothing shows whether the rows belong together, expected more, names in both (a column `id`), or \
                      --join rows",

@@ -54,6 +54,9 @@ impl<'p> Plan<'p> {
         options: &ReadOptions,
         map: &ColumnMap,
     ) -> Option<Self> {
+        if paths.len() < 2 {
+            return None;
+        }
         let parts: Vec<Part> = paths.iter().map(|path| part(path, robot, options, map)).collect();
         let measured = parts.iter().filter(|it| matches!(it, Part::Measured { .. })).count();
         let joints = parts.iter().filter(|it| **it == Part::Joints).count();

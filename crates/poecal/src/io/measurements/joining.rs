@@ -7,15 +7,15 @@ use super::LostBeams;
 use super::inputs::InputReader;
 use super::join_pairs::{JointRows, Pairing};
 use super::join_plan::{Part, Plan, Planned};
+use super::joints::rows_of;
 use super::layout::ColumnLayout;
 use super::mapping::ColumnMap;
 use super::number::Numbers;
 use super::read::Reader;
-use super::scale::JointWatch;
-use super::table::{Table, refuse_more_rows};
+use super::table::Table;
 use super::text::Blocks;
 use super::understanding::{self, FileUnderstanding};
-use crate::error::{ErrorKind, Result};
+use crate::error::Result;
 use crate::measurement::Dataset;
 use crate::start::Unpaired;
 
@@ -29,7 +29,7 @@ impl<'a> Reader<'a> {
             match (part, &joints) {
                 (Part::Joints, Some(known)) if known.path == *path => {}
                 (Part::Joints, _) => joints = Some(self.joint_rows(path)?),
-                (Part::Measured { .. }, Some(known)) => self.measured(path, &known.clone(), map)?,
+                (Part::Measured { .. }, Some(known)) => self.measured(path, known, map)?,
                 (Part::Measured { .. }, None) | (Part::Whole, _) => {
                     self.file(path, Blocks::open(path, "a measurement file (CSV)")?)?;
                 }
@@ -44,45 +44,17 @@ impl<'a> Reader<'a> {
         let layout = ColumnLayout::joints(&table.header, self.robot, self.options, self.map)?;
         let numbers = Numbers::new(self.map.decimal);
         let mut inputs = InputReader::new(&layout.inputs, layout.inputs.len(), numbers);
-        let mut watch = JointWatch::new(self.robot);
-        let mut found = JointRows {
-            path: path.to_path_buf(),
-            readings: Vec::new(),
-            ids: Vec::new(),
-            lines: Vec::new(),
-            controller: layout.controller.clone(),
-        };
-        while let Some(mut rows) = table.next_block()? {
-            while let Some(row) = rows.next()? {
-                inputs.read(&row)?;
-                watch.unwind(&row, &mut inputs);
-                inputs.include_in_ranges();
-                watch.observe(&row, &inputs);
-                inputs.take_readings(&row)?;
-                found.readings.extend_from_slice(inputs.readings());
-                found.lines.push(row.line);
-                refuse_more_rows(found.lines.len(), &row)?;
-                if let Some(cell) = layout.id.and_then(|id| row.cells.get(id)) {
-                    found.ids.push(cell.text().trim().to_owned());
-                }
-            }
-        }
-        if found.lines.is_empty() {
-            let message = "found a header and no rows, expected at least one row of joint readings";
-            return Err(ErrorKind::Measurement.error(message).at_line(path, table.header.line));
-        }
-        self.found.warnings.extend(watch.finish(path, &layout, &inputs.ranges)?);
-        let own = |words: String| format!("{}: {words}", path.display());
-        self.found.warnings.extend(layout.joint_words().into_iter().map(own));
+        let table_rows = rows_of(&mut table, &layout, &mut inputs, self.robot)?;
+        self.found.warnings.extend(table_rows.warnings);
         self.warn_of_ignored(path, &layout);
         self.take_controller(path, &layout)?;
         self.found.sha256.extend(table.sha256().map(|sha256| (path.display().to_string(), sha256)));
         self.found.understood.push(FileUnderstanding {
             path: path.to_path_buf(),
-            rows: found.lines.len(),
+            rows: table_rows.rows,
             points: 0,
             poses: 0,
-            others: BTreeMap::from([("joint readings", found.lines.len())]),
+            others: BTreeMap::from([("joint readings", table_rows.rows)]),
             lost: LostBeams::default(),
             separator: table.separator,
             separator_line: table.separator_line,
@@ -93,7 +65,13 @@ impl<'a> Reader<'a> {
             pose: understanding::pose_word(layout.pose),
             ignored: layout.ignored.iter().map(|(name, _)| name.clone()).collect(),
         });
-        Ok(found)
+        Ok(JointRows {
+            path: path.to_path_buf(),
+            readings: table_rows.readings,
+            ids: table_rows.ids.iter().map(|id| id.trim().to_owned()).collect(),
+            lines: table_rows.lines,
+            controller: layout.controller,
+        })
     }
 
     /// Reads a file of measurements alone, with the readings of another.

@@ -65,14 +65,27 @@ fn of_blocks<'p>(
     let mut table = Table::open(path, blocks, map)?;
     let layout = ColumnLayout::joints(&table.header, robot, options, map)?;
     let mut inputs = InputReader::new(&layout.inputs, layout.inputs.len(), Numbers::new(map.decimal));
+    let joints = rows_of(&mut table, &layout, &mut inputs, robot)?;
+    let warnings = joints.warnings.iter().map(|warning| visible(warning).into_owned()).collect();
+    Ok(JointsTable { warnings, ..joints })
+}
+
+/// All rows of a table of joint readings.
+pub(super) fn rows_of(
+    table: &mut Table<'_>,
+    layout: &ColumnLayout,
+    inputs: &mut InputReader<'_>,
+    robot: &Robot,
+) -> Result<JointsTable> {
+    let path = table.header.path;
     let mut watch = JointWatch::new(robot);
     let mut joints = JointsTable::default();
     while let Some(mut rows) = table.next_block()? {
         while let Some(row) = rows.next()? {
             inputs.read(&row)?;
-            watch.unwind(&row, &mut inputs);
+            watch.unwind(&row, inputs);
             inputs.include_in_ranges();
-            watch.observe(&row, &inputs);
+            watch.observe(&row, inputs);
             inputs.take_readings(&row)?;
             joints.readings.extend_from_slice(inputs.readings());
             joints.rows += 1;
@@ -88,8 +101,8 @@ fn of_blocks<'p>(
             .error("found a header and no rows, expected at least one row of joint readings")
             .at_line(path, table.header.line));
     }
-    let mut warnings = watch.finish(path, &layout, &inputs.ranges)?;
-    warnings.extend(layout.joint_words().into_iter().map(|words| format!("{}: {words}", path.display())));
-    joints.warnings = warnings.iter().map(|warning| visible(warning).into_owned()).collect();
+    joints.warnings = watch.finish(path, layout, &inputs.ranges)?;
+    let own = |words: String| format!("{}: {words}", path.display());
+    joints.warnings.extend(layout.joint_words().into_iter().map(own));
     Ok(joints)
 }

@@ -23,8 +23,30 @@ fn by_number<'a>(names: impl Iterator<Item = &'a String>) -> BTreeMap<u64, Optio
     found
 }
 
+/// Which names of another file are of the same pictures.
+pub(super) struct Partners<'a> {
+    others: BTreeSet<&'a String>,
+    /// Names that are not the same, and end in the same number.
+    pub(super) alike: BTreeMap<&'a String, &'a String>,
+    /// The first of these, by its number.
+    pub(super) first: Option<(&'a String, &'a String)>,
+}
+
+impl<'a> Partners<'a> {
+    pub(super) fn new(own: &BTreeSet<&'a String>, others: BTreeSet<&'a String>) -> Self {
+        let pairs = same_numbers(own, &others);
+        let first = pairs.first().copied();
+        Partners { others, alike: pairs.into_iter().collect(), first }
+    }
+
+    /// The other file's name of a picture: the same, or that with the same number.
+    pub(super) fn of(&self, name: &String) -> Option<&'a String> {
+        self.others.get(name).or_else(|| self.alike.get(name)).copied()
+    }
+}
+
 /// Of names that the other file does not have, those that end in the same number as one of its names, each once in its file.
-pub(super) fn same_numbers<'a>(
+fn same_numbers<'a>(
     own: &BTreeSet<&'a String>,
     others: &BTreeSet<&'a String>,
 ) -> Vec<(&'a String, &'a String)> {

@@ -191,11 +191,31 @@ pub(super) fn text_column(header: &Header<'_>, name: &str) -> Option<usize> {
     header.cells.iter().position(|cell| cell.name.eq_ignore_ascii_case(name))
 }
 
-/// Units that were stated for columns that have none.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct StatedUnits {
-    pub(super) length: Option<NamedUnit>,
-    pub(super) angle: Option<NamedUnit>,
+/// Units of columns that state none, as `mm`, `deg`, or both.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PoseUnits {
+    /// Of lengths.
+    pub length: Option<NamedUnit>,
+    /// Of angles.
+    pub angle: Option<NamedUnit>,
+}
+
+impl std::str::FromStr for PoseUnits {
+    type Err = crate::error::Error;
+
+    fn from_str(text: &str) -> Result<Self> {
+        let mut units = PoseUnits::default();
+        for symbol in text.split(',').map(str::trim) {
+            let unit = NamedUnit::parse_any(symbol)?;
+            let place = if unit.of() == Unit::Radian { &mut units.angle } else { &mut units.length };
+            if place.replace(unit).is_some() {
+                return ErrorKind::Option.refuse(format!(
+                    "found `{text}`, expected one unit of lengths and one of angles, like mm,deg"
+                ));
+            }
+        }
+        Ok(units)
+    }
 }
 
 /// Columns of a header by whose poses they are, but for those of joints; `alone` says whose all are that do not say it, in a file of one list.
@@ -203,7 +223,7 @@ pub(super) fn found(
     header: &Header<'_>,
     joints: &[String],
     alone: Option<Whose>,
-    stated: StatedUnits,
+    stated: PoseUnits,
 ) -> Result<Vec<(Whose, PoseColumns)>> {
     let name = name_column(header);
     let texts = ["point", "tip"].map(|it| text_column(header, it));
@@ -279,7 +299,7 @@ pub(super) fn list_words(whose: Whose) -> &'static str {
 }
 
 /// The columns of one list by their parts.
-fn columns(header: &Header<'_>, whose: Whose, named: &[&Named], stated: StatedUnits) -> Result<PoseColumns> {
+fn columns(header: &Header<'_>, whose: Whose, named: &[&Named], stated: PoseUnits) -> Result<PoseColumns> {
     let is_from_0 = named.iter().any(|it| it.key == "m00");
     let key = |it: &Named| match it.key.strip_prefix('m').and_then(|digits| digits.parse::<u32>().ok()) {
         // Counted from 1.

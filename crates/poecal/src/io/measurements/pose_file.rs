@@ -8,7 +8,7 @@ use super::joints::read_joints;
 use super::mapping::ColumnMap;
 use super::number::Numbers;
 use super::pose_columns::{
-    NumberColumn, PoseColumns, StatedUnits, Whose, found, list_words, name_column, text_column,
+    NumberColumn, PoseColumns, PoseUnits, Whose, found, list_words, name_column, text_column,
 };
 use super::pose_names::Named;
 use super::pose_readings::others;
@@ -96,7 +96,7 @@ impl PoseFile {
 pub(super) fn read_poses(
     path: &Path,
     alone: Option<Whose>,
-    stated: StatedUnits,
+    stated: PoseUnits,
     robot: Option<&Robot>,
 ) -> Result<PoseFile> {
     let map = ColumnMap::default();

@@ -5,47 +5,12 @@ use std::path::{Path, PathBuf};
 
 use super::ReadOptions;
 use super::picture_poses::{are_corners_of, poses_of_pictures};
-use super::pose_columns::{StatedUnits, Whose};
+use super::pose_columns::{PoseUnits, Whose};
 use super::pose_file::{PoseFile, read_poses};
 use super::pose_names::by_name;
-use super::units::NamedUnit;
 use crate::error::{ErrorKind, Result};
 use crate::hand_eye::{PoseList, Touches};
 use crate::robot::Robot;
-use crate::unit::Unit;
-
-/// Units of columns that state none, as `mm`, `deg`, or both.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct PoseUnits {
-    /// Of lengths.
-    pub length: Option<NamedUnit>,
-    /// Of angles.
-    pub angle: Option<NamedUnit>,
-}
-
-impl std::str::FromStr for PoseUnits {
-    type Err = crate::error::Error;
-
-    fn from_str(text: &str) -> Result<Self> {
-        let mut units = PoseUnits::default();
-        for symbol in text.split(',').map(str::trim) {
-            let unit = NamedUnit::parse_any(symbol)?;
-            let place = if unit.of() == Unit::Radian { &mut units.angle } else { &mut units.length };
-            if place.replace(unit).is_some() {
-                return ErrorKind::Option.refuse(format!(
-                    "found `{text}`, expected one unit of lengths and one of angles, like mm,deg"
-                ));
-            }
-        }
-        Ok(units)
-    }
-}
-
-impl PoseUnits {
-    fn stated(self) -> StatedUnits {
-        StatedUnits { length: self.length, angle: self.angle }
-    }
-}
 
 /// How files of poses are read.
 #[derive(Clone, Copy, Debug)]
@@ -99,8 +64,7 @@ pub struct FlangePoses {
 /// [`ErrorKind::File`] if a file cannot be read; [`ErrorKind::Syntax`], [`ErrorKind::Measurement`] and [`ErrorKind::Unit`] for what is no
 /// list of poses, with its place.
 pub fn read_pose_pairs(paths: &[PathBuf], source: &PoseSource<'_>) -> Result<PosePairs> {
-    let read =
-        |path: &Path, alone: Option<Whose>| read_poses(path, alone, source.units.stated(), source.robot);
+    let read = |path: &Path, alone: Option<Whose>| read_poses(path, alone, source.units, source.robot);
     match paths {
         [one] => side_by_side(read(one, None)?),
         [first, second] => {
@@ -126,7 +90,7 @@ pub fn read_pose_pairs(paths: &[PathBuf], source: &PoseSource<'_>) -> Result<Pos
 /// # Errors
 /// As [`read_pose_pairs`].
 pub fn read_flange_poses(path: &Path, units: PoseUnits, robot: Option<&Robot>) -> Result<FlangePoses> {
-    let mut file = read_poses(path, Some(Whose::Arm), units.stated(), robot)?;
+    let mut file = read_poses(path, Some(Whose::Arm), units, robot)?;
     let list = file.take(Whose::Arm)?;
     Ok(FlangePoses {
         understood: vec![list.words],

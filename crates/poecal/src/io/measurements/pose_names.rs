@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
-use super::picture_names::same_numbers;
+use super::picture_names::Partners;
 use crate::error::{ErrorKind, Result};
 
 /// The names of the rows of a file, and their lines.
@@ -41,8 +41,8 @@ pub(super) fn by_name(
 ) -> Result<Vec<(usize, usize)>> {
     let (one, other) = (first.rows()?, second.rows()?);
     let names = |rows: &BTreeMap<_, usize>| rows.keys().copied().collect::<BTreeSet<&String>>();
-    let alike: BTreeMap<&String, &String> = same_numbers(&names(&one), &names(&other)).into_iter().collect();
-    let row_of = |name: &String| other.get(name).or_else(|| other.get(alike.get(name)?)).copied();
+    let partners = Partners::new(&names(&one), names(&other));
+    let row_of = |name: &String| other.get(partners.of(name)?).copied();
     let rows: Vec<(usize, usize)> =
         first.names.iter().enumerate().filter_map(|(row, name)| Some((row, row_of(name)?))).collect();
     if rows.is_empty() {
@@ -53,10 +53,10 @@ pub(super) fn by_name(
             ))
             .in_file(first.path));
     }
-    if let Some((name, other)) = alike.first_key_value() {
+    if let Some((name, other)) = partners.first {
         warnings.push(format!(
             "took the poses whose names end in the same number for the same, {} of {}: `{name}` is `{other}`",
-            alike.len(),
+            partners.alike.len(),
             rows.len()
         ));
     }
