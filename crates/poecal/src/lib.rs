@@ -97,6 +97,7 @@ pub mod offsets;
 pub mod parameters;
 #[cfg_attr(doc, doc(hidden))]
 pub mod problem;
+mod programs;
 #[cfg_attr(doc, doc(hidden))]
 pub mod report;
 #[cfg_attr(doc, doc(hidden))]

@@ -114,7 +114,7 @@ fn robot_program(
     }
     let options = ProgramOptions {
         language,
-        given: given(arguments, language)?.taught(taught),
+        given: given(arguments, language)?.taught(&taught.base, &taught.tool),
         check: arguments.check,
         change: change(arguments),
         each: arguments.json,

@@ -17,11 +17,12 @@ pub use inverse::Inverse;
 pub use kinematics::Kinematics;
 pub use poecal_arm::{MostChange, Outcome};
 pub use programs::{
-    Given, LARGEST_PROGRAM, Language, PoseCompensation, ProgramOptions, ProgramSummary, compensate_file,
-    compensate_program,
+    LARGEST_PROGRAM, PoseCompensation, ProgramOptions, ProgramSummary, compensate_file, compensate_program,
 };
-pub use summary::{Checked, CorrectedTarget, Largest, Listed, Summary};
+pub use summary::{Checked, CorrectedTarget, Largest, Summary};
 pub use table::{TableOptions, compensate_table};
+
+pub use crate::programs::{Given, Language, Listed};
 
 use crate::error::{ErrorKind, Result};
 use crate::robot::Robot;

@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 use serde::Serialize;
 
 use super::{Compensated, Compensation, Outcome};
+use crate::programs::Listed;
 
 /// Change of a correction from one row to the next (rad, m) from which it is told as a jump.
 const JUMP: f64 = 0.02;
@@ -27,17 +28,6 @@ impl Largest {
             *self = Largest { value, line };
         }
     }
-}
-
-/// A place of a program that stays as it is, and why.
-#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
-pub struct Listed {
-    /// Line of the program, from 1.
-    pub line: usize,
-    /// The target's name or text.
-    pub name: String,
-    /// Why it stays as it is.
-    pub reason: String,
 }
 
 /// What became of a target that was corrected.

@@ -6,15 +6,15 @@ use std::ops::Range;
 
 use super::super::{ChangeOptions, Compensated, Compensation, Outcome, Summary};
 use super::fate::{Fate, Found, Placed, joined};
-use super::forms::PoseForm;
-use super::given::Given;
-use super::parsed::{Meant, Motion, Parsed, Target};
 use super::place::PoseCompensation;
 use super::reasons as reason;
-use super::stated::Stated;
 use super::written::{number, replaced, with_sign_as};
 use crate::error::Result;
 use crate::lie::Pose;
+use crate::programs::Given;
+use crate::programs::forms::PoseForm;
+use crate::programs::parsed::{Meant, Motion, Parsed, Target};
+use crate::programs::stated::Stated;
 use crate::robot::{Counting, Robot};
 
 /// Distance (m) and angle (rad) that rounding may leave of a corrected target.

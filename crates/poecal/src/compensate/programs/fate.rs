@@ -4,8 +4,8 @@ use std::borrow::Cow;
 use std::f64::consts::TAU;
 
 use super::reasons as reason;
-use super::stated::Stated;
 use crate::lie::Pose;
+use crate::programs::stated::Stated;
 
 /// Why a target stays as it is.
 pub(super) type Reason = Cow<'static, str>;

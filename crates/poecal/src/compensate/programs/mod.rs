@@ -1,26 +1,10 @@
 //! Robot programs in the languages of their controllers: targets corrected in place, everything else as it was, byte for byte.
 
-mod axes;
-mod build;
 mod engine;
-mod fanuc;
 mod fate;
-mod flow;
-mod forms;
-mod given;
-mod krl;
-mod language;
-mod number;
-mod parsed;
 mod place;
-mod posture;
-mod rapid;
 mod reasons;
-mod scan;
-mod shape;
-mod stated;
 mod summary;
-mod urscript;
 mod written;
 
 use std::path::Path;
@@ -28,13 +12,12 @@ use std::path::Path;
 use super::ChangeOptions;
 use crate::error::{ErrorKind, Result};
 use crate::io::programs::read_program;
+use crate::programs::axes::Axes;
+use crate::programs::parsed::Meant;
+use crate::programs::{Given, Language, parse};
 use crate::robot::{Controller, Robot};
-use axes::Axes;
 use engine::Engine;
-use parsed::{Meant, Parsed};
 
-pub use given::Given;
-pub use language::Language;
 pub use place::PoseCompensation;
 pub use summary::ProgramSummary;
 
@@ -100,7 +83,7 @@ pub fn compensate_program(
     let counting = counting.map(Controller::counting).transpose()?;
     let mut engine = Engine::new((nominal, actual), factors, &options.given, &options.change)?;
     engine.counting = counting;
-    let axes = Axes::of(nominal, engine.poses.compensation());
+    let axes = Axes::of(nominal);
     if let Some(start) = options.given.start.as_ref().filter(|it| it.len() != axes.count()) {
         return ErrorKind::Option.refuse(format!(
             "found {} readings as the start, expected one of each joint: {}",
@@ -144,15 +127,6 @@ pub fn compensate_file(
             None => error.in_file(path),
         }
     })
-}
-
-fn parse(language: Language, text: &[u8], given: &Given, axes: &Axes) -> Result<Parsed> {
-    match language {
-        Language::UrScript => urscript::parse(text, given, axes),
-        Language::Krl => krl::parse(text, given, axes),
-        Language::Rapid => Ok(rapid::parse(text, given, axes)),
-        Language::Fanuc => Ok(fanuc::parse(text, given, axes)),
-    }
 }
 
 #[cfg(test)]

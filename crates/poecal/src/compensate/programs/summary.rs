@@ -3,10 +3,10 @@
 use serde::Serialize;
 
 use super::super::{Checked, Summary};
-use super::Language;
 use super::engine::Engine;
-use super::parsed::{Meant, Parsed};
 use crate::lie::Pose;
+use crate::programs::Language;
+use crate::programs::parsed::{Meant, Parsed};
 use crate::robot::Robot;
 
 /// What the compensation of a program changes, and what stays as it is.

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::parsed::{Meant, Number};
+use crate::programs::parsed::{Meant, Number};
 
 /// A number as it is written; empty if it stays as it is.
 pub(super) fn number(at: usize, (number, value): (&Number, &f64), meant: Meant) -> String {

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use crate::compensate::programs::scan::{Rules, Scanner, Token, signed};
+use crate::programs::scan::{Rules, Scanner, Token, signed};
 
 /// How the language is written. Comments are told by where they stand, and a quote is also a letter of comments and names.
 pub(super) const RULES: Rules =

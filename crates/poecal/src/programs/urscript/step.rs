@@ -1,8 +1,8 @@
 //! Statements that matter.
 
-use crate::compensate::programs::parsed::Setting;
-use crate::compensate::programs::stated::Stated;
 use crate::lie::Pose;
+use crate::programs::parsed::Setting;
+use crate::programs::stated::Stated;
 
 /// How a motion gets to its target.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::ops::Range;
 
-use super::super::parsed::Listed;
+use super::super::listed::Listed;
 use super::super::scan::{Kind, Token, shown};
 
 /// A motion to a position.

@@ -3,7 +3,6 @@
 use super::Language;
 use super::forms::PoseForm;
 use crate::error::{ErrorKind, Result};
-use crate::io::calibration_file::TaughtRobot;
 use crate::lie::Pose;
 
 /// Tools and frames that the user states, as the controller has them.
@@ -29,10 +28,10 @@ impl Default for Given {
 }
 
 impl Given {
-    /// The same in base and tip of a taught robot, which takes the nominal one's place.
+    /// The same in base and tip of a taught robot, which takes the nominal one's place: its base in that of the model, and its tool.
     #[must_use]
-    pub fn taught(self, taught: &TaughtRobot) -> Self {
-        Given { base: taught.base * self.base, flange: taught.tool.inverse() * self.flange, ..self }
+    pub fn taught(self, base: &Pose, tool: &Pose) -> Self {
+        Given { base: *base * self.base, flange: tool.inverse() * self.flange, ..self }
     }
 
     /// A tool by its number or name (letters of either case), or the one without.
@@ -155,7 +154,6 @@ mod tests {
     #[test]
     fn the_flange_of_a_taught_robot_is_behind_its_tool() {
         let tool = Pose::from_translation([0.0, 0.0, 0.1].into());
-        let taught = TaughtRobot { robot: crate::robot::tests::elbow(), base: Pose::identity(), tool };
-        assert_eq!(Given::default().taught(&taught).flange.translation.z, -0.1);
+        assert_eq!(Given::default().taught(&Pose::identity(), &tool).flange.translation.z, -0.1);
     }
 }

@@ -1,6 +1,6 @@
 //! Words of the language.
 
-use crate::compensate::programs::scan::Rules;
+use crate::programs::scan::Rules;
 
 pub(super) const RULES: Rules =
     Rules { comments: &[";"], quotes: b"\"'", letters: b"$", is_open_in_brackets: false };

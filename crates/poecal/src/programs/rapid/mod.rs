@@ -23,7 +23,8 @@ use tokens::tokens;
 
 use super::axes::Axes;
 use super::given::Given;
-use super::parsed::{Listed, Parsed};
+use super::listed::Listed;
+use super::parsed::Parsed;
 use super::scan::{Kind, Token, is_one_of, shown};
 
 /// What is said of a target that a move counts from another one.

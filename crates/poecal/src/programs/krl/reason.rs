@@ -5,7 +5,7 @@ pub(super) const ABSENT: &str = "its values are in another file: correct the one
 pub(super) const SEVERAL: &str = "it is assigned several times, or handed to a routine";
 pub(super) const EXPRESSIONS: &str = "it has words or expressions instead of numbers";
 pub(super) const PARTIAL: &str = "it does not state all values: the others are those of the position before";
-pub(super) use crate::compensate::programs::axes::NO_EXTERNAL;
+pub(super) use crate::programs::axes::NO_EXTERNAL;
 pub(super) const EXTERNAL: &str = "external axes that the model does not have are not at zero";
 pub(super) const COUNT: &str = "it has other axes than the robot";
 pub(super) const RELATIVE: &str = "the motion is by an amount from where the robot is, which is corrected: a small error of the amount stays";

@@ -1,6 +1,5 @@
 //! The readings of a robot as languages count axes.
 
-use super::super::Compensation;
 use crate::robot::{JointKind, Robot};
 
 /// Why a target stays as it is.
@@ -20,12 +19,13 @@ pub(crate) struct Axes {
 }
 
 impl Axes {
-    pub(super) fn of(robot: &Robot, compensation: &Compensation) -> Self {
+    /// Those of a robot; factors are none.
+    pub(crate) fn of(robot: &Robot) -> Self {
         let slides = |name: &String| {
             let joint = robot.joints.iter().find(|it| it.reading.name == *name);
             joint.is_some_and(|it| it.kind == JointKind::Prismatic)
         };
-        let names = compensation.names().to_vec();
+        let names = robot.joint_reading_names();
         let slides: Vec<bool> = names.iter().map(slides).collect();
         let sliding: Vec<usize> = (0..names.len()).filter(|&it| slides[it]).collect();
         let is_arm = names.len() - sliding.len() == 6;

@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
-pub(crate) use super::super::Listed;
 use super::forms::PoseForm;
+use super::listed::Listed;
 pub(crate) use super::number::Number;
 use super::stated::Stated;
 use crate::lie::Pose;
