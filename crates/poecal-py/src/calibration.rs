@@ -691,7 +691,7 @@ impl Calibration {
         if let Some(words) = start {
             options.given.set_start(&words, language).map_err(raise)?;
         }
-        options.given = options.given.taught(&taught);
+        options.given = options.given.taught(&taught.base, &taught.tool);
         reach::program(py, (&taught.robot, &actual.model.robot), &path, &factors, &options)
     }
 

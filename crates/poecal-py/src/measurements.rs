@@ -37,11 +37,14 @@ fn options(
     strict: bool,
     (frames, join): (Frames, Option<Join>),
     (socket_distance, contact): (Option<&str>, PlaneContact),
+    [units, sheet, body]: [Option<&str>; 3],
     [instrument_noise, cameras, markers]: [Option<&[String]>; 3],
 ) -> poecal::Result<ReadOptions> {
     let mut options = ReadOptions {
         frames,
         join,
+        sheet: sheet.map(str::to_owned),
+        body: body.map(str::to_owned),
         mapping: columns.map(ColumnMap::read).transpose()?,
         fit_where: fit_where.map(str::parse).transpose()?,
         ignore_sets,
@@ -55,6 +58,9 @@ fn options(
             .collect::<Result<_, _>>()?,
         ..ReadOptions::default()
     };
+    if let Some(units) = units {
+        options.state_units(units)?;
+    }
     for typed in cameras.unwrap_or_default() {
         options.cameras.extend(measurements::read_cameras(typed)?);
     }
@@ -88,6 +94,12 @@ impl Measurements {
     /// join
     ///     How joint readings and measurements in two files find each other: "name" or "rows"; by default by name, else by their order, if the nominal
     ///     robot agrees with no other one as well.
+    /// units
+    ///     Units of columns that state none, "mm,deg"; those of a mapping precede.
+    /// sheet
+    ///     Sheet of workbooks; by default the only one that holds a table.
+    /// body
+    ///     Body, marker or tool of recordings of a camera system; by default the only one that moves.
     /// socket_distance
     ///     Known distance between the two sockets of each place, "50mm", or of pairs by name, "A-B=50mm,B-C=70mm+-0.02mm".
     /// contact
@@ -113,7 +125,7 @@ impl Measurements {
     /// MeasurementError
     ///     It holds no measurements of this robot; the error tells the line and the column.
     #[staticmethod]
-    #[pyo3(signature = (paths, robot, *, columns=None, fit_where=None, ignore_sets=false, strict=false, frames="common", join=None, socket_distance=None, contact="point", instrument_noise=None, cameras=None, markers=None))]
+    #[pyo3(signature = (paths, robot, *, columns=None, fit_where=None, ignore_sets=false, strict=false, frames="common", join=None, units=None, sheet=None, body=None, socket_distance=None, contact="point", instrument_noise=None, cameras=None, markers=None))]
     #[expect(clippy::too_many_arguments, reason = "the options of a Python function")]
     fn from_csv(
         py: Python<'_>,
@@ -125,6 +137,9 @@ impl Measurements {
         #[pyo3(from_py_with = arg::strict)] strict: bool,
         #[pyo3(from_py_with = arg::frames)] frames: &str,
         #[pyo3(from_py_with = arg::join)] join: Option<&str>,
+        #[pyo3(from_py_with = arg::units)] units: Option<&str>,
+        #[pyo3(from_py_with = arg::sheet)] sheet: Option<&str>,
+        #[pyo3(from_py_with = arg::body)] body: Option<&str>,
         #[pyo3(from_py_with = arg::socket_distance)] socket_distance: Option<&str>,
         #[pyo3(from_py_with = arg::contact)] contact: &str,
         #[pyo3(from_py_with = arg::instrument_noise)] instrument_noise: Option<Vec<String>>,
@@ -146,6 +161,7 @@ impl Measurements {
                 strict,
                 (frames, join),
                 (socket_distance, contact),
+                [units, sheet, body],
                 [&instrument_noise, &cameras, &markers].map(|it| it.as_deref()),
             )?;
             let file = measurements::read(&paths, &robot.model.robot, &robot.model.reads(options))?;
@@ -248,6 +264,8 @@ impl Measurements {
     ///     Whether the column `set` means nothing, as for rows that judge a calibration.
     /// strict
     ///     Whether lost beams, empty or zero positions, are an error instead of being skipped with a warning.
+    /// units
+    ///     Units of columns that state none, "mm,deg"; those of a mapping precede.
     /// socket_distance
     ///     Known distance between the two sockets of each place, "50mm", or of pairs by name, "A-B=50mm,B-C=70mm+-0.02mm".
     /// contact
@@ -271,7 +289,7 @@ impl Measurements {
     /// MeasurementError
     ///     The table holds no measurements of this robot; the error tells the row.
     #[staticmethod]
-    #[pyo3(signature = (frame, robot, *, columns=None, fit_where=None, ignore_sets=false, strict=false, socket_distance=None, contact="point", instrument_noise=None, cameras=None, markers=None))]
+    #[pyo3(signature = (frame, robot, *, columns=None, fit_where=None, ignore_sets=false, strict=false, units=None, socket_distance=None, contact="point", instrument_noise=None, cameras=None, markers=None))]
     #[expect(clippy::too_many_arguments, reason = "the options of a Python function")]
     fn from_dataframe(
         py: Python<'_>,
@@ -281,6 +299,7 @@ impl Measurements {
         #[pyo3(from_py_with = arg::fit_where)] fit_where: Option<&str>,
         #[pyo3(from_py_with = arg::ignore_sets)] ignore_sets: bool,
         #[pyo3(from_py_with = arg::strict)] strict: bool,
+        #[pyo3(from_py_with = arg::units)] units: Option<&str>,
         #[pyo3(from_py_with = arg::socket_distance)] socket_distance: Option<&str>,
         #[pyo3(from_py_with = arg::contact)] contact: &str,
         #[pyo3(from_py_with = arg::instrument_noise)] instrument_noise: Option<Vec<String>>,
@@ -297,6 +316,7 @@ impl Measurements {
                 strict,
                 (Frames::Common, None),
                 (socket_distance, contact),
+                [units, None, None],
                 [&instrument_noise, &cameras, &markers].map(|it| it.as_deref()),
             )?;
             measurements::parse(&text, from_dataframe::NAME, &robot.model.robot, &options)

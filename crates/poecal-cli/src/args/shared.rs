@@ -138,6 +138,15 @@ pub(crate) struct Meaning {
     /// no other one as well]
     #[arg(long, value_parser = one_of(JOIN))]
     pub(crate) join: Option<Join>,
+    /// Units of columns that state none, like mm,deg; those of a mapping precede
+    #[arg(long, value_name = "UNIT[,UNIT]")]
+    pub(crate) units: Option<String>,
+    /// Sheet of workbooks [default: the only one that holds a table]
+    #[arg(long, value_name = "NAME")]
+    pub(crate) sheet: Option<String>,
+    /// Body, marker or tool of recordings of a camera system [default: the only one that moves]
+    #[arg(long, value_name = "NAME")]
+    pub(crate) body: Option<String>,
     /// Known distance between the two sockets of each place, like 50mm, or of pairs by name, like A-B=50mm,B-C=70mm+-0.02mm
     #[arg(long, value_name = "LENGTH|A-B=LENGTH,...")]
     pub(crate) socket_distance: Option<SocketDistances>,
@@ -162,15 +171,20 @@ impl Meaning {
         let (strict, frames, contact) = (self.strict, self.frames, self.contact);
         let socket_distances = self.socket_distance.clone();
         let instrument_noise = self.instrument_noise.clone();
-        let options = ReadOptions {
+        let mut options = ReadOptions {
             strict,
             frames,
             join: self.join,
+            sheet: self.sheet.clone(),
+            body: self.body.clone(),
             contact,
             socket_distances,
             instrument_noise,
             ..self.columns.options()?
         };
+        if let Some(units) = &self.units {
+            options.state_units(units)?;
+        }
         self.cameras.add(options)
     }
 }

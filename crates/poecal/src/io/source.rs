@@ -13,16 +13,38 @@ pub(super) const LARGEST_TEXT: u64 = 256 << 20;
 /// Largest table, bytes.
 pub(super) const LARGEST_TABLE: u64 = 4 << 30;
 /// Number of bytes by which other formats are recognised.
-const HEAD: u64 = 8;
+const HEAD: u64 = 16;
 
 /// First bytes of other formats, with advice.
-const FORMS: [(&[u8], &str); 7] = [
+const FORMS: [(&[u8], &str); 14] = [
     (b"PK\x03\x04", "a ZIP archive or a workbook such as .xlsx; save the table as `CSV UTF-8`"),
     (b"\xd0\xcf\x11\xe0", "a workbook of the old .xls form; save the table as `CSV UTF-8`"),
     (b"\x1f\x8b", "a file compressed by gzip (.gz); unpack it first"),
     (b"\xfd7zXZ", "a file compressed by xz; unpack it first"),
     (b"\x28\xb5\x2f\xfd", "a file compressed by zstd; unpack it first"),
     (b"BZh", "a file compressed by bzip2; unpack it first"),
+    (
+        b"MATLAB 5.0 MAT-f",
+        "a MATLAB file (.mat), whose numbers have no names; write them with `writetable`, or hand them to `Measurements.from_arrays` in Python (`scipy.io.loadmat`)",
+    ),
+    (
+        b"SQLite format 3\0",
+        "a ROS 2 bag in SQLite (.db3); write it as MCAP with `ros2 bag convert`, or read it in Python with `rosbags`",
+    ),
+    (
+        b"#ROSBAG V",
+        "a ROS 1 bag; write it as MCAP with `rosbags-convert`, or read it in Python with `rosbags`",
+    ),
+    (b"\x89MCAP0\r\n", "a ROS 2 bag (.mcap); write its messages as tables with `ros2 topic echo --csv`"),
+    (
+        b"\x89HDF\r\n\x1a\n",
+        "an HDF5 file, or one of MATLAB 7.3; hand its arrays to `Measurements.from_arrays` in Python (`h5py`)",
+    ),
+    (b"PAR1", "a Parquet file; hand it to `Measurements.from_dataframe` in Python (`pandas.read_parquet`)"),
+    (
+        b"\x93NUMPY",
+        "an array of NumPy (.npy); hand it to `Measurements.from_arrays` in Python (`numpy.load`)",
+    ),
     (b"%PDF-", "a PDF document; it is the numbers that are needed, as text"),
 ];
 
@@ -38,6 +60,23 @@ pub(super) struct Input {
 /// # Errors
 /// [`ErrorKind::File`] if it is a directory, missing, unreadable, or of a form that is no text.
 pub(super) fn open(path: &Path, expected: &str, largest: u64) -> Result<Input> {
+    let (input, head) = open_any(path, expected, largest)?;
+    refuse_other_forms(path, expected, &head)?;
+    Ok(input)
+}
+
+/// Refuses a file that is no text, by its first bytes.
+pub(super) fn refuse_other_forms(path: &Path, expected: &str, head: &[u8]) -> Result<()> {
+    match FORMS.iter().find(|(start, _)| head.starts_with(start)) {
+        Some((_, form)) => {
+            Err(ErrorKind::File.error(format!("found {form}, expected {expected}")).in_file(path))
+        }
+        None => Ok(()),
+    }
+}
+
+/// The same of any form, with its first bytes.
+pub(super) fn open_any(path: &Path, expected: &str, largest: u64) -> Result<(Input, Vec<u8>)> {
     let error = |message: String| ErrorKind::File.error(message).in_file(path);
     let disk = disk::here();
     let opened = if is_standard_input(path) {
@@ -56,11 +95,9 @@ pub(super) fn open(path: &Path, expected: &str, largest: u64) -> Result<Input> {
     })?;
     let mut head = Vec::new();
     rest.by_ref().take(HEAD).read_to_end(&mut head).map_err(|cause| unreadable(path, &cause, expected))?;
-    if let Some((_, form)) = FORMS.iter().find(|(start, _)| head.starts_with(start)) {
-        return Err(error(format!("found {form}, expected {expected}")));
-    }
     // One byte more than allowed shows that the file is too large.
-    Ok(Input { bytes: Cursor::new(head).chain(rest.take(largest - HEAD + 1)), largest })
+    let input = Input { bytes: Cursor::new(head.clone()).chain(rest.take(largest - HEAD + 1)), largest };
+    Ok((input, head))
 }
 
 #[cfg(test)]

@@ -19,8 +19,9 @@ pub(crate) mod stated;
 mod urscript;
 
 use crate::error::Result;
+use crate::robot::Robot;
 use axes::Axes;
-use parsed::Parsed;
+use parsed::{Meant, Parsed};
 
 pub use given::Given;
 pub use language::Language;
@@ -37,4 +38,33 @@ pub(crate) fn parse(language: Language, text: &[u8], given: &Given, axes: &Axes)
         Language::Rapid => Ok(rapid::parse(text, given, axes)),
         Language::Fanuc => Ok(fanuc::parse(text, given, axes)),
     }
+}
+
+/// Joint readings of a program, in the order of its motions, or of its text where it has none.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct JointTargets {
+    /// Line, name and readings (rad, m) of each.
+    pub(crate) targets: Vec<(usize, String, Vec<f64>)>,
+    /// Lines of targets that are poses.
+    pub(crate) poses: Vec<usize>,
+    /// What is not known.
+    pub(crate) listed: Vec<Listed>,
+}
+
+/// The joint targets of a program of a robot.
+///
+/// # Errors
+/// As [`parse`].
+pub(crate) fn joint_targets(language: Language, text: &[u8], robot: &Robot) -> Result<JointTargets> {
+    let parsed = parse(language, text, &Given::default(), &Axes::of(robot))?;
+    let is_joints = |at: &usize| parsed.targets.get(*at).is_some_and(|it| it.meant == Meant::Joints);
+    let moved: Vec<usize> = parsed.motions.iter().map(|it| it.target).filter(is_joints).collect();
+    let all: Vec<usize> = (0..parsed.targets.len()).filter(is_joints).collect();
+    let order = if moved.is_empty() { all } else { moved };
+    let of = |at: usize| {
+        let target = parsed.targets.get(at)?;
+        Some((target.line, target.name.clone(), target.scaled()))
+    };
+    let poses = parsed.targets.iter().filter(|it| it.meant != Meant::Joints).map(|it| it.line).collect();
+    Ok(JointTargets { targets: order.into_iter().filter_map(of).collect(), poses, listed: parsed.listed })
 }

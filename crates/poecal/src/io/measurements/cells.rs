@@ -90,6 +90,9 @@ pub(in crate::io) struct Cell<'a> {
 }
 
 impl<'a> Cell<'a> {
+    /// An empty one.
+    pub(super) const EMPTY: Self = Cell { raw: "", offset: 0, escaped: false };
+
     /// The text without doubled quotes, and without the apostrophe that our own files put before texts that a spreadsheet would run.
     pub(in crate::io) fn text(&self) -> Cow<'a, str> {
         let text = plain(self.raw);

@@ -108,7 +108,7 @@ fn beside_name(text: &str) -> Option<String> {
     Some(format!("{stem}position{bracket}{number}"))
 }
 
-fn is_number(text: &str) -> bool {
+pub(super) fn is_number(text: &str) -> bool {
     text.replace(',', ".").parse::<f64>().is_ok()
 }
 

@@ -19,7 +19,22 @@ pub(super) struct JointRows {
     pub(super) readings: Vec<f64>,
     pub(super) ids: Vec<String>,
     pub(super) lines: Vec<usize>,
+    /// Whether no column of an angle states its unit.
+    pub(super) is_without_unit: bool,
+    /// Of each reading of a row, whether it is an angle.
+    pub(super) turns: Vec<bool>,
     pub(super) controller: Option<Controller>,
+}
+
+impl JointRows {
+    /// The same with its angles in degrees.
+    pub(super) fn in_degrees(&self) -> Self {
+        let of = |(value, turns): (&f64, &bool)| if *turns { value.to_radians() } else { *value };
+        JointRows {
+            readings: self.readings.iter().zip(self.turns.iter().cycle()).map(of).collect(),
+            ..self.clone()
+        }
+    }
 }
 
 /// A file of joint readings and one of measurements.

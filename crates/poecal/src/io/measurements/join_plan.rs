@@ -7,8 +7,8 @@ use super::corner_columns::{are_corners, are_readings_of_pictures};
 use super::layout::ColumnLayout;
 use super::mapping::{ColumnMap, ColumnSpec};
 use super::messages::are_messages;
+use super::recorded::Opening;
 use super::table::Table;
-use super::text::Blocks;
 use super::{Frames, ReadOptions};
 use crate::error::Result;
 use crate::io::disk::is_file;
@@ -83,7 +83,7 @@ fn part(path: &Path, robot: &Robot, options: &ReadOptions, map: &ColumnMap) -> P
         return Part::Whole;
     }
     let kind = || -> Result<Part> {
-        let mut blocks = Blocks::open(path, "a measurement file (CSV)")?;
+        let mut blocks = Opening { robot, options }.blocks(path, "a measurement file (CSV)")?;
         blocks.begin()?;
         if are_messages(path, blocks.text())? {
             return Ok(Part::Whole);

@@ -13,11 +13,12 @@ use super::mapping::ColumnMap;
 use super::number::Numbers;
 use super::read::Reader;
 use super::table::Table;
-use super::text::Blocks;
 use super::understanding::{self, FileUnderstanding};
-use crate::error::Result;
+use super::units::UnitSource;
+use crate::error::{ErrorKind, Result};
 use crate::measurement::Dataset;
 use crate::start::Unpaired;
+use crate::unit::Unit;
 
 impl<'a> Reader<'a> {
     /// Reads files of which some have the joint readings of others: each those of the files behind it, up to the next file of readings; the first
@@ -31,20 +32,37 @@ impl<'a> Reader<'a> {
                 (Part::Joints, _) => joints = Some(self.joint_rows(path)?),
                 (Part::Measured { .. }, Some(known)) => self.measured(path, known, map)?,
                 (Part::Measured { .. }, None) | (Part::Whole, _) => {
-                    self.file(path, Blocks::open(path, "a measurement file (CSV)")?)?;
+                    let blocks = self.opening().blocks(path, "a measurement file (CSV)")?;
+                    self.file(path, blocks)?;
                 }
             }
         }
         Ok(())
     }
 
-    /// Reads a file of joint readings alone.
+    /// Reads a file of joint readings alone. Angles without a unit that are no radians are degrees: the nominal robot then agrees with the pairs, or
+    /// they are refused.
     fn joint_rows(&mut self, path: &Path) -> Result<JointRows> {
-        let mut table = Table::open(path, Blocks::open(path, "a file of joint readings (CSV)")?, self.map)?;
-        let layout = ColumnLayout::joints(&table.header, self.robot, self.options, self.map)?;
-        let numbers = Numbers::new(self.map.decimal);
+        let found = self.joint_rows_by(path, self.map);
+        let Err(error) = &found else { return found };
+        if error.kind() != ErrorKind::Unit || self.map.units.angle.is_some() {
+            return found;
+        }
+        let Ok(in_degrees) = self.map.clone().with_units("deg") else { return found };
+        let Ok(rows) = self.joint_rows_by(path, &in_degrees) else { return found };
+        self.found.warnings.push(took_degrees(path, "as radians they are too large"));
+        Ok(rows)
+    }
+
+    fn joint_rows_by(&mut self, path: &Path, map: &ColumnMap) -> Result<JointRows> {
+        let blocks = self.opening().blocks(path, "a file of joint readings (CSV)")?;
+        let mut table = Table::open(path, blocks, map)?;
+        let said = table.said();
+        let layout = ColumnLayout::joints(&table.header, self.robot, self.options, map)?;
+        let numbers = Numbers::new(map.decimal);
         let mut inputs = InputReader::new(&layout.inputs, layout.inputs.len(), numbers);
         let table_rows = rows_of(&mut table, &layout, &mut inputs, self.robot)?;
+        self.take_said(said);
         self.found.warnings.extend(table_rows.warnings);
         self.warn_of_ignored(path, &layout);
         self.take_controller(path, &layout)?;
@@ -65,11 +83,15 @@ impl<'a> Reader<'a> {
             pose: understanding::pose_word(layout.pose),
             ignored: layout.ignored.iter().map(|(name, _)| name.clone()).collect(),
         });
+        let turning = layout.inputs.iter().filter(|it| it.unit.of() == Unit::Radian);
         Ok(JointRows {
             path: path.to_path_buf(),
             readings: table_rows.readings,
             ids: table_rows.ids.iter().map(|id| id.trim().to_owned()).collect(),
             lines: table_rows.lines,
+            is_without_unit: turning.clone().count() > 0
+                && turning.clone().all(|it| it.unit_from == UnitSource::Si),
+            turns: layout.inputs.iter().map(|it| it.unit.of() == Unit::Radian).collect(),
             controller: layout.controller,
         })
     }
@@ -77,15 +99,25 @@ impl<'a> Reader<'a> {
     /// Reads a file of measurements alone, with the readings of another.
     fn measured(&mut self, path: &Path, joints: &JointRows, unread: &'a ColumnMap) -> Result<()> {
         let data = self.without_readings(path, unread)?;
-        let rows = Unpaired::new(self.robot, &joints.readings, &data);
-        let found =
-            Pairing { joints, path, data: &data, rows, robot: self.robot }.found(self.options.join)?;
+        let paired = |joints: &JointRows| {
+            let rows = Unpaired::new(self.robot, &joints.readings, &data);
+            Pairing { joints, path, data: &data, rows, robot: self.robot }.found(self.options.join)
+        };
+        let found = match paired(joints) {
+            Err(error) if joints.is_without_unit => {
+                let mut found = paired(&joints.in_degrees()).map_err(|_| error)?;
+                found.warnings.push(took_degrees(&joints.path, "as radians they fit no measurements"));
+                found
+            }
+            found => found?,
+        };
         self.found.notes.extend(found.notes);
         self.found.warnings.extend(found.warnings);
         // The same again, with the readings of each line.
         let usual = std::mem::replace(&mut self.map, unread);
         self.readings = Some(found.readings);
-        let read = Blocks::open(path, "a measurement file (CSV)").and_then(|blocks| self.file(path, blocks));
+        let blocks = self.opening().blocks(path, "a measurement file (CSV)");
+        let read = blocks.and_then(|blocks| self.file(path, blocks));
         (self.map, self.readings) = (usual, None);
         read
     }
@@ -96,4 +128,12 @@ impl<'a> Reader<'a> {
         reader.rows_alone(path)?;
         Ok(reader.found.data)
     }
+}
+
+/// The warning of readings without a unit that are degrees.
+fn took_degrees(path: &Path, reason: &str) -> String {
+    format!(
+        "{}: took the joint readings, which state no unit, as degrees: {reason}; --units deg says so",
+        path.display()
+    )
 }

@@ -8,6 +8,7 @@ use super::inputs::InputReader;
 use super::layout::ColumnLayout;
 use super::mapping::ColumnMap;
 use super::number::Numbers;
+use super::recorded::Opening;
 use super::scale::JointWatch;
 use super::table::{Table, refuse_more_rows};
 use super::text::Blocks;
@@ -36,7 +37,7 @@ pub struct JointsTable {
 /// As [`super::read`], of what concerns joints.
 pub fn read_joints(path: impl AsRef<Path>, robot: &Robot, options: &ReadOptions) -> Result<JointsTable> {
     let path = path.as_ref();
-    let blocks = Blocks::open_or_join(path, "a file of joint readings (CSV)")?;
+    let blocks = Opening { robot, options }.blocks(path, "a file of joint readings (CSV)")?;
     of_blocks(path, blocks, robot, options).map_err(|error| in_its_file(error, path))
 }
 

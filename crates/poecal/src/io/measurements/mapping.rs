@@ -186,6 +186,41 @@ impl ColumnMap {
         selection.joined(&instruments, &targets).map_err(|error| error.in_file(&self.path))
     }
 
+    /// States units of columns that state none, unless it states them itself.
+    pub(super) fn state_units(&mut self, words: &str) -> Result<()> {
+        let mut found = UnitDefaults::default();
+        for word in words.split(',').map(str::trim) {
+            let unit = NamedUnit::parse_any(word)?;
+            let place = if unit.of() == Unit::Metre { &mut found.length } else { &mut found.angle };
+            if place.replace(unit).is_some() {
+                return ErrorKind::Unit.refuse(format!(
+                    "found two units of one kind in `{words}`, expected one of lengths, one of angles, or both, like mm,deg"
+                ));
+            }
+        }
+        self.units.length = self.units.length.or(found.length);
+        self.units.angle = self.units.angle.or(found.angle);
+        Ok(())
+    }
+
+    /// The same with units of columns that state none.
+    pub(super) fn with_units(mut self, words: &str) -> Result<Self> {
+        self.state_units(words)?;
+        Ok(self)
+    }
+
+    /// Whether it names columns of joints or of what was measured.
+    pub(super) fn names_columns(&self) -> bool {
+        let has_columns = |spec: &ColumnSpec| spec.column.is_some() || spec.columns.is_some();
+        self.joints.values().any(has_columns)
+            || self.position.as_ref().is_some_and(|it| it.columns.is_some())
+            || self.orientation.is_some()
+            || !self.targets.is_empty()
+            || self.skip_lines > 0
+            || self.id.is_some()
+            || self.target.is_some()
+    }
+
     fn check(&self) -> Result<()> {
         let error = |message: String| ErrorKind::Syntax.refuse(message);
         if self.target.is_some() && self.target_name.is_some() {
@@ -297,6 +332,11 @@ fn check_columns<E: serde::de::Error>(columns: &BTreeMap<String, f64>) -> std::r
         return Err(E::custom(message));
     }
     Ok(())
+}
+
+/// The name of a column by its number, from 1, as tables without names have them.
+pub(super) fn numbered_column(number: usize) -> String {
+    format!("column {number}")
 }
 
 /// A string for `parse`; its error becomes the TOML error's message.

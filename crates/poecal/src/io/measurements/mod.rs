@@ -15,6 +15,7 @@ mod configurations;
 mod corner_columns;
 mod corner_names;
 mod counted;
+mod encodings;
 mod fit_where;
 mod gathering;
 mod header;
@@ -38,6 +39,7 @@ mod picture_files;
 mod picture_names;
 mod picture_poses;
 mod pixels;
+mod places;
 mod pose_columns;
 mod pose_file;
 mod pose_lists;
@@ -45,6 +47,7 @@ mod pose_names;
 mod pose_readings;
 mod pose_table;
 mod read;
+mod recorded;
 mod rewritten;
 mod row;
 mod scale;
@@ -119,6 +122,10 @@ pub struct ReadOptions {
     pub frames: Frames,
     /// How joint readings and measurements in two files find each other; found if it is not stated.
     pub join: Option<Join>,
+    /// The sheet of workbooks; that which holds a table if it is not stated.
+    pub sheet: Option<String>,
+    /// The body, marker or tool of recordings; that which moves if it is not stated.
+    pub body: Option<String>,
     /// Known distances between the sockets of a place.
     pub socket_distances: Option<SocketDistances>,
     /// What rows with a `plane` are that do not say it in `contact`.
@@ -134,6 +141,14 @@ pub struct ReadOptions {
 }
 
 impl ReadOptions {
+    /// States the units of columns that state none, in words like `mm`, `deg` or `mm,deg`; those of the mapping precede.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Unit`](crate::ErrorKind::Unit) of an unknown unit, or of two of one kind.
+    pub fn state_units(&mut self, words: &str) -> Result<()> {
+        self.mapping.get_or_insert_default().state_units(words)
+    }
+
     /// Adds the boards of a file or of words ([`read_boards`]), with what was understood of them.
     ///
     /// # Errors

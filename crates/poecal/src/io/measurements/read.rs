@@ -15,11 +15,12 @@ use super::messages::are_messages;
 use super::naming::Names;
 use super::number::Numbers;
 use super::picture_files::TakenByImage;
+use super::recorded::Opening;
 use super::scale::{self, JointWatch};
 use super::socket_distance::Sockets;
 use super::spread;
 use super::table::{Table, refuse_more_rows};
-use super::text::Blocks;
+use super::text::{Blocks, Said};
 use super::turns::{self, TurnWatch};
 use super::understanding::{self, ColumnUnderstanding, FileUnderstanding};
 use super::wrong_boards::refuse_wrong_boards;
@@ -60,7 +61,7 @@ fn read_all(paths: &[&Path], robot: &Robot, options: &ReadOptions) -> Result<Mea
         order.sort_by_key(|path| !has_readings_of_pictures(path, robot, reader.map));
     }
     for path in order {
-        let blocks = Blocks::open_or_join(path, "a measurement file (CSV)")?;
+        let blocks = reader.opening().blocks(path, "a measurement file (CSV)")?;
         reader
             .file(path, blocks)
             .map_err(|error| in_its_file(error, path))
@@ -86,7 +87,8 @@ pub fn parse(
 fn parse_at(text: &str, path: &Path, robot: &Robot, options: &ReadOptions) -> Result<MeasurementFile> {
     let no_map = ColumnMap::default();
     let mut reader = Reader::new(robot, options, &no_map);
-    reader.file(path, Blocks::new(path, text.as_bytes()))?;
+    let blocks = reader.opening().of_text(path, "a table (CSV)", Blocks::new(path, text.as_bytes()))?;
+    reader.file(path, blocks)?;
     reader.finish()
 }
 
@@ -168,12 +170,24 @@ impl<'a> Reader<'a> {
         }
     }
 
+    /// What files are opened with.
+    pub(super) fn opening(&self) -> Opening<'a> {
+        Opening { robot: self.robot, options: self.options }
+    }
+
+    /// Takes what was understood of a file when it was opened.
+    pub(super) fn take_said(&mut self, said: Said) {
+        self.found.notes.extend(said.notes);
+        self.found.warnings.extend(said.warnings);
+    }
+
     pub(super) fn file<'p>(&mut self, path: &'p Path, mut blocks: Blocks<'p>) -> Result<()> {
         blocks.begin()?;
         if are_messages(path, blocks.text())? {
             return self.messages(path, blocks);
         }
         let mut table = Table::open(path, blocks, self.map)?;
+        self.take_said(table.said());
         let joints = self.found.data.reading_names();
         if are_corners(&table.header, joints, self.map)? {
             return self.corners(path, table);
@@ -218,14 +232,16 @@ impl<'a> Reader<'a> {
 
     /// Takes the rows of a file and judges nothing.
     pub(super) fn rows_alone(&mut self, path: &Path) -> Result<()> {
-        let mut table = Table::open(path, Blocks::open(path, "a measurement file (CSV)")?, self.map)?;
+        let blocks = self.opening().blocks(path, "a measurement file (CSV)")?;
+        let mut table = Table::open(path, blocks, self.map)?;
         let layout = ColumnLayout::new(&table.header, self.robot, self.options, self.map)?;
         let numbers = Numbers::new(self.map.decimal);
         let mut inputs = InputReader::new(&layout.inputs, self.found.data.reading_names().len(), numbers);
         self.found.data.files.push(path.to_path_buf());
         self.rows(&mut table, &layout, &mut inputs)?;
         self.found.data.ids.resize(self.found.data.len(), String::new());
-        Ok(())
+        // A wrong unit would be taken for a wrong order.
+        scale::check_positions(path, self.robot, &layout, 0.0, &self.found.data.observations)
     }
 
     /// Takes all rows of a file, and counts them with the lost beams among them.

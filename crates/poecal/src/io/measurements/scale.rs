@@ -250,7 +250,7 @@ impl OneJoint<'_> {
         };
         format!(
             "found readings of up to {} {stated}, {outside}, expected another unit, most likely {symbol}; \
-             write `{}[{symbol}]` in the header, or the unit in the mapping{per_cent}",
+             write `{}[{symbol}]` in the header, or say --units {symbol}{per_cent}",
             short(extreme),
             input.name
         )
@@ -368,7 +368,7 @@ fn positions_message(inputs: [&Input; 3], far: [f64; 3], apart: Vector3<f64>, re
     let written: Vec<String> = headers.iter().map(|(name, unit)| format!("{name}[{unit}]")).collect();
     Some(format!(
         "found {what} up to {} {stated} from their middle, where the robot reaches {} {stated}{others}, expected another \
-         unit, most likely {smaller}; write `{}` in the header, or the unit in the mapping",
+         unit, most likely {smaller}; write `{}` in the header, or say --units {smaller}",
         short(unit.from_si(if own.len() == 3 { apart.norm() } else { apart[own[0]].abs() })),
         short(unit.from_si(reach)),
         written.join(","),

@@ -3,12 +3,15 @@
 use std::path::Path;
 
 use super::cells::{Cell, Separator, character_column, split, split_line};
-use super::header::{Header, are_units};
+use super::header::{Header, are_units, is_number};
 use super::mapping::ColumnMap;
-use super::text::{Blocks, Lines};
+use super::places::Places;
+use super::text::{Blocks, Lines, Said};
 use crate::error::{Error, ErrorKind, Result};
 use crate::io::looks_like::model_for_table;
 
+/// Most lines in which the header is sought.
+const LINES_ABOVE: usize = 40;
 /// Most lines below the header that are checked if it is none.
 const LINES_BELOW: usize = 10;
 
@@ -18,8 +21,8 @@ pub(super) struct Row<'t> {
     pub(super) line: usize,
     pub(super) text: &'t str,
     pub(super) cells: &'t [Cell<'t>],
-    /// Whether the text is another one than that of the file, so that columns mean nothing.
-    is_copy: bool,
+    /// Where it is in the file, if the table was made of another text.
+    places: Option<&'t Places>,
 }
 
 /// A file, read block by block.
@@ -29,8 +32,10 @@ pub(super) struct Table<'a> {
     /// The line that states the separator, as `sep=;`.
     pub(super) separator_line: Option<usize>,
     blocks: Blocks<'a>,
-    /// Of rows that were made of another file, its line of each.
-    lines: Option<Vec<usize>>,
+    /// Of rows that were made of another file, where they are in it.
+    places: Option<Places>,
+    /// The last line of the header in the blocks.
+    header_end: usize,
     /// Whether the rows of the current block are still to be returned.
     unread: bool,
 }
@@ -41,7 +46,7 @@ pub(super) struct TableRows<'t> {
     pub(super) text: &'t str,
     header: &'t Header<'t>,
     separator: Separator,
-    made_of: Option<&'t [usize]>,
+    places: Option<&'t Places>,
     lines: Lines<'t>,
     cells: Vec<Cell<'t>>,
 }
@@ -52,7 +57,8 @@ impl<'a> Table<'a> {
         blocks.begin()?;
         let none =
             || ErrorKind::Syntax.error("found no line with text, expected a header and rows").in_file(path);
-        let (mut line, mut text) = next_line(&mut blocks, map.skip_lines)?.ok_or_else(none)?;
+        let above = if map.skip_lines == 0 { lines_above(&blocks, map) } else { map.skip_lines };
+        let (mut line, mut text) = next_line(&mut blocks, above)?.ok_or_else(none)?;
         if let Some(error) = model_for_table(&text, path, line) {
             return Err(error);
         }
@@ -78,12 +84,20 @@ impl<'a> Table<'a> {
                 header.take_names(&cells);
             }
         }
-        Ok(Table { header, separator, separator_line, blocks, lines: None, unread: true })
+        let (header_end, places) = (header.last_line(), blocks.places().cloned());
+        if let Some(places) = &places {
+            header.line = places.line(header.line);
+            header.units_line = header.units_line.map(|line| places.line(line));
+        }
+        if above > map.skip_lines {
+            blocks.say(format!("{}: took line {} for the names of the columns", path.display(), header.line));
+        }
+        Ok(Table { header, separator, separator_line, blocks, places, header_end, unread: true })
     }
 
     /// The same with rows that were made of the lines of another file.
     pub(super) fn with_lines(self, lines: Vec<usize>) -> Self {
-        Table { lines: Some(lines), ..self }
+        Table { places: Some(Places { lines, sheet: None }), ..self }
     }
 
     /// The text before the first block of rows, of blocks that hold what they pass.
@@ -96,6 +110,11 @@ impl<'a> Table<'a> {
         self.blocks.is_marked()
     }
 
+    /// What was understood of the file, once.
+    pub(super) fn said(&mut self) -> Said {
+        self.blocks.said()
+    }
+
     /// Checksum of the bytes read so far.
     pub(super) fn sha256(&self) -> Option<String> {
         self.blocks.sha256()
@@ -106,11 +125,10 @@ impl<'a> Table<'a> {
         if !std::mem::take(&mut self.unread) && !self.blocks.advance()? {
             return Ok(None);
         }
-        let Table { header, separator, blocks, lines: made_of, .. } = self;
-        let lines = blocks.lines(header.last_line());
-        let text = blocks.text();
-        let made_of = made_of.as_deref();
-        Ok(Some(TableRows { text, header, separator: *separator, made_of, lines, cells: Vec::new() }))
+        let Table { header, separator, blocks, places, header_end, .. } = self;
+        let lines = blocks.lines(*header_end);
+        let (text, places) = (blocks.text(), places.as_ref());
+        Ok(Some(TableRows { text, header, separator: *separator, places, lines, cells: Vec::new() }))
     }
 }
 
@@ -125,7 +143,9 @@ impl TableRows<'_> {
             if self.cells.iter().all(|cell| cell.raw.is_empty()) {
                 continue;
             }
-            if found != expected {
+            if self.is_ended_otherwise(expected) {
+                self.cells.resize(expected, Cell::EMPTY);
+            } else if found != expected {
                 let place = match self.cells.get(expected) {
                     Some(extra) => character_column(text, extra.offset),
                     None => text.trim_end().chars().count() + 1,
@@ -149,33 +169,31 @@ impl TableRows<'_> {
                     return Err(ErrorKind::Measurement.error(message).at(path, line, place));
                 }
             }
-            let line = self.made_of.and_then(|lines| lines.get(line - 1)).copied().unwrap_or(line);
-            return Ok(Some(Row { path, line, text, cells: &self.cells, is_copy: self.made_of.is_some() }));
+            let line = self.places.map_or(line, |places| places.line(line));
+            return Ok(Some(Row { path, line, text, cells: &self.cells, places: self.places }));
         }
+    }
+
+    /// Whether a row has only another number of empty cells at its end than the header.
+    fn is_ended_otherwise(&self, expected: usize) -> bool {
+        let found = self.cells.len();
+        let more = self.cells.get(expected..).unwrap_or_default();
+        let missing = self.header.cells.get(found..).unwrap_or_default();
+        found != expected
+            && more.iter().all(|cell| cell.raw.is_empty())
+            && missing.iter().all(|cell| cell.text.is_empty())
     }
 
     /// Advice for a row with another number of cells than the header.
     fn count_hint(&self, text: &str) -> String {
         let (found, expected) = (self.cells.len(), self.header.cells.len());
         let mut cells = Vec::new();
-        let is_empty = |cell: &Cell<'_>| cell.raw.is_empty();
         let others = [Separator::Comma, Separator::Semicolon, Separator::Tab];
         let other = others.into_iter().find(|&other| {
             other != self.separator && split(text, other, &mut cells).is_ok() && cells.len() == expected
         });
         if let Some(other) = other {
             format!("; separated by {} there are {expected}: separate header and rows alike", other.symbol())
-        } else if self.cells.get(expected..).is_some_and(|more| !more.is_empty() && more.iter().all(is_empty))
-        {
-            "; the row ends with a separator that the header does not have: remove it, or add it to the header".to_owned()
-        } else if self
-            .header
-            .cells
-            .get(found..)
-            .is_some_and(|more| more.iter().all(|cell| cell.text.is_empty()))
-        {
-            "; the header ends with a separator that the row does not have: remove it, or add it to the rows"
-                .to_owned()
         } else if found > expected && self.separator == Separator::Comma {
             "; numbers with a decimal comma need another separator, such as `;`, or quotes".to_owned()
         } else if found < expected {
@@ -185,6 +203,43 @@ impl TableRows<'_> {
             String::new()
         }
     }
+}
+
+/// Number of lines above the header of a table that begins with other lines: the first line that names columns and has rows of numbers below it, or
+/// below a line of units, if the lines before are no table.
+fn lines_above(blocks: &Blocks<'_>, map: &ColumnMap) -> usize {
+    let some: Vec<(usize, &str)> = blocks.lines(0).take(LINES_ABOVE).collect();
+    let separator = |text: &str| map.separator.unwrap_or_else(|| Separator::recognised(text));
+    // Numbers of cells with a text and with a number, but for empty ones.
+    let counts = |text: &str, by: Separator| {
+        let mut cells = Vec::new();
+        if split(text, by, &mut cells).is_err() {
+            return (0, 0);
+        }
+        let numbers = cells.iter().filter(|cell| is_number(cell.raw)).count();
+        (cells.iter().filter(|cell| !cell.raw.is_empty()).count() - numbers, numbers)
+    };
+    let is_header = |at: usize| {
+        let Some((_, text)) = some.get(at) else { return false };
+        let by = separator(text);
+        let (names, numbers) = counts(text, by);
+        let is_row = |row: usize| some.get(row).is_some_and(|it| 2 * counts(it.1, by).1 >= names);
+        let is_units = |row: usize| some.get(row).is_some_and(|it| counts(it.1, by).1 == 0);
+        let first = if is_units(at + 1) { at + 2 } else { at + 1 };
+        let is_second = some.get(first + 1).is_none() || is_row(first + 1);
+        names >= 3 && numbers == 0 && is_row(first) && is_second
+    };
+    let is_stated =
+        some.first().is_some_and(|it| it.1.trim_start_matches('"').to_lowercase().starts_with("sep="));
+    if is_stated || is_header(0) {
+        return 0;
+    }
+    // Lines with as many cells are of one table.
+    let width = |at: usize| some.get(at).map(|it| counts(it.1, separator(it.1))).map_or(0, |it| it.0 + it.1);
+    (1..some.len())
+        .find(|at| is_header(*at) && width(*at) != width(0))
+        .and_then(|at| some.get(at))
+        .map_or(0, |it| it.0 - 1)
 }
 
 /// The first line after line `skip` that is neither blank nor a comment.
@@ -239,8 +294,10 @@ impl Row<'_> {
     /// An error at a cell.
     pub(super) fn error(&self, index: usize, message: impl Into<String>) -> Error {
         let (line, column) = self.place(index);
-        let error = ErrorKind::Measurement.error(message);
-        if self.is_copy { error.at_line(self.path, line) } else { error.at(self.path, line, column) }
+        match self.places {
+            Some(places) => places.error(self.path, line, index, ErrorKind::Measurement, message.into()),
+            None => ErrorKind::Measurement.error(message).at(self.path, line, column),
+        }
     }
 }
 

@@ -54,7 +54,9 @@ impl Builder<'_> {
     fn target(&mut self, target: &TargetSpec, is_only: bool) -> Result<TargetLayout> {
         let prefix = if is_only { String::new() } else { format!("{} ", target.name) };
         let kinds = if is_only { self.kinds()? } else { Vec::new() };
-        let is_named = target.position.columns.is_some() || ["x", "y", "z"].iter().any(|name| self.has(name));
+        let is_named = target.position.columns.is_some()
+            || ["x", "y", "z"].iter().any(|name| self.has(name))
+            || self.has_large_axes();
         let position = match kinds.is_empty() || is_named {
             true => Some(self.position(&prefix, &target.position)?),
             false => None,
@@ -83,6 +85,12 @@ impl Builder<'_> {
             sigma_rotation,
             kinds,
         })
+    }
+
+    /// Whether the position is in columns X, Y, Z, in large letters.
+    fn has_large_axes(&self) -> bool {
+        !["x", "y", "z"].iter().any(|name| self.has(name))
+            && ["X", "Y", "Z"].iter().all(|name| self.has(name))
     }
 
     /// Whether the header has a column of this name that is not used otherwise.
@@ -141,8 +149,8 @@ impl Builder<'_> {
     fn position(&mut self, prefix: &str, spec: &PositionSpec) -> Result<[usize; 3]> {
         let mut indices = [0; 3];
         for (i, (axis, index)) in ["x", "y", "z"].into_iter().zip(&mut indices).enumerate() {
-            let column =
-                spec.columns.as_ref().and_then(|columns| columns.get(i)).map_or(axis, String::as_str);
+            let own = if self.has_large_axes() { ["X", "Y", "Z"][i] } else { axis };
+            let column = spec.columns.as_ref().and_then(|columns| columns.get(i)).map_or(own, String::as_str);
             let purpose = format!("for the position {prefix}{axis}");
             *index =
                 self.column_input(&format!("{prefix}{axis}"), column, Unit::Metre, spec.unit, &purpose)?;

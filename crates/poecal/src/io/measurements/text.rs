@@ -4,6 +4,8 @@ use std::io::{Cursor, Read};
 use std::path::Path;
 
 use super::configurations::{self, Configurations};
+use super::encodings::{is_utf16, of_utf16, of_windows_1252};
+use super::places::Places;
 use crate::error::{Error, ErrorKind, Result};
 use crate::io::hashes::Hashing;
 use crate::io::source::{self, Input, LARGEST_TABLE, LARGEST_TEXT, unreadable};
@@ -19,8 +21,8 @@ const LONGEST_LINE: usize = 16 << 20;
 enum TextSource<'a> {
     File(Hashing<Input>),
     Text(&'a [u8]),
-    /// Made of the files of a folder, with their checksum.
-    Folder(Cursor<Vec<u8>>, String),
+    /// Made of other files, with the checksum of their bytes.
+    Made(Cursor<Vec<u8>>, Option<String>),
 }
 
 /// A text in blocks of whole lines, so that large files are never held whole.
@@ -43,6 +45,19 @@ pub(super) struct Blocks<'a> {
     is_marked: bool,
     /// The blocks before the current one, where they are asked for.
     passed: Option<String>,
+    /// Whether bytes beyond ASCII are Windows-1252, and not UTF-8.
+    is_windows: Option<bool>,
+    /// Where the lines of a text that was made of a file are in it.
+    places: Option<Places>,
+    /// What was understood of the file.
+    said: Said,
+}
+
+/// What was understood of a file, a sentence each.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Said {
+    pub(super) notes: Vec<String>,
+    pub(super) warnings: Vec<String>,
 }
 
 impl<'a> Blocks<'a> {
@@ -58,7 +73,37 @@ impl<'a> Blocks<'a> {
             return Blocks::open(path, expected);
         }
         let Configurations { text, sha256 } = configurations::read(path)?;
-        Ok(Blocks::of(path, expected, TextSource::Folder(Cursor::new(text.into_bytes()), sha256), BLOCK))
+        Ok(Blocks::made(path, expected, text, Some(sha256)))
+    }
+
+    /// The blocks of a text that was made of a file or a folder, with the checksum of its bytes.
+    pub(super) fn made(path: &'a Path, expected: &'a str, text: String, sha256: Option<String>) -> Self {
+        Blocks::of(path, expected, TextSource::Made(Cursor::new(text.into_bytes()), sha256), BLOCK)
+    }
+
+    /// The same with the places of its lines, and what was understood.
+    pub(super) fn with_places(self, places: Places, said: Said) -> Self {
+        Blocks { places: Some(places), said, ..self }
+    }
+
+    /// The blocks of an input that is open.
+    pub(super) fn of_input(path: &'a Path, expected: &'a str, input: Input) -> Self {
+        Blocks::of(path, expected, TextSource::File(Hashing::new(input)), BLOCK)
+    }
+
+    /// The places of the lines in the file that they were made of.
+    pub(super) fn places(&self) -> Option<&Places> {
+        self.places.as_ref()
+    }
+
+    /// Adds what was understood of the file.
+    pub(super) fn say(&mut self, note: String) {
+        self.said.notes.push(note);
+    }
+
+    /// What was understood of the file, once.
+    pub(super) fn said(&mut self) -> Said {
+        std::mem::take(&mut self.said)
     }
 
     /// The blocks of a text; messages call it `path`.
@@ -84,6 +129,9 @@ impl<'a> Blocks<'a> {
             lines: 0,
             is_marked: false,
             passed: None,
+            is_windows: None,
+            places: None,
+            said: Said::default(),
         }
     }
 
@@ -103,7 +151,7 @@ impl<'a> Blocks<'a> {
             let more = match &mut self.source {
                 TextSource::File(file) => file.take(size).read_to_end(&mut bytes),
                 TextSource::Text(text) => text.take(size).read_to_end(&mut bytes),
-                TextSource::Folder(text, _) => text.take(size).read_to_end(&mut bytes),
+                TextSource::Made(text, _) => text.take(size).read_to_end(&mut bytes),
             };
             let more = more.map_err(|error| unreadable(self.path, &error, self.expected))?;
             let end = memchr::memrchr(b'\n', bytes.get(known..).unwrap_or_default());
@@ -124,6 +172,9 @@ impl<'a> Blocks<'a> {
             }
         }
         let is_first = self.newline.is_none();
+        if is_first && is_utf16(&bytes) {
+            bytes = self.decoded(bytes)?;
+        }
         if is_first {
             self.newline = Some(if memchr::memchr(b'\n', &bytes).is_some() { b'\n' } else { b'\r' });
         }
@@ -131,15 +182,60 @@ impl<'a> Blocks<'a> {
         if let Some(at) = memchr::memchr(0, &bytes) {
             return Err(not_utf8(self.path, &bytes, at, self.lines));
         }
-        let text = String::from_utf8(bytes);
-        self.text = text.map_err(|error| {
-            not_utf8(self.path, error.as_bytes(), error.utf8_error().valid_up_to(), self.lines)
-        })?;
+        self.text = self.text_of(bytes)?;
         if is_first && self.text.starts_with('\u{feff}') {
             self.text.remove(0);
             self.is_marked = true;
         }
         Ok(!self.text.is_empty())
+    }
+
+    /// The text of bytes: UTF-8, or Windows-1252 where the first bytes beyond ASCII are no UTF-8.
+    fn text_of(&mut self, bytes: Vec<u8>) -> Result<String> {
+        if self.is_windows == Some(true) {
+            return of_windows_1252(&bytes).map_err(|at| not_utf8(self.path, &bytes, at, self.lines));
+        }
+        if self.is_windows.is_none() && !bytes.is_ascii() {
+            let is_utf8 = std::str::from_utf8(&bytes);
+            self.is_windows = Some(is_utf8.is_err_and(|it| bytes[..it.valid_up_to()].is_ascii()));
+            if self.is_windows == Some(true) && of_windows_1252(&bytes).is_ok() {
+                let at = bytes.iter().position(|it| !it.is_ascii()).unwrap_or_default();
+                let (line, _) = position(&String::from_utf8_lossy(&bytes[..at]), at);
+                self.said.notes.push(format!(
+                    "the text is Windows-1252, since line {} has the byte 0x{:02X}, which is no UTF-8",
+                    self.lines + line,
+                    bytes.get(at).copied().unwrap_or_default()
+                ));
+                return self.text_of(bytes);
+            }
+        }
+        String::from_utf8(bytes).map_err(|error| {
+            not_utf8(self.path, error.as_bytes(), error.utf8_error().valid_up_to(), self.lines)
+        })
+    }
+
+    /// The whole text of UTF-16 as UTF-8; it becomes the source, without its first block, which is returned.
+    fn decoded(&mut self, mut bytes: Vec<u8>) -> Result<Vec<u8>> {
+        bytes.append(&mut self.rest);
+        let most = LARGEST_TEXT;
+        let more = match &mut self.source {
+            TextSource::File(file) => file.take(most).read_to_end(&mut bytes),
+            TextSource::Text(text) => text.take(most).read_to_end(&mut bytes),
+            TextSource::Made(text, _) => text.take(most).read_to_end(&mut bytes),
+        };
+        more.map_err(|error| unreadable(self.path, &error, self.expected))?;
+        if bytes.len() as u64 > most {
+            let message = format!("found UTF-16 text of more than {} MiB, expected UTF-8", most >> 20);
+            return Err(ErrorKind::File.error(message).in_file(self.path));
+        }
+        let text = of_utf16(&bytes).map_err(|(line, found)| {
+            let message = format!("found {found}, expected UTF-16 text as before, or UTF-8");
+            ErrorKind::Syntax.error(message).at_line(self.path, line)
+        })?;
+        let sha256 = self.sha256();
+        self.said.notes.push("the text is UTF-16".to_owned());
+        self.source = TextSource::Made(Cursor::default(), sha256);
+        Ok(text.into_bytes())
     }
 
     /// Reads the first block, if it has not been read.
@@ -169,7 +265,7 @@ impl<'a> Blocks<'a> {
         match &self.source {
             TextSource::File(file) => Some(file.sha256()),
             TextSource::Text(_) => None,
-            TextSource::Folder(_, sha256) => Some(sha256.clone()),
+            TextSource::Made(_, sha256) => sha256.clone(),
         }
     }
 
@@ -201,20 +297,13 @@ impl<'a> Blocks<'a> {
 
 /// The error for bytes that are no text, after so many lines.
 fn not_utf8(path: &Path, bytes: &[u8], valid: usize, lines: usize) -> Error {
-    let is_marked = bytes.starts_with(&[0xff, 0xfe]) || bytes.starts_with(&[0xfe, 0xff]);
-    // UTF-16 without a byte order mark: every other byte of the first two characters is zero.
-    let is_utf16 = is_marked || matches!(bytes, [0, 1..=255, 0, 1..=255, ..] | [1..=255, 0, 1..=255, 0, ..]);
-    if lines == 0 && is_utf16 {
-        let message = "found UTF-16 text, expected UTF-8; save the file as `CSV UTF-8`";
-        return ErrorKind::Syntax.error(message).in_file(path);
-    }
     let before = String::from_utf8_lossy(bytes.get(..valid).unwrap_or_default());
     let found = match bytes.get(valid) {
         None | Some(0) => "a NUL byte".to_owned(),
         Some(found) => format!("the byte 0x{found:02X}"),
     };
     let (line, column) = position(&before, before.len());
-    ErrorKind::Syntax.error(format!("found {found}, expected UTF-8 text; save the file as `CSV UTF-8`")).at(
+    ErrorKind::Syntax.error(format!("found {found}, expected text; save the file as `CSV UTF-8`")).at(
         path,
         lines + line,
         column,

@@ -1,0 +1,118 @@
+//! Makes tables in our form.
+
+use std::path::Path;
+
+use super::super::places::{Places, Sheet};
+use super::super::text::{Blocks, Said};
+use crate::error::{Error, ErrorKind};
+use crate::io::csv_text::cell;
+use crate::io::numbers::push_number;
+
+/// A table in our form, made of a file in another one.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Made {
+    text: String,
+    lines: Vec<usize>,
+    sheet: Option<Sheet>,
+    /// What was understood, in a few words each.
+    pub(super) said: Vec<String>,
+    /// What should be looked at, a sentence each.
+    pub(super) warned: Vec<String>,
+}
+
+/// Why a file of a known form is not read, and in which line.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Refused {
+    line: Option<usize>,
+    message: String,
+}
+
+/// A cell.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Value<'a> {
+    /// As it is in the file.
+    Text(&'a str),
+    Number(f64),
+    Empty,
+}
+
+impl Made {
+    /// A table with these columns, named in a line of the file.
+    pub(super) fn new<'c>(line: usize, columns: impl IntoIterator<Item = &'c str>) -> Self {
+        let mut made = Made::default();
+        made.row(line, columns.into_iter().map(Value::Text));
+        made
+    }
+
+    /// Adds a row of a line.
+    pub(super) fn row<'c>(&mut self, line: usize, cells: impl IntoIterator<Item = Value<'c>>) {
+        for (at, value) in cells.into_iter().enumerate() {
+            if at > 0 {
+                self.text.push(',');
+            }
+            match value {
+                Value::Text(text) => self.text.push_str(&cell(text)),
+                Value::Number(number) => push_number(&mut self.text, number),
+                Value::Empty => {}
+            }
+        }
+        self.text.push('\n');
+        self.lines.push(line);
+    }
+
+    /// The same of a sheet of a workbook.
+    pub(super) fn in_sheet(self, sheet: Sheet) -> Self {
+        Made { sheet: Some(sheet), ..self }
+    }
+
+    /// Number of rows.
+    pub(super) fn rows(&self) -> usize {
+        self.lines.len().saturating_sub(1)
+    }
+
+    /// Its blocks.
+    pub(super) fn blocks<'p>(
+        self,
+        path: &'p Path,
+        expected: &'p str,
+        sha256: Option<String>,
+        title: &str,
+    ) -> Blocks<'p> {
+        let words = self.said.join("; ");
+        let said = format!(
+            "{}: took it for {title}{}{words}",
+            path.display(),
+            if words.is_empty() { "" } else { ": " }
+        );
+        let places = Places { lines: self.lines, sheet: self.sheet };
+        let warnings = self.warned.into_iter().map(|it| format!("{}: {it}", path.display())).collect();
+        let said = Said { notes: vec![said], warnings };
+        Blocks::made(path, expected, self.text, sha256).with_places(places, said)
+    }
+}
+
+impl Refused {
+    /// A file that is not read as a whole.
+    pub(super) fn whole<T>(message: impl Into<String>) -> Result<T, Self> {
+        Err(Refused { line: None, message: message.into() })
+    }
+
+    /// One that is not read because of a line.
+    pub(super) fn at<T>(line: usize, message: impl Into<String>) -> Result<T, Self> {
+        Err(Refused { line: Some(line), message: message.into() })
+    }
+
+    /// Of an error without a file.
+    pub(super) fn of(error: &Error) -> Self {
+        Refused { line: error.place().and_then(|it| it.line), message: error.message().to_owned() }
+    }
+
+    /// The error.
+    pub(super) fn error(self, path: &Path) -> Error {
+        let error = ErrorKind::Measurement.error(self.message);
+        match self.line {
+            Some(line) => error.at_line(path, line),
+            None => error.in_file(path),
+        }
+    }
+}

@@ -1,0 +1,131 @@
+//! Files as instruments, controllers, recorders and spreadsheets write them, as tables in our form. They are recognised by what is in them,
+//! never by their names.
+
+mod auto_id;
+mod bodies;
+mod figaroh;
+mod headerless;
+mod leica;
+mod maker;
+mod motive;
+mod ndi;
+mod programs;
+mod qualisys;
+mod refused;
+mod robodk;
+mod spatial_analyzer;
+mod words;
+#[cfg(feature = "workbooks")]
+mod workbook;
+
+#[cfg(feature = "workbooks")]
+use std::io::Read as _;
+use std::path::Path;
+
+use self::maker::{Made, Refused};
+use super::ReadOptions;
+use super::configurations;
+use super::mapping::ColumnMap;
+use super::text::Blocks;
+use crate::error::ErrorKind;
+#[cfg(feature = "workbooks")]
+use crate::io::hashes::Hashing;
+#[cfg(feature = "workbooks")]
+use crate::io::source::Input;
+use crate::io::source::{self, LARGEST_TABLE};
+use crate::robot::{ReadingKind, Robot};
+
+/// What files are opened with.
+#[derive(Clone, Copy)]
+pub(super) struct Opening<'a> {
+    pub(super) robot: &'a Robot,
+    pub(super) options: &'a ReadOptions,
+}
+
+/// A form of files.
+#[derive(Clone, Copy)]
+struct Form {
+    /// What files of this form are, as in "points of SpatialAnalyzer".
+    title: &'static str,
+    /// Whether a text is of this form, by its beginning.
+    is_it: fn(&str, &Opening<'_>) -> bool,
+    /// The table of a text.
+    table: fn(&str, &Opening<'_>) -> Result<Made, Refused>,
+}
+
+/// All forms of texts; the last one is what is left.
+const FORMS: [Form; 10] = [
+    spatial_analyzer::FORM,
+    motive::FORM,
+    qualisys::FORM,
+    ndi::FORM,
+    leica::FORM,
+    programs::FORM,
+    robodk::FORM,
+    figaroh::FORM,
+    auto_id::FORM,
+    headerless::FORM,
+];
+
+impl Opening<'_> {
+    /// Columns of the joints in the robot's order, those that turn in this unit, and slides in metres or millimetres.
+    fn joint_columns(&self, angle: &str) -> Vec<String> {
+        let length = if angle == "rad" { "m" } else { "mm" };
+        let names = self.robot.joint_reading_names();
+        let column =
+            |(name, slides): (&String, bool)| format!("{name}[{}]", if slides { length } else { angle });
+        names.iter().zip(self.slides()).map(column).collect()
+    }
+
+    /// Of each joint reading, whether it is a length.
+    fn slides(&self) -> Vec<bool> {
+        let names = self.robot.joint_reading_names();
+        names.iter().map(|name| self.robot.reading_kind(name) == ReadingKind::Length).collect()
+    }
+
+    /// The blocks of a file in our form, or of the table that a file in another one makes.
+    pub(super) fn blocks<'p>(&self, path: &'p Path, expected: &'p str) -> crate::Result<Blocks<'p>> {
+        if configurations::is_folder(path) {
+            return Blocks::open_or_join(path, expected);
+        }
+        let (input, head) = source::open_any(path, expected, LARGEST_TABLE)?;
+        #[cfg(feature = "workbooks")]
+        if workbook::is_one(&head) {
+            return self.workbook(path, expected, input);
+        }
+        source::refuse_other_forms(path, expected, &head)?;
+        self.of_text(path, expected, Blocks::of_input(path, expected, input))
+    }
+
+    /// The table of a workbook.
+    #[cfg(feature = "workbooks")]
+    fn workbook<'p>(&self, path: &'p Path, expected: &'p str, input: Input) -> crate::Result<Blocks<'p>> {
+        let mut bytes = Vec::new();
+        let mut input = Hashing::new(input);
+        let read = input.by_ref().take(workbook::LARGEST + 1).read_to_end(&mut bytes);
+        read.map_err(|error| source::unreadable(path, &error, expected))?;
+        let made = workbook::table(bytes, self).map_err(|it| it.error(path))?;
+        Ok(made.blocks(path, expected, Some(input.sha256()), "a workbook"))
+    }
+
+    /// The blocks of a text, or of the table that it makes.
+    pub(super) fn of_text<'p>(
+        &self,
+        path: &'p Path,
+        expected: &'p str,
+        mut blocks: Blocks<'p>,
+    ) -> crate::Result<Blocks<'p>> {
+        blocks.begin()?;
+        if let Some(message) = refused::found(blocks.text()) {
+            return Err(ErrorKind::Measurement.error(message).in_file(path));
+        }
+        // A mapping that names columns reads the text as it is.
+        let is_mapped = self.options.mapping.as_ref().is_some_and(ColumnMap::names_columns);
+        let mut forms = FORMS.iter().skip(if is_mapped { FORMS.len() - 1 } else { 0 });
+        let Some(form) = forms.find(|form| (form.is_it)(blocks.text(), self)) else { return Ok(blocks) };
+        let text = blocks.rest()?;
+        let mut made = (form.table)(&text, self).map_err(|it| it.error(path))?;
+        made.said.splice(0..0, blocks.said().notes);
+        Ok(made.blocks(path, expected, blocks.sha256(), form.title))
+    }
+}
