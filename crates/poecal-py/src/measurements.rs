@@ -35,7 +35,7 @@ fn options(
     fit_where: Option<&str>,
     ignore_sets: bool,
     strict: bool,
-    (frames, join): (Frames, Option<Join>),
+    (frames, join, lag): (Frames, Option<Join>, Option<&str>),
     (socket_distance, contact): (Option<&str>, PlaneContact),
     [units, sheet, body]: [Option<&str>; 3],
     [instrument_noise, cameras, markers]: [Option<&[String]>; 3],
@@ -43,6 +43,7 @@ fn options(
     let mut options = ReadOptions {
         frames,
         join,
+        lag: lag.map(str::parse).transpose()?,
         sheet: sheet.map(str::to_owned),
         body: body.map(str::to_owned),
         mapping: columns.map(ColumnMap::read).transpose()?,
@@ -92,8 +93,10 @@ impl Measurements {
     ///     Which rows share a frame of the measuring device: "common", all (or those of one name in the column `instrument`), or
     ///     "per-file", those of a file.
     /// join
-    ///     How joint readings and measurements in two files find each other: "name" or "rows"; by default by name, else by their order, if the nominal
-    ///     robot agrees with no other one as well.
+    ///     How joint readings and measurements in two files find each other: "name", "rows" or "time"; by default by name, else recordings at the
+    ///     times of their stands, and lists by their order, if the nominal robot agrees with no other one as well.
+    /// lag
+    ///     Lag of the clocks of two recordings, the measurements' time less that of the joint readings, "12s+-2s"; by default it is found.
     /// units
     ///     Units of columns that state none, "mm,deg"; those of a mapping precede.
     /// sheet
@@ -125,7 +128,7 @@ impl Measurements {
     /// MeasurementError
     ///     It holds no measurements of this robot; the error tells the line and the column.
     #[staticmethod]
-    #[pyo3(signature = (paths, robot, *, columns=None, fit_where=None, ignore_sets=false, strict=false, frames="common", join=None, units=None, sheet=None, body=None, socket_distance=None, contact="point", instrument_noise=None, cameras=None, markers=None))]
+    #[pyo3(signature = (paths, robot, *, columns=None, fit_where=None, ignore_sets=false, strict=false, frames="common", join=None, lag=None, units=None, sheet=None, body=None, socket_distance=None, contact="point", instrument_noise=None, cameras=None, markers=None))]
     #[expect(clippy::too_many_arguments, reason = "the options of a Python function")]
     fn from_csv(
         py: Python<'_>,
@@ -137,6 +140,7 @@ impl Measurements {
         #[pyo3(from_py_with = arg::strict)] strict: bool,
         #[pyo3(from_py_with = arg::frames)] frames: &str,
         #[pyo3(from_py_with = arg::join)] join: Option<&str>,
+        #[pyo3(from_py_with = arg::lag)] lag: Option<&str>,
         #[pyo3(from_py_with = arg::units)] units: Option<&str>,
         #[pyo3(from_py_with = arg::sheet)] sheet: Option<&str>,
         #[pyo3(from_py_with = arg::body)] body: Option<&str>,
@@ -149,7 +153,7 @@ impl Measurements {
         let contact = chosen("contact", contact, &CONTACTS)?;
         let words = [("common", Frames::Common), ("per-file", Frames::PerFile)];
         let frames = chosen("frames", frames, &words)?;
-        let joins = [("name", Join::Name), ("rows", Join::Rows)];
+        let joins = [("name", Join::Name), ("rows", Join::Rows), ("time", Join::Time)];
         let join = join.map(|word| chosen("join", word, &joins)).transpose()?;
         let Paths(paths) = paths;
         let read = || {
@@ -159,7 +163,7 @@ impl Measurements {
                 fit_where,
                 ignore_sets,
                 strict,
-                (frames, join),
+                (frames, join, lag),
                 (socket_distance, contact),
                 [units, sheet, body],
                 [&instrument_noise, &cameras, &markers].map(|it| it.as_deref()),
@@ -314,7 +318,7 @@ impl Measurements {
                 fit_where,
                 ignore_sets,
                 strict,
-                (Frames::Common, None),
+                (Frames::Common, None, None),
                 (socket_distance, contact),
                 [units, None, None],
                 [&instrument_noise, &cameras, &markers].map(|it| it.as_deref()),

@@ -6,7 +6,7 @@ use clap::Args;
 use poecal::ErrorKind;
 use poecal::io::disk::is_file;
 use poecal::io::measurements::{
-    ColumnMap, Frames, InstrumentNoise, Join, PlaneContact, ReadOptions, SocketDistances, camera_file,
+    ColumnMap, Frames, InstrumentNoise, Join, Lag, PlaneContact, ReadOptions, SocketDistances, camera_file,
     read_cameras,
 };
 use poecal::io::output::{Existing, FilePlace};
@@ -134,13 +134,16 @@ pub(crate) struct Meaning {
     /// Which rows share a frame of the measuring device: per-file if it was moved between the files
     #[arg(long, value_parser = one_of(FRAMES), default_value = "common")]
     pub(crate) frames: Frames,
-    /// How a file of joint readings and one of measurements find each other [default: by name, else by their order, if the nominal robot agrees with
-    /// no other one as well]
+    /// How a file of joint readings and one of measurements find each other [default: by name, else recordings at the times of their stands and lists by
+    /// their order, if the nominal robot agrees with no other one as well]
     #[arg(long, value_parser = one_of(JOIN))]
     pub(crate) join: Option<Join>,
     /// Units of columns that state none, like mm,deg; those of a mapping precede
     #[arg(long, value_name = "UNIT[,UNIT]")]
     pub(crate) units: Option<String>,
+    /// Lag of the clocks of two recordings, the measurements' time less that of the joint readings, where their stands fit at several [default: found]
+    #[arg(long, value_name = "SECONDS[+-SECONDS]", allow_hyphen_values = true)]
+    pub(crate) lag: Option<Lag>,
     /// Sheet of workbooks [default: the only one that holds a table]
     #[arg(long, value_name = "NAME")]
     pub(crate) sheet: Option<String>,
@@ -175,6 +178,7 @@ impl Meaning {
             strict,
             frames,
             join: self.join,
+            lag: self.lag,
             sheet: self.sheet.clone(),
             body: self.body.clone(),
             contact,

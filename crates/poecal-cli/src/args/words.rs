@@ -78,6 +78,7 @@ pub(super) const JOIN: Words<Join> = &[
         "By their order; where their numbers differ, by what the nominal robot misses by least",
         Join::Rows,
     ),
+    ("time", "By the times of their stands, each file with a clock of its own", Join::Time),
 ];
 
 /// From where third axes count.

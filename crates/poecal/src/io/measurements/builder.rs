@@ -7,6 +7,7 @@ use super::inputs::{Input, InputSource, Term};
 use super::kinds;
 use super::mapping::{ColumnMap, ColumnSpec};
 use super::numbered::numbered;
+use super::streams::seconds_of;
 use super::units::{NamedUnit, UnitSource};
 use crate::error::{Error, ErrorKind, Result, distance_within, first_few};
 use crate::io::numbers::LARGEST_NUMBER;
@@ -316,6 +317,17 @@ impl<'a> Builder<'a> {
             self.mark(index);
         }
         Ok(index)
+    }
+
+    /// The column with the time of a row, and the seconds of one, if there is one.
+    pub(super) fn time_column(&mut self) -> Option<(usize, f64)> {
+        let cells = self.header.cells.iter().enumerate();
+        let mut times = cells
+            .filter(|(at, _)| !self.is_used(*at))
+            .filter_map(|(at, cell)| Some((at, seconds_of(&cell.name, cell.units().next())?)));
+        let found = times.next()?;
+        self.mark(found.0);
+        Some(found)
     }
 
     pub(super) fn id_column(&mut self) -> Result<Option<usize>> {

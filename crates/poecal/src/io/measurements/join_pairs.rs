@@ -3,14 +3,14 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-use super::Join;
 use super::join_plan::ReadingsByLine;
 use super::picture_names::Partners;
+use super::{Join, Lag};
 use crate::error::{Error, ErrorKind, Result, first_few};
 use crate::forensics::{DiagnosisOptions, diagnose};
 use crate::measurement::Dataset;
 use crate::robot::{Controller, Robot};
-use crate::start::{Agreement, Aligned, Order, Pair, Unpaired};
+use crate::start::{Agreement, Aligned, Lagged, Order, Pair, Span, Unpaired};
 
 /// Joint readings of a file.
 #[derive(Clone, Debug)]
@@ -23,6 +23,8 @@ pub(super) struct JointRows {
     pub(super) is_without_unit: bool,
     /// Of each reading of a row, whether it is an angle.
     pub(super) turns: Vec<bool>,
+    /// When each begins and ends, seconds, where they are stands of a stream.
+    pub(super) spans: Option<Vec<Span>>,
     pub(super) controller: Option<Controller>,
 }
 
@@ -44,6 +46,10 @@ pub(super) struct Pairing<'a> {
     pub(super) data: &'a Dataset,
     pub(super) rows: Unpaired<'a>,
     pub(super) robot: &'a Robot,
+    /// When each configuration in which was measured begins and ends, seconds, if that is known.
+    pub(super) spans: Option<&'a [Span]>,
+    /// The lag that was stated, and how far it may be off, seconds.
+    pub(super) lag: Option<Lag>,
 }
 
 /// Readings by line, and what is said of them.
@@ -56,8 +62,20 @@ pub(super) struct Joined {
 impl Pairing<'_> {
     /// The readings of each line, by names or by the order.
     pub(super) fn found(&self, join: Option<Join>) -> Result<Joined> {
-        let by_names = if join == Some(Join::Rows) { None } else { self.by_names() };
+        let by_names = if matches!(join, Some(Join::Rows | Join::Time)) { None } else { self.by_names() };
+        let clocks = self.joints.spans.as_deref().zip(self.spans);
         match (join, by_names) {
+            (Some(Join::Time), _) if let Some((joints, shots)) = clocks => self.by_lag(joints, shots),
+            (None, None) if let Some((joints, shots)) = clocks => {
+                // Without stands at the same times, their order may do.
+                self.by_lag(joints, shots).or_else(|error| match self.lag {
+                    None if self.lags(joints, shots).is_empty() => self.by_rows(false).map_err(|_| error),
+                    _ => Err(error),
+                })
+            }
+            (Some(Join::Time), _) => self.refuse(
+                "found no times of a stream in which the robot stands, expected a column `time` in both files, and stands of 0.3 s or longer".to_owned(),
+            ),
             (Some(Join::Name), None) => self.refuse(
                 "found no name that is in both, expected a column `id` in each, with the same names, or names that end in the same number"
                     .to_owned(),
@@ -69,6 +87,44 @@ impl Pairing<'_> {
             },
             (_, None) => self.by_rows(join.is_some()),
         }
+    }
+
+    /// Lags at which stands of two streams are the same.
+    fn lags(&self, joints: &[Span], shots: &[Span]) -> Vec<Lagged> {
+        self.rows.lagged(joints, shots, self.lag.map(|it| (it.lag_s, it.off_s)))
+    }
+
+    /// Stands of two streams, each with its clock.
+    fn by_lag(&self, joints: &[Span], shots: &[Span]) -> Result<Joined> {
+        let found = self.lags(joints, shots);
+        let words = |it: &Lagged| format!("{:.2} s ({:.3} mm)", it.lag_s, 1e3 * it.missed_m);
+        let stated = if self.lag.is_some() { " near the stated one" } else { "" };
+        let Some(best) = found.first() else {
+            return self.refuse(format!(
+                "found {} stands of the robot and {} of the measurements, and no lag of the clocks{stated} at which seven of them or more are the same,                  expected a recording of the same motion",
+                joints.len(),
+                shots.len()
+            ));
+        };
+        let alike: Vec<String> =
+            found.iter().filter(|it| it.missed_m < 2.0 * best.missed_m).map(words).collect();
+        if alike.len() > 1 {
+            return self.refuse(format!(
+                "found measurements that fit the joint readings at several lags of the clocks alike, {}, as of a program that repeats itself, expected one:                  state it by --lag, like --lag {:.1}s+-0.5s",
+                first_few(&alike),
+                best.lag_s
+            ));
+        }
+        let mut joined = self.judged(&best.pairs, Join::Time, self.lag.is_some())?;
+        joined.notes.push(format!(
+            "{}: {} stands of {} and of {} are the same, at a lag of {:.3} s of its clock",
+            self.path.display(),
+            best.pairs.len(),
+            joints.len(),
+            shots.len(),
+            best.lag_s
+        ));
+        Ok(joined)
     }
 
     fn by_rows(&self, is_stated: bool) -> Result<Joined> {
@@ -113,6 +169,7 @@ impl Pairing<'_> {
         let (by_name, option) = match how {
             Join::Name => ("by name", "name"),
             Join::Rows => ("row by row", "rows"),
+            Join::Time => ("at the times of their stands", "time"),
         };
         let found = self.rows.agreement(pairs);
         let mm = |metres: f64| format!("{:.3} mm", 1e3 * metres);

@@ -12,6 +12,7 @@ use super::table::Table;
 use super::{Frames, ReadOptions};
 use crate::error::Result;
 use crate::io::disk::is_file;
+use crate::measurement::Measurement;
 use crate::robot::{Controller, ReadingKind, Robot};
 
 /// What a file has.
@@ -29,6 +30,8 @@ pub(super) enum Part {
 #[derive(Clone, Debug, Default)]
 pub(super) struct ReadingsByLine {
     pub(super) lines: BTreeMap<usize, Vec<f64>>,
+    /// What was measured on an average of a line's stand, where lines are those of a stream.
+    pub(super) means: BTreeMap<usize, Vec<Measurement>>,
     /// How they are made of columns.
     pub(super) controller: Option<Controller>,
 }

@@ -3,7 +3,6 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use super::LostBeams;
 use super::inputs::InputReader;
 use super::join_pairs::{JointRows, Pairing};
 use super::join_plan::{Part, Plan, Planned};
@@ -12,12 +11,14 @@ use super::layout::ColumnLayout;
 use super::mapping::ColumnMap;
 use super::number::Numbers;
 use super::read::Reader;
+use super::streams::{stands_of_joints, stands_of_measured};
 use super::table::Table;
 use super::understanding::{self, FileUnderstanding};
 use super::units::UnitSource;
-use crate::error::{ErrorKind, Result};
+use super::{Join, LostBeams};
+use crate::error::{Error, ErrorKind, Result};
 use crate::measurement::Dataset;
-use crate::start::Unpaired;
+use crate::start::{Span, Unpaired};
 use crate::unit::Unit;
 
 impl<'a> Reader<'a> {
@@ -83,8 +84,9 @@ impl<'a> Reader<'a> {
             pose: understanding::pose_word(layout.pose),
             ignored: layout.ignored.iter().map(|(name, _)| name.clone()).collect(),
         });
+        let times = table_rows.times;
         let turning = layout.inputs.iter().filter(|it| it.unit.of() == Unit::Radian);
-        Ok(JointRows {
+        let rows = JointRows {
             path: path.to_path_buf(),
             readings: table_rows.readings,
             ids: table_rows.ids.iter().map(|id| id.trim().to_owned()).collect(),
@@ -92,16 +94,46 @@ impl<'a> Reader<'a> {
             is_without_unit: turning.clone().count() > 0
                 && turning.clone().all(|it| it.unit_from == UnitSource::Si),
             turns: layout.inputs.iter().map(|it| it.unit.of() == Unit::Radian).collect(),
+            spans: None,
             controller: layout.controller,
-        })
+        };
+        // A stream has no names of rows.
+        let is_listed = !rows.ids.is_empty() || matches!(self.options.join, Some(Join::Rows | Join::Name));
+        let Some(stands) = (if is_listed { None } else { stands_of_joints(&rows, &times) }) else {
+            return Ok(rows);
+        };
+        if stands.lines.len() < FEWEST_STANDS {
+            return Err(no_stands(path, "joint readings", stands.lines.len()));
+        }
+        self.found.notes.push(format!(
+            "{}: took the {} stands of the robot in its stream of joint readings",
+            path.display(),
+            stands.lines.len()
+        ));
+        Ok(stands)
     }
 
     /// Reads a file of measurements alone, with the readings of another.
     fn measured(&mut self, path: &Path, joints: &JointRows, unread: &'a ColumnMap) -> Result<()> {
-        let data = self.without_readings(path, unread)?;
+        let (data, times) = self.without_readings(path, unread)?;
+        let is_by_rows = matches!(self.options.join, Some(Join::Rows | Join::Name));
+        let stands = if is_by_rows || !joints.ids.is_empty() && !data.ids.iter().all(String::is_empty) {
+            None
+        } else {
+            stands_of_measured(&data, &times)
+        };
+        let few = |count: usize| count < FEWEST_STANDS;
+        if let Some(stands) = stands.as_ref().filter(|it| few(it.spans.len())) {
+            return Err(no_stands(path, "measurements", stands.spans.len()));
+        }
+        let data = stands.as_ref().map_or(&data, |it| &it.data);
+        let points: Option<Vec<Span>> = (times.len() == data.len() && times.iter().all(|it| it.is_finite()))
+            .then(|| points(data, &times));
+        let spans = stands.as_ref().map(|it| &it.spans).or(points.as_ref()).map(Vec::as_slice);
         let paired = |joints: &JointRows| {
-            let rows = Unpaired::new(self.robot, &joints.readings, &data);
-            Pairing { joints, path, data: &data, rows, robot: self.robot }.found(self.options.join)
+            let rows = Unpaired::new(self.robot, &joints.readings, data);
+            Pairing { joints, path, data, rows, robot: self.robot, spans, lag: self.options.lag }
+                .found(self.options.join)
         };
         let found = match paired(joints) {
             Err(error) if joints.is_without_unit => {
@@ -111,6 +143,15 @@ impl<'a> Reader<'a> {
             }
             found => found?,
         };
+        let mut found = found;
+        if let Some(stands) = stands {
+            found.notes.push(format!(
+                "{}: each stand is the mean of its rows, which scatter by {:.3} mm",
+                path.display(),
+                1e3 * stands.scatter_m
+            ));
+            found.readings.means = stands.means;
+        }
         self.found.notes.extend(found.notes);
         self.found.warnings.extend(found.warnings);
         // The same again, with the readings of each line.
@@ -122,12 +163,31 @@ impl<'a> Reader<'a> {
         read
     }
 
-    /// What was measured, with readings that mean nothing.
-    fn without_readings(&self, path: &Path, map: &'a ColumnMap) -> Result<Dataset> {
-        let mut reader = Reader { map, ..Reader::new(self.robot, self.options, map) };
+    /// What was measured, with readings that mean nothing, and the time of each row, seconds, NaN where it has none.
+    fn without_readings(&self, path: &Path, map: &'a ColumnMap) -> Result<(Dataset, Vec<f64>)> {
+        let mut reader =
+            Reader { map, times: Some(Vec::new()), ..Reader::new(self.robot, self.options, map) };
         reader.rows_alone(path)?;
-        Ok(reader.found.data)
+        Ok((reader.found.data, reader.times.unwrap_or_default()))
     }
+}
+
+/// Fewest stands that show which belong together.
+const FEWEST_STANDS: usize = 7;
+
+/// The error of a stream in which the robot hardly stands.
+fn no_stands(path: &Path, what: &str, count: usize) -> Error {
+    ErrorKind::Measurement
+        .error(format!(
+            "found a stream of {what} with {count} times in which nothing moves for 0.3 s or longer, expected at least {FEWEST_STANDS} stands: let the robot              stop at each configuration, or join rows of the same time by --join rows"
+        ))
+        .in_file(path)
+}
+
+/// When each configuration was measured, where rows are points.
+fn points(data: &Dataset, times: &[f64]) -> Vec<Span> {
+    let shots = Unpaired::shots_of(data);
+    shots.iter().filter_map(|it| times.get(*it.first()? as usize)).map(|it| (*it, *it)).collect()
 }
 
 /// The warning of readings without a unit that are degrees.

@@ -10,6 +10,7 @@ use super::mapping::ColumnMap;
 use super::number::Numbers;
 use super::recorded::Opening;
 use super::scale::JointWatch;
+use super::streams::time_of;
 use super::table::{Table, refuse_more_rows};
 use super::text::Blocks;
 use crate::error::{ErrorKind, Result};
@@ -27,6 +28,8 @@ pub struct JointsTable {
     pub ids: Vec<String>,
     /// The rows' line numbers, from 1.
     pub lines: Vec<usize>,
+    /// The rows' times, seconds; empty if there is no such column.
+    pub times: Vec<f64>,
     /// Warnings, a sentence each.
     pub warnings: Vec<String>,
 }
@@ -92,6 +95,9 @@ pub(super) fn rows_of(
             joints.rows += 1;
             refuse_more_rows(joints.rows, &row)?;
             joints.lines.push(row.line);
+            if layout.time.is_some() {
+                joints.times.push(time_of(&row, layout));
+            }
             if let Some(cell) = layout.id.and_then(|id| row.cells.get(id)) {
                 joints.ids.push(cell.text().into_owned());
             }

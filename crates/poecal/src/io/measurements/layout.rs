@@ -31,6 +31,8 @@ pub(super) struct ColumnLayout {
     /// Column with the name of a pair of configurations.
     pub(super) pair: Option<usize>,
     pub(super) id: Option<usize>,
+    /// Column with the time of a row, and the seconds of one.
+    pub(super) time: Option<(usize, f64)>,
     pub(super) set: SetRule,
     pub(super) pose: PoseDirection,
     /// Columns without meaning, each with a name of ours that may have been meant.
@@ -68,6 +70,7 @@ impl ColumnLayout {
         let pair = builder.optional_text_column("pair")?;
         let id = builder.id_column()?;
         let set = set_rule(&mut builder, options, map)?;
+        let time = builder.time_column();
         let (ignored, controller, pose) = (builder.ignored(), builder.controller(robot), map.pose);
         let Builder { inputs, numbered, missed, .. } = builder;
         Ok(ColumnLayout {
@@ -77,6 +80,7 @@ impl ColumnLayout {
             instrument,
             pair,
             id,
+            time,
             set,
             pose,
             ignored,
@@ -139,10 +143,11 @@ impl ColumnLayout {
         ColumnLayout { ignored, ..ColumnLayout::default() }
     }
 
-    fn of_joints(builder: Builder<'_>, id: Option<usize>, robot: &Robot) -> Self {
+    fn of_joints(mut builder: Builder<'_>, id: Option<usize>, robot: &Robot) -> Self {
+        let time = builder.time_column();
         let controller = builder.controller(robot);
         let Builder { inputs, numbered, missed, .. } = builder;
-        ColumnLayout { inputs, id, numbered, controller, missed, ..ColumnLayout::default() }
+        ColumnLayout { inputs, id, time, numbered, controller, missed, ..ColumnLayout::default() }
     }
 }
 

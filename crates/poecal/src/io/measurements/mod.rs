@@ -54,6 +54,7 @@ mod scale;
 mod sightings;
 mod socket_distance;
 mod spread;
+mod streams;
 mod table;
 mod taken;
 mod targets;
@@ -122,6 +123,8 @@ pub struct ReadOptions {
     pub frames: Frames,
     /// How joint readings and measurements in two files find each other; found if it is not stated.
     pub join: Option<Join>,
+    /// The lag of the clocks of two streams, if it is known.
+    pub lag: Option<Lag>,
     /// The sheet of workbooks; that which holds a table if it is not stated.
     pub sheet: Option<String>,
     /// The body, marker or tool of recordings; that which moves if it is not stated.
@@ -188,6 +191,37 @@ pub enum Join {
     Name,
     /// By their order.
     Rows,
+    /// By their times, each file with a clock of its own: at the stands of the robot.
+    Time,
+}
+
+/// The lag of two clocks: the time of measurements less that of joint readings.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Lag {
+    /// The lag, seconds.
+    pub lag_s: f64,
+    /// How far it may be off, seconds.
+    pub off_s: f64,
+}
+
+/// How far a lag may be off that does not say it, seconds.
+const LAG_OFF_S: f64 = 0.5;
+
+impl std::str::FromStr for Lag {
+    type Err = crate::error::Error;
+
+    /// From `12s`, or `12s+-2s`.
+    fn from_str(text: &str) -> Result<Self> {
+        let seconds =
+            |word: &str| word.trim().strip_suffix('s')?.trim().parse().ok().filter(|it: &f64| it.is_finite());
+        let (lag, off) = text.split_once("+-").map_or((text, None), |(lag, off)| (lag, Some(off)));
+        let found = seconds(lag).zip(off.map_or(Some(LAG_OFF_S), seconds)).filter(|it| it.1 > 0.0);
+        let Some((lag_s, off_s)) = found else {
+            return crate::ErrorKind::Option
+                .refuse(format!("found the lag `{text}`, expected seconds, like 12s or 12s+-2s"));
+        };
+        Ok(Lag { lag_s, off_s })
+    }
 }
 
 /// Rows with a common device frame.

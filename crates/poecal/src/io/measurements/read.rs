@@ -19,6 +19,7 @@ use super::recorded::Opening;
 use super::scale::{self, JointWatch};
 use super::socket_distance::Sockets;
 use super::spread;
+use super::streams::time_of;
 use super::table::{Table, refuse_more_rows};
 use super::text::{Blocks, Said};
 use super::turns::{self, TurnWatch};
@@ -134,6 +135,8 @@ pub(super) struct Reader<'a> {
     pub(super) taken_as: &'static str,
     /// The joint readings of each line, where another file has them.
     pub(super) readings: Option<ReadingsByLine>,
+    /// The time of each row so far, seconds, where it is asked for.
+    pub(super) times: Option<Vec<f64>>,
     /// The cameras.
     pub(super) cameras: Vec<Camera>,
     /// The boards, one that is at several places by its names there.
@@ -158,6 +161,7 @@ impl<'a> Reader<'a> {
             taken: TakenByImage::new(),
             taken_as: "joint readings",
             readings: None,
+            times: None,
             cameras: options.cameras.clone(),
             boards: options.boards.clone(),
             sockets: Sockets::new(),
@@ -212,6 +216,7 @@ impl<'a> Reader<'a> {
             self.found.data.ids.resize(first, String::new());
         }
         let (watch, rows, lost) = self.rows(&mut table, &layout, &mut inputs)?;
+        self.take_means(first);
         self.refuse_single_rows(path)?;
         self.found.sha256.extend(table.sha256().map(|sha256| (path.display().to_string(), sha256)));
         let refuse = |message| Err(ErrorKind::Measurement.error(message).at_line(path, table.header.line));
@@ -273,10 +278,25 @@ impl<'a> Reader<'a> {
                 watch.0.observe(&row, inputs);
                 watch.1.observe(&row, layout, inputs);
                 self.row(&row, layout, inputs)?;
+                if let Some(times) = &mut self.times {
+                    times.resize(self.found.data.len(), time_of(&row, layout));
+                }
                 refuse_more_rows(self.found.data.len(), &row)?;
             }
         }
         Ok((watch, rows, lost))
+    }
+
+    /// Takes what was measured on an average in place of the rows that stand for a stand.
+    fn take_means(&mut self, first: usize) {
+        let Some(by_line) = self.readings.as_ref().filter(|it| !it.means.is_empty()) else { return };
+        let (mut line, mut at) = (0, 0);
+        for row in self.found.data.observations.iter_mut().skip(first) {
+            (line, at) = if line == row.source.line { (line, at + 1) } else { (row.source.line, 0) };
+            if let Some(mean) = by_line.means.get(&(line as usize)).and_then(|it| it.get(at)) {
+                row.measurement = *mean;
+            }
+        }
     }
 
     /// Refuses a pair of which one row is missing.

@@ -2,9 +2,13 @@
 //! where they are paired rightly.
 
 mod agreement;
+mod lags;
+mod stands;
 mod uneven;
 
 pub use agreement::{Agreement, Order};
+pub use lags::{Lagged, Span};
+pub use stands::{Stand, Stream};
 pub use uneven::Aligned;
 
 use std::collections::BTreeSet;
@@ -42,6 +46,12 @@ impl<'a> Unpaired<'a> {
     /// Rows of a file that are one below the other are of one configuration as long as none of their targets comes again.
     #[must_use]
     pub fn new(robot: &'a Robot, joints: &'a [f64], data: &'a Dataset) -> Self {
+        Unpaired { robot, joints, data, shots: Self::shots_of(data) }
+    }
+
+    /// The rows of each configuration of measurements, as [`Unpaired::new`] finds them.
+    #[must_use]
+    pub fn shots_of(data: &Dataset) -> Vec<Vec<u32>> {
         let mut shots: Vec<Vec<u32>> = Vec::new();
         let mut seen: BTreeSet<(usize, usize)> = BTreeSet::new();
         let mut line = None;
@@ -60,7 +70,7 @@ impl<'a> Unpaired<'a> {
                 last.push(row);
             }
         }
-        Unpaired { robot, joints, data, shots }
+        shots
     }
 
     /// The rows of each configuration in which was measured.

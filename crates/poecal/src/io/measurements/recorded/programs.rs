@@ -28,7 +28,8 @@ fn language(text: &str) -> Option<Language> {
         return Some(Language::Fanuc);
     }
     let begins = |words: &[&str]| words.iter().any(|it| first.starts_with(it));
-    if begins(&["&ACCESS", "&REL", "&PARAM", "DEFDAT ", "DEF "]) && !first.contains(',') {
+    // URScript has a colon behind the name of a function.
+    if begins(&["&ACCESS", "&REL", "&PARAM", "DEFDAT ", "DEF "]) && !first.ends_with(':') {
         return Some(Language::Krl);
     }
     let mut some = lines(text).take(FIRST).map(|it| it.1.trim());

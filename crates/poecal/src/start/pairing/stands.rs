@@ -1,0 +1,258 @@
+//! Times in which nothing moves, in a stream of readings or of measurements.
+
+use std::ops::Range;
+
+use crate::distributions::median;
+
+/// Shortest time of a stand, and what is cut off at both of its ends, seconds.
+const SHORTEST_S: f64 = 0.3;
+const CUT_S: f64 = 0.1;
+/// Longest time without a row within a window, seconds.
+const LONGEST_GAP_S: f64 = 0.15;
+/// Fewest rows of a window.
+const FEWEST: usize = 3;
+/// Share of the windows that stand at least, and how many times more than in the quietest of them the rest may scatter.
+const QUIET: f64 = 0.1;
+const TIMES: f64 = 3.0;
+/// How many times more than from row to row a channel may scatter within a window: noise is not white.
+const TIMES_NOISE: f64 = 6.0;
+/// Two stands whose means differ by less than this many tolerances are one, which was interrupted.
+const SAME: f64 = 2.0;
+/// Share of the range of a channel beyond which its tolerance shows that nothing stands.
+const LARGEST: f64 = 0.05;
+
+/// A time in which nothing moves.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Stand {
+    /// Its rows, without those at its ends.
+    pub rows: Range<usize>,
+    /// When it begins and ends, seconds.
+    pub span_s: (f64, f64),
+}
+
+/// Rows of a stream: times (seconds), and some numbers of each row.
+#[derive(Clone, Debug)]
+pub struct Stream {
+    times: Vec<f64>,
+    channels: Vec<Vec<f64>>,
+    /// Below which a channel does not move.
+    floors: Vec<f64>,
+}
+
+impl Stream {
+    /// Of the times of rows, and of each channel its values and the change that is none.
+    ///
+    /// Rows whose time is not later than that of the row before belong to it.
+    #[must_use]
+    pub fn new(times: Vec<f64>, channels: Vec<Vec<f64>>, floors: Vec<f64>) -> Self {
+        Stream { times, channels, floors }
+    }
+
+    /// Whether it is one: rows in time, at most a quarter of a second from one to the next, and far more of them than places.
+    #[must_use]
+    pub fn is_dense(&self) -> bool {
+        const ROWS: usize = 50;
+        const STEP_S: f64 = 0.25;
+        const STEP: f64 = 0.05;
+        let steps = self.times.windows(2).map(|it| it[1] - it[0]);
+        let step = median(steps.clone()).unwrap_or(f64::INFINITY);
+        let is_ordered = steps.clone().filter(|it| *it < 0.0).count() == 0;
+        let is_smooth = self.channels.iter().all(|it| {
+            let moved = median(it.windows(2).map(|it| (it[1] - it[0]).abs())).unwrap_or_default();
+            moved <= STEP * span(it)
+        });
+        self.times.len() >= ROWS && is_ordered && step > 0.0 && step <= STEP_S && is_smooth
+    }
+
+    /// The times of 0.3 s or longer in which no channel moves by more than its own noise, without 0.1 s at both ends.
+    #[must_use]
+    pub fn stands(&self) -> Vec<Stand> {
+        let windows = self.windows();
+        if windows.len() < FEWEST {
+            return Vec::new();
+        }
+        let sums: Vec<Sums> = self.channels.iter().map(|it| Sums::of(it)).collect();
+        let mut still = vec![true; windows.len()];
+        let mut tolerances = Vec::with_capacity(self.channels.len());
+        for ((values, sums), floor) in self.channels.iter().zip(&sums).zip(&self.floors) {
+            let spreads: Vec<f64> = windows.iter().map(|it| sums.deviation(it)).collect();
+            let noises: Vec<f64> = windows.iter().map(|it| row_noise(values, it)).collect();
+            let tolerance = floor
+                .max((TIMES * quantile(&spreads, QUIET)).min(TIMES_NOISE * quantile(&noises, QUIET) + floor));
+            if tolerance > LARGEST * span(values) && span(values) > 10.0 * floor {
+                return Vec::new();
+            }
+            for (still, spread) in still.iter_mut().zip(&spreads) {
+                *still &= *spread <= tolerance;
+            }
+            tolerances.push(tolerance);
+        }
+        let mut rows: Vec<Range<usize>> = Vec::new();
+        for (window, _) in windows.iter().zip(&still).filter(|it| *it.1) {
+            match rows.last_mut() {
+                Some(last) if window.start <= last.end => last.end = window.end,
+                _ => rows.push(window.clone()),
+            }
+        }
+        let mut joined: Vec<Range<usize>> = Vec::new();
+        for next in rows {
+            let is_same = joined.last().is_some_and(|last| {
+                (sums.iter().zip(&tolerances))
+                    .all(|(it, tolerance)| (it.mean(last) - it.mean(&next)).abs() <= SAME * tolerance)
+            });
+            match joined.last_mut() {
+                Some(last) if is_same => last.end = next.end,
+                _ => joined.push(next),
+            }
+        }
+        joined.into_iter().filter_map(|it| self.cut(&it)).collect()
+    }
+
+    /// A stand without its ends.
+    fn cut(&self, rows: &Range<usize>) -> Option<Stand> {
+        let (first, last) = (*self.times.get(rows.start)?, *self.times.get(rows.end.checked_sub(1)?)?);
+        let cut = CUT_S.min(0.25 * (last - first));
+        let is_inside =
+            |at: &usize| self.times.get(*at).is_some_and(|it| (first + cut..=last - cut).contains(it));
+        let start = rows.clone().find(is_inside)?;
+        let end = rows.clone().rev().find(is_inside)? + 1;
+        Some(Stand { rows: start..end, span_s: (first, last) })
+    }
+
+    /// Windows of the shortest time of a stand, one from each row on, without gaps.
+    fn windows(&self) -> Vec<Range<usize>> {
+        let mut found = Vec::new();
+        let (mut end, mut gap) = (0, None);
+        for start in 0..self.times.len() {
+            let time = |at: usize| self.times.get(at).copied();
+            let Some(begin) = time(start) else { break };
+            while let Some(next) = time(end) {
+                if end > start && next - time(end - 1).unwrap_or(next) > LONGEST_GAP_S {
+                    gap = Some(end);
+                }
+                if next - begin >= SHORTEST_S {
+                    break;
+                }
+                end += 1;
+            }
+            let has_gap = gap.is_some_and(|it| it > start && it <= end);
+            if end < self.times.len() && !has_gap && end + 1 - start >= FEWEST {
+                found.push(start..end + 1);
+            }
+        }
+        found
+    }
+}
+
+/// Sums of a channel and of its squares up to each row, about its mean.
+struct Sums {
+    middle: f64,
+    first: Vec<f64>,
+    second: Vec<f64>,
+}
+
+impl Sums {
+    fn of(values: &[f64]) -> Self {
+        let middle = values.iter().sum::<f64>() / values.len().max(1) as f64;
+        let running = |of: &dyn Fn(f64) -> f64| {
+            let mut sum = 0.0;
+            let rest = values.iter().map(|it| {
+                sum += of(it - middle);
+                sum
+            });
+            std::iter::once(0.0).chain(rest.collect::<Vec<_>>()).collect()
+        };
+        Sums { middle, first: running(&|it| it), second: running(&|it| it * it) }
+    }
+
+    fn between(of: &[f64], rows: &Range<usize>) -> f64 {
+        of.get(rows.end).zip(of.get(rows.start)).map_or(0.0, |(end, start)| end - start)
+    }
+
+    fn mean(&self, rows: &Range<usize>) -> f64 {
+        self.middle + Self::between(&self.first, rows) / rows.len().max(1) as f64
+    }
+
+    fn deviation(&self, rows: &Range<usize>) -> f64 {
+        let count = rows.len().max(1) as f64;
+        let mean = Self::between(&self.first, rows) / count;
+        (Self::between(&self.second, rows) / count - mean * mean).max(0.0).sqrt()
+    }
+}
+
+/// The noise of a channel in a window, from row to row: of what is left of second differences.
+fn row_noise(values: &[f64], rows: &Range<usize>) -> f64 {
+    let own = values.get(rows.clone()).unwrap_or_default();
+    let squares = own.windows(3).map(|it| (it[0] - 2.0 * it[1] + it[2]).powi(2));
+    let count = own.len().saturating_sub(2).max(1) as f64;
+    // White noise of one unit has second differences of √6.
+    (squares.sum::<f64>() / count / 6.0).sqrt()
+}
+
+/// The value that this share of all is below.
+fn quantile(values: &[f64], share: f64) -> f64 {
+    let mut sorted = values.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    let at = (share * sorted.len() as f64) as usize;
+    sorted.get(at.min(sorted.len().saturating_sub(1))).copied().unwrap_or_default()
+}
+
+fn span(values: &[f64]) -> f64 {
+    let (low, high) = values
+        .iter()
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |it, value| (it.0.min(*value), it.1.max(*value)));
+    (high - low).max(0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Five stands of one second between moves of half a second, at 100 rows a second, with noise.
+    fn stream(noise: f64) -> Stream {
+        let mut values = Vec::new();
+        for stand in 0..5 {
+            let place = f64::from(stand);
+            values.extend((0..100).map(|_| place));
+            values.extend((1..50).map(|it| {
+                let share = f64::from(it) / 50.0;
+                place + share * share * (3.0 - 2.0 * share)
+            }));
+        }
+        // A deterministic noise: digits of multiples of an irrational number.
+        let noisy = |(at, value): (usize, f64)| value + noise * ((at as f64 * 0.618_033_988_7).fract() - 0.5);
+        let values: Vec<f64> = values.into_iter().enumerate().map(noisy).collect();
+        let times = (0..values.len()).map(|it| 0.01 * it as f64).collect();
+        Stream::new(times, vec![values], vec![1e-5])
+    }
+
+    #[test]
+    fn stands_are_found_whatever_the_noise() {
+        for noise in [0.0, 1e-4, 1e-3, 1e-2] {
+            let stream = stream(noise);
+            assert!(stream.is_dense());
+            let stands = stream.stands();
+            println!("noise {noise}: {:?}", stands.iter().map(|it| it.rows.clone()).collect::<Vec<_>>());
+            assert_eq!(stands.len(), 5, "{noise}");
+            for (at, stand) in stands.iter().enumerate() {
+                let begin = 149 * at;
+                assert!(stand.rows.start >= begin && stand.rows.end <= begin + 100, "{noise} {at} {stand:?}");
+                assert!(stand.rows.len() > 60, "{noise} {at}");
+            }
+        }
+    }
+
+    #[test]
+    fn what_never_stands_has_no_stands() {
+        let times: Vec<f64> = (0..2000).map(|it| 0.01 * f64::from(it)).collect();
+        let values: Vec<f64> = times.iter().map(|it| (0.7 * it).sin() + 0.3 * (1.9 * it).cos()).collect();
+        assert_eq!(Stream::new(times, vec![values], vec![1e-5]).stands(), []);
+    }
+
+    #[test]
+    fn a_list_of_places_is_no_stream() {
+        let times: Vec<f64> = (0..100).map(|it| 0.001 * f64::from(it)).collect();
+        let values: Vec<f64> = (0..100).map(|it| (f64::from(it) * 0.618).fract()).collect();
+        assert!(!Stream::new(times, vec![values], vec![1e-5]).is_dense());
+    }
+}
