@@ -157,13 +157,13 @@ fn bad_cells_get_one_sentence_each() {
 fn values_of_another_scale_name_the_likely_unit() {
     check(&[
         case(CALIBRATE, format!("{HEADER}45,0.2,0.3,0.7,0.1,0.5\n-120,0.3,0.3,0.7,0.1,0.5\n"),
-             "bad.csv:3:1: found readings of up to 120 rad, far outside the limits -3.15 to 3.15 rad of joint `a`, expected another unit, most likely deg; write `a[deg]` in the header, or the unit in the mapping"),
+             "bad.csv:3:1: found readings of up to 120 rad, far outside the limits -3.15 to 3.15 rad of joint `a`, expected another unit, most likely deg; write `a[deg]` in the header, or say --units deg"),
         case(CALIBRATE, format!("{HEADER}0.5,200,0.3,0.7,0.1,0.5\n0.1,300,0.3,0.7,0.1,0.5\n"),
              "bad.csv:3:5: found readings of up to 300 m, far outside the limits 0 to 0.5 m of joint `lift`, expected…"),
         case(CALIBRATE, format!("{HEADER}0.5,0.2,0.3,700,100,500\n0.1,0.3,0.3,-700,0,300\n"),
-             "bad.csv:3: found positions up to 1418 m from their middle, where the robot reaches 1.583 m, expected another unit, most likely mm; write `x[mm],y[mm],z[mm]` in the header, or the unit in the mapping"),
+             "bad.csv:3: found positions up to 1418 m from their middle, where the robot reaches 1.583 m, expected another unit, most likely mm; write `x[mm],y[mm],z[mm]` in the header, or say --units mm"),
         case(CALIBRATE, format!("{HEADER}0.5,0.2,0.3,0.7,0.1,500\n0.1,0.3,0.3,-0.7,0,-300\n"),
-             "bad.csv:3: found values of `z` up to 800 m from their middle, where the robot reaches 1.583 m, beside `x` and `y`, which it can reach, expected another unit, most likely mm; write `z[mm]` in the header, or the unit in the mapping"),
+             "bad.csv:3: found values of `z` up to 800 m from their middle, where the robot reaches 1.583 m, beside `x` and `y`, which it can reach, expected another unit, most likely mm; write `z[mm]` in the header, or say --units mm"),
     ]);
 }
 

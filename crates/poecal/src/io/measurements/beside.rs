@@ -4,8 +4,11 @@ use std::path::Path;
 
 use super::configurations::is_folder;
 use super::corner_columns::{are_corners, are_readings_of_pictures};
+use super::header::HeaderCell;
+use super::join_plan::{Part, part};
 use super::mapping::ColumnMap;
 use super::picture_files::NO_CAMERA;
+use super::recorded::Opening;
 use super::table::Table;
 use super::text::Blocks;
 use crate::error::{Error, ErrorKind};
@@ -21,6 +24,43 @@ pub(super) fn has_readings_of_pictures(path: &Path, robot: &Robot, map: &ColumnM
     let table = Blocks::open_or_join(path, "a measurement file (CSV)")
         .and_then(|blocks| Table::open(path, blocks, map));
     table.is_ok_and(|table| are_readings_of_pictures(&table.header, &robot.reading_names(), map))
+}
+
+/// The error of a file that has joint readings alone, or measurements alone, and no other beside it.
+pub(super) fn alone(error: Error, path: &Path, opening: &Opening<'_>, map: &ColumnMap) -> Error {
+    if error.kind() != ErrorKind::Measurement || !error.message().starts_with("found no column") {
+        return error;
+    }
+    let (is_lone, found, other) = match part(path, opening.robot, opening.options, map) {
+        Ok(Part::Joints) => (true, "joint readings and nothing that was measured", "measurements"),
+        Ok(Part::Measured { .. }) => (false, "measurements and no joint readings", "joint readings"),
+        Ok(Part::Whole) | Err(_) => return error,
+    };
+    let table = opening.blocks(path, "a measurement file (CSV)").and_then(|it| Table::open(path, it, map));
+    let Ok(table) = table else { return error };
+    // Of a file in our form, a column may have another name.
+    let names = opening.robot.reading_names();
+    let is_all = is_lone && table.header.cells.iter().all(|it| names.contains(&it.name) || it.name == "id");
+    if table.is_made() || is_all {
+        let message = format!("found {found}, expected both: name the file of the {other} beside it");
+        return Error::new(ErrorKind::Measurement, message).in_file(path);
+    }
+    // A column that looks like one of those that are missing may be one, under another name.
+    let header = || table.header.cells.iter();
+    let is_axis = |it: &HeaderCell| {
+        let mut letters = it.name.chars().map(|it| it.to_ascii_lowercase());
+        letters.next().is_some_and(|it| "xyz".contains(it))
+            && !letters.next().is_some_and(char::is_alphanumeric)
+    };
+    let says_it = if is_lone {
+        error.message().contains("for the position") && !header().any(is_axis)
+    } else {
+        error.message().contains("for joint") && !header().any(|it| names.contains(&it.name))
+    };
+    if !says_it {
+        return error;
+    }
+    error.with_more(&format!("or name the file of the {other} beside it"))
 }
 
 /// The error of readings of pictures that are read without a camera, where another file has their corners.

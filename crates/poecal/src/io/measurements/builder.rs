@@ -7,7 +7,7 @@ use super::inputs::{Input, InputSource, Term};
 use super::kinds;
 use super::mapping::{ColumnMap, ColumnSpec};
 use super::numbered::numbered;
-use super::streams::seconds_of;
+use super::times::seconds_of;
 use super::units::{NamedUnit, UnitSource};
 use crate::error::{Error, ErrorKind, Result, distance_within, first_few};
 use crate::io::numbers::LARGEST_NUMBER;

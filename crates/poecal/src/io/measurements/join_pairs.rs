@@ -19,6 +19,8 @@ pub(super) struct JointRows {
     pub(super) readings: Vec<f64>,
     pub(super) ids: Vec<String>,
     pub(super) lines: Vec<usize>,
+    /// Whether they are in a sheet of a workbook.
+    pub(super) is_sheet: bool,
     /// Whether no column of an angle states its unit.
     pub(super) is_without_unit: bool,
     /// Of each reading of a row, whether it is an angle.
@@ -101,7 +103,7 @@ impl Pairing<'_> {
         let stated = if self.lag.is_some() { " near the stated one" } else { "" };
         let Some(best) = found.first() else {
             return self.refuse(format!(
-                "found {} stands of the robot and {} of the measurements, and no lag of the clocks{stated} at which seven of them or more are the same,                  expected a recording of the same motion",
+                "found {} stands of the robot and {} of the measurements, and no lag of the clocks{stated} at which seven of them or more are the same, expected a recording of the same motion",
                 joints.len(),
                 shots.len()
             ));
@@ -110,7 +112,7 @@ impl Pairing<'_> {
             found.iter().filter(|it| it.missed_m < 2.0 * best.missed_m).map(words).collect();
         if alike.len() > 1 {
             return self.refuse(format!(
-                "found measurements that fit the joint readings at several lags of the clocks alike, {}, as of a program that repeats itself, expected one:                  state it by --lag, like --lag {:.1}s+-0.5s",
+                "found measurements that fit the joint readings at several lags of the clocks alike, {}, as of a program that repeats itself, expected one: state it by --lag, like --lag {:.1}s+-0.5s",
                 first_few(&alike),
                 best.lag_s
             ));
@@ -349,7 +351,7 @@ impl Pairing<'_> {
     fn joint_lines(&self, rows: &[usize]) -> String {
         let lines: Vec<String> =
             rows.iter().filter_map(|row| self.joints.lines.get(*row)).map(ToString::to_string).collect();
-        numbered(&lines)
+        if self.joints.is_sheet { numbered_as("row", &lines) } else { numbered(&lines) }
     }
 
     fn shot_lines(&self, shots: &[usize]) -> String {
@@ -372,7 +374,12 @@ fn counted(configurations: usize) -> String {
 
 /// Lines in words.
 fn numbered(lines: &[String]) -> String {
-    format!("{} {}", if lines.len() == 1 { "line" } else { "lines" }, first_few(lines))
+    numbered_as("line", lines)
+}
+
+/// The same as rows of a sheet.
+fn numbered_as(word: &str, lines: &[String]) -> String {
+    format!("{word}{} {}", if lines.len() == 1 { "" } else { "s" }, first_few(lines))
 }
 
 /// An order in words.

@@ -56,15 +56,16 @@ impl<'p> Plan<'p> {
         robot: &Robot,
         options: &ReadOptions,
         map: &ColumnMap,
-    ) -> Option<Self> {
+    ) -> Result<Option<Self>> {
         if paths.len() < 2 {
-            return None;
+            return Ok(None);
         }
-        let parts: Vec<Part> = paths.iter().map(|path| part(path, robot, options, map)).collect();
+        let parts: Vec<Part> =
+            paths.iter().map(|path| part(path, robot, options, map)).collect::<Result<_>>()?;
         let measured = parts.iter().filter(|it| matches!(it, Part::Measured { .. })).count();
         let joints = parts.iter().filter(|it| **it == Part::Joints).count();
         if joints == 0 || measured == 0 {
-            return None;
+            return Ok(None);
         }
         let several = joints == 1 && measured > 1;
         let planned = |(path, part): (&&'p Path, Part)| {
@@ -75,18 +76,21 @@ impl<'p> Plan<'p> {
             }
             Planned { path, part, map }
         };
-        Some(Plan { files: paths.iter().zip(parts).map(planned).collect() })
+        Ok(Some(Plan { files: paths.iter().zip(parts).map(planned).collect() }))
     }
 }
 
-/// What a file has; one that cannot be read is named when it is.
-fn part(path: &Path, robot: &Robot, options: &ReadOptions, map: &ColumnMap) -> Part {
+/// What a file has; one that is no table is named when it is read.
+///
+/// # Errors
+/// Of a file in another form that cannot be one.
+pub(super) fn part(path: &Path, robot: &Robot, options: &ReadOptions, map: &ColumnMap) -> Result<Part> {
     // A pipe is read once.
     if !is_file(path) {
-        return Part::Whole;
+        return Ok(Part::Whole);
     }
+    let mut blocks = Opening { robot, options }.blocks(path, "a measurement file (CSV)")?;
     let kind = || -> Result<Part> {
-        let mut blocks = Opening { robot, options }.blocks(path, "a measurement file (CSV)")?;
         blocks.begin()?;
         if are_messages(path, blocks.text())? {
             return Ok(Part::Whole);
@@ -110,7 +114,7 @@ fn part(path: &Path, robot: &Robot, options: &ReadOptions, map: &ColumnMap) -> P
             (true, Ok(_)) | (false, Err(_)) => Part::Whole,
         })
     };
-    kind().unwrap_or(Part::Whole)
+    Ok(kind().unwrap_or(Part::Whole))
 }
 
 /// A mapping of a file that has no readings: those of joints are numbers that mean nothing.

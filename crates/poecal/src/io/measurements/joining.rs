@@ -91,6 +91,7 @@ impl<'a> Reader<'a> {
             readings: table_rows.readings,
             ids: table_rows.ids.iter().map(|id| id.trim().to_owned()).collect(),
             lines: table_rows.lines,
+            is_sheet: table.is_sheet(),
             is_without_unit: turning.clone().count() > 0
                 && turning.clone().all(|it| it.unit_from == UnitSource::Si),
             turns: layout.inputs.iter().map(|it| it.unit.of() == Unit::Radian).collect(),
@@ -179,7 +180,7 @@ const FEWEST_STANDS: usize = 7;
 fn no_stands(path: &Path, what: &str, count: usize) -> Error {
     ErrorKind::Measurement
         .error(format!(
-            "found a stream of {what} with {count} times in which nothing moves for 0.3 s or longer, expected at least {FEWEST_STANDS} stands: let the robot              stop at each configuration, or join rows of the same time by --join rows"
+            "found a stream of {what} with {count} times in which nothing moves for 0.3 s or longer, expected at least {FEWEST_STANDS} stands: let the robot stop at each configuration, or join rows of the same time by --join rows"
         ))
         .in_file(path)
 }

@@ -60,6 +60,7 @@ mod taken;
 mod targets;
 mod template;
 mod text;
+mod times;
 mod turns;
 mod understanding;
 mod units;

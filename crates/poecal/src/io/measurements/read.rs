@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use super::beside::{beside, has_readings_of_pictures};
+use super::beside::{alone, beside, has_readings_of_pictures};
 use super::configurations::in_its_file;
 use super::corner_columns::{are_corners, are_readings_of_pictures};
 use super::inputs::InputReader;
@@ -50,7 +50,7 @@ fn read_all(paths: &[&Path], robot: &Robot, options: &ReadOptions) -> Result<Mea
         return ErrorKind::Option.refuse("found no measurement file, expected at least one");
     }
     let no_map = ColumnMap::default();
-    if let Some(plan) = Plan::of(paths, robot, options, options.mapping.as_ref().unwrap_or(&no_map)) {
+    if let Some(plan) = Plan::of(paths, robot, options, options.mapping.as_ref().unwrap_or(&no_map))? {
         let mut reader = Reader::new(robot, options, &no_map);
         reader.joined(&plan)?;
         return reader.finish();
@@ -62,10 +62,12 @@ fn read_all(paths: &[&Path], robot: &Robot, options: &ReadOptions) -> Result<Mea
         order.sort_by_key(|path| !has_readings_of_pictures(path, robot, reader.map));
     }
     for path in order {
-        let blocks = reader.opening().blocks(path, "a measurement file (CSV)")?;
+        let opening = reader.opening();
+        let blocks = opening.blocks(path, "a measurement file (CSV)")?;
         reader
             .file(path, blocks)
             .map_err(|error| in_its_file(error, path))
+            .map_err(|error| alone(error, path, &opening, reader.map))
             .map_err(|error| beside(error, path, paths, (robot, reader.map, options.cameras.is_empty())))?;
     }
     reader.finish()

@@ -250,9 +250,10 @@ impl OneJoint<'_> {
         };
         format!(
             "found readings of up to {} {stated}, {outside}, expected another unit, most likely {symbol}; \
-             write `{}[{symbol}]` in the header, or say --units {symbol}{per_cent}",
+             write `{}[{symbol}]` in the header, or {}{per_cent}",
             short(extreme),
-            input.name
+            input.name,
+            state_it(input.unit_from, symbol)
         )
     }
 
@@ -368,12 +369,23 @@ fn positions_message(inputs: [&Input; 3], far: [f64; 3], apart: Vector3<f64>, re
     let written: Vec<String> = headers.iter().map(|(name, unit)| format!("{name}[{unit}]")).collect();
     Some(format!(
         "found {what} up to {} {stated} from their middle, where the robot reaches {} {stated}{others}, expected another \
-         unit, most likely {smaller}; write `{}` in the header, or say --units {smaller}",
+         unit, most likely {smaller}; write `{}` in the header, or {}",
         short(unit.from_si(if own.len() == 3 { apart.norm() } else { apart[own[0]].abs() })),
         short(unit.from_si(reach)),
         written.join(","),
+        state_it(inputs[own[0]].unit_from, smaller),
         stated = unit.symbol(),
     ))
+}
+
+/// How to state a unit beside the header: where a column states none, by an option.
+fn state_it(unit_from: UnitSource, symbol: &str) -> String {
+    match unit_from {
+        UnitSource::Si => format!("say --units {symbol}"),
+        UnitSource::Header | UnitSource::UnitsLine | UnitSource::Mapping => {
+            "the unit in the mapping".to_owned()
+        }
+    }
 }
 
 /// A number to four significant digits.

@@ -110,6 +110,16 @@ impl<'a> Table<'a> {
         self.blocks.is_marked()
     }
 
+    /// Whether it was made of a file in another form.
+    pub(super) fn is_made(&self) -> bool {
+        self.places.is_some()
+    }
+
+    /// The sheet of a workbook that it was made of.
+    pub(super) fn is_sheet(&self) -> bool {
+        self.places.as_ref().is_some_and(|it| it.sheet.is_some())
+    }
+
     /// What was understood of the file, once.
     pub(super) fn said(&mut self) -> Said {
         self.blocks.said()
@@ -307,7 +317,7 @@ mod tests {
 
     #[test]
     fn a_row_too_many_is_refused() {
-        let row = Row { path: Path::new(PATH), line: 7, text: "", cells: &[], is_copy: false };
+        let row = Row { path: Path::new(PATH), line: 7, text: "", cells: &[], places: None };
         assert!(refuse_more_rows(MOST_ROWS, &row).is_ok());
         let error = refuse_more_rows(MOST_ROWS + 1, &row).unwrap_err().to_string();
         assert!(error.starts_with("x.csv:7: found more than 10,000,000 measurements"), "{error}");
@@ -374,8 +384,20 @@ mod tests {
     fn what_is_no_text_is_named_with_its_place() {
         let text = "a,b\n".repeat(WHOLE / 2);
         let of = |rest: &[u8]| rows(&[text.as_bytes(), rest].concat(), WHOLE).unwrap_err();
-        let advice = "expected UTF-8 text; save the file as `CSV UTF-8`";
-        assert_eq!(of(b"1,2\n3,\xef\xbf"), format!("x.csv:131074:3: found the byte 0xEF, {advice}"));
+        let advice = "expected text; save the file as `CSV UTF-8`";
+        assert_eq!(
+            rows(
+                &["\u{b5},b\n", &text]
+                    .map(str::as_bytes)
+                    .concat()
+                    .into_iter()
+                    .chain(*b"3,\xef\xbf")
+                    .collect::<Vec<u8>>(),
+                WHOLE
+            )
+            .unwrap_err(),
+            format!("x.csv:131074:3: found the byte 0xEF, {advice}")
+        );
         assert_eq!(of(b"1,2\n\0"), format!("x.csv:131074:1: found a NUL byte, {advice}"));
     }
 }

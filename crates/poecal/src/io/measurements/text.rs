@@ -17,6 +17,9 @@ const BLOCK: usize = 1 << 18;
 /// Longest line, bytes.
 const LONGEST_LINE: usize = 16 << 20;
 
+/// Fewest lines of the first block.
+const FIRST_LINES: usize = 64;
+
 /// Source of a text.
 enum TextSource<'a> {
     File(Hashing<Input>),
@@ -159,10 +162,15 @@ impl<'a> Blocks<'a> {
                 self.rest.extend(bytes.drain(known + end + 1..));
             }
             let is_text = memchr::memchr(0, bytes.get(known..).unwrap_or_default()).is_none();
-            if end.is_some() || more == 0 || !is_text {
+            // The first block shows what the file is.
+            let is_enough = self.newline.is_some()
+                || memchr::memchr_iter(b'\n', &bytes).take(FIRST_LINES).count() == FIRST_LINES;
+            if end.is_some() && is_enough || more == 0 || !is_text {
                 break;
             }
-            if bytes.len() > LONGEST_LINE {
+            bytes.append(&mut self.rest);
+            let last = memchr::memrchr(b'\n', &bytes).map_or(0, |it| it + 1);
+            if bytes.len() - last > LONGEST_LINE {
                 return Err(ErrorKind::Syntax
                     .error(format!(
                         "found a line longer than {} MiB, expected a table (CSV)",

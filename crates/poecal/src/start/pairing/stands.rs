@@ -7,8 +7,9 @@ use crate::distributions::median;
 /// Shortest time of a stand, and what is cut off at both of its ends, seconds.
 const SHORTEST_S: f64 = 0.3;
 const CUT_S: f64 = 0.1;
-/// Longest time without a row within a window, seconds.
+/// Longest time without a row within a window, seconds, and as many steps from row to row where that is more.
 const LONGEST_GAP_S: f64 = 0.15;
+const LONGEST_GAP_STEPS: f64 = 2.5;
 /// Fewest rows of a window.
 const FEWEST: usize = 3;
 /// Share of the windows that stand at least, and how many times more than in the quietest of them the rest may scatter.
@@ -122,12 +123,14 @@ impl Stream {
     /// Windows of the shortest time of a stand, one from each row on, without gaps.
     fn windows(&self) -> Vec<Range<usize>> {
         let mut found = Vec::new();
+        let step = median(self.times.windows(2).map(|it| it[1] - it[0])).unwrap_or_default();
+        let longest = LONGEST_GAP_S.max(LONGEST_GAP_STEPS * step);
         let (mut end, mut gap) = (0, None);
         for start in 0..self.times.len() {
             let time = |at: usize| self.times.get(at).copied();
             let Some(begin) = time(start) else { break };
             while let Some(next) = time(end) {
-                if end > start && next - time(end - 1).unwrap_or(next) > LONGEST_GAP_S {
+                if end > start && next - time(end - 1).unwrap_or(next) > longest {
                     gap = Some(end);
                 }
                 if next - begin >= SHORTEST_S {

@@ -61,6 +61,7 @@ impl Made {
     }
 
     /// The same of a sheet of a workbook.
+    #[cfg(feature = "workbooks")]
     pub(super) fn in_sheet(self, sheet: Sheet) -> Self {
         Made { sheet: Some(sheet), ..self }
     }
