@@ -95,6 +95,8 @@ pub(crate) enum Command {
     Predict(Predict),
     /// Show how a model and measurement files are understood
     Check(Check),
+    /// Write measurements of any form as a table of our own, and beside it how they were read
+    Import(Import),
     /// Write a model in another form
     Convert(Convert),
     /// Write a calibrated robot in the form of a controller, a driver or a simulator
@@ -260,6 +262,28 @@ pub(crate) struct Check {
     /// Print JSON instead of text
     #[arg(long)]
     pub(crate) json: bool,
+}
+
+/// Arguments of `poecal import`.
+#[derive(Args, Debug)]
+pub(crate) struct Import {
+    /// Robot model: URDF, MJCF, SDF, TOML, a maker's YAML or conf, or calibration.json [default: from the settings]
+    pub(crate) model: Option<PathBuf>,
+    /// Measurement files, of instruments, controllers and recorders as they are [default: from the settings]
+    pub(crate) measurements: Vec<PathBuf>,
+    /// Settings (TOML), as the .map.toml of an earlier run [default: poecal.toml in this folder, if no model is named]
+    #[arg(long, value_name = "FILE")]
+    pub(crate) settings: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) chain: TreeArgs,
+    #[command(flatten)]
+    pub(crate) reading: Reading,
+    /// The table to write (CSV); how it was made goes to NAME.map.toml beside it
+    #[arg(id = "table", long = "out", value_name = "FILE")]
+    pub(crate) out: PathBuf,
+    /// Write over files that exist
+    #[arg(long)]
+    pub(crate) force: bool,
 }
 
 /// Arguments of `poecal export`.

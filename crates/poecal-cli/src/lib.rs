@@ -159,6 +159,7 @@ fn run_to_code(arguments: impl IntoIterator<Item = OsString>) -> u8 {
         Command::Compare(options) => commands::compare(options, &console),
         Command::Predict(options) => commands::predict(options, &console),
         Command::Check(options) => commands::check(options, &console),
+        Command::Import(options) => commands::import(options, &console),
         Command::Convert(options) => commands::convert(options, &console),
         Command::Export(options) => commands::export(options, &console),
         Command::Apply(options) => commands::apply(options, &console),

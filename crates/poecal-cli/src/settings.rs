@@ -18,7 +18,7 @@ const USUAL: &str = "poecal.toml";
 /// The command whose options settings are.
 const COMMAND: &str = "calibrate";
 /// Commands that read settings. Each takes those that it has an option for.
-const READERS: [&str; 2] = [COMMAND, "check"];
+const READERS: [&str; 3] = [COMMAND, "check", "import"];
 /// Options of a single run, which settings cannot hold.
 const NOT_KEPT: [&str; 8] =
     ["settings", "verbose", "json", "timings", "quiet", "threads", "help", "force_own"];

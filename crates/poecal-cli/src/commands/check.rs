@@ -1,14 +1,17 @@
 //! `poecal check`: how files are read.
 
+use std::path::Path;
+
 use poecal::calibration::DeviceFrameKnowledge;
 use poecal::forensics::{DiagnosisOptions, diagnose};
-use poecal::io::measurements;
+use poecal::io::measurements::{self, MeasurementFile};
 use poecal::io::model::Model;
 use poecal::{ErrorKind, Result, report};
 
 use crate::DONE;
 use crate::args::Check;
 use crate::console::Console;
+use crate::style::{labelled, shown};
 
 pub(crate) fn check(arguments: &Check, console: &Console) -> Result<u8> {
     let options = arguments.reading.options();
@@ -29,6 +32,23 @@ pub(crate) fn check(arguments: &Check, console: &Console) -> Result<u8> {
         diagnose(&model.robot, &file.data, &file.data.all_rows(), &options)
     });
     let check = report::Check::new(&model, measurements.as_ref(), &found);
-    console.json_or_table(arguments.json, || report::json(&check), || check.text())?;
+    let next = measurements.as_ref().map_or_else(String::new, |file| next(arguments, path, file));
+    console.json_or_table(arguments.json, || report::json(&check), || check.text() + &next)?;
     Ok(DONE)
+}
+
+/// The command that makes one table of files that were joined.
+fn next(arguments: &Check, model: &Path, file: &MeasurementFile) -> String {
+    if file.join.is_none() {
+        return String::new();
+    }
+    let files: Vec<String> = arguments.measurements.iter().map(|path| shown(path)).collect();
+    labelled(
+        "next",
+        &format!(
+            "poecal import {} {} --out session.csv writes one table, and how it was made",
+            shown(model),
+            files.join(" ")
+        ),
+    )
 }

@@ -22,6 +22,12 @@ impl NoiseShape {
             .then(|| (mean, NoiseShape::of_position(&Matrix3::from_diagonal(&factors.into()))))
     }
 
+    /// Standard deviations of the components of a position, metres, by the σ of all of them: the inverse of [`NoiseShape::by_component`].
+    #[must_use]
+    pub fn component_sigmas(&self, sigma_m: f64) -> [Option<f64>; 3] {
+        [0, 1, 2].map(|at| Some(self.0[(at, at)]).filter(|it| *it > 0.0).map(|factor| sigma_m / factor))
+    }
+
     /// Of a standard deviation along a unit vector and another one across it, metres: the σ of both, with their geometric mean, and the shape.
     #[must_use]
     pub fn across(sight: &Vector3<f64>, along_m: f64, across_m: f64) -> (f64, NoiseShape) {

@@ -56,6 +56,7 @@ pub(super) struct Pairing<'a> {
 
 /// Readings by line, and what is said of them.
 pub(super) struct Joined {
+    pub(super) how: Join,
     pub(super) readings: ReadingsByLine,
     pub(super) notes: Vec<String>,
     pub(super) warnings: Vec<String>,
@@ -238,7 +239,7 @@ impl Pairing<'_> {
         };
         let note = format!("{joints} and {path} were joined {by_name}: {}{missed}", counted(pairs.len()));
         warnings.extend(self.left_out(pairs));
-        Ok(Joined { readings: self.readings(pairs), notes: vec![note], warnings })
+        Ok(Joined { how, readings: self.readings(pairs), notes: vec![note], warnings })
     }
 
     /// Refuses rows that fit each other's readings.
@@ -332,7 +333,7 @@ impl Pairing<'_> {
             pairs.len(),
             1e3 * missed_m
         );
-        Ok(Joined { readings: self.readings(pairs), notes: vec![note], warnings })
+        Ok(Joined { how: Join::Rows, readings: self.readings(pairs), notes: vec![note], warnings })
     }
 
     fn readings(&self, pairs: &[Pair]) -> ReadingsByLine {

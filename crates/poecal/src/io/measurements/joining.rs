@@ -51,6 +51,7 @@ impl<'a> Reader<'a> {
         }
         let Ok(in_degrees) = self.map.clone().with_units("deg") else { return found };
         let Ok(rows) = self.joint_rows_by(path, &in_degrees) else { return found };
+        self.found.is_in_degrees = true;
         self.found.warnings.push(took_degrees(path, "as radians they are too large"));
         Ok(rows)
     }
@@ -140,6 +141,7 @@ impl<'a> Reader<'a> {
             Err(error) if joints.is_without_unit => {
                 let mut found = paired(&joints.in_degrees()).map_err(|_| error)?;
                 found.warnings.push(took_degrees(&joints.path, "as radians they fit no measurements"));
+                self.found.is_in_degrees = true;
                 found
             }
             found => found?,
@@ -153,6 +155,7 @@ impl<'a> Reader<'a> {
             ));
             found.readings.means = stands.means;
         }
+        self.found.join = Some(found.how);
         self.found.notes.extend(found.notes);
         self.found.warnings.extend(found.warnings);
         // The same again, with the readings of each line.

@@ -19,6 +19,7 @@ mod encodings;
 mod fit_where;
 mod gathering;
 mod header;
+mod imported;
 mod inputs;
 mod instrument_noise;
 mod intrinsics;
@@ -75,6 +76,7 @@ pub use cameras::{camera_file, read_cameras};
 pub use cells::Separator;
 pub(in crate::io) use cells::{Cell, split};
 pub use fit_where::FitWhere;
+pub use imported::imported_table;
 pub use instrument_noise::InstrumentNoise;
 pub use joints::{JointsTable, parse_joints, read_joints};
 pub use lost::LostBeams;
@@ -265,4 +267,8 @@ pub struct MeasurementFile {
     pub notes: Vec<String>,
     /// Warnings, a sentence each.
     pub warnings: Vec<String>,
+    /// How files of joint readings and of measurements were joined, if some were.
+    pub join: Option<Join>,
+    /// Whether angles of joints that state no unit were taken for degrees.
+    pub is_in_degrees: bool,
 }

@@ -1,0 +1,157 @@
+//! `poecal import`: measurements of any form as a table of our own, and how they were read.
+
+use std::fmt::Write as _;
+use std::path::{Component, Path, PathBuf};
+
+use poecal::io::measurements::{self, Frames, Join, MeasurementFile, PlaneContact};
+use poecal::io::model::Model;
+use poecal::io::named_files::{actual, refuse_repeats};
+use poecal::io::output::{Existing, FilePlace};
+use poecal::{ErrorKind, Result};
+
+use crate::args::Import;
+use crate::console::Console;
+use crate::style::{labelled, shown};
+
+pub(crate) fn import(arguments: &Import, console: &Console) -> Result<u8> {
+    let (Some(path), false) = (&arguments.model, arguments.measurements.is_empty()) else {
+        return ErrorKind::Option
+            .refuse("found no measurements, expected `poecal import MODEL FILES… --out FILE`, or settings that name both");
+    };
+    if !arguments.reading.meaning.instrument_noise.is_empty() {
+        return ErrorKind::Option.refuse(
+            "found --instrument-noise, expected it where the table is calibrated: it is no part of the measurements",
+        );
+    }
+    let meaning = arguments.reading.meaning.files();
+    let inputs: Vec<&Path> =
+        (std::iter::once(path).chain(&arguments.measurements).map(PathBuf::as_path)).chain(meaning).collect();
+    refuse_repeats(&arguments.measurements)?;
+    let existing = Existing::forced(arguments.force);
+    let place = FilePlace::reserve(&arguments.out, existing, &inputs, &mut console.warner())?;
+    let beside = arguments.out.with_extension("map.toml");
+    let map_place = FilePlace::reserve(&beside, existing, &inputs, &mut console.warner())?;
+    let options = arguments.reading.options()?;
+    let model = Model::read(path, &arguments.chain.selection(Some(&options))?)?;
+    let file = measurements::read(&arguments.measurements, &model.robot, &model.reads(options))?;
+    console.said_of(&file);
+    let table = measurements::imported_table(&file, &model.robot)?;
+    let map = map(arguments, path, &file);
+    place.write(vec![table.into()])?;
+    map_place.write(vec![map.into()])?;
+    let rows = file.data.len();
+    let text = labelled("written", &format!("{}, {}", shown(&arguments.out), shown(&beside)))
+        + &labelled("rows", &format!("{rows} of {} files", arguments.measurements.len()))
+        + &labelled("calibrate", &format!("poecal calibrate {} {}", shown(path), shown(&arguments.out)))
+        + &labelled("again", &format!("poecal import --settings {} --out FILE", shown(&beside)));
+    Ok(console.say_of(&text, &arguments.out))
+}
+
+/// How files were read, as settings that read them again in the same way.
+fn map(arguments: &Import, model: &Path, file: &MeasurementFile) -> String {
+    let folder = arguments.out.parent().unwrap_or(Path::new(""));
+    let here = |path: &Path| quoted(&relative(folder, path).display().to_string());
+    let mut out = String::from(
+        "# How the files of this table were read. The same files and these settings make it again, byte by byte:\n",
+    );
+    let _ = writeln!(
+        out,
+        "#   poecal import --settings {} --out FILE",
+        shown_name(&arguments.out.with_extension("map.toml"))
+    );
+    out.push_str("poecal_settings = 1\n");
+    let _ = writeln!(out, "model = {}", here(model));
+    let files: Vec<String> = arguments.measurements.iter().map(|path| here(path)).collect();
+    let _ = writeln!(out, "measurements = [{}]", files.join(", "));
+    let mut text = |key: &str, value: Option<String>| {
+        if let Some(value) = value {
+            let _ = writeln!(out, "{key} = {value}");
+        }
+    };
+    let (reading, chain) = (&arguments.reading, &arguments.chain);
+    let meaning = &reading.meaning;
+    text("base_link", chain.chain.base_link.as_deref().map(quoted));
+    text("tip_link", chain.chain.tip_link.as_deref().map(quoted));
+    let pairs = |pairs: &[(String, String)]| {
+        let all: Vec<String> = pairs.iter().map(|(name, link)| quoted(&format!("{name}={link}"))).collect();
+        (!all.is_empty()).then(|| format!("[{}]", all.join(", ")))
+    };
+    text("instrument", pairs(&chain.instrument));
+    text("target", pairs(&chain.target));
+    text("columns", meaning.columns.columns.as_deref().map(here));
+    text("strict", meaning.strict.then(|| "true".to_owned()));
+    text("frames", (meaning.frames == Frames::PerFile).then(|| quoted("per-file")));
+    text("contact", (meaning.contact == PlaneContact::Flush).then(|| quoted("flush")));
+    text("fit_where", reading.fit_where.as_deref().map(quoted));
+    // What was found is stated.
+    let join = meaning.join.or(file.join).map(|join| match join {
+        Join::Name => "name",
+        Join::Rows => "rows",
+        Join::Time => "time",
+    });
+    text("join", join.map(quoted));
+    let units = meaning.units.clone().map_or_else(
+        || file.is_in_degrees.then(|| "deg".to_owned()),
+        |stated| Some(if file.is_in_degrees { format!("{stated},deg") } else { stated }),
+    );
+    text("units", units.as_deref().map(quoted));
+    text("lag", meaning.lag.map(|lag| quoted(&format!("{}s+-{}s", lag.lag_s, lag.off_s))));
+    text("sheet", meaning.sheet.as_deref().map(quoted));
+    text("body", meaning.body.as_deref().map(quoted));
+    for understood in &file.understood {
+        let _ = writeln!(out, "\n# {}: {} rows", understood.path.display(), understood.rows);
+        if let Some(sha256) = file.sha256.get(&understood.path.display().to_string()) {
+            let _ = writeln!(out, "#   SHA-256 {sha256}");
+        }
+        for column in &understood.columns {
+            let from = column.column.as_deref().unwrap_or("a constant");
+            let unit = column.unit.map(|unit| format!(" in {unit}")).unwrap_or_default();
+            let _ = writeln!(out, "#   {} from {from}{unit}", column.name);
+        }
+        if let Some(orientation) = &understood.orientation {
+            let _ = writeln!(out, "#   orientation: {orientation}, {}", understood.pose);
+        }
+    }
+    if !file.notes.is_empty() || !file.warnings.is_empty() {
+        out.push('\n');
+    }
+    for words in file.notes.iter().chain(&file.warnings) {
+        let _ = writeln!(out, "# {words}");
+    }
+    out
+}
+
+/// A text of TOML.
+fn quoted(text: &str) -> String {
+    let mut out = String::from("\"");
+    for letter in text.chars() {
+        match letter {
+            '"' | '\\' => out.extend(['\\', letter]),
+            letter if letter.is_control() => {
+                let _ = write!(out, "\\u{:04X}", u32::from(letter));
+            }
+            letter => out.push(letter),
+        }
+    }
+    out + "\""
+}
+
+fn shown_name(path: &Path) -> String {
+    path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default()
+}
+
+/// A path as it is called in a folder, with `/` in it.
+fn relative(folder: &Path, path: &Path) -> PathBuf {
+    let home = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+    let (home, whole) = (actual(home), actual(path));
+    let (mut own, mut other) = (home.components().peekable(), whole.components().peekable());
+    while own.peek().is_some() && own.peek() == other.peek() {
+        own.next();
+        other.next();
+    }
+    // On another drive there is no way.
+    if own.clone().any(|part| matches!(part, Component::Prefix(_))) {
+        return whole;
+    }
+    own.map(|_| Component::ParentDir).chain(other).collect()
+}

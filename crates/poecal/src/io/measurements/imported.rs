@@ -1,0 +1,124 @@
+//! Measurements of files in any form, written in ours: every number reads back the same.
+
+use std::fmt::Write as _;
+
+use super::MeasurementFile;
+use super::units::NamedUnit;
+use super::write::{decimal, reading_header, reading_units, refuse_names};
+use crate::error::{ErrorKind, Result};
+use crate::io::csv_text::cell;
+use crate::measurement::{Observation, Quantity, Set};
+use crate::robot::Robot;
+use crate::unit::Unit;
+
+/// Names of the columns beside those of joints.
+const COLUMNS: [&str; 16] = [
+    "id",
+    "target",
+    "instrument",
+    "set",
+    "x",
+    "y",
+    "z",
+    "qx",
+    "qy",
+    "qz",
+    "qw",
+    "sigma_position",
+    "sigma_x",
+    "sigma_y",
+    "sigma_z",
+    "sigma_rotation",
+];
+
+/// The rows of files as one table in our form: degrees and millimetres, orientations as quaternions x, y, z, w, standard deviations where rows
+/// state them.
+///
+/// # Errors
+/// [`ErrorKind::Measurement`] of other measurements than positions and poses, of an instrument's own configuration, and of a joint with the name of
+/// another column.
+pub fn imported_table(file: &MeasurementFile, robot: &Robot) -> Result<String> {
+    let data = &file.data;
+    let is_place = |row: &&Observation| row.from.is_none() && row.measurement.is_place();
+    if let Some(other) = data.observations.iter().find(|row| !is_place(row)) {
+        let message = format!(
+            "found a measurement of {}, expected positions and poses, which alone are written as a table of our own: name the files in each command",
+            other.measurement.function().leading().name()
+        );
+        let error = ErrorKind::Measurement.error(message);
+        return Err(match data.files.get(other.source.file as usize) {
+            Some(path) => error.at_line(path, other.source.line as usize),
+            None => error,
+        });
+    }
+    let units = reading_units(data.reading_names(), robot)?;
+    refuse_names(data.reading_names(), &COLUMNS)?;
+    let has = |of: &dyn Fn(&Observation) -> bool| data.observations.iter().any(of);
+    let is_posed = has(&|it| it.measurement.sees_orientation());
+    let is_by_component = has(&|it| it.noise_shape.is_some());
+    let sigmas = [
+        (Quantity::Position, "sigma_position[mm]", !is_by_component),
+        (Quantity::Rotation, "sigma_rotation[deg]", true),
+    ];
+    let stated: Vec<(Quantity, &str)> = (sigmas.into_iter())
+        .filter(|(quantity, _, is_one)| *is_one && has(&|it| it.stated.get(*quantity).is_some()))
+        .map(|(quantity, name, _)| (quantity, name))
+        .collect();
+    let has_sets = has(&|it| it.set.is_some());
+    let is_named = data.targets.iter().any(Option::is_some);
+    let has_stations = data.stations.iter().any(Option::is_some);
+    let has_ids = data.ids.iter().any(|it| !it.is_empty());
+    let mut header: Vec<&str> = Vec::new();
+    header.extend(has_ids.then_some("id"));
+    let joints = reading_header(data.reading_names(), &units);
+    header.push(&joints);
+    header.extend(is_named.then_some("target"));
+    header.extend(has_stations.then_some("instrument"));
+    header.extend(["x[mm]", "y[mm]", "z[mm]"]);
+    header.extend(if is_posed { &["qx", "qy", "qz", "qw"][..] } else { &[] });
+    header.extend(stated.iter().map(|it| it.1));
+    header.extend(if is_by_component { &["sigma_x[mm]", "sigma_y[mm]", "sigma_z[mm]"][..] } else { &[] });
+    header.extend(has_sets.then_some("set"));
+    let mut out = header.join(",");
+    out.push('\n');
+    let (mm, one) = (NamedUnit::parse("mm", Unit::Metre)?, NamedUnit::from(Unit::One));
+    let deg = NamedUnit::parse("deg", Unit::Radian)?;
+    for (row, observation) in data.observations.iter().enumerate() {
+        let mut cells: Vec<String> = Vec::with_capacity(header.len());
+        if has_ids {
+            cells.push(cell(data.ids.get(row).map_or("", String::as_str)).into_owned());
+        }
+        cells.extend(
+            data.readings(row).iter().zip(&units).map(|(reading, unit)| decimal(*reading, *unit, None)),
+        );
+        let named = |names: &[Option<String>], at: usize| {
+            cell(names.get(at).and_then(Option::as_deref).unwrap_or_default()).into_owned()
+        };
+        cells.extend(is_named.then(|| named(&data.targets, observation.target)));
+        cells.extend(has_stations.then(|| named(&data.stations, observation.station)));
+        let empty = String::new;
+        let seen = &observation.measurement;
+        cells.extend(seen.position_components().map(|it| it.map_or_else(empty, |it| decimal(it, mm, None))));
+        if is_posed {
+            let turn = seen.sees_orientation().then(|| seen.pose().quaternion_xyzw());
+            cells.extend((0..4).map(|at| turn.map_or_else(empty, |it| decimal(it[at], one, None))));
+        }
+        for (quantity, _) in &stated {
+            let unit = if *quantity == Quantity::Position { mm } else { deg };
+            cells.push(observation.stated.get(*quantity).map_or_else(empty, |it| decimal(it, unit, None)));
+        }
+        if is_by_component {
+            let sigma = observation.stated.get(Quantity::Position);
+            let shape = data.noise_shape(observation).zip(sigma);
+            let sigmas = shape.map_or([sigma; 3], |(shape, sigma)| shape.component_sigmas(sigma));
+            cells.extend(sigmas.map(|it| it.map_or_else(empty, |it| decimal(it, mm, None))));
+        }
+        if has_sets {
+            cells.push(
+                observation.set.map_or("", |set| if set == Set::Fit { "fit" } else { "held_out" }).to_owned(),
+            );
+        }
+        let _ = writeln!(out, "{}", cells.join(","));
+    }
+    Ok(out)
+}
