@@ -14,7 +14,9 @@ mod stations;
 
 pub(crate) use averaging::{mean_rotation, rotation_maximising};
 pub use faces::{faces_on_known_planes, settle_faces};
-pub use pairing::{Agreement, Aligned, Lagged, Order, Pair, Span, Stand, Stream, Unpaired};
+pub use pairing::{
+    Agreement, Aligned, Channels as StreamChannels, Lagged, Order, Pair, Span, Stand, Stream, Unpaired,
+};
 pub(crate) use pictures::predicted_pose;
 pub use pictures::{SettledPictures, settle_pictures};
 pub use registration::{Registration, register_again};

@@ -9,10 +9,12 @@ use super::layout::ColumnLayout;
 use super::table::Row;
 use crate::lie::Pose;
 use crate::measurement::{Dataset, Measurement, Observation};
-use crate::start::{Span, Stand, Stream, mean_rotation};
+use crate::start::{Span, Stand, Stream, StreamChannels, mean_rotation};
 
 /// Changes that are none: of a joint (rad, m), of a position (m), and of an orientation (parts of its matrix).
 const STILL_JOINT: f64 = 5e-5;
+/// Largest last digit of readings that counts as no change (rad, m).
+const COARSEST_JOINT: f64 = 1e-3;
 const STILL_PLACE_M: f64 = 3e-5;
 const STILL_TURN: f64 = 1e-4;
 
@@ -29,7 +31,12 @@ pub(super) fn stands_of_joints(rows: &JointRows, times: &[f64]) -> Option<JointR
     let width = rows.turns.len();
     let channel = |at: usize| rows.readings.iter().skip(at).step_by(width.max(1)).copied().collect();
     let channels: Vec<Vec<f64>> = (0..width).map(channel).collect();
-    let stream = dense(times, channels.clone(), vec![STILL_JOINT; width])?;
+    let alone = |values: &Vec<f64>| StreamChannels {
+        values: vec![values.clone()],
+        freedom: 1,
+        floor: STILL_JOINT.max(digit(values).min(COARSEST_JOINT)),
+    };
+    let stream = dense(times, channels.iter().map(alone).collect())?;
     let stands = stream.stands();
     let mean = |stand: &Stand| {
         let of = |channel: &Vec<f64>| {
@@ -47,12 +54,18 @@ pub(super) fn stands_of_joints(rows: &JointRows, times: &[f64]) -> Option<JointR
     })
 }
 
+/// The last digit of readings: the smallest change that is one.
+fn digit(values: &[f64]) -> f64 {
+    let changes = values.windows(2).map(|it| (it[1] - it[0]).abs()).filter(|it| *it > 1e-9);
+    changes.min_by(f64::total_cmp).unwrap_or_default()
+}
+
 /// A stream, if rows are one.
-fn dense(times: &[f64], channels: Vec<Vec<f64>>, floors: Vec<f64>) -> Option<Stream> {
+fn dense(times: &[f64], channels: Vec<StreamChannels>) -> Option<Stream> {
     if times.is_empty() || times.iter().any(|it| !it.is_finite()) {
         return None;
     }
-    Some(Stream::new(times.to_vec(), channels, floors)).filter(Stream::is_dense)
+    Some(Stream::new(times.to_vec(), channels)).filter(Stream::is_dense)
 }
 
 /// Stands of a stream of measurements: a row each, with the mean of each target, at the line of their first row.
@@ -91,10 +104,16 @@ pub(super) fn stands_of_measured(data: &Dataset, times: &[f64]) -> Option<Measur
     };
     let all: Vec<Vec<f64>> = own.iter().map(numbers).collect();
     let width = all.first()?.len();
-    let channels = (0..width).map(|at| all.iter().filter_map(|it| it.get(at)).copied().collect()).collect();
-    let floors = (0..width).map(|at| if at < 3 { STILL_PLACE_M } else { STILL_TURN }).collect();
+    let channel = |at: usize| -> Vec<f64> { all.iter().filter_map(|it| it.get(at)).copied().collect() };
+    let group = |range: std::ops::Range<usize>, floor: f64| StreamChannels {
+        values: range.map(channel).collect(),
+        freedom: 3,
+        floor,
+    };
+    let mut channels = vec![group(0..3, STILL_PLACE_M)];
+    channels.extend((width > 3).then(|| group(3..width, STILL_TURN)));
     let own_times: Vec<f64> = rows.iter().filter_map(|at| times.get(*at)).copied().collect();
-    let stream = dense(&own_times, channels, floors)?;
+    let stream = dense(&own_times, channels)?;
     let mut found =
         MeasuredStands { data: Dataset::new(data.reading_names().to_vec()), ..MeasuredStands::default() };
     (found.data.targets, found.data.stations) = (data.targets.clone(), data.stations.clone());

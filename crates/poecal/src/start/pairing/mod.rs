@@ -8,7 +8,7 @@ mod uneven;
 
 pub use agreement::{Agreement, Order};
 pub use lags::{Lagged, Span};
-pub use stands::{Stand, Stream};
+pub use stands::{Channels, Stand, Stream};
 pub use uneven::Aligned;
 
 use std::collections::BTreeSet;

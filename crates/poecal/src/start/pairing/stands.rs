@@ -12,11 +12,14 @@ const LONGEST_GAP_S: f64 = 0.15;
 const LONGEST_GAP_STEPS: f64 = 2.5;
 /// Fewest rows of a window.
 const FEWEST: usize = 3;
-/// Share of the windows that stand at least, and how many times more than in the quietest of them the rest may scatter.
+/// Share of the windows that stand at least: their scatter is below that of so many shows the noise.
 const QUIET: f64 = 0.1;
-const TIMES: f64 = 3.0;
-/// How many times more than from row to row a channel may scatter within a window: noise is not white.
-const TIMES_NOISE: f64 = 6.0;
+/// Standard normal quantiles of that share, and of what a window that stands may reach.
+const QUIET_SCORE: f64 = -1.281_6;
+const STILL_SCORE: f64 = 3.3;
+/// How many times more than in the quietest windows, and than from row to row, a window may scatter: noise is not white, nor the same everywhere.
+const TIMES: f64 = 1.5;
+const TIMES_NOISE: f64 = 4.0;
 /// Two stands whose means differ by less than this many tolerances are one, which was interrupted.
 const SAME: f64 = 2.0;
 /// Share of the range of a channel beyond which its tolerance shows that nothing stands.
@@ -31,22 +34,29 @@ pub struct Stand {
     pub span_s: (f64, f64),
 }
 
+/// Numbers of the rows of a stream that move together, as the coordinates of a point.
+#[derive(Clone, Debug)]
+pub struct Channels {
+    /// The values of each number.
+    pub values: Vec<Vec<f64>>,
+    /// In how many directions they move.
+    pub freedom: usize,
+    /// A change that is none.
+    pub floor: f64,
+}
+
 /// Rows of a stream: times (seconds), and some numbers of each row.
 #[derive(Clone, Debug)]
 pub struct Stream {
     times: Vec<f64>,
-    channels: Vec<Vec<f64>>,
-    /// Below which a channel does not move.
-    floors: Vec<f64>,
+    channels: Vec<Channels>,
 }
 
 impl Stream {
-    /// Of the times of rows, and of each channel its values and the change that is none.
-    ///
-    /// Rows whose time is not later than that of the row before belong to it.
+    /// Of the times of rows, and of what moves.
     #[must_use]
-    pub fn new(times: Vec<f64>, channels: Vec<Vec<f64>>, floors: Vec<f64>) -> Self {
-        Stream { times, channels, floors }
+    pub fn new(times: Vec<f64>, channels: Vec<Channels>) -> Self {
+        Stream { times, channels }
     }
 
     /// Whether it is one: rows in time, at most a quarter of a second from one to the next, and far more of them than places.
@@ -58,7 +68,7 @@ impl Stream {
         let steps = self.times.windows(2).map(|it| it[1] - it[0]);
         let step = median(steps.clone()).unwrap_or(f64::INFINITY);
         let is_ordered = steps.clone().filter(|it| *it < 0.0).count() == 0;
-        let is_smooth = self.channels.iter().all(|it| {
+        let is_smooth = self.channels.iter().flat_map(|it| &it.values).all(|it| {
             let moved = median(it.windows(2).map(|it| (it[1] - it[0]).abs())).unwrap_or_default();
             moved <= STEP * span(it)
         });
@@ -72,15 +82,24 @@ impl Stream {
         if windows.len() < FEWEST {
             return Vec::new();
         }
-        let sums: Vec<Sums> = self.channels.iter().map(|it| Sums::of(it)).collect();
+        let sums: Vec<Vec<Sums>> =
+            self.channels.iter().map(|it| it.values.iter().map(|it| Sums::of(it)).collect()).collect();
         let mut still = vec![true; windows.len()];
         let mut tolerances = Vec::with_capacity(self.channels.len());
-        for ((values, sums), floor) in self.channels.iter().zip(&sums).zip(&self.floors) {
-            let spreads: Vec<f64> = windows.iter().map(|it| sums.deviation(it)).collect();
-            let noises: Vec<f64> = windows.iter().map(|it| row_noise(values, it)).collect();
-            let tolerance = floor
-                .max((TIMES * quantile(&spreads, QUIET)).min(TIMES_NOISE * quantile(&noises, QUIET) + floor));
-            if tolerance > LARGEST * span(values) && span(values) > 10.0 * floor {
+        for (channels, sums) in self.channels.iter().zip(&sums) {
+            let spreads: Vec<f64> = windows.iter().map(|it| deviation(sums, it)).collect();
+            let noises: Vec<f64> = windows.iter().map(|it| row_noise(&channels.values, it)).collect();
+            let rows = median(windows.iter().map(|it| it.len() as f64)).unwrap_or_default();
+            let freedom = channels.freedom as f64;
+            // A window of few rows scatters less than the noise, and more from window to window.
+            let (own, steps) = (freedom * (rows - 1.0), freedom * (rows - 2.0).max(1.0));
+            let noise = quantile(&spreads, QUIET) / (chi2(own, QUIET_SCORE) / own).sqrt();
+            let row_noise = quantile(&noises, QUIET) / (chi2(steps, QUIET_SCORE) / steps).sqrt();
+            let most = (chi2(own, STILL_SCORE) / own).sqrt();
+            let floor = channels.floor;
+            let tolerance = floor.max(most * (TIMES * noise).min(TIMES_NOISE * row_noise + floor));
+            let widest = channels.values.iter().map(|it| span(it)).fold(0.0, f64::max);
+            if tolerance > LARGEST * widest && widest > 10.0 * floor {
                 return Vec::new();
             }
             for (still, spread) in still.iter_mut().zip(&spreads) {
@@ -97,10 +116,12 @@ impl Stream {
         }
         let mut joined: Vec<Range<usize>> = Vec::new();
         for next in rows {
-            let is_same = joined.last().is_some_and(|last| {
-                (sums.iter().zip(&tolerances))
-                    .all(|(it, tolerance)| (it.mean(last) - it.mean(&next)).abs() <= SAME * tolerance)
-            });
+            let is_near = |last: &Range<usize>, (sums, tolerance): (&Vec<Sums>, &f64)| {
+                let apart = sums.iter().map(|it| (it.mean(last) - it.mean(&next)).powi(2)).sum::<f64>();
+                apart.sqrt() <= SAME * tolerance
+            };
+            let is_same =
+                joined.last().is_some_and(|last| sums.iter().zip(&tolerances).all(|it| is_near(last, it)));
             match joined.last_mut() {
                 Some(last) if is_same => last.end = next.end,
                 _ => joined.push(next),
@@ -176,20 +197,34 @@ impl Sums {
         self.middle + Self::between(&self.first, rows) / rows.len().max(1) as f64
     }
 
-    fn deviation(&self, rows: &Range<usize>) -> f64 {
-        let count = rows.len().max(1) as f64;
+    /// The variance of rows.
+    fn variance(&self, rows: &Range<usize>) -> f64 {
+        let count = rows.len().max(2) as f64;
         let mean = Self::between(&self.first, rows) / count;
-        (Self::between(&self.second, rows) / count - mean * mean).max(0.0).sqrt()
+        (Self::between(&self.second, rows) - count * mean * mean).max(0.0) / (count - 1.0)
     }
 }
 
-/// The noise of a channel in a window, from row to row: of what is left of second differences.
-fn row_noise(values: &[f64], rows: &Range<usize>) -> f64 {
-    let own = values.get(rows.clone()).unwrap_or_default();
-    let squares = own.windows(3).map(|it| (it[0] - 2.0 * it[1] + it[2]).powi(2));
-    let count = own.len().saturating_sub(2).max(1) as f64;
+/// The standard deviation of numbers in a window, of all together.
+fn deviation(sums: &[Sums], rows: &Range<usize>) -> f64 {
+    sums.iter().map(|it| it.variance(rows)).sum::<f64>().sqrt()
+}
+
+/// The noise of numbers in a window, of all together, from row to row: of what is left of second differences.
+fn row_noise(values: &[Vec<f64>], rows: &Range<usize>) -> f64 {
+    let squares = |values: &Vec<f64>| {
+        let own = values.get(rows.clone()).unwrap_or_default();
+        own.windows(3).map(|it| (it[0] - 2.0 * it[1] + it[2]).powi(2)).sum::<f64>()
+    };
+    let count = rows.len().saturating_sub(2).max(1) as f64;
     // White noise of one unit has second differences of √6.
-    (squares.sum::<f64>() / count / 6.0).sqrt()
+    (values.iter().map(squares).sum::<f64>() / count / 6.0).sqrt()
+}
+
+/// Quantile of the sum of squares of so many standard normal numbers, by the score of a standard normal one (Wilson and Hilferty, 1931).
+fn chi2(freedom: f64, score: f64) -> f64 {
+    let part = 2.0 / (9.0 * freedom);
+    freedom * (1.0 - part + score * part.sqrt()).max(0.0).powi(3)
 }
 
 /// The value that this share of all is below.
@@ -226,7 +261,12 @@ mod tests {
         let noisy = |(at, value): (usize, f64)| value + noise * ((at as f64 * 0.618_033_988_7).fract() - 0.5);
         let values: Vec<f64> = values.into_iter().enumerate().map(noisy).collect();
         let times = (0..values.len()).map(|it| 0.01 * it as f64).collect();
-        Stream::new(times, vec![values], vec![1e-5])
+        alone(times, values)
+    }
+
+    /// A stream of one number.
+    fn alone(times: Vec<f64>, values: Vec<f64>) -> Stream {
+        Stream::new(times, vec![Channels { values: vec![values], freedom: 1, floor: 1e-5 }])
     }
 
     #[test]
@@ -249,13 +289,13 @@ mod tests {
     fn what_never_stands_has_no_stands() {
         let times: Vec<f64> = (0..2000).map(|it| 0.01 * f64::from(it)).collect();
         let values: Vec<f64> = times.iter().map(|it| (0.7 * it).sin() + 0.3 * (1.9 * it).cos()).collect();
-        assert_eq!(Stream::new(times, vec![values], vec![1e-5]).stands(), []);
+        assert_eq!(alone(times, values).stands(), []);
     }
 
     #[test]
     fn a_list_of_places_is_no_stream() {
         let times: Vec<f64> = (0..100).map(|it| 0.001 * f64::from(it)).collect();
         let values: Vec<f64> = (0..100).map(|it| (f64::from(it) * 0.618).fract()).collect();
-        assert!(!Stream::new(times, vec![values], vec![1e-5]).is_dense());
+        assert!(!alone(times, values).is_dense());
     }
 }
