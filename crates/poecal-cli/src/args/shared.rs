@@ -150,6 +150,9 @@ pub(crate) struct Meaning {
     /// Body, marker or tool of recordings of a camera system [default: the only one that moves]
     #[arg(long, value_name = "NAME")]
     pub(crate) body: Option<String>,
+    /// Topic of ROS 2 bags that has the joint readings or the measurements, where several can be meant; may be given again [default: the only one]
+    #[arg(long, value_name = "NAME")]
+    pub(crate) topic: Vec<String>,
     /// Known distance between the two sockets of each place, like 50mm, or of pairs by name, like A-B=50mm,B-C=70mm+-0.02mm
     #[arg(long, value_name = "LENGTH|A-B=LENGTH,...")]
     pub(crate) socket_distance: Option<SocketDistances>,
@@ -181,6 +184,7 @@ impl Meaning {
             lag: self.lag,
             sheet: self.sheet.clone(),
             body: self.body.clone(),
+            topics: self.topic.clone(),
             contact,
             socket_distances,
             instrument_noise,

@@ -51,6 +51,12 @@ impl<R: Read> Hashing<R> {
         Hashing { source, hasher: Sha256::new() }
     }
 
+    /// The same that goes on with another source.
+    #[cfg(feature = "bags")]
+    pub(super) fn over(self, source: R) -> Self {
+        Hashing { source, ..self }
+    }
+
     /// SHA-256 of the bytes read so far, as hexadecimal digits.
     pub(super) fn sha256(&self) -> String {
         let mut digits = String::with_capacity(64);

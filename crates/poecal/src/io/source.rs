@@ -15,6 +15,13 @@ pub(super) const LARGEST_TABLE: u64 = 4 << 30;
 /// Number of bytes by which other formats are recognised.
 const HEAD: u64 = 16;
 
+/// What a bag is where it cannot be read.
+const BAG: &str = if cfg!(feature = "bags") {
+    "a ROS 2 bag (.mcap), which is read as a measurement file by its path, and not from standard input"
+} else {
+    "a ROS 2 bag (.mcap); write its messages as tables with `ros2 topic echo --csv`"
+};
+
 /// First bytes of other formats, with advice.
 const FORMS: [(&[u8], &str); 14] = [
     (b"PK\x03\x04", "a ZIP archive or a workbook such as .xlsx; save the table as `CSV UTF-8`"),
@@ -35,7 +42,7 @@ const FORMS: [(&[u8], &str); 14] = [
         b"#ROSBAG V",
         "a ROS 1 bag; write it as MCAP with `rosbags-convert`, or read it in Python with `rosbags`",
     ),
-    (b"\x89MCAP0\r\n", "a ROS 2 bag (.mcap); write its messages as tables with `ros2 topic echo --csv`"),
+    (b"\x89MCAP0\r\n", BAG),
     (
         b"\x89HDF\r\n\x1a\n",
         "an HDF5 file, or one of MATLAB 7.3; hand its arrays to `Measurements.from_arrays` in Python (`h5py`)",

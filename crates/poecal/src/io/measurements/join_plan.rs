@@ -7,10 +7,11 @@ use super::corner_columns::{are_corners, are_readings_of_pictures};
 use super::layout::ColumnLayout;
 use super::mapping::{ColumnMap, ColumnSpec};
 use super::messages::are_messages;
-use super::recorded::Opening;
+use super::recorded::{Opening, OwnTable, Recording};
 use super::table::Table;
+use super::text::Blocks;
 use super::{Frames, ReadOptions};
-use crate::error::Result;
+use crate::error::{ErrorKind, Result, shown};
 use crate::io::disk::is_file;
 use crate::measurement::Measurement;
 use crate::robot::{Controller, ReadingKind, Robot};
@@ -47,6 +48,18 @@ pub(super) struct Planned<'p> {
     pub(super) part: Part,
     /// How one without readings is read.
     pub(super) map: ColumnMap,
+    /// The table, of a file that holds several.
+    table: Option<OwnTable>,
+}
+
+impl<'p> Planned<'p> {
+    /// Its blocks.
+    pub(super) fn blocks(&self, opening: Opening<'_>, expected: &'p str) -> Result<Blocks<'p>> {
+        match &self.table {
+            Some(table) => Ok(table.blocks(self.path, expected)),
+            None => opening.blocks(self.path, expected),
+        }
+    }
 }
 
 impl<'p> Plan<'p> {
@@ -57,27 +70,61 @@ impl<'p> Plan<'p> {
         options: &ReadOptions,
         map: &ColumnMap,
     ) -> Result<Option<Self>> {
-        if paths.len() < 2 {
+        let opening = Opening { robot, options };
+        let recordings: Vec<Option<Recording>> =
+            paths.iter().map(|path| opening.recording(path)).collect::<Result<_>>()?;
+        let first = paths.iter().zip(&recordings).find_map(|(path, it)| Some((*path, it.as_ref()?)));
+        if paths.len() < 2 && first.is_none() {
             return Ok(None);
         }
-        let parts: Vec<Part> =
-            paths.iter().map(|path| part(path, robot, options, map)).collect::<Result<_>>()?;
-        let measured = parts.iter().filter(|it| matches!(it, Part::Measured { .. })).count();
-        let joints = parts.iter().filter(|it| **it == Part::Joints).count();
+        let mut files: Vec<(&'p Path, Part, Option<OwnTable>)> = Vec::new();
+        for (path, recording) in paths.iter().zip(&recordings) {
+            let Some(recording) = recording else {
+                files.push((path, part(path, robot, options, map)?, None));
+                continue;
+            };
+            for (is_joints, table) in recording.tables() {
+                let is_named = map.target_name.is_some();
+                let part = if is_joints { Part::Joints } else { Part::Measured { is_named } };
+                files.push((path, part, Some(table)));
+            }
+        }
+        let measured = files.iter().filter(|it| matches!(it.1, Part::Measured { .. })).count();
+        let joints = files.iter().filter(|it| it.1 == Part::Joints).count();
+        if let Some((path, recording)) = first {
+            refuse_other_topics(path, &recordings, options)?;
+            if joints == 0 || measured == 0 {
+                return Err(recording.error(path, joints == 0));
+            }
+        }
         if joints == 0 || measured == 0 {
             return Ok(None);
         }
         let several = joints == 1 && measured > 1;
-        let planned = |(path, part): (&&'p Path, Part)| {
+        let planned = |(path, part, table): (&'p Path, Part, Option<OwnTable>)| {
             let mut map = without_joints(map, robot);
             // Several files that were measured at the same configurations are of several targets, or of several instruments.
             if several && part == (Part::Measured { is_named: false }) && options.frames == Frames::Common {
                 map.target_name = path.file_stem().map(|it| it.to_string_lossy().into_owned());
             }
-            Planned { path, part, map }
+            Planned { path, part, map, table }
         };
-        Ok(Some(Plan { files: paths.iter().zip(parts).map(planned).collect() }))
+        Ok(Some(Plan { files: files.into_iter().map(planned).collect() }))
     }
+}
+
+/// Refuses a topic that was asked for and that no file has.
+fn refuse_other_topics(path: &Path, recordings: &[Option<Recording>], options: &ReadOptions) -> Result<()> {
+    for (at, name) in options.topics.iter().enumerate() {
+        let mut all = recordings.iter().flatten();
+        if !all.any(|it| it.has_topic(at)) {
+            let contents: Vec<&str> = recordings.iter().flatten().map(Recording::contents).collect();
+            let message =
+                format!("found no topic `{}`, expected one of {}", shown(name), contents.join(", "));
+            return Err(ErrorKind::Option.error(message).in_file(path));
+        }
+    }
+    Ok(())
 }
 
 /// What a file has; one that is no table is named when it is read.

@@ -25,16 +25,15 @@ impl<'a> Reader<'a> {
     /// Reads files of which some have the joint readings of others: each those of the files behind it, up to the next file of readings; the first
     /// ones also those of files before them.
     pub(super) fn joined(&mut self, plan: &'a Plan<'_>) -> Result<()> {
-        let first = plan.files.iter().find(|it| it.part == Part::Joints).map(|it| it.path);
-        let mut joints = first.map(|path| self.joint_rows(path)).transpose()?;
-        for Planned { path, part, map } in &plan.files {
-            match (part, &joints) {
-                (Part::Joints, Some(known)) if known.path == *path => {}
-                (Part::Joints, _) => joints = Some(self.joint_rows(path)?),
-                (Part::Measured { .. }, Some(known)) => self.measured(path, known, map)?,
+        let first = plan.files.iter().find(|it| it.part == Part::Joints);
+        let mut joints = first.map(|it| self.joint_rows(it)).transpose()?;
+        for it in &plan.files {
+            match (it.part, &joints) {
+                (Part::Joints, Some(known)) if known.path == it.path => {}
+                (Part::Joints, _) => joints = Some(self.joint_rows(it)?),
+                (Part::Measured { .. }, Some(known)) => self.measured(it, known)?,
                 (Part::Measured { .. }, None) | (Part::Whole, _) => {
-                    let blocks = self.opening().blocks(path, "a measurement file (CSV)")?;
-                    self.file(path, blocks)?;
+                    self.file(it.path, it.blocks(self.opening(), MEASURED)?)?;
                 }
             }
         }
@@ -43,21 +42,22 @@ impl<'a> Reader<'a> {
 
     /// Reads a file of joint readings alone. Angles without a unit that are no radians are degrees: the nominal robot then agrees with the pairs, or
     /// they are refused.
-    fn joint_rows(&mut self, path: &Path) -> Result<JointRows> {
-        let found = self.joint_rows_by(path, self.map);
+    fn joint_rows(&mut self, planned: &Planned<'_>) -> Result<JointRows> {
+        let found = self.joint_rows_by(planned, self.map);
         let Err(error) = &found else { return found };
         if error.kind() != ErrorKind::Unit || self.map.units.angle.is_some() {
             return found;
         }
         let Ok(in_degrees) = self.map.clone().with_units("deg") else { return found };
-        let Ok(rows) = self.joint_rows_by(path, &in_degrees) else { return found };
+        let Ok(rows) = self.joint_rows_by(planned, &in_degrees) else { return found };
         self.found.is_in_degrees = true;
-        self.found.warnings.push(took_degrees(path, "as radians they are too large"));
+        self.found.warnings.push(took_degrees(planned.path, "as radians they are too large"));
         Ok(rows)
     }
 
-    fn joint_rows_by(&mut self, path: &Path, map: &ColumnMap) -> Result<JointRows> {
-        let blocks = self.opening().blocks(path, "a file of joint readings (CSV)")?;
+    fn joint_rows_by(&mut self, planned: &Planned<'_>, map: &ColumnMap) -> Result<JointRows> {
+        let path = planned.path;
+        let blocks = planned.blocks(self.opening(), "a file of joint readings (CSV)")?;
         let mut table = Table::open(path, blocks, map)?;
         let said = table.said();
         let layout = ColumnLayout::joints(&table.header, self.robot, self.options, map)?;
@@ -116,8 +116,9 @@ impl<'a> Reader<'a> {
     }
 
     /// Reads a file of measurements alone, with the readings of another.
-    fn measured(&mut self, path: &Path, joints: &JointRows, unread: &'a ColumnMap) -> Result<()> {
-        let (data, times) = self.without_readings(path, unread)?;
+    fn measured(&mut self, planned: &'a Planned<'_>, joints: &JointRows) -> Result<()> {
+        let (path, unread) = (planned.path, &planned.map);
+        let (data, times) = self.without_readings(planned)?;
         let is_by_rows = matches!(self.options.join, Some(Join::Rows | Join::Name));
         let stands = if is_by_rows || !joints.ids.is_empty() && !data.ids.iter().all(String::is_empty) {
             None
@@ -161,21 +162,24 @@ impl<'a> Reader<'a> {
         // The same again, with the readings of each line.
         let usual = std::mem::replace(&mut self.map, unread);
         self.readings = Some(found.readings);
-        let blocks = self.opening().blocks(path, "a measurement file (CSV)");
+        let blocks = planned.blocks(self.opening(), MEASURED);
         let read = blocks.and_then(|blocks| self.file(path, blocks));
         (self.map, self.readings) = (usual, None);
         read
     }
 
     /// What was measured, with readings that mean nothing, and the time of each row, seconds, NaN where it has none.
-    fn without_readings(&self, path: &Path, map: &'a ColumnMap) -> Result<(Dataset, Vec<f64>)> {
+    fn without_readings(&self, planned: &'a Planned<'_>) -> Result<(Dataset, Vec<f64>)> {
+        let map = &planned.map;
         let mut reader =
             Reader { map, times: Some(Vec::new()), ..Reader::new(self.robot, self.options, map) };
-        reader.rows_alone(path)?;
+        reader.rows_alone(planned.path, planned.blocks(self.opening(), MEASURED)?)?;
         Ok((reader.found.data, reader.times.unwrap_or_default()))
     }
 }
 
+/// What a file of measurements is in messages.
+const MEASURED: &str = "a measurement file (CSV)";
 /// Fewest stands that show which belong together.
 const FEWEST_STANDS: usize = 7;
 

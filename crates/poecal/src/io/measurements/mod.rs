@@ -133,6 +133,8 @@ pub struct ReadOptions {
     pub sheet: Option<String>,
     /// The body, marker or tool of recordings; that which moves if it is not stated.
     pub body: Option<String>,
+    /// Topics of bags, with or without the stroke that their names begin with; the only ones that can be meant if they are not stated.
+    pub topics: Vec<String>,
     /// Known distances between the sockets of a place.
     pub socket_distances: Option<SocketDistances>,
     /// What rows with a `plane` are that do not say it in `contact`.

@@ -239,8 +239,7 @@ impl<'a> Reader<'a> {
     }
 
     /// Takes the rows of a file and judges nothing.
-    pub(super) fn rows_alone(&mut self, path: &Path) -> Result<()> {
-        let blocks = self.opening().blocks(path, "a measurement file (CSV)")?;
+    pub(super) fn rows_alone<'p>(&mut self, path: &'p Path, blocks: Blocks<'p>) -> Result<()> {
         let mut table = Table::open(path, blocks, self.map)?;
         let layout = ColumnLayout::new(&table.header, self.robot, self.options, self.map)?;
         let numbers = Numbers::new(self.map.decimal);

@@ -4,7 +4,7 @@ use super::maker::{Made, Refused, Value};
 use super::{Opening, words::number};
 
 /// A body or a marker that moved less than this, metres, stands.
-const MOVED_M: f64 = 0.02;
+pub(super) const MOVED_M: f64 = 0.02;
 
 /// One body, or one marker.
 #[derive(Clone, Debug, Default)]

@@ -2,6 +2,8 @@
 //! never by their names.
 
 mod auto_id;
+#[cfg(feature = "bags")]
+mod bags;
 mod bodies;
 mod figaroh;
 mod headerless;
@@ -11,6 +13,7 @@ mod motive;
 mod ndi;
 mod programs;
 mod qualisys;
+mod recording;
 mod refused;
 mod robodk;
 mod spatial_analyzer;
@@ -23,6 +26,7 @@ use std::io::Read as _;
 use std::path::Path;
 
 use self::maker::{Made, Refused};
+pub(super) use self::recording::{OwnTable, Recording};
 use super::ReadOptions;
 use super::configurations;
 use super::mapping::ColumnMap;
@@ -81,6 +85,27 @@ impl Opening<'_> {
     fn slides(&self) -> Vec<bool> {
         let names = self.robot.joint_reading_names();
         names.iter().map(|name| self.robot.reading_kind(name) == ReadingKind::Length).collect()
+    }
+
+    /// A file that may hold joint readings and measurements, if it is one.
+    pub(super) fn recording(&self, path: &Path) -> crate::Result<Option<Recording>> {
+        #[cfg(feature = "bags")]
+        if bags::is_bag(path) {
+            return bags::read(path, self).map(Some);
+        }
+        let _ = path;
+        Ok(None)
+    }
+
+    /// The blocks of joint readings alone.
+    pub(super) fn joint_blocks<'p>(&self, path: &'p Path, expected: &'p str) -> crate::Result<Blocks<'p>> {
+        match self.recording(path)? {
+            Some(found) => match &found.joints {
+                Ok(table) => Ok(table.blocks(path, expected)),
+                Err(_) => Err(found.error(path, true)),
+            },
+            None => self.blocks(path, expected),
+        }
     }
 
     /// The blocks of a file in our form, or of the table that a file in another one makes.

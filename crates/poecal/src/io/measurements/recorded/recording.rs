@@ -1,0 +1,92 @@
+//! Files that hold joint readings and measurements, each as a table of its own.
+
+use std::path::Path;
+
+use super::super::text::Blocks;
+use super::maker::Made;
+use crate::error::{Error, ErrorKind};
+
+/// One of the tables of a file.
+#[derive(Clone, Debug)]
+pub(in super::super) struct OwnTable {
+    pub(super) made: Made,
+    pub(super) sha256: String,
+    /// What the file is.
+    pub(super) title: &'static str,
+}
+
+impl OwnTable {
+    /// Its blocks.
+    pub(in super::super) fn blocks<'p>(&self, path: &'p Path, expected: &'p str) -> Blocks<'p> {
+        self.made.clone().blocks(path, expected, Some(self.sha256.clone()), self.title)
+    }
+
+    /// Adds a sentence that should be looked at.
+    pub(in super::super) fn warn(&mut self, sentence: String) {
+        self.made.warned.push(sentence);
+    }
+}
+
+/// Why a file has no table of a kind.
+#[derive(Clone, Debug)]
+pub(in super::super) struct Missing {
+    pub(super) why: String,
+    /// Whether there is nothing of the kind in it, and not too much.
+    pub(super) is_nothing: bool,
+}
+
+/// A file that may hold both.
+#[derive(Clone, Debug)]
+pub(in super::super) struct Recording {
+    pub(in super::super) joints: Result<OwnTable, Missing>,
+    pub(in super::super) measured: Result<OwnTable, Missing>,
+    /// What is in it, in words.
+    pub(super) contents: String,
+    /// Which of the topics that were asked for it has.
+    pub(super) has_topic: Vec<bool>,
+}
+
+impl Recording {
+    /// The error of files that lack joint readings or measurements, of which this is one.
+    pub(in super::super) fn error(&self, path: &Path, lacks_joints: bool) -> Error {
+        let (one, other) = (self.joints.as_ref().err(), self.measured.as_ref().err());
+        let needed = if lacks_joints { one } else { other };
+        let message = match (one, other) {
+            (Some(one), Some(other)) if one.is_nothing && other.is_nothing => {
+                format!(
+                    "found neither joint readings nor measurements, expected both: it has {}",
+                    self.contents
+                )
+            }
+            (Some(one), Some(other)) if one.is_nothing == lacks_joints => other.why.clone(),
+            _ => needed.map_or_else(|| format!("it has {}", self.contents), |it| it.why.clone()),
+        };
+        ErrorKind::Measurement.error(message).in_file(path)
+    }
+
+    /// Its tables, each with whether it has joint readings; one that is left out is named with the other.
+    pub(in super::super) fn tables(&self) -> Vec<(bool, OwnTable)> {
+        let mut found = Vec::new();
+        for (is_joints, own, other) in
+            [(true, &self.joints, &self.measured), (false, &self.measured, &self.joints)]
+        {
+            let Ok(table) = own else { continue };
+            let mut table = table.clone();
+            if let Some(missing) = other.as_ref().err().filter(|it| !it.is_nothing) {
+                table.warn(format!("left out what it has beside that: {}", missing.why));
+            }
+            found.push((is_joints, table));
+        }
+        found
+    }
+
+    /// Whether it has a topic that was asked for, by its place among these.
+    pub(in super::super) fn has_topic(&self, at: usize) -> bool {
+        self.has_topic.get(at).copied().unwrap_or_default()
+    }
+
+    /// What is in it, in words.
+    pub(in super::super) fn contents(&self) -> &str {
+        &self.contents
+    }
+}
