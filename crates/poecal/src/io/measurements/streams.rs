@@ -7,11 +7,11 @@ use nalgebra::{Matrix3, Vector3};
 use super::join_pairs::JointRows;
 use super::layout::ColumnLayout;
 use super::table::Row;
-use crate::lie::Pose;
+use crate::lie::{Pose, rotation};
 use crate::measurement::{Dataset, Measurement, Observation};
 use crate::start::{Span, Stand, Stream, StreamChannels, mean_rotation};
 
-/// Changes that are none: of a joint (rad, m), of a position (m), and of an orientation (parts of its matrix).
+/// Changes that are none: of a joint (rad, m), of a position (m), and of an orientation (rad).
 const STILL_JOINT: f64 = 5e-5;
 /// Largest last digit of readings that counts as no change (rad, m).
 const COARSEST_JOINT: f64 = 1e-3;
@@ -68,6 +68,24 @@ fn dense(times: &[f64], channels: Vec<StreamChannels>) -> Option<Stream> {
     Some(Stream::new(times.to_vec(), channels)).filter(Stream::is_dense)
 }
 
+/// The sum of the small turns from one orientation to the next, rad. Its parts have the same noise at every orientation, which those of a matrix
+/// do not have.
+#[derive(Clone, Debug, Default)]
+struct Turned {
+    last: Option<Matrix3<f64>>,
+    sum: Vector3<f64>,
+}
+
+impl Turned {
+    /// The sum up to the next orientation.
+    fn after(&mut self, next: &Matrix3<f64>) -> Vector3<f64> {
+        if let Some(last) = self.last.replace(*next) {
+            self.sum += rotation::log(&(next * last.transpose()));
+        }
+        self.sum
+    }
+}
+
 /// Stands of a stream of measurements: a row each, with the mean of each target, at the line of their first row.
 #[derive(Clone, Debug, Default)]
 pub(super) struct MeasuredStands {
@@ -97,12 +115,13 @@ pub(super) fn stands_of_measured(data: &Dataset, times: &[f64]) -> Option<Measur
         return None;
     }
     let is_posed = own.iter().all(|it| it.measurement.sees_orientation());
-    let numbers = |it: &&Observation| -> Vec<f64> {
+    let mut turned = Turned::default();
+    let mut numbers = |it: &&Observation| -> Vec<f64> {
         let place = it.measurement.position().unwrap_or_default();
-        let turn = it.measurement.orientation().filter(|_| is_posed);
+        let turn = it.measurement.orientation().filter(|_| is_posed).map(|it| turned.after(&it));
         place.iter().copied().chain(turn.iter().flat_map(|it| it.iter().copied())).collect()
     };
-    let all: Vec<Vec<f64>> = own.iter().map(numbers).collect();
+    let all: Vec<Vec<f64>> = own.iter().map(&mut numbers).collect();
     let width = all.first()?.len();
     let channel = |at: usize| -> Vec<f64> { all.iter().filter_map(|it| it.get(at)).copied().collect() };
     let group = |range: std::ops::Range<usize>, floor: f64| StreamChannels {

@@ -16,6 +16,9 @@ const STEP: usize = 1 << 18;
 /// Bytes of a record before what it holds: its kind, and its length.
 const HEAD: usize = 9;
 
+/// Why a file ends.
+const CUT: &str = "it is cut off";
+
 /// What is wrong with a file.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Damage {
@@ -58,15 +61,14 @@ pub(super) fn read(input: &mut impl Read, topics: &mut Topics<'_>) -> io::Result
                 at = at.saturating_add((HEAD + data.len()) as u64);
             }
             Err(error) => {
-                let why = match error {
-                    McapError::UnexpectedEof => "it is cut off".to_owned(),
-                    error => error.to_string(),
-                };
-                damage.end = Some((at, why));
+                let is_cut = matches!(error, McapError::UnexpectedEof);
+                damage.end = Some((at, if is_cut { CUT.to_owned() } else { error.to_string() }));
                 return Ok(damage);
             }
         }
     }
+    // It ends behind a whole record, and not by the one that says so.
+    damage.end = Some((at, CUT.to_owned()));
     Ok(damage)
 }
 

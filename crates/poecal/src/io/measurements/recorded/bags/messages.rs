@@ -177,7 +177,8 @@ pub(super) mod tests {
         assert_eq!(read.positions, [0.5, -1.0]);
         let numbers = [1.0, 2.0, 3.0, 0.0, 0.0, 0.6, 0.8];
         for kind in [Kind::Pose, Kind::Point] {
-            let read = poses(kind, &Writer::pose(7, &numbers)).unwrap();
+            let written = Writer::pose(7, &numbers);
+            let read = poses(kind, &written).unwrap();
             let one = read.first().unwrap();
             assert_eq!((one.stamp_ns, one.parent, one.position), (7, "world", [1.0, 2.0, 3.0]));
             assert_eq!(one.quaternion == [0.0, 0.0, 0.6, 0.8], kind.is_posed());
