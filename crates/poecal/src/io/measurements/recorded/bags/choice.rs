@@ -65,24 +65,23 @@ pub(super) fn joints<'t>(
     topics: &'t Topics<'_>,
     options: &ReadOptions,
 ) -> Result<(&'t Topic, &'t Readings), Missing> {
-    let of = |topic: &'t Topic| match &topic.content {
-        Content::Joints(readings) if topic.count > 0 => Some((topic, readings)),
-        _ => None,
+    let of = |topic: &'t Topic| {
+        let Content::Joints(readings) = &topic.content else { return None };
+        (topic.count > 0).then_some((topic, readings))
     };
     let all = wanted(topics.all.iter().filter_map(of).collect(), options);
     let having: Vec<_> = all.iter().filter(|it| it.1.is_whole()).copied().collect();
-    match (having.as_slice(), all.first()) {
-        ([one], _) => whole(one.0).map(|()| *one),
-        ([], None) => nothing("no joint readings (sensor_msgs/msg/JointState)", topics),
-        ([], Some(first)) => {
+    match having.as_slice() {
+        [one] => whole(one.0).map(|()| *one),
+        [] if all.is_empty() => nothing("no joint readings (sensor_msgs/msg/JointState)", topics),
+        [] => {
             all.iter().try_for_each(|it| whole(it.0))?;
             let words = |it: &(&Topic, &Readings)| format!("`{}` with {}", it.0.name, it.1.missing());
             let found: Vec<String> = all.iter().take(NAMED).map(words).collect();
             let expected = "the joints of the robot under their names in the model";
-            let _ = first;
             missing(format!("found {}, expected {expected}", found.join("; ")))
         }
-        (several, _) => {
+        several => {
             let words: Vec<String> = several.iter().take(NAMED).map(|it| it.0.words()).collect();
             missing(format!(
                 "found {} topics with joint readings of the robot, {}, expected one: name it by --topic",
@@ -95,9 +94,9 @@ pub(super) fn joints<'t>(
 
 /// What was measured.
 pub(super) fn measured<'t>(topics: &'t Topics<'_>, options: &ReadOptions) -> Result<Measured<'t>, Missing> {
-    let of = |topic: &'t Topic| match &topic.content {
-        Content::Bodies(bodies) if topic.count > 0 => Some((topic, bodies)),
-        _ => None,
+    let of = |topic: &'t Topic| {
+        let Content::Bodies(bodies) = &topic.content else { return None };
+        (topic.count > 0).then_some((topic, bodies))
     };
     let all: Vec<(&Topic, &Bodies)> = wanted(topics.all.iter().filter_map(of).collect(), options);
     if all.is_empty() {
