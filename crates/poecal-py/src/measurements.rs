@@ -38,6 +38,7 @@ fn options(
     (frames, join, lag): (Frames, Option<Join>, Option<&str>),
     (socket_distance, contact): (Option<&str>, PlaneContact),
     [units, sheet, body]: [Option<&str>; 3],
+    topics: Option<&[String]>,
     [instrument_noise, cameras, markers]: [Option<&[String]>; 3],
 ) -> poecal::Result<ReadOptions> {
     let mut options = ReadOptions {
@@ -46,6 +47,7 @@ fn options(
         lag: lag.map(str::parse).transpose()?,
         sheet: sheet.map(str::to_owned),
         body: body.map(str::to_owned),
+        topics: topics.unwrap_or_default().to_vec(),
         mapping: columns.map(ColumnMap::read).transpose()?,
         fit_where: fit_where.map(str::parse).transpose()?,
         ignore_sets,
@@ -103,6 +105,8 @@ impl Measurements {
     ///     Sheet of workbooks; by default the only one that holds a table.
     /// body
     ///     Body, marker or tool of recordings of a camera system; by default the only one that moves.
+    /// topics
+    ///     Topics of ROS 2 bags (MCAP); by default the only ones of joint readings and of measurements.
     /// socket_distance
     ///     Known distance between the two sockets of each place, "50mm", or of pairs by name, "A-B=50mm,B-C=70mm+-0.02mm".
     /// contact
@@ -128,7 +132,7 @@ impl Measurements {
     /// MeasurementError
     ///     It holds no measurements of this robot; the error tells the line and the column.
     #[staticmethod]
-    #[pyo3(signature = (paths, robot, *, columns=None, fit_where=None, ignore_sets=false, strict=false, frames="common", join=None, lag=None, units=None, sheet=None, body=None, socket_distance=None, contact="point", instrument_noise=None, cameras=None, markers=None))]
+    #[pyo3(signature = (paths, robot, *, columns=None, fit_where=None, ignore_sets=false, strict=false, frames="common", join=None, lag=None, units=None, sheet=None, body=None, topics=None, socket_distance=None, contact="point", instrument_noise=None, cameras=None, markers=None))]
     #[expect(clippy::too_many_arguments, reason = "the options of a Python function")]
     fn from_csv(
         py: Python<'_>,
@@ -144,6 +148,7 @@ impl Measurements {
         #[pyo3(from_py_with = arg::units)] units: Option<&str>,
         #[pyo3(from_py_with = arg::sheet)] sheet: Option<&str>,
         #[pyo3(from_py_with = arg::body)] body: Option<&str>,
+        #[pyo3(from_py_with = arg::topics)] topics: Option<Vec<String>>,
         #[pyo3(from_py_with = arg::socket_distance)] socket_distance: Option<&str>,
         #[pyo3(from_py_with = arg::contact)] contact: &str,
         #[pyo3(from_py_with = arg::instrument_noise)] instrument_noise: Option<Vec<String>>,
@@ -166,6 +171,7 @@ impl Measurements {
                 (frames, join, lag),
                 (socket_distance, contact),
                 [units, sheet, body],
+                topics.as_deref(),
                 [&instrument_noise, &cameras, &markers].map(|it| it.as_deref()),
             )?;
             let file = measurements::read(&paths, &robot.model.robot, &robot.model.reads(options))?;
@@ -321,6 +327,7 @@ impl Measurements {
                 (Frames::Common, None, None),
                 (socket_distance, contact),
                 [units, None, None],
+                None,
                 [&instrument_noise, &cameras, &markers].map(|it| it.as_deref()),
             )?;
             measurements::parse(&text, from_dataframe::NAME, &robot.model.robot, &options)

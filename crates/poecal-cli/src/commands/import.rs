@@ -97,9 +97,12 @@ fn map(arguments: &Import, model: &Path, file: &MeasurementFile) -> String {
     text("units", units.as_deref().map(quoted));
     text("lag", meaning.lag.map(|lag| quoted(&format!("{}s+-{}s", lag.lag_s, lag.off_s))));
     text("sheet", meaning.sheet.as_deref().map(quoted));
+    let topics: Vec<String> = meaning.topic.iter().map(|it| quoted(it)).collect();
+    text("topic", (!topics.is_empty()).then(|| format!("[{}]", topics.join(", "))));
     text("body", meaning.body.as_deref().map(quoted));
     for understood in &file.understood {
-        let _ = writeln!(out, "\n# {}: {} rows", understood.path.display(), understood.rows);
+        let form = understood.form.map(|it| format!(", {it}")).unwrap_or_default();
+        let _ = writeln!(out, "\n# {}: {} rows{form}", understood.path.display(), understood.rows);
         if let Some(sha256) = file.sha256.get(&understood.path.display().to_string()) {
             let _ = writeln!(out, "#   SHA-256 {sha256}");
         }

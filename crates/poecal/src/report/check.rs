@@ -306,7 +306,11 @@ fn file_text(out: &mut String, file: &FileUnderstanding) {
     }
     let stated = file.separator_line.map_or_else(String::new, |line| format!(" (line {line})"));
     let units = file.units_line.map_or_else(String::new, |line| format!("; units: line {line}"));
-    line(out, "form", &format!("separator: {separator}{stated}; decimal sign: {decimal}{units}"));
+    match file.form {
+        // Separators of the table that was made of it say nothing.
+        Some(form) => line(out, "form", &format!("{form}{units}")),
+        None => line(out, "form", &format!("separator: {separator}{stated}; decimal sign: {decimal}{units}")),
+    }
     if let Some(orientation) = &file.orientation {
         line(out, "orientation", &format!("{orientation}; {}", file.pose));
     }

@@ -71,6 +71,7 @@ impl<'a> Reader<'a> {
         self.found.sha256.extend(table.sha256().map(|sha256| (path.display().to_string(), sha256)));
         self.found.understood.push(FileUnderstanding {
             path: path.to_path_buf(),
+            form: table.form(),
             rows: table_rows.rows,
             points: 0,
             poses: 0,

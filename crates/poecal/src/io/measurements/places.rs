@@ -11,6 +11,8 @@ pub(super) struct Places {
     pub(super) lines: Vec<usize>,
     /// The sheet of a workbook.
     pub(super) sheet: Option<Sheet>,
+    /// What the file is, as in "a workbook".
+    pub(super) form: &'static str,
 }
 
 /// A sheet of a workbook.

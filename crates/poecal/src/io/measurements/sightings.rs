@@ -98,6 +98,7 @@ impl Reader<'_> {
         columns.extend(own);
         self.found.understood.push(FileUnderstanding {
             path: path.to_path_buf(),
+            form: table.form(),
             rows,
             points: 0,
             poses: 0,

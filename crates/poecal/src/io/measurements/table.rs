@@ -97,7 +97,7 @@ impl<'a> Table<'a> {
 
     /// The same with rows that were made of the lines of another file.
     pub(super) fn with_lines(self, lines: Vec<usize>) -> Self {
-        Table { places: Some(Places { lines, sheet: None }), ..self }
+        Table { places: Some(Places { lines, sheet: None, form: "messages" }), ..self }
     }
 
     /// The text before the first block of rows, of blocks that hold what they pass.
@@ -113,6 +113,11 @@ impl<'a> Table<'a> {
     /// Whether it was made of a file in another form.
     pub(super) fn is_made(&self) -> bool {
         self.places.is_some()
+    }
+
+    /// What the file is that it was made of.
+    pub(super) fn form(&self) -> Option<&'static str> {
+        self.places.as_ref().map(|it| it.form)
     }
 
     /// The sheet of a workbook that it was made of.

@@ -36,6 +36,9 @@ pub struct ColumnUnderstanding {
 pub struct FileUnderstanding {
     /// File name as given by the user.
     pub path: PathBuf,
+    /// What the file is, of one in another form than ours.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub form: Option<&'static str>,
     /// Number of rows, those of lost beams included.
     pub rows: usize,
     /// Number of position-only measurements.

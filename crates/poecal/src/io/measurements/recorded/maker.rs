@@ -77,7 +77,7 @@ impl Made {
         path: &'p Path,
         expected: &'p str,
         sha256: Option<String>,
-        title: &str,
+        title: &'static str,
     ) -> Blocks<'p> {
         let words = self.said.join("; ");
         let said = format!(
@@ -85,7 +85,7 @@ impl Made {
             path.display(),
             if words.is_empty() { "" } else { ": " }
         );
-        let places = Places { lines: self.lines, sheet: self.sheet };
+        let places = Places { lines: self.lines, sheet: self.sheet, form: title };
         let warnings = self.warned.into_iter().map(|it| format!("{}: {it}", path.display())).collect();
         let said = Said { notes: vec![said], warnings };
         Blocks::made(path, expected, self.text, sha256).with_places(places, said)

@@ -39,6 +39,12 @@ use crate::io::source::Input;
 use crate::io::source::{self, LARGEST_TABLE};
 use crate::robot::{ReadingKind, Robot};
 
+/// What a workbook is called, and a bag.
+pub(super) const WORKBOOK: &str = "a workbook";
+pub(super) const BAG: &str = "a ROS 2 bag";
+/// Recordings in which several bodies or markers may be.
+pub(super) const RECORDINGS: [&str; 4] = [motive::FORM.title, qualisys::FORM.title, ndi::FORM.title, BAG];
+
 /// What files are opened with.
 #[derive(Clone, Copy)]
 pub(super) struct Opening<'a> {
@@ -130,7 +136,7 @@ impl Opening<'_> {
         let read = input.by_ref().take(workbook::LARGEST + 1).read_to_end(&mut bytes);
         read.map_err(|error| source::unreadable(path, &error, expected))?;
         let made = workbook::table(bytes, self).map_err(|it| it.error(path))?;
-        Ok(made.blocks(path, expected, Some(input.sha256()), "a workbook"))
+        Ok(made.blocks(path, expected, Some(input.sha256()), WORKBOOK))
     }
 
     /// The blocks of a text, or of the table that it makes.
