@@ -1,15 +1,17 @@
 """Makes the recordings of docs/howto: the elbow of examples/elbow with errors of its axes, seen by instruments of three kinds.
 
-    python make.py POECAL FOLDER
+    python make.py POECAL FOLDER        with NumPy, and mcap for the bag
 
 POECAL is the program, FOLDER is written into. All is simulated; every random number follows from SEED.
 """
 
 import csv
 import random
+import struct
 import subprocess
 import sys
 import tempfile
+import zipfile
 from pathlib import Path
 
 import numpy as np
@@ -224,6 +226,105 @@ def touches(robot, path):
     write(path, [["X", "Y", "Z", "A", "B", "C"], *rows])
 
 
+def tracker_and_workbook(robot, points, book):
+    """A laser tracker's points as SpatialAnalyzer exports them, and the joint readings in a workbook; one point was not measured, another one twice."""
+    tracker_from_base = pose([0.03, 0.01, -1.2], [2.9, 0.7, -0.8])
+    configurations = [robot.configuration() for _ in range(45)]
+    places = [(tracker_from_base @ tip @ [0.06, 0.01, 0.02, 1])[:3] * 1e3 for tip in robot.tips(configurations)]
+    order = [number for number in range(45) if number != 12]
+    order.insert(30, order[29])
+    lines = ["// SpatialAnalyzer SA 2024.2.0923.4 ( x64 )", "// Points Relative to Coordinate Frame 'Cell::WORLD'", "// AXES = CARTESIAN: X,  Y,  Z (mm)"]
+    for number, at in enumerate(order):
+        x, y, z = places[at] + robot.noise(0.03, 0.03, 0.03)
+        lines.append(f"Robot,  P{number + 1},  0,  {x:.6f},  {y:.6f},  {z:.6f},  03/17/26 10:{number // 2:02}:{number % 2 * 30:02}")
+    points.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    rows = [["Cell 4, 17 March"], [], [f"A{number}" for number in range(1, 7)], ["°"] * 6, *configurations]
+    workbook(book, "Joints", rows)
+
+
+def workbook(path, sheet, rows):
+    """A workbook with one sheet (.xlsx): a ZIP archive of XML, the same bytes in every run."""
+    def cell(at, row, value):
+        place = f"{chr(65 + at)}{row}"
+        return f'<c r="{place}"><v>{value}</v></c>' if isinstance(value, float) else f'<c r="{place}" t="inlineStr"><is><t>{value}</t></is></c>'
+
+    data = "".join(f'<row r="{row}">{"".join(cell(at, row, value) for at, value in enumerate(cells))}</row>' for row, cells in enumerate(rows, 1))
+    main, office, package = (
+        "http://schemas.openxmlformats.org/spreadsheetml/2006/main",
+        "http://schemas.openxmlformats.org/officeDocument/2006/relationships",
+        "http://schemas.openxmlformats.org/package/2006",
+    )
+    kind = "application/vnd.openxmlformats-officedocument.spreadsheetml"
+    parts = {
+        "[Content_Types].xml": f'<Types xmlns="{package}/content-types"><Default Extension="rels" ContentType="application/vnd.openxmlformats-package.relationships+xml"/>'
+        f'<Override PartName="/xl/workbook.xml" ContentType="{kind}.sheet.main+xml"/><Override PartName="/xl/worksheets/sheet1.xml" ContentType="{kind}.worksheet+xml"/></Types>',
+        "_rels/.rels": f'<Relationships xmlns="{package}/relationships"><Relationship Id="rId1" Type="{office}/officeDocument" Target="xl/workbook.xml"/></Relationships>',
+        "xl/workbook.xml": f'<workbook xmlns="{main}" xmlns:r="{office}"><sheets><sheet name="{sheet}" sheetId="1" r:id="rId1"/></sheets></workbook>',
+        "xl/_rels/workbook.xml.rels": f'<Relationships xmlns="{package}/relationships"><Relationship Id="rId1" Type="{office}/worksheet" Target="worksheets/sheet1.xml"/></Relationships>',
+        "xl/worksheets/sheet1.xml": f'<worksheet xmlns="{main}"><sheetData>{data}</sheetData></worksheet>',
+    }
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
+        for name, text in parts.items():
+            archive.writestr(zipfile.ZipInfo(name), '<?xml version="1.0" encoding="UTF-8"?>' + text, zipfile.ZIP_DEFLATED)
+
+
+def bag(robot, path):
+    """A ROS 2 bag (MCAP) of a robot and a motion capture system, whose clocks differ by 0.42 s: 24 stands. Needs the package mcap."""
+    try:
+        from mcap.writer import CompressionType, Writer
+    except ImportError:
+        print(f"{path}: not written, without the package mcap")
+        return
+    system_from_base, tip_from_body = pose([-np.pi / 2, 0, 0], [0.4, 0.8, 1.1]), pose([0.3, -0.2, 0.1], [0.02, -0.03, 0.09])
+    stands = [robot.configuration() for _ in range(24)]
+    time, times = 0.0, []
+    for stand, following in zip(stands, [*stands[1:], stands[-1]], strict=True):
+        times += [time, time + robot.random.uniform(0.7, 1.3)]
+        time = times[-1] + 0.3 + max(abs(a - b) for a, b in zip(stand, following, strict=True)) / 400
+    values = np.array([stand for stand in stands for _ in range(2)])
+    moments = np.arange(0.0, times[-1], 0.05)
+    readings = np.stack([np.interp(moments, times, column) for column in values.T], axis=1).round(6)
+    names = ["gripper", *(f"joint{number}" for number in (3, 1, 2, 6, 5, 4))]
+
+    def header(moment, frame):
+        stamp = round((1.78e9 + moment) * 1e9)
+        text = frame.encode() + b"\0"
+        return struct.pack("<II", stamp // 10**9, stamp % 10**9) + struct.pack("<I", len(text)) + text
+
+    def padded(body, size):
+        return body + b"\0" * (-len(body) % size)
+
+    def joint_state(moment, row):
+        body = header(moment, "")
+        body = padded(body, 4) + struct.pack("<I", len(names))
+        for name in names:
+            text = name.encode() + b"\0"
+            body = padded(body, 4) + struct.pack("<I", len(text)) + text
+        order = [0.02, *(row[number - 1] for number in (3, 1, 2, 6, 5, 4))]
+        body = padded(padded(body, 4) + struct.pack("<I", len(order)), 8) + struct.pack(f"<{len(order)}d", *order)
+        return b"\0\1\0\0" + body + struct.pack("<II", 0, 0)
+
+    def pose_stamped(moment, place, turn):
+        return b"\0\1\0\0" + padded(header(moment, "mocap"), 8) + struct.pack("<7d", *place, *turn)
+
+    with path.open("wb") as file:
+        writer = Writer(file, compression=CompressionType.ZSTD, chunk_size=256 << 10)
+        writer.start("ros2", library="poecal examples")
+        channels = {}
+        for topic, kind in [("/joint_states", "sensor_msgs/msg/JointState"), ("/vrpn_mocap/tool/pose", "geometry_msgs/msg/PoseStamped")]:
+            schema = writer.register_schema(kind, "ros2msg", b"")
+            channels[topic] = writer.register_channel(topic, "cdr", schema)
+        for number, (moment, row, tip) in enumerate(zip(moments, readings, robot.tips(readings.tolist()), strict=True)):
+            body = system_from_base @ tip @ tip_from_body
+            place = body[:3, 3] + robot.noise(0.0002, 0.0002, 0.0002)
+            turn = quaternion(rotation(robot.noise(0.001, 0.001, 0.001)) @ body[:3, :3])
+            written = round((1.78e9 + moment) * 1e9)
+            messages = [("/joint_states", joint_state(moment, np.radians(row).round(9))), ("/vrpn_mocap/tool/pose", pose_stamped(moment + 0.42, place.round(7), turn.round(7)))]
+            for topic, data in messages:
+                writer.add_message(channels[topic], written + 4_000_000, data, written, sequence=number)
+        writer.finish()
+
+
 def write(path, rows):
     with path.open("w", encoding="utf-8", newline="") as file:
         csv.writer(file, lineterminator="\n").writerows(rows)
@@ -240,6 +341,8 @@ def main(poecal, folder):
         hand_eye(robot, folder / "hand_eye.csv")
         corners(robot, folder)
         touches(robot, folder / "touches.csv")
+        tracker_and_workbook(robot, folder / "points.txt", folder / "joints.xlsx")
+        bag(robot, folder / "session.mcap")
 
 
 if __name__ == "__main__":

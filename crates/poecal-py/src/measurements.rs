@@ -13,7 +13,7 @@ use poecal::io::measurements::{self, ColumnMap, Frames, Join, MeasurementFile, P
 use poecal::io::named_files::refuse_repeats;
 use poecal::measurement::Set;
 use pyo3::prelude::*;
-use pyo3::types::PyTuple;
+use pyo3::types::{PyDict, PyTuple};
 
 use crate::arguments::{self as arg, Paths};
 use crate::arrays::{pose_arrays, table};
@@ -183,6 +183,40 @@ impl Measurements {
         crate::warn(py, &file.warnings)?;
         let names = paths.iter().map(|path| path.display().to_string()).collect();
         Ok(Measurements::new(file, MeasurementSource { names, sha256, fit_where: fit_where.is_some() }))
+    }
+
+    /// Reads files of instruments, controllers and recorders as they are: what `from_csv` reads, under the name of what it is for.
+    ///
+    /// Parameters
+    /// ----------
+    /// paths
+    ///     A file, or several; with joint readings in one and measurements in another they are joined.
+    /// robot
+    ///     The robot whose joints the columns name.
+    /// options
+    ///     Those of `from_csv`: `units`, `join`, `lag`, `sheet`, `body`, `topics` and the others.
+    ///
+    /// Returns
+    /// -------
+    /// Measurements
+    ///     The rows of all files.
+    ///
+    /// Raises
+    /// ------
+    /// FileError
+    ///     A file cannot be read.
+    /// MeasurementError
+    ///     It holds no measurements of this robot; the error tells the line and the column.
+    #[staticmethod]
+    #[pyo3(signature = (paths, robot, **options))]
+    fn from_files(
+        py: Python<'_>,
+        paths: &Bound<'_, PyAny>,
+        robot: &Bound<'_, PyAny>,
+        options: Option<&Bound<'_, PyDict>>,
+    ) -> PyResult<Py<PyAny>> {
+        let found = py.get_type::<Self>().call_method("from_csv", (paths, robot), options)?;
+        Ok(found.unbind())
     }
 
     /// Measurements of arrays: positions, with orientations or without, or poses.

@@ -107,7 +107,7 @@ fn bad_headers_get_one_sentence_each() {
         case(CALIBRATE, "a,lift,b,x,y,z,qx,qy,qz,qw,rx\n1,0,1,1,1,1,0,0,0,1,0\n",
              "bad.csv:1:28: found the orientation columns `qx` and `rx`, expected one form only"),
         case(CALIBRATE, "1,0,1,1,1,1\n1,0,1,1,1,1\n",
-             "bad.csv:1: found a line of numbers, expected…"),
+             "bad.csv:1: found a table without names of columns, with 6 numbers in a row, expected 3 joint readings…"),
         case(CALIBRATE, "", "bad.csv: found no line with text, expected…"),
         case(CALIBRATE, HEADER, "bad.csv:1: found a header and no rows, expected…"),
         case("predict robot.urdf bad.csv", "a,lift,c\n1,0,1\n",

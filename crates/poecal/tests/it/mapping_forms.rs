@@ -208,3 +208,28 @@ fn a_joint_may_be_a_sum_of_columns_in_their_own_units() {
     assert_eq!(words, ["J1[deg]", "L", "- J1 + 0.5 J2"]);
     assert!(read.understood[0].ignored.is_empty());
 }
+
+#[test]
+fn columns_of_a_table_without_names_are_named_by_their_numbers() {
+    let map = r#"
+        id = 1
+        units = { angle = "deg", length = "mm" }
+        position = { columns = [2, 3, 4] }
+        joints = { a = 5, lift = 6, b = { column = 7, unit = "rad" } }
+    "#;
+    let file = with_map("P1;100;200;300;180;250;1,5;\nP2;101;200;300;170;251;1,5;\n", map);
+    assert_eq!(file.data.readings(0), [PI, 0.25, 1.5]);
+    assert_eq!(pose(&file.data, 0).translation, Vector3::new(0.1, 0.2, 0.3));
+    assert_eq!(
+        (file.data.ids.as_slice(), file.data.observations[1].source.line),
+        (&["P1".to_owned(), "P2".to_owned()][..], 2)
+    );
+    // The same of a table with names, where one is not unique.
+    let file = with_map(
+        "n,x,x,x,a,lift,b\nP1,100,200,300,180,250,90\n",
+        &map.replace("unit = \"rad\"", "unit = \"deg\""),
+    );
+    assert_eq!(pose(&file.data, 0).translation, Vector3::new(0.1, 0.2, 0.3));
+    let error = ColumnMap::parse("position = { columns = [0, 1, 2] }", "map.toml").unwrap_err().to_string();
+    assert!(error.contains("found the column 0, expected its name, or its number from 1"), "{error}");
+}

@@ -5,6 +5,7 @@ use std::path::Path;
 
 use super::cells::{Cell, Separator, character_column, split, split_line};
 use super::configurations::advice;
+use super::mapping::number_of_column;
 use super::units::{NamedUnit, UnitSource};
 use crate::error::{Error, ErrorKind, Result, first_few, nearest};
 use crate::unit::Unit;
@@ -250,7 +251,8 @@ impl<'a> Header<'a> {
                 format!("found a second column `{name}`, expected one; rename or remove one of them");
             return Err(self.error(ErrorKind::Measurement, second, message));
         }
-        Ok(self.named.get(name).map(|(first, _)| *first))
+        let by_number = || number_of_column(name).map(|it| it - 1).filter(|it| *it < self.cells.len());
+        Ok(self.named.get(name).map(|(first, _)| *first).or_else(by_number))
     }
 
     /// Index of a second column of this name, if there is one.

@@ -31,9 +31,12 @@ pub struct ColumnMap {
     pub(super) decimal: Option<DecimalSign>,
     pub(super) skip_lines: usize,
     pub(super) pose: PoseDirection,
+    #[serde(deserialize_with = "column_name")]
     pub(super) id: Option<String>,
+    #[serde(deserialize_with = "column_name")]
     pub(super) target: Option<String>,
     pub(super) target_name: Option<String>,
+    #[serde(deserialize_with = "column_name")]
     pub(super) instrument: Option<String>,
     pub(super) set: Option<FitWhere>,
     #[serde(deserialize_with = "third_axis")]
@@ -89,6 +92,7 @@ impl UnitDefaults {
 #[derive(Clone, Debug, Default, Deserialize)]
 #[serde(remote = "Self", deny_unknown_fields)]
 pub(super) struct ColumnSpec {
+    #[serde(default, deserialize_with = "column_name")]
     pub(super) column: Option<String>,
     /// Columns with their factors.
     pub(super) columns: Option<BTreeMap<String, f64>>,
@@ -102,6 +106,7 @@ pub(super) struct ColumnSpec {
 #[derive(Clone, Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct PositionSpec {
+    #[serde(default, deserialize_with = "three_columns")]
     pub(super) columns: Option<[String; 3]>,
     #[serde(default, deserialize_with = "length_unit")]
     pub(super) unit: Option<NamedUnit>,
@@ -120,6 +125,7 @@ pub(super) struct OrientationSpec {
 struct OrientationFields {
     #[serde(deserialize_with = "orientation_form")]
     form: OrientationForm,
+    #[serde(default, deserialize_with = "column_names")]
     columns: Option<Vec<String>>,
     #[serde(default, deserialize_with = "angle_unit")]
     unit: Option<NamedUnit>,
@@ -294,6 +300,10 @@ impl<'de> Visitor<'de> for ColumnSpecVisitor {
         Ok(ColumnSpec { column: Some(column.to_owned()), ..ColumnSpec::default() })
     }
 
+    fn visit_i64<E: serde::de::Error>(self, number: i64) -> std::result::Result<ColumnSpec, E> {
+        Ok(ColumnSpec { column: Some(counted_column(number)?), ..ColumnSpec::default() })
+    }
+
     fn visit_map<A: MapAccess<'de>>(self, map: A) -> std::result::Result<ColumnSpec, A::Error> {
         let spec = ColumnSpec::deserialize(MapAccessDeserializer::new(map))?;
         let given = [
@@ -337,6 +347,61 @@ fn check_columns<E: serde::de::Error>(columns: &BTreeMap<String, f64>) -> std::r
 /// The name of a column by its number, from 1, as tables without names have them.
 pub(super) fn numbered_column(number: usize) -> String {
     format!("column {number}")
+}
+
+/// The same of a number of a mapping.
+fn counted_column<E: serde::de::Error>(number: i64) -> std::result::Result<String, E> {
+    usize::try_from(number).ok().filter(|it| *it > 0).map(numbered_column).ok_or_else(|| {
+        E::custom(format!("found the column {number}, expected its name, or its number from 1"))
+    })
+}
+
+/// A column by its name or its number.
+struct ColumnName(String);
+
+impl<'de> Deserialize<'de> for ColumnName {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Self, D::Error> {
+        deserializer.deserialize_any(ColumnNameVisitor).map(ColumnName)
+    }
+}
+
+struct ColumnNameVisitor;
+
+impl Visitor<'_> for ColumnNameVisitor {
+    type Value = String;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("the name of a column, or its number from 1")
+    }
+
+    fn visit_str<E: serde::de::Error>(self, name: &str) -> std::result::Result<String, E> {
+        Ok(name.to_owned())
+    }
+
+    fn visit_i64<E: serde::de::Error>(self, number: i64) -> std::result::Result<String, E> {
+        counted_column(number)
+    }
+}
+
+fn column_name<'de, D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Option<String>, D::Error> {
+    ColumnName::deserialize(deserializer).map(|it| Some(it.0))
+}
+
+fn three_columns<'de, D: Deserializer<'de>>(
+    deserializer: D,
+) -> std::result::Result<Option<[String; 3]>, D::Error> {
+    <[ColumnName; 3]>::deserialize(deserializer).map(|it| Some(it.map(|it| it.0)))
+}
+
+fn column_names<'de, D: Deserializer<'de>>(
+    deserializer: D,
+) -> std::result::Result<Option<Vec<String>>, D::Error> {
+    Vec::<ColumnName>::deserialize(deserializer).map(|it| Some(it.into_iter().map(|it| it.0).collect()))
+}
+
+/// The number of a column that is named by it, from 1.
+pub(super) fn number_of_column(name: &str) -> Option<usize> {
+    name.strip_prefix("column ")?.parse().ok().filter(|it| *it > 0)
 }
 
 /// A string for `parse`; its error becomes the TOML error's message.

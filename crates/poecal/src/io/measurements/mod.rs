@@ -15,7 +15,6 @@ mod configurations;
 mod corner_columns;
 mod corner_names;
 mod counted;
-mod doubled;
 mod encodings;
 mod fit_where;
 mod gathering;

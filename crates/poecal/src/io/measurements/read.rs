@@ -6,7 +6,6 @@ use std::path::{Path, PathBuf};
 use super::beside::{alone, beside, has_readings_of_pictures};
 use super::configurations::in_its_file;
 use super::corner_columns::{are_corners, are_readings_of_pictures};
-use super::doubled::DoubledRows;
 use super::inputs::InputReader;
 use super::join_plan::{Plan, ReadingsByLine};
 use super::layout::ColumnLayout;
@@ -260,7 +259,6 @@ impl<'a> Reader<'a> {
     ) -> Result<((JointWatch<'a>, TurnWatch), usize, LostBeams)> {
         let mut watch = (JointWatch::new(self.robot), TurnWatch::default());
         let (mut rows, mut lost) = (0, LostBeams::default());
-        let mut doubled = DoubledRows::default();
         while let Some(mut some) = table.next_block()? {
             while let Some(row) = some.next()? {
                 rows += 1;
@@ -280,7 +278,6 @@ impl<'a> Reader<'a> {
                 inputs.include_in_ranges();
                 watch.0.observe(&row, inputs);
                 watch.1.observe(&row, layout, inputs);
-                doubled.observe(&row);
                 self.row(&row, layout, inputs)?;
                 if let Some(times) = &mut self.times {
                     times.resize(self.found.data.len(), time_of(&row, layout));
@@ -288,7 +285,6 @@ impl<'a> Reader<'a> {
                 refuse_more_rows(self.found.data.len(), &row)?;
             }
         }
-        self.found.warnings.extend(doubled.warning(table.header.path));
         Ok((watch, rows, lost))
     }
 

@@ -144,7 +144,7 @@ impl Frames<'_> {
                     * rotation::exp(&(Vector3::z() * yaw));
                 let off = rotation::log(&(by_angles.transpose() * matrix)).norm();
                 let is_turn = (matrix.transpose() * matrix - Matrix3::identity()).amax() < AGREE_RAD;
-                if !is_turn || !(off < AGREE_RAD) {
+                if !is_turn || !off.is_finite() || off >= AGREE_RAD {
                     return Refused::at(
                         *line,
                         format!(

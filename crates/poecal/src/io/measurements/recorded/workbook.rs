@@ -112,16 +112,12 @@ fn value(cell: &Data) -> Option<f64> {
         Data::Int(value) => Some(*value as f64),
         Data::DateTime(time) => Some(time.as_f64() * DAY_S),
         Data::String(text) => number(text),
-        _ => None,
+        Data::Bool(_) | Data::DateTimeIso(_) | Data::DurationIso(_) | Data::Error(_) | Data::Empty => None,
     }
 }
 
 fn is_empty(cell: &Data) -> bool {
-    match cell {
-        Data::Empty => true,
-        Data::String(text) => text.trim().is_empty(),
-        _ => false,
-    }
+    matches!(cell, Data::Empty) || matches!(cell, Data::String(text) if text.trim().is_empty())
 }
 
 /// The table of a sheet: the first row of texts with numbers below, or below a row of units.
@@ -158,11 +154,10 @@ fn found(range: &Range<Data>) -> Option<Found> {
 
 /// The text of a cell.
 fn text(cell: &Data) -> String {
-    match cell {
-        Data::Empty => String::new(),
-        Data::String(text) => text.trim().replace(['\n', '\r', '\t'], " "),
-        other => other.to_string(),
+    if let Data::String(text) = cell {
+        return text.trim().replace(['\n', '\r', '\t'], " ");
     }
+    if is_empty(cell) { String::new() } else { cell.to_string() }
 }
 
 fn made(range: &Range<Data>, table: &Found, name: &str) -> Result<Made, Refused> {
