@@ -70,6 +70,7 @@ mod robust;
 mod shapes;
 mod shop;
 mod singular;
+mod stands;
 mod starts;
 mod stations;
 mod statistics;

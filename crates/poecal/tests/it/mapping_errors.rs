@@ -37,8 +37,8 @@ const MAPPINGS: &[(&str, &str)] = &[
         "map.toml:2:7: unknown field `colum`, expected one of `column`, `columns`, `value`, `offset`, `unit`",
     ),
     (
-        "[joints]\na = 3",
-        "map.toml:2:5: invalid type: integer `3`, expected a column name, or a table with `column`, `columns` or `value`, and `offset` and `unit`",
+        "[joints]\na = 3.5",
+        "map.toml:2:5: invalid type: floating point `3.5`, expected the name or the number of a column, or a table with `column`, `columns` or `value`, and `offset` and `unit`",
     ),
     (
         "[joints]\na = { column = \"a\", value = 0.0 }",

@@ -164,7 +164,7 @@ fn a_tracker_file_with_its_own_columns_gives_the_same_rows_as_ours() {
     let read = with_map(&raw, map);
     assert_same_rows(&read.data, &with_map(&ours, "").data, ROUNDING);
     assert_eq!(read.understood[0].orientation.as_deref(), Some("intrinsic Euler angles about x, y, z"));
-    assert_eq!(read.understood[0].ignored, ["Timestamp", "Goal x", "measurement_std_x"]);
+    assert_eq!(read.understood[0].ignored, ["Goal x", "measurement_std_x"]);
 }
 
 /// The published UR10 series and its copy in our own form, in the folder that POECAL_DATASETS names.

@@ -293,7 +293,7 @@ impl<'de> Visitor<'de> for ColumnSpecVisitor {
     type Value = ColumnSpec;
 
     fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("a column name, or a table with `column`, `columns` or `value`, and `offset` and `unit`")
+        f.write_str("the name or the number of a column, or a table with `column`, `columns` or `value`, and `offset` and `unit`")
     }
 
     fn visit_str<E: serde::de::Error>(self, column: &str) -> std::result::Result<ColumnSpec, E> {

@@ -8,7 +8,7 @@ const NEAR_S: f64 = 0.3;
 /// Distance of two lags that are different, seconds.
 const APART_S: f64 = 0.6;
 /// Most lags that are compared by the nominal robot.
-const MOST: usize = 12;
+const MOST: usize = 80;
 /// Fewest pairs of a lag, and share of those of the lag with most.
 const FEWEST: usize = 7;
 const SHARE: f64 = 0.4;

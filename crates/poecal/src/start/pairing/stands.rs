@@ -110,7 +110,7 @@ impl Stream {
         let mut rows: Vec<Range<usize>> = Vec::new();
         for (window, _) in windows.iter().zip(&still).filter(|it| *it.1) {
             match rows.last_mut() {
-                Some(last) if window.start <= last.end => last.end = window.end,
+                Some(last) if window.start < last.end => last.end = window.end,
                 _ => rows.push(window.clone()),
             }
         }
