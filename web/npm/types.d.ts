@@ -21,10 +21,26 @@ export interface CalibrateOptions {
   /** Which rows share a frame of the measuring device: per-file if it was moved between the files */
   frames?: "common" | "per-file";
   /**
-   * How a file of joint readings and one of measurements find each other [default: by name, else by their order, if the nominal robot
-   * agrees with no other one as well]
+   * How a file of joint readings and one of measurements find each other [default: by name, else recordings at the times of their stands
+   * and lists by their order, if the nominal robot agrees with no other one as well]
    */
-  join?: "name" | "rows";
+  join?: "name" | "rows" | "time";
+  /** Units of columns that state none, like mm,deg; those of a mapping precede */
+  units?: Value | readonly Value[];
+  /**
+   * Lag of the clocks of two recordings, the measurements' time less that of the joint readings, where their stands fit at several
+   * [default: found]
+   */
+  lag?: Value | readonly Value[];
+  /** Sheet of workbooks [default: the only one that holds a table] */
+  sheet?: Value | readonly Value[];
+  /** Body, marker or tool of recordings of a camera system [default: the only one that moves] */
+  body?: Value | readonly Value[];
+  /**
+   * Topic of ROS 2 bags that has the joint readings or the measurements, where several can be meant; may be given again [default: the only
+   * one]
+   */
+  topic?: Value | readonly Value[];
   /** Known distance between the two sockets of each place, like 50mm, or of pairs by name, like A-B=50mm,B-C=70mm+-0.02mm */
   socketDistance?: Value | readonly Value[];
   /** What rows with a plane are that do not say it in the column contact: touched by a point, or by a face that lies flush */
@@ -129,10 +145,26 @@ export interface ValidateOptions {
   /** Which rows share a frame of the measuring device: per-file if it was moved between the files */
   frames?: "common" | "per-file";
   /**
-   * How a file of joint readings and one of measurements find each other [default: by name, else by their order, if the nominal robot
-   * agrees with no other one as well]
+   * How a file of joint readings and one of measurements find each other [default: by name, else recordings at the times of their stands
+   * and lists by their order, if the nominal robot agrees with no other one as well]
    */
-  join?: "name" | "rows";
+  join?: "name" | "rows" | "time";
+  /** Units of columns that state none, like mm,deg; those of a mapping precede */
+  units?: Value | readonly Value[];
+  /**
+   * Lag of the clocks of two recordings, the measurements' time less that of the joint readings, where their stands fit at several
+   * [default: found]
+   */
+  lag?: Value | readonly Value[];
+  /** Sheet of workbooks [default: the only one that holds a table] */
+  sheet?: Value | readonly Value[];
+  /** Body, marker or tool of recordings of a camera system [default: the only one that moves] */
+  body?: Value | readonly Value[];
+  /**
+   * Topic of ROS 2 bags that has the joint readings or the measurements, where several can be meant; may be given again [default: the only
+   * one]
+   */
+  topic?: Value | readonly Value[];
   /** Known distance between the two sockets of each place, like 50mm, or of pairs by name, like A-B=50mm,B-C=70mm+-0.02mm */
   socketDistance?: Value | readonly Value[];
   /** What rows with a plane are that do not say it in the column contact: touched by a point, or by a face that lies flush */
@@ -214,10 +246,26 @@ export interface CheckOptions {
   /** Which rows share a frame of the measuring device: per-file if it was moved between the files */
   frames?: "common" | "per-file";
   /**
-   * How a file of joint readings and one of measurements find each other [default: by name, else by their order, if the nominal robot
-   * agrees with no other one as well]
+   * How a file of joint readings and one of measurements find each other [default: by name, else recordings at the times of their stands
+   * and lists by their order, if the nominal robot agrees with no other one as well]
    */
-  join?: "name" | "rows";
+  join?: "name" | "rows" | "time";
+  /** Units of columns that state none, like mm,deg; those of a mapping precede */
+  units?: Value | readonly Value[];
+  /**
+   * Lag of the clocks of two recordings, the measurements' time less that of the joint readings, where their stands fit at several
+   * [default: found]
+   */
+  lag?: Value | readonly Value[];
+  /** Sheet of workbooks [default: the only one that holds a table] */
+  sheet?: Value | readonly Value[];
+  /** Body, marker or tool of recordings of a camera system [default: the only one that moves] */
+  body?: Value | readonly Value[];
+  /**
+   * Topic of ROS 2 bags that has the joint readings or the measurements, where several can be meant; may be given again [default: the only
+   * one]
+   */
+  topic?: Value | readonly Value[];
   /** Known distance between the two sockets of each place, like 50mm, or of pairs by name, like A-B=50mm,B-C=70mm+-0.02mm */
   socketDistance?: Value | readonly Value[];
   /** What rows with a plane are that do not say it in the column contact: touched by a point, or by a face that lies flush */

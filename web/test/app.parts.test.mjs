@@ -36,6 +36,7 @@ test("files have the roles that their names and first lines say", () => {
     ["r.urdf", "<robot/>", "model"], ["r.txt", "<robot/>", "model"], ["r.toml", "# a\npoecal_robot = 1\n", "model"], ["s.toml", "poecal_settings = 1", "settings"],
     ["map.toml", "[joints]", "columns"], ["calibration.json", "{}", "model"], ["default.yaml", "kinematics:", "model"], ["p.csv", "a,b", "measurements"],
     ["p.TXT", "a b", "measurements"], ["noname", "a b", "measurements"], ["bom.csv", "\uFEFF<robot/>", "model"],
+    ["theta.xlsx", "PK", "measurements"], ["take_6D.tsv", "NO_OF_FRAMES", "measurements"], ["calib.mod", "MODULE", "measurements"], ["session.mcap", "", "measurements"],
   ];
   for (const [name, text, role] of cases) assert.equal(file(name, text).role, role, name);
   for (const name of ["README.md", "arm.stl", "report.html", "run.log"]) assert.equal(file(name, "<html>").role, "unused", name);

@@ -13,7 +13,7 @@ export const ROLES = {
 const TABLES = /\.(csv|tsv|txt|dat|asc)$/i;
 const MODELS = /\.(urdf|xacro|xml|sdf|mjcf|world|json|ya?ml|conf)$/i;
 /** Files that are neither, wherever they come from. */
-const OTHERS = /\.(md|html?|stl|dae|obj|ply|png|jpe?g|svg|gif|py|sh|rs|js|log|bag|mcap|db3)$/i;
+const OTHERS = /\.(md|html?|stl|dae|obj|ply|png|jpe?g|svg|gif|py|sh|rs|js|log|bag|db3)$/i;
 /** What lies in folders beside a session and is neither: these, other documents, and results. */
 const BESIDE = /\.(pdf|docx?|xlsx?|zip|gz)$|(^|\/)(residuals|joints)\.csv$|(^|\/)\./i;
 /** As many characters tell enough. */

@@ -414,8 +414,18 @@ class Measurements:
             Which rows share a frame of the measuring device: "common", all (or those of one name in the column `instrument`), or
             "per-file", those of a file.
         join
-            How joint readings and measurements in two files find each other: "name" or "rows"; by default by name, else by their order, if the nominal
-            robot agrees with no other one as well.
+            How joint readings and measurements in two files find each other: "name", "rows" or "time"; by default by name, else recordings at the
+            times of their stands, and lists by their order, if the nominal robot agrees with no other one as well.
+        lag
+            Lag of the clocks of two recordings, the measurements' time less that of the joint readings, "12s+-2s"; by default it is found.
+        units
+            Units of columns that state none, "mm,deg"; those of a mapping precede.
+        sheet
+            Sheet of workbooks; by default the only one that holds a table.
+        body
+            Body, marker or tool of recordings of a camera system; by default the only one that moves.
+        topics
+            Topics of ROS 2 bags (MCAP); by default the only ones of joint readings and of measurements.
         socket_distance
             Known distance between the two sockets of each place, "50mm", or of pairs by name, "A-B=50mm,B-C=70mm+-0.02mm".
         contact
@@ -527,6 +537,8 @@ class Measurements:
             Whether the column `set` means nothing, as for rows that judge a calibration.
         strict
             Whether lost beams, empty or zero positions, are an error instead of being skipped with a warning.
+        units
+            Units of columns that state none, "mm,deg"; those of a mapping precede.
         socket_distance
             Known distance between the two sockets of each place, "50mm", or of pairs by name, "A-B=50mm,B-C=70mm+-0.02mm".
         contact

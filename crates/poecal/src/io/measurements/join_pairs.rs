@@ -12,6 +12,9 @@ use crate::measurement::Dataset;
 use crate::robot::{Controller, Robot};
 use crate::start::{Agreement, Aligned, Lagged, Order, Pair, Span, Unpaired};
 
+/// Fewest pairs that fit badly which show that rows were lost and taken twice.
+const FEW_WRONG: usize = 2;
+
 /// Joint readings of a file.
 #[derive(Clone, Debug)]
 pub(super) struct JointRows {
@@ -136,6 +139,15 @@ impl Pairing<'_> {
             return self.by_alignment();
         }
         let pairs: Vec<Pair> = (0..joints).map(|row| (row, row)).collect();
+        // As many rows may hide that one was lost and another one taken twice.
+        let wrong = self.rows.wrong(&pairs);
+        if wrong >= FEW_WRONG
+            && let Some(found) =
+                self.rows.aligned().filter(|it| it.unread.is_empty() && !it.repeated.is_empty())
+            && self.rows.wrong(&found.pairs) < wrong
+        {
+            return self.by_alignment();
+        }
         self.judged(&pairs, Join::Rows, is_stated)
     }
 

@@ -176,7 +176,7 @@ impl<'a> Blocks<'a> {
                         "found a line longer than {} MiB, expected a table (CSV)",
                         LONGEST_LINE >> 20
                     ))
-                    .at_line(self.path, self.lines + 1));
+                    .at_line(self.path, self.lines + memchr::memchr_iter(b'\n', &bytes).count() + 1));
             }
         }
         let is_first = self.newline.is_none();

@@ -91,6 +91,13 @@ const WRONG: f64 = 8.0;
 const RIGHT: f64 = 3.0;
 
 impl Unpaired<'_> {
+    /// Number of pairs that the nominal robot misses by far more than the others.
+    #[must_use]
+    pub fn wrong(&self, pairs: &[Pair]) -> usize {
+        let Some((estimate, usual)) = self.registered(pairs) else { return 0 };
+        self.errors_of(pairs, &estimate).into_iter().filter(|it| *it > WRONG * usual).count()
+    }
+
     /// Pairs whose measurements belong to each other's joint readings: indices into the pairs, each with the one whose readings it fits.
     #[must_use]
     pub fn exchanged(&self, pairs: &[Pair]) -> Vec<(usize, usize)> {

@@ -49,7 +49,7 @@ pub(super) fn table(bytes: Vec<u8>, opening: &Opening<'_>) -> Result<Made, Refus
     }
     let Ok(mut book) = open_workbook_auto_from_rs(Cursor::new(bytes)) else {
         return Refused::whole(
-            "found a ZIP archive that is no workbook, or a workbook that is damaged, expected a measurement file (CSV), or a workbook: save the table as \
+            "found a ZIP archive that is no workbook such as .xlsx, or a workbook that is damaged, expected a measurement file (CSV), or a workbook: save the table as \
              `CSV UTF-8`",
         );
     };
