@@ -24,6 +24,9 @@ FOLLOWED = {
     "put `#` in front of a line that is no row": HERE + "test_a_line_that_is_no_row",
     "write `{si}`": HERE + "test_a_unit_that_is_missing_in_the_line_of_units",
     "has it: put `#` in front of the lines above it": HERE + "test_lines_above_the_header",
+    "state it by --lag, like": "crates/poecal/tests/it/stands.rs::a_program_that_repeats_itself_is_refused_until_the_lag_is_stated",
+    "or number them in a mapping (--columns), like": "crates/poecal/tests/it/mapping_forms.rs::columns_of_a_table_without_names_are_named_by_their_numbers",
+    "export them with comments, or name the columns by number in a mapping (--columns)": HERE + "test_points_without_a_unit",
     "is meant, write `{name}[{}]`": HERE + "test_a_unit_in_a_name",
     "spread over {} mm, expected about the same: most likely they are in rad": HERE + "test_radians_that_are_called_degrees",
     "most likely they are in {likely}, not {}": HERE + "test_millimetres_that_are_called_metres",
@@ -138,13 +141,28 @@ def test_a_unit_that_is_missing_in_the_line_of_units(here):
 
 
 def test_lines_above_the_header(here):
+    # Lines that are evidently none are passed over.
     table(here, "Cell 4, line 2,,,,,,,", ["operator,N. N.,,,,,,,", POINTS[0], *POINTS[1:]])
+    calibrates(here)
+    # Lines with as many cells may be names.
+    table(here, "cell 4,line 2,a,b,c,d,e,f,g", [POINTS[0], *POINTS[1:]])
     said = run(here, "calibrate", "robot.urdf", "points.csv", "--out", "out", code=2)
     skip = re.search(r"write `(skip_lines = \d+)` in a mapping file", said)[1]
     (here / "map.toml").write_text(skip + "\n")
     calibrates(here, "--columns", "map.toml")
     table(here, "#Cell 4, line 2,,,,,,,", ["#operator,N. N.,,,,,,,", POINTS[0], *POINTS[1:]])
     calibrates(here)
+
+
+def test_points_without_a_unit(here):
+    rows = [row.split(",") for row in POINTS[1:]]
+    (here / "joints.csv").write_text("\n".join([",".join(POINTS[0].split(",")[:6]), *(",".join(row[:6]) for row in rows)]) + "\n")
+    points = "\n".join(f"Robot, P{number}, {', '.join(row[6:9])}" for number, row in enumerate(rows, 1)) + "\n"
+    (here / "points.txt").write_text("// SpatialAnalyzer\n" + points)
+    said = run(here, "calibrate", "robot.urdf", "joints.csv", "points.txt", "--out", "out", code=2)
+    assert "export them with comments" in said
+    (here / "points.txt").write_text("// SpatialAnalyzer\n// AXES = CARTESIAN: X,  Y,  Z (mm)\n" + points)
+    run(here, "calibrate", "robot.urdf", "joints.csv", "points.txt", "--out", "out")
 
 
 def test_a_unit_in_a_name(here):

@@ -387,7 +387,12 @@ class Measurements:
         ignore_sets: bool = False,
         strict: bool = False,
         frames: Literal["common", "per-file"] = "common",
-        join: Literal["name", "rows"] | None = None,
+        join: Literal["name", "rows", "time"] | None = None,
+        lag: str | None = None,
+        units: str | None = None,
+        sheet: str | None = None,
+        body: str | None = None,
+        topics: Sequence[str] | None = None,
         socket_distance: str | None = None,
         contact: Literal["point", "flush"] = "point",
         instrument_noise: Sequence[str] | None = None,
@@ -438,6 +443,31 @@ class Measurements:
             industrial_calibration, XML of ViSP.
         markers
             Boards or solids that they saw: CSV files of points, "chessboard:10x7:27mm", or files of Kalibr, industrial_calibration or OpenCV.
+
+        Returns
+        -------
+        Measurements
+            The rows of all files.
+
+        Raises
+        ------
+        FileError
+            A file cannot be read.
+        MeasurementError
+            It holds no measurements of this robot; the error tells the line and the column.
+        """
+    @staticmethod
+    def from_files(paths: _Path | Sequence[_Path], robot: Robot, **options: Any) -> Measurements:
+        """Reads files of instruments, controllers and recorders as they are: what `from_csv` reads, under the name of what it is for.
+
+        Parameters
+        ----------
+        paths
+            A file, or several; with joint readings in one and measurements in another they are joined.
+        robot
+            The robot whose joints the columns name.
+        options
+            Those of `from_csv`: `units`, `join`, `lag`, `sheet`, `body`, `topics` and the others.
 
         Returns
         -------
@@ -512,6 +542,7 @@ class Measurements:
         fit_where: str | None = None,
         ignore_sets: bool = False,
         strict: bool = False,
+        units: str | None = None,
         socket_distance: str | None = None,
         contact: Literal["point", "flush"] = "point",
         instrument_noise: Sequence[str] | None = None,

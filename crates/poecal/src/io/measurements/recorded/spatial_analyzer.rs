@@ -126,7 +126,7 @@ impl<'t> Comments<'t> {
         let Some((line, axes)) = axes else {
             return Refused::whole(
                 "found points of SpatialAnalyzer without the line `// AXES = …` that states their unit, expected it: export them with comments, or \
-                 state the unit in a mapping (--columns) with `units = { length = \"mm\" }` and `position`",
+                 name the columns by number in a mapping (--columns)",
             );
         };
         let kind = axes.trim_start_matches([' ', '=']).to_ascii_uppercase();
