@@ -3,6 +3,10 @@
 use std::fmt::Write as _;
 use std::fs;
 
+use poecal::io::measurements::{self, ReadOptions};
+use poecal::io::model::Model;
+use poecal::io::urdf::ChainSelection;
+
 use crate::folder::Folder;
 use crate::workbook::workbook;
 
@@ -64,8 +68,11 @@ fn held_out(folder: &Folder, files: &str) -> (f64, String) {
     (rms.as_f64().unwrap(), run.err)
 }
 
+/// A file's name and its text.
+type Named = (&'static str, String);
+
 /// Joint readings, and points or poses, each in a form of its own.
-fn forms(rows: &[Row]) -> (Vec<(&'static str, String)>, Vec<(&'static str, String)>) {
+fn forms(rows: &[Row]) -> (Vec<Named>, Vec<Named>) {
     let each = |of: &dyn Fn(usize, &Row) -> String| -> String {
         rows.iter().enumerate().map(|(k, row)| of(k + 1, row)).collect()
     };
@@ -461,4 +468,55 @@ fn recordings_with_clocks_of_their_own_are_joined_at_their_stands() {
         run.err
     );
     assert_eq!(folder.run(&format!("check {MODEL} robot_data.csv two.csv --body Tool")).code, 0);
+}
+
+#[test]
+fn no_damage_to_a_file_of_another_form_makes_reading_panic() {
+    let folder = Folder::new();
+    let rows = session(&folder, 12);
+    let robot = Model::read(MODEL, &ChainSelection::default()).unwrap().robot;
+    let options = ReadOptions::default();
+    let (joints, measured) = forms(&rows);
+    let motive = "Format Version,1.24,Export Frame Rate,100.0,Rotation Type,Quaternion,Length Units,Meters\n\n,Type,,Rigid Body,Rigid Body,Rigid Body,Rigid Body,Rigid Body,Rigid Body,Rigid Body\n,Name,,Tool,Tool,Tool,Tool,Tool,Tool,Tool\n,,,Rotation,Rotation,Rotation,Rotation,Position,Position,Position\nFrame,Time (Seconds),TimeCode,X,Y,Z,W,X,Y,Z\n0,0.0,0,0,0,0,1,1,2,3\n1,0.01,0,0,0,0,1,1,2,4\n";
+    let qualisys = "NO_OF_FRAMES\t2\nFREQUENCY\t100\nDATA_INCLUDED\t6D\nBODY_NAMES\tTool\nFrame\tTime\tTool X\tY\tZ\tRoll\tPitch\tYaw\tResidual\tRot[0]\tRot[1]\tRot[2]\tRot[3]\tRot[4]\tRot[5]\tRot[6]\tRot[7]\tRot[8]\t\n1\t0.0\t10.0\t20.0\t30.0\t0.0\t0.0\t0.0\t0.3\t1\t0\t0\t0\t1\t0\t0\t0\t1\t\n2\t0.01\t90.0\t20.0\t30.0\t0.0\t0.0\t0.0\t0.3\t1\t0\t0\t0\t1\t0\t0\t0\t1\t\n";
+    let ndi = "Test\n\nSample:,Hour,Minutes,Seconds,ms,Xa,Ya,Za,qoa,qxa,qya,qza\n1, 4 , 15 , 52, 821,0, 0, 0, 0, 0, 0, 0, \n2, 4 , 15 , 53, 1,102.84 , -60 , -158.25, 1, 0, 0, 0, \n";
+    let others = [motive, qualisys, ndi].map(str::to_owned);
+    let texts: Vec<String> = joints.into_iter().chain(measured).map(|it| it.1).chain(others).collect();
+    let mut refused = 0;
+    let mut tries = 0;
+    for text in &texts {
+        let bytes = text.as_bytes();
+        // Some hundred places of each.
+        for at in (0..bytes.len()).step_by(1 + bytes.len() / 250) {
+            for change in [b"".as_slice(), b",", b"\t", b"9", b"-", b"\n", b"[", b"}", b"\"", b"e9"] {
+                let damaged = [&bytes[..at], change, &bytes[at + 1..]].concat();
+                let text = String::from_utf8_lossy(&damaged);
+                tries += 1;
+                refused += usize::from(measurements::parse(&text, "damaged.txt", &robot, &options).is_err());
+            }
+            tries += 1;
+            let text = String::from_utf8_lossy(&bytes[..at]);
+            refused += usize::from(measurements::parse(&text, "damaged.txt", &robot, &options).is_err());
+        }
+    }
+    let sheet: Vec<Vec<String>> =
+        std::iter::once(["A1", "A2", "A3", "A4", "A5", "A6", "X", "Y", "Z"].map(str::to_owned).to_vec())
+            .chain(
+                rows.iter()
+                    .map(|(joints, place, _)| joints.iter().chain(place).map(|it| format!("{it}")).collect()),
+            )
+            .collect();
+    let book = workbook(&[("Messung", &sheet)]);
+    let path = folder.path("damaged.xlsx");
+    for at in (0..book.len()).step_by(1 + book.len() / 1500) {
+        for byte in [0, b'9', 0xff] {
+            let mut damaged = book.clone();
+            damaged[at] = byte;
+            fs::write(&path, damaged).unwrap();
+            tries += 1;
+            refused += usize::from(measurements::read(&[&path], &robot, &options).is_err());
+        }
+    }
+    println!("{refused} of {tries} damaged files refused");
+    assert!(2 * refused > tries);
 }

@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use super::cells::{Cell, Separator, character_column, split, split_line};
+use super::column_names::number_of_column;
 use super::configurations::advice;
-use super::mapping::number_of_column;
 use super::units::{NamedUnit, UnitSource};
 use crate::error::{Error, ErrorKind, Result, first_few, nearest};
 use crate::unit::Unit;

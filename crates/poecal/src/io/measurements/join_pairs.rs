@@ -4,13 +4,14 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use super::join_plan::ReadingsByLine;
+use super::join_words::{advice, counted, numbered, numbered_as, words};
 use super::picture_names::Partners;
 use super::{Join, Lag};
 use crate::error::{Error, ErrorKind, Result, first_few};
 use crate::forensics::{DiagnosisOptions, diagnose};
 use crate::measurement::Dataset;
 use crate::robot::{Controller, Robot};
-use crate::start::{Agreement, Aligned, Lagged, Order, Pair, Span, Unpaired};
+use crate::start::{Agreement, Aligned, Lagged, Pair, Span, Unpaired};
 
 /// Fewest pairs that fit badly which show that rows were lost and taken twice.
 const FEW_WRONG: usize = 2;
@@ -373,44 +374,5 @@ impl Pairing<'_> {
             Some(self.data.observations.get(row as usize)?.source.line.to_string())
         };
         numbered(&shots.iter().filter_map(line).collect::<Vec<_>>())
-    }
-}
-
-/// Configurations in words.
-fn counted(configurations: usize) -> String {
-    if configurations == 1 {
-        "one configuration".to_owned()
-    } else {
-        format!("{configurations} configurations")
-    }
-}
-
-/// Lines in words.
-fn numbered(lines: &[String]) -> String {
-    numbered_as("line", lines)
-}
-
-/// The same as rows of a sheet.
-fn numbered_as(word: &str, lines: &[String]) -> String {
-    format!("{word}{} {}", if lines.len() == 1 { "" } else { "s" }, first_few(lines))
-}
-
-/// An order in words.
-fn words(order: Order) -> String {
-    let rows = |by: usize| if by == 1 { "one row".to_owned() } else { format!("{by} rows") };
-    match order {
-        Order::MeasuredLater(by) => format!("with the measurements {} later", rows(by)),
-        Order::JointsLater(by) => format!("with the joint readings {} later", rows(by)),
-        Order::Reversed => "in reverse order".to_owned(),
-    }
-}
-
-/// What to do where an order fits better.
-fn advice(order: Order) -> String {
-    let rows = |by: usize| if by == 1 { "the first row".to_owned() } else { format!("the first {by} rows") };
-    match order {
-        Order::MeasuredLater(by) => format!("remove {} of the joint readings", rows(by)),
-        Order::JointsLater(by) => format!("remove {} of the measurements", rows(by)),
-        Order::Reversed => "turn one of the files round".to_owned(),
     }
 }

@@ -10,6 +10,7 @@ use serde::de::{Deserializer, Error as _, MapAccess, Visitor};
 
 use super::FitWhere;
 use super::cells::Separator;
+use super::column_names::{column_name, column_names, counted_column, three_columns};
 use super::number::DecimalSign;
 use super::orientation::OrientationForm;
 use super::units::NamedUnit;
@@ -342,66 +343,6 @@ fn check_columns<E: serde::de::Error>(columns: &BTreeMap<String, f64>) -> std::r
         return Err(E::custom(message));
     }
     Ok(())
-}
-
-/// The name of a column by its number, from 1, as tables without names have them.
-pub(super) fn numbered_column(number: usize) -> String {
-    format!("column {number}")
-}
-
-/// The same of a number of a mapping.
-fn counted_column<E: serde::de::Error>(number: i64) -> std::result::Result<String, E> {
-    usize::try_from(number).ok().filter(|it| *it > 0).map(numbered_column).ok_or_else(|| {
-        E::custom(format!("found the column {number}, expected its name, or its number from 1"))
-    })
-}
-
-/// A column by its name or its number.
-struct ColumnName(String);
-
-impl<'de> Deserialize<'de> for ColumnName {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Self, D::Error> {
-        deserializer.deserialize_any(ColumnNameVisitor).map(ColumnName)
-    }
-}
-
-struct ColumnNameVisitor;
-
-impl Visitor<'_> for ColumnNameVisitor {
-    type Value = String;
-
-    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("the name of a column, or its number from 1")
-    }
-
-    fn visit_str<E: serde::de::Error>(self, name: &str) -> std::result::Result<String, E> {
-        Ok(name.to_owned())
-    }
-
-    fn visit_i64<E: serde::de::Error>(self, number: i64) -> std::result::Result<String, E> {
-        counted_column(number)
-    }
-}
-
-fn column_name<'de, D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Option<String>, D::Error> {
-    ColumnName::deserialize(deserializer).map(|it| Some(it.0))
-}
-
-fn three_columns<'de, D: Deserializer<'de>>(
-    deserializer: D,
-) -> std::result::Result<Option<[String; 3]>, D::Error> {
-    <[ColumnName; 3]>::deserialize(deserializer).map(|it| Some(it.map(|it| it.0)))
-}
-
-fn column_names<'de, D: Deserializer<'de>>(
-    deserializer: D,
-) -> std::result::Result<Option<Vec<String>>, D::Error> {
-    Vec::<ColumnName>::deserialize(deserializer).map(|it| Some(it.into_iter().map(|it| it.0).collect()))
-}
-
-/// The number of a column that is named by it, from 1.
-pub(super) fn number_of_column(name: &str) -> Option<usize> {
-    name.strip_prefix("column ")?.parse().ok().filter(|it| *it > 0)
 }
 
 /// A string for `parse`; its error becomes the TOML error's message.

@@ -15,7 +15,7 @@ use super::messages::are_messages;
 use super::naming::Names;
 use super::number::Numbers;
 use super::picture_files::TakenByImage;
-use super::recorded::{BAG, Opening, RECORDINGS, WORKBOOK};
+use super::recorded::Opening;
 use super::scale::{self, JointWatch};
 use super::socket_distance::Sockets;
 use super::spread;
@@ -25,7 +25,7 @@ use super::text::{Blocks, Said};
 use super::turns::{self, TurnWatch};
 use super::understanding::{self, ColumnUnderstanding, FileUnderstanding};
 use super::wrong_boards::refuse_wrong_boards;
-use super::{FitWhere, Frames, Join, MeasurementFile, ReadOptions};
+use super::{FitWhere, Frames, MeasurementFile, ReadOptions};
 use crate::camera::{Board, Camera};
 use crate::error::{ErrorKind, Result, shown};
 use crate::measurement::{Dataset, Observation};
@@ -420,30 +420,6 @@ impl<'a> Reader<'a> {
         };
         let columns = columns.join(", ");
         self.found.warnings.push(format!("{}: ignored the columns {columns}{more}", path.display()));
-    }
-
-    /// Refuses options that concern forms of files of which there is none.
-    fn refuse_unused(&self) -> Result<()> {
-        let forms = || self.found.understood.iter().filter_map(|it| it.form);
-        let is_of = |options: &[&str]| forms().any(|it| options.contains(&it));
-        let options = self.options;
-        let unused = [
-            (options.sheet.is_some(), is_of(&[WORKBOOK]), "--sheet", "a workbook"),
-            (options.body.is_some(), is_of(&RECORDINGS), "--body", "a recording of bodies or markers"),
-            (!options.topics.is_empty(), is_of(&[BAG]), "--topic", "a ROS 2 bag"),
-            (
-                options.lag.is_some(),
-                self.found.join == Some(Join::Time),
-                "--lag",
-                "two recordings that are joined by their times",
-            ),
-        ];
-        match unused.into_iter().find(|(is_stated, is_used, ..)| *is_stated && !is_used) {
-            Some((.., option, what)) => ErrorKind::Option.refuse(format!(
-                "found {option} and no file that it is for, expected {what}: leave the option out"
-            )),
-            None => Ok(()),
-        }
     }
 
     fn finish(self) -> Result<MeasurementFile> {

@@ -6,7 +6,8 @@ use std::collections::BTreeSet;
 use super::maker::{Made, Refused, Value};
 use super::words::{lines, number, separator, split};
 use super::{Form, Opening};
-use crate::io::measurements::mapping::{ColumnMap, numbered_column};
+use crate::io::measurements::column_names::numbered_column;
+use crate::io::measurements::mapping::ColumnMap;
 
 pub(super) const FORM: Form = Form { title: "a table without names of columns", is_it, table };
 

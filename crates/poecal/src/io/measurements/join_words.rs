@@ -1,0 +1,43 @@
+//! What is said of pairs.
+
+use crate::error::first_few;
+use crate::start::Order;
+
+/// Configurations in words.
+pub(super) fn counted(configurations: usize) -> String {
+    if configurations == 1 {
+        "one configuration".to_owned()
+    } else {
+        format!("{configurations} configurations")
+    }
+}
+
+/// Lines in words.
+pub(super) fn numbered(lines: &[String]) -> String {
+    numbered_as("line", lines)
+}
+
+/// The same as rows of a sheet.
+pub(super) fn numbered_as(word: &str, lines: &[String]) -> String {
+    format!("{word}{} {}", if lines.len() == 1 { "" } else { "s" }, first_few(lines))
+}
+
+/// An order in words.
+pub(super) fn words(order: Order) -> String {
+    let rows = |by: usize| if by == 1 { "one row".to_owned() } else { format!("{by} rows") };
+    match order {
+        Order::MeasuredLater(by) => format!("with the measurements {} later", rows(by)),
+        Order::JointsLater(by) => format!("with the joint readings {} later", rows(by)),
+        Order::Reversed => "in reverse order".to_owned(),
+    }
+}
+
+/// What to do where an order fits better.
+pub(super) fn advice(order: Order) -> String {
+    let rows = |by: usize| if by == 1 { "the first row".to_owned() } else { format!("the first {by} rows") };
+    match order {
+        Order::MeasuredLater(by) => format!("remove {} of the joint readings", rows(by)),
+        Order::JointsLater(by) => format!("remove {} of the measurements", rows(by)),
+        Order::Reversed => "turn one of the files round".to_owned(),
+    }
+}

@@ -1,0 +1,32 @@
+//! Options that concern forms of files.
+
+use super::Join;
+use super::read::Reader;
+use super::recorded::{BAG, RECORDINGS, WORKBOOK};
+use crate::error::{ErrorKind, Result};
+
+impl Reader<'_> {
+    /// Refuses options that concern forms of files of which there is none.
+    pub(super) fn refuse_unused(&self) -> Result<()> {
+        let forms = || self.found.understood.iter().filter_map(|it| it.form);
+        let is_of = |options: &[&str]| forms().any(|it| options.contains(&it));
+        let options = self.options;
+        let unused = [
+            (options.sheet.is_some(), is_of(&[WORKBOOK]), "--sheet", "a workbook"),
+            (options.body.is_some(), is_of(&RECORDINGS), "--body", "a recording of bodies or markers"),
+            (!options.topics.is_empty(), is_of(&[BAG]), "--topic", "a ROS 2 bag"),
+            (
+                options.lag.is_some(),
+                self.found.join == Some(Join::Time),
+                "--lag",
+                "two recordings that are joined by their times",
+            ),
+        ];
+        match unused.into_iter().find(|(is_stated, is_used, ..)| *is_stated && !is_used) {
+            Some((.., option, what)) => ErrorKind::Option.refuse(format!(
+                "found {option} and no file that it is for, expected {what}: leave the option out"
+            )),
+            None => Ok(()),
+        }
+    }
+}
