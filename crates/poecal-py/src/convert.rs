@@ -114,28 +114,29 @@ pub(crate) fn schema() -> String {
 ///     The robot whose joints the columns name.
 /// columns
 ///     A mapping file for a file with other column names.
+/// units
+///     Units of columns that state none, "mm,deg"; those of a mapping precede.
 ///
 /// Returns
 /// -------
 /// numpy.ndarray
 ///     Configurations, shape (m, n), radians and metres, in the order of `robot.reading_names`.
 #[pyfunction]
-#[pyo3(signature = (path, robot, *, columns=None))]
+#[pyo3(signature = (path, robot, *, columns=None, units=None))]
 pub(crate) fn read_joints<'py>(
     py: Python<'py>,
     #[pyo3(from_py_with = arg::path)] path: PathBuf,
     #[pyo3(from_py_with = arg::robot)] robot: &Robot,
     #[pyo3(from_py_with = arg::columns)] columns: Option<PathBuf>,
+    #[pyo3(from_py_with = arg::units)] units: Option<&str>,
 ) -> PyResult<Bound<'py, PyArray2<f64>>> {
     let model = &robot.model;
     let robot = &model.robot;
     let read = || {
         let mapping = columns.as_ref().map(ColumnMap::read).transpose()?;
-        measurements::read_joints(
-            &path,
-            robot,
-            &model.reads(ReadOptions { mapping, ..ReadOptions::default() }),
-        )
+        let mut options = ReadOptions { mapping, ..ReadOptions::default() };
+        units.map_or(Ok(()), |units| options.state_units(units))?;
+        measurements::read_joints(&path, robot, &model.reads(options))
     };
     let joints = py.detach(read).map_err(raise)?;
     crate::warn(py, &joints.warnings)?;

@@ -33,13 +33,11 @@ const CONTACTS: [(&str, PlaneContact); 2] = [("point", PlaneContact::Point), ("f
 fn options(
     columns: Option<&PathBuf>,
     fit_where: Option<&str>,
-    ignore_sets: bool,
-    strict: bool,
+    [ignore_sets, strict]: [bool; 2],
     (frames, join, lag): (Frames, Option<Join>, Option<&str>),
     (socket_distance, contact): (Option<&str>, PlaneContact),
     [units, sheet, body]: [Option<&str>; 3],
-    topics: Option<&[String]>,
-    [instrument_noise, cameras, markers]: [Option<&[String]>; 3],
+    [instrument_noise, cameras, markers, topics]: [Option<&[String]>; 4],
 ) -> poecal::Result<ReadOptions> {
     let mut options = ReadOptions {
         frames,
@@ -166,13 +164,11 @@ impl Measurements {
             let options = options(
                 columns.as_ref(),
                 fit_where,
-                ignore_sets,
-                strict,
+                [ignore_sets, strict],
                 (frames, join, lag),
                 (socket_distance, contact),
                 [units, sheet, body],
-                topics.as_deref(),
-                [&instrument_noise, &cameras, &markers].map(|it| it.as_deref()),
+                [&instrument_noise, &cameras, &markers, &topics].map(|it| it.as_deref()),
             )?;
             let file = measurements::read(&paths, &robot.model.robot, &robot.model.reads(options))?;
             let mut sha256 = Inputs::checksums(columns.iter().map(PathBuf::as_path))?;
@@ -356,13 +352,11 @@ impl Measurements {
             let options = options(
                 columns.as_ref(),
                 fit_where,
-                ignore_sets,
-                strict,
+                [ignore_sets, strict],
                 (Frames::Common, None, None),
                 (socket_distance, contact),
                 [units, None, None],
-                None,
-                [&instrument_noise, &cameras, &markers].map(|it| it.as_deref()),
+                [&instrument_noise, &cameras, &markers, &None].map(|it| it.as_deref()),
             )?;
             measurements::parse(&text, from_dataframe::NAME, &robot.model.robot, &options)
         };

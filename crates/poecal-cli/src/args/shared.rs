@@ -80,12 +80,17 @@ pub(crate) struct ColumnArgs {
     /// Mapping file for files with other column names
     #[arg(long, value_name = "MAP.toml")]
     pub(crate) columns: Option<PathBuf>,
+    /// Units of columns that state none, like mm,deg; those of a mapping precede
+    #[arg(long, value_name = "UNIT[,UNIT]")]
+    pub(crate) units: Option<String>,
 }
 
 impl ColumnArgs {
     pub(crate) fn options(&self) -> poecal::Result<ReadOptions> {
         let mapping = self.columns.as_ref().map(ColumnMap::read).transpose()?;
-        Ok(ReadOptions { mapping, ..ReadOptions::default() })
+        let mut options = ReadOptions { mapping, ..ReadOptions::default() };
+        self.units.as_deref().map_or(Ok(()), |units| options.state_units(units))?;
+        Ok(options)
     }
 }
 
@@ -138,9 +143,6 @@ pub(crate) struct Meaning {
     /// their order, if the nominal robot agrees with no other one as well]
     #[arg(long, value_parser = one_of(JOIN))]
     pub(crate) join: Option<Join>,
-    /// Units of columns that state none, like mm,deg; those of a mapping precede
-    #[arg(long, value_name = "UNIT[,UNIT]")]
-    pub(crate) units: Option<String>,
     /// Lag of the clocks of two recordings, the measurements' time less that of the joint readings, where their stands fit at several [default: found]
     #[arg(long, value_name = "SECONDS[+-SECONDS]", allow_hyphen_values = true)]
     pub(crate) lag: Option<Lag>,
@@ -177,7 +179,7 @@ impl Meaning {
         let (strict, frames, contact) = (self.strict, self.frames, self.contact);
         let socket_distances = self.socket_distance.clone();
         let instrument_noise = self.instrument_noise.clone();
-        let mut options = ReadOptions {
+        let options = ReadOptions {
             strict,
             frames,
             join: self.join,
@@ -190,9 +192,6 @@ impl Meaning {
             instrument_noise,
             ..self.columns.options()?
         };
-        if let Some(units) = &self.units {
-            options.state_units(units)?;
-        }
         self.cameras.add(options)
     }
 }

@@ -99,9 +99,11 @@ fn robot_program(
     place: Option<FilePlace>,
     console: &Console,
 ) -> Result<u8> {
-    if arguments.columns.columns.is_some() {
+    let columns = &arguments.columns;
+    let unused = columns.columns.as_ref().map(|_| "--columns").or(columns.units.as_ref().map(|_| "--units"));
+    if let Some(option) = unused {
         return ErrorKind::Option.refuse(format!(
-            "found --columns for a program in {}, expected it for tables (CSV) alone: programs state what the controller counted in the \
+            "found {option} for a program in {}, expected it for tables (CSV) alone: programs state what the controller counted in the \
              calibration's mapping",
             language.title()
         ));

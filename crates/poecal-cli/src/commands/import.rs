@@ -90,7 +90,7 @@ fn map(arguments: &Import, model: &Path, file: &MeasurementFile) -> String {
         Join::Time => "time",
     });
     text("join", join.map(quoted));
-    let units = meaning.units.clone().map_or_else(
+    let units = meaning.columns.units.clone().map_or_else(
         || file.is_in_degrees.then(|| "deg".to_owned()),
         |stated| Some(if file.is_in_degrees { format!("{stated},deg") } else { stated }),
     );

@@ -1885,7 +1885,7 @@ def offsets(
     Findings
         The offsets, and the errors with and without them.
     """
-def read_joints(path: _Path, robot: Robot, *, columns: _Path | None = None) -> _Array:
+def read_joints(path: _Path, robot: Robot, *, columns: _Path | None = None, units: str | None = None) -> _Array:
     """Reads the joint readings of a file, whatever other columns it has.
 
     Parameters
@@ -1896,6 +1896,8 @@ def read_joints(path: _Path, robot: Robot, *, columns: _Path | None = None) -> _
         The robot whose joints the columns name.
     columns
         A mapping file for a file with other column names.
+    units
+        Units of columns that state none, "mm,deg"; those of a mapping precede.
 
     Returns
     -------
