@@ -208,6 +208,34 @@ fn every_pair_of_forms_gives_the_calibration_of_our_own() {
 }
 
 #[test]
+fn files_of_several_places_of_the_tracker_have_a_frame_each() {
+    let folder = Folder::new();
+    let rows = session(&folder, 60);
+    fs::write(folder.path("own.csv"), own(&rows, false)).unwrap();
+    let (expected, _) = held_out(&folder, "own.csv");
+    let (joints, _) = forms(&rows);
+    fs::write(folder.path("rapid.mod"), &joints[0].1).unwrap();
+    for (place, range) in [(1, 0..30), (2, 30..60)] {
+        let mut text = format!(
+            "// SpatialAnalyzer\n// Points Relative to Coordinate Frame 'Cell::Tracker {place}'\n// AXES = CARTESIAN: X,  Y,  Z (mm)\n"
+        );
+        for at in range {
+            let [x, y, z] = rows[at].1;
+            // The tracker was turned by a right angle, and carried some metres.
+            let seen = if place == 1 { [x, y, z] } else { [2000.0 - y, x - 700.0, z + 300.0] };
+            writeln!(text, "Robot,  P{},  {}", at + 1, joined(&seen, 6, ",  ")).unwrap();
+        }
+        fs::write(folder.path(&format!("place{place}.txt")), text).unwrap();
+    }
+    let (found, said) = held_out(&folder, "rapid.mod place1.txt place2.txt");
+    println!("{found:.6} mm of two places, {expected:.6} of one");
+    // Another split of the rows, and a frame more.
+    assert!(found < 1.3 * expected, "{found} {expected} {said}");
+    let calibration = folder.read("out/calibration.json");
+    assert!(calibration.contains("Cell::Tracker 1") && calibration.contains("Cell::Tracker 2"));
+}
+
+#[test]
 fn files_of_other_tools_are_whole_sessions() {
     let folder = Folder::new();
     let rows = session(&folder, 40);

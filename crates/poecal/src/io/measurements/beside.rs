@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::configurations::is_folder;
+use super::configurations::{advice, is_folder};
 use super::corner_columns::{are_corners, are_readings_of_pictures};
 use super::header::HeaderCell;
 use super::join_plan::{Part, part};
@@ -42,7 +42,8 @@ pub(super) fn alone(error: Error, path: &Path, opening: &Opening<'_>, map: &Colu
     let names = opening.robot.reading_names();
     let is_all = is_lone && table.header.cells.iter().all(|it| names.contains(&it.name) || it.name == "id");
     if table.is_made() || is_all {
-        let message = format!("found {found}, expected both: name the file of the {other} beside it");
+        let message =
+            format!("found {found}, expected both: name the file of the {other} beside it{}", advice(path));
         return Error::new(ErrorKind::Measurement, message).in_file(path);
     }
     // A column that looks like one of those that are missing may be one, under another name.

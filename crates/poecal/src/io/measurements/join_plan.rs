@@ -1,6 +1,6 @@
 //! Which of the files that are read together have joint readings alone, and which measurements alone.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use super::corner_columns::{are_corners, are_readings_of_pictures};
@@ -50,6 +50,8 @@ pub(super) struct Planned<'p> {
     pub(super) map: ColumnMap,
     /// The table, of a file that holds several.
     table: Option<OwnTable>,
+    /// Whether the frame of each file is that of an instrument of its own.
+    is_by_frames: bool,
 }
 
 impl<'p> Planned<'p> {
@@ -57,7 +59,7 @@ impl<'p> Planned<'p> {
     pub(super) fn blocks(&self, opening: Opening<'_>, expected: &'p str) -> Result<Blocks<'p>> {
         match &self.table {
             Some(table) => Ok(table.blocks(self.path, expected)),
-            None => opening.blocks(self.path, expected),
+            None => Opening { is_by_frames: self.is_by_frames, ..opening }.blocks(self.path, expected),
         }
     }
 }
@@ -70,7 +72,7 @@ impl<'p> Plan<'p> {
         options: &ReadOptions,
         map: &ColumnMap,
     ) -> Result<Option<Self>> {
-        let opening = Opening { robot, options };
+        let opening = Opening::new(robot, options);
         let recordings: Vec<Option<Recording>> =
             paths.iter().map(|path| opening.recording(path)).collect::<Result<_>>()?;
         let first = paths.iter().zip(&recordings).find_map(|(path, it)| Some((*path, it.as_ref()?)));
@@ -101,13 +103,20 @@ impl<'p> Plan<'p> {
             return Ok(None);
         }
         let several = joints == 1 && measured > 1;
+        // Files whose frames differ are of several places of the instrument.
+        let frames: BTreeSet<String> = (files.iter())
+            .filter(|it| several && matches!(it.1, Part::Measured { .. }))
+            .filter_map(|it| opening.frame(it.0))
+            .collect();
+        let is_by_frames = frames.len() > 1 && options.frames == Frames::Common;
         let planned = |(path, part, table): (&'p Path, Part, Option<OwnTable>)| {
             let mut map = without_joints(map, robot);
             // Several files that were measured at the same configurations are of several targets, or of several instruments.
-            if several && part == (Part::Measured { is_named: false }) && options.frames == Frames::Common {
+            let is_unnamed = part == (Part::Measured { is_named: false });
+            if several && is_unnamed && !is_by_frames && options.frames == Frames::Common {
                 map.target_name = path.file_stem().map(|it| it.to_string_lossy().into_owned());
             }
-            Planned { path, part, map, table }
+            Planned { path, part, map, table, is_by_frames }
         };
         Ok(Some(Plan { files: files.into_iter().map(planned).collect() }))
     }
@@ -136,7 +145,7 @@ pub(super) fn part(path: &Path, robot: &Robot, options: &ReadOptions, map: &Colu
     if !is_file(path) {
         return Ok(Part::Whole);
     }
-    let mut blocks = Opening { robot, options }.blocks(path, "a measurement file (CSV)")?;
+    let mut blocks = Opening::new(robot, options).blocks(path, "a measurement file (CSV)")?;
     let kind = || -> Result<Part> {
         blocks.begin()?;
         if are_messages(path, blocks.text())? {

@@ -178,7 +178,7 @@ impl<'a> Reader<'a> {
 
     /// What files are opened with.
     pub(super) fn opening(&self) -> Opening<'a> {
-        Opening { robot: self.robot, options: self.options }
+        Opening::new(self.robot, self.options)
     }
 
     /// Takes what was understood of a file when it was opened.

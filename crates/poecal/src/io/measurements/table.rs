@@ -97,7 +97,7 @@ impl<'a> Table<'a> {
 
     /// The same with rows that were made of the lines of another file.
     pub(super) fn with_lines(self, lines: Vec<usize>) -> Self {
-        Table { places: Some(Places { lines, sheet: None, form: "messages" }), ..self }
+        Table { places: Some(Places { lines, form: "messages", ..Places::default() }), ..self }
     }
 
     /// The text before the first block of rows, of blocks that hold what they pass.

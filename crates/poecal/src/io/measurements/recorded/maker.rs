@@ -14,6 +14,8 @@ pub(super) struct Made {
     text: String,
     lines: Vec<usize>,
     sheet: Option<Sheet>,
+    /// The frame that the file says its measurements are in.
+    pub(super) frame: Option<String>,
     /// What was understood, in a few words each.
     pub(super) said: Vec<String>,
     /// What should be looked at, a sentence each.
@@ -85,7 +87,7 @@ impl Made {
             path.display(),
             if words.is_empty() { "" } else { ": " }
         );
-        let places = Places { lines: self.lines, sheet: self.sheet, form: title };
+        let places = Places { lines: self.lines, sheet: self.sheet, frame: self.frame, form: title };
         let warnings = self.warned.into_iter().map(|it| format!("{}: {it}", path.display())).collect();
         let said = Said { notes: vec![said], warnings };
         Blocks::made(path, expected, self.text, sha256).with_places(places, said)

@@ -50,6 +50,8 @@ pub(super) const RECORDINGS: [&str; 4] = [motive::FORM.title, qualisys::FORM.tit
 pub(super) struct Opening<'a> {
     pub(super) robot: &'a Robot,
     pub(super) options: &'a ReadOptions,
+    /// Whether the frame of each file is that of an instrument of its own.
+    pub(super) is_by_frames: bool,
 }
 
 /// A form of files.
@@ -77,7 +79,20 @@ const FORMS: [Form; 10] = [
     headerless::FORM,
 ];
 
+impl<'a> Opening<'a> {
+    /// For a robot, with all files in one frame where nothing else is said.
+    pub(super) fn new(robot: &'a Robot, options: &'a ReadOptions) -> Self {
+        Opening { robot, options, is_by_frames: false }
+    }
+}
+
 impl Opening<'_> {
+    /// The frame that a file says its measurements are in.
+    pub(super) fn frame(&self, path: &Path) -> Option<String> {
+        let blocks = self.blocks(path, "a measurement file (CSV)").ok()?;
+        blocks.places().and_then(|it| it.frame.clone())
+    }
+
     /// Columns of the joints in the robot's order, those that turn in this unit, and slides in metres or millimetres.
     fn joint_columns(&self, angle: &str) -> Vec<String> {
         let length = if angle == "rad" { "m" } else { "mm" };

@@ -42,7 +42,7 @@ fn is_it(text: &str, _: &Opening<'_>) -> bool {
     })
 }
 
-fn table(text: &str, _: &Opening<'_>) -> Result<Made, Refused> {
+fn table(text: &str, opening: &Opening<'_>) -> Result<Made, Refused> {
     let comments = Comments::of(text)?;
     let mut points = Vec::new();
     for (line, content) in lines(text).filter(|it| !it.1.trim_start().starts_with("//")) {
@@ -67,14 +67,17 @@ fn table(text: &str, _: &Opening<'_>) -> Result<Made, Refused> {
     let (names, are_targets) = layout.names(&points);
     let sigmas: &[&str] = if layout.uncertainties { &["sigma_x", "sigma_y", "sigma_z"] } else { &[] };
     let unit = comments.unit;
+    let station = comments.frame.filter(|_| opening.is_by_frames);
     let columns: Vec<String> = [if are_targets { "target" } else { "id" }.to_owned()]
         .into_iter()
+        .chain(station.map(|_| "instrument".to_owned()))
         .chain(["x", "y", "z"].iter().chain(sigmas).map(|it| format!("{it}[{unit}]")))
         .collect();
     let mut made = Made::new(first.line, columns.iter().map(String::as_str));
     for (point, name) in points.iter().zip(&names) {
         let numbers = point.numbers.get(layout.first..).unwrap_or_default();
         let mut row = vec![Value::Text(name)];
+        row.extend(station.map(Value::Text));
         match (comments.axes, numbers) {
             (Axes::Cylindrical, [radius, angle, height, ..]) => {
                 let turned = number(angle).unwrap_or_default().to_radians();
@@ -92,6 +95,7 @@ fn table(text: &str, _: &Opening<'_>) -> Result<Made, Refused> {
         }
         made.row(point.line, row);
     }
+    made.frame = comments.frame.map(str::to_owned);
     made.said.push(match comments.frame {
         Some(frame) => format!("{} points in frame `{frame}`, {unit}", points.len()),
         None => format!("{} points, {unit}", points.len()),
