@@ -146,7 +146,7 @@ def test_lines_above_the_header(here):
     calibrates(here)
     # Lines with as many cells may be names.
     table(here, "cell 4,line 2,a,b,c,d,e,f,g", [POINTS[0], *POINTS[1:]])
-    said = run(here, "calibrate", "robot.urdf", "points.csv", "--out", "out", code=2)
+    said = run(here, "calibrate", "robot.urdf", "points.csv", "--out", "skipped", code=2)
     skip = re.search(r"write `(skip_lines = \d+)` in a mapping file", said)[1]
     (here / "map.toml").write_text(skip + "\n")
     calibrates(here, "--columns", "map.toml")

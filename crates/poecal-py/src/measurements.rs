@@ -181,7 +181,7 @@ impl Measurements {
         Ok(Measurements::new(file, MeasurementSource { names, sha256, fit_where: fit_where.is_some() }))
     }
 
-    /// Reads files of instruments, controllers and recorders as they are: what `from_csv` reads, under the name of what it is for.
+    /// Reads files of instruments, controllers and recorders as they are: what `from_csv` reads, with all of its options, under the name of what it is for.
     ///
     /// Parameters
     /// ----------
@@ -189,8 +189,6 @@ impl Measurements {
     ///     A file, or several; with joint readings in one and measurements in another they are joined.
     /// robot
     ///     The robot whose joints the columns name.
-    /// options
-    ///     Those of `from_csv`: `units`, `join`, `lag`, `sheet`, `body`, `topics` and the others.
     ///
     /// Returns
     /// -------

@@ -458,7 +458,7 @@ class Measurements:
         """
     @staticmethod
     def from_files(paths: _Path | Sequence[_Path], robot: Robot, **options: Any) -> Measurements:
-        """Reads files of instruments, controllers and recorders as they are: what `from_csv` reads, under the name of what it is for.
+        """Reads files of instruments, controllers and recorders as they are: what `from_csv` reads, with all of its options, under the name of what it is for.
 
         Parameters
         ----------
@@ -466,8 +466,6 @@ class Measurements:
             A file, or several; with joint readings in one and measurements in another they are joined.
         robot
             The robot whose joints the columns name.
-        options
-            Those of `from_csv`: `units`, `join`, `lag`, `sheet`, `body`, `topics` and the others.
 
         Returns
         -------
