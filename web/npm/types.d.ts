@@ -16,6 +16,8 @@ export interface CalibrateOptions {
   instrument?: Value | readonly Value[];
   /** Target, as rows name it, and its link in a URDF (repeatable), likewise. Without --tip-link, the first that a joint moves is the tip */
   target?: Value | readonly Value[];
+  /** Units of columns that state none, like mm,deg; those of a mapping precede */
+  units?: Value | readonly Value[];
   /** Refuse lost beams (empty or zero positions) instead of skipping them with a warning */
   strict?: boolean;
   /** Which rows share a frame of the measuring device: per-file if it was moved between the files */
@@ -25,8 +27,6 @@ export interface CalibrateOptions {
    * and lists by their order, if the nominal robot agrees with no other one as well]
    */
   join?: "name" | "rows" | "time";
-  /** Units of columns that state none, like mm,deg; those of a mapping precede */
-  units?: Value | readonly Value[];
   /**
    * Lag of the clocks of two recordings, the measurements' time less that of the joint readings, where their stands fit at several
    * [default: found]
@@ -140,6 +140,8 @@ export interface CalibrateOptions {
 
 /** Options of `poecal validate`, by their long names. */
 export interface ValidateOptions {
+  /** Units of columns that state none, like mm,deg; those of a mapping precede */
+  units?: Value | readonly Value[];
   /** Refuse lost beams (empty or zero positions) instead of skipping them with a warning */
   strict?: boolean;
   /** Which rows share a frame of the measuring device: per-file if it was moved between the files */
@@ -149,8 +151,6 @@ export interface ValidateOptions {
    * and lists by their order, if the nominal robot agrees with no other one as well]
    */
   join?: "name" | "rows" | "time";
-  /** Units of columns that state none, like mm,deg; those of a mapping precede */
-  units?: Value | readonly Value[];
   /**
    * Lag of the clocks of two recordings, the measurements' time less that of the joint readings, where their stands fit at several
    * [default: found]
@@ -218,6 +218,8 @@ export interface PredictOptions {
   baseLink?: Value | readonly Value[];
   /** Last link of the chain, where a URDF has several */
   tipLink?: Value | readonly Value[];
+  /** Units of columns that state none, like mm,deg; those of a mapping precede */
+  units?: Value | readonly Value[];
   /** The frame of the poses */
   frame?: "base" | "device";
   /** Add the expected error of each prediction, and whether it lies in the sampled range (of a calibration.json) */
@@ -241,6 +243,8 @@ export interface CheckOptions {
   instrument?: Value | readonly Value[];
   /** Target, as rows name it, and its link in a URDF (repeatable), likewise. Without --tip-link, the first that a joint moves is the tip */
   target?: Value | readonly Value[];
+  /** Units of columns that state none, like mm,deg; those of a mapping precede */
+  units?: Value | readonly Value[];
   /** Refuse lost beams (empty or zero positions) instead of skipping them with a warning */
   strict?: boolean;
   /** Which rows share a frame of the measuring device: per-file if it was moved between the files */
@@ -250,8 +254,6 @@ export interface CheckOptions {
    * and lists by their order, if the nominal robot agrees with no other one as well]
    */
   join?: "name" | "rows" | "time";
-  /** Units of columns that state none, like mm,deg; those of a mapping precede */
-  units?: Value | readonly Value[];
   /**
    * Lag of the clocks of two recordings, the measurements' time less that of the joint readings, where their stands fit at several
    * [default: found]
@@ -306,6 +308,8 @@ export interface IdentifyOptions {
   instrument?: Value | readonly Value[];
   /** Target, as rows name it, and its link in a URDF (repeatable), likewise. Without --tip-link, the first that a joint moves is the tip */
   target?: Value | readonly Value[];
+  /** Units of columns that state none, like mm,deg; those of a mapping precede */
+  units?: Value | readonly Value[];
   /**
    * Cameras of corners in pixels: CSV with name, fx, fy, cx, cy, k1 and so on in OpenCV's order (FILE#VERSION where it has several), YAML
    * of OpenCV, ROS, Kalibr or industrial_calibration, XML of ViSP, a calibration.json with what it found, or unknown:1920x1080 with the
