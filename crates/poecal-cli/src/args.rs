@@ -32,7 +32,7 @@ pub(crate) use shared::{TreeArgs, with_mapping};
 pub(crate) use simulate::Simulate;
 #[cfg(any(unix, windows))]
 pub(crate) use words::CameraPlace;
-pub(crate) use words::{ExportForm, ProgramLanguage};
+pub(crate) use words::{CONTACT, ExportForm, FRAMES, JOIN, ProgramLanguage, word_of};
 
 use std::path::{Path, PathBuf};
 

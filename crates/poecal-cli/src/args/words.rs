@@ -15,6 +15,11 @@ use poecal_lou2009::{Formulation, Method, Residual};
 /// Words, each with its help and its meaning.
 type Words<T> = &'static [(&'static str, &'static str, T)];
 
+/// The word of a meaning; empty where it has none.
+pub(crate) fn word_of<T: PartialEq>(words: Words<T>, meaning: &T) -> &'static str {
+    words.iter().find(|(.., it)| it == meaning).map_or("", |(word, ..)| word)
+}
+
 /// Where a camera is.
 #[cfg(any(unix, windows))]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -29,7 +34,7 @@ pub(crate) enum CameraPlace {
 impl CameraPlace {
     /// Its word on the command line.
     pub(crate) fn word(self) -> &'static str {
-        CAMERA.iter().find(|(.., place)| *place == self).map_or("", |(word, ..)| word)
+        word_of(CAMERA, &self)
     }
 }
 
@@ -65,13 +70,13 @@ pub(super) const TARGET_POSES: Words<bool> = &[
 ];
 
 /// Which rows share a device frame.
-pub(super) const FRAMES: Words<Frames> = &[
+pub(crate) const FRAMES: Words<Frames> = &[
     ("common", "All, or those of one name in the column `instrument`", Frames::Common),
     ("per-file", "Those of a file", Frames::PerFile),
 ];
 
 /// How two files are joined.
-pub(super) const JOIN: Words<Join> = &[
+pub(crate) const JOIN: Words<Join> = &[
     ("name", "By the names of their rows (`id`), or the numbers at the end of these", Join::Name),
     (
         "rows",
@@ -88,7 +93,7 @@ pub(super) const THIRD_AXIS: Words<ThirdAxis> = &[
 ];
 
 /// How planes are touched.
-pub(super) const CONTACT: Words<PlaneContact> = &[
+pub(crate) const CONTACT: Words<PlaneContact> = &[
     ("point", "By a point: a height", PlaneContact::Point),
     ("flush", "By a face that lies flush: a height and two tilts", PlaneContact::Flush),
 ];

@@ -3,13 +3,13 @@
 use std::fmt::Write as _;
 use std::path::{Component, Path, PathBuf};
 
-use poecal::io::measurements::{self, Frames, Join, MeasurementFile, PlaneContact};
+use poecal::io::measurements::{self, Frames, MeasurementFile, PlaneContact};
 use poecal::io::model::Model;
 use poecal::io::named_files::{actual, refuse_repeats};
 use poecal::io::output::{Existing, FilePlace};
 use poecal::{ErrorKind, Result};
 
-use crate::args::Import;
+use crate::args::{CONTACT, FRAMES, Import, JOIN, word_of};
 use crate::console::Console;
 use crate::style::{labelled, shown};
 
@@ -80,16 +80,14 @@ fn map(arguments: &Import, model: &Path, file: &MeasurementFile) -> String {
     text("target", pairs(&chain.target));
     text("columns", meaning.columns.columns.as_deref().map(here));
     text("strict", meaning.strict.then(|| "true".to_owned()));
-    text("frames", (meaning.frames == Frames::PerFile).then(|| quoted("per-file")));
-    text("contact", (meaning.contact == PlaneContact::Flush).then(|| quoted("flush")));
+    text("frames", (meaning.frames == Frames::PerFile).then(|| quoted(word_of(FRAMES, &meaning.frames))));
+    text(
+        "contact",
+        (meaning.contact == PlaneContact::Flush).then(|| quoted(word_of(CONTACT, &meaning.contact))),
+    );
     text("fit_where", reading.fit_where.as_deref().map(quoted));
     // What was found is stated.
-    let join = meaning.join.or(file.join).map(|join| match join {
-        Join::Name => "name",
-        Join::Rows => "rows",
-        Join::Time => "time",
-    });
-    text("join", join.map(quoted));
+    text("join", meaning.join.or(file.join).map(|join| quoted(word_of(JOIN, &join))));
     let units = meaning.columns.units.clone().map_or_else(
         || file.is_in_degrees.then(|| "deg".to_owned()),
         |stated| Some(if file.is_in_degrees { format!("{stated},deg") } else { stated }),
@@ -126,17 +124,7 @@ fn map(arguments: &Import, model: &Path, file: &MeasurementFile) -> String {
 
 /// A text of TOML.
 fn quoted(text: &str) -> String {
-    let mut out = String::from("\"");
-    for letter in text.chars() {
-        match letter {
-            '"' | '\\' => out.extend(['\\', letter]),
-            letter if letter.is_control() => {
-                let _ = write!(out, "\\u{:04X}", u32::from(letter));
-            }
-            letter => out.push(letter),
-        }
-    }
-    out + "\""
+    toml::Value::String(text.to_owned()).to_string()
 }
 
 fn shown_name(path: &Path) -> String {

@@ -35,16 +35,20 @@ const NORMAL: f64 = 1.644_853_627;
 
 /// What a mean square of `freedom` degrees of freedom, which need not be whole, of variables of variance 1 exceeds with a probability of 0.05.
 pub(crate) fn upper_mean_square(freedom: f64) -> f64 {
-    if freedom > MANY { cubed(freedom, NORMAL) } else { f_quantile(0.05, freedom, INFINITE) }
+    if freedom > MANY { mean_square_quantile(freedom, NORMAL) } else { f_quantile(0.05, freedom, INFINITE) }
 }
 
 /// What it falls below with a probability of 0.05.
 pub(crate) fn lower_mean_square(freedom: f64) -> f64 {
-    if freedom > MANY { cubed(freedom, -NORMAL) } else { 1.0 / f_quantile(0.05, INFINITE, freedom) }
+    if freedom > MANY {
+        mean_square_quantile(freedom, -NORMAL)
+    } else {
+        1.0 / f_quantile(0.05, INFINITE, freedom)
+    }
 }
 
 /// Quantile of a mean square by its normal quantile (wilson1931).
-fn cubed(freedom: f64, normal: f64) -> f64 {
+pub(crate) fn mean_square_quantile(freedom: f64, normal: f64) -> f64 {
     let spread = 2.0 / (9.0 * freedom);
     (1.0 - spread + normal * spread.sqrt()).powi(3)
 }

@@ -8,7 +8,7 @@ use super::header::HeaderCell;
 use super::join_plan::{Part, part};
 use super::mapping::ColumnMap;
 use super::picture_files::NO_CAMERA;
-use super::recorded::Opening;
+use super::recorded::{MEASURED, Opening};
 use super::table::Table;
 use super::text::Blocks;
 use crate::error::{Error, ErrorKind};
@@ -21,8 +21,7 @@ pub(super) fn has_readings_of_pictures(path: &Path, robot: &Robot, map: &ColumnM
     if !is_file(path) && !is_folder(path) {
         return false;
     }
-    let table = Blocks::open_or_join(path, "a measurement file (CSV)")
-        .and_then(|blocks| Table::open(path, blocks, map));
+    let table = Blocks::open_or_join(path, MEASURED).and_then(|blocks| Table::open(path, blocks, map));
     table.is_ok_and(|table| are_readings_of_pictures(&table.header, &robot.reading_names(), map))
 }
 
@@ -31,12 +30,12 @@ pub(super) fn alone(error: Error, path: &Path, opening: &Opening<'_>, map: &Colu
     if error.kind() != ErrorKind::Measurement || !error.message().starts_with("found no column") {
         return error;
     }
-    let (is_lone, found, other) = match part(path, opening.robot, opening.options, map) {
+    let (is_lone, found, other) = match part(path, *opening, map).map(|it| it.0) {
         Ok(Part::Joints) => (true, "joint readings and nothing that was measured", "measurements"),
         Ok(Part::Measured { .. }) => (false, "measurements and no joint readings", "joint readings"),
         Ok(Part::Whole) | Err(_) => return error,
     };
-    let table = opening.blocks(path, "a measurement file (CSV)").and_then(|it| Table::open(path, it, map));
+    let table = opening.blocks(path, MEASURED).and_then(|it| Table::open(path, it, map));
     let Ok(table) = table else { return error };
     // Of a file in our form, a column may have another name.
     let names = opening.robot.reading_names();
@@ -73,7 +72,7 @@ pub(super) fn beside(
 ) -> Error {
     // Readings of pictures without a camera are taken for measurements.
     let has_corners = |other: &&&Path| {
-        let blocks = Blocks::open(other, "a measurement file (CSV)");
+        let blocks = Blocks::open(other, MEASURED);
         let table = blocks.and_then(|blocks| Table::open(other, blocks, map));
         **other != path
             && is_file(other)

@@ -72,13 +72,12 @@ impl Pairing<'_> {
         let by_names = if matches!(join, Some(Join::Rows | Join::Time)) { None } else { self.by_names() };
         let clocks = self.joints.spans.as_deref().zip(self.spans);
         match (join, by_names) {
-            (Some(Join::Time), _) if let Some((joints, shots)) = clocks => self.by_lag(joints, shots),
-            (None, None) if let Some((joints, shots)) = clocks => {
+            (Some(Join::Time), _) | (None, None) if let Some((joints, shots)) = clocks => {
+                let lags = self.rows.lagged(joints, shots, self.lag.map(|it| (it.lag_s, it.off_s)));
+                let found = self.by_lag(&lags, (joints.len(), shots.len()));
                 // Without stands at the same times, their order may do.
-                self.by_lag(joints, shots).or_else(|error| match self.lag {
-                    None if self.lags(joints, shots).is_empty() => self.by_rows(false).map_err(|_| error),
-                    _ => Err(error),
-                })
+                let is_open = join.is_none() && self.lag.is_none() && lags.is_empty();
+                found.or_else(|error| if is_open { self.by_rows(false).map_err(|_| error) } else { Err(error) })
             }
             (Some(Join::Time), _) => self.refuse(
                 "found no times of a stream in which the robot stands, expected a column `time` in both files, and stands of 0.3 s or longer".to_owned(),
@@ -96,21 +95,14 @@ impl Pairing<'_> {
         }
     }
 
-    /// Lags at which stands of two streams are the same.
-    fn lags(&self, joints: &[Span], shots: &[Span]) -> Vec<Lagged> {
-        self.rows.lagged(joints, shots, self.lag.map(|it| (it.lag_s, it.off_s)))
-    }
-
-    /// Stands of two streams, each with its clock.
-    fn by_lag(&self, joints: &[Span], shots: &[Span]) -> Result<Joined> {
-        let found = self.lags(joints, shots);
+    /// So many stands of two streams, each with its clock, at the lags at which some are the same.
+    fn by_lag(&self, found: &[Lagged], (joints, shots): (usize, usize)) -> Result<Joined> {
         let words = |it: &Lagged| format!("{:.2} s ({:.3} mm)", it.lag_s, 1e3 * it.missed_m);
         let stated = if self.lag.is_some() { " near the stated one" } else { "" };
         let Some(best) = found.first() else {
             return self.refuse(format!(
                 "found {} stands of the robot and {} of the measurements, and no lag of the clocks{stated} at which seven of them or more are the same, expected a recording of the same motion",
-                joints.len(),
-                shots.len()
+                joints, shots
             ));
         };
         let alike: Vec<String> =
@@ -127,8 +119,8 @@ impl Pairing<'_> {
             "{}: {} stands of {} and of {} are the same, at a lag of {:.3} s of its clock",
             self.path.display(),
             best.pairs.len(),
-            joints.len(),
-            shots.len(),
+            joints,
+            shots,
             best.lag_s
         ));
         Ok(joined)
@@ -137,7 +129,7 @@ impl Pairing<'_> {
     fn by_rows(&self, is_stated: bool) -> Result<Joined> {
         let (joints, shots) = (self.rows.joint_rows(), self.rows.shots().len());
         if joints != shots {
-            return self.by_alignment();
+            return self.by_alignment(self.rows.aligned());
         }
         let pairs: Vec<Pair> = (0..joints).map(|row| (row, row)).collect();
         // As many rows may hide that one was lost and another one taken twice.
@@ -147,7 +139,7 @@ impl Pairing<'_> {
                 self.rows.aligned().filter(|it| it.unread.is_empty() && !it.repeated.is_empty())
             && self.rows.wrong(&found.pairs) < wrong
         {
-            return self.by_alignment();
+            return self.by_alignment(Some(found));
         }
         self.judged(&pairs, Join::Rows, is_stated)
     }
@@ -302,10 +294,10 @@ impl Pairing<'_> {
     }
 
     /// Lists of unequal length, by the errors of the nominal robot.
-    fn by_alignment(&self) -> Result<Joined> {
+    fn by_alignment(&self, found: Option<Aligned>) -> Result<Joined> {
         let (joints, shots) = (self.rows.joint_rows(), self.rows.shots().len());
         let counts = format!("found {shots} measured configurations and {joints} rows of joint readings");
-        let Some(found) = self.rows.aligned() else {
+        let Some(found) = found else {
             return self.refuse(format!(
                 "{counts}, expected as many, or names in both (a column `id`): nothing shows which belong together"
             ));

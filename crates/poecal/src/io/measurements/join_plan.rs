@@ -7,7 +7,7 @@ use super::corner_columns::{are_corners, are_readings_of_pictures};
 use super::layout::ColumnLayout;
 use super::mapping::{ColumnMap, ColumnSpec};
 use super::messages::are_messages;
-use super::recorded::{Opening, OwnTable, Recording};
+use super::recorded::{MEASURED, Opened, Opening, OwnTable, Recording};
 use super::table::Table;
 use super::text::Blocks;
 use super::{Frames, ReadOptions};
@@ -48,10 +48,8 @@ pub(super) struct Planned<'p> {
     pub(super) part: Part,
     /// How one without readings is read.
     pub(super) map: ColumnMap,
-    /// The table, of a file that holds several.
+    /// The table, of a file in another form.
     table: Option<OwnTable>,
-    /// Whether the frame of each file is that of an instrument of its own.
-    is_by_frames: bool,
 }
 
 impl<'p> Planned<'p> {
@@ -59,7 +57,7 @@ impl<'p> Planned<'p> {
     pub(super) fn blocks(&self, opening: Opening<'_>, expected: &'p str) -> Result<Blocks<'p>> {
         match &self.table {
             Some(table) => Ok(table.blocks(self.path, expected)),
-            None => Opening { is_by_frames: self.is_by_frames, ..opening }.blocks(self.path, expected),
+            None => opening.blocks(self.path, expected),
         }
     }
 }
@@ -72,7 +70,7 @@ impl<'p> Plan<'p> {
         options: &ReadOptions,
         map: &ColumnMap,
     ) -> Result<Option<Self>> {
-        let opening = Opening::new(robot, options);
+        let opening = Opening { robot, options };
         let recordings: Vec<Option<Recording>> =
             paths.iter().map(|path| opening.recording(path)).collect::<Result<_>>()?;
         let first = paths.iter().zip(&recordings).find_map(|(path, it)| Some((*path, it.as_ref()?)));
@@ -82,7 +80,8 @@ impl<'p> Plan<'p> {
         let mut files: Vec<(&'p Path, Part, Option<OwnTable>)> = Vec::new();
         for (path, recording) in paths.iter().zip(&recordings) {
             let Some(recording) = recording else {
-                files.push((path, part(path, robot, options, map)?, None));
+                let (part, table) = part(path, opening, map)?;
+                files.push((path, part, table));
                 continue;
             };
             for (is_joints, table) in recording.tables() {
@@ -104,9 +103,9 @@ impl<'p> Plan<'p> {
         }
         let several = joints == 1 && measured > 1;
         // Files whose frames differ are of several places of the instrument.
-        let frames: BTreeSet<String> = (files.iter())
+        let frames: BTreeSet<&str> = (files.iter())
             .filter(|it| several && matches!(it.1, Part::Measured { .. }))
-            .filter_map(|it| opening.frame(it.0))
+            .filter_map(|it| it.2.as_ref()?.frame())
             .collect();
         let is_by_frames = frames.len() > 1 && options.frames == Frames::Common;
         let planned = |(path, part, table): (&'p Path, Part, Option<OwnTable>)| {
@@ -116,7 +115,8 @@ impl<'p> Plan<'p> {
             if several && is_unnamed && !is_by_frames && options.frames == Frames::Common {
                 map.target_name = path.file_stem().map(|it| it.to_string_lossy().into_owned());
             }
-            Planned { path, part, map, table, is_by_frames }
+            let table = if is_by_frames { table.map(OwnTable::by_frame) } else { table };
+            Planned { path, part, map, table }
         };
         Ok(Some(Plan { files: files.into_iter().map(planned).collect() }))
     }
@@ -136,41 +136,49 @@ fn refuse_other_topics(path: &Path, recordings: &[Option<Recording>], options: &
     Ok(())
 }
 
-/// What a file has; one that is no table is named when it is read.
+/// What a file has, with its table if it is in another form; one that is no table is named when it is read.
 ///
 /// # Errors
 /// Of a file in another form that cannot be one.
-pub(super) fn part(path: &Path, robot: &Robot, options: &ReadOptions, map: &ColumnMap) -> Result<Part> {
+pub(super) fn part(path: &Path, opening: Opening<'_>, map: &ColumnMap) -> Result<(Part, Option<OwnTable>)> {
     // A pipe is read once.
     if !is_file(path) {
+        return Ok((Part::Whole, None));
+    }
+    let opened = opening.opened(path, MEASURED)?;
+    let table = if let Opened::Made(table) = &opened { Some(table.clone()) } else { None };
+    Ok((part_of(path, opened.blocks(path, MEASURED), opening, map).unwrap_or(Part::Whole), table))
+}
+
+fn part_of<'p>(
+    path: &'p Path,
+    mut blocks: Blocks<'p>,
+    opening: Opening<'_>,
+    map: &ColumnMap,
+) -> Result<Part> {
+    let Opening { robot, options } = opening;
+    blocks.begin()?;
+    if are_messages(path, blocks.text())? {
         return Ok(Part::Whole);
     }
-    let mut blocks = Opening::new(robot, options).blocks(path, "a measurement file (CSV)")?;
-    let kind = || -> Result<Part> {
-        blocks.begin()?;
-        if are_messages(path, blocks.text())? {
-            return Ok(Part::Whole);
+    let table = Table::open(path, blocks, map)?;
+    let names = robot.reading_names();
+    if are_corners(&table.header, &names, map)?
+        || !options.cameras.is_empty() && are_readings_of_pictures(&table.header, &names, map)
+    {
+        return Ok(Part::Whole);
+    }
+    let joints = ColumnLayout::joints(&table.header, robot, options, map).is_ok();
+    let measured = ColumnLayout::new(&table.header, robot, options, &without_joints(map, robot));
+    Ok(match (joints, measured) {
+        (true, Err(_)) => Part::Joints,
+        (false, Ok(layout)) => {
+            let is_named =
+                layout.target_column.is_some() || layout.targets.len() > 1 || map.target_name.is_some();
+            Part::Measured { is_named }
         }
-        let table = Table::open(path, blocks, map)?;
-        let names = robot.reading_names();
-        if are_corners(&table.header, &names, map)?
-            || !options.cameras.is_empty() && are_readings_of_pictures(&table.header, &names, map)
-        {
-            return Ok(Part::Whole);
-        }
-        let joints = ColumnLayout::joints(&table.header, robot, options, map).is_ok();
-        let measured = ColumnLayout::new(&table.header, robot, options, &without_joints(map, robot));
-        Ok(match (joints, measured) {
-            (true, Err(_)) => Part::Joints,
-            (false, Ok(layout)) => {
-                let is_named =
-                    layout.target_column.is_some() || layout.targets.len() > 1 || map.target_name.is_some();
-                Part::Measured { is_named }
-            }
-            (true, Ok(_)) | (false, Err(_)) => Part::Whole,
-        })
-    };
-    Ok(kind().unwrap_or(Part::Whole))
+        (true, Ok(_)) | (false, Err(_)) => Part::Whole,
+    })
 }
 
 /// A mapping of a file that has no readings: those of joints are numbers that mean nothing.

@@ -11,6 +11,7 @@ use super::layout::ColumnLayout;
 use super::mapping::ColumnMap;
 use super::number::Numbers;
 use super::read::Reader;
+use super::recorded::MEASURED;
 use super::streams::{stands_of_joints, stands_of_measured};
 use super::table::Table;
 use super::understanding::{self, FileUnderstanding};
@@ -139,7 +140,7 @@ impl<'a> Reader<'a> {
             Pairing { joints, path, data, rows, robot: self.robot, spans, lag: self.options.lag }
                 .found(self.options.join)
         };
-        let found = match paired(joints) {
+        let mut found = match paired(joints) {
             Err(error) if joints.is_without_unit => {
                 let mut found = paired(&joints.in_degrees()).map_err(|_| error)?;
                 found.warnings.push(took_degrees(&joints.path, "as radians they fit no measurements"));
@@ -148,7 +149,6 @@ impl<'a> Reader<'a> {
             }
             found => found?,
         };
-        let mut found = found;
         if let Some(stands) = stands {
             found.notes.push(format!(
                 "{}: each stand is the mean of its rows, which scatter by {:.3} mm",
@@ -179,8 +179,6 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// What a file of measurements is in messages.
-const MEASURED: &str = "a measurement file (CSV)";
 /// Fewest stands that show which belong together.
 const FEWEST_STANDS: usize = 7;
 

@@ -40,7 +40,7 @@ pub struct JointsTable {
 /// As [`super::read`], of what concerns joints.
 pub fn read_joints(path: impl AsRef<Path>, robot: &Robot, options: &ReadOptions) -> Result<JointsTable> {
     let path = path.as_ref();
-    let blocks = Opening::new(robot, options).joint_blocks(path, "a file of joint readings (CSV)")?;
+    let blocks = Opening { robot, options }.joint_blocks(path, "a file of joint readings (CSV)")?;
     of_blocks(path, blocks, robot, options).map_err(|error| in_its_file(error, path))
 }
 

@@ -11,8 +11,6 @@ pub(super) struct Places {
     pub(super) lines: Vec<usize>,
     /// The sheet of a workbook.
     pub(super) sheet: Option<Sheet>,
-    /// The frame that the file says its measurements are in.
-    pub(super) frame: Option<String>,
     /// What the file is, as in "a workbook".
     pub(super) form: &'static str,
 }

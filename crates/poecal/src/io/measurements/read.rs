@@ -15,7 +15,7 @@ use super::messages::are_messages;
 use super::naming::Names;
 use super::number::Numbers;
 use super::picture_files::TakenByImage;
-use super::recorded::Opening;
+use super::recorded::{MEASURED, Opening};
 use super::scale::{self, JointWatch};
 use super::socket_distance::Sockets;
 use super::spread;
@@ -63,7 +63,7 @@ fn read_all(paths: &[&Path], robot: &Robot, options: &ReadOptions) -> Result<Mea
     }
     for path in order {
         let opening = reader.opening();
-        let blocks = opening.blocks(path, "a measurement file (CSV)")?;
+        let blocks = opening.blocks(path, MEASURED)?;
         reader
             .file(path, blocks)
             .map_err(|error| in_its_file(error, path))
@@ -90,8 +90,8 @@ pub fn parse(
 fn parse_at(text: &str, path: &Path, robot: &Robot, options: &ReadOptions) -> Result<MeasurementFile> {
     let no_map = ColumnMap::default();
     let mut reader = Reader::new(robot, options, &no_map);
-    let blocks = reader.opening().of_text(path, "a table (CSV)", Blocks::new(path, text.as_bytes()))?;
-    reader.file(path, blocks)?;
+    let blocks = reader.opening().of_text(path, Blocks::new(path, text.as_bytes()))?;
+    reader.file(path, blocks.blocks(path, "a table (CSV)"))?;
     reader.finish()
 }
 
@@ -178,7 +178,7 @@ impl<'a> Reader<'a> {
 
     /// What files are opened with.
     pub(super) fn opening(&self) -> Opening<'a> {
-        Opening::new(self.robot, self.options)
+        Opening { robot: self.robot, options: self.options }
     }
 
     /// Takes what was understood of a file when it was opened.

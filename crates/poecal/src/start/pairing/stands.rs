@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use crate::distributions::median;
+use crate::distributions::{mean_square_quantile, median};
 
 /// Shortest time of a stand, and what is cut off at both of its ends, seconds.
 const SHORTEST_S: f64 = 0.3;
@@ -93,9 +93,9 @@ impl Stream {
             let freedom = channels.freedom as f64;
             // A window of few rows scatters less than the noise, and more from window to window.
             let (own, steps) = (freedom * (rows - 1.0), freedom * (rows - 2.0).max(1.0));
-            let noise = quantile(&spreads, QUIET) / (chi2(own, QUIET_SCORE) / own).sqrt();
-            let row_noise = quantile(&noises, QUIET) / (chi2(steps, QUIET_SCORE) / steps).sqrt();
-            let most = (chi2(own, STILL_SCORE) / own).sqrt();
+            let noise = quantile(&spreads, QUIET) / mean_square_quantile(own, QUIET_SCORE).sqrt();
+            let row_noise = quantile(&noises, QUIET) / mean_square_quantile(steps, QUIET_SCORE).sqrt();
+            let most = mean_square_quantile(own, STILL_SCORE).sqrt();
             let floor = channels.floor;
             let tolerance = floor.max(most * (TIMES * noise).min(TIMES_NOISE * row_noise + floor));
             let widest = channels.values.iter().map(|it| span(it)).fold(0.0, f64::max);
@@ -219,12 +219,6 @@ fn row_noise(values: &[Vec<f64>], rows: &Range<usize>) -> f64 {
     let count = rows.len().saturating_sub(2).max(1) as f64;
     // White noise of one unit has second differences of √6.
     (values.iter().map(squares).sum::<f64>() / count / 6.0).sqrt()
-}
-
-/// Quantile of the sum of squares of so many standard normal numbers, by the score of a standard normal one (Wilson and Hilferty, 1931).
-fn chi2(freedom: f64, score: f64) -> f64 {
-    let part = 2.0 / (9.0 * freedom);
-    freedom * (1.0 - part + score * part.sqrt()).max(0.0).powi(3)
 }
 
 /// The value that this share of all is below.

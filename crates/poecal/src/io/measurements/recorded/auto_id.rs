@@ -4,6 +4,7 @@
 use super::maker::{Made, Refused, Value};
 use super::words::{lines, number};
 use super::{Form, Opening};
+use crate::io::measurements::Separator;
 
 pub(super) const FORM: Form = Form { title: "a table of Auto ID (DELMIA)", is_it, table };
 
@@ -11,7 +12,7 @@ pub(super) const FORM: Form = Form { title: "a table of Auto ID (DELMIA)", is_it
 const POSE: usize = 6;
 
 fn cells(line: &str) -> Vec<&str> {
-    super::words::cells(line, '\t')
+    super::words::cells(line, Separator::Tab)
 }
 
 fn is_it(text: &str, opening: &Opening<'_>) -> bool {

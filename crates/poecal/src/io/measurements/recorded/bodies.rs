@@ -1,10 +1,32 @@
 //! What a recorder saw at each time: bodies with poses, or markers.
 
+use super::Opening;
 use super::maker::{Made, Refused, Value};
-use super::{Opening, words::number};
+use super::words::{number, quoted};
 
 /// A body or a marker that moved less than this, metres, stands.
 pub(super) const MOVED_M: f64 = 0.02;
+
+/// Where something was: of each coordinate the smallest and the largest.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Extent([(f64, f64); 3]);
+
+impl Extent {
+    /// Of nothing.
+    pub(super) const NONE: Self = Extent([(f64::INFINITY, f64::NEG_INFINITY); 3]);
+
+    /// Adds a place.
+    pub(super) fn include(&mut self, place: [f64; 3]) {
+        for (range, value) in self.0.iter_mut().zip(place) {
+            *range = (range.0.min(value), range.1.max(value));
+        }
+    }
+
+    /// The widest of its coordinates; 0 of nothing.
+    pub(super) fn widest(&self) -> f64 {
+        self.0.iter().map(|it| it.1 - it.0).filter(|it| it.is_finite()).fold(0.0, f64::max)
+    }
+}
 
 /// One body, or one marker.
 #[derive(Clone, Debug, Default)]
@@ -23,7 +45,7 @@ pub(super) struct Frames<'t> {
     pub(super) times: Vec<Option<f64>>,
     /// Unit of positions, with its size in metres.
     pub(super) unit: (&'static str, f64),
-    /// Whether zeros are a body that was not seen.
+    /// The line that names the columns.
     pub(super) header: usize,
 }
 
@@ -60,8 +82,7 @@ impl Frames<'_> {
         let count = self.rows.len();
         made.said.push(format!("{count} frames of {}, {unit}", names.join(", ")));
         if !left.is_empty() {
-            let names: Vec<String> = left.iter().map(|it| format!("`{it}`")).collect();
-            made.said.push(format!("left out {}", crate::error::first_few(&names)));
+            made.said.push(format!("left out {}", quoted(left)));
         }
         Ok(made)
     }
@@ -73,10 +94,7 @@ impl Frames<'_> {
         what: &str,
         opening: &Opening<'_>,
     ) -> Result<(Vec<&'b Body>, Vec<&'b str>), Refused> {
-        let names = |some: &[&Body]| -> String {
-            let names: Vec<String> = some.iter().map(|it| format!("`{}`", it.name)).collect();
-            crate::error::first_few(&names)
-        };
+        let names = |some: &[&Body]| quoted(some.iter().map(|it| it.name.as_str()));
         let all: Vec<&Body> = bodies.iter().collect();
         let posed: Vec<&Body> = all.iter().filter(|it| it.quaternion.is_some()).copied().collect();
         if let Some(wanted) = &opening.options.body {
@@ -121,15 +139,10 @@ impl Frames<'_> {
 
     /// How far a body moved, metres.
     fn moved_m(&self, body: &Body) -> f64 {
-        let mut range = [(f64::INFINITY, f64::NEG_INFINITY); 3];
-        for (_, cells) in &self.rows {
-            let Some(position) = self.position(cells, body) else { continue };
-            for (range, value) in range.iter_mut().zip(position) {
-                *range = (range.0.min(value), range.1.max(value));
-            }
-        }
-        let spans = range.iter().map(|it| it.1 - it.0).filter(|it| it.is_finite());
-        spans.fold(0.0, f64::max) * self.unit.1
+        let mut extent = Extent::NONE;
+        let places = self.rows.iter().filter_map(|(_, cells)| self.position(cells, body));
+        places.for_each(|it| extent.include(it));
+        extent.widest() * self.unit.1
     }
 
     /// Where a body is in a frame; `None` where it was not seen: cells that are empty, or all zero.

@@ -1,8 +1,9 @@
 //! Tables of FIGAROH: positions of markers as `x1`, `y1`, `z1`, … in metres beside columns with the names of joints.
 
 use super::maker::{Made, Refused, Value};
-use super::words::{cells, lines, separator};
+use super::words::{cells, lines};
 use super::{Form, Opening};
+use crate::io::measurements::Separator;
 
 pub(super) const FORM: Form = Form { title: "a table with numbered markers (FIGAROH)", is_it, table };
 
@@ -16,10 +17,10 @@ fn markers(names: &[&str]) -> Vec<[usize; 3]> {
     (1..).map_while(of).collect()
 }
 
-fn header(text: &str) -> Option<(usize, char, Vec<&str>)> {
+fn header(text: &str) -> Option<(usize, Separator, Vec<&str>)> {
     let (line, content) = lines(text).find(|it| !it.1.trim_start().starts_with('#'))?;
-    let by = separator(content);
-    (by != ' ').then(|| (line, by, cells(content, by)))
+    let by = Separator::recognised(content);
+    (by != Separator::Whitespace).then(|| (line, by, cells(content, by)))
 }
 
 fn is_it(text: &str, opening: &Opening<'_>) -> bool {

@@ -4,8 +4,9 @@
 use std::collections::BTreeSet;
 
 use super::maker::{Made, Refused, Value};
-use super::words::{lines, number, separator, split};
+use super::words::{cells, lines, number};
 use super::{Form, Opening};
+use crate::io::measurements::Separator;
 use crate::io::measurements::column_names::numbered_column;
 use crate::io::measurements::mapping::ColumnMap;
 
@@ -34,7 +35,7 @@ fn content(text: &str) -> impl Iterator<Item = (usize, &str)> {
 
 fn is_it(text: &str, _: &Opening<'_>) -> bool {
     let is_row = |line: &str| {
-        let cells = split(line, separator(line));
+        let cells = cells(line, Separator::recognised(line));
         let numbers = cells.iter().filter(|it| number(it).is_some()).count();
         numbers >= 3 && cells.len() <= numbers + 1
     };
@@ -43,8 +44,8 @@ fn is_it(text: &str, _: &Opening<'_>) -> bool {
 }
 
 fn table(text: &str, opening: &Opening<'_>) -> Result<Made, Refused> {
-    let by = content(text).next().map_or(',', |it| separator(it.1));
-    let rows: Vec<(usize, Vec<&str>)> = content(text).map(|(line, it)| (line, split(it, by))).collect();
+    let by = content(text).next().map_or(Separator::Comma, |it| Separator::recognised(it.1));
+    let rows: Vec<(usize, Vec<&str>)> = content(text).map(|(line, it)| (line, cells(it, by))).collect();
     let width = rows.iter().map(|it| it.1.len()).max().unwrap_or_default();
     if let Some((line, cells)) = rows.iter().find(|it| it.1.len() != width) {
         let first = rows.first().map_or(0, |it| it.0);

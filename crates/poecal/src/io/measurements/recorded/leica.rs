@@ -2,8 +2,9 @@
 //! quaternion with its real part `Q0` first.
 
 use super::maker::{Made, Refused, Value};
-use super::words::{cells, lines, separator};
+use super::words::{cells, lines, number, quoted};
 use super::{Form, Opening};
+use crate::io::measurements::Separator;
 
 pub(super) const FORM: Form = Form { title: "measurements of a Leica tracker", is_it, table };
 
@@ -34,14 +35,15 @@ fn parts(text: &str) -> (String, Option<&str>) {
 
 fn is_it(text: &str, _: &Opening<'_>) -> bool {
     let Some((_, header)) = lines(text).next() else { return false };
-    let names: Vec<String> = cells(header, separator(header)).into_iter().map(|it| parts(it).0).collect();
+    let names: Vec<String> =
+        cells(header, Separator::recognised(header)).into_iter().map(|it| parts(it).0).collect();
     let has = |name: &str| names.iter().any(|it| it == name);
     has("X") && has("Y") && has("Z") && (has("U(95)") || has("U(95) X"))
 }
 
 fn table(text: &str, _: &Opening<'_>) -> Result<Made, Refused> {
     let Some((at, header)) = lines(text).next() else { return Refused::whole("found no line") };
-    let by = separator(header);
+    let by = Separator::recognised(header);
     let names: Vec<(String, Option<&str>)> = cells(header, by).into_iter().map(parts).collect();
     let mut used = Vec::new();
     for (theirs, ours) in COLUMNS {
@@ -80,7 +82,7 @@ fn table(text: &str, _: &Opening<'_>) -> Result<Made, Refused> {
         }
         let value = |(column, ours, _): &(usize, &str, _)| {
             let text = found.get(*column).copied().unwrap_or_default();
-            match super::words::number(text).filter(|_| ours.starts_with("sigma")) {
+            match number(text).filter(|_| ours.starts_with("sigma")) {
                 Some(expanded) => Value::Number(expanded / COVERAGE),
                 None => Value::Text(text),
             }
@@ -91,12 +93,13 @@ fn table(text: &str, _: &Opening<'_>) -> Result<Made, Refused> {
     if used.iter().any(|it| it.1 == "sigma_x") {
         made.said.push(format!("U(95) divided by {COVERAGE} are the standard deviations"));
     }
-    let left: Vec<String> = (names.iter().enumerate())
-        .filter(|(at, it)| !it.0.is_empty() && !used.iter().any(|used| used.0 == *at))
-        .map(|(_, it)| format!("`{}`", it.0))
-        .collect();
+    let left = quoted(
+        (names.iter().enumerate())
+            .filter(|(at, it)| !it.0.is_empty() && !used.iter().any(|used| used.0 == *at))
+            .map(|(_, it)| &it.0),
+    );
     if !left.is_empty() {
-        made.said.push(format!("left out {}", crate::error::first_few(&left)));
+        made.said.push(format!("left out {left}"));
     }
     Ok(made)
 }

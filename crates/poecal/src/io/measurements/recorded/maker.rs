@@ -62,6 +62,14 @@ impl Made {
         self.lines.push(line);
     }
 
+    /// The same with a text in every row.
+    pub(super) fn with_column(self, name: &str, text: &str) -> Self {
+        let (name, text) = (cell(name), cell(text));
+        let texts = std::iter::once(name).chain(std::iter::repeat(text));
+        let text = self.text.lines().zip(texts).map(|(line, more)| format!("{line},{more}\n")).collect();
+        Made { text, ..self }
+    }
+
     /// The same of a sheet of a workbook.
     #[cfg(feature = "workbooks")]
     pub(super) fn in_sheet(self, sheet: Sheet) -> Self {
@@ -87,7 +95,7 @@ impl Made {
             path.display(),
             if words.is_empty() { "" } else { ": " }
         );
-        let places = Places { lines: self.lines, sheet: self.sheet, frame: self.frame, form: title };
+        let places = Places { lines: self.lines, sheet: self.sheet, form: title };
         let warnings = self.warned.into_iter().map(|it| format!("{}: {it}", path.display())).collect();
         let said = Said { notes: vec![said], warnings };
         Blocks::made(path, expected, self.text, sha256).with_places(places, said)

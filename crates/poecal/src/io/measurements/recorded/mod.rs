@@ -39,6 +39,8 @@ use crate::io::source::Input;
 use crate::io::source::{self, LARGEST_TABLE};
 use crate::robot::{ReadingKind, Robot};
 
+/// What a file of measurements is in messages.
+pub(super) const MEASURED: &str = "a measurement file (CSV)";
 /// What a workbook is called, and a bag.
 pub(super) const WORKBOOK: &str = "a workbook";
 pub(super) const BAG: &str = "a ROS 2 bag";
@@ -50,8 +52,24 @@ pub(super) const RECORDINGS: [&str; 4] = [motive::FORM.title, qualisys::FORM.tit
 pub(super) struct Opening<'a> {
     pub(super) robot: &'a Robot,
     pub(super) options: &'a ReadOptions,
-    /// Whether the frame of each file is that of an instrument of its own.
-    pub(super) is_by_frames: bool,
+}
+
+/// A file that is open.
+pub(super) enum Opened<'p> {
+    /// One in our form.
+    Own(Box<Blocks<'p>>),
+    /// The table of one in another form.
+    Made(OwnTable),
+}
+
+impl<'p> Opened<'p> {
+    /// Its blocks.
+    pub(super) fn blocks(self, path: &'p Path, expected: &'p str) -> Blocks<'p> {
+        match self {
+            Opened::Own(blocks) => *blocks,
+            Opened::Made(table) => table.into_blocks(path, expected),
+        }
+    }
 }
 
 /// A form of files.
@@ -79,20 +97,7 @@ const FORMS: [Form; 10] = [
     headerless::FORM,
 ];
 
-impl<'a> Opening<'a> {
-    /// For a robot, with all files in one frame where nothing else is said.
-    pub(super) fn new(robot: &'a Robot, options: &'a ReadOptions) -> Self {
-        Opening { robot, options, is_by_frames: false }
-    }
-}
-
 impl Opening<'_> {
-    /// The frame that a file says its measurements are in.
-    pub(super) fn frame(&self, path: &Path) -> Option<String> {
-        let blocks = self.blocks(path, "a measurement file (CSV)").ok()?;
-        blocks.places().and_then(|it| it.frame.clone())
-    }
-
     /// Columns of the joints in the robot's order, those that turn in this unit, and slides in metres or millimetres.
     fn joint_columns(&self, angle: &str) -> Vec<String> {
         let length = if angle == "rad" { "m" } else { "mm" };
@@ -131,8 +136,13 @@ impl Opening<'_> {
 
     /// The blocks of a file in our form, or of the table that a file in another one makes.
     pub(super) fn blocks<'p>(&self, path: &'p Path, expected: &'p str) -> crate::Result<Blocks<'p>> {
+        Ok(self.opened(path, expected)?.blocks(path, expected))
+    }
+
+    /// The same, with the table still to be read.
+    pub(super) fn opened<'p>(&self, path: &'p Path, expected: &'p str) -> crate::Result<Opened<'p>> {
         if configurations::is_folder(path) {
-            return Blocks::open_or_join(path, expected);
+            return Blocks::open_or_join(path, expected).map(|it| Opened::Own(Box::new(it)));
         }
         let (input, head) = source::open_any(path, expected, LARGEST_TABLE)?;
         #[cfg(feature = "workbooks")]
@@ -140,27 +150,22 @@ impl Opening<'_> {
             return self.workbook(path, expected, input);
         }
         source::refuse_other_forms(path, expected, &head)?;
-        self.of_text(path, expected, Blocks::of_input(path, expected, input))
+        self.of_text(path, Blocks::of_input(path, expected, input))
     }
 
     /// The table of a workbook.
     #[cfg(feature = "workbooks")]
-    fn workbook<'p>(&self, path: &'p Path, expected: &'p str, input: Input) -> crate::Result<Blocks<'p>> {
+    fn workbook<'p>(&self, path: &'p Path, expected: &'p str, input: Input) -> crate::Result<Opened<'p>> {
         let mut bytes = Vec::new();
         let mut input = Hashing::new(input);
         let read = input.by_ref().take(workbook::LARGEST + 1).read_to_end(&mut bytes);
         read.map_err(|error| source::unreadable(path, &error, expected))?;
         let made = workbook::table(bytes, self).map_err(|it| it.error(path))?;
-        Ok(made.blocks(path, expected, Some(input.sha256()), WORKBOOK))
+        Ok(Opened::Made(OwnTable { made, sha256: Some(input.sha256()), title: WORKBOOK }))
     }
 
-    /// The blocks of a text, or of the table that it makes.
-    pub(super) fn of_text<'p>(
-        &self,
-        path: &'p Path,
-        expected: &'p str,
-        mut blocks: Blocks<'p>,
-    ) -> crate::Result<Blocks<'p>> {
+    /// A text as it is, or the table that it makes.
+    pub(super) fn of_text<'p>(&self, path: &'p Path, mut blocks: Blocks<'p>) -> crate::Result<Opened<'p>> {
         blocks.begin()?;
         if let Some(message) = refused::found(blocks.text()) {
             return Err(ErrorKind::Measurement.error(message).in_file(path));
@@ -168,10 +173,12 @@ impl Opening<'_> {
         // A mapping that names columns reads the text as it is.
         let is_mapped = self.options.mapping.as_ref().is_some_and(ColumnMap::names_columns);
         let mut forms = FORMS.iter().skip(if is_mapped { FORMS.len() - 1 } else { 0 });
-        let Some(form) = forms.find(|form| (form.is_it)(blocks.text(), self)) else { return Ok(blocks) };
+        let Some(form) = forms.find(|form| (form.is_it)(blocks.text(), self)) else {
+            return Ok(Opened::Own(Box::new(blocks)));
+        };
         let text = blocks.rest()?;
         let mut made = (form.table)(&text, self).map_err(|it| it.error(path))?;
         made.said.splice(0..0, blocks.said().notes);
-        Ok(made.blocks(path, expected, blocks.sha256(), form.title))
+        Ok(Opened::Made(OwnTable { made, sha256: blocks.sha256(), title: form.title }))
     }
 }

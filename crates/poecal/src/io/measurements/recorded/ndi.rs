@@ -5,6 +5,7 @@ use super::bodies::{Body, Frames};
 use super::maker::{Made, Refused};
 use super::words::{cells, lines, number};
 use super::{Form, Opening};
+use crate::io::measurements::Separator;
 
 pub(super) const FORM: Form = Form { title: "a recording of an NDI tracker", is_it, table };
 
@@ -14,7 +15,10 @@ const TIME: [(&str, f64); 4] = [("Hour", 3600.0), ("Minutes", 60.0), ("Seconds",
 
 fn header(text: &str) -> Option<(usize, Vec<&str>)> {
     let is_header = |names: &[&str]| ["Xa", "Ya", "Za", "qoa"].iter().all(|it| names.contains(it));
-    lines(text).take(FIRST).map(|(line, it)| (line, cells(it, ','))).find(|(_, it)| is_header(it))
+    lines(text)
+        .take(FIRST)
+        .map(|(line, it)| (line, cells(it, Separator::Comma)))
+        .find(|(_, it)| is_header(it))
 }
 
 fn is_it(text: &str, _: &Opening<'_>) -> bool {

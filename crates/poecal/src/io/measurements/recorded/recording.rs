@@ -10,7 +10,7 @@ use crate::error::{Error, ErrorKind};
 #[derive(Clone, Debug)]
 pub(in super::super) struct OwnTable {
     pub(super) made: Made,
-    pub(super) sha256: String,
+    pub(super) sha256: Option<String>,
     /// What the file is.
     pub(super) title: &'static str,
 }
@@ -18,7 +18,25 @@ pub(in super::super) struct OwnTable {
 impl OwnTable {
     /// Its blocks.
     pub(in super::super) fn blocks<'p>(&self, path: &'p Path, expected: &'p str) -> Blocks<'p> {
-        self.made.clone().blocks(path, expected, Some(self.sha256.clone()), self.title)
+        self.clone().into_blocks(path, expected)
+    }
+
+    /// The same, once.
+    pub(super) fn into_blocks<'p>(self, path: &'p Path, expected: &'p str) -> Blocks<'p> {
+        self.made.blocks(path, expected, self.sha256, self.title)
+    }
+
+    /// The frame that the file says its measurements are in.
+    pub(in super::super) fn frame(&self) -> Option<&str> {
+        self.made.frame.as_deref()
+    }
+
+    /// The same with its frame as that of an instrument of this name.
+    pub(in super::super) fn by_frame(self) -> Self {
+        match self.made.frame.clone() {
+            Some(frame) => OwnTable { made: self.made.with_column("instrument", &frame), ..self },
+            None => self,
+        }
     }
 
     /// Adds a sentence that should be looked at.

@@ -4,13 +4,14 @@
 use super::maker::{Made, Refused, Value};
 use super::words::{cells, lines, number};
 use super::{Form, Opening};
+use crate::io::measurements::Separator;
 use crate::lie::{Pose, rotation};
 use nalgebra::Vector3;
 
 pub(super) const FORM: Form = Form { title: "measurements of RoboDK", is_it, table };
 
 fn names(text: &str) -> Option<(usize, Vec<&str>)> {
-    lines(text).next().map(|(line, it)| (line, cells(it, ',')))
+    lines(text).next().map(|(line, it)| (line, cells(it, Separator::Comma)))
 }
 
 fn is_it(text: &str, _: &Opening<'_>) -> bool {
@@ -37,7 +38,7 @@ fn table(text: &str, opening: &Opening<'_>) -> Result<Made, Refused> {
         .collect();
     let mut made = Made::new(head, columns.iter().map(String::as_str));
     for (line, content) in lines(text).skip(1) {
-        let found = cells(content, ',');
+        let found = cells(content, Separator::Comma);
         let text_of = |at: &usize| found.get(*at).copied().unwrap_or_default();
         let values: Vec<f64> = pose.iter().map_while(|at| number(text_of(at))).collect();
         let [_, _, _, a, b, c] = values[..] else {

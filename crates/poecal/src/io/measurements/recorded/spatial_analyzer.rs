@@ -6,6 +6,7 @@ use std::collections::BTreeSet;
 use super::maker::{Made, Refused, Value};
 use super::words::{cells, lines, number};
 use super::{Form, Opening};
+use crate::io::measurements::Separator;
 
 pub(super) const FORM: Form = Form { title: "points of SpatialAnalyzer", is_it, table };
 
@@ -42,7 +43,7 @@ fn is_it(text: &str, _: &Opening<'_>) -> bool {
     })
 }
 
-fn table(text: &str, opening: &Opening<'_>) -> Result<Made, Refused> {
+fn table(text: &str, _: &Opening<'_>) -> Result<Made, Refused> {
     let comments = Comments::of(text)?;
     let mut points = Vec::new();
     for (line, content) in lines(text).filter(|it| !it.1.trim_start().starts_with("//")) {
@@ -67,17 +68,14 @@ fn table(text: &str, opening: &Opening<'_>) -> Result<Made, Refused> {
     let (names, are_targets) = layout.names(&points);
     let sigmas: &[&str] = if layout.uncertainties { &["sigma_x", "sigma_y", "sigma_z"] } else { &[] };
     let unit = comments.unit;
-    let station = comments.frame.filter(|_| opening.is_by_frames);
     let columns: Vec<String> = [if are_targets { "target" } else { "id" }.to_owned()]
         .into_iter()
-        .chain(station.map(|_| "instrument".to_owned()))
         .chain(["x", "y", "z"].iter().chain(sigmas).map(|it| format!("{it}[{unit}]")))
         .collect();
     let mut made = Made::new(first.line, columns.iter().map(String::as_str));
     for (point, name) in points.iter().zip(&names) {
         let numbers = point.numbers.get(layout.first..).unwrap_or_default();
         let mut row = vec![Value::Text(name)];
-        row.extend(station.map(Value::Text));
         match (comments.axes, numbers) {
             (Axes::Cylindrical, [radius, angle, height, ..]) => {
                 let turned = number(angle).unwrap_or_default().to_radians();
@@ -166,8 +164,11 @@ impl<'t> Point<'t> {
     fn of(line: usize, content: &'t str) -> Result<Self, Refused> {
         let content = content.trim();
         let is_by_commas = content.contains(',');
-        let mut parts: Vec<&str> =
-            if is_by_commas { cells(content, ',') } else { content.split_whitespace().collect() };
+        let mut parts: Vec<&str> = if is_by_commas {
+            cells(content, Separator::Comma)
+        } else {
+            content.split_whitespace().collect()
+        };
         // The time, `02/12/25 16:52:45`, which is one cell or two.
         while parts.last().is_some_and(|it| {
             it.contains('/') || it.contains(':') && !it.contains("::") || matches!(*it, "AM" | "PM")

@@ -1,5 +1,8 @@
 //! Lines and cells of texts in other forms.
 
+use super::super::cells::{Separator, split};
+use crate::error::first_few;
+
 /// A finite number of a cell, with a decimal point or, where there is no other, a decimal comma.
 pub(super) fn number(text: &str) -> Option<f64> {
     let text = text.trim();
@@ -12,32 +15,22 @@ pub(super) fn number(text: &str) -> Option<f64> {
     found.ok().filter(|it: &f64| it.is_finite())
 }
 
-/// Cells of a line, without blanks around them and without quotes; empty ones at the end are left out.
-pub(super) fn cells(line: &str, separator: char) -> Vec<&str> {
-    let mut found: Vec<&str> = line
-        .split(separator)
-        .map(|it| {
-            let it = it.trim();
-            it.strip_prefix('"').and_then(|it| it.strip_suffix('"')).unwrap_or(it)
-        })
-        .collect();
-    while found.last().is_some_and(|it| it.is_empty()) {
-        found.pop();
-    }
-    found
-}
-
 /// Lines with text, with their numbers from 1.
 pub(super) fn lines(text: &str) -> impl Iterator<Item = (usize, &str)> {
     (1..).zip(text.lines()).filter(|(_, line)| !line.trim().is_empty())
 }
 
-/// Separator of a line of a table: the first of semicolon, tab and comma that it has, else blanks.
-pub(super) fn separator(line: &str) -> char {
-    [';', '\t', ','].into_iter().find(|it| line.contains(*it)).unwrap_or(' ')
+/// Cells of a line, without quotes; empty ones at the end are left out. A line with a broken quote is one cell.
+pub(super) fn cells(line: &str, separator: Separator) -> Vec<&str> {
+    let mut found = Vec::new();
+    if split(line, separator, &mut found).is_err() {
+        return vec![line.trim()];
+    }
+    let filled = found.iter().rposition(|it| !it.raw.is_empty()).map_or(0, |it| it + 1);
+    found.into_iter().take(filled).map(|it| it.raw).collect()
 }
 
-/// Cells of a line, by its separator or by blanks.
-pub(super) fn split(line: &str, by: char) -> Vec<&str> {
-    if by == ' ' { line.split_whitespace().collect() } else { cells(line, by) }
+/// Names in backticks, the first few.
+pub(super) fn quoted<T: std::fmt::Display>(names: impl IntoIterator<Item = T>) -> String {
+    first_few(&names.into_iter().map(|it| format!("`{it}`")).collect::<Vec<_>>())
 }

@@ -7,7 +7,7 @@ use calamine::{Data, Range, Reader as _, Sheets, open_workbook_auto_from_rs};
 use super::super::places::Sheet;
 use super::Opening;
 use super::maker::{Made, Refused, Value};
-use super::words::number;
+use super::words::{number, quoted};
 use crate::error::first_few;
 
 /// Largest workbook, bytes, and largest size of its parts unpacked.
@@ -91,10 +91,6 @@ pub(super) fn table(bytes: Vec<u8>, opening: &Opening<'_>) -> Result<Made, Refus
             ))
         }
     }
-}
-
-fn quoted(names: &[String]) -> String {
-    first_few(&names.iter().map(|it| format!("`{it}`")).collect::<Vec<_>>())
 }
 
 fn range(book: &mut Sheets<Cursor<Vec<u8>>>, name: &str) -> Result<Range<Data>, Refused> {

@@ -1,5 +1,6 @@
 //! Bodies that the messages of a topic say the poses of.
 
+use super::super::bodies::Extent;
 use super::super::maker::{Made, Value};
 use super::clock::{Clock, Stamp, seconds};
 use super::messages::{Kind, Pose};
@@ -20,8 +21,7 @@ pub(super) struct Body {
     /// Its frame; empty if messages do not name it.
     pub(super) child: String,
     seen: Vec<Seen>,
-    /// Of each coordinate, the smallest and the largest.
-    range: [(f64, f64); 3],
+    extent: Extent,
 }
 
 /// All bodies of a topic.
@@ -52,8 +52,7 @@ impl Bodies {
         let is_it = |it: &Body| it.child == pose.child && it.parent == pose.parent;
         let at = self.all.iter().position(is_it).unwrap_or_else(|| {
             let (parent, child) = (pose.parent.to_owned(), pose.child.to_owned());
-            let range = [(f64::INFINITY, f64::NEG_INFINITY); 3];
-            self.all.push(Body { parent, child, seen: Vec::new(), range });
+            self.all.push(Body { parent, child, seen: Vec::new(), extent: Extent::NONE });
             self.all.len() - 1
         });
         if let Some(body) = self.all.get_mut(at) {
@@ -68,15 +67,13 @@ impl Body {
         let seen = Seen { stamp: Stamp { own: stamp_ns, log: log_ns }, position, quaternion };
         self.seen.push(seen);
         if seen.is_place() {
-            for (range, value) in self.range.iter_mut().zip(position) {
-                *range = (range.0.min(value), range.1.max(value));
-            }
+            self.extent.include(position);
         }
     }
 
     /// How far it moved, metres.
     pub(super) fn moved_m(&self) -> f64 {
-        self.range.iter().map(|it| it.1 - it.0).filter(|it| it.is_finite()).fold(0.0, f64::max)
+        self.extent.widest()
     }
 
     /// The clock of its messages.

@@ -73,7 +73,7 @@ fn recording(topics: &Topics<'_>, opening: &Opening<'_>, sha256: &str, warned: V
     ];
     // The same for both, so that the lag of their clocks is kept.
     let since_s = first.into_iter().flatten().min().unwrap_or_default().div_euclid(SECOND);
-    let own = |made| OwnTable { made, sha256: sha256.to_owned(), title: BAG };
+    let own = |made| OwnTable { made, sha256: Some(sha256.to_owned()), title: BAG };
     let columns = opening.joint_columns("rad");
     let joints = chosen.0.map(|(topic, readings)| own(readings.table(&topic.name, &columns, since_s)));
     let measured = chosen.1.map(|it| own(it.table(since_s)));
