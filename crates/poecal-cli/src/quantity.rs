@@ -32,6 +32,7 @@ fn example(quantity: Unit) -> &'static str {
         Unit::Metre => "0.05mm",
         Unit::Radian => "0.01deg",
         Unit::One => "3",
+        Unit::Second => "12ms",
     }
 }
 

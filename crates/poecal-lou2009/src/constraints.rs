@@ -90,7 +90,8 @@ impl LeastSquares for Watched<'_> {
                 | Parameter::TargetPlace(_)
                 | Parameter::TargetFrame(_)
                 | Parameter::DeviceFrame(_)
-                | Parameter::RangeUnknown(_) => {}
+                | Parameter::RangeUnknown(_)
+                | Parameter::ClockUnknown(_) => {}
             }
         }
         WatchedState { estimate: self.0.retract(&state.estimate, step), screws, miss }

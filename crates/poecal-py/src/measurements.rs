@@ -156,7 +156,8 @@ impl Measurements {
         let contact = chosen("contact", contact, &CONTACTS)?;
         let words = [("common", Frames::Common), ("per-file", Frames::PerFile)];
         let frames = chosen("frames", frames, &words)?;
-        let joins = [("name", Join::Name), ("rows", Join::Rows), ("time", Join::Time)];
+        let joins =
+            [("name", Join::Name), ("rows", Join::Rows), ("time", Join::Time), ("motion", Join::Motion)];
         let join = join.map(|word| chosen("join", word, &joins)).transpose()?;
         let Paths(paths) = paths;
         let read = || {

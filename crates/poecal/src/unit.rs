@@ -9,6 +9,8 @@ pub enum Unit {
     Radian,
     /// A number without unit.
     One,
+    /// Seconds; shown in milliseconds.
+    Second,
 }
 
 impl Unit {
@@ -16,7 +18,7 @@ impl Unit {
     #[must_use]
     pub fn shown(self, si: f64) -> f64 {
         match self {
-            Unit::Metre => si * 1e3,
+            Unit::Metre | Unit::Second => si * 1e3,
             Unit::Radian => si.to_degrees(),
             Unit::One => si,
         }
@@ -26,28 +28,30 @@ impl Unit {
     #[must_use]
     pub fn from_shown(self, shown: f64) -> f64 {
         match self {
-            Unit::Metre => shown * 1e-3,
+            Unit::Metre | Unit::Second => shown * 1e-3,
             Unit::Radian => shown.to_radians(),
             Unit::One => shown,
         }
     }
 
-    /// Symbol of the unit in which people read it: `mm`, `deg`, or nothing.
+    /// Symbol of the unit in which people read it: `mm`, `deg`, `ms`, or nothing.
     #[must_use]
     pub fn symbol(self) -> &'static str {
         match self {
             Unit::Metre => "mm",
             Unit::Radian => "deg",
             Unit::One => "",
+            Unit::Second => "ms",
         }
     }
 
-    /// Metres of a number, where a radian counts `length_m` metres, and so does a number without unit: it is by radians.
+    /// Metres of a number, where a radian counts `length_m` metres, and so does a number without unit, which is by radians, and a second:
+    /// a joint turns by a radian in it.
     #[must_use]
     pub fn metres(self, length_m: f64) -> f64 {
         match self {
             Unit::Metre => 1.0,
-            Unit::Radian | Unit::One => length_m,
+            Unit::Radian | Unit::One | Unit::Second => length_m,
         }
     }
 }

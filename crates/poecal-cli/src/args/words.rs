@@ -84,6 +84,11 @@ pub(crate) const JOIN: Words<Join> = &[
         Join::Rows,
     ),
     ("time", "By the times of their stands, each file with a clock of its own", Join::Time),
+    (
+        "motion",
+        "By their times, while the robot moves: lag and drift of the clocks are unknowns of the fit",
+        Join::Motion,
+    ),
 ];
 
 /// From where third axes count.

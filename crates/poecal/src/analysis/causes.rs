@@ -145,7 +145,7 @@ impl Rules<'_> {
                 let concerned = directions.iter().any(|direction| direction[place].powi(2) > NOTABLE);
                 match column.unit {
                     Unit::Metre => lengths |= concerned,
-                    Unit::Radian | Unit::One => angles |= concerned,
+                    Unit::Radian | Unit::One | Unit::Second => angles |= concerned,
                 }
             }
         }
@@ -297,7 +297,8 @@ impl Rules<'_> {
                 Parameter::OtherScrew(_)
                 | Parameter::ValueTerm(_)
                 | Parameter::DeviceFrame(_)
-                | Parameter::RangeUnknown(_) => continue,
+                | Parameter::RangeUnknown(_)
+                | Parameter::ClockUnknown(_) => continue,
             };
             let columns = parameter.model().columns().iter().zip(places);
             let shifting = columns.filter(|(column, _)| column.unit == Unit::Metre);
@@ -371,7 +372,8 @@ pub(super) fn joint_of(parameter: &Parameter) -> Option<usize> {
         Parameter::TargetPlace(_)
         | Parameter::TargetFrame(_)
         | Parameter::DeviceFrame(_)
-        | Parameter::RangeUnknown(_) => None,
+        | Parameter::RangeUnknown(_)
+        | Parameter::ClockUnknown(_) => None,
     }
 }
 

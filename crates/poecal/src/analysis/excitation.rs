@@ -182,7 +182,8 @@ impl Excitation {
                 | Parameter::OtherScrew(_)
                 | Parameter::ValueTerm(_)
                 | Parameter::DeviceFrame(_)
-                | Parameter::RangeUnknown(_) => continue,
+                | Parameter::RangeUnknown(_)
+                | Parameter::ClockUnknown(_) => continue,
             };
             if self.seen.get(target) == Some(&1) {
                 let name = target_name(setup, target);

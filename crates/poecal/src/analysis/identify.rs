@@ -17,7 +17,9 @@ use crate::problem::{MOST_UNKNOWNS, Problem};
 use crate::robot::Robot;
 use crate::simulate::{Kind, exactly, pairs, plan, random_configuration, seen};
 use crate::solve::LeastSquares;
-use crate::start::{Registration, device_parameter, range_parameters, register, target_parameters};
+use crate::start::{
+    Registration, clock_parameters, device_parameter, range_parameters, register, target_parameters,
+};
 
 /// Number of random configurations for the expected error, and their seed.
 const CONFIGURATIONS: usize = 1000;
@@ -191,6 +193,7 @@ fn foresee(
     let further = (1..data.station_count()).filter(|&station| estimate.tree.shared(station).is_none());
     free.extend(further.map(|station| device_parameter(data, station, &rows)));
     free.extend(range_parameters(&session, &rows).map(Parameter::RangeUnknown));
+    free.extend(clock_parameters(&session, &rows).map(Parameter::ClockUnknown));
     let problem = Problem::new(session, rows.clone(), free, planned.noise);
     let setup =
         Setup { session, rows: &rows, estimate: &estimate, layout: problem.layout(), noise: planned.noise };

@@ -74,7 +74,8 @@ impl Rules<'_> {
                 Parameter::ScrewAxis(_)
                 | Parameter::OtherScrew(_)
                 | Parameter::ValueTerm(_)
-                | Parameter::RangeUnknown(_) => Vec::new(),
+                | Parameter::RangeUnknown(_)
+                | Parameter::ClockUnknown(_) => Vec::new(),
             };
             places.iter().zip(moved).for_each(|(&(place, scale), moved)| growth[place] = moved * scale);
         }
@@ -217,6 +218,10 @@ impl Rules<'_> {
                     format!("the frame of {}", self.setup.session.data.station_words(it.station))
                 }
                 Parameter::DeviceFrame(_) => "the device's frame".to_owned(),
+                Parameter::ClockUnknown(it) => {
+                    let station = self.setup.session.data.station_words(it.station);
+                    format!("the {} of the clock of {station}", it.term.name())
+                }
                 Parameter::RangeUnknown(it) => {
                     format!("the {} of {}", it.term.name(), self.setup.session.data.station_words(it.station))
                 }

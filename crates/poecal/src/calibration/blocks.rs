@@ -33,6 +33,15 @@ pub(crate) fn names(robot: &Robot, data: &Dataset) -> Names {
     }
 }
 
+/// The blocks of a session: of clocks those of instruments that measured in motion.
+fn blocks(names: &Names, data: &Dataset) -> Vec<Block> {
+    let is_there = |block: &Block| match block {
+        Block::Clock(station, _) => data.moving.clock(*station).is_some(),
+        Block::Axis(_) | Block::Target(_) | Block::Frame(_) | Block::Term(..) | Block::Range(..) => true,
+    };
+    names.blocks().into_iter().filter(is_there).collect()
+}
+
 impl BlockChoice {
     /// The robot with what the freed terms are functions of beside joint values: gravity in this direction, and these terms themselves.
     ///
@@ -76,7 +85,7 @@ impl BlockChoice {
     /// [`ErrorKind::Option`] if a word names no block, or nothing is unknown.
     pub fn unknowns(&self, robot: &Robot, data: &Dataset) -> Result<Unknowns> {
         let names = names(robot, data);
-        let blocks = names.blocks();
+        let blocks = blocks(&names, data);
         let usual = |block: &Block| !matches!(block, Block::Term(..) | Block::Range(..));
         let mut is_free: Vec<bool> = blocks.iter().map(usual).collect();
         let (mut further, mut pictures) = (Vec::new(), Vec::new());
@@ -106,7 +115,11 @@ impl BlockChoice {
             if meant().all(|(block, _)| matches!(block, Block::Target(_))) {
                 unknowns.open_targets.extend(meant().filter_map(|(block, _)| match block {
                     Block::Target(target) => Some(*target),
-                    Block::Axis(_) | Block::Frame(_) | Block::Term(..) | Block::Range(..) => None,
+                    Block::Axis(_)
+                    | Block::Frame(_)
+                    | Block::Term(..)
+                    | Block::Range(..)
+                    | Block::Clock(..) => None,
                 }));
             }
         }
@@ -122,7 +135,13 @@ impl BlockChoice {
                     }
                     unknowns.ranges.push((station, term));
                 }
-                Block::Axis(_) | Block::Target(_) | Block::Frame(_) | Block::Term(..) | Block::Range(..) => {}
+                Block::Clock(station, term) if !is_free => unknowns.held_clocks.push((station, term)),
+                Block::Axis(_)
+                | Block::Target(_)
+                | Block::Frame(_)
+                | Block::Term(..)
+                | Block::Range(..)
+                | Block::Clock(..) => {}
             }
         }
         further.sort_unstable();
@@ -219,6 +238,9 @@ fn chosen(names: &Names, blocks: &[Block], word: &str) -> Vec<bool> {
         }
         // Of all instruments by the name of the term alone.
         (_, Block::Range(_, term)) => {
+            word == term.name() || word != "*" && pattern.matches(&names.of(*block))
+        }
+        (_, Block::Clock(_, term)) => {
             word == term.name() || word != "*" && pattern.matches(&names.of(*block))
         }
         (_, Block::Term(..) | Block::Target(_) | Block::Frame(_)) => pattern.matches(&names.of(*block)),

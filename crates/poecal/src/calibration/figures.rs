@@ -96,7 +96,7 @@ impl CalibratedFit<'_> {
         // Positions decide tool and frame; orientations decide only the directions that positions do not determine.
         let positions = ByQuantity::from_fn(|quantity| match quantity.unit() {
             Unit::Metre => noise[quantity],
-            Unit::Radian | Unit::One => POSITIONS_FIRST * noise[quantity],
+            Unit::Radian | Unit::One | Unit::Second => POSITIONS_FIRST * noise[quantity],
         });
         let start = &self.start.registered;
         let registration =

@@ -7,7 +7,7 @@ use crate::measurement::Noise;
 use crate::parameters::{Parameter, Subject, ValueTerm, screw_axes};
 use crate::problem::{Layout, Prior, Problem};
 use crate::solve::{LeastSquares as _, Normal, Options, Summary};
-use crate::start::{device_parameter, range_parameters, target_parameters};
+use crate::start::{clock_parameters, device_parameter, range_parameters, target_parameters};
 
 /// A fit of many rows begins on a subsample: at least so many rows, for each unknown, and times the root of the number of rows. After that,
 /// one step with the first `JᵀJ` of all rows is about enough, however many they are.
@@ -41,10 +41,11 @@ pub(super) fn free_parameters(
     let frames = stations.filter(is_free).map(|station| device_parameter(data, station, rows));
     let is_free = |parameter: &Parameter| match parameter.model().subject() {
         Subject::Joint(joint) => unknowns.moves_axis(joint),
-        Subject::Instrument(_) | Subject::Target(_) | Subject::Range(_) => true,
+        Subject::Instrument(_) | Subject::Target(_) | Subject::Range(_) | Subject::Clock(_) => true,
     };
     let ranges = range_parameters(session, rows).filter(|it| !absent.contains(&it.station));
     let ranges = ranges.map(Parameter::RangeUnknown);
+    let clocks = clock_parameters(session, rows).map(Parameter::ClockUnknown);
     let terms = unknowns.terms.iter().filter_map(|&(joint, term)| {
         let kind = *estimate.kinds().get(joint)?;
         Some(Parameter::ValueTerm(ValueTerm { joint, kind, term }))
@@ -54,6 +55,7 @@ pub(super) fn free_parameters(
         .chain(terms)
         .chain(target_parameters(session, rows))
         .chain(ranges)
+        .chain(clocks)
         .collect()
 }
 

@@ -120,7 +120,7 @@ pub fn estimate_noise(
                 share.less(of_angles * of_all(angles), turned as f64)
             }
             (_, Unit::Metre) => share.deviation(0, others),
-            (_, Unit::Radian | Unit::One) => share.deviation(turned, others),
+            (_, Unit::Radian | Unit::One | Unit::Second) => share.deviation(turned, others),
         }
     });
     let mut estimated = found.iter().filter_map(|(_, deviation)| *deviation).peekable();

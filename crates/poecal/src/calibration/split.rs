@@ -1,5 +1,7 @@
 //! Training and held-out rows.
 
+use std::collections::BTreeMap;
+
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 
@@ -109,6 +111,7 @@ fn random_share(data: &Dataset, options: &CalibrationOptions) -> Vec<bool> {
     for group in data.grouped(&configurations) {
         group.iter().for_each(|&row| configuration[row as usize] = group[0]);
     }
+    in_motion_together(data, &mut configuration);
     configurations.retain(|&row| configuration[row as usize] == row);
     let mut generator = ChaCha8Rng::seed_from_u64(options.seed);
     random::shuffle(&mut generator, &mut configurations);
@@ -120,4 +123,16 @@ fn random_share(data: &Dataset, options: &CalibrationOptions) -> Vec<bool> {
         chosen[first as usize] = true;
     }
     configuration.iter().map(|&first| chosen[first as usize]).collect()
+}
+
+/// Rows in motion that are near in time are nearly of one configuration: those of each two seconds are held out together.
+fn in_motion_together(data: &Dataset, configuration: &mut [u32]) {
+    const TOGETHER_S: f64 = 2.0;
+    let mut firsts: BTreeMap<(usize, i64), u32> = BTreeMap::new();
+    for (row, (observation, own)) in (0..).zip(data.observations.iter().zip(configuration)) {
+        if let Some((_, time_s)) = data.motion(observation) {
+            let part = (time_s / TOGETHER_S).floor() as i64;
+            *own = *firsts.entry((observation.station, part)).or_insert(row);
+        }
+    }
 }

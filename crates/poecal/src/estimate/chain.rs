@@ -5,7 +5,7 @@ use std::sync::Arc;
 use nalgebra::{Matrix3, Vector3};
 
 use super::packing::Bases;
-use super::{Estimate, Packed, Passed, Range, Sight, Tree};
+use super::{ClockChange, Estimate, Packed, Passed, Range, Sight, Tree};
 use crate::lanes::FixedMotion;
 use crate::lie::Pose;
 use crate::robot::{JointKind, JointTerm, Term};
@@ -24,6 +24,8 @@ pub struct Linkage {
     first_device: Pose,
     /// Zero and scale of the distances of each station; empty if all are plain.
     ranges: Vec<Range>,
+    /// What the clock of each station is off; empty if all are right.
+    clocks: Vec<ClockChange>,
     /// Terms of the value of each joint, with their places among all; empty if there are none.
     terms: Vec<Vec<(usize, JointTerm)>>,
 }
@@ -40,6 +42,7 @@ impl Linkage {
             device_from_base: _,
             further_devices: _,
             ranges,
+            clocks,
         } = estimate;
         let devices: Vec<Pose> =
             (0..tree.instruments().len()).map(|station| estimate.device_at_zero(station)).collect();
@@ -80,6 +83,7 @@ impl Linkage {
         let joints = if estimate.has_terms() { tree.kinds().len() } else { 0 };
         let terms = (0..joints).map(|joint| of(joint).collect()).collect();
         let ranges = if ranges.iter().all(Range::is_plain) { Vec::new() } else { ranges.clone() };
+        let clocks = if clocks.iter().all(ClockChange::is_none) { Vec::new() } else { clocks.clone() };
         Linkage {
             tree: Arc::clone(tree),
             steps,
@@ -88,6 +92,7 @@ impl Linkage {
             first_device: first,
             terms,
             ranges,
+            clocks,
         }
     }
 
@@ -126,6 +131,7 @@ impl Linkage {
         let route = &self.tree.routes()[route];
         let in_order = |(index, passed): (usize, &Passed)| passed.joint == index && !passed.backward;
         self.terms.is_empty()
+            && self.clocks.is_empty()
             && route.len() == self.tree.kinds().len()
             && route.iter().enumerate().all(in_order)
     }
@@ -143,6 +149,13 @@ impl Linkage {
             .map(|(kind, pose)| (kind == JointKind::Revolute, FixedMotion::from(pose)))
     }
 
+    /// By how much the value of a joint changes since a station's clock is off, if it is: theory.md §5 (26a).
+    fn by_clock(&self, station: usize, packed: &Packed, row: usize, joint: usize) -> Option<f64> {
+        let clock = self.clocks.get(station)?;
+        let (rates, time_s) = packed.motion(row)?;
+        Some(clock.shift(time_s) * rates.get(joint)?)
+    }
+
     /// `(θ, cos θ or θ, sin θ or 0)` of a joint passed on a route, terms included: `θ ← θ + δ` of theory.md §5 (26), and `-θ` of one that
     /// is passed backward.
     #[inline]
@@ -151,24 +164,31 @@ impl Linkage {
         passed: Passed,
         packed: &Packed,
         row: usize,
-        from: Option<u32>,
+        sight: Sight,
     ) -> (f64, f64, f64) {
         let joint = passed.joint;
-        let from = from.filter(|_| passed.backward);
+        let from = sight.from.filter(|_| passed.backward);
         let (value, (c, s)) = packed.at(row, from, joint);
         let kind = self.tree.kinds()[joint];
-        let (value, c, s) = match self.terms.get(joint) {
+        let by_terms = self.terms.get(joint).map(|terms| packed.bases_at(row, from).sum(terms));
+        let by_clock = if self.clocks.is_empty() || sight.from.is_some() {
+            None
+        } else {
+            self.by_clock(sight.station, packed, row, joint)
+        };
+        let more = match (by_terms, by_clock) {
+            (Some(terms), Some(clock)) => Some(terms + clock),
+            (one, other) => one.or(other),
+        };
+        let (value, c, s) = match more {
             None => (value, c, s),
-            Some(terms) => {
-                let more = packed.bases_at(row, from).sum(terms);
-                match kind {
-                    JointKind::Revolute => {
-                        let (sine, cosine) = more.sin_cos();
-                        (value + more, c * cosine - s * sine, s * cosine + c * sine)
-                    }
-                    JointKind::Prismatic => (value + more, c + more, 0.0),
+            Some(more) => match kind {
+                JointKind::Revolute => {
+                    let (sine, cosine) = more.sin_cos();
+                    (value + more, c * cosine - s * sine, s * cosine + c * sine)
                 }
-            }
+                JointKind::Prismatic => (value + more, c + more, 0.0),
+            },
         };
         match (passed.backward, kind) {
             (false, _) => (value, c, s),
@@ -220,6 +240,9 @@ pub struct Chain {
     pub shared: Option<usize>,
     /// Whether the instrument was in another configuration than the target.
     in_two: bool,
+    /// How fast joint values change, and the time of the row; empty of a row that was measured at rest.
+    rates: Vec<f64>,
+    time_s: f64,
     /// The packed terms.
     terms: Arc<[(usize, Term)]>,
     /// Their functions and the joint values without terms, of the row and of the instrument's own configuration.
@@ -235,6 +258,8 @@ impl Default for Chain {
             station: 0,
             shared: None,
             in_two: false,
+            rates: Vec::new(),
+            time_s: 0.0,
             terms: Arc::default(),
             bases: Default::default(),
         }
@@ -262,10 +287,15 @@ impl Chain {
             values.clear();
             values.extend_from_slice(found.values());
         }
+        self.rates.clear();
+        if let Some((rates, time_s)) = packed.motion(row) {
+            self.rates.extend_from_slice(rates);
+            self.time_s = time_s;
+        }
         let mut moved = linkage.still(sight).copied().unwrap_or_else(Pose::identity);
         let (steps, end) = linkage.frames(sight);
         for (&passed, step) in tree.route(sight).iter().zip(steps) {
-            let (value, cosine_or_value, sine) = linkage.joint_value(passed, packed, row, sight.from);
+            let (value, cosine_or_value, sine) = linkage.joint_value(passed, packed, row, sight);
             let Passed { joint, backward } = passed;
             let kind = tree.kinds()[joint];
             let frame = moved * *step;
@@ -299,6 +329,11 @@ impl Chain {
         }
         self.last = moved;
         self.target = moved * *end;
+    }
+
+    /// How fast joint values change (rad/s, m/s), and the time of the row from the middle of all, seconds, if it was measured in motion.
+    pub(crate) fn moving(&self) -> Option<(&[f64], f64)> {
+        (!self.rates.is_empty() && !self.in_two).then_some((&self.rates, self.time_s))
     }
 
     /// The function b of a term of a joint in the configuration in which the joint is seen.

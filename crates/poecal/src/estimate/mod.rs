@@ -4,6 +4,7 @@
 //! the screw. A local step `A_i ← A_i exp(ε)` is the adjoint update `ξ_i ← Ad_exp(η) ξ_i` with `η = Ad_A_i ε` (theory.md §5 (18)).
 
 mod chain;
+mod clock;
 mod packing;
 mod predictions;
 mod range;
@@ -16,6 +17,7 @@ mod tree;
 mod unknowns;
 
 pub use chain::{Chain, JointView, Linkage};
+pub use clock::{ClockChange, ClockTerm};
 pub use packing::{Packed, sample_rows};
 pub(crate) use predictions::turn_to_first;
 pub use range::{Range, RangeTerm};
@@ -52,6 +54,8 @@ pub struct Estimate {
     pub further_devices: Vec<Pose>,
     /// Zero and scale of the distances of each station; those beyond the last are plain.
     pub ranges: Vec<Range>,
+    /// What the clock of each station is off; those beyond the last are right.
+    pub clocks: Vec<ClockChange>,
 }
 
 impl Estimate {
@@ -80,6 +84,7 @@ impl Estimate {
             device_from_base,
             further_devices: vec![device_from_base; further],
             ranges: Vec::new(),
+            clocks: Vec::new(),
         }
     }
 
@@ -125,13 +130,27 @@ impl Estimate {
         &mut self.ranges[station]
     }
 
+    /// What the clock of a station is off.
+    #[must_use]
+    pub fn clock(&self, station: usize) -> ClockChange {
+        self.clocks.get(station).copied().unwrap_or_default()
+    }
+
+    /// [`Estimate::clock`], mutable.
+    pub(crate) fn clock_mut(&mut self, station: usize) -> &mut ClockChange {
+        if self.clocks.len() <= station {
+            self.clocks.resize(station + 1, ClockChange::default());
+        }
+        &mut self.clocks[station]
+    }
+
     /// The same estimate with the device frame of one station only.
     #[must_use]
     pub(crate) fn seen_from(&self, station: usize) -> Self {
         let device_from_base = *self.device(station);
         let tree = Arc::new(self.tree.seen_from(station));
-        let ranges = vec![self.range(station)];
-        Estimate { tree, device_from_base, further_devices: Vec::new(), ranges, ..self.clone() }
+        let (ranges, clocks) = (vec![self.range(station)], vec![self.clock(station)]);
+        Estimate { tree, device_from_base, further_devices: Vec::new(), ranges, clocks, ..self.clone() }
     }
 
     /// The same estimate with device frames of further stations on the base.
@@ -189,6 +208,7 @@ impl Estimate {
             device_from_base: self.device_from_base * motion.inverse(),
             further_devices: self.further_devices.iter().map(|&device| device * motion.inverse()).collect(),
             ranges: self.ranges.clone(),
+            clocks: self.clocks.clone(),
         }
     }
 
@@ -196,6 +216,12 @@ impl Estimate {
     #[must_use]
     pub fn has_terms(&self) -> bool {
         self.terms.iter().any(|it| it.coefficient != 0.0)
+    }
+
+    /// Whether joint values differ from those of the readings: by a term, or since a clock is off.
+    #[must_use]
+    pub fn moves_values(&self) -> bool {
+        self.has_terms() || self.clocks.iter().any(|it| !it.is_none())
     }
 
     /// Coefficient of a joint's term, 0 if it has none.

@@ -23,6 +23,10 @@ pub struct Packed {
     /// The terms of the robot, and their functions b in each row.
     terms: Arc<[(usize, Term)]>,
     bases: Vec<f64>,
+    /// How fast each joint value changes in rows that were measured in motion (rad/s, m/s), and their times from the middle of all, seconds;
+    /// empty if there are none.
+    rates: Vec<f64>,
+    times_s: Vec<f64>,
     /// Configurations of instruments that differ from those of the targets, in rows of their own.
     further: Option<Box<Packed>>,
 }
@@ -52,7 +56,28 @@ impl Packed {
         if !data.further_readings().is_empty() {
             packed.further = Some(Box::new(Packed::new(robot, data.further_readings(), width)));
         }
+        if !data.moving.times_s.is_empty() {
+            packed.move_as(robot, data);
+        }
         packed
+    }
+
+    /// Packs how fast joint values change, of rows that were measured in motion.
+    fn move_as(&mut self, robot: &Robot, data: &Dataset) {
+        let indices = robot.reading_indices();
+        for observation in &data.observations {
+            let (rates, time_s) = data.motion(observation).unwrap_or_default();
+            self.times_s.push(time_s);
+            self.rates.extend(robot.joints.iter().zip(&indices).map(|(joint, &index)| {
+                let rate = rates.get(index).copied().unwrap_or_default();
+                joint.reading.value(rate) - joint.reading.value(0.0)
+            }));
+        }
+    }
+
+    /// How fast the joint values of a row change (rad/s, m/s), and its time, seconds, unless all rows were measured at rest.
+    pub(crate) fn motion(&self, row: usize) -> Option<(&[f64], f64)> {
+        Some((self.rates.get(row * self.joints..(row + 1) * self.joints)?, *self.times_s.get(row)?))
     }
 
     /// Whether these are the joint values of a data set's rows.
@@ -112,7 +137,17 @@ impl Packed {
         }
         let bases = bases(robot, &angles, factors);
         let terms = robot.terms.iter().map(|it| (it.joint, it.term)).collect();
-        Packed { joints, kinds, values, angles, terms, bases, further: None }
+        Packed {
+            joints,
+            kinds,
+            values,
+            angles,
+            terms,
+            bases,
+            rates: Vec::new(),
+            times_s: Vec::new(),
+            further: None,
+        }
     }
 
     /// The value of a joint in a row, or in a further configuration in place of it: θ, and `(cos θ, sin θ)` or `(θ, 0)`.

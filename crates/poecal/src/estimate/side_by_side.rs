@@ -60,10 +60,10 @@ impl<'a> SideBySide<'a> {
             return lanes::last_links(self.level, &self.joints, &self.values, &mut self.last_links);
         }
         for (lane, &row) in rows.iter().enumerate() {
-            let from = session.observation(row).from;
+            let sight = Sight::from(session.observation(row));
             for (wide, &passed) in self.values.iter_mut().zip(self.route) {
                 let (_, cosine_or_value, sine) =
-                    self.linkage.joint_value(passed, session.packed, row as usize, from);
+                    self.linkage.joint_value(passed, session.packed, row as usize, sight);
                 wide[0].0[lane] = cosine_or_value;
                 wide[1].0[lane] = sine;
             }

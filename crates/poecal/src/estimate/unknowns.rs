@@ -1,6 +1,6 @@
 //! Which parts of a session are unknown.
 
-use super::RangeTerm;
+use super::{ClockTerm, RangeTerm};
 use crate::camera::PictureUnknown;
 use crate::robot::Term;
 
@@ -20,6 +20,8 @@ pub struct Unknowns {
     pub terms: Vec<(usize, Term)>,
     /// Zeros and scales of stations that are unknown beside those of which the rows say so.
     pub ranges: Vec<(usize, RangeTerm)>,
+    /// Lags and drifts of the clocks of stations that are held.
+    pub held_clocks: Vec<(usize, ClockTerm)>,
     /// What of cameras and boards is unknown.
     pub pictures: Vec<PictureUnknown>,
 }
@@ -33,6 +35,7 @@ impl Unknowns {
         held_frames: Vec::new(),
         terms: Vec::new(),
         ranges: Vec::new(),
+        held_clocks: Vec::new(),
         pictures: Vec::new(),
     };
 

@@ -12,7 +12,8 @@ use crate::problem::{Prior, Problem};
 use crate::robot::{Body, Joint, JointKind, Robot, Term, Tolerance};
 use crate::solve::{Options, minimize};
 use crate::start::{
-    Registration, device_parameter, range_parameters, register, register_roughly, target_parameters,
+    Registration, clock_parameters, device_parameter, range_parameters, register, register_roughly,
+    target_parameters,
 };
 
 /// Rows of the subsample.
@@ -227,6 +228,7 @@ impl<'a> Fitter<'a> {
         let rows = data.all_rows();
         let session = self.session(data, &packed);
         free.extend(range_parameters(&session, &rows).map(Parameter::RangeUnknown));
+        free.extend(clock_parameters(&session, &rows).map(Parameter::ClockUnknown));
         free.extend(target_parameters(&session, &rows));
         let mut start = registered.clone();
         start.recentre(&session, &rows);

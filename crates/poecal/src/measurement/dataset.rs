@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 
-use super::{KnownLength, Measurement, NoiseShape, Observation, PoseResidual, Quantity};
+use super::{KnownLength, Measurement, Moving, NoiseShape, Observation, PoseResidual, Quantity};
 use crate::camera::Pictures;
 use crate::error::{Error, ErrorKind, Result};
 use crate::robot::Controller;
@@ -40,6 +40,9 @@ pub struct Dataset {
     /// Shapes of the noise of positions.
     #[serde(default)]
     pub noise_shapes: Vec<NoiseShape>,
+    /// The rows that were measured in motion.
+    #[serde(default)]
+    pub moving: Moving,
     /// The pictures among the rows.
     #[serde(default)]
     pub pictures: Pictures,
@@ -136,6 +139,12 @@ impl Dataset {
                 .iter()
                 .filter_map(|row| row.noise_shape)
                 .all(|at| (at as usize) < self.noise_shapes.len())
+            && self.moving.rates.len() == self.moving.times_s.len() * self.reading_names.len()
+            && self
+                .observations
+                .iter()
+                .filter_map(|row| row.moving)
+                .all(|at| (at as usize) < self.moving.times_s.len())
             && self.observations.iter().all(|row| (row.source.file as usize) < files)
             && self
                 .pictures
@@ -161,6 +170,23 @@ impl Dataset {
     #[must_use]
     pub fn noise_shape(&self, observation: &Observation) -> Option<&NoiseShape> {
         self.noise_shapes.get(observation.noise_shape? as usize)
+    }
+
+    /// Says of a row how fast its readings changed (rad/s, m/s), and when it was measured, seconds from the middle of all such rows.
+    pub fn state_motion(&mut self, row: usize, rates: &[f64], time_s: f64) {
+        let Some(observation) = self.observations.get_mut(row) else { return };
+        if rates.len() == self.reading_names.len() {
+            observation.moving = u32::try_from(self.moving.times_s.len()).ok();
+            self.moving.rates.extend_from_slice(rates);
+            self.moving.times_s.push(time_s);
+        }
+    }
+
+    /// How fast the readings of a row changed (rad/s, m/s), and its time from the middle of all such rows, seconds, if it was measured in motion.
+    #[must_use]
+    pub fn motion(&self, observation: &Observation) -> Option<(&[f64], f64)> {
+        let (at, width) = (observation.moving? as usize, self.reading_names.len());
+        Some((self.moving.rates.get(at * width..(at + 1) * width)?, *self.moving.times_s.get(at)?))
     }
 
     /// Index of a target, added if it is new.

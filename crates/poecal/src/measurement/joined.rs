@@ -1,6 +1,6 @@
 //! Some of the rows of a session, and the rows of several.
 
-use super::{Dataset, KnownLength, Set};
+use super::{Dataset, KnownLength, Moving, Set};
 use crate::error::{ErrorKind, Result};
 
 impl Dataset {
@@ -24,6 +24,7 @@ impl Dataset {
             reading_names: self.reading_names.clone(),
             further_readings: self.further_readings.clone(),
             noise_shapes: self.noise_shapes.clone(),
+            moving: self.moving.clone(),
             pictures: self.pictures.only(rows),
             factors: self.factors,
             targets: self.targets.clone(),
@@ -76,6 +77,7 @@ impl Dataset {
         }
         let first_shape = u32::try_from(self.noise_shapes.len()).unwrap_or(u32::MAX);
         self.noise_shapes.extend_from_slice(&other.noise_shapes);
+        let first_moving = u32::try_from(self.moving.times_s.len()).unwrap_or(u32::MAX);
         self.files.extend(other.files.iter().cloned());
         self.pictures.extend(&other.pictures, u32::try_from(self.len()).unwrap_or(u32::MAX));
         let mut readings = Vec::with_capacity(order.len());
@@ -87,6 +89,11 @@ impl Dataset {
             (_, named) => named.iter().map(|name| self.station_index(name.as_deref())).collect(),
         };
         let station = |at: usize| stations.get(at).copied().unwrap_or_default();
+        let width = other.reading_names.len().max(1);
+        let in_order =
+            other.moving.rates.chunks_exact(width).flat_map(|of| order.iter().map(|&index| of[index]));
+        let moving = Moving { rates: in_order.collect(), ..other.moving.clone() };
+        self.moving.extend(&moving, station);
         let lengths =
             other.lengths.iter().map(|it| KnownLength { stations: it.stations.map(station), ..*it });
         for length in lengths {
@@ -100,6 +107,7 @@ impl Dataset {
             let mut observation = other.observations[row];
             observation.from = observation.from.map(|from| from + first_further);
             observation.noise_shape = observation.noise_shape.map(|shape| shape + first_shape);
+            observation.moving = observation.moving.map(|moving| moving + first_moving);
             let target = observation.target;
             let known = targets[target];
             observation.target = known.unwrap_or_else(|| self.target_index(other.targets[target].as_deref()));

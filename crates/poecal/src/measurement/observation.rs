@@ -59,6 +59,9 @@ pub struct Observation {
     /// Shape of the noise of its position, if it is not the same in all directions: index into [`Dataset::noise_shapes`](crate::Dataset::noise_shapes).
     #[serde(default)]
     pub noise_shape: Option<u32>,
+    /// Its place among the rows that were measured in motion: index into the times of [`Dataset::moving`](crate::Dataset::moving).
+    #[serde(default)]
+    pub moving: Option<u32>,
     /// Set of the row, if it states it.
     pub set: Option<Set>,
     /// File and line.
@@ -76,6 +79,7 @@ impl Observation {
             measurement,
             stated: Stated::default(),
             noise_shape: None,
+            moving: None,
             set: None,
             source: Source::default(),
         }

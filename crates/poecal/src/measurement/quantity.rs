@@ -220,7 +220,7 @@ impl Noise {
         while k < values.len() {
             values[k] = match Quantity::ALL[k].entry().unit {
                 Unit::Metre => length_m,
-                Unit::Radian | Unit::One => angle_rad,
+                Unit::Radian | Unit::One | Unit::Second => angle_rad,
             };
             k += 1;
         }
@@ -236,7 +236,7 @@ impl Noise {
     pub(crate) fn without_lengths(self, length_m: f64) -> Self {
         ByQuantity::from_fn(|quantity| match quantity.unit() {
             Unit::Metre => length_m,
-            Unit::Radian | Unit::One => self[quantity],
+            Unit::Radian | Unit::One | Unit::Second => self[quantity],
         })
     }
 }

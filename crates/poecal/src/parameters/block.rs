@@ -1,6 +1,6 @@
 //! Blocks of unknowns and their names.
 
-use crate::estimate::RangeTerm;
+use crate::estimate::{ClockTerm, RangeTerm};
 use crate::robot::{MEASURED, Term};
 
 use super::{Parameter, Subject};
@@ -18,6 +18,8 @@ pub enum Block {
     Frame(usize),
     /// A term of what an instrument reads.
     Range(usize, RangeTerm),
+    /// A term of an instrument's clock.
+    Clock(usize, ClockTerm),
 }
 
 /// Names of joints, targets and instruments, from which blocks and unknowns have theirs.
@@ -32,7 +34,7 @@ pub struct Names {
 }
 
 impl Names {
-    /// All blocks: of each joint the axis and its terms, then the targets, the frames, and what instruments read.
+    /// All blocks: of each joint the axis and its terms, then the targets, the frames, what instruments read, and their clocks.
     #[must_use]
     pub fn blocks(&self) -> Vec<Block> {
         let joints = (0..self.joints.len()).flat_map(|joint| {
@@ -43,11 +45,13 @@ impl Names {
         let frames = (0..self.stations.len().max(1)).map(Block::Frame);
         let ranges = (0..self.stations.len().max(1))
             .flat_map(|station| RangeTerm::ALL.map(|term| Block::Range(station, term)));
-        joints.chain(targets).chain(frames).chain(ranges).collect()
+        let clocks = (0..self.stations.len().max(1))
+            .flat_map(|station| ClockTerm::ALL.map(|term| Block::Clock(station, term)));
+        joints.chain(targets).chain(frames).chain(ranges).chain(clocks).collect()
     }
 
-    /// Name of a block: `JOINT.axis`, `JOINT.TERM`, `target.NAME`, `frame.NAME`, `zero.NAME`, `scale.NAME`; `target` of [`MEASURED`], `frame`,
-    /// `zero`, `scale` of a single instrument.
+    /// Name of a block: `JOINT.axis`, `JOINT.TERM`, `target.NAME`, `frame.NAME`, `zero.NAME`, `scale.NAME`, `lag.NAME`, `drift.NAME`; `target` of [`MEASURED`], `frame`,
+    /// `zero`, `scale`, `lag`, `drift` of a single instrument.
     #[must_use]
     pub fn of(&self, block: Block) -> String {
         let joint = |joint: usize| self.joints.get(joint).map_or("", String::as_str);
@@ -64,6 +68,7 @@ impl Names {
             Block::Target(at) => among("target", &self.targets, at),
             Block::Frame(at) => among("frame", &self.stations, at),
             Block::Range(at, term) => among(term.name(), &self.stations, at),
+            Block::Clock(at, term) => among(term.name(), &self.stations, at),
         }
     }
 
@@ -86,6 +91,10 @@ impl Parameter {
             (Subject::Joint(joint), None) => Block::Axis(joint),
             (Subject::Target(target), _) => Block::Target(target),
             (Subject::Instrument(station), _) => Block::Frame(station),
+            (Subject::Clock(station), _) => {
+                let lag = ClockTerm::Lag;
+                Block::Clock(station, if let Parameter::ClockUnknown(it) = self { it.term } else { lag })
+            }
             (Subject::Range(station), _) => {
                 let zero = RangeTerm::Zero;
                 Block::Range(station, if let Parameter::RangeUnknown(it) = self { it.term } else { zero })

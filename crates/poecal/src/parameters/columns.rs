@@ -91,6 +91,8 @@ pub enum Subject {
     Target(usize),
     /// The readings of the instrument of this index.
     Range(usize),
+    /// The clock of the instrument of this index.
+    Clock(usize),
 }
 
 /// Interface of a parameter with at most six unknowns: columns of the Jacobian, second derivatives, retraction.

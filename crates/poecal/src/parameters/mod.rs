@@ -2,6 +2,7 @@
 //! unknowns, and depends on no measurement.
 
 mod block;
+mod clock_unknown;
 mod columns;
 mod device_frame;
 mod other_screw;
@@ -13,6 +14,7 @@ mod value_term;
 
 pub use crate::unit::Unit;
 pub use block::{Block, Names};
+pub use clock_unknown::ClockUnknown;
 pub use columns::{Column, Columns, Subject, Wrench};
 pub use device_frame::DeviceFrame;
 pub use other_screw::{OtherScrew, ScrewModel};
@@ -42,6 +44,8 @@ pub enum Parameter {
     DeviceFrame(DeviceFrame),
     /// Zero or scale of an instrument's distances (1).
     RangeUnknown(RangeUnknown),
+    /// Lag or drift of an instrument's clock (1).
+    ClockUnknown(ClockUnknown),
 }
 
 /// The screws of joints of these kinds as unknowns, in the minimal basis: `ξ ← Ad_exp(η) ξ` without constraints or offsets (lou2009 (16)
@@ -64,6 +68,7 @@ impl Parameter {
             Parameter::TargetFrame(frame) => frame,
             Parameter::DeviceFrame(frame) => frame,
             Parameter::RangeUnknown(range) => range,
+            Parameter::ClockUnknown(clock) => clock,
         }
     }
 
@@ -76,7 +81,8 @@ impl Parameter {
             | Parameter::TargetPlace(_)
             | Parameter::TargetFrame(_)
             | Parameter::DeviceFrame(_)
-            | Parameter::RangeUnknown(_) => None,
+            | Parameter::RangeUnknown(_)
+            | Parameter::ClockUnknown(_) => None,
         }
     }
 
@@ -89,7 +95,8 @@ impl Parameter {
             | Parameter::TargetPlace(_)
             | Parameter::TargetFrame(_)
             | Parameter::DeviceFrame(_)
-            | Parameter::RangeUnknown(_) => None,
+            | Parameter::RangeUnknown(_)
+            | Parameter::ClockUnknown(_) => None,
         }
     }
 
@@ -102,7 +109,8 @@ impl Parameter {
             | Parameter::OtherScrew(_)
             | Parameter::ValueTerm(_)
             | Parameter::DeviceFrame(_)
-            | Parameter::RangeUnknown(_) => None,
+            | Parameter::RangeUnknown(_)
+            | Parameter::ClockUnknown(_) => None,
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Columns of a group of rows as the kernels have them, and their places in a step.
 
 use super::form::Form;
-use crate::estimate::{Passed, RangeTerm, Sight};
+use crate::estimate::{ClockTerm, Passed, RangeTerm, Sight};
 use crate::lanes::Plan;
 use crate::parameters::OtherScrew;
 use crate::robot::Term;
@@ -20,8 +20,17 @@ pub(super) struct ColumnMap {
     pub(super) screws: Vec<(OtherScrew, Vec<f64>)>,
     /// Terms of the range that are unknown, the last of the given columns, with the scale of each.
     pub(super) ranges: Vec<(RangeTerm, f64)>,
-    /// Joint and term of each of the plan's terms, and its column in a step over that of the kernels.
-    pub(super) terms: Vec<(Passed, Term, f64)>,
+    /// Joint and factor of each of the plan's terms, and its column in a step over that of the kernels.
+    pub(super) terms: Vec<(Passed, ValueFactor, f64)>,
+}
+
+/// What the column of a joint's value is multiplied by in each row, for an unknown that moves it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum ValueFactor {
+    /// The function of a term.
+    Term(Term),
+    /// The joint's rate by a clock.
+    Clock(ClockTerm),
 }
 
 /// Place of a column in a step, and its sign: the same unknown may move a target twice, and against its own direction.

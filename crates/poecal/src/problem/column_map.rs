@@ -1,12 +1,12 @@
 //! Columns of one group of rows: the unknowns that move its target, in the order of the kernels.
 
-use super::arranged::{ColumnMap, Place};
+use super::arranged::{ColumnMap, Place, ValueFactor};
 use super::form::Form;
 use super::{Layout, Problem};
-use crate::estimate::{Estimate, Passed, Sight};
+use crate::estimate::{ClockTerm, Estimate, Passed, Sight};
 use crate::lanes::{Along, DevicePlan, JointPlan, Plan, TILE, TermPlan};
 use crate::lie::Freedom;
-use crate::parameters::{OtherScrew, Parameter, Subject, ValueTerm};
+use crate::parameters::{OtherScrew, Parameter, Subject};
 use crate::robot::JointKind;
 
 impl ColumnMap {
@@ -106,7 +106,8 @@ impl ColumnMap {
                 Parameter::ScrewAxis(_)
                 | Parameter::OtherScrew(_)
                 | Parameter::ValueTerm(_)
-                | Parameter::RangeUnknown(_) => continue,
+                | Parameter::RangeUnknown(_)
+                | Parameter::ClockUnknown(_) => continue,
             };
             let turns = freedom.turns();
             self.plan.device = Some(DevicePlan { about, turns });
@@ -122,6 +123,18 @@ impl ColumnMap {
             }
         }
         of_joints.sort_by_key(|(joint, _)| *joint);
+        // A clock moves every joint: a column of each, with one place.
+        let of_clocks: Vec<(ClockTerm, &[(usize, f64)])> = layout
+            .parameters()
+            .filter_map(|(parameter, places)| match parameter {
+                Parameter::ClockUnknown(it)
+                    if it.station == self.sight.station && self.sight.from.is_none() =>
+                {
+                    Some((it.term, places))
+                }
+                _ => None,
+            })
+            .collect();
         for (index, passed) in route.iter().enumerate() {
             self.plan.joints[index].terms.0 = self.plan.terms.len();
             let first = of_joints.partition_point(|(joint, _)| *joint < passed.joint);
@@ -129,13 +142,19 @@ impl ColumnMap {
             for &(_, (parameter, places)) in own {
                 match parameter {
                     Parameter::ScrewAxis(_) => self.add_axis(index, places),
-                    Parameter::ValueTerm(term) => self.add_term(index, *passed, term, places),
+                    Parameter::ValueTerm(term) => {
+                        self.add_term(index, *passed, ValueFactor::Term(term.term), places);
+                    }
                     Parameter::OtherScrew(screw) => self.add_given(screw, places),
                     Parameter::DeviceFrame(_)
                     | Parameter::TargetFrame(_)
                     | Parameter::TargetPlace(_)
-                    | Parameter::RangeUnknown(_) => {}
+                    | Parameter::RangeUnknown(_)
+                    | Parameter::ClockUnknown(_) => {}
                 }
+            }
+            for &(term, places) in &of_clocks {
+                self.add_term(index, *passed, ValueFactor::Clock(term), places);
             }
         }
     }
@@ -160,7 +179,7 @@ impl ColumnMap {
         }
     }
 
-    fn add_term(&mut self, index: usize, passed: Passed, term: &ValueTerm, places: &[(usize, f64)]) {
+    fn add_term(&mut self, index: usize, passed: Passed, factor: ValueFactor, places: &[(usize, f64)]) {
         let shift = self.shift_places.len();
         let joint = &mut self.plan.joints[index];
         joint.terms.1 += 1;
@@ -168,7 +187,7 @@ impl ColumnMap {
         self.plan.terms.push(TermPlan { shift, turn });
         // The kernels count a radian as a length, and a metre as one.
         let own = if turn.is_some() { self.plan.length_m } else { 1.0 };
-        self.terms.extend(places.iter().map(|&(_, scale)| (passed, term.term, own / scale)));
+        self.terms.extend(places.iter().map(|&(_, scale)| (passed, factor, own / scale)));
         if turn.is_some() {
             // The direction of the rotation, which no unknown moves along.
             self.shift_places.push(Place::NONE);
@@ -203,7 +222,8 @@ impl ColumnMap {
                 | Parameter::ScrewAxis(_)
                 | Parameter::OtherScrew(_)
                 | Parameter::ValueTerm(_)
-                | Parameter::RangeUnknown(_) => Freedom::PLACE,
+                | Parameter::RangeUnknown(_)
+                | Parameter::ClockUnknown(_) => Freedom::PLACE,
             };
             let turns = freedom.turns() && self.plan.framed;
             self.plan.place = Some(self.shift_places.len());
@@ -228,8 +248,8 @@ fn plan_without_unknowns(problem: &Problem<'_>, state: &Estimate, sight: Sight, 
     Plan {
         joints: joints.collect(),
         terms: Vec::new(),
-        in_order: !state.has_terms()
-            && !problem.layout.has_terms()
+        in_order: !state.moves_values()
+            && !problem.layout.moves_values()
             && route.len() == state.kinds().len()
             && route.iter().enumerate().all(|(index, passed)| passed.joint == index && !passed.backward),
         device: None,

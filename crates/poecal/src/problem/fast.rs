@@ -1,11 +1,11 @@
 //! The hot path: rows grouped by instrument, target and form, packed side by side, and summed by [`crate::lanes`].
 
 use super::Problem;
-use super::arranged::ColumnMap;
+use super::arranged::{ColumnMap, ValueFactor};
 use super::groups::{Accumulate, Fast, Group, SecondDifference};
 use super::row_group::{RowGroup, Whitening};
 use super::scatter::GramScatter;
-use crate::estimate::{Chain, Estimate, Linkage, Sight};
+use crate::estimate::{Chain, Estimate, Linkage, Passed, Sight};
 use crate::lanes::{self, Arm, FixedMotion, PackedRows, RowData, Shape, ShapedRow, SimdLevel, Totals, WIDTH};
 use crate::lie::Pose;
 use crate::measurement::{Kernel, NUMBERS, Noise};
@@ -54,7 +54,8 @@ impl Fast {
         for group in of_rows {
             let mut arranged = ColumnMap::new(problem, state, group.sight, group.form);
             arranged.plan.ratio = group.ratio;
-            let keeps = problem.rows.len() <= KEPT && !(state.has_terms() || problem.layout.has_terms());
+            let keeps =
+                problem.rows.len() <= KEPT && !(state.moves_values() || problem.layout.moves_values());
             let scatter = GramScatter::new(&arranged, problem.layout.dim());
             groups.push((Group { arranged, rows: group.rows, keeps, packed: Vec::new() }, scatter));
         }
@@ -238,8 +239,11 @@ pub(super) fn pack(
     let usual = (noise, Whitening::new(noise));
     let route = linkage.tree().route(*sight);
     // Looked up once for all rows.
-    let places: Vec<Option<usize>> =
-        terms.iter().map(|(passed, term, _)| session.packed.place_of(passed.joint, *term)).collect();
+    let place = |(passed, factor, _): &(Passed, ValueFactor, f64)| match factor {
+        ValueFactor::Term(term) => session.packed.place_of(passed.joint, *term),
+        ValueFactor::Clock(_) => None,
+    };
+    let places: Vec<Option<usize>> = terms.iter().map(place).collect();
     let is_pose = plan.is_pose();
     packed.pack(
         plan,
@@ -247,15 +251,23 @@ pub(super) fn pack(
         #[inline(always)]
         |at| row_data(problem, usual, rows[at] as usize, is_pose),
         |at, joint| {
-            let from = session.observation(rows[at]).from;
+            let sight = Sight::from(session.observation(rows[at]));
             let (_, first, second) =
-                linkage.joint_value(route[joint], session.packed, rows[at] as usize, from);
+                linkage.joint_value(route[joint], session.packed, rows[at] as usize, sight);
             (first, second)
         },
         |at, term| {
-            let (place, (passed, term, scale)) = (places[term], terms[term]);
-            let from = session.observation(rows[at]).from.filter(|_| passed.backward);
-            let basis = scale * session.packed.basis_at(rows[at] as usize, from, place, (passed.joint, term));
+            let (place, (passed, factor, scale), row) = (places[term], terms[term], rows[at] as usize);
+            let basis = scale
+                * match factor {
+                    ValueFactor::Term(term) => {
+                        let from = session.observation(rows[at]).from.filter(|_| passed.backward);
+                        session.packed.basis_at(row, from, place, (passed.joint, term))
+                    }
+                    ValueFactor::Clock(term) => session.packed.motion(row).map_or(0.0, |(rates, time_s)| {
+                        term.factor(time_s) * rates.get(passed.joint).copied().unwrap_or_default()
+                    }),
+                };
             if passed.backward { -basis } else { basis }
         },
     );

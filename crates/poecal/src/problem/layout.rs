@@ -65,7 +65,7 @@ impl Layout {
     #[must_use]
     pub(crate) fn is_minimal(&self) -> bool {
         self.parameters.iter().all(|parameter| match parameter {
-            Parameter::OtherScrew(_) | Parameter::ValueTerm(_) => false,
+            Parameter::OtherScrew(_) | Parameter::ValueTerm(_) | Parameter::ClockUnknown(_) => false,
             Parameter::ScrewAxis(_)
             | Parameter::TargetPlace(_)
             | Parameter::TargetFrame(_)
@@ -74,9 +74,10 @@ impl Layout {
         })
     }
 
-    /// Whether a term of a joint's value is unknown.
-    pub(crate) fn has_terms(&self) -> bool {
-        self.parameters.iter().any(|parameter| matches!(parameter, Parameter::ValueTerm(_)))
+    /// Whether a term of a joint's value or a clock is unknown, so that joint values depend on the state.
+    pub(crate) fn moves_values(&self) -> bool {
+        let moves = |it: &Parameter| matches!(it, Parameter::ValueTerm(_) | Parameter::ClockUnknown(_));
+        self.parameters.iter().any(moves)
     }
 
     /// Whether zero or scale of an instrument's distances are unknown.
@@ -139,7 +140,7 @@ impl Layout {
                     Subject::Joint(joint) => {
                         1 + chain.joints.iter().position(|view| view.joint == joint).unwrap_or(joint)
                     }
-                    Subject::Target(_) | Subject::Range(_) => usize::MAX,
+                    Subject::Target(_) | Subject::Range(_) | Subject::Clock(_) => usize::MAX,
                 };
                 (place, parameter, places)
             })

@@ -4,10 +4,10 @@ use nalgebra::{SVector, Vector3, Vector6};
 
 use super::Layout;
 use super::deviations::{Deviation, Deviations, Nominal, NominalTarget, OwnMotions};
-use crate::estimate::{Estimate, Session, delivered};
+use crate::estimate::{ClockTerm, Estimate, Session, delivered};
 use crate::lie::{Pose, Twist};
 use crate::linalg::Factor6;
-use crate::parameters::ValueTerm;
+use crate::parameters::{ClockUnknown, Parameter, ValueTerm};
 use crate::robot::{JointTerm, Robot, Term, Tolerance};
 use crate::solve::Normal;
 
@@ -31,6 +31,8 @@ pub struct Prior {
     axes: Vec<Nominal>,
     targets: Vec<NominalTarget>,
     base_free: bool,
+    /// Drifts of the clocks of stations by which readings were found.
+    drifts: Vec<f64>,
     terms: Vec<JointTerm>,
     term_priors: Vec<TermPrior>,
     /// Whether terms have a prior.
@@ -68,7 +70,9 @@ impl Prior {
                 Some(NominalTarget { target, place, sigma_m })
             })
             .collect();
-        Prior { targets, ..Prior::new(robot, common, session.base_free()) }
+        let drift = |station: usize| data.moving.clock(station).map_or(0.0, |it| it.drift);
+        let drifts = (0..data.station_count()).map(drift).collect();
+        Prior { targets, drifts, ..Prior::new(robot, common, session.base_free()) }
     }
 
     /// The prior of a robot's axes alone; a joint's own tolerance comes before the common one. `base_free` if the device frame is unknown.
@@ -89,6 +93,7 @@ impl Prior {
             axes: axes.collect(),
             targets: Vec::new(),
             base_free,
+            drifts: Vec::new(),
             terms: robot.terms.clone(),
             term_priors: Vec::new(),
             terms_count: true,
@@ -177,6 +182,25 @@ impl Prior {
         }
     }
 
+    /// Adds `weight` times `½ (d / σ)²` of the drifts of clocks that are unknown.
+    fn add_clocks(&self, estimate: &Estimate, layout: &Layout, weight: f64, normal: &mut Normal) {
+        let (n, sigma) = (layout.dim(), ClockTerm::DRIFT_DEVIATION);
+        for (parameter, places) in layout.parameters() {
+            let Parameter::ClockUnknown(ClockUnknown { station, term: ClockTerm::Drift }) = *parameter else {
+                continue;
+            };
+            let known = self.drifts.get(station).copied().unwrap_or_default();
+            let value = (known + estimate.clock(station).drift) / sigma;
+            normal.cost += 0.5 * weight * value * value;
+            for &(place, scale) in places {
+                normal.gradient[place] -= weight * value / (sigma * scale);
+                if let Some(information) = normal.gram.get_mut(place * n + place) {
+                    *information += weight / (sigma * scale).powi(2);
+                }
+            }
+        }
+    }
+
     /// Adds `weight` times the prior to the normal information of a layout's unknowns: to the upper triangle of `JᵀJ` (unless that is
     /// empty), to the gradient and to the cost, with the base eliminated (theory.md §6 (27a)).
     pub fn add(&self, estimate: &Estimate, layout: &Layout, weight: f64, normal: &mut Normal) {
@@ -185,6 +209,7 @@ impl Prior {
         if self.terms_count {
             self.add_terms(estimate, layout, weight, normal);
         }
+        self.add_clocks(estimate, layout, weight, normal);
         // Products of each unknown's column with those of the base.
         let by_base = deviations.by_base.as_ref().filter(|_| !normal.gram.is_empty());
         let mut shared: Vec<(usize, Vector6<f64>)> = Vec::new();

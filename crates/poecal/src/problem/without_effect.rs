@@ -130,7 +130,8 @@ impl Layout {
                 | Parameter::OtherScrew(_)
                 | Parameter::ValueTerm(_)
                 | Parameter::DeviceFrame(_)
-                | Parameter::RangeUnknown(_) => None,
+                | Parameter::RangeUnknown(_)
+                | Parameter::ClockUnknown(_) => None,
             });
             let freedom = own.or(freedoms.get(target).copied()).unwrap_or(Freedom::PLACE);
             add(Subject::Target(target), body, &|twist| seen_of(freedom, &local(frame, twist)));

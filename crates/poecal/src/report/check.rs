@@ -364,7 +364,7 @@ fn range_words(column: &ColumnUnderstanding) -> String {
     let (factor, unit) = match quantity {
         Some(Unit::Metre) => (1e3, " mm"),
         Some(Unit::Radian) => (1f64.to_degrees(), " deg"),
-        Some(Unit::One) | None => (1.0, ""),
+        Some(Unit::One | Unit::Second) | None => (1.0, ""),
     };
     let (min, max) = (short(min * factor, 3), short(max * factor, 3));
     if min == max { format!("{min}{unit}") } else { format!("{min} to {max}{unit}") }

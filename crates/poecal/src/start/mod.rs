@@ -15,12 +15,15 @@ mod stations;
 pub(crate) use averaging::{mean_rotation, rotation_maximising};
 pub use faces::{faces_on_known_planes, settle_faces};
 pub use pairing::{
-    Agreement, Aligned, Channels as StreamChannels, Lagged, Order, Pair, Span, Stand, Stream, Unpaired,
+    Agreement, Aligned, AtLag, Channels as StreamChannels, InMotion, JointStream, Lagged, Motion, MovingRow,
+    NoLag, Order, Pair, Span, Stand, Stream, Unpaired, smoothed,
 };
 pub(crate) use pictures::predicted_pose;
 pub use pictures::{SettledPictures, settle_pictures};
 pub use registration::{Registration, register_again};
-pub(crate) use registration::{device_parameter, free_parameters, range_parameters, target_parameters};
+pub(crate) use registration::{
+    clock_parameters, device_parameter, free_parameters, range_parameters, target_parameters,
+};
 pub use robust::register_robustly;
 pub use stations::register;
 pub(crate) use stations::register_roughly;

@@ -1,9 +1,9 @@
 //! Registration: device frame and targets are fitted, with fixed screws.
 
-use crate::estimate::{Estimate, RangeTerm, Session};
+use crate::estimate::{ClockTerm, Estimate, RangeTerm, Session};
 use crate::lie::Freedom;
 use crate::measurement::{Dataset, Noise};
-use crate::parameters::{DeviceFrame, Parameter, RangeUnknown, TargetFrame, TargetPlace};
+use crate::parameters::{ClockUnknown, DeviceFrame, Parameter, RangeUnknown, TargetFrame, TargetPlace};
 use crate::problem::{Prior, Problem};
 use crate::solve::{Options, minimize};
 
@@ -75,6 +75,7 @@ pub(crate) fn free_parameters(problem: &Registration<'_>, rows: &[u32]) -> Vec<P
         let stations = stations.map(|station| device_parameter(data, station, rows));
         free.extend(stations);
         free.extend(range_parameters(&problem.session, rows).map(Parameter::RangeUnknown));
+        free.extend(clock_parameters(&problem.session, rows).map(Parameter::ClockUnknown));
     }
     if problem.targets_free {
         free.extend(target_parameters(&problem.session, problem.rows));
@@ -103,6 +104,21 @@ pub(crate) fn range_parameters(session: &Session<'_>, rows: &[u32]) -> impl Iter
         let terms = [(zero, RangeTerm::Zero), (named(station, RangeTerm::Scale), RangeTerm::Scale)];
         let terms = terms.into_iter().filter(|(is_unknown, _)| *is_unknown);
         terms.map(move |(_, term)| RangeUnknown { station, term })
+    })
+}
+
+/// The unknown lags and drifts of clocks in these rows: of instruments that measured some of them in motion, but for those that are held.
+pub(crate) fn clock_parameters(session: &Session<'_>, rows: &[u32]) -> impl Iterator<Item = ClockUnknown> {
+    let (data, unknowns) = (session.data, session.unknowns);
+    let is_seen = |station: usize| {
+        let mut own = rows.iter().filter_map(|&row| data.observations.get(row as usize));
+        data.moving.clock(station).is_some() && own.any(|it| it.station == station && it.moving.is_some())
+    };
+    let stations: Vec<usize> = (0..data.station_count()).filter(|&station| is_seen(station)).collect();
+    stations.into_iter().flat_map(move |station| {
+        let terms =
+            ClockTerm::ALL.into_iter().filter(move |&term| !unknowns.held_clocks.contains(&(station, term)));
+        terms.map(move |term| ClockUnknown { station, term })
     })
 }
 

@@ -4,7 +4,7 @@ use std::cmp::Reverse;
 
 use super::one_station::{at_one_station, roughly_at_one_station};
 use super::registration::{Registration, polish};
-use crate::estimate::{Estimate, Session, Unknowns};
+use crate::estimate::{ClockTerm, Estimate, Session, Unknowns};
 use crate::lie::Freedom;
 
 /// Rows that determine a device frame if the targets are known: three points.
@@ -57,7 +57,10 @@ fn one_by_one(problem: &Registration<'_>, start: &Estimate) -> Estimate {
         let rows = if by_known { of_known } else { rows };
         let device_free = unknowns.moves_frame(station);
         let ranges = unknowns.ranges.iter().filter(|(at, _)| *at == station).map(|&(_, term)| (0, term));
-        let of_one = Unknowns { held_frames: Vec::new(), ranges: ranges.collect(), ..unknowns.clone() };
+        // All clocks are found together, once the frames are.
+        let held_clocks = ClockTerm::ALL.map(|term| (0, term)).to_vec();
+        let of_one =
+            Unknowns { held_frames: Vec::new(), ranges: ranges.collect(), held_clocks, ..unknowns.clone() };
         let session =
             Session { data: &alone, noise_ratios: &[], device_free, unknowns: &of_one, ..problem.session };
         let noise = problem.session.usual_noise(station, problem.noise);

@@ -110,6 +110,6 @@ fn of_pictures(view: &View<'_>, quantity: Quantity) -> Option<f64> {
     match quantity.unit() {
         Unit::Metre => Some((shift_m * shift_m + carried).sqrt()),
         Unit::Radian => Some(turn_rad),
-        Unit::One => None,
+        Unit::One | Unit::Second => None,
     }
 }

@@ -106,9 +106,9 @@ impl Uncertainty {
                     frame.target = target;
                     Parameter::TargetFrame(frame)
                 }),
-                other @ (Parameter::DeviceFrame(_) | Parameter::RangeUnknown(_)) => {
-                    (!is_refitted(&other)).then_some(other)
-                }
+                other @ (Parameter::DeviceFrame(_)
+                | Parameter::RangeUnknown(_)
+                | Parameter::ClockUnknown(_)) => (!is_refitted(&other)).then_some(other),
                 other @ (Parameter::ScrewAxis(_) | Parameter::OtherScrew(_) | Parameter::ValueTerm(_)) => {
                     Some(other)
                 }

@@ -293,13 +293,13 @@ pub fn remainder(view: &View<'_>, normal: &Normal, layout: &Layout) -> Remainder
         let of_all = |all: &ResidualSums| own.groups as f64 / all.groups.max(1) as f64;
         let determined = match quantity.unit() {
             Unit::Metre => (in_sample - by_rotations) * of_all(&lengths),
-            Unit::Radian | Unit::One => by_rotations * of_all(&angles),
+            Unit::Radian | Unit::One | Unit::Second => by_rotations * of_all(&angles),
         };
         let part = own.part(determined, view.noise_is_stated[quantity]);
         let rounded = rounding.as_ref().map_or(0.0, |it| match quantity.unit() {
             Unit::Metre => it.place_m2 / 3.0,
             Unit::Radian => it.turn_rad2 / 3.0,
-            Unit::One => 0.0,
+            Unit::One | Unit::Second => 0.0,
         });
         Part { rounded, ..part }
     });

@@ -5,11 +5,13 @@ use crate::largest::larger;
 use crate::reference;
 use nalgebra::Vector3;
 use poecal::analysis::{Setup, identifiability};
-use poecal::estimate::{Chain, Estimate, Linkage, Packed, Range, RangeTerm, Session, delivered};
+use poecal::estimate::{
+    Chain, ClockChange, ClockTerm, Estimate, Linkage, Packed, Range, RangeTerm, Session, delivered,
+};
 use poecal::lie::{Freedom, Pose, Screw, rotation};
 use poecal::measurement::{Dataset, Measurement, NUMBERS, Noise, Observation};
 use poecal::parameters::{
-    DeviceFrame, Parameter, RangeUnknown, TargetFrame, TargetPlace, ValueTerm, screw_axes,
+    ClockUnknown, DeviceFrame, Parameter, RangeUnknown, TargetFrame, TargetPlace, ValueTerm, screw_axes,
 };
 use poecal::problem::Problem;
 use poecal::robot::{
@@ -334,6 +336,37 @@ fn sensitivities_of_what_joints_do_are_those_of_differences() {
         let is_give = |joint: usize| made.robot.joints[joint].give_of.is_some();
         free.retain(|it| !matches!(it, Parameter::ScrewAxis(axis) if is_give(axis.joint)));
         compare(&made, &made.estimate, free, cell.name);
+    }
+}
+
+/// The same of clocks that are off, of rows that were measured in motion.
+#[test]
+fn sensitivities_of_clocks_are_those_of_differences() {
+    for cell in cells() {
+        let mut made = Measured::new(&cell, 24, 0.05);
+        let mut generator = ChaCha8Rng::seed_from_u64(78);
+        let width = made.data.reading_names().len();
+        for row in 0..made.data.len() {
+            let rates: Vec<f64> = (0..width).map(|_| 2.0 * random::uniform(&mut generator) - 1.0).collect();
+            // Every fifth row was measured at rest.
+            if row % 5 != 4 {
+                made.data.state_motion(row, &rates, row as f64 / 24.0 - 0.5);
+            }
+        }
+        made.packed = Packed::of(&made.robot, &made.data);
+        let mut estimate = made.estimate.clone();
+        let stations = 0..made.data.station_count();
+        estimate.clocks = stations
+            .clone()
+            .map(|at| ClockChange { lag_s: 0.02 + at as f64 / 100.0, drift: -0.03 })
+            .collect();
+        *estimate.coefficient_mut(0, Term::RATIO) = 0.02;
+        let mut free = with_terms(&made, [(0, Term::RATIO)].into_iter());
+        let clocks = stations.flat_map(|station| ClockTerm::ALL.map(|term| ClockUnknown { station, term }));
+        free.extend(clocks.map(Parameter::ClockUnknown));
+        // Of an instrument that sees in two configurations, no clock moves anything.
+        free.retain(|it| !matches!(it, Parameter::ClockUnknown(_)) || cell.sees.iter().all(|it| !it.apart));
+        compare(&made, &estimate, free, cell.name);
     }
 }
 

@@ -151,7 +151,8 @@ impl<'a> Gatherer<'a> {
             | Parameter::TargetPlace(_)
             | Parameter::TargetFrame(_)
             | Parameter::DeviceFrame(_)
-            | Parameter::RangeUnknown(_) => None,
+            | Parameter::RangeUnknown(_)
+            | Parameter::ClockUnknown(_) => None,
         });
         Gatherer { model, session, estimate, uncertainty, deviations, places: terms.collect() }
     }

@@ -66,7 +66,7 @@ impl Columns {
                 Subject::Instrument(station) if Some(station) == held_station => {
                     held.extend(places.iter().map(at));
                 }
-                Subject::Instrument(_) | Subject::Range(_) => {
+                Subject::Instrument(_) | Subject::Range(_) | Subject::Clock(_) => {
                     devices.extend(known.len()..known.len() + places.len());
                     known.extend(places.iter().map(at));
                 }

@@ -38,6 +38,7 @@ pub(super) fn estimate(model: &CorrectionModel, found: &Estimate, data: &Dataset
     let mut estimate = Estimate::on(&model.robot, tree, targets, found.device_from_base);
     estimate.further_devices.clone_from(&found.further_devices);
     estimate.ranges.clone_from(&found.ranges);
+    estimate.clocks.clone_from(&found.clocks);
     for (&place, frame) in model.places.iter().zip(&found.base_from_axis) {
         estimate.base_from_axis[place] = *frame;
     }

@@ -64,7 +64,9 @@ impl Kept {
         for (parameter, places) in found.layout.parameters() {
             match parameter {
                 Parameter::DeviceFrame(frame) if frame.station == 0 => about = Some(frame.about.into()),
-                Parameter::DeviceFrame(_) | Parameter::RangeUnknown(_) => continue,
+                Parameter::DeviceFrame(_) | Parameter::RangeUnknown(_) | Parameter::ClockUnknown(_) => {
+                    continue;
+                }
                 Parameter::ScrewAxis(_)
                 | Parameter::OtherScrew(_)
                 | Parameter::ValueTerm(_)

@@ -134,7 +134,7 @@ impl<K: Keys, T: JsonSchema> JsonSchema for Keyed<K, T> {
             let unit = match quantity.unit() {
                 Unit::Metre => "millimetres",
                 Unit::Radian => "degrees",
-                Unit::One => "without unit",
+                Unit::One | Unit::Second => "without unit",
             };
             let words = K::WORDS.replace("{name}", quantity.name()).replace("{unit}", unit);
             let null = if is_null { format!("; {}", K::NULL_WORDS) } else { String::new() };

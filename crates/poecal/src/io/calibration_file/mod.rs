@@ -232,7 +232,10 @@ impl BlocksEntry {
                 }
                 Block::Term(joint, term) if unknowns.terms.contains(&(joint, term)) => true,
                 Block::Range(station, term) if unknowns.ranges.contains(&(station, term)) => true,
-                Block::Term(..) | Block::Range(..) => continue,
+                Block::Clock(station, term) if data.moving.clock(station).is_some() => {
+                    !unknowns.held_clocks.contains(&(station, term))
+                }
+                Block::Term(..) | Block::Range(..) | Block::Clock(..) => continue,
             };
             if is_free { &mut free } else { &mut held }.push(names.of(block));
         }

@@ -266,7 +266,7 @@ fn check_size(value: f64, row: &Row<'_>, input: &Input) -> Result<()> {
     }
     let text = row.cells.get(column).map_or("", |cell| cell.raw);
     let si = match input.unit.of() {
-        Unit::One => String::new(),
+        Unit::One | Unit::Second => String::new(),
         quantity @ (Unit::Metre | Unit::Radian) => format!(" {}", NamedUnit::from(quantity).symbol()),
     };
     let message = format!(

@@ -29,6 +29,8 @@ pub(super) struct JointRows {
     pub(super) is_without_unit: bool,
     /// Of each reading of a row, whether it is an angle.
     pub(super) turns: Vec<bool>,
+    /// The time of each, seconds, NaN where it has none.
+    pub(super) times: Vec<f64>,
     /// When each begins and ends, seconds, where they are stands of a stream.
     pub(super) spans: Option<Vec<Span>>,
     pub(super) controller: Option<Controller>,
@@ -178,6 +180,7 @@ impl Pairing<'_> {
             Join::Name => ("by name", "name"),
             Join::Rows => ("row by row", "rows"),
             Join::Time => ("at the times of their stands", "time"),
+            Join::Motion => ("in motion", "motion"),
         };
         let found = self.rows.agreement(pairs);
         let mm = |metres: f64| format!("{:.3} mm", 1e3 * metres);

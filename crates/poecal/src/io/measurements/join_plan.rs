@@ -13,7 +13,7 @@ use super::text::Blocks;
 use super::{Frames, ReadOptions};
 use crate::error::{ErrorKind, Result, shown};
 use crate::io::disk::is_file;
-use crate::measurement::Measurement;
+use crate::measurement::{Clock, Measurement};
 use crate::robot::{Controller, ReadingKind, Robot};
 
 /// What a file has.
@@ -33,8 +33,18 @@ pub(super) struct ReadingsByLine {
     pub(super) lines: BTreeMap<usize, Vec<f64>>,
     /// What was measured on an average of a line's stand, where lines are those of a stream.
     pub(super) means: BTreeMap<usize, Vec<Measurement>>,
+    /// How fast they changed, and when, of lines that were measured in motion.
+    pub(super) moving: Option<MotionByLine>,
     /// How they are made of columns.
     pub(super) controller: Option<Controller>,
+}
+
+/// Lines that were measured in motion: rates of their readings (rad/s, m/s), and their times from the middle of all, seconds.
+#[derive(Clone, Debug)]
+pub(super) struct MotionByLine {
+    pub(super) rows: BTreeMap<usize, (Vec<f64>, f64)>,
+    /// The clock of the instrument.
+    pub(super) clock: Clock,
 }
 
 /// Files of which some have the joint readings of others.

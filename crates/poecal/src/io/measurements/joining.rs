@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use super::inputs::InputReader;
-use super::join_pairs::{JointRows, Pairing};
+use super::join_motion::in_motion;
+use super::join_pairs::{Joined, JointRows, Pairing};
 use super::join_plan::{Part, Plan, Planned};
 use super::joints::rows_of;
 use super::layout::ColumnLayout;
@@ -87,7 +88,6 @@ impl<'a> Reader<'a> {
             pose: understanding::pose_word(layout.pose),
             ignored: layout.ignored.iter().map(|(name, _)| name.clone()).collect(),
         });
-        let times = table_rows.times;
         let turning = layout.inputs.iter().filter(|it| it.unit.of() == Unit::Radian);
         let rows = JointRows {
             path: path.to_path_buf(),
@@ -98,12 +98,14 @@ impl<'a> Reader<'a> {
             is_without_unit: turning.clone().count() > 0
                 && turning.clone().all(|it| it.unit_from == UnitSource::Si),
             turns: layout.inputs.iter().map(|it| it.unit.of() == Unit::Radian).collect(),
+            times: table_rows.times,
             spans: None,
             controller: layout.controller,
         };
         // A stream has no names of rows.
-        let is_listed = !rows.ids.is_empty() || matches!(self.options.join, Some(Join::Rows | Join::Name));
-        let Some(stands) = (if is_listed { None } else { stands_of_joints(&rows, &times) }) else {
+        let is_listed =
+            !rows.ids.is_empty() || matches!(self.options.join, Some(Join::Rows | Join::Name | Join::Motion));
+        let Some(stands) = (if is_listed { None } else { stands_of_joints(&rows, &rows.times) }) else {
             return Ok(rows);
         };
         if stands.lines.len() < FEWEST_STANDS {
@@ -119,8 +121,22 @@ impl<'a> Reader<'a> {
 
     /// Reads a file of measurements alone, with the readings of another.
     fn measured(&mut self, planned: &'a Planned<'_>, joints: &JointRows) -> Result<()> {
-        let (path, unread) = (planned.path, &planned.map);
+        let path = planned.path;
         let (data, times) = self.without_readings(planned)?;
+        if self.options.join == Some(Join::Motion) {
+            let joined =
+                |joints: &JointRows| in_motion(joints, (path, &data, &times), self.robot, self.options.lag);
+            let found = match joined(joints) {
+                Err(error) if joints.is_without_unit => {
+                    let mut found = joined(&joints.in_degrees()).map_err(|_| error)?;
+                    found.warnings.push(took_degrees(&joints.path, "as radians they fit no measurements"));
+                    self.found.is_in_degrees = true;
+                    found
+                }
+                found => found?,
+            };
+            return self.again(planned, found);
+        }
         let is_by_rows = matches!(self.options.join, Some(Join::Rows | Join::Name));
         let stands = if is_by_rows || !joints.ids.is_empty() && !data.ids.iter().all(String::is_empty) {
             None
@@ -157,10 +173,15 @@ impl<'a> Reader<'a> {
             ));
             found.readings.means = stands.means;
         }
+        self.again(planned, found)
+    }
+
+    /// Reads a file of measurements again, with the readings of each line.
+    fn again(&mut self, planned: &'a Planned<'_>, found: Joined) -> Result<()> {
+        let (path, unread) = (planned.path, &planned.map);
         self.found.join = Some(found.how);
         self.found.notes.extend(found.notes);
         self.found.warnings.extend(found.warnings);
-        // The same again, with the readings of each line.
         let usual = std::mem::replace(&mut self.map, unread);
         self.readings = Some(found.readings);
         let blocks = planned.blocks(self.opening(), MEASURED);

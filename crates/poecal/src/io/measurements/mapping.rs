@@ -84,7 +84,7 @@ impl UnitDefaults {
         match quantity {
             Unit::Metre => self.length,
             Unit::Radian => self.angle,
-            Unit::One => None,
+            Unit::One | Unit::Second => None,
         }
     }
 }

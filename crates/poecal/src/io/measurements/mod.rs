@@ -24,6 +24,7 @@ mod imported;
 mod inputs;
 mod instrument_noise;
 mod intrinsics;
+mod join_motion;
 mod join_pairs;
 mod join_plan;
 mod join_words;
@@ -201,6 +202,8 @@ pub enum Join {
     Rows,
     /// By their times, each file with a clock of its own: at the stands of the robot.
     Time,
+    /// By their times, each file with a clock of its own, while the robot moves: lag and drift of the clocks are unknowns of the fit.
+    Motion,
 }
 
 /// The lag of two clocks: the time of measurements less that of joint readings.

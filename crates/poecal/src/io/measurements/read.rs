@@ -28,7 +28,7 @@ use super::wrong_boards::refuse_wrong_boards;
 use super::{FitWhere, Frames, MeasurementFile, ReadOptions};
 use crate::camera::{Board, Camera};
 use crate::error::{ErrorKind, Result, shown};
-use crate::measurement::{Dataset, Observation};
+use crate::measurement::{Clock, Dataset, Observation};
 use crate::robot::{Controller, Robot};
 use crate::start::{settle_faces, settle_pictures};
 use crate::text::visible;
@@ -219,6 +219,7 @@ impl<'a> Reader<'a> {
         }
         let (watch, rows, lost) = self.rows(&mut table, &layout, &mut inputs)?;
         self.take_means(first);
+        self.take_motion(path, first)?;
         self.refuse_single_rows(path)?;
         self.found.sha256.extend(table.sha256().map(|sha256| (path.display().to_string(), sha256)));
         let refuse = |message| Err(ErrorKind::Measurement.error(message).at_line(path, table.header.line));
@@ -298,6 +299,29 @@ impl<'a> Reader<'a> {
                 row.measurement = *mean;
             }
         }
+    }
+
+    /// Says of rows that were measured in motion how fast their readings changed, and by which clock.
+    fn take_motion(&mut self, path: &Path, first: usize) -> Result<()> {
+        let Some(motion) = self.readings.as_ref().and_then(|it| it.moving.as_ref()) else { return Ok(()) };
+        let data = &mut self.found.data;
+        for row in first..data.len() {
+            let Some(Observation { station, source, .. }) = data.observations.get(row).copied() else {
+                continue;
+            };
+            let Some((rates, time_s)) = motion.rows.get(&(source.line as usize)) else { continue };
+            let clock = Clock { station, ..motion.clock };
+            match data.moving.clock(station) {
+                None => data.moving.clocks.push(clock),
+                Some(known) if *known == clock => {}
+                Some(_) => {
+                    let message = "found a second recording in motion by one instrument, expected one: --frames per-file gives each file an instrument of its own";
+                    return Err(ErrorKind::Measurement.error(message).in_file(path));
+                }
+            }
+            data.state_motion(row, rates, *time_s);
+        }
+        Ok(())
     }
 
     /// Refuses a pair of which one row is missing.

@@ -217,7 +217,7 @@ impl OneJoint<'_> {
                 // Limits may be narrow or wrong: only large readings count.
                 let (large, spans) = match quantity {
                     Unit::Metre => (5.0, 5.0),
-                    Unit::Radian | Unit::One => (std::f64::consts::TAU, 0.5),
+                    Unit::Radian | Unit::One | Unit::Second => (std::f64::consts::TAU, 0.5),
                 };
                 extremes
                     .into_iter()

@@ -68,7 +68,7 @@ impl From<Unit> for NamedUnit {
         match unit {
             Unit::Metre => METRE,
             Unit::Radian => RADIAN,
-            Unit::One => ONE,
+            Unit::One | Unit::Second => ONE,
         }
     }
 }
@@ -77,7 +77,7 @@ fn words(unit: Unit) -> &'static str {
     match unit {
         Unit::Metre => "a length",
         Unit::Radian => "an angle",
-        Unit::One => "a number without unit",
+        Unit::One | Unit::Second => "a number without unit",
     }
 }
 

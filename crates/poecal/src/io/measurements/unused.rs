@@ -17,7 +17,7 @@ impl Reader<'_> {
             (!options.topics.is_empty(), is_of(&[BAG]), "--topic", "a ROS 2 bag"),
             (
                 options.lag.is_some(),
-                self.found.join == Some(Join::Time),
+                matches!(self.found.join, Some(Join::Time | Join::Motion)),
                 "--lag",
                 "two recordings that are joined by their times",
             ),

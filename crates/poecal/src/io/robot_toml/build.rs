@@ -47,7 +47,7 @@ pub(super) fn robot(context: &Context, file: &File) -> Result<Robot> {
             let found = match table.kind.unit_of(term) {
                 Unit::Metre => context.length.to_metres(*value.get_ref()),
                 Unit::Radian => context.angle.to_radians(*value.get_ref()),
-                Unit::One => *value.get_ref(),
+                Unit::One | Unit::Second => *value.get_ref(),
             };
             let of = format!("{term} of joint `{}`", table.name());
             if term.needs_gravity() || !term.is_of(file.joint.len(), 0) {

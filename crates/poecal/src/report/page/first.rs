@@ -27,7 +27,7 @@ pub(super) fn error_words(quantity: Quantity, of: &str) -> String {
     let unit = match quantity.unit() {
         Unit::Metre => ", mm",
         Unit::Radian => ", degrees",
-        Unit::One => "",
+        Unit::One | Unit::Second => "",
     };
     let of = if of.is_empty() { String::new() } else { format!(" {of}") };
     capital(&format!("{} error{of}{unit}", quantity.name()))

@@ -62,7 +62,7 @@ pub(super) fn sign(unit: Unit) -> &'static str {
     match unit {
         Unit::Metre => "mm",
         Unit::Radian => "°",
-        Unit::One => "",
+        Unit::One | Unit::Second => "",
     }
 }
 
@@ -71,7 +71,7 @@ pub(super) fn spaced(unit: Unit) -> &'static str {
     match unit {
         Unit::Metre => " mm",
         Unit::Radian => "°",
-        Unit::One => "",
+        Unit::One | Unit::Second => "",
     }
 }
 

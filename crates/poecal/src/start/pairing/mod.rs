@@ -2,12 +2,17 @@
 //! where they are paired rightly.
 
 mod agreement;
+mod joint_stream;
 mod lags;
+mod motion;
+mod speeds;
 mod stands;
 mod uneven;
 
 pub use agreement::{Agreement, Order};
+pub use joint_stream::{JointStream, smoothed};
 pub use lags::{Lagged, Span};
+pub use motion::{AtLag, InMotion, Motion, MovingRow, NoLag};
 pub use stands::{Channels, Stand, Stream};
 pub use uneven::Aligned;
 

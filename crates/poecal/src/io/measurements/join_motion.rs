@@ -1,0 +1,123 @@
+//! Measurements of a robot in motion with the joint readings of another clock, and what is said of them.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use super::Join;
+use super::Lag;
+use super::join_pairs::{Joined, JointRows};
+use super::join_plan::{MotionByLine, ReadingsByLine};
+use crate::error::{ErrorKind, Result, first_few};
+use crate::measurement::Dataset;
+use crate::robot::Robot;
+use crate::start::{AtLag, InMotion, JointStream, Motion, NoLag, smoothed};
+
+/// Smaller error of smoothed stamps, over that of the stamps as they are, that shows that these are late irregularly.
+const SMOOTHER: f64 = 0.8;
+
+/// Times of the rows of both, as stamped or smoothed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Stamps {
+    joints: bool,
+    measured: bool,
+}
+
+/// The readings of each line at the lag at which the nominal robot, registered, fits.
+///
+/// # Errors
+/// [`ErrorKind::Measurement`] without times, places and motion, or where no lag or several fit.
+pub(super) fn in_motion(
+    joints: &JointRows,
+    (path, data, times): (&Path, &Dataset, &[f64]),
+    robot: &Robot,
+    lag: Option<Lag>,
+) -> Result<Joined> {
+    let stated = lag.map(|it| (it.lag_s, it.off_s));
+    let in_file = |error: crate::error::Error| error.in_file(path);
+    let refuse = |message: String| {
+        let words = format!("{message} ({} has the joint readings)", joints.path.display());
+        Err(ErrorKind::Measurement.error(words).in_file(path))
+    };
+    let smooth = (smoothed(&joints.times), smoothed(times));
+    let mut found: Vec<(Stamps, std::result::Result<InMotion, NoLag>)> = Vec::new();
+    for stamps in [(false, false), (true, false), (false, true), (true, true)] {
+        let stamps = Stamps { joints: stamps.0, measured: stamps.1 };
+        let own = if stamps.joints { smooth.0.as_ref() } else { Some(&joints.times) };
+        let seen = if stamps.measured { smooth.1.as_deref() } else { Some(times) };
+        let (Some(own), Some(seen)) = (own, seen) else { continue };
+        let Some(stream) = JointStream::new(own, &joints.readings, joints.turns.len()) else {
+            return refuse(
+                "found joint readings without times of their own, expected a column `time` in both files"
+                    .to_owned(),
+            );
+        };
+        let motion = Motion::new(robot, &stream, data, seen).map_err(in_file)?;
+        found.push((stamps, motion.found(stated)));
+    }
+    let usual = found.iter().find_map(|(_, it)| it.as_ref().ok()).map_or(f64::INFINITY, |it| it.fitted_m);
+    let best = found.iter().position(|(_, it)| it.as_ref().is_ok_and(|it| it.fitted_m < SMOOTHER * usual));
+    let at = best.or_else(|| found.iter().position(|(_, it)| it.is_ok())).unwrap_or_default();
+    if at >= found.len() {
+        return refuse("found no times, expected a column `time` in both files".to_owned());
+    }
+    let (stamps, found) = found.swap_remove(at);
+    let words = |it: &AtLag| format!("{:.3} s ({:.3} mm)", it.lag_s, 1e3 * it.missed_m);
+    let near = if lag.is_some() { " near the stated one" } else { "" };
+    match found {
+        Ok(found) => Ok(joined(joints, (path, data), stamps, &found)),
+        Err(NoLag::NoMotion) => refuse(format!(
+            "found no lag of the clocks{near} at which both streams move together for 5 s or longer, expected recordings of the same motion"
+        )),
+        Err(NoLag::Alike(all)) => {
+            let best = all.first().map_or(0.0, |it| it.lag_s);
+            let listed: Vec<String> = all.iter().map(words).collect();
+            refuse(format!(
+                "found measurements that fit the joint readings at several lags of the clocks alike, {}, as of a program that repeats itself, expected one: state it by --lag, like --lag {best:.1}s+-0.5s",
+                first_few(&listed)
+            ))
+        }
+        Err(NoLag::None(best)) => refuse(format!(
+            "found measurements that fit the joint readings at no lag of the clocks{near} better than by chance, best {}, expected the same motion of the same robot: look at the units, the signs and the order of the joints",
+            words(&best)
+        )),
+    }
+}
+
+fn joined(joints: &JointRows, (path, data): (&Path, &Dataset), stamps: Stamps, found: &InMotion) -> Joined {
+    let mut readings = ReadingsByLine { controller: joints.controller.clone(), ..ReadingsByLine::default() };
+    let mut rows = BTreeMap::new();
+    for row in &found.rows {
+        let Some(observation) = data.observations.get(row.row as usize) else { continue };
+        let line = observation.source.line as usize;
+        readings.lines.insert(line, row.readings.clone());
+        rows.insert(line, (row.rates.clone(), row.time_s));
+    }
+    let (own, path) = (joints.path.display(), path.display());
+    let clock = found.clock;
+    let mut notes = vec![format!(
+        "{own} and {path} were joined in motion: {} rows of {}, at a lag of {:.4} s of the clock of {path} in the middle, which drifts by {:.1} ppm; the nominal robot misses them by {:.3} mm (median)",
+        rows.len(),
+        data.len(),
+        clock.lag_s,
+        1e6 * clock.drift,
+        1e3 * found.missed_m
+    )];
+    let late = [(stamps.joints, &own), (stamps.measured, &path)];
+    for (_, name) in late.iter().filter(|(is_smoothed, _)| *is_smoothed) {
+        notes.push(format!(
+            "{name}: its rows come at equal steps and their stamps are late irregularly, so that each time is that of the stamps around it"
+        ));
+    }
+    let mut warnings = Vec::new();
+    if found.jitter_s > LARGE_JITTER_S {
+        warnings.push(format!(
+            "{path}: errors along the motion are as of stamps that scatter by {:.1} ms: let the robot stop at each configuration, or record both by one clock",
+            1e3 * found.jitter_s
+        ));
+    }
+    readings.moving = Some(MotionByLine { rows, clock });
+    Joined { how: Join::Motion, readings, notes, warnings }
+}
+
+/// Scatter of single stamps that is said, seconds.
+const LARGE_JITTER_S: f64 = 5e-4;
