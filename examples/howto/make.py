@@ -164,6 +164,38 @@ def motion_capture(robot, log, take):
     write(take, rows)
 
 
+def in_motion(robot, log, take):
+    """Joint readings and a rigid body of a motion capture system on the way from place to place without a stop, each with a clock of its own."""
+    system_from_base = pose([-np.pi / 2, 0, 0], [0.4, 0.8, 1.1])    # y is up
+    tip_from_body = pose([0.3, -0.2, 0.1], [0.02, -0.03, 0.09])
+    span, lag, drift = 90.0, 12.3456, 25e-6
+    places = [robot.configuration(0.8)]
+    begins = [0.0]
+    while begins[-1] < span:
+        places.append([round(near + 0.4 * (far - near), 4) for near, far in zip(places[-1], robot.configuration(0.95), strict=True)])
+        begins.append(begins[-1] + 1 + max(abs(a - b) for a, b in zip(places[-2], places[-1], strict=True)) / 30)
+    values = np.array(places)
+
+    def at(moments):
+        index = np.clip(np.searchsorted(begins, moments, side="right") - 1, 0, len(begins) - 2)
+        share = (moments - np.array(begins)[index]) / np.diff(begins)[index]
+        share = (share**3 * (10 - 15 * share + 6 * share**2))[:, None]
+        return values[index] + share * (values[index + 1] - values[index])
+
+    moments = np.arange(0.0, span, 0.02)
+    rows = ([f"{moment:.3f}", *(f"{value:.3f}" for value in row)] for moment, row in zip(moments, at(moments), strict=True))
+    write(log, [["time", *JOINTS], *rows])
+    frames = np.arange(0.05, span, 0.1)
+    rows = [["time", "x[mm]", "y[mm]", "z[mm]", "qx", "qy", "qz", "qw"]]
+    for frame, tip in zip(frames, robot.tips(at(frames).round(6).tolist()), strict=True):
+        body = system_from_base @ tip @ tip_from_body
+        place = 1e3 * body[:3, 3] + robot.noise(0.1, 0.1, 0.1)
+        turn = quaternion(rotation(robot.noise(0.001, 0.001, 0.001)) @ body[:3, :3])
+        stamp = frame + lag + drift * (frame - span / 2)
+        rows.append([f"{stamp:.5f}", *(f"{value:.3f}" for value in place), *(f"{value:.6f}" for value in turn)])
+    write(take, rows)
+
+
 def hand_eye(robot, path):
     """What a controller says of its flange (X, Y, Z and KUKA's A, B, C), and where a camera on it sees a board: no joint readings."""
     flange_from_camera = pose([0, 0, 0.8], [0.04, -0.06, 0.09])
@@ -343,6 +375,7 @@ def main(poecal, folder):
         touches(robot, folder / "touches.csv")
         tracker_and_workbook(robot, folder / "points.txt", folder / "joints.xlsx")
         bag(robot, folder / "session.mcap")
+        in_motion(robot, folder / "moving_joints.csv", folder / "moving_take.csv")
 
 
 if __name__ == "__main__":

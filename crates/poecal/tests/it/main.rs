@@ -51,6 +51,7 @@ mod mixed_cell;
 mod model_convert;
 mod model_errors;
 mod modern_robotics;
+mod motion;
 mod moves;
 mod noise_free;
 mod offsets;

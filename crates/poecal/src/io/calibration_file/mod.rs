@@ -3,6 +3,7 @@
 mod alike;
 mod bodies;
 mod changes;
+mod clocks;
 mod compensation;
 mod controller;
 mod corrected;
@@ -26,6 +27,7 @@ pub use crate::io::stored_pictures::{BoardEntry, CameraEntry, CommonEntry, Pictu
 pub use alike::SuspectedConfigurationEntry;
 pub use bodies::{BodyEntry, InstrumentEntry, MassEntry, MeasuredEntry};
 pub use changes::{CommonDirectionEntry, CorrelatedEntry, CorrelationsEntry, JointChangeEntry};
+pub use clocks::ClockEntry;
 pub use compensation::{CompensationEntry, DisplacementEntry, ReadingChangeEntry, WorkspaceCellEntry};
 pub use controller::Counted;
 pub use corrected::{
@@ -105,6 +107,7 @@ impl CalibrationFile {
                 base_from_device: (&calibration.base_from_device).into(),
             },
             stations: StationEntry::of(&calibration.stations, calibration.noise, measured_kinds),
+            clocks: ClockEntry::of(calibration, data),
             tool: (&robot.last_joint_from_tip()).into(),
             move_tip: calibration.targets.iter().any(|it| it.name.is_none()),
             targets: bodies::targets(robot, &calibration.targets),

@@ -15,7 +15,7 @@ use super::frames::{FrameEntry, JointEntry, PoseEntry, RobotEntry, StationEntry,
 use super::keyed::{Keyed, SigmaKeys};
 use super::original::OriginalUrdf;
 use super::trust::{CorrectionEntry, CrossValidationEntry, UncertaintyEntry};
-use super::{OutlierEntry, PicturesEntry, RepeatabilityEntry, RobustEntry};
+use super::{ClockEntry, OutlierEntry, PicturesEntry, RepeatabilityEntry, RobustEntry};
 use crate::analysis::{Direction, Identifiability, JointCoverage, Observability};
 use crate::calibration::{Acceptance, Accuracy, Event, FormulationWords, NoiseSource, Verdict};
 use crate::error::Result;
@@ -115,6 +115,9 @@ pub struct CalibrationFile {
     /// Stations of the measuring device, if they are named or several; the first is that of `measurement_frame`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub stations: Vec<StationEntry>,
+    /// Clocks of instruments that measured in motion; absent where none did.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub clocks: Vec<ClockEntry>,
     /// Pose of the tip in the last joint's frame.
     pub tool: PoseEntry,
     /// Whether the point that was measured became the tip (`--move-tip`); otherwise the tip is where the model has it on the last link.

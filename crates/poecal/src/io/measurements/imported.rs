@@ -35,7 +35,7 @@ const COLUMNS: [&str; 16] = [
 /// state them.
 ///
 /// # Errors
-/// [`ErrorKind::Measurement`] of other measurements than positions and poses, of an instrument's own configuration, and of a joint with the name of
+/// [`ErrorKind::Measurement`] of other measurements than positions and poses, of an instrument's own configuration, of rows in motion, and of a joint with the name of
 /// another column.
 pub fn imported_table(file: &MeasurementFile, robot: &Robot) -> Result<String> {
     let data = &file.data;
@@ -50,6 +50,12 @@ pub fn imported_table(file: &MeasurementFile, robot: &Robot) -> Result<String> {
             Some(path) => error.at_line(path, other.source.line as usize),
             None => error,
         });
+    }
+    if !data.moving.clocks.is_empty() {
+        return ErrorKind::Measurement.refuse(
+            "found rows that were measured in motion, expected rows at rest, which alone are written as a table of our own: a table has no clock, whose lag \
+             is an unknown of the fit, so name the files in each command",
+        );
     }
     let units = reading_units(data.reading_names(), robot)?;
     refuse_names(data.reading_names(), &COLUMNS)?;

@@ -11,10 +11,13 @@ use crate::error::{Error, ErrorKind, Result, first_few};
 use crate::forensics::{DiagnosisOptions, diagnose};
 use crate::measurement::Dataset;
 use crate::robot::{Controller, Robot};
-use crate::start::{Agreement, Aligned, Lagged, Pair, Span, Unpaired};
+use crate::start::{Agreement, Aligned, JointStream, Lagged, Motion, Pair, Span, Unpaired};
 
 /// Fewest pairs that fit badly which show that rows were lost and taken twice.
 const FEW_WRONG: usize = 2;
+
+/// How far a lag by stands may be off, seconds.
+const NEAR_STANDS_S: f64 = 0.3;
 
 /// Joint readings of a file.
 #[derive(Clone, Debug)]
@@ -33,6 +36,8 @@ pub(super) struct JointRows {
     pub(super) times: Vec<f64>,
     /// When each begins and ends, seconds, where they are stands of a stream.
     pub(super) spans: Option<Vec<Span>>,
+    /// The stream of which they are stands.
+    pub(super) stream: Option<JointStream>,
     pub(super) controller: Option<Controller>,
 }
 
@@ -42,6 +47,10 @@ impl JointRows {
         let of = |(value, turns): (&f64, &bool)| if *turns { value.to_radians() } else { *value };
         JointRows {
             readings: self.readings.iter().zip(self.turns.iter().cycle()).map(of).collect(),
+            stream: self
+                .stream
+                .as_ref()
+                .map(|it| it.map(|at, value| of((&value, self.turns.get(at).unwrap_or(&false))))),
             ..self.clone()
         }
     }
@@ -58,6 +67,8 @@ pub(super) struct Pairing<'a> {
     pub(super) spans: Option<&'a [Span]>,
     /// The lag that was stated, and how far it may be off, seconds.
     pub(super) lag: Option<Lag>,
+    /// The stream of measurements whose stands these are, with its times, seconds.
+    pub(super) stream: Option<(&'a Dataset, &'a [f64])>,
 }
 
 /// Readings by line, and what is said of them.
@@ -118,14 +129,22 @@ impl Pairing<'_> {
         }
         let mut joined = self.judged(&best.pairs, Join::Time, self.lag.is_some())?;
         joined.notes.push(format!(
-            "{}: {} stands of {} and of {} are the same, at a lag of {:.3} s of its clock",
+            "{}: {} stands of {} and of {} are the same, at a lag of {} s of its clock",
             self.path.display(),
             best.pairs.len(),
             joints,
             shots,
-            best.lag_s
+            self.lag_between(best.lag_s)
+                .map_or_else(|| format!("{:.3}", best.lag_s), |it| format!("{it:.4}"))
         ));
         Ok(joined)
+    }
+
+    /// The lag near one by stands at which the measurements between these fit too, seconds; stands need none.
+    fn lag_between(&self, near_s: f64) -> Option<f64> {
+        let (joints, (data, times)) = (self.joints.stream.as_ref()?, self.stream?);
+        let motion = Motion::new(self.robot, joints, data, times).ok()?;
+        motion.found(Some((near_s, NEAR_STANDS_S))).ok().map(|it| it.clock.lag_s)
     }
 
     fn by_rows(&self, is_stated: bool) -> Result<Joined> {

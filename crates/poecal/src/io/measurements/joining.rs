@@ -20,7 +20,7 @@ use super::units::UnitSource;
 use super::{Join, LostBeams};
 use crate::error::{Error, ErrorKind, Result};
 use crate::measurement::Dataset;
-use crate::start::{Span, Unpaired};
+use crate::start::{JointStream, Span, Unpaired};
 use crate::unit::Unit;
 
 impl<'a> Reader<'a> {
@@ -100,14 +100,16 @@ impl<'a> Reader<'a> {
             turns: layout.inputs.iter().map(|it| it.unit.of() == Unit::Radian).collect(),
             times: table_rows.times,
             spans: None,
+            stream: None,
             controller: layout.controller,
         };
         // A stream has no names of rows.
         let is_listed =
             !rows.ids.is_empty() || matches!(self.options.join, Some(Join::Rows | Join::Name | Join::Motion));
-        let Some(stands) = (if is_listed { None } else { stands_of_joints(&rows, &rows.times) }) else {
+        let Some(mut stands) = (if is_listed { None } else { stands_of_joints(&rows, &rows.times) }) else {
             return Ok(rows);
         };
+        stands.stream = JointStream::new(&rows.times, &rows.readings, rows.turns.len());
         if stands.lines.len() < FEWEST_STANDS {
             return Err(no_stands(path, "joint readings", stands.lines.len()));
         }
@@ -147,13 +149,14 @@ impl<'a> Reader<'a> {
         if let Some(stands) = stands.as_ref().filter(|it| few(it.spans.len())) {
             return Err(no_stands(path, "measurements", stands.spans.len()));
         }
+        let stream = stands.as_ref().map(|_| (&data, times.as_slice()));
         let data = stands.as_ref().map_or(&data, |it| &it.data);
         let points: Option<Vec<Span>> = (times.len() == data.len() && times.iter().all(|it| it.is_finite()))
             .then(|| points(data, &times));
         let spans = stands.as_ref().map(|it| &it.spans).or(points.as_ref()).map(Vec::as_slice);
         let paired = |joints: &JointRows| {
             let rows = Unpaired::new(self.robot, &joints.readings, data);
-            Pairing { joints, path, data, rows, robot: self.robot, spans, lag: self.options.lag }
+            Pairing { joints, path, data, rows, robot: self.robot, spans, lag: self.options.lag, stream }
                 .found(self.options.join)
         };
         let mut found = match paired(joints) {

@@ -17,7 +17,7 @@ use super::table::{line, lines, number, rounded};
 use crate::analysis::{Cause, Direction};
 use crate::calibration::{Event, Level, TermGroup};
 use crate::error::shown as name_shown;
-use crate::io::calibration_file::{CalibrationFile, CorrectedEntry, UncertaintyEntry};
+use crate::io::calibration_file::{CalibrationFile, ClockEntry, CorrectedEntry, UncertaintyEntry};
 
 /// Angle of gravity from -z of the base below which it is not told, radians.
 const UPRIGHT: f64 = 1e-4;
@@ -57,6 +57,7 @@ pub fn summary(file: &CalibrationFile, detail: Detail) -> String {
     }
     points(&mut out, file, detail);
     known(&mut out, file);
+    file.clocks.iter().for_each(|clock| line(&mut out, "clock", &clock_words(clock)));
     if detail == Detail::Full {
         out.push('\n');
         errors::table(&mut out, file);
@@ -162,6 +163,19 @@ fn shown(points: Vec<Point>, detail: Detail) -> (Vec<Point>, Vec<Point>) {
 }
 
 /// Which unknowns the rows determine, and which they do not.
+/// Lag and drift of an instrument's clock, with their standard deviations.
+fn clock_words(clock: &ClockEntry) -> String {
+    let ClockEntry { lag_s, sigma_lag_ms, drift_ppm, sigma_drift_ppm, .. } = clock;
+    let sigma =
+        |of: &Option<f64>, unit: &str| of.map_or(String::new(), |it| format!(" ± {}{unit}", number(it)));
+    let name = clock.instrument.as_deref().map_or(String::new(), |it| format!("{}: ", name_shown(it)));
+    format!(
+        "{name}lag {lag_s:.5} s{} in the middle, drift {drift_ppm:.1}{} ppm (1 σ)",
+        sigma(sigma_lag_ms, " ms"),
+        sigma(sigma_drift_ppm, "")
+    )
+}
+
 fn known(out: &mut String, file: &CalibrationFile) {
     let found = &file.identifiability;
     let count = |directions: &[Direction]| directions.iter().map(|it| it.directions).sum::<usize>();

@@ -46,6 +46,13 @@ impl JointStream {
         })
     }
 
+    /// The same with each of a row's readings by a function of its place and value.
+    #[must_use]
+    pub fn map(&self, each: impl Fn(usize, f64) -> f64) -> Self {
+        let readings = self.readings.iter().enumerate().map(|(at, &value)| each(at % self.width, value));
+        JointStream { readings: readings.collect(), ..self.clone() }
+    }
+
     /// The times, seconds.
     #[must_use]
     pub fn times(&self) -> &[f64] {
