@@ -21,6 +21,8 @@ use crate::start::target_parameters;
 
 /// Shortest time from one row that is fitted to the next, seconds: rows that are nearer say hardly more of the robot.
 const STEP_S: f64 = 0.1;
+/// How far stamps of rows at equal steps may be off, seconds.
+const STAMP_S: f64 = 2e-3;
 /// Most rows of a fit.
 const MOST: usize = 3000;
 /// Rows that compare lags.
@@ -213,7 +215,7 @@ impl<'a> Motion<'a> {
         let mut rows: Vec<u32> = Vec::new();
         let mut last = f64::NEG_INFINITY;
         for (row, &time) in (0..).zip(self.times) {
-            if time == last || time - last >= STEP_S - 1e-9 {
+            if time == last || time - last >= STEP_S - STAMP_S {
                 last = time;
                 rows.push(row);
             }
