@@ -166,8 +166,11 @@ fn shown(points: Vec<Point>, detail: Detail) -> (Vec<Point>, Vec<Point>) {
 /// Lag and drift of an instrument's clock, with their standard deviations.
 fn clock_words(clock: &ClockEntry) -> String {
     let ClockEntry { lag_s, sigma_lag_ms, drift_ppm, sigma_drift_ppm, .. } = clock;
-    let sigma =
-        |of: &Option<f64>, unit: &str| of.map_or(String::new(), |it| format!(" ± {}{unit}", number(it)));
+    let sigma = |of: &Option<f64>, unit: &str| {
+        // Two digits.
+        let digits = |it: f64| [10.0, 1.0, 0.1].into_iter().filter(|limit| it < *limit).count();
+        of.map_or(String::new(), |it| format!(" ± {it:.*}{unit}", digits(it)))
+    };
     let name = clock.instrument.as_deref().map_or(String::new(), |it| format!("{}: ", name_shown(it)));
     format!(
         "{name}lag {lag_s:.5} s{} in the middle, drift {drift_ppm:.1}{} ppm (1 σ)",
