@@ -40,6 +40,8 @@ const MIMIC: &str = r#"<?xml version="1.0"?>
 </robot>
 "#;
 
+const WORKBOOK: &[u8] = include_bytes!("../../../examples/howto/joints.xlsx");
+const WORKBOOK_POINTS: &[u8] = include_bytes!("../../../examples/howto/points.txt");
 const RAPID: &str = include_str!("../../poecal/tests/it/programs/rapid/01_simple.mod");
 const FANUC: &str = include_str!("../../poecal/tests/it/programs/fanuc/01_simple.ls");
 const URSCRIPT: &str = "def a():\n  set_tcp(p[0, 0, 0.1, 0, 0, 0])\n  movej([0.1, 0.2, 0.3, 0.4, 0.5, 0.6], a=1.4) # start\n  \
@@ -62,12 +64,7 @@ calibration_status = 2
 ";
 
 fn main() {
-    let put = |target: &str, name: &str, text: &str| {
-        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fuzz/seeds").join(target);
-        fs::create_dir_all(&folder).unwrap();
-        fs::write(folder.join(name), text).unwrap();
-        println!("{target}/{name}: {} bytes", text.len());
-    };
+    let put = |target: &str, name: &str, text: &str| put_bytes(target, name, text.as_bytes());
     let both = |a: &str, b: &str| format!("{a}\n{BETWEEN}\n{b}");
     let (xml, models) = (blocks("Robot models", "xml"), blocks("Robot models", "toml"));
     for (name, text) in [("elbow", URDF), ("slide", xml[0]), ("mimic", MIMIC)] {
@@ -120,6 +117,9 @@ fn main() {
         "blocks",
         &format!("---\n{}", all.iter().map(|it| block(it)).collect::<Vec<_>>().join("\n---\n")),
     );
+    for (name, text) in recorded() {
+        put_bytes("recorded", &name, &text);
+    }
     put("joints", "points", &points);
     put("joints", "ids", "id,joint1,joint2,joint3,joint4\na,0.1,0.2,0.1,1\n\"b,c\",0.2,0.1,0,-1\n");
     for (name, robot, kind, count) in [
@@ -149,6 +149,174 @@ fn main() {
     put("pipeline", "two_targets", &both(&robot_toml::write(&gantry()), &two));
     let twelve = POINTS.lines().take(31).map(|line| format!("{line}\n")).collect::<String>();
     put("pipeline", "urdf", &both(URDF, &twelve));
+}
+
+fn put_bytes(target: &str, name: &str, bytes: &[u8]) {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fuzz/seeds").join(target);
+    fs::create_dir_all(&folder).unwrap();
+    fs::write(folder.join(name), bytes).unwrap();
+    println!("{target}/{name}: {} bytes", bytes.len());
+}
+
+/// Four configurations of an elbow (degrees), and points of its tip (mm), in the forms of instruments, controllers and recorders: each time
+/// with a file of the other kind.
+fn recorded() -> Vec<(String, Vec<u8>)> {
+    let robot = elbow();
+    let made = Simulation { count: 4, ..Simulation::default() }.run(&robot, Kind::POINT).unwrap().data;
+    let numbers = |values: &[f64], factor: f64, by: &str| {
+        values.iter().map(|it| format!("{:.5}", it * factor)).collect::<Vec<_>>().join(by)
+    };
+    let degrees = 1_f64.to_degrees();
+    let each = |of: &dyn Fn(usize, &[f64], [f64; 3]) -> String| -> String {
+        let row = |at: usize| {
+            of(at + 1, made.readings(at), made.observations[at].measurement.pose().translation.into())
+        };
+        (0..made.len()).map(row).collect()
+    };
+    let own_joints = format!("{}\n", made.reading_names().join("[deg],"))
+        + &each(&|_, it, _| numbers(it, degrees, ",") + "\n");
+    let own_points = "x[mm],y[mm],z[mm]\n".to_owned() + &each(&|_, _, it| numbers(&it, 1e3, ",") + "\n");
+    let motive = "Format Version,1.24,Take Name,A,Export Frame Rate,100.0,Rotation Type,Quaternion,Length Units,Millimeters\n\n,Type,Marker,Marker,Marker\n\
+         ,Name,A,A,A\n,ID,1,1,1\n,,Position,Position,Position\nFrame,Time (Seconds),X,Y,Z\n"
+        .to_owned();
+    let qualisys = "NO_OF_FRAMES\t4\nNO_OF_MARKERS\t1\nFREQUENCY\t100\nDATA_INCLUDED\t3D\nMARKER_NAMES\tA\nFrame\tTime\tA X\tA Y\tA Z\n".to_owned();
+    let joints = [
+        (
+            "rapid",
+            each(&|k, it, _| {
+                format!(
+                    "CONST jointtarget P{k}:=[[{}],[9E9,9E9,9E9,9E9,9E9,9E9]];\n",
+                    numbers(it, degrees, ",")
+                )
+            }),
+        ),
+        (
+            "rokae",
+            each(&|k, it, _| {
+                format!(
+                    "LOCAL VAR jointtarget j{k} = j:{{{},0}}{{EJ 0,0,0,0,0,0}}\n",
+                    numbers(it, degrees, ",")
+                )
+            }),
+        ),
+        (
+            "script",
+            format!("def a():\n{}end\n", each(&|_, it, _| format!("  movej([{}])\n", numbers(it, 1.0, ",")))),
+        ),
+        (
+            "log",
+            format!(
+                "timestamp {} {}\n",
+                (0..6).map(|k| format!("target_q_{k}")).collect::<Vec<_>>().join(" "),
+                (0..6).map(|k| format!("actual_q_{k}")).collect::<Vec<_>>().join(" ")
+            ) + &each(&|k, it, _| format!("{k}.5 {0} {0}\n", numbers(it, 1.0, " "))),
+        ),
+        ("bare", each(&|_, it, _| numbers(it, degrees, " ") + "\n")),
+    ];
+    let measured = [
+        (
+            "spatial_analyzer",
+            "// SpatialAnalyzer SA 2024.2\n// Points Relative to Coordinate Frame 'A::WORLD'\n// AXES = CARTESIAN: X,  Y,  Z (mm)\n".to_owned()
+                + &each(&|k, _, it| format!("Robot,  P{k},  {}\n", numbers(&it, 1e3, ",  "))),
+        ),
+        (
+            "leica",
+            "X  [mm],Y  [mm],Z  [mm],U(95)  [mm],Image RMS  [\u{b5}m],Temperature  [\u{b0}C],Time Stamp,Delete\n".to_owned()
+                + &each(&|_, _, it| format!("{},0.18,0.24,22.6,'11.10.2022 10:00:00.000,\n", numbers(&it, 1e3, ","))),
+        ),
+        ("motive", motive + &each(&|k, _, it| format!("{k},0.0{k},{}\n", numbers(&it, 1e3, ",")))),
+        ("qualisys", qualisys + &each(&|k, _, it| format!("{k}\t0.0{k}\t{}\n", numbers(&it, 1e3, "\t")))),
+    ];
+    let both = |one: &[u8], other: &[u8]| [one, format!("\n{BETWEEN}\n").as_bytes(), other].concat();
+    let mut all: Vec<(String, Vec<u8>)> = Vec::new();
+    all.extend(
+        joints.iter().map(|(name, text)| ((*name).to_owned(), both(text.as_bytes(), own_points.as_bytes()))),
+    );
+    all.extend(
+        measured
+            .iter()
+            .map(|(name, text)| ((*name).to_owned(), both(own_joints.as_bytes(), text.as_bytes()))),
+    );
+    all.push(("workbook".to_owned(), both(WORKBOOK, WORKBOOK_POINTS)));
+    let joint_state = |at: usize| {
+        let mut cdr = Cdr::new(at);
+        cdr.list(made.reading_names());
+        cdr.numbers(made.readings(at));
+        cdr
+    };
+    let point = |at: usize| {
+        let mut cdr = Cdr::new(at);
+        let place: [f64; 3] = made.observations[at].measurement.pose().translation.into();
+        place.iter().for_each(|it| cdr.put(&it.to_le_bytes()));
+        cdr
+    };
+    all.push((
+        "bag".to_owned(),
+        both(&bag("sensor_msgs/msg/JointState", &joint_state), own_points.as_bytes()),
+    ));
+    all.push((
+        "bag_of_points".to_owned(),
+        both(own_joints.as_bytes(), &bag("geometry_msgs/msg/PointStamped", &point)),
+    ));
+    all
+}
+
+/// A message of ROS 2: values aligned from behind the head.
+struct Cdr(Vec<u8>);
+
+impl Cdr {
+    fn new(second: usize) -> Self {
+        let mut cdr = Cdr(Vec::new());
+        cdr.put(&(second as u32 + 1).to_le_bytes());
+        cdr.put(&0_u32.to_le_bytes());
+        cdr.text("a");
+        cdr
+    }
+
+    fn put(&mut self, bytes: &[u8]) {
+        self.0.resize(self.0.len().next_multiple_of(bytes.len()), 0);
+        self.0.extend_from_slice(bytes);
+    }
+
+    fn text(&mut self, text: &str) {
+        self.put(&(text.len() as u32 + 1).to_le_bytes());
+        self.0.extend_from_slice(text.as_bytes());
+        self.0.push(0);
+    }
+
+    fn list(&mut self, names: &[String]) {
+        self.put(&(names.len() as u32).to_le_bytes());
+        names.iter().for_each(|it| self.text(it));
+    }
+
+    fn numbers(&mut self, numbers: &[f64]) {
+        self.put(&(numbers.len() as u32).to_le_bytes());
+        numbers.iter().for_each(|it| self.put(&it.to_le_bytes()));
+        // No velocities and no efforts.
+        self.put(&0_u32.to_le_bytes());
+        self.put(&0_u32.to_le_bytes());
+    }
+}
+
+/// A bag (MCAP) of four messages of a type.
+fn bag(kind: &str, message: &dyn Fn(usize) -> Cdr) -> Vec<u8> {
+    let text = |text: &str| [&(text.len() as u32).to_le_bytes(), text.as_bytes()].concat();
+    let record =
+        |kind: u8, content: &[u8]| [&[kind][..], &(content.len() as u64).to_le_bytes(), content].concat();
+    let number = |number: u16| number.to_le_bytes().to_vec();
+    let mut out = b"\x89MCAP0\r\n".to_vec();
+    out.extend(record(1, &[text("ros2"), text("")].concat()));
+    out.extend(record(3, &[number(1), text(kind), text("ros2msg"), text("")].concat()));
+    out.extend(record(4, &[number(1), number(1), text("/a"), text("cdr"), text("")].concat()));
+    for at in 0..4 {
+        let time = ((at as u64 + 1) * 1_000_000_000).to_le_bytes();
+        let head = [number(1), vec![0; 4], time.to_vec(), time.to_vec(), vec![0, 1, 0, 0]].concat();
+        out.extend(record(5, &[head, message(at).0].concat()));
+    }
+    out.extend(record(15, &[0; 4]));
+    out.extend(record(2, &[0; 20]));
+    out.extend(b"\x89MCAP0\r\n");
+    out
 }
 
 /// A section's blocks of one language, in order.

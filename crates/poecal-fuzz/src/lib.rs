@@ -32,11 +32,12 @@ pub struct Target {
 }
 
 /// All of them.
-pub const TARGETS: [Target; 15] = [
+pub const TARGETS: [Target; 16] = [
     Target { name: "urdf", run: targets::urdf, trials: 1500 },
     Target { name: "robot_toml", run: targets::robot_toml, trials: 1500 },
     Target { name: "foreign", run: targets::foreign, trials: 3000 },
     Target { name: "measurements", run: targets::measurements, trials: 6000 },
+    Target { name: "recorded", run: targets::recorded, trials: 1500 },
     Target { name: "mapping", run: targets::mapping, trials: 10000 },
     Target { name: "joints", run: targets::joints, trials: 10000 },
     Target { name: "cameras", run: targets::cameras, trials: 20000 },

@@ -1,4 +1,4 @@
-//! A disk that has one file: of what is read by its path alone.
+//! A disk that has a file or a few: of what is read by its path alone.
 
 use std::ffi::OsString;
 use std::io::{self, Cursor, ErrorKind, Read};
@@ -7,24 +7,27 @@ use std::sync::Arc;
 
 use poecal::io::disk::{self, Disk, Lock, Object, ObjectKind, Output};
 
-struct OneFile {
-    path: PathBuf,
-    bytes: Vec<u8>,
-}
+struct Files(Vec<(PathBuf, Vec<u8>)>);
 
 /// What some work gives where a file of this text is at a path, and nothing else.
 pub(crate) fn with_file<T>(path: &str, text: &str, work: impl FnOnce() -> T) -> T {
-    disk::on(Arc::new(OneFile { path: path.into(), bytes: text.into() }), work)
+    with_files(&[(path, text.as_bytes())], work)
+}
+
+/// What some work gives where files of these bytes are at these paths, and nothing else.
+pub(crate) fn with_files<T>(files: &[(&str, &[u8])], work: impl FnOnce() -> T) -> T {
+    let files = files.iter().map(|(path, bytes)| ((*path).into(), bytes.to_vec())).collect();
+    disk::on(Arc::new(Files(files)), work)
 }
 
 fn refused<T>() -> io::Result<T> {
     Err(ErrorKind::Unsupported.into())
 }
 
-impl Disk for OneFile {
+impl Disk for Files {
     fn look(&self, path: &Path) -> io::Result<Object> {
         let object = Object { kind: ObjectKind::File, identity: None, is_mine: true };
-        if path == self.path { Ok(object) } else { Err(ErrorKind::NotFound.into()) }
+        if self.0.iter().any(|it| it.0 == path) { Ok(object) } else { Err(ErrorKind::NotFound.into()) }
     }
 
     fn follow(&self, path: &Path) -> io::Result<Object> {
@@ -36,11 +39,12 @@ impl Disk for OneFile {
     }
 
     fn names(&self, _: &Path) -> io::Result<Vec<OsString>> {
-        Ok(vec![self.path.clone().into_os_string()])
+        Ok(self.0.iter().map(|it| it.0.clone().into_os_string()).collect())
     }
 
     fn open(&self, path: &Path) -> io::Result<Box<dyn Read + Send>> {
-        self.look(path).map(|_| Box::new(Cursor::new(self.bytes.clone())) as Box<dyn Read + Send>)
+        let file = self.0.iter().find(|it| it.0 == path).ok_or(ErrorKind::NotFound)?;
+        Ok(Box::new(Cursor::new(file.1.clone())))
     }
 
     fn standard_input(&self) -> io::Result<Box<dyn Read + Send>> {

@@ -279,6 +279,8 @@ fn inputs(robot: &Robot, measurements: &Measurements, validate: Option<&Measurem
     Inputs {
         measurements: sources().flat_map(|source| source.names.clone()).collect(),
         sha256,
+        files: sources().flat_map(|source| source.files.clone()).collect(),
+        joins: sources().flat_map(|source| source.joins.clone()).collect(),
         ..Inputs::of_model(&robot.model)
     }
 }

@@ -1,6 +1,7 @@
 //! Measurements from files, arrays and data frames.
 
 mod content;
+mod db3;
 
 pub(crate) use content::Measurements;
 use content::{MeasurementSource, MeasurementState};
@@ -160,6 +161,7 @@ impl Measurements {
             [("name", Join::Name), ("rows", Join::Rows), ("time", Join::Time), ("motion", Join::Motion)];
         let join = join.map(|word| chosen("join", word, &joins)).transpose()?;
         let Paths(paths) = paths;
+        let bags = db3::bags(py, &paths)?;
         let read = || {
             refuse_repeats(&paths)?;
             let options = options(
@@ -171,6 +173,7 @@ impl Measurements {
                 [units, sheet, body],
                 [&instrument_noise, &cameras, &markers, &topics].map(|it| it.as_deref()),
             )?;
+            let options = ReadOptions { bags, ..options };
             let file = measurements::read(&paths, &robot.model.robot, &robot.model.reads(options))?;
             let mut sha256 = Inputs::checksums(columns.iter().map(PathBuf::as_path))?;
             sha256.extend(file.sha256.clone());
@@ -179,7 +182,9 @@ impl Measurements {
         let (file, sha256) = py.detach(read).map_err(raise)?;
         crate::warn(py, &file.warnings)?;
         let names = paths.iter().map(|path| path.display().to_string()).collect();
-        Ok(Measurements::new(file, MeasurementSource { names, sha256, fit_where: fit_where.is_some() }))
+        let (files, joins) = (file.inputs(), file.joins.clone());
+        let source = MeasurementSource { names, sha256, files, joins, fit_where: fit_where.is_some() };
+        Ok(Measurements::new(file, source))
     }
 
     /// Reads files of instruments, controllers and recorders as they are: what `from_csv` reads, with all of its options, under the name of what it is for.
@@ -187,7 +192,8 @@ impl Measurements {
     /// Parameters
     /// ----------
     /// paths
-    ///     A file, or several; with joint readings in one and measurements in another they are joined.
+    ///     A file, or several; with joint readings in one and measurements in another they are joined. Bags of ROS 2 may be in MCAP or, which the
+    ///     program does not read, in SQLite (`.db3`); those of ROS 1 are written as MCAP with `rosbags-convert`.
     /// robot
     ///     The robot whose joints the columns name.
     ///

@@ -151,7 +151,7 @@ fn read_measurements(
         let file = measurements::read(paths, &model.robot, &options)?;
         inputs.measurements.extend(paths.iter().map(|path| path.display().to_string()));
         console.said_of(&file);
-        inputs.sha256.extend(file.sha256);
+        inputs.take(&file);
         Ok(file.data)
     };
     let mut data = read(&arguments.measurements)?;

@@ -463,7 +463,8 @@ class Measurements:
         Parameters
         ----------
         paths
-            A file, or several; with joint readings in one and measurements in another they are joined.
+            A file, or several; with joint readings in one and measurements in another they are joined. Bags of ROS 2 may be in MCAP or, which the
+            program does not read, in SQLite (`.db3`); those of ROS 1 are written as MCAP with `rosbags-convert`.
         robot
             The robot whose joints the columns name.
 

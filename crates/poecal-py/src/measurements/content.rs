@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use poecal::io::measurements::MeasurementFile;
+use poecal::io::measurements::{InputEntry, JoinEntry, MeasurementFile};
 use poecal::measurement::Dataset;
 use pyo3::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -32,6 +32,12 @@ pub(crate) struct MeasurementSource {
     pub(crate) names: Vec<String>,
     /// SHA-256 of each file that was read.
     pub(crate) sha256: BTreeMap<String, String>,
+    /// What each file is and what was taken of it.
+    #[serde(default)]
+    pub(crate) files: Vec<InputEntry>,
+    /// How files were joined.
+    #[serde(default)]
+    pub(crate) joins: Vec<JoinEntry>,
     /// Whether `fit_where` chose the rows to fit.
     pub(crate) fit_where: bool,
 }
@@ -111,6 +117,17 @@ impl Measurements {
             add(&mut notes, &part.file.notes);
             add(&mut warnings, &part.file.warnings);
             source.sha256.extend(part.source.sha256.clone());
+            // Parts of one reading have the same files.
+            for file in &part.source.files {
+                if !source.files.contains(file) {
+                    source.files.push(file.clone());
+                }
+            }
+            for join in &part.source.joins {
+                if !source.joins.contains(join) {
+                    source.joins.push(join.clone());
+                }
+            }
             source.fit_where |= part.source.fit_where;
         }
         let file =

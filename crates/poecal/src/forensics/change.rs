@@ -24,6 +24,8 @@ pub(super) enum Change {
     Shift(i32, Stream),
     /// Lengths of a quantity times a factor; the last says whether no other one is measured.
     Resize(f64, Quantity, bool),
+    /// Positions of the rows of a file times a factor.
+    ResizeFile(f64, u32),
     /// One coordinate of positions times a factor.
     ResizeAxis(usize, f64),
     /// The zero of all distances unknown.
@@ -76,6 +78,7 @@ impl Change {
             Change::Add(column, offset) => readings[*column] += offset,
             Change::Shift(..)
             | Change::Resize(..)
+            | Change::ResizeFile(..)
             | Change::ResizeAxis(..)
             | Change::FreeZero
             | Change::ScaleTilts(_)
@@ -101,6 +104,13 @@ impl Change {
                 let mut resized = seen;
                 if seen.has(Quantity::Position) {
                     resized.lengths_mut()[*axis] *= factor;
+                }
+                resized
+            }
+            Change::ResizeFile(factor, file) => {
+                let mut resized = seen;
+                if observation.source.file == *file && seen.has(Quantity::Position) {
+                    resized.lengths_mut().iter_mut().for_each(|length| *length *= factor);
                 }
                 resized
             }
@@ -136,6 +146,7 @@ impl Change {
             | Change::Add(..)
             | Change::Shift(..)
             | Change::Resize(..)
+            | Change::ResizeFile(..)
             | Change::ResizeAxis(..)
             | Change::FreeZero
             | Change::ScaleTilts(_) => *seen,

@@ -8,6 +8,9 @@ use super::change::{Change, Stream};
 use crate::measurement::{Dataset, Quantity};
 use crate::robot::{Joint, ReadingKind, Robot, level};
 
+/// Most files of which the units of each are compared.
+const MOST_FILES: usize = 6;
+
 /// A hypothetical mistake.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Hypothesis {
@@ -238,6 +241,30 @@ pub(super) fn length_units(of: Quantity, is_all: bool) -> Vec<Hypothesis> {
     .into_iter()
     .map(one)
     .collect()
+}
+
+/// Positions of one of several files in another unit than those of the others.
+pub(super) fn file_units(data: &Dataset) -> Vec<Hypothesis> {
+    let mut files: Vec<u32> = data.observations.iter().map(|row| row.source.file).collect();
+    files.sort_unstable();
+    files.dedup();
+    if !(2..=MOST_FILES).contains(&files.len()) {
+        return Vec::new();
+    }
+    let name = |file: u32| data.files.get(file as usize).map(|it| it.display().to_string());
+    let of = |file: u32| {
+        let name = name(file)?;
+        let one = move |whole: Hypothesis| {
+            let factor = whole.resized();
+            Hypothesis {
+                changes: vec![Change::ResizeFile(factor, file)],
+                action: format!("multiplying the positions of {name} alone by {factor}"),
+                ..whole
+            }
+        };
+        Some(length_units(Quantity::Position, true).into_iter().map(one))
+    };
+    files.into_iter().filter_map(of).flatten().collect()
 }
 
 /// One coordinate of positions in another unit than the other two.

@@ -9,8 +9,8 @@ use super::diagnosis::short;
 use super::few::FewTargets;
 use super::fitter::{Fitter, SHORT, Score, sampled};
 use super::hypotheses::{
-    Hypothesis, ReadingColumns, axis_units, joint_couplings, joint_exchanges, joint_signs, joint_units,
-    length_units, mirrors, pose_forms, row_shifts, tilt_units, zeros,
+    Hypothesis, ReadingColumns, axis_units, file_units, joint_couplings, joint_exchanges, joint_signs,
+    joint_units, length_units, mirrors, pose_forms, row_shifts, tilt_units, zeros,
 };
 use super::scales::joint_scales;
 use super::zero::joint_zeros;
@@ -88,6 +88,7 @@ fn single_mistakes(fitter: &Fitter<'_>, columns: &ReadingColumns, sample: &Datas
     }
     if placed {
         all.extend(axis_units());
+        all.extend(file_units(sample));
     }
     all.extend(of_zeros(sample));
     if sample.observations.iter().any(|row| row.measurement.function().with_angles_times.is_some()) {

@@ -36,7 +36,7 @@ const FORMS: [(&[u8], &str); 14] = [
     ),
     (
         b"SQLite format 3\0",
-        "a ROS 2 bag in SQLite (.db3); write it as MCAP with `ros2 bag convert`, or read it in Python with `rosbags`",
+        "a ROS 2 bag in SQLite (.db3); write it as MCAP with `ros2 bag convert`, or read it in Python, where `Measurements.from_files` takes it",
     ),
     (
         b"#ROSBAG V",

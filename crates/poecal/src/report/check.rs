@@ -11,7 +11,8 @@ use crate::error::first_few;
 use crate::forensics::Diagnosis;
 use crate::io::calibration_file::{BodyEntry, MassEntry, PoseEntry};
 use crate::io::measurements::{
-    ColumnUnderstanding, DecimalSign, FileUnderstanding, MeasurementFile, NamedUnit, Separator, UnitSource,
+    ColumnUnderstanding, DecimalSign, FileUnderstanding, JoinEntry, MeasurementFile, NamedUnit, Separator,
+    UnitSource,
 };
 use crate::io::model::{Model, ModelSource};
 use crate::measurement::Set;
@@ -27,6 +28,9 @@ const WIDEST: usize = 22;
 pub struct Check {
     model: ModelCheck,
     files: Vec<FileUnderstanding>,
+    /// How files of joint readings and of measurements were joined.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    joins: Vec<JoinEntry>,
     sets: Option<SetCounts>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     notes: Vec<String>,
@@ -121,6 +125,7 @@ impl Check {
                 masses: MassEntry::of(robot),
             },
             files: measurements.map_or_else(Vec::new, |file| file.understood.clone()),
+            joins: measurements.map_or_else(Vec::new, |file| file.joins.clone()),
             sets: measurements.map(SetCounts::of),
             sight: SightCheck::of(robot, measurements.map(|file| &file.data)),
             notes: measurements.map_or_else(Vec::new, |file| file.notes.clone()),

@@ -21,6 +21,7 @@ use crate::calibration::{Acceptance, Accuracy, Event, FormulationWords, NoiseSou
 use crate::error::Result;
 use crate::forensics::DiagnosisKind;
 use crate::io::hashes::sha256;
+use crate::io::measurements::{InputEntry, JoinEntry, MeasurementFile};
 use crate::io::record::Record;
 use crate::robot::Controller;
 use crate::solve::Termination;
@@ -145,7 +146,7 @@ pub struct CalibrationFile {
 /// let inputs = Inputs { model: "robot.urdf".into(), measurements: vec!["points.csv".into()], ..Inputs::default() };
 /// assert_eq!(inputs.measurements.len(), 1);
 /// ```
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Inputs {
     /// The robot model, as named by the user.
     pub model: String,
@@ -154,6 +155,12 @@ pub struct Inputs {
     /// SHA-256 of each file by its name; of input that is no regular file, such as a pipe, only for measurements.
     #[serde(default)]
     pub sha256: BTreeMap<String, String>,
+    /// What each measurement file is and what was taken of it; one with joint readings and measurements has two entries.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub files: Vec<InputEntry>,
+    /// How files of joint readings and of measurements were joined; absent if one file has both.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub joins: Vec<JoinEntry>,
     /// The command that reproduces the calibration; null if it was not made by the program.
     #[serde(default)]
     pub command: Option<String>,
@@ -163,6 +170,13 @@ pub struct Inputs {
 }
 
 impl Inputs {
+    /// Adds what is kept of measurement files that were read.
+    pub fn take(&mut self, file: &MeasurementFile) {
+        self.sha256.extend(file.sha256.clone());
+        self.files.extend(file.inputs());
+        self.joins.extend(file.joins.iter().cloned());
+    }
+
     /// Checksum of each model or mapping file by its name; for measurements see
     /// [`MeasurementFile::sha256`](crate::io::measurements::MeasurementFile::sha256). Inputs that are no regular files have none.
     ///

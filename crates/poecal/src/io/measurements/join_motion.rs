@@ -1,12 +1,14 @@
 //! Measurements of a robot in motion with the joint readings of another clock, and what is said of them.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use super::Join;
 use super::Lag;
+use super::join_entry::JoinEntry;
 use super::join_pairs::{Joined, JointRows};
 use super::join_plan::{MotionByLine, ReadingsByLine};
+use super::motions::motion_of_target;
 use crate::error::{ErrorKind, Result, first_few};
 use crate::measurement::Dataset;
 use crate::robot::Robot;
@@ -64,7 +66,7 @@ pub(super) fn in_motion(
     let words = |it: &AtLag| format!("{:.3} s ({:.3} mm)", it.lag_s, 1e3 * it.missed_m);
     let near = if lag.is_some() { " near the stated one" } else { "" };
     match found {
-        Ok(found) => Ok(joined(joints, (path, data), stamps, &found)),
+        Ok(found) => Ok(joined(joints, (path, data, times), robot, (stamps, &found))),
         Err(NoLag::NoMotion) => refuse(format!(
             "found no lag of the clocks{near} at which both streams move together for 5 s or longer, expected recordings of the same motion"
         )),
@@ -83,7 +85,29 @@ pub(super) fn in_motion(
     }
 }
 
-fn joined(joints: &JointRows, (path, data): (&Path, &Dataset), stamps: Stamps, found: &InMotion) -> Joined {
+fn joined(
+    joints: &JointRows,
+    (path, data, times): (&Path, &Dataset, &[f64]),
+    robot: &Robot,
+    (stamps, found): (Stamps, &InMotion),
+) -> Joined {
+    let lines: BTreeSet<u32> = data.observations.iter().map(|it| it.source.line).collect();
+    let entry = JoinEntry {
+        joints: joints.path.display().to_string(),
+        measurements: path.display().to_string(),
+        join: Join::Motion,
+        joint_rows: joints.lines.len(),
+        measured_rows: lines.len(),
+        paired: found.rows.len(),
+        missed_mm: Some(1e3 * found.missed_m),
+        lag_s: Some(found.clock.lag_s),
+        pairs: Vec::new(),
+        unmeasured: Vec::new(),
+        repeated: Vec::new(),
+        unread: Vec::new(),
+        robot_motion: joints.sampled.as_ref().map(|it| it.of_robot(robot, &[])),
+        measured_motion: motion_of_target(data, times, &[]),
+    };
     let mut readings = ReadingsByLine { controller: joints.controller.clone(), ..ReadingsByLine::default() };
     let mut rows = BTreeMap::new();
     for row in &found.rows {
@@ -116,7 +140,7 @@ fn joined(joints: &JointRows, (path, data): (&Path, &Dataset), stamps: Stamps, f
         ));
     }
     readings.moving = Some(MotionByLine { rows, clock });
-    Joined { how: Join::Motion, readings, notes, warnings }
+    Joined { entry, readings, notes, warnings }
 }
 
 /// Scatter of single stamps that is said, seconds.

@@ -3,8 +3,10 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
+use super::join_entry::{JoinEntry, MOST_ALONE, MOST_PAIRS, RowEntry};
 use super::join_plan::ReadingsByLine;
 use super::join_words::{advice, counted, numbered, numbered_as, words};
+use super::motions::Sampled;
 use super::picture_names::Partners;
 use super::{Join, Lag};
 use crate::error::{Error, ErrorKind, Result, first_few};
@@ -18,6 +20,9 @@ const FEW_WRONG: usize = 2;
 
 /// How far a lag by stands may be off, seconds.
 const NEAR_STANDS_S: f64 = 0.3;
+
+/// Share of the reach beyond which no order fits.
+const DOUBTFUL: f64 = 0.05;
 
 /// Joint readings of a file.
 #[derive(Clone, Debug)]
@@ -38,6 +43,8 @@ pub(super) struct JointRows {
     pub(super) spans: Option<Vec<Span>>,
     /// The stream of which they are stands.
     pub(super) stream: Option<JointStream>,
+    /// Readings of that stream at times of equal distance.
+    pub(super) sampled: Option<Sampled>,
     pub(super) controller: Option<Controller>,
 }
 
@@ -51,6 +58,10 @@ impl JointRows {
                 .stream
                 .as_ref()
                 .map(|it| it.map(|at, value| of((&value, self.turns.get(at).unwrap_or(&false))))),
+            sampled: self
+                .sampled
+                .as_ref()
+                .map(|it| it.map(|row| row.iter().zip(&self.turns).map(of).collect())),
             ..self.clone()
         }
     }
@@ -73,7 +84,8 @@ pub(super) struct Pairing<'a> {
 
 /// Readings by line, and what is said of them.
 pub(super) struct Joined {
-    pub(super) how: Join,
+    /// What is kept of it.
+    pub(super) entry: JoinEntry,
     pub(super) readings: ReadingsByLine,
     pub(super) notes: Vec<String>,
     pub(super) warnings: Vec<String>,
@@ -128,14 +140,15 @@ impl Pairing<'_> {
             ));
         }
         let mut joined = self.judged(&best.pairs, Join::Time, self.lag.is_some())?;
+        let between = self.lag_between(best.lag_s);
+        joined.entry.lag_s = between.or(Some(best.lag_s));
         joined.notes.push(format!(
             "{}: {} stands of {} and of {} are the same, at a lag of {} s of its clock",
             self.path.display(),
             best.pairs.len(),
             joints,
             shots,
-            self.lag_between(best.lag_s)
-                .map_or_else(|| format!("{:.3}", best.lag_s), |it| format!("{it:.4}"))
+            between.map_or_else(|| format!("{:.3}", best.lag_s), |it| format!("{it:.4}"))
         ));
         Ok(joined)
     }
@@ -208,11 +221,12 @@ impl Pairing<'_> {
             Some(Agreement::Other { missed_m, order, other_m }) => {
                 return self.refuse(format!(
                     "found measurements that the nominal robot misses by {} (median) if they are joined {by_name}, and by {} {}, expected no other \
-                     order to fit better: {}",
+                     order to fit better: {}{}",
                     mm(missed_m),
                     mm(other_m),
                     words(order),
-                    advice(order)
+                    advice(order),
+                    self.doubt(other_m, pairs)
                 ));
             }
             Some(Agreement::Alike { missed_m, order, other_m }) => {
@@ -224,7 +238,8 @@ impl Pairing<'_> {
                 );
                 if !is_stated {
                     return self.refuse(format!(
-                        "found files that can be joined in two ways: {message}; state the order by --join {option}, or give both files a column `id`"
+                        "found files that can be joined in two ways: {message}; state the order by --join {option}, or give both files a column `id`{}",
+                        self.doubt(missed_m.min(other_m), pairs)
                     ));
                 }
                 warnings.push(format!("{joints}, {path}: {message}"));
@@ -266,7 +281,8 @@ impl Pairing<'_> {
         };
         let note = format!("{joints} and {path} were joined {by_name}: {}{missed}", counted(pairs.len()));
         warnings.extend(self.left_out(pairs));
-        Ok(Joined { how, readings: self.readings(pairs), notes: vec![note], warnings })
+        let entry = self.entry(how, pairs, found.as_ref().map(Agreement::missed_m));
+        Ok(Joined { entry, readings: self.readings(pairs), notes: vec![note], warnings })
     }
 
     /// Refuses rows that fit each other's readings.
@@ -284,11 +300,55 @@ impl Pairing<'_> {
         ))
     }
 
+    /// What a diagnosis says beside an order that fits badly, too.
+    fn doubt(&self, missed_m: f64, pairs: &[Pair]) -> String {
+        if missed_m < DOUBTFUL * self.robot.reach_m() {
+            return String::new();
+        }
+        self.diagnosis(pairs).map_or_else(String::new, |it| format!("; but {it}"))
+    }
+
     /// What a diagnosis of mistakes says of pairs.
     fn diagnosis(&self, pairs: &[Pair]) -> Option<String> {
         let data = self.rows.session_of(pairs);
         let found = diagnose(self.robot, &data, &data.all_rows(), &DiagnosisOptions::default());
         found.first().map(|it| it.statement.clone())
+    }
+
+    /// What is kept of pairs.
+    fn entry(&self, join: Join, pairs: &[Pair], missed_m: Option<f64>) -> JoinEntry {
+        let mut counts = (vec![0_usize; self.rows.joint_rows()], vec![0_usize; self.rows.shots().len()]);
+        for (joint, shot) in pairs {
+            counts.0[*joint] += 1;
+            counts.1[*shot] += 1;
+        }
+        let of_joints = |is_it: &dyn Fn(usize) -> bool| {
+            let found = (0..).zip(&counts.0).filter(|it| is_it(*it.1)).map(|it| it.0);
+            found
+                .filter_map(|at: usize| Some(RowEntry { number: at + 1, line: *self.joints.lines.get(at)? }))
+                .take(MOST_ALONE)
+                .collect::<Vec<_>>()
+        };
+        let of_shots = (0..).zip(&counts.1).filter(|it| *it.1 == 0).map(|it| it.0);
+        let entry_of = |at: usize| Some(RowEntry { number: at + 1, line: self.shot_line(at)? });
+        let robot_motion = self.joints.sampled.as_ref().filter(|_| join == Join::Time);
+        JoinEntry {
+            joints: self.joints.path.display().to_string(),
+            measurements: self.path.display().to_string(),
+            join,
+            joint_rows: counts.0.len(),
+            measured_rows: counts.1.len(),
+            paired: pairs.len(),
+            missed_mm: missed_m.map(|it| 1e3 * it),
+            lag_s: None,
+            pairs: pairs.iter().take(MOST_PAIRS).map(|it| [it.0 + 1, it.1 + 1]).collect(),
+            unmeasured: of_joints(&|count| count == 0),
+            repeated: of_joints(&|count| count > 1),
+            unread: of_shots.filter_map(entry_of).take(MOST_ALONE).collect(),
+            robot_motion: robot_motion
+                .map(|it| it.of_robot(self.robot, self.joints.spans.as_deref().unwrap_or_default())),
+            measured_motion: None,
+        }
     }
 
     /// What has no partner.
@@ -360,7 +420,8 @@ impl Pairing<'_> {
             pairs.len(),
             1e3 * missed_m
         );
-        Ok(Joined { how: Join::Rows, readings: self.readings(pairs), notes: vec![note], warnings })
+        let entry = self.entry(Join::Rows, pairs, Some(*missed_m));
+        Ok(Joined { entry, readings: self.readings(pairs), notes: vec![note], warnings })
     }
 
     fn readings(&self, pairs: &[Pair]) -> ReadingsByLine {
@@ -382,11 +443,14 @@ impl Pairing<'_> {
         if self.joints.is_sheet { numbered_as("row", &lines) } else { numbered(&lines) }
     }
 
+    /// The line at which a configuration was measured first.
+    fn shot_line(&self, shot: usize) -> Option<usize> {
+        let row = *self.rows.shots().get(shot)?.first()?;
+        Some(self.data.observations.get(row as usize)?.source.line as usize)
+    }
+
     fn shot_lines(&self, shots: &[usize]) -> String {
-        let line = |shot: &usize| {
-            let row = *self.rows.shots().get(*shot)?.first()?;
-            Some(self.data.observations.get(row as usize)?.source.line.to_string())
-        };
+        let line = |shot: &usize| self.shot_line(*shot).map(|it| it.to_string());
         numbered(&shots.iter().filter_map(line).collect::<Vec<_>>())
     }
 }

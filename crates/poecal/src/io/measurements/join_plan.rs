@@ -63,6 +63,16 @@ pub(super) struct Planned<'p> {
 }
 
 impl<'p> Planned<'p> {
+    /// The tables of two sets of coordinates, of a file that has them.
+    pub(super) fn sets(&self) -> Option<[OwnTable; 2]> {
+        self.table.as_ref()?.sets()
+    }
+
+    /// The same with another table.
+    pub(super) fn with_table(&mut self, table: OwnTable) {
+        self.table = Some(table);
+    }
+
     /// Its blocks.
     pub(super) fn blocks(&self, opening: Opening<'_>, expected: &'p str) -> Result<Blocks<'p>> {
         match &self.table {

@@ -10,6 +10,7 @@ use super::join_plan::{Part, Plan, Planned};
 use super::joints::rows_of;
 use super::layout::ColumnLayout;
 use super::mapping::ColumnMap;
+use super::motions::{Sampled, motion_of_points, motion_of_target};
 use super::number::Numbers;
 use super::read::Reader;
 use super::recorded::MEASURED;
@@ -29,11 +30,15 @@ impl<'a> Reader<'a> {
     pub(super) fn joined(&mut self, plan: &'a Plan<'_>) -> Result<()> {
         let first = plan.files.iter().find(|it| it.part == Part::Joints);
         let mut joints = first.map(|it| self.joint_rows(it)).transpose()?;
+        let mut of_joints = first;
         for it in &plan.files {
             match (it.part, &joints) {
                 (Part::Joints, Some(known)) if known.path == it.path => {}
-                (Part::Joints, _) => joints = Some(self.joint_rows(it)?),
-                (Part::Measured { .. }, Some(known)) => self.measured(it, known)?,
+                (Part::Joints, _) => (joints, of_joints) = (Some(self.joint_rows(it)?), Some(it)),
+                (Part::Measured { .. }, Some(known)) => {
+                    let read = self.measured(it, known);
+                    read.map_err(|error| self.or_shifted(error, (of_joints, known), it))?;
+                }
                 (Part::Measured { .. }, None) | (Part::Whole, _) => {
                     self.file(it.path, it.blocks(self.opening(), MEASURED)?)?;
                 }
@@ -44,7 +49,7 @@ impl<'a> Reader<'a> {
 
     /// Reads a file of joint readings alone. Angles without a unit that are no radians are degrees: the nominal robot then agrees with the pairs, or
     /// they are refused.
-    fn joint_rows(&mut self, planned: &Planned<'_>) -> Result<JointRows> {
+    pub(super) fn joint_rows(&mut self, planned: &Planned<'_>) -> Result<JointRows> {
         let found = self.joint_rows_by(planned, self.map);
         let Err(error) = &found else { return found };
         if error.kind() != ErrorKind::Unit || self.map.units.angle.is_some() {
@@ -62,7 +67,9 @@ impl<'a> Reader<'a> {
         let blocks = planned.blocks(self.opening(), "a file of joint readings (CSV)")?;
         let mut table = Table::open(path, blocks, map)?;
         let said = table.said();
+        self.header_line = table.header.line;
         let layout = ColumnLayout::joints(&table.header, self.robot, self.options, map)?;
+        let layout = self.as_shifted(layout, &table)?;
         let numbers = Numbers::new(map.decimal);
         let mut inputs = InputReader::new(&layout.inputs, layout.inputs.len(), numbers);
         let table_rows = rows_of(&mut table, &layout, &mut inputs, self.robot)?;
@@ -74,6 +81,7 @@ impl<'a> Reader<'a> {
         self.found.understood.push(FileUnderstanding {
             path: path.to_path_buf(),
             form: table.form(),
+            understood: table.understood(),
             rows: table_rows.rows,
             points: 0,
             poses: 0,
@@ -89,7 +97,7 @@ impl<'a> Reader<'a> {
             ignored: layout.ignored.iter().map(|(name, _)| name.clone()).collect(),
         });
         let turning = layout.inputs.iter().filter(|it| it.unit.of() == Unit::Radian);
-        let rows = JointRows {
+        let mut rows = JointRows {
             path: path.to_path_buf(),
             readings: table_rows.readings,
             ids: table_rows.ids.iter().map(|id| id.trim().to_owned()).collect(),
@@ -100,6 +108,7 @@ impl<'a> Reader<'a> {
             turns: layout.inputs.iter().map(|it| it.unit.of() == Unit::Radian).collect(),
             times: table_rows.times,
             spans: None,
+            sampled: None,
             stream: None,
             controller: layout.controller,
         };
@@ -107,6 +116,9 @@ impl<'a> Reader<'a> {
         let is_listed =
             !rows.ids.is_empty() || matches!(self.options.join, Some(Join::Rows | Join::Name | Join::Motion));
         let Some(mut stands) = (if is_listed { None } else { stands_of_joints(&rows, &rows.times) }) else {
+            if self.options.join == Some(Join::Motion) {
+                rows.sampled = Sampled::new(&rows.times, &rows.readings, rows.turns.len());
+            }
             return Ok(rows);
         };
         stands.stream = JointStream::new(&rows.times, &rows.readings, rows.turns.len());
@@ -118,6 +130,7 @@ impl<'a> Reader<'a> {
             path.display(),
             stands.lines.len()
         ));
+        stands.sampled = Sampled::new(&rows.times, &rows.readings, rows.turns.len());
         Ok(stands)
     }
 
@@ -150,6 +163,7 @@ impl<'a> Reader<'a> {
             return Err(no_stands(path, "measurements", stands.spans.len()));
         }
         let stream = stands.as_ref().map(|_| (&data, times.as_slice()));
+        let motion = stands.as_ref().and_then(|it| motion_of_target(&data, &times, &it.spans));
         let data = stands.as_ref().map_or(&data, |it| &it.data);
         let points: Option<Vec<Span>> = (times.len() == data.len() && times.iter().all(|it| it.is_finite()))
             .then(|| points(data, &times));
@@ -176,13 +190,17 @@ impl<'a> Reader<'a> {
             ));
             found.readings.means = stands.means;
         }
+        let by_time = found.entry.join == Join::Time;
+        found.entry.measured_motion =
+            motion.or_else(|| points.as_deref().filter(|_| by_time).and_then(motion_of_points));
         self.again(planned, found)
     }
 
     /// Reads a file of measurements again, with the readings of each line.
     fn again(&mut self, planned: &'a Planned<'_>, found: Joined) -> Result<()> {
         let (path, unread) = (planned.path, &planned.map);
-        self.found.join = Some(found.how);
+        self.found.join = Some(found.entry.join);
+        self.found.joins.push(found.entry);
         self.found.notes.extend(found.notes);
         self.found.warnings.extend(found.warnings);
         let usual = std::mem::replace(&mut self.map, unread);

@@ -24,6 +24,7 @@ mod imported;
 mod inputs;
 mod instrument_noise;
 mod intrinsics;
+mod join_entry;
 mod join_motion;
 mod join_pairs;
 mod join_plan;
@@ -35,6 +36,7 @@ mod layout;
 mod lost;
 mod mapping;
 mod messages;
+mod motions;
 mod naming;
 mod number;
 mod numbered;
@@ -55,6 +57,8 @@ mod recorded;
 mod rewritten;
 mod row;
 mod scale;
+mod set_choice;
+mod shifted_header;
 mod sightings;
 mod socket_distance;
 mod spread;
@@ -82,6 +86,7 @@ pub(in crate::io) use cells::{Cell, split};
 pub use fit_where::FitWhere;
 pub use imported::imported_table;
 pub use instrument_noise::InstrumentNoise;
+pub use join_entry::{InputEntry, JoinEntry, MotionEntry, RowEntry};
 pub use joints::{JointsTable, parse_joints, read_joints};
 pub use lost::LostBeams;
 pub use mapping::ColumnMap;
@@ -98,6 +103,11 @@ pub use units::{NamedUnit, UnitSource};
 pub(in crate::io) use write::text;
 
 use std::collections::BTreeMap;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 use crate::camera::{Board, Camera};
 use crate::error::Result;
@@ -138,6 +148,8 @@ pub struct ReadOptions {
     pub body: Option<String>,
     /// Topics of bags, with or without the stroke that their names begin with; the only ones that can be meant if they are not stated.
     pub topics: Vec<String>,
+    /// Bags whose messages were read from elsewhere: a file of these is not opened.
+    pub bags: Vec<GivenBag>,
     /// Known distances between the sockets of a place.
     pub socket_distances: Option<SocketDistances>,
     /// What rows with a `plane` are that do not say it in `contact`.
@@ -150,6 +162,17 @@ pub struct ReadOptions {
     pub instrument_noise: Vec<InstrumentNoise>,
     /// What was understood of files of boards, a sentence each, for the warnings.
     pub said: Vec<String>,
+}
+
+/// A bag that was read from a file in another form, as the Python package reads `.db3`.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct GivenBag {
+    /// The file, as it is named among those that are read.
+    pub path: PathBuf,
+    /// Its messages as MCAP.
+    pub mcap: Arc<[u8]>,
+    /// SHA-256 of the file.
+    pub sha256: String,
 }
 
 impl ReadOptions {
@@ -194,7 +217,8 @@ impl PlaneContact {
 }
 
 /// How the rows of a file of joint readings and of one of measurements find each other.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
 pub enum Join {
     /// By the names of their rows.
     Name,
@@ -277,6 +301,8 @@ pub struct MeasurementFile {
     pub warnings: Vec<String>,
     /// How files of joint readings and of measurements were joined, if some were.
     pub join: Option<Join>,
+    /// Each join of two files, as `calibration.json` has it.
+    pub joins: Vec<JoinEntry>,
     /// Whether angles of joints that state no unit were taken for degrees.
     pub is_in_degrees: bool,
 }

@@ -13,6 +13,8 @@ pub(super) struct Places {
     pub(super) sheet: Option<Sheet>,
     /// What the file is, as in "a workbook".
     pub(super) form: &'static str,
+    /// What was understood of it, in a few words.
+    pub(super) understood: String,
 }
 
 /// A sheet of a workbook.

@@ -15,7 +15,7 @@ use super::messages::are_messages;
 use super::naming::Names;
 use super::number::Numbers;
 use super::picture_files::TakenByImage;
-use super::recorded::{MEASURED, Opening};
+use super::recorded::Opening;
 use super::scale::{self, JointWatch};
 use super::socket_distance::Sockets;
 use super::spread;
@@ -50,7 +50,8 @@ fn read_all(paths: &[&Path], robot: &Robot, options: &ReadOptions) -> Result<Mea
         return ErrorKind::Option.refuse("found no measurement file, expected at least one");
     }
     let no_map = ColumnMap::default();
-    if let Some(plan) = Plan::of(paths, robot, options, options.mapping.as_ref().unwrap_or(&no_map))? {
+    if let Some(mut plan) = Plan::of(paths, robot, options, options.mapping.as_ref().unwrap_or(&no_map))? {
+        plan.settle_sets(robot, options, &no_map)?;
         let mut reader = Reader::new(robot, options, &no_map);
         reader.joined(&plan)?;
         return reader.finish();
@@ -63,10 +64,14 @@ fn read_all(paths: &[&Path], robot: &Robot, options: &ReadOptions) -> Result<Mea
     }
     for path in order {
         let opening = reader.opening();
-        let blocks = opening.blocks(path, MEASURED)?;
-        reader
-            .file(path, blocks)
-            .map_err(|error| in_its_file(error, path))
+        let blocks = reader.blocks_of_set(path)?;
+        let read = reader.file(path, blocks);
+        let is_own = reader.found.understood.last().is_none_or(|it| it.form.is_none());
+        let is_doubtful = is_own && read.as_ref().err().is_none_or(|it| it.kind() == ErrorKind::Measurement);
+        if is_doubtful && let Some(error) = reader.shifted_whole(path) {
+            return Err(error);
+        }
+        read.map_err(|error| in_its_file(error, path))
             .map_err(|error| alone(error, path, &opening, reader.map))
             .map_err(|error| beside(error, path, paths, (robot, reader.map, options.cameras.is_empty())))?;
     }
@@ -147,6 +152,9 @@ pub(super) struct Reader<'a> {
     pub(super) sockets: Sockets,
     /// Which of the values that mark a row to fit were seen.
     pub(super) fit_values_seen: Vec<bool>,
+    /// By how many columns values are taken to stand to the right of their names, and the line of names that was read last.
+    pub(super) shift: isize,
+    pub(super) header_line: usize,
     pub(super) found: MeasurementFile,
 }
 
@@ -168,6 +176,8 @@ impl<'a> Reader<'a> {
             boards: options.boards.clone(),
             sockets: Sockets::new(),
             fit_values_seen: Vec::new(),
+            shift: 0,
+            header_line: 0,
             found: MeasurementFile {
                 data: Dataset::new(robot.reading_names()).with_factors(robot.factors.len()),
                 warnings: options.said.clone(),
@@ -241,7 +251,9 @@ impl<'a> Reader<'a> {
     /// Takes the rows of a file and judges nothing.
     pub(super) fn rows_alone<'p>(&mut self, path: &'p Path, blocks: Blocks<'p>) -> Result<()> {
         let mut table = Table::open(path, blocks, self.map)?;
+        self.header_line = table.header.line;
         let layout = ColumnLayout::new(&table.header, self.robot, self.options, self.map)?;
+        let layout = self.as_shifted(layout, &table)?;
         let numbers = Numbers::new(self.map.decimal);
         let mut inputs = InputReader::new(&layout.inputs, self.found.data.reading_names().len(), numbers);
         self.found.data.files.push(path.to_path_buf());
@@ -387,6 +399,7 @@ impl<'a> Reader<'a> {
         self.found.understood.push(FileUnderstanding {
             path: path.to_path_buf(),
             form: table.form(),
+            understood: table.understood(),
             rows,
             points,
             poses,

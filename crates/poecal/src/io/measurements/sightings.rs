@@ -97,6 +97,7 @@ impl Reader<'_> {
         let mut columns = understanding::columns(&table.header, layout, &inputs.ranges);
         columns.extend(own);
         self.found.understood.push(FileUnderstanding {
+            understood: table.understood(),
             path: path.to_path_buf(),
             form: table.form(),
             rows,

@@ -12,6 +12,8 @@ use crate::io::looks_like::model_for_table;
 
 /// Most lines in which the header is sought.
 const LINES_ABOVE: usize = 40;
+/// Lines below the first row that show whether all rows have another number of cells than the header.
+const NEAR: usize = 10;
 /// Most lines below the header that are checked if it is none.
 const LINES_BELOW: usize = 10;
 
@@ -49,6 +51,8 @@ pub(super) struct TableRows<'t> {
     places: Option<&'t Places>,
     lines: Lines<'t>,
     cells: Vec<Cell<'t>>,
+    /// Whether no row was returned yet.
+    is_first: bool,
 }
 
 impl<'a> Table<'a> {
@@ -120,6 +124,11 @@ impl<'a> Table<'a> {
         self.places.as_ref().map(|it| it.form)
     }
 
+    /// What was understood of a file in another form, in a few words.
+    pub(super) fn understood(&self) -> Option<String> {
+        self.places.as_ref().map(|it| it.understood.clone()).filter(|it| !it.is_empty())
+    }
+
     /// The sheet of a workbook that it was made of.
     pub(super) fn is_sheet(&self) -> bool {
         self.places.as_ref().is_some_and(|it| it.sheet.is_some())
@@ -137,13 +146,22 @@ impl<'a> Table<'a> {
 
     /// The rows of the next block.
     pub(super) fn next_block(&mut self) -> Result<Option<TableRows<'_>>> {
-        if !std::mem::take(&mut self.unread) && !self.blocks.advance()? {
+        let is_first = std::mem::take(&mut self.unread);
+        if !is_first && !self.blocks.advance()? {
             return Ok(None);
         }
         let Table { header, separator, blocks, places, header_end, .. } = self;
         let lines = blocks.lines(*header_end);
         let (text, places) = (blocks.text(), places.as_ref());
-        Ok(Some(TableRows { text, header, separator: *separator, places, lines, cells: Vec::new() }))
+        Ok(Some(TableRows {
+            text,
+            header,
+            separator: *separator,
+            places,
+            lines,
+            cells: Vec::new(),
+            is_first,
+        }))
     }
 }
 
@@ -184,6 +202,7 @@ impl TableRows<'_> {
                     return Err(ErrorKind::Measurement.error(message).at(path, line, place));
                 }
             }
+            self.is_first = false;
             let line = self.places.map_or(line, |places| places.line(line));
             return Ok(Some(Row { path, line, text, cells: &self.cells, places: self.places }));
         }
@@ -203,6 +222,20 @@ impl TableRows<'_> {
     fn count_hint(&self, text: &str) -> String {
         let (found, expected) = (self.cells.len(), self.header.cells.len());
         let mut cells = Vec::new();
+        let is_alike = |line: &str| {
+            let mut cells = Vec::new();
+            split(line, self.separator, &mut cells).is_ok() && cells.len() == found
+        };
+        // The first row, and all others near it.
+        let near: Vec<(usize, &str)> = self.lines.clone().take(NEAR).collect();
+        let is_of_all = self.is_first && near.len() > 1 && near.iter().all(|it| is_alike(it.1));
+        if is_of_all && found.abs_diff(expected) == 1 {
+            return if found > expected {
+                "; all rows have one more: the header has one name too few, as where row numbers have none, put a name in front".to_owned()
+            } else {
+                "; all rows have one fewer: the header has one name too many, take out that of the column that the rows do not have".to_owned()
+            };
+        }
         let others = [Separator::Comma, Separator::Semicolon, Separator::Tab];
         let other = others.into_iter().find(|&other| {
             other != self.separator && split(text, other, &mut cells).is_ok() && cells.len() == expected

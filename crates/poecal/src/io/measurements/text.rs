@@ -319,6 +319,7 @@ fn not_utf8(path: &Path, bytes: &[u8], valid: usize, lines: usize) -> Error {
 }
 
 /// Lines with their number (from 1) that are neither blank nor a comment (`#`).
+#[derive(Clone)]
 pub(super) struct Lines<'a> {
     rest: Option<&'a str>,
     newline: u8,

@@ -39,6 +39,9 @@ pub struct FileUnderstanding {
     /// What the file is, of one in another form than ours.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub form: Option<&'static str>,
+    /// What was understood of one in another form, in a few words.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub understood: Option<String>,
     /// Number of rows, those of lost beams included.
     pub rows: usize,
     /// Number of position-only measurements.

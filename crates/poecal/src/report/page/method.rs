@@ -7,8 +7,10 @@ use maud::{Markup, html};
 use super::devices::found_words;
 use super::figures;
 use super::html::{HtmlTable, count, facts, figure, folded, path, plots, quoted, section};
+use super::joins;
 use crate::calibration::DeviceFrameKnowledge;
 use crate::io::calibration_file::CalibrationFile;
+use crate::io::measurements::InputEntry;
 use crate::report::summary::terms;
 use crate::solve::Termination;
 
@@ -93,24 +95,46 @@ fn convergence(file: &CalibrationFile) -> Markup {
     }
 }
 
-/// Files with their checksums: one with its key and what it is, the measurements, and mappings.
+/// Files with their checksums: one with its key and what it is, the measurements with what was taken of each, and mappings.
 pub(super) fn files(
     (first, key, what): (&String, &str, &str),
     measurements: &[String],
     sha256: &BTreeMap<String, String>,
-    mappings: &[&String],
+    (entries, mappings): (&[InputEntry], &[&String]),
 ) -> HtmlTable {
-    let mut table = HtmlTable::new("Files that were read", 3, &["file", "what", "SHA-256"]);
-    let mut add = |name: &String, shown: Markup, what: &str| {
-        let hash = sha256.get(name).map_or("not recorded", String::as_str);
-        table.row(&[&shown, &what, &html! { code.hash { (hash) } }]);
+    let has_entries = !entries.is_empty();
+    let head: &[&str] = if has_entries {
+        &["file", "what", "taken", "rows", "SHA-256"]
+    } else {
+        &["file", "what", "SHA-256"]
     };
-    add(first, path(first, key), what);
+    let mut table = HtmlTable::new("Files that were read", head.len(), head);
+    let mut add = |name: &String, shown: Markup, what: &str, of: Option<(&InputEntry, usize)>| {
+        let hash = sha256.get(name).map_or("not recorded", String::as_str);
+        let hash = html! { code.hash { (hash) } };
+        match of {
+            Some((entry, at)) => {
+                let rows = count(entry.rows, format_args!("inputs.files.{at}.rows"));
+                table.row(&[&shown, &what, &joins::taken(entry, at), &rows, &hash]);
+            }
+            None if has_entries => table.row(&[&shown, &what, &"", &"", &hash]),
+            None => table.row(&[&shown, &what, &hash]),
+        }
+    };
+    add(first, path(first, key), what, None);
     for (k, name) in measurements.iter().enumerate() {
-        add(name, path(name, format_args!("inputs.measurements.{k}")), "measurements");
+        let shown = || path(name, format_args!("inputs.measurements.{k}"));
+        let own: Vec<(&InputEntry, usize)> =
+            entries.iter().zip(0..).filter(|(entry, _)| entry.file == *name).collect();
+        for (entry, at) in &own {
+            add(name, shown(), entry.form.as_deref().unwrap_or("a table"), Some((entry, *at)));
+        }
+        if own.is_empty() {
+            add(name, shown(), "measurements", None);
+        }
     }
     for name in mappings {
-        add(name, html! { (name) }, "mapping");
+        add(name, html! { (name) }, "mapping", None);
     }
     table
 }
@@ -120,10 +144,11 @@ fn inputs(file: &CalibrationFile) -> Markup {
     let is_further = |name: &&String| **name != inputs.model && !inputs.measurements.contains(name);
     let further: Vec<&String> = inputs.sha256.keys().filter(is_further).collect();
     let own = (&inputs.model, "inputs.model", "model");
-    let table = files(own, &inputs.measurements, &inputs.sha256, &further);
+    let table = files(own, &inputs.measurements, &inputs.sha256, (&inputs.files, &further));
     html! {
         h3 { "Inputs" }
         (table)
+        (joins::sections(file))
         @if let Some(command) = &inputs.command {
             details {
                 summary { "How to make it again" }

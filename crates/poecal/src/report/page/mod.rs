@@ -11,6 +11,7 @@ mod figures;
 mod first;
 mod frames;
 mod html;
+mod joins;
 mod joints;
 mod lead;
 mod method;

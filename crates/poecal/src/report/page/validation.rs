@@ -231,7 +231,7 @@ fn checks(found: &Validation, earlier: &[Earlier]) -> Markup {
 fn inputs(found: &Validation) -> Markup {
     let inputs = &found.inputs;
     let own = (&inputs.calibration, "inputs.calibration", "calibration");
-    let table = method::files(own, &inputs.measurements, &inputs.sha256, &[]);
+    let table = method::files(own, &inputs.measurements, &inputs.sha256, (&[], &[]));
     let content = html! {
         (table)
         @if let Some(command) = &inputs.command {

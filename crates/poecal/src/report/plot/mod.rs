@@ -9,6 +9,7 @@ mod axis;
 mod dots;
 mod frame;
 mod heat;
+mod joined;
 mod line;
 mod ranges;
 mod svg;
@@ -16,6 +17,7 @@ mod svg;
 pub use axis::{Axis, Scale};
 pub use dots::{DotPlot, Dots};
 pub use heat::{HeatCell, HeatMap};
+pub use joined::{Entry, JoinPlot, List};
 pub use line::{Line, LinePlot};
 pub use ranges::{RangePlot, RangeRow};
 

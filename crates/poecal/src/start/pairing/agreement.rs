@@ -55,6 +55,19 @@ pub enum Agreement {
     },
 }
 
+impl Agreement {
+    /// The error of the pairs, metres.
+    #[must_use]
+    pub fn missed_m(&self) -> f64 {
+        match *self {
+            Agreement::Right { missed_m }
+            | Agreement::Other { missed_m, .. }
+            | Agreement::Alike { missed_m, .. }
+            | Agreement::None { missed_m } => missed_m,
+        }
+    }
+}
+
 impl Unpaired<'_> {
     /// How pairs agree with the nominal robot, beside their other orders; `None` if nothing can be compared, as of few pairs.
     #[must_use]

@@ -1,7 +1,10 @@
 //! What a recorder saw at each time: bodies with poses, or markers.
 
+use nalgebra::Vector3;
+
 use super::Opening;
 use super::maker::{Made, Refused, Value};
+use super::rigid::{self, Places, Renamed};
 use super::words::{number, quoted};
 
 /// A body or a marker that moved less than this, metres, stands.
@@ -47,9 +50,18 @@ pub(super) struct Frames<'t> {
     pub(super) unit: (&'static str, f64),
     /// The line that names the columns.
     pub(super) header: usize,
+    /// Markers without a name, whose places may be those of others.
+    pub(super) unnamed: Vec<Body>,
+    /// Whether no marker has a name.
+    pub(super) are_unnamed: bool,
 }
 
-impl Frames<'_> {
+impl<'t> Frames<'t> {
+    /// No frames yet.
+    pub(super) fn of(unit: (&'static str, f64), header: usize) -> Self {
+        Frames { rows: Vec::new(), times: Vec::new(), unit, header, unnamed: Vec::new(), are_unnamed: false }
+    }
+
     /// The table of the body that moves; of several, of the one that was asked for.
     pub(super) fn table(&self, bodies: &[Body], what: &str, opening: &Opening<'_>) -> Result<Made, Refused> {
         let (taken, left) = self.taken(bodies, what, opening)?;
@@ -65,26 +77,70 @@ impl Frames<'_> {
             columns.extend(["qx", "qy", "qz", "qw"].map(str::to_owned));
         }
         let mut made = Made::new(self.header, columns.iter().map(String::as_str));
-        for ((line, cells), time) in self.rows.iter().zip(&self.times) {
-            for body in &taken {
+        let renamed = if is_posed { None } else { self.renamed(&taken) };
+        let places: Vec<&Body> = taken.iter().copied().chain(&self.unnamed).collect();
+        // Of markers without names those that make a body.
+        let given: Vec<(usize, &Body)> = taken.iter().copied().enumerate().collect();
+        let given: Vec<(usize, &Body)> = match (&renamed, self.are_unnamed) {
+            (_, false) => given,
+            (Some(renamed), true) => given.into_iter().filter(|it| renamed.markers.contains(&it.0)).collect(),
+            (None, true) => {
+                return Refused::at(
+                    self.header,
+                    "found no marker with a name, and no three that keep their distances, expected a rigid body, or markers with names, on the robot",
+                );
+            }
+        };
+        for (frame, ((line, cells), time)) in self.rows.iter().zip(&self.times).enumerate() {
+            for &(at, named) in &given {
                 let of = |at: usize| Value::Text(cells.get(at).copied().unwrap_or_default());
-                let is_seen = self.position(cells, body).is_some();
+                let place = renamed.as_ref().map_or(Some(at), |it| it.place_of(frame, at));
+                let place = place.and_then(|at| places.get(at).copied());
+                let is_seen = place.is_some_and(|it| self.position(cells, it).is_some());
+                let body = place.unwrap_or(named);
                 let mut row = vec![time.map_or(Value::Empty, Value::Number)];
                 if has_several {
-                    row.push(Value::Text(&body.name));
+                    row.push(Value::Text(&named.name));
                 }
                 let parts = body.position.iter().chain(body.quaternion.iter().flatten());
                 row.extend(parts.map(|&at| if is_seen { of(at) } else { Value::Empty }));
                 made.row(*line, row);
             }
         }
-        let names: Vec<String> = taken.iter().map(|it| format!("`{}`", it.name)).collect();
+        let names: Vec<String> = given.iter().map(|it| format!("`{}`", it.1.name)).collect();
         let count = self.rows.len();
         made.said.push(format!("{count} frames of {}, {unit}", names.join(", ")));
         if !left.is_empty() {
             made.said.push(format!("left out {}", quoted(left)));
         }
+        if let Some(renamed) = renamed {
+            let names: Vec<&str> = taken.iter().map(|it| it.name.as_str()).collect();
+            let lines: Vec<usize> = self.rows.iter().map(|it| it.0).collect();
+            let is_seen = |frame: usize, column: usize| {
+                let place = taken.get(column).zip(self.rows.get(frame));
+                place.is_some_and(|(body, row)| self.position(&row.1, body).is_some())
+            };
+            let (said, warned) = renamed.words(&names, &lines, is_seen);
+            made.said.extend(said);
+            made.warned.extend(warned);
+        }
         Ok(made)
+    }
+
+    /// What the distances between markers show of their names; `None` if they show nothing.
+    fn renamed(&self, taken: &[&Body]) -> Option<Renamed> {
+        if taken.len() < rigid::FEWEST {
+            return None;
+        }
+        let all: Vec<&Body> = taken.iter().copied().chain(&self.unnamed).collect();
+        let places = |(_, cells): &(usize, Vec<&str>)| -> Places {
+            let place = |it: &&Body| self.position(cells, it).map(|it| Vector3::from(it) * self.unit.1);
+            all.iter().map(place).collect()
+        };
+        let frames: Vec<Places> = self.rows.iter().map(places).collect();
+        let columns: Vec<usize> = (0..taken.len()).collect();
+        let others: Vec<usize> = (if self.are_unnamed { 0 } else { taken.len() }..all.len()).collect();
+        Renamed::of(&frames, &columns, &others)
     }
 
     /// The bodies to take, and the names of the others.

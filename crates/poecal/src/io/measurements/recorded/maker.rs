@@ -4,6 +4,7 @@ use std::path::Path;
 
 use super::super::places::{Places, Sheet};
 use super::super::text::{Blocks, Said};
+use super::two_sets::Called;
 use crate::error::{Error, ErrorKind};
 use crate::io::csv_text::cell;
 use crate::io::numbers::push_number;
@@ -20,6 +21,9 @@ pub(super) struct Made {
     pub(super) said: Vec<String>,
     /// What should be looked at, a sentence each.
     pub(super) warned: Vec<String>,
+    /// Of a file with two sets of coordinates, what this one is called, and the other one.
+    pub(super) called: Option<Called>,
+    pub(super) other: Option<Box<Made>>,
 }
 
 /// Why a file of a known form is not read, and in which line.
@@ -70,6 +74,17 @@ impl Made {
         Made { text, ..self }
     }
 
+    /// The same as the first of two sets of coordinates, with the other one.
+    pub(super) fn with_other(self, [own, called]: [Called; 2], other: Made) -> Self {
+        let other = Made { called: Some(called), ..other };
+        Made { called: Some(own), other: Some(Box::new(other)), ..self }
+    }
+
+    /// The same without another set.
+    pub(super) fn alone(&self) -> Self {
+        Made { other: None, ..self.clone() }
+    }
+
     /// The same of a sheet of a workbook.
     #[cfg(feature = "workbooks")]
     pub(super) fn in_sheet(self, sheet: Sheet) -> Self {
@@ -95,7 +110,7 @@ impl Made {
             path.display(),
             if words.is_empty() { "" } else { ": " }
         );
-        let places = Places { lines: self.lines, sheet: self.sheet, form: title };
+        let places = Places { lines: self.lines, sheet: self.sheet, form: title, understood: words };
         let warnings = self.warned.into_iter().map(|it| format!("{}: {it}", path.display())).collect();
         let said = Said { notes: vec![said], warnings };
         Blocks::made(path, expected, self.text, sha256).with_places(places, said)

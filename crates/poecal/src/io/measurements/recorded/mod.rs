@@ -15,8 +15,10 @@ mod programs;
 mod qualisys;
 mod recording;
 mod refused;
+mod rigid;
 mod robodk;
 mod spatial_analyzer;
+mod two_sets;
 mod words;
 #[cfg(feature = "workbooks")]
 mod workbook;
@@ -27,6 +29,7 @@ use std::path::Path;
 
 use self::maker::{Made, Refused};
 pub(super) use self::recording::{OwnTable, Recording};
+pub(super) use self::two_sets::Called;
 use super::ReadOptions;
 use super::configurations;
 use super::mapping::ColumnMap;
@@ -84,7 +87,7 @@ struct Form {
 }
 
 /// All forms of texts; the last one is what is left.
-const FORMS: [Form; 10] = [
+const FORMS: [Form; 11] = [
     spatial_analyzer::FORM,
     motive::FORM,
     qualisys::FORM,
@@ -94,6 +97,7 @@ const FORMS: [Form; 10] = [
     robodk::FORM,
     figaroh::FORM,
     auto_id::FORM,
+    two_sets::FORM,
     headerless::FORM,
 ];
 
@@ -115,6 +119,10 @@ impl Opening<'_> {
 
     /// A file that may hold joint readings and measurements, if it is one.
     pub(super) fn recording(&self, path: &Path) -> crate::Result<Option<Recording>> {
+        #[cfg(feature = "bags")]
+        if let Some(given) = self.options.bags.iter().find(|it| it.path == path) {
+            return bags::read_given(given, self).map(Some);
+        }
         #[cfg(feature = "bags")]
         if bags::is_bag(path) {
             return bags::read(path, self).map(Some);

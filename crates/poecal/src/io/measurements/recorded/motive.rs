@@ -11,6 +11,9 @@ pub(super) const FORM: Form = Form { title: "a take of Motive", is_it, table };
 const UNITS: [(&str, (&str, f64)); 3] =
     [("Meters", ("m", 1.0)), ("Centimeters", ("cm", 1e-2)), ("Millimeters", ("mm", 1e-3))];
 
+/// How the names of markers without a label begin.
+const UNNAMED: &str = "Unlabeled";
+
 fn is_it(text: &str, _: &Opening<'_>) -> bool {
     lines(text).next().is_some_and(|(_, line)| {
         let line = line.trim_start_matches('"');
@@ -54,7 +57,7 @@ fn table(text: &str, opening: &Opening<'_>) -> Result<Made, Refused> {
     };
     let rotation = value("Rotation Type").unwrap_or("Quaternion");
     let labels = Labels::of(text)?;
-    let bodies = labels.bodies(rotation)?;
+    let (bodies, unnamed) = labels.bodies(rotation)?;
     let time = labels.axes.iter().position(|it| it.starts_with("Time") && !it.starts_with("TimeCode"));
     let Some(time) = time else {
         return Refused::at(
@@ -85,7 +88,8 @@ fn table(text: &str, opening: &Opening<'_>) -> Result<Made, Refused> {
         times.push(Some(at));
         rows.push((line, found));
     }
-    let frames = Frames { rows, times, unit: *unit, header: labels.line };
+    let are_unnamed = bodies.iter().all(|it| it.name.starts_with(UNNAMED));
+    let frames = Frames { rows, times, unnamed, are_unnamed, ..Frames::of(*unit, labels.line) };
     let mut made = frames.table(&bodies, "body or marker", opening)?;
     let stated: Option<usize> = value("Total Exported Frames").and_then(|it| it.parse().ok());
     if let Some(stated) = stated.filter(|it| *it != frames.rows.len()) {
@@ -120,8 +124,8 @@ impl<'t> Labels<'t> {
         )
     }
 
-    /// Bodies with poses, or without them markers that have names.
-    fn bodies(&self, rotation: &str) -> Result<Vec<Body>, Refused> {
+    /// Bodies with poses, or without them markers that have names, and those that have none.
+    fn bodies(&self, rotation: &str) -> Result<(Vec<Body>, Vec<Body>), Refused> {
         let column = |name: &str, of: &str, kind: &str, axis: &str| {
             (0..self.axes.len()).find(|&at| {
                 let is = |row: &[&str], word: &str| row.get(at).is_some_and(|it| *it == word);
@@ -161,13 +165,18 @@ impl<'t> Labels<'t> {
             bodies.push(Body { name: name.to_owned(), position, quaternion });
         }
         if !bodies.is_empty() {
-            return Ok(bodies);
+            return Ok((bodies, Vec::new()));
         }
+        // Those without a label have another number each time they come back.
+        let mut unnamed = Vec::new();
         for name in names("Marker") {
-            // Those without a label have another number from frame to frame.
-            if let Some(position) = position(name, "Marker").filter(|_| !name.starts_with("Unlabeled")) {
-                bodies.push(Body { name: name.to_owned(), position, quaternion: None });
-            }
+            let Some(position) = position(name, "Marker") else { continue };
+            let list = if name.starts_with(UNNAMED) { &mut unnamed } else { &mut bodies };
+            list.push(Body { name: name.to_owned(), position, quaternion: None });
+        }
+        if bodies.is_empty() {
+            // Those that are there from the beginning on, if their distances make a body of them.
+            std::mem::swap(&mut bodies, &mut unnamed);
         }
         if bodies.is_empty() {
             return Refused::at(
@@ -175,6 +184,6 @@ impl<'t> Labels<'t> {
                 "found neither a rigid body nor a marker with a name, expected one on the robot",
             );
         }
-        Ok(bodies)
+        Ok((bodies, unnamed))
     }
 }

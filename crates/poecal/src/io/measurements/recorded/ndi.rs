@@ -42,7 +42,7 @@ fn table(text: &str, opening: &Opening<'_>) -> Result<Made, Refused> {
         };
         bodies.push(Body { name: letter.to_string(), position: [x, y, z], quaternion });
     }
-    let mut frames = Frames { rows: Vec::new(), times: Vec::new(), unit: ("mm", 1e-3), header: line };
+    let mut frames = Frames::of(("mm", 1e-3), line);
     let mut days = 0.0;
     for (line, content) in lines(text).filter(|it| it.0 > line) {
         let found: Vec<&str> = content.split(',').map(str::trim).collect();

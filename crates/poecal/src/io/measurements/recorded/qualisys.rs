@@ -66,7 +66,7 @@ fn table(text: &str, opening: &Opening<'_>) -> Result<Made, Refused> {
             ),
         );
     };
-    let mut frames = Frames { rows: Vec::new(), times: Vec::new(), unit: ("mm", 1e-3), header: line };
+    let mut frames = Frames::of(("mm", 1e-3), line);
     for (number_of, (line, content)) in lines(text).filter(|it| it.0 > columns.line).enumerate() {
         let found = cells(content);
         let read = |at: Option<usize>| at.and_then(|at| number(found.get(at)?));
@@ -109,7 +109,7 @@ fn table(text: &str, opening: &Opening<'_>) -> Result<Made, Refused> {
             Body { quaternion: Some([start, start + 1, start + 2, start + 3]), ..body }
         })
         .collect();
-    let posed = Frames { rows, times: frames.times.clone(), unit: frames.unit, header: frames.header };
+    let posed = Frames { rows, times: frames.times.clone(), ..Frames::of(frames.unit, frames.header) };
     let mut made = posed.table(&bodies, "body", opening)?;
     made.said.push("orientations are of the matrix, which agrees with the angles".to_owned());
     Ok(made)

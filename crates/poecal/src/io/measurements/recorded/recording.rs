@@ -4,10 +4,11 @@ use std::path::Path;
 
 use super::super::text::Blocks;
 use super::maker::Made;
+use super::two_sets::Called;
 use crate::error::{Error, ErrorKind};
 
 /// One of the tables of a file.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(in super::super) struct OwnTable {
     pub(super) made: Made,
     pub(super) sha256: Option<String>,
@@ -37,6 +38,29 @@ impl OwnTable {
             Some(frame) => OwnTable { made: self.made.with_column("instrument", &frame), ..self },
             None => self,
         }
+    }
+
+    /// The tables of two sets of coordinates, of a file that has them.
+    pub(in super::super) fn sets(&self) -> Option<[OwnTable; 2]> {
+        let other = self.made.other.as_deref()?;
+        let of = |made: Made| OwnTable { made, ..self.clone() };
+        Some([of(self.made.alone()), of(other.clone())])
+    }
+
+    /// What its set is called, of a file with two.
+    pub(in super::super) fn called(&self) -> Option<Called> {
+        self.made.called
+    }
+
+    /// Adds what was understood, a few words.
+    pub(in super::super) fn say(&mut self, words: String) {
+        self.made.said.insert(0, words);
+    }
+
+    /// What was understood.
+    #[cfg(test)]
+    pub(in super::super) fn said(&self) -> String {
+        self.made.said.join("; ")
     }
 
     /// Adds a sentence that should be looked at.

@@ -23,6 +23,7 @@ use super::recording::{OwnTable, Recording};
 use super::{BAG, Opening};
 use crate::error::{ErrorKind, Result};
 use crate::io::hashes::Hashing;
+use crate::io::measurements::GivenBag;
 use crate::io::source;
 
 pub(super) use self::parts::is_bag;
@@ -62,6 +63,17 @@ pub(super) fn read(path: &Path, opening: &Opening<'_>) -> Result<Recording> {
         warned.push(format!("left out {} messages of topics that it does not describe", topics.unknown));
     }
     Ok(recording(&topics, opening, &hashing.sha256(), warned))
+}
+
+/// Reads a bag whose messages are at hand.
+pub(super) fn read_given(given: &GivenBag, opening: &Opening<'_>) -> Result<Recording> {
+    let joints = opening.robot.joint_reading_names();
+    let mut topics = Topics::new(&joints);
+    topics.begin_file();
+    let damage = container::read(&mut given.mcap.as_ref(), &mut topics)
+        .map_err(|error| source::unreadable(&given.path, &error, EXPECTED))?;
+    let warned = warnings(&damage, None, &topics);
+    Ok(recording(&topics, opening, &given.sha256, warned))
 }
 
 /// The tables of the topics.
