@@ -84,6 +84,33 @@ fn lost_and_double_rows_are_named_and_all_others_paired() {
     assert!(run.err.contains("joints.csv: nothing was measured at lines 8, 24"), "{}", run.err);
     assert!(run.err.contains("joints.csv: more than once was measured at line 32"), "{}", run.err);
     assert!(run.out.contains("39 rows") || run.out.contains("of 39"), "{}", run.out);
+    // The same in the file and in the report.
+    let file: serde_json::Value = serde_json::from_str(&folder.read("out/calibration.json")).unwrap();
+    let join = &file["inputs"]["joins"][0];
+    assert_eq!(
+        (&join["join"], &join["joint_rows"], &join["measured_rows"]),
+        (&"rows".into(), &40.into(), &39.into())
+    );
+    assert_eq!(join["unmeasured"], serde_json::json!([{"number": 7, "line": 8}, {"number": 23, "line": 24}]));
+    assert_eq!(join["repeated"], serde_json::json!([{"number": 31, "line": 32}]));
+    assert_eq!(join["pairs"][6], serde_json::json!([8, 7]));
+    assert_eq!(file["inputs"]["files"][0]["taken"], serde_json::json!({"joint readings": 40}));
+    assert_eq!(file["inputs"]["files"][1]["taken"], serde_json::json!({"points": 39}));
+    let page = folder.read("out/report.html");
+    for words in [
+        "How the files were joined",
+        "row by row, in their order",
+        "lines 8, 24",
+        "line 32",
+        "without partner",
+        "9 to 22",
+    ] {
+        assert!(page.contains(words), "{words}");
+    }
+    let hash = file["inputs"]["sha256"]["points.csv"].as_str().unwrap();
+    assert!(page.contains(hash) && page.contains("39 points"));
+    folder.done("report out/calibration.json -o again.html");
+    assert!(folder.read("again.html") == page);
 }
 
 #[test]

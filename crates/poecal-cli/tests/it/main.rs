@@ -26,6 +26,7 @@ mod identify;
 mod init;
 mod joining;
 mod lost_beams;
+mod mistaken_files;
 mod offsets;
 mod original_urdf;
 #[cfg(any(unix, windows))]

@@ -10,13 +10,13 @@ use poecal::io::urdf::ChainSelection;
 use crate::folder::Folder;
 use crate::workbook::workbook;
 
-const MODEL: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/elbow/robot.urdf");
+pub(crate) const MODEL: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/elbow/robot.urdf");
 
 /// A configuration: joints in degrees, position in mm, quaternion x, y, z, w.
-type Row = ([f64; 6], [f64; 3], [f64; 4]);
+pub(crate) type Row = ([f64; 6], [f64; 3], [f64; 4]);
 
 /// A simulated session of an elbow with errors.
-fn session(folder: &Folder, count: usize) -> Vec<Row> {
+pub(crate) fn session(folder: &Folder, count: usize) -> Vec<Row> {
     folder.done(&format!("simulate {MODEL} --kind pose --count {count} --seed 5 --out made"));
     let text = folder.read("made/measurements.csv");
     let mut lines = text.lines().filter(|line| !line.starts_with('#'));
@@ -42,7 +42,7 @@ fn session(folder: &Folder, count: usize) -> Vec<Row> {
 }
 
 /// Texts of numbers, separated.
-fn joined(values: &[f64], digits: usize, separator: &str) -> String {
+pub(crate) fn joined(values: &[f64], digits: usize, separator: &str) -> String {
     values.iter().map(|it| format!("{it:.digits$}")).collect::<Vec<_>>().join(separator)
 }
 
@@ -60,7 +60,7 @@ fn own(rows: &[Row], is_posed: bool) -> String {
 }
 
 /// What a calibration found of held-out rows, mm.
-fn held_out(folder: &Folder, files: &str) -> (f64, String) {
+pub(crate) fn held_out(folder: &Folder, files: &str) -> (f64, String) {
     let run = folder.run(&format!("calibrate {MODEL} {files} --out out --force"));
     assert!(run.code <= 1, "{files}: {}", run.err);
     let found: serde_json::Value = serde_json::from_str(&folder.read("out/calibration.json")).unwrap();
@@ -384,7 +384,7 @@ fn what_has_one_part_alone_or_none_is_named() {
 }
 
 /// A stream of stands of a second and moves of 0.8 s: for each row its time, the configuration and how far it is on the way to the next one.
-fn stream(rows: usize, rate: usize) -> Vec<(f64, usize, f64)> {
+pub(crate) fn stream(rows: usize, rate: usize) -> Vec<(f64, usize, f64)> {
     let mut found = Vec::new();
     let mut time = 0.0;
     for row in 0..rows {
@@ -479,6 +479,34 @@ fn recordings_with_clocks_of_their_own_are_joined_at_their_stands() {
         println!("{other}: {found:.6} mm, {expected:.6} of the configurations themselves");
         assert!((found / expected - 1.0).abs() < 0.05, "{other}: {found} {expected}\n{said}");
         assert!(said.contains("26 stands of 26 and of 26 are the same, at a lag of -12621.0"), "{said}");
+        let file: serde_json::Value = serde_json::from_str(&folder.read("out/calibration.json")).unwrap();
+        let join = &file["inputs"]["joins"][0];
+        assert_eq!(join["join"], "time");
+        assert!((join["lag_s"].as_f64().unwrap() + 12_621.06).abs() < 0.02, "{join}");
+        for motion in ["robot_motion", "measured_motion"] {
+            let motion = &join[motion];
+            assert_eq!(motion["stands_s"].as_array().unwrap().len(), 26);
+            let speeds: Vec<f64> = motion["speeds_mm_s"]
+                .as_array()
+                .unwrap()
+                .iter()
+                .filter_map(serde_json::Value::as_f64)
+                .collect();
+            let still = speeds.iter().filter(|it| **it < 5.0).count();
+            // Stands take 55 % of the time.
+            assert!(
+                speeds.len() > 300 && (0.4..0.7).contains(&(still as f64 / speeds.len() as f64)),
+                "{still} of {}",
+                speeds.len()
+            );
+        }
+        assert!(!join["measured_motion"]["gaps_s"].as_array().unwrap().is_empty());
+        let page = folder.read("out/report.html");
+        assert!(
+            page.contains("How the files were joined")
+                && page.contains("speed, mm/s")
+                && page.contains("at the times of their stands")
+        );
     }
     // Another body that moves.
     let moving = take

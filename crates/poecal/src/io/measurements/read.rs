@@ -65,10 +65,11 @@ fn read_all(paths: &[&Path], robot: &Robot, options: &ReadOptions) -> Result<Mea
     for path in order {
         let opening = reader.opening();
         let blocks = reader.blocks_of_set(path)?;
+        let first = reader.found.data.len();
         let read = reader.file(path, blocks);
         let is_own = reader.found.understood.last().is_none_or(|it| it.form.is_none());
         let is_doubtful = is_own && read.as_ref().err().is_none_or(|it| it.kind() == ErrorKind::Measurement);
-        if is_doubtful && let Some(error) = reader.shifted_whole(path) {
+        if is_doubtful && let Some(error) = reader.shifted_whole(path, read.is_ok().then_some(first)) {
             return Err(error);
         }
         read.map_err(|error| in_its_file(error, path))

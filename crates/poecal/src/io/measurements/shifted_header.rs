@@ -16,6 +16,8 @@ use crate::io::disk::is_file;
 use crate::measurement::Dataset;
 use crate::start::{Agreement, Pair, Unpaired};
 
+/// Most rows by which a header is judged.
+const SOME: usize = 600;
 /// Columns by which values may stand beside their names.
 const SHIFTS: [isize; 2] = [1, -1];
 
@@ -60,6 +62,8 @@ impl Reader<'_> {
 
     /// By how much the nominal robot misses rows with the readings that they have, metres, if it evidently fits them.
     pub(super) fn fit_m(&self, data: &Dataset) -> Option<f64> {
+        let rows: Vec<u32> = data.all_rows().into_iter().step_by(data.len().div_ceil(SOME).max(1)).collect();
+        let data = &data.only(&rows);
         let readings: Vec<f64> = (0..data.len()).flat_map(|row| data.readings(row).to_vec()).collect();
         let rows = Unpaired::new(self.robot, &readings, data);
         // Targets that are seen in one configuration are in rows of their own.
@@ -72,14 +76,19 @@ impl Reader<'_> {
         }
     }
 
-    /// The error of a file with joint readings and measurements whose header is shifted; `None` if it is not.
-    pub(super) fn shifted_whole(&self, path: &Path) -> Option<Error> {
+    /// The error of a file with joint readings and measurements whose header is shifted; `None` if it is not. `first` is the first of its rows, if
+    /// they were read.
+    pub(super) fn shifted_whole(&self, path: &Path, first: Option<usize>) -> Option<Error> {
         if !is_file(path) {
             return None;
         }
         let blocks = || match self.opening().opened(path, MEASURED) {
             Ok(Opened::Own(blocks)) => Some(*blocks),
             Ok(Opened::Made(_)) | Err(_) => None,
+        };
+        let is_right = || {
+            let rows = u32::try_from(first?).ok()?..u32::try_from(self.found.data.len()).ok()?;
+            self.fit_m(&self.found.data.only(&rows.collect::<Vec<u32>>()))
         };
         let fit = |shift: isize| {
             let map = self.map;
@@ -94,8 +103,8 @@ impl Reader<'_> {
         };
         for shift in SHIFTS {
             if let Some(line) = possible(&shift)
+                && is_right().is_none()
                 && let Some(missed_m) = fit(shift)
-                && fit(0).is_none()
             {
                 return Some(shifted(path, line, shift, missed_m));
             }
