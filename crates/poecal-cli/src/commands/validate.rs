@@ -48,6 +48,8 @@ pub(crate) fn validate(arguments: &Validate, typed: &[OsString], console: &Conso
         calibration: arguments.calibration.display().to_string(),
         measurements: arguments.measurements.iter().map(|path| path.display().to_string()).collect(),
         sha256: sha256.into_iter().chain(read.sha256.clone()).collect(),
+        files: read.inputs(),
+        joins: read.joins.clone(),
         command: Some(command(typed)),
     };
     let record = Record::of(arguments.record.iter().map(|(key, text)| (key.as_str(), text.as_str())))?;

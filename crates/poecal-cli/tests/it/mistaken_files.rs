@@ -142,7 +142,7 @@ fn shifted_headers_other_units_and_mirrors_are_named() {
     for (files, expected) in [
         (
             "few.csv points.csv",
-            "few.csv:2:68: found 7 cells, expected 6 as in the header (line 1); all rows have one more: the header has one name too few",
+            "found 7 cells, expected 6 as in the header (line 1); all rows have one more: the header has one name too few",
         ),
         ("many.csv points.csv", "many.csv:2:"),
         (

@@ -482,7 +482,8 @@ fn recordings_with_clocks_of_their_own_are_joined_at_their_stands() {
         let file: serde_json::Value = serde_json::from_str(&folder.read("out/calibration.json")).unwrap();
         let join = &file["inputs"]["joins"][0];
         assert_eq!(join["join"], "time");
-        assert!((join["lag_s"].as_f64().unwrap() + 12_621.06).abs() < 0.02, "{join}");
+        // Stands begin and end within some rows of each stream.
+        assert!((join["lag_s"].as_f64().unwrap() + 12_621.06).abs() < 0.1, "{}", join["lag_s"]);
         for motion in ["robot_motion", "measured_motion"] {
             let motion = &join[motion];
             assert_eq!(motion["stands_s"].as_array().unwrap().len(), 26);

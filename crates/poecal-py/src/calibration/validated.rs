@@ -59,6 +59,8 @@ impl Places {
             calibration: path.display().to_string(),
             measurements: measurements.source.names.clone(),
             sha256: own.clone().into_iter().chain(measurements.source.sha256.clone()).collect(),
+            files: measurements.source.files.clone(),
+            joins: measurements.source.joins.clone(),
             command: None,
         };
         let found = py.detach(|| {

@@ -11,6 +11,7 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use super::calibration_file::CalibrationFile;
+use super::measurements::{InputEntry, JoinEntry};
 use super::record::Record;
 use crate::calibration::{AcceptanceLimits, AcceptedModel, JudgedError, Judgement, Level, Promise, Refitted};
 use crate::error::Result;
@@ -30,6 +31,12 @@ pub struct ValidationInputs {
     pub measurements: Vec<String>,
     /// SHA-256 of each, by name.
     pub sha256: BTreeMap<String, String>,
+    /// What each file is and what was taken of it.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub files: Vec<InputEntry>,
+    /// How files of joint readings and of measurements were joined.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub joins: Vec<JoinEntry>,
     /// The command, if the program did it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub command: Option<String>,

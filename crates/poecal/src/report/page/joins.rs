@@ -3,7 +3,6 @@
 use maud::{Markup, PreEscaped, html};
 
 use super::html::{HtmlTable, count, facts, figure, folded, path, plots, quoted};
-use crate::io::calibration_file::CalibrationFile;
 use crate::io::measurements::{InputEntry, Join, JoinEntry, MotionEntry, RowEntry};
 use crate::report::plot::{Axis, Entry, JoinPlot, Line, List, Scale};
 
@@ -17,8 +16,7 @@ const LISTED: usize = 200;
 const ODDITIES: [(usize, &str); 2] = [(3, "without partner"), (2, "measured more than once")];
 
 /// All joins; nothing if each file has what belongs together.
-pub(super) fn sections(file: &CalibrationFile) -> Markup {
-    let joins = &file.inputs.joins;
+pub(super) fn sections(joins: &[JoinEntry]) -> Markup {
     html! { @for (at, join) in joins.iter().enumerate() { (section(join, at)) } }
 }
 

@@ -148,7 +148,7 @@ fn inputs(file: &CalibrationFile) -> Markup {
     html! {
         h3 { "Inputs" }
         (table)
-        (joins::sections(file))
+        (joins::sections(&inputs.joins))
         @if let Some(command) = &inputs.command {
             details {
                 summary { "How to make it again" }

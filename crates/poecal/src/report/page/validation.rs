@@ -6,7 +6,7 @@ use super::certificate::{self, limits, stated};
 use super::first::{capital, error_words, models_table};
 use super::html::{HtmlTable, count, facts, figure, list, plots, quoted, section};
 use super::lead::{sign, spaced};
-use super::{head, method};
+use super::{head, joins, method};
 use crate::calibration::Level;
 use crate::io::output::Page;
 use crate::io::validation::{Earlier, JudgedRows, Validation, VerdictError};
@@ -231,9 +231,10 @@ fn checks(found: &Validation, earlier: &[Earlier]) -> Markup {
 fn inputs(found: &Validation) -> Markup {
     let inputs = &found.inputs;
     let own = (&inputs.calibration, "inputs.calibration", "calibration");
-    let table = method::files(own, &inputs.measurements, &inputs.sha256, (&[], &[]));
+    let table = method::files(own, &inputs.measurements, &inputs.sha256, (&inputs.files, &[]));
     let content = html! {
         (table)
+        (joins::sections(&inputs.joins))
         @if let Some(command) = &inputs.command {
             details {
                 summary { "How to make it again" }

@@ -4,7 +4,6 @@ use std::path::Path;
 
 use super::super::places::{Places, Sheet};
 use super::super::text::{Blocks, Said};
-use super::two_sets::Called;
 use crate::error::{Error, ErrorKind};
 use crate::io::csv_text::cell;
 use crate::io::numbers::push_number;
@@ -24,6 +23,15 @@ pub(super) struct Made {
     /// Of a file with two sets of coordinates, what this one is called, and the other one.
     pub(super) called: Option<Called>,
     pub(super) other: Option<Box<Made>>,
+}
+
+/// What a set of coordinates is called.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in super::super) enum Called {
+    Nominal,
+    Measured,
+    /// The first or the second of two with the same names.
+    Unnamed,
 }
 
 /// Why a file of a known form is not read, and in which line.

@@ -27,9 +27,9 @@ mod workbook;
 use std::io::Read as _;
 use std::path::Path;
 
+pub(super) use self::maker::Called;
 use self::maker::{Made, Refused};
 pub(super) use self::recording::{OwnTable, Recording};
-pub(super) use self::two_sets::Called;
 use super::ReadOptions;
 use super::configurations;
 use super::mapping::ColumnMap;

@@ -3,8 +3,7 @@
 use std::path::Path;
 
 use super::super::text::Blocks;
-use super::maker::Made;
-use super::two_sets::Called;
+use super::maker::{Called, Made};
 use crate::error::{Error, ErrorKind};
 
 /// One of the tables of a file.

@@ -1,7 +1,7 @@
 //! Reports with two sets of coordinates in a row, nominal and measured, as robot makers write them: a table for each set, of which the robot
 //! decides.
 
-use super::maker::{Made, Refused, Value};
+use super::maker::{Called, Made, Refused, Value};
 use super::words::{cells, lines, number, quoted};
 use super::{Form, Opening};
 use crate::io::measurements::Separator;
@@ -31,15 +31,6 @@ const MEASURED: [&str; 7] = ["measured", "measurement", "meas", "actual", "act",
 /// Coordinates; the angles behind them have as many conventions as makers.
 const PLACE: [&str; 3] = ["x", "y", "z"];
 const ANGLES: [&str; 12] = ["a", "b", "c", "rx", "ry", "rz", "w", "p", "r", "roll", "pitch", "yaw"];
-
-/// What a set is called.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in super::super) enum Called {
-    Nominal,
-    Measured,
-    /// The first or the second of two with the same names.
-    Unnamed,
-}
 
 /// A column.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -169,7 +160,7 @@ impl Sets {
         let names =
             header.iter().zip(&self.columns).filter(|it| is_taken(it.1)).map(|(cell, column)| match column {
                 Column::Of { name: Some(name), .. } => name.as_str(),
-                _ => cell,
+                Column::Of { name: None, .. } | Column::Other => cell,
             });
         let mut made = Made::new(self.line, names);
         let width = self.columns.len();
