@@ -27,6 +27,8 @@ FOLLOWED = {
     "state it by --lag, like": "crates/poecal/tests/it/stands.rs::a_program_that_repeats_itself_is_refused_until_the_lag_is_stated",
     "or number them in a mapping (--columns), like": "crates/poecal/tests/it/mapping_forms.rs::columns_of_a_table_without_names_are_named_by_their_numbers",
     "export them with comments, or name the columns by number in a mapping (--columns)": HERE + "test_points_without_a_unit",
+    "expected one that was measured: name its columns in a mapping (--columns)": HERE + "test_two_sets_of_coordinates",
+    "since angles do not say their convention, which a mapping does (--columns)": HERE + "test_two_sets_of_coordinates",
     "is meant, write `{name}[{}]`": HERE + "test_a_unit_in_a_name",
     "spread over {} mm, expected about the same: most likely they are in rad": HERE + "test_radians_that_are_called_degrees",
     "most likely they are in {likely}, not {}": HERE + "test_millimetres_that_are_called_metres",
@@ -163,6 +165,27 @@ def test_points_without_a_unit(here):
     assert "export them with comments" in said
     (here / "points.txt").write_text("// SpatialAnalyzer\n// AXES = CARTESIAN: X,  Y,  Z (mm)\n" + points)
     run(here, "calibrate", "robot.urdf", "joints.csv", "points.txt", "--out", "out")
+
+
+def test_two_sets_of_coordinates(here):
+    rows = [row.split(",") for row in POINTS[1:]]
+    (here / "joints.csv").write_text("\n".join([",".join(POINTS[0].split(",")[:6]), *(",".join(row[:6]) for row in rows)]) + "\n")
+    places = [[float(cell) for cell in row[6:9]] for row in rows]
+    both = "".join(",".join(map(repr, [*place, *(value + 0.2 for value in place)])) + "\n" for place in places)
+    (here / "report.csv").write_text("x[mm],y[mm],z[mm],x[mm],y[mm],z[mm]\n" + both)
+    said = run(here, "calibrate", "robot.urdf", "joints.csv", "report.csv", "--out", "out", code=2)
+    assert "found two sets of coordinates in a row" in said and "in a mapping (--columns)" in said
+    (here / "map.toml").write_text("position = { columns = [4, 5, 6] }\n")
+    run(here, "calibrate", "robot.urdf", "joints.csv", "report.csv", "--columns", "map.toml", "--out", "out")
+    # Angles, which a mapping reads.
+    names = [f"{word} {name}" for word in ("Nominal", "Measured") for name in ("x[mm]", "y[mm]", "z[mm]", "a[deg]", "b[deg]", "c[deg]")]
+    posed = "".join(",".join(map(repr, [*(value + 0.2 for value in place), 1.5, 2.5, 3.5, *place, 1.5, 2.5, 3.5])) + "\n" for place in places)
+    (here / "report.csv").write_text(",".join(names) + "\n" + posed)
+    said = run(here, "check", "robot.urdf", "joints.csv", "report.csv")
+    assert "the positions alone, since angles do not say their convention" in said and "100 points" in said
+    orientation = 'orientation = { form = "intrinsic_zyx", columns = ["Measured a", "Measured b", "Measured c"] }\n'
+    (here / "map.toml").write_text('position = { columns = ["Measured x", "Measured y", "Measured z"] }\n' + orientation)
+    assert "100 poses" in run(here, "check", "robot.urdf", "joints.csv", "report.csv", "--columns", "map.toml")
 
 
 def test_a_unit_in_a_name(here):
