@@ -1,5 +1,6 @@
 """Bags of ROS 2 in SQLite (.db3), which the package reads by itself: they are made here as rosbag2 makes them."""
 
+import pickle
 import sqlite3
 import struct
 
@@ -110,6 +111,8 @@ def test_a_bag_in_sqlite_gives_what_its_tables_give(tmp_path):
     bag = poecal.Measurements.from_files(tmp_path / "session.db3", robot)
     tables = poecal.Measurements.from_files([tmp_path / "joints.csv", tmp_path / "seen.csv"], robot)
     assert len(bag) == len(tables) == STANDS
+    for read in (bag, tables):
+        assert pickle.loads(pickle.dumps(read)) == read
     apart = np.abs(bag.positions - tables.positions).max(), np.abs(bag.joints - tables.joints).max()
     print(f"{len(bag)} stands; {apart[0]:.1e} m and {apart[1]:.1e} rad from the tables")
     # Times in a table have fewer digits, and with them the ends of stands a row more or less.

@@ -95,7 +95,8 @@ impl Reader<'_> {
             stated,
             set,
             source: Source {
-                file: u32::try_from(self.found.understood.len()).unwrap_or(u32::MAX),
+                // A file of joint readings alone has no rows.
+                file: u32::try_from(self.found.data.files.len().saturating_sub(1)).unwrap_or(u32::MAX),
                 line: u32::try_from(row.line).unwrap_or(u32::MAX),
             },
             ..Observation::new(target, measurement)
