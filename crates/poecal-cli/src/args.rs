@@ -14,6 +14,7 @@ mod report;
 mod reproduce;
 mod shared;
 mod simulate;
+mod track;
 mod words;
 
 #[cfg(any(unix, windows))]
@@ -30,6 +31,7 @@ pub(crate) use report::{Report, ReportPlace};
 pub(crate) use reproduce::{Experiment, Reproduce};
 pub(crate) use shared::{TreeArgs, with_mapping};
 pub(crate) use simulate::Simulate;
+pub(crate) use track::Track;
 #[cfg(any(unix, windows))]
 pub(crate) use words::CameraPlace;
 pub(crate) use words::{CONTACT, ExportForm, FRAMES, JOIN, ProgramLanguage, word_of};
@@ -87,6 +89,10 @@ pub(crate) enum Command {
     Report(Report),
     /// Judge a calibration by other measurements
     Validate(Validate),
+    /// Show by a few measurements whether a robot is as it was calibrated, and which joint is not
+    ///
+    /// Ends with code 1 if it changed.
+    Track(Box<Track>),
     /// Compare two calibrations of one robot: what changed, and what is noise
     ///
     /// Ends with code 1 if more changed than noise.

@@ -156,6 +156,7 @@ fn run_to_code(arguments: impl IntoIterator<Item = OsString>) -> u8 {
         Command::Detect(options) => commands::detect(options, &console),
         Command::Simulate(options) => commands::simulate(options, &console),
         Command::Validate(options) => commands::validate(options, &typed, &console),
+        Command::Track(options) => commands::track(options, &typed, &console),
         Command::Compare(options) => commands::compare(options, &console),
         Command::Predict(options) => commands::predict(options, &console),
         Command::Check(options) => commands::check(options, &console),

@@ -110,6 +110,8 @@ pub mod start;
 pub mod text;
 mod threads;
 #[cfg_attr(doc, doc(hidden))]
+pub mod track;
+#[cfg_attr(doc, doc(hidden))]
 pub mod uncertainty;
 mod unit;
 

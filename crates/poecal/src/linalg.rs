@@ -108,6 +108,11 @@ pub(crate) fn solved_and_whitened(
     Some((factor.solve(right), rows * unit.transpose()))
 }
 
+/// `L⁻¹ C` of columns, with a covariance `L Lᵀ`: rows in units in which the covariance is 1. `None` unless it is positive definite.
+pub(crate) fn whitened(covariance: DMatrix<f64>, columns: &DMatrix<f64>) -> Option<DMatrix<f64>> {
+    Cholesky::new(covariance)?.l_dirty().solve_lower_triangular(columns)
+}
+
 /// `aᵀb`.
 pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()

@@ -69,6 +69,22 @@ pub(super) const TARGET_POSES: Words<bool> = &[
     ("target-from-camera", "The camera in the target's frame", true),
 ];
 
+/// Whether the device stands where it stood.
+pub(crate) const DEVICE: Words<bool> = &[
+    ("anew", "It was set up anew: its frame is fitted, and a shift of the first joint does not show", false),
+    ("known", "It stands where it stood, as on fixed nests", true),
+];
+
+/// Whether the tool was mounted anew.
+pub(crate) const TOOL: Words<bool> = &[
+    ("same", "It stayed on the flange, or was mounted on pins", false),
+    (
+        "anew",
+        "It was mounted anew: its targets are fitted, and a shift of the last joint does not show",
+        true,
+    ),
+];
+
 /// Which rows share a device frame.
 pub(crate) const FRAMES: Words<Frames> = &[
     ("common", "All, or those of one name in the column `instrument`", Frames::Common),

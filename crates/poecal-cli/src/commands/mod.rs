@@ -16,6 +16,7 @@ mod hand_eye;
 mod identify;
 mod import;
 mod init;
+mod kept;
 mod man;
 mod offsets;
 #[cfg(any(unix, windows))]
@@ -26,6 +27,7 @@ mod reproduce;
 mod schema;
 mod simulate;
 mod tcp;
+mod track;
 mod typed;
 mod validate;
 
@@ -52,4 +54,5 @@ pub(crate) use reproduce::reproduce;
 pub(crate) use schema::schema;
 pub(crate) use simulate::simulate;
 pub(crate) use tcp::tcp;
+pub(crate) use track::track;
 pub(crate) use validate::validate;

@@ -10,9 +10,10 @@ use poecal::io::measurements::{self, ReadOptions};
 use poecal::io::named_files::{actual, refuse_repeats};
 use poecal::io::output::{Existing, ValidationPlaces};
 use poecal::io::record::Record;
-use poecal::io::validation::{HISTORY, History, JudgedRows, Judging, Validation, ValidationInputs, now};
+use poecal::io::validation::{JudgedRows, Judging, Validation, ValidationInputs};
 use poecal::{ErrorKind, Result, report};
 
+use super::kept::Kept;
 use super::typed::command;
 use crate::args::{ReportPlace, Validate};
 use crate::console::Console;
@@ -23,7 +24,7 @@ pub(crate) fn validate(arguments: &Validate, typed: &[OsString], console: &Conso
     refuse_repeats(&arguments.measurements)?;
     let places = places(arguments, console)?;
     let file = CalibrationFile::read(&arguments.calibration)?;
-    let mut history = Kept::read(arguments)?;
+    let mut history = Kept::read(arguments.history.as_ref(), &arguments.calibration)?;
     let in_file = |error: poecal::Error| {
         if error.kind() == ErrorKind::Model { error.in_file(&arguments.calibration) } else { error }
     };
@@ -65,7 +66,7 @@ pub(crate) fn validate(arguments: &Validate, typed: &[OsString], console: &Conso
     let mut written = folder.as_ref().map_or_else(String::new, |it| style::written(&it.folder, &it.files));
     written.extend(report.as_ref().map(|path| labelled("report", &shown(path))));
     let place = folder.map(|it| it.folder).or(report);
-    history.append(&found, console)?;
+    history.append(|history, time| history.append(&found, time), console)?;
     let table = || {
         let calibration = arguments.calibration.display().to_string();
         report::judgement(&calibration, &named(arguments, &file), &found.judgement) + &written
@@ -109,45 +110,4 @@ fn places(arguments: &Validate, console: &Console) -> Result<ValidationPlaces> {
     };
     let (existing, inputs) = (Existing::forced(arguments.force), arguments.inputs());
     ValidationPlaces::reserve(arguments.out.as_deref(), report, existing, &inputs, &mut console.warner())
-}
-
-/// The history that a check is appended to.
-struct Kept {
-    checks: History,
-    /// Whether it was asked for: then it must be written.
-    is_asked: bool,
-    /// Whether it is written at all, or why not.
-    is_kept: std::result::Result<bool, poecal::Error>,
-}
-
-impl Kept {
-    fn read(arguments: &Validate) -> Result<Self> {
-        let nothing = |is_kept| Kept { checks: History::default(), is_asked: false, is_kept };
-        match &arguments.history {
-            Some(ReportPlace::None) => Ok(nothing(Ok(false))),
-            Some(ReportPlace::File(path)) => {
-                Ok(Kept { checks: History::read(path)?, is_asked: true, is_kept: Ok(true) })
-            }
-            // Beside a calibration that is no file there is no place.
-            None if !arguments.calibration.is_file() => Ok(nothing(Ok(false))),
-            None => Ok(match History::read(&arguments.calibration.with_file_name(HISTORY)) {
-                Ok(checks) => Kept { checks, is_asked: false, is_kept: Ok(true) },
-                Err(error) => nothing(Err(error)),
-            }),
-        }
-    }
-
-    fn append(&mut self, found: &Validation, console: &Console) -> Result<()> {
-        let Some(time) = now() else { return Ok(()) };
-        let is_kept = std::mem::replace(&mut self.is_kept, Ok(false));
-        let done =
-            is_kept.and_then(|is_kept| if is_kept { self.checks.append(found, &time) } else { Ok(()) });
-        match done {
-            Err(error) if !self.is_asked => {
-                console.remark(format!("the check is not in the history: {error}"));
-                Ok(())
-            }
-            done => done,
-        }
-    }
 }

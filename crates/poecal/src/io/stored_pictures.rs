@@ -134,7 +134,7 @@ impl PicturesEntry {
 
     /// What the corners of a picture share.
     #[must_use]
-    pub(in crate::io) fn common_error(&self) -> CommonError {
+    pub(crate) fn common_error(&self) -> CommonError {
         let CommonEntry { shift_mm, turn_deg, about } = self.common;
         CommonError { shift_m: 1e-3 * shift_mm, turn_rad: turn_deg.to_radians(), about }
     }

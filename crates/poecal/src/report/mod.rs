@@ -17,6 +17,7 @@ mod summary;
 #[doc(hidden)]
 pub mod table;
 mod tcp;
+mod track;
 
 pub use check::{Check, SetCounts};
 pub use compared::Comparison;
@@ -27,6 +28,7 @@ pub use offsets::Offsets;
 pub use page::{calibration_page, calibration_page_with, validation_page};
 pub use summary::{Detail, summary, unsaid};
 pub use tcp::tool_tip;
+pub use track::Track;
 
 use serde::Serialize;
 

@@ -274,7 +274,7 @@ impl Linear {
 }
 
 /// Where the numbers of each row of a problem begin, and the whitened Jacobian and residuals of all.
-pub(in crate::calibration) fn whitened_rows(
+pub(crate) fn whitened_rows(
     problem: &Problem<'_>,
     estimate: &Estimate,
     sample: &[u32],

@@ -21,6 +21,6 @@ pub use choice::{SizesReason, TriedSizes};
 pub use effect::{Effects, JointEffect, JointErrorPart, JointErrors};
 pub(super) use fit::corrected;
 pub use found::{CorrectedFit, Correction};
-pub(super) use linear::whitened_rows;
+pub(crate) use linear::whitened_rows;
 pub(super) use matrices::{ROUNDING_OF_TERMS, cholesky, solved};
 pub(super) use unknowns::{priors, unknowns};

@@ -15,6 +15,7 @@ mod known;
 mod link;
 mod original;
 mod outliers;
+mod own_rows;
 mod refusal;
 mod repeatability;
 mod schema;

@@ -46,7 +46,7 @@ impl CalibrationFile {
     }
 
     /// The last state of the target that rows without a name are of; `None` where that is the tip, or where rows must name theirs.
-    pub(super) fn unnamed(&self) -> Option<&str> {
+    pub(crate) fn unnamed(&self) -> Option<&str> {
         let targets: Vec<&str> = self.targets.keys().map(String::as_str).collect();
         state(&targets, MEASURED, usize::MAX)
     }

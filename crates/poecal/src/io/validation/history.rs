@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use super::{SCHEMA, Validation, ValidationVerdict};
+use super::{SCHEMA, TRACK, Validation, ValidationVerdict};
 use crate::error::{Error, ErrorKind, Result};
 use crate::io::disk::{self, ObjectKind};
 
@@ -73,7 +73,9 @@ impl History {
         disk.open(path).and_then(|file| file.take(MOST).read_to_end(&mut text)).map_err(failed)?;
         let is_torn = text.last().is_some_and(|last| *last != b'\n');
         let lines = text.split(|byte| *byte == b'\n').filter_map(|line| serde_json::from_slice(line).ok());
-        let is_check = |line: &Value| line.get("schema").and_then(Value::as_str) == Some(SCHEMA);
+        let is_check = |line: &Value| {
+            line.get("schema").and_then(Value::as_str).is_some_and(|it| [SCHEMA, TRACK].contains(&it))
+        };
         let lines: Vec<Value> = lines.filter(is_check).collect();
         if lines.is_empty() && !text.is_empty() {
             let message =
@@ -97,12 +99,12 @@ impl History {
         others.filter_map(|line| serde_json::from_value(line.clone()).ok()).collect()
     }
 
-    /// Appends a check with its time, unless the same one is there already.
+    /// Appends a check, by `poecal validate` or by `poecal track`, with its time, unless the same one is there already.
     ///
     /// # Errors
     /// [`ErrorKind::File`] if the file cannot be written, [`ErrorKind::Export`] if the check cannot be written as JSON.
-    pub fn append(&mut self, validation: &Validation, time: &str) -> Result<()> {
-        let (text, line) = line_of(validation, time)?;
+    pub fn append(&mut self, check: &impl Serialize, time: &str) -> Result<()> {
+        let (text, line) = line_of(check, time)?;
         let own = without_run(line.clone());
         if self.lines.iter().any(|other| without_run(other.clone()) == own) {
             return Ok(());
@@ -122,16 +124,16 @@ impl History {
 
 /// A line.
 #[derive(Serialize)]
-struct Timed<'a> {
+struct Timed<'a, T: Serialize> {
     time: &'a str,
     #[serde(flatten)]
-    validation: &'a Validation,
+    check: &'a T,
 }
 
 /// The line of a check, as text and as a value that has been read.
-fn line_of(validation: &Validation, time: &str) -> Result<(String, Value)> {
+fn line_of(check: &impl Serialize, time: &str) -> Result<(String, Value)> {
     let cannot = |error| ErrorKind::Export.error(format!("the check cannot be written: {error}"));
-    let text = serde_json::to_string(&Timed { time, validation }).map_err(cannot)?;
+    let text = serde_json::to_string(&Timed { time, check }).map_err(cannot)?;
     let line = serde_json::from_str(&text).map_err(cannot)?;
     Ok((text, line))
 }

@@ -21,6 +21,8 @@ use crate::measurement::{Dataset, Measured, Quantity};
 const FITS: f64 = 0.8;
 /// Name of the schema.
 const SCHEMA: &str = "poecal-validation-1";
+/// Name of the schema of what `poecal track` finds: its lines are in the same history.
+pub const TRACK: &str = "poecal-track-1";
 
 /// What was judged, and by what.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]

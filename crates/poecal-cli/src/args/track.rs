@@ -1,0 +1,49 @@
+//! Arguments of `poecal track`.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+
+use super::ReportPlace;
+use super::shared::Meaning;
+use super::words::{DEVICE, TOOL, one_of};
+use crate::quantity::sigma_m;
+
+/// Arguments of `poecal track`.
+#[derive(Args, Debug)]
+pub(crate) struct Track {
+    /// The calibration (calibration.json)
+    pub(crate) calibration: PathBuf,
+    /// Measurements of the visit (CSV): best some configurations of the calibration again
+    #[arg(required = true)]
+    pub(crate) measurements: Vec<PathBuf>,
+    /// Rows of an earlier visit whose configurations are repeated [default: the measurements that the calibration was made of, by their SHA-256]
+    #[arg(long, value_name = "OLD.csv")]
+    pub(crate) reference: Vec<PathBuf>,
+    #[command(flatten)]
+    pub(crate) meaning: Meaning,
+    /// Whether the measuring device stands where it stood [default: known where the calibration was made in the base frame]
+    #[arg(long, value_parser = one_of(DEVICE), value_name = "WHERE", action = clap::ArgAction::Set)]
+    pub(crate) device: Option<bool>,
+    /// Whether the tool with its targets is on the flange as it was
+    #[arg(long, value_parser = one_of(TOOL), value_name = "HOW", default_value = "same", action = clap::ArgAction::Set)]
+    pub(crate) tool: bool,
+    /// Standard deviation of one visit and coordinate, like 0.03mm, as measured by repeats [default: what repeats within a visit and what no
+    /// explanation takes away]
+    #[arg(long, value_name = "LENGTH", value_parser = sigma_m)]
+    pub(crate) repeatability: Option<f64>,
+    /// File to which the check is appended as a line, or `none` [default: history.jsonl beside the calibration]
+    #[arg(long, value_name = "FILE|none")]
+    pub(crate) history: Option<ReportPlace>,
+    /// Print JSON instead of the table
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+impl Track {
+    /// All input files.
+    pub(crate) fn inputs(&self) -> Vec<&Path> {
+        let files = std::iter::once(&self.calibration).chain(&self.measurements).chain(&self.reference);
+        files.map(PathBuf::as_path).chain(self.meaning.files()).collect()
+    }
+}

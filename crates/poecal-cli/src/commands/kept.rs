@@ -1,0 +1,55 @@
+//! The history that checks are appended to.
+
+use std::path::Path;
+
+use poecal::Result;
+use poecal::io::validation::{HISTORY, History, now};
+
+use crate::args::ReportPlace;
+use crate::console::Console;
+
+/// The history that a check is appended to.
+pub(super) struct Kept {
+    pub(super) checks: History,
+    /// Whether it was asked for: then it must be written.
+    is_asked: bool,
+    /// Whether it is written at all, or why not.
+    is_kept: std::result::Result<bool, poecal::Error>,
+}
+
+impl Kept {
+    /// The history that was asked for, or the one beside a calibration.
+    pub(super) fn read(asked: Option<&ReportPlace>, calibration: &Path) -> Result<Self> {
+        let nothing = |is_kept| Kept { checks: History::default(), is_asked: false, is_kept };
+        match asked {
+            Some(ReportPlace::None) => Ok(nothing(Ok(false))),
+            Some(ReportPlace::File(path)) => {
+                Ok(Kept { checks: History::read(path)?, is_asked: true, is_kept: Ok(true) })
+            }
+            // Beside a calibration that is no file there is no place.
+            None if !calibration.is_file() => Ok(nothing(Ok(false))),
+            None => Ok(match History::read(&calibration.with_file_name(HISTORY)) {
+                Ok(checks) => Kept { checks, is_asked: false, is_kept: Ok(true) },
+                Err(error) => nothing(Err(error)),
+            }),
+        }
+    }
+
+    /// Appends a check with its time, by what writes it to a history.
+    pub(super) fn append(
+        &mut self,
+        write: impl FnOnce(&mut History, &str) -> Result<()>,
+        console: &Console,
+    ) -> Result<()> {
+        let Some(time) = now() else { return Ok(()) };
+        let is_kept = std::mem::replace(&mut self.is_kept, Ok(false));
+        let done = is_kept.and_then(|is_kept| if is_kept { write(&mut self.checks, &time) } else { Ok(()) });
+        match done {
+            Err(error) if !self.is_asked => {
+                console.remark(format!("the check is not in the history: {error}"));
+                Ok(())
+            }
+            done => done,
+        }
+    }
+}

@@ -1,0 +1,132 @@
+//! Rows that repeat configurations of an earlier visit.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::visit::Visit;
+use crate::measurement::Dataset;
+use crate::robot::{ReadingKind, Robot};
+
+/// Largest difference of readings of one configuration: 0.1°, 0.1 mm.
+const SAME_RAD: f64 = 0.1 * std::f64::consts::PI / 180.0;
+const SAME_M: f64 = 1e-4;
+
+/// Changes of measured numbers between visits, about the model.
+#[derive(Clone, Debug)]
+pub(super) struct Changes {
+    /// Measured less predicted of this visit, less the same of the earlier one, in standard deviations.
+    pub(super) residual: DVector<f64>,
+    /// Derivatives in those units, by the unknowns of the visit.
+    pub(super) jacobian: DMatrix<f64>,
+    /// Standard deviation of each number, metres or radians.
+    pub(super) sigma: DVector<f64>,
+    /// Squares of the scatter within repeats of each visit, in variances, and their degrees of freedom.
+    pub(super) scatter: (f64, f64),
+    /// Rows of this visit that are among them.
+    pub(super) rows: Vec<u32>,
+}
+
+/// Rows of a visit by configuration, target and instrument, in the order of the data.
+pub(super) fn groups(data: &Dataset) -> Vec<Vec<u32>> {
+    let class = |row: u32| {
+        let seen = &data.observations[row as usize];
+        (seen.target, seen.station)
+    };
+    let mut found = data.alike(&data.all_rows(), SAME_RAD, 1, class);
+    found.sort_unstable();
+    found
+}
+
+/// Largest difference of each reading within one configuration; that of a factor does not count.
+fn tolerances<'a>(data: &'a Dataset, robot: &'a Robot) -> impl Iterator<Item = f64> + 'a {
+    data.reading_names().iter().map(|name| match robot.reading_kind(name) {
+        ReadingKind::Angle => SAME_RAD,
+        ReadingKind::Length => SAME_M,
+        ReadingKind::Factor => f64::INFINITY,
+    })
+}
+
+/// Whether rows of two visits are of one configuration, target, instrument and kind.
+fn is_same(a: &Dataset, row: u32, b: &Dataset, other: u32, robot: &Robot) -> bool {
+    let (one, two) = (&a.observations[row as usize], &b.observations[other as usize]);
+    let named = |data: &Dataset, at: usize| data.targets.get(at).cloned().flatten();
+    let from = |data: &Dataset, at: usize| data.stations.get(at).cloned().flatten();
+    named(a, one.target) == named(b, two.target)
+        && from(a, one.station) == from(b, two.station)
+        && one.measurement.function() == two.measurement.function()
+        && one.from.is_none()
+        && two.from.is_none()
+        && a.readings(row as usize)
+            .iter()
+            .zip(b.readings(other as usize))
+            .zip(tolerances(a, robot))
+            .all(|((x, y), same)| (x - y).abs() <= same)
+}
+
+impl Changes {
+    /// Of a visit from an earlier one; `None` where no row repeats.
+    pub(super) fn between(
+        (visit, data): (&Visit, &Dataset),
+        (earlier, before): (&Visit, &Dataset),
+        robot: &Robot,
+    ) -> Option<Self> {
+        let (own, old) = (groups(data), groups(before));
+        let (mut squares, mut freedom) = (0.0, 0.0);
+        let mut pairs = Vec::new();
+        for group in &own {
+            let found = old.iter().find(|it| is_same(before, it[0], data, group[0], robot));
+            let Some(found) = found else { continue };
+            pairs.push((group, found));
+        }
+        if pairs.is_empty() {
+            return None;
+        }
+        let mut residual = Vec::new();
+        let mut sigma = Vec::new();
+        let mut rows = Vec::new();
+        let mut jacobian = Vec::new();
+        for (group, found) in pairs {
+            let start = visit.starts[group[0] as usize];
+            let numbers = visit.starts[group[0] as usize + 1] - start;
+            for number in 0..numbers {
+                let (value, variance) = mean(visit, group, number);
+                let (old, of_old) = mean(earlier, found, number);
+                let deviation = (variance + of_old).sqrt();
+                residual.push((value - old) / deviation);
+                sigma.push(deviation);
+                jacobian.push(visit.jacobian.row(start + number) / deviation);
+                for (of, rows) in [(visit, group), (earlier, found)] {
+                    let (own, count) = scatter(of, rows, number);
+                    squares += own;
+                    freedom += count;
+                }
+            }
+            rows.extend(group.iter().copied());
+        }
+        rows.sort_unstable();
+        Some(Changes {
+            residual: DVector::from_vec(residual),
+            jacobian: DMatrix::from_rows(&jacobian),
+            sigma: DVector::from_vec(sigma),
+            scatter: (squares, freedom),
+            rows,
+        })
+    }
+}
+
+/// Mean of a number over rows of one configuration, and its variance.
+fn mean(visit: &Visit, rows: &[u32], number: usize) -> (f64, f64) {
+    let count = rows.len() as f64;
+    let at = |row: &u32| visit.starts[*row as usize] + number;
+    let value = rows.iter().map(|row| visit.residual[at(row)]).sum::<f64>() / count;
+    let variance = rows.iter().map(|row| visit.sigma[at(row)].powi(2)).sum::<f64>() / (count * count);
+    (value, variance)
+}
+
+/// Squares of the deviations from that mean, in variances, and their degrees of freedom.
+fn scatter(visit: &Visit, rows: &[u32], number: usize) -> (f64, f64) {
+    let (value, _) = mean(visit, rows, number);
+    let at = |row: &u32| visit.starts[*row as usize] + number;
+    let squares =
+        rows.iter().map(|row| ((visit.residual[at(row)] - value) / visit.sigma[at(row)]).powi(2)).sum();
+    (squares, rows.len() as f64 - 1.0)
+}

@@ -1,0 +1,52 @@
+//! Sentences of what a visit shows.
+
+use super::Explanation;
+use crate::error::{Error, ErrorKind};
+
+/// That too few rows repeat an earlier configuration.
+pub(super) fn few_repeat(repeated: usize, rows: usize) -> String {
+    match repeated {
+        0 => "none of the rows repeats a configuration of the earlier rows (to 0.1 deg or 0.1 mm): judged by the model".to_owned(),
+        some => format!(
+            "only {some} of the {rows} rows repeat configurations of the earlier rows, too few to be judged alone: judged by the model"
+        ),
+    }
+}
+
+pub(super) fn no_uncertainty() -> Error {
+    ErrorKind::Model.error(
+        "found a calibration without an uncertainty, expected one where rows are judged by the model: measure configurations of the calibration \
+         again, or calibrate with more rows",
+    )
+}
+
+pub(super) fn level_is_assumed() -> String {
+    "the rows of the calibration are not there, or too few, to show how large errors of the model are: 1.5 times what the calibration states is \
+     allowed; name them by --reference"
+        .to_owned()
+}
+
+pub(super) fn geometry_alone() -> String {
+    "the calibration has geometry alone: what the joints do beyond it looks like changes where configurations do not repeat".to_owned()
+}
+
+/// That the rows scatter more than was stated.
+pub(super) fn wider(is_stated: bool, times: f64) -> String {
+    if is_stated {
+        format!(
+            "the rows scatter {times:.1} times as much as the stated repeatability: judged by their own scatter"
+        )
+    } else {
+        format!(
+            "the rows scatter {times:.1} times as much as the model lets expect: judged by their own scatter"
+        )
+    }
+}
+
+/// That a shift is too far.
+pub(super) fn far(found: &Explanation) -> String {
+    let name = found.names.first().map(String::as_str).unwrap_or_default();
+    format!(
+        "the shift of joint `{name}` is beyond 2 deg, where rows are no linear function of it: calibrate anew"
+    )
+}
