@@ -15,7 +15,7 @@ pub(crate) struct Track {
     /// The calibration (calibration.json)
     pub(crate) calibration: PathBuf,
     /// Measurements of the visit (CSV): best some configurations of the calibration again
-    #[arg(required = true)]
+    #[arg(required_unless_present = "plan")]
     pub(crate) measurements: Vec<PathBuf>,
     /// Rows of an earlier visit whose configurations are repeated [default: the measurements that the calibration was made of, by their SHA-256]
     #[arg(long, value_name = "OLD.csv")]
@@ -32,6 +32,21 @@ pub(crate) struct Track {
     /// explanation takes away]
     #[arg(long, value_name = "LENGTH", value_parser = sigma_m)]
     pub(crate) repeatability: Option<f64>,
+    /// Choose so many of the earlier configurations that their repeats show the smallest shift of the worst joint, and print what each would show
+    #[arg(long, value_name = "N", conflicts_with_all = ["measurements", "recalibrate"], value_parser = clap::value_parser!(u16).range(2..=200))]
+    pub(crate) plan: Option<u16>,
+    /// The target that will be measured [default: all of the earlier rows]; with --plan
+    #[arg(long, value_name = "NAME", requires = "plan")]
+    pub(crate) target: Option<String>,
+    /// Calibrate the zero of this joint anew (JOINT or JOINT.offset), or its axis (JOINT.axis), and hold all else; with --out
+    #[arg(long, value_name = "JOINT[.offset|.axis]", requires = "out")]
+    pub(crate) recalibrate: Option<String>,
+    /// File to write: with --plan the table of configurations (CSV), with --recalibrate the new calibration.json
+    #[arg(long, value_name = "FILE")]
+    pub(crate) out: Option<PathBuf>,
+    /// Write over a file that exists
+    #[arg(long)]
+    pub(crate) force: bool,
     /// File to which the check is appended as a line, or `none` [default: history.jsonl beside the calibration]
     #[arg(long, value_name = "FILE|none")]
     pub(crate) history: Option<ReportPlace>,

@@ -28,7 +28,7 @@ pub use offsets::Offsets;
 pub use page::{calibration_page, calibration_page_with, validation_page};
 pub use summary::{Detail, summary, unsaid};
 pub use tcp::tool_tip;
-pub use track::Track;
+pub use track::{Plan, Track, recalibrated};
 
 use serde::Serialize;
 

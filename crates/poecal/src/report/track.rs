@@ -5,9 +5,11 @@ use std::fmt::Write as _;
 use serde::Serialize;
 
 use super::table::line;
+use crate::io::calibration_file::{CalibrationFile, RepairedPart};
 use crate::io::validation::{TRACK, ValidationInputs};
+use crate::robot::JointKind;
 use crate::text::visible;
-use crate::track::{Explanation, JointSight, JudgedBy, Kind, State, Tracked, Unseen};
+use crate::track::{Explanation, JointSight, JudgedBy, Kind, Repaired, State, Tracked, Unseen, Witnesses};
 
 /// A visit with what was judged by what.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -122,6 +124,96 @@ fn shown(value: f64, slides: bool) -> f64 {
     if slides { 1e3 * value } else { value.to_degrees() }
 }
 
+/// What repeats of chosen configurations would show.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Plan {
+    robot: String,
+    configurations: usize,
+    /// Standard deviation of a visit and coordinate for which this is, millimetres.
+    noise_mm: f64,
+    joints: Vec<SightEntry>,
+    /// Joints of whose zeros nothing is seen.
+    invisible: Vec<InvisibleEntry>,
+}
+
+impl Plan {
+    /// Of chosen configurations.
+    #[must_use]
+    pub fn new(found: &Witnesses, robot: &str) -> Self {
+        Plan {
+            robot: robot.to_owned(),
+            configurations: found.configurations.len(),
+            noise_mm: 1e3 * found.sigma_m,
+            joints: found.joints.iter().map(SightEntry::of).collect(),
+            invisible: found.joints.iter().filter_map(InvisibleEntry::of).collect(),
+        }
+    }
+
+    /// The table.
+    #[must_use]
+    pub fn text(&self) -> String {
+        let mut out = String::new();
+        line(&mut out, "robot", &self.robot);
+        line(&mut out, "configurations", &self.configurations.to_string());
+        line(&mut out, "noise", &format!("{:.3} mm a visit and coordinate", self.noise_mm));
+        out.push_str(&sight_table(&self.joints, &self.invisible));
+        out
+    }
+}
+
+/// What was calibrated anew, in words.
+#[must_use]
+pub fn recalibrated(found: &Repaired, before: &CalibrationFile) -> String {
+    let mut out = String::new();
+    let (size, sigma) = found.repair.size();
+    let joint = before.joints.iter().find(|it| it.name == found.repair.joint);
+    let slides = joint.is_some_and(|it| it.kind == JointKind::Prismatic);
+    let unit = if slides { "mm" } else { "deg" };
+    let what = match found.repair.part {
+        RepairedPart::Zero => {
+            format!("zero by {:+.4} ± {:.4} {unit}", shown(size, slides), shown(sigma, slides))
+        }
+        RepairedPart::Axis => {
+            format!("axis turned by {:.4} ± {:.4} deg", size.to_degrees(), sigma.to_degrees())
+        }
+    };
+    line(&mut out, "robot", &before.robot.name);
+    line(&mut out, "recalibrated", &format!("{}: {what}; all else as before", visible(&found.repair.joint)));
+    out
+}
+
+fn sight_table(joints: &[SightEntry], invisible: &[InvisibleEntry]) -> String {
+    let mut out = String::new();
+    let _ = writeln!(out, "\n  {:16} {:>28}", "joint", "smallest shift found (95 %)");
+    for joint in joints {
+        let smallest =
+            joint.smallest.map_or_else(|| "not seen".to_owned(), |it| format!("{it:.3} {}", joint.unit));
+        let _ = writeln!(out, "  {:16} {smallest:>28}", visible(&joint.joint));
+    }
+    for it in invisible {
+        let _ = writeln!(out, "  {}: {}", visible(&it.joint), it.words);
+    }
+    out
+}
+
+impl SightEntry {
+    fn of(it: &JointSight) -> Self {
+        SightEntry {
+            joint: it.joint.clone(),
+            unit: if it.slides { "mm" } else { "deg" },
+            smallest: Some(shown(it.smallest, it.slides)).filter(|_| it.unseen.is_none()),
+            sigma: Some(shown(it.sigma, it.slides)).filter(|it| it.is_finite()),
+        }
+    }
+}
+
+impl InvisibleEntry {
+    fn of(it: &JointSight) -> Option<Self> {
+        let (word, words) = because(it.unseen?);
+        Some(InvisibleEntry { joint: it.joint.clone(), because: word, words: words.to_owned() })
+    }
+}
+
 impl ExplanationEntry {
     fn of(found: &Explanation) -> Self {
         let is_of_joint = matches!(found.kind, Kind::Zero | Kind::Axis | Kind::Give | Kind::TwoZeros);
@@ -203,16 +295,6 @@ impl Track {
     /// Of what a visit showed.
     #[must_use]
     pub fn new(found: &Tracked, robot: &str, inputs: ValidationInputs) -> Self {
-        let sight = |it: &JointSight| SightEntry {
-            joint: it.joint.clone(),
-            unit: if it.slides { "mm" } else { "deg" },
-            smallest: Some(shown(it.smallest, it.slides)).filter(|_| it.unseen.is_none()),
-            sigma: Some(shown(it.sigma, it.slides)).filter(|it| it.is_finite()),
-        };
-        let invisible = |it: &JointSight| {
-            let (word, words) = because(it.unseen?);
-            Some(InvisibleEntry { joint: it.joint.clone(), because: word, words: words.to_owned() })
-        };
         Track {
             schema: TRACK,
             poecal_version: env!("CARGO_PKG_VERSION"),
@@ -224,8 +306,8 @@ impl Track {
             repeated: found.repeated,
             explanation: found.explanation.as_ref().map(ExplanationEntry::of),
             alternatives: found.alternatives.iter().map(ExplanationEntry::of).collect(),
-            invisible: found.joints.iter().filter_map(invisible).collect(),
-            joints: found.joints.iter().map(sight).collect(),
+            invisible: found.joints.iter().filter_map(InvisibleEntry::of).collect(),
+            joints: found.joints.iter().map(SightEntry::of).collect(),
             change_mm: 1e3 * found.change_m,
             left_mm: 1e3 * found.left_m,
             noise_mm: 1e3 * found.noise_m,
@@ -279,15 +361,7 @@ impl Track {
             &format!("{:.3} mm (RMS){left}; noise {:.3} mm a coordinate", self.change_mm, self.noise_mm),
         );
         line(&mut out, "error now", &format!("{:.3} mm (RMS)", self.error_mm));
-        let _ = writeln!(out, "\n  {:16} {:>26}", "joint", "smallest shift found (95 %)");
-        for joint in &self.joints {
-            let smallest =
-                joint.smallest.map_or_else(|| "not seen".to_owned(), |it| format!("{it:.3} {}", joint.unit));
-            let _ = writeln!(out, "  {:16} {smallest:>26}", visible(&joint.joint));
-        }
-        for it in &self.invisible {
-            let _ = writeln!(out, "  {}: {}", visible(&it.joint), it.words);
-        }
+        out.push_str(&sight_table(&self.joints, &self.invisible));
         out
     }
 }

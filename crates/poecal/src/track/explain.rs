@@ -60,6 +60,8 @@ pub(super) struct Tried {
     pub(super) gain: f64,
     /// Its unknowns, each with its standard deviation at level 1.
     pub(super) step: Vec<(f64, f64)>,
+    /// Covariance of these at level 1.
+    pub(super) covariance: DMatrix<f64>,
 }
 
 /// The level of the noise: what is known of the variance of a number, in units of that by which numbers are whitened.
@@ -145,7 +147,8 @@ impl Evidence {
         let step = &steps * &along;
         let sigma = steps.row_iter().map(|row| row.norm());
         let step = step.iter().copied().zip(sigma).collect();
-        Some(Tried { at, rank: own.ncols(), gain: along.norm_squared(), step })
+        let covariance = &steps * steps.transpose();
+        Some(Tried { at, rank: own.ncols(), gain: along.norm_squared(), step, covariance })
     }
 
     /// Standard deviation at level 1 of the only unknown of some columns; infinite where it is not seen.

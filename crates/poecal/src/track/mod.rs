@@ -4,28 +4,33 @@
 mod by_model;
 mod explain;
 mod hypotheses;
+mod judged;
 mod pairs;
+mod repair;
 mod sight;
 mod visit;
+mod witness;
 mod words;
 
 pub use explain::Kind;
+pub use judged::Earlier;
+pub use repair::{Repaired, recalibrate};
 pub use sight::{JointSight, Unseen};
+pub use witness::{Witnesses, witnesses};
 
 use serde::Serialize;
 
 use crate::error::Result;
 use crate::io::calibration_file::CalibrationFile;
 use crate::measurement::{Dataset, Quantity};
-use explain::{Evidence, Hypothesis, Level, Tests, Tried, Verdict, explain};
+use explain::{Evidence, Hypothesis, Tests, Tried, Verdict, explain};
 use hypotheses::{free, hypotheses};
+use judged::Judged;
 use pairs::Changes;
 use visit::{Model, Of, Visit};
 
 /// Shift beyond which rows are no linear function of it: a new calibration is due, radians.
 const MOST_RAD: f64 = 2.0 * std::f64::consts::PI / 180.0;
-/// Numbers beyond what is free that repeated rows must have, to be judged alone.
-const FREEDOM: f64 = 3.0;
 
 /// What is known of the visits.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -127,54 +132,24 @@ pub struct Tracked {
 /// use poecal::calibration::{CalibrationOptions, calibrate};
 /// use poecal::io::calibration_file::{CalibrationFile, Inputs};
 /// use poecal::simulate::{Kind, Simulation, elbow};
-/// use poecal::track::{State, TrackOptions, track};
+/// use poecal::track::{Earlier, State, TrackOptions, track};
 /// let made = Simulation { count: 60, ..Simulation::default() }.run(&elbow(), Kind::POINT)?;
 /// let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default())?;
 /// let file = CalibrationFile::new(&calibration, &made.data, Inputs::default());
 /// // The same rows again: nothing has changed.
-/// let found = track(&file, &made.data, Some(&made.data), &TrackOptions::default())?;
+/// let earlier = Earlier { data: &made.data, is_own: true };
+/// let found = track(&file, &made.data, Some(earlier), &TrackOptions::default())?;
 /// assert_eq!((found.state, found.repeated), (State::Unchanged, 60));
 /// # Ok::<(), poecal::Error>(())
 /// ```
 pub fn track(
     file: &CalibrationFile,
     data: &Dataset,
-    earlier: Option<&Dataset>,
+    earlier: Option<Earlier<'_>>,
     options: &TrackOptions,
 ) -> Result<Tracked> {
-    let model = Model::of(file, options)?;
-    let data = &*file.at_stage(data, file.stages());
-    let before = earlier.map(|it| file.at_stage(it, file.stages()));
-    let before = before.as_deref();
-    let visit = Visit::of(&model, data, options.device_is_known, options)?;
-    let same_tool = TrackOptions { tool_is_anew: false, ..*options };
-    let earlier = before.map(|it| earlier_visit(&model, it, &same_tool)).transpose()?;
-    let earlier = earlier.as_ref().zip(before);
-    let mut notes = Vec::new();
-    let pairs = earlier.and_then(|earlier| Changes::between((&visit, data), earlier, &model.robot));
-    let repeated = pairs.as_ref().map_or(0, |it| it.rows.len());
-    let is_enough =
-        |it: &Changes| Evidence::new(&it.residual, &free(&it.jacobian, &visit, options)).left().1 >= FREEDOM;
-    let (judged_by, changes, level) = match pairs.filter(is_enough) {
-        Some(pairs) => {
-            let level = match options.repeatability_m {
-                Some(_) => Level::Known(1.0),
-                None => Level::Found(pairs.scatter.0, pairs.scatter.1),
-            };
-            (JudgedBy::Repeats, pairs, level)
-        }
-        None => {
-            if earlier.is_some() {
-                notes.push(words::few_repeat(repeated, data.len()));
-            }
-            let count = data.configurations(&data.all_rows()).len();
-            let changes = by_model::changes(&model, &visit, data).ok_or_else(words::no_uncertainty)?;
-            let (level, is_found) = by_model::level(&model, earlier, count, options)?;
-            notes.extend((!is_found).then(words::level_is_assumed));
-            notes.extend((!model.is_corrected).then(words::geometry_alone));
-            (JudgedBy::Model, changes, level)
-        }
-    };
+    let judged = Judged::of(file, data, earlier, options)?;
+    let Judged { model, visit, data, changes, level, judged_by, repeated, mut notes, .. } = judged;
     let hypotheses = hypotheses(&changes.jacobian, &visit, options);
     let tests = Tests::new(&hypotheses);
     let evidence = Evidence::new(&changes.residual, &free(&changes.jacobian, &visit, options));
@@ -182,7 +157,7 @@ pub fn track(
     if verdict.is_wider {
         notes.push(words::wider(options.repeatability_m.is_some(), verdict.variance.sqrt()));
     }
-    let named = |it: &Tried| explanation(it, &hypotheses[it.at], &verdict, &model, data);
+    let named = |it: &Tried| explanation(it, &hypotheses[it.at], &verdict, &model, &data);
     let explanation = verdict.best.as_ref().map(named);
     let alternatives: Vec<Explanation> = verdict.nearly.iter().map(named).collect();
     notes.extend(explanation.as_ref().filter(|it| it.is_far()).map(|it| words::far(it)));
@@ -214,17 +189,6 @@ pub fn track(
         notes,
     })
 }
-
-/// The earlier visit: from where its devices are by the calibration, if that has them; else as they fit.
-fn earlier_visit(model: &Model, data: &Dataset, options: &TrackOptions) -> Result<Visit> {
-    match Visit::of(model, data, true, options) {
-        Ok(found) if rms(&found) < MUCH * model.own_m() => Ok(found),
-        _ => Visit::of(model, data, false, options),
-    }
-}
-
-/// Error over that of the calibration itself above which a device stands elsewhere.
-const MUCH: f64 = 3.0;
 
 /// Root mean square of places, metres a coordinate.
 fn rms(visit: &Visit) -> f64 {

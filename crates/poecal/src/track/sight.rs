@@ -76,7 +76,8 @@ pub(super) fn joints(
         let factor = smallest(tests.quantile(at, 1, freedom), freedom);
         let sigma = |evidence: &Evidence| variance.sqrt() * evidence.sigma(&it.columns);
         let [own, device, tool, both] = [0, 1, 2, 3].map(|k| sigma(&all[k]));
-        let is_seen = |sigma: f64| factor * sigma <= most;
+        // What is known must show a shift well, to be the reason why it is not seen.
+        let is_seen = |sigma: f64| factor * sigma <= if sigma < own { 0.25 * most } else { most };
         let unseen = match () {
             () if is_seen(own) => None,
             () if !visit.device_is_known && is_seen(device) => Some(Unseen::Device),

@@ -59,6 +59,8 @@ pub(super) struct Visit {
     pub(super) by_known: Option<DMatrix<f64>>,
     /// Each target's orientation and place with all joints at zero, base frame, and which of its motions its columns are.
     pub(super) targets: Vec<(Pose, &'static [usize])>,
+    /// Frame of each axis with all joints at zero, by which its unknowns are.
+    pub(super) axes: Vec<Pose>,
     /// Whether the frames of the devices were taken as the calibration has them.
     pub(super) device_is_known: bool,
 }
@@ -215,6 +217,7 @@ impl Visit {
             columns,
             by_known,
             targets,
+            axes: estimate.base_from_axis.clone(),
             device_is_known,
         })
     }

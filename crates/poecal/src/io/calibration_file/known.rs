@@ -228,7 +228,7 @@ fn check(upper: &[f64], n: usize) -> Result<()> {
 }
 
 /// A symmetric matrix from its upper triangle by rows.
-fn symmetric(upper: &[f64], n: usize) -> Vec<f64> {
+pub(super) fn symmetric(upper: &[f64], n: usize) -> Vec<f64> {
     let mut matrix = vec![0.0; n * n];
     let places = (0..n).flat_map(|i| (i..n).map(move |j| (i, j)));
     for ((i, j), &value) in places.zip(upper) {

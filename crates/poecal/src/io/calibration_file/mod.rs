@@ -16,6 +16,7 @@ mod link;
 mod original;
 mod outliers;
 mod own_rows;
+mod recalibrated;
 mod refusal;
 mod repeatability;
 mod schema;
@@ -38,6 +39,7 @@ pub use frames::*;
 pub use keyed::*;
 pub use original::OriginalUrdf;
 pub use outliers::{OutlierEntry, OutlierSet, RobustEntry};
+pub use recalibrated::{JointRepair, RecalibratedEntry, RepairedPart};
 pub use repeatability::{RepeatabilityEntry, RepeatedPoseEntry};
 pub use schema::*;
 pub(crate) use stages::only_target;
@@ -96,6 +98,7 @@ impl CalibrationFile {
             diagnosis: calibration.diagnosis.iter().map(DiagnosisEntry::from).collect(),
             repairs: calibration.repairs.clone(),
             suspicions: calibration.suspicions.clone(),
+            recalibrated: Vec::new(),
             noise: NoiseEntry {
                 sigma: measured(measured_kinds, calibration.noise).into(),
                 source: calibration.noise_source,

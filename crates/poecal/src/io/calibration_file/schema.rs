@@ -14,6 +14,7 @@ use super::corrected::CorrectedEntry;
 use super::frames::{FrameEntry, JointEntry, PoseEntry, RobotEntry, StationEntry, TargetEntry};
 use super::keyed::{Keyed, SigmaKeys};
 use super::original::OriginalUrdf;
+use super::recalibrated::RecalibratedEntry;
 use super::trust::{CorrectionEntry, CrossValidationEntry, UncertaintyEntry};
 use super::{ClockEntry, OutlierEntry, PicturesEntry, RepeatabilityEntry, RobustEntry};
 use crate::analysis::{Direction, Identifiability, JointCoverage, Observability};
@@ -104,6 +105,9 @@ pub struct CalibrationFile {
     /// What seems to have happened and was not repaired.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub suspicions: Vec<Event>,
+    /// Joints that were calibrated anew since, by `poecal track --recalibrate`, in order; all else is of the calibration before.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub recalibrated: Vec<RecalibratedEntry>,
     /// The calibrated robot's frames.
     pub robot: RobotEntry,
     /// The calibrated joints from base to tip.

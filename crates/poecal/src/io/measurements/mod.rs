@@ -74,6 +74,7 @@ mod understanding;
 mod units;
 mod unknown_camera;
 mod unused;
+mod witness;
 mod write;
 mod wrong_boards;
 
@@ -100,6 +101,7 @@ pub use socket_distance::SocketDistances;
 pub(in crate::io) use template::{plan, template};
 pub use understanding::{ColumnUnderstanding, FileUnderstanding};
 pub use units::{NamedUnit, UnitSource};
+pub use witness::to_measure_again;
 pub(in crate::io) use write::text;
 
 use std::collections::BTreeMap;

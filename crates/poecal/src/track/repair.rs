@@ -1,0 +1,120 @@
+//! One joint calibrated anew, all else held.
+
+use super::explain::{Evidence, Hypothesis, Kind, Tests, explain};
+use super::hypotheses::{free, hypotheses};
+use super::judged::{Earlier, Judged};
+use super::visit::Of;
+use super::{JudgedBy, MOST_RAD, TrackOptions, explanation};
+use crate::error::{ErrorKind, Result};
+use crate::io::calibration_file::{CalibrationFile, JointRepair, RecalibratedEntry, RepairedPart};
+use crate::lie::Twist;
+use crate::measurement::Dataset;
+use crate::robot::JointKind;
+
+/// A calibration with one joint calibrated anew.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Repaired {
+    /// The new calibration.
+    pub file: CalibrationFile,
+    /// What changed.
+    pub repair: JointRepair,
+    /// By what the rows were judged.
+    pub judged_by: JudgedBy,
+    /// What else is to be said, a sentence each.
+    pub notes: Vec<String>,
+}
+
+/// Calibrates the zero or the axis of one joint anew by the rows of a visit. All else stays as the calibration has it, with its covariance, which
+/// is the prior: what repeats is compared with earlier rows, so that nothing else is learnt of it. `provenance` are the files.
+///
+/// # Errors
+/// [`ErrorKind::Option`] if there is no such joint; [`ErrorKind::Problem`] if the rows do not show it, contradict that it alone changed, or show
+/// it farther than 2°; and as [`track`](super::track).
+pub fn recalibrate(
+    file: &CalibrationFile,
+    data: &Dataset,
+    earlier: Option<Earlier<'_>>,
+    options: &TrackOptions,
+    (joint, part): (&str, RepairedPart),
+    provenance: RecalibratedEntry,
+) -> Result<Repaired> {
+    let Judged { model, data, visit, changes, level, judged_by, repeated, notes } =
+        Judged::of(file, data, earlier, options)?;
+    let own = model.joints.iter().find(|&&at| model.robot.joints[at].name == joint);
+    let Some(&at) = own else {
+        let names: Vec<&str> = model.joints.iter().map(|&at| model.robot.joints[at].name.as_str()).collect();
+        return ErrorKind::Option.refuse(format!(
+            "found joint `{joint}` to be calibrated anew, expected one of {}",
+            crate::error::first_few(&names)
+        ));
+    };
+    let of = match part {
+        RepairedPart::Zero => Of::Zero(at),
+        RepairedPart::Axis => Of::Axis(at),
+    };
+    let all = hypotheses(&changes.jacobian, &visit, options);
+    let is_own = |it: &&Hypothesis| it.of == [of];
+    let free_columns = free(&changes.jacobian, &visit, options);
+    let evidence = Evidence::new(&changes.residual, &free_columns);
+    let found = all.iter().find(is_own).and_then(|it| Some((it, evidence.tried(0, it)?)));
+    let what = match part {
+        RepairedPart::Zero => "zero",
+        RepairedPart::Axis => "axis",
+    };
+    let Some((hypothesis, tried)) = found.filter(|(it, tried)| tried.rank == it.columns.ncols()) else {
+        return ErrorKind::Problem.refuse(format!(
+            "found rows that do not show the {what} of joint `{joint}`, expected some that do: measure configurations that `poecal track --plan` chooses, \
+             and state --device known where the device stands as it did"
+        ));
+    };
+    // What is left must be noise beside it.
+    let mut beside =
+        nalgebra::DMatrix::zeros(free_columns.nrows(), free_columns.ncols() + hypothesis.columns.ncols());
+    beside.columns_mut(0, free_columns.ncols()).copy_from(&free_columns);
+    beside.columns_mut(free_columns.ncols(), hypothesis.columns.ncols()).copy_from(&hypothesis.columns);
+    let rest: Vec<Hypothesis> =
+        all.iter().filter(|it| it.kind <= Kind::Zero && it.of != [of]).cloned().collect();
+    let verdict = explain(&Evidence::new(&changes.residual, &beside), &rest, &Tests::new(&rest), level);
+    if let Some(other) = &verdict.best {
+        let other = explanation(other, &rest[other.at], &verdict, &model, &data);
+        return ErrorKind::Problem.refuse(format!(
+            "found rows that contradict that the {what} of joint `{joint}` alone changed ({} did too), expected no other change: calibrate anew",
+            other.names.first().filter(|name| !name.is_empty()).map_or_else(|| "device or tool".to_owned(), |name| format!("`{name}`"))
+        ));
+    }
+    let variance = verdict.variance;
+    let step: Vec<f64> = tried.step.iter().map(|it| it.0).collect();
+    if tried.step.iter().zip(&hypothesis.turns).any(|((value, _), turns)| *turns && value.abs() > MOST_RAD) {
+        return ErrorKind::Problem.refuse(format!(
+            "found the {what} of joint `{joint}` off by more than 2 deg, expected less, where rows are linear functions of it: calibrate anew"
+        ));
+    }
+    let turns = model.robot.joints[at].kind == JointKind::Revolute;
+    let axis = &visit.axes[at];
+    let unknowns: &[usize] = if turns { &[0, 1, 3, 4] } else { &[3, 4] };
+    let twists = unknowns.iter().map(|&k| {
+        let unit = nalgebra::Vector6::ith(k, 1.0);
+        Twist::from_vector(&(axis.adjoint() * unit))
+    });
+    let repair = JointRepair {
+        joint: joint.to_owned(),
+        part,
+        step,
+        twists: if part == RepairedPart::Axis { twists.collect() } else { Vec::new() },
+        covariance: (&tried.covariance * variance).as_slice().to_vec(),
+    };
+    let (size, sigma) = repair.size();
+    let shown =
+        |value: f64| if turns || part == RepairedPart::Axis { value.to_degrees() } else { 1e3 * value };
+    let provenance = RecalibratedEntry {
+        joint: joint.to_owned(),
+        part,
+        size: shown(size),
+        sigma: shown(sigma),
+        motion: repair.motion(&model.robot),
+        rows: data.len(),
+        repeated,
+        ..provenance
+    };
+    Ok(Repaired { file: file.repaired(&repair, provenance)?, repair, judged_by, notes })
+}
