@@ -6,6 +6,8 @@ mod calibrate;
 mod compensate;
 #[cfg(any(unix, windows))]
 mod detect;
+#[cfg(any(unix, windows))]
+mod fleet;
 mod hand_eye;
 mod identify;
 mod init;
@@ -23,6 +25,8 @@ pub(crate) use calibrate::Calibrate;
 pub(crate) use compensate::Compensate;
 #[cfg(any(unix, windows))]
 pub(crate) use detect::Detect;
+#[cfg(any(unix, windows))]
+pub(crate) use fleet::{Fleet, FleetCommand, FleetPrior, FleetReport};
 pub(crate) use hand_eye::{HandEye, OutFrames, Tcp};
 pub(crate) use identify::Identify;
 pub(crate) use init::Init;
@@ -93,6 +97,11 @@ pub(crate) enum Command {
     ///
     /// Ends with code 1 if it changed.
     Track(Box<Track>),
+    /// Calibrate every robot whose measurements lie in a folder, with a ledger of what was done
+    ///
+    /// Ends with code 1 if any robot failed.
+    #[cfg(any(unix, windows))]
+    Fleet(Box<Fleet>),
     /// Compare two calibrations of one robot: what changed, and what is noise
     ///
     /// Ends with code 1 if more changed than noise.

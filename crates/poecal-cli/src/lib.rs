@@ -157,6 +157,8 @@ fn run_to_code(arguments: impl IntoIterator<Item = OsString>) -> u8 {
         Command::Simulate(options) => commands::simulate(options, &console),
         Command::Validate(options) => commands::validate(options, &typed, &console),
         Command::Track(options) => commands::track(options, &typed, &console),
+        #[cfg(any(unix, windows))]
+        Command::Fleet(options) => commands::fleet(options, &console),
         Command::Compare(options) => commands::compare(options, &console),
         Command::Predict(options) => commands::predict(options, &console),
         Command::Check(options) => commands::check(options, &console),

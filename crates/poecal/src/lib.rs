@@ -78,6 +78,8 @@ pub mod error;
 #[cfg_attr(doc, doc(hidden))]
 pub mod estimate;
 #[cfg_attr(doc, doc(hidden))]
+pub mod fleet;
+#[cfg_attr(doc, doc(hidden))]
 pub mod forensics;
 #[cfg_attr(doc, doc(hidden))]
 pub mod forms;
@@ -145,7 +147,7 @@ pub use measurement::ByQuantity;
 #[doc(hidden)]
 pub use poecal_arm as arm;
 #[doc(hidden)]
-pub use threads::MOST_THREADS;
+pub use threads::{MOST_THREADS, threads_now};
 #[doc(hidden)]
 pub use unit::Unit;
 

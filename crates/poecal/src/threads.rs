@@ -6,6 +6,12 @@ use rayon::prelude::*;
 
 /// Threads that may be asked for: more than any machine has use for, and each has a stack of its own.
 pub const MOST_THREADS: usize = 256;
+/// Threads that work is shared by.
+#[must_use]
+pub fn threads_now() -> usize {
+    rayon::current_num_threads()
+}
+
 /// Items that one thread sorts or looks at as fast as several.
 const FEW: usize = 8192;
 

@@ -11,6 +11,8 @@ mod convert;
 #[cfg(any(unix, windows))]
 mod detect;
 mod export;
+#[cfg(any(unix, windows))]
+mod fleet;
 mod frames;
 mod hand_eye;
 mod identify;
@@ -42,6 +44,8 @@ pub(crate) use convert::convert;
 #[cfg(any(unix, windows))]
 pub(crate) use detect::detect;
 pub(crate) use export::{apply, export};
+#[cfg(any(unix, windows))]
+pub(crate) use fleet::fleet;
 pub(crate) use hand_eye::hand_eye;
 pub(crate) use identify::identify;
 pub(crate) use import::import;

@@ -5,6 +5,7 @@ pub mod calibration_file;
 mod csv_text;
 pub mod disk;
 pub mod export;
+pub mod fleet;
 mod foreign;
 mod frame_entries;
 pub mod frame_texts;

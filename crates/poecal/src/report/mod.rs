@@ -3,6 +3,7 @@
 mod acceptance;
 mod check;
 mod compared;
+mod fleet;
 mod found;
 mod hand_eye;
 mod identify;
@@ -21,11 +22,12 @@ mod track;
 
 pub use check::{Check, SetCounts};
 pub use compared::Comparison;
+pub use fleet::{Figure, Line, fleet_prior};
 pub use hand_eye::hand_eye;
 pub use identify::Identify;
 pub use judgement::judgement;
 pub use offsets::Offsets;
-pub use page::{calibration_page, calibration_page_with, validation_page};
+pub use page::{calibration_page, calibration_page_with, fleet_page, validation_page};
 pub use summary::{Detail, summary, unsaid};
 pub use tcp::tool_tip;
 pub use track::{Plan, Track, recalibrated};

@@ -154,7 +154,7 @@ impl Plan {
     pub fn text(&self) -> String {
         let mut out = String::new();
         line(&mut out, "robot", &self.robot);
-        line(&mut out, "configurations", &self.configurations.to_string());
+        line(&mut out, "witnesses", &self.configurations.to_string());
         line(&mut out, "noise", &format!("{:.3} mm a visit and coordinate", self.noise_mm));
         out.push_str(&sight_table(&self.joints, &self.invisible));
         out
@@ -178,7 +178,7 @@ pub fn recalibrated(found: &Repaired, before: &CalibrationFile) -> String {
         }
     };
     line(&mut out, "robot", &before.robot.name);
-    line(&mut out, "recalibrated", &format!("{}: {what}; all else as before", visible(&found.repair.joint)));
+    line(&mut out, "anew", &format!("{}: {what}; all else as before", visible(&found.repair.joint)));
     out
 }
 

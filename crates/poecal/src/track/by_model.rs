@@ -7,7 +7,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 
 use super::TrackOptions;
-use super::explain::{Evidence, Level, Tests, ratio};
+use super::explain::{Evidence, Level, Tests, leave_unseen_out, ratio};
 use super::hypotheses::{free, hypotheses};
 use super::pairs::Changes;
 use super::visit::{Model, Visit};
@@ -127,9 +127,10 @@ pub(super) fn level(
         let some: Vec<Vec<u32>> = chosen.iter().map(|at| all[*at].clone()).collect();
         let (rows, groups) = grouped(&some);
         let Some(found) = of_rows(model, &as_anew, &rows, &groups) else { continue };
-        let hypotheses = hypotheses(&found.jacobian, &as_anew, options);
-        let tests = Tests::new(&hypotheses);
         let evidence = Evidence::new(&found.residual, &free(&found.jacobian, &as_anew, options));
+        let mut hypotheses = hypotheses(&found.jacobian, &as_anew, options);
+        leave_unseen_out(&mut hypotheses, &evidence, Level::Known(1.0));
+        let tests = Tests::new(&hypotheses);
         ratios.push(ratio(&evidence, &hypotheses, &tests));
     }
     ratios.sort_by(f64::total_cmp);

@@ -3,6 +3,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::visit::{Columns, Of};
+use super::{MOST_M, MOST_RAD};
 use crate::distributions::{f_quantile, mean_square_quantile};
 use crate::linalg;
 
@@ -16,6 +17,9 @@ const NOTHING: f64 = 1e-10;
 const NEARLY: f64 = 7.0;
 /// Normal quantile of the scatter that a stated repeatability allows: 0.1 %.
 const ALLOWED: f64 = 3.09;
+
+/// Standard deviations of a shift at which it would show.
+const SHOWN: f64 = 5.0;
 
 /// A kind of explanation, in the order in which they are tried: the simplest first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -47,6 +51,8 @@ pub(super) struct Hypothesis {
     pub(super) columns: DMatrix<f64>,
     /// Whether each unknown is an angle.
     pub(super) turns: Vec<bool>,
+    /// Whether it may be named: not where its size would have to be beyond what is linear to be seen at all.
+    pub(super) is_candidate: bool,
 }
 
 /// What a hypothesis explains.
@@ -139,6 +145,9 @@ impl Evidence {
 
     /// What a hypothesis explains; `None` where nothing is seen of it.
     pub(super) fn tried(&self, at: usize, hypothesis: &Hypothesis) -> Option<Tried> {
+        if !hypothesis.is_candidate {
+            return None;
+        }
         let (own, steps) = self.beside(&hypothesis.columns);
         if own.ncols() == 0 {
             return None;
@@ -158,6 +167,23 @@ impl Evidence {
     }
 }
 
+/// Leaves out zeros of joints that are not seen, and pairs with them: their shift would be beyond what is linear before it showed.
+pub(super) fn leave_unseen_out(hypotheses: &mut [Hypothesis], evidence: &Evidence, level: Level) {
+    let variance = match level {
+        Level::Known(variance) => variance,
+        Level::Found(..) => 1.0,
+    };
+    let is_unseen = |it: &Hypothesis| {
+        let most = if it.turns.first() == Some(&true) { MOST_RAD } else { MOST_M };
+        SHOWN * variance.sqrt() * evidence.sigma(&it.columns) > most
+    };
+    let unseen = hypotheses.iter().filter(|it| it.kind == Kind::Zero && is_unseen(it));
+    let unseen: Vec<Of> = unseen.flat_map(|it| it.of.clone()).collect();
+    let own = |it: &Hypothesis| matches!(it.kind, Kind::Zero | Kind::TwoZeros);
+    let all = hypotheses.iter_mut().filter(|it| own(it) && it.of.iter().any(|of| unseen.contains(of)));
+    all.for_each(|it| it.is_candidate = false);
+}
+
 /// Hypotheses with how much each must explain.
 pub(super) struct Tests {
     /// Probability of each hypothesis.
@@ -167,8 +193,9 @@ pub(super) struct Tests {
 impl Tests {
     /// Each kind has the same share of the probability, and within it each hypothesis.
     pub(super) fn new(hypotheses: &[Hypothesis]) -> Self {
-        let of = |kind: Kind| hypotheses.iter().filter(move |it| it.kind == kind).count().max(1) as f64;
-        let mut kinds: Vec<Kind> = hypotheses.iter().map(|it| it.kind).collect();
+        let candidates = || hypotheses.iter().filter(|it| it.is_candidate);
+        let of = |kind: Kind| candidates().filter(move |it| it.kind == kind).count().max(1) as f64;
+        let mut kinds: Vec<Kind> = candidates().map(|it| it.kind).collect();
         kinds.sort_unstable();
         kinds.dedup();
         let kinds = kinds.len().max(1) as f64;

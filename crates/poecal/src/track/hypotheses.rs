@@ -23,6 +23,7 @@ pub(super) fn hypotheses(jacobian: &DMatrix<f64>, visit: &Visit, options: &Track
         of: vec![it.of],
         columns: jacobian.select_columns(&it.places),
         turns: it.turns.clone(),
+        is_candidate: true,
     };
     let mut found = Vec::new();
     let targets: Vec<&Columns> = columns.iter().filter(|it| matches!(it.of, Of::Target(_))).collect();
@@ -59,6 +60,7 @@ pub(super) fn hypotheses(jacobian: &DMatrix<f64>, visit: &Visit, options: &Track
                 of: [first.of.clone(), second.of.clone()].concat(),
                 columns: DMatrix::from_columns(&[first.columns.column(0), second.columns.column(0)]),
                 turns: [first.turns.clone(), second.turns.clone()].concat(),
+                is_candidate: true,
             });
         }
     }
@@ -88,5 +90,5 @@ fn tool(jacobian: &DMatrix<f64>, visit: &Visit, targets: &[&Columns]) -> Hypothe
         }
     }
     let of = targets.iter().map(|it| it.of).collect();
-    Hypothesis { kind: Kind::Tool, of, columns, turns: (0..6).map(|k| k >= 3).collect() }
+    Hypothesis { kind: Kind::Tool, of, columns, turns: (0..6).map(|k| k >= 3).collect(), is_candidate: true }
 }

@@ -23,7 +23,7 @@ use serde::Serialize;
 use crate::error::Result;
 use crate::io::calibration_file::CalibrationFile;
 use crate::measurement::{Dataset, Quantity};
-use explain::{Evidence, Hypothesis, Tests, Tried, Verdict, explain};
+use explain::{Evidence, Hypothesis, Tests, Tried, Verdict, explain, leave_unseen_out};
 use hypotheses::{free, hypotheses};
 use judged::Judged;
 use pairs::Changes;
@@ -31,6 +31,8 @@ use visit::{Model, Of, Visit};
 
 /// Shift beyond which rows are no linear function of it: a new calibration is due, radians.
 const MOST_RAD: f64 = 2.0 * std::f64::consts::PI / 180.0;
+/// The same of a slide, metres.
+const MOST_M: f64 = 0.02;
 
 /// What is known of the visits.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -150,9 +152,10 @@ pub fn track(
 ) -> Result<Tracked> {
     let judged = Judged::of(file, data, earlier, options)?;
     let Judged { model, visit, data, changes, level, judged_by, repeated, mut notes, .. } = judged;
-    let hypotheses = hypotheses(&changes.jacobian, &visit, options);
-    let tests = Tests::new(&hypotheses);
     let evidence = Evidence::new(&changes.residual, &free(&changes.jacobian, &visit, options));
+    let mut hypotheses = hypotheses(&changes.jacobian, &visit, options);
+    leave_unseen_out(&mut hypotheses, &evidence, level);
+    let tests = Tests::new(&hypotheses);
     let verdict = explain(&evidence, &hypotheses, &tests, level);
     if verdict.is_wider {
         notes.push(words::wider(options.repeatability_m.is_some(), verdict.variance.sqrt()));

@@ -4,13 +4,11 @@ use super::explain::{Evidence, Hypothesis, Kind, Tests};
 use super::hypotheses::free;
 use super::pairs::Changes;
 use super::visit::{Model, Of, Visit};
-use super::{MOST_RAD, TrackOptions};
+use super::{MOST_M, MOST_RAD, TrackOptions};
 use crate::robot::JointKind;
 
 /// Normal quantile of 95 %.
 const NORMAL: f64 = 1.644_853_627;
-/// Farthest zero of a slide that counts as seen, metres.
-const MOST_M: f64 = 0.02;
 
 /// Why the zero of a joint is not seen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -5,7 +5,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 
 use super::TrackOptions;
-use super::explain::{Tests, picked};
+use super::explain::{Evidence, Level, Tests, leave_unseen_out, picked};
 use super::hypotheses::{free, hypotheses};
 use super::judged::earlier_visit;
 use super::pairs::Changes;
@@ -24,6 +24,8 @@ const STARTS: usize = 4;
 const ROUNDS: usize = 30;
 /// Weight of how well joints are told apart beside how small their shifts are.
 const APART: f64 = 0.2;
+/// Weight of how well a knock of the tool is seen.
+const OF_TOOL: f64 = 0.2;
 /// Ridge of the information, as a share of its diagonal.
 const RIDGE: f64 = 1e-9;
 /// Standard deviation beyond which a joint is not seen, radians or metres.
@@ -45,6 +47,8 @@ struct Candidates {
     all: Vec<DMatrix<f64>>,
     /// Number of columns that are free: the first ones.
     free: usize,
+    /// Columns of the tool, behind the zeros.
+    tool: usize,
     /// Zeros that are seen at all.
     seen: Vec<usize>,
 }
@@ -55,8 +59,8 @@ impl Candidates {
         chosen.iter().fold(DMatrix::zeros(n, n), |sum, at| sum + &self.all[*at])
     }
 
-    /// Standard deviation of each zero alone, and beside all others.
-    fn deviations(&self, sum: &DMatrix<f64>) -> Vec<(f64, f64)> {
+    /// Standard deviation of each zero alone, and beside all others; and of the tool where it is seen worst.
+    fn deviations(&self, sum: &DMatrix<f64>) -> (Vec<(f64, f64)>, f64) {
         let n = sum.nrows();
         let ridge = |matrix: &mut DMatrix<f64>| {
             (0..matrix.nrows())
@@ -69,8 +73,10 @@ impl Candidates {
         let left = sum.view((k, k), (n - k, n - k)).into_owned();
         let left = match linalg::whitened(own, &beside) {
             Some(whitened) => left - whitened.tr_mul(&whitened),
-            None => return vec![(f64::INFINITY, f64::INFINITY); n - k],
+            None => return (vec![(f64::INFINITY, f64::INFINITY); n - k], f64::INFINITY),
         };
+        let tool =
+            (left.nrows() - self.tool..left.nrows()).map(|at| left[(at, at)]).fold(f64::INFINITY, f64::min);
         let seen = left.select_rows(&self.seen).select_columns(&self.seen);
         let mut held = seen.clone();
         ridge(&mut held);
@@ -79,21 +85,20 @@ impl Candidates {
         let apart = linalg::cholesky(&upper, count, 0.0).map(|factor| linalg::inverse(&factor));
         let deviation =
             |information: f64| if information > 0.0 { information.powf(-0.5) } else { f64::INFINITY };
-        (0..count)
-            .map(|at| {
-                let variance = apart.as_ref().map_or(f64::INFINITY, |it| it[at * count + at]);
-                (deviation(seen[(at, at)]), variance.max(0.0).sqrt())
-            })
-            .collect()
+        let each = (0..count).map(|at| {
+            let variance = apart.as_ref().map_or(f64::INFINITY, |it| it[at * count + at]);
+            (deviation(seen[(at, at)]), variance.max(0.0).sqrt())
+        });
+        (each.collect(), if self.tool == 0 { 0.0 } else { deviation(tool) })
     }
 
     /// What the exchange makes small: the logarithm of the worst joint's deviation, and of the one that is told apart worst.
     fn cost(&self, sum: &DMatrix<f64>) -> f64 {
-        let (alone, apart) = self
-            .deviations(sum)
-            .into_iter()
-            .fold((0.0, 0.0), |most: (f64, f64), it| (most.0.max(it.0), most.1.max(it.1)));
-        alone.ln() + APART * apart.min(1.0).ln()
+        let (each, tool) = self.deviations(sum);
+        let (alone, apart) =
+            each.into_iter().fold((0.0, 0.0), |most: (f64, f64), it| (most.0.max(it.0), most.1.max(it.1)));
+        let tool = if tool > 0.0 { OF_TOOL * tool.min(1.0).ln() } else { 0.0 };
+        alone.ln() + APART * apart.min(1.0).ln() + tool
     }
 }
 
@@ -150,7 +155,10 @@ pub fn witnesses(
         ));
     }
     let changes = of_repeats(&visit, &own);
-    let hypotheses = hypotheses(&changes.jacobian, &visit, options);
+    let mut hypotheses = hypotheses(&changes.jacobian, &visit, options);
+    let evidence =
+        Evidence::new(&changes.residual, &super::hypotheses::free(&changes.jacobian, &visit, options));
+    leave_unseen_out(&mut hypotheses, &evidence, Level::Known(1.0));
     let tests = Tests::new(&hypotheses);
     let freedom = if options.repeatability_m.is_some() {
         f64::INFINITY
@@ -176,18 +184,32 @@ fn candidates(visit: &Visit, configurations: &[Vec<u32>], options: &TrackOptions
         let changes = of_repeats(visit, &own.collect::<Vec<usize>>());
         let free = free(&changes.jacobian, visit, options);
         let zeros = picked(&changes.jacobian, &visit.columns, |of| matches!(of, Of::Zero(_)));
-        let mut both = DMatrix::zeros(free.nrows(), free.ncols() + zeros.ncols());
-        both.columns_mut(0, free.ncols()).copy_from(&free);
-        both.columns_mut(free.ncols(), zeros.ncols()).copy_from(&zeros);
-        (free.ncols(), both.tr_mul(&both))
+        let tool = picked(&changes.jacobian, &visit.columns, |of| {
+            matches!(of, Of::Target(_)) && !options.tool_is_anew
+        });
+        let (k, n) = (free.ncols(), zeros.ncols());
+        let mut both = DMatrix::zeros(free.nrows(), k + n + tool.ncols());
+        both.columns_mut(0, k).copy_from(&free);
+        both.columns_mut(k, n).copy_from(&zeros);
+        both.columns_mut(k + n, tool.ncols()).copy_from(&tool);
+        ((k, tool.ncols()), both.tr_mul(&both))
     };
-    let (free, all): (Vec<usize>, Vec<DMatrix<f64>>) = configurations.iter().map(information).unzip();
-    let free = free.first().copied().unwrap_or_default();
-    let zeros = all.first().map_or(0, DMatrix::nrows) - free;
-    let found = Candidates { all, free, seen: (0..zeros).collect() };
+    let (counts, all): (Vec<(usize, usize)>, Vec<DMatrix<f64>>) =
+        configurations.iter().map(information).unzip();
+    let (free, mut tool) = counts.first().copied().unwrap_or_default();
+    let zeros = all.first().map_or(0, DMatrix::nrows) - free - tool;
+    if tool > 6 {
+        // Of several targets the tool is seen well.
+        tool = 0;
+    }
+    let all: Vec<DMatrix<f64>> = all
+        .into_iter()
+        .map(|it| it.view((0, 0), (free + zeros + tool, free + zeros + tool)).into_owned())
+        .collect();
+    let found = Candidates { all, free, tool, seen: (0..zeros).collect() };
     let every: Vec<usize> = (0..configurations.len()).collect();
     let share = configurations.len() as f64 / 8.0;
-    let deviations = found.deviations(&(found.sum(&every) / share.max(1.0)));
+    let (deviations, _) = found.deviations(&(found.sum(&every) / share.max(1.0)));
     let seen = (0..zeros).filter(|&at| deviations[at].0 < UNSEEN).collect();
     Candidates { seen, ..found }
 }

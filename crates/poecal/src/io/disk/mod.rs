@@ -114,6 +114,24 @@ pub fn is_file(path: &Path) -> bool {
     here().follow(path).is_ok_and(|object| object.kind == ObjectKind::File)
 }
 
+/// Creates a folder with all those above it that are missing.
+///
+/// # Errors
+/// Errors of the system.
+pub fn create_folders(path: &Path) -> io::Result<()> {
+    let disk = here();
+    if path.as_os_str().is_empty() || disk.follow(path).is_ok_and(|found| found.kind == ObjectKind::Folder) {
+        return Ok(());
+    }
+    if let Some(parent) = path.parent() {
+        create_folders(parent)?;
+    }
+    match disk.create_folder(path) {
+        Err(error) if error.kind() == io::ErrorKind::AlreadyExists => Ok(()),
+        done => done,
+    }
+}
+
 /// Runs some work on another disk, as far as this thread does it.
 pub fn on<T>(disk: Arc<dyn Disk>, work: impl FnOnce() -> T) -> T {
     /// Restores the disk before, also after a panic.

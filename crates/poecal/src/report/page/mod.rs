@@ -9,6 +9,7 @@ mod data;
 mod devices;
 mod figures;
 mod first;
+mod fleet;
 mod frames;
 mod html;
 mod joins;
@@ -22,6 +23,7 @@ mod shapes;
 mod trust;
 mod validation;
 
+pub use fleet::fleet_page;
 pub use validation::validation_page;
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};

@@ -1,0 +1,286 @@
+//! `poecal fleet`: a folder of robots, worked off by processes of one thread each.
+
+use std::collections::BTreeMap;
+use std::ffi::OsString;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::mpsc;
+use std::thread;
+
+use poecal::io::calibration_file::{CalibrationFile, Inputs};
+use poecal::io::fleet::{Found, LEDGER, Ledger, LedgerRow, Station, newest, read_ledgers};
+use poecal::io::named_files::actual;
+use poecal::io::output::{Existing, FilePlace};
+use poecal::io::validation::now;
+use poecal::{ErrorKind, Result, report};
+
+use crate::args::{Fleet, FleetCommand, FleetPrior, FleetReport};
+use crate::console::Console;
+use crate::{DONE, WORSE};
+
+pub(crate) fn fleet(arguments: &Fleet, console: &Console) -> Result<u8> {
+    match &arguments.command {
+        Some(FleetCommand::Report(options)) => return report_of(options, console),
+        Some(FleetCommand::Prior(options)) => return prior_of(options, console),
+        None => {}
+    }
+    let Some(path) = &arguments.station else {
+        return ErrorKind::Option.refuse("found no station, expected its file (TOML)");
+    };
+    let station = Station::read(path)?;
+    let place = match arguments.shard {
+        Some((at, of)) => {
+            let stem = station.ledger.file_stem().and_then(|it| it.to_str()).unwrap_or("fleet").to_owned();
+            station.ledger.with_file_name(format!("{stem}.{at}-of-{of}.jsonl"))
+        }
+        None => station.ledger.clone(),
+    };
+    let mut ledger = Ledger::open(&place)?;
+    let mut seen: BTreeMap<PathBuf, String> = BTreeMap::new();
+    let mut again = arguments.again;
+    loop {
+        let all = newest(&station)?;
+        let mut own: Vec<Found> =
+            all.into_iter().filter(|it| arguments.shard.is_none_or(|shard| it.is_of_shard(shard))).collect();
+        own.sort_by(|a, b| a.date.cmp(&b.date).then_with(|| a.cmp(b)));
+        if arguments.watch.is_some() {
+            // A file that is still being written is another at the next look.
+            own.retain(|it| {
+                let Some(sha256) = it.sha256() else { return false };
+                seen.insert(it.path.clone(), sha256.clone()) == Some(sha256)
+            });
+        }
+        let failed = work_off(&station, &own, &mut ledger, again, console)?;
+        again = false;
+        let Some(time) = arguments.watch else {
+            return Ok(if failed > 0 { WORSE } else { DONE });
+        };
+        thread::sleep(time);
+    }
+}
+
+/// Calibrates what the ledger does not have. Returns how many of these robots failed, now or before.
+fn work_off(
+    station: &Station,
+    all: &[Found],
+    ledger: &mut Ledger,
+    again: bool,
+    console: &Console,
+) -> Result<usize> {
+    let mut failed = 0;
+    let mut open: Vec<(Found, LedgerRow)> = Vec::new();
+    let shared = shared_checksums(station)?;
+    for found in all {
+        let row = begun(station, found, &shared);
+        if ledger.has(&row) && !again {
+            failed += usize::from(ledger.of(&row).is_some_and(|it| !it.is_passed()));
+            continue;
+        }
+        open.push((found.clone(), row));
+    }
+    let before: Vec<Option<String>> = open
+        .iter()
+        .map(|(_, row)| {
+            let other = ledger.of(row).filter(|it| !again && it.exit != REFUSED && it.sha256 != row.sha256)?;
+            (other.sha256.get(&row.file) != row.sha256.get(&row.file)).then(|| {
+                format!(
+                    "found `{}` of {} again with other bytes, expected one file a robot and date: name it by another date, or repeat by --again",
+                    row.serial, row.date
+                )
+            })
+        })
+        .collect();
+    let (skipped, total) = (all.len() - open.len(), open.len());
+    let workers = rayon_threads().min(total.max(1));
+    let next = AtomicUsize::new(0);
+    let (send, receive) = mpsc::channel();
+    let send = Mutex::new(send);
+    let mut result = Ok(());
+    let mut passed = 0;
+    thread::scope(|scope| {
+        for _ in 0..workers {
+            let (next, open, before) = (&next, &open, &before);
+            let own = send.lock().map(|it| it.clone()).ok();
+            scope.spawn(move || {
+                let Some(own) = own else { return };
+                loop {
+                    let at = next.fetch_add(1, Ordering::Relaxed);
+                    let Some((found, row)) = open.get(at) else { return };
+                    let done = match &before[at] {
+                        Some(sentence) => refused(row.clone(), sentence.clone()),
+                        None => calibrated(station, found, row.clone()),
+                    };
+                    if own.send((at, done)).is_err() {
+                        return;
+                    }
+                }
+            });
+        }
+        drop(send);
+        // The ledger has the order of the inbox, whichever process ends first.
+        let mut waiting: BTreeMap<usize, LedgerRow> = BTreeMap::new();
+        let mut place = 0;
+        for (at, row) in receive {
+            waiting.insert(at, row);
+            while let Some(row) = waiting.remove(&place) {
+                place += 1;
+                failed += usize::from(!row.is_passed());
+                passed += usize::from(row.is_passed());
+                if let Some(reason) = row.reason.as_ref().filter(|_| !row.is_passed()) {
+                    console.warning(format!("{} {}: {reason}", row.serial, row.date));
+                }
+                let row = LedgerRow { time: now().unwrap_or_default(), ..row };
+                if let Err(error) = ledger.append(row) {
+                    result = Err(error);
+                    next.store(usize::MAX / 2, Ordering::Relaxed);
+                    return;
+                }
+            }
+        }
+    });
+    result?;
+    if total > 0 {
+        console.say(&format!("{passed} of {total} robots passed; {skipped} were done before\n"))?;
+    }
+    Ok(failed)
+}
+
+/// Code of a refused calibration.
+const REFUSED: u8 = 2;
+
+/// How many processes run at once.
+fn rayon_threads() -> usize {
+    poecal::threads_now()
+}
+
+/// SHA-256 of what all robots share: models and settings.
+fn shared_checksums(station: &Station) -> Result<BTreeMap<String, String>> {
+    let files = station.models.values().chain(&station.settings);
+    Inputs::checksums(files.map(PathBuf::as_path))
+}
+
+/// A row before its calibration.
+fn begun(station: &Station, found: &Found, shared: &BTreeMap<String, String>) -> LedgerRow {
+    let file = found.path.display().to_string();
+    let mut sha256 = BTreeMap::new();
+    let model = found.model(station).map(|it| it.display().to_string());
+    let settings = station.settings.as_ref().map(|it| it.display().to_string());
+    for name in model.iter().chain(&settings) {
+        sha256.extend(shared.get(name).map(|it| (name.clone(), it.clone())));
+    }
+    sha256.extend(found.sha256().map(|it| (file.clone(), it)));
+    LedgerRow {
+        serial: found.serial.clone(),
+        date: found.date.clone(),
+        of_type: found.of_type.clone(),
+        results: found.results(station).display().to_string(),
+        poecal_version: env!("CARGO_PKG_VERSION").to_owned(),
+        file,
+        sha256,
+        ..LedgerRow::default()
+    }
+}
+
+fn refused(row: LedgerRow, sentence: String) -> LedgerRow {
+    LedgerRow { exit: REFUSED, reason: Some(sentence), ..row }
+}
+
+/// Calibrates a robot by a process of its own.
+fn calibrated(station: &Station, found: &Found, row: LedgerRow) -> LedgerRow {
+    if let Some(fault) = found.fault() {
+        return refused(row, fault);
+    }
+    let Some(model) = found.model(station) else {
+        let message = format!("found a robot of type `{}`, expected one that `models` names", found.of_type);
+        return refused(row, message);
+    };
+    let results = found.results(station);
+    if let Some(parent) = results.parent()
+        && let Err(error) = poecal::io::disk::create_folders(parent)
+    {
+        return refused(row, format!("the folder of the results cannot be made ({error})"));
+    }
+    let mut words: Vec<OsString> = vec!["calibrate".into(), model.into(), found.path.clone().into()];
+    words.extend(["--out".into(), results.clone().into_os_string()]);
+    words.extend(["--force", "--quiet", "--threads", "1"].map(OsString::from));
+    if let Some(settings) = &station.settings {
+        words.extend(["--settings".into(), settings.clone().into_os_string()]);
+    }
+    if !station.accept.is_empty() {
+        words.extend(["--accept".into(), OsString::from(station.accept.join(","))]);
+    }
+    let (code, said) = ran(words);
+    let sentence = || {
+        let line = said.lines().rev().find_map(|line| line.strip_prefix("error: "));
+        line.map_or_else(|| format!("the calibration ended with code {code}"), str::to_owned)
+    };
+    if code > 1 {
+        return LedgerRow { exit: code, reason: Some(sentence()), ..row };
+    }
+    match CalibrationFile::read(results.join("calibration.json")) {
+        Ok(file) => LedgerRow { exit: code, ..row.with(&file) },
+        Err(error) => LedgerRow { exit: 3, reason: Some(error.to_string()), ..row },
+    }
+}
+
+/// Runs the program with these words: its code, and what it said of errors. Within another program, such as Python, in this process.
+fn ran(words: Vec<OsString>) -> (u8, String) {
+    let own = std::env::current_exe().ok();
+    let is_own =
+        own.as_ref().and_then(|it| it.file_stem()?.to_str()).is_some_and(|stem| stem.starts_with("poecal"));
+    if let (Some(own), true) = (own, is_own) {
+        let done = Command::new(own).args(&words).stdin(Stdio::null()).stdout(Stdio::null()).output();
+        return match done {
+            Ok(done) => {
+                let code = done.status.code().and_then(|code| u8::try_from(code).ok()).unwrap_or(3);
+                (code, String::from_utf8_lossy(&done.stderr).into_owned())
+            }
+            Err(error) => (3, format!("error: the program cannot be started ({error})")),
+        };
+    }
+    let typed = std::iter::once(OsString::from("poecal")).chain(words);
+    let said = crate::run_captured(typed);
+    (said.code, said.err)
+}
+
+/// Ledgers that are named, or that of the station.
+fn rows(station: &Station, ledgers: &[PathBuf]) -> Result<Vec<LedgerRow>> {
+    if ledgers.is_empty() {
+        read_ledgers(std::slice::from_ref(&station.ledger))
+    } else {
+        read_ledgers(ledgers)
+    }
+}
+
+fn report_of(options: &FleetReport, console: &Console) -> Result<u8> {
+    let station = Station::read(&options.station)?;
+    let page = options.out.clone().unwrap_or_else(|| options.station.with_file_name("fleet.html"));
+    let table = page.with_extension("csv");
+    let existing = Existing::forced(options.force);
+    let inputs = [options.station.as_path(), station.ledger.as_path()];
+    let place = FilePlace::reserve(&page, existing, &inputs, &mut console.warner())?;
+    let beside = FilePlace::reserve(&table, existing, &inputs, &mut console.warner())?;
+    let mut rows = rows(&station, &options.ledger)?;
+    // Links of the page are from its folder.
+    let folder = page.parent().unwrap_or(Path::new(""));
+    for row in &mut rows {
+        let results = Path::new(&row.results);
+        let from_here = results.strip_prefix(folder).map(Path::to_owned);
+        row.results = from_here.unwrap_or_else(|_| actual(results)).display().to_string();
+    }
+    let line = report::Line::of(rows, station.reference.as_deref(), &station.limits)
+        .map_err(|error| error.in_file(&station.path))?;
+    place.write(report::fleet_page(&line))?;
+    beside.write(vec![line.csv().into()])?;
+    console.say(&line.text())?;
+    Ok(DONE)
+}
+
+fn prior_of(options: &FleetPrior, console: &Console) -> Result<u8> {
+    let station = Station::read(&options.station)?;
+    let rows = rows(&station, &options.ledger)?;
+    console.data(&report::fleet_prior(&rows, LEDGER)?)?;
+    Ok(DONE)
+}

@@ -1,0 +1,15 @@
+//! A line of robots of one type: how far their corrections scatter, what of that is the line's own, robots that are none of it, and steps
+//! in time (theory.md §9, *A line of robots*).
+
+mod capability;
+mod outlying;
+mod series;
+mod steps;
+
+pub use capability::{Capability, Interval};
+pub use outlying::{Outlier, outliers};
+pub use series::{Series, Spread, Value};
+pub use steps::{Step, steps};
+
+/// Fewest robots from which spreads, capabilities and steps are stated.
+pub const FEWEST: usize = 30;

@@ -1,0 +1,50 @@
+//! Robots that are none of the line.
+
+use super::Series;
+
+/// Spreads of the line beyond which a robot is none of it.
+const FAR: f64 = 6.0;
+/// Standard deviations of line and measurement together that it must be away too.
+const CERTAIN: f64 = 4.0;
+
+/// A robot beyond the line's spread.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Outlier {
+    /// Its serial number.
+    pub serial: String,
+    /// The figure.
+    pub series: String,
+    /// Its joint, if it is of one.
+    pub joint: Option<String>,
+    /// How many spreads of the line it is away.
+    pub spreads: f64,
+}
+
+/// Robots that are more than six spreads of the line away in a figure, the farthest first, and of each figure those that are away by more than
+/// the measurement may be.
+#[must_use]
+pub fn outliers(all: &[Series]) -> Vec<Outlier> {
+    let of = |series: &Series| {
+        let spread = series.spread().filter(|it| series.is_enough() && it.seen > 0.0);
+        let found = spread.map(|spread| {
+            let each = series.values.iter().filter_map(move |value| {
+                let (own, sigma) = series.compared(value);
+                let away = own - spread.center;
+                let away = if series.is_size { away.max(0.0) } else { away.abs() };
+                let line = spread.own.max(0.5 * spread.seen);
+                let is_far = away > FAR * line && away > CERTAIN * line.hypot(sigma);
+                is_far.then(|| Outlier {
+                    serial: value.serial.clone(),
+                    series: series.name.clone(),
+                    joint: series.joint.clone(),
+                    spreads: away / line,
+                })
+            });
+            each.collect::<Vec<_>>()
+        });
+        found.unwrap_or_default()
+    };
+    let mut found: Vec<Outlier> = all.iter().flat_map(of).collect();
+    found.sort_by(|a, b| b.spreads.total_cmp(&a.spreads).then_with(|| a.serial.cmp(&b.serial)));
+    found
+}

@@ -1,0 +1,11 @@
+//! A line of robots: where their measurements lie and their results go, and the ledger of what was done.
+
+mod inbox;
+mod ledger;
+mod row;
+mod station;
+
+pub use inbox::{Found, newest};
+pub use ledger::{LEDGER, Ledger, read_ledgers};
+pub use row::{CorrectionRow, LedgerRow, TermRow};
+pub use station::Station;

@@ -1,0 +1,136 @@
+//! `station.toml`: where robots lie, how they are calibrated, and which limits the line keeps.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use serde::Deserialize;
+
+use super::super::source_text;
+use crate::error::{ErrorKind, Result};
+
+/// The keys of the file.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct File {
+    poecal_station: toml::Spanned<i64>,
+    inbox: toml::Spanned<String>,
+    results: toml::Spanned<String>,
+    model: Option<String>,
+    #[serde(default)]
+    models: BTreeMap<String, String>,
+    ledger: Option<String>,
+    settings: Option<String>,
+    #[serde(default)]
+    accept: Vec<String>,
+    reference: Option<String>,
+    #[serde(default)]
+    limits: BTreeMap<String, [Option<f64>; 2]>,
+}
+
+/// A station at the end of a line.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Station {
+    /// Its file.
+    pub path: PathBuf,
+    /// Where measurements lie: a path with `{serial}`, and `{date}` and `{type}` where there are some.
+    pub inbox: String,
+    /// Where results go: a path with `{serial}`, and with `{date}` where the inbox has it.
+    pub results: String,
+    /// The model of each type; of one without a name that of all.
+    pub models: BTreeMap<String, PathBuf>,
+    /// The ledger.
+    pub ledger: PathBuf,
+    /// Settings of `poecal calibrate`.
+    pub settings: Option<PathBuf>,
+    /// Limits of `--accept`.
+    pub accept: Vec<String>,
+    /// Serial number of the reference arm, which is measured again and again.
+    pub reference: Option<String>,
+    /// Lower and upper limits of figures, by their names, in the units of these.
+    pub limits: BTreeMap<String, [Option<f64>; 2]>,
+}
+
+impl Station {
+    /// Reads the file; paths in it are from its folder.
+    ///
+    /// # Errors
+    /// [`ErrorKind::File`] if it cannot be read; [`ErrorKind::Syntax`], with line and column, if it is no station.
+    pub fn read(path: &Path) -> Result<Self> {
+        let text = source_text::read(path, "a station (TOML: inbox, results and model)")?;
+        let refuse = |offset: usize, message: String| {
+            Err(ErrorKind::Syntax.error(message).at_offset(path, &text, offset))
+        };
+        let file: File = match toml::from_str(&text) {
+            Ok(file) => file,
+            Err(error) => {
+                let at = error.span().map_or(0, |span| span.start);
+                return refuse(at, error.message().trim().replace('\n', ", "));
+            }
+        };
+        let version = *file.poecal_station.get_ref();
+        if version != 1 {
+            let at = file.poecal_station.span().start;
+            return refuse(
+                at,
+                format!("found a station of version {version}, expected 1: a newer poecal wrote it"),
+            );
+        }
+        let folder = path.parent().unwrap_or(Path::new("")).to_owned();
+        for (key, of) in [("inbox", &file.inbox), ("results", &file.results)] {
+            let named = of.get_ref();
+            if named.matches("{serial}").count() != 1 {
+                let message = format!(
+                    "found `{named}` as {key}, expected a path with {{serial}} once, like {key}/{{serial}}/{{date}}.csv"
+                );
+                return refuse(of.span().start, message);
+            }
+            let known =
+                ["{serial}", "{date}", "{type}"].iter().fold(named.clone(), |rest, it| rest.replace(it, ""));
+            if known.contains(['{', '}']) {
+                return refuse(
+                    of.span().start,
+                    format!(
+                        "found `{named}` as {key}, expected no other braces than {{serial}}, {{date}} and {{type}}"
+                    ),
+                );
+            }
+        }
+        let dated = |of: &toml::Spanned<String>| of.get_ref().contains("{date}");
+        if dated(&file.inbox) && !dated(&file.results) {
+            let message = "found an inbox with {date} and results without, expected {date} in both: one result would replace another".to_owned();
+            return refuse(file.results.span().start, message);
+        }
+        let mut models: BTreeMap<String, PathBuf> =
+            file.models.iter().map(|(name, path)| (name.clone(), folder.join(path))).collect();
+        models.extend(file.model.iter().map(|path| (String::new(), folder.join(path))));
+        let has_types = file.inbox.get_ref().contains("{type}");
+        if models.is_empty() || (!has_types && !models.contains_key("")) {
+            let expected =
+                if has_types { "`model`, or a table `models` with one for each {type}" } else { "`model`" };
+            return refuse(0, format!("found no model, expected {expected}"));
+        }
+        for (name, [low, high]) in &file.limits {
+            let are_numbers = low.iter().chain(high).all(|it| it.is_finite());
+            let is_range = low.zip(*high).is_none_or(|(low, high)| low < high);
+            if !(are_numbers && is_range && (low.is_some() || high.is_some())) {
+                return refuse(
+                    0,
+                    format!(
+                        "found limits of `{name}` that are no range, expected the lower one first, like [-0.3, 0.3]"
+                    ),
+                );
+            }
+        }
+        Ok(Station {
+            inbox: folder.join(file.inbox.into_inner()).display().to_string(),
+            results: folder.join(file.results.into_inner()).display().to_string(),
+            models,
+            ledger: folder.join(file.ledger.as_deref().unwrap_or(super::LEDGER)),
+            settings: file.settings.map(|path| folder.join(path)),
+            accept: file.accept,
+            reference: file.reference,
+            limits: file.limits,
+            path: path.to_owned(),
+        })
+    }
+}

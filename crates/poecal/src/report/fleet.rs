@@ -1,0 +1,255 @@
+//! A line of robots in figures, from its ledger.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fmt::Write as _;
+
+use crate::error::{ErrorKind, Result};
+use crate::fleet::{Capability, FEWEST, Outlier, Series, Spread, Step, Value, outliers, steps};
+use crate::io::fleet::LedgerRow;
+
+/// A figure of the line with its spread.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Figure {
+    /// Its name.
+    pub name: String,
+    /// Its unit.
+    pub unit: &'static str,
+    /// How it scatters.
+    pub spread: Spread,
+    /// How well it keeps its limits, where there are some.
+    pub capability: Option<Capability>,
+}
+
+/// A line of robots.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Line {
+    /// The robots, in the order measured.
+    pub rows: Vec<LedgerRow>,
+    /// Number of robots, and how many passed at their first measurement.
+    pub first: usize,
+    /// The latter.
+    pub first_passed: usize,
+    /// Whether there are too few robots for spreads.
+    pub is_few: bool,
+    /// Spreads of all figures.
+    pub figures: Vec<Figure>,
+    /// Robots that are none of the line.
+    pub outliers: Vec<Outlier>,
+    /// Steps in time, and whether each is the station's.
+    pub steps: Vec<(Step, bool)>,
+}
+
+/// Share of the figures that step within so many robots at which a step is the station's.
+const MOST_FIGURES: f64 = 0.5;
+const TOGETHER: usize = 10;
+
+impl Line {
+    /// Of the rows of a ledger. `reference` is the serial number of the reference arm, which is none of the line; limits are by the names of figures.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Option`] if a limit is of no figure.
+    pub fn of(
+        rows: Vec<LedgerRow>,
+        reference: Option<&str>,
+        limits: &BTreeMap<String, [Option<f64>; 2]>,
+    ) -> Result<Self> {
+        let (of_reference, of_line): (Vec<&LedgerRow>, Vec<&LedgerRow>) =
+            rows.iter().partition(|row| Some(row.serial.as_str()) == reference);
+        let mut seen = BTreeSet::new();
+        let first: Vec<&&LedgerRow> = of_line.iter().filter(|row| seen.insert(&row.serial)).collect();
+        let all = series(&of_line);
+        let names: BTreeSet<&str> = all.iter().map(|it| it.name.as_str()).collect();
+        if let Some(unknown) = limits.keys().find(|name| !names.contains(name.as_str())) {
+            let known: Vec<&str> = names.into_iter().collect();
+            return ErrorKind::Option.refuse(format!(
+                "found limits of `{unknown}`, which is no figure of the line, expected one of {}",
+                crate::error::first_few(&known)
+            ));
+        }
+        let figure = |it: &Series| {
+            let limits = limits.get(&it.name).copied().unwrap_or_default();
+            Some(Figure {
+                name: it.name.clone(),
+                unit: it.unit,
+                spread: Series { is_size: false, ..it.clone() }.spread().filter(|_| it.is_enough())?,
+                capability: Capability::of(it, limits[0], limits[1]),
+            })
+        };
+        let of_reference = steps(&series(&of_reference));
+        let found = steps(&all);
+        let is_station = |step: &Step| {
+            let near = found.iter().filter(|it| it.from.abs_diff(step.from) <= TOGETHER).count();
+            near as f64 > MOST_FIGURES * all.len() as f64
+                || of_reference.iter().any(|it| it.series == step.series)
+        };
+        let figures: Vec<Figure> = all.iter().filter_map(figure).collect();
+        Ok(Line {
+            first: first.len(),
+            first_passed: first.iter().filter(|row| row.is_passed()).count(),
+            is_few: of_line.len() < FEWEST,
+            outliers: outliers(&all),
+            steps: found.iter().map(|step| (step.clone(), is_station(step))).collect(),
+            figures,
+            rows,
+        })
+    }
+
+    /// The table: a row a robot and date, a column a figure.
+    #[must_use]
+    pub fn csv(&self) -> String {
+        let rows: Vec<&LedgerRow> = self.rows.iter().collect();
+        let all = series(&rows);
+        let mut out = String::from("serial,date,type,exit,verdict,accepted,rows,error_rms,noise");
+        for it in &all {
+            let _ = write!(out, ",{}[{}],sigma_{}[{}]", it.name, it.unit, it.name, it.unit);
+        }
+        out.push_str(",reason\n");
+        let by_robot: Vec<BTreeMap<&str, &Value>> = all
+            .iter()
+            .map(|it| it.values.iter().map(|value| (value.serial.as_str(), value)).collect())
+            .collect();
+        for row in &self.rows {
+            let text = |it: &Option<String>| quoted(it.as_deref().unwrap_or_default());
+            let number = |it: Option<f64>| it.map_or_else(String::new, |it| it.to_string());
+            let _ = write!(
+                out,
+                "{},{},{},{},{},{},{},{},{}",
+                quoted(&row.serial),
+                quoted(&row.date),
+                quoted(&row.of_type),
+                row.exit,
+                text(&row.verdict),
+                text(&row.accepted),
+                row.rows.map_or_else(String::new, |it| it.to_string()),
+                number(row.error_rms),
+                number(row.noise)
+            );
+            for values in &by_robot {
+                match values.get(key(row).as_str()) {
+                    Some(value) => {
+                        let _ = write!(out, ",{},{}", value.value, value.sigma);
+                    }
+                    None => out.push_str(",,"),
+                }
+            }
+            let _ = writeln!(out, ",{}", text(&row.reason));
+        }
+        out
+    }
+
+    /// What the line shows, in words.
+    #[must_use]
+    pub fn text(&self) -> String {
+        let mut out = String::new();
+        let rate = 100.0 * self.first_passed as f64 / self.first.max(1) as f64;
+        let _ = writeln!(
+            out,
+            "robots      {}, {} of {} passed at their first measurement ({rate:.1} %)",
+            self.rows.len(),
+            self.first_passed,
+            self.first
+        );
+        if self.is_few {
+            let _ = writeln!(out, "spreads     none: fewer than {FEWEST} robots");
+        }
+        for it in self.outliers.iter().take(10) {
+            let _ = writeln!(
+                out,
+                "outlier     {}: {}, {:.1} spreads of the line",
+                it.serial, it.series, it.spreads
+            );
+        }
+        for (step, is_station) in &self.steps {
+            let of = if *is_station { " (the station's)" } else { "" };
+            let _ = writeln!(out, "step        {} since {}: {:+.4}{of}", step.series, step.since, step.size);
+        }
+        out
+    }
+}
+
+/// What a line says of its next robot before it is measured: how far axes are from nominal (RMS over robots and joints), and sizes of terms, as
+/// settings of `poecal calibrate`.
+///
+/// # Errors
+/// [`ErrorKind::Problem`] with fewer than thirty good robots.
+pub fn fleet_prior(rows: &[LedgerRow], of: &str) -> Result<String> {
+    let good: Vec<&LedgerRow> = rows.iter().filter(|row| row.is_passed()).collect();
+    if good.len() < FEWEST {
+        return ErrorKind::Problem.refuse(format!(
+            "found {} robots that passed, expected at least {FEWEST}: fewer do not show how far robots of the line are from nominal",
+            good.len()
+        ));
+    }
+    // Of a component: a tilt and a shift have two.
+    let rms = |each: Vec<f64>| {
+        (each.iter().map(|it| it * it).sum::<f64>() / (2.0 * each.len().max(1) as f64)).sqrt()
+    };
+    let all = || good.iter().flat_map(|row| &row.corrections);
+    let (tilt, shift) =
+        (rms(all().map(|it| it.tilt_deg).collect()), rms(all().map(|it| it.shift_mm).collect()));
+    let mut out = format!("# What {} robots of {of} say of the next one.\n", good.len());
+    let _ = writeln!(out, "tolerance = \"{:.4}deg,{:.4}mm\"", tilt.max(1e-4), shift.max(1e-4));
+    Ok(out)
+}
+
+/// A robot and date, as one value of a series.
+fn key(row: &LedgerRow) -> String {
+    if row.date.is_empty() { row.serial.clone() } else { format!("{} {}", row.serial, row.date) }
+}
+
+/// All figures of some robots.
+fn series(rows: &[&LedgerRow]) -> Vec<Series> {
+    let mut found: BTreeMap<(usize, String), Series> = BTreeMap::new();
+    let mut add =
+        |order: usize, name: String, joint: Option<&str>, unit: &'static str, is_size: bool, value: Value| {
+            let empty = || Series {
+                name: name.clone(),
+                joint: joint.map(str::to_owned),
+                unit,
+                is_size,
+                values: Vec::new(),
+            };
+            found.entry((order, name.clone())).or_insert_with(empty).values.push(value);
+        };
+    for row in rows.iter().filter(|row| row.verdict.is_some()) {
+        let one = |value: f64, sigma: Option<f64>| Value {
+            serial: key(row),
+            value,
+            sigma: sigma.unwrap_or_default(),
+        };
+        if let Some(error) = row.error_rms {
+            add(0, "error".to_owned(), None, "mm", true, one(error, None));
+        }
+        if let Some(noise) = row.noise {
+            add(1, "noise".to_owned(), None, "mm", true, one(noise, None));
+        }
+        for it in &row.corrections {
+            let joint = Some(it.joint.as_str());
+            if let Some(offset) = it.offset {
+                let unit = if it.unit == "mm" { "mm" } else { "deg" };
+                add(2, format!("{}.offset", it.joint), joint, unit, false, one(offset, it.sigma_offset));
+            }
+        }
+        for it in row.terms.iter().filter(|it| it.group != "tilt") {
+            let unit = if it.group == "shift" || it.group == "runout" { "mm" } else { "mrad" };
+            add(
+                3,
+                format!("{}.{}", it.joint, it.group),
+                Some(&it.joint),
+                unit,
+                true,
+                one(it.amplitude, Some(it.sigma)),
+            );
+        }
+    }
+    found.into_values().collect()
+}
+
+/// A cell that no separator can break.
+fn quoted(text: &str) -> String {
+    if text.contains([',', '"', '\n', '\r']) {
+        format!("\"{}\"", text.replace('"', "\"\""))
+    } else {
+        text.to_owned()
+    }
+}
