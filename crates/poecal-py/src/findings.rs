@@ -6,8 +6,10 @@ use poecal::analysis::{self, PlannedSession};
 use poecal::calibration::DeviceFrameKnowledge;
 use poecal::io::offsets::ModelOffsets;
 use poecal::io::output::{self, Contents, Existing};
+use poecal::io::validation::ValidationInputs;
 use poecal::measurement::{Noise, Quantity};
 use poecal::report::Detail;
+use poecal::track::{Earlier, TrackOptions, track as tracked};
 use poecal::{compare as compared, forensics, report};
 use poecal_lou2009::{self as experiments, report as reproduced};
 use pyo3::prelude::*;
@@ -272,6 +274,52 @@ pub(crate) fn compare(
     let found = py.detach(|| compared::compare(one, other, limit_m)).map_err(raise)?;
     let told = report::Comparison::new(("first", one), ("second", other), &found).map_err(raise)?;
     Findings::new(told.text(Detail::Full), &told, Vec::new())
+}
+
+/// Whether a robot is as it was calibrated, by a few measurements, and which joint is not.
+///
+/// Parameters
+/// ----------
+/// calibration
+///     The calibration.
+/// measurements
+///     Measurements of the visit: best some configurations of the calibration again.
+/// earlier
+///     The rows that the calibration was made of, or those of an earlier visit: rows that repeat their configurations are compared with them. None: all
+///     are judged by the model.
+/// device
+///     "anew" if the device was set up anew, so that its frame is fitted; "known" if it stands where it stood.
+/// tool
+///     "same" if the tool stayed on the flange; "anew" if it was mounted anew, so that its targets are fitted.
+/// repeatability_mm
+///     Standard deviation of one visit and coordinate; None: what repeats within a visit and what no explanation takes away.
+///
+/// Returns
+/// -------
+/// Findings
+///     The state, the explanation with its size, others that explain the changes nearly as well, joints that are not seen, and the error now.
+#[pyfunction]
+#[pyo3(signature = (calibration, measurements, earlier=None, *, device="anew", tool="same", repeatability_mm=None))]
+pub(crate) fn track(
+    py: Python<'_>,
+    calibration: &Calibration,
+    #[pyo3(from_py_with = arg::measurements)] measurements: &Measurements,
+    #[pyo3(from_py_with = arg::earlier)] earlier: Option<&Measurements>,
+    #[pyo3(from_py_with = arg::device)] device: &str,
+    #[pyo3(from_py_with = arg::tool)] tool: &str,
+    #[pyo3(from_py_with = arg::repeatability_mm)] repeatability_mm: Option<f64>,
+) -> PyResult<Findings> {
+    let file = calibration.file();
+    let options = TrackOptions {
+        device_is_known: chosen("device", device, &[("anew", false), ("known", true)])?,
+        tool_is_anew: chosen("tool", tool, &[("same", false), ("anew", true)])?,
+        repeatability_m: repeatability_mm.map(|it| sigma("repeatability_mm", it, from_mm)).transpose()?,
+    };
+    let earlier = earlier.map(|it| Earlier { data: it.data(), is_own: true });
+    let data = measurements.data();
+    let found = py.detach(|| tracked(file, data, earlier, &options)).map_err(raise)?;
+    let told = report::Track::new(&found, &file.robot.name, ValidationInputs::default());
+    Findings::new(told.text(), &told, found.notes.clone())
 }
 
 /// Repeats the experiment of a paper and checks its claims, or shows the effect of gross errors.

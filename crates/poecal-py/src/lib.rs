@@ -59,7 +59,7 @@ mod _poecal {
     #[pymodule_export]
     use crate::covariance::Covariance;
     #[pymodule_export]
-    use crate::findings::{Findings, check, compare, identify, offsets, reproduce};
+    use crate::findings::{Findings, check, compare, identify, offsets, reproduce, track};
     #[pymodule_export]
     use crate::hand_eye::{hand_eye, tcp};
     #[pymodule_export]

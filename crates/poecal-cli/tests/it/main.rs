@@ -19,6 +19,8 @@ mod exit_codes;
 #[allow(dead_code)]
 #[path = "../../../poecal/tests/files/mod.rs"]
 mod files;
+#[cfg(any(unix, windows))]
+mod fleet;
 mod folder;
 mod hand_eye;
 mod hostile;
@@ -46,6 +48,7 @@ mod stations;
 mod table;
 mod targets_and_validation;
 mod tip;
+mod track;
 // Each crate uses what it needs of it.
 mod trees;
 #[allow(dead_code)]

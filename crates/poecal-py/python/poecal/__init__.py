@@ -59,6 +59,7 @@ from ._poecal import (
     set_threads,
     simulate,
     tcp,
+    track,
     version,
 )
 
@@ -105,6 +106,7 @@ __all__ = [
     "set_threads",
     "simulate",
     "tcp",
+    "track",
     "version",
 ]
 

@@ -42,6 +42,7 @@ __all__ = [
     "set_threads",
     "simulate",
     "tcp",
+    "track",
     "version",
 ]
 
@@ -2035,6 +2036,38 @@ def tcp(
     -------
     Findings
         The "tips", with "position_m" and "bound95_mm", the "axis" of two, and the "verdict": all that `tcp.json` has.
+    """
+def track(
+    calibration: Calibration,
+    measurements: Measurements,
+    earlier: Measurements | None = None,
+    *,
+    device: Literal["anew", "known"] = "anew",
+    tool: Literal["same", "anew"] = "same",
+    repeatability_mm: float | None = None,
+) -> Findings:
+    """Whether a robot is as it was calibrated, by a few measurements, and which joint is not.
+
+    Parameters
+    ----------
+    calibration
+        The calibration.
+    measurements
+        Measurements of the visit: best some configurations of the calibration again.
+    earlier
+        The rows that the calibration was made of, or those of an earlier visit: rows that repeat their configurations are compared with them. None: all
+        are judged by the model.
+    device
+        "anew" if the device was set up anew, so that its frame is fitted; "known" if it stands where it stood.
+    tool
+        "same" if the tool stayed on the flange; "anew" if it was mounted anew, so that its targets are fitted.
+    repeatability_mm
+        Standard deviation of one visit and coordinate; None: what repeats within a visit and what no explanation takes away.
+
+    Returns
+    -------
+    Findings
+        The state, the explanation with its size, others that explain the changes nearly as well, joints that are not seen, and the error now.
     """
 def version() -> str:
     """The version of poecal.

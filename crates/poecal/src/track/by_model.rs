@@ -6,9 +6,9 @@ use nalgebra::{DMatrix, DVector};
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 
-use super::TrackOptions;
 use super::explain::{Evidence, Level, Tests, leave_unseen_out, ratio};
 use super::hypotheses::{free, hypotheses};
+use super::options::TrackOptions;
 use super::pairs::Changes;
 use super::visit::{Model, Visit};
 use crate::error::Result;

@@ -2,8 +2,8 @@
 
 use nalgebra::{DMatrix, DVector};
 
+use super::options::{MOST_M, MOST_RAD};
 use super::visit::{Columns, Of};
-use super::{MOST_M, MOST_RAD};
 use crate::distributions::{f_quantile, mean_square_quantile};
 use crate::linalg;
 

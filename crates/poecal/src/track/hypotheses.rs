@@ -2,8 +2,8 @@
 
 use nalgebra::{DMatrix, Vector3};
 
-use super::TrackOptions;
 use super::explain::{Hypothesis, Kind, picked};
+use super::options::TrackOptions;
 use super::visit::{Columns, Of, Visit};
 
 /// What is free in any case: the frames of devices that were set up anew, and the targets of a tool that was mounted anew.

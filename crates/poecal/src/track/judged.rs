@@ -2,9 +2,10 @@
 
 use super::explain::{Evidence, Level};
 use super::hypotheses::free;
+use super::options::{JudgedBy, TrackOptions};
 use super::pairs::Changes;
 use super::visit::{Model, Visit};
-use super::{JudgedBy, TrackOptions, by_model, rms, words};
+use super::{by_model, words};
 use crate::error::Result;
 use crate::io::calibration_file::CalibrationFile;
 use crate::measurement::Dataset;
@@ -97,7 +98,7 @@ fn before(
 /// The earlier visit: from where its devices are by the calibration, if that has them; else as they fit.
 pub(super) fn earlier_visit(model: &Model, data: &Dataset, options: &TrackOptions) -> Result<Visit> {
     match Visit::of(model, data, true, options) {
-        Ok(found) if rms(&found) < MUCH * model.own_m() => Ok(found),
+        Ok(found) if found.rms() < MUCH * model.own_m() => Ok(found),
         _ => Visit::of(model, data, false, options),
     }
 }

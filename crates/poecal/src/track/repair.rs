@@ -1,10 +1,11 @@
 //! One joint calibrated anew, all else held.
 
 use super::explain::{Evidence, Hypothesis, Kind, Tests, explain};
+use super::found::explanation;
 use super::hypotheses::{free, hypotheses};
 use super::judged::{Earlier, Judged};
+use super::options::{JudgedBy, MOST_RAD, TrackOptions};
 use super::visit::Of;
-use super::{JudgedBy, MOST_RAD, TrackOptions, explanation};
 use crate::error::{ErrorKind, Result};
 use crate::io::calibration_file::{CalibrationFile, JointRepair, RecalibratedEntry, RepairedPart};
 use crate::lie::Twist;

@@ -2,9 +2,9 @@
 
 use super::explain::{Evidence, Hypothesis, Kind, Tests};
 use super::hypotheses::free;
+use super::options::{MOST_M, MOST_RAD, TrackOptions};
 use super::pairs::Changes;
 use super::visit::{Model, Of, Visit};
-use super::{MOST_M, MOST_RAD, TrackOptions};
 use crate::robot::JointKind;
 
 /// Normal quantile of 95 %.

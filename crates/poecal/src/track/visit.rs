@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector, Vector3};
 
-use super::TrackOptions;
+use super::options::TrackOptions;
 use crate::calibration::{AcceptedModel, whitened_rows};
 use crate::error::{ErrorKind, Result};
 use crate::estimate::{Chain, Estimate, Linkage, Packed, Session, Stand, delivered};
@@ -107,6 +107,15 @@ impl Model {
 }
 
 impl Visit {
+    /// Root mean square of places, metres a coordinate.
+    pub(super) fn rms(&self) -> f64 {
+        let own =
+            self.residual.iter().zip(&self.quantities).filter(|(_, it)| it.unit() == crate::Unit::Metre);
+        let (sum, count) =
+            own.fold((0.0, 0.0), |(sum, count), (value, _)| (sum + value * value, count + 1.0));
+        if count > 0.0 { (sum / count).sqrt() } else { 0.0 }
+    }
+
     /// The rows of some measurements about the model. The frames of the devices are those of the calibration where `device_is_known`, and
     /// fitted elsewhere, as targets are where `tool_is_anew`.
     pub(super) fn of(

@@ -4,10 +4,10 @@ use nalgebra::DMatrix;
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 
-use super::TrackOptions;
 use super::explain::{Evidence, Level, Tests, leave_unseen_out, picked};
 use super::hypotheses::{free, hypotheses};
 use super::judged::earlier_visit;
+use super::options::TrackOptions;
 use super::pairs::Changes;
 use super::sight::{JointSight, joints};
 use super::visit::{Model, Of, Visit};

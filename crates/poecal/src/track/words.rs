@@ -1,6 +1,6 @@
 //! Sentences of what a visit shows.
 
-use super::Explanation;
+use super::found::Explanation;
 use crate::error::{Error, ErrorKind};
 
 /// That too few rows repeat an earlier configuration.

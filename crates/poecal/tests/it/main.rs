@@ -79,6 +79,7 @@ mod suspicion;
 mod taught;
 mod theory;
 mod tip_bounds;
+mod track;
 mod tree_models;
 #[allow(dead_code)]
 #[path = "../trials/mod.rs"]

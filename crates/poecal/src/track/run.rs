@@ -1,0 +1,98 @@
+//! A visit judged: the steps in order.
+
+use super::explain::{Evidence, Tests, Tried, Verdict, explain, leave_unseen_out};
+use super::found::{Explanation, Tracked, explanation};
+use super::hypotheses::{free, hypotheses};
+use super::judged::{Earlier, Judged};
+use super::options::{State, TrackOptions};
+use super::pairs::Changes;
+use super::visit::Visit;
+use super::{sight, words};
+use crate::error::Result;
+use crate::io::calibration_file::CalibrationFile;
+use crate::measurement::{Dataset, Quantity};
+
+/// Judges by a visit whether a robot is as it was when it was calibrated. `earlier` are the rows of the calibration, or of an earlier visit:
+/// rows that repeat their configurations are compared with them, others with the delivered model.
+///
+/// # Errors
+/// [`ErrorKind::Problem`](crate::ErrorKind::Problem) if the rows are too few, of other targets or of other instruments;
+/// [`ErrorKind::Model`](crate::ErrorKind::Model) if the file holds no valid calibration, or none whose errors are known where rows must be
+/// judged by it.
+///
+/// ```
+/// use poecal::calibration::{CalibrationOptions, calibrate};
+/// use poecal::io::calibration_file::{CalibrationFile, Inputs};
+/// use poecal::simulate::{Kind, Simulation, elbow};
+/// use poecal::track::{Earlier, State, TrackOptions, track};
+/// let made = Simulation { count: 60, ..Simulation::default() }.run(&elbow(), Kind::POINT)?;
+/// let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default())?;
+/// let file = CalibrationFile::new(&calibration, &made.data, Inputs::default());
+/// // The same rows again: nothing has changed.
+/// let earlier = Earlier { data: &made.data, is_own: true };
+/// let found = track(&file, &made.data, Some(earlier), &TrackOptions::default())?;
+/// assert_eq!((found.state, found.repeated), (State::Unchanged, 60));
+/// # Ok::<(), poecal::Error>(())
+/// ```
+pub fn track(
+    file: &CalibrationFile,
+    data: &Dataset,
+    earlier: Option<Earlier<'_>>,
+    options: &TrackOptions,
+) -> Result<Tracked> {
+    let judged = Judged::of(file, data, earlier, options)?;
+    let Judged { model, visit, data, changes, level, judged_by, repeated, mut notes, .. } = judged;
+    let evidence = Evidence::new(&changes.residual, &free(&changes.jacobian, &visit, options));
+    let mut hypotheses = hypotheses(&changes.jacobian, &visit, options);
+    leave_unseen_out(&mut hypotheses, &evidence, level);
+    let tests = Tests::new(&hypotheses);
+    let verdict = explain(&evidence, &hypotheses, &tests, level);
+    if verdict.is_wider {
+        notes.push(words::wider(options.repeatability_m.is_some(), verdict.variance.sqrt()));
+    }
+    let named = |it: &Tried| explanation(it, &hypotheses[it.at], &verdict, &model, &data);
+    let explanation = verdict.best.as_ref().map(named);
+    let alternatives: Vec<Explanation> = verdict.nearly.iter().map(named).collect();
+    notes.extend(explanation.as_ref().filter(|it| it.is_far()).map(|it| words::far(it)));
+    let joints = sight::joints(
+        &changes,
+        &visit,
+        &model,
+        (&hypotheses, &tests),
+        (verdict.variance, verdict.freedom),
+        options,
+    );
+    let (change_m, noise_m) = in_metres(&changes, &verdict, verdict.left);
+    let gain = verdict.best.as_ref().map_or((0.0, 0), |it| (it.gain, it.rank));
+    let (left_m, _) =
+        in_metres(&changes, &verdict, (verdict.left.0 - gain.0, verdict.left.1 - gain.1 as f64));
+    Ok(Tracked {
+        state: if verdict.best.is_some() { State::Changed } else { State::Unchanged },
+        judged_by,
+        rows: data.len(),
+        repeated,
+        explanation,
+        alternatives,
+        joints,
+        change_m,
+        left_m,
+        noise_m,
+        freedom: verdict.freedom,
+        error_m: error_m(&visit),
+        notes,
+    })
+}
+
+/// Root mean square error of measured places, metres.
+fn error_m(visit: &Visit) -> f64 {
+    let is_place = visit.quantities.contains(&Quantity::Position);
+    visit.rms() * if is_place { 3f64.sqrt() } else { 1.0 }
+}
+
+/// Root mean square change of places in metres from squares in variances, and the standard deviation of a coordinate.
+fn in_metres(changes: &Changes, verdict: &Verdict, (squares, _): (f64, f64)) -> (f64, f64) {
+    let count = changes.residual.len().max(1) as f64;
+    let mean: f64 = changes.sigma.iter().copied().fold(0.0, f64::max);
+    let sigma = mean * verdict.variance.sqrt();
+    ((3.0 * squares.max(0.0) / count).sqrt() * mean, sigma)
+}
