@@ -33,13 +33,13 @@ pub(crate) struct Track {
     #[arg(long, value_name = "LENGTH", value_parser = sigma_m)]
     pub(crate) repeatability: Option<f64>,
     /// Choose so many of the earlier configurations that their repeats show the smallest shift of the worst joint, and print what each would show
-    #[arg(long, value_name = "N", conflicts_with_all = ["measurements", "recalibrate"], value_parser = clap::value_parser!(u16).range(2..=200))]
+    #[arg(long, value_name = "N", conflicts_with_all = ["measurements", "recalibrate", "history"], value_parser = clap::value_parser!(u16).range(2..=200))]
     pub(crate) plan: Option<u16>,
     /// The target that will be measured [default: all of the earlier rows]; with --plan
     #[arg(long, value_name = "NAME", requires = "plan")]
     pub(crate) target: Option<String>,
     /// Calibrate the zero of this joint anew (JOINT or JOINT.offset), or its axis (JOINT.axis), and hold all else; with --out
-    #[arg(long, value_name = "JOINT[.offset|.axis]", requires = "out")]
+    #[arg(long, value_name = "JOINT[.offset|.axis]", requires = "out", conflicts_with_all = ["history", "json"])]
     pub(crate) recalibrate: Option<String>,
     /// File to write: with --plan the table of configurations (CSV), with --recalibrate the new calibration.json
     #[arg(long, value_name = "FILE")]

@@ -39,6 +39,8 @@ pub struct Line {
     pub steps: Vec<(Step, bool)>,
 }
 
+/// Outliers that are printed.
+const LISTED: usize = 40;
 /// Share of the figures that step within so many robots at which a step is the station's.
 const MOST_FIGURES: f64 = 0.5;
 const TOGETHER: usize = 10;
@@ -152,7 +154,7 @@ impl Line {
         if self.is_few {
             let _ = writeln!(out, "spreads     none: fewer than {FEWEST} robots");
         }
-        for it in self.outliers.iter().take(10) {
+        for it in self.outliers.iter().take(LISTED) {
             let _ = writeln!(
                 out,
                 "outlier     {}: {}, {:.1} spreads of the line",

@@ -66,7 +66,14 @@ fn of_rows(model: &Model, visit: &Visit, rows: &[u32], groups: &[usize]) -> Opti
     let numbers: Vec<usize> =
         rows.iter().flat_map(|&row| visit.starts[row as usize]..visit.starts[row as usize + 1]).collect();
     let all = covariance(model, visit, rows, groups)?;
-    let sigma = DVector::from_iterator(numbers.len(), all.diagonal().iter().map(|it| it.sqrt()));
+    // Of a coordinate alone: noise, and the errors that the calibration states.
+    let entry = model.file.uncertainty.as_ref()?;
+    let own = |number: &usize| {
+        let quantity = visit.quantities[*number];
+        let error = entry.discrepancy.get(quantity).unwrap_or_default();
+        visit.sigma[*number].hypot(quantity.unit().from_shown(error))
+    };
+    let sigma = DVector::from_iterator(numbers.len(), numbers.iter().map(own));
     let jacobian = visit.jacobian.select_rows(&numbers);
     let residual = visit.residual.select_rows(&numbers);
     let k = jacobian.ncols();
