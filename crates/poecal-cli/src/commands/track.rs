@@ -83,7 +83,14 @@ pub(crate) fn track(arguments: &Track, typed: &[OsString], console: &Console) ->
         return Ok(DONE);
     }
     let found = judged(&file, &read.data, earlier.rows(), &options).map_err(in_file)?;
-    let inputs = ValidationInputs { calibration, measurements: names, sha256, command: Some(command(typed)) };
+    let inputs = ValidationInputs {
+        calibration,
+        measurements: names,
+        sha256,
+        files: read.inputs(),
+        joins: read.joins.clone(),
+        command: Some(command(typed)),
+    };
     let told = report::Track::new(&found, &file.robot.name, inputs);
     history.append(|history, time| history.append(&told, time), console)?;
     if arguments.json {

@@ -75,7 +75,8 @@ impl Reader<'_> {
             reader.rows_alone(path, table.blocks(path, MEASURED))?;
             let data = &reader.found.data;
             let rows = Unpaired::new(self.robot, &joints.readings, data);
-            let pairing = Pairing { joints, path, data, rows, robot: self.robot, spans: None, lag: None, stream: None };
+            let pairing =
+                Pairing { joints, path, data, rows, robot: self.robot, spans: None, lag: None, stream: None };
             Ok(pairing.found(self.options.join).ok().and_then(|it| it.entry.missed_mm).map(|it| 1e-3 * it))
         };
         let mut errors = [missed(&sets[0], joints)?, missed(&sets[1], joints)?];

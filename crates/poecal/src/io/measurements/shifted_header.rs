@@ -125,7 +125,8 @@ impl Reader<'_> {
         let fit = |joints: &JointRows, data: &Dataset| {
             let rows = Unpaired::new(self.robot, &joints.readings, data);
             let path = planned.path;
-            let pairing = Pairing { joints, path, data, rows, robot: self.robot, spans: None, lag: None, stream: None };
+            let pairing =
+                Pairing { joints, path, data, rows, robot: self.robot, spans: None, lag: None, stream: None };
             pairing.found(None).ok()?.entry.missed_mm.map(|it| 1e-3 * it)
         };
         let fit = |joints: &JointRows, data: &Dataset| {
