@@ -209,7 +209,7 @@ fn recorded() -> Vec<(String, Vec<u8>)> {
                 "timestamp {} {}\n",
                 (0..6).map(|k| format!("target_q_{k}")).collect::<Vec<_>>().join(" "),
                 (0..6).map(|k| format!("actual_q_{k}")).collect::<Vec<_>>().join(" ")
-            ) + &each(&|k, it, _| format!("{k}.5 {0} {0}\n", numbers(it, 1.0, " "))),
+            ) + &each(&|k, it, _| format!("{k}.5 {0} {0}\n", numbers(it, degrees, " "))),
         ),
         ("bare", each(&|_, it, _| numbers(it, degrees, " ") + "\n")),
     ];

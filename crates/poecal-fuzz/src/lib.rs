@@ -37,7 +37,7 @@ pub const TARGETS: [Target; 16] = [
     Target { name: "robot_toml", run: targets::robot_toml, trials: 1500 },
     Target { name: "foreign", run: targets::foreign, trials: 3000 },
     Target { name: "measurements", run: targets::measurements, trials: 6000 },
-    Target { name: "recorded", run: targets::recorded, trials: 1500 },
+    Target { name: "recorded", run: targets::recorded, trials: 400 },
     Target { name: "mapping", run: targets::mapping, trials: 10000 },
     Target { name: "joints", run: targets::joints, trials: 10000 },
     Target { name: "cameras", run: targets::cameras, trials: 20000 },

@@ -103,7 +103,7 @@ fn lost_and_double_rows_are_named_and_all_others_paired() {
         "lines 8, 24",
         "line 32",
         "without partner",
-        "9 to 22",
+        "8 to 22",
     ] {
         assert!(page.contains(words), "{words}");
     }
