@@ -12,6 +12,7 @@ mod hand_eye;
 mod identify;
 mod init;
 mod offsets;
+mod plan;
 mod report;
 mod reproduce;
 mod shared;
@@ -31,6 +32,7 @@ pub(crate) use hand_eye::{HandEye, OutFrames, Tcp};
 pub(crate) use identify::Identify;
 pub(crate) use init::Init;
 pub(crate) use offsets::Offsets;
+pub(crate) use plan::Plan;
 pub(crate) use report::{Report, ReportPlace};
 pub(crate) use reproduce::{Experiment, Reproduce};
 pub(crate) use shared::{TreeArgs, with_mapping};
@@ -129,6 +131,8 @@ pub(crate) enum Command {
     Reproduce(Reproduce),
     /// Show what measurements in given configurations would determine, before anything is measured
     Identify(Identify),
+    /// Choose the configurations to measure: which, how many, and the error to expect
+    Plan(Box<Plan>),
     /// Print the JSON Schema of calibration.json
     Schema,
     /// Print a script with which a shell completes the program's commands, options and words

@@ -172,6 +172,7 @@ fn run_to_code(arguments: impl IntoIterator<Item = OsString>) -> u8 {
         Command::Board(options) => commands::board(options, &console),
         Command::Reproduce(options) => commands::reproduce(options, &console),
         Command::Identify(options) => commands::identify(options, &console),
+        Command::Plan(options) => commands::plan(options, &console),
         Command::Report(options) => commands::report(options, &console),
         Command::Schema => commands::schema(&console),
         Command::Completions(options) => commands::completions(options, &console),

@@ -168,6 +168,66 @@ pub(crate) fn most_change(text: &str) -> std::result::Result<MostChange, String>
     Err(format!("found `{text}`, expected an angle and a length above 0, like 2deg,2mm"))
 }
 
+/// Parser of an error of a robot for clap: a length, 0 too.
+pub(crate) fn error_m(text: &str) -> std::result::Result<f64, String> {
+    parse(text, Unit::Metre).map_err(|error| error.to_string())
+}
+
+/// Parser of a place for clap: three numbers, and their unit behind the last.
+pub(crate) fn place_m(text: &str) -> std::result::Result<[f64; 3], String> {
+    let bad =
+        || format!("found `{text}`, expected three numbers with a unit behind the last, like 50,0,30mm");
+    let (before, last) = text.rsplit_once(',').ok_or_else(bad)?;
+    let (z, symbol) = signed_and_symbol(last, "30mm").map_err(|_| bad())?;
+    let unit = NamedUnit::parse(symbol, Unit::Metre).map_err(|error| error.to_string())?;
+    let others: Vec<Option<f64>> = before.split(',').map(|part| part.trim().parse().ok()).collect();
+    match others[..] {
+        [Some(x), Some(y)] if f64::is_finite(x) && f64::is_finite(y) => {
+            Ok([x, y, z].map(|it| unit.to_si(it)))
+        }
+        _ => Err(bad()),
+    }
+}
+
+/// Where a robot will work.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Over {
+    /// Within its limits.
+    Limits,
+    /// In the configurations of a file.
+    Tasks(PathBuf),
+    /// With the tip between two corners, metres in the base frame.
+    Box([[f64; 3]; 2]),
+}
+
+impl FromStr for Over {
+    type Err = String;
+
+    fn from_str(text: &str) -> std::result::Result<Self, String> {
+        if text == "limits" {
+            return Ok(Over::Limits);
+        }
+        box_m(text).map(Over::Box).or_else(|message| {
+            let is_box = text.split(':').all(|corner| corner.split(',').count() == 3);
+            if is_box { Err(message) } else { Ok(Over::Tasks(text.into())) }
+        })
+    }
+}
+
+/// Parser of a box for clap: two corners, and the unit of all numbers behind the last.
+pub(crate) fn box_m(text: &str) -> std::result::Result<[[f64; 3]; 2], String> {
+    let bad = || {
+        format!(
+            "found `{text}`, expected two corners with a unit behind the last, like 300,-200,0:600,200,500mm"
+        )
+    };
+    let (first, last) = text.split_once(':').ok_or_else(bad)?;
+    let b = place_m(last).map_err(|_| bad())?;
+    let symbol = last.trim_start_matches(|c: char| !c.is_alphabetic());
+    let a = place_m(&format!("{first}{symbol}")).map_err(|_| bad())?;
+    Ok([[0, 1, 2].map(|k| f64::min(a[k], b[k])), [0, 1, 2].map(|k| f64::max(a[k], b[k]))])
+}
+
 /// Parser of a direction for clap: three numbers, not all of them 0.
 pub(crate) fn direction(text: &str) -> std::result::Result<[f64; 3], String> {
     match text.parse()? {

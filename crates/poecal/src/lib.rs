@@ -98,6 +98,8 @@ pub mod offsets;
 #[cfg_attr(doc, doc(hidden))]
 pub mod parameters;
 #[cfg_attr(doc, doc(hidden))]
+pub mod plan;
+#[cfg_attr(doc, doc(hidden))]
 pub mod problem;
 mod programs;
 #[cfg_attr(doc, doc(hidden))]

@@ -8,6 +8,7 @@ use poecal::io::measurements::{Frames, Join, PlaneContact};
 use poecal::io::model::ModelFormat;
 use poecal::io::predictions::PredictionFrame;
 use poecal::offsets::End;
+use poecal::plan::PlanCriterion;
 use poecal::robot::ThirdAxis;
 use poecal::simulate::Kind;
 use poecal_lou2009::{Formulation, Method, Residual};
@@ -273,6 +274,19 @@ pub(super) const REFIT: Words<bool> =
 /// Whether a frame is the same in both models.
 pub(super) const END: Words<End> =
     &[("free", "It is fitted with the offsets", End::Free), ("kept", "It is the same in both", End::Kept)];
+
+/// What a planned list shall be good at.
+pub(super) const CRITERION: Words<PlanCriterion> = &[
+    (
+        "expected",
+        "Expected errors of the calibrated and the corrected model over the workspace",
+        PlanCriterion::Expected,
+    ),
+    ("D", "Determinant of the information of geometry", PlanCriterion::D),
+    ("A", "Mean variance of the unknowns of geometry", PlanCriterion::A),
+    ("E", "Largest variance of the unknowns of geometry", PlanCriterion::E),
+    ("G", "Largest variance of a prediction in the workspace", PlanCriterion::G),
+];
 
 /// Parser of one of these words for clap.
 pub(super) fn one_of<T: Copy + Send + Sync + 'static>(words: Words<T>) -> impl TypedValueParser<Value = T> {

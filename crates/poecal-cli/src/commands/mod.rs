@@ -23,6 +23,7 @@ mod man;
 mod offsets;
 #[cfg(any(unix, windows))]
 mod photograph;
+mod plan;
 mod predict;
 mod report;
 mod reproduce;
@@ -52,6 +53,7 @@ pub(crate) use import::import;
 pub(crate) use init::init;
 pub(crate) use man::man;
 pub(crate) use offsets::offsets;
+pub(crate) use plan::plan;
 pub(crate) use predict::predict;
 pub(crate) use report::report;
 pub(crate) use reproduce::reproduce;

@@ -214,7 +214,11 @@ fn foresee(
 }
 
 /// The measurements that the nominal model predicts, and device frames that are not the model's.
-fn predicted_data(robot: &Robot, readings: &[f64], planned: &PlannedSession) -> Result<(Dataset, Vec<Pose>)> {
+pub(crate) fn predicted_data(
+    robot: &Robot,
+    readings: &[f64],
+    planned: &PlannedSession,
+) -> Result<(Dataset, Vec<Pose>)> {
     let mut data = Dataset::new(robot.reading_names());
     let width = data.reading_names().len();
     if readings.is_empty() || !readings.len().is_multiple_of(width.max(1)) {

@@ -19,6 +19,7 @@ pub use coverage::{JointCoverage, coverage};
 pub(crate) use coverage::{inside, ranges, within_sampled};
 pub use direction::{Cause, Direction};
 pub use identifiability::{Identifiability, effective_unknowns, identifiability, residual_variance};
+pub(crate) use identify::predicted_data;
 pub use identify::{ExpectedError, Foresight, MeasuredPictures, PlannedSession, identify, identify_measured};
 pub use influence::{Influence, influence};
 pub use observability::Observability;

@@ -23,7 +23,7 @@ const SAMPLE_DECREMENT: f64 = 1e-2;
 pub(super) const SUSPICIOUS: f64 = 3e-3;
 
 /// Free parameters of a fit: screws, terms, targets, and device frames; not the first one if the base frame is a choice.
-pub(super) fn free_parameters(
+pub(crate) fn free_parameters(
     session: &Session<'_>,
     estimate: &Estimate,
     rows: &[u32],

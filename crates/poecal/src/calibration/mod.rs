@@ -76,6 +76,7 @@ pub(crate) use corrections::whitened_rows;
 pub use corrections::{
     CorrectedFit, Correction, Effects, JointEffect, JointErrorPart, JointErrors, SizesReason, TriedSizes,
 };
+pub(crate) use corrections::{unknowns, whitened_rows};
 pub use coverage_check::{
     CoverageCheck, InSampledRange, JudgedError, JudgedRow, PartCoverage, PredictedUncertainty, Promise,
 };
@@ -83,6 +84,7 @@ pub(crate) use events::family;
 pub use events::{Event, EventKind, Repairs};
 pub use expected::{Expectations, Expected, RangePart};
 pub use fit::fit_screws;
+pub(crate) use fit::free_parameters;
 pub use formulation::{Formulation, FormulationWords, Minimize, Minimum};
 pub use found::SolverReport;
 pub use image_map::{ImageCell, ImageMap};

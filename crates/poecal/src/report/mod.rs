@@ -11,6 +11,7 @@ mod judgement;
 mod offsets;
 mod outliers;
 mod page;
+mod plan;
 #[doc(hidden)]
 pub mod plot;
 mod sight;
@@ -28,9 +29,10 @@ pub use identify::Identify;
 pub use judgement::judgement;
 pub use offsets::Offsets;
 pub use page::{calibration_page, calibration_page_with, fleet_page, validation_page};
+pub use plan::Plan;
 pub use summary::{Detail, summary, unsaid};
 pub use tcp::tool_tip;
-pub use track::{Plan, Track, recalibrated};
+pub use track::{Track, Witnesses, recalibrated};
 
 use serde::Serialize;
 

@@ -29,16 +29,20 @@ impl Configurations {
 
     /// A random configuration with every joint within its limits, in steps of 0.0001° and 0.001 mm, as controllers show them.
     pub fn random(&self, generator: &mut ChaCha8Rng) -> Vec<f64> {
-        let one = |&(kind, lower, upper): &(ReadingKind, f64, f64)| {
-            let value = lower + (upper - lower).max(0.0) * random::uniform(generator);
-            let stepped = match kind {
-                ReadingKind::Angle => ((value.to_degrees() * 1e4).round() / 1e4).to_radians(),
-                ReadingKind::Length => (value * 1e6).round() / 1e3 / 1e3,
-                ReadingKind::Factor => value,
-            };
-            if (lower..=upper).contains(&stepped) { stepped } else { value }
+        let one = |range: &(ReadingKind, f64, f64)| {
+            let (_, lower, upper) = *range;
+            stepped(range, lower + (upper - lower).max(0.0) * random::uniform(generator))
         };
         self.readings.iter().map(one).collect()
+    }
+
+    /// The configuration within the ranges that is nearest to one, in steps as those of [`Configurations::random`].
+    #[must_use]
+    pub fn nearest(&self, readings: &[f64]) -> Vec<f64> {
+        let one = |(range, reading): (&(ReadingKind, f64, f64), &f64)| {
+            stepped(range, reading.min(range.2).max(range.1))
+        };
+        self.readings.iter().zip(readings).map(one).collect()
     }
 
     /// Whether all readings are within their ranges.
@@ -49,6 +53,16 @@ impl Configurations {
         };
         self.readings.len() == readings.len() && self.readings.iter().zip(readings).all(within)
     }
+}
+
+/// A value within a range in steps of 0.0001° and 0.001 mm, where a step is within it.
+fn stepped(&(kind, lower, upper): &(ReadingKind, f64, f64), value: f64) -> f64 {
+    let stepped = match kind {
+        ReadingKind::Angle => ((value.to_degrees() * 1e4).round() / 1e4).to_radians(),
+        ReadingKind::Length => (value * 1e6).round() / 1e3 / 1e3,
+        ReadingKind::Factor => value,
+    };
+    if (lower..=upper).contains(&stepped) { stepped } else { value }
 }
 
 /// Range of a reading within the limits of all joints that follow it.

@@ -23,4 +23,5 @@ pub(super) use fit::corrected;
 pub use found::{CorrectedFit, Correction};
 pub(crate) use linear::whitened_rows;
 pub(super) use matrices::{ROUNDING_OF_TERMS, cholesky, solved};
-pub(super) use unknowns::{priors, unknowns};
+pub(super) use unknowns::priors;
+pub(crate) use unknowns::unknowns;

@@ -16,11 +16,7 @@ pub(in crate::calibration) fn priors(model: &CorrectionModel, sizes: &Sizes) -> 
 }
 
 /// What a fit changes: what it changes of the robot without gives, and the terms of a size above 0.
-pub(in crate::calibration) fn unknowns(
-    model: &CorrectionModel,
-    of_geometry: &Unknowns,
-    sizes: &Sizes,
-) -> Unknowns {
+pub(crate) fn unknowns(model: &CorrectionModel, of_geometry: &Unknowns, sizes: &Sizes) -> Unknowns {
     let place = |joint: usize| model.places.get(joint).copied().unwrap_or(joint);
     let own = of_geometry.terms.iter().map(|&(joint, term)| (place(joint), term.moved(place)));
     let held = of_geometry.held_axes.iter().map(|&joint| place(joint));

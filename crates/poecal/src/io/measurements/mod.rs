@@ -98,6 +98,7 @@ pub use pose_table::pose_table;
 pub use read::{parse, read};
 pub use rewritten::{JointRow, RewrittenTable, rewrite_joints};
 pub use socket_distance::SocketDistances;
+pub use template::planned_table;
 pub(in crate::io) use template::{plan, template};
 pub use understanding::{ColumnUnderstanding, FileUnderstanding};
 pub use units::{NamedUnit, UnitSource};

@@ -8,6 +8,7 @@ use rand_core::SeedableRng as _;
 use super::write::{decimal, header, reading_header, reading_units, refuse_names};
 use crate::error::Result;
 use crate::measurement::Quantity;
+use crate::plan::{PlannedRow, RowPart};
 use crate::robot::Robot;
 use crate::simulate::{Configurations, Kind};
 use crate::text::visible;
@@ -98,6 +99,29 @@ pub(in crate::io) fn plan(robot: &Robot, count: usize, seed: u64) -> Result<Stri
             readings.iter().zip(&units).map(|(&value, &unit)| decimal(value, unit, None)).collect();
         // Writing to a String cannot fail.
         let _ = writeln!(text, "{}", cells.join(","));
+    }
+    Ok(text)
+}
+
+/// A planned list as a table: `set` has what a row is for, `returns` the row that it repeats, then the readings.
+///
+/// # Errors
+/// [`crate::ErrorKind::Model`] if a joint has the name of one of these columns.
+pub fn planned_table(robot: &Robot, rows: &[PlannedRow], comments: &[String]) -> Result<String> {
+    let names = robot.reading_names();
+    refuse_names(&names, &["id", "set", "returns"])?;
+    let units = reading_units(&names, robot)?;
+    let mut text = String::new();
+    for comment in comments {
+        // Writing to a String cannot fail.
+        let _ = writeln!(text, "# {}", visible(comment));
+    }
+    let _ = writeln!(text, "id,set,returns,{}", reading_header(&names, &units));
+    for (row, planned) in rows.iter().enumerate() {
+        let set = if planned.part == RowPart::Fit { "fit" } else { "held_out" };
+        let returns = if planned.returns { "1" } else { "" };
+        let cells = planned.readings.iter().zip(&units).map(|(&value, &unit)| decimal(value, unit, None));
+        let _ = writeln!(text, "{},{set},{returns},{}", row + 1, cells.collect::<Vec<_>>().join(","));
     }
     Ok(text)
 }

@@ -1,0 +1,410 @@
+//! A session that is planned: its unknowns with what is believed of them before, and the rows of configurations as linear functions of these.
+
+use nalgebra::{DMatrix, Vector3};
+use rand_chacha::ChaCha8Rng;
+use rand_core::SeedableRng;
+
+use super::options::PlannedFit;
+use crate::analysis::{PlannedSession, predicted_data};
+use crate::calibration::{free_parameters, unknowns, whitened_rows};
+use crate::error::{ErrorKind, Result};
+use crate::estimate::{Chain, Estimate, Linkage, Packed, Session, Unknowns, delivered, radian_m};
+use crate::lie::Pose;
+use crate::linalg;
+use crate::measurement::{ByQuantity, Dataset};
+use crate::parameters::{Parameter, screw_axes};
+use crate::problem::{MOST_UNKNOWNS, Prior, Problem};
+use crate::robot::{CorrectionModel, Corrections, Extent, Robot, Sizes, Tolerance};
+use crate::simulate::random_configuration;
+use crate::solve::Normal;
+use crate::unit::Unit;
+
+/// Random configurations by which unknowns are scaled and terms are combined, and their seed.
+const SAMPLE: usize = 400;
+const SEED: u64 = 1;
+/// Information on every unknown that nothing else is known of, of the base's place too, 1/m²: it is known to a metre.
+const RIDGE: f64 = 1.0;
+/// A combination of terms of whose prior variance all rows together take less than this share is left out.
+const NEGLIGIBLE: f64 = 0.01;
+/// Robot error where none is stated, as a share of the reach.
+const USUAL_ERROR: f64 = 3e-4;
+/// Largest number of places from which one configuration is measured.
+const MOST_PLACES: usize = 64;
+
+/// A planned session at the nominal model: columns, priors, and what noise and terms of the joints are expected.
+pub(crate) struct Experiment {
+    /// The nominal robot.
+    pub(crate) robot: Robot,
+    /// The same with the terms of the joints.
+    model: Robot,
+    session: PlannedSession,
+    unknowns: Unknowns,
+    estimate: Estimate,
+    length_m: f64,
+    /// How often a configuration is repeated so that each place measures it once.
+    repeats: usize,
+    /// Numbers that are measured in a configuration.
+    pub(crate) numbers: usize,
+    /// Places of geometry's unknowns in a step.
+    geometry: Vec<usize>,
+    /// Places of the terms.
+    terms: Vec<usize>,
+    /// Each term in units of its prior standard deviation, combined to modes.
+    turn: DMatrix<f64>,
+    /// Prior information of geometry.
+    pub(crate) prior: DMatrix<f64>,
+    /// What geometry does not describe, metres: of the stated error, the part that the terms make and the rest.
+    pub(crate) robot_error_m: f64,
+    pub(crate) rest_m: f64,
+    /// Whether the robot error is a guess.
+    pub(crate) is_guess: bool,
+}
+
+impl Experiment {
+    /// Refuses kinds of measurement whose configurations cannot be chosen freely.
+    pub(crate) fn new(robot: &Robot, fit: &PlannedFit) -> Result<Self> {
+        let kind = fit.session.kind;
+        if kind.is_touched() || kind.is_paired() {
+            return ErrorKind::Option.refuse(format!(
+                "found the kind `{}`, expected one whose configurations can be chosen freely, as point, pose or distance: of what is touched, \
+                 measure a dozen rows and ask poecal identify",
+                kind.word()
+            ));
+        }
+        let robot = with_targets(robot, fit);
+        let sizes = match fit.corrections {
+            Corrections::Off => Sizes::NONE,
+            Corrections::Sizes(sizes) => sizes,
+            Corrections::Auto | Corrections::All => Sizes::COMMON,
+        };
+        let extent = Extent { gives: fit.corrections.gives(), ..Extent::default() };
+        let every = vec![true; robot.joints.len()];
+        let corrected = CorrectionModel::new(&robot, fit.gravity, &every, extent).with_sizes(&sizes);
+        let has_terms = sizes != Sizes::NONE && corrected.terms().next().is_some();
+        let deviations: Vec<f64> = corrected.deviations(&sizes).collect();
+        let unknowns = unknowns(&corrected, &Unknowns::USUAL, &sizes);
+        // Without terms the robot has no gives either.
+        let (model, unknowns) =
+            if has_terms { (corrected.robot.clone(), unknowns) } else { (robot.clone(), Unknowns::USUAL) };
+        let mut generator = ChaCha8Rng::seed_from_u64(SEED);
+        let sample: Vec<f64> =
+            (0..SAMPLE).flat_map(|_| random_configuration(&robot, &mut generator)).collect();
+        let width = robot.reading_names().len();
+        let mut found = Experiment {
+            length_m: radian_m(&robot, &Packed::new(&robot, &sample, width)),
+            estimate: Estimate::new(&model, vec![model.home], Pose::identity()),
+            robot,
+            model,
+            session: fit.session,
+            unknowns,
+            repeats: 1,
+            numbers: 0,
+            geometry: Vec::new(),
+            terms: Vec::new(),
+            turn: DMatrix::zeros(0, 0),
+            prior: DMatrix::zeros(0, 0),
+            robot_error_m: 0.0,
+            rest_m: 0.0,
+            is_guess: fit.robot_error_m.is_none(),
+        };
+        found.settle(&sample, fit, &deviations, &corrected)?;
+        Ok(found)
+    }
+
+    /// Layout, prior, robot error and modes, from a sample of configurations.
+    fn settle(
+        &mut self,
+        sample: &[f64],
+        fit: &PlannedFit,
+        deviations: &[f64],
+        corrected: &CorrectionModel,
+    ) -> Result<()> {
+        let width = self.width();
+        if !self.session.kind.has_device() {
+            let often = sample[..width].repeat(MOST_PLACES);
+            let (data, _) = predicted_data(&self.robot, &often, &self.session)?;
+            let mut sights: Vec<(usize, usize)> =
+                data.observations.iter().map(|row| (row.station, row.target)).collect();
+            sights.sort_unstable();
+            sights.dedup();
+            self.repeats = sights.len().max(1);
+        }
+        let (data, devices) = predicted_data(&self.robot, &self.repeated(sample), &self.session)?;
+        let first = data.observations.first().map(|row| row.measurement.dim());
+        if data.observations.iter().any(|row| Some(row.measurement.dim()) != first) {
+            return ErrorKind::Option.refuse(format!(
+                "found the kind `{}`, of which rows measure different numbers, expected one kind: plan points or poses",
+                self.session.kind.word()
+            ));
+        }
+        self.numbers =
+            data.observations.iter().map(|row| row.measurement.dim()).sum::<usize>() / SAMPLE.max(1);
+        let packed = Packed::of(&self.model, &data);
+        let rows = data.all_rows();
+        let mut estimate = delivered(&self.model, &data);
+        for (station, device) in devices.into_iter().enumerate() {
+            *estimate.device_mut(station) = device;
+        }
+        let session = self.session_of(&data, &packed);
+        estimate.recentre(&session, &rows);
+        self.estimate = estimate;
+        let session = self.session_of(&data, &packed);
+        let free = self.free(&session, &rows);
+        let problem = Problem::new(session, rows.clone(), free, self.session.noise);
+        let layout = problem.layout().clone();
+        if layout.dim() > MOST_UNKNOWNS {
+            return ErrorKind::Problem.refuse(format!(
+                "found {} unknowns, expected at most {MOST_UNKNOWNS} in one fit: plan a shorter chain",
+                layout.dim()
+            ));
+        }
+        let (mut geometry, mut terms, mut scales) = (Vec::new(), Vec::new(), Vec::new());
+        let known: Vec<(usize, crate::robot::Term)> = corrected.terms().collect();
+        for (parameter, places) in layout.parameters() {
+            match parameter.value_term() {
+                Some(it) => {
+                    let own = known.iter().position(|&(joint, term)| (joint, term) == (it.joint, it.term));
+                    let deviation = own.and_then(|at| deviations.get(at)).copied().unwrap_or(0.0);
+                    // A step along a term is in scaled units.
+                    terms.extend(places.iter().map(|(place, _)| *place));
+                    scales.extend(places.iter().map(|(_, scale)| deviation * scale));
+                }
+                None => geometry.extend(places.iter().map(|(place, _)| *place)),
+            }
+        }
+        geometry.sort_unstable();
+        let tolerance = fit.tolerance.unwrap_or(Tolerance::WIDE);
+        let mut prior = Normal::new(layout.dim());
+        Prior::of(&session, tolerance).without_terms().add(&self.estimate, &layout, 1.0, &mut prior);
+        let n = layout.dim();
+        let own = |i: usize, j: usize| {
+            let (a, b) = (geometry[i], geometry[j]);
+            prior.gram[a.min(b) * n + a.max(b)] + if i == j { RIDGE } else { 0.0 }
+        };
+        let prior = DMatrix::from_fn(geometry.len(), geometry.len(), own);
+        (self.prior, self.geometry, self.terms) = (prior, geometry, terms);
+        self.turn = DMatrix::from_diagonal(&nalgebra::DVector::from_vec(scales));
+        self.settle_error(sample, fit)?;
+        self.settle_modes(sample, fit.count)
+    }
+
+    /// The robot error: what of it the terms make, which are made less where it is less, and what is left as noise of every row.
+    fn settle_error(&mut self, sample: &[f64], fit: &PlannedFit) -> Result<()> {
+        let error_m = fit.robot_error_m.unwrap_or(USUAL_ERROR * self.robot.reach_m());
+        self.robot_error_m = error_m;
+        let of_terms = if self.terms.is_empty() { 0.0 } else { self.error_of_terms(sample)? };
+        let scale = if of_terms > error_m { error_m / of_terms } else { 1.0 };
+        self.turn *= scale;
+        self.rest_m = (error_m.powi(2) - (scale * of_terms).powi(2)).max(0.0).sqrt();
+        // The rest is another in each configuration; what turns by it is as far away as a radian counts.
+        let each = self.rest_m / 3f64.sqrt();
+        let (stated, length_m) = (fit.session.noise, self.length_m);
+        self.session.noise = ByQuantity::from_fn(|quantity| match quantity.unit() {
+            Unit::Metre => stated[quantity].hypot(each),
+            Unit::Radian => stated[quantity].hypot(each / length_m),
+            Unit::One => stated[quantity],
+        });
+        Ok(())
+    }
+
+    /// What terms of their sizes make of the tip's error in the limit of many random rows, RMS.
+    fn error_of_terms(&self, sample: &[f64]) -> Result<f64> {
+        let (rows, moments) = (self.blocks(sample)?, self.moments(sample));
+        let (g, c) = (self.geometry.len(), self.terms.len());
+        let gram = rows.gram(0..rows.count());
+        let h = gram.view((0, 0), (g, g)) + &self.prior;
+        let Some(inverse) = inverse(&h) else { return Ok(0.0) };
+        let a = inverse * gram.view((0, g), (g, c));
+        let (mgg, mgc) = (moments.view((0, 0), (g, g)), moments.view((0, g), (g, c)));
+        let bias =
+            (a.transpose() * (mgg * &a)).trace() - 2.0 * a.dot(&mgc) + moments.view((g, g), (c, c)).trace();
+        Ok(bias.max(0.0).sqrt())
+    }
+
+    /// Combines terms: directions of which a session of so many configurations says something.
+    fn settle_modes(&mut self, sample: &[f64], count: usize) -> Result<()> {
+        if self.terms.is_empty() {
+            return Ok(());
+        }
+        let rows = self.blocks(sample)?;
+        let (g, c) = (self.geometry.len(), self.terms.len());
+        let own = rows.gram(0..rows.count()).view((g, g), (c, c)).into_owned();
+        let own = own * (count.max(100) as f64 / rows.count().max(1) as f64);
+        let (values, vectors) = linalg::symmetric_eigen(own.as_slice(), c);
+        let first = values.iter().take_while(|&&value| value < NEGLIGIBLE).count();
+        self.turn = &self.turn * vectors.columns(first, c - first);
+        Ok(())
+    }
+
+    /// Number of readings of a configuration.
+    pub(crate) fn width(&self) -> usize {
+        self.robot.reading_names().len().max(1)
+    }
+
+    /// Metres that a radian counts.
+    pub(crate) fn length_m(&self) -> f64 {
+        self.length_m
+    }
+
+    /// Number of unknowns of geometry.
+    pub(crate) fn geometry(&self) -> usize {
+        self.geometry.len()
+    }
+
+    fn repeated(&self, readings: &[f64]) -> Vec<f64> {
+        readings.chunks_exact(self.width()).flat_map(|own| own.repeat(self.repeats)).collect()
+    }
+
+    fn session_of<'a>(&'a self, data: &'a Dataset, packed: &'a Packed) -> Session<'a> {
+        Session::new(&self.model, data, packed, self.session.device_free)
+            .with_unknowns(&self.unknowns)
+            .with_length(self.length_m)
+    }
+
+    fn free(&self, session: &Session<'_>, rows: &[u32]) -> Vec<Parameter> {
+        free_parameters(session, &self.estimate, rows, screw_axes(self.estimate.kinds()))
+    }
+
+    /// The rows of configurations as linear functions of geometry and modes.
+    pub(crate) fn blocks(&self, readings: &[f64]) -> Result<Blocks> {
+        const CHUNK: usize = 512;
+        let columns = self.geometry.len() + self.turn.ncols();
+        let mut values = Vec::with_capacity(readings.len() / self.width() * self.numbers * columns);
+        for some in readings.chunks(CHUNK * self.width()) {
+            let (data, _) = predicted_data(&self.robot, &self.repeated(some), &self.session)?;
+            let packed = Packed::of(&self.model, &data);
+            let rows = data.all_rows();
+            let session = self.session_of(&data, &packed);
+            let problem = Problem::new(session, rows.clone(), self.free(&session, &rows), self.session.noise);
+            let (_, jacobian, _) = whitened_rows(&problem, &self.estimate, &rows);
+            if !jacobian.iter().all(|value| value.is_finite()) {
+                return ErrorKind::Measurement.refuse("found joint readings beyond what can be computed with, expected radians and metres: check their units");
+            }
+            let terms = jacobian.select_columns(&self.terms) * &self.turn;
+            for row in 0..jacobian.nrows() {
+                values.extend(self.geometry.iter().map(|&place| jacobian[(row, place)]));
+                values.extend(terms.row(row).iter());
+            }
+        }
+        Ok(Blocks { values, numbers: self.numbers, columns })
+    }
+
+    /// Second moments of the motion of the targets by the unknowns, mean over configurations, m² for steps of one.
+    pub(crate) fn moments(&self, readings: &[f64]) -> DMatrix<f64> {
+        let (own, _) = self.motions(readings);
+        // A mean over configurations and targets of three numbers each.
+        own.transpose() * &own * (3.0 / own.nrows().max(1) as f64)
+    }
+
+    /// The motion of the targets by the unknowns of geometry in each configuration.
+    pub(crate) fn each_moment(&self, readings: &[f64]) -> Vec<DMatrix<f64>> {
+        let (own, targets) = self.motions(readings);
+        let each = 3 * targets;
+        (0..own.nrows() / each)
+            .map(|at| own.view((at * each, 0), (each, self.geometry())).into_owned())
+            .collect()
+    }
+
+    /// Three rows of each target in each configuration, and the number of targets.
+    fn motions(&self, readings: &[f64]) -> (DMatrix<f64>, usize) {
+        let columns = self.geometry.len() + self.turn.ncols();
+        let Ok((data, _)) =
+            predicted_data(&self.robot, &self.repeated(&readings[..self.width()]), &self.session)
+        else {
+            return (DMatrix::zeros(0, columns), 1);
+        };
+        let rows = data.all_rows();
+        let packed = Packed::of(&self.model, &data);
+        let session = self.session_of(&data, &packed);
+        let problem = Problem::new(session, rows.clone(), self.free(&session, &rows), self.session.noise);
+        let layout = problem.layout();
+        let packed = Packed::new(&self.model, readings, self.width());
+        let linkage = Linkage::new(&self.estimate);
+        let (mut chain, mut twists) =
+            (Chain::default(), vec![(Vector3::zeros(), Vector3::zeros()); layout.dim()]);
+        let targets = data.targets.len().max(1);
+        let mut found = DMatrix::zeros(3 * packed.rows() * targets, layout.dim());
+        for row in 0..packed.rows() {
+            for target in 0..targets {
+                chain.evaluate(&linkage, &packed, row, target);
+                layout.target_twists(&chain, target, &mut twists);
+                for (column, (v, _)) in twists.iter().enumerate() {
+                    for number in 0..3 {
+                        found[(3 * (row * targets + target) + number, column)] = v[number];
+                    }
+                }
+            }
+        }
+        let mut own = DMatrix::zeros(found.nrows(), columns);
+        let g = self.geometry.len();
+        own.columns_mut(0, g).copy_from(&found.select_columns(&self.geometry));
+        own.columns_mut(g, columns - g).copy_from(&(found.select_columns(&self.terms) * &self.turn));
+        (own, targets)
+    }
+}
+
+/// The inverse of a symmetric positive definite matrix.
+pub(super) fn inverse(matrix: &DMatrix<f64>) -> Option<DMatrix<f64>> {
+    let n = matrix.nrows();
+    let factor = linalg::cholesky(matrix.as_slice(), n, f64::MIN_POSITIVE)?;
+    Some(DMatrix::from_row_slice(n, n, &linalg::inverse(&factor)))
+}
+
+/// The robot with the targets of a nest at the tip: at one offset, several turned about the tip's z.
+fn with_targets(robot: &Robot, fit: &PlannedFit) -> Robot {
+    let Some(offset) = fit.target_offset else { return robot.clone() };
+    let mut robot = robot.clone();
+    let body = robot.tip_body();
+    let count = fit.targets.max(1);
+    let mounts = (0..count).map(|at| {
+        let turn = std::f64::consts::TAU * at as f64 / count as f64;
+        let (s, c) = turn.sin_cos();
+        let place = Vector3::new(c * offset.x - s * offset.y, s * offset.x + c * offset.y, offset.z);
+        robot.mount(&format!("target{}", at + 1), body, &(robot.home * Pose::from_translation(place)))
+    });
+    robot.mounted = mounts.collect();
+    robot
+}
+
+/// Whitened rows of configurations, one after the other, of so many numbers and columns each.
+#[derive(Clone, Debug)]
+pub(crate) struct Blocks {
+    pub(crate) values: Vec<f64>,
+    pub(crate) numbers: usize,
+    pub(crate) columns: usize,
+}
+
+impl Blocks {
+    /// Number of configurations.
+    pub(crate) fn count(&self) -> usize {
+        self.values.len() / (self.numbers * self.columns).max(1)
+    }
+
+    /// Rows of a configuration, row after row.
+    pub(crate) fn of(&self, index: usize) -> &[f64] {
+        let size = self.numbers * self.columns;
+        &self.values[index * size..(index + 1) * size]
+    }
+
+    /// Information of some configurations together.
+    pub(crate) fn gram(&self, some: impl IntoIterator<Item = usize>) -> DMatrix<f64> {
+        let n = self.columns;
+        let mut upper = vec![0.0; n * n];
+        for index in some {
+            linalg::add_gram(&mut upper, n, self.of(index), 0);
+        }
+        DMatrix::from_fn(n, n, |i, j| upper[i.min(j) * n + i.max(j)])
+    }
+
+    /// The first columns alone.
+    pub(crate) fn first(&self, columns: usize) -> Blocks {
+        let rows = self.values.chunks_exact(self.columns);
+        Blocks { values: rows.flat_map(|row| row[..columns].iter().copied()).collect(), columns, ..*self }
+    }
+
+    /// The configurations of some indices.
+    pub(crate) fn only(&self, some: &[usize]) -> Blocks {
+        let values = some.iter().flat_map(|&index| self.of(index).iter().copied()).collect();
+        Blocks { values, ..*self }
+    }
+}

@@ -1,0 +1,568 @@
+//! A plan: configurations that determine the most, rows to judge by, and how the expected error falls with their number.
+
+use nalgebra::DMatrix;
+use rand_chacha::ChaCha8Rng;
+use rand_core::SeedableRng;
+
+use super::experiment::{Blocks, Experiment, inverse};
+use super::options::{PlanCriterion, PlannedFit};
+use super::order::Travel;
+use super::search::{Search, around};
+use super::state::{Aim, MOST_NUMBERS, Squares, Weights};
+use crate::error::{ErrorKind, Result};
+use crate::linalg;
+use crate::robot::{ReadingKind, Robot};
+use crate::simulate::{Configurations, random};
+
+/// Candidates that are drawn where none are given, and configurations of the workspace.
+const CANDIDATES: usize = 2000;
+const WORKSPACE: usize = 1000;
+/// Random configurations that are tried for each one of a workspace.
+const ATTEMPTS: usize = 200;
+/// Random lists to which a plan is compared.
+const RANDOM: usize = 32;
+/// Rounds of the search around each configuration, proposals for each, and the largest and smallest step in radians.
+const ROUNDS: usize = 24;
+const PROPOSALS: usize = 6;
+const STEPS: [f64; 2] = [0.4, 0.01];
+/// Numbers of configurations of the curve.
+const COUNTS: [usize; 13] = [5, 8, 10, 12, 15, 20, 25, 30, 40, 50, 60, 80, 100];
+/// Candidates of the curve.
+const OF_CURVE: usize = 800;
+/// The first configuration is measured again behind so many rows.
+const ROWS_BETWEEN_VISITS: usize = 19;
+/// Ten more configurations that gain less than this share are not worth it.
+const WORTH_IT: f64 = 0.05;
+/// Rounds, and the power, by which the largest variance is made small.
+const LARGEST_ROUNDS: usize = 6;
+
+/// What to plan.
+///
+/// ```
+/// use poecal::plan::{PlanOptions, PlannedFit, plan};
+/// use poecal::simulate::elbow;
+/// let options = PlanOptions { fit: PlannedFit { count: 12, ..Default::default() }, candidates: 200, ..Default::default() };
+/// let found = plan(&elbow(), &options)?;
+/// assert_eq!(found.rows.iter().filter(|row| !row.returns && row.part == poecal::plan::RowPart::Fit).count(), 12);
+/// assert!(found.expected.calibrated_m() < found.random.calibrated_m());
+/// # Ok::<(), poecal::Error>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct PlanOptions {
+    /// The fit that will be made.
+    pub fit: PlannedFit,
+    /// What the list shall be good at.
+    pub criterion: PlanCriterion,
+    /// Configurations to choose from, readings one after the other; where there are none, random ones are drawn and improved.
+    pub list: Option<Vec<f64>>,
+    /// Number of random ones that are drawn.
+    pub candidates: usize,
+    /// Configurations in which the robot will work, where predictions shall be good; random ones within the limits if there are none.
+    pub workspace: Option<Vec<f64>>,
+    /// Number of random rows to judge by; a third of the configurations if it is not stated.
+    pub judge: Option<usize>,
+    /// Configurations that are measured in any case, or were.
+    pub kept: Vec<f64>,
+    /// Seed of what is random.
+    pub seed: u64,
+}
+
+impl Default for PlanOptions {
+    fn default() -> Self {
+        PlanOptions {
+            fit: PlannedFit::default(),
+            criterion: PlanCriterion::Expected,
+            list: None,
+            candidates: CANDIDATES,
+            workspace: None,
+            judge: None,
+            kept: Vec::new(),
+            seed: 1,
+        }
+    }
+}
+
+/// What a planned row is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RowPart {
+    /// It is fitted.
+    Fit,
+    /// It is held out, to judge by.
+    Judge,
+}
+
+/// A row of a plan.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PlannedRow {
+    /// Readings in the order of [`Robot::reading_names`], radians and metres.
+    pub readings: Vec<f64>,
+    /// What it is for.
+    pub part: RowPart,
+    /// Whether it is the first configuration again.
+    pub returns: bool,
+    /// Index of a candidate of the list from which it was chosen.
+    pub candidate: Option<usize>,
+}
+
+/// Expected root mean square errors of the tip over the workspace, metres.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ExpectedErrors {
+    /// Of the calibrated model, what is not determined yet: by noise and prior, and by what geometry does not describe beyond its own error.
+    pub undetermined_m: f64,
+    /// What no geometry describes: the robot error.
+    pub robot_m: f64,
+    /// Of the corrected model: what is not determined yet.
+    pub corrected_undetermined_m: f64,
+    /// What neither geometry nor terms of the joints describe.
+    pub corrected_robot_m: f64,
+}
+
+impl ExpectedErrors {
+    fn new(experiment: &Experiment, squares: &Squares) -> Self {
+        let (robot, rest) = (experiment.robot_error_m, experiment.rest_m);
+        let of_terms = (robot * robot - rest * rest).max(0.0);
+        ExpectedErrors {
+            undetermined_m: (squares.calibrated() - of_terms).max(0.0).sqrt(),
+            robot_m: robot,
+            corrected_undetermined_m: squares.corrected.max(0.0).sqrt(),
+            corrected_robot_m: rest,
+        }
+    }
+
+    /// Expected error of the calibrated model.
+    #[must_use]
+    pub fn calibrated_m(&self) -> f64 {
+        self.undetermined_m.hypot(self.robot_m)
+    }
+
+    /// Expected error of the corrected model.
+    #[must_use]
+    pub fn corrected_m(&self) -> f64 {
+        self.corrected_undetermined_m.hypot(self.corrected_robot_m)
+    }
+}
+
+/// Expected errors with so many planned configurations.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CurvePoint {
+    /// Number of configurations.
+    pub count: usize,
+    /// Expected errors.
+    pub expected: ExpectedErrors,
+}
+
+/// A plan.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Plan {
+    /// The rows in the order in which to measure them.
+    pub rows: Vec<PlannedRow>,
+    /// Expected errors of a fit of the planned rows.
+    pub expected: ExpectedErrors,
+    /// Median expected errors of as many random configurations.
+    pub random: ExpectedErrors,
+    /// Expected errors of fewer and more planned configurations.
+    pub curve: Vec<CurvePoint>,
+    /// Number of configurations from which 10 more gain less than 5 %.
+    pub enough: Option<usize>,
+    /// Unknowns of geometry, and numbers that a configuration gives.
+    pub unknowns: usize,
+    /// Numbers that a configuration gives.
+    pub numbers: usize,
+    /// Whether the robot error is a guess: 0.3 mm for each metre of reach.
+    pub robot_error_is_a_guess: bool,
+    /// Logarithm of the determinant of geometry's information, to compare lists of one robot.
+    pub log_determinant: f64,
+}
+
+/// Plans a session: theory.md, *Choosing configurations*.
+///
+/// # Errors
+/// [`ErrorKind::Option`] for kinds of measurement whose configurations cannot be chosen, and where there are fewer candidates than
+/// configurations; [`ErrorKind::Problem`] if the robot has more unknowns than one fit allows.
+pub fn plan(robot: &Robot, options: &PlanOptions) -> Result<Plan> {
+    Planner::new(robot, options)?.plan()
+}
+
+/// Random configurations of a workspace: those in which the tip is between two corners, metres in the base frame.
+///
+/// # Errors
+/// [`ErrorKind::Option`] if hardly any configuration within the limits of the joints has its tip there.
+pub fn workspace_in(robot: &Robot, corners: &[[f64; 3]; 2], seed: u64) -> Result<Vec<f64>> {
+    let mut generator = ChaCha8Rng::seed_from_u64(seed);
+    generator.set_stream(2);
+    let configurations = Configurations::new(robot);
+    let mut found = Vec::new();
+    let mut count = 0;
+    for _ in 0..WORKSPACE * ATTEMPTS {
+        let readings = configurations.random(&mut generator);
+        let tip = robot.forward_kinematics(&readings).translation;
+        if (0..3).all(|k| (corners[0][k]..=corners[1][k]).contains(&tip[k])) {
+            found.extend(readings);
+            count += 1;
+            if count == WORKSPACE {
+                return Ok(found);
+            }
+        }
+    }
+    if count > 0 {
+        return Ok(found);
+    }
+    ErrorKind::Option.refuse(format!(
+        "found none of {} random configurations with the tip in the box, expected one that the robot reaches: state it in the base frame",
+        WORKSPACE * ATTEMPTS
+    ))
+}
+
+/// A session to be planned, with candidates.
+struct Planner<'a> {
+    options: &'a PlanOptions,
+    experiment: Experiment,
+    candidates: Vec<f64>,
+    blocks: Blocks,
+    kept: DMatrix<f64>,
+    kept_count: usize,
+    workspace: Vec<f64>,
+    aim: Aim,
+    random: Squares,
+    generator: ChaCha8Rng,
+}
+
+impl<'a> Planner<'a> {
+    fn new(robot: &Robot, options: &'a PlanOptions) -> Result<Self> {
+        let experiment = Experiment::new(robot, &options.fit)?;
+        if experiment.numbers > MOST_NUMBERS {
+            return ErrorKind::Option.refuse(format!(
+                "found {} numbers that are measured in a configuration, expected at most {MOST_NUMBERS}: plan for fewer targets",
+                experiment.numbers
+            ));
+        }
+        let width = experiment.width();
+        let mut generator = ChaCha8Rng::seed_from_u64(options.seed);
+        let configurations = Configurations::new(robot);
+        let mut draw = |count: usize| -> Vec<f64> {
+            (0..count).flat_map(|_| configurations.random(&mut generator)).collect()
+        };
+        let candidates =
+            options.list.clone().unwrap_or_else(|| draw(options.candidates.max(options.fit.count)));
+        let workspace = options.workspace.clone().unwrap_or_else(|| draw(WORKSPACE));
+        let count = candidates.len() / width;
+        if count < options.fit.count {
+            return ErrorKind::Option.refuse(format!(
+                "found {count} candidates, expected at least the {} configurations of the plan",
+                options.fit.count
+            ));
+        }
+        let blocks = experiment.blocks(&candidates)?;
+        let n = blocks.columns;
+        let (kept, kept_count) = if options.kept.is_empty() {
+            (DMatrix::zeros(n, n), 0)
+        } else {
+            let kept = experiment.blocks(&options.kept)?;
+            (kept.gram(0..kept.count()), kept.count())
+        };
+        let has_terms = n > experiment.geometry();
+        let weights =
+            Weights { calibrated: 1.0, corrected: if has_terms { 1.0 } else { 0.0 }, determinant: 0.0 };
+        let mut aim = Aim::new(&experiment.prior, experiment.moments(&workspace), weights);
+        let random = random_lists(&aim, &kept, &blocks, options)?;
+        if has_terms {
+            aim.weights.calibrated = 1.0 / random.calibrated();
+            aim.weights.corrected = 1.0 / random.corrected;
+        }
+        Ok(Planner {
+            options,
+            experiment,
+            candidates,
+            blocks,
+            kept,
+            kept_count,
+            workspace,
+            aim,
+            random,
+            generator,
+        })
+    }
+
+    fn plan(mut self) -> Result<Plan> {
+        let count = self.options.fit.count;
+        let new = count.saturating_sub(self.kept_count);
+        let chosen = self.chosen(new);
+        let width = self.experiment.width();
+        let mut readings: Vec<Vec<f64>> =
+            chosen.iter().map(|&at| self.candidates[at * width..(at + 1) * width].to_vec()).collect();
+        let mut rows = self.blocks.only(&chosen);
+        let mut origins: Vec<Option<usize>> = chosen.iter().map(|&at| Some(at)).collect();
+        if self.options.list.is_none() {
+            origins.fill(None);
+            if self.options.criterion == PlanCriterion::Expected {
+                self.refine(&mut readings, &mut rows)?;
+            }
+        }
+        let (squares, log_determinant) = self.squares(&rows)?;
+        let expected = ExpectedErrors::new(&self.experiment, &squares);
+        let curve = self.curve(new, &squares)?;
+        let enough = enough(&curve);
+        let rows = self.rows(readings, &origins);
+        Ok(Plan {
+            rows,
+            expected,
+            random: ExpectedErrors::new(&self.experiment, &self.random),
+            curve,
+            enough,
+            unknowns: self.experiment.geometry(),
+            numbers: self.experiment.numbers,
+            robot_error_is_a_guess: self.experiment.is_guess,
+            log_determinant,
+        })
+    }
+
+    /// Expected squared errors of rows beside the kept ones, and the logarithm of the determinant of geometry's information.
+    fn squares(&self, rows: &Blocks) -> Result<(Squares, f64)> {
+        let mut aim = self.aim.clone();
+        aim.weights.determinant = 1.0;
+        let gram = &self.kept + rows.gram(0..rows.count());
+        let found = super::state::State::new(&aim, &gram).map(|(_, squares)| squares);
+        found.map(|squares| (squares, squares.determinant)).ok_or_else(undetermined)
+    }
+
+    /// The candidates of the list, by the criterion.
+    fn chosen(&self, count: usize) -> Vec<usize> {
+        let apart = |_: usize, _: usize| true;
+        let best = |aim: &Aim, kept: &DMatrix<f64>, blocks: &Blocks| {
+            let search = Search { aim, kept, blocks, apart: &apart };
+            let greedy = search.greedy(Vec::new(), count);
+            search.exchange(greedy, 0)
+        };
+        if self.options.criterion == PlanCriterion::Expected {
+            return best(&self.aim, &self.kept, &self.blocks);
+        }
+        let g = self.experiment.geometry();
+        let blocks = self.blocks.first(g);
+        let kept = self.kept.view((0, 0), (g, g)).into_owned();
+        let aim = |moments: DMatrix<f64>, determinant: f64| {
+            let calibrated = if determinant > 0.0 { 0.0 } else { 1.0 };
+            Aim::new(&self.experiment.prior, moments, Weights { calibrated, corrected: 0.0, determinant })
+        };
+        match self.options.criterion {
+            PlanCriterion::Expected | PlanCriterion::D => {
+                best(&aim(DMatrix::identity(g, g), 1.0), &kept, &blocks)
+            }
+            PlanCriterion::A => best(&aim(DMatrix::identity(g, g), 0.0), &kept, &blocks),
+            PlanCriterion::E | PlanCriterion::G => {
+                self.largest(&kept, &blocks, |moments| best(&aim(moments, 0.0), &kept, &blocks))
+            }
+        }
+    }
+
+    /// A list with a small largest variance: means of squares whose weights go with a power of the variances of the list before.
+    fn largest(
+        &self,
+        kept: &DMatrix<f64>,
+        blocks: &Blocks,
+        best: impl Fn(DMatrix<f64>) -> Vec<usize>,
+    ) -> Vec<usize> {
+        let g = self.experiment.geometry();
+        let is_e = self.options.criterion == PlanCriterion::E;
+        let mut moments =
+            if is_e { DMatrix::identity(g, g) } else { self.aim.moments.view((0, 0), (g, g)).into_owned() };
+        let mut found: Option<(f64, Vec<usize>)> = None;
+        for _ in 0..LARGEST_ROUNDS {
+            let chosen = best(moments.clone());
+            let h = kept + blocks.gram(chosen.iter().copied()) + &self.experiment.prior;
+            let Some(covariance) = inverse(&h) else { break };
+            let value = if is_e {
+                let (values, vectors) = linalg::symmetric_eigen(covariance.as_slice(), g);
+                let most = values.last().copied().unwrap_or(0.0);
+                let weights =
+                    nalgebra::DVector::from_iterator(g, values.iter().map(|it| (it / most).powi(3)));
+                moments = &vectors * DMatrix::from_diagonal(&weights) * vectors.transpose();
+                most
+            } else {
+                let each = self.experiment.each_moment(&self.workspace);
+                let variances: Vec<f64> = each.iter().map(|rows| (rows * &covariance).dot(rows)).collect();
+                let most = variances.iter().copied().fold(0.0, f64::max);
+                moments = DMatrix::zeros(g, g);
+                for (rows, variance) in each.iter().zip(&variances) {
+                    moments += rows.transpose() * rows * ((variance / most).powi(3) / each.len() as f64);
+                }
+                most
+            };
+            if found.as_ref().is_none_or(|(least, _)| value < *least) {
+                found = Some((value, chosen));
+            }
+        }
+        found.map(|it| it.1).unwrap_or_default()
+    }
+
+    /// Looks around each configuration for better ones.
+    fn refine(&mut self, readings: &mut [Vec<f64>], rows: &mut Blocks) -> Result<()> {
+        let robot = &self.experiment.robot;
+        let configurations = Configurations::new(robot);
+        let kinds: Vec<ReadingKind> =
+            robot.reading_names().iter().map(|name| robot.reading_kind(name)).collect();
+        for round in 0..ROUNDS {
+            let share = round as f64 / (ROUNDS - 1) as f64;
+            let step = STEPS[0] * (STEPS[1] / STEPS[0]).powf(share);
+            let (mut proposals, mut owners) = (Vec::new(), Vec::new());
+            for (owner, own) in readings.iter().enumerate() {
+                for proposal in 0..PROPOSALS {
+                    let mut near = own.clone();
+                    // All joints, or one alone.
+                    let only = (proposal % 2 == 1)
+                        .then(|| (random::uniform(&mut self.generator) * kinds.len() as f64) as usize);
+                    for (joint, (value, kind)) in near.iter_mut().zip(&kinds).enumerate() {
+                        let by = step * random::normal(&mut self.generator);
+                        if only.is_none_or(|only| only == joint) {
+                            match kind {
+                                ReadingKind::Angle => *value += by,
+                                ReadingKind::Length => *value += by * self.experiment.length_m(),
+                                ReadingKind::Factor => {}
+                            }
+                        }
+                    }
+                    let near = configurations.nearest(&near);
+                    proposals.extend(near);
+                    owners.push(owner);
+                }
+            }
+            let blocks = self.experiment.blocks(&proposals)?;
+            let width = self.experiment.width();
+            around(&self.aim, &self.kept, rows, &blocks, &owners, |row, proposal| {
+                readings[row].copy_from_slice(&proposals[proposal * width..(proposal + 1) * width]);
+            });
+        }
+        Ok(())
+    }
+
+    /// Expected errors of lists of other lengths, each the beginning of the next.
+    fn curve(&self, new: usize, planned: &Squares) -> Result<Vec<CurvePoint>> {
+        let most = COUNTS.last().copied().unwrap_or(0);
+        let every = (self.blocks.count() / OF_CURVE).max(1);
+        let some: Vec<usize> = (0..self.blocks.count()).step_by(every).collect();
+        let blocks = self.blocks.only(&some);
+        let search = Search { aim: &self.aim, kept: &self.kept, blocks: &blocks, apart: &|_, _| true };
+        let order = search.greedy(Vec::new(), most.min(blocks.count()));
+        let mut points = Vec::new();
+        let mut counts: Vec<usize> = COUNTS.iter().copied().filter(|&count| count <= order.len()).collect();
+        counts.push(new);
+        counts.sort_unstable();
+        counts.dedup();
+        // What exchanges gain at the planned number, they gain at others.
+        let here = search.squares(&order[..new.min(order.len())]).ok_or_else(undetermined)?;
+        let gain = Squares {
+            noise: ratio(planned.noise, here.noise),
+            terms: ratio(planned.terms, here.terms),
+            corrected: ratio(planned.corrected, here.corrected),
+            determinant: 0.0,
+        };
+        for count in counts {
+            let squares = if count == new {
+                *planned
+            } else {
+                let found = search.squares(&order[..count]).ok_or_else(undetermined)?;
+                Squares {
+                    noise: found.noise * gain.noise,
+                    terms: found.terms * gain.terms,
+                    corrected: found.corrected * gain.corrected,
+                    determinant: 0.0,
+                }
+            };
+            let expected = ExpectedErrors::new(&self.experiment, &squares);
+            points.push(CurvePoint { count: count + self.kept_count, expected });
+        }
+        Ok(points)
+    }
+
+    /// The rows in the order of measuring: those to fit by travel, then those to judge by, and the first one now and again.
+    fn rows(&mut self, readings: Vec<Vec<f64>>, origins: &[Option<usize>]) -> Vec<PlannedRow> {
+        let travel = Travel::new(&self.experiment.robot, self.experiment.length_m());
+        let judged = self.options.judge.unwrap_or(self.options.fit.count.div_ceil(3));
+        let width = self.experiment.width();
+        let mut left: Vec<usize> = (0..self.workspace.len() / width).collect();
+        random::shuffle(&mut self.generator, &mut left);
+        let judges: Vec<Vec<f64>> = left
+            .iter()
+            .take(judged)
+            .map(|&at| self.workspace[at * width..(at + 1) * width].to_vec())
+            .collect();
+        let mut rows: Vec<PlannedRow> = Vec::new();
+        let home = vec![0.0; width];
+        for (part, all) in [(RowPart::Fit, &readings), (RowPart::Judge, &judges)] {
+            let start = rows.last().map_or(home.clone(), |row| row.readings.clone());
+            let slices: Vec<&[f64]> = all.iter().map(Vec::as_slice).collect();
+            for at in travel.ordered(&start, &slices) {
+                let candidate = if part == RowPart::Fit { origins.get(at).copied().flatten() } else { None };
+                rows.push(PlannedRow { readings: all[at].clone(), part, returns: false, candidate });
+            }
+        }
+        with_returns(rows)
+    }
+}
+
+fn ratio(a: f64, b: f64) -> f64 {
+    if b > 0.0 { a / b } else { 1.0 }
+}
+
+/// The rows with the first one again behind every so many.
+fn with_returns(rows: Vec<PlannedRow>) -> Vec<PlannedRow> {
+    let Some(first) = rows.first().cloned() else { return rows };
+    let again = PlannedRow { returns: true, candidate: None, ..first };
+    let mut found = Vec::new();
+    for (at, row) in rows.into_iter().enumerate() {
+        if at > 0 && at % ROWS_BETWEEN_VISITS == 0 {
+            found.push(PlannedRow { part: row.part, ..again.clone() });
+        }
+        found.push(row);
+    }
+    found
+}
+
+/// The smallest number of the curve from which ten more gain less than a share of both errors.
+fn enough(curve: &[CurvePoint]) -> Option<usize> {
+    let errors = |at: f64| -> Option<[f64; 2]> {
+        let above = curve.iter().position(|point| point.count as f64 >= at)?;
+        let of = |point: &CurvePoint| [point.expected.calibrated_m(), point.expected.corrected_m()];
+        let (b, count) = (of(&curve[above]), curve[above].count as f64);
+        let Some(before) = above.checked_sub(1).map(|it| &curve[it]) else { return Some(b) };
+        let (a, first) = (of(before), before.count as f64);
+        let share = (at - first) / (count - first);
+        Some([0, 1].map(|k| a[k] + share * (b[k] - a[k])))
+    };
+    let gains_little = |point: &&CurvePoint| {
+        let (Some(now), Some(then)) = (errors(point.count as f64), errors(point.count as f64 + 10.0)) else {
+            return false;
+        };
+        (0..2).all(|k| then[k] >= (1.0 - WORTH_IT) * now[k])
+    };
+    curve.iter().find(gains_little).map(|point| point.count)
+}
+
+/// Median expected squared errors of random lists.
+fn random_lists(aim: &Aim, kept: &DMatrix<f64>, blocks: &Blocks, options: &PlanOptions) -> Result<Squares> {
+    let mut generator = ChaCha8Rng::seed_from_u64(options.seed);
+    generator.set_stream(1);
+    let mut order: Vec<usize> = (0..blocks.count()).collect();
+    let search = Search { aim, kept, blocks, apart: &|_, _| true };
+    let mut found = Vec::new();
+    for _ in 0..RANDOM {
+        random::shuffle(&mut generator, &mut order);
+        found.push(search.squares(&order[..options.fit.count]).ok_or_else(undetermined)?);
+    }
+    let median = |of: fn(&Squares) -> f64| {
+        let mut values: Vec<f64> = found.iter().map(of).collect();
+        values.sort_by(f64::total_cmp);
+        values[values.len() / 2]
+    };
+    Ok(Squares {
+        noise: median(|it| it.noise),
+        terms: median(|it| it.terms),
+        corrected: median(|it| it.corrected),
+        determinant: 0.0,
+    })
+}
+
+fn undetermined() -> crate::Error {
+    ErrorKind::Problem.error(
+        "found configurations whose information cannot be inverted, expected finite sizes of joints, noise and tolerances: check the units of the model",
+    )
+}

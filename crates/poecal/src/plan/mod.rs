@@ -1,0 +1,12 @@
+//! Which configurations to measure, how many, and what error to expect: before anything is measured, and while it is (docs/theory.md,
+//! *Choosing configurations*).
+
+mod experiment;
+mod make;
+mod options;
+mod order;
+mod search;
+mod state;
+
+pub use make::{CurvePoint, ExpectedErrors, Plan, PlanOptions, PlannedRow, RowPart, plan, workspace_in};
+pub use options::{PlanCriterion, PlannedFit};

@@ -1,0 +1,203 @@
+//! A plan of configurations.
+
+use std::fmt::Write as _;
+
+use serde::Serialize;
+
+use super::table::{line, number, robot_words, row};
+use crate::io::model::Model;
+use crate::plan::{CurvePoint, ExpectedErrors, Plan as Found, PlanCriterion, PlanOptions, RowPart};
+
+/// A plan, for a person to look over or a machine to read.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Plan {
+    model: String,
+    measure: &'static str,
+    criterion: &'static str,
+    configurations: usize,
+    kept: usize,
+    judge: usize,
+    returns: usize,
+    unknowns: usize,
+    numbers: usize,
+    robot_error_is_a_guess: bool,
+    expected: Entry,
+    random: Entry,
+    log_determinant: f64,
+    /// Indices from 0 of the candidates that were chosen, in the order of the rows.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    candidates: Vec<usize>,
+    curve: Vec<CurveEntry>,
+    /// Number of configurations from which ten more gain less than 5 %.
+    enough: Option<usize>,
+    rows: Vec<RowEntry>,
+    #[serde(skip)]
+    robot_words: String,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+struct Entry {
+    calibrated_mm: f64,
+    calibrated_undetermined_mm: f64,
+    robot_error_mm: f64,
+    corrected_mm: f64,
+    corrected_undetermined_mm: f64,
+    corrected_robot_error_mm: f64,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+struct CurveEntry {
+    configurations: usize,
+    #[serde(flatten)]
+    expected: Entry,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize)]
+struct RowEntry {
+    set: &'static str,
+    returns: bool,
+    readings: Vec<f64>,
+}
+
+impl Entry {
+    fn new(it: &ExpectedErrors) -> Self {
+        Entry {
+            calibrated_mm: 1e3 * it.calibrated_m(),
+            calibrated_undetermined_mm: 1e3 * it.undetermined_m,
+            robot_error_mm: 1e3 * it.robot_m,
+            corrected_mm: 1e3 * it.corrected_m(),
+            corrected_undetermined_mm: 1e3 * it.corrected_undetermined_m,
+            corrected_robot_error_mm: 1e3 * it.corrected_robot_m,
+        }
+    }
+}
+
+impl Plan {
+    /// A plan for a model.
+    #[must_use]
+    pub fn new(model: &Model, options: &PlanOptions, found: &Found) -> Self {
+        let count = |part: RowPart| found.rows.iter().filter(|row| row.part == part && !row.returns).count();
+        let curve = |point: &CurvePoint| CurveEntry {
+            configurations: point.count,
+            expected: Entry::new(&point.expected),
+        };
+        let kept = options.kept.len() / model.robot.reading_names().len().max(1);
+        Plan {
+            model: model.path.display().to_string(),
+            measure: options.fit.session.kind.word(),
+            criterion: match options.criterion {
+                PlanCriterion::Expected => "expected",
+                PlanCriterion::D => "D",
+                PlanCriterion::A => "A",
+                PlanCriterion::E => "E",
+                PlanCriterion::G => "G",
+            },
+            configurations: count(RowPart::Fit),
+            kept,
+            judge: count(RowPart::Judge),
+            returns: found.rows.iter().filter(|row| row.returns).count(),
+            unknowns: found.unknowns,
+            numbers: found.numbers,
+            robot_error_is_a_guess: found.robot_error_is_a_guess,
+            expected: Entry::new(&found.expected),
+            random: Entry::new(&found.random),
+            log_determinant: found.log_determinant,
+            candidates: found.rows.iter().filter_map(|row| row.candidate).collect(),
+            curve: found.curve.iter().map(curve).collect(),
+            enough: found.enough,
+            rows: found
+                .rows
+                .iter()
+                .map(|row| RowEntry {
+                    set: if row.part == RowPart::Fit { "fit" } else { "held_out" },
+                    returns: row.returns,
+                    readings: row.readings.clone(),
+                })
+                .collect(),
+            robot_words: robot_words(&model.robot),
+        }
+    }
+
+    /// What stands above the table of configurations.
+    #[must_use]
+    pub fn comments(&self) -> Vec<String> {
+        let mut found = vec![
+            format!(
+                "{} configurations to measure and fit, then {} at random to judge by (held_out), each set in a short order of travel.",
+                self.configurations, self.judge
+            ),
+            "Rows whose column `returns` names row 1 are the first configuration again: they show how well the robot repeats, and drift."
+                .to_owned(),
+            "ONLY CONFIGURATIONS ARE CHECKED, NEVER THE WAY BETWEEN THEM: go through them slowly or in simulation first.".to_owned(),
+        ];
+        found.push(format!(
+            "Expected error of the calibrated robot {} mm, with corrections {} mm (RMS).",
+            number(self.expected.calibrated_mm),
+            number(self.expected.corrected_mm)
+        ));
+        found
+    }
+
+    /// As text of lines up to 80 characters (but for names that are longer).
+    #[must_use]
+    pub fn text(&self) -> String {
+        let mut out = String::new();
+        line(&mut out, "robot", &self.robot_words);
+        let kept = if self.kept > 0 { format!(" beside {} kept ones", self.kept) } else { String::new() };
+        let rows = format!(
+            "{} configurations to fit{kept}, {} at random to judge by, {} returns to the first",
+            self.configurations, self.judge, self.returns
+        );
+        line(&mut out, "planned", &rows);
+        if (self.configurations + self.kept) * self.numbers < self.unknowns {
+            line(
+                &mut out,
+                "",
+                &format!(
+                    "{} numbers for {} unknowns: the prior decides the rest",
+                    (self.configurations + self.kept) * self.numbers,
+                    self.unknowns
+                ),
+            );
+        }
+        let words = |it: &Entry| {
+            format!("{} mm calibrated, {} mm corrected", number(it.calibrated_mm), number(it.corrected_mm))
+        };
+        line(&mut out, "expected", &format!("{} (RMS over the workspace)", words(&self.expected)));
+        line(&mut out, "as many random", &words(&self.random));
+        let guess = if self.robot_error_is_a_guess {
+            ", a guess of 0.3 mm for each metre of reach: --robot-error states it"
+        } else {
+            ""
+        };
+        let robot = format!("{} mm that no geometry describes{guess}", number(self.expected.robot_error_mm));
+        line(&mut out, "robot error", &robot);
+        line(
+            &mut out,
+            "checked",
+            "limits of the joints; NOT collisions, sight, or the way between configurations",
+        );
+        // Writing to a String cannot fail.
+        let _ = writeln!(out);
+        let widths = [26, 13];
+        row(&mut out, "configurations", widths, ["calibrated", "of it open", "corrected", "of it open"]);
+        for point in &self.curve {
+            let it = &point.expected;
+            let mark = if point.configurations == self.configurations + self.kept { "  planned" } else { "" };
+            let cells = [
+                it.calibrated_mm,
+                it.calibrated_undetermined_mm,
+                it.corrected_mm,
+                it.corrected_undetermined_mm,
+            ];
+            row(&mut out, &format!("  {}{mark}", point.configurations), widths, cells.map(number));
+        }
+        let _ = writeln!(out);
+        let advice = match self.enough {
+            Some(enough) => format!("{enough} configurations; from there 10 more gain less than 5 %"),
+            None => "more than 100 configurations: 10 more still gain 5 %".to_owned(),
+        };
+        line(&mut out, "advice", &advice);
+        out
+    }
+}
