@@ -18,6 +18,7 @@ mod reproduce;
 mod shared;
 mod simulate;
 mod track;
+mod watch;
 mod words;
 
 #[cfg(any(unix, windows))]
@@ -32,12 +33,13 @@ pub(crate) use hand_eye::{HandEye, OutFrames, Tcp};
 pub(crate) use identify::Identify;
 pub(crate) use init::Init;
 pub(crate) use offsets::Offsets;
-pub(crate) use plan::Plan;
+pub(crate) use plan::{FitArgs, Plan};
 pub(crate) use report::{Report, ReportPlace};
 pub(crate) use reproduce::{Experiment, Reproduce};
 pub(crate) use shared::{TreeArgs, with_mapping};
 pub(crate) use simulate::Simulate;
 pub(crate) use track::Track;
+pub(crate) use watch::Watch;
 #[cfg(any(unix, windows))]
 pub(crate) use words::CameraPlace;
 pub(crate) use words::{CONTACT, ExportForm, FRAMES, JOIN, ProgramLanguage, word_of};
@@ -133,6 +135,10 @@ pub(crate) enum Command {
     Identify(Identify),
     /// Choose the configurations to measure: which, how many, and the error to expect
     Plan(Box<Plan>),
+    /// Judge measurements while they are made: is a row wrong, what to measure next, may one stop
+    ///
+    /// Ends with code 0 where the error of --until is reached, or --once the rows are as expected; 1 where it is not, or a row is named.
+    Watch(Box<Watch>),
     /// Print the JSON Schema of calibration.json
     Schema,
     /// Print a script with which a shell completes the program's commands, options and words

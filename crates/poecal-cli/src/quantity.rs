@@ -189,6 +189,19 @@ pub(crate) fn place_m(text: &str) -> std::result::Result<[f64; 3], String> {
     }
 }
 
+/// Parser of a height for clap: a length of either sign.
+pub(crate) fn height_m(text: &str) -> std::result::Result<f64, String> {
+    signed(text, Unit::Metre).map_err(|error| error.to_string())
+}
+
+/// Parser of two distances for clap.
+pub(crate) fn distances_m(text: &str) -> std::result::Result<[f64; 2], String> {
+    let found = text.split_once(':').and_then(|(a, b)| Some([error_m(a).ok()?, error_m(b).ok()?]));
+    found
+        .filter(|[a, b]| a < b)
+        .ok_or_else(|| format!("found `{text}`, expected two lengths, the shorter first, like 0.5m:10m"))
+}
+
 /// Where a robot will work.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Over {

@@ -8,8 +8,11 @@ use poecal::plan::PlanCriterion;
 use poecal::simulate::Kind;
 
 use super::shared::{ColumnArgs, OutFile, TreeArgs};
-use super::words::{CRITERION, FRAME, one_of, simulated};
-use crate::quantity::{BelievedTolerance, Over, direction, error_m, place_m, sigma_m, sigma_rad, whole};
+use super::words::{CRITERION, FRAME, SELF_COLLISION, one_of, simulated};
+use crate::quantity::{
+    BelievedTolerance, LengthAndAngle, Over, box_m, direction, distances_m, error_m, height_m, place_m,
+    sigma_m, sigma_rad, whole,
+};
 
 /// Arguments of `poecal plan`.
 #[derive(Args, Debug)]
@@ -55,6 +58,23 @@ pub(crate) struct Plan {
     /// model, or the tip]
     #[arg(long, value_name = "X,Y,Zmm", value_parser = place_m, allow_hyphen_values = true)]
     pub(crate) target_offset: Option<[f64; 3]>,
+    #[command(flatten)]
+    pub(crate) fit: FitArgs,
+    #[command(flatten)]
+    pub(crate) conditions: ConditionArgs,
+    /// Seed of everything random
+    #[arg(long, default_value_t = 1, value_parser = whole::<u64>)]
+    pub(crate) seed: u64,
+    #[command(flatten)]
+    pub(crate) place: OutFile,
+    /// Print JSON instead of the table
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+/// The fit that will be made, and what is believed before.
+#[derive(Args, Debug)]
+pub(crate) struct FitArgs {
     /// Standard deviation of each measured position component
     #[arg(long, value_name = "LENGTH", value_parser = sigma_m, allow_hyphen_values = true, default_value = "0.05mm")]
     pub(crate) sigma_position: f64,
@@ -78,12 +98,43 @@ pub(crate) struct Plan {
     /// Where gravity pulls, in the robot's base frame
     #[arg(long, value_name = "X,Y,Z", value_parser = direction, default_value = "0,0,-1", allow_hyphen_values = true)]
     pub(crate) gravity: [f64; 3],
-    /// Seed of everything random
-    #[arg(long, default_value_t = 1, value_parser = whole::<u64>)]
-    pub(crate) seed: u64,
-    #[command(flatten)]
-    pub(crate) place: OutFile,
-    /// Print JSON instead of the table
-    #[arg(long)]
-    pub(crate) json: bool,
+}
+
+/// What a configuration must fulfil to be measured; all places in the robot's base frame.
+#[derive(Args, Debug)]
+#[command(next_help_heading = "What can be measured")]
+pub(crate) struct ConditionArgs {
+    /// How far every joint stays from its limits
+    #[arg(long, value_name = "ANGLE,LENGTH", default_value = "0deg,0mm")]
+    pub(crate) margin: LengthAndAngle,
+    /// Box into which no part of the robot may reach, by two corners (repeatable)
+    #[arg(long, value_name = "X,Y,Z:X,Y,Zmm", value_parser = box_m, allow_hyphen_values = true)]
+    pub(crate) keep_out: Vec<[[f64; 3]; 2]>,
+    /// Height above which all links that move stay, like 20mm
+    #[arg(long, value_name = "LENGTH", value_parser = height_m, allow_hyphen_values = true)]
+    pub(crate) floor: Option<f64>,
+    /// Least change of some joint between any two configurations
+    #[arg(long, value_name = "ANGLE", value_parser = sigma_rad)]
+    pub(crate) separation: Option<f64>,
+    /// Where the measuring device is; targets that links hide from it are left out
+    #[arg(long, value_name = "X,Y,Zmm", value_parser = place_m, allow_hyphen_values = true)]
+    pub(crate) device: Option<[f64; 3]>,
+    /// Half the angle of the device's cone, about the direction from it to --device-looks-at
+    #[arg(long, value_name = "ANGLE", value_parser = sigma_rad, requires = "device")]
+    pub(crate) cone: Option<f64>,
+    /// Where the device looks [default: the base]
+    #[arg(long, value_name = "X,Y,Zmm", value_parser = place_m, requires = "cone", allow_hyphen_values = true)]
+    pub(crate) device_looks_at: Option<[f64; 3]>,
+    /// Least and largest distance of the target from the device, like 0.5m:10m
+    #[arg(long, value_name = "LENGTH:LENGTH", value_parser = distances_m, requires = "device")]
+    pub(crate) distance: Option<[f64; 2]>,
+    /// Largest angle between the direction in which the target looks and the line to the device: of a reflector or a board
+    #[arg(long, value_name = "ANGLE", value_parser = sigma_rad, requires = "device")]
+    pub(crate) acceptance: Option<f64>,
+    /// The direction in which the target looks, in its own frame [default: 0,0,1]
+    #[arg(long, value_name = "X,Y,Z", value_parser = direction, requires = "acceptance", allow_hyphen_values = true)]
+    pub(crate) facing: Option<[f64; 3]>,
+    /// Whether links may overlap by their shapes in the URDF: capsules around these, so that a little room is lost
+    #[arg(long, value_parser = one_of(SELF_COLLISION), default_value = "avoid", action = clap::ArgAction::Set)]
+    pub(crate) self_collision: bool,
 }

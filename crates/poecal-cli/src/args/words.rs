@@ -288,6 +288,12 @@ pub(super) const CRITERION: Words<PlanCriterion> = &[
     ("G", "Largest variance of a prediction in the workspace", PlanCriterion::G),
 ];
 
+/// Whether collisions of the robot with itself are avoided.
+pub(super) const SELF_COLLISION: Words<bool> = &[
+    ("avoid", "Configurations in which links overlap are left out", true),
+    ("ignore", "Shapes are not looked at", false),
+];
+
 /// Parser of one of these words for clap.
 pub(super) fn one_of<T: Copy + Send + Sync + 'static>(words: Words<T>) -> impl TypedValueParser<Value = T> {
     listed(words.to_vec())

@@ -33,6 +33,7 @@ mod tcp;
 mod track;
 mod typed;
 mod validate;
+mod watch;
 
 #[cfg(any(unix, windows))]
 pub(crate) use board::board;
@@ -62,3 +63,4 @@ pub(crate) use simulate::simulate;
 pub(crate) use tcp::tcp;
 pub(crate) use track::track;
 pub(crate) use validate::validate;
+pub(crate) use watch::watch;

@@ -5,14 +5,16 @@ use std::path::PathBuf;
 use poecal::analysis::PlannedSession;
 use poecal::calibration::DeviceFrameKnowledge;
 use poecal::io::measurements::{ReadOptions, planned_table, read_joints};
-use poecal::io::model::Model;
+use poecal::io::model::{Model, ModelSource};
+use poecal::io::shapes::capsules;
 use poecal::measurement::Noise;
-use poecal::plan::{PlanOptions, PlannedFit, plan as planned, workspace_in};
+use poecal::plan::{Conditions, PlanOptions, PlannedFit, Sight, plan as planned, workspace_in};
 use poecal::robot::Tolerance;
+use poecal::simulate::Kind;
 use poecal::{ErrorKind, Result, report};
 
 use crate::DONE;
-use crate::args::Plan;
+use crate::args::{FitArgs, Plan};
 use crate::console::Console;
 use crate::quantity::{BelievedTolerance, Over};
 use crate::style::{labelled, shown};
@@ -35,13 +37,21 @@ pub(crate) fn plan(arguments: &Plan, console: &Console) -> Result<u8> {
         Over::Tasks(path) => Some(read(path)?),
         Over::Box(corners) => Some(workspace_in(&model.robot, corners, arguments.seed)?),
     };
+    // A nest of several beside the flange.
+    let nest = [0.05, 0.0, 0.0];
+    let offset = arguments.target_offset.or((arguments.targets > 1).then_some(nest));
     let options = PlanOptions {
-        fit: fit(arguments)?,
+        fit: PlannedFit {
+            targets: arguments.targets as usize,
+            target_offset: offset.map(Into::into),
+            ..fit(&arguments.fit, arguments.measure, arguments.count)?
+        },
         criterion: arguments.criterion,
         list,
         workspace,
         judge: arguments.judge.map(|count| count as usize),
         kept,
+        conditions: conditions(arguments, &model, console),
         seed: arguments.seed,
         ..PlanOptions::default()
     };
@@ -71,14 +81,19 @@ pub(crate) fn plan(arguments: &Plan, console: &Console) -> Result<u8> {
 }
 
 /// Joint readings of a file.
-fn readings(path: &PathBuf, model: &Model, options: &ReadOptions, console: &Console) -> Result<Vec<f64>> {
+pub(super) fn readings(
+    path: &PathBuf,
+    model: &Model,
+    options: &ReadOptions,
+    console: &Console,
+) -> Result<Vec<f64>> {
     let joints = read_joints(path, &model.robot, options)?;
     console.warnings(&joints.warnings);
     Ok(joints.readings)
 }
 
-/// The fit that will be made.
-fn fit(arguments: &Plan) -> Result<PlannedFit> {
+/// The fit that will be made of so many configurations of a kind.
+pub(super) fn fit(arguments: &FitArgs, kind: Kind, count: u32) -> Result<PlannedFit> {
     let tolerance = match &arguments.tolerance {
         BelievedTolerance::None => Some(Tolerance::WIDE),
         BelievedTolerance::Given(tolerance) => Some(*tolerance),
@@ -86,20 +101,45 @@ fn fit(arguments: &Plan) -> Result<PlannedFit> {
             return ErrorKind::Option.refuse("found a --tolerance that measurements or a controller decide, expected an angle and a length, like 0.5deg,5mm, or none");
         }
     };
-    let default_nest = [0.05, 0.0, 0.0];
-    let offset = arguments.target_offset.or((arguments.targets > 1).then_some(default_nest));
     Ok(PlannedFit {
         session: PlannedSession {
-            kind: arguments.measure,
+            kind,
             noise: Noise::new(arguments.sigma_position, arguments.sigma_rotation),
             device_free: arguments.frame == DeviceFrameKnowledge::Unknown,
         },
-        count: arguments.count as usize,
+        count: count as usize,
         tolerance,
         corrections: arguments.corrections,
         gravity: arguments.gravity.into(),
         robot_error_m: arguments.robot_error,
-        targets: arguments.targets as usize,
-        target_offset: offset.map(Into::into),
+        ..PlannedFit::default()
     })
+}
+
+/// What a configuration must fulfil.
+fn conditions(arguments: &Plan, model: &Model, console: &Console) -> Conditions {
+    let it = &arguments.conditions;
+    let capsules = match &model.source {
+        ModelSource::Urdf(urdf) if it.self_collision => {
+            let (capsules, notes) = capsules(urdf, &model.path);
+            notes.iter().for_each(|note| console.remark(note));
+            capsules
+        }
+        ModelSource::Urdf(_) | ModelSource::Toml | ModelSource::Calibration(_) => Vec::new(),
+    };
+    let sight = it.device.map(|place| Sight {
+        place: place.into(),
+        cone: it.cone.map(|half| (it.device_looks_at.unwrap_or_default().into(), half)),
+        distance_m: it.distance.unwrap_or([0.0, f64::INFINITY]),
+        acceptance_rad: it.acceptance,
+        facing: it.facing.unwrap_or([0.0, 0.0, 1.0]).into(),
+    });
+    Conditions {
+        margin: [it.margin.angle_rad, it.margin.length_m],
+        keep_out: it.keep_out.clone(),
+        floor_m: it.floor,
+        separation_rad: it.separation.unwrap_or(0.0),
+        sight,
+        capsules,
+    }
 }

@@ -11,12 +11,12 @@ use crate::error::{ErrorKind, Result};
 use crate::estimate::{Chain, Estimate, Linkage, Packed, Session, Unknowns, delivered, radian_m};
 use crate::lie::Pose;
 use crate::linalg;
-use crate::measurement::{ByQuantity, Dataset};
+use crate::measurement::{ByQuantity, Dataset, Noise, Quantity};
 use crate::parameters::{Parameter, screw_axes};
-use crate::problem::{MOST_UNKNOWNS, Prior, Problem};
+use crate::problem::{Layout, MOST_UNKNOWNS, Prior, Problem, TermPrior};
 use crate::robot::{CorrectionModel, Corrections, Extent, Robot, Sizes, Tolerance};
 use crate::simulate::random_configuration;
-use crate::solve::Normal;
+use crate::solve::{Normal, Options, minimize};
 use crate::unit::Unit;
 
 /// Random configurations by which unknowns are scaled and terms are combined, and their seed.
@@ -28,6 +28,8 @@ const RIDGE: f64 = 1.0;
 const NEGLIGIBLE: f64 = 0.01;
 /// Robot error where none is stated, as a share of the reach.
 const USUAL_ERROR: f64 = 3e-4;
+/// Most iterations of a fit while rows arrive.
+const ITERATIONS: usize = 30;
 /// Largest number of places from which one configuration is measured.
 const MOST_PLACES: usize = 64;
 
@@ -39,7 +41,15 @@ pub(crate) struct Experiment {
     model: Robot,
     session: PlannedSession,
     unknowns: Unknowns,
-    estimate: Estimate,
+    pub(crate) estimate: Estimate,
+    /// A row of each pair of an instrument and a target, of measurements that were begun.
+    template: Option<Dataset>,
+    /// Terms with their prior standard deviations.
+    deviations: Vec<TermPrior>,
+    tolerance: Tolerance,
+    /// The free parameters: of the sample, so that device frames turn about the same points whatever the rows.
+    free: Vec<Parameter>,
+    targets: usize,
     length_m: f64,
     /// How often a configuration is repeated so that each place measures it once.
     repeats: usize,
@@ -56,6 +66,8 @@ pub(crate) struct Experiment {
     /// What geometry does not describe, metres: of the stated error, the part that the terms make and the rest.
     pub(crate) robot_error_m: f64,
     pub(crate) rest_m: f64,
+    /// Information of a row for a fit that takes all of the robot error for noise, as a share of that for one that knows the terms.
+    share: f64,
     /// Whether the robot error is a guess.
     pub(crate) is_guess: bool,
 }
@@ -63,6 +75,20 @@ pub(crate) struct Experiment {
 impl Experiment {
     /// Refuses kinds of measurement whose configurations cannot be chosen freely.
     pub(crate) fn new(robot: &Robot, fit: &PlannedFit) -> Result<Self> {
+        Experiment::made(robot, fit, None)
+    }
+
+    /// The same of measurements that were begun, about an estimate that predicts them: rows are as theirs.
+    pub(crate) fn begun(
+        robot: &Robot,
+        fit: &PlannedFit,
+        data: &Dataset,
+        registered: &Estimate,
+    ) -> Result<Self> {
+        Experiment::made(robot, fit, Some((data, registered)))
+    }
+
+    fn made(robot: &Robot, fit: &PlannedFit, begun: Option<(&Dataset, &Estimate)>) -> Result<Self> {
         let kind = fit.session.kind;
         if kind.is_touched() || kind.is_paired() {
             return ErrorKind::Option.refuse(format!(
@@ -71,7 +97,7 @@ impl Experiment {
                 kind.word()
             ));
         }
-        let robot = with_targets(robot, fit);
+        let robot = if begun.is_some() { robot.clone() } else { with_targets(robot, fit) };
         let sizes = match fit.corrections {
             Corrections::Off => Sizes::NONE,
             Corrections::Sizes(sizes) => sizes,
@@ -93,6 +119,11 @@ impl Experiment {
         let mut found = Experiment {
             length_m: radian_m(&robot, &Packed::new(&robot, &sample, width)),
             estimate: Estimate::new(&model, vec![model.home], Pose::identity()),
+            template: begun.map(|(data, _)| data.only(&one_of_each(data))),
+            deviations: Vec::new(),
+            tolerance: fit.tolerance.unwrap_or(Tolerance::WIDE),
+            free: Vec::new(),
+            targets: 1,
             robot,
             model,
             session: fit.session,
@@ -105,9 +136,10 @@ impl Experiment {
             prior: DMatrix::zeros(0, 0),
             robot_error_m: 0.0,
             rest_m: 0.0,
+            share: 1.0,
             is_guess: fit.robot_error_m.is_none(),
         };
-        found.settle(&sample, fit, &deviations, &corrected)?;
+        found.settle(&sample, fit, (&deviations, &corrected), begun)?;
         Ok(found)
     }
 
@@ -116,11 +148,11 @@ impl Experiment {
         &mut self,
         sample: &[f64],
         fit: &PlannedFit,
-        deviations: &[f64],
-        corrected: &CorrectionModel,
+        (deviations, corrected): (&[f64], &CorrectionModel),
+        begun: Option<(&Dataset, &Estimate)>,
     ) -> Result<()> {
         let width = self.width();
-        if !self.session.kind.has_device() {
+        if !self.session.kind.has_device() && begun.is_none() {
             let often = sample[..width].repeat(MOST_PLACES);
             let (data, _) = predicted_data(&self.robot, &often, &self.session)?;
             let mut sights: Vec<(usize, usize)> =
@@ -129,7 +161,7 @@ impl Experiment {
             sights.dedup();
             self.repeats = sights.len().max(1);
         }
-        let (data, devices) = predicted_data(&self.robot, &self.repeated(sample), &self.session)?;
+        let (data, devices) = self.data(sample)?;
         let first = data.observations.first().map(|row| row.measurement.dim());
         if data.observations.iter().any(|row| Some(row.measurement.dim()) != first) {
             return ErrorKind::Option.refuse(format!(
@@ -141,7 +173,10 @@ impl Experiment {
             data.observations.iter().map(|row| row.measurement.dim()).sum::<usize>() / SAMPLE.max(1);
         let packed = Packed::of(&self.model, &data);
         let rows = data.all_rows();
-        let mut estimate = delivered(&self.model, &data);
+        let mut estimate = match begun {
+            Some((_, registered)) => self.with_gives(registered, &data),
+            None => delivered(&self.model, &data),
+        };
         for (station, device) in devices.into_iter().enumerate() {
             *estimate.device_mut(station) = device;
         }
@@ -149,9 +184,16 @@ impl Experiment {
         estimate.recentre(&session, &rows);
         self.estimate = estimate;
         let session = self.session_of(&data, &packed);
-        let free = self.free(&session, &rows);
-        let problem = Problem::new(session, rows.clone(), free, self.session.noise);
-        let layout = problem.layout().clone();
+        let joints = screw_axes(self.estimate.kinds());
+        let free = match begun {
+            // Device frames turn about the middle of what was measured.
+            Some((data, _)) => {
+                let packed = Packed::of(&self.model, data);
+                free_parameters(&self.session_of(data, &packed), &self.estimate, &data.all_rows(), joints)
+            }
+            None => free_parameters(&session, &self.estimate, &rows, joints),
+        };
+        let layout = Layout::new(free.clone(), self.length_m);
         if layout.dim() > MOST_UNKNOWNS {
             return ErrorKind::Problem.refuse(format!(
                 "found {} unknowns, expected at most {MOST_UNKNOWNS} in one fit: plan a shorter chain",
@@ -159,12 +201,14 @@ impl Experiment {
             ));
         }
         let (mut geometry, mut terms, mut scales) = (Vec::new(), Vec::new(), Vec::new());
+        let mut priors = Vec::new();
         let known: Vec<(usize, crate::robot::Term)> = corrected.terms().collect();
         for (parameter, places) in layout.parameters() {
             match parameter.value_term() {
                 Some(it) => {
                     let own = known.iter().position(|&(joint, term)| (joint, term) == (it.joint, it.term));
                     let deviation = own.and_then(|at| deviations.get(at)).copied().unwrap_or(0.0);
+                    priors.push(TermPrior { joint: it.joint, term: it.term, deviation });
                     // A step along a term is in scaled units.
                     terms.extend(places.iter().map(|(place, _)| *place));
                     scales.extend(places.iter().map(|(_, scale)| deviation * scale));
@@ -183,6 +227,7 @@ impl Experiment {
         };
         let prior = DMatrix::from_fn(geometry.len(), geometry.len(), own);
         (self.prior, self.geometry, self.terms) = (prior, geometry, terms);
+        (self.free, self.targets, self.deviations) = (free, data.targets.len().max(1), priors);
         self.turn = DMatrix::from_diagonal(&nalgebra::DVector::from_vec(scales));
         self.settle_error(sample, fit)?;
         self.settle_modes(sample, fit.count)
@@ -195,10 +240,14 @@ impl Experiment {
         let of_terms = if self.terms.is_empty() { 0.0 } else { self.error_of_terms(sample)? };
         let scale = if of_terms > error_m { error_m / of_terms } else { 1.0 };
         self.turn *= scale;
+        self.deviations.iter_mut().for_each(|it| it.deviation *= scale);
         self.rest_m = (error_m.powi(2) - (scale * of_terms).powi(2)).max(0.0).sqrt();
         // The rest is another in each configuration; what turns by it is as far away as a radian counts.
         let each = self.rest_m / 3f64.sqrt();
         let (stated, length_m) = (fit.session.noise, self.length_m);
+        let leading = fit.session.kind.quantities().first().copied().unwrap_or(Quantity::Position);
+        let noise = stated[leading] * if leading.unit() == Unit::Radian { length_m } else { 1.0 };
+        self.share = (noise.powi(2) + each.powi(2)) / (noise.powi(2) + error_m.powi(2) / 3.0);
         self.session.noise = ByQuantity::from_fn(|quantity| match quantity.unit() {
             Unit::Metre => stated[quantity].hypot(each),
             Unit::Radian => stated[quantity].hypot(each / length_m),
@@ -246,6 +295,11 @@ impl Experiment {
         self.length_m
     }
 
+    /// Information of a row for the calibrated model, as a share of that for the corrected one.
+    pub(crate) fn share(&self) -> f64 {
+        self.share
+    }
+
     /// Number of unknowns of geometry.
     pub(crate) fn geometry(&self) -> usize {
         self.geometry.len()
@@ -255,14 +309,84 @@ impl Experiment {
         readings.chunks_exact(self.width()).flat_map(|own| own.repeat(self.repeats)).collect()
     }
 
+    /// Rows of configurations, and device frames that are not the model's.
+    fn data(&self, readings: &[f64]) -> Result<(Dataset, Vec<Pose>)> {
+        let Some(template) = &self.template else {
+            return predicted_data(&self.robot, &self.repeated(readings), &self.session);
+        };
+        let mut data = template.only(&[]);
+        for own in readings.chunks_exact(self.width()) {
+            for observation in &template.observations {
+                data.push_observation(own, observation.clone())?;
+            }
+        }
+        Ok((data, Vec::new()))
+    }
+
+    /// An estimate of the robot as one of the robot with gives and terms of zero.
+    fn with_gives(&self, registered: &Estimate, data: &Dataset) -> Estimate {
+        let mut estimate = delivered(&self.model, data);
+        estimate.base_from_target.clone_from(&registered.base_from_target);
+        estimate.device_from_base = registered.device_from_base;
+        estimate.further_devices.clone_from(&registered.further_devices);
+        estimate
+    }
+
+    /// The fit of geometry and terms with their priors to rows, from the estimate on; what is left, as the cost.
+    pub(crate) fn fitted(&self, data: &Dataset) -> (Estimate, f64) {
+        let packed = Packed::of(&self.model, data);
+        let session = self.session_of(data, &packed);
+        let prior = Prior::of(&session, self.tolerance).with_terms(self.deviations.clone());
+        let problem = Problem::new(session, data.all_rows(), self.free.clone(), self.session.noise)
+            .with_prior(Some((&prior, 1.0)));
+        let options = Options { iterations: ITERATIONS, ..Options::default() };
+        let (estimate, normal, _) = minimize(&problem, self.estimate.clone(), &options);
+        (estimate, normal.cost)
+    }
+
+    /// Whitened rows of measurements at the estimate, as [`Experiment::blocks`], and their residuals; each row a block of its own.
+    pub(crate) fn rows(&self, data: &Dataset) -> (DMatrix<f64>, nalgebra::DVector<f64>) {
+        let packed = Packed::of(&self.model, data);
+        let rows = data.all_rows();
+        let problem =
+            Problem::new(self.session_of(data, &packed), rows.clone(), self.free.clone(), self.session.noise);
+        let (_, jacobian, residuals) = whitened_rows(&problem, &self.estimate, &rows);
+        let (g, c) = (self.geometry.len(), self.turn.ncols());
+        let mut own = DMatrix::zeros(jacobian.nrows(), g + c);
+        own.columns_mut(0, g).copy_from(&jacobian.select_columns(&self.geometry));
+        own.columns_mut(g, c).copy_from(&(jacobian.select_columns(&self.terms) * &self.turn));
+        (own, residuals)
+    }
+
+    /// Noise of each quantity, with what neither geometry nor terms describe.
+    pub(crate) fn noise(&self) -> Noise {
+        self.session.noise
+    }
+
+    /// Squares of the terms at the estimate in units of their prior variances, and how many of them were determined.
+    pub(crate) fn size_of_terms(&self, covariance: &DMatrix<f64>, geometry: usize) -> (f64, f64) {
+        let own = self.deviations.iter().filter(|it| it.deviation > 0.0);
+        let size = own.map(|it| (self.estimate.coefficient(it.joint, it.term) / it.deviation).powi(2)).sum();
+        let modes = covariance.nrows() - geometry;
+        let open: f64 = (geometry..covariance.nrows()).map(|at| covariance[(at, at)]).sum();
+        (size, (modes as f64 - open).max(0.0))
+    }
+
+    /// Columns among those of geometry that shift a target.
+    pub(crate) fn shifts_of(&self, target: usize) -> Vec<usize> {
+        let layout = Layout::new(self.free.clone(), self.length_m);
+        let own = layout.parameters().filter_map(|(parameter, places)| {
+            let (of, motions) = parameter.target_motions()?;
+            let count = motions.iter().take_while(|motion| **motion < 3).count();
+            (of == target).then(|| places[..count].iter().map(|it| it.0).collect::<Vec<_>>())
+        });
+        own.flatten().filter_map(|place| self.geometry.binary_search(&place).ok()).collect()
+    }
+
     fn session_of<'a>(&'a self, data: &'a Dataset, packed: &'a Packed) -> Session<'a> {
         Session::new(&self.model, data, packed, self.session.device_free)
             .with_unknowns(&self.unknowns)
             .with_length(self.length_m)
-    }
-
-    fn free(&self, session: &Session<'_>, rows: &[u32]) -> Vec<Parameter> {
-        free_parameters(session, &self.estimate, rows, screw_axes(self.estimate.kinds()))
     }
 
     /// The rows of configurations as linear functions of geometry and modes.
@@ -271,11 +395,11 @@ impl Experiment {
         let columns = self.geometry.len() + self.turn.ncols();
         let mut values = Vec::with_capacity(readings.len() / self.width() * self.numbers * columns);
         for some in readings.chunks(CHUNK * self.width()) {
-            let (data, _) = predicted_data(&self.robot, &self.repeated(some), &self.session)?;
+            let (data, _) = self.data(some)?;
             let packed = Packed::of(&self.model, &data);
             let rows = data.all_rows();
             let session = self.session_of(&data, &packed);
-            let problem = Problem::new(session, rows.clone(), self.free(&session, &rows), self.session.noise);
+            let problem = Problem::new(session, rows.clone(), self.free.clone(), self.session.noise);
             let (_, jacobian, _) = whitened_rows(&problem, &self.estimate, &rows);
             if !jacobian.iter().all(|value| value.is_finite()) {
                 return ErrorKind::Measurement.refuse("found joint readings beyond what can be computed with, expected radians and metres: check their units");
@@ -308,21 +432,12 @@ impl Experiment {
     /// Three rows of each target in each configuration, and the number of targets.
     fn motions(&self, readings: &[f64]) -> (DMatrix<f64>, usize) {
         let columns = self.geometry.len() + self.turn.ncols();
-        let Ok((data, _)) =
-            predicted_data(&self.robot, &self.repeated(&readings[..self.width()]), &self.session)
-        else {
-            return (DMatrix::zeros(0, columns), 1);
-        };
-        let rows = data.all_rows();
-        let packed = Packed::of(&self.model, &data);
-        let session = self.session_of(&data, &packed);
-        let problem = Problem::new(session, rows.clone(), self.free(&session, &rows), self.session.noise);
-        let layout = problem.layout();
+        let layout = Layout::new(self.free.clone(), self.length_m);
         let packed = Packed::new(&self.model, readings, self.width());
         let linkage = Linkage::new(&self.estimate);
         let (mut chain, mut twists) =
             (Chain::default(), vec![(Vector3::zeros(), Vector3::zeros()); layout.dim()]);
-        let targets = data.targets.len().max(1);
+        let targets = self.targets;
         let mut found = DMatrix::zeros(3 * packed.rows() * targets, layout.dim());
         for row in 0..packed.rows() {
             for target in 0..targets {
@@ -407,4 +522,18 @@ impl Blocks {
         let values = some.iter().flat_map(|&index| self.of(index).iter().copied()).collect();
         Blocks { values, ..*self }
     }
+}
+
+/// The first row of each pair of an instrument and a target.
+fn one_of_each(data: &Dataset) -> Vec<u32> {
+    let mut known: Vec<(usize, usize)> = Vec::new();
+    let mut rows = Vec::new();
+    for (row, observation) in (0..).zip(&data.observations) {
+        let pair = (observation.station, observation.target);
+        if !known.contains(&pair) {
+            known.push(pair);
+            rows.push(row);
+        }
+    }
+    rows
 }

@@ -4,6 +4,7 @@ use nalgebra::DMatrix;
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 
+use super::conditions::{Checker, Conditions, Obstacle, Refusals};
 use super::experiment::{Blocks, Experiment, inverse};
 use super::options::{PlanCriterion, PlannedFit};
 use super::order::Travel;
@@ -61,6 +62,8 @@ pub struct PlanOptions {
     pub workspace: Option<Vec<f64>>,
     /// Number of random rows to judge by; a third of the configurations if it is not stated.
     pub judge: Option<usize>,
+    /// What a configuration must fulfil to be measured.
+    pub conditions: Conditions,
     /// Configurations that are measured in any case, or were.
     pub kept: Vec<f64>,
     /// Seed of what is random.
@@ -76,6 +79,7 @@ impl Default for PlanOptions {
             candidates: CANDIDATES,
             workspace: None,
             judge: None,
+            conditions: Conditions::default(),
             kept: Vec::new(),
             seed: 1,
         }
@@ -119,13 +123,18 @@ pub struct ExpectedErrors {
 
 impl ExpectedErrors {
     fn new(experiment: &Experiment, squares: &Squares) -> Self {
+        ExpectedErrors::seen(experiment, squares, [1.0; 2])
+    }
+
+    /// The same where noise and terms are so many times as large as believed, in variances.
+    pub(super) fn seen(experiment: &Experiment, squares: &Squares, [noise, terms]: [f64; 2]) -> Self {
         let (robot, rest) = (experiment.robot_error_m, experiment.rest_m);
-        let of_terms = (robot * robot - rest * rest).max(0.0);
+        let of_terms = (robot * robot - rest * rest).max(0.0) * terms;
         ExpectedErrors {
-            undetermined_m: (squares.calibrated() - of_terms).max(0.0).sqrt(),
-            robot_m: robot,
+            undetermined_m: (squares.expected() - of_terms).max(0.0).sqrt(),
+            robot_m: (of_terms + rest * rest * noise).sqrt(),
             corrected_undetermined_m: squares.corrected.max(0.0).sqrt(),
-            corrected_robot_m: rest,
+            corrected_robot_m: rest * noise.sqrt(),
         }
     }
 
@@ -172,6 +181,12 @@ pub struct Plan {
     pub robot_error_is_a_guess: bool,
     /// Logarithm of the determinant of geometry's information, to compare lists of one robot.
     pub log_determinant: f64,
+    /// Conditions that candidates did not fulfil.
+    pub refusals: Refusals,
+    /// Pairs of links whose shapes always overlap, for which collisions are not looked.
+    pub left_out: Vec<(String, String)>,
+    /// Joints without limits, which were taken within ±180° or ±0.5 m.
+    pub without_limits: Vec<String>,
 }
 
 /// Plans a session: theory.md, *Choosing configurations*.
@@ -213,11 +228,37 @@ pub fn workspace_in(robot: &Robot, corners: &[[f64; 3]; 2], seed: u64) -> Result
     ))
 }
 
+/// Random configurations that are accepted, up to a number.
+fn drawn(
+    checker: &Checker<'_>,
+    count: usize,
+    generator: &mut ChaCha8Rng,
+    mut accepts: impl FnMut(&Checker<'_>, &[f64]) -> bool,
+) -> Vec<f64> {
+    let (mut found, mut kept) = (Vec::new(), 0);
+    for _ in 0..count * ATTEMPTS {
+        let readings = checker.configurations().random(generator);
+        if accepts(checker, &readings) {
+            found.extend(readings);
+            kept += 1;
+            if kept == count {
+                break;
+            }
+        }
+    }
+    found
+}
+
 /// A session to be planned, with candidates.
 struct Planner<'a> {
     options: &'a PlanOptions,
     experiment: Experiment,
     candidates: Vec<f64>,
+    /// Where each candidate stands in the list.
+    origins: Option<Vec<usize>>,
+    refusals: Refusals,
+    left_out: Vec<(String, String)>,
+    without_limits: Vec<String>,
     blocks: Blocks,
     kept: DMatrix<f64>,
     kept_count: usize,
@@ -238,20 +279,52 @@ impl<'a> Planner<'a> {
         }
         let width = experiment.width();
         let mut generator = ChaCha8Rng::seed_from_u64(options.seed);
-        let configurations = Configurations::new(robot);
-        let mut draw = |count: usize| -> Vec<f64> {
-            (0..count).flat_map(|_| configurations.random(&mut generator)).collect()
+        let planned = experiment.robot.clone();
+        let checker = Checker::new(&planned, &options.conditions);
+        let mut refusals = Refusals::default();
+        let (candidates, origins) = match &options.list {
+            Some(list) => {
+                let origins: Vec<usize> = (0..list.len() / width)
+                    .filter(|&at| {
+                        let found = checker.measured(&list[at * width..(at + 1) * width]);
+                        // Where the robot was, no limit of a model forbids.
+                        let found = found
+                            .filter(|&it| it != Obstacle::Limits || options.conditions.margin != [0.0; 2]);
+                        refusals.add(found);
+                        found.is_none()
+                    })
+                    .collect();
+                let own = origins.iter().flat_map(|&at| list[at * width..(at + 1) * width].to_vec());
+                (own.collect(), Some(origins.clone()))
+            }
+            None => {
+                let wanted = options.candidates.max(options.fit.count);
+                let found = drawn(&checker, wanted, &mut generator, |checker, readings| {
+                    let obstacle = checker.measured(readings);
+                    refusals.add(obstacle);
+                    obstacle.is_none()
+                });
+                (found, None)
+            }
         };
-        let candidates =
-            options.list.clone().unwrap_or_else(|| draw(options.candidates.max(options.fit.count)));
-        let workspace = options.workspace.clone().unwrap_or_else(|| draw(WORKSPACE));
+        let workspace = match &options.workspace {
+            Some(workspace) => workspace.clone(),
+            None => drawn(&checker, WORKSPACE, &mut generator, |checker, readings| {
+                checker.robot(readings).is_none()
+            }),
+        };
         let count = candidates.len() / width;
-        if count < options.fit.count {
+        if count < options.fit.count || workspace.is_empty() {
+            let words = refusals.words();
             return ErrorKind::Option.refuse(format!(
-                "found {count} candidates, expected at least the {} configurations of the plan",
+                "found {count} configurations that can be measured among {}{}{words}, expected at least the {} of the plan: widen the conditions, or \
+                 plan fewer",
+                refusals.tried,
+                if words.is_empty() { "" } else { "; refused were " },
                 options.fit.count
             ));
         }
+        let (left_out, without_limits) = (checker.left_out.clone(), checker.without_limits());
         let blocks = experiment.blocks(&candidates)?;
         let n = blocks.columns;
         let (kept, kept_count) = if options.kept.is_empty() {
@@ -263,13 +336,18 @@ impl<'a> Planner<'a> {
         let has_terms = n > experiment.geometry();
         let weights =
             Weights { calibrated: 1.0, corrected: if has_terms { 1.0 } else { 0.0 }, determinant: 0.0 };
-        let mut aim = Aim::new(&experiment.prior, experiment.moments(&workspace), weights);
+        let mut aim =
+            Aim::new(&experiment.prior, experiment.moments(&workspace), weights, experiment.share());
         let random = random_lists(&aim, &kept, &blocks, options)?;
         if has_terms {
             aim.weights.calibrated = 1.0 / random.calibrated();
             aim.weights.corrected = 1.0 / random.corrected;
         }
         Ok(Planner {
+            origins,
+            refusals,
+            left_out,
+            without_limits,
             options,
             experiment,
             candidates,
@@ -291,9 +369,9 @@ impl<'a> Planner<'a> {
         let mut readings: Vec<Vec<f64>> =
             chosen.iter().map(|&at| self.candidates[at * width..(at + 1) * width].to_vec()).collect();
         let mut rows = self.blocks.only(&chosen);
-        let mut origins: Vec<Option<usize>> = chosen.iter().map(|&at| Some(at)).collect();
+        let origins: Vec<Option<usize>> =
+            chosen.iter().map(|&at| self.origins.as_ref().and_then(|it| it.get(at)).copied()).collect();
         if self.options.list.is_none() {
-            origins.fill(None);
             if self.options.criterion == PlanCriterion::Expected {
                 self.refine(&mut readings, &mut rows)?;
             }
@@ -313,6 +391,9 @@ impl<'a> Planner<'a> {
             numbers: self.experiment.numbers,
             robot_error_is_a_guess: self.experiment.is_guess,
             log_determinant,
+            refusals: self.refusals,
+            left_out: self.left_out,
+            without_limits: self.without_limits,
         })
     }
 
@@ -327,7 +408,10 @@ impl<'a> Planner<'a> {
 
     /// The candidates of the list, by the criterion.
     fn chosen(&self, count: usize) -> Vec<usize> {
-        let apart = |_: usize, _: usize| true;
+        let travel = Travel::new(&self.experiment.robot, self.experiment.length_m());
+        let (width, least) = (self.experiment.width(), self.options.conditions.separation_rad);
+        let at = |index: usize| &self.candidates[index * width..(index + 1) * width];
+        let apart = |a: usize, b: usize| least <= 0.0 || travel.distance(at(a), at(b)) >= least;
         let best = |aim: &Aim, kept: &DMatrix<f64>, blocks: &Blocks| {
             let search = Search { aim, kept, blocks, apart: &apart };
             let greedy = search.greedy(Vec::new(), count);
@@ -341,7 +425,12 @@ impl<'a> Planner<'a> {
         let kept = self.kept.view((0, 0), (g, g)).into_owned();
         let aim = |moments: DMatrix<f64>, determinant: f64| {
             let calibrated = if determinant > 0.0 { 0.0 } else { 1.0 };
-            Aim::new(&self.experiment.prior, moments, Weights { calibrated, corrected: 0.0, determinant })
+            Aim::new(
+                &self.experiment.prior,
+                moments,
+                Weights { calibrated, corrected: 0.0, determinant },
+                self.experiment.share(),
+            )
         };
         match self.options.criterion {
             PlanCriterion::Expected | PlanCriterion::D => {
@@ -397,7 +486,9 @@ impl<'a> Planner<'a> {
     /// Looks around each configuration for better ones.
     fn refine(&mut self, readings: &mut [Vec<f64>], rows: &mut Blocks) -> Result<()> {
         let robot = &self.experiment.robot;
-        let configurations = Configurations::new(robot);
+        let checker = Checker::new(robot, &self.options.conditions);
+        let travel = Travel::new(robot, self.experiment.length_m());
+        let least = self.options.conditions.separation_rad;
         let kinds: Vec<ReadingKind> =
             robot.reading_names().iter().map(|name| robot.reading_kind(name)).collect();
         for round in 0..ROUNDS {
@@ -420,15 +511,24 @@ impl<'a> Planner<'a> {
                             }
                         }
                     }
-                    let near = configurations.nearest(&near);
-                    proposals.extend(near);
-                    owners.push(owner);
+                    let near = checker.configurations().nearest(&near);
+                    if checker.measured(&near).is_none() {
+                        proposals.extend(near);
+                        owners.push(owner);
+                    }
                 }
             }
             let blocks = self.experiment.blocks(&proposals)?;
             let width = self.experiment.width();
             around(&self.aim, &self.kept, rows, &blocks, &owners, |row, proposal| {
-                readings[row].copy_from_slice(&proposals[proposal * width..(proposal + 1) * width]);
+                let own = &proposals[proposal * width..(proposal + 1) * width];
+                let others = readings.iter().enumerate().filter(|it| it.0 != row);
+                let is_apart =
+                    least <= 0.0 || others.clone().all(|(_, it)| travel.distance(own, it) >= least);
+                if is_apart {
+                    readings[row].copy_from_slice(own);
+                }
+                is_apart
             });
         }
         Ok(())
@@ -451,6 +551,7 @@ impl<'a> Planner<'a> {
         let here = search.squares(&order[..new.min(order.len())]).ok_or_else(undetermined)?;
         let gain = Squares {
             noise: ratio(planned.noise, here.noise),
+            true_noise: ratio(planned.true_noise, here.true_noise),
             terms: ratio(planned.terms, here.terms),
             corrected: ratio(planned.corrected, here.corrected),
             determinant: 0.0,
@@ -462,6 +563,7 @@ impl<'a> Planner<'a> {
                 let found = search.squares(&order[..count]).ok_or_else(undetermined)?;
                 Squares {
                     noise: found.noise * gain.noise,
+                    true_noise: found.true_noise * gain.true_noise,
                     terms: found.terms * gain.terms,
                     corrected: found.corrected * gain.corrected,
                     determinant: 0.0,
@@ -480,8 +582,15 @@ impl<'a> Planner<'a> {
         let width = self.experiment.width();
         let mut left: Vec<usize> = (0..self.workspace.len() / width).collect();
         random::shuffle(&mut self.generator, &mut left);
+        let checker = Checker::new(&self.experiment.robot, &self.options.conditions);
+        let stated = self.options.workspace.is_some();
+        let can_be = |at: &&usize| {
+            let found = checker.measured(&self.workspace[**at * width..(**at + 1) * width]);
+            found.is_none_or(|it| stated && it == Obstacle::Limits)
+        };
         let judges: Vec<Vec<f64>> = left
             .iter()
+            .filter(can_be)
             .take(judged)
             .map(|&at| self.workspace[at * width..(at + 1) * width].to_vec())
             .collect();
@@ -510,7 +619,7 @@ fn with_returns(rows: Vec<PlannedRow>) -> Vec<PlannedRow> {
     let mut found = Vec::new();
     for (at, row) in rows.into_iter().enumerate() {
         if at > 0 && at % ROWS_BETWEEN_VISITS == 0 {
-            found.push(PlannedRow { part: row.part, ..again.clone() });
+            found.push(again.clone());
         }
         found.push(row);
     }
@@ -555,6 +664,7 @@ fn random_lists(aim: &Aim, kept: &DMatrix<f64>, blocks: &Blocks, options: &PlanO
     };
     Ok(Squares {
         noise: median(|it| it.noise),
+        true_noise: median(|it| it.true_noise),
         terms: median(|it| it.terms),
         corrected: median(|it| it.corrected),
         determinant: 0.0,

@@ -153,14 +153,14 @@ impl Search<'_> {
 }
 
 /// Replaces rows of a list by others nearby, round after round: of each row `near` proposes rows, of which the best is taken if it gains.
-/// `rows` are replaced together with what they are rows of, by `take(row, proposal)`.
+/// `rows` are replaced together with what they are rows of, by `take(row, proposal)`, unless it refuses.
 pub(super) fn around(
     aim: &Aim,
     kept: &DMatrix<f64>,
     rows: &mut Blocks,
     proposals: &Blocks,
     owners: &[usize],
-    mut take: impl FnMut(usize, usize),
+    mut take: impl FnMut(usize, usize) -> bool,
 ) {
     let m = rows.numbers;
     let size = m * rows.columns;
@@ -187,9 +187,9 @@ pub(super) fn around(
             });
         if let Some((at, gain)) = best
             && gain > kept + least
+            && take(row, own[at])
         {
             rows.values[row * size..(row + 1) * size].copy_from_slice(candidates.of(at));
-            take(row, own[at]);
         }
         let Some(with) = state.change(aim, rows.of(row), m, 1.0) else { return };
         state.apply(&with, m);

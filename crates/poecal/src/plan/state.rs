@@ -3,21 +3,25 @@
 use nalgebra::DMatrix;
 
 use super::experiment::{Blocks, inverse};
+use crate::lanes::by_best;
 
-/// Numbers that vectorise: sums go in four lanes.
+/// A sum of products in eight lanes, so that it vectorises.
+#[inline(always)]
 pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
-    let mut lanes = [0.0; 4];
-    let (mut a, mut b) = (a.chunks_exact(4), b.chunks_exact(4));
-    for (a, b) in (&mut a).zip(&mut b) {
+    let mut lanes = [0.0; 8];
+    let ((a, a_rest), (b, b_rest)) = (a.as_chunks::<8>(), b.as_chunks::<8>());
+    for (a, b) in a.iter().zip(b) {
         for (lane, (a, b)) in lanes.iter_mut().zip(a.iter().zip(b)) {
             *lane += a * b;
         }
     }
-    let rest: f64 = a.remainder().iter().zip(b.remainder()).map(|(a, b)| a * b).sum();
-    (lanes[0] + lanes[1]) + (lanes[2] + lanes[3]) + rest
+    let rest: f64 = a_rest.iter().zip(b_rest).map(|(a, b)| a * b).sum();
+    let [a, b, c, d, e, f, g, h] = lanes;
+    ((a + b) + (c + d)) + ((e + f) + (g + h)) + rest
 }
 
 /// `out += factor * row`.
+#[inline(always)]
 pub(super) fn add(out: &mut [f64], factor: f64, row: &[f64]) {
     out.iter_mut().zip(row).for_each(|(out, row)| *out += factor * row);
 }
@@ -41,13 +45,17 @@ pub(super) struct Aim {
     /// Moments of the workspace.
     pub(super) moments: DMatrix<f64>,
     pub(super) weights: Weights,
+    /// Information of rows for the calibrated model, which takes for noise what it does not describe, as a share of that for the corrected one.
+    pub(super) share: f64,
 }
 
 /// Expected squared errors over the workspace, m².
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Squares {
-    /// Of the calibrated model: by noise.
+    /// Of the calibrated model: by noise and prior, where all that it does not describe were noise.
     pub(crate) noise: f64,
+    /// The same with the noise that is.
+    pub(crate) true_noise: f64,
     /// Of the calibrated model: by the terms that it does not have.
     pub(crate) terms: f64,
     /// Of the corrected model.
@@ -57,9 +65,14 @@ pub(crate) struct Squares {
 }
 
 impl Squares {
-    /// Of the calibrated model.
+    /// Of the calibrated model, as it is made small.
     pub(crate) fn calibrated(&self) -> f64 {
         self.noise + self.terms
+    }
+
+    /// Of the calibrated model, as it is.
+    pub(crate) fn expected(&self) -> f64 {
+        self.true_noise + self.terms
     }
 
     /// What is minimised.
@@ -71,11 +84,11 @@ impl Squares {
 
 impl Aim {
     /// Prior information with unit priors of modes.
-    pub(super) fn new(prior: &DMatrix<f64>, moments: DMatrix<f64>, weights: Weights) -> Self {
+    pub(super) fn new(prior: &DMatrix<f64>, moments: DMatrix<f64>, weights: Weights, share: f64) -> Self {
         let (g, n) = (prior.nrows(), moments.nrows());
         let mut all = DMatrix::identity(n, n);
         all.view_mut((0, 0), (g, g)).copy_from(prior);
-        Aim { geometry: g, prior: all, moments, weights }
+        Aim { geometry: g, prior: all, moments, weights, share }
     }
 
     fn modes(&self) -> usize {
@@ -106,17 +119,20 @@ impl State {
     pub(super) fn new(aim: &Aim, gram: &DMatrix<f64>) -> Option<(State, Squares)> {
         let (g, c) = (aim.geometry, aim.modes());
         let [mgg, mgc, mcc] = aim.parts();
-        let h = gram.view((0, 0), (g, g)) + aim.prior.view((0, 0), (g, g));
+        let prior = aim.prior.view((0, 0), (g, g));
+        let h = gram.view((0, 0), (g, g)) * aim.share + prior;
         let own = inverse(&h)?;
         let spread = &mgg * &own;
-        let a = &own * gram.view((0, g), (g, c));
+        let a = &own * gram.view((0, g), (g, c)) * aim.share;
         let d = &mgg * &a - &mgc;
         let bias = a.dot(&(&d - &mgc)) + mcc.trace();
         let determinant = if aim.weights.determinant > 0.0 { log_determinant(&h)? } else { 0.0 };
-        let mut squares =
-            Squares { noise: spread.trace(), terms: bias.max(0.0), corrected: 0.0, determinant };
         let e = &own * &d;
         let p = &own * &spread;
+        // H⁻¹ (share² N + Λ) H⁻¹ with share N = H - Λ.
+        let noise = spread.trace();
+        let true_noise = aim.share * noise + (1.0 - aim.share) * p.dot(&prior);
+        let mut squares = Squares { noise, true_noise, terms: bias.max(0.0), corrected: 0.0, determinant };
         let (all, q) = if aim.weights.corrected > 0.0 {
             let all = inverse(&(gram + &aim.prior))?;
             let spread = &aim.moments * &all;
@@ -133,7 +149,8 @@ impl State {
     pub(super) fn change(&self, aim: &Aim, rows: &[f64], numbers: usize, sign: f64) -> Option<Change> {
         let (g, c) = (aim.geometry, aim.modes());
         let n = g + c;
-        let own = Part::new(&self.own, rows, (numbers, n, g), sign)?;
+        let scaled = scaled(rows, aim);
+        let own = Part::new(&self.own, &scaled, (numbers, n, g), sign)?;
         let all = if self.all[0].nrows() > 0 {
             Some(Part::new(&self.all, rows, (numbers, n, n), sign)?)
         } else {
@@ -141,7 +158,7 @@ impl State {
         };
         // R = J_c - J_g A and Z = J_g E.
         let (mut r, mut z) = (vec![0.0; numbers * c], vec![0.0; numbers * c]);
-        own_rows(self, aim, rows, numbers, &mut r, &mut z);
+        own_rows(self, aim, &scaled, numbers, &mut r, &mut z);
         let m = numbers;
         let (mut pulled, mut turned) = (vec![0.0; m * c], vec![0.0; m * c]);
         let tw = product(&own.t, &own.w, m);
@@ -185,6 +202,12 @@ fn log_determinant(matrix: &DMatrix<f64>) -> Option<f64> {
     values.iter().all(|&value| value > 0.0).then(|| values.iter().map(|value| value.ln()).sum())
 }
 
+/// Rows as the calibrated model counts them.
+fn scaled(rows: &[f64], aim: &Aim) -> Vec<f64> {
+    let root = aim.share.sqrt();
+    rows.iter().map(|value| value * root).collect()
+}
+
 /// `R = J_c - J_g A` and `Z = J_g E` of rows.
 fn own_rows(state: &State, aim: &Aim, rows: &[f64], numbers: usize, r: &mut [f64], z: &mut [f64]) {
     let (g, c) = (aim.geometry, aim.modes());
@@ -215,18 +238,20 @@ fn product(a: &[f64], b: &[f64], m: usize) -> Vec<f64> {
 pub(super) const MOST_NUMBERS: usize = 24;
 
 /// `(sign + S)⁻¹` of a small symmetric matrix by elimination, and the logarithm of `|sign (sign + S)|`; none if it is not of one sign.
-fn weight(s: &[f64], m: usize, sign: f64, out: &mut [f64]) -> Option<f64> {
+#[inline(always)]
+fn weight<const S: usize>(s: &[f64], m: usize, sign: f64, out: &mut [f64; S]) -> Option<f64> {
     // sign (sign + S) = 1 + sign S is positive definite.
-    let mut work = [0.0; MOST_NUMBERS * MOST_NUMBERS];
-    for (k, (work, s)) in work.iter_mut().zip(s).enumerate() {
-        *work = sign * s + if k / m == k % m { 1.0 } else { 0.0 };
+    let mut work = [0.0; S];
+    for i in 0..m {
+        for j in 0..m {
+            work[i * m + j] = sign * s[i * m + j] + if i == j { 1.0 } else { 0.0 };
+            out[i * m + j] = if i == j { sign } else { 0.0 };
+        }
     }
-    out[..m * m].fill(0.0);
-    (0..m).for_each(|i| out[i * m + i] = sign);
     let mut logarithm = 0.0;
     for k in 0..m {
         let pivot = work[k * m + k];
-        if pivot <= 1e-9 {
+        if pivot.is_nan() || pivot <= LEAST_PIVOT {
             return None;
         }
         logarithm += pivot.ln();
@@ -244,6 +269,9 @@ fn weight(s: &[f64], m: usize, sign: f64, out: &mut [f64]) -> Option<f64> {
     }
     Some(logarithm)
 }
+
+/// Pivot below which what remains without some rows is rounding.
+const LEAST_PIVOT: f64 = 1e-9;
 
 /// Rows of a changed configuration, against covariances.
 #[derive(Clone, Debug)]
@@ -287,8 +315,9 @@ impl Part {
             out
         };
         let (s, t) = (between(&k), between(&l));
-        let mut w = vec![0.0; m * m];
+        let mut w = [0.0; MOST_NUMBERS * MOST_NUMBERS];
         weight(&s, m, sign, &mut w)?;
+        let w = w[..m * m].to_vec();
         let wtw = product(&w, &product(&t, &w, m), m);
         Some(Part { n, k, l, w, t, wtw })
     }
@@ -361,7 +390,8 @@ impl Caches {
         let g = aim.geometry;
         made.each(|index, small, long| {
             let rows = blocks.of(index);
-            let mut fill = |at: usize, matrix: &DMatrix<f64>, n_own: usize| {
+            let scaled = scaled(rows, aim);
+            let mut fill = |at: usize, matrix: &DMatrix<f64>, n_own: usize, rows: &[f64]| {
                 for i in 0..m {
                     let row = &rows[i * n..i * n + n_own];
                     let own: Vec<f64> = (0..n_own)
@@ -372,14 +402,14 @@ impl Caches {
                     }
                 }
             };
-            fill(0, &state.own[0], g);
-            fill(1, &state.own[1], g);
+            fill(0, &state.own[0], g, &scaled);
+            fill(1, &state.own[1], g, &scaled);
             if state.all[0].nrows() > 0 {
-                fill(2, &state.all[0], n);
-                fill(3, &state.all[1], n);
+                fill(2, &state.all[0], n, rows);
+                fill(3, &state.all[1], n, rows);
             }
             let (r, z) = long.split_at_mut(m * c);
-            own_rows(state, aim, rows, m, r, z);
+            own_rows(state, aim, &scaled, m, r, z);
             squares_of(small, r, z, m, c);
         });
         made
@@ -417,80 +447,46 @@ impl Caches {
 
     /// Brings all up to date after a change.
     pub(super) fn apply(&mut self, aim: &Aim, blocks: &Blocks, change: &Change) {
-        let (m, c, n, g) = (self.m, self.c, blocks.columns, aim.geometry);
-        let Change { own, all, pulled, turned } = change;
+        match self.m {
+            ..=3 => self.apply_of::<9>(aim, blocks, change),
+            4..=6 => self.apply_of::<36>(aim, blocks, change),
+            _ => self.apply_of::<{ MOST_NUMBERS * MOST_NUMBERS }>(aim, blocks, change),
+        }
+    }
+
+    fn apply_of<const S: usize>(&mut self, aim: &Aim, blocks: &Blocks, change: &Change) {
+        let (m, c, root) = (self.m, self.c, aim.share.sqrt());
         self.each(|index, small, long| {
             let rows = blocks.of(index);
-            let mut a = [0.0; MOST_NUMBERS * MOST_NUMBERS];
-            let mut b = [0.0; MOST_NUMBERS * MOST_NUMBERS];
-            for (at, part) in [(0, Some(own)), (2, all.as_ref())] {
-                let Some(part) = part else { continue };
-                for i in 0..m {
-                    let row = &rows[i * n..i * n + part.n];
-                    for j in 0..m {
-                        a[i * m + j] = dot(row, &part.k[j * part.n..(j + 1) * part.n]);
-                        b[i * m + j] = dot(row, &part.l[j * part.n..(j + 1) * part.n]);
-                    }
-                }
-                if at == 0 && c > 0 {
-                    let (r, z) = long.split_at_mut(m * c);
-                    for i in 0..m {
-                        let (r, z) = (&mut r[i * c..(i + 1) * c], &mut z[i * c..(i + 1) * c]);
-                        for j in 0..m {
-                            let (pulled, turned) = (&pulled[j * c..(j + 1) * c], &turned[j * c..(j + 1) * c]);
-                            let (a, b) = (a[i * m + j], b[i * m + j]);
-                            for ((r, z), (pulled, turned)) in
-                                r.iter_mut().zip(z.iter_mut()).zip(pulled.iter().zip(turned))
-                            {
-                                *r -= a * pulled;
-                                *z += b * pulled - a * turned;
-                            }
-                        }
-                    }
-                }
-                // S -= a W aᵀ, T -= a W bᵀ + b W aᵀ - a W T W aᵀ.
-                for i in 0..m {
-                    let mut aw = [0.0; MOST_NUMBERS];
-                    let mut bw = [0.0; MOST_NUMBERS];
-                    let mut awtw = [0.0; MOST_NUMBERS];
-                    for j in 0..m {
-                        for k in 0..m {
-                            aw[j] += a[i * m + k] * part.w[k * m + j];
-                            bw[j] += b[i * m + k] * part.w[k * m + j];
-                            awtw[j] += a[i * m + k] * part.wtw[k * m + j];
-                        }
-                    }
-                    for j in 0..m {
-                        let (mut s, mut t) = (0.0, 0.0);
-                        for k in 0..m {
-                            s += aw[k] * a[j * m + k];
-                            t += aw[k] * b[j * m + k] + (bw[k] - awtw[k]) * a[j * m + k];
-                        }
-                        small[at * m * m + i * m + j] -= s;
-                        small[(at + 1) * m * m + i * m + j] -= t;
-                    }
-                }
-            }
-            let (r, z) = long.split_at_mut(m * c);
-            squares_of(small, r, z, m, c);
-            debug_assert!(g <= n);
+            by_best(
+                #[inline(always)]
+                || follow::<S>((rows, blocks.columns), (small, long), (m, c, root), change),
+            );
         });
     }
 
     /// By how much the criterion falls with a candidate more; below zero if its rows cannot be used.
     pub(super) fn gain(&self, index: usize, weights: &Weights) -> f64 {
+        match self.m {
+            ..=3 => self.gain_of::<9>(index, weights),
+            4..=6 => self.gain_of::<36>(index, weights),
+            _ => self.gain_of::<{ MOST_NUMBERS * MOST_NUMBERS }>(index, weights),
+        }
+    }
+
+    fn gain_of<const S: usize>(&self, index: usize, weights: &Weights) -> f64 {
         let (m, square) = (self.m, self.m * self.m);
         let small = &self.small[index * self.small_len()..(index + 1) * self.small_len()];
         let part = |at: usize| &small[at * square..(at + 1) * square];
-        let mut w = [0.0; MOST_NUMBERS * MOST_NUMBERS];
+        let mut w = [0.0; S];
         let mut gain = 0.0;
-        let trace = |a: &[f64], b: &[f64]| a[..square].iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+        let trace = |a: &[f64; S], b: &[f64]| a[..square].iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
         if weights.calibrated > 0.0 || weights.determinant > 0.0 {
             let Some(logarithm) = weight(part(0), m, 1.0, &mut w) else { return -1.0 };
             let mut bias = 0.0;
             if self.c > 0 {
                 // 2 tr(W Xᵀ) + tr(W T W Q), X = Z Rᵀ.
-                let wtw = small_product(&w, &small_product(part(1), &w, m), m);
+                let wtw = small_product(&w, &small_product::<S>(part(1), &w, m), m);
                 bias = 2.0 * trace(&w, part(5)) + trace(&wtw, part(4));
             }
             gain += weights.calibrated * (trace(&w, part(1)) - bias) + weights.determinant * logarithm;
@@ -510,8 +506,68 @@ impl Caches {
     }
 }
 
-fn small_product(a: &[f64], b: &[f64], m: usize) -> [f64; MOST_NUMBERS * MOST_NUMBERS] {
-    let mut out = [0.0; MOST_NUMBERS * MOST_NUMBERS];
+/// What a candidate is after a change.
+#[inline(always)]
+fn follow<const S: usize>(
+    (rows, n): (&[f64], usize),
+    (small, long): (&mut [f64], &mut [f64]),
+    (m, c, root): (usize, usize, f64),
+    change: &Change,
+) {
+    let Change { own, all, pulled, turned } = change;
+    let (mut a, mut b) = ([0.0; S], [0.0; S]);
+    for (at, part, scale) in [(0, Some(own), root), (2, all.as_ref(), 1.0)] {
+        let Some(part) = part else { continue };
+        for i in 0..m {
+            let row = &rows[i * n..i * n + part.n];
+            for j in 0..m {
+                a[i * m + j] = scale * dot(row, &part.k[j * part.n..(j + 1) * part.n]);
+                b[i * m + j] = scale * dot(row, &part.l[j * part.n..(j + 1) * part.n]);
+            }
+        }
+        if at == 0 && c > 0 {
+            let (r, z) = long.split_at_mut(m * c);
+            for i in 0..m {
+                let (r, z) = (&mut r[i * c..(i + 1) * c], &mut z[i * c..(i + 1) * c]);
+                for j in 0..m {
+                    let (pulled, turned) = (&pulled[j * c..(j + 1) * c], &turned[j * c..(j + 1) * c]);
+                    let (a, b) = (a[i * m + j], b[i * m + j]);
+                    for ((r, z), (pulled, turned)) in
+                        r.iter_mut().zip(z.iter_mut()).zip(pulled.iter().zip(turned))
+                    {
+                        *r -= a * pulled;
+                        *z += b * pulled - a * turned;
+                    }
+                }
+            }
+        }
+        // S -= a W aᵀ, T -= a W bᵀ + b W aᵀ - a W T W aᵀ.
+        for i in 0..m {
+            let (mut aw, mut rest) = ([0.0; S], [0.0; S]);
+            for j in 0..m {
+                for k in 0..m {
+                    aw[j] += a[i * m + k] * part.w[k * m + j];
+                    rest[j] += b[i * m + k] * part.w[k * m + j] - a[i * m + k] * part.wtw[k * m + j];
+                }
+            }
+            for j in 0..m {
+                let (mut s, mut t) = (0.0, 0.0);
+                for k in 0..m {
+                    s += aw[k] * a[j * m + k];
+                    t += aw[k] * b[j * m + k] + rest[k] * a[j * m + k];
+                }
+                small[at * m * m + i * m + j] -= s;
+                small[(at + 1) * m * m + i * m + j] -= t;
+            }
+        }
+    }
+    let (r, z) = long.split_at(m * c);
+    squares_of(small, r, z, m, c);
+}
+
+#[inline(always)]
+fn small_product<const S: usize>(a: &[f64], b: &[f64], m: usize) -> [f64; S] {
+    let mut out = [0.0; S];
     for i in 0..m {
         for j in 0..m {
             out[i * m + j] = (0..m).map(|k| a[i * m + k] * b[k * m + j]).sum();
@@ -521,6 +577,7 @@ fn small_product(a: &[f64], b: &[f64], m: usize) -> [f64; MOST_NUMBERS * MOST_NU
 }
 
 /// `R Rᵀ` and `Z Rᵀ`.
+#[inline(always)]
 fn squares_of(small: &mut [f64], r: &[f64], z: &[f64], m: usize, c: usize) {
     for i in 0..m {
         for j in 0..m {

@@ -20,6 +20,7 @@ mod summary;
 pub mod table;
 mod tcp;
 mod track;
+mod watched;
 
 pub use check::{Check, SetCounts};
 pub use compared::Comparison;
@@ -33,6 +34,7 @@ pub use plan::Plan;
 pub use summary::{Detail, summary, unsaid};
 pub use tcp::tool_tip;
 pub use track::{Track, Witnesses, recalibrated};
+pub use watched::Watched;
 
 use serde::Serialize;
 

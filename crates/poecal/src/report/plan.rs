@@ -1,12 +1,15 @@
 //! A plan of configurations.
 
+use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
 use serde::Serialize;
 
 use super::table::{line, number, robot_words, row};
 use crate::io::model::Model;
-use crate::plan::{CurvePoint, ExpectedErrors, Plan as Found, PlanCriterion, PlanOptions, RowPart};
+use crate::plan::{
+    Conditions, CurvePoint, ExpectedErrors, Plan as Found, PlanCriterion, PlanOptions, RowPart,
+};
 
 /// A plan, for a person to look over or a machine to read.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -31,6 +34,13 @@ pub struct Plan {
     /// Number of configurations from which ten more gain less than 5 %.
     enough: Option<usize>,
     rows: Vec<RowEntry>,
+    /// Conditions that are looked at.
+    checked: Vec<&'static str>,
+    /// How many configurations each condition refused, of those that were tried.
+    refused: BTreeMap<&'static str, usize>,
+    tried: usize,
+    left_out: Vec<[String; 2]>,
+    without_limits: Vec<String>,
     #[serde(skip)]
     robot_words: String,
 }
@@ -114,8 +124,26 @@ impl Plan {
                     readings: row.readings.clone(),
                 })
                 .collect(),
+            checked: checked(&options.conditions),
+            refused: found.refusals.each().map(|(obstacle, count)| (obstacle.words(), count)).collect(),
+            tried: found.refusals.tried,
+            left_out: found.left_out.iter().map(|(a, b)| [a.clone(), b.clone()]).collect(),
+            without_limits: found.without_limits.clone(),
             robot_words: robot_words(&model.robot),
         }
+    }
+
+    fn checked_words(&self) -> String {
+        let missing = ["collisions of the robot with itself", "sight"]
+            .into_iter()
+            .filter(|it| !self.checked.contains(it));
+        let not: Vec<&str> = missing.chain(["the way between configurations"]).collect();
+        format!("{}; NOT {}", self.checked.join(", "), not.join(", "))
+    }
+
+    fn refused_words(&self) -> String {
+        let each = self.refused.iter().map(|(words, count)| format!("{count} by {words}"));
+        each.collect::<Vec<_>>().join(", ")
     }
 
     /// What stands above the table of configurations.
@@ -164,7 +192,7 @@ impl Plan {
             format!("{} mm calibrated, {} mm corrected", number(it.calibrated_mm), number(it.corrected_mm))
         };
         line(&mut out, "expected", &format!("{} (RMS over the workspace)", words(&self.expected)));
-        line(&mut out, "as many random", &words(&self.random));
+        line(&mut out, "random", &words(&self.random));
         let guess = if self.robot_error_is_a_guess {
             ", a guess of 0.3 mm for each metre of reach: --robot-error states it"
         } else {
@@ -172,11 +200,32 @@ impl Plan {
         };
         let robot = format!("{} mm that no geometry describes{guess}", number(self.expected.robot_error_mm));
         line(&mut out, "robot error", &robot);
-        line(
-            &mut out,
-            "checked",
-            "limits of the joints; NOT collisions, sight, or the way between configurations",
-        );
+        line(&mut out, "checked", &self.checked_words());
+        if !self.refused.is_empty() {
+            line(
+                &mut out,
+                "",
+                &format!("of {} configurations refused: {}", self.tried, self.refused_words()),
+            );
+        }
+        if !self.left_out.is_empty() {
+            let pairs: Vec<String> = self.left_out.iter().map(|[a, b]| format!("{a} and {b}")).collect();
+            line(
+                &mut out,
+                "",
+                &format!("not looked at, since they overlap in all configurations: {}", pairs.join(", ")),
+            );
+        }
+        if !self.without_limits.is_empty() {
+            line(
+                &mut out,
+                "",
+                &format!(
+                    "without limits, taken to 180 deg or 500 mm to either side: {}",
+                    self.without_limits.join(", ")
+                ),
+            );
+        }
         // Writing to a String cannot fail.
         let _ = writeln!(out);
         let widths = [26, 13];
@@ -200,4 +249,16 @@ impl Plan {
         line(&mut out, "advice", &advice);
         out
     }
+}
+
+/// The conditions that are looked at.
+fn checked(conditions: &Conditions) -> Vec<&'static str> {
+    let own = [
+        (true, "limits of the joints"),
+        (!conditions.keep_out.is_empty(), "keep-out boxes"),
+        (conditions.floor_m.is_some(), "the floor"),
+        (!conditions.capsules.is_empty(), "collisions of the robot with itself"),
+        (conditions.sight.is_some(), "sight"),
+    ];
+    own.into_iter().filter(|it| it.0).map(|it| it.1).collect()
 }

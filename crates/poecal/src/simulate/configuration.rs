@@ -36,11 +36,35 @@ impl Configurations {
         self.readings.iter().map(one).collect()
     }
 
+    /// The same with ranges that keep a distance from both ends, turning joints in radians and sliding ones in metres, as far as there is room.
+    #[must_use]
+    pub fn within(mut self, margin: [f64; 2]) -> Self {
+        for (kind, lower, upper) in &mut self.readings {
+            let by = match kind {
+                ReadingKind::Angle => margin[0],
+                ReadingKind::Length => margin[1],
+                ReadingKind::Factor => 0.0,
+            };
+            let by = by.min(0.5 * (*upper - *lower)).max(0.0);
+            (*lower, *upper) = (*lower + by, *upper - by);
+        }
+        self
+    }
+
     /// The configuration within the ranges that is nearest to one, in steps as those of [`Configurations::random`].
     #[must_use]
     pub fn nearest(&self, readings: &[f64]) -> Vec<f64> {
         let one = |(range, reading): (&(ReadingKind, f64, f64), &f64)| {
-            stepped(range, reading.min(range.2).max(range.1))
+            let &(kind, lower, upper) = range;
+            let found = stepped(range, reading.min(upper).max(lower));
+            // At a limit that is no step, the step before it.
+            let step = if kind == ReadingKind::Angle { 1e-4_f64.to_radians() } else { 1e-6 };
+            let inside = found.min(upper - step).max(lower + step);
+            if kind == ReadingKind::Factor || upper - lower < 2.0 * step {
+                found
+            } else {
+                stepped(range, inside)
+            }
         };
         self.readings.iter().zip(readings).map(one).collect()
     }

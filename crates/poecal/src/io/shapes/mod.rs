@@ -1,5 +1,6 @@
 //! What a robot looks like: the shapes of its links, from the URDF in a `calibration.json` and the meshes that it names.
 
+mod capsules;
 mod collada;
 mod collector;
 mod find;
@@ -15,6 +16,7 @@ use std::path::{Path, PathBuf};
 use self::collector::{MOST_TRIANGLES, Triangles};
 use self::find::Folders;
 
+pub use self::capsules::capsules;
 use self::simplify::fitted;
 pub use self::written::Mesh;
 use super::calibration_file::CalibrationFile;

@@ -37,6 +37,16 @@ impl UrdfDocument {
     /// The shapes of all links, in the order of the text. Links that no joint of the robot moves stand where they are with all other joints at
     /// zero. Nothing else needs them: what cannot be read is no shape.
     pub(in crate::io) fn visuals(&self) -> Vec<Visual> {
+        self.shapes("visual", "collision")
+    }
+
+    /// The same for what may collide: `<collision>` of every link, or `<visual>` where no link has one.
+    pub(in crate::io) fn collisions(&self) -> Vec<Visual> {
+        self.shapes("collision", "visual")
+    }
+
+    /// The shapes of one element, or of another where there are none.
+    fn shapes(&self, first: &'static str, else_of: &'static str) -> Vec<Visual> {
         let path = Path::new(&self.path);
         let text = readable(&self.text);
         let Ok(document) = parsed(&text, path, EXPECTED) else { return Vec::new() };
@@ -51,8 +61,8 @@ impl UrdfDocument {
             });
             all.take(MOST).collect()
         };
-        let visuals = of("visual");
-        if visuals.is_empty() { of("collision") } else { visuals }
+        let shapes = of(first);
+        if shapes.is_empty() { of(else_of) } else { shapes }
     }
 
     /// Body and pose in the base of each link of the tree, with all joints at zero; none where an origin above it cannot be read.

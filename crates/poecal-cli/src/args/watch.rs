@@ -1,0 +1,48 @@
+//! Arguments of `poecal watch`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::plan::FitArgs;
+use super::shared::{ColumnArgs, TreeArgs};
+use crate::quantity::{Over, error_m, whole};
+
+/// Arguments of `poecal watch`.
+#[derive(Args, Debug)]
+pub(crate) struct Watch {
+    /// Robot model: URDF, MJCF, SDF, TOML, a maker's YAML or conf, or calibration.json
+    pub(crate) model: PathBuf,
+    /// Measurement file (CSV) that grows while it is watched; a last line without an end is waited for
+    pub(crate) measurements: PathBuf,
+    #[command(flatten)]
+    pub(crate) chain: TreeArgs,
+    #[command(flatten)]
+    pub(crate) columns: ColumnArgs,
+    #[command(flatten)]
+    pub(crate) fit: FitArgs,
+    /// Choose the next configuration among these (CSV of joint readings) [default: random ones within the limits]
+    #[arg(long, value_name = "FILE")]
+    pub(crate) candidates: Option<PathBuf>,
+    /// Where the robot will work, as of poecal plan
+    #[arg(
+        long,
+        value_name = "limits|FILE|X,Y,Z:X,Y,Zmm",
+        default_value = "limits",
+        allow_hyphen_values = true
+    )]
+    pub(crate) over: Over,
+    /// End with code 0 as soon as the expected error is at most this, like 0.15mm: of the corrected model, of the calibrated one without
+    /// corrections
+    #[arg(long, value_name = "LENGTH", value_parser = error_m)]
+    pub(crate) until: Option<f64>,
+    /// Judge the rows of a finished file, one after the other, and end
+    #[arg(long)]
+    pub(crate) once: bool,
+    /// Seed of everything random
+    #[arg(long, default_value_t = 1, value_parser = whole::<u64>)]
+    pub(crate) seed: u64,
+    /// Print a line of JSON for each row
+    #[arg(long)]
+    pub(crate) json: bool,
+}

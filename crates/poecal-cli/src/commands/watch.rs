@@ -1,0 +1,76 @@
+//! `poecal watch`: rows judged as they arrive.
+
+use std::thread::sleep;
+use std::time::Duration;
+
+use poecal::calibration::Corrections;
+use poecal::io::measurements::{GrowingFile, News};
+use poecal::io::model::Model;
+use poecal::plan::{PlannedFit, Watch as Watched, WatchOptions, workspace_in};
+use poecal::{Kind, Result, report};
+
+use super::plan::{fit, readings};
+use crate::args::Watch;
+use crate::console::Console;
+use crate::quantity::Over;
+use crate::{DONE, WORSE};
+
+/// How often the file is looked at.
+const PAUSE: Duration = Duration::from_millis(100);
+
+pub(crate) fn watch(arguments: &Watch, console: &Console) -> Result<u8> {
+    let options = arguments.columns.options();
+    let model = Model::read(&arguments.model, &arguments.chain.selection(options.as_ref().ok())?)?;
+    let reading = model.reads(options?);
+    let read = |path| readings(path, &model, &reading, console);
+    let candidates = arguments.candidates.as_ref().map(read).transpose()?;
+    let workspace = match &arguments.over {
+        Over::Limits => None,
+        Over::Tasks(path) => Some(readings(path, &model, &reading, console)?),
+        Over::Box(corners) => Some(workspace_in(&model.robot, corners, arguments.seed)?),
+    };
+    let begin = |kind: Kind| -> Result<Watched> {
+        let fit: PlannedFit = fit(&arguments.fit, kind, 30)?;
+        let (candidates, workspace) = (candidates.clone(), workspace.clone());
+        Watched::new(&model.robot, WatchOptions { fit, candidates, workspace, seed: arguments.seed })
+    };
+    let mut file = GrowingFile::new(&arguments.measurements);
+    let (mut watched, mut done, mut is_named, mut is_reached) = (None, 0, false, false);
+    let is_corrected = arguments.fit.corrections != Corrections::Off;
+    loop {
+        if let Some(News { file, is_again }) = file.news(&model.robot, &reading)? {
+            if is_again && done > 0 {
+                console.warning("the file was shortened or changed: all rows are read again from the first");
+                (watched, done) = (None, 0);
+            }
+            let data = &file.data;
+            let poses = data.observations.iter().any(|row| row.measurement.sees_orientation());
+            let session = match &mut watched {
+                Some(session) => session,
+                None => watched.insert(begin(if poses { Kind::POSE } else { Kind::POINT })?),
+            };
+            while done < data.len() {
+                let row = session.add(data, done)?;
+                done += 1;
+                let line = report::Watched::new(&model.robot, data, &row);
+                is_named |= row.mistake.is_some();
+                if arguments.json {
+                    console.data(&line.json()?)?
+                } else {
+                    console.say(&line.text())?
+                }
+                let error =
+                    row.now.map(|now| if is_corrected { now.corrected_m() } else { now.calibrated_m() });
+                is_reached |= arguments.until.zip(error).is_some_and(|(until, error)| error <= until);
+                if is_reached && !arguments.once {
+                    return Ok(DONE);
+                }
+            }
+        }
+        if arguments.once {
+            let is_short = arguments.until.is_some() && !is_reached;
+            return Ok(if is_named || is_short { WORSE } else { DONE });
+        }
+        sleep(PAUSE);
+    }
+}
