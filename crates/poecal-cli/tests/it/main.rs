@@ -36,6 +36,7 @@ mod photographs;
 mod pictures;
 #[cfg(unix)]
 mod places;
+mod plan;
 mod project;
 mod readme;
 mod recorded;

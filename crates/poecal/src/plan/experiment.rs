@@ -28,6 +28,8 @@ const RIDGE: f64 = 1.0;
 const NEGLIGIBLE: f64 = 0.01;
 /// Robot error where none is stated, as a share of the reach.
 const USUAL_ERROR: f64 = 3e-4;
+/// Share of the squared robot error that no terms describe, at least: 0.14 of an IRB 120, more of others.
+const LEAST_REST: f64 = 0.16;
 /// Most iterations of a fit while rows arrive.
 const ITERATIONS: usize = 30;
 /// Largest number of places from which one configuration is measured.
@@ -238,7 +240,9 @@ impl Experiment {
         let error_m = fit.robot_error_m.unwrap_or(USUAL_ERROR * self.robot.reach_m());
         self.robot_error_m = error_m;
         let of_terms = if self.terms.is_empty() { 0.0 } else { self.error_of_terms(sample)? };
-        let scale = if of_terms > error_m { error_m / of_terms } else { 1.0 };
+        // Terms never describe all of it.
+        let most = error_m * (1.0 - LEAST_REST).sqrt();
+        let scale = if of_terms > most { most / of_terms } else { 1.0 };
         self.turn *= scale;
         self.deviations.iter_mut().for_each(|it| it.deviation *= scale);
         self.rest_m = (error_m.powi(2) - (scale * of_terms).powi(2)).max(0.0).sqrt();

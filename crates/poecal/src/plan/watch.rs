@@ -453,3 +453,48 @@ impl Known {
         ExpectedErrors::seen(&self.experiment, &seen, [self.scale, self.terms])
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::measurement::Measurement;
+    use crate::simulate::{Simulation, elbow};
+    use crate::{Kind, Observation};
+
+    /// Rows of a simulated session of points, one of them off by 5 mm, one with the wrong sign of joint 5, one stale.
+    #[test]
+    fn mistakes_are_named_as_they_arrive() {
+        let made = Simulation { count: 40, ..Simulation::default() }.run(&elbow(), Kind::POINT).unwrap();
+        let mut data = made.data.only(&[]);
+        for row in 0..made.data.len() {
+            let mut readings = made.data.readings(row).to_vec();
+            let mut observation = made.data.observations[row].clone();
+            match row {
+                20 => {
+                    let at = observation.measurement.position().unwrap();
+                    observation.measurement = Measurement::point(at + nalgebra::Vector3::new(0.0, 5e-3, 0.0));
+                }
+                25 => readings[4] = -readings[4],
+                30 => observation = Observation { ..made.data.observations[row - 1].clone() },
+                _ => {}
+            }
+            data.push_observation(&readings, observation).unwrap();
+        }
+        let fit = PlannedFit { robot_error_m: Some(5e-5), ..PlannedFit::default() };
+        let mut watch =
+            Watch::new(&elbow(), WatchOptions { fit, seed: 1, ..WatchOptions::default() }).unwrap();
+        let mut named = Vec::new();
+        for row in 0..data.len() {
+            let found = watch.add(&data, row).unwrap();
+            if let Some(mistake) = found.mistake {
+                println!("{row}: {mistake:?}, {:.1} mm would be noticed", 1e3 * found.noticed_m.unwrap());
+                named.push((row, mistake));
+            }
+        }
+        let rows: Vec<usize> = named.iter().map(|it| it.0).collect();
+        assert_eq!(rows, [20, 25, 30], "{named:?}");
+        assert!(matches!(named[0].1, Mistake::Off(_) | Mistake::Joint(..)));
+        assert_eq!(named[1].1, Mistake::Sign("joint5".to_owned()));
+        assert_eq!(named[2].1, Mistake::Stale);
+    }
+}

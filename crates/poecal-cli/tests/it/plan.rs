@@ -1,0 +1,83 @@
+//! `poecal plan` and `poecal watch`.
+
+use crate::folder::Folder;
+use crate::offsets::COLUMN;
+
+fn folder() -> Folder {
+    let folder = Folder::new();
+    folder.write("column.toml", COLUMN);
+    folder
+}
+
+/// The list is a measurement file but for what is measured: the readers of joints take it, and a plan of it.
+#[test]
+fn a_planned_list_is_read_and_completed() {
+    let folder = folder();
+    let out = folder.done("plan column.toml --count 12 --judge 4 --out joints.csv --robot-error 0.1mm");
+    for words in [
+        "planned       12 configurations to fit, 4 at random to judge by, 0 returns to\n",
+        "expected      ",
+        "robot error   0.1000 mm that no geometry describes\n",
+        "NOT collisions of the robot with itself",
+        "  12  planned",
+        "advice        ",
+    ] {
+        assert!(out.contains(words), "`{words}` is not in\n{out}");
+    }
+    assert!(out.lines().all(|line| line.chars().count() <= 80), "{out}");
+    let text = folder.read("joints.csv");
+    let rows: Vec<&str> = text.lines().filter(|line| !line.starts_with('#')).collect();
+    assert_eq!(rows[0], "id,set,returns,turn[deg],slide[mm],nod[deg]");
+    let of = |set: &str| rows.iter().filter(|row| row.split(',').nth(1) == Some(set)).count();
+    assert_eq!((of("fit"), of("held_out"), rows.len()), (12, 4, 17));
+    folder.done("identify column.toml joints.csv --kind point");
+    // Four more beside these, the same bytes whatever the number of threads.
+    let more = |threads: usize| {
+        folder.done(&format!("plan column.toml --count 20 --judge 0 --keep joints.csv --json --threads {threads}"))
+    };
+    let one = more(1);
+    assert_eq!(one, more(3));
+    let found: serde_json::Value = serde_json::from_str(&one).unwrap();
+    assert_eq!((&found["kept"], &found["configurations"]), (&16.into(), &4.into()));
+    let calibrated = |of: &str| found[of]["calibrated_mm"].as_f64().unwrap();
+    println!("expected {} mm, random {} mm", calibrated("expected"), calibrated("random"));
+    assert!(calibrated("expected") <= calibrated("random"));
+}
+
+#[test]
+fn what_cannot_be_planned_is_refused_with_a_reason() {
+    let folder = folder();
+    let refused = |arguments: &str| {
+        let run = folder.run(arguments);
+        assert_eq!(run.code, 2, "{}", run.err);
+        run.err
+    };
+    let err = refused("plan column.toml --count 12 --device 0,0,90000mm --distance 1mm:2mm --out joints.csv");
+    assert!(err.contains("by the device's distances, expected at least the 12 of the plan"), "{err}");
+    let err = refused("plan column.toml --measure socket --out joints.csv");
+    assert!(err.contains("found the kind `socket`, expected one whose configurations can be chosen freely"), "{err}");
+    let err = refused("plan column.toml --keep-out 1,2,3 --out joints.csv");
+    assert!(err.contains("expected two corners with a unit behind the last"), "{err}");
+    assert!(!folder.path("joints.csv").exists());
+}
+
+/// Rows of a finished file, one of them off by 10 mm.
+#[test]
+fn a_row_that_is_off_is_named() {
+    let folder = folder();
+    folder.done("simulate column.toml --kind point --count 30 --out made");
+    let text = folder.read("made/measurements.csv");
+    let clean = folder.run("watch made/nominal.toml made/measurements.csv --once --json --robot-error 0.05mm");
+    println!("{}", clean.out.lines().last().unwrap());
+    assert_eq!((clean.code, clean.out.lines().count()), (0, 30), "{}{}", clean.out, clean.err);
+    let mut lines: Vec<String> = text.lines().map(str::to_owned).collect();
+    let at = lines.len() - 5;
+    let mut cells: Vec<String> = lines[at].split(',').map(str::to_owned).collect();
+    let x: f64 = cells[3].parse().unwrap();
+    cells[3] = format!("{}", x + 10.0);
+    lines[at] = cells.join(",");
+    folder.write("off.csv", lines.join("\n") + "\n");
+    let run = folder.run("watch made/nominal.toml off.csv --once --robot-error 0.05mm");
+    assert_eq!(run.code, 1);
+    assert!(run.out.contains("row 26: WRONG"), "{}", run.out);
+}
