@@ -48,6 +48,10 @@ pub(crate) struct Plan {
     /// counts both
     #[arg(long, visible_alias = "measured", value_name = "FILE")]
     pub(crate) keep: Vec<PathBuf>,
+    /// Rows of the kept configurations, counted from 1 through all files, that collided or were not seen: new ones take their place, not within
+    /// 10 degrees of them, and all others stay. --count is then the number of kept rows, and no further rows to judge by are drawn
+    #[arg(long, value_name = "ROW", value_delimiter = ',', requires = "keep", conflicts_with_all = ["count", "judge"])]
+    pub(crate) replace: Vec<u32>,
     /// What the list shall be good at
     #[arg(long, value_parser = one_of(CRITERION), default_value = "expected")]
     pub(crate) criterion: PlanCriterion,
@@ -65,6 +69,10 @@ pub(crate) struct Plan {
     /// Seed of everything random
     #[arg(long, default_value_t = 1, value_parser = whole::<u64>)]
     pub(crate) seed: u64,
+    /// Write the list also as a program of joint motions with a stop at each row: its name ends in .script (Universal Robots), .mod (ABB),
+    /// .src (KUKA) or .ls (FANUC)
+    #[arg(long, value_name = "FILE")]
+    pub(crate) program: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) place: OutFile,
     /// Print JSON instead of the table

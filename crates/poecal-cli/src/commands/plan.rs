@@ -6,8 +6,10 @@ use poecal::analysis::PlannedSession;
 use poecal::calibration::DeviceFrameKnowledge;
 use poecal::io::measurements::{ReadOptions, planned_table, read_joints};
 use poecal::io::model::{Model, ModelSource};
+use poecal::io::output::{Existing, FilePlace};
+use poecal::io::plan_program::plan_program;
 use poecal::io::shapes::capsules;
-use poecal::measurement::Noise;
+use poecal::measurement::{Noise, Quantity};
 use poecal::plan::{Conditions, PlanOptions, PlannedFit, Sight, plan as planned, workspace_in};
 use poecal::robot::Tolerance;
 use poecal::simulate::Kind;
@@ -23,6 +25,10 @@ pub(crate) fn plan(arguments: &Plan, console: &Console) -> Result<u8> {
     let files = arguments.candidates.iter().chain(&arguments.keep).map(PathBuf::as_path);
     let inputs: Vec<_> = std::iter::once(arguments.model.as_path()).chain(files).collect();
     let place = arguments.place.reserve(&inputs, console)?;
+    let existing = Existing::forced(arguments.place.force);
+    let program = arguments.program.as_ref();
+    let program =
+        program.map(|path| FilePlace::reserve(path, existing, &inputs, &mut console.warner())).transpose()?;
     let options = arguments.columns.options();
     let model = Model::read(&arguments.model, &arguments.chain.selection(options.as_ref().ok())?)?;
     let reading = model.reads(options?);
@@ -32,6 +38,26 @@ pub(crate) fn plan(arguments: &Plan, console: &Console) -> Result<u8> {
     for path in &arguments.keep {
         kept.extend(read(path)?);
     }
+    let width = model.robot.reading_names().len().max(1);
+    let rows = kept.len() / width;
+    let mut avoided = Vec::new();
+    for &row in &arguments.replace {
+        if !(1..=rows).contains(&(row as usize)) {
+            return ErrorKind::Option.refuse(format!(
+                "found row {row} to replace, expected one of the {rows} rows of --keep, counted from 1"
+            ));
+        }
+        let at = (row as usize - 1) * width;
+        avoided.extend_from_slice(&kept[at..at + width]);
+    }
+    if !arguments.replace.is_empty() {
+        let stays = |row: &usize| !arguments.replace.contains(&u32::try_from(row + 1).unwrap_or(u32::MAX));
+        kept =
+            (0..rows).filter(stays).flat_map(|row| kept[row * width..(row + 1) * width].to_vec()).collect();
+    }
+    let is_replacing = !arguments.replace.is_empty();
+    let count = if is_replacing { u32::try_from(rows).unwrap_or(u32::MAX) } else { arguments.count };
+    let judge = if is_replacing { Some(0) } else { arguments.judge };
     let workspace = match &arguments.over {
         Over::Limits => None,
         Over::Tasks(path) => Some(read(path)?),
@@ -44,12 +70,13 @@ pub(crate) fn plan(arguments: &Plan, console: &Console) -> Result<u8> {
         fit: PlannedFit {
             targets: arguments.targets as usize,
             target_offset: offset.map(Into::into),
-            ..fit(&arguments.fit, arguments.measure, arguments.count)?
+            ..fit(&arguments.fit, &model, arguments.measure, count)?
         },
         criterion: arguments.criterion,
         list,
         workspace,
-        judge: arguments.judge.map(|count| count as usize),
+        judge: judge.map(|count| count as usize),
+        avoided,
         kept,
         conditions: conditions(arguments, &model, console),
         seed: arguments.seed,
@@ -58,6 +85,11 @@ pub(crate) fn plan(arguments: &Plan, console: &Console) -> Result<u8> {
     let found = planned(&model.robot, &options)?;
     let report = report::Plan::new(&model, &options, &found);
     let table = planned_table(&model.robot, &found.rows, &report.comments())?;
+    let as_program = arguments.program.as_ref();
+    let as_program = as_program.map(|path| plan_program(path, &model.robot, &found.rows)).transpose()?;
+    if let Some((place, text)) = program.zip(as_program) {
+        place.write(vec![text.into()])?;
+    }
     let written = place.is_some();
     let is_data = !written && !arguments.json;
     if written {
@@ -93,7 +125,7 @@ pub(super) fn readings(
 }
 
 /// The fit that will be made of so many configurations of a kind.
-pub(super) fn fit(arguments: &FitArgs, kind: Kind, count: u32) -> Result<PlannedFit> {
+pub(super) fn fit(arguments: &FitArgs, model: &Model, kind: Kind, count: u32) -> Result<PlannedFit> {
     let tolerance = match &arguments.tolerance {
         BelievedTolerance::None => Some(Tolerance::WIDE),
         BelievedTolerance::Given(tolerance) => Some(*tolerance),
@@ -111,9 +143,16 @@ pub(super) fn fit(arguments: &FitArgs, kind: Kind, count: u32) -> Result<Planned
         tolerance,
         corrections: arguments.corrections,
         gravity: arguments.gravity.into(),
-        robot_error_m: arguments.robot_error,
+        robot_error_m: arguments.robot_error.or_else(|| found_error_m(model)),
         ..PlannedFit::default()
     })
+}
+
+/// The error that a calibration of this robot left, if the model is one: of rows that were held out, else of those fitted.
+fn found_error_m(model: &Model) -> Option<f64> {
+    let ModelSource::Calibration(file) = &model.source else { return None };
+    let set = file.accuracy.held_out.as_ref().unwrap_or(&file.accuracy.training);
+    set.calibrated.get(Quantity::Position).map(|it| it.rms)
 }
 
 /// What a configuration must fulfil.

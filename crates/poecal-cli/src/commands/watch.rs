@@ -30,7 +30,7 @@ pub(crate) fn watch(arguments: &Watch, console: &Console) -> Result<u8> {
         Over::Box(corners) => Some(workspace_in(&model.robot, corners, arguments.seed)?),
     };
     let begin = |kind: Kind| -> Result<Watched> {
-        let fit: PlannedFit = fit(&arguments.fit, kind, 30)?;
+        let fit: PlannedFit = fit(&arguments.fit, &model, kind, 30)?;
         let (candidates, workspace) = (candidates.clone(), workspace.clone());
         Watched::new(&model.robot, WatchOptions { fit, candidates, workspace, seed: arguments.seed })
     };

@@ -33,7 +33,9 @@ fn a_planned_list_is_read_and_completed() {
     folder.done("identify column.toml joints.csv --kind point");
     // Four more beside these, the same bytes whatever the number of threads.
     let more = |threads: usize| {
-        folder.done(&format!("plan column.toml --count 20 --judge 0 --keep joints.csv --json --threads {threads}"))
+        folder.done(&format!(
+            "plan column.toml --count 20 --judge 0 --keep joints.csv --json --threads {threads}"
+        ))
     };
     let one = more(1);
     assert_eq!(one, more(3));
@@ -55,7 +57,10 @@ fn what_cannot_be_planned_is_refused_with_a_reason() {
     let err = refused("plan column.toml --count 12 --device 0,0,90000mm --distance 1mm:2mm --out joints.csv");
     assert!(err.contains("by the device's distances, expected at least the 12 of the plan"), "{err}");
     let err = refused("plan column.toml --measure socket --out joints.csv");
-    assert!(err.contains("found the kind `socket`, expected one whose configurations can be chosen freely"), "{err}");
+    assert!(
+        err.contains("found the kind `socket`, expected one whose configurations can be chosen freely"),
+        "{err}"
+    );
     let err = refused("plan column.toml --keep-out 1,2,3 --out joints.csv");
     assert!(err.contains("expected two corners with a unit behind the last"), "{err}");
     assert!(!folder.path("joints.csv").exists());
@@ -67,7 +72,7 @@ fn a_row_that_is_off_is_named() {
     let folder = folder();
     folder.done("simulate column.toml --kind point --count 30 --out made");
     let text = folder.read("made/measurements.csv");
-    let clean = folder.run("watch made/nominal.toml made/measurements.csv --once --json --robot-error 0.05mm");
+    let clean = folder.run("watch column.toml made/measurements.csv --once --json --robot-error 0.05mm");
     println!("{}", clean.out.lines().last().unwrap());
     assert_eq!((clean.code, clean.out.lines().count()), (0, 30), "{}{}", clean.out, clean.err);
     let mut lines: Vec<String> = text.lines().map(str::to_owned).collect();
@@ -77,7 +82,7 @@ fn a_row_that_is_off_is_named() {
     cells[3] = format!("{}", x + 10.0);
     lines[at] = cells.join(",");
     folder.write("off.csv", lines.join("\n") + "\n");
-    let run = folder.run("watch made/nominal.toml off.csv --once --robot-error 0.05mm");
+    let run = folder.run("watch column.toml off.csv --once --robot-error 0.05mm");
     assert_eq!(run.code, 1);
     assert!(run.out.contains("row 26: WRONG"), "{}", run.out);
 }

@@ -20,6 +20,7 @@ pub mod named_files;
 mod numbers;
 pub mod offsets;
 pub mod output;
+pub mod plan_program;
 pub mod predictions;
 pub mod programs;
 mod proof;

@@ -7,6 +7,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 
 use super::capsule::{Capsule, between};
+use super::order::Travel;
 use crate::lie::Pose;
 use crate::robot::{Body, ReadingKind, Robot};
 use crate::simulate::Configurations;
@@ -14,6 +15,8 @@ use crate::simulate::Configurations;
 /// Random configurations in all of which capsules overlap that belong together, and their seed.
 const TOGETHER: usize = 1000;
 const SEED: u64 = 7;
+/// How far new configurations stay from those that they replace, in some joint, radians.
+const AWAY_RAD: f64 = 0.175;
 /// A line of sight ends so many metres before its target, which hides itself else.
 const AT_TARGET_M: f64 = 1e-3;
 
@@ -73,10 +76,12 @@ pub enum Obstacle {
     Incidence,
     /// A link is between device and target.
     Hidden,
+    /// It is near one that could not be measured.
+    Avoided,
 }
 
 impl Obstacle {
-    const ALL: [Obstacle; 8] = [
+    const ALL: [Obstacle; 9] = [
         Obstacle::Limits,
         Obstacle::KeepOut,
         Obstacle::Floor,
@@ -85,6 +90,7 @@ impl Obstacle {
         Obstacle::Distance,
         Obstacle::Incidence,
         Obstacle::Hidden,
+        Obstacle::Avoided,
     ];
 
     /// It in words.
@@ -99,6 +105,7 @@ impl Obstacle {
             Obstacle::Distance => "the device's distances",
             Obstacle::Incidence => "the direction in which the target looks",
             Obstacle::Hidden => "links before the target",
+            Obstacle::Avoided => "rows that are replaced",
         }
     }
 }
@@ -106,7 +113,7 @@ impl Obstacle {
 /// How many configurations each condition took.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Refusals {
-    counts: [usize; 8],
+    counts: [usize; Obstacle::ALL.len()],
     /// Number of configurations that were looked at.
     pub tried: usize,
 }
@@ -141,6 +148,8 @@ pub(crate) struct Checker<'a> {
     robot: &'a Robot,
     configurations: Configurations,
     conditions: &'a Conditions,
+    avoided: &'a [f64],
+    travel: Travel,
     /// Pairs of capsules that must not overlap.
     pairs: Vec<(usize, usize)>,
     /// Pairs that overlap in every configuration and are left out.
@@ -179,7 +188,20 @@ impl<'a> Checker<'a> {
             }
             !is_always
         });
-        Checker { robot, configurations, conditions, pairs, left_out }
+        Checker {
+            robot,
+            configurations,
+            conditions,
+            avoided: &[],
+            travel: Travel::new(robot, 1.0),
+            pairs,
+            left_out,
+        }
+    }
+
+    /// The same with configurations from which others stay away.
+    pub(crate) fn avoiding(self, avoided: &'a [f64], length_m: f64) -> Self {
+        Checker { avoided, travel: Travel::new(self.robot, length_m), ..self }
     }
 
     /// Ranges of the readings with their margin.
@@ -253,6 +275,10 @@ impl<'a> Checker<'a> {
 
     /// What forbids to measure there.
     pub(crate) fn measured(&self, readings: &[f64]) -> Option<Obstacle> {
+        let mut avoided = self.avoided.chunks_exact(readings.len().max(1));
+        if avoided.any(|it| self.travel.distance(it, readings) < AWAY_RAD) {
+            return Some(Obstacle::Avoided);
+        }
         self.robot(readings).or_else(|| self.sight(readings))
     }
 

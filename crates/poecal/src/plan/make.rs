@@ -66,6 +66,8 @@ pub struct PlanOptions {
     pub conditions: Conditions,
     /// Configurations that are measured in any case, or were.
     pub kept: Vec<f64>,
+    /// Configurations from which new ones stay 10° away, in some joint: they could not be measured.
+    pub avoided: Vec<f64>,
     /// Seed of what is random.
     pub seed: u64,
 }
@@ -81,6 +83,7 @@ impl Default for PlanOptions {
             judge: None,
             conditions: Conditions::default(),
             kept: Vec::new(),
+            avoided: Vec::new(),
             seed: 1,
         }
     }
@@ -280,7 +283,8 @@ impl<'a> Planner<'a> {
         let width = experiment.width();
         let mut generator = ChaCha8Rng::seed_from_u64(options.seed);
         let planned = experiment.robot.clone();
-        let checker = Checker::new(&planned, &options.conditions);
+        let checker =
+            Checker::new(&planned, &options.conditions).avoiding(&options.avoided, experiment.length_m());
         let mut refusals = Refusals::default();
         let (candidates, origins) = match &options.list {
             Some(list) => {
@@ -308,7 +312,11 @@ impl<'a> Planner<'a> {
             }
         };
         let workspace = match &options.workspace {
-            Some(workspace) => workspace.clone(),
+            // Some of many, at even distances.
+            Some(workspace) => {
+                let every = (workspace.len() / width).div_ceil(WORKSPACE).max(1);
+                workspace.chunks_exact(width).step_by(every).flatten().copied().collect()
+            }
             None => drawn(&checker, WORKSPACE, &mut generator, |checker, readings| {
                 checker.robot(readings).is_none()
             }),
@@ -486,7 +494,8 @@ impl<'a> Planner<'a> {
     /// Looks around each configuration for better ones.
     fn refine(&mut self, readings: &mut [Vec<f64>], rows: &mut Blocks) -> Result<()> {
         let robot = &self.experiment.robot;
-        let checker = Checker::new(robot, &self.options.conditions);
+        let checker = Checker::new(robot, &self.options.conditions)
+            .avoiding(&self.options.avoided, self.experiment.length_m());
         let travel = Travel::new(robot, self.experiment.length_m());
         let least = self.options.conditions.separation_rad;
         let kinds: Vec<ReadingKind> =

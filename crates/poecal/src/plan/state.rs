@@ -209,6 +209,7 @@ fn scaled(rows: &[f64], aim: &Aim) -> Vec<f64> {
 }
 
 /// `R = J_c - J_g A` and `Z = J_g E` of rows.
+#[inline(always)]
 fn own_rows(state: &State, aim: &Aim, rows: &[f64], numbers: usize, r: &mut [f64], z: &mut [f64]) {
     let (g, c) = (aim.geometry, aim.modes());
     let [a, e] = &state.pull;
@@ -386,31 +387,12 @@ impl Caches {
         let count = blocks.count();
         made.small = vec![0.0; count * made.small_len()];
         made.long = vec![0.0; count * made.long_len()];
-        let n = blocks.columns;
-        let g = aim.geometry;
         made.each(|index, small, long| {
             let rows = blocks.of(index);
-            let scaled = scaled(rows, aim);
-            let mut fill = |at: usize, matrix: &DMatrix<f64>, n_own: usize, rows: &[f64]| {
-                for i in 0..m {
-                    let row = &rows[i * n..i * n + n_own];
-                    let own: Vec<f64> = (0..n_own)
-                        .map(|column| dot(row, &matrix.as_slice()[column * n_own..(column + 1) * n_own]))
-                        .collect();
-                    for j in 0..m {
-                        small[at * m * m + i * m + j] = dot(&own, &rows[j * n..j * n + n_own]);
-                    }
-                }
-            };
-            fill(0, &state.own[0], g, &scaled);
-            fill(1, &state.own[1], g, &scaled);
-            if state.all[0].nrows() > 0 {
-                fill(2, &state.all[0], n, rows);
-                fill(3, &state.all[1], n, rows);
-            }
-            let (r, z) = long.split_at_mut(m * c);
-            own_rows(state, aim, &scaled, m, r, z);
-            squares_of(small, r, z, m, c);
+            by_best(
+                #[inline(always)]
+                || begin(state, aim, (rows, m), (small, long)),
+            );
         });
         made
     }
@@ -504,6 +486,37 @@ impl Caches {
     pub(super) fn count(&self) -> usize {
         self.small.len() / self.small_len().max(1)
     }
+}
+
+/// What a candidate is to begin with.
+#[inline(always)]
+fn begin(state: &State, aim: &Aim, (rows, m): (&[f64], usize), (small, long): (&mut [f64], &mut [f64])) {
+    let (g, c) = (aim.geometry, aim.modes());
+    let scaled = scaled(rows, aim);
+    let mut own = vec![0.0; g + c];
+    let parts = [
+        (0, &state.own[0], g, &scaled[..]),
+        (1, &state.own[1], g, &scaled[..]),
+        (2, &state.all[0], g + c, rows),
+        (3, &state.all[1], g + c, rows),
+    ];
+    for (at, matrix, n, rows) in parts {
+        if matrix.nrows() != n {
+            continue;
+        }
+        for i in 0..m {
+            let row = &rows[i * (g + c)..][..n];
+            for (own, column) in own.iter_mut().zip(matrix.as_slice().chunks_exact(n)) {
+                *own = dot(row, column);
+            }
+            for j in 0..m {
+                small[at * m * m + i * m + j] = dot(&own[..n], &rows[j * (g + c)..][..n]);
+            }
+        }
+    }
+    let (r, z) = long.split_at_mut(m * c);
+    own_rows(state, aim, &scaled, m, r, z);
+    squares_of(small, r, z, m, c);
 }
 
 /// What a candidate is after a change.

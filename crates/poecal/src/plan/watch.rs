@@ -457,9 +457,8 @@ impl Known {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::measurement::Measurement;
-    use crate::simulate::{Simulation, elbow};
-    use crate::{Kind, Observation};
+    use crate::measurement::{Measurement, Observation};
+    use crate::simulate::{Kind, Simulation, elbow};
 
     /// Rows of a simulated session of points, one of them off by 5 mm, one with the wrong sign of joint 5, one stale.
     #[test]
