@@ -116,7 +116,7 @@ fn plan(
         );
     };
     let found = witnesses(file, rows.data, count, arguments.target.as_deref(), options)?;
-    let told = report::Witnesses::new(&found, &file.robot.name);
+    let told = report::WitnessPlan::new(&found, &file.robot.name);
     let text = measurements::to_measure_again(rows.data, &found.configurations, robot)?;
     if let Some(place) = place {
         place.write(vec![text.into()])?;

@@ -72,7 +72,6 @@ pub use arm_too::{ArmToo, arm_too, session_of};
 pub use blocks::BlockChoice;
 pub(crate) use blocks::names;
 pub use calibrate::{calibrate, calibrate_repairing};
-pub(crate) use corrections::whitened_rows;
 pub use corrections::{
     CorrectedFit, Correction, Effects, JointEffect, JointErrorPart, JointErrors, SizesReason, TriedSizes,
 };

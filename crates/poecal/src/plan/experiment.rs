@@ -255,7 +255,7 @@ impl Experiment {
         self.session.noise = ByQuantity::from_fn(|quantity| match quantity.unit() {
             Unit::Metre => stated[quantity].hypot(each),
             Unit::Radian => stated[quantity].hypot(each / length_m),
-            Unit::One => stated[quantity],
+            Unit::One | Unit::Second => stated[quantity],
         });
         Ok(())
     }

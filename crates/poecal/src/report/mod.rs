@@ -33,7 +33,7 @@ pub use page::{calibration_page, calibration_page_with, fleet_page, validation_p
 pub use plan::Plan;
 pub use summary::{Detail, summary, unsaid};
 pub use tcp::tool_tip;
-pub use track::{Track, Witnesses, recalibrated};
+pub use track::{Track, WitnessPlan, recalibrated};
 pub use watched::Watched;
 
 use serde::Serialize;

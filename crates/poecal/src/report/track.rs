@@ -126,7 +126,7 @@ fn shown(value: f64, slides: bool) -> f64 {
 
 /// What repeats of chosen configurations would show.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Witnesses {
+pub struct WitnessPlan {
     robot: String,
     configurations: usize,
     /// Standard deviation of a visit and coordinate for which this is, millimetres.
@@ -136,11 +136,11 @@ pub struct Witnesses {
     invisible: Vec<InvisibleEntry>,
 }
 
-impl Witnesses {
+impl WitnessPlan {
     /// Of chosen configurations.
     #[must_use]
     pub fn new(found: &Witnesses, robot: &str) -> Self {
-        Witnesses {
+        WitnessPlan {
             robot: robot.to_owned(),
             configurations: found.configurations.len(),
             noise_mm: 1e3 * found.sigma_m,
