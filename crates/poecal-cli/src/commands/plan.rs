@@ -103,7 +103,8 @@ pub(crate) fn plan(arguments: &Plan, console: &Console) -> Result<u8> {
             text.push_str(&labelled("written", &shown(path)));
         }
         if is_data {
-            console.note(text);
+            // The list is on standard output.
+            text.lines().filter(|line| !line.is_empty()).for_each(|line| console.note(line));
             console.data(&table)?;
         } else {
             console.say(&text)?;

@@ -4,6 +4,7 @@ use nalgebra::Vector3;
 
 use crate::analysis::PlannedSession;
 use crate::robot::{Corrections, Tolerance};
+use crate::simulate::Kind;
 
 /// The fit that will be made of planned measurements: what is measured, and what is believed before.
 ///
@@ -35,7 +36,7 @@ impl Default for PlannedFit {
     /// Points with 0.05 mm of 30 configurations.
     fn default() -> Self {
         PlannedFit {
-            session: PlannedSession { kind: crate::Kind::POINT, ..PlannedSession::default() },
+            session: PlannedSession { kind: Kind::POINT, ..PlannedSession::default() },
             count: 30,
             tolerance: Some(Tolerance::default()),
             corrections: Corrections::Auto,
