@@ -346,7 +346,8 @@ impl<'a> Planner<'a> {
             Weights { calibrated: 1.0, corrected: if has_terms { 1.0 } else { 0.0 }, determinant: 0.0 };
         let mut aim =
             Aim::new(&experiment.prior, experiment.moments(&workspace), weights, experiment.share());
-        let random = random_lists(&aim, &kept, &blocks, options)?;
+        let new = options.fit.count.saturating_sub(kept_count).min(blocks.count());
+        let random = random_lists(&aim, &kept, &blocks, (new, options.seed))?;
         if has_terms {
             aim.weights.calibrated = 1.0 / random.calibrated();
             aim.weights.corrected = 1.0 / random.corrected;
@@ -656,15 +657,20 @@ fn enough(curve: &[CurvePoint]) -> Option<usize> {
 }
 
 /// Median expected squared errors of random lists.
-fn random_lists(aim: &Aim, kept: &DMatrix<f64>, blocks: &Blocks, options: &PlanOptions) -> Result<Squares> {
-    let mut generator = ChaCha8Rng::seed_from_u64(options.seed);
+fn random_lists(
+    aim: &Aim,
+    kept: &DMatrix<f64>,
+    blocks: &Blocks,
+    (count, seed): (usize, u64),
+) -> Result<Squares> {
+    let mut generator = ChaCha8Rng::seed_from_u64(seed);
     generator.set_stream(1);
     let mut order: Vec<usize> = (0..blocks.count()).collect();
     let search = Search { aim, kept, blocks, apart: &|_, _| true };
     let mut found = Vec::new();
     for _ in 0..RANDOM {
         random::shuffle(&mut generator, &mut order);
-        found.push(search.squares(&order[..options.fit.count]).ok_or_else(undetermined)?);
+        found.push(search.squares(&order[..count]).ok_or_else(undetermined)?);
     }
     let median = |of: fn(&Squares) -> f64| {
         let mut values: Vec<f64> = found.iter().map(of).collect();
