@@ -321,7 +321,7 @@ impl Experiment {
         let mut data = template.only(&[]);
         for own in readings.chunks_exact(self.width()) {
             for observation in &template.observations {
-                data.push_observation(own, observation.clone())?;
+                data.push_observation(own, *observation)?;
             }
         }
         Ok((data, Vec::new()))

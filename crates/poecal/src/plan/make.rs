@@ -380,10 +380,8 @@ impl<'a> Planner<'a> {
         let mut rows = self.blocks.only(&chosen);
         let origins: Vec<Option<usize>> =
             chosen.iter().map(|&at| self.origins.as_ref().and_then(|it| it.get(at)).copied()).collect();
-        if self.options.list.is_none() {
-            if self.options.criterion == PlanCriterion::Expected {
-                self.refine(&mut readings, &mut rows)?;
-            }
+        if self.options.list.is_none() && self.options.criterion == PlanCriterion::Expected {
+            self.refine(&mut readings, &mut rows)?;
         }
         let (squares, log_determinant) = self.squares(&rows)?;
         let expected = ExpectedErrors::new(&self.experiment, &squares);

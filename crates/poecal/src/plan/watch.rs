@@ -331,7 +331,7 @@ impl Known {
         let observation = &data.observations[at];
         let with = |readings: &[f64]| -> Option<Dataset> {
             let mut one = data.only(&[]);
-            one.push_observation(readings, observation.clone()).ok()?;
+            one.push_observation(readings, *observation).ok()?;
             Some(one)
         };
         let own = data.readings(at);
@@ -457,7 +457,7 @@ impl Known {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::measurement::{Measurement, Observation};
+    use crate::measurement::Measurement;
     use crate::simulate::{Kind, Simulation, elbow};
 
     /// Rows of a simulated session of points, one of them off by 5 mm, one with the wrong sign of joint 5, one stale.
@@ -467,14 +467,14 @@ mod tests {
         let mut data = made.data.only(&[]);
         for row in 0..made.data.len() {
             let mut readings = made.data.readings(row).to_vec();
-            let mut observation = made.data.observations[row].clone();
+            let mut observation = made.data.observations[row];
             match row {
                 20 => {
                     let at = observation.measurement.position().unwrap();
                     observation.measurement = Measurement::point(at + nalgebra::Vector3::new(0.0, 5e-3, 0.0));
                 }
                 25 => readings[4] = -readings[4],
-                30 => observation = Observation { ..made.data.observations[row - 1].clone() },
+                30 => observation = made.data.observations[row - 1],
                 _ => {}
             }
             data.push_observation(&readings, observation).unwrap();
