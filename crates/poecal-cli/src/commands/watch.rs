@@ -7,7 +7,7 @@ use poecal::calibration::Corrections;
 use poecal::io::measurements::{GrowingFile, News};
 use poecal::io::model::Model;
 use poecal::plan::{PlannedFit, Watch as Watched, WatchOptions, workspace_in};
-use poecal::{Kind, Result, report};
+use poecal::{ErrorKind, Kind, Result, report};
 
 use super::plan::{fit, readings};
 use crate::args::Watch;
@@ -19,6 +19,11 @@ use crate::{DONE, WORSE};
 const PAUSE: Duration = Duration::from_millis(100);
 
 pub(crate) fn watch(arguments: &Watch, console: &Console) -> Result<u8> {
+    if cfg!(target_family = "wasm") && !arguments.once {
+        return ErrorKind::Option.refuse(
+            "found watch without --once, expected it where a program cannot wait for a file, as in a browser",
+        );
+    }
     let options = arguments.columns.options();
     let model = Model::read(&arguments.model, &arguments.chain.selection(options.as_ref().ok())?)?;
     let reading = model.reads(options?);
