@@ -420,9 +420,7 @@ impl<'a> Planner<'a> {
         let at = |index: usize| &self.candidates[index * width..(index + 1) * width];
         let apart = |a: usize, b: usize| least <= 0.0 || travel.distance(at(a), at(b)) >= least;
         let best = |aim: &Aim, kept: &DMatrix<f64>, blocks: &Blocks| {
-            let search = Search { aim, kept, blocks, apart: &apart };
-            let greedy = search.greedy(Vec::new(), count);
-            search.exchange(greedy, 0)
+            Search { aim, kept, blocks, apart: &apart }.list(count, self.options.seed)
         };
         if self.options.criterion == PlanCriterion::Expected {
             return best(&self.aim, &self.kept, &self.blocks);
