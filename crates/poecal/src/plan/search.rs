@@ -58,10 +58,11 @@ impl Search<'_> {
         chosen
     }
 
-    /// The best list of so many: from the greedy one, and of geometry alone, which takes little time, from random ones too.
+    /// The best list of so many: from the greedy one, and of geometry alone among few candidates, which takes little time,
+    /// from random ones too.
     pub(super) fn list(&self, count: usize, seed: u64) -> Vec<usize> {
         let mut best = self.exchange(self.greedy(Vec::new(), count), 0);
-        if self.aim.weights.corrected > 0.0 {
+        if self.aim.weights.corrected > 0.0 || self.blocks.count() > MANY {
             return best;
         }
         let value =
