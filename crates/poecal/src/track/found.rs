@@ -104,7 +104,7 @@ pub(super) fn explanation(
     });
     let slides = hypothesis.of.first().is_some_and(|of| match *of {
         Of::Zero(at) => model.robot.joints[at].kind == JointKind::Prismatic,
-        _ => false,
+        Of::Device(_) | Of::Target(_) | Of::Lengths | Of::Axis(_) | Of::Give(_) => false,
     });
     let scale = verdict.variance.sqrt();
     let sizes = tried.step.iter().zip(&hypothesis.turns);

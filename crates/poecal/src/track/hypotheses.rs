@@ -11,7 +11,7 @@ pub(super) fn free(jacobian: &DMatrix<f64>, visit: &Visit, options: &TrackOption
     picked(jacobian, &visit.columns, |of| match of {
         Of::Device(_) => !visit.device_is_known,
         Of::Target(_) => options.tool_is_anew,
-        _ => false,
+        Of::Lengths | Of::Zero(_) | Of::Axis(_) | Of::Give(_) => false,
     })
 }
 
@@ -71,7 +71,7 @@ pub(super) fn hypotheses(jacobian: &DMatrix<f64>, visit: &Visit, options: &Track
 fn tool(jacobian: &DMatrix<f64>, visit: &Visit, targets: &[&Columns]) -> Hypothesis {
     let pose = |it: &Columns| match it.of {
         Of::Target(target) => visit.targets.get(target),
-        _ => None,
+        Of::Device(_) | Of::Lengths | Of::Zero(_) | Of::Axis(_) | Of::Give(_) => None,
     };
     let places: Vec<Vector3<f64>> = targets.iter().filter_map(|it| Some(pose(it)?.0.translation)).collect();
     let middle = places.iter().sum::<Vector3<f64>>() / places.len().max(1) as f64;

@@ -53,7 +53,7 @@ pub fn track(
     let named = |it: &Tried| explanation(it, &hypotheses[it.at], &verdict, &model, &data);
     let explanation = verdict.best.as_ref().map(named);
     let alternatives: Vec<Explanation> = verdict.nearly.iter().map(named).collect();
-    notes.extend(explanation.as_ref().filter(|it| it.is_far()).map(|it| words::far(it)));
+    notes.extend(explanation.as_ref().filter(|it| it.is_far()).map(words::far));
     let joints = sight::joints(
         &changes,
         &visit,

@@ -344,11 +344,14 @@ fn by_known(
 
 /// The same parameter of another target.
 fn of_target(parameter: &Parameter, target: usize) -> Parameter {
-    match *parameter {
-        Parameter::TargetPlace(_) => Parameter::TargetPlace(TargetPlace { target }),
-        Parameter::TargetFrame(it) => Parameter::TargetFrame(TargetFrame { target, ..it }),
-        other => other,
+    // What is of no target stays.
+    if let Parameter::TargetFrame(it) = parameter {
+        return Parameter::TargetFrame(TargetFrame { target, ..*it });
     }
+    if matches!(parameter, Parameter::TargetPlace(_)) {
+        return Parameter::TargetPlace(TargetPlace { target });
+    }
+    *parameter
 }
 
 /// The derivative of whitened numbers by a growth of all lengths of the arm: where the target is in the base, by the shifts of the device.
