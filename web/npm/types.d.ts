@@ -26,7 +26,7 @@ export interface CalibrateOptions {
    * How a file of joint readings and one of measurements find each other [default: by name, else recordings at the times of their stands
    * and lists by their order, if the nominal robot agrees with no other one as well]
    */
-  join?: "name" | "rows" | "time";
+  join?: "name" | "rows" | "time" | "motion";
   /**
    * Lag of the clocks of two recordings, the measurements' time less that of the joint readings, where their stands fit at several
    * [default: found]
@@ -150,7 +150,7 @@ export interface ValidateOptions {
    * How a file of joint readings and one of measurements find each other [default: by name, else recordings at the times of their stands
    * and lists by their order, if the nominal robot agrees with no other one as well]
    */
-  join?: "name" | "rows" | "time";
+  join?: "name" | "rows" | "time" | "motion";
   /**
    * Lag of the clocks of two recordings, the measurements' time less that of the joint readings, where their stands fit at several
    * [default: found]
@@ -253,7 +253,7 @@ export interface CheckOptions {
    * How a file of joint readings and one of measurements find each other [default: by name, else recordings at the times of their stands
    * and lists by their order, if the nominal robot agrees with no other one as well]
    */
-  join?: "name" | "rows" | "time";
+  join?: "name" | "rows" | "time" | "motion";
   /**
    * Lag of the clocks of two recordings, the measurements' time less that of the joint readings, where their stands fit at several
    * [default: found]
@@ -399,6 +399,8 @@ export type CalibrationFile = {
   accuracy: Accuracy;
   /** What was fitted and what held, where that is not the usual: all axes, targets and frames. */
   blocks?: BlocksEntry | null;
+  /** Clocks of instruments that measured in motion; absent where none did. */
+  clocks?: ClockEntry[];
   /** Directions in which corrections of several joints are known only together; absent where there is none. */
   common?: CommonDirectionEntry[];
   /**
@@ -438,6 +440,8 @@ export type CalibrationFile = {
   pictures?: PicturesEntry | null;
   /** Version of the program. */
   poecal_version: string;
+  /** Joints that were calibrated anew since, by `poecal track --recalibrate`, in order; all else is of the calibration before. */
+  recalibrated?: RecalibratedEntry[];
   /** What is stated of the session; absent if nothing is. */
   record?: Record;
   /** What happened during the session and was repaired; all else in this file is of the repaired session. */
@@ -581,6 +585,25 @@ export type Cause = "own_axis" | "base_frame" | "joint_offsets" | "no_orientatio
 
 /** What the common error of the corners of a picture turns about. */
 export type Centre = "board" | "camera";
+
+/**
+ * The clock of an instrument whose rows were measured in motion, beside that of the joint readings: a measurement at its time t belongs to
+ * the readings at `t - lag - drift (t - middle)`.
+ */
+export type ClockEntry = {
+  /** Growth of the lag, parts per million. */
+  drift_ppm: number;
+  /** Name of the instrument, if the measurements name it. */
+  instrument?: string | null;
+  /** Time of the instrument less that of the joint readings in the middle of the recording, seconds. */
+  lag_s: number;
+  /** The middle of the recording by the clock of the instrument, seconds. */
+  middle_s: number;
+  /** Its standard deviation; absent likewise. */
+  sigma_drift_ppm?: number | null;
+  /** Its standard deviation, milliseconds; absent where the lag was held, and without more residuals than unknowns. */
+  sigma_lag_ms?: number | null;
+};
 
 /** A direction in which corrections of several joints are known only together. */
 export type CommonDirectionEntry = {
@@ -988,10 +1011,32 @@ export type Improvements = {
   corrected?: MeasuredOfImprovement | null;
 };
 
+/** A file as it was read. */
+export type InputEntry = {
+  /** Its name, as in `measurements`. */
+  file: string;
+  /** What the file is; absent of a table in our form. */
+  form?: string | null;
+  /** Lost beams: measurements without a position, which were left out. */
+  lost?: number;
+  /** Its rows, those of lost beams included. */
+  rows: number;
+  /** What was taken of it, a number for each quantity: `joint readings`, `points`, `poses` and other measurements. */
+  taken: { [name: string]: number };
+  /** What was understood of one in another form, in a few words: sheet, frame, body, topic, unit. */
+  understood?: string | null;
+  /** Units of its columns. */
+  units?: string[];
+};
+
 /** Inputs. */
 export type Inputs = {
   /** The command that reproduces the calibration; null if it was not made by the program. */
   command?: string | null;
+  /** What each measurement file is and what was taken of it; one with joint readings and measurements has two entries. */
+  files?: InputEntry[];
+  /** How files of joint readings and of measurements were joined; absent if one file has both. */
+  joins?: JoinEntry[];
   /** The measurement files, as named by the user. */
   measurements: string[];
   /** The robot model, as named by the user. */
@@ -1010,6 +1055,41 @@ export type InstrumentEntry = {
   position_m: [number, number, number];
   /** Unit quaternion x, y, z, w. */
   quaternion_xyzw: [number, number, number, number];
+};
+
+/** How the rows of a file of joint readings and of one of measurements find each other. */
+export type Join = "name" | "rows" | "time" | "motion";
+
+/** How a file of measurements was joined with one of joint readings. */
+export type JoinEntry = {
+  /** How rows found each other. */
+  join: Join;
+  /** Rows of joint readings, or stands of their stream. */
+  joint_rows: number;
+  /** The file of joint readings. */
+  joints: string;
+  /** Time of the measurements less that of the joint readings, seconds; absent without clocks. */
+  lag_s?: number | null;
+  /** The target's motion, of a stream of measurements, or of single points with times. */
+  measured_motion?: MotionEntry | null;
+  /** Configurations in which was measured, or stands of the stream of measurements. */
+  measured_rows: number;
+  /** The file of measurements. */
+  measurements: string;
+  /** By how much the nominal robot misses the pairs (median), millimetres; absent where they are too few to say. */
+  missed_mm?: number | null;
+  /** Number of pairs. */
+  paired: number;
+  /** Pairs: number of the row of joint readings, and of the measured configuration, each from 1; at most 2,000. */
+  pairs: Array<[number, number]>;
+  /** Joint readings at which more than once was measured. */
+  repeated?: RowEntry[];
+  /** The robot's motion, of a stream of joint readings. */
+  robot_motion?: MotionEntry | null;
+  /** Joint readings at which nothing was measured; at most 1,000, as of the next two. */
+  unmeasured?: RowEntry[];
+  /** Measured configurations that were left out: they have no joint readings. */
+  unread?: RowEntry[];
 };
 
 /**
@@ -1211,6 +1291,24 @@ export type ModelAccuracy = {
   tilt_deg?: Statistic;
 };
 
+/** Motion in a stream, by its own clock. */
+export type MotionEntry = {
+  /** Time of the first row, seconds; all other times are after it. */
+  begin_s: number;
+  /** Time of the last row, seconds. */
+  end_s: number;
+  /** Begin and end of the times without a row, as of lost frames, seconds; the longest 1,000. */
+  gaps_s?: Array<[number, number]>;
+  /** Its rows. */
+  rows: number;
+  /** Speed of the nominal robot's tip, or of the target that was seen most, over each step, mm/s; null where no row is near. */
+  speeds_mm_s: Array<number | null>;
+  /** Begin and end of each stand, seconds; both the same of a single point. */
+  stands_s: Array<[number, number]>;
+  /** Seconds from one speed to the next; zero without speeds. */
+  step_s: number;
+};
+
 /** Noise by which residuals were weighted where a row stated none. */
 export type NoiseEntry = {
   /** Standard deviation of each component of contact, millimetres. */
@@ -1406,6 +1504,30 @@ export type ReadingEntry = {
   offset: number;
 };
 
+/** A joint that was calibrated anew; all else is as the calibration before had it. */
+export type RecalibratedEntry = {
+  /** The calibration before. */
+  calibration: string;
+  /** The joint. */
+  joint: string;
+  /** The measurement files. */
+  measurements: string[];
+  /** By what motion of the base's axes the axis moved, and of a zero what follows the joint: metres and radians, linear part first. */
+  motion: [number, number, number, number, number, number];
+  /** What of it. */
+  part: RepairedPart;
+  /** The latter. */
+  repeated: number;
+  /** Number of measurements, and how many of them repeat configurations of earlier ones. */
+  rows: number;
+  /** SHA-256 of each, by name. */
+  sha256: { [name: string]: string };
+  /** Standard deviation of that. */
+  sigma: number;
+  /** What was added to its zero, degrees; of a joint that slides millimetres. Of an axis its turn, degrees. */
+  size: number;
+};
+
 /** What is stated of a session, for its report: after ISO/IEC 17025:2017, 7.8.2. poecal computes nothing from it. */
 export type Record = {
   /** Number of the report or certificate. */
@@ -1431,6 +1553,9 @@ export type Record = {
   /** Temperature there, with its unit, `21.5 °C` or `21.5 ± 0.5 °C`. */
   temperature?: string | null;
 };
+
+/** What of a joint was calibrated anew. */
+export type RepairedPart = "zero" | "axis";
 
 /** Pose accuracy and repeatability of positions, after ISO 9283; of poses that were measured by other quantities theirs. */
 export type RepeatabilityEntry = {
@@ -1594,6 +1719,14 @@ export type RobustEntry = {
   suspected_held_out: number;
   /** `accuracy.training` without suspected rows; null if there are none. */
   training_without_suspected?: SetAccuracy | null;
+};
+
+/** A row of a file. */
+export type RowEntry = {
+  /** Its line, row of a sheet or message; of a stand that of its first row. */
+  line: number;
+  /** Its number among the rows or stands, from 1. */
+  number: number;
 };
 
 /** A screw, linear part first. */

@@ -126,13 +126,10 @@ impl ColumnMap {
         // A clock moves every joint: a column of each, with one place.
         let of_clocks: Vec<(ClockTerm, &[(usize, f64)])> = layout
             .parameters()
-            .filter_map(|(parameter, places)| match parameter {
-                Parameter::ClockUnknown(it)
-                    if it.station == self.sight.station && self.sight.from.is_none() =>
-                {
-                    Some((it.term, places))
-                }
-                _ => None,
+            .filter_map(|(parameter, places)| {
+                let Parameter::ClockUnknown(it) = parameter else { return None };
+                let is_its = it.station == self.sight.station && self.sight.from.is_none();
+                is_its.then_some((it.term, places))
             })
             .collect();
         for (index, passed) in route.iter().enumerate() {
