@@ -158,6 +158,9 @@ fn put_bytes(target: &str, name: &str, bytes: &[u8]) {
     println!("{target}/{name}: {} bytes", bytes.len());
 }
 
+/// A line of a file by its number, the readings and the place.
+type Line<'a> = &'a dyn Fn(usize, &[f64], [f64; 3]) -> String;
+
 /// Four configurations of an elbow (degrees), and points of its tip (mm), in the forms of instruments, controllers and recorders: each time
 /// with a file of the other kind.
 fn recorded() -> Vec<(String, Vec<u8>)> {
@@ -167,7 +170,7 @@ fn recorded() -> Vec<(String, Vec<u8>)> {
         values.iter().map(|it| format!("{:.5}", it * factor)).collect::<Vec<_>>().join(by)
     };
     let degrees = 1_f64.to_degrees();
-    let each = |of: &dyn Fn(usize, &[f64], [f64; 3]) -> String| -> String {
+    let each = |of: Line<'_>| -> String {
         let row = |at: usize| {
             of(at + 1, made.readings(at), made.observations[at].measurement.pose().translation.into())
         };

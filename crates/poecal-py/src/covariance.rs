@@ -62,6 +62,7 @@ impl Covariance {
             Unit::Metre => "m",
             Unit::Radian => "rad",
             Unit::One => "1",
+            Unit::Second => "s",
         };
         self.unknowns.iter().map(|(_, unit)| word(*unit)).collect()
     }

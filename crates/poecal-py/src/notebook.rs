@@ -79,7 +79,7 @@ fn sign(quantity: Quantity) -> &'static str {
     match quantity.unit() {
         Unit::Metre => " mm",
         Unit::Radian => "°",
-        Unit::One => "",
+        Unit::One | Unit::Second => "",
     }
 }
 
