@@ -107,11 +107,11 @@ fn because(unseen: Unseen) -> (&'static str, &'static str) {
     match unseen {
         Unseen::Device => (
             "device",
-            "the device was set up anew, and where it is takes the shift: state --device known if it stands on fixed nests",
+            "the device was set up anew, so that its new place hides the shift: state --device known if it is on fixed nests",
         ),
-        Unseen::Tool => ("tool", "the tool was mounted anew, and where it is takes the shift"),
+        Unseen::Tool => ("tool", "the tool was mounted anew, so that its new place hides the shift"),
         Unseen::DeviceAndTool => {
-            ("device and tool", "device and tool are new, and where they are takes the shift")
+            ("device and tool", "device and tool are new, so that their places hide the shift")
         }
         Unseen::NoMotion => (
             "motion",

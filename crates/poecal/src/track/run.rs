@@ -50,6 +50,9 @@ pub fn track(
     if verdict.is_wider {
         notes.push(words::wider(options.repeatability_m.is_some(), verdict.variance.sqrt()));
     }
+    if repeated == data.len() && changes.residual.iter().all(|it| *it == 0.0) {
+        notes.push(words::copied());
+    }
     let named = |it: &Tried| explanation(it, &hypotheses[it.at], &verdict, &model, &data);
     let explanation = verdict.best.as_ref().map(named);
     let alternatives: Vec<Explanation> = verdict.nearly.iter().map(named).collect();

@@ -13,7 +13,7 @@ const NORMAL: f64 = 1.644_853_627;
 /// Why the zero of a joint is not seen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unseen {
-    /// The device was set up anew: it takes the shift.
+    /// The device was set up anew: its place hides the shift.
     Device,
     /// The tool was mounted anew: its targets take the shift.
     Tool,

@@ -43,6 +43,11 @@ pub(super) fn wider(is_stated: bool, times: f64) -> String {
     }
 }
 
+/// That a visit is a copy of the rows before.
+pub(super) fn copied() -> String {
+    "the rows are those before to the last digit, a copy: nothing was measured anew".to_owned()
+}
+
 /// That a shift is too far.
 pub(super) fn far(found: &Explanation) -> String {
     let name = found.names.first().map(String::as_str).unwrap_or_default();
