@@ -29,7 +29,7 @@ QUICK = {
 }
 CRATES = ["poecal-arm", "poecal-c", "poecal", "poecal-detect", "poecal-lou2009", "poecal-cli"]
 LICENCES = ["LICENSE-APACHE", "LICENSE-MIT"]
-LARGEST_PROGRAM = 18_500_000
+LARGEST_PROGRAM = 20_000_000
 AS_HANDED_OUT = os.environ.get("POECAL_TRIALS") in ("weekly", "full")
 LINES = """
 import poecal
