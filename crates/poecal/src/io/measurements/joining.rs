@@ -228,7 +228,7 @@ const FEWEST_STANDS: usize = 7;
 fn no_stands(path: &Path, what: &str, count: usize) -> Error {
     ErrorKind::Measurement
         .error(format!(
-            "found a stream of {what} with {count} times in which nothing moves for 0.3 s or longer, expected at least {FEWEST_STANDS} stands: let the robot stop at each configuration, or join rows of the same time by --join rows"
+            "found a stream of {what} with {count} times in which nothing moves for 0.3 s or longer, expected at least {FEWEST_STANDS} stands: let the robot stop at each configuration, or join the recordings in motion (--join motion), or rows of the same time (--join rows)"
         ))
         .in_file(path)
 }
