@@ -106,7 +106,9 @@ class Page:
             assert matches(expected, found), f"{place}: shown is\n{expected}\nand printed was\n{found}"
             self.counts.compared += 1
         elif "file" in block.notes:
-            (self.folder / block.notes["file"]).write_text(block.text, encoding="utf-8")
+            path = self.folder / block.notes["file"]
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_text(block.text, encoding="utf-8")
             self.counts.written += 1
         elif block.language == "sh":
             for name, source in block.given:

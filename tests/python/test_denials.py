@@ -21,7 +21,6 @@ PLACES = "crates/poecal-cli/tests/it/places.rs::"
 ELSEWHERE = "it is of something else"
 SHOWN = {
     "It does not read URDF or CSV": ELSEWHERE,
-    "poecal judges a given list": HERE + "test_there_is_no_command_that_plans",
     "Program and package import it, the library does not": "scripts/check-imports",
     "Program and package use only public items": "scripts/check-imports",
     "It also checks that `parameters` and `measurement`": "scripts/check-imports",
@@ -32,8 +31,6 @@ SHOWN = {
     "It is not an argument of some twenty public functions": ELSEWHERE,
     "results are written, but the verdict is *do not use*": "crates/poecal-cli/tests/it/exit_codes.rs::a_calibration_that_should_not_be_used_is_written_and_ends_with_1",
     "They do not determine the orientation of the tool": "tests/python/test_docs.py::test_every_block_does_what_the_page_says",
-    "which unknowns a list of configurations does not determine": "crates/poecal-cli/tests/it/identify.rs::what_would_stay_undetermined_is_said_before_anything_is_measured",
-    "it does not yet search for the best one, and it does not check collisions": HERE + "test_there_is_no_command_that_plans",
     "in terms that do not depend on this choice": "tests/python/test_compare.py",
     "they cannot be calibrated, but an arm beside them can": "crates/poecal/tests/it/model_errors.rs",
     "poecal has no such singularity": "crates/poecal/tests/it/noise_free.rs",
@@ -48,7 +45,7 @@ SHOWN = {
     "It passes only if the rows show that": "crates/poecal-cli/tests/it/acceptance.rs::limits_are_kept_exceeded_or_neither",
     "It does not measure": ELSEWHERE,
     "only the results folder is written to": "tests/python/test_install.py",
-    "it does not know where your nest will be": HERE + "test_there_is_no_command_that_plans",
+    "it does not know where your nest will be": HERE + "test_identify_judges_the_tip_of_the_model",
     "It does not talk to the tracker or drive the robot": HERE + "test_nothing_can_talk_to_a_network",
     "it does not read the tracker's own project files": HERE + "test_no_pictures_are_read",
     "only their order can be mistaken": "crates/poecal/tests/it/forensics.rs",
@@ -92,9 +89,9 @@ def test_every_sentence_that_denies_something_of_poecal_is_shown_to_be_true():
     print(f"{len(found)} sentences, {sum(it == ELSEWHERE for it in SHOWN.values())} of something else")
 
 
-def test_there_is_no_command_that_plans():
-    commands = re.findall(r"^  (\w+) ", poecal("--help"), flags=re.MULTILINE)
-    assert "identify" in commands and not {"plan", "search", "collide"} & set(commands)
+def test_identify_judges_the_tip_of_the_model():
+    # The option with which `plan` knows where a nest will be.
+    assert "--target-offset" in poecal("plan", "--help") and "--target-offset" not in poecal("identify", "--help")
 
 
 def test_tables_of_joints_are_read_for_their_joints(tmp_path):

@@ -5,6 +5,7 @@ import re
 import sqlite3
 import struct
 import urllib.parse
+from collections.abc import Iterator
 from pathlib import Path
 
 MAGIC = b"SQLite format 3\x00"
@@ -26,11 +27,11 @@ TYPES = {
 class NotRead(ValueError):
     """A bag that is not read, and why; the file comes with it."""
 
-    def __init__(self, path, message):
+    def __init__(self, path: Path, message: str) -> None:
         super().__init__(str(path), message)
 
 
-def parts(path):
+def parts(path: str | Path) -> list[Path]:
     """The files of a bag in SQLite by their numbers, one or those of a folder; none of anything else."""
     path = Path(path)
     if path.is_dir():
@@ -43,24 +44,24 @@ def parts(path):
         return []
 
 
-def text(value):
+def text(value: str) -> bytes:
     """A text as MCAP has it."""
-    value = value.encode()
-    return struct.pack("<I", len(value)) + value
+    encoded = value.encode()
+    return struct.pack("<I", len(encoded)) + encoded
 
 
-def record(kind, content):
+def record(kind: int, content: bytes) -> bytes:
     """A record of MCAP."""
     return struct.pack("<BQ", kind, len(content)) + content
 
 
-def connected(path):
+def connected(path: Path) -> sqlite3.Connection:
     """The database, which nothing is written to."""
     name = urllib.parse.quote(str(path.resolve()).replace("\\", "/"), safe="/:")
     return sqlite3.connect(f"file:{'' if name.startswith('/') else '/'}{name}?mode=ro", uri=True)
 
 
-def records_of(path, channels):
+def records_of(path: Path, channels: dict[tuple[str, str, str], int]) -> Iterator[bytes]:
     """Records of a file: of each topic type and channel once, then its messages in the order of the log."""
     database = connected(path)
     try:
@@ -83,13 +84,14 @@ def records_of(path, channels):
         database.close()
 
 
-def as_mcap(path):
+def as_mcap(path: str | Path) -> tuple[bytes, str] | None:
     """The bytes of a bag as MCAP, and the checksum of its files; none of what is no bag in SQLite."""
     files = parts(path)
     if not files:
         return None
     out = [MCAP, record(HEADER, text("ros2") + text("poecal"))]
-    channels, checksum = {}, hashlib.sha256()
+    channels: dict[tuple[str, str, str], int] = {}
+    checksum = hashlib.sha256()
     for file in files:
         try:
             with file.open("rb") as opened:

@@ -173,7 +173,7 @@ fn clock_words(clock: &ClockEntry) -> String {
     };
     let name = clock.instrument.as_deref().map_or(String::new(), |it| format!("{}: ", name_shown(it)));
     format!(
-        "{name}lag {lag_s:.5} s{} in the middle, drift {drift_ppm:.1}{} ppm (1 σ)",
+        "{name}lag {lag_s:.5} s{} in the middle, drift {drift_ppm:.1}{} ppm (1σ)",
         sigma(sigma_lag_ms, " ms"),
         sigma(sigma_drift_ppm, "")
     )
