@@ -287,8 +287,11 @@ fn a_program_in_motion_that_repeats_itself_has_no_wrong_lag() {
     let (mut refused, mut right) = (0, 0);
     for seed in 0..all as u64 {
         let mut generator = ChaCha8Rng::seed_from_u64(5000 + seed);
-        let of =
-            Recorded { repeats: Some(4 + (generator.next_u64() % 4) as usize), ..recorded(&mut generator) };
+        let of = Recorded {
+            repeats: Some(4 + (generator.next_u64() % 4) as usize),
+            span_s: 60.0,
+            ..recorded(&mut generator)
+        };
         match session(seed, &of) {
             Ok(found) => {
                 println!("{seed}: lag off by {:.3} ms", 1e3 * (found.lag_s - of.lag_s));

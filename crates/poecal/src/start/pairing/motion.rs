@@ -33,6 +33,8 @@ const APART_S: f64 = 0.15;
 /// A change of the lag below which it is found, seconds, and most rounds until then.
 const FOUND_S: f64 = 1e-5;
 const ROUNDS: usize = 8;
+/// Most rounds of a lag that is compared with others.
+const ROUNDS_OF_EACH: usize = 4;
 /// Shortest overlap of two streams, seconds, and its share of the shorter one.
 const OVERLAP_S: f64 = 5.0;
 const OVERLAP: f64 = 0.25;
@@ -241,7 +243,7 @@ impl<'a> Motion<'a> {
     fn refined(&self, guess: Guess) -> Option<AtLag> {
         let (mut guess, mut missed_m) = (guess, f64::INFINITY);
         let begun = guess.lag_s;
-        for _ in 0..ROUNDS {
+        for _ in 0..ROUNDS_OF_EACH {
             let (data, _) = self.session(&guess, SOME)?;
             let packed = Packed::of(self.robot, &data);
             let (held, free) = (unknowns(&data, true), unknowns(&data, false));
