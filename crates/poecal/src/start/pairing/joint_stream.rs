@@ -7,8 +7,9 @@ const GAP_STEPS: f64 = 4.5;
 const GAP_S: f64 = 0.05;
 /// Rows on each side of one whose stamps say together when it was, where stamps are late irregularly.
 const BESIDE: usize = 25;
-/// Share of the usual step that stamps scatter by where they are no clock of the rows.
-const IRREGULAR: f64 = 0.15;
+/// Share of the usual step that stamps scatter by where they are no clock of the rows, and so many seconds at least, more than their digits.
+const IRREGULAR: f64 = 0.04;
+const IRREGULAR_S: f64 = 5e-4;
 
 /// A stream of joint readings by a clock of its own.
 #[derive(Clone, Debug, PartialEq)]
@@ -112,7 +113,7 @@ pub fn smoothed(times: &[f64]) -> Option<Vec<f64>> {
     // What is left of second differences of white noise of one unit is √6.
     let scatter =
         median(times.windows(3).map(|it| (it[0] - 2.0 * it[1] + it[2]).abs()))? / (0.6745 * 6f64.sqrt());
-    if step <= 0.0 || scatter < IRREGULAR * step {
+    if step <= 0.0 || scatter < IRREGULAR_S.max(IRREGULAR * step) {
         return None;
     }
     let of = |at: usize| {
