@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use super::Join;
 use super::cells::{Separator, split};
 use super::header::{Header, is_number};
 use super::inputs::InputSource;
@@ -44,6 +45,9 @@ impl ColumnLayout {
         Some(self)
     }
 }
+
+/// Most rows of lists whose order is compared with shifted headers.
+const MOST_ROWS: usize = 2000;
 
 impl Reader<'_> {
     /// A layout as the values stand, where the header is taken for shifted.
@@ -119,10 +123,17 @@ impl Reader<'_> {
         (of_joints, joints): (Option<&Planned<'_>>, &JointRows),
         planned: &Planned<'_>,
     ) -> Error {
-        if error.kind() != ErrorKind::Measurement || error.place().is_some_and(|it| it.line.is_some()) {
+        let is_placed = error.place().is_some_and(|it| it.line.is_some());
+        // Rows of recordings are not joined by their order.
+        let is_stream =
+            matches!(self.options.join, Some(Join::Time | Join::Motion)) || joints.lines.len() > MOST_ROWS;
+        if error.kind() != ErrorKind::Measurement || is_placed || is_stream {
             return error;
         }
         let fit = |joints: &JointRows, data: &Dataset| {
+            if data.len() > MOST_ROWS {
+                return None;
+            }
             let rows = Unpaired::new(self.robot, &joints.readings, data);
             let path = planned.path;
             let pairing =
