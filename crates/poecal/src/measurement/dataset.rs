@@ -198,6 +198,18 @@ impl Dataset {
         self.targets.len() - 1
     }
 
+    /// The target that was seen most, the first of several; none without targets.
+    #[must_use]
+    pub(crate) fn most_seen_target(&self) -> Option<usize> {
+        let mut counts = vec![0_usize; self.targets.len()];
+        for observation in &self.observations {
+            if let Some(count) = counts.get_mut(observation.target) {
+                *count += 1;
+            }
+        }
+        (0..counts.len()).max_by_key(|at| (counts[*at], std::cmp::Reverse(*at)))
+    }
+
     /// Number of stations.
     #[must_use]
     pub fn station_count(&self) -> usize {

@@ -99,13 +99,7 @@ pub(super) fn motion_of_points(points: &[Span]) -> Option<MotionEntry> {
 
 /// The motion of the target that was seen most, by the times of all rows.
 pub(super) fn motion_of_target(data: &Dataset, times: &[f64], stands: &[Span]) -> Option<MotionEntry> {
-    let mut counts = vec![0_usize; data.targets.len()];
-    for observation in &data.observations {
-        if let Some(count) = counts.get_mut(observation.target) {
-            *count += 1;
-        }
-    }
-    let most = (0..counts.len()).max_by_key(|at| (counts[*at], std::cmp::Reverse(*at)))?;
+    let most = data.most_seen_target()?;
     let own = data.observations.iter().zip(times).filter(|(it, _)| it.target == most);
     let seen: Vec<(f64, Vector3<f64>)> =
         own.filter_map(|(it, time)| Some((*time, it.measurement.position()?))).collect();

@@ -101,13 +101,7 @@ pub(super) struct MeasuredStands {
 /// The stands of measurements with these times; `None` if they are no stream.
 pub(super) fn stands_of_measured(data: &Dataset, times: &[f64]) -> Option<MeasuredStands> {
     // The target that was seen most says when nothing moves.
-    let mut counts = vec![0_usize; data.targets.len()];
-    for observation in &data.observations {
-        if let Some(count) = counts.get_mut(observation.target) {
-            *count += 1;
-        }
-    }
-    let most = (0..counts.len()).max_by_key(|at| (counts[*at], std::cmp::Reverse(*at)))?;
+    let most = data.most_seen_target()?;
     let rows: Vec<usize> =
         (0..data.len()).filter(|at| data.observations.get(*at).is_some_and(|it| it.target == most)).collect();
     let own: Vec<&Observation> = rows.iter().filter_map(|at| data.observations.get(*at)).collect();

@@ -336,14 +336,7 @@ impl Motion<'_> {
         let times = self.joints.times().iter().step_by(step).copied().collect();
         let joints = Track::new(times, own);
         // The target that was seen most.
-        let mut counts = vec![0_usize; self.data.targets.len()];
-        for it in &self.data.observations {
-            if let Some(count) = counts.get_mut(it.target) {
-                *count += 1;
-            }
-        }
-        let most =
-            (0..counts.len()).max_by_key(|&at| (counts[at], std::cmp::Reverse(at))).unwrap_or_default();
+        let most = self.data.most_seen_target().unwrap_or_default();
         let mut seen: Vec<(f64, Vector3<f64>)> = (self.data.observations.iter().zip(self.times))
             .filter(|(it, _)| it.target == most)
             .filter_map(|(it, time)| Some((*time, it.measurement.position()?)))
