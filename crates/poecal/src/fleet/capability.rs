@@ -57,31 +57,15 @@ impl Capability {
 
 #[cfg(test)]
 mod tests {
-    use rand_chacha::ChaCha8Rng;
-    use rand_core::SeedableRng;
-
     use super::*;
-    use crate::fleet::Value;
-    use crate::simulate::random::normal;
+    use crate::fleet::series::tests::drawn;
 
     #[test]
     fn intervals_hold_what_they_say() {
         for share in [0.0, 0.7] {
             let (mut inside, lines) = (0, 1000);
             for seed in 0..lines {
-                let mut generator = ChaCha8Rng::seed_from_u64(seed);
-                let values = (0..100).map(|robot| Value {
-                    serial: robot.to_string(),
-                    value: normal(&mut generator) + share * normal(&mut generator),
-                    sigma: share,
-                });
-                let series = Series {
-                    name: "a".into(),
-                    joint: None,
-                    unit: "deg",
-                    is_size: false,
-                    values: values.collect(),
-                };
+                let series = drawn(seed, 100, share);
                 let found = Capability::of(&series, Some(-4.0), Some(4.5)).unwrap().cpk;
                 inside += usize::from(found.low <= 4.0 / 3.0 && 4.0 / 3.0 <= found.high);
             }

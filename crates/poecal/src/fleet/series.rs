@@ -101,12 +101,23 @@ fn deviation(sorted: &[f64], center: f64) -> f64 {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use rand_chacha::ChaCha8Rng;
     use rand_core::SeedableRng;
 
     use super::*;
     use crate::simulate::random::normal;
+
+    /// Robots of a line of spread 1, each measured with a standard deviation of so much of it.
+    pub(in crate::fleet) fn drawn(seed: u64, robots: usize, share: f64) -> Series {
+        let mut generator = ChaCha8Rng::seed_from_u64(seed);
+        let values = (0..robots).map(|robot| Value {
+            serial: robot.to_string(),
+            value: normal(&mut generator) + share * normal(&mut generator),
+            sigma: share,
+        });
+        Series { name: "a".into(), joint: None, unit: "deg", is_size: false, values: values.collect() }
+    }
 
     /// What is taken off leaves the line's own spread, where the measurement scatters as much as the line.
     #[test]
@@ -115,19 +126,7 @@ mod tests {
             let mut squares = 0.0;
             let lines = 200;
             for seed in 0..lines {
-                let mut generator = ChaCha8Rng::seed_from_u64(seed);
-                let values = (0..200).map(|robot| Value {
-                    serial: robot.to_string(),
-                    value: normal(&mut generator) + share * normal(&mut generator),
-                    sigma: share,
-                });
-                let series = Series {
-                    name: "a".into(),
-                    joint: None,
-                    unit: "deg",
-                    is_size: false,
-                    values: values.collect(),
-                };
+                let series = drawn(seed, 200, share);
                 squares += (series.spread().unwrap().own - 1.0).powi(2);
             }
             let rms = (squares / lines as f64).sqrt();
