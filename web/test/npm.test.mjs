@@ -158,10 +158,10 @@ test("wrong input: sentence and exit code of the program, and nothing written", 
     const files = { "robot.urdf": robot, ...inputs };
     const [here, there] = [poecal.run(words, files), native(words, files)];
     assert.equal(there.code, 2, `${name}: ${there.err}`);
-    // A system adds the number of its error, and begins with a capital; the module has no commands of pictures and drawings.
+    // A system adds the number of its error, and begins with a capital; the module has no commands of pictures, of drawings and of folders full of robots.
     const err = there.err
       .replace(/\((\w)([^()]*) \(os error \d+\)\)/g, (_, first, rest) => `(${first.toLowerCase()}${rest})`)
-      .replace(/^ {2}(detect|board) .*\n( {10,}.*\n)*/gm, "");
+      .replace(/^ {2}(detect|board|fleet) .*\n( {10,}.*\n)*/gm, "");
     assert.deepEqual([here.code, here.out, here.err], [there.code, there.out, err], name);
     assert.deepEqual([here.files, here.removed], [{}, []], name);
   }
@@ -192,7 +192,7 @@ test("--timings is refused where there is no clock", () => {
 });
 
 test("commands that need an operating system are refused", () => {
-  for (const command of ["detect", "board"]) {
+  for (const command of ["detect", "board", "fleet"]) {
     const { code, err } = poecal.run([command, "a.png"], {});
     assert.equal(code, 2);
     assert.match(err, new RegExp(`^error: found ${command}, which this build of the program does not have`));

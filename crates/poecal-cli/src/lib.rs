@@ -118,7 +118,7 @@ pub fn run_captured(arguments: impl IntoIterator<Item = OsString>) -> Said {
 /// Refuses commands of pictures and drawings where the program has no part for them: without an operating system.
 fn need_pictures(typed: &[OsString]) -> Result<(), poecal::Error> {
     match typed.get(1).and_then(|word| word.to_str()) {
-        Some(command @ ("detect" | "board")) if cfg!(not(any(unix, windows))) => ErrorKind::Option.refuse(format!(
+        Some(command @ ("detect" | "board" | "fleet")) if cfg!(not(any(unix, windows))) => ErrorKind::Option.refuse(format!(
             "found {command}, which this build of the program does not have, expected the program of an operating system or of the Python package"
         )),
         _ => Ok(()),
