@@ -88,7 +88,8 @@ impl Stream {
         let mut tolerances = Vec::with_capacity(self.channels.len());
         for (channels, sums) in self.channels.iter().zip(&sums) {
             let spreads: Vec<f64> = windows.iter().map(|it| deviation(sums, it)).collect();
-            let noises: Vec<f64> = windows.iter().map(|it| row_noise(&channels.values, it)).collect();
+            let bends = bends(&channels.values, self.times.len());
+            let noises: Vec<f64> = windows.iter().map(|it| row_noise(&bends, it)).collect();
             let rows = median(windows.iter().map(|it| it.len() as f64)).unwrap_or_default();
             let freedom = channels.freedom as f64;
             // A window of few rows scatters less than the noise, and more from window to window.
@@ -210,15 +211,25 @@ fn deviation(sums: &[Sums], rows: &Range<usize>) -> f64 {
     sums.iter().map(|it| it.variance(rows)).sum::<f64>().sqrt()
 }
 
-/// The noise of numbers in a window, of all together, from row to row: of what is left of second differences.
-fn row_noise(values: &[Vec<f64>], rows: &Range<usize>) -> f64 {
-    let squares = |values: &Vec<f64>| {
-        let own = values.get(rows.clone()).unwrap_or_default();
-        own.windows(3).map(|it| (it[0] - 2.0 * it[1] + it[2]).powi(2)).sum::<f64>()
+/// Sums of squared second differences of numbers, of all together, up to each row.
+fn bends(values: &[Vec<f64>], rows: usize) -> Vec<f64> {
+    let square = |at: usize| -> f64 {
+        let of = |it: &Vec<f64>| it.get(at..at + 3).map_or(0.0, |it| (it[0] - 2.0 * it[1] + it[2]).powi(2));
+        values.iter().map(of).sum()
     };
-    let count = rows.len().saturating_sub(2).max(1) as f64;
+    let mut sum = 0.0;
+    let sums = (0..rows.saturating_sub(2)).map(|at| {
+        sum += square(at);
+        sum
+    });
+    std::iter::once(0.0).chain(sums).collect()
+}
+
+/// The noise of numbers in a window, of all together, from row to row: of what is left of second differences.
+fn row_noise(bends: &[f64], rows: &Range<usize>) -> f64 {
+    let inner = rows.start..rows.end.saturating_sub(2).max(rows.start);
     // White noise of one unit has second differences of √6.
-    (values.iter().map(squares).sum::<f64>() / count / 6.0).sqrt()
+    (Sums::between(bends, &inner).max(0.0) / inner.len().max(1) as f64 / 6.0).sqrt()
 }
 
 /// The value that this share of all is below.
