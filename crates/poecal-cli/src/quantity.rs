@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 use std::str::FromStr;
+use std::time::Duration;
 
 use poecal::Unit;
 use poecal::compensate::MostChange;
@@ -263,6 +264,15 @@ pub(crate) fn terms(text: &str) -> std::result::Result<Sizes, String> {
 /// Parser of a count for clap.
 pub(crate) fn whole<T: FromStr>(text: &str) -> std::result::Result<T, String> {
     text.parse().map_err(|_| format!("found `{text}`, expected a whole number"))
+}
+
+/// Parser of a duration for clap.
+pub(crate) fn seconds(text: &str) -> std::result::Result<Duration, String> {
+    let number = text.strip_suffix('s').unwrap_or(text).parse::<f64>();
+    match number {
+        Ok(number) if (0.05..=86400.0).contains(&number) => Ok(Duration::from_secs_f64(number)),
+        _ => Err(format!("found `{text}`, expected seconds from 0.05 to 86400, like 2s")),
+    }
 }
 
 /// Parser of a number of threads for clap.

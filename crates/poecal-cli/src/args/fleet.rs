@@ -5,6 +5,8 @@ use std::time::Duration;
 
 use clap::{Args, Subcommand};
 
+use crate::quantity::seconds;
+
 /// Arguments of `poecal fleet`.
 #[derive(Args, Debug)]
 #[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
@@ -65,13 +67,5 @@ fn shard(text: &str) -> Result<(u32, u32), String> {
     match parts {
         Some((at, of)) if (1..=of).contains(&at) => Ok((at, of)),
         _ => Err(format!("found `{text}`, expected a part and how many there are, like 2/4")),
-    }
-}
-
-fn seconds(text: &str) -> Result<Duration, String> {
-    let number = text.strip_suffix('s').unwrap_or(text).parse::<f64>();
-    match number {
-        Ok(number) if (0.05..=86400.0).contains(&number) => Ok(Duration::from_secs_f64(number)),
-        _ => Err(format!("found `{text}`, expected seconds from 0.05 to 86400, like 2s")),
     }
 }

@@ -1,6 +1,7 @@
 //! Arguments of `poecal plan`.
 
 use std::path::PathBuf;
+use std::time::Duration;
 
 use clap::Args;
 use poecal::calibration::{Corrections, DeviceFrameKnowledge};
@@ -11,7 +12,7 @@ use super::shared::{ColumnArgs, OutFile, TreeArgs};
 use super::words::{CRITERION, FRAME, SELF_COLLISION, one_of, simulated};
 use crate::quantity::{
     BelievedTolerance, LengthAndAngle, Over, box_m, direction, distances_m, error_m, height_m, place_m,
-    sigma_m, sigma_rad, whole,
+    seconds, sigma_m, sigma_rad, whole,
 };
 
 /// Arguments of `poecal plan`.
@@ -44,12 +45,12 @@ pub(crate) struct Plan {
         allow_hyphen_values = true
     )]
     pub(crate) over: Over,
-    /// Configurations that are in the list in any case, or were measured already (CSV of joint readings): new ones complete them, and --count
-    /// counts both
+    /// Rows that are in the list in any case, or were measured already (CSV of joint readings): new ones complete them, and --count counts both.
+    /// Rows whose `set` is held_out do not count
     #[arg(long, visible_alias = "measured", value_name = "FILE")]
     pub(crate) keep: Vec<PathBuf>,
-    /// Rows of the kept configurations, counted from 1 through all files, that collided or were not seen: new ones take their place, not within
-    /// 10 degrees of them, and all others stay. --count is then the number of kept rows, and no further rows to judge by are drawn
+    /// Rows of --keep, counted from 1 through all files, that collided or were not seen: new ones take their places, not within 10 degrees of
+    /// them, and all other rows stay. The list has all rows then, in their order
     #[arg(long, value_name = "ROW", value_delimiter = ',', requires = "keep", conflicts_with_all = ["count", "judge"])]
     pub(crate) replace: Vec<u32>,
     /// What the list shall be good at
@@ -66,6 +67,9 @@ pub(crate) struct Plan {
     pub(crate) fit: FitArgs,
     #[command(flatten)]
     pub(crate) conditions: ConditionArgs,
+    /// How long the robot stands at each row, for how long all takes
+    #[arg(long, value_name = "SECONDS", value_parser = seconds, default_value = "30s")]
+    pub(crate) stop: Duration,
     /// Seed of everything random
     #[arg(long, default_value_t = 1, value_parser = whole::<u64>)]
     pub(crate) seed: u64,

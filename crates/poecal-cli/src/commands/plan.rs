@@ -5,11 +5,11 @@ use std::path::PathBuf;
 use poecal::analysis::PlannedSession;
 use poecal::calibration::DeviceFrameKnowledge;
 use poecal::io::measurements::{ReadOptions, planned_table, read_joints};
-use poecal::io::model::{Model, ModelSource};
+use poecal::io::model::Model;
 use poecal::io::output::{Existing, FilePlace};
 use poecal::io::plan_program::plan_program;
-use poecal::io::shapes::capsules;
-use poecal::measurement::{Noise, Quantity};
+use poecal::io::shapes::capsules_of;
+use poecal::measurement::Noise;
 use poecal::plan::{Conditions, PlanOptions, PlannedFit, Sight, plan as planned, workspace_in};
 use poecal::robot::Tolerance;
 use poecal::simulate::Kind;
@@ -36,28 +36,17 @@ pub(crate) fn plan(arguments: &Plan, console: &Console) -> Result<u8> {
     let list = arguments.candidates.as_ref().map(read).transpose()?;
     let mut kept = Vec::new();
     for path in &arguments.keep {
-        kept.extend(read(path)?);
+        let joints = read_joints(path, &model.robot, &reading)?;
+        console.warnings(&joints.warnings);
+        kept.extend(joints.planned());
     }
-    let width = model.robot.reading_names().len().max(1);
-    let rows = kept.len() / width;
-    let mut avoided = Vec::new();
-    for &row in &arguments.replace {
-        if !(1..=rows).contains(&(row as usize)) {
-            return ErrorKind::Option.refuse(format!(
-                "found row {row} to replace, expected one of the {rows} rows of --keep, counted from 1"
-            ));
-        }
-        let at = (row as usize - 1) * width;
-        avoided.extend_from_slice(&kept[at..at + width]);
+    let rows = kept.len();
+    if let Some(row) = arguments.replace.iter().find(|&&row| !(1..=rows).contains(&(row as usize))) {
+        return ErrorKind::Option.refuse(format!(
+            "found row {row} to replace, expected one of the {rows} rows of --keep, counted from 1"
+        ));
     }
-    if !arguments.replace.is_empty() {
-        let stays = |row: &usize| !arguments.replace.contains(&u32::try_from(row + 1).unwrap_or(u32::MAX));
-        kept =
-            (0..rows).filter(stays).flat_map(|row| kept[row * width..(row + 1) * width].to_vec()).collect();
-    }
-    let is_replacing = !arguments.replace.is_empty();
-    let count = if is_replacing { u32::try_from(rows).unwrap_or(u32::MAX) } else { arguments.count };
-    let judge = if is_replacing { Some(0) } else { arguments.judge };
+    let replaced: Vec<usize> = arguments.replace.iter().map(|&row| row as usize - 1).collect();
     let workspace = match &arguments.over {
         Over::Limits => None,
         Over::Tasks(path) => Some(read(path)?),
@@ -70,20 +59,20 @@ pub(crate) fn plan(arguments: &Plan, console: &Console) -> Result<u8> {
         fit: PlannedFit {
             targets: arguments.targets as usize,
             target_offset: offset.map(Into::into),
-            ..fit(&arguments.fit, &model, arguments.measure, count)?
+            ..fit(&arguments.fit, &model, arguments.measure, arguments.count)?
         },
         criterion: arguments.criterion,
         list,
         workspace,
-        judge: judge.map(|count| count as usize),
-        avoided,
+        judge: arguments.judge.map(|count| count as usize),
         kept,
+        replaced,
         conditions: conditions(arguments, &model, console),
         seed: arguments.seed,
         ..PlanOptions::default()
     };
     let found = planned(&model.robot, &options)?;
-    let report = report::Plan::new(&model, &options, &found);
+    let report = report::Plan::new(&model, &options, &found, arguments.stop.as_secs_f64());
     let table = planned_table(&model.robot, &found.rows, &report.comments())?;
     let as_program = arguments.program.as_ref();
     let as_program = as_program.map(|path| plan_program(path, &model.robot, &found.rows)).transpose()?;
@@ -144,29 +133,16 @@ pub(super) fn fit(arguments: &FitArgs, model: &Model, kind: Kind, count: u32) ->
         tolerance,
         corrections: arguments.corrections,
         gravity: arguments.gravity.into(),
-        robot_error_m: arguments.robot_error.or_else(|| found_error_m(model)),
+        robot_error_m: arguments.robot_error.or_else(|| model.left_error_m()),
         ..PlannedFit::default()
     })
-}
-
-/// The error that a calibration of this robot left, if the model is one: of rows that were held out, else of those fitted.
-fn found_error_m(model: &Model) -> Option<f64> {
-    let ModelSource::Calibration(file) = &model.source else { return None };
-    let set = file.accuracy.held_out.as_ref().unwrap_or(&file.accuracy.training);
-    set.calibrated.get(Quantity::Position).map(|it| it.rms)
 }
 
 /// What a configuration must fulfil.
 fn conditions(arguments: &Plan, model: &Model, console: &Console) -> Conditions {
     let it = &arguments.conditions;
-    let capsules = match &model.source {
-        ModelSource::Urdf(urdf) if it.self_collision => {
-            let (capsules, notes) = capsules(urdf, &model.path);
-            notes.iter().for_each(|note| console.remark(note));
-            capsules
-        }
-        ModelSource::Urdf(_) | ModelSource::Toml | ModelSource::Calibration(_) => Vec::new(),
-    };
+    let (capsules, notes) = if it.self_collision { capsules_of(model) } else { Default::default() };
+    notes.iter().for_each(|note| console.remark(note));
     let sight = it.device.map(|place| Sight {
         place: place.into(),
         cone: it.cone.map(|half| (it.device_looks_at.unwrap_or_default().into(), half)),

@@ -7,6 +7,8 @@ use crate::error::{ErrorKind, Result};
 use crate::plan::PlannedRow;
 use crate::robot::{ReadingKind, Robot};
 
+/// Speed of the fastest joint of a program for Universal Robots, radians per second; others have a tenth of what they can, or 100 mm/s.
+pub const SPEED_RAD_S: f64 = 0.3;
 /// Most axes of a program.
 const AXES: usize = 6;
 
@@ -79,7 +81,7 @@ fn script(name: &str, rows: &[Row]) -> String {
     let mut out = format!("def {name}():\n");
     ABOVE.iter().for_each(|line| out.push_str(&format!("  # {line}\n")));
     for row in rows {
-        let _ = writeln!(out, "  movej([{}], a=0.5, v=0.3)", listed(&row.angles_rad, 6));
+        let _ = writeln!(out, "  movej([{}], a=0.5, v={SPEED_RAD_S})", listed(&row.angles_rad, 6));
         let _ = writeln!(
             out,
             "  popup(\"row {}: measure, then continue\", title=\"poecal\", blocking=True)",

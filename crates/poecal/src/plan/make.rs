@@ -4,10 +4,12 @@ use nalgebra::DMatrix;
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 
-use super::conditions::{Checker, Conditions, Obstacle, Refusals};
+use super::conditions::{Checker, Obstacle, Refusals};
+use super::expected::{CurvePoint, ExpectedErrors, enough};
 use super::experiment::{Blocks, Experiment, inverse};
-use super::options::{PlanCriterion, PlannedFit};
+use super::options::{PlanCriterion, PlanOptions};
 use super::order::Travel;
+use super::rows::{PlannedRow, RowPart, with_returns};
 use super::search::{Search, around};
 use super::state::{Aim, MOST_NUMBERS, Squares, Weights};
 use crate::error::{ErrorKind, Result};
@@ -15,9 +17,8 @@ use crate::linalg;
 use crate::robot::{ReadingKind, Robot};
 use crate::simulate::{Configurations, random};
 
-/// Candidates that are drawn where none are given, and configurations of the workspace.
-const CANDIDATES: usize = 2000;
-const WORKSPACE: usize = 1000;
+/// Configurations of the workspace.
+pub(super) const WORKSPACE: usize = 1000;
 /// Random configurations that are tried for each one of a workspace.
 const ATTEMPTS: usize = 200;
 /// Random lists to which a plan is compared.
@@ -30,138 +31,8 @@ const STEPS: [f64; 2] = [0.4, 0.01];
 const COUNTS: [usize; 13] = [5, 8, 10, 12, 15, 20, 25, 30, 40, 50, 60, 80, 100];
 /// Candidates of the curve.
 const OF_CURVE: usize = 800;
-/// The first configuration is measured again behind so many rows.
-const ROWS_BETWEEN_VISITS: usize = 19;
-/// Ten more configurations that gain less than this share are not worth it.
-const WORTH_IT: f64 = 0.05;
 /// Rounds, and the power, by which the largest variance is made small.
 const LARGEST_ROUNDS: usize = 6;
-
-/// What to plan.
-///
-/// ```
-/// use poecal::plan::{PlanOptions, PlannedFit, plan};
-/// use poecal::simulate::elbow;
-/// let options = PlanOptions { fit: PlannedFit { count: 12, ..Default::default() }, candidates: 200, ..Default::default() };
-/// let found = plan(&elbow(), &options)?;
-/// assert_eq!(found.rows.iter().filter(|row| !row.returns && row.part == poecal::plan::RowPart::Fit).count(), 12);
-/// assert!(found.expected.calibrated_m() < found.random.calibrated_m());
-/// # Ok::<(), poecal::Error>(())
-/// ```
-#[derive(Clone, Debug, PartialEq)]
-pub struct PlanOptions {
-    /// The fit that will be made.
-    pub fit: PlannedFit,
-    /// What the list shall be good at.
-    pub criterion: PlanCriterion,
-    /// Configurations to choose from, readings one after the other; where there are none, random ones are drawn and improved.
-    pub list: Option<Vec<f64>>,
-    /// Number of random ones that are drawn.
-    pub candidates: usize,
-    /// Configurations in which the robot will work, where predictions shall be good; random ones within the limits if there are none.
-    pub workspace: Option<Vec<f64>>,
-    /// Number of random rows to judge by; a third of the configurations if it is not stated.
-    pub judge: Option<usize>,
-    /// What a configuration must fulfil to be measured.
-    pub conditions: Conditions,
-    /// Configurations that are measured in any case, or were.
-    pub kept: Vec<f64>,
-    /// Configurations from which new ones stay 10° away, in some joint: they could not be measured.
-    pub avoided: Vec<f64>,
-    /// Seed of what is random.
-    pub seed: u64,
-}
-
-impl Default for PlanOptions {
-    fn default() -> Self {
-        PlanOptions {
-            fit: PlannedFit::default(),
-            criterion: PlanCriterion::Expected,
-            list: None,
-            candidates: CANDIDATES,
-            workspace: None,
-            judge: None,
-            conditions: Conditions::default(),
-            kept: Vec::new(),
-            avoided: Vec::new(),
-            seed: 1,
-        }
-    }
-}
-
-/// What a planned row is for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum RowPart {
-    /// It is fitted.
-    Fit,
-    /// It is held out, to judge by.
-    Judge,
-}
-
-/// A row of a plan.
-#[derive(Clone, Debug, PartialEq)]
-pub struct PlannedRow {
-    /// Readings in the order of [`Robot::reading_names`], radians and metres.
-    pub readings: Vec<f64>,
-    /// What it is for.
-    pub part: RowPart,
-    /// Whether it is the first configuration again.
-    pub returns: bool,
-    /// Index of a candidate of the list from which it was chosen.
-    pub candidate: Option<usize>,
-}
-
-/// Expected root mean square errors of the tip over the workspace, metres.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ExpectedErrors {
-    /// Of the calibrated model, what is not determined yet: by noise and prior, and by what geometry does not describe beyond its own error.
-    pub undetermined_m: f64,
-    /// What no geometry describes: the robot error.
-    pub robot_m: f64,
-    /// Of the corrected model: what is not determined yet.
-    pub corrected_undetermined_m: f64,
-    /// What neither geometry nor terms of the joints describe.
-    pub corrected_robot_m: f64,
-}
-
-impl ExpectedErrors {
-    fn new(experiment: &Experiment, squares: &Squares) -> Self {
-        ExpectedErrors::seen(experiment, squares, [1.0; 2])
-    }
-
-    /// The same where noise and terms are so many times as large as believed, in variances.
-    pub(super) fn seen(experiment: &Experiment, squares: &Squares, [noise, terms]: [f64; 2]) -> Self {
-        let (robot, rest) = (experiment.robot_error_m, experiment.rest_m);
-        let of_terms = (robot * robot - rest * rest).max(0.0) * terms;
-        ExpectedErrors {
-            undetermined_m: (squares.expected() - of_terms).max(0.0).sqrt(),
-            robot_m: (of_terms + rest * rest * noise).sqrt(),
-            corrected_undetermined_m: squares.corrected.max(0.0).sqrt(),
-            corrected_robot_m: rest * noise.sqrt(),
-        }
-    }
-
-    /// Expected error of the calibrated model.
-    #[must_use]
-    pub fn calibrated_m(&self) -> f64 {
-        self.undetermined_m.hypot(self.robot_m)
-    }
-
-    /// Expected error of the corrected model.
-    #[must_use]
-    pub fn corrected_m(&self) -> f64 {
-        self.corrected_undetermined_m.hypot(self.corrected_robot_m)
-    }
-}
-
-/// Expected errors with so many planned configurations.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct CurvePoint {
-    /// Number of configurations.
-    pub count: usize,
-    /// Expected errors.
-    pub expected: ExpectedErrors,
-}
 
 /// A plan.
 #[derive(Clone, Debug, PartialEq)]
@@ -190,6 +61,8 @@ pub struct Plan {
     pub left_out: Vec<(String, String)>,
     /// Joints without limits, which were taken within ±180° or ±0.5 m.
     pub without_limits: Vec<String>,
+    /// The way from row to row: sum of the largest turn of a joint, radians (of one that slides, over the length that a radian counts).
+    pub travel_rad: f64,
 }
 
 /// Plans a session: theory.md, *Choosing configurations*.
@@ -265,6 +138,7 @@ struct Planner<'a> {
     blocks: Blocks,
     kept: DMatrix<f64>,
     kept_count: usize,
+    avoided: Vec<f64>,
     workspace: Vec<f64>,
     aim: Aim,
     random: Squares,
@@ -283,8 +157,8 @@ impl<'a> Planner<'a> {
         let width = experiment.width();
         let mut generator = ChaCha8Rng::seed_from_u64(options.seed);
         let planned = experiment.robot.clone();
-        let checker =
-            Checker::new(&planned, &options.conditions).avoiding(&options.avoided, experiment.length_m());
+        let (avoided, stay) = (options.avoided(), options.fitted());
+        let checker = Checker::new(&planned, &options.conditions).avoiding(&avoided, experiment.length_m());
         let mut refusals = Refusals::default();
         let (candidates, origins) = match &options.list {
             Some(list) => {
@@ -322,23 +196,23 @@ impl<'a> Planner<'a> {
             }),
         };
         let count = candidates.len() / width;
-        if count < options.fit.count || workspace.is_empty() {
+        let new = options.new_of(RowPart::Fit, stay.len() / width);
+        if count < new || workspace.is_empty() {
             let words = refusals.words();
             return ErrorKind::Option.refuse(format!(
-                "found {count} configurations that can be measured among {}{}{words}, expected at least the {} of the plan: widen the conditions, or \
+                "found {count} configurations that can be measured among {}{}{words}, expected at least the {new} of the plan: widen the conditions, or \
                  plan fewer",
                 refusals.tried,
                 if words.is_empty() { "" } else { "; refused were " },
-                options.fit.count
             ));
         }
         let (left_out, without_limits) = (checker.left_out.clone(), checker.without_limits());
         let blocks = experiment.blocks(&candidates)?;
         let n = blocks.columns;
-        let (kept, kept_count) = if options.kept.is_empty() {
+        let (kept, kept_count) = if stay.is_empty() {
             (DMatrix::zeros(n, n), 0)
         } else {
-            let kept = experiment.blocks(&options.kept)?;
+            let kept = experiment.blocks(&stay)?;
             (kept.gram(0..kept.count()), kept.count())
         };
         let has_terms = n > experiment.geometry();
@@ -346,7 +220,7 @@ impl<'a> Planner<'a> {
             Weights { calibrated: 1.0, corrected: if has_terms { 1.0 } else { 0.0 }, determinant: 0.0 };
         let mut aim =
             Aim::new(&experiment.prior, experiment.moments(&workspace), weights, experiment.share());
-        let new = options.fit.count.saturating_sub(kept_count).min(blocks.count());
+        let new = new.min(blocks.count());
         let random = random_lists(&aim, &kept, &blocks, (new, options.seed))?;
         if has_terms {
             aim.weights.calibrated = 1.0 / random.calibrated();
@@ -363,6 +237,7 @@ impl<'a> Planner<'a> {
             blocks,
             kept,
             kept_count,
+            avoided,
             workspace,
             aim,
             random,
@@ -371,8 +246,7 @@ impl<'a> Planner<'a> {
     }
 
     fn plan(mut self) -> Result<Plan> {
-        let count = self.options.fit.count;
-        let new = count.saturating_sub(self.kept_count);
+        let new = self.options.new_of(RowPart::Fit, self.kept_count);
         let chosen = self.chosen(new);
         let width = self.experiment.width();
         let mut readings: Vec<Vec<f64>> =
@@ -388,7 +262,10 @@ impl<'a> Planner<'a> {
         let curve = self.curve(new, &squares)?;
         let enough = enough(&curve);
         let rows = self.rows(readings, &origins);
+        let travel = Travel::new(&self.experiment.robot, self.experiment.length_m());
+        let way = |pair: &[PlannedRow]| travel.distance(&pair[0].readings, &pair[1].readings);
         Ok(Plan {
+            travel_rad: rows.windows(2).map(way).sum(),
             rows,
             expected,
             random: ExpectedErrors::new(&self.experiment, &self.random),
@@ -491,8 +368,8 @@ impl<'a> Planner<'a> {
     /// Looks around each configuration for better ones.
     fn refine(&mut self, readings: &mut [Vec<f64>], rows: &mut Blocks) -> Result<()> {
         let robot = &self.experiment.robot;
-        let checker = Checker::new(robot, &self.options.conditions)
-            .avoiding(&self.options.avoided, self.experiment.length_m());
+        let checker =
+            Checker::new(robot, &self.options.conditions).avoiding(&self.avoided, self.experiment.length_m());
         let travel = Travel::new(robot, self.experiment.length_m());
         let least = self.options.conditions.separation_rad;
         let kinds: Vec<ReadingKind> =
@@ -584,11 +461,12 @@ impl<'a> Planner<'a> {
     /// The rows in the order of measuring: those to fit by travel, then those to judge by, and the first one now and again.
     fn rows(&mut self, readings: Vec<Vec<f64>>, origins: &[Option<usize>]) -> Vec<PlannedRow> {
         let travel = Travel::new(&self.experiment.robot, self.experiment.length_m());
-        let judged = self.options.judge.unwrap_or(self.options.fit.count.div_ceil(3));
+        let judged = self.options.new_of(RowPart::Judge, 0);
         let width = self.experiment.width();
         let mut left: Vec<usize> = (0..self.workspace.len() / width).collect();
         random::shuffle(&mut self.generator, &mut left);
-        let checker = Checker::new(&self.experiment.robot, &self.options.conditions);
+        let checker = Checker::new(&self.experiment.robot, &self.options.conditions)
+            .avoiding(&self.avoided, self.experiment.length_m());
         let stated = self.options.workspace.is_some();
         let can_be = |at: &&usize| {
             let found = checker.measured(&self.workspace[**at * width..(**at + 1) * width]);
@@ -610,46 +488,26 @@ impl<'a> Planner<'a> {
                 rows.push(PlannedRow { readings: all[at].clone(), part, returns: false, candidate });
             }
         }
-        with_returns(rows)
+        if self.options.replaced.is_empty() { with_returns(rows) } else { self.replaced(rows) }
+    }
+
+    /// The kept rows in their order, with new ones in the places of those that are replaced.
+    fn replaced(&self, mut new: Vec<PlannedRow>) -> Vec<PlannedRow> {
+        let mut rows = self.options.kept.clone();
+        for old in self.options.replaced_rows() {
+            let Some(found) = new.iter().position(|it| it.part == old.part) else { continue };
+            let found = new.remove(found);
+            for row in rows.iter_mut().filter(|row| row.readings == old.readings) {
+                row.readings.clone_from(&found.readings);
+                row.candidate = found.candidate;
+            }
+        }
+        rows
     }
 }
 
 fn ratio(a: f64, b: f64) -> f64 {
     if b > 0.0 { a / b } else { 1.0 }
-}
-
-/// The rows with the first one again behind every so many.
-fn with_returns(rows: Vec<PlannedRow>) -> Vec<PlannedRow> {
-    let Some(first) = rows.first().cloned() else { return rows };
-    let again = PlannedRow { returns: true, candidate: None, ..first };
-    let mut found = Vec::new();
-    for (at, row) in rows.into_iter().enumerate() {
-        if at > 0 && at % ROWS_BETWEEN_VISITS == 0 {
-            found.push(again.clone());
-        }
-        found.push(row);
-    }
-    found
-}
-
-/// The smallest number of the curve from which ten more gain less than a share of both errors.
-fn enough(curve: &[CurvePoint]) -> Option<usize> {
-    let errors = |at: f64| -> Option<[f64; 2]> {
-        let above = curve.iter().position(|point| point.count as f64 >= at)?;
-        let of = |point: &CurvePoint| [point.expected.calibrated_m(), point.expected.corrected_m()];
-        let (b, count) = (of(&curve[above]), curve[above].count as f64);
-        let Some(before) = above.checked_sub(1).map(|it| &curve[it]) else { return Some(b) };
-        let (a, first) = (of(before), before.count as f64);
-        let share = (at - first) / (count - first);
-        Some([0, 1].map(|k| a[k] + share * (b[k] - a[k])))
-    };
-    let gains_little = |point: &&CurvePoint| {
-        let (Some(now), Some(then)) = (errors(point.count as f64), errors(point.count as f64 + 10.0)) else {
-            return false;
-        };
-        (0..2).all(|k| then[k] >= (1.0 - WORTH_IT) * now[k])
-    };
-    curve.iter().find(gains_little).map(|point| point.count)
 }
 
 /// Median expected squared errors of random lists.
@@ -682,7 +540,7 @@ fn random_lists(
     })
 }
 
-fn undetermined() -> crate::Error {
+pub(super) fn undetermined() -> crate::Error {
     ErrorKind::Problem.error(
         "found configurations whose information cannot be inverted, expected finite sizes of joints, noise and tolerances: check the units of the model",
     )

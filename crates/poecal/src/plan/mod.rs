@@ -3,16 +3,20 @@
 
 mod capsule;
 mod conditions;
+mod expected;
 mod experiment;
 mod make;
 mod options;
 mod order;
+mod rows;
 mod search;
 mod state;
 mod watch;
 
 pub use capsule::Capsule;
 pub use conditions::{Conditions, Obstacle, Refusals, Sight};
-pub use make::{CurvePoint, ExpectedErrors, Plan, PlanOptions, PlannedRow, RowPart, plan, workspace_in};
-pub use options::{PlanCriterion, PlannedFit};
+pub use expected::{CurvePoint, ExpectedErrors, ListExpectation, expected_errors};
+pub use make::{Plan, plan, workspace_in};
+pub use options::{PlanCriterion, PlanOptions, PlannedFit};
+pub use rows::{PlannedRow, RowPart};
 pub use watch::{Mistake, Watch, WatchOptions, WatchedRow};

@@ -2,9 +2,14 @@
 
 use nalgebra::Vector3;
 
+use super::conditions::Conditions;
+use super::rows::{PlannedRow, RowPart};
 use crate::analysis::PlannedSession;
 use crate::robot::{Corrections, Tolerance};
 use crate::simulate::Kind;
+
+/// Candidates that are drawn where none are given.
+const CANDIDATES: usize = 2000;
 
 /// The fit that will be made of planned measurements: what is measured, and what is believed before.
 ///
@@ -45,6 +50,98 @@ impl Default for PlannedFit {
             targets: 1,
             target_offset: None,
         }
+    }
+}
+
+/// What to plan.
+///
+/// ```
+/// use poecal::plan::{PlanOptions, PlannedFit, plan};
+/// use poecal::simulate::elbow;
+/// let options = PlanOptions { fit: PlannedFit { count: 12, ..Default::default() }, candidates: 200, ..Default::default() };
+/// let found = plan(&elbow(), &options)?;
+/// assert_eq!(found.rows.iter().filter(|row| !row.returns && row.part == poecal::plan::RowPart::Fit).count(), 12);
+/// assert!(found.expected.calibrated_m() < found.random.calibrated_m());
+/// # Ok::<(), poecal::Error>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct PlanOptions {
+    /// The fit that will be made.
+    pub fit: PlannedFit,
+    /// What the list shall be good at.
+    pub criterion: PlanCriterion,
+    /// Configurations to choose from, readings one after the other; where there are none, random ones are drawn and improved.
+    pub list: Option<Vec<f64>>,
+    /// Number of random ones that are drawn.
+    pub candidates: usize,
+    /// Configurations in which the robot will work, where predictions shall be good; random ones within the limits if there are none.
+    pub workspace: Option<Vec<f64>>,
+    /// Number of random rows to judge by; a third of the configurations if it is not stated.
+    pub judge: Option<usize>,
+    /// What a configuration must fulfil to be measured.
+    pub conditions: Conditions,
+    /// Rows that are there already: those to fit count, those that return to an earlier one do not.
+    pub kept: Vec<PlannedRow>,
+    /// Indices of kept rows that could not be measured: new ones take their places, not within 10° of them, and the plan has all rows in their order.
+    pub replaced: Vec<usize>,
+    /// Seed of what is random.
+    pub seed: u64,
+}
+
+impl Default for PlanOptions {
+    fn default() -> Self {
+        PlanOptions {
+            fit: PlannedFit::default(),
+            criterion: PlanCriterion::Expected,
+            list: None,
+            candidates: CANDIDATES,
+            workspace: None,
+            judge: None,
+            conditions: Conditions::default(),
+            kept: Vec::new(),
+            replaced: Vec::new(),
+            seed: 1,
+        }
+    }
+}
+
+impl PlanOptions {
+    /// Readings of the kept configurations to fit that stay, one after the other.
+    #[must_use]
+    pub fn fitted(&self) -> Vec<f64> {
+        let replaced = self.replaced_rows();
+        let stays = |row: &&PlannedRow| {
+            row.part == RowPart::Fit && !row.returns && replaced.iter().all(|it| it.readings != row.readings)
+        };
+        self.kept.iter().filter(stays).flat_map(|row| row.readings.clone()).collect()
+    }
+
+    /// The rows that are replaced: of a row that returns, the one to which it does.
+    pub(super) fn replaced_rows(&self) -> Vec<&PlannedRow> {
+        let mut found: Vec<&PlannedRow> = Vec::new();
+        for row in self.replaced.iter().filter_map(|&at| self.kept.get(at)) {
+            let first = self.kept.iter().find(|it| it.readings == row.readings).unwrap_or(row);
+            if !found.iter().any(|it| it.readings == first.readings) {
+                found.push(first);
+            }
+        }
+        found
+    }
+
+    /// Readings of the rows that are replaced, one after the other.
+    pub(super) fn avoided(&self) -> Vec<f64> {
+        self.replaced_rows().into_iter().flat_map(|row| row.readings.clone()).collect()
+    }
+
+    /// How many new configurations there will be of a part: some that complete the kept ones, or those that take places.
+    pub(super) fn new_of(&self, part: RowPart, kept: usize) -> usize {
+        if self.replaced.is_empty() {
+            return match part {
+                RowPart::Fit => self.fit.count.saturating_sub(kept),
+                RowPart::Judge => self.judge.unwrap_or(self.fit.count.div_ceil(3)),
+            };
+        }
+        self.replaced_rows().iter().filter(|row| row.part == part).count()
     }
 }
 

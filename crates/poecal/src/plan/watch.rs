@@ -4,8 +4,8 @@ use nalgebra::{DMatrix, DVector};
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 
+use super::expected::ExpectedErrors;
 use super::experiment::{Blocks, Experiment, inverse};
-use super::make::ExpectedErrors;
 use super::options::PlannedFit;
 use super::search::Search;
 use super::state::{Aim, Squares, State, Weights};

@@ -7,6 +7,7 @@ use serde::Serialize;
 
 use super::table::{line, number, robot_words, row};
 use crate::io::model::Model;
+use crate::io::plan_program::SPEED_RAD_S;
 use crate::plan::{
     Conditions, CurvePoint, ExpectedErrors, Plan as Found, PlanCriterion, PlanOptions, RowPart,
 };
@@ -21,6 +22,9 @@ pub struct Plan {
     kept: usize,
     judge: usize,
     returns: usize,
+    /// How long it takes: the way at the speed of the programs, and a stop at each row.
+    duration_s: f64,
+    stop_s: f64,
     unknowns: usize,
     numbers: usize,
     robot_error_is_a_guess: bool,
@@ -83,15 +87,15 @@ impl Entry {
 }
 
 impl Plan {
-    /// A plan for a model.
+    /// A plan for a model, and how long the robot stands at each row, seconds.
     #[must_use]
-    pub fn new(model: &Model, options: &PlanOptions, found: &Found) -> Self {
+    pub fn new(model: &Model, options: &PlanOptions, found: &Found, stop_s: f64) -> Self {
         let count = |part: RowPart| found.rows.iter().filter(|row| row.part == part && !row.returns).count();
         let curve = |point: &CurvePoint| CurveEntry {
             configurations: point.count,
             expected: Entry::new(&point.expected),
         };
-        let kept = options.kept.len() / model.robot.reading_names().len().max(1);
+        let kept = options.fitted().len() / model.robot.reading_names().len().max(1);
         Plan {
             model: model.path.display().to_string(),
             measure: options.fit.session.kind.word(),
@@ -102,10 +106,12 @@ impl Plan {
                 PlanCriterion::E => "E",
                 PlanCriterion::G => "G",
             },
-            configurations: count(RowPart::Fit),
+            configurations: count(RowPart::Fit) - if options.replaced.is_empty() { 0 } else { kept },
             kept,
             judge: count(RowPart::Judge),
             returns: found.rows.iter().filter(|row| row.returns).count(),
+            duration_s: found.travel_rad / SPEED_RAD_S + stop_s * found.rows.len() as f64,
+            stop_s,
             unknowns: found.unknowns,
             numbers: found.numbers,
             robot_error_is_a_guess: found.robot_error_is_a_guess,
@@ -177,6 +183,14 @@ impl Plan {
             self.configurations, self.judge, self.returns
         );
         line(&mut out, "planned", &rows);
+        let duration = format!(
+            "about {} min: {} rows of {} s each, and the way at {:.0} deg/s",
+            (self.duration_s / 60.0).ceil(),
+            self.rows.len(),
+            number(self.stop_s),
+            SPEED_RAD_S.to_degrees()
+        );
+        line(&mut out, "takes", &duration);
         if (self.configurations + self.kept) * self.numbers < self.unknowns {
             line(
                 &mut out,

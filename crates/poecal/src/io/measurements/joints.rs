@@ -5,15 +5,18 @@ use std::path::Path;
 use super::ReadOptions;
 use super::configurations::in_its_file;
 use super::inputs::InputReader;
-use super::layout::ColumnLayout;
+use super::layout::{ColumnLayout, SetRule};
 use super::mapping::ColumnMap;
 use super::number::Numbers;
 use super::recorded::Opening;
 use super::scale::JointWatch;
 use super::streams::time_of;
 use super::table::{Table, refuse_more_rows};
+use super::taken::set_of;
 use super::text::Blocks;
 use crate::error::{ErrorKind, Result};
+use crate::measurement::Set;
+use crate::plan::{PlannedRow, RowPart};
 use crate::robot::Robot;
 use crate::text::visible;
 
@@ -26,12 +29,27 @@ pub struct JointsTable {
     pub rows: usize,
     /// The rows' `id`, empty if there is no such column.
     pub ids: Vec<String>,
+    /// The rows' `set`, empty if there is no such column.
+    pub sets: Vec<Option<Set>>,
     /// The rows' line numbers, from 1.
     pub lines: Vec<usize>,
     /// The rows' times, seconds; empty if there is no such column.
     pub times: Vec<f64>,
     /// Warnings, a sentence each.
     pub warnings: Vec<String>,
+}
+
+impl JointsTable {
+    /// The rows as those of a list: rows that state none are to fit.
+    #[must_use]
+    pub fn planned(&self) -> Vec<PlannedRow> {
+        let part = |row: usize| match self.sets.get(row) {
+            Some(Some(Set::HeldOut)) => RowPart::Judge,
+            _ => RowPart::Fit,
+        };
+        let parts: Vec<RowPart> = (0..self.rows).map(part).collect();
+        PlannedRow::of_list(&self.readings, self.readings.len() / self.rows.max(1), &parts)
+    }
 }
 
 /// Reads the joint columns of a file, and `id` if there is one; other columns are ignored.
@@ -97,6 +115,9 @@ pub(super) fn rows_of(
             joints.lines.push(row.line);
             if layout.time.is_some() {
                 joints.times.push(time_of(&row, layout));
+            }
+            if let SetRule::Words(index) = layout.set {
+                joints.sets.push(set_of(&row, index)?);
             }
             if let Some(cell) = layout.id.and_then(|id| row.cells.get(id)) {
                 joints.ids.push(cell.text().into_owned());

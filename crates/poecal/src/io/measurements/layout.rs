@@ -135,7 +135,9 @@ impl ColumnLayout {
         let mut builder = Builder::new(header, robot, map, options.controller.as_ref())?;
         builder.check_distinct()?;
         let id = builder.id_column()?;
-        Ok(Self::of_joints(builder, id, robot))
+        let set = builder.optional_text_column("set")?.filter(|_| !options.ignore_sets);
+        let layout = Self::of_joints(builder, id, robot);
+        Ok(ColumnLayout { set: set.map_or(SetRule::Unstated, SetRule::Words), ..layout })
     }
 
     /// The layout of a file that has none of these, and so many columns without meaning.

@@ -116,13 +116,7 @@ impl Reader<'_> {
         let text = |index: usize| row.cells.get(index).map(|cell| cell.text()).unwrap_or_default();
         match &layout.set {
             SetRule::Unstated => Ok(None),
-            SetRule::Words(index) => match text(*index).as_ref() {
-                "" => Ok(None),
-                "fit" => Ok(Some(Set::Fit)),
-                "held_out" => Ok(Some(Set::HeldOut)),
-                other => Err(row
-                    .error(*index, format!("found `{other}` in column `set`, expected `fit` or `held_out`"))),
-            },
+            SetRule::Words(index) => set_of(row, *index),
             SetRule::Where(index, rule) => {
                 self.fit_values_seen.resize(rule.values.len(), false);
                 let Some(value) = rule.matching(&text(*index)) else { return Ok(Some(Set::HeldOut)) };
@@ -229,5 +223,17 @@ impl Reader<'_> {
             path.display()
         );
         Err(row.error(column.unwrap_or(0), message))
+    }
+}
+
+/// The set that a cell states.
+pub(super) fn set_of(row: &Row<'_>, index: usize) -> Result<Option<Set>> {
+    match row.cells.get(index).map(|cell| cell.text()).unwrap_or_default().as_ref() {
+        "" => Ok(None),
+        "fit" => Ok(Some(Set::Fit)),
+        "held_out" => Ok(Some(Set::HeldOut)),
+        other => {
+            Err(row.error(index, format!("found `{other}` in column `set`, expected `fit` or `held_out`")))
+        }
     }
 }

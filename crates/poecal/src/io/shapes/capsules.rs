@@ -7,6 +7,7 @@ use nalgebra::Vector3;
 use super::collector::MOST_TRIANGLES;
 use super::find::Folders;
 use super::mesh;
+use crate::io::model::{Model, ModelSource};
 use crate::io::urdf::{Geometry, UrdfDocument, Visual};
 use crate::lie::Pose;
 use crate::plan::Capsule;
@@ -15,10 +16,19 @@ use crate::robot::Body;
 /// Corners of the polygon around a circle.
 const CORNERS: usize = 16;
 
+/// Capsules of a model that has shapes, and sentences as of [`capsules`]; none of other models.
+#[must_use]
+pub fn capsules_of(model: &Model) -> (Vec<Capsule>, Vec<String>) {
+    match &model.source {
+        ModelSource::Urdf(urdf) => capsules(urdf, &model.path),
+        ModelSource::Toml | ModelSource::Calibration(_) => Default::default(),
+    }
+}
+
 /// A capsule around each shape of the links, `<collision>` where the model has any, else `<visual>`, and sentences of meshes that are not
 /// there or cannot be read, beside the URDF.
 #[must_use]
-pub fn capsules(urdf: &UrdfDocument, path: &Path) -> (Vec<Capsule>, Vec<String>) {
+fn capsules(urdf: &UrdfDocument, path: &Path) -> (Vec<Capsule>, Vec<String>) {
     let folders = Folders::of(&[path]);
     let (mut found, mut notes, mut triangles) = (Vec::new(), Vec::new(), 0);
     for Visual { link, body, base_from_shape, geometry } in urdf.collisions() {

@@ -16,7 +16,7 @@ use std::path::{Path, PathBuf};
 use self::collector::{MOST_TRIANGLES, Triangles};
 use self::find::Folders;
 
-pub use self::capsules::capsules;
+pub use self::capsules::capsules_of;
 use self::simplify::fitted;
 pub use self::written::Mesh;
 use super::calibration_file::CalibrationFile;
