@@ -33,11 +33,15 @@ macro_rules! named {
 }
 
 named! {
-    accept accept_model actual angle_unit angular_first base base_link body camera cameras check columns contact convention corrections count device earlier error_position_mm error_rotation_deg experiment fit_where fix flange folder
-    force format formulation frame frames free gravity harmonics hash history held_out held_out_count ids ignore_sets instrument_noise instruments join kind kinds lag language length_unit level limit_mm limits markers measure measurements method
-    model most_slide_m most_turn_rad motors move_tip name names nearest noise_position_mm noise_rotation_deg nominal offset out parts path paths points progress quantity readings record refit refit_frame refit_tool repair repeatability_mm report residual
-    residuals robot robust seed sets sheet sigma_position_mm sigma_rotation_deg socket_distance start starts strict summary target targets terms text third_axis tip tip_link tips to tolerance_deg_mm tool tools topics
-    trials units validate with_uncertainty
+    accept accept_model acceptance_deg actual angle_unit angular_first base base_link body camera cameras check columns cone_deg contact
+    convention corrections count criterion device device_looks_at_mm device_mm distance_mm earlier error_position_mm error_rotation_deg
+    experiment facing fit_where fix flange floor_mm folder force format formulation frame frames free gravity harmonics hash held_out
+    held_out_count history id ids ignore_sets instrument_noise instruments join judge kind kinds lag language length_unit level limit_mm
+    limits margin_deg_mm markers measure measurements method model most_slide_m most_turn_rad motors move_tip name names nearest
+    noise_position_mm noise_rotation_deg nominal offset out parts path paths points progress quantity readings record refit refit_frame
+    refit_tool repair repeatability_mm replace report residual residuals robot robot_error_mm robust seed self_collision separation_deg sets
+    sheet sigma_position_mm sigma_rotation_deg socket_distance start starts stop_s strict summary target target_offset_mm targets terms text
+    third_axis tip tip_link tips to tolerance_deg_mm tool tools topics trials units validate with_uncertainty
 }
 
 /// The error for an argument that is something else than expected.

@@ -294,7 +294,7 @@ fn orders(harmonics: u32) -> PyResult<u8> {
 }
 
 /// A tolerance in SI.
-fn tolerance(believed: &Believed) -> PyResult<Option<Tolerance>> {
+pub(crate) fn tolerance(believed: &Believed) -> PyResult<Option<Tolerance>> {
     match believed {
         Believed::Given((angle_deg, length_mm)) => Ok(Some(Tolerance {
             angle_rad: sigma("tolerance_deg_mm", *angle_deg, f64::to_radians)?,

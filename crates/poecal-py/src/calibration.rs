@@ -806,12 +806,15 @@ impl Calibration {
     ///     Standard deviation of each measured component (default 0.05 mm, 0.01 deg).
     /// frame
     ///     The measuring device's frame: "unknown" or "base".
+    /// robot_error_mm
+    ///     Error of the tip (RMS) that a calibration leaves however much is measured (default what this calibration left).
     ///
     /// Returns
     /// -------
     /// Findings
     ///     What would be determined, and the expected error.
-    #[pyo3(signature = (joints, *, kind="pose", sigma_position_mm=None, sigma_rotation_deg=None, frame="unknown"))]
+    #[pyo3(signature = (joints, *, kind="pose", sigma_position_mm=None, sigma_rotation_deg=None, frame="unknown", robot_error_mm=None))]
+    #[expect(clippy::too_many_arguments, reason = "the options of a Python function")]
     fn identify(
         &self,
         py: Python<'_>,
@@ -820,8 +823,19 @@ impl Calibration {
         #[pyo3(from_py_with = arg::sigma_position_mm)] sigma_position_mm: Option<f64>,
         #[pyo3(from_py_with = arg::sigma_rotation_deg)] sigma_rotation_deg: Option<f64>,
         #[pyo3(from_py_with = arg::frame)] frame: &str,
+        #[pyo3(from_py_with = arg::robot_error_mm)] robot_error_mm: Option<f64>,
     ) -> PyResult<Findings> {
-        findings::identify(py, self.calibrated()?, joints, kind, sigma_position_mm, sigma_rotation_deg, frame)
+        let left_mm = self.file().left_error_m().map(|it| 1e3 * it);
+        findings::identify(
+            py,
+            self.calibrated()?,
+            joints,
+            kind,
+            sigma_position_mm,
+            sigma_rotation_deg,
+            frame,
+            robot_error_mm.or(left_mm),
+        )
     }
 
     /// Seconds that the library took for the fit; None if it was read. What a call took beyond them is Python's.

@@ -8,6 +8,7 @@ use poecal::io::offsets::ModelOffsets;
 use poecal::io::output::{self, Contents, Existing};
 use poecal::io::validation::ValidationInputs;
 use poecal::measurement::{Noise, Quantity};
+use poecal::plan::{PlannedFit, expected_errors};
 use poecal::report::Detail;
 use poecal::track::{Earlier, TrackOptions, track as tracked};
 use poecal::{compare as compared, forensics, report};
@@ -149,13 +150,17 @@ pub(crate) fn check(
 ///     Standard deviation of each measured component (default 0.05 mm, 0.01 deg).
 /// frame
 ///     The measuring device's frame: "unknown" or "base".
+/// robot_error_mm
+///     Error of the tip (RMS) that a calibration leaves however much is measured (default what a calibration left of this robot, else 0.3 mm for
+///     each metre of reach, which is a guess).
 ///
 /// Returns
 /// -------
 /// Findings
 ///     What would be determined, and the expected error.
 #[pyfunction]
-#[pyo3(signature = (robot, joints, *, kind="pose", sigma_position_mm=None, sigma_rotation_deg=None, frame="unknown"))]
+#[pyo3(signature = (robot, joints, *, kind="pose", sigma_position_mm=None, sigma_rotation_deg=None, frame="unknown", robot_error_mm=None))]
+#[expect(clippy::too_many_arguments, reason = "the options of a Python function")]
 pub(crate) fn identify(
     py: Python<'_>,
     #[pyo3(from_py_with = arg::robot)] robot: &Robot,
@@ -164,6 +169,7 @@ pub(crate) fn identify(
     #[pyo3(from_py_with = arg::sigma_position_mm)] sigma_position_mm: Option<f64>,
     #[pyo3(from_py_with = arg::sigma_rotation_deg)] sigma_rotation_deg: Option<f64>,
     #[pyo3(from_py_with = arg::frame)] frame: &str,
+    #[pyo3(from_py_with = arg::robot_error_mm)] robot_error_mm: Option<f64>,
 ) -> PyResult<Findings> {
     let model = &robot.model;
     let joints = Joints::of(joints, &model.robot)?;
@@ -177,8 +183,20 @@ pub(crate) fn identify(
         ),
         device_free: frame_word(frame)? == DeviceFrameKnowledge::Unknown,
     };
-    let found = py.detach(|| analysis::identify(&model.robot, &joints.readings, &session)).map_err(raise)?;
-    let report = report::Identify::new(model, &["arrays".to_owned()], &session, &found);
+    let robot_error_m = robot_error_mm.map(|it| sigma("robot_error_mm", it, from_mm)).transpose()?;
+    let fit = PlannedFit {
+        session,
+        robot_error_m: robot_error_m.or_else(|| model.left_error_m()),
+        ..PlannedFit::default()
+    };
+    let work = || {
+        let found = analysis::identify(&model.robot, &joints.readings, &session)?;
+        let is_free = !session.kind.is_touched() && !session.kind.is_paired();
+        let expected = is_free.then(|| expected_errors(&model.robot, &joints.readings, &fit)).transpose()?;
+        Ok((found, expected))
+    };
+    let (found, expected) = py.detach(work).map_err(raise)?;
+    let report = report::Identify::new(model, &["arrays".to_owned()], &session, (&found, expected));
     Findings::new(report.text(), &report, Vec::new())
 }
 

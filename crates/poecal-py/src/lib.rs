@@ -17,6 +17,7 @@ mod measurements;
 mod notebook;
 mod pickle;
 mod places;
+mod plan;
 mod prediction;
 mod project;
 mod reach;
@@ -64,6 +65,8 @@ mod _poecal {
     use crate::hand_eye::{hand_eye, tcp};
     #[pymodule_export]
     use crate::measurements::Measurements;
+    #[pymodule_export]
+    use crate::plan::{Plan, Watch, plan};
     #[pymodule_export]
     use crate::prediction::Prediction;
     #[pymodule_export]

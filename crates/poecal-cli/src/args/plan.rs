@@ -77,6 +77,9 @@ pub(crate) struct Plan {
     /// .src (KUKA) or .ls (FANUC)
     #[arg(long, value_name = "FILE")]
     pub(crate) program: Option<PathBuf>,
+    /// Write a page of the plan (HTML): the robot in every configuration, the device, errors by number, how each joint is sampled
+    #[arg(long, value_name = "FILE")]
+    pub(crate) report: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) place: OutFile,
     /// Print JSON instead of the table

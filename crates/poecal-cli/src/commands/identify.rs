@@ -6,6 +6,7 @@ use poecal::io::measurements;
 use poecal::io::model::Model;
 use poecal::io::named_files::refuse_repeats;
 use poecal::measurement::{Noise, Quantity};
+use poecal::plan::{PlannedFit, expected_errors};
 use poecal::{Error, ErrorKind, Result, report};
 
 use crate::DONE;
@@ -27,6 +28,8 @@ pub(crate) fn identify(arguments: &Identify, console: &Console) -> Result<u8> {
         device_free: arguments.frame == DeviceFrameKnowledge::Unknown,
     };
     let has_pictures = !options.cameras.is_empty() || !options.boards.is_empty();
+    // Errors to expect of what is chosen freely: of other kinds the workspace that they cover is not known.
+    let mut expected = None;
     let found = if session.kind.is_touched() || has_pictures {
         let file = measurements::read(&arguments.joints, &model.robot, &options)?;
         console.said_of(&file);
@@ -44,10 +47,16 @@ pub(crate) fn identify(arguments: &Identify, console: &Console) -> Result<u8> {
             console.warnings(&joints.warnings);
             readings.extend(joints.readings);
         }
-        foresee(&model.robot, &readings, &session)?
+        let found = foresee(&model.robot, &readings, &session)?;
+        if !session.kind.is_paired() {
+            let robot_error_m = arguments.robot_error.or_else(|| model.left_error_m());
+            let fit = PlannedFit { session, robot_error_m, ..PlannedFit::default() };
+            expected = Some(expected_errors(&model.robot, &readings, &fit)?);
+        }
+        found
     };
     let files: Vec<String> = arguments.joints.iter().map(|path| path.display().to_string()).collect();
-    let report = report::Identify::new(&model, &files, &session, &found);
+    let report = report::Identify::new(&model, &files, &session, (&found, expected));
     console.json_or_table(arguments.json, || report::json(&report), || report.text())?;
     Ok(DONE)
 }

@@ -26,9 +26,9 @@ pub(crate) fn plan(arguments: &Plan, console: &Console) -> Result<u8> {
     let inputs: Vec<_> = std::iter::once(arguments.model.as_path()).chain(files).collect();
     let place = arguments.place.reserve(&inputs, console)?;
     let existing = Existing::forced(arguments.place.force);
-    let program = arguments.program.as_ref();
-    let program =
-        program.map(|path| FilePlace::reserve(path, existing, &inputs, &mut console.warner())).transpose()?;
+    let reserved = |path: &PathBuf| FilePlace::reserve(path, existing, &inputs, &mut console.warner());
+    let program = arguments.program.as_ref().map(reserved).transpose()?;
+    let page = arguments.report.as_ref().map(reserved).transpose()?;
     let options = arguments.columns.options();
     let model = Model::read(&arguments.model, &arguments.chain.selection(options.as_ref().ok())?)?;
     let reading = model.reads(options?);
@@ -73,11 +73,14 @@ pub(crate) fn plan(arguments: &Plan, console: &Console) -> Result<u8> {
     };
     let found = planned(&model.robot, &options)?;
     let report = report::Plan::new(&model, &options, &found, arguments.stop.as_secs_f64());
-    let table = planned_table(&model.robot, &found.rows, &report.comments())?;
+    let table = planned_table(&model.robot, &found)?;
     let as_program = arguments.program.as_ref();
     let as_program = as_program.map(|path| plan_program(path, &model.robot, &found.rows)).transpose()?;
     if let Some((place, text)) = program.zip(as_program) {
         place.write(vec![text.into()])?;
+    }
+    if let Some(page) = page {
+        page.write(report::plan_page(&model, &options, &found, &report))?;
     }
     let written = place.is_some();
     let is_data = !written && !arguments.json;

@@ -11,7 +11,6 @@ use super::proof::Difference;
 use super::urdf::{self, ChainSelection, UrdfDocument};
 use super::{looks_like, robot_toml, source_text};
 use crate::error::{Error, ErrorKind, Result, first_few};
-use crate::measurement::Quantity;
 use crate::robot::{Controller, Robot};
 
 /// What a model's file is.
@@ -55,13 +54,13 @@ pub struct Model {
 }
 
 impl Model {
-    /// The position error (RMS) that a calibration of this robot left, metres, if the model is one: of rows that were held out, else of those
-    /// fitted.
+    /// As [`CalibrationFile::left_error_m`], if the model is a calibration.
     #[must_use]
     pub fn left_error_m(&self) -> Option<f64> {
-        let ModelSource::Calibration(file) = &self.source else { return None };
-        let set = file.accuracy.held_out.as_ref().unwrap_or(&file.accuracy.training);
-        set.calibrated.get(Quantity::Position).map(|it| it.rms)
+        match &self.source {
+            ModelSource::Calibration(file) => file.left_error_m(),
+            ModelSource::Urdf(_) | ModelSource::Toml => None,
+        }
     }
 }
 

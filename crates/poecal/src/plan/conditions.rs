@@ -8,6 +8,7 @@ use rand_core::SeedableRng;
 
 use super::capsule::{Capsule, between};
 use super::order::Travel;
+use super::skeleton::{links, targets, to_targets};
 use crate::lie::Pose;
 use crate::robot::{Body, ReadingKind, Robot};
 use crate::simulate::Configurations;
@@ -248,29 +249,10 @@ impl<'a> Checker<'a> {
         let moving = self.conditions.capsules.iter().zip(segments).filter(|(it, _)| it.body != Body::Base);
         let mut parts: Vec<_> = moving.map(|(it, segment)| (*segment, it.radius_m)).collect();
         if parts.is_empty() {
-            for (joint, frame) in frames.iter().enumerate() {
-                if let Some(before) = self.robot.body_before(joint).joint() {
-                    parts.push(([frames[before].translation, frame.translation], 0.0));
-                }
-            }
+            parts.extend(links(self.robot, frames).into_iter().map(|line| (line, 0.0)));
         }
-        let last = self.robot.tip_body().joint().and_then(|joint| frames.get(joint));
-        for (place, _) in self.targets(readings, frames) {
-            parts.push(([last.map_or(place, |it| it.translation), place], 0.0));
-        }
+        parts.extend(to_targets(self.robot, readings, frames).into_iter().map(|line| (line, 0.0)));
         parts
-    }
-
-    /// Places of the targets, and the direction in which each looks.
-    fn targets(&self, readings: &[f64], frames: &[Pose]) -> Vec<(Vector3<f64>, Pose)> {
-        let mounted = &self.robot.mounted;
-        if mounted.is_empty() {
-            let tip = self.robot.forward_kinematics(readings);
-            return vec![(tip.translation, tip)];
-        }
-        let at = |body: Body| body.joint().and_then(|joint| frames.get(joint)).copied();
-        let poses = mounted.iter().map(|it| at(it.body).unwrap_or_else(Pose::identity) * it.pose);
-        poses.map(|pose| (pose.translation, pose)).collect()
     }
 
     /// What forbids to measure there.
@@ -285,7 +267,7 @@ impl<'a> Checker<'a> {
     fn sight(&self, readings: &[f64]) -> Option<Obstacle> {
         let sight = self.conditions.sight.as_ref()?;
         let frames = self.robot.joint_poses(readings);
-        for (place, pose) in self.targets(readings, &frames) {
+        for (place, pose) in targets(self.robot, readings, &frames) {
             let line = place - sight.place;
             let distance = line.norm();
             if !(sight.distance_m[0]..=sight.distance_m[1]).contains(&distance) {

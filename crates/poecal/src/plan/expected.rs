@@ -3,8 +3,7 @@
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 
-use super::experiment::Experiment;
-use super::make::{WORKSPACE, undetermined};
+use super::experiment::{Experiment, WORKSPACE, undetermined};
 use super::options::PlannedFit;
 use super::state::{Aim, Squares, State, Weights};
 use crate::error::Result;

@@ -19,6 +19,8 @@ use crate::simulate::random_configuration;
 use crate::solve::{Normal, Options, minimize};
 use crate::unit::Unit;
 
+/// Configurations of the workspace.
+pub(super) const WORKSPACE: usize = 1000;
 /// Random configurations by which unknowns are scaled and terms are combined, and their seed.
 const SAMPLE: usize = 400;
 const SEED: u64 = 1;
@@ -540,4 +542,10 @@ fn one_of_each(data: &Dataset) -> Vec<u32> {
         }
     }
     rows
+}
+
+pub(super) fn undetermined() -> crate::Error {
+    ErrorKind::Problem.error(
+        "found configurations whose information cannot be inverted, expected finite sizes of joints, noise and tolerances: check the units of the model",
+    )
 }

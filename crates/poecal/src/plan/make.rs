@@ -6,7 +6,7 @@ use rand_core::SeedableRng;
 
 use super::conditions::{Checker, Obstacle, Refusals};
 use super::expected::{CurvePoint, ExpectedErrors, enough};
-use super::experiment::{Blocks, Experiment, inverse};
+use super::experiment::{Blocks, Experiment, WORKSPACE, inverse, undetermined};
 use super::options::{PlanCriterion, PlanOptions};
 use super::order::Travel;
 use super::rows::{PlannedRow, RowPart, with_returns};
@@ -17,8 +17,6 @@ use crate::linalg;
 use crate::robot::{ReadingKind, Robot};
 use crate::simulate::{Configurations, random};
 
-/// Configurations of the workspace.
-pub(super) const WORKSPACE: usize = 1000;
 /// Random configurations that are tried for each one of a workspace.
 const ATTEMPTS: usize = 200;
 /// Random lists to which a plan is compared.
@@ -538,10 +536,4 @@ fn random_lists(
         corrected: median(|it| it.corrected),
         determinant: 0.0,
     })
-}
-
-pub(super) fn undetermined() -> crate::Error {
-    ErrorKind::Problem.error(
-        "found configurations whose information cannot be inverted, expected finite sizes of joints, noise and tolerances: check the units of the model",
-    )
 }

@@ -10,6 +10,7 @@ mod options;
 mod order;
 mod rows;
 mod search;
+mod skeleton;
 mod state;
 mod watch;
 
@@ -18,5 +19,6 @@ pub use conditions::{Conditions, Obstacle, Refusals, Sight};
 pub use expected::{CurvePoint, ExpectedErrors, ListExpectation, expected_errors};
 pub use make::{Plan, plan, workspace_in};
 pub use options::{PlanCriterion, PlanOptions, PlannedFit};
-pub use rows::{PlannedRow, RowPart};
+pub use rows::{PlannedRow, RowPart, returns_of};
+pub use skeleton::skeleton;
 pub use watch::{Mistake, Watch, WatchOptions, WatchedRow};

@@ -161,3 +161,20 @@ pub enum PlanCriterion {
     /// Largest variance of a prediction in the workspace.
     G,
 }
+
+impl PlanCriterion {
+    /// Each with its word.
+    pub const WORDS: [(&'static str, PlanCriterion); 5] = [
+        ("expected", PlanCriterion::Expected),
+        ("D", PlanCriterion::D),
+        ("A", PlanCriterion::A),
+        ("E", PlanCriterion::E),
+        ("G", PlanCriterion::G),
+    ];
+
+    /// Its word.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        Self::WORDS.into_iter().find(|it| it.1 == self).map_or("expected", |it| it.0)
+    }
+}

@@ -12,6 +12,17 @@ pub enum RowPart {
     Judge,
 }
 
+impl RowPart {
+    /// Its word in the column `set`.
+    #[must_use]
+    pub fn set(self) -> &'static str {
+        match self {
+            RowPart::Fit => "fit",
+            RowPart::Judge => "held_out",
+        }
+    }
+}
+
 /// A row of a plan.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlannedRow {
@@ -38,16 +49,22 @@ impl PlannedRow {
     }
 }
 
+/// How many rows of a list of so many return to the first: every twentieth.
+#[must_use]
+pub fn returns_of(rows: usize) -> usize {
+    rows / (ROWS_BETWEEN_VISITS + 1)
+}
+
 /// The rows with the first one again behind every so many.
 pub(super) fn with_returns(rows: Vec<PlannedRow>) -> Vec<PlannedRow> {
     let Some(first) = rows.first().cloned() else { return rows };
     let again = PlannedRow { returns: true, candidate: None, ..first };
     let mut found = Vec::new();
     for (at, row) in rows.into_iter().enumerate() {
-        if at > 0 && at % ROWS_BETWEEN_VISITS == 0 {
+        found.push(row);
+        if (at + 1) % ROWS_BETWEEN_VISITS == 0 {
             found.push(again.clone());
         }
-        found.push(row);
     }
     found
 }

@@ -4,11 +4,13 @@ use std::fmt::Write as _;
 
 use serde::Serialize;
 
+use super::plan::{PlanErrors, robot_error_words};
 use super::table::{kinds_words, line, noise_words, number, robot_words};
 use crate::analysis::{Cause, Foresight, JointCoverage, MeasuredPictures, PlannedSession};
 use crate::io::calibration_file::{IdentifiabilityEntry, Keyed, SigmaKeys};
 use crate::io::model::Model;
 use crate::measurement::{Measured, Quantity};
+use crate::plan::ListExpectation;
 use crate::robot::JointKind;
 use crate::text::visible;
 
@@ -28,6 +30,9 @@ pub struct Identify {
     pictures: Option<PicturesEntry>,
     identifiability: IdentifiabilityEntry,
     expected_error: ExpectedEntry,
+    /// Errors of a fit with what the robot itself does not keep; null for kinds whose configurations cannot be chosen freely.
+    expected: Option<PlanErrors>,
+    robot_error_is_a_guess: bool,
     coverage: Vec<JointCoverage>,
     #[serde(skip)]
     robot_words: String,
@@ -63,9 +68,14 @@ impl PicturesEntry {
 }
 
 impl Identify {
-    /// What `identify` found of a model in the configurations of some files, named as the user named them.
+    /// What `identify` found of a model in the configurations of some files, named as the user named them, with the errors to expect.
     #[must_use]
-    pub fn new(model: &Model, files: &[String], session: &PlannedSession, found: &Foresight) -> Self {
+    pub fn new(
+        model: &Model,
+        files: &[String],
+        session: &PlannedSession,
+        (found, expected): (&Foresight, Option<ListExpectation>),
+    ) -> Self {
         let sigma = |quantity: Quantity| quantity.unit().shown(session.noise[quantity]);
         let is_stated = |quantity: Quantity| found.pictures.is_none() && session.kind.has(quantity);
         let sigma = Measured::of(|quantity| is_stated(quantity).then(|| sigma(quantity)));
@@ -84,6 +94,8 @@ impl Identify {
                 position_mean_mm: found.expected.mean_m.map(|mean| mean * 1e3),
                 position_worst_mm: found.expected.worst_m.map(|worst| worst * 1e3),
             },
+            expected: expected.map(|it| PlanErrors::new(&it.errors)),
+            robot_error_is_a_guess: expected.is_some_and(|it| it.robot_error_is_a_guess),
             coverage: found.coverage.clone(),
             robot_words: robot_words(&model.robot),
             kinds: model.robot.joints.iter().map(|joint| joint.kind).collect(),
@@ -127,6 +139,13 @@ impl Identify {
         identifiability_lines(&mut out, &self.identifiability);
         line(&mut out, "observability", &self.observability_words());
         line(&mut out, "expected", &self.expected_words());
+        if let Some(expected) = &self.expected {
+            let [calibrated, corrected] = expected.words();
+            line(&mut out, "", &format!("calibrated {calibrated}"));
+            line(&mut out, "", &format!("corrected {corrected}"));
+            let robot = robot_error_words(expected, self.robot_error_is_a_guess);
+            line(&mut out, "robot error", &robot);
+        }
         coverage_table(&mut out, self.coverage.iter().zip(self.kinds.iter().copied()));
         out
     }

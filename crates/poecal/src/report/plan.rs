@@ -8,9 +8,7 @@ use serde::Serialize;
 use super::table::{line, number, robot_words, row};
 use crate::io::model::Model;
 use crate::io::plan_program::SPEED_RAD_S;
-use crate::plan::{
-    Conditions, CurvePoint, ExpectedErrors, Plan as Found, PlanCriterion, PlanOptions, RowPart,
-};
+use crate::plan::{Conditions, CurvePoint, ExpectedErrors, Plan as Found, PlanOptions, RowPart};
 
 /// A plan, for a person to look over or a machine to read.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -28,8 +26,8 @@ pub struct Plan {
     unknowns: usize,
     numbers: usize,
     robot_error_is_a_guess: bool,
-    expected: Entry,
-    random: Entry,
+    expected: PlanErrors,
+    random: PlanErrors,
     log_determinant: f64,
     /// Indices from 0 of the candidates that were chosen, in the order of the rows.
     #[serde(skip_serializing_if = "Vec::is_empty")]
@@ -49,8 +47,9 @@ pub struct Plan {
     robot_words: String,
 }
 
+/// Expected errors (RMS over the workspace) in two parts each.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-struct Entry {
+pub(super) struct PlanErrors {
     calibrated_mm: f64,
     calibrated_undetermined_mm: f64,
     robot_error_mm: f64,
@@ -63,7 +62,7 @@ struct Entry {
 struct CurveEntry {
     configurations: usize,
     #[serde(flatten)]
-    expected: Entry,
+    expected: PlanErrors,
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -73,9 +72,9 @@ struct RowEntry {
     readings: Vec<f64>,
 }
 
-impl Entry {
-    fn new(it: &ExpectedErrors) -> Self {
-        Entry {
+impl PlanErrors {
+    pub(super) fn new(it: &ExpectedErrors) -> Self {
+        PlanErrors {
             calibrated_mm: 1e3 * it.calibrated_m(),
             calibrated_undetermined_mm: 1e3 * it.undetermined_m,
             robot_error_mm: 1e3 * it.robot_m,
@@ -84,6 +83,29 @@ impl Entry {
             corrected_robot_error_mm: 1e3 * it.corrected_robot_m,
         }
     }
+
+    /// Of the calibrated and of the corrected model: the error, and its parts.
+    pub(super) fn words(&self) -> [String; 2] {
+        let words = |all, open, rest| {
+            format!(
+                "to {} mm: {} not determined yet, {} that no such model describes",
+                number(all),
+                number(open),
+                number(rest)
+            )
+        };
+        [
+            words(self.calibrated_mm, self.calibrated_undetermined_mm, self.robot_error_mm),
+            words(self.corrected_mm, self.corrected_undetermined_mm, self.corrected_robot_error_mm),
+        ]
+    }
+}
+
+/// What no geometry describes.
+pub(super) fn robot_error_words(it: &PlanErrors, is_a_guess: bool) -> String {
+    let guess =
+        if is_a_guess { ", a guess of 0.3 mm for each metre of reach: --robot-error states it" } else { "" };
+    format!("{} mm that no geometry describes{guess}", number(it.robot_error_mm))
 }
 
 impl Plan {
@@ -93,19 +115,13 @@ impl Plan {
         let count = |part: RowPart| found.rows.iter().filter(|row| row.part == part && !row.returns).count();
         let curve = |point: &CurvePoint| CurveEntry {
             configurations: point.count,
-            expected: Entry::new(&point.expected),
+            expected: PlanErrors::new(&point.expected),
         };
         let kept = options.fitted().len() / model.robot.reading_names().len().max(1);
         Plan {
             model: model.path.display().to_string(),
             measure: options.fit.session.kind.word(),
-            criterion: match options.criterion {
-                PlanCriterion::Expected => "expected",
-                PlanCriterion::D => "D",
-                PlanCriterion::A => "A",
-                PlanCriterion::E => "E",
-                PlanCriterion::G => "G",
-            },
+            criterion: options.criterion.word(),
             configurations: count(RowPart::Fit) - if options.replaced.is_empty() { 0 } else { kept },
             kept,
             judge: count(RowPart::Judge),
@@ -115,8 +131,8 @@ impl Plan {
             unknowns: found.unknowns,
             numbers: found.numbers,
             robot_error_is_a_guess: found.robot_error_is_a_guess,
-            expected: Entry::new(&found.expected),
-            random: Entry::new(&found.random),
+            expected: PlanErrors::new(&found.expected),
+            random: PlanErrors::new(&found.random),
             log_determinant: found.log_determinant,
             candidates: found.rows.iter().filter_map(|row| row.candidate).collect(),
             curve: found.curve.iter().map(curve).collect(),
@@ -125,7 +141,7 @@ impl Plan {
                 .rows
                 .iter()
                 .map(|row| RowEntry {
-                    set: if row.part == RowPart::Fit { "fit" } else { "held_out" },
+                    set: row.part.set(),
                     returns: row.returns,
                     readings: row.readings.clone(),
                 })
@@ -152,101 +168,96 @@ impl Plan {
         each.collect::<Vec<_>>().join(", ")
     }
 
-    /// What stands above the table of configurations.
+    /// Configurations to fit, kept and new.
+    pub(super) fn planned(&self) -> usize {
+        self.configurations + self.kept
+    }
+
+    /// Number of configurations from which more are not worth it, in words.
+    pub(super) fn advice(&self) -> String {
+        match self.enough {
+            Some(enough) => format!("{enough} configurations; from there 10 more gain less than 5 %"),
+            None => "more than 100 configurations: 10 more still gain 5 %".to_owned(),
+        }
+    }
+
+    /// The plan in a sentence.
     #[must_use]
-    pub fn comments(&self) -> Vec<String> {
-        let mut found = vec![
-            format!(
-                "{} configurations to measure and fit, then {} at random to judge by (held_out), each set in a short order of travel.",
-                self.configurations, self.judge
-            ),
-            "Rows whose column `returns` names row 1 are the first configuration again: they show how well the robot repeats, and drift."
-                .to_owned(),
-            "ONLY CONFIGURATIONS ARE CHECKED, NEVER THE WAY BETWEEN THEM: go through them slowly or in simulation first.".to_owned(),
-        ];
-        found.push(format!(
-            "Expected error of the calibrated robot {} mm, with corrections {} mm (RMS).",
+    pub fn answer(&self) -> String {
+        format!(
+            "{} configurations to fit are expected to give {} mm calibrated and {} mm corrected (RMS over the workspace); as many random ones {} and {} mm.",
+            self.planned(),
             number(self.expected.calibrated_mm),
-            number(self.expected.corrected_mm)
-        ));
-        found
+            number(self.expected.corrected_mm),
+            number(self.random.calibrated_mm),
+            number(self.random.corrected_mm)
+        )
+    }
+
+    /// What is planned, with its name.
+    pub(super) fn facts(&self) -> Vec<(&'static str, String)> {
+        let kept = if self.kept > 0 { format!(" beside {} kept ones", self.kept) } else { String::new() };
+        let mut facts = vec![
+            ("robot", self.robot_words.clone()),
+            (
+                "planned",
+                format!(
+                    "{} configurations to fit{kept}, {} at random to judge by, {} returns to the first",
+                    self.configurations, self.judge, self.returns
+                ),
+            ),
+            (
+                "takes",
+                format!(
+                    "about {} min: {} rows of {} s each, and the way at {:.0} deg/s",
+                    (self.duration_s / 60.0).ceil(),
+                    self.rows.len(),
+                    number(self.stop_s),
+                    SPEED_RAD_S.to_degrees()
+                ),
+            ),
+        ];
+        let numbers = self.planned() * self.numbers;
+        if numbers < self.unknowns {
+            let words =
+                format!("{numbers} numbers for {} unknowns: the prior decides the rest", self.unknowns);
+            facts.push(("", words));
+        }
+        let words = |it: &PlanErrors| {
+            format!("{} mm calibrated, {} mm corrected", number(it.calibrated_mm), number(it.corrected_mm))
+        };
+        facts.push(("expected", format!("{} (RMS over the workspace)", words(&self.expected))));
+        facts.push(("random", words(&self.random)));
+        facts.push(("robot error", robot_error_words(&self.expected, self.robot_error_is_a_guess)));
+        facts.push(("checked", self.checked_words()));
+        if !self.refused.is_empty() {
+            let words = format!("of {} configurations refused: {}", self.tried, self.refused_words());
+            facts.push(("", words));
+        }
+        if !self.left_out.is_empty() {
+            let pairs: Vec<String> = self.left_out.iter().map(|[a, b]| format!("{a} and {b}")).collect();
+            let pairs = pairs.join(", ");
+            facts.push(("", format!("not looked at, since they overlap in all configurations: {pairs}")));
+        }
+        if !self.without_limits.is_empty() {
+            let names = self.without_limits.join(", ");
+            facts.push(("", format!("without limits, taken to 180 deg or 500 mm to either side: {names}")));
+        }
+        facts
     }
 
     /// As text of lines up to 80 characters (but for names that are longer).
     #[must_use]
     pub fn text(&self) -> String {
         let mut out = String::new();
-        line(&mut out, "robot", &self.robot_words);
-        let kept = if self.kept > 0 { format!(" beside {} kept ones", self.kept) } else { String::new() };
-        let rows = format!(
-            "{} configurations to fit{kept}, {} at random to judge by, {} returns to the first",
-            self.configurations, self.judge, self.returns
-        );
-        line(&mut out, "planned", &rows);
-        let duration = format!(
-            "about {} min: {} rows of {} s each, and the way at {:.0} deg/s",
-            (self.duration_s / 60.0).ceil(),
-            self.rows.len(),
-            number(self.stop_s),
-            SPEED_RAD_S.to_degrees()
-        );
-        line(&mut out, "takes", &duration);
-        if (self.configurations + self.kept) * self.numbers < self.unknowns {
-            line(
-                &mut out,
-                "",
-                &format!(
-                    "{} numbers for {} unknowns: the prior decides the rest",
-                    (self.configurations + self.kept) * self.numbers,
-                    self.unknowns
-                ),
-            );
-        }
-        let words = |it: &Entry| {
-            format!("{} mm calibrated, {} mm corrected", number(it.calibrated_mm), number(it.corrected_mm))
-        };
-        line(&mut out, "expected", &format!("{} (RMS over the workspace)", words(&self.expected)));
-        line(&mut out, "random", &words(&self.random));
-        let guess = if self.robot_error_is_a_guess {
-            ", a guess of 0.3 mm for each metre of reach: --robot-error states it"
-        } else {
-            ""
-        };
-        let robot = format!("{} mm that no geometry describes{guess}", number(self.expected.robot_error_mm));
-        line(&mut out, "robot error", &robot);
-        line(&mut out, "checked", &self.checked_words());
-        if !self.refused.is_empty() {
-            line(
-                &mut out,
-                "",
-                &format!("of {} configurations refused: {}", self.tried, self.refused_words()),
-            );
-        }
-        if !self.left_out.is_empty() {
-            let pairs: Vec<String> = self.left_out.iter().map(|[a, b]| format!("{a} and {b}")).collect();
-            line(
-                &mut out,
-                "",
-                &format!("not looked at, since they overlap in all configurations: {}", pairs.join(", ")),
-            );
-        }
-        if !self.without_limits.is_empty() {
-            line(
-                &mut out,
-                "",
-                &format!(
-                    "without limits, taken to 180 deg or 500 mm to either side: {}",
-                    self.without_limits.join(", ")
-                ),
-            );
-        }
+        self.facts().iter().for_each(|(name, words)| line(&mut out, name, words));
         // Writing to a String cannot fail.
         let _ = writeln!(out);
         let widths = [26, 13];
         row(&mut out, "configurations", widths, ["calibrated", "of it open", "corrected", "of it open"]);
         for point in &self.curve {
             let it = &point.expected;
-            let mark = if point.configurations == self.configurations + self.kept { "  planned" } else { "" };
+            let mark = if point.configurations == self.planned() { "  planned" } else { "" };
             let cells = [
                 it.calibrated_mm,
                 it.calibrated_undetermined_mm,
@@ -256,11 +267,7 @@ impl Plan {
             row(&mut out, &format!("  {}{mark}", point.configurations), widths, cells.map(number));
         }
         let _ = writeln!(out);
-        let advice = match self.enough {
-            Some(enough) => format!("{enough} configurations; from there 10 more gain less than 5 %"),
-            None => "more than 100 configurations: 10 more still gain 5 %".to_owned(),
-        };
-        line(&mut out, "advice", &advice);
+        line(&mut out, "advice", &self.advice());
         out
     }
 }

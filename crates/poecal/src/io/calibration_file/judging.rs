@@ -10,6 +10,13 @@ use crate::measurement::{ByQuantity, Dataset, Noise, Quantity};
 const UNSEEN: f64 = 0.05;
 
 impl CalibrationFile {
+    /// The position error (RMS) that the calibrated model left, metres: of rows that were held out, else of those fitted.
+    #[must_use]
+    pub fn left_error_m(&self) -> Option<f64> {
+        let set = self.accuracy.held_out.as_ref().unwrap_or(&self.accuracy.training);
+        set.calibrated.get(Quantity::Position).map(|it| it.rms)
+    }
+
     /// Knowledge of the device frame.
     #[must_use]
     pub fn frame(&self) -> DeviceFrameKnowledge {

@@ -8,7 +8,7 @@ use rand_core::SeedableRng as _;
 use super::write::{decimal, header, reading_header, reading_units, refuse_names};
 use crate::error::Result;
 use crate::measurement::Quantity;
-use crate::plan::{PlannedRow, RowPart};
+use crate::plan::{Plan, RowPart};
 use crate::robot::Robot;
 use crate::simulate::{Configurations, Kind};
 use crate::text::visible;
@@ -103,22 +103,36 @@ pub(in crate::io) fn plan(robot: &Robot, count: usize, seed: u64) -> Result<Stri
     Ok(text)
 }
 
+/// What stands above a planned list.
+fn about(found: &Plan) -> [String; 4] {
+    let count = |part: RowPart| found.rows.iter().filter(|row| row.part == part && !row.returns).count();
+    let [fit, judge] = [count(RowPart::Fit), count(RowPart::Judge)];
+    let [calibrated, corrected] = [found.expected.calibrated_m(), found.expected.corrected_m()];
+    [
+        format!("{fit} configurations to measure and fit, then {judge} at random to judge by (held_out), each set in a short order of travel."),
+        "Rows whose column `returns` names row 1 are the first configuration again: they show how well the robot repeats, and drift."
+            .to_owned(),
+        "ONLY CONFIGURATIONS ARE CHECKED, NEVER THE WAY BETWEEN THEM: go through them slowly or in simulation first.".to_owned(),
+        format!("Expected error of the calibrated robot {:.4} mm, with corrections {:.4} mm (RMS).", 1e3 * calibrated, 1e3 * corrected),
+    ]
+}
+
 /// A planned list as a table: `set` has what a row is for, `returns` the row that it repeats, then the readings.
 ///
 /// # Errors
 /// [`crate::ErrorKind::Model`] if a joint has the name of one of these columns.
-pub fn planned_table(robot: &Robot, rows: &[PlannedRow], comments: &[String]) -> Result<String> {
+pub fn planned_table(robot: &Robot, found: &Plan) -> Result<String> {
     let names = robot.reading_names();
     refuse_names(&names, &["id", "set", "returns"])?;
     let units = reading_units(&names, robot)?;
     let mut text = String::new();
-    for comment in comments {
+    for comment in about(found) {
         // Writing to a String cannot fail.
-        let _ = writeln!(text, "# {}", visible(comment));
+        let _ = writeln!(text, "# {}", visible(&comment));
     }
     let _ = writeln!(text, "id,set,returns,{}", reading_header(&names, &units));
-    for (row, planned) in rows.iter().enumerate() {
-        let set = if planned.part == RowPart::Fit { "fit" } else { "held_out" };
+    for (row, planned) in found.rows.iter().enumerate() {
+        let set = planned.part.set();
         let returns = if planned.returns { "1" } else { "" };
         let cells = planned.readings.iter().zip(&units).map(|(&value, &unit)| decimal(value, unit, None));
         let _ = writeln!(text, "{},{set},{returns},{}", row + 1, cells.collect::<Vec<_>>().join(","));

@@ -1,18 +1,28 @@
 //! Project folders, to begin a calibration with.
 
+use std::ops::RangeInclusive;
+
 use super::place::taken;
 use super::{FolderPlace, NewFile, Written, write_files};
+use crate::analysis::PlannedSession;
 use crate::error::Result;
 use crate::io::disk;
-use crate::io::measurements::{plan, template};
+use crate::io::measurements::{plan as random_list, planned_table, template};
 use crate::io::model::{Model, ModelSource};
+use crate::io::shapes::capsules_of;
 use crate::io::source_text;
 use crate::io::urdf::ChainSelection;
 use crate::measurement::{Device, Kind};
+use crate::plan::{Conditions, PlanOptions, PlannedFit, plan, returns_of};
 use crate::text::visible;
 
 const SETTINGS: &str = include_str!("project/poecal.toml");
 const README: &str = include_str!("project/README.md");
+
+/// Numbers of rows that are planned: with fewer nothing is to choose, of more all lists are alike.
+const PLANNED_ROWS: RangeInclusive<usize> = 8..=200;
+/// Candidates of a list: few, since it is a beginning.
+const CANDIDATES: usize = 800;
 
 /// Contents of a project folder.
 #[derive(Clone, Copy, Debug)]
@@ -50,10 +60,38 @@ impl Project<'_> {
         Ok(vec![
             NewFile::new(self.model_name(), model),
             NewFile::new("measurements.csv", template(robot, self.kind)?),
-            NewFile::new("joints.csv", plan(robot, self.count, self.seed)?),
+            NewFile::new("joints.csv", self.list()?),
             NewFile::new("poecal.toml", self.filled(SETTINGS)),
             NewFile::new("README.md", self.filled(README)),
         ])
+    }
+
+    /// Configurations to measure: planned ones, some at random to judge by, and returns to the first; where nothing can be planned, random ones.
+    fn list(&self) -> Result<String> {
+        let robot = &self.model.robot;
+        let rows = self.count - returns_of(self.count);
+        let judge = rows / 4;
+        if self.kind.is_touched() || self.kind.is_paired() || !PLANNED_ROWS.contains(&rows) {
+            return random_list(robot, self.count, self.seed);
+        }
+        let usual = PlannedFit::default();
+        let session = PlannedSession { kind: self.kind, ..usual.session };
+        let options = PlanOptions {
+            fit: PlannedFit {
+                session,
+                count: rows - judge,
+                robot_error_m: self.model.left_error_m(),
+                ..usual
+            },
+            judge: Some(judge),
+            candidates: CANDIDATES,
+            conditions: Conditions { capsules: capsules_of(self.model).0, ..Conditions::default() },
+            seed: self.seed,
+            ..PlanOptions::default()
+        };
+        // A robot that cannot be planned for has a list all the same.
+        let Ok(found) = plan(robot, &options) else { return random_list(robot, self.count, self.seed) };
+        planned_table(robot, &found)
     }
 
     /// A text with the project's names filled in.
@@ -105,8 +143,8 @@ impl Project<'_> {
 }
 
 /// First step of the instructions.
-const PLANNED: &str = "1. **Before measuring**: which unknowns would these configurations determine, and with which expected error? Change \
-`joints.csv` and ask again, as often as you like.\n\n   ```sh\n   poecal identify {model} joints.csv --kind {kind}{chain options}\n   ```";
+const PLANNED: &str = "1. **Before measuring**: which unknowns would these configurations determine, and with which expected error? `poecal plan` chooses \
+others: with your reflector's place, the device, and what is in the way.\n\n   ```sh\n   poecal identify {model} joints.csv --kind {kind}{chain options}\n   ```";
 /// The same where something is touched: random configurations do not.
 const TOUCHED: &str = "1. **Before measuring**: `joints.csv` has random configurations, to start from; in each, the robot must then be led to what it \
 touches. When a dozen rows are in `measurements.csv`, ask which unknowns they determine, and what is missing.\n\n   ```sh\n   \

@@ -17,6 +17,7 @@ mod joints;
 mod lead;
 mod method;
 mod pictures;
+mod plan;
 mod repairs;
 mod rows;
 mod shapes;
@@ -24,6 +25,7 @@ mod trust;
 mod validation;
 
 pub use fleet::fleet_page;
+pub use plan::plan_page;
 pub use validation::validation_page;
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};

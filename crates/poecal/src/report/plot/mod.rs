@@ -5,6 +5,7 @@
 //! axis cannot show are drawn hollow at its edge (zero on a logarithmic axis, infinity) or left out (not a number), and a note
 //! below the plot says so.
 
+mod arms;
 mod axis;
 mod dots;
 mod frame;
@@ -12,14 +13,17 @@ mod heat;
 mod joined;
 mod line;
 mod ranges;
+mod strips;
 mod svg;
 
+pub use arms::{ArmPlot, Arms};
 pub use axis::{Axis, Scale};
 pub use dots::{DotPlot, Dots};
 pub use heat::{HeatCell, HeatMap};
 pub use joined::{Entry, JoinPlot, List};
 pub use line::{Line, LinePlot};
 pub use ranges::{RangePlot, RangeRow};
+pub use strips::{CELLS, Strip, StripPlot};
 
 /// A plot and the name of its file, without the extension.
 pub struct NamedPlot {

@@ -151,6 +151,13 @@ impl Canvas {
         ));
     }
 
+    /// A thin line of a series, which others show through.
+    pub(super) fn thin_line(&mut self, [x, y]: [f64; 2], [to_x, to_y]: [f64; 2]) {
+        self.put(format_args!(
+            r#"<line x1="{x:.1}" y1="{y:.1}" x2="{to_x:.1}" y2="{to_y:.1}" stroke-width="1" stroke-opacity="0.4"/>"#
+        ));
+    }
+
     /// A filled box from one corner to the other.
     pub(super) fn bar(&mut self, [left, top]: [f64; 2], [right, bottom]: [f64; 2]) {
         let (left, width, height) = (left.min(right), (right - left).abs().max(1.0), bottom - top);
