@@ -202,8 +202,11 @@ impl Plan {
             (
                 "planned",
                 format!(
-                    "{} configurations to fit{kept}, {} at random to judge by, {} returns to the first",
-                    self.configurations, self.judge, self.returns
+                    "{} configurations to fit{kept}, {} at random to judge by, {} return{} to the first",
+                    self.configurations,
+                    self.judge,
+                    self.returns,
+                    if self.returns == 1 { "" } else { "s" }
                 ),
             ),
             (
@@ -212,7 +215,7 @@ impl Plan {
                     "about {} min: {} rows of {} s each, and the way at {:.0} deg/s",
                     (self.duration_s / 60.0).ceil(),
                     self.rows.len(),
-                    number(self.stop_s),
+                    self.stop_s,
                     SPEED_RAD_S.to_degrees()
                 ),
             ),

@@ -105,18 +105,19 @@ fn arm_plot(view: &View, robot: &Robot, options: &PlanOptions, found: &Found) ->
     }
 }
 
-/// The rim of the device's cone where it looks, and lines to it.
+/// The device's cone: its rim half-way to where it looks, and lines to it.
 fn cone(sight: &Sight, flat: &impl Fn(&Vector3<f64>) -> [f64; 2]) -> Vec<[[f64; 2]; 2]> {
     let Some((at, half)) = sight.cone else { return Vec::new() };
-    let axis = at - sight.place;
-    let across = axis.cross(&axis.map(f64::abs).imin().eq(&0).then(Vector3::x).unwrap_or_else(Vector3::y));
+    let axis = 0.5 * (at - sight.place);
+    let middle = sight.place + axis;
+    let across = axis.cross(&if axis.map(f64::abs).imin() == 0 { Vector3::x() } else { Vector3::y() });
     let (Some(u), radius) = (across.try_normalize(1e-12), axis.norm() * half.tan()) else {
         return Vec::new();
     };
     let v = axis.cross(&u).try_normalize(1e-12).unwrap_or(u);
     let rim = |k: usize| {
         let (s, c) = (std::f64::consts::TAU * k as f64 / RIM as f64).sin_cos();
-        at + radius * (u * c + v * s)
+        middle + radius * (u * c + v * s)
     };
     let around = (0..RIM).map(|k| [flat(&rim(k)), flat(&rim(k + 1))]);
     let sides = (0..RIM).step_by(RIM / 4).map(|k| [flat(&sight.place), flat(&rim(k))]);
@@ -139,7 +140,7 @@ fn curve(found: &Found, told: &Plan) -> Markup {
         title: "Expected error by number of configurations".to_owned(),
         description: "Expected error (RMS over the workspace) of planned lists of other lengths".to_owned(),
         x: Axis::new("configurations to fit", Scale::Linear).including(&[0.0]),
-        y: Axis::new("expected error, mm", Scale::Linear).including(&[0.0]),
+        y: Axis::new("expected error, mm", Scale::Log),
         lines: vec![
             line("calibrated", 0, |it| it.expected.calibrated_m()),
             line("corrected", 1, |it| it.expected.corrected_m()),
