@@ -7,6 +7,7 @@ use std::time::Duration;
 use poecal::Unit;
 use poecal::compensate::MostChange;
 use poecal::io::measurements::NamedUnit;
+use poecal::plan::RobotError;
 use poecal::robot::{Corrections, GravityDirection, Sizes, Tolerance};
 use poecal::{Error, ErrorKind, MOST_THREADS, Result};
 
@@ -172,6 +173,22 @@ pub(crate) fn most_change(text: &str) -> std::result::Result<MostChange, String>
 /// Parser of an error of a robot for clap: a length, 0 too.
 pub(crate) fn error_m(text: &str) -> std::result::Result<f64, String> {
     parse(text, Unit::Metre).map_err(|error| error.to_string())
+}
+
+/// Parser of the errors that a calibration leaves, for clap: of the calibrated model, and of the corrected one.
+pub(crate) fn robot_error(text: &str) -> std::result::Result<RobotError, String> {
+    let (calibrated, corrected) =
+        text.split_once(',').map_or((text, None), |(first, second)| (first, Some(second.trim())));
+    let error = RobotError {
+        calibrated_m: error_m(calibrated.trim())?,
+        corrected_m: corrected.map(error_m).transpose()?,
+    };
+    if error.corrected_m.is_some_and(|it| it > error.calibrated_m) {
+        return Err(format!(
+            "found `{text}`, expected the error of the calibrated model and behind it the smaller one of the corrected model"
+        ));
+    }
+    Ok(error)
 }
 
 /// Parser of a place for clap: three numbers, and their unit behind the last.

@@ -7,12 +7,14 @@ use std::path::PathBuf;
 use poecal::calibration::{AcceptanceLimits, Corrections};
 use poecal::io::record::Record;
 use poecal::io::urdf::ChainSelection;
+use poecal::plan::RobotError;
 use poecal::robot::GravityDirection;
 use poecal::text::visible;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyFloat, PyInt, PyString};
 
 use crate::errors::argument;
+use crate::words::from_mm;
 
 /// Longest text that a message shows of what was found.
 const SHOWN: usize = 60;
@@ -170,6 +172,25 @@ impl<'a, 'py> Argument<'a, 'py> for [f64; 3] {
             [x, y, z] => Ok([*x, *y, *z]),
             found => Err(argument(name, format!("found {} numbers, expected three", found.len()))),
         }
+    }
+}
+
+impl<'a, 'py> Argument<'a, 'py> for RobotError {
+    fn of(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
+        let (calibrated_mm, corrected_mm) = match value.try_iter() {
+            Ok(_) => <(f64, f64)>::of(value, name).map(|it| (it.0, Some(it.1)))?,
+            Err(_) => (f64::of(value, name)?, None),
+        };
+        let calibrated_m = crate::words::size(name, calibrated_mm, from_mm)?;
+        let corrected_m = corrected_mm.map(|it| crate::words::size(name, it, from_mm)).transpose()?;
+        if corrected_m.is_some_and(|it| it > calibrated_m) {
+            let message = format!(
+                "found ({calibrated_mm}, {}), expected the error of the calibrated model and the smaller one of the corrected model",
+                corrected_mm.unwrap_or_default()
+            );
+            return Err(argument(name, message));
+        }
+        Ok(RobotError { calibrated_m, corrected_m })
     }
 }
 

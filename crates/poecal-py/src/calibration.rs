@@ -807,7 +807,7 @@ impl Calibration {
     /// frame
     ///     The measuring device's frame: "unknown" or "base".
     /// robot_error_mm
-    ///     Error of the tip (RMS) that a calibration leaves however much is measured (default what this calibration left).
+    ///     Error of the tip (RMS) that a calibration leaves however much is measured, or that and the one with corrections (default what this calibration left).
     ///
     /// Returns
     /// -------
@@ -823,9 +823,8 @@ impl Calibration {
         #[pyo3(from_py_with = arg::sigma_position_mm)] sigma_position_mm: Option<f64>,
         #[pyo3(from_py_with = arg::sigma_rotation_deg)] sigma_rotation_deg: Option<f64>,
         #[pyo3(from_py_with = arg::frame)] frame: &str,
-        #[pyo3(from_py_with = arg::robot_error_mm)] robot_error_mm: Option<f64>,
+        #[pyo3(from_py_with = arg::robot_error_mm)] robot_error_mm: Option<RobotError>,
     ) -> PyResult<Findings> {
-        let left_mm = self.file().left_error_m().map(|it| 1e3 * it);
         findings::identify(
             py,
             self.calibrated()?,
@@ -834,7 +833,7 @@ impl Calibration {
             sigma_position_mm,
             sigma_rotation_deg,
             frame,
-            robot_error_mm.or(left_mm),
+            robot_error_mm.or_else(|| self.file().left_error()),
         )
     }
 

@@ -8,7 +8,7 @@ use poecal::io::offsets::ModelOffsets;
 use poecal::io::output::{self, Contents, Existing};
 use poecal::io::validation::ValidationInputs;
 use poecal::measurement::{Noise, Quantity};
-use poecal::plan::{PlannedFit, expected_errors};
+use poecal::plan::{PlannedFit, RobotError, expected_errors};
 use poecal::report::Detail;
 use poecal::track::{Earlier, TrackOptions, track as tracked};
 use poecal::{compare as compared, forensics, report};
@@ -151,7 +151,7 @@ pub(crate) fn check(
 /// frame
 ///     The measuring device's frame: "unknown" or "base".
 /// robot_error_mm
-///     Error of the tip (RMS) that a calibration leaves however much is measured (default what a calibration left of this robot, else 0.3 mm for
+///     Error of the tip (RMS) that a calibration leaves however much is measured, or that and the one with corrections (default what a calibration left of this robot, else 0.3 mm for
 ///     each metre of reach, which is a guess).
 ///
 /// Returns
@@ -169,7 +169,7 @@ pub(crate) fn identify(
     #[pyo3(from_py_with = arg::sigma_position_mm)] sigma_position_mm: Option<f64>,
     #[pyo3(from_py_with = arg::sigma_rotation_deg)] sigma_rotation_deg: Option<f64>,
     #[pyo3(from_py_with = arg::frame)] frame: &str,
-    #[pyo3(from_py_with = arg::robot_error_mm)] robot_error_mm: Option<f64>,
+    #[pyo3(from_py_with = arg::robot_error_mm)] robot_error_mm: Option<RobotError>,
 ) -> PyResult<Findings> {
     let model = &robot.model;
     let joints = Joints::of(joints, &model.robot)?;
@@ -183,10 +183,9 @@ pub(crate) fn identify(
         ),
         device_free: frame_word(frame)? == DeviceFrameKnowledge::Unknown,
     };
-    let robot_error_m = robot_error_mm.map(|it| sigma("robot_error_mm", it, from_mm)).transpose()?;
     let fit = PlannedFit {
         session,
-        robot_error_m: robot_error_m.or_else(|| model.left_error_m()),
+        robot_error: robot_error_mm.or_else(|| model.left_error()),
         ..PlannedFit::default()
     };
     let work = || {

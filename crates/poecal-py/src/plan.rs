@@ -14,8 +14,8 @@ use poecal::io::plan_program::plan_program;
 use poecal::io::shapes::capsules_of;
 use poecal::measurement::{Dataset, Noise, Quantity};
 use poecal::plan::{
-    Conditions, PlanCriterion, PlanOptions, PlannedFit, PlannedRow, RowPart, Sight, Watch as Watched,
-    WatchOptions, plan as planned, workspace_in,
+    Conditions, PlanCriterion, PlanOptions, PlannedFit, PlannedRow, RobotError, RowPart, Sight,
+    Watch as Watched, WatchOptions, plan as planned, workspace_in,
 };
 use poecal::report;
 use poecal::robot::{GravityDirection, Tolerance};
@@ -44,7 +44,7 @@ const NEST_M: [f64; 3] = [0.05, 0.0, 0.0];
 struct Believe<'a> {
     sigma_position_mm: Option<f64>,
     sigma_rotation_deg: Option<f64>,
-    robot_error_mm: Option<f64>,
+    robot_error_mm: Option<RobotError>,
     frame: &'a str,
     tolerance_deg_mm: &'a Believed,
     corrections: Option<Corrections>,
@@ -56,7 +56,6 @@ impl Believe<'_> {
     fn fit(self, model: &Model, kind: Kind, count: usize) -> PyResult<PlannedFit> {
         let [position_m, rotation_rad] = sigmas(self.sigma_position_mm, self.sigma_rotation_deg)?;
         let usual = PlannedSession::default();
-        let robot_error_m = self.robot_error_mm.map(|it| size("robot_error_mm", it, from_mm)).transpose()?;
         let gravity = match self.gravity {
             None => -Vector3::z(),
             Some(GravityDirection::Known(gravity)) => gravity,
@@ -85,7 +84,7 @@ impl Believe<'_> {
             tolerance,
             corrections: self.corrections.unwrap_or_default(),
             gravity,
-            robot_error_m: robot_error_m.or_else(|| model.left_error_m()),
+            robot_error: self.robot_error_mm.or_else(|| model.left_error()),
             ..PlannedFit::default()
         })
     }
@@ -309,7 +308,7 @@ impl Plan {
 /// sigma_position_mm, sigma_rotation_deg
 ///     Standard deviation of each measured component (default 0.05 mm, 0.01 deg).
 /// robot_error_mm
-///     Error of the tip (RMS) that a calibration leaves however much is measured (default what a calibration left of this robot, else 0.3 mm for
+///     Error of the tip (RMS) that a calibration leaves however much is measured, or that and the one with corrections (default what a calibration left of this robot, else 0.3 mm for
 ///     each metre of reach, which is a guess).
 /// frame
 ///     The measuring device's frame: "unknown" or "base".
@@ -370,7 +369,7 @@ pub(crate) fn plan(
     #[pyo3(from_py_with = arg::target_offset_mm)] target_offset_mm: Option<[f64; 3]>,
     #[pyo3(from_py_with = arg::sigma_position_mm)] sigma_position_mm: Option<f64>,
     #[pyo3(from_py_with = arg::sigma_rotation_deg)] sigma_rotation_deg: Option<f64>,
-    #[pyo3(from_py_with = arg::robot_error_mm)] robot_error_mm: Option<f64>,
+    #[pyo3(from_py_with = arg::robot_error_mm)] robot_error_mm: Option<RobotError>,
     #[pyo3(from_py_with = arg::frame)] frame: &str,
     #[pyo3(from_py_with = arg::tolerance_deg_mm)] tolerance_deg_mm: Believed,
     #[pyo3(from_py_with = arg::corrections)] corrections: Option<Corrections>,
@@ -539,7 +538,7 @@ impl Watch {
         over_box_mm: Option<&Bound<'_, PyAny>>,
         #[pyo3(from_py_with = arg::sigma_position_mm)] sigma_position_mm: Option<f64>,
         #[pyo3(from_py_with = arg::sigma_rotation_deg)] sigma_rotation_deg: Option<f64>,
-        #[pyo3(from_py_with = arg::robot_error_mm)] robot_error_mm: Option<f64>,
+        #[pyo3(from_py_with = arg::robot_error_mm)] robot_error_mm: Option<RobotError>,
         #[pyo3(from_py_with = arg::frame)] frame: &str,
         #[pyo3(from_py_with = arg::tolerance_deg_mm)] tolerance_deg_mm: Believed,
         #[pyo3(from_py_with = arg::corrections)] corrections: Option<Corrections>,

@@ -4,11 +4,12 @@ use std::path::PathBuf;
 
 use clap::Args;
 use poecal::calibration::DeviceFrameKnowledge;
+use poecal::plan::RobotError;
 use poecal::simulate::Kind;
 
 use super::shared::{CameraArgs, ColumnArgs, TreeArgs};
 use super::words::{FRAME, one_of, simulated};
-use crate::quantity::{error_m, sigma_m, sigma_rad};
+use crate::quantity::{robot_error, sigma_m, sigma_rad};
 
 /// Arguments of `poecal identify`.
 #[derive(Args, Debug)]
@@ -34,10 +35,10 @@ pub(crate) struct Identify {
     /// Standard deviation of each measured rotation component [default: 0.01deg]
     #[arg(long, value_name = "ANGLE", value_parser = sigma_rad, allow_hyphen_values = true, conflicts_with = "camera")]
     pub(crate) sigma_rotation: Option<f64>,
-    /// Error of the tip (RMS) that a calibration leaves however much is measured, like 0.3mm, as an earlier calibration of such a robot found
-    /// it [default: 0.3 mm for each metre of reach, which is a guess]
-    #[arg(long, value_name = "LENGTH", value_parser = error_m, allow_hyphen_values = true, conflicts_with = "camera")]
-    pub(crate) robot_error: Option<f64>,
+    /// Error of the tip (RMS) that a calibration leaves however much is measured, and that with corrections, like 0.3mm or 0.3mm,0.12mm, as an
+    /// earlier calibration of such a robot found it [default: 0.3 mm for each metre of reach, which is a guess]
+    #[arg(long, value_name = "LENGTH[,LENGTH]", value_parser = robot_error, allow_hyphen_values = true, conflicts_with = "camera")]
+    pub(crate) robot_error: Option<RobotError>,
     /// The measuring device's frame
     #[arg(long, value_parser = one_of(FRAME), default_value = "unknown")]
     pub(crate) frame: DeviceFrameKnowledge,

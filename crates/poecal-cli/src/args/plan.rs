@@ -5,13 +5,13 @@ use std::time::Duration;
 
 use clap::Args;
 use poecal::calibration::{Corrections, DeviceFrameKnowledge};
-use poecal::plan::PlanCriterion;
+use poecal::plan::{PlanCriterion, RobotError};
 use poecal::simulate::Kind;
 
 use super::shared::{ColumnArgs, OutFile, TreeArgs};
 use super::words::{CRITERION, FRAME, SELF_COLLISION, one_of, simulated};
 use crate::quantity::{
-    BelievedTolerance, LengthAndAngle, Over, box_m, direction, distances_m, error_m, height_m, place_m,
+    BelievedTolerance, LengthAndAngle, Over, box_m, direction, distances_m, height_m, place_m, robot_error,
     seconds, sigma_m, sigma_rad, whole,
 };
 
@@ -96,10 +96,10 @@ pub(crate) struct FitArgs {
     /// Standard deviation of each measured rotation component
     #[arg(long, value_name = "ANGLE", value_parser = sigma_rad, allow_hyphen_values = true, default_value = "0.01deg")]
     pub(crate) sigma_rotation: f64,
-    /// Error of the tip (RMS) that a calibration leaves however much is measured, like 0.3mm, as an earlier calibration of such a robot found
-    /// it [default: 0.3 mm for each metre of reach, which is a guess]
-    #[arg(long, value_name = "LENGTH", value_parser = error_m, allow_hyphen_values = true)]
-    pub(crate) robot_error: Option<f64>,
+    /// Error of the tip (RMS) that a calibration leaves however much is measured, and that with corrections, like 0.3mm or 0.3mm,0.12mm, as an
+    /// earlier calibration of such a robot found it [default: 0.3 mm for each metre of reach, which is a guess]
+    #[arg(long, value_name = "LENGTH[,LENGTH]", value_parser = robot_error, allow_hyphen_values = true)]
+    pub(crate) robot_error: Option<RobotError>,
     /// The measuring device's frame
     #[arg(long, value_parser = one_of(FRAME), default_value = "unknown")]
     pub(crate) frame: DeviceFrameKnowledge,

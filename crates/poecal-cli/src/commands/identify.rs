@@ -49,8 +49,8 @@ pub(crate) fn identify(arguments: &Identify, console: &Console) -> Result<u8> {
         }
         let found = foresee(&model.robot, &readings, &session)?;
         if !session.kind.is_paired() {
-            let robot_error_m = arguments.robot_error.or_else(|| model.left_error_m());
-            let fit = PlannedFit { session, robot_error_m, ..PlannedFit::default() };
+            let robot_error = arguments.robot_error.or_else(|| model.left_error());
+            let fit = PlannedFit { session, robot_error, ..PlannedFit::default() };
             expected = Some(expected_errors(&model.robot, &readings, &fit)?);
         }
         found

@@ -136,7 +136,7 @@ pub(super) fn fit(arguments: &FitArgs, model: &Model, kind: Kind, count: u32) ->
         tolerance,
         corrections: arguments.corrections,
         gravity: arguments.gravity.into(),
-        robot_error_m: arguments.robot_error.or_else(|| model.left_error_m()),
+        robot_error: arguments.robot_error.or_else(|| model.left_error()),
         ..PlannedFit::default()
     })
 }

@@ -1524,6 +1524,7 @@ class Calibration:
         sigma_position_mm: float | None = None,
         sigma_rotation_deg: float | None = None,
         frame: _Frame = "unknown",
+        robot_error_mm: float | tuple[float, float] | None = None,
     ) -> Findings:
         """Which unknowns measurements of the calibrated robot in given configurations would determine; see `poecal.identify`.
 
@@ -1550,6 +1551,58 @@ class Calibration:
     def __deepcopy__(self, memo: dict[int, Any], /) -> Calibration: ...
     def __reduce__(self) -> tuple[Callable[[bytes], Calibration], tuple[bytes]]: ...
     __hash__: None  # type: ignore[assignment]
+
+@final
+class Plan:
+    @property
+    def joints(self) -> NDArray[np.float64]: ...
+    @property
+    def sets(self) -> list[Literal["fit", "held_out"]]: ...
+    @property
+    def returns(self) -> list[bool]: ...
+    @property
+    def candidates(self) -> list[int | None]: ...
+    @property
+    def expected_calibrated_mm(self) -> float: ...
+    @property
+    def expected_corrected_mm(self) -> float: ...
+    @property
+    def enough(self) -> int | None: ...
+    def to_dict(self) -> dict[str, Any]: ...
+    def write(self, path: _Path, *, force: bool = False) -> None: ...
+    def write_program(self, path: _Path, *, force: bool = False) -> None: ...
+    def write_report(self, path: _Path, *, force: bool = False) -> None: ...
+    def __len__(self) -> int: ...
+
+@final
+class Watch:
+    def __new__(
+        cls,
+        robot: Robot,
+        *,
+        candidates: ArrayLike | None = None,
+        over: ArrayLike | None = None,
+        over_box_mm: ArrayLike | None = None,
+        sigma_position_mm: float | None = None,
+        sigma_rotation_deg: float | None = None,
+        robot_error_mm: float | tuple[float, float] | None = None,
+        frame: _Frame = "unknown",
+        tolerance_deg_mm: tuple[float, float] | None = ...,
+        corrections: str | Mapping[str, float] = "auto",
+        gravity: ArrayLike = (0, 0, -1),
+        seed: int = 1,
+    ) -> Watch: ...
+    def add(
+        self,
+        joints: ArrayLike,
+        *,
+        position: ArrayLike | None = None,
+        pose: ArrayLike | None = None,
+        target: str | None = None,
+        id: str | None = None,
+    ) -> Findings: ...
+    def add_all(self, measurements: Measurements) -> list[Findings]: ...
+    def __len__(self) -> int: ...
 
 @final
 class Simulation:
@@ -1791,6 +1844,7 @@ def identify(
     sigma_position_mm: float | None = None,
     sigma_rotation_deg: float | None = None,
     frame: _Frame = "unknown",
+    robot_error_mm: float | tuple[float, float] | None = None,
 ) -> Findings:
     """Which unknowns measurements in given configurations would determine, before anything is measured.
 
@@ -2037,6 +2091,41 @@ def tcp(
     Findings
         The "tips", with "position_m" and "bound95_mm", the "axis" of two, and the "verdict": all that `tcp.json` has.
     """
+def plan(
+    robot: Robot,
+    *,
+    kind: _Kind = "point",
+    count: int = 30,
+    judge: int | None = None,
+    candidates: ArrayLike | None = None,
+    over: ArrayLike | None = None,
+    over_box_mm: ArrayLike | None = None,
+    keep: Plan | ArrayLike | None = None,
+    replace: Sequence[int] | None = None,
+    criterion: Literal["expected", "D", "A", "E", "G"] = "expected",
+    targets: int = 1,
+    target_offset_mm: ArrayLike | None = None,
+    sigma_position_mm: float | None = None,
+    sigma_rotation_deg: float | None = None,
+    robot_error_mm: float | tuple[float, float] | None = None,
+    frame: _Frame = "unknown",
+    tolerance_deg_mm: tuple[float, float] | None = ...,
+    corrections: str | Mapping[str, float] = "auto",
+    gravity: ArrayLike = (0, 0, -1),
+    margin_deg_mm: tuple[float, float] = (0.0, 0.0),
+    keep_out_mm: Sequence[ArrayLike] | None = None,
+    floor_mm: float | None = None,
+    separation_deg: float | None = None,
+    device_mm: ArrayLike | None = None,
+    cone_deg: float | None = None,
+    device_looks_at_mm: ArrayLike | None = None,
+    distance_mm: tuple[float, float] | None = None,
+    acceptance_deg: float | None = None,
+    facing: ArrayLike | None = None,
+    self_collision: Literal["avoid", "ignore"] = "avoid",
+    stop_s: float = 30.0,
+    seed: int = 1,
+) -> Plan: ...
 def track(
     calibration: Calibration,
     measurements: Measurements,

@@ -11,6 +11,7 @@ use super::proof::Difference;
 use super::urdf::{self, ChainSelection, UrdfDocument};
 use super::{looks_like, robot_toml, source_text};
 use crate::error::{Error, ErrorKind, Result, first_few};
+use crate::plan::RobotError;
 use crate::robot::{Controller, Robot};
 
 /// What a model's file is.
@@ -54,11 +55,11 @@ pub struct Model {
 }
 
 impl Model {
-    /// As [`CalibrationFile::left_error_m`], if the model is a calibration.
+    /// As [`CalibrationFile::left_error`], if the model is a calibration.
     #[must_use]
-    pub fn left_error_m(&self) -> Option<f64> {
+    pub fn left_error(&self) -> Option<RobotError> {
         match &self.source {
-            ModelSource::Calibration(file) => file.left_error_m(),
+            ModelSource::Calibration(file) => file.left_error(),
             ModelSource::Urdf(_) | ModelSource::Toml => None,
         }
     }

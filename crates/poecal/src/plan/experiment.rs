@@ -4,7 +4,7 @@ use nalgebra::{DMatrix, Vector3};
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 
-use super::options::PlannedFit;
+use super::options::{PlannedFit, RobotError};
 use crate::analysis::{PlannedSession, predicted_data};
 use crate::calibration::{free_parameters, unknowns, whitened_rows};
 use crate::error::{ErrorKind, Result};
@@ -32,6 +32,8 @@ const NEGLIGIBLE: f64 = 0.01;
 const USUAL_ERROR: f64 = 3e-4;
 /// Share of the squared robot error that no terms describe, at least: 0.14 of an IRB 120, more of others.
 const LEAST_REST: f64 = 0.16;
+/// Share of the robot error that terms make at least, where it is stated with and without them.
+const LEAST_TERMS: f64 = 0.2;
 /// Most iterations of a fit while rows arrive.
 const ITERATIONS: usize = 30;
 /// Largest number of places from which one configuration is measured.
@@ -141,7 +143,7 @@ impl Experiment {
             robot_error_m: 0.0,
             rest_m: 0.0,
             share: 1.0,
-            is_guess: fit.robot_error_m.is_none(),
+            is_guess: fit.robot_error.is_none(),
         };
         found.settle(&sample, fit, (&deviations, &corrected), begun)?;
         Ok(found)
@@ -239,12 +241,20 @@ impl Experiment {
 
     /// The robot error: what of it the terms make, which are made less where it is less, and what is left as noise of every row.
     fn settle_error(&mut self, sample: &[f64], fit: &PlannedFit) -> Result<()> {
-        let error_m = fit.robot_error_m.unwrap_or(USUAL_ERROR * self.robot.reach_m());
+        let usual = RobotError { calibrated_m: USUAL_ERROR * self.robot.reach_m(), corrected_m: None };
+        let stated = fit.robot_error.unwrap_or(usual);
+        let error_m = stated.calibrated_m;
         self.robot_error_m = error_m;
         let of_terms = if self.terms.is_empty() { 0.0 } else { self.error_of_terms(sample)? };
-        // Terms never describe all of it.
-        let most = error_m * (1.0 - LEAST_REST).sqrt();
-        let scale = if of_terms > most { most / of_terms } else { 1.0 };
+        let scale = match stated.corrected_m {
+            _ if of_terms <= 0.0 => 1.0,
+            Some(rest_m) => {
+                let wanted = (error_m.powi(2) - rest_m.powi(2)).max((LEAST_TERMS * error_m).powi(2)).sqrt();
+                wanted / of_terms
+            }
+            // Terms never describe all of it.
+            None => (error_m * (1.0 - LEAST_REST).sqrt() / of_terms).min(1.0),
+        };
         self.turn *= scale;
         self.deviations.iter_mut().for_each(|it| it.deviation *= scale);
         self.rest_m = (error_m.powi(2) - (scale * of_terms).powi(2)).max(0.0).sqrt();

@@ -29,8 +29,8 @@ pub struct PlannedFit {
     pub corrections: Corrections,
     /// Where weights are pulled, in the base frame.
     pub gravity: Vector3<f64>,
-    /// Root mean square error of the tip that geometry leaves however much is measured, metres; 0.3 mm for each metre of reach if unknown.
-    pub robot_error_m: Option<f64>,
+    /// Error of the tip that remains however much is measured; 0.3 mm for each metre of reach if unknown.
+    pub robot_error: Option<RobotError>,
     /// Number of targets of a nest at the tip, all measured in each configuration.
     pub targets: usize,
     /// Place of the first target in the tip's frame, metres, the others turned about its z; `None` plans for the targets of the model.
@@ -46,7 +46,7 @@ impl Default for PlannedFit {
             tolerance: Some(Tolerance::default()),
             corrections: Corrections::Auto,
             gravity: -Vector3::z(),
-            robot_error_m: None,
+            robot_error: None,
             targets: 1,
             target_offset: None,
         }
@@ -143,6 +143,16 @@ impl PlanOptions {
         }
         self.replaced_rows().iter().filter(|row| row.part == part).count()
     }
+}
+
+/// Root mean square error of the tip that a calibration leaves however much is measured, metres.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RobotError {
+    /// Of the calibrated model: what no geometry describes.
+    pub calibrated_m: f64,
+    /// Of the corrected model: what neither geometry nor terms of the joints describe; if unknown, what terms of the common sizes leave of the
+    /// former, and 0.4 of it at least.
+    pub corrected_m: Option<f64>,
 }
 
 /// What a list of configurations shall be good at.

@@ -18,6 +18,9 @@ const PASSES: usize = 4;
 const PASSES_OF_FEW: usize = 20;
 /// Candidates from which the best ones are found but once.
 const MANY: usize = 4000;
+/// Candidates of many among which the greedy list is chosen, and how many at least for each of its rows.
+const SOME: usize = 2000;
+const FEWEST_EACH: usize = 20;
 /// Random lists from which exchanges begin beside the greedy one, of geometry alone.
 const STARTS: usize = 8;
 /// Share of the criterion below which a gain is none.
@@ -58,10 +61,23 @@ impl Search<'_> {
         chosen
     }
 
+    /// The greedy list; of many candidates that of some, since exchanges look at all.
+    fn start(&self, count: usize) -> Vec<usize> {
+        if self.blocks.count() <= MANY.max(count * FEWEST_EACH) {
+            return self.greedy(Vec::new(), count);
+        }
+        let every = (self.blocks.count() / SOME.max(count * FEWEST_EACH)).max(1);
+        let some: Vec<usize> = (0..self.blocks.count()).step_by(every).collect();
+        let blocks = self.blocks.only(&some);
+        let apart = |a: usize, b: usize| (self.apart)(some[a], some[b]);
+        let found = Search { blocks: &blocks, apart: &apart, ..*self }.greedy(Vec::new(), count);
+        found.into_iter().map(|at| some[at]).collect()
+    }
+
     /// The best list of so many: from the greedy one, and of geometry alone among few candidates, which takes little time,
     /// from random ones too.
     pub(super) fn list(&self, count: usize, seed: u64) -> Vec<usize> {
-        let mut best = self.exchange(self.greedy(Vec::new(), count), 0);
+        let mut best = self.exchange(self.start(count), 0);
         if self.aim.weights.corrected > 0.0 || self.blocks.count() > MANY {
             return best;
         }
@@ -339,7 +355,12 @@ mod tests {
             let fit = PlannedFit::default();
             let session = crate::analysis::PlannedSession { kind, ..fit.session };
             let corrections = crate::robot::Corrections::Off;
-            let fit = PlannedFit { session, corrections, robot_error_m: Some(0.0), ..fit };
+            let fit = PlannedFit {
+                session,
+                corrections,
+                robot_error: Some(crate::plan::RobotError { calibrated_m: 0.0, corrected_m: None }),
+                ..fit
+            };
             let (experiment, mut aim, blocks, _) = setup(&fit);
             aim.weights = Weights { calibrated: 1.0, corrected: 0.0, determinant: 0.0 };
             let count = blocks.count();
@@ -377,7 +398,7 @@ mod tests {
     fn the_determinant_is_that_of_the_best_of_many_starts() {
         let fit = PlannedFit {
             corrections: crate::robot::Corrections::Off,
-            robot_error_m: Some(0.0),
+            robot_error: Some(crate::plan::RobotError { calibrated_m: 0.0, corrected_m: None }),
             ..PlannedFit::default()
         };
         let (experiment, mut aim, blocks, _) = setup(&fit);

@@ -479,7 +479,10 @@ mod tests {
             }
             data.push_observation(&readings, observation).unwrap();
         }
-        let fit = PlannedFit { robot_error_m: Some(5e-5), ..PlannedFit::default() };
+        let fit = PlannedFit {
+            robot_error: Some(crate::plan::RobotError { calibrated_m: 5e-5, corrected_m: None }),
+            ..PlannedFit::default()
+        };
         let mut watch =
             Watch::new(&elbow(), WatchOptions { fit, seed: 1, ..WatchOptions::default() }).unwrap();
         let mut named = Vec::new();

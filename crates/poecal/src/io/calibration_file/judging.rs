@@ -1,20 +1,24 @@
 //! Data of a calibration file that its judgement needs.
 
 use super::{CalibrationFile, MeasuredEntry};
-use crate::calibration::{AcceptedModel, DeviceFrameKnowledge};
+use crate::calibration::{AcceptedModel, DeviceFrameKnowledge, ModelAccuracy};
 use crate::error::{ErrorKind, Result, first_few, nearest};
 use crate::lie::Pose;
 use crate::measurement::{ByQuantity, Dataset, Noise, Quantity};
+use crate::plan::RobotError;
 
 /// Noise of a quantity if the calibration measured none of its unit, millimetres or degrees.
 const UNSEEN: f64 = 0.05;
 
 impl CalibrationFile {
-    /// The position error (RMS) that the calibrated model left, metres: of rows that were held out, else of those fitted.
+    /// The position errors that the calibration left, of rows that were held out, else of those fitted.
     #[must_use]
-    pub fn left_error_m(&self) -> Option<f64> {
+    pub fn left_error(&self) -> Option<RobotError> {
         let set = self.accuracy.held_out.as_ref().unwrap_or(&self.accuracy.training);
-        set.calibrated.get(Quantity::Position).map(|it| it.rms)
+        let position_m = |errors: &ModelAccuracy| errors.get(Quantity::Position).map(|it| 1e-3 * it.rms);
+        let calibrated_m = position_m(&set.calibrated)?;
+        let corrected_m = set.corrected.as_ref().and_then(position_m).map(|it| it.min(calibrated_m));
+        Some(RobotError { calibrated_m, corrected_m })
     }
 
     /// Knowledge of the device frame.

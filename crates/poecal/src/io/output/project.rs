@@ -77,12 +77,7 @@ impl Project<'_> {
         let usual = PlannedFit::default();
         let session = PlannedSession { kind: self.kind, ..usual.session };
         let options = PlanOptions {
-            fit: PlannedFit {
-                session,
-                count: rows - judge,
-                robot_error_m: self.model.left_error_m(),
-                ..usual
-            },
+            fit: PlannedFit { session, count: rows - judge, robot_error: self.model.left_error(), ..usual },
             judge: Some(judge),
             candidates: CANDIDATES,
             conditions: Conditions { capsules: capsules_of(self.model).0, ..Conditions::default() },

@@ -110,7 +110,8 @@ fn cone(sight: &Sight, flat: &impl Fn(&Vector3<f64>) -> [f64; 2]) -> Vec<[[f64; 
     let Some((at, half)) = sight.cone else { return Vec::new() };
     let axis = 0.5 * (at - sight.place);
     let middle = sight.place + axis;
-    let across = axis.cross(&if axis.map(f64::abs).imin() == 0 { Vector3::x() } else { Vector3::y() });
+    let least = axis.map(f64::abs).imin();
+    let across = axis.cross(&Vector3::from_fn(|k, _| if k == least { 1.0 } else { 0.0 }));
     let (Some(u), radius) = (across.try_normalize(1e-12), axis.norm() * half.tan()) else {
         return Vec::new();
     };
