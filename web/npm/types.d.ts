@@ -43,7 +43,7 @@ export interface CalibrateOptions {
   topic?: Value | readonly Value[];
   /** Known distance between the two sockets of each place, like 50mm, or of pairs by name, like A-B=50mm,B-C=70mm+-0.02mm */
   socketDistance?: Value | readonly Value[];
-  /** What rows with a plane are that do not say it in the column contact: touched by a point, or by a face that lies flush */
+  /** Kind of contact for rows whose `contact` cell is empty: touched by a point, or by a face that lies flush */
   contact?: "point" | "flush";
   /**
    * Noise of an instrument that grows with the distance, like tracker:10um+5um/m: a standard deviation in all directions, and one across
@@ -167,7 +167,7 @@ export interface ValidateOptions {
   topic?: Value | readonly Value[];
   /** Known distance between the two sockets of each place, like 50mm, or of pairs by name, like A-B=50mm,B-C=70mm+-0.02mm */
   socketDistance?: Value | readonly Value[];
-  /** What rows with a plane are that do not say it in the column contact: touched by a point, or by a face that lies flush */
+  /** Kind of contact for rows whose `contact` cell is empty: touched by a point, or by a face that lies flush */
   contact?: "point" | "flush";
   /**
    * Noise of an instrument that grows with the distance, like tracker:10um+5um/m: a standard deviation in all directions, and one across
@@ -270,7 +270,7 @@ export interface CheckOptions {
   topic?: Value | readonly Value[];
   /** Known distance between the two sockets of each place, like 50mm, or of pairs by name, like A-B=50mm,B-C=70mm+-0.02mm */
   socketDistance?: Value | readonly Value[];
-  /** What rows with a plane are that do not say it in the column contact: touched by a point, or by a face that lies flush */
+  /** Kind of contact for rows whose `contact` cell is empty: touched by a point, or by a face that lies flush */
   contact?: "point" | "flush";
   /**
    * Noise of an instrument that grows with the distance, like tracker:10um+5um/m: a standard deviation in all directions, and one across

@@ -69,7 +69,7 @@ pub(crate) struct Arguments {
     /// What to do.
     #[command(subcommand)]
     pub(crate) command: Command,
-    /// Print errors and data only: what --json gives, predictions and converted models
+    /// Suppress everything except errors and requested output
     #[arg(long, global = true)]
     pub(crate) quiet: bool,
     /// Number of threads, 1 to 256 (results do not depend on it)
@@ -108,7 +108,7 @@ pub(crate) enum Command {
     Fleet(Box<Fleet>),
     /// Compare two calibrations of one robot: what changed, and what is noise
     ///
-    /// Ends with code 1 if more changed than noise.
+    /// Ends with code 1 if the tip moved by more than the limit.
     Compare(Compare),
     /// Predict poses from joint readings
     Predict(Predict),

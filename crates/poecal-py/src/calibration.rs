@@ -857,7 +857,7 @@ impl Calibration {
         let [registered, calibrated] = [set.registered, set.calibrated].map(|it| number(it.lead().rms));
         let unit = set.calibrated.leading().map_or("mm", |(quantity, _)| quantity.unit().symbol());
         format!(
-            "<poecal.Calibration of {}: {verdict}, {calibrated} {unit} RMS on {} {name} rows (nominal, tool and device fitted: {registered})>",
+            "<poecal.Calibration of {}: {verdict}, {calibrated} {unit} RMS on {} {name} rows (your model, tool and device located: {registered})>",
             file.robot.name, set.count
         )
     }

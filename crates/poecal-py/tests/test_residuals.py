@@ -180,7 +180,7 @@ def test_a_picture_is_drawn_and_not_shown(held_out, tmp_path):
     figure.savefig(tmp_path / "errors.png")
     assert (tmp_path / "errors.png").read_bytes().startswith(b"\x89PNG") and plt.get_fignums() == []
     errors, of_rows = figure.axes
-    assert [text.get_text() for text in errors.get_legend().get_texts()] == ["nominal, tool and device fitted", "calibrated"]
+    assert [text.get_text() for text in errors.get_legend().get_texts()] == ["your model, tool and device located", "calibrated"]
     sets = ["fitted", "held out", "suspected"] if held_out else ["fitted", "suspected"]
     assert [text.get_text() for text in of_rows.get_legend().get_texts()] == sets
     assert sum(len(line.get_xdata()) for line in of_rows.lines) == 81

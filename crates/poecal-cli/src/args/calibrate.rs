@@ -94,9 +94,9 @@ pub(crate) struct Calibrate {
     /// Measurement file to judge by: all other rows are fitted
     #[arg(long, value_name = "FILE", conflicts_with = "fit_where")]
     pub(crate) validate: Vec<PathBuf>,
-    /// Folder for the results
-    #[arg(long, value_name = "DIR", default_value = "poecal-out")]
-    pub(crate) out: PathBuf,
+    /// Folder for the results [default: poecal-out; if it is there and --force is not stated, poecal-out-2, and so on]
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
     /// Overwrite results in an existing folder, and a report that exists
     #[arg(long)]
     pub(crate) force: bool,

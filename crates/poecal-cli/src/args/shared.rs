@@ -158,7 +158,7 @@ pub(crate) struct Meaning {
     /// Known distance between the two sockets of each place, like 50mm, or of pairs by name, like A-B=50mm,B-C=70mm+-0.02mm
     #[arg(long, value_name = "LENGTH|A-B=LENGTH,...")]
     pub(crate) socket_distance: Option<SocketDistances>,
-    /// What rows with a plane are that do not say it in the column contact: touched by a point, or by a face that lies flush
+    /// Kind of contact for rows whose `contact` cell is empty: touched by a point, or by a face that lies flush
     #[arg(long, value_parser = one_of(CONTACT), default_value = "point")]
     pub(crate) contact: PlaneContact,
     /// Noise of an instrument that grows with the distance, like tracker:10um+5um/m: a standard deviation in all directions, and one across the

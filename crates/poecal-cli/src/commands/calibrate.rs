@@ -12,7 +12,7 @@ use poecal::io::calibration_file::{CalibrationFile, Inputs};
 use poecal::io::measurements::{self, ReadOptions};
 use poecal::io::model::Model;
 use poecal::io::named_files::{refuse_fitted, refuse_repeats};
-use poecal::io::output::{self, Contents, FilePlace, FolderPlace, Page, Results};
+use poecal::io::output::{self, Contents, Existing, FilePlace, FolderPlace, Page, Results, free_folder};
 use poecal::io::record::Record;
 use poecal::io::residuals::{ResidualRows, Residuals};
 use poecal::io::shapes::Shapes;
@@ -36,11 +36,12 @@ pub(crate) fn calibrate(arguments: &Calibrate, typed: &[OsString], console: &Con
     }
     let mut timings = Timings::start();
     let model_path = stated_model(arguments)?;
-    let places = Places::reserve(arguments, console)?;
     let reading = arguments.reading.options();
     let mut model = Model::read(model_path, &arguments.chain.selection(reading.as_ref().ok())?)?;
     model.robot = model.robot.with_factors(&arguments.factors)?;
     let (data, inputs) = read_measurements(arguments, &model, reading, console)?;
+    let out = folder(arguments);
+    let places = Places::reserve(arguments, &out, console)?;
     let inputs = Inputs { command: Some(command(typed)), ..inputs };
     let options = options(arguments, console)?;
     let record = record(arguments)?;
@@ -73,16 +74,13 @@ pub(crate) fn calibrate(arguments: &Calibrate, typed: &[OsString], console: &Con
     };
     console.warnings(&unsaid);
     let code = code(arguments, &calibration);
-    let written = write(places, arguments, (&model, &data, &calibration), file, console)?;
+    let written = write((places, &out), arguments, (&model, &data, &calibration), file, console)?;
     timings.end("write");
     if arguments.timings {
         console.note(timings.line(|| calibration.solve_again(&data, &options)));
     }
-    let told = if arguments.json {
-        console.data_of(&text, &arguments.out)
-    } else {
-        console.say_of(&(text + &written), &arguments.out)
-    };
+    let told =
+        if arguments.json { console.data_of(&text, &out) } else { console.say_of(&(text + &written), &out) };
     Ok(code.max(told))
 }
 
@@ -221,6 +219,18 @@ fn makers_tolerance(path: &Path, console: &Console) -> Result<Tolerance> {
     Ok(tolerance)
 }
 
+/// Folder of the results where none is named.
+const FOLDER: &str = "poecal-out";
+
+/// The folder of the results: a new one, unless it is named or may be written over.
+fn folder(arguments: &Calibrate) -> PathBuf {
+    match &arguments.out {
+        Some(folder) => folder.clone(),
+        None if arguments.existing() == Existing::Kept => free_folder(Path::new(FOLDER)),
+        None => FOLDER.into(),
+    }
+}
+
 /// Places of the results.
 struct Places {
     folder: FolderPlace,
@@ -229,15 +239,10 @@ struct Places {
 }
 
 impl Places {
-    fn reserve(arguments: &Calibrate, console: &Console) -> Result<Self> {
+    fn reserve(arguments: &Calibrate, out: &Path, console: &Console) -> Result<Self> {
         let (existing, inputs) = (arguments.existing(), arguments.inputs());
-        let folder = FolderPlace::reserve(
-            &arguments.out,
-            Contents::Calibration,
-            existing,
-            &inputs,
-            &mut console.warner(),
-        )?;
+        let folder =
+            FolderPlace::reserve(out, Contents::Calibration, existing, &inputs, &mut console.warner())?;
         let report = match &arguments.report {
             Some(ReportPlace::File(path)) => folder.reserve_report(path, &inputs, &mut console.warner())?,
             Some(ReportPlace::None) | None => None,
@@ -261,7 +266,7 @@ pub(super) fn page(
 
 /// Writes the results; returns their place.
 fn write(
-    places: Places,
+    (places, out): (Places, &Path),
     arguments: &Calibrate,
     (model, data, calibration): (&Model, &Dataset, &Calibration),
     file: CalibrationFile,
@@ -270,7 +275,7 @@ fn write(
     // Without a report, rows are computed while they are written.
     let place = &arguments.report;
     let residuals = (!matches!(place, Some(ReportPlace::None))).then(|| Residuals::of(data, calibration));
-    let own = arguments.out.join("calibration.json");
+    let own = out.join("calibration.json");
     let report = residuals.as_ref().map(|rows| page(&file, rows, &own, console)).transpose()?;
     let residuals = residuals.as_ref().map_or(ResidualRows::Of(data, calibration), ResidualRows::AtHand);
     let results = Results { file, residuals, report };

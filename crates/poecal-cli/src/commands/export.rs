@@ -20,8 +20,8 @@ fn format(arguments: &Export) -> Result<ExportFormat> {
         ExportForm::Open(format) => format,
         ExportForm::Closed(why) => {
             return ErrorKind::Option.refuse(format!(
-                "--format: found the form of a controller that nobody outside can write ({why}), expected another: take `offsets`, and enter them \
-                 by mastering, and correct programs for what remains"
+                "--format: found a form that nobody outside can write ({why}), expected another: use --format offsets for mastering and `poecal \
+                 compensate` for programs"
             ));
         }
     };

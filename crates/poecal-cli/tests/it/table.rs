@@ -98,7 +98,7 @@ fn the_first_command_prints_a_short_table() {
         ["verdict", "before", "after", "valid", "held out", "look at", "determined", "target", "written"];
     assert!(wanted.windows(2).all(|two| at(two[0]) < at(two[1])), "{order:?}");
     assert!(
-        out.contains("(RMS): nominal, tool and device fitted\n") && out.contains(": calibrated model\n"),
+        out.contains("(RMS): your model, tool and device located\n") && out.contains(": calibrated model\n"),
         "{out}"
     );
 

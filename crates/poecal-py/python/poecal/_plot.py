@@ -41,7 +41,7 @@ def plot(calibration: Calibration, axes: Sequence[Axes] | NDArray[Any] | None = 
     quantity, unit = next(iter(residuals.quantities.items()))
     calibrated = residuals.errors(quantity)
     models = [
-        ("nominal, tool and device fitted", residuals.errors(quantity, model="registered"), "0.5"),
+        ("your model, tool and device located", residuals.errors(quantity, model="registered"), "0.5"),
         ("calibrated", calibrated, "tab:orange" if held_out.any() else "tab:blue"),
     ]
     judged = judged & ~np.isnan(calibrated)

@@ -435,7 +435,7 @@ class Measurements:
         socket_distance
             Known distance between the two sockets of each place, "50mm", or of pairs by name, "A-B=50mm,B-C=70mm+-0.02mm".
         contact
-            What rows with a plane are that do not say it in the column `contact`: "point" or "flush".
+            Kind of contact for rows whose `contact` cell is empty: "point" or "flush".
         instrument_noise
             Noise of instruments that grows with the distance, like "tracker:10um+5um/m": a standard deviation in all directions, and one
             across the line of sight for each metre; of all instruments without a name. For rows that state none.
@@ -573,7 +573,7 @@ class Measurements:
         socket_distance
             Known distance between the two sockets of each place, "50mm", or of pairs by name, "A-B=50mm,B-C=70mm+-0.02mm".
         contact
-            What rows with a plane are that do not say it in the column `contact`: "point" or "flush".
+            Kind of contact for rows whose `contact` cell is empty: "point" or "flush".
         instrument_noise
             Noise of instruments that grows with the distance, like "tracker:10um+5um/m": a standard deviation in all directions, and one
             across the line of sight for each metre; of all instruments without a name. For rows that state none.

@@ -28,7 +28,7 @@ pub(super) fn table_for_model(text: &str, path: &Path) -> Option<Error> {
         format!("found a table of numbers, {MODEL}: a table of DH parameters is written with {table}")
     } else {
         format!(
-            "found a table with the columns {}, {MODEL}: if these are measurements, the model is named first and they behind it",
+            "found a table with the columns {}, {MODEL}: did you swap the arguments? The model comes first",
             first_few(&cells)
         )
     };
@@ -103,7 +103,7 @@ mod tests {
         );
         assert!(model("id,joint1[deg],x[mm],y[mm],z[mm]\n1,2,3,4,5\n").ends_with(
             "found a table with the columns id, joint1, x, y, z, expected a robot model: URDF, MJCF, SDF, a calibration.json, or TOML that begins \
-             with poecal_robot = 1: if these are measurements, the model is named first and they behind it"
+             with poecal_robot = 1: did you swap the arguments? The model comes first"
         ));
     }
 

@@ -52,7 +52,7 @@ const FORMS: [(&[u8], &str); 14] = [
         b"\x93NUMPY",
         "an array of NumPy (.npy); hand it to `Measurements.from_arrays` in Python (`numpy.load`)",
     ),
-    (b"%PDF-", "a PDF document; it is the numbers that are needed, as text"),
+    (b"%PDF-", "a PDF"),
 ];
 
 /// An input. Beyond its largest size it gives an error.

@@ -248,9 +248,9 @@ impl Comparison {
         );
         match self.changed {
             Some(true) if self.changed_joints.is_empty() => {
-                format!("more changed than noise, in no single joint ({numbers})")
+                format!("changed significantly, in no single joint ({numbers})")
             }
-            Some(true) => format!("more changed than noise: {} ({numbers})", self.changed_joints.join(", ")),
+            Some(true) => format!("changed significantly: {} ({numbers})", self.changed_joints.join(", ")),
             _ => format!("no change beyond noise ({numbers})"),
         }
     }

@@ -342,7 +342,7 @@ fn files_that_cannot_be_read_get_one_sentence_each() {
         ("dh.csv",
          "dh.csv:1: found a table of DH parameters (a, alpha, d, theta), expected a robot model: URDF, MJCF, SDF, a calibration.json, or TOML that begins with poecal_robot = 1: write it with convention = \"standard_dh\" or \"modified_dh\" and an entry of `joint` for each row (docs/file-formats.md, TOML)"),
         ("points.csv",
-         "points.csv:2: found a table with the columns joint1, x, y, expected a robot model: URDF, MJCF, SDF, a calibration.json, or TOML that begins with poecal_robot = 1: if these are measurements, the model is named first and they behind it"),
+         "points.csv:2: found a table with the columns joint1, x, y, expected a robot model: URDF, MJCF, SDF, a calibration.json, or TOML that begins with poecal_robot = 1: did you swap the arguments? The model comes first"),
         ("one.toml",
          "one.toml: found --base-link or --tip-link, expected neither: this model has one chain only"),
     ];

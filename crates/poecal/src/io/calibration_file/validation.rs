@@ -206,15 +206,16 @@ impl CalibrationFile {
         let exceeding = exceeding(check);
         let inside = delivered.in_sampled_range;
         let Some(some) = inside.filter(|some| some.count >= FEW.min(judgement.count)) else {
-            let moved = if refit_frame { "" } else { ", and whether the measuring device was moved" };
+            let moved =
+                if refit_frame { "" } else { ". If the device was set up again, add `--refit-frame`" };
             let lie = match inside.map_or(0, |some| some.count) {
                 0 => "no row lies".to_owned(),
                 1 => "only 1 row lies".to_owned(),
                 count => format!("only {count} rows lie"),
             };
             return Some(format!(
-                "{lie} inside the range that was sampled for the calibration, and {exceeding} exceed their 95 % bound: these rows \
-                 show that it does not hold where they are, but neither whether it holds where it was made{moved}"
+                "{lie} inside the range that was sampled for the calibration, and {exceeding} exceed their 95 % bound: these \
+                 rows lie outside the calibrated range and do not fit{moved}"
             ));
         };
         if some.promised.least_inside() >= BROKEN {

@@ -28,7 +28,7 @@ pub use file::FilePlace;
 pub use hand_eye::write_texts;
 pub use leftovers::clean_up;
 pub use photographs::{PhotographedSession, write_photographs};
-pub use place::FolderPlace;
+pub use place::{FolderPlace, free_folder};
 pub use project::{Project, write_project};
 pub use reproduction::write_reproduction;
 pub use simulation::{SimulatedSession, write_simulation};

@@ -112,6 +112,26 @@ impl FolderPlace {
     }
 }
 
+/// Most folders of one name.
+const MOST_FOLDERS: usize = 9999;
+
+/// The first of `name`, `name-2`, `name-3`, … that is not there yet, or is an empty folder; the name itself if there are too many.
+#[must_use]
+pub fn free_folder(name: &Path) -> PathBuf {
+    let disk = disk::here();
+    let is_free = |path: &PathBuf| match disk.look(path) {
+        Err(error) => error.kind() == io::ErrorKind::NotFound,
+        Ok(_) => staging::names(&*disk, path).is_ok_and(|names| names.is_empty()),
+    };
+    let numbered = |number: usize| {
+        let mut path = name.as_os_str().to_owned();
+        path.push(format!("-{number}"));
+        PathBuf::from(path)
+    };
+    let all = std::iter::once(name.to_path_buf()).chain((2..=MOST_FOLDERS).map(numbered));
+    all.into_iter().find(is_free).unwrap_or_else(|| name.to_path_buf())
+}
+
 pub(super) fn unwritable(folder: &Path, error: &io::Error) -> Error {
     let message = format!(
         "the folder cannot be written to ({error}), expected one that can: choose another with --out"

@@ -146,7 +146,7 @@ touches. When a dozen rows are in `measurements.csv`, ask which unknowns they de
 poecal identify {model} measurements.csv --kind {kind}{chain options}\n   ```";
 
 const KNOWN_DISTANCE: &str = "# The known distance of the two sockets of each place; without it the size of the robot is not told.\n#socket_distance = \"50mm\"\n\n";
-const CONTACT: &str = "# What rows with a plane are that do not say it in the column contact: \"point\" or \"flush\".\n#contact = \"flush\"\n\n";
+const CONTACT: &str = "# Kind of contact for rows whose `contact` cell is empty: \"point\" or \"flush\".\n#contact = \"flush\"\n\n";
 
 const ROTATION_NOISE: &str =
     "# And of the measured rotation about each axis.\n#sigma_rotation = \"0.01deg\"\n\n";

@@ -61,11 +61,11 @@ fn effects(found: &CorrectedEntry) -> Markup {
         ]);
     }
     if faint == found.effects.len() {
-        return html! { p { "None of the " (faint) " effects alone is more than chance and the prior make." } };
+        return html! { p { "All " (faint) " effects are too small to distinguish from noise." } };
     }
     html! {
         (table)
-        @if faint > 0 { p { "Beside these " (faint) " effects that are no more than chance and the prior make." } }
+        @if faint > 0 { p { "" (faint) " further effects are too small to distinguish from noise." } }
     }
 }
 

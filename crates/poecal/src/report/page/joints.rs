@@ -159,8 +159,8 @@ fn corrections(file: &CalibrationFile) -> Markup {
     let content = html! {
         p {
             "Correction of each axis from nominal, its standard deviation, and its effect: the error that would remain if this axis alone \
-             stayed nominal while all others are as calibrated, with tool and device refitted. It may be large although the standard deviation \
-             is too: the axes fit each other, and one that is put back alone does not. By data: the measurements' share in what is known of the axis, from 0 to 1; the \
+             stayed nominal while all others are as calibrated, with tool and device refitted. The effect can be large even where the uncertainty \
+             is large, because neighbouring axes compensate for each other. By data: the measurements' share in what is known of the axis, from 0 to 1; the \
              rest was said by the tolerance."
         }
         (plots(&figures::corrections(file), "Dots: corrections. Lines: two standard deviations to each side; none where a correction is not determined."))

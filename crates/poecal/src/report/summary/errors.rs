@@ -29,10 +29,10 @@ pub(in crate::report) fn leading(file: &CalibrationFile) -> (&SetAccuracy, Vec<M
     };
     let nominal = match file.measurement_frame.known {
         DeviceFrameKnowledge::Unknown | DeviceFrameKnowledge::Base if holds("target") || holds("frame") => {
-            "nominal, registered by what is free"
+            "your model, registered by what is free"
         }
-        DeviceFrameKnowledge::Unknown => "nominal, tool and device fitted",
-        DeviceFrameKnowledge::Base => "nominal, tool fitted",
+        DeviceFrameKnowledge::Unknown => "your model, tool and device located",
+        DeviceFrameKnowledge::Base => "your model, tool located",
     };
     let mut rows = vec![
         (nominal.to_owned(), &set.registered, format!("accuracy.{key}.registered")),
