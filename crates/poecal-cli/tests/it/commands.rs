@@ -136,8 +136,11 @@ fn json_is_the_file_and_quiet_is_silent() {
     assert_eq!(out, folder.read("poecal-out/calibration.json"));
     let run = folder.run("calibrate robot.urdf measurements.csv --quiet --out quiet");
     assert_eq!((run.code, run.out.as_str(), run.err.as_str()), (0, "", ""));
-    let run = folder.run("calibrate robot.urdf measurements.csv");
+    let run = folder.run("calibrate robot.urdf measurements.csv --out poecal-out");
     assert_eq!(run.code, 2, "an existing folder was overwritten");
+    // Where none is named, the next is new.
+    folder.done("calibrate robot.urdf measurements.csv");
+    assert_eq!(out, folder.read("poecal-out-2/calibration.json"));
     folder.write("poecal-out/residuals.csv", "old");
     folder.write("poecal-out/mine.txt", "mine");
     folder.done("calibrate robot.urdf measurements.csv --force");

@@ -65,7 +65,7 @@ fn effects(found: &CorrectedEntry) -> Markup {
     }
     html! {
         (table)
-        @if faint > 0 { p { "" (faint) " further effects are too small to distinguish from noise." } }
+        @if faint > 0 { p { (faint) " further effect" (if faint == 1 { " is" } else { "s are" }) " too small to distinguish from noise." } }
     }
 }
 
