@@ -273,7 +273,7 @@ impl<'a> Checker<'a> {
     fn sight(&self, readings: &[f64]) -> Option<Obstacle> {
         let sight = self.conditions.sight.as_ref()?;
         let frames = self.robot.joint_poses(readings);
-        for (place, pose) in targets(self.robot, readings, &frames) {
+        for (place, pose, body) in targets(self.robot, readings, &frames) {
             let line = place - sight.place;
             let distance = line.norm();
             if !(sight.distance_m[0]..=sight.distance_m[1]).contains(&distance) {
@@ -292,9 +292,9 @@ impl<'a> Checker<'a> {
             let end = place - line * (AT_TARGET_M / distance.max(AT_TARGET_M));
             let hides = |capsule: &Capsule| {
                 let segment = capsule.segment(&frames);
-                // What holds the target contains it.
-                let holds = between(&segment, &[place, place]) <= capsule.radius_m;
-                !holds && between(&segment, &[sight.place, end]) < capsule.radius_m
+                // Beside a target that is within a capsule its link is slimmer: it hides what is seen past its middle.
+                let around = capsule.radius_m.min(between(&segment, &[place, place]) - AT_TARGET_M);
+                capsule.body != body && between(&segment, &[sight.place, end]) < around
             };
             if self.conditions.capsules.iter().any(hides) {
                 return Some(Obstacle::Hidden);

@@ -77,6 +77,10 @@ impl Search<'_> {
     /// The best list of so many: from the greedy one, and of geometry alone among few candidates, which takes little time,
     /// from random ones too.
     pub(super) fn list(&self, count: usize, seed: u64) -> Vec<usize> {
+        let all = || 0..self.blocks.count();
+        if count >= self.blocks.count() && all().all(|a| all().all(|b| a == b || (self.apart)(a, b))) {
+            return all().collect();
+        }
         let mut best = self.exchange(self.start(count), 0);
         if self.aim.weights.corrected > 0.0 || self.blocks.count() > MANY {
             return best;

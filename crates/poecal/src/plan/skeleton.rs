@@ -3,18 +3,18 @@
 use nalgebra::Vector3;
 
 use crate::lie::Pose;
-use crate::robot::{Body, Robot};
+use crate::robot::{Body, Mount, Robot};
 
-/// Places of the targets at joint frames of [`Robot::joint_poses`], and the direction in which each looks.
-pub(super) fn targets(robot: &Robot, readings: &[f64], frames: &[Pose]) -> Vec<(Vector3<f64>, Pose)> {
+/// Places of the targets at joint frames of [`Robot::joint_poses`], the direction in which each looks, and the body that holds it.
+pub(super) fn targets(robot: &Robot, readings: &[f64], frames: &[Pose]) -> Vec<(Vector3<f64>, Pose, Body)> {
     let mounted = &robot.mounted;
     if mounted.is_empty() {
         let tip = robot.forward_kinematics(readings);
-        return vec![(tip.translation, tip)];
+        return vec![(tip.translation, tip, robot.tip_body())];
     }
     let at = |body: Body| body.joint().and_then(|joint| frames.get(joint)).copied();
-    let poses = mounted.iter().map(|it| at(it.body).unwrap_or_else(Pose::identity) * it.pose);
-    poses.map(|pose| (pose.translation, pose)).collect()
+    let seen = |it: &Mount| (at(it.body).unwrap_or_else(Pose::identity) * it.pose, it.body);
+    mounted.iter().map(seen).map(|(pose, body)| (pose.translation, pose, body)).collect()
 }
 
 /// The lines between the frames of joints that move.
@@ -27,7 +27,7 @@ pub(super) fn links(robot: &Robot, frames: &[Pose]) -> Vec<[Vector3<f64>; 2]> {
 /// The lines to the targets, from the frame of the last joint.
 pub(super) fn to_targets(robot: &Robot, readings: &[f64], frames: &[Pose]) -> Vec<[Vector3<f64>; 2]> {
     let last = robot.tip_body().joint().and_then(|joint| frames.get(joint));
-    let line = |(place, _): (Vector3<f64>, Pose)| [last.map_or(place, |it| it.translation), place];
+    let line = |(place, ..): (Vector3<f64>, Pose, Body)| [last.map_or(place, |it| it.translation), place];
     targets(robot, readings, frames).into_iter().map(line).collect()
 }
 
