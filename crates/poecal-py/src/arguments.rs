@@ -11,7 +11,7 @@ use poecal::plan::RobotError;
 use poecal::robot::GravityDirection;
 use poecal::text::visible;
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyFloat, PyInt, PyString};
+use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyString};
 
 use crate::errors::argument;
 use crate::words::from_mm;
@@ -43,7 +43,7 @@ named! {
     noise_position_mm noise_rotation_deg nominal offset out parts path paths points progress quantity readings record refit refit_frame
     refit_tool repair repeatability_mm replace report residual residuals robot robot_error_mm robust seed self_collision separation_deg sets
     sheet sigma_position_mm sigma_rotation_deg socket_distance start starts stop_s strict summary target target_offset_mm targets terms text
-    third_axis tip tip_link tips to tolerance_deg_mm tool tools topics trials units validate with_uncertainty
+    third_axis tip tip_link tips to tolerance_deg_mm tool tools topics trials units with_uncertainty
 }
 
 /// The error for an argument that is something else than expected.
@@ -323,9 +323,13 @@ pub(crate) struct Function(pub(crate) Py<PyAny>);
 
 impl<'a, 'py> Argument<'a, 'py> for Function {
     fn of(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
+        if value.is_instance_of::<PyBool>() && value.is_truthy()? {
+            let bar = value.py().import("poecal._progress")?.getattr("Bar")?;
+            return Ok(Function(bar.call0()?.unbind()));
+        }
         if value.is_callable() {
             return Ok(Function(value.clone().unbind()));
         }
-        Err(unexpected(name, value, "a function of one text"))
+        Err(unexpected(name, value, "a function of one text, or True for a bar"))
     }
 }

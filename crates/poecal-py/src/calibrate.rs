@@ -23,6 +23,7 @@ use crate::arguments::{self as arg, Believed, Function};
 use crate::calibration::Calibration;
 use crate::errors::{argument, raise};
 use crate::measurements::Measurements;
+use crate::paths;
 use crate::robot::Robot;
 use crate::words::{chosen, frame as frame_word, from_mm, robust as robust_word, sigma, sigmas};
 
@@ -31,9 +32,9 @@ use crate::words::{chosen, frame as frame_word, from_mm, robust as robust_word, 
 /// Parameters
 /// ----------
 /// robot
-///     The nominal robot.
+///     The nominal robot, or the path of its model.
 /// measurements
-///     Its measurements.
+///     Its measurements, or the path of their file, or several paths.
 /// frame
 ///     The measuring device's frame: "unknown" or "base".
 /// sigma_position_mm, sigma_rotation_deg
@@ -83,7 +84,7 @@ use crate::words::{chosen, frame as frame_word, from_mm, robust as robust_word, 
 ///     What the report states of the session: a dict of texts with keys among "certificate", "laboratory", "customer", "robot", "serial",
 ///     "instrument", "operator", "date", "place", "temperature" and "note".
 /// progress
-///     Called with the next stage, in words.
+///     Called with the next stage, in words; True for a bar on standard error.
 ///
 /// Returns
 /// -------
@@ -105,8 +106,8 @@ use crate::words::{chosen, frame as frame_word, from_mm, robust as robust_word, 
 #[expect(clippy::too_many_arguments, reason = "the options of a Python function")]
 pub(crate) fn calibrate(
     py: Python<'_>,
-    #[pyo3(from_py_with = arg::robot)] robot: &Robot,
-    #[pyo3(from_py_with = arg::measurements)] measurements: &Measurements,
+    robot: &Bound<'_, PyAny>,
+    measurements: &Bound<'_, PyAny>,
     #[pyo3(from_py_with = arg::frame)] frame: &str,
     #[pyo3(from_py_with = arg::sigma_position_mm)] sigma_position_mm: Option<f64>,
     #[pyo3(from_py_with = arg::sigma_rotation_deg)] sigma_rotation_deg: Option<f64>,
@@ -124,12 +125,17 @@ pub(crate) fn calibrate(
     #[pyo3(from_py_with = arg::formulation)] formulation: &str,
     #[pyo3(from_py_with = arg::residual)] residual: &str,
     #[pyo3(from_py_with = arg::method)] method: Option<&str>,
-    #[pyo3(from_py_with = arg::validate)] validate: Option<&Measurements>,
+    validate: Option<&Bound<'_, PyAny>>,
     #[pyo3(from_py_with = arg::accept)] accept: Option<AcceptanceLimits>,
     #[pyo3(from_py_with = arg::accept_model)] accept_model: &str,
     #[pyo3(from_py_with = arg::record)] record: Option<Record>,
     #[pyo3(from_py_with = arg::progress)] progress: Option<Function>,
 ) -> PyResult<Calibration> {
+    let robot = paths::robot(robot)?;
+    let measurements = paths::measurements(measurements, "measurements", &robot)?;
+    let validate = paths::optional_measurements(validate, "validate", &robot)?;
+    let (robot, measurements, validate) =
+        (robot.get(), measurements.get(), validate.as_ref().map(Bound::get));
     let usual = CalibrationOptions::default();
     let (formulation, residual) = written(formulation, residual, method)?;
     let [position, rotation] = sigmas(sigma_position_mm, sigma_rotation_deg)?;

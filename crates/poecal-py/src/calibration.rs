@@ -20,6 +20,7 @@ use poecal::io::record::Record;
 use poecal::io::residuals::{ResidualRows, Residuals as Rows};
 use poecal::io::shapes::Shapes;
 use poecal::io::validation::Judging;
+use poecal::plan::RobotError;
 use poecal::report::{self, table::number};
 use poecal::robot::ThirdAxis;
 use pyo3::IntoPyObjectExt as _;

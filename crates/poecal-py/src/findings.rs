@@ -23,6 +23,7 @@ use crate::calibration::Calibration;
 use crate::errors::raise;
 use crate::measurements::Measurements;
 use crate::notebook;
+use crate::paths;
 use crate::pickle;
 use crate::places::reserved_folder;
 use crate::robot::Robot;
@@ -104,9 +105,9 @@ impl Findings {
 /// Parameters
 /// ----------
 /// robot
-///     The nominal robot.
+///     The nominal robot, or the path of its model.
 /// measurements
-///     Its measurements, if there are any yet.
+///     Its measurements, or the path of their file, or several paths; None if there are none yet.
 /// frame
 ///     The measuring device's frame; with "base", mistakes in it are looked for too.
 ///
@@ -118,10 +119,13 @@ impl Findings {
 #[pyo3(signature = (robot, measurements=None, *, frame="unknown"))]
 pub(crate) fn check(
     py: Python<'_>,
-    #[pyo3(from_py_with = arg::robot)] robot: &Robot,
-    #[pyo3(from_py_with = arg::measurements)] measurements: Option<&Measurements>,
+    robot: &Bound<'_, PyAny>,
+    measurements: Option<&Bound<'_, PyAny>>,
     #[pyo3(from_py_with = arg::frame)] frame: &str,
 ) -> PyResult<Findings> {
+    let robot = paths::robot(robot)?;
+    let measurements = paths::optional_measurements(measurements, "measurements", &robot)?;
+    let (robot, measurements) = (robot.get(), measurements.as_ref().map(Bound::get));
     let device_free = frame_word(frame)? == DeviceFrameKnowledge::Unknown;
     if let Some(measurements) = measurements {
         measurements.check_robot(robot)?;

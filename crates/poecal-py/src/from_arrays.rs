@@ -42,6 +42,9 @@ pub(crate) fn dataset(robot: &Robot, columns: &ArrayColumns<'_, '_>) -> PyResult
     let names = robot.reading_names();
     let m = readings.len() / names.len().max(1);
     let seen = measured(columns, m, length)?;
+    if columns.length_unit == "m" {
+        refuse_millimetres(robot, &seen)?;
+    }
     for (name, found) in [
         ("targets", columns.targets.as_ref().map(Vec::len)),
         ("instruments", columns.instruments.as_ref().map(Vec::len)),
@@ -109,7 +112,64 @@ fn readings(robot: &Robot, columns: &ArrayColumns<'_, '_>, length: NamedUnit) ->
     for (row, values) in readings.chunks_exact(n.max(1)).enumerate() {
         check_size("joints", row, values)?;
     }
+    if columns.angle_unit == "rad" {
+        refuse_degrees(robot, &readings)?;
+    }
     Ok(readings)
+}
+
+/// Largest angle that is taken for radians where another unit fits, and share of the rows from which on it is no slip; as in files.
+const LARGEST_ANGLE_RAD: f64 = 4.0 * std::f64::consts::PI;
+const SHARE: f64 = 0.1;
+/// Positions that spread by more than this many reaches are in a wrong unit, as in files.
+const REACHES: f64 = 20.0;
+
+/// Refuses angles that no joint has in radians.
+fn refuse_degrees(robot: &Robot, readings: &[f64]) -> PyResult<()> {
+    let names = robot.reading_names();
+    let rows = readings.len() / names.len().max(1);
+    for (at, name) in names.iter().enumerate() {
+        let own: Vec<&poecal::robot::Joint> =
+            robot.joints.iter().filter(|joint| joint.reading.name == *name).collect();
+        let turns = own.iter().all(|joint| joint.kind == JointKind::Revolute);
+        let limit = own.iter().filter_map(|joint| joint.limits).map(|it| it.lower.abs().max(it.upper.abs()));
+        let largest = limit.fold(LARGEST_ANGLE_RAD, f64::max);
+        let values = || readings.chunks_exact(names.len()).filter_map(|row| row.get(at).copied());
+        let beyond = values().filter(|value| value.abs() > largest).count();
+        let degrees_fit = values().all(|value| value.to_radians().abs() <= largest);
+        if turns && degrees_fit && beyond as f64 > SHARE * rows as f64 {
+            let extreme = values().fold(0.0, |most: f64, value| most.max(value.abs()));
+            let message = format!(
+                "found {extreme} rad of {name}, expected radians: if they are degrees, write angle_unit=\"deg\""
+            );
+            return Err(argument("joints", message));
+        }
+    }
+    Ok(())
+}
+
+/// Refuses positions that no arm of this reach has in metres.
+fn refuse_millimetres(robot: &Robot, seen: &[Measurement]) -> PyResult<()> {
+    let reach_m = robot.reach_m();
+    let places: Vec<Vector3<f64>> = seen.iter().filter_map(Measurement::position).collect();
+    let mut spread_m: f64 = 0.0;
+    for k in 0..3 {
+        let mut own: Vec<f64> = places.iter().map(|place| place[k]).collect();
+        own.sort_by(f64::total_cmp);
+        // A few rows that are wrong are no wrong unit.
+        let cut = own.len() / 10;
+        if let (Some(low), Some(high)) = (own.get(cut), own.get((own.len() - cut).saturating_sub(1))) {
+            spread_m = spread_m.max(high - low);
+        }
+    }
+    if reach_m > 0.0 && spread_m > REACHES * reach_m {
+        let message = format!(
+            "found positions that spread over {spread_m:.1} m of a robot that reaches {reach_m:.2} m, expected metres: if they are millimetres, write \
+             length_unit=\"mm\""
+        );
+        return Err(argument("positions", message));
+    }
+    Ok(())
 }
 
 /// Refuses numbers beyond any measurement, whose squares would overflow, as in files.

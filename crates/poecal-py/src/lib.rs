@@ -15,6 +15,7 @@ mod from_dataframe;
 mod hand_eye;
 mod measurements;
 mod notebook;
+mod paths;
 mod pickle;
 mod places;
 mod plan;

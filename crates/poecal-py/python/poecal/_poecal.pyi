@@ -1639,8 +1639,8 @@ class Simulation:
         """
 
 def calibrate(
-    robot: Robot,
-    measurements: Measurements,
+    robot: Robot | _Path,
+    measurements: Measurements | _Path | Sequence[_Path],
     *,
     frame: _Frame = "unknown",
     sigma_position_mm: float | None = None,
@@ -1659,11 +1659,11 @@ def calibrate(
     formulation: Literal["adjoint", "screw", "screw-offsets", "adjoint-offsets"] = "adjoint",
     residual: Literal["tool", "spatial"] = "tool",
     method: Literal["levenberg-marquardt", "gauss-newton"] | None = None,
-    validate: Measurements | None = None,
+    validate: Measurements | _Path | Sequence[_Path] | None = None,
     accept: str | None = None,
     accept_model: Literal["corrected", "calibrated"] = "corrected",
     record: Mapping[str, str] | None = None,
-    progress: Callable[[str], object] | None = None,
+    progress: Callable[[str], object] | bool | None = None,
 ) -> Calibration:
     """Calibrates a robot from measurements.
 
@@ -1738,7 +1738,9 @@ def calibrate(
     SolverError
         No finite result is reached.
     """
-def check(robot: Robot, measurements: Measurements | None = None, *, frame: _Frame = "unknown") -> Findings:
+def check(
+    robot: Robot | _Path, measurements: Measurements | _Path | Sequence[_Path] | None = None, *, frame: _Frame = "unknown"
+) -> Findings:
     """How a model and measurements are understood, and mistakes that they show.
 
     Parameters

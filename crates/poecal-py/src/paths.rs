@@ -1,0 +1,50 @@
+//! Paths in place of what is read from them.
+
+use std::ffi::OsString;
+
+use pyo3::prelude::*;
+use pyo3::types::{PyList, PyString, PyTuple};
+
+use crate::arguments::Argument as _;
+use crate::measurements::Measurements;
+use crate::robot::Robot;
+
+/// Whether it is a path: a text, or an `os.PathLike`.
+fn is_path(value: &Bound<'_, PyAny>) -> bool {
+    value.is_instance_of::<PyString>() || value.extract::<OsString>().is_ok()
+}
+
+/// A robot, or that of the model at a path.
+pub(crate) fn robot<'py>(value: &Bound<'py, PyAny>) -> PyResult<Bound<'py, Robot>> {
+    if is_path(value) {
+        let read = value.py().get_type::<Robot>().call_method1("read", (value,))?;
+        return Ok(read.cast_into::<Robot>()?);
+    }
+    <&Robot>::of(value, "robot")?;
+    Ok(value.cast::<Robot>()?.clone())
+}
+
+/// Measurements of a robot, or those of the files at a path or at several.
+pub(crate) fn measurements<'py>(
+    value: &Bound<'py, PyAny>,
+    name: &str,
+    robot: &Bound<'py, Robot>,
+) -> PyResult<Bound<'py, Measurements>> {
+    let is_list = value.is_instance_of::<PyList>() || value.is_instance_of::<PyTuple>();
+    let are_paths = is_list && value.try_iter()?.all(|it| it.is_ok_and(|it| is_path(&it)));
+    if is_path(value) || are_paths {
+        let read = value.py().get_type::<Measurements>().call_method1("from_csv", (value, robot))?;
+        return Ok(read.cast_into::<Measurements>()?);
+    }
+    <&Measurements>::of(value, name)?;
+    Ok(value.cast::<Measurements>()?.clone())
+}
+
+/// The same where there may be none.
+pub(crate) fn optional_measurements<'py>(
+    value: Option<&Bound<'py, PyAny>>,
+    name: &str,
+    robot: &Bound<'py, Robot>,
+) -> PyResult<Option<Bound<'py, Measurements>>> {
+    value.filter(|it| !it.is_none()).map(|it| measurements(it, name, robot)).transpose()
+}
