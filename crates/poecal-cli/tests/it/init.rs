@@ -136,7 +136,7 @@ fn the_model_is_copied_as_it_is() {
     assert!(folder.read("cell/poecal.toml").contains("\ntip_link = \"left tool\"\n"));
     let table = folder.read("cell/joints.csv");
     let rows: Vec<&str> = table.lines().filter(|line| !line.starts_with('#')).collect();
-    assert_eq!((rows[0], rows.len()), ("\"turn, left[deg]\",slide[mm],hand[deg]", 61));
+    assert_eq!((rows[0], rows.len()), ("id,set,returns,\"turn, left[deg]\",slide[mm],hand[deg]", 61));
 }
 
 #[test]
