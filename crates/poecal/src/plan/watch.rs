@@ -7,6 +7,7 @@ use rand_core::SeedableRng;
 use super::expected::ExpectedErrors;
 use super::experiment::{Blocks, Experiment, inverse};
 use super::options::PlannedFit;
+use super::order::Travel;
 use super::search::Search;
 use super::state::{Aim, Squares, State, Weights};
 use crate::distributions::f_quantile;
@@ -34,6 +35,8 @@ const CANDIDATES: usize = 200;
 const WORKSPACE: usize = 300;
 /// Rows that are looked ahead.
 pub(super) const AHEAD: usize = 10;
+/// A candidate that is as near to a measured configuration, in all joints, is measured, radians.
+const MEASURED_RAD: f64 = 2e-3;
 /// Change of a reading for a difference, radians or metres.
 const DIFFERENCE: f64 = 1e-5;
 
@@ -103,6 +106,8 @@ struct Known {
     experiment: Experiment,
     aim: Aim,
     candidates: Vec<f64>,
+    /// Whether each candidate is to be measured yet.
+    open: Vec<bool>,
     blocks: Blocks,
     gram: DMatrix<f64>,
     covariance: DMatrix<f64>,
@@ -268,6 +273,7 @@ impl Known {
         let mut known = Known {
             experiment,
             aim,
+            open: vec![true; blocks.count()],
             candidates,
             blocks,
             gram: DMatrix::zeros(n, n),
@@ -289,6 +295,10 @@ impl Known {
         self.experiment.estimate = estimate;
         (self.rows, self.residuals) = self.experiment.rows(data);
         self.gram = self.rows.transpose() * &self.rows;
+        let travel = Travel::new(&self.experiment.robot, self.experiment.length_m());
+        for (open, own) in self.open.iter_mut().zip(self.candidates.chunks_exact(self.experiment.width())) {
+            *open = (0..data.len()).all(|row| travel.distance(own, data.readings(row)) > MEASURED_RAD);
+        }
         let n = self.gram.nrows();
         if let Some(covariance) = inverse(&(&self.gram + &self.aim.prior)) {
             self.covariance = covariance;
@@ -435,10 +445,12 @@ impl Known {
             aim.weights.calibrated = 1.0 / squares.calibrated().max(f64::MIN_POSITIVE);
             aim.weights.corrected = 1.0 / squares.corrected.max(f64::MIN_POSITIVE);
         }
-        let search = Search { aim: &aim, kept: &self.gram, blocks: &self.blocks, apart: &|_, _| true };
-        let chosen = search.greedy(Vec::new(), AHEAD.min(self.blocks.count()));
-        let width = self.experiment.width();
-        found.next = chosen.first().map(|&at| self.candidates[at * width..(at + 1) * width].to_vec());
+        let open: Vec<usize> = (0..self.blocks.count()).filter(|&at| self.open[at]).collect();
+        let blocks = self.blocks.only(&open);
+        let search = Search { aim: &aim, kept: &self.gram, blocks: &blocks, apart: &|_, _| true };
+        let chosen = search.greedy(Vec::new(), AHEAD.min(open.len()));
+        let mut each = self.candidates.chunks_exact(self.experiment.width());
+        found.next = chosen.first().and_then(|&at| each.nth(open[at])).map(<[f64]>::to_vec);
         found.after = search.squares(&chosen).map(|squares| self.errors(&squares));
     }
 
