@@ -320,7 +320,7 @@ pub(crate) struct Export {
     pub(crate) chain: TreeArgs,
     /// The form
     #[arg(long, value_parser = one_of(EXPORT_FORMAT))]
-    pub(crate) format: ExportForm,
+    pub(crate) format: Option<ExportForm>,
     /// Which model of the calibration: geometry alone, or the corrected one, whose terms of the joints go to a file beside, FILE.joints.json
     #[arg(long = "model", value_parser = one_of(MODEL), default_value = "calibrated")]
     pub(crate) of: AcceptedModel,

@@ -25,9 +25,9 @@ const MOST: usize = 100_000;
 ///     Path of a robot model of any form.
 /// out
 ///     The folder; files in it are never overwritten.
-/// measure
-///     "points", "poses", "distances", "distance-changes", "spheres", "sockets", "planes", "heights", "flush", "directions",
-///     "ball-bars", "relative" or "components".
+/// kind
+///     Kind of the measurements: "point", "pose", "distance", "distance-change", "sphere", "socket", "plane", "height", "flush", "direction",
+///     "ball-bar", "relative" or "component".
 /// count
 ///     Number of configurations to suggest, from 1 to 100,000.
 /// seed
@@ -42,13 +42,13 @@ const MOST: usize = 100_000;
 /// list of str
 ///     Names of the files.
 #[pyfunction]
-#[pyo3(signature = (model, out, *, measure="points", count=60, seed=1, base_link=None, tip_link=None, instruments=None, targets=None))]
+#[pyo3(signature = (model, out, *, kind="point", count=60, seed=1, base_link=None, tip_link=None, instruments=None, targets=None))]
 #[expect(clippy::too_many_arguments, reason = "the options of a Python function")]
 pub(crate) fn init(
     py: Python<'_>,
     #[pyo3(from_py_with = arg::model)] model: PathBuf,
     #[pyo3(from_py_with = arg::out)] out: PathBuf,
-    #[pyo3(from_py_with = arg::measure)] measure: &str,
+    #[pyo3(from_py_with = arg::kind)] kind: &str,
     #[pyo3(from_py_with = arg::count)] count: usize,
     #[pyo3(from_py_with = arg::seed)] seed: u64,
     #[pyo3(from_py_with = arg::base_link)] base_link: Option<String>,
@@ -56,8 +56,8 @@ pub(crate) fn init(
     #[pyo3(from_py_with = arg::instruments)] instruments: Option<Links>,
     #[pyo3(from_py_with = arg::targets)] targets: Option<Links>,
 ) -> PyResult<Vec<String>> {
-    let words = Kind::all().into_iter().filter_map(|kind| Some((kind.session().plural?, kind)));
-    let kind = chosen("measure", measure, &words.collect::<Vec<_>>())?;
+    let words = Kind::all().into_iter().filter(|kind| kind.session().plural.is_some());
+    let kind = chosen("kind", kind, &words.map(|kind| (kind.word(), kind)).collect::<Vec<_>>())?;
     if !(1..=MOST).contains(&count) {
         return Err(argument("count", format!("found {count}, expected a number from 1 to {MOST}")));
     }

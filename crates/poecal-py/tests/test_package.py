@@ -126,13 +126,13 @@ def test_a_project_folder_is_made_once(tmp_path):
     model = tmp_path / "robot.toml"
     model.write_text(elbow().to_text("toml"))
     folder = tmp_path / "cell"
-    made = poecal.init(model, folder, measure="poses", count=12)
+    made = poecal.init(model, folder, kind="pose", count=12)
     assert sorted(made) == sorted(path.name for path in folder.iterdir())
     assert len(poecal.read_joints(folder / "joints.csv", poecal.Robot.read(folder / "robot.toml"))) == 12
     with pytest.raises(poecal.FileError):
         poecal.init(model, folder)
     with pytest.raises(poecal.OptionError, match=r"measure: found `point`, .* did you mean `points`\?"):
-        poecal.init(model, tmp_path / "other", measure="point")
+        poecal.init(model, tmp_path / "other", kind="points")
     assert not (tmp_path / "other").exists()
 
 

@@ -27,7 +27,7 @@ pub(crate) struct Identify {
     #[command(flatten)]
     pub(crate) cameras: CameraArgs,
     /// Kind of the measurements of the tip
-    #[arg(long, value_parser = simulated(), default_value = "pose", conflicts_with = "camera")]
+    #[arg(long, visible_alias = "measure", value_parser = simulated(), default_value = "pose", conflicts_with = "camera")]
     pub(crate) kind: Kind,
     /// Standard deviation of each measured position component [default: 0.05mm]
     #[arg(long, value_name = "LENGTH", value_parser = sigma_m, allow_hyphen_values = true, conflicts_with = "camera")]

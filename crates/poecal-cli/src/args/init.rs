@@ -25,8 +25,8 @@ pub(crate) struct Init {
     #[command(flatten)]
     pub(crate) chain: TreeArgs,
     /// Kind of the measurements
-    #[arg(long, value_parser = measured(), default_value = "points")]
-    pub(crate) measure: Kind,
+    #[arg(long, visible_alias = "measure", value_parser = measured(), default_value = "point")]
+    pub(crate) kind: Kind,
     /// Number of configurations to suggest
     #[arg(long, value_name = "N", default_value_t = 60, value_parser = clap::value_parser!(u32).range(1..=100_000))]
     pub(crate) count: u32,

@@ -25,8 +25,8 @@ pub(crate) struct Plan {
     #[command(flatten)]
     pub(crate) columns: ColumnArgs,
     /// What will be measured of the tip
-    #[arg(long, value_parser = simulated(), default_value = "point")]
-    pub(crate) measure: Kind,
+    #[arg(long, visible_alias = "measure", value_parser = simulated(), default_value = "point")]
+    pub(crate) kind: Kind,
     /// Number of different configurations to fit
     #[arg(long, value_name = "N", default_value_t = 30, value_parser = clap::value_parser!(u32).range(1..=1000))]
     pub(crate) count: u32,

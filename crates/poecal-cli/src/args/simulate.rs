@@ -42,7 +42,7 @@ pub(crate) struct Simulate {
     #[arg(long, default_value_t = 1)]
     pub(crate) seed: u64,
     /// Kind of the measurements
-    #[arg(long, value_parser = simulated(), default_value = "pose")]
+    #[arg(long, visible_alias = "measure", value_parser = simulated(), default_value = "pose")]
     pub(crate) kind: Kind,
     /// The measuring device's frame: unknown, or the robot's base
     #[arg(long, value_parser = one_of(FRAME), default_value = "unknown")]

@@ -256,15 +256,27 @@ fn listed<T: Clone + Send + Sync + 'static>(
     })
 }
 
-/// Parser of what a simulated device sees.
-pub(super) fn simulated() -> impl TypedValueParser<Value = Kind> {
-    listed(Kind::all().into_iter().map(|kind| (kind.word(), kind.session().help, kind)).collect())
+/// Parser of some kinds of measurement, each also by its plural.
+fn kinds(some: Vec<Kind>) -> impl TypedValueParser<Value = Kind> {
+    let value = |kind: &Kind| {
+        let value = PossibleValue::new(kind.word()).help(kind.session().help);
+        kind.session().plural.map_or(value.clone(), |plural| value.alias(plural))
+    };
+    let values: Vec<PossibleValue> = some.iter().map(value).collect();
+    PossibleValuesParser::new(values).try_map(move |chosen| {
+        let is_it = |kind: &&Kind| kind.word() == chosen || kind.session().plural == Some(chosen.as_str());
+        some.iter().find(is_it).copied().ok_or("expected one of the words")
+    })
 }
 
-/// Parser of what will be measured.
+/// Parser of what a simulated device sees.
+pub(super) fn simulated() -> impl TypedValueParser<Value = Kind> {
+    kinds(Kind::all().into_iter().collect())
+}
+
+/// Parser of what a session measures.
 pub(super) fn measured() -> impl TypedValueParser<Value = Kind> {
-    let of = |kind: Kind| Some((kind.session().plural?, kind.session().help, kind));
-    listed(Kind::all().into_iter().filter_map(of).collect())
+    kinds(Kind::all().into_iter().filter(|kind| kind.session().plural.is_some()).collect())
 }
 
 /// When the device's frame is refitted by itself.

@@ -17,8 +17,12 @@ use crate::console::Console;
 /// The form, with the options that it has.
 fn format(arguments: &Export) -> Result<ExportFormat> {
     let format = match arguments.format {
-        ExportForm::Open(format) => format,
-        ExportForm::Closed(why) => {
+        Some(ExportForm::Open(format)) => format,
+        None => {
+            let words: Vec<&str> = ExportFormat::ALL.iter().map(|format| format.word()).collect();
+            return ErrorKind::Option.refuse(format!("found no --format, expected one of {}", words.join(", ")));
+        }
+        Some(ExportForm::Closed(why)) => {
             return ErrorKind::Option.refuse(format!(
                 "--format: found a form that nobody outside can write ({why}), expected another: use --format offsets for mastering and `poecal \
                  compensate` for programs"

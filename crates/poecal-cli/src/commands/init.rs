@@ -25,7 +25,7 @@ pub(crate) fn init(arguments: &Init, console: &Console) -> Result<u8> {
     let project = Project {
         model: &model,
         chain: &chain,
-        kind: arguments.measure,
+        kind: arguments.kind,
         count: arguments.count as usize,
         seed: arguments.seed,
     };

@@ -59,7 +59,7 @@ pub(crate) fn plan(arguments: &Plan, console: &Console) -> Result<u8> {
         fit: PlannedFit {
             targets: arguments.targets as usize,
             target_offset: offset.map(Into::into),
-            ..fit(&arguments.fit, &model, arguments.measure, arguments.count)?
+            ..fit(&arguments.fit, &model, arguments.kind, arguments.count)?
         },
         criterion: arguments.criterion,
         list,

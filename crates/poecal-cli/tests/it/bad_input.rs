@@ -200,7 +200,7 @@ fn bad_models_get_one_sentence_each() {
         case("predict bad.json joints.csv", "{}",
              "bad.json: found JSON without the key `schema`, expected a calibration of schema `poecal-calibration-2`"),
         case("validate robot.urdf good.csv", "",
-             "robot.urdf:1:1: found broken JSON (expected value), expected a calibration as written by `poecal calibrate`: name a calibration.json"),
+             "robot.urdf: found a URDF, expected a calibration as written by `poecal calibrate`: calibrate it, and name the calibration.json"),
     ]);
 }
 

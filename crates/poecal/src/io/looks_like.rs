@@ -35,6 +35,19 @@ pub(super) fn table_for_model(text: &str, path: &Path) -> Option<Error> {
     Some(ErrorKind::Syntax.error(message).at_line(path, index + 1))
 }
 
+/// What a text is, if it is a robot model that is no calibration.
+pub(super) fn model(text: &str) -> Option<&'static str> {
+    let text = text.trim_start_matches('\u{feff}').trim_start();
+    let begins = |word: &str| text.lines().any(|line| line.trim_start().starts_with(word));
+    match text.chars().next()? {
+        '<' if text.contains("<robot") => Some("a URDF"),
+        '<' if text.contains("<mujoco") => Some("a model of MuJoCo (MJCF)"),
+        '<' if text.contains("<sdf") => Some("a model of Gazebo (SDF)"),
+        _ if begins("poecal_robot") => Some("a robot model (TOML)"),
+        _ => None,
+    }
+}
+
 /// The error for a header that is the beginning of a model.
 pub(super) fn model_for_table(line: &str, path: &Path, number: usize) -> Option<Error> {
     let line = line.trim();

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use crate::error::{Error, ErrorKind};
+use crate::io::looks_like;
 
 /// Version of the files that are written. Readers take those of version 1 too, and refuse others.
 pub const SCHEMA: &str = "poecal-calibration-2";
@@ -25,6 +26,12 @@ pub(super) fn refusal(text: &str, error: Option<serde_json::Error>, path: &Path)
         let column = before.take_while(|(at, _)| *at < error.column()).count().max(1);
         ErrorKind::Syntax.error(message).at(path, line, column)
     };
+    if let Some(model) = looks_like::model(text) {
+        let message = format!(
+            "found {model}, expected a calibration as written by `poecal calibrate`: calibrate it, and name the calibration.json"
+        );
+        return ErrorKind::Syntax.error(message).in_file(path);
+    }
     let value: serde_json::Value = match serde_json::from_str(text) {
         Ok(value) => value,
         Err(error) => return syntax(&error),
