@@ -3,6 +3,7 @@
 #[cfg(any(unix, windows))]
 mod board;
 mod calibrate;
+mod certificate;
 mod compensate;
 #[cfg(any(unix, windows))]
 mod detect;
@@ -24,6 +25,7 @@ mod words;
 #[cfg(any(unix, windows))]
 pub(crate) use board::Board;
 pub(crate) use calibrate::Calibrate;
+pub(crate) use certificate::Certificate;
 pub(crate) use compensate::Compensate;
 #[cfg(any(unix, windows))]
 pub(crate) use detect::Detect;
@@ -95,6 +97,8 @@ pub(crate) enum Command {
     Simulate(Simulate),
     /// Write the report of a calibration again
     Report(Report),
+    /// Write the certificate of a calibration: one page of paper
+    Certificate(Certificate),
     /// Judge a calibration by other measurements
     Validate(Validate),
     /// Show by a few measurements whether a robot is as it was calibrated, and which joint is not

@@ -174,6 +174,7 @@ fn run_to_code(arguments: impl IntoIterator<Item = OsString>) -> u8 {
         Command::Identify(options) => commands::identify(options, &console),
         Command::Plan(options) => commands::plan(options, &console),
         Command::Report(options) => commands::report(options, &console),
+        Command::Certificate(options) => commands::certificate(options, &console),
         Command::Watch(options) => commands::watch(options, &console),
         Command::Schema => commands::schema(&console),
         Command::Completions(options) => commands::completions(options, &console),

@@ -117,7 +117,7 @@ pub(crate) struct Calibrate {
     #[arg(long, value_parser = one_of(MODEL))]
     pub(crate) accept_model: Option<AcceptedModel>,
     /// What the report states of the session, like serial=4711 (repeatable): certificate, laboratory, customer, robot, serial, instrument,
-    /// operator, date, place, temperature or note
+    /// instrument_calibrated, tool, payload, operator, date, place, temperature, valid_until or note
     #[arg(long, value_name = "KEY=TEXT", value_parser = Record::pair)]
     pub(crate) record: Vec<(String, String)>,
     /// Print everything: errors of fitted rows and of the nominal model, noise, solver, cross-validation, every joint

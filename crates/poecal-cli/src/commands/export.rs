@@ -20,7 +20,8 @@ fn format(arguments: &Export) -> Result<ExportFormat> {
         Some(ExportForm::Open(format)) => format,
         None => {
             let words: Vec<&str> = ExportFormat::ALL.iter().map(|format| format.word()).collect();
-            return ErrorKind::Option.refuse(format!("found no --format, expected one of {}", words.join(", ")));
+            return ErrorKind::Option
+                .refuse(format!("found no --format, expected one of {}", words.join(", ")));
         }
         Some(ExportForm::Closed(why)) => {
             return ErrorKind::Option.refuse(format!(

@@ -3,6 +3,7 @@
 #[cfg(any(unix, windows))]
 mod board;
 mod calibrate;
+mod certificate;
 mod check;
 mod compare;
 mod compensate;
@@ -38,6 +39,7 @@ mod watch;
 #[cfg(any(unix, windows))]
 pub(crate) use board::board;
 pub(crate) use calibrate::calibrate;
+pub(crate) use certificate::certificate;
 pub(crate) use check::check;
 pub(crate) use compare::compare;
 pub(crate) use compensate::compensate;

@@ -5,6 +5,7 @@
 mod acceptance;
 mod bad_input;
 mod board;
+mod certificate;
 mod checks;
 mod commands;
 mod compensate;

@@ -40,10 +40,38 @@ fn a_planned_list_is_read_and_completed() {
     let one = more(1);
     assert_eq!(one, more(3));
     let found: serde_json::Value = serde_json::from_str(&one).unwrap();
-    assert_eq!((&found["kept"], &found["configurations"]), (&16.into(), &4.into()));
+    // Rows to judge by do not count.
+    assert_eq!((&found["kept"], &found["configurations"]), (&12.into(), &8.into()));
     let calibrated = |of: &str| found[of]["calibrated_mm"].as_f64().unwrap();
     println!("expected {} mm, random {} mm", calibrated("expected"), calibrated("random"));
     assert!(calibrated("expected") <= calibrated("random"));
+}
+
+/// Rows that could not be measured are replaced, and all others stay where they are.
+#[test]
+fn replaced_rows_leave_the_others_in_their_places() {
+    let folder = folder();
+    folder.done("plan column.toml --count 12 --judge 8 --out joints.csv --robot-error 0.1mm,0.05mm");
+    let before = folder.read("joints.csv");
+    let out =
+        folder.done("plan column.toml --keep joints.csv --replace 3,15 --out better.csv --report plan.html");
+    assert!(out.contains("1 configurations to fit beside 11 kept ones, 8 at random"), "{out}");
+    let rows = |text: &str| -> Vec<String> {
+        text.lines().filter(|line| !line.starts_with('#')).map(str::to_owned).collect()
+    };
+    let (before, after) = (rows(&before), rows(&folder.read("better.csv")));
+    let changed: Vec<usize> = (0..before.len()).filter(|&row| before[row] != after[row]).collect();
+    println!("changed lines {changed:?} of {}", before.len());
+    // Line 0 has the names. The set of each row stays.
+    assert_eq!((changed, after.len()), (vec![3, 15], before.len()));
+    let set = |row: &str| row.split(',').nth(1).map(str::to_owned);
+    assert!(before.iter().zip(&after).all(|(a, b)| set(a) == set(b)));
+    let page = folder.read("plan.html");
+    for words in ["The robot in every configuration", "How each joint is sampled", "From above"] {
+        assert!(page.contains(words), "{words}");
+    }
+    let run = folder.run("plan column.toml --keep joints.csv --replace 99 --out no.csv");
+    assert!(run.code == 2 && run.err.contains("found row 99 to replace, expected one of the"), "{}", run.err);
 }
 
 #[test]

@@ -12,6 +12,7 @@ pub mod frame_texts;
 pub mod hand_eye;
 mod hashes;
 mod limits;
+pub mod logo;
 mod looks_like;
 pub mod measurements;
 mod mimic;

@@ -56,6 +56,12 @@ record! {
     serial = "Serial number",
     /// The measuring instrument: its serial number and its own certificate.
     instrument = "Instrument",
+    /// Day of the instrument's own calibration, `YYYY-MM-DD`.
+    instrument_calibrated = "Instrument calibrated",
+    /// The tool that was on the flange.
+    tool = "Tool",
+    /// The load that the robot carried, with its unit.
+    payload = "Payload",
     /// Who measured.
     operator = "Operator",
     /// Day of the measurements, `YYYY-MM-DD`.
@@ -64,6 +70,8 @@ record! {
     place = "Place",
     /// Temperature there, with its unit, `21.5 °C` or `21.5 ± 0.5 °C`.
     temperature = "Temperature",
+    /// Day until which the certificate is valid, `YYYY-MM-DD`.
+    valid_until = "Valid until",
     /// Anything else.
     note = "Note",
 }
@@ -100,6 +108,17 @@ impl Record {
         Ok((key.to_owned(), value))
     }
 
+    /// The same with what another states in place of its own.
+    #[must_use]
+    pub fn overridden(mut self, by: &Record) -> Self {
+        for (key, _, text) in by.entries() {
+            if let Some(place) = self.place(key) {
+                *place = Some(text.to_owned());
+            }
+        }
+        self
+    }
+
     /// Whether it states nothing.
     #[must_use]
     pub fn is_empty(&self) -> bool {
@@ -125,8 +144,8 @@ impl Record {
         }
         match key {
             _ if text.is_empty() => Ok(None),
-            "date" if !is_date(text) => {
-                Err(refused(format!("found `{text}` as the date, expected a day like 2026-03-02")))
+            "date" | "instrument_calibrated" | "valid_until" if !is_date(text) => {
+                Err(refused(format!("found `{text}` as the {}, expected a day like 2026-03-02", named(key))))
             }
             "temperature" => temperature(text).map(Some).ok_or_else(|| {
                 refused(format!(
@@ -135,6 +154,15 @@ impl Record {
             }),
             _ => Ok(Some(text.to_owned())),
         }
+    }
+}
+
+/// A day of the record in words.
+fn named(key: &str) -> &'static str {
+    match key {
+        "instrument_calibrated" => "day of the instrument's calibration",
+        "valid_until" => "day until which it is valid",
+        _ => "date",
     }
 }
 

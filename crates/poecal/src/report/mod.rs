@@ -29,7 +29,9 @@ pub use hand_eye::hand_eye;
 pub use identify::Identify;
 pub use judgement::judgement;
 pub use offsets::Offsets;
-pub use page::{calibration_page, calibration_page_with, fleet_page, plan_page, validation_page};
+pub use page::{
+    Attest, calibration_page, calibration_page_with, certificate_page, fleet_page, plan_page, validation_page,
+};
 pub use plan::Plan;
 pub use summary::{Detail, summary, unsaid};
 pub use tcp::tool_tip;

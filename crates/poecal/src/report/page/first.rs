@@ -58,7 +58,7 @@ pub(super) fn screen(file: &CalibrationFile, residuals: &Residuals) -> Markup {
         std::iter::once(all).chain(rest)
     });
     let tables: Vec<HtmlTable> = corners::table(&rows, &on).into_iter().chain(tables).collect();
-    let caption = html! { (count(set.count, key)) " " (of) ". Registered: tool and device fitted to the nominal axes." };
+    let caption = html! { (count(set.count, key)) " " (of) ". Registered: your model, with only tool and device located." };
     html! {
         header {
             h1 { "Calibration of " (quoted(&file.robot.name, "robot.name")) }
@@ -87,8 +87,7 @@ pub(super) fn screen(file: &CalibrationFile, residuals: &Residuals) -> Markup {
                     }
                 }
                 p.note {
-                    b { "Nominal, tool and device fitted" } " (registered): the axes are the model's. " b { "Calibrated" }
-                    ": the axes are fitted too. "
+                    b { "Before" } ": your model, with only tool and device located. " b { "After" } ": the joint axes are corrected too. "
                     @if has_terms(file) { b { "Corrected" } ": with them what the joints do beyond geometry. " }
                     "The gain of the calibration is the difference."
                 }

@@ -1,6 +1,7 @@
 //! The report of a calibration: one HTML page that holds its style, its script and its data, and loads nothing.
 
 mod advice;
+mod attested;
 mod certificate;
 mod compensation;
 mod corners;
@@ -24,6 +25,7 @@ mod shapes;
 mod trust;
 mod validation;
 
+pub use attested::{Attest, certificate_page};
 pub use fleet::fleet_page;
 pub use plan::plan_page;
 pub use validation::validation_page;
@@ -84,6 +86,7 @@ pub fn calibration_page_with(file: &CalibrationFile, residuals: &Residuals, shap
     let body = html! {
         a.skip href="#main" { "Skip to the verdict" }
         main #main {
+            (attested::first_page(file))
             (first::screen(file, residuals))
             (repairs::sections(file))
             (joints::sections(file, shapes))

@@ -1,0 +1,30 @@
+//! `poecal certificate`: one page of paper about a calibration.
+
+use std::path::Path;
+
+use poecal::Result;
+use poecal::io::calibration_file::{CalibrationFile, Inputs};
+use poecal::io::logo;
+use poecal::io::output::{Existing, FilePlace};
+use poecal::io::record::Record;
+use poecal::report::{Attest, certificate_page};
+
+use crate::args::Certificate;
+use crate::console::Console;
+use crate::style::{labelled, shown};
+
+pub(crate) fn certificate(arguments: &Certificate, console: &Console) -> Result<u8> {
+    let calibration = arguments.calibration.as_path();
+    let file = CalibrationFile::read(calibration)?;
+    let until = arguments.valid_until.as_deref().map(|day| ("valid_until", day));
+    let stated = arguments.record.iter().map(|(key, text)| (key.as_str(), text.as_str())).chain(until);
+    let record = file.record.clone().overridden(&Record::of(stated)?);
+    let logo = arguments.logo.as_deref().map(logo::read).transpose()?;
+    let out = arguments.out.clone().unwrap_or_else(|| calibration.with_file_name("certificate.html"));
+    let existing = if arguments.force { Existing::Replaced } else { Existing::Own };
+    let inputs: Vec<&Path> = std::iter::once(calibration).chain(arguments.logo.as_deref()).collect();
+    let place = FilePlace::reserve(&out, existing, &inputs, &mut console.warner())?;
+    let sha256 = Inputs::checksums(std::iter::once(calibration))?.into_values().next();
+    place.write(certificate_page(&file, &record, &Attest { sha256, logo }))?;
+    Ok(console.say_of(&labelled("written", &shown(&out)), &out))
+}

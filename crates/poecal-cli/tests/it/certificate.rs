@@ -1,0 +1,45 @@
+//! `poecal certificate`.
+
+use poecal::simulate::Kind;
+
+use crate::session::session;
+
+/// It says what is stated, beside what the calibration states, and the checksum of its file.
+#[test]
+fn a_certificate_states_the_session_and_its_result() {
+    let folder = session(Kind::POINT);
+    folder.done(
+        "calibrate robot.urdf measurements.csv --accept 10mm --record serial=4711 --record operator=Mia",
+    );
+    folder.write("logo.svg", "<svg xmlns=\"http://www.w3.org/2000/svg\"/>");
+    let out = folder.done(
+        "certificate poecal-out/calibration.json --logo logo.svg --valid-until 2027-11-28 --record serial=4712",
+    );
+    assert_eq!(out, "written       poecal-out/certificate.html\n");
+    let page = folder.read("poecal-out/certificate.html");
+    for words in
+        ["4712", "Mia", "2027-11-28", "data:image/svg+xml,%3C", "k = 2", "calibration.json <code>", "kept"]
+    {
+        assert!(page.contains(words), "{words}");
+    }
+    assert!(!page.contains("4711") && !page.contains("<script"));
+    // Again: its own file is replaced, others' are not.
+    folder.done("certificate poecal-out/calibration.json");
+    folder.write("theirs.html", "theirs");
+    for (words, sentence) in [
+        ("certificate poecal-out/calibration.json --out theirs.html", "theirs.html"),
+        ("certificate robot.urdf", "found a URDF, expected a calibration as written by `poecal calibrate`"),
+        (
+            "certificate poecal-out/calibration.json --valid-until tomorrow",
+            "found `tomorrow` as the day until which it is valid",
+        ),
+        (
+            "certificate poecal-out/calibration.json --logo robot.urdf",
+            "found no picture, expected PNG, JPEG or SVG",
+        ),
+    ] {
+        let run = folder.run(words);
+        assert!(run.code == 2 && run.err.contains(sentence), "{words}: {}", run.err);
+    }
+    assert_eq!(folder.read("theirs.html"), "theirs");
+}
