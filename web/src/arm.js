@@ -11,9 +11,10 @@ export function showArm(place, data) {
   try {
     scene = new Scene(data);
   } catch {
-    place.innerHTML = '<p class="note">This browser has no WebGL, which the picture needs. All figures are in the tables.</p>';
+    place.innerHTML = '<p class="note">This browser has no WebGL, which the picture that turns needs: it is drawn from two sides.</p>';
     return;
   }
+  document.getElementById("still")?.remove();
   const stage = element("div", data.draws_instruments ? "stage stays" : "stage");
   const frame = element("div", "scene");
   frame.append(scene.canvas, scene.paper, scene.labels.element);

@@ -101,6 +101,19 @@ export function steps(label, name) {
   return line(label, name, { paths: uPlot.paths.stepped({ align: 1 }) });
 }
 
+/** What draws each chart anew at the width of its place. */
+const fits = [];
+
+// Paper is as wide as its style says, before anything is printed: charts keep the width that they have then.
+addEventListener("beforeprint", () => {
+  document.documentElement.classList.add("on-paper");
+  fits.forEach((fit) => fit());
+});
+addEventListener("afterprint", () => {
+  document.documentElement.classList.remove("on-paper");
+  fits.forEach((fit) => fit());
+});
+
 /**
  * Draws a chart into `place`. `spoken` is what a screen reader says instead of the picture, `tell(index)` what stands below when the
  * cursor is near a point.
@@ -128,9 +141,11 @@ export function plot(place, { x, y, series, values, height = 260, range, spoken,
   const canvas = target.querySelector("canvas");
   canvas.setAttribute("role", "img");
   canvas.setAttribute("aria-label", spoken);
-  new ResizeObserver(() => {
+  const fit = () => {
     if (width() !== chart.width) chart.setSize({ width: width(), height });
-  }).observe(target);
+  };
+  new ResizeObserver(fit).observe(target);
+  fits.push(fit);
   onColours(() => chart.redraw(false));
   return chart;
 }

@@ -392,6 +392,43 @@ impl Calibration {
         py.detach(page).map_err(raise)
     }
 
+    /// Writes the certificate, one page of paper (HTML).
+    ///
+    /// Parameters
+    /// ----------
+    /// path
+    ///     The file.
+    /// logo
+    ///     Picture for its head: PNG, JPEG or SVG.
+    /// valid_until
+    ///     Day until which it is valid, like "2027-11-28".
+    /// record
+    ///     What it states beside and in place of what the calibration's record states, as {"serial": "4711"}.
+    /// force
+    ///     Whether to write over a file that is none of poecal.
+    #[pyo3(signature = (path, *, logo=None, valid_until=None, record=None, force=false))]
+    fn certificate(
+        &self,
+        py: Python<'_>,
+        #[pyo3(from_py_with = arg::path)] path: PathBuf,
+        #[pyo3(from_py_with = arg::logo)] logo: Option<PathBuf>,
+        #[pyo3(from_py_with = arg::valid_until)] valid_until: Option<String>,
+        #[pyo3(from_py_with = arg::record)] record: Option<Record>,
+        #[pyo3(from_py_with = arg::force)] force: bool,
+    ) -> PyResult<()> {
+        let file = self.file();
+        let until = valid_until.as_deref().map(|day| ("valid_until", day));
+        let stated = file.record.clone().overridden(&record.unwrap_or_default());
+        let stated = stated.overridden(&Record::of(until).map_err(raise)?);
+        let logo = logo.as_deref().map(poecal::io::logo::read).transpose().map_err(raise)?;
+        let existing = if force { Existing::Replaced } else { Existing::Own };
+        let place = reserved_file(py, &path, existing, &[])?;
+        // The checksum is that of calibration.json as it is written.
+        let sha256 = file.sha256().map_err(raise)?;
+        let attest = report::Attest { sha256: Some(sha256), logo };
+        py.detach(|| place.write(report::certificate_page(file, &stated, &attest))).map_err(raise)
+    }
+
     /// Poses of the tip, or of a target.
     ///
     /// Parameters

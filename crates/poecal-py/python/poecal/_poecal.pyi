@@ -1173,6 +1173,15 @@ class Calibration:
         force
             Whether to write over a file that is no report of poecal.
         """
+    def certificate(
+        self,
+        path: _Path,
+        *,
+        logo: _Path | None = None,
+        valid_until: str | None = None,
+        record: Mapping[str, str] | None = None,
+        force: bool = False,
+    ) -> None: ...
     @overload
     def predict(
         self,

@@ -3,6 +3,7 @@
 use super::{CalibrationFile, MeasuredEntry};
 use crate::calibration::{AcceptedModel, DeviceFrameKnowledge, ModelAccuracy};
 use crate::error::{ErrorKind, Result, first_few, nearest};
+use crate::io::hashes;
 use crate::lie::Pose;
 use crate::measurement::{ByQuantity, Dataset, Noise, Quantity};
 use crate::plan::RobotError;
@@ -11,6 +12,14 @@ use crate::plan::RobotError;
 const UNSEEN: f64 = 0.05;
 
 impl CalibrationFile {
+    /// SHA-256 of the file as it is written.
+    ///
+    /// # Errors
+    /// As [`CalibrationFile::to_text`].
+    pub fn sha256(&self) -> Result<String> {
+        Ok(hashes::sha256_of(&self.to_text()?))
+    }
+
     /// The position errors that the calibration left, of rows that were held out, else of those fitted.
     #[must_use]
     pub fn left_error(&self) -> Option<RobotError> {

@@ -40,7 +40,8 @@ const STATED: [(&str, &str); 14] = [
 /// The form of the page: A4 with a margin, all in one.
 const STYLE: &str = "
 .attested { font-size: .82rem; line-height: 1.3; }
-.attested h2 { font-size: 1rem; margin: .7rem 0 .25rem; }
+.attested .title { font-size: 1.75rem; }
+.attested h2, .attested h3 { font-size: 1rem; margin: .7rem 0 .25rem; }
 .attested .top { display: flex; justify-content: space-between; gap: 1rem; align-items: flex-start; }
 .attested .top img { max-width: 10rem; max-height: 4rem; }
 .attested dl { display: grid; grid-template-columns: 1fr 1fr; gap: 0 1.4rem; margin: 0; }
@@ -85,7 +86,7 @@ pub fn certificate_page(file: &CalibrationFile, record: &Record, attest: &Attest
     let head = head(&title, &Record::default(), &file.poecal_version);
     let body = html! {
         style { (PreEscaped(ALONE)) }
-        main #main { (sheet(file, record, attest)) }
+        main #main { (sheet(file, record, attest, &html! { h1 { "Calibration certificate" } })) }
     };
     vec![visible_markup(head).into(), visible_markup(body).into(), "\n</body>\n</html>\n".into()]
 }
@@ -94,11 +95,11 @@ pub fn certificate_page(file: &CalibrationFile, record: &Record, attest: &Attest
 pub(super) fn first_page(file: &CalibrationFile) -> Markup {
     html! {
         style { (PreEscaped(BEFORE)) }
-        (sheet(file, &file.record, &Attest::default()))
+        (sheet(file, &file.record, &Attest::default(), &html! { p.title { b { "Calibration certificate" } } }))
     }
 }
 
-fn sheet(file: &CalibrationFile, record: &Record, attest: &Attest) -> Markup {
+fn sheet(file: &CalibrationFile, record: &Record, attest: &Attest, title: &Markup) -> Markup {
     let entries = record.entries();
     let text = |key: &str| entries.iter().find(|it| it.0 == key).map(|it| it.2.to_owned());
     let robot = |key: &str| (key == "robot").then(|| file.robot.name.clone());
@@ -107,7 +108,7 @@ fn sheet(file: &CalibrationFile, record: &Record, attest: &Attest) -> Markup {
         style { (PreEscaped(STYLE)) }
         section.attested aria-label="Certificate" {
             div.top {
-                h1 { "Calibration certificate" }
+                (title)
                 @if let Some((kind, bytes)) = &attest.logo { img src=(data_uri(kind, bytes)) alt="Logo"; }
             }
             dl { @for (label, text) in &stated { div { dt { (label) } dd { (text) } } } }

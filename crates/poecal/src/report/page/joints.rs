@@ -7,6 +7,7 @@ use super::devices::{device_of, further, picture_words};
 use super::figures;
 use super::frames::draws_instruments;
 use super::html::{HtmlTable, decimal, figure, figure_or, folded, list, plots, quoted, section};
+use super::sides::still;
 use crate::io::calibration_file::{CalibrationFile, JointEntry, ScrewEntry, StationEntry};
 use crate::io::shapes::Shapes;
 use crate::measurement::Device;
@@ -34,9 +35,10 @@ fn view(file: &CalibrationFile, shapes: &Shapes) -> Markup {
             ": nominal in grey, calibrated in colour."
             (picture_words(file, draws_instruments(file)))
         }
+        div #still.still { (plots(&still(file), "The calibrated robot in the middle of the sampled range.")) }
         div #arm.arm {}
         @if !shapes.notes.is_empty() { p.note { (shapes.notes.join(" ").replace('`', "")) } }
-        noscript { p.note { "The picture needs JavaScript. All figures are in the tables." } }
+        noscript { p.note { "The picture that turns needs JavaScript." } }
         (folded("The axes as numbers", &table))
         @if let Some(table) = targets(file) { (table) }
         @if let Some(table) = stands(file) { (folded("What stands where", &table)) }

@@ -22,6 +22,7 @@ mod plan;
 mod repairs;
 mod rows;
 mod shapes;
+mod sides;
 mod trust;
 mod validation;
 

@@ -5,12 +5,13 @@ use nalgebra::Vector3;
 
 use super::head;
 use super::html::{HtmlTable, decimal, facts, folded, plots, section};
+use super::sides::{View, pictures};
 use crate::io::model::Model;
 use crate::io::output::Page;
 use crate::io::record::Record;
 use crate::plan::{CurvePoint, Plan as Found, PlanOptions, RowPart, Sight, skeleton};
 use crate::report::plan::Plan;
-use crate::report::plot::{ArmPlot, Arms, Axis, CELLS, Line, LinePlot, Mark, Scale, Strip, StripPlot};
+use crate::report::plot::{Arms, Axis, CELLS, Line, LinePlot, Mark, Scale, Strip, StripPlot};
 use crate::robot::{ReadingKind, Robot};
 use crate::text::visible_markup;
 
@@ -48,61 +49,33 @@ pub fn plan_page(model: &Model, options: &PlanOptions, found: &Found, told: &Pla
     vec![visible_markup(head).into(), visible_markup(body).into(), "\n</body>\n</html>\n".into()]
 }
 
-/// A picture from a side: which coordinate is across and which is up.
-struct View {
-    title: &'static str,
-    axes: [usize; 2],
-    names: [&'static str; 2],
-}
-
-const VIEWS: [View; 2] = [
-    View { title: "From the side", axes: [0, 2], names: ["x of the base, m", "z, m"] },
-    View { title: "From above", axes: [0, 1], names: ["x of the base, m", "y, m"] },
-];
-
 fn arms(robot: &Robot, options: &PlanOptions, found: &Found) -> Markup {
-    let pictures = VIEWS.iter().map(|view| PreEscaped(arm_plot(view, robot, options, found).svg()));
-    let pictures: Vec<Markup> = pictures.collect();
     let caption = "Lines between the frames of the joints, and the targets at their ends. Only configurations are checked, never the way between them.";
-    plots(&pictures, caption)
+    plots(&pictures(|view| drawn(view, robot, options, found)), caption)
 }
 
-fn arm_plot(view: &View, robot: &Robot, options: &PlanOptions, found: &Found) -> ArmPlot {
-    let flat = |at: &Vector3<f64>| view.axes.map(|axis| at[axis]);
+fn drawn(view: &View, robot: &Robot, options: &PlanOptions, found: &Found) -> Vec<Arms> {
+    let flat = |at: &Vector3<f64>| view.flat(at);
     let lines = |[a, b]: &[Vector3<f64>; 2]| [flat(a), flat(b)];
     let of = |part: RowPart, name: &str, style: usize| {
         let own = found.rows.iter().filter(|row| row.part == part && !row.returns).take(DRAWN);
         let skeletons: Vec<_> = own.map(|row| skeleton(robot, &row.readings)).collect();
         let ends = skeletons.iter().filter_map(|it| it.last()).map(|line| flat(&line[1])).collect();
-        Arms {
-            name: name.to_owned(),
-            style,
-            lines: skeletons.iter().flatten().map(lines).collect(),
-            points: ends,
-        }
+        let lines = skeletons.iter().flatten().map(lines).collect();
+        Arms { name: name.to_owned(), style, lines, points: ends }
     };
     let mut arms = vec![of(RowPart::Judge, "to judge by", 1), of(RowPart::Fit, "to fit", 0)];
     arms.retain(|it| !it.lines.is_empty());
     if let Some(sight) = &options.conditions.sight {
-        arms.push(Arms {
-            name: "device".to_owned(),
-            style: 2,
-            lines: cone(sight, &flat),
-            points: vec![flat(&sight.place)],
-        });
+        let place = vec![flat(&sight.place)];
+        arms.push(Arms { name: "device".to_owned(), style: 2, lines: cone(sight, &flat), points: place });
     }
     let boxes: Vec<[[f64; 2]; 2]> =
         options.conditions.keep_out.iter().flat_map(|corners| outline(view, corners)).collect();
     if !boxes.is_empty() {
         arms.push(Arms { name: "keep out".to_owned(), style: 3, lines: boxes, points: Vec::new() });
     }
-    ArmPlot {
-        title: view.title.to_owned(),
-        description: format!("{}: the robot in every configuration", view.title),
-        x_title: view.names[0].to_owned(),
-        y_title: view.names[1].to_owned(),
-        arms,
-    }
+    arms
 }
 
 /// The device's cone: its rim half-way to where it looks, and lines to it.
@@ -127,7 +100,7 @@ fn cone(sight: &Sight, flat: &impl Fn(&Vector3<f64>) -> [f64; 2]) -> Vec<[[f64; 
 
 /// The four sides of a box.
 fn outline(view: &View, corners: &[[f64; 3]; 2]) -> Vec<[[f64; 2]; 2]> {
-    let [low, high] = corners.map(|corner| view.axes.map(|axis| corner[axis]));
+    let [low, high] = corners.map(|corner| view.flat(&corner.into()));
     let around = [low, [high[0], low[1]], high, [low[0], high[1]]];
     (0..4).map(|k| [around[k], around[(k + 1) % 4]]).collect()
 }
