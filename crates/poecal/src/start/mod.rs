@@ -15,8 +15,8 @@ mod stations;
 pub(crate) use averaging::{mean_rotation, rotation_maximising};
 pub use faces::{faces_on_known_planes, settle_faces};
 pub use pairing::{
-    Agreement, Aligned, AtLag, Channels as StreamChannels, InMotion, JointStream, Lagged, Motion, MovingRow,
-    NoLag, Order, Pair, Span, Stand, Stream, Unpaired, smoothed,
+    Agreement, Aligned, AtLag, Channels as StreamChannels, EVIDENT, FEWEST_PAIRS, InMotion, JointStream,
+    Lagged, Motion, MovingRow, NoLag, NoStream, Order, Pair, Span, Stand, Stream, Unpaired, smoothed,
 };
 pub(crate) use pictures::predicted_pose;
 pub use pictures::{SettledPictures, settle_pictures};

@@ -5,17 +5,22 @@ use std::path::Path;
 
 use super::Join;
 use super::Lag;
+use super::join_doubt::{self, is_doubtful, reason};
 use super::join_entry::JoinEntry;
 use super::join_pairs::{Joined, JointRows};
 use super::join_plan::{MotionByLine, ReadingsByLine};
+use super::join_words::{mm, several_lags};
 use super::motions::motion_of_target;
-use crate::error::{ErrorKind, Result, first_few};
+use crate::error::{ErrorKind, Result};
 use crate::measurement::Dataset;
 use crate::robot::Robot;
 use crate::start::{AtLag, InMotion, JointStream, Motion, NoLag, smoothed};
 
 /// Smaller error of smoothed stamps, over that of the stamps as they are, that shows that these are late irregularly.
 const SMOOTHER: f64 = 0.8;
+
+/// What a search finds by some stamps.
+type Found = std::result::Result<InMotion, NoLag>;
 
 /// Times of the rows of both, as stamped or smoothed.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -41,7 +46,7 @@ pub(super) fn in_motion(
         Err(ErrorKind::Measurement.error(words).in_file(path))
     };
     let smooth = (smoothed(&joints.times), smoothed(times));
-    let mut found: Vec<(Stamps, std::result::Result<InMotion, NoLag>)> = Vec::new();
+    let mut found: Vec<(Stamps, Found)> = Vec::new();
     for stamps in [(false, false), (true, false), (false, true), (true, true)] {
         let stamps = Stamps { joints: stamps.0, measured: stamps.1 };
         let own = if stamps.joints { smooth.0.as_ref() } else { Some(&joints.times) };
@@ -56,33 +61,74 @@ pub(super) fn in_motion(
         let motion = Motion::new(robot, &stream, data, seen).map_err(in_file)?;
         found.push((stamps, motion.found(stated)));
     }
-    let usual = found.iter().find_map(|(_, it)| it.as_ref().ok()).map_or(f64::INFINITY, |it| it.fitted_m);
-    let best = found.iter().position(|(_, it)| it.as_ref().is_ok_and(|it| it.fitted_m < SMOOTHER * usual));
-    let at = best.or_else(|| found.iter().position(|(_, it)| it.is_ok())).unwrap_or_default();
-    if at >= found.len() {
+    let Some((stamps, found)) = chosen(found) else {
         return refuse("found no times, expected a column `time` in both files".to_owned());
-    }
-    let (stamps, found) = found.swap_remove(at);
-    let words = |it: &AtLag| format!("{:.3} s ({:.3} mm)", it.lag_s, 1e3 * it.missed_m);
+    };
     let near = if lag.is_some() { " near the stated one" } else { "" };
+    let at_rest = |lag_s: f64| {
+        let stream = JointStream::new(&joints.times, &joints.readings, joints.turns.len())?;
+        Motion::new(robot, &stream, data, times).ok()?.at_rest(lag_s)
+    };
+    let unfit = |best: &AtLag, words: &str| {
+        let reason = at_rest(best.lag_s).map_or_else(String::new, |it| format!(": {}", reason(robot, &it)));
+        refuse(format!(
+            "found measurements that fit the joint readings at no lag of the clocks{near}{words}, best {:.3} s ({}), expected recordings of the same \
+             motion of the same robot{reason}",
+            best.lag_s,
+            mm(best.missed_m)
+        ))
+    };
     match found {
-        Ok(found) => Ok(joined(joints, (path, data, times), robot, (stamps, &found))),
+        Ok(found) => {
+            let warning = at_rest(found.clock.lag_s).map(|rows| {
+                join_doubt::warning(
+                    robot,
+                    found.missed_m,
+                    || rows,
+                    &format!("at a lag of {:.3} s", found.clock.lag_s),
+                )
+            });
+            let mut joined = joined(joints, (path, data, times), robot, (stamps, &found));
+            match warning.transpose() {
+                Ok(warning) => {
+                    let files = format!("{}, {}", joints.path.display(), path.display());
+                    joined.warnings.extend(warning.flatten().map(|it| format!("{files}: {it}")));
+                    Ok(joined)
+                }
+                Err(message) => refuse(message),
+            }
+        }
         Err(NoLag::NoMotion) => refuse(format!(
             "found no lag of the clocks{near} at which both streams move together for 5 s or longer, expected recordings of the same motion"
         )),
-        Err(NoLag::Alike(all)) => {
-            let best = all.first().map_or(0.0, |it| it.lag_s);
-            let listed: Vec<String> = all.iter().map(words).collect();
-            refuse(format!(
-                "found measurements that fit the joint readings at several lags of the clocks alike, {}, as of a program that repeats itself, expected one: state it by --lag, like --lag {best:.1}s+-0.5s",
-                first_few(&listed)
-            ))
-        }
-        Err(NoLag::None(best)) => refuse(format!(
-            "found measurements that fit the joint readings at no lag of the clocks{near} better than by chance, best {}, expected the same motion of the same robot: look at the units, the signs and the order of the joints",
-            words(&best)
-        )),
+        Err(NoLag::Alike(all)) => match all.first() {
+            Some(best) if is_doubtful(robot, best.missed_m) => unfit(best, ""),
+            best => {
+                let words = |it: &AtLag| format!("{:.3} s ({})", it.lag_s, mm(it.missed_m));
+                let listed: Vec<String> = all.iter().map(words).collect();
+                refuse(several_lags(&listed, best.map_or(0.0, |it| it.lag_s)))
+            }
+        },
+        Err(NoLag::None(best)) => unfit(&best, " better than by chance"),
     }
+}
+
+/// What was found by stamps as they are, or by smoothed ones where these fit evidently better.
+fn chosen(mut found: Vec<(Stamps, Found)>) -> Option<(Stamps, Found)> {
+    // Stamps as they are come first.
+    let usual_m = match found.first()? {
+        (_, Ok(it)) => it.fitted_m,
+        (_, Err(_)) => f64::INFINITY,
+    };
+    let alike_m = match found.first()? {
+        (_, Err(NoLag::Alike(all))) => all.first().map_or(f64::INFINITY, |it| it.missed_m),
+        _ => f64::INFINITY,
+    };
+    let is_better = |it: &(Stamps, Found)| {
+        it.1.as_ref().is_ok_and(|it| it.fitted_m < SMOOTHER * usual_m && it.missed_m < SMOOTHER * alike_m)
+    };
+    let at = found.iter().position(is_better).unwrap_or_default();
+    Some(found.swap_remove(at))
 }
 
 fn joined(
@@ -140,7 +186,7 @@ fn joined(
         ));
     }
     readings.moving = Some(MotionByLine { rows, clock });
-    Joined { entry, readings, notes, warnings }
+    Joined { entry, readings, unmeasured: Vec::new(), notes, warnings }
 }
 
 /// Scatter of single stamps that is said, seconds.

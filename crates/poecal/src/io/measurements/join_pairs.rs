@@ -3,26 +3,23 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
+use super::join_doubt;
 use super::join_entry::{JoinEntry, MOST_ALONE, MOST_PAIRS, RowEntry};
 use super::join_plan::ReadingsByLine;
-use super::join_words::{advice, counted, numbered, numbered_as, words};
+use super::join_words::{advice, counted, mm, numbered, numbered_as, words};
 use super::motions::Sampled;
 use super::picture_names::Partners;
+use super::streams::NoStands;
 use super::{Join, Lag};
-use crate::error::{Error, ErrorKind, Result, first_few};
-use crate::forensics::{DiagnosisOptions, diagnose};
+use crate::error::{Error, ErrorKind, Result};
 use crate::measurement::Dataset;
 use crate::robot::{Controller, Robot};
-use crate::start::{Agreement, Aligned, JointStream, Lagged, Motion, Pair, Span, Unpaired};
+use crate::start::{Agreement, JointStream, Pair, Span, Unpaired};
 
 /// Fewest pairs that fit badly which show that rows were lost and taken twice.
 const FEW_WRONG: usize = 2;
-
-/// How far a lag by stands may be off, seconds.
-const NEAR_STANDS_S: f64 = 0.3;
-
-/// Share of the reach beyond which no order fits.
-const DOUBTFUL: f64 = 0.05;
+/// Share of the pairs up to which those that fit badly are named one by one.
+pub(super) const SOME_WRONG: f64 = 0.25;
 
 /// Joint readings of a file.
 #[derive(Clone, Debug)]
@@ -43,12 +40,32 @@ pub(super) struct JointRows {
     pub(super) spans: Option<Vec<Span>>,
     /// The stream of which they are stands.
     pub(super) stream: Option<JointStream>,
+    /// Why they are no stream.
+    pub(super) no_stands: NoStands,
     /// Readings of that stream at times of equal distance.
     pub(super) sampled: Option<Sampled>,
     pub(super) controller: Option<Controller>,
 }
 
 impl JointRows {
+    /// The lines of rows; of stands those at which they begin, with their times.
+    pub(super) fn lines_of(&self, rows: &[usize]) -> String {
+        let line = |row: &usize| {
+            let line = self.lines.get(*row)?;
+            Some(match self.spans.as_ref().and_then(|it| it.get(*row)) {
+                Some((begin, _)) => format!("{line} ({begin:.2} s)"),
+                None => line.to_string(),
+            })
+        };
+        let lines: Vec<String> = rows.iter().filter_map(line).collect();
+        match (&self.spans, lines.len()) {
+            (None, _) if self.is_sheet => numbered_as("row", &lines),
+            (None, _) => numbered(&lines),
+            (Some(_), 1) => format!("the stand that begins at {}", numbered(&lines)),
+            (Some(_), _) => format!("the stands that begin at {}", numbered(&lines)),
+        }
+    }
+
     /// The same with its angles in degrees.
     pub(super) fn in_degrees(&self) -> Self {
         let of = |(value, turns): (&f64, &bool)| if *turns { value.to_radians() } else { *value };
@@ -78,6 +95,8 @@ pub(super) struct Pairing<'a> {
     pub(super) spans: Option<&'a [Span]>,
     /// The lag that was stated, and how far it may be off, seconds.
     pub(super) lag: Option<Lag>,
+    /// Why the measurements are no stream; absent of those whose stands these are.
+    pub(super) no_stands: Option<&'a NoStands>,
     /// The stream of measurements whose stands these are, with its times, seconds.
     pub(super) stream: Option<(&'a Dataset, &'a [f64])>,
 }
@@ -87,11 +106,24 @@ pub(super) struct Joined {
     /// What is kept of it.
     pub(super) entry: JoinEntry,
     pub(super) readings: ReadingsByLine,
+    /// Rows of joint readings at which nothing was measured.
+    pub(super) unmeasured: Vec<usize>,
     pub(super) notes: Vec<String>,
     pub(super) warnings: Vec<String>,
 }
 
-impl Pairing<'_> {
+impl<'a> Pairing<'a> {
+    /// Of lists, without clocks.
+    pub(super) fn of_lists(
+        joints: &'a JointRows,
+        path: &'a Path,
+        data: &'a Dataset,
+        robot: &'a Robot,
+    ) -> Self {
+        let rows = Unpaired::new(robot, &joints.readings, data);
+        Pairing { joints, path, data, rows, robot, spans: None, lag: None, no_stands: None, stream: None }
+    }
+
     /// The readings of each line, by names or by the order.
     pub(super) fn found(&self, join: Option<Join>) -> Result<Joined> {
         let by_names = if matches!(join, Some(Join::Rows | Join::Time)) { None } else { self.by_names() };
@@ -113,73 +145,44 @@ impl Pairing<'_> {
             ),
             (_, Some(pairs)) => match self.judged(&pairs, Join::Name, join.is_some()) {
                 // Numbers may count the points only.
-                Err(_) if join.is_none() => self.by_rows(false),
+                Err(error) if join.is_none() => match self.by_rows(false) {
+                    Ok(mut joined) => {
+                        joined.warnings.push(format!(
+                            "{}, {}: the order of the rows was taken, and not the names, which are in both: {}",
+                            self.joints.path.display(),
+                            self.path.display(),
+                            error.message()
+                        ));
+                        Ok(joined)
+                    }
+                    Err(_) => Err(error),
+                },
                 judged => judged,
             },
             (_, None) => self.by_rows(join.is_some()),
         }
     }
 
-    /// So many stands of two streams, each with its clock, at the lags at which some are the same.
-    fn by_lag(&self, found: &[Lagged], (joints, shots): (usize, usize)) -> Result<Joined> {
-        let words = |it: &Lagged| format!("{:.2} s ({:.3} mm)", it.lag_s, 1e3 * it.missed_m);
-        let stated = if self.lag.is_some() { " near the stated one" } else { "" };
-        let Some(best) = found.first() else {
-            return self.refuse(format!(
-                "found {} stands of the robot and {} of the measurements, and no lag of the clocks{stated} at which seven of them or more are the same, expected a recording of the same motion",
-                joints, shots
-            ));
-        };
-        let alike: Vec<String> =
-            found.iter().filter(|it| it.missed_m < 2.0 * best.missed_m).map(words).collect();
-        if alike.len() > 1 {
-            return self.refuse(format!(
-                "found measurements that fit the joint readings at several lags of the clocks alike, {}, as of a program that repeats itself, expected one: state it by --lag, like --lag {:.1}s+-0.5s",
-                first_few(&alike),
-                best.lag_s
-            ));
-        }
-        let mut joined = self.judged(&best.pairs, Join::Time, self.lag.is_some())?;
-        let between = self.lag_between(best.lag_s);
-        joined.entry.lag_s = between.or(Some(best.lag_s));
-        joined.notes.push(format!(
-            "{}: {} stands of {} and of {} are the same, at a lag of {} s of its clock",
-            self.path.display(),
-            best.pairs.len(),
-            joints,
-            shots,
-            between.map_or_else(|| format!("{:.3}", best.lag_s), |it| format!("{it:.4}"))
-        ));
-        Ok(joined)
-    }
-
-    /// The lag near one by stands at which the measurements between these fit too, seconds; stands need none.
-    fn lag_between(&self, near_s: f64) -> Option<f64> {
-        let (joints, (data, times)) = (self.joints.stream.as_ref()?, self.stream?);
-        let motion = Motion::new(self.robot, joints, data, times).ok()?;
-        motion.found(Some((near_s, NEAR_STANDS_S))).ok().map(|it| it.clock.lag_s)
-    }
-
     fn by_rows(&self, is_stated: bool) -> Result<Joined> {
         let (joints, shots) = (self.rows.joint_rows(), self.rows.shots().len());
         if joints != shots {
-            return self.by_alignment(self.rows.aligned());
+            return self.by_alignment();
         }
         let pairs: Vec<Pair> = (0..joints).map(|row| (row, row)).collect();
         // As many rows may hide that one was lost and another one taken twice.
-        let wrong = self.rows.wrong(&pairs);
+        let wrong = self.rows.wrong(&pairs).0.len();
         if wrong >= FEW_WRONG
             && let Some(found) =
                 self.rows.aligned().filter(|it| it.unread.is_empty() && !it.repeated.is_empty())
-            && self.rows.wrong(&found.pairs) < wrong
+            && self.rows.wrong(&found.pairs).0.len() < wrong
         {
-            return self.by_alignment(Some(found));
+            return self.aligned(Some(found));
         }
         self.judged(&pairs, Join::Rows, is_stated)
     }
 
     /// The error of files that cannot be joined.
-    fn refuse<T>(&self, message: String) -> Result<T> {
+    pub(super) fn refuse<T>(&self, message: String) -> Result<T> {
         let words = format!("{message} ({} has the joint readings)", self.joints.path.display());
         Err(Error::new(ErrorKind::Measurement, words).in_file(self.path))
     }
@@ -206,7 +209,7 @@ impl Pairing<'_> {
     }
 
     /// Pairs of one order, if the nominal robot agrees with them and with no other order; `is_stated` where the user said that they are right.
-    fn judged(&self, pairs: &[Pair], how: Join, is_stated: bool) -> Result<Joined> {
+    pub(super) fn judged(&self, pairs: &[Pair], how: Join, is_stated: bool) -> Result<Joined> {
         let (joints, path) = (self.joints.path.display(), self.path.display());
         let (by_name, option) = match how {
             Join::Name => ("by name", "name"),
@@ -215,7 +218,6 @@ impl Pairing<'_> {
             Join::Motion => ("in motion", "motion"),
         };
         let found = self.rows.agreement(pairs);
-        let mm = |metres: f64| format!("{:.3} mm", 1e3 * metres);
         let mut warnings = Vec::new();
         match found {
             Some(Agreement::Other { missed_m, order, other_m }) => {
@@ -245,14 +247,13 @@ impl Pairing<'_> {
                 warnings.push(format!("{joints}, {path}: {message}"));
             }
             Some(Agreement::None { missed_m }) => {
-                let reason = self.diagnosis(pairs).unwrap_or_else(|| {
-                    "look at the units, the signs and the order of joints and measurements".to_owned()
-                });
                 let message = format!(
-                    "the nominal robot misses the measurements by {} (median) if they are joined {by_name}, no less than by chance: {reason}",
-                    mm(missed_m)
+                    "the nominal robot misses the measurements by {} (median) if they are joined {by_name}, no less than by chance: {}",
+                    mm(missed_m),
+                    join_doubt::reason(self.robot, &self.rows.session_of(pairs))
                 );
-                if !is_stated {
+                // A robot that moves little misses little in any order.
+                if !is_stated || join_doubt::is_doubtful(self.robot, missed_m) {
                     return self.refuse(format!("found measurements that do not fit the joint readings: {message}"));
                 }
                 warnings.push(format!("{joints}, {path}: {message}"));
@@ -270,6 +271,9 @@ impl Pairing<'_> {
             Some(Agreement::Right { .. }) => {}
         }
         self.refuse_exchanged(pairs)?;
+        if let Some(Agreement::Right { missed_m } | Agreement::Alike { missed_m, .. }) = found {
+            warnings.extend(self.refuse_doubtful(missed_m, pairs, by_name)?);
+        }
         let missed = match found {
             Some(Agreement::Right { missed_m }) => {
                 format!(
@@ -280,9 +284,11 @@ impl Pairing<'_> {
             _ => String::new(),
         };
         let note = format!("{joints} and {path} were joined {by_name}: {}{missed}", counted(pairs.len()));
-        warnings.extend(self.left_out(pairs));
+        warnings.extend(self.wrong_pairs(pairs));
+        warnings.extend(self.without_partner(pairs));
         let entry = self.entry(how, pairs, found.as_ref().map(Agreement::missed_m));
-        Ok(Joined { entry, readings: self.readings(pairs), notes: vec![note], warnings })
+        let unmeasured = self.unmeasured(pairs);
+        Ok(Joined { entry, readings: self.readings(pairs), unmeasured, notes: vec![note], warnings })
     }
 
     /// Refuses rows that fit each other's readings.
@@ -300,50 +306,28 @@ impl Pairing<'_> {
         ))
     }
 
-    /// What a diagnosis says beside an order that fits badly, too.
-    fn doubt(&self, missed_m: f64, pairs: &[Pair]) -> String {
-        if missed_m < DOUBTFUL * self.robot.reach_m() {
-            return String::new();
-        }
-        self.diagnosis(pairs).map_or_else(String::new, |it| format!("; but {it}"))
-    }
-
-    /// What a diagnosis of mistakes says of pairs.
-    fn diagnosis(&self, pairs: &[Pair]) -> Option<String> {
-        let data = self.rows.session_of(pairs);
-        let found = diagnose(self.robot, &data, &data.all_rows(), &DiagnosisOptions::default());
-        found.first().map(|it| it.statement.clone())
-    }
-
     /// What is kept of pairs.
-    fn entry(&self, join: Join, pairs: &[Pair], missed_m: Option<f64>) -> JoinEntry {
-        let mut counts = (vec![0_usize; self.rows.joint_rows()], vec![0_usize; self.rows.shots().len()]);
-        for (joint, shot) in pairs {
-            counts.0[*joint] += 1;
-            counts.1[*shot] += 1;
-        }
-        let of_joints = |is_it: &dyn Fn(usize) -> bool| {
-            let found = (0..).zip(&counts.0).filter(|it| is_it(*it.1)).map(|it| it.0);
-            found
-                .filter_map(|at: usize| Some(RowEntry { number: at + 1, line: *self.joints.lines.get(at)? }))
-                .take(MOST_ALONE)
-                .collect::<Vec<_>>()
+    pub(super) fn entry(&self, join: Join, pairs: &[Pair], missed_m: Option<f64>) -> JoinEntry {
+        let paired: BTreeSet<usize> = pairs.iter().map(|it| it.1).collect();
+        let of_joints = |rows: Vec<usize>| {
+            let entry = |at: usize| Some(RowEntry { number: at + 1, line: *self.joints.lines.get(at)? });
+            rows.into_iter().filter_map(entry).take(MOST_ALONE).collect::<Vec<_>>()
         };
-        let of_shots = (0..).zip(&counts.1).filter(|it| *it.1 == 0).map(|it| it.0);
+        let of_shots = (0..self.rows.shots().len()).filter(|it| !paired.contains(it));
         let entry_of = |at: usize| Some(RowEntry { number: at + 1, line: self.shot_line(at)? });
         let robot_motion = self.joints.sampled.as_ref().filter(|_| join == Join::Time);
         JoinEntry {
             joints: self.joints.path.display().to_string(),
             measurements: self.path.display().to_string(),
             join,
-            joint_rows: counts.0.len(),
-            measured_rows: counts.1.len(),
+            joint_rows: self.rows.joint_rows(),
+            measured_rows: self.rows.shots().len(),
             paired: pairs.len(),
             missed_mm: missed_m.map(|it| 1e3 * it),
             lag_s: None,
             pairs: pairs.iter().take(MOST_PAIRS).map(|it| [it.0 + 1, it.1 + 1]).collect(),
-            unmeasured: of_joints(&|count| count == 0),
-            repeated: of_joints(&|count| count > 1),
+            unmeasured: of_joints(self.unmeasured(pairs)),
+            repeated: of_joints(self.repeated_rows(pairs)),
             unread: of_shots.filter_map(entry_of).take(MOST_ALONE).collect(),
             robot_motion: robot_motion
                 .map(|it| it.of_robot(self.robot, self.joints.spans.as_deref().unwrap_or_default())),
@@ -351,80 +335,7 @@ impl Pairing<'_> {
         }
     }
 
-    /// What has no partner.
-    fn left_out(&self, pairs: &[Pair]) -> Vec<String> {
-        let joints: BTreeSet<usize> = pairs.iter().map(|it| it.0).collect();
-        let shots: BTreeSet<usize> = pairs.iter().map(|it| it.1).collect();
-        let alone = (0..self.rows.joint_rows()).filter(|it| !joints.contains(it)).collect::<Vec<_>>();
-        let unread = (0..self.rows.shots().len()).filter(|it| !shots.contains(it)).collect::<Vec<_>>();
-        let mut said = Vec::new();
-        if !alone.is_empty() {
-            said.push(format!(
-                "{}: nothing was measured at {}",
-                self.joints.path.display(),
-                self.joint_lines(&alone)
-            ));
-        }
-        if !unread.is_empty() {
-            said.push(format!(
-                "{}: left out {}, which have no joint readings",
-                self.path.display(),
-                self.shot_lines(&unread)
-            ));
-        }
-        said
-    }
-
-    /// Lists of unequal length, by the errors of the nominal robot.
-    fn by_alignment(&self, found: Option<Aligned>) -> Result<Joined> {
-        let (joints, shots) = (self.rows.joint_rows(), self.rows.shots().len());
-        let counts = format!("found {shots} measured configurations and {joints} rows of joint readings");
-        let Some(found) = found else {
-            return self.refuse(format!(
-                "{counts}, expected as many, or names in both (a column `id`): nothing shows which belong together"
-            ));
-        };
-        let Aligned { pairs, unmeasured, repeated, unread, unclear, missed_m } = &found;
-        if 2 * pairs.len() < shots.min(joints) {
-            return self.refuse(format!(
-                "{counts}, expected as many, or names in both (a column `id`): only {} of them fit the nominal robot in this order",
-                pairs.len()
-            ));
-        }
-        if !matches!(self.rows.agreement(pairs), Some(Agreement::Right { .. })) {
-            return self.refuse(format!(
-                "{counts}, expected as many, or names in both (a column `id`): no order fits evidently better than others"
-            ));
-        }
-        let mut warnings = Vec::new();
-        let (own, path) = (self.joints.path.display(), self.path.display());
-        if !unmeasured.is_empty() {
-            warnings.push(format!("{own}: nothing was measured at {}", self.joint_lines(unmeasured)));
-        }
-        if !repeated.is_empty() {
-            warnings.push(format!("{own}: more than once was measured at {}", self.joint_lines(repeated)));
-        }
-        if !unread.is_empty() {
-            warnings
-                .push(format!("{path}: left out {}, which fit no joint readings", self.shot_lines(unread)));
-        }
-        if !unclear.is_empty() {
-            warnings.push(format!(
-                "{path}: left out {}, which fit two neighbouring rows of joint readings",
-                self.shot_lines(unclear)
-            ));
-        }
-        let note = format!(
-            "{own} and {path} were joined in their order, since they have {joints} and {shots} rows: {} configurations; the nominal robot misses them by \
-             {:.3} mm (median)",
-            pairs.len(),
-            1e3 * missed_m
-        );
-        let entry = self.entry(Join::Rows, pairs, Some(*missed_m));
-        Ok(Joined { entry, readings: self.readings(pairs), notes: vec![note], warnings })
-    }
-
-    fn readings(&self, pairs: &[Pair]) -> ReadingsByLine {
+    pub(super) fn readings(&self, pairs: &[Pair]) -> ReadingsByLine {
         let mut found =
             ReadingsByLine { controller: self.joints.controller.clone(), ..ReadingsByLine::default() };
         for (joint, shot) in pairs {
@@ -437,10 +348,8 @@ impl Pairing<'_> {
         found
     }
 
-    fn joint_lines(&self, rows: &[usize]) -> String {
-        let lines: Vec<String> =
-            rows.iter().filter_map(|row| self.joints.lines.get(*row)).map(ToString::to_string).collect();
-        if self.joints.is_sheet { numbered_as("row", &lines) } else { numbered(&lines) }
+    pub(super) fn joint_lines(&self, rows: &[usize]) -> String {
+        self.joints.lines_of(rows)
     }
 
     /// The line at which a configuration was measured first.
@@ -449,7 +358,7 @@ impl Pairing<'_> {
         Some(self.data.observations.get(row as usize)?.source.line as usize)
     }
 
-    fn shot_lines(&self, shots: &[usize]) -> String {
+    pub(super) fn shot_lines(&self, shots: &[usize]) -> String {
         let line = |shot: &usize| self.shot_line(*shot).map(|it| it.to_string());
         numbered(&shots.iter().filter_map(line).collect::<Vec<_>>())
     }

@@ -3,6 +3,19 @@
 use crate::error::first_few;
 use crate::start::Order;
 
+/// A length in words.
+pub(super) fn mm(metres: f64) -> String {
+    format!("{:.3} mm", 1e3 * metres)
+}
+
+/// What is said of lags at which measurements fit alike, the best first.
+pub(super) fn several_lags(listed: &[String], best_s: f64) -> String {
+    format!(
+        "found measurements that fit the joint readings at several lags of the clocks alike, {}, as of a program that repeats itself, expected one: state it by --lag, like --lag {best_s:.1}s+-0.5s",
+        first_few(listed)
+    )
+}
+
 /// Configurations in words.
 pub(super) fn counted(configurations: usize) -> String {
     if configurations == 1 {

@@ -1,6 +1,6 @@
 //! Files of joint readings and files of measurements, joined row with row (docs/file-formats.md, *Two files*).
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use super::inputs::InputReader;
@@ -14,14 +14,14 @@ use super::motions::{Sampled, motion_of_points, motion_of_target};
 use super::number::Numbers;
 use super::read::Reader;
 use super::recorded::MEASURED;
-use super::streams::{stands_of_joints, stands_of_measured};
+use super::streams::{NoStands, stands_of_joints, stands_of_measured};
 use super::table::Table;
 use super::understanding::{self, FileUnderstanding};
 use super::units::UnitSource;
 use super::{Join, LostBeams};
 use crate::error::{Error, ErrorKind, Result};
 use crate::measurement::Dataset;
-use crate::start::{JointStream, Span, Unpaired};
+use crate::start::{FEWEST_PAIRS, JointStream, Span, Unpaired};
 use crate::unit::Unit;
 
 impl<'a> Reader<'a> {
@@ -31,12 +31,17 @@ impl<'a> Reader<'a> {
         let first = plan.files.iter().find(|it| it.part == Part::Joints);
         let mut joints = first.map(|it| self.joint_rows(it)).transpose()?;
         let mut of_joints = first;
+        let mut unmeasured = Unmeasured::default();
         for it in &plan.files {
             match (it.part, &joints) {
                 (Part::Joints, Some(known)) if known.path == it.path => {}
-                (Part::Joints, _) => (joints, of_joints) = (Some(self.joint_rows(it)?), Some(it)),
+                (Part::Joints, _) => {
+                    let known = joints.replace(self.joint_rows(it)?);
+                    self.warn_of_unmeasured(std::mem::take(&mut unmeasured), known.as_ref());
+                    of_joints = Some(it);
+                }
                 (Part::Measured { .. }, Some(known)) => {
-                    let read = self.measured(it, known);
+                    let read = self.measured(it, known, &mut unmeasured);
                     read.map_err(|error| self.or_shifted(error, (of_joints, known), it))?;
                 }
                 (Part::Measured { .. }, None) | (Part::Whole, _) => {
@@ -44,7 +49,17 @@ impl<'a> Reader<'a> {
                 }
             }
         }
+        self.warn_of_unmeasured(unmeasured, joints.as_ref());
         Ok(())
+    }
+
+    /// Warns of joint readings at which nothing was measured in any file.
+    fn warn_of_unmeasured(&mut self, found: Unmeasured, joints: Option<&JointRows>) {
+        let (Some(rows), Some(joints)) = (found.rows.filter(|it| !it.is_empty()), joints) else { return };
+        let rows: Vec<usize> = rows.into_iter().collect();
+        let warning =
+            format!("{}: nothing was measured at {}", joints.path.display(), joints.lines_of(&rows));
+        self.found.warnings.insert(found.at.min(self.found.warnings.len()), warning);
     }
 
     /// Reads a file of joint readings alone. Angles without a unit that are no radians are degrees: the nominal robot then agrees with the pairs, or
@@ -110,19 +125,25 @@ impl<'a> Reader<'a> {
             spans: None,
             sampled: None,
             stream: None,
+            no_stands: NoStands::Listed,
             controller: layout.controller,
         };
         // A stream has no names of rows.
         let is_listed =
             !rows.ids.is_empty() || matches!(self.options.join, Some(Join::Rows | Join::Name | Join::Motion));
-        let Some(mut stands) = (if is_listed { None } else { stands_of_joints(&rows, &rows.times) }) else {
-            if self.options.join == Some(Join::Motion) {
-                rows.sampled = Sampled::new(&rows.times, &rows.readings, rows.turns.len());
+        let found = if is_listed { Err(NoStands::Listed) } else { stands_of_joints(&rows, &rows.times) };
+        let mut stands = match found {
+            Ok(stands) => stands,
+            Err(why) => {
+                refuse_backwards(path, &why)?;
+                if self.options.join == Some(Join::Motion) {
+                    rows.sampled = Sampled::new(&rows.times, &rows.readings, rows.turns.len());
+                }
+                return Ok(JointRows { no_stands: why, ..rows });
             }
-            return Ok(rows);
         };
         stands.stream = JointStream::new(&rows.times, &rows.readings, rows.turns.len());
-        if stands.lines.len() < FEWEST_STANDS {
+        if stands.lines.len() < FEWEST_PAIRS {
             return Err(no_stands(path, "joint readings", stands.lines.len()));
         }
         self.found.notes.push(format!(
@@ -135,7 +156,12 @@ impl<'a> Reader<'a> {
     }
 
     /// Reads a file of measurements alone, with the readings of another.
-    fn measured(&mut self, planned: &'a Planned<'_>, joints: &JointRows) -> Result<()> {
+    fn measured(
+        &mut self,
+        planned: &'a Planned<'_>,
+        joints: &JointRows,
+        unmeasured: &mut Unmeasured,
+    ) -> Result<()> {
         let path = planned.path;
         let (data, times) = self.without_readings(planned)?;
         if self.options.join == Some(Join::Motion) {
@@ -150,15 +176,22 @@ impl<'a> Reader<'a> {
                 }
                 found => found?,
             };
-            return self.again(planned, found);
+            return self.again(planned, found, unmeasured);
         }
         let is_by_rows = matches!(self.options.join, Some(Join::Rows | Join::Name));
-        let stands = if is_by_rows || !joints.ids.is_empty() && !data.ids.iter().all(String::is_empty) {
-            None
+        let found = if is_by_rows || !joints.ids.is_empty() && !data.ids.iter().all(String::is_empty) {
+            Err(NoStands::Listed)
         } else {
             stands_of_measured(&data, &times)
         };
-        let few = |count: usize| count < FEWEST_STANDS;
+        let (stands, why) = match found {
+            Ok(stands) => (Some(stands), None),
+            Err(why) => (None, Some(why)),
+        };
+        if let Some(why) = &why {
+            refuse_backwards(path, why)?;
+        }
+        let few = |count: usize| count < FEWEST_PAIRS;
         if let Some(stands) = stands.as_ref().filter(|it| few(it.spans.len())) {
             return Err(no_stands(path, "measurements", stands.spans.len()));
         }
@@ -169,9 +202,9 @@ impl<'a> Reader<'a> {
             .then(|| points(data, &times));
         let spans = stands.as_ref().map(|it| &it.spans).or(points.as_ref()).map(Vec::as_slice);
         let paired = |joints: &JointRows| {
-            let rows = Unpaired::new(self.robot, &joints.readings, data);
-            Pairing { joints, path, data, rows, robot: self.robot, spans, lag: self.options.lag, stream }
-                .found(self.options.join)
+            let (lag, no_stands) = (self.options.lag, why.as_ref());
+            let lists = Pairing::of_lists(joints, path, data, self.robot);
+            Pairing { spans, lag, no_stands, stream, ..lists }.found(self.options.join)
         };
         let mut found = match paired(joints) {
             Err(error) if joints.is_without_unit => {
@@ -188,20 +221,22 @@ impl<'a> Reader<'a> {
                 path.display(),
                 1e3 * stands.scatter_m
             ));
+            found.warnings.extend(stands.warnings.iter().map(|it| format!("{}: {it}", path.display())));
             found.readings.means = stands.means;
         }
         let by_time = found.entry.join == Join::Time;
         found.entry.measured_motion =
             motion.or_else(|| points.as_deref().filter(|_| by_time).and_then(motion_of_points));
-        self.again(planned, found)
+        self.again(planned, found, unmeasured)
     }
 
     /// Reads a file of measurements again, with the readings of each line.
-    fn again(&mut self, planned: &'a Planned<'_>, found: Joined) -> Result<()> {
+    fn again(&mut self, planned: &'a Planned<'_>, found: Joined, unmeasured: &mut Unmeasured) -> Result<()> {
         let (path, unread) = (planned.path, &planned.map);
         self.found.join = Some(found.entry.join);
         self.found.joins.push(found.entry);
         self.found.notes.extend(found.notes);
+        unmeasured.include(found.unmeasured, self.found.warnings.len());
         self.found.warnings.extend(found.warnings);
         let usual = std::mem::replace(&mut self.map, unread);
         self.readings = Some(found.readings);
@@ -221,14 +256,39 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// Fewest stands that show which belong together.
-const FEWEST_STANDS: usize = 7;
+/// Joint readings at which no file so far has a measurement.
+#[derive(Clone, Debug, Default)]
+struct Unmeasured {
+    rows: Option<BTreeSet<usize>>,
+    /// Where the warning of these is among all.
+    at: usize,
+}
+
+impl Unmeasured {
+    /// Adds a file of measurements.
+    fn include(&mut self, rows: Vec<usize>, at: usize) {
+        let rows: BTreeSet<usize> = rows.into_iter().collect();
+        match &mut self.rows {
+            Some(known) => known.retain(|it| rows.contains(it)),
+            None => (self.rows, self.at) = (Some(rows), at),
+        }
+    }
+}
+
+/// Refuses a recording whose times go back.
+fn refuse_backwards(path: &Path, why: &NoStands) -> Result<()> {
+    let NoStands::Recorded { why, back: Some(line) } = why else { return Ok(()) };
+    let message = format!(
+        "found {why}, expected rows in the order of their times: sort them, or leave out those of another recording"
+    );
+    Err(ErrorKind::Measurement.error(message).at_line(path, *line))
+}
 
 /// The error of a stream in which the robot hardly stands.
 fn no_stands(path: &Path, what: &str, count: usize) -> Error {
     ErrorKind::Measurement
         .error(format!(
-            "found a stream of {what} with {count} times in which nothing moves for 0.3 s or longer, expected at least {FEWEST_STANDS} stands: let the robot stop at each configuration, or join the recordings in motion (--join motion), or rows of the same time (--join rows)"
+            "found a stream of {what} with {count} times in which nothing moves for 0.3 s or longer, expected at least {FEWEST_PAIRS} stands: let the robot stop at each configuration, or join the recordings in motion (--join motion), or rows of the same time (--join rows)"
         ))
         .in_file(path)
 }

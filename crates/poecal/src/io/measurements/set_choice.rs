@@ -11,7 +11,6 @@ use super::recorded::{Called, MEASURED, Opened, OwnTable};
 use super::text::Blocks;
 use crate::error::{ErrorKind, Result};
 use crate::robot::Robot;
-use crate::start::Unpaired;
 
 /// What the nominal robot misses by less was computed by it, metres: the last digits of a report.
 const COMPUTED_M: f64 = 5e-5;
@@ -74,9 +73,7 @@ impl Reader<'_> {
             let mut reader = Reader { map, ..Reader::new(self.robot, self.options, map) };
             reader.rows_alone(path, table.blocks(path, MEASURED))?;
             let data = &reader.found.data;
-            let rows = Unpaired::new(self.robot, &joints.readings, data);
-            let pairing =
-                Pairing { joints, path, data, rows, robot: self.robot, spans: None, lag: None, stream: None };
+            let pairing = Pairing::of_lists(joints, path, data, self.robot);
             Ok(pairing.found(self.options.join).ok().and_then(|it| it.entry.missed_mm).map(|it| 1e-3 * it))
         };
         let mut errors = [missed(&sets[0], joints)?, missed(&sets[1], joints)?];

@@ -134,10 +134,7 @@ impl Reader<'_> {
             if data.len() > MOST_ROWS {
                 return None;
             }
-            let rows = Unpaired::new(self.robot, &joints.readings, data);
-            let path = planned.path;
-            let pairing =
-                Pairing { joints, path, data, rows, robot: self.robot, spans: None, lag: None, stream: None };
+            let pairing = Pairing::of_lists(joints, planned.path, data, self.robot);
             pairing.found(None).ok()?.entry.missed_mm.map(|it| 1e-3 * it)
         };
         let fit = |joints: &JointRows, data: &Dataset| {

@@ -5,11 +5,13 @@ use std::collections::BTreeMap;
 use nalgebra::{Matrix3, Vector3};
 
 use super::join_pairs::JointRows;
+use super::join_words::numbered;
 use super::layout::ColumnLayout;
+use super::stand_means::{Spread, kept, kept_values};
 use super::table::Row;
 use crate::lie::{Pose, rotation};
 use crate::measurement::{Dataset, Measurement, Observation};
-use crate::start::{Span, Stand, Stream, StreamChannels, mean_rotation};
+use crate::start::{NoStream, Span, Stand, Stream, StreamChannels, mean_rotation};
 
 /// Changes that are none: of a joint (rad, m), of a position (m), and of an orientation (rad).
 const STILL_JOINT: f64 = 5e-5;
@@ -26,8 +28,49 @@ pub(super) fn time_of(row: &Row<'_>, layout: &ColumnLayout) -> f64 {
     value.map_or(f64::NAN, |it| it * seconds)
 }
 
+/// Why rows have no stands.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum NoStands {
+    /// They are a list, or have other measurements than places.
+    Listed,
+    /// They follow each other as in a recording, whose times cannot be used: what is wrong with these, and the line whose time is before the one above it.
+    Recorded { why: String, back: Option<usize> },
+}
+
+impl NoStands {
+    /// Of what is wrong with the times of rows with these lines.
+    fn of(why: NoStream, times: &[f64], lines: &[usize]) -> Self {
+        let line = |row: usize| lines.get(row).copied().unwrap_or_default();
+        let back = if let NoStream::Back(row) = why { Some(line(row)) } else { None };
+        let why = match why {
+            NoStream::NoTime(_) if times.iter().all(|it| it.is_nan()) => "no column of times".to_owned(),
+            NoStream::NoTime(row) => format!("no time in line {}", line(row)),
+            NoStream::Slow(0.0) => {
+                "times that are the same in most rows (write them with fractions of a second)".to_owned()
+            }
+            NoStream::Slow(step_s) => {
+                let units = [("ms", 1e-3), ("us", 1e-6), ("ns", 1e-9)];
+                let unit = units.into_iter().find(|it| (1e-4..0.25).contains(&(step_s * it.1)));
+                let advice = unit.map_or_else(
+                    || "a recording has four rows a second or more".to_owned(),
+                    |(unit, _)| format!("if they are {unit}, write `time[{unit}]` in the header"),
+                );
+                format!("times {step_s} s apart ({advice})")
+            }
+            NoStream::Back(row) => {
+                let time = |row: usize| times.get(row).copied().unwrap_or(f64::NAN);
+                format!("a time that goes back, from {} s to {} s", time(row.saturating_sub(1)), time(row))
+            }
+        };
+        NoStands::Recorded { why, back }
+    }
+}
+
 /// Stands of a stream of joint readings, as the rows that they are.
-pub(super) fn stands_of_joints(rows: &JointRows, times: &[f64]) -> Option<JointRows> {
+///
+/// # Errors
+/// [`NoStands`].
+pub(super) fn stands_of_joints(rows: &JointRows, times: &[f64]) -> Result<JointRows, NoStands> {
     let width = rows.turns.len();
     let channel = |at: usize| rows.readings.iter().skip(at).step_by(width.max(1)).copied().collect();
     let channels: Vec<Vec<f64>> = (0..width).map(channel).collect();
@@ -36,16 +79,17 @@ pub(super) fn stands_of_joints(rows: &JointRows, times: &[f64]) -> Option<JointR
         freedom: 1,
         floor: STILL_JOINT.max(digit(values).min(COARSEST_JOINT)),
     };
-    let stream = dense(times, channels.iter().map(alone).collect())?;
+    let floors: Vec<f64> = channels.iter().map(|it| alone(it).floor).collect();
+    let stream = dense(times, channels.iter().map(alone).collect(), &rows.lines)?;
     let stands = stream.stands();
     let mean = |stand: &Stand| {
-        let of = |channel: &Vec<f64>| {
-            let own = channel.get(stand.rows.clone()).unwrap_or_default();
+        let of = |(channel, floor): (&Vec<f64>, &f64)| {
+            let own = kept_values(channel.get(stand.rows.clone()).unwrap_or_default(), *floor);
             own.iter().sum::<f64>() / own.len().max(1) as f64
         };
-        channels.iter().map(of).collect::<Vec<f64>>()
+        channels.iter().zip(&floors).map(of).collect::<Vec<f64>>()
     };
-    Some(JointRows {
+    Ok(JointRows {
         readings: stands.iter().flat_map(mean).collect(),
         ids: Vec::new(),
         lines: stands.iter().filter_map(|it| rows.lines.get(it.rows.start)).copied().collect(),
@@ -60,12 +104,17 @@ fn digit(values: &[f64]) -> f64 {
     changes.min_by(f64::total_cmp).unwrap_or_default()
 }
 
-/// A stream, if rows are one.
-fn dense(times: &[f64], channels: Vec<StreamChannels>) -> Option<Stream> {
-    if times.is_empty() || times.iter().any(|it| !it.is_finite()) {
-        return None;
+/// A stream, if rows of these lines are one.
+fn dense(times: &[f64], channels: Vec<StreamChannels>, lines: &[usize]) -> Result<Stream, NoStands> {
+    let own = if times.len() == lines.len() { times.to_vec() } else { vec![f64::NAN; lines.len()] };
+    let stream = Stream::new(own, channels);
+    if !stream.is_smooth() {
+        return Err(NoStands::Listed);
     }
-    Some(Stream::new(times.to_vec(), channels)).filter(Stream::is_dense)
+    match stream.no_stream() {
+        Some(why) => Err(NoStands::of(why, times, lines)),
+        None => Ok(stream),
+    }
 }
 
 /// The sum of the small turns from one orientation to the next, rad. Its parts have the same noise at every orientation, which those of a matrix
@@ -96,17 +145,22 @@ pub(super) struct MeasuredStands {
     pub(super) means: BTreeMap<usize, Vec<Measurement>>,
     /// Root mean square of how single rows scatter about these, metres.
     pub(super) scatter_m: f64,
+    /// What should be looked at, a sentence each.
+    pub(super) warnings: Vec<String>,
 }
 
-/// The stands of measurements with these times; `None` if they are no stream.
-pub(super) fn stands_of_measured(data: &Dataset, times: &[f64]) -> Option<MeasuredStands> {
+/// The stands of measurements with these times.
+///
+/// # Errors
+/// [`NoStands`].
+pub(super) fn stands_of_measured(data: &Dataset, times: &[f64]) -> Result<MeasuredStands, NoStands> {
     // The target that was seen most says when nothing moves.
-    let most = data.most_seen_target()?;
+    let most = data.most_seen_target().ok_or(NoStands::Listed)?;
     let rows: Vec<usize> =
         (0..data.len()).filter(|at| data.observations.get(*at).is_some_and(|it| it.target == most)).collect();
     let own: Vec<&Observation> = rows.iter().filter_map(|at| data.observations.get(*at)).collect();
     if own.iter().any(|it| it.measurement.position().is_none()) {
-        return None;
+        return Err(NoStands::Listed);
     }
     let is_posed = own.iter().all(|it| it.measurement.sees_orientation());
     let mut turned = Turned::default();
@@ -116,7 +170,7 @@ pub(super) fn stands_of_measured(data: &Dataset, times: &[f64]) -> Option<Measur
         place.iter().copied().chain(turn.iter().flat_map(|it| it.iter().copied())).collect()
     };
     let all: Vec<Vec<f64>> = own.iter().map(&mut numbers).collect();
-    let width = all.first()?.len();
+    let width = all.first().map_or(0, Vec::len);
     let channel = |at: usize| -> Vec<f64> { all.iter().filter_map(|it| it.get(at)).copied().collect() };
     let group = |range: std::ops::Range<usize>, floor: f64| StreamChannels {
         values: range.map(channel).collect(),
@@ -126,11 +180,12 @@ pub(super) fn stands_of_measured(data: &Dataset, times: &[f64]) -> Option<Measur
     let mut channels = vec![group(0..3, STILL_PLACE_M)];
     channels.extend((width > 3).then(|| group(3..width, STILL_TURN)));
     let own_times: Vec<f64> = rows.iter().filter_map(|at| times.get(*at)).copied().collect();
-    let stream = dense(&own_times, channels)?;
+    let lines: Vec<usize> = own.iter().map(|it| it.source.line as usize).collect();
+    let stream = dense(&own_times, channels, &lines)?;
     let mut found =
         MeasuredStands { data: Dataset::new(data.reading_names().to_vec()), ..MeasuredStands::default() };
     (found.data.targets, found.data.stations) = (data.targets.clone(), data.stations.clone());
-    let (mut squares, mut count) = (0.0, 0.0);
+    let (mut spreads, mut starts) = (Vec::new(), Vec::new());
     for stand in stream.stands() {
         let (Some(&first), Some(&last)) = (rows.get(stand.rows.start), rows.get(stand.rows.end - 1)) else {
             continue;
@@ -147,37 +202,44 @@ pub(super) fn stands_of_measured(data: &Dataset, times: &[f64]) -> Option<Measur
             continue;
         };
         let mut means = Vec::with_capacity(chosen.len());
+        let mut spread = Spread::default();
         for of in chosen {
             let same: Vec<&Measurement> =
                 seen.iter().filter(|it| it.target == of.target).map(|it| &it.measurement).collect();
-            let (mean, scatter) = mean_of(&same);
-            squares += scatter;
-            count += same.len() as f64;
+            let mean = mean_of(&same, &mut spread);
             let averaged = Observation { measurement: mean, ..**of };
             let nothing = vec![0.0; data.reading_names().len()];
             if found.data.push_observation(&nothing, averaged).is_err() {
-                return None;
+                return Err(NoStands::Listed);
             }
             found.data.ids.push(found.spans.len().to_string());
             means.push(mean);
         }
         found.spans.push(stand.span_s);
         found.means.insert(*line as usize, means);
+        starts.push(format!("{line} ({:.2} s)", stand.span_s.0));
+        spreads.push(spread);
     }
-    found.scatter_m = f64::sqrt(squares / f64::max(count, 1.0));
-    Some(found)
+    found.scatter_m = Spread::of_all(&spreads);
+    found.warnings = Spread::warnings(&spreads, |some| {
+        numbered(&some.iter().filter_map(|at| starts.get(*at)).cloned().collect::<Vec<_>>())
+    });
+    Ok(found)
 }
 
-/// The mean of measurements of one target, and the sum of the squares of the distances from it, m².
-fn mean_of(all: &[&Measurement]) -> (Measurement, f64) {
-    let places: Vec<Vector3<f64>> = all.iter().filter_map(|it| it.position()).collect();
-    let mean = places.iter().sum::<Vector3<f64>>() / places.len().max(1) as f64;
-    let squares = places.iter().map(|it| (it - mean).norm_squared()).sum();
-    let turns: Vec<Matrix3<f64>> = all.iter().filter_map(|it| it.orientation()).collect();
-    let measurement = if turns.len() == places.len() && !turns.is_empty() {
+/// The mean of measurements of one target, without those that are far from the others.
+fn mean_of(all: &[&Measurement], spread: &mut Spread) -> Measurement {
+    let all: Vec<(Vector3<f64>, Option<Matrix3<f64>>)> =
+        all.iter().filter_map(|it| Some((it.position()?, it.orientation()))).collect();
+    let places: Vec<Vector3<f64>> = all.iter().map(|it| it.0).collect();
+    let is_kept = kept(&places, STILL_PLACE_M);
+    let own = || all.iter().zip(&is_kept).filter(|it| *it.1).map(|it| it.0);
+    let mean = own().map(|it| it.0).sum::<Vector3<f64>>() / own().count().max(1) as f64;
+    spread.add(&places, &is_kept, &mean);
+    let turns: Vec<Matrix3<f64>> = own().filter_map(|it| it.1).collect();
+    if turns.len() == own().count() && !turns.is_empty() {
         Measurement::of_pose(&Pose::new(mean_rotation(turns.into_iter()), mean))
     } else {
         Measurement::point(mean)
-    };
-    (measurement, squares)
+    }
 }

@@ -1,13 +1,9 @@
 //! Whether pairs are evidently right, wrong, or no better than others.
 
-use super::{Pair, Unpaired};
+use super::{EVIDENT, FEWEST_PAIRS, Pair, Unpaired};
 
-/// How many times smaller the error of the right order is at least.
-const EVIDENT: f64 = 2.0;
 /// Rows by which one file may begin later.
 const SHIFTS: usize = 3;
-/// Fewest pairs that show anything: five points determine device and target, and leave no error.
-const FEWEST: usize = 7;
 /// Orders by chance with which pairs are compared.
 const BY_CHANCE: usize = 3;
 
@@ -72,13 +68,13 @@ impl Unpaired<'_> {
     /// How pairs agree with the nominal robot, beside their other orders; `None` if nothing can be compared, as of few pairs.
     #[must_use]
     pub fn agreement(&self, pairs: &[Pair]) -> Option<Agreement> {
-        if pairs.len() < FEWEST {
+        if pairs.len() < FEWEST_PAIRS {
             return None;
         }
         let missed_m = self.missed(pairs)?;
         let others = orders(pairs.len()).into_iter().filter_map(|order| {
             let other = reordered(pairs, order);
-            (other.len() >= FEWEST).then(|| Some((order, self.missed(&other)?)))?
+            (other.len() >= FEWEST_PAIRS).then(|| Some((order, self.missed(&other)?)))?
         });
         let best = others.min_by(|a, b| a.1.total_cmp(&b.1));
         let by_chance = (0..BY_CHANCE).filter_map(|k| self.missed(&shuffled(pairs, k)));
@@ -104,11 +100,12 @@ const WRONG: f64 = 8.0;
 const RIGHT: f64 = 3.0;
 
 impl Unpaired<'_> {
-    /// Number of pairs that the nominal robot misses by far more than the others.
+    /// Pairs that the nominal robot misses by far more than the others: indices into the pairs, with the error of each, metres, and the median of all.
     #[must_use]
-    pub fn wrong(&self, pairs: &[Pair]) -> usize {
-        let Some((estimate, usual)) = self.registered(pairs) else { return 0 };
-        self.errors_of(pairs, &estimate).into_iter().filter(|it| *it > WRONG * usual).count()
+    pub fn wrong(&self, pairs: &[Pair]) -> (Vec<(usize, f64)>, f64) {
+        let Some((estimate, usual)) = self.registered(pairs) else { return (Vec::new(), f64::NAN) };
+        let errors = self.errors_of(pairs, &estimate);
+        (errors.into_iter().enumerate().filter(|it| it.1 > WRONG * usual).collect(), usual)
     }
 
     /// Pairs whose measurements belong to each other's joint readings: indices into the pairs, each with the one whose readings it fits.

@@ -1,6 +1,6 @@
 //! Which stands of two streams are the same, where each has a clock of its own.
 
-use super::{Pair, Unpaired};
+use super::{FEWEST_PAIRS, Pair, Unpaired};
 use crate::distributions::median;
 
 /// Largest difference of the begins of two stands that are the same, seconds.
@@ -9,8 +9,7 @@ const NEAR_S: f64 = 0.3;
 const APART_S: f64 = 0.6;
 /// Most lags that are compared by the nominal robot.
 const MOST: usize = 80;
-/// Fewest pairs of a lag, and share of those of the lag with most.
-const FEWEST: usize = 7;
+/// Share of the pairs of the lag with most that another lag has at least.
 const SHARE: f64 = 0.4;
 
 /// When a stand begins and ends, seconds; both the same of a point.
@@ -42,7 +41,7 @@ impl Unpaired<'_> {
         let mut counted: Vec<(usize, f64)> = differences
             .filter(|lag| is_allowed(*lag))
             .map(|lag| (paired(joints, shots, lag).len(), lag))
-            .filter(|it| it.0 >= FEWEST)
+            .filter(|it| it.0 >= FEWEST_PAIRS)
             .collect();
         counted.sort_by(|a, b| b.0.cmp(&a.0).then(a.1.total_cmp(&b.1)));
         let most = counted.first().map_or(0, |it| it.0);
@@ -56,7 +55,7 @@ impl Unpaired<'_> {
                 continue;
             }
             let pairs = paired(joints, shots, refined);
-            if pairs.len() < FEWEST {
+            if pairs.len() < FEWEST_PAIRS {
                 continue;
             }
             let Some(missed_m) = self.missed(&pairs) else { continue };

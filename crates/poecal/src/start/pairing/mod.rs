@@ -2,6 +2,7 @@
 //! where they are paired rightly.
 
 mod agreement;
+mod jitter;
 mod joint_stream;
 mod lags;
 mod motion;
@@ -13,7 +14,7 @@ pub use agreement::{Agreement, Order};
 pub use joint_stream::{JointStream, smoothed};
 pub use lags::{Lagged, Span};
 pub use motion::{AtLag, InMotion, Motion, MovingRow, NoLag};
-pub use stands::{Channels, Stand, Stream};
+pub use stands::{Channels, NoStream, Stand, Stream};
 pub use uneven::Aligned;
 
 use std::collections::BTreeSet;
@@ -31,6 +32,10 @@ const NOISE: Noise = Noise::new(2e-3, 5e-3);
 const SOME: usize = 150;
 /// Times the usual error beyond which a pair does not count in a registration.
 const ODD: f64 = 4.0;
+/// How many times smaller the error of what is right is at least than that of anything else.
+pub const EVIDENT: f64 = 2.0;
+/// Fewest pairs that show anything: five points determine device and target, and leave no error.
+pub const FEWEST_PAIRS: usize = 7;
 
 /// A row of joint readings, and a configuration in which was measured; both from 0.
 pub type Pair = (usize, usize);

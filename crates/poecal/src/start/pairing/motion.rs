@@ -2,16 +2,15 @@
 
 use nalgebra::Vector3;
 
+use super::jitter::jitter;
 use super::joint_stream::JointStream;
 use super::speeds::{self, Track};
-use super::{NOISE, size};
+use super::{EVIDENT, NOISE, size};
 use crate::distributions::median;
-use crate::error::{ErrorKind, Result};
-use crate::estimate::{
-    Chain, ClockTerm, Estimate, Linkage, Packed, RowError, Session, Unknowns, delivered, sample_rows,
-};
-use crate::measurement::{Clock, Dataset, Observation, Quantity};
-use crate::parameters::{ClockUnknown, Columns as _, Parameter, screw_axes};
+use crate::error::{ErrorKind, Result, first_few};
+use crate::estimate::{ClockTerm, Estimate, Packed, RowError, Session, Unknowns, delivered, sample_rows};
+use crate::measurement::{Clock, Dataset, Moving, Observation, Quantity};
+use crate::parameters::{ClockUnknown, Parameter, screw_axes};
 use crate::problem::{Prior, Problem};
 use crate::robot::{Robot, Tolerance};
 use crate::solve::{Options, minimize};
@@ -38,10 +37,10 @@ const ROUNDS_OF_EACH: usize = 4;
 /// Shortest overlap of two streams, seconds, and its share of the shorter one.
 const OVERLAP_S: f64 = 5.0;
 const OVERLAP: f64 = 0.25;
-/// Ratio of the errors of two lags that are told apart.
-const EVIDENT: f64 = 2.0;
 /// Fewest rows.
 const FEWEST: usize = 30;
+/// A recording that is no shorter is compared with itself by some seconds later, a shorter one by less.
+const LONG_S: f64 = 30.0;
 
 /// Measurements in motion with a lag.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -120,7 +119,7 @@ impl<'a> Motion<'a> {
     /// Of measurements that have a time each.
     ///
     /// # Errors
-    /// [`ErrorKind::Measurement`] of rows without a place, or without times.
+    /// [`ErrorKind::Measurement`] of rows without a place, or without times, and of several instruments.
     pub fn new(
         robot: &'a Robot,
         joints: &'a JointStream,
@@ -130,6 +129,13 @@ impl<'a> Motion<'a> {
         if data.observations.iter().any(|it| it.measurement.position().is_none()) {
             return ErrorKind::Measurement
                 .refuse("found measurements without a place, expected points or poses of a robot in motion");
+        }
+        if data.station_count() > 1 {
+            let names: Vec<&str> = data.stations.iter().flatten().map(String::as_str).collect();
+            return ErrorKind::Measurement.refuse(format!(
+                "found the instruments {} in one recording, expected one, whose clock is an unknown of the fit: write the rows of each into a file of its own",
+                first_few(&names)
+            ));
         }
         if times.len() != data.len() || times.iter().any(|it| !it.is_finite()) {
             return ErrorKind::Measurement
@@ -156,35 +162,48 @@ impl<'a> Motion<'a> {
         }
         refined.sort_by(|a, b| a.missed_m.total_cmp(&b.missed_m));
         let Some(&best) = refined.first() else { return Err(NoLag::NoMotion) };
+        if self.is_chance(best, middle_s) {
+            return Err(NoLag::None(best));
+        }
         refined.retain(|it| it.missed_m < EVIDENT * best.missed_m);
         if refined.len() > 1 {
             return Err(NoLag::Alike(refined));
-        }
-        if self.is_chance(best, middle_s) {
-            return Err(NoLag::None(best));
         }
         self.with_geometry(Guess { lag_s: best.lag_s, drift: 0.0, middle_s }, best.missed_m)
             .ok_or(NoLag::None(best))
     }
 
-    /// The middle of the times, seconds.
-    fn middle(&self) -> f64 {
-        let (first, last) = self
-            .times
-            .iter()
-            .fold((f64::INFINITY, f64::NEG_INFINITY), |it, &time| (it.0.min(time), it.1.max(time)));
-        0.5 * (first + last)
+    /// The first of the times, seconds.
+    fn first(&self) -> f64 {
+        self.times.iter().copied().fold(f64::INFINITY, f64::min)
     }
 
-    /// Whether lags that are certainly wrong fit nearly as well.
+    /// The middle of the times, seconds.
+    fn middle(&self) -> f64 {
+        0.5 * (self.first() + self.times.iter().copied().fold(f64::NEG_INFINITY, f64::max))
+    }
+
+    /// Rows as if they were measured at rest at a lag, some of all.
+    #[must_use]
+    pub fn at_rest(&self, lag_s: f64) -> Option<Dataset> {
+        let (mut data, _) = self.session(&Guess { lag_s, drift: 0.0, middle_s: self.middle() }, SOME)?;
+        data.observations.iter_mut().for_each(|it| it.moving = None);
+        data.moving = Moving::default();
+        Some(data)
+    }
+
+    /// Whether lags that are certainly wrong fit nearly as well, or cannot be compared.
     fn is_chance(&self, best: AtLag, middle_s: f64) -> bool {
-        let others = [-7.3, 5.9, -2.1, 3.4, -13.7, 11.2].map(|by| best.lag_s + by);
-        let missed: Vec<f64> = others
+        let span = |first: Option<&f64>, last: Option<&f64>| first.zip(last).map_or(0.0, |it| it.1 - it.0);
+        let own = self.joints.times();
+        let shorter = span(own.first(), own.last()).min(2.0 * (middle_s - self.first()));
+        // Of a short recording a part overlaps at a lag that is wrong by less.
+        let scale = (shorter / LONG_S).min(1.0);
+        let others = [-7.3, 5.9, -2.1, 3.4, -13.7, 11.2].map(|by| best.lag_s + scale * by);
+        let missed = others
             .iter()
-            .filter_map(|&lag_s| Some(self.registered(&Guess { lag_s, drift: 0.0, middle_s }, SOME)?.1))
-            .collect();
-        let usual = median(missed.iter().copied()).unwrap_or(f64::INFINITY);
-        best.missed_m * EVIDENT > usual
+            .filter_map(|&lag_s| Some(self.registered(&Guess { lag_s, drift: 0.0, middle_s }, SOME)?.1));
+        median(missed).is_none_or(|usual| best.missed_m * EVIDENT > usual)
     }
 
     /// Rows that are fitted, at most so many, at this clock: with the readings at their times.
@@ -370,35 +389,5 @@ fn near(rows: &[u32], errors: &[RowError], usual: f64) -> Vec<u32> {
     rows.iter().zip(errors).filter(|(_, error)| size(error) <= FAR * usual).map(|(row, _)| *row).collect()
 }
 
-/// Standard deviation of single stamps that errors along the motion show beside those across it, seconds; 0 if they show none.
-fn jitter(session: &Session<'_>, rows: &[u32], estimate: &Estimate) -> f64 {
-    let (linkage, mut chain) = (Linkage::new(estimate), Chain::default());
-    let (mut along, mut across, mut squares, mut count) = (0.0, 0.0, 0.0, 0.0);
-    for (error, &row) in session.errors(rows, estimate).iter().zip(rows) {
-        let seen = session.observation(row);
-        chain.evaluate(&linkage, session.packed, row as usize, seen);
-        let mut twist = [(Vector3::zeros(), Vector3::zeros())];
-        let lag = ClockUnknown { station: seen.station, term: ClockTerm::Lag };
-        lag.target_twists(&chain, seen.target, &mut twist);
-        let [(speed, _)] = twist;
-        let length = speed.norm();
-        if length < SLOW_M_PER_S {
-            continue;
-        }
-        let vector = error.vector(Quantity::Position);
-        let part = vector.dot(&speed) / length;
-        along += part * part;
-        across += 0.5 * (vector.norm_squared() - part * part);
-        (squares, count) = (squares + length * length, count + 1.0);
-    }
-    if count < FEWEST as f64 || squares <= 0.0 {
-        0.0
-    } else {
-        f64::sqrt(f64::max(along - across, 0.0) / squares)
-    }
-}
-
-/// Speed below which a row says nothing of its stamp, m/s.
-const SLOW_M_PER_S: f64 = 0.05;
 /// Times the usual error beyond which a row does not count: of stamps that are late, few are.
 const FAR: f64 = 8.0;

@@ -45,6 +45,17 @@ pub struct Channels {
     pub floor: f64,
 }
 
+/// Why rows that change as those of a recording are none.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum NoStream {
+    /// A row has no time.
+    NoTime(usize),
+    /// The time of a row is before that of the row above it.
+    Back(usize),
+    /// The usual time from one row to the next is too long, seconds.
+    Slow(f64),
+}
+
 /// Rows of a stream: times (seconds), and some numbers of each row.
 #[derive(Clone, Debug)]
 pub struct Stream {
@@ -62,17 +73,35 @@ impl Stream {
     /// Whether it is one: rows in time, at most a quarter of a second from one to the next, and far more of them than places.
     #[must_use]
     pub fn is_dense(&self) -> bool {
+        self.is_smooth() && self.no_stream().is_none()
+    }
+
+    /// Whether most rows are near the ones before them, as in a recording.
+    #[must_use]
+    pub fn is_smooth(&self) -> bool {
         const ROWS: usize = 50;
-        const STEP_S: f64 = 0.25;
         const STEP: f64 = 0.05;
+        let mut values = self.channels.iter().flat_map(|it| &it.values);
+        self.times.len() >= ROWS
+            && values.all(|it| {
+                let moved = median(it.windows(2).map(|it| (it[1] - it[0]).abs())).unwrap_or_default();
+                moved <= STEP * span(it)
+            })
+    }
+
+    /// What is wrong with the times, if rows are those of a recording.
+    #[must_use]
+    pub fn no_stream(&self) -> Option<NoStream> {
+        const STEP_S: f64 = 0.25;
+        if let Some(row) = self.times.iter().position(|it| !it.is_finite()) {
+            return Some(NoStream::NoTime(row));
+        }
         let steps = self.times.windows(2).map(|it| it[1] - it[0]);
-        let step = median(steps.clone()).unwrap_or(f64::INFINITY);
-        let is_ordered = steps.clone().filter(|it| *it < 0.0).count() == 0;
-        let is_smooth = self.channels.iter().flat_map(|it| &it.values).all(|it| {
-            let moved = median(it.windows(2).map(|it| (it[1] - it[0]).abs())).unwrap_or_default();
-            moved <= STEP * span(it)
-        });
-        self.times.len() >= ROWS && is_ordered && step > 0.0 && step <= STEP_S && is_smooth
+        let step = median(steps.clone().map(f64::abs)).unwrap_or(f64::INFINITY);
+        if step > STEP_S || step == 0.0 {
+            return Some(NoStream::Slow(step));
+        }
+        self.times.windows(2).position(|it| it[1] < it[0]).map(|at| NoStream::Back(at + 1))
     }
 
     /// The times of 0.3 s or longer in which no channel moves by more than its own noise, without 0.1 s at both ends.

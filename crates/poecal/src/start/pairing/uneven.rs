@@ -1,6 +1,6 @@
 //! Pairs of lists of unequal length: some measurements were lost, others taken twice.
 
-use super::{Pair, Unpaired};
+use super::{EVIDENT, Pair, Unpaired};
 use crate::distributions::median;
 use crate::estimate::Estimate;
 
@@ -16,8 +16,9 @@ const GAP: f64 = 25.0;
 const ROUNDS: usize = 12;
 /// Most rows of the one times rows of the other that are aligned.
 const MOST_CELLS: usize = 4_000_000;
-/// How many times larger the error of a neighbour must be, so that a pair is evident.
-const EVIDENT: f64 = 2.0;
+/// Most windows that are registered, and fewest places of them in the measurements: lists whose lengths differ by more have no order.
+const MOST_WINDOWS: usize = 2400;
+const FEWEST_PLACES: usize = 6;
 
 /// Pairs of lists of unequal length; rows from 0.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -89,8 +90,14 @@ impl Unpaired<'_> {
     fn best_window(&self, band: usize) -> Option<(Estimate, f64)> {
         let (joints, shots) = (self.joint_rows(), self.shots.len());
         let size = WINDOW.min(joints).min(shots);
+        let starts: Vec<usize> = (0..=shots.saturating_sub(size)).step_by(STEP).collect();
+        let each = (2 * band + 1).min(joints.saturating_sub(size) + 1);
+        let most = MOST_WINDOWS / each;
+        if most < FEWEST_PLACES.min(starts.len()) {
+            return None;
+        }
         let mut best: Option<(Estimate, f64)> = None;
-        for start in (0..=shots.saturating_sub(size)).step_by(STEP) {
+        for start in starts.iter().copied().step_by(starts.len().div_ceil(most)) {
             for first in start.saturating_sub(band)..=(start + band).min(joints.saturating_sub(size)) {
                 let pairs: Vec<Pair> = (0..size).map(|k| (first + k, start + k)).collect();
                 let Some(found) = self.registered(&pairs) else { continue };
