@@ -22,6 +22,9 @@ const BAG: &str = if cfg!(feature = "bags") {
     "a ROS 2 bag (.mcap); write its messages as tables with `ros2 topic echo --csv`"
 };
 
+/// What a bag in SQLite is.
+pub(super) const SQLITE_BAG: &str = "a ROS 2 bag in SQLite (.db3), which the Python package reads (`Measurements.from_files`); `rosbags-convert --src BAG --dst NEW --dst-storage mcap` writes it as MCAP";
+
 /// First bytes of other formats, with advice.
 const FORMS: [(&[u8], &str); 14] = [
     (b"PK\x03\x04", "a ZIP archive or a workbook such as .xlsx; save the table as `CSV UTF-8`"),
@@ -34,13 +37,10 @@ const FORMS: [(&[u8], &str); 14] = [
         b"MATLAB 5.0 MAT-f",
         "a MATLAB file (.mat), whose numbers have no names; write them with `writetable`, or hand them to `Measurements.from_arrays` in Python (`scipy.io.loadmat`)",
     ),
-    (
-        b"SQLite format 3\0",
-        "a ROS 2 bag in SQLite (.db3); write it as MCAP with `ros2 bag convert`, or read it in Python, where `Measurements.from_files` takes it",
-    ),
+    (b"SQLite format 3\0", SQLITE_BAG),
     (
         b"#ROSBAG V",
-        "a ROS 1 bag; write it as MCAP with `rosbags-convert`, or read it in Python with `rosbags`",
+        "a ROS 1 bag, which `rosbags` reads in Python; `rosbags-convert --src BAG --dst NEW --dst-storage mcap` writes it as MCAP",
     ),
     (b"\x89MCAP0\r\n", BAG),
     (

@@ -30,7 +30,7 @@ pub(super) fn alone(error: Error, path: &Path, opening: &Opening<'_>, map: &Colu
     if error.kind() != ErrorKind::Measurement || !error.message().starts_with("found no column") {
         return error;
     }
-    let (is_lone, found, other) = match part(path, *opening, map).map(|it| it.0) {
+    let (is_lone, found, other) = match part(path, *opening, map).map(|it| it.part) {
         Ok(Part::Joints) => (true, "joint readings and nothing that was measured", "measurements"),
         Ok(Part::Measured { .. }) => (false, "measurements and no joint readings", "joint readings"),
         Ok(Part::Whole) | Err(_) => return error,

@@ -9,6 +9,7 @@ use crate::io::csv_text::cell;
 use crate::io::disk::{self, ObjectKind};
 use crate::io::hashes::sha256_of;
 use crate::io::numbers::{LARGEST_NUMBER, push_number};
+use crate::io::source::SQLITE_BAG;
 use crate::io::yaml::{Leaf, leaves};
 use crate::io::{source, source_text};
 
@@ -100,8 +101,10 @@ fn numbered(folder: &Path) -> Result<Vec<String>> {
     let error = |message: String| Error::new(ErrorKind::Measurement, message).in_file(folder);
     let names = disk::here().names(folder).map_err(|error| source::unreadable(folder, &error, EXPECTED))?;
     let mut found: BTreeMap<u64, String> = BTreeMap::new();
+    let mut is_bag = false;
     for name in names {
         let Ok(name) = name.into_string() else { continue };
+        is_bag |= name == "metadata.yaml" || name.ends_with(".db3");
         let ending = Path::new(&name).extension().map_or("", |it| it.to_str().unwrap_or("?"));
         let is_text = ENDINGS.iter().any(|it| ending.eq_ignore_ascii_case(it));
         let Some(number) = number_at_end(&name).filter(|_| is_text && disk::is_file(&folder.join(&name)))
@@ -116,6 +119,11 @@ fn numbered(folder: &Path) -> Result<Vec<String>> {
             )));
         }
         found.insert(number, name);
+    }
+    if found.is_empty() && is_bag {
+        return Err(ErrorKind::File
+            .error(format!("found {SQLITE_BAG}, expected a measurement file (CSV)"))
+            .in_file(folder));
     }
     if found.is_empty() {
         return Err(error(format!(

@@ -3,16 +3,19 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
+use super::configurations::is_folder;
 use super::corner_columns::{are_corners, are_readings_of_pictures};
 use super::layout::ColumnLayout;
 use super::mapping::{ColumnMap, ColumnSpec};
 use super::messages::are_messages;
-use super::recorded::{MEASURED, Opened, Opening, OwnTable, Recording};
+use super::recorded::{MEASURED, Opened, Opening, OwnTable, RECORDINGS, Recording};
 use super::table::Table;
 use super::text::Blocks;
+use super::unused::{BODIES, unused};
 use super::{Frames, ReadOptions};
-use crate::error::{ErrorKind, Result, shown};
-use crate::io::disk::is_file;
+use crate::error::{Error, ErrorKind, Result, shown};
+use crate::io::disk::{self, is_file};
+use crate::io::source::is_standard_input;
 use crate::measurement::{Clock, Measurement};
 use crate::robot::{Controller, ReadingKind, Robot};
 
@@ -98,9 +101,11 @@ impl<'p> Plan<'p> {
             return Ok(None);
         }
         let mut files: Vec<(&'p Path, Part, Option<OwnTable>)> = Vec::new();
+        let mut neither = Vec::new();
         for (path, recording) in paths.iter().zip(&recordings) {
             let Some(recording) = recording else {
-                let (part, table) = part(path, opening, map)?;
+                let Found { part, table, why } = part(path, opening, map)?;
+                neither.extend(why);
                 files.push((path, part, table));
                 continue;
             };
@@ -114,9 +119,20 @@ impl<'p> Plan<'p> {
         let joints = files.iter().filter(|it| it.1 == Part::Joints).count();
         if let Some((path, recording)) = first {
             refuse_other_topics(path, &recordings, options)?;
+            let has_bodies = recordings.iter().flatten().any(Recording::names_bodies)
+                || files.iter().any(|it| it.2.as_ref().is_some_and(|it| RECORDINGS.contains(&it.title())));
+            if options.body.is_some() && !has_bodies {
+                return Err(unused("--body", BODIES));
+            }
             if joints == 0 || measured == 0 {
                 return Err(recording.error(path, joints == 0));
             }
+        }
+        // Beside a file that has one of both, the error is that of the first that has neither.
+        if let Some(Neither { as_joints, as_measured }) = neither.into_iter().next()
+            && joints + measured > 0
+        {
+            return Err(if joints == 0 { as_joints } else { as_measured });
         }
         if joints == 0 || measured == 0 {
             return Ok(None);
@@ -148,26 +164,57 @@ fn refuse_other_topics(path: &Path, recordings: &[Option<Recording>], options: &
         let mut all = recordings.iter().flatten();
         if !all.any(|it| it.has_topic(at)) {
             let contents: Vec<&str> = recordings.iter().flatten().map(Recording::contents).collect();
-            let message =
-                format!("found no topic `{}`, expected one of {}", shown(name), contents.join(", "));
+            let message = format!(
+                "found no topic `{}` of joint readings or of what was measured, expected one of {}",
+                shown(name),
+                contents.join(", ")
+            );
             return Err(ErrorKind::Option.error(message).in_file(path));
         }
     }
     Ok(())
 }
 
-/// What a file has, with its table if it is in another form; one that is no table is named when it is read.
+/// What a file has, with its table if it is in another form.
+pub(super) struct Found {
+    pub(super) part: Part,
+    table: Option<OwnTable>,
+    /// Why it has neither joint readings nor measurements.
+    why: Option<Neither>,
+}
+
+/// Why a file has no joint readings, and no measurements.
+struct Neither {
+    as_joints: Error,
+    as_measured: Error,
+}
+
+impl Found {
+    fn whole() -> Self {
+        Found { part: Part::Whole, table: None, why: None }
+    }
+
+    /// Of a file that cannot be read.
+    fn unreadable(error: &Error) -> Self {
+        Found { why: Some(Neither { as_joints: error.clone(), as_measured: error.clone() }), ..Self::whole() }
+    }
+}
+
+/// What a file has; one that is no table is named when it is read, or where another has joint readings or measurements alone.
 ///
 /// # Errors
 /// Of a file in another form that cannot be one.
-pub(super) fn part(path: &Path, opening: Opening<'_>, map: &ColumnMap) -> Result<(Part, Option<OwnTable>)> {
+pub(super) fn part(path: &Path, opening: Opening<'_>, map: &ColumnMap) -> Result<Found> {
     // A pipe is read once.
     if !is_file(path) {
-        return Ok((Part::Whole, None));
+        let is_pipe = is_standard_input(path) || !is_folder(path) && disk::here().follow(path).is_ok();
+        let error = if is_pipe { None } else { opening.opened(path, MEASURED).err() };
+        return Ok(error.map_or_else(Found::whole, |it| Found::unreadable(&it)));
     }
     let opened = opening.opened(path, MEASURED)?;
     let table = if let Opened::Made(table) = &opened { Some(table.clone()) } else { None };
-    Ok((part_of(path, opened.blocks(path, MEASURED), opening, map).unwrap_or(Part::Whole), table))
+    let found = part_of(path, opened.blocks(path, MEASURED), opening, map);
+    Ok(Found { table, ..found.unwrap_or_else(|error| Found::unreadable(&error)) })
 }
 
 fn part_of<'p>(
@@ -175,30 +222,32 @@ fn part_of<'p>(
     mut blocks: Blocks<'p>,
     opening: Opening<'_>,
     map: &ColumnMap,
-) -> Result<Part> {
+) -> Result<Found> {
     let Opening { robot, options } = opening;
     blocks.begin()?;
     if are_messages(path, blocks.text())? {
-        return Ok(Part::Whole);
+        return Ok(Found::whole());
     }
     let table = Table::open(path, blocks, map)?;
     let names = robot.reading_names();
     if are_corners(&table.header, &names, map)?
         || !options.cameras.is_empty() && are_readings_of_pictures(&table.header, &names, map)
     {
-        return Ok(Part::Whole);
+        return Ok(Found::whole());
     }
-    let joints = ColumnLayout::joints(&table.header, robot, options, map).is_ok();
+    let joints = ColumnLayout::joints(&table.header, robot, options, map);
     let measured = ColumnLayout::new(&table.header, robot, options, &without_joints(map, robot));
-    Ok(match (joints, measured) {
-        (true, Err(_)) => Part::Joints,
-        (false, Ok(layout)) => {
+    let (part, why) = match (joints, measured) {
+        (Ok(_), Err(_)) => (Part::Joints, None),
+        (Err(_), Ok(layout)) => {
             let is_named =
                 layout.target_column.is_some() || layout.targets.len() > 1 || map.target_name.is_some();
-            Part::Measured { is_named }
+            (Part::Measured { is_named }, None)
         }
-        (true, Ok(_)) | (false, Err(_)) => Part::Whole,
-    })
+        (Err(as_joints), Err(as_measured)) => (Part::Whole, Some(Neither { as_joints, as_measured })),
+        (Ok(_), Ok(_)) => (Part::Whole, None),
+    };
+    Ok(Found { part, table: None, why })
 }
 
 /// A mapping of a file that has no readings: those of joints are numbers that mean nothing.

@@ -3,7 +3,7 @@
 use super::Join;
 use super::read::Reader;
 use super::recorded::{BAG, RECORDINGS, WORKBOOK};
-use crate::error::{ErrorKind, Result};
+use crate::error::{Error, ErrorKind, Result};
 
 impl Reader<'_> {
     /// Refuses options that concern forms of files of which there is none.
@@ -11,9 +11,9 @@ impl Reader<'_> {
         let forms = || self.found.understood.iter().filter_map(|it| it.form);
         let is_of = |options: &[&str]| forms().any(|it| options.contains(&it));
         let options = self.options;
-        let unused = [
+        let all = [
             (options.sheet.is_some(), is_of(&[WORKBOOK]), "--sheet", "a workbook"),
-            (options.body.is_some(), is_of(&RECORDINGS), "--body", "a recording of bodies or markers"),
+            (options.body.is_some(), is_of(&RECORDINGS) || is_of(&[BAG]), "--body", BODIES),
             (!options.topics.is_empty(), is_of(&[BAG]), "--topic", "a ROS 2 bag"),
             (
                 options.lag.is_some(),
@@ -22,11 +22,18 @@ impl Reader<'_> {
                 "two recordings that are joined by their times",
             ),
         ];
-        match unused.into_iter().find(|(is_stated, is_used, ..)| *is_stated && !is_used) {
-            Some((.., option, what)) => ErrorKind::Option.refuse(format!(
-                "found {option} and no file that it is for, expected {what}: leave the option out"
-            )),
+        match all.into_iter().find(|(is_stated, is_used, ..)| *is_stated && !is_used) {
+            Some((.., option, what)) => Err(unused(option, what)),
             None => Ok(()),
         }
     }
+}
+
+/// What `--body` is for.
+pub(super) const BODIES: &str = "a recording of bodies or markers with names";
+
+/// The error of an option that concerns a form of files of which there is none.
+pub(super) fn unused(option: &str, what: &str) -> Error {
+    ErrorKind::Option
+        .error(format!("found {option} and no file that it is for, expected {what}: leave the option out"))
 }

@@ -6,29 +6,30 @@ use super::Opening;
 use super::maker::{Made, Refused, Value};
 use super::rigid::{self, Places, Renamed};
 use super::words::{number, quoted};
+use crate::error::shown;
 
 /// A body or a marker that moved less than this, metres, stands.
-pub(super) const MOVED_M: f64 = 0.02;
+const MOVED_M: f64 = 0.02;
+/// One that moved less than this share of what moved farthest stands too: its noise is in another unit than is stated.
+const MOVED: f64 = 0.05;
+/// Share of the frames at either end of a coordinate that do not say how far something moved, as of a body that was taken for another.
+const STRAYED: f64 = 0.01;
 
-/// Where something was: of each coordinate the smallest and the largest.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Extent([(f64, f64); 3]);
+/// Of things that moved so far, metres, whether each moves.
+pub(super) fn which_move(moved_m: &[f64]) -> Vec<bool> {
+    let farthest = moved_m.iter().copied().fold(0.0, f64::max);
+    moved_m.iter().map(|it| *it > MOVED_M.max(MOVED * farthest)).collect()
+}
 
-impl Extent {
-    /// Of nothing.
-    pub(super) const NONE: Self = Extent([(f64::INFINITY, f64::NEG_INFINITY); 3]);
-
-    /// Adds a place.
-    pub(super) fn include(&mut self, place: [f64; 3]) {
-        for (range, value) in self.0.iter_mut().zip(place) {
-            *range = (range.0.min(value), range.1.max(value));
-        }
-    }
-
-    /// The widest of its coordinates; 0 of nothing.
-    pub(super) fn widest(&self) -> f64 {
-        self.0.iter().map(|it| it.1 - it.0).filter(|it| it.is_finite()).fold(0.0, f64::max)
-    }
+/// How far something moved: the widest of its coordinates, but for some frames that strayed.
+pub(super) fn moved_m(places: &[[f64; 3]]) -> f64 {
+    let wide = |at: usize| {
+        let mut own: Vec<f64> = places.iter().map(|it| it[at]).collect();
+        own.sort_by(f64::total_cmp);
+        let cut = (STRAYED * own.len() as f64) as usize;
+        own.get(own.len().saturating_sub(cut + 1)).zip(own.get(cut)).map_or(0.0, |(high, low)| high - low)
+    };
+    (0..3).map(wide).fold(0.0, f64::max)
 }
 
 /// One body, or one marker.
@@ -64,7 +65,18 @@ impl<'t> Frames<'t> {
 
     /// The table of the body that moves; of several, of the one that was asked for.
     pub(super) fn table(&self, bodies: &[Body], what: &str, opening: &Opening<'_>) -> Result<Made, Refused> {
+        if self.rows.is_empty() {
+            return Refused::at(
+                self.header,
+                "found the names of columns and no frame, expected at least one",
+            );
+        }
         let (taken, left) = self.taken(bodies, what, opening)?;
+        for it in taken.iter().copied().chain(&self.unnamed) {
+            let columns: Vec<usize> =
+                it.position.iter().chain(it.quaternion.iter().flatten()).copied().collect();
+            self.refuse_words(&it.name, &columns)?;
+        }
         let has_several = taken.len() > 1;
         let is_posed = taken.iter().any(|it| it.quaternion.is_some());
         let unit = self.unit.0;
@@ -164,7 +176,8 @@ impl<'t> Frames<'t> {
             return Ok((found, others(bodies, |it| it.name == *wanted)));
         }
         let moving = |some: &[&'b Body]| -> Vec<&'b Body> {
-            some.iter().filter(|it| self.moved_m(it) > MOVED_M).copied().collect()
+            let moved: Vec<f64> = some.iter().map(|it| self.moved_m(it)).collect();
+            some.iter().zip(which_move(&moved)).filter(|it| it.1).map(|it| *it.0).collect()
         };
         let of_poses = moving(&posed);
         let taken = match of_poses.as_slice() {
@@ -195,10 +208,27 @@ impl<'t> Frames<'t> {
 
     /// How far a body moved, metres.
     fn moved_m(&self, body: &Body) -> f64 {
-        let mut extent = Extent::NONE;
-        let places = self.rows.iter().filter_map(|(_, cells)| self.position(cells, body));
-        places.for_each(|it| extent.include(it));
-        extent.widest() * self.unit.1
+        let places: Vec<[f64; 3]> =
+            self.rows.iter().filter_map(|(_, cells)| self.position(cells, body)).collect();
+        moved_m(&places) * self.unit.1
+    }
+
+    /// Refuses a cell of a body that is neither empty nor a number: it is no lost frame.
+    pub(super) fn refuse_words(&self, body: &str, columns: &[usize]) -> Result<(), Refused> {
+        for (line, cells) in &self.rows {
+            let own = columns.iter().filter_map(|at| cells.get(*at));
+            if let Some(word) = own.copied().find(|it| !it.is_empty() && number(it).is_none()) {
+                return Refused::at(
+                    *line,
+                    format!(
+                        "found `{}` in a column of `{}`, expected a number: leave the cell empty where it was not seen",
+                        shown(word),
+                        shown(body)
+                    ),
+                );
+            }
+        }
+        Ok(())
     }
 
     /// Where a body is in a frame; `None` where it was not seen: cells that are empty, or all zero.

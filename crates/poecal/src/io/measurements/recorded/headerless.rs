@@ -4,7 +4,7 @@
 use std::collections::BTreeSet;
 
 use super::maker::{Made, Refused, Value};
-use super::words::{cells, lines, number};
+use super::words::{are_targets, cells, lines, number, repeats};
 use super::{Form, Opening};
 use crate::io::measurements::Separator;
 use crate::io::measurements::column_names::numbered_column;
@@ -120,17 +120,23 @@ fn joints(rows: Vec<Row<'_>>, opening: &Opening<'_>, is_timed: bool) -> Made {
     made
 }
 
-/// Points; names that come again are those of targets.
+/// Points; names that come again and again are those of targets.
 fn points(rows: Vec<Row<'_>>) -> Made {
-    let names: Vec<&str> = rows.iter().filter_map(|it| it.name).collect();
-    let different = names.iter().collect::<BTreeSet<_>>().len();
-    let are_targets = different < names.len();
+    let names: Vec<String> = rows.iter().filter_map(|it| it.name).map(str::to_owned).collect();
+    let lines: Vec<usize> = rows.iter().map(|it| it.line).collect();
+    let are_targets = !names.is_empty() && are_targets(&names);
     let before = (!names.is_empty()).then_some(if are_targets { "target" } else { "id" });
     let mut made = Made::new(1, before.into_iter().chain(["x", "y", "z"]));
     for row in rows {
         made.row(row.line, row.name.into_iter().chain(row.cells).map(Value::Text));
     }
-    let targets = if are_targets { format!(" of {different} targets") } else { String::new() };
+    let targets = if are_targets {
+        let different: BTreeSet<&String> = names.iter().collect();
+        format!(" of {} targets", different.len())
+    } else {
+        made.warned.extend(repeats(&names, &lines));
+        String::new()
+    };
     made.said.push(format!("{} points{targets}", made.rows()));
     made
 }

@@ -48,7 +48,7 @@ pub(super) const MEASURED: &str = "a measurement file (CSV)";
 pub(super) const WORKBOOK: &str = "a workbook";
 pub(super) const BAG: &str = "a ROS 2 bag";
 /// Recordings in which several bodies or markers may be.
-pub(super) const RECORDINGS: [&str; 4] = [motive::FORM.title, qualisys::FORM.title, ndi::FORM.title, BAG];
+pub(super) const RECORDINGS: [&str; 3] = [motive::FORM.title, qualisys::FORM.title, ndi::FORM.title];
 
 /// What files are opened with.
 #[derive(Clone, Copy)]

@@ -38,6 +38,15 @@ struct Labels<'t> {
 
 fn table(text: &str, opening: &Opening<'_>) -> Result<Made, Refused> {
     let Some((_, head)) = lines(text).next() else { return Refused::whole("found no line") };
+    if let Some(other) = [';', '\t'].into_iter().find(|it| !head.contains(',') && head.contains(*it)) {
+        let what = if other == ';' { "`;`" } else { "tabs" };
+        return Refused::at(
+            1,
+            format!(
+                "found {what} between the cells of a take of Motive, expected commas, which Motive writes: export the take again"
+            ),
+        );
+    }
     let head = cells(head);
     let value = |key: &str| {
         let at = head.iter().position(|it| *it == key)?;
@@ -69,8 +78,8 @@ fn table(text: &str, opening: &Opening<'_>) -> Result<Made, Refused> {
     let (mut rows, mut times) = (Vec::new(), Vec::new());
     for (line, content) in lines(text).filter(|it| it.0 > labels.line) {
         let found = cells(content);
-        // Motive leaves empty cells out at the end.
-        if found.len() > width && found.get(width..).is_some_and(|it| it.iter().any(|it| !it.is_empty())) {
+        let is_longer = found.get(width..).is_some_and(|it| it.iter().any(|it| !it.is_empty()));
+        if is_longer || !labels.may_end(found.len()) {
             return Refused::at(
                 line,
                 format!("found {} cells, expected {width} as in the head", found.len()),
@@ -122,6 +131,12 @@ impl<'t> Labels<'t> {
             "found the head of a take of Motive without the lines that name bodies, Rotation and Position and begin with `Frame`, expected them: export \
              the take with its header",
         )
+    }
+
+    /// Whether a row may have so many cells: Motive leaves out those of bodies and markers that it did not see at the end.
+    fn may_end(&self, count: usize) -> bool {
+        let of = |at: usize| (self.types.get(at), self.names.get(at));
+        count >= self.axes.len() || count > 0 && of(count) != of(count - 1)
     }
 
     /// Bodies with poses, or without them markers that have names, and those that have none.

@@ -92,8 +92,11 @@ fn table(text: &str, opening: &Opening<'_>) -> Result<Made, Refused> {
         return frames.table(&bodies, "marker", opening);
     }
     // Of each body: x, y, z, three angles, the residual and the matrix, column by column.
-    let turned = frames.turned(&bodies)?;
-    let texts: Vec<Vec<String>> = turned;
+    for it in &bodies {
+        let start = it.position[0];
+        frames.refuse_words(&it.name, &(start..start + 16).collect::<Vec<_>>())?;
+    }
+    let texts = frames.turned(&bodies)?;
     let width = header.len();
     let rows: Vec<(usize, Vec<&str>)> = (frames.rows.iter().zip(&texts))
         .map(|((line, cells), more)| {

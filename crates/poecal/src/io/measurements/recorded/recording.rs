@@ -26,6 +26,11 @@ impl OwnTable {
         self.made.blocks(path, expected, self.sha256, self.title)
     }
 
+    /// What the file is.
+    pub(in super::super) fn title(&self) -> &'static str {
+        self.title
+    }
+
     /// The frame that the file says its measurements are in.
     pub(in super::super) fn frame(&self) -> Option<&str> {
         self.made.frame.as_deref()
@@ -85,6 +90,8 @@ pub(in super::super) struct Recording {
     pub(super) contents: String,
     /// Which of the topics that were asked for it has.
     pub(super) has_topic: Vec<bool>,
+    /// Whether it names the bodies that were measured.
+    pub(super) names_bodies: bool,
 }
 
 impl Recording {
@@ -124,6 +131,11 @@ impl Recording {
     /// Whether it has a topic that was asked for, by its place among these.
     pub(in super::super) fn has_topic(&self, at: usize) -> bool {
         self.has_topic.get(at).copied().unwrap_or_default()
+    }
+
+    /// Whether it names the bodies that were measured.
+    pub(in super::super) fn names_bodies(&self) -> bool {
+        self.names_bodies
     }
 
     /// What is in it, in words.

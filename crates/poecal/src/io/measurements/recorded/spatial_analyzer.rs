@@ -4,7 +4,7 @@
 use std::collections::BTreeSet;
 
 use super::maker::{Made, Refused, Value};
-use super::words::{cells, lines, number};
+use super::words::{are_targets, cells, is_no_number, lines, number, repeats};
 use super::{Form, Opening};
 use crate::io::measurements::Separator;
 
@@ -32,6 +32,8 @@ struct Point<'t> {
     line: usize,
     names: Vec<&'t str>,
     numbers: Vec<&'t str>,
+    /// Whether a time is behind them.
+    has_time: bool,
 }
 
 fn is_it(text: &str, _: &Opening<'_>) -> bool {
@@ -64,11 +66,19 @@ fn table(text: &str, _: &Opening<'_>) -> Result<Made, Refused> {
             ),
         );
     }
+    // A line that was cut has no time, and its last number may have been cut.
+    let timed = points.iter().filter(|it| it.has_time).count();
+    if let Some(other) = points.iter().find(|it| 2 * timed > points.len() && !it.has_time) {
+        return Refused::at(
+            other.line,
+            "found no time behind the numbers of a point, expected one as in the other lines: the line was cut, export the points again, or leave it out",
+        );
+    }
     let layout = Layout::of(&points)?;
-    let (names, are_targets) = layout.names(&points);
+    let (names, have_targets) = layout.names(&points);
     let sigmas: &[&str] = if layout.uncertainties { &["sigma_x", "sigma_y", "sigma_z"] } else { &[] };
     let unit = comments.unit;
-    let columns: Vec<String> = [if are_targets { "target" } else { "id" }.to_owned()]
+    let columns: Vec<String> = [if have_targets { "target" } else { "id" }.to_owned()]
         .into_iter()
         .chain(["x", "y", "z"].iter().chain(sigmas).map(|it| format!("{it}[{unit}]")))
         .collect();
@@ -108,9 +118,12 @@ fn table(text: &str, _: &Opening<'_>) -> Result<Made, Refused> {
         made.said
             .push("three uncertainties of each point are taken as standard deviations of x, y, z".to_owned());
     }
-    if are_targets {
+    if have_targets {
         let all: BTreeSet<&str> = names.iter().map(String::as_str).collect();
         made.said.push(format!("names come again, and are those of {} targets", all.len()));
+    } else {
+        let lines: Vec<usize> = points.iter().map(|it| it.line).collect();
+        made.warned.extend(repeats(&names, &lines));
     }
     Ok(made)
 }
@@ -118,14 +131,26 @@ fn table(text: &str, _: &Opening<'_>) -> Result<Made, Refused> {
 impl<'t> Comments<'t> {
     fn of(text: &'t str) -> Result<Self, Refused> {
         let comment = |(at, line): (usize, &'t str)| Some((at, line.trim().strip_prefix("//")?.trim()));
-        let all: Vec<(usize, &str)> = lines(text).take(FIRST).filter_map(comment).collect();
-        let mut frames = all
-            .iter()
-            .filter_map(|(_, it)| it.split_once("Coordinate Frame"))
-            .map(|it| it.1.trim().trim_matches(['\'', '"']));
-        let frame = frames.next();
-        let axes = all.iter().find_map(|(at, it)| Some((*at, it.split_once("AXES")?.1)));
-        let Some((line, axes)) = axes else {
+        let all: Vec<(usize, &str)> = lines(text).filter_map(comment).collect();
+        let behind = |key: &'static str| {
+            all.iter().filter_map(move |(at, it)| Some((*at, it.split_once(key)?.1.trim())))
+        };
+        // Points of several frames or units in one file are not told apart by a table.
+        let only = |key: &'static str, what: &str| {
+            let first = behind(key).next();
+            match first.and_then(|first| behind(key).find(|it| it.1 != first.1)) {
+                Some((line, other)) => Refused::at(
+                    line,
+                    format!(
+                        "found `{other}` as {what} of the points below, and `{}` above, expected one in a file: write the points of each into a file of its own",
+                        first.map_or("", |it| it.1)
+                    ),
+                ),
+                None => Ok(first),
+            }
+        };
+        let frame = only("Coordinate Frame", "the frame")?.map(|it| it.1.trim_matches(['\'', '"']));
+        let Some((line, axes)) = only("AXES", "axes and unit")? else {
             return Refused::whole(
                 "found points of SpatialAnalyzer without the line `// AXES = …` that states their unit, expected it: export them with comments, or \
                  name the columns by number in a mapping (--columns)",
@@ -163,17 +188,33 @@ impl<'t> Comments<'t> {
 impl<'t> Point<'t> {
     fn of(line: usize, content: &'t str) -> Result<Self, Refused> {
         let content = content.trim();
+        if content.contains(';') {
+            return Refused::at(
+                line,
+                "found `;` between the cells of a point, expected commas or blanks: export the points again, or replace it",
+            );
+        }
         let is_by_commas = content.contains(',');
         let mut parts: Vec<&str> = if is_by_commas {
             cells(content, Separator::Comma)
         } else {
             content.split_whitespace().collect()
         };
+        let mut has_time = false;
         // The time, `02/12/25 16:52:45`, which is one cell or two.
         while parts.last().is_some_and(|it| {
             it.contains('/') || it.contains(':') && !it.contains("::") || matches!(*it, "AM" | "PM")
         }) {
             parts.pop();
+            has_time = true;
+        }
+        if let Some(word) = parts.iter().skip(1).find(|it| is_no_number(it)) {
+            return Refused::at(
+                line,
+                format!(
+                    "found `{word}` in place of a number, expected a coordinate: leave out the line of a point that was not measured"
+                ),
+            );
         }
         let numbers = parts.iter().rev().take_while(|it| number(it).is_some()).count();
         let at = parts.len() - numbers;
@@ -192,7 +233,7 @@ impl<'t> Point<'t> {
             let end = parts.first().map_or(content.len(), |it| of(it));
             names = content.get(..end).map(str::trim_end).into_iter().collect();
         }
-        Ok(Point { line, names, numbers: parts })
+        Ok(Point { line, names, numbers: parts, has_time })
     }
 }
 
@@ -220,6 +261,28 @@ impl Layout {
         let count = first.numbers.len() - named;
         let has_index = matches!(count, 4 | 6 | 7 | 9) && is_whole(named);
         let rest = count - usize::from(has_index);
+        let is_whole_number =
+            |it: &&str| it.trim_start_matches(['+', '-']).bytes().all(|it| it.is_ascii_digit());
+        let all_whole = points
+            .iter()
+            .flat_map(|it| it.numbers.get(named..).unwrap_or_default())
+            .all(|it| is_whole_number(&it));
+        if all_whole && rest >= 6 {
+            return Refused::at(
+                first.line,
+                format!(
+                    "found {rest} whole numbers of a point and no decimal point, expected three coordinates: decimal commas are cells of their own, export \
+                     the points with decimal points"
+                ),
+            );
+        }
+        // The index of a point in its group, and two coordinates.
+        if rest == 3 && points.len() > 2 && is_whole(named) && !all_whole {
+            return Refused::at(
+                first.line,
+                "found whole numbers alone as the first of three coordinates, as of the index of a point, expected x, y and z: a column was lost",
+            );
+        }
         let (offsets, uncertainties) = match rest {
             3 => (false, false),
             5 => (true, false),
@@ -241,7 +304,7 @@ impl Layout {
         if self.offsets { 5 } else { 3 }
     }
 
-    /// The points' names, and whether they are those of targets, since they come again.
+    /// The points' names, and whether they are those of targets, since they come again and again.
     fn names(&self, points: &[Point<'_>]) -> (Vec<String>, bool) {
         let own = |point: &Point<'_>| -> Vec<String> {
             let mut parts: Vec<String> =
@@ -254,11 +317,13 @@ impl Layout {
         let parts: Vec<Vec<String>> = points.iter().map(own).collect();
         let last: Vec<String> = parts.iter().filter_map(|it| it.last().cloned()).collect();
         let whole: Vec<String> = parts.iter().map(|it| it.join("::")).collect();
-        let are_unique = |names: &[String]| names.iter().collect::<BTreeSet<_>>().len() == names.len();
-        match (are_unique(&last), are_unique(&whole)) {
-            (true, _) => (last, false),
-            (false, true) => (whole, false),
-            (false, false) => (last, true),
+        let count = |names: &[String]| names.iter().collect::<BTreeSet<_>>().len();
+        if are_targets(&whole) {
+            (last, true)
+        } else if count(&whole) > count(&last) {
+            (whole, false)
+        } else {
+            (last, false)
         }
     }
 }

@@ -1,6 +1,9 @@
 //! Lines and cells of texts in other forms.
 
+use std::collections::BTreeMap;
+
 use super::super::cells::{Separator, split};
+use super::super::join_words::numbered;
 use crate::error::first_few;
 
 /// A finite number of a cell, with a decimal point or, where there is no other, a decimal comma.
@@ -33,4 +36,38 @@ pub(super) fn cells(line: &str, separator: Separator) -> Vec<&str> {
 /// Names in backticks, the first few.
 pub(super) fn quoted<T: std::fmt::Display>(names: impl IntoIterator<Item = T>) -> String {
     first_few(&names.into_iter().map(|it| format!("`{it}`")).collect::<Vec<_>>())
+}
+
+/// Whether names are those of targets: each comes again and again.
+pub(super) fn are_targets(names: &[String]) -> bool {
+    names.len() >= 2 * by_name(names).len()
+}
+
+/// The warning of names that come again, of others than targets; `lines` are those of the names.
+pub(super) fn repeats(names: &[String], lines: &[usize]) -> Option<String> {
+    let again: Vec<String> = by_name(names)
+        .into_iter()
+        .filter(|(_, rows)| rows.len() > 1)
+        .map(|(name, rows)| {
+            let own: Vec<String> =
+                rows.iter().filter_map(|at| lines.get(*at)).map(usize::to_string).collect();
+            format!("`{name}` in {}", numbered(&own))
+        })
+        .collect();
+    (!again.is_empty()).then(|| format!("names come again: {}", first_few(&again)))
+}
+
+/// The rows of each name.
+fn by_name(names: &[String]) -> BTreeMap<&str, Vec<usize>> {
+    let mut found: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
+    for (at, name) in names.iter().enumerate() {
+        found.entry(name).or_default().push(at);
+    }
+    found
+}
+
+/// Whether a cell has a word that stands for no number, such as `NaN`.
+pub(super) fn is_no_number(text: &str) -> bool {
+    ["nan", "-nan", "inf", "-inf", "+inf", "null", "none", "n/a"]
+        .contains(&text.trim().to_ascii_lowercase().as_str())
 }

@@ -1,6 +1,6 @@
 //! Bodies that the messages of a topic say the poses of.
 
-use super::super::bodies::Extent;
+use super::super::bodies::moved_m;
 use super::super::maker::{Made, Value};
 use super::clock::{Clock, Stamp, seconds};
 use super::messages::{Kind, Pose};
@@ -21,7 +21,6 @@ pub(super) struct Body {
     /// Its frame; empty if messages do not name it.
     pub(super) child: String,
     seen: Vec<Seen>,
-    extent: Extent,
 }
 
 /// All bodies of a topic.
@@ -52,7 +51,7 @@ impl Bodies {
         let is_it = |it: &Body| it.child == pose.child && it.parent == pose.parent;
         let at = self.all.iter().position(is_it).unwrap_or_else(|| {
             let (parent, child) = (pose.parent.to_owned(), pose.child.to_owned());
-            self.all.push(Body { parent, child, seen: Vec::new(), extent: Extent::NONE });
+            self.all.push(Body { parent, child, seen: Vec::new() });
             self.all.len() - 1
         });
         if let Some(body) = self.all.get_mut(at) {
@@ -64,16 +63,12 @@ impl Bodies {
 impl Body {
     fn take(&mut self, pose: &Pose<'_>, log_ns: u64) {
         let Pose { stamp_ns, position, quaternion, .. } = *pose;
-        let seen = Seen { stamp: Stamp { own: stamp_ns, log: log_ns }, position, quaternion };
-        self.seen.push(seen);
-        if seen.is_place() {
-            self.extent.include(position);
-        }
+        self.seen.push(Seen { stamp: Stamp { own: stamp_ns, log: log_ns }, position, quaternion });
     }
 
     /// How far it moved, metres.
     pub(super) fn moved_m(&self) -> f64 {
-        self.extent.widest()
+        moved_m(&self.seen.iter().filter(|it| it.is_place()).map(|it| it.position).collect::<Vec<_>>())
     }
 
     /// The clock of its messages.

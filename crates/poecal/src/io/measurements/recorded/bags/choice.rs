@@ -1,7 +1,7 @@
 //! Which topics of a bag are read: the only ones that can be meant, or those that were asked for.
 
 use super::super::super::ReadOptions;
-use super::super::bodies::MOVED_M;
+use super::super::bodies::which_move;
 use super::super::maker::Made;
 use super::super::recording::Missing;
 use super::bodies::{Bodies, Body};
@@ -129,7 +129,9 @@ pub(super) fn measured<'t>(topics: &'t Topics<'_>, options: &ReadOptions) -> Res
             |it: &Measured<'_>| all.iter().any(|of| std::ptr::eq(of.0, it.topic) && of.1.are_frames());
         pool.retain(|it| !is_frame(it));
     }
-    let moving: Vec<Measured<'_>> = pool.iter().filter(|it| it.body.moved_m() > MOVED_M).cloned().collect();
+    let moved: Vec<f64> = pool.iter().map(|it| it.body.moved_m()).collect();
+    let moving: Vec<Measured<'_>> =
+        pool.iter().zip(which_move(&moved)).filter(|it| it.1).map(|it| it.0.clone()).collect();
     let one = match (moving.as_slice(), pool.as_slice()) {
         ([one], _) | ([], [one]) => one.clone(),
         ([], []) => {

@@ -18,7 +18,7 @@ use std::path::{Path, PathBuf};
 
 use self::clock::SECOND;
 use self::container::Damage;
-use self::topics::Topics;
+use self::topics::{Topic, Topics};
 use super::recording::{OwnTable, Recording};
 use super::{BAG, Opening};
 use crate::error::{ErrorKind, Result};
@@ -94,7 +94,8 @@ fn recording(topics: &Topics<'_>, opening: &Opening<'_>, sha256: &str, warned: V
         joints,
         measured,
         contents: topics.words(),
-        has_topic: asked.map(|name| topics.all.iter().any(|it| it.is_called(name))).collect(),
+        has_topic: asked.map(|name| topics.all.iter().any(|it| it.is_called(name) && it.is_read())).collect(),
+        names_bodies: topics.all.iter().any(Topic::names_bodies),
     };
     let first = if found.joints.is_ok() { &mut found.joints } else { &mut found.measured };
     if let Ok(table) = first {

@@ -53,6 +53,16 @@ impl Topic {
         self.name == name || self.name.strip_prefix('/') == Some(name)
     }
 
+    /// Whether it has messages of a type that is read.
+    pub(super) fn is_read(&self) -> bool {
+        self.count > 0 && !matches!(self.content, Content::Other)
+    }
+
+    /// Whether its messages name the bodies that they are about.
+    pub(super) fn names_bodies(&self) -> bool {
+        matches!(&self.content, Content::Bodies(bodies) if bodies.all.iter().any(|it| !it.child.is_empty()))
+    }
+
     /// Takes a message.
     fn take(&mut self, log_ns: u64, message: &[u8]) {
         self.span_ns = match self.count {
