@@ -152,7 +152,7 @@ def test_what_is_no_bag_is_named(tmp_path):
     assert "no such table: topics" in words and "expected a ROS 2 bag in SQLite" in words
     packed = [(topic, at, b"\x28\xb5\x2f\xfd" + data) for topic, at, data in found]
     write_db3(tmp_path / "packed.sqlite", packed)
-    assert "`ros2 bag convert`" in refused("packed.db3", (tmp_path / "packed.sqlite").read_bytes())
+    assert "`rosbags-convert --src BAG --dst NEW --dst-storage mcap`" in refused("packed.db3", (tmp_path / "packed.sqlite").read_bytes())
     # Nothing but joints.
     write_db3(tmp_path / "joints.sqlite", [it for it in found if it[0] == "/joint_states"])
     assert "/joint_states" in refused("joints.db3", (tmp_path / "joints.sqlite").read_bytes())

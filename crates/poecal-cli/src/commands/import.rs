@@ -1,9 +1,11 @@
 //! `poecal import`: measurements of any form as a table of our own, and how they were read.
 
 use std::fmt::Write as _;
+use std::io::Read as _;
 use std::path::{Component, Path, PathBuf};
 
-use poecal::io::measurements::{self, Frames, MeasurementFile, PlaneContact};
+use poecal::io::disk;
+use poecal::io::measurements::{self, Frames, Join, MeasurementFile, PlaneContact};
 use poecal::io::model::Model;
 use poecal::io::named_files::{actual, refuse_repeats};
 use poecal::io::output::{Existing, FilePlace};
@@ -23,6 +25,12 @@ pub(crate) fn import(arguments: &Import, console: &Console) -> Result<u8> {
             "found --instrument-noise, expected it where the table is calibrated: it is no part of the measurements",
         );
     }
+    if arguments.reading.meaning.join == Some(Join::Motion) {
+        return ErrorKind::Option.refuse(
+            "found --join motion, expected rows at rest: a table has no clock, whose lag is an unknown of the fit, so name the files in each command",
+        );
+    }
+    let known = arguments.settings.as_deref().map_or_else(Vec::new, known_inputs);
     let meaning = arguments.reading.meaning.files();
     let inputs: Vec<&Path> =
         (std::iter::once(path).chain(&arguments.measurements).map(PathBuf::as_path)).chain(meaning).collect();
@@ -36,6 +44,7 @@ pub(crate) fn import(arguments: &Import, console: &Console) -> Result<u8> {
     let file = measurements::read(&arguments.measurements, &model.robot, &model.reads(options))?;
     console.said_of(&file);
     let table = measurements::imported_table(&file, &model.robot)?;
+    console.warnings(&changed(&known, &file));
     let map = map(arguments, path, &file);
     place.write(vec![table.into()])?;
     map_place.write(vec![map.into()])?;
@@ -102,7 +111,7 @@ fn map(arguments: &Import, model: &Path, file: &MeasurementFile) -> String {
         let form = understood.form.map(|it| format!(", {it}")).unwrap_or_default();
         let _ = writeln!(out, "\n# {}: {} rows{form}", understood.path.display(), understood.rows);
         if let Some(sha256) = file.sha256.get(&understood.path.display().to_string()) {
-            let _ = writeln!(out, "#   SHA-256 {sha256}");
+            let _ = writeln!(out, "{SHA256}{sha256}");
         }
         for column in &understood.columns {
             let from = column.column.as_deref().unwrap_or("a constant");
@@ -121,6 +130,48 @@ fn map(arguments: &Import, model: &Path, file: &MeasurementFile) -> String {
     }
     out
 }
+
+/// Names and checksums of the files that made a table, by the settings that were written beside it.
+fn known_inputs(settings: &Path) -> Vec<(String, String)> {
+    let mut text = String::new();
+    // They were read before.
+    if disk::here().open(settings).and_then(|it| it.take(LARGEST).read_to_string(&mut text)).is_err() {
+        return Vec::new();
+    }
+    let mut found = Vec::new();
+    let mut name = None;
+    for line in text.lines() {
+        if let Some(sha256) = line.strip_prefix(SHA256) {
+            found.extend(name.take().map(|it| (it, sha256.to_owned())));
+        } else {
+            name = line.strip_prefix("# ").and_then(|it| Some(it.rsplit_once(": ")?.0.to_owned()));
+        }
+    }
+    found
+}
+
+/// Warnings of files that have changed since.
+fn changed(known: &[(String, String)], file: &MeasurementFile) -> Vec<String> {
+    let base = |name: &str| Path::new(name).file_name().map(ToOwned::to_owned);
+    let is_other = |(path, sha256): &(&String, &String)| {
+        let mut same = known.iter().filter(|it| base(&it.0) == base(path)).peekable();
+        same.peek().is_some() && same.all(|it| it.1 != **sha256)
+    };
+    let other = file.sha256.iter().filter(is_other);
+    other
+        .map(|(path, _)| {
+            format!(
+                "{path}: it is not the file that the settings were made of: its checksum (SHA-256) is another"
+            )
+        })
+        .collect()
+}
+
+/// Largest settings, bytes.
+const LARGEST: u64 = 1 << 24;
+
+/// The comment with the checksum of a file.
+const SHA256: &str = "#   SHA-256 ";
 
 /// A text of TOML.
 fn quoted(text: &str) -> String {

@@ -13,7 +13,7 @@ MCAP = b"\x89MCAP0\r\n"
 ZSTD = b"\x28\xb5\x2f\xfd"
 HEADER, FOOTER, SCHEMA, CHANNEL, MESSAGE, DATA_END = 1, 2, 3, 4, 5, 15
 EXPECTED = "expected a ROS 2 bag in SQLite, with the tables `topics` and `messages`"
-CONVERT = "write it as MCAP with `ros2 bag convert`"
+CONVERT = "`rosbags-convert --src BAG --dst NEW --dst-storage mcap` writes it as MCAP"
 # Types whose messages are read; of others only their number and times count.
 TYPES = {
     "sensor_msgs/JointState",

@@ -27,7 +27,7 @@ pub(super) fn has_readings_of_pictures(path: &Path, robot: &Robot, map: &ColumnM
 
 /// The error of a file that has joint readings alone, or measurements alone, and no other beside it.
 pub(super) fn alone(error: Error, path: &Path, opening: &Opening<'_>, map: &ColumnMap) -> Error {
-    if error.kind() != ErrorKind::Measurement || !error.message().starts_with("found no column") {
+    if error.kind() != ErrorKind::Measurement || !error.message().contains("found no column") {
         return error;
     }
     let (is_lone, found, other) = match part(path, *opening, map).map(|it| it.part) {

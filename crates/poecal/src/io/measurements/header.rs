@@ -6,6 +6,7 @@ use std::path::Path;
 use super::cells::{Cell, Separator, character_column, split, split_line};
 use super::column_names::number_of_column;
 use super::configurations::advice;
+use super::places::Sheet;
 use super::units::{NamedUnit, UnitSource};
 use crate::error::{Error, ErrorKind, Result, first_few, nearest};
 use crate::unit::Unit;
@@ -37,6 +38,8 @@ pub(super) struct Header<'a> {
     below: Vec<(usize, String)>,
     /// Columns whose cells name the joint of another column, with the name.
     pub(super) names: Vec<(usize, String)>,
+    /// The sheet of a workbook.
+    pub(super) sheet: Option<Sheet>,
 }
 
 impl HeaderCell {
@@ -135,7 +138,16 @@ impl<'a> Header<'a> {
                 places.and_modify(|(_, second)| *second = second.or(Some(index))).or_insert((index, None));
             }
         }
-        Ok(Header { path, line, cells, named, units_line: None, below: Vec::new(), names: Vec::new() })
+        Ok(Header {
+            path,
+            line,
+            cells,
+            named,
+            units_line: None,
+            below: Vec::new(),
+            names: Vec::new(),
+            sheet: None,
+        })
     }
 
     /// Adds the line of units.
@@ -195,9 +207,11 @@ impl<'a> Header<'a> {
         let below = below.map(|(line, (column, unit))| (line, *column, bare(unit)));
         let stated = cell.unit.as_deref().map(|unit| (self.line, cell.column, unit));
         match stated.into_iter().chain(below).find(|(.., unit)| *unit != expected) {
-            Some((line, column, unit)) => Err(ErrorKind::Unit
-                .error(format!("found the unit `{unit}` of `{}`, expected `{expected}` or none", cell.name))
-                .at(self.path, line, column)),
+            Some((line, column, unit)) => Err(self.error_at(
+                ErrorKind::Unit,
+                (line, column, index),
+                format!("found the unit `{unit}` of `{}`, expected `{expected}` or none", cell.name),
+            )),
             None => Ok(()),
         }
     }
@@ -212,7 +226,7 @@ impl<'a> Header<'a> {
         let Some(cell) = self.cells.get(index) else { return Ok(None) };
         let parse = |symbol: &str, place: (usize, usize)| {
             NamedUnit::parse_for(symbol, quantity, &format!(" {purpose}"))
-                .map_err(|error| ErrorKind::Unit.error(error.message()).at(self.path, place.0, place.1))
+                .map_err(|error| self.error_at(ErrorKind::Unit, (place.0, place.1, index), error.message()))
         };
         let in_header = cell.unit.as_deref().map(|unit| parse(unit, (self.line, cell.column))).transpose()?;
         let Some((line, (column, symbol))) = self.units_line.zip(cell.below.as_ref()) else {
@@ -221,12 +235,13 @@ impl<'a> Header<'a> {
         let below = parse(symbol, (line, *column))?;
         match in_header {
             Some(unit) if unit != below => {
-                Err(ErrorKind::Unit.error(format!(
+                let message = format!(
                     "found the unit `{symbol}` below `{}`, expected `{}` as in the header (line {}), or an empty cell",
                     cell.text,
                     unit.symbol(),
                     self.line
-                )).at(self.path, line, *column))
+                );
+                Err(self.error_at(ErrorKind::Unit, (line, *column, index), message))
             }
             Some(unit) => Ok(Some((unit, UnitSource::Header))),
             None => Ok(Some((below, UnitSource::UnitsLine))),
@@ -278,9 +293,14 @@ impl<'a> Header<'a> {
             return Ok(index);
         }
         let hint = self.no_header(name).unwrap_or_else(|| self.other_names(name, is_known) + advice);
-        Err(ErrorKind::Measurement
-            .error(format!("found no column `{name}`, expected one {purpose}; {hint}"))
-            .at_line(self.path, self.line))
+        let message = format!("found no column `{name}`, expected one {purpose}; {hint}");
+        Err(match &self.sheet {
+            Some(sheet) => {
+                let message = format!("sheet `{}`, row {}: {message}", sheet.name, self.line);
+                ErrorKind::Measurement.error(message).in_file(self.path)
+            }
+            None => ErrorKind::Measurement.error(message).at_line(self.path, self.line),
+        })
     }
 
     /// Message if this line is no header.
@@ -318,6 +338,9 @@ impl<'a> Header<'a> {
             let named = self.cells.iter().filter(|cell| !cell.name.is_empty());
             named.map(|cell| cell.name.as_str()).filter(|found| !is_known(found))
         };
+        if let Some(twice) = names().find(|found| self.count(found) > 1) {
+            return format!("`{twice}` is the name of {} columns", self.count(twice));
+        }
         let with_unit = names().find_map(|found| Some((found, unit_in_name(found, name)?)));
         match (with_unit, nearest(name, names())) {
             (Some((found, unit)), _) => {
@@ -334,7 +357,20 @@ impl<'a> Header<'a> {
     /// An error at a column's name.
     pub(super) fn error(&self, kind: ErrorKind, index: usize, message: impl Into<String>) -> Error {
         let column = self.cells.get(index).map_or(1, |cell| cell.column);
-        Error::new(kind, message).at(self.path, self.line, column)
+        self.error_at(kind, (self.line, column, index), message)
+    }
+
+    /// An error at a line, a character and a column of the table.
+    fn error_at(
+        &self,
+        kind: ErrorKind,
+        (line, column, index): (usize, usize, usize),
+        message: impl Into<String>,
+    ) -> Error {
+        match &self.sheet {
+            Some(sheet) => sheet.error(self.path, (line, index), kind, &message.into()),
+            None => Error::new(kind, message).at(self.path, line, column),
+        }
     }
 }
 

@@ -106,7 +106,7 @@ impl<'a> Reader<'a> {
             separator_line: table.separator_line,
             units_line: table.header.units_line,
             decimal_sign: inputs.numbers.sign(),
-            columns: understanding::columns(&table.header, &layout, &inputs.ranges),
+            columns: table.with_sources(understanding::columns(&table.header, &layout, &inputs.ranges)),
             orientation: None,
             pose: understanding::pose_word(layout.pose),
             ignored: layout.ignored.iter().map(|(name, _)| name.clone()).collect(),

@@ -1,5 +1,6 @@
 //! Where the rows of a table are in the file that it was made of.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
 use crate::error::{Error, ErrorKind};
@@ -15,6 +16,8 @@ pub(super) struct Places {
     pub(super) form: &'static str,
     /// What was understood of it, in a few words.
     pub(super) understood: String,
+    /// Of columns of the table what they were made of, where that has another name in the file.
+    pub(super) sources: BTreeMap<String, String>,
 }
 
 /// A sheet of a workbook.
@@ -29,6 +32,18 @@ impl Sheet {
     /// The name of a cell, like `C7`; the column is one of the table, from 0.
     pub(super) fn cell(&self, column: usize, row: usize) -> String {
         format!("{}{row}", letters(self.first_column + column))
+    }
+
+    /// An error in a cell, by its row of the sheet and its column of the table.
+    pub(super) fn error(
+        &self,
+        path: &Path,
+        (row, column): (usize, usize),
+        kind: ErrorKind,
+        message: &str,
+    ) -> Error {
+        let message = format!("sheet `{}`, cell {}: {message}", self.name, self.cell(column, row));
+        Error::new(kind, message).in_file(path)
     }
 }
 
@@ -48,11 +63,7 @@ impl Places {
         message: String,
     ) -> Error {
         match &self.sheet {
-            Some(sheet) => Error::new(
-                kind,
-                format!("sheet `{}`, cell {}: {message}", sheet.name, sheet.cell(column, line)),
-            )
-            .in_file(path),
+            Some(sheet) => sheet.error(path, (line, column), kind, &message),
             None => Error::new(kind, message).at_line(path, line),
         }
     }

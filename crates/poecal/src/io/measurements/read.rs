@@ -328,7 +328,7 @@ impl<'a> Reader<'a> {
                 None => data.moving.clocks.push(clock),
                 Some(known) if *known == clock => {}
                 Some(_) => {
-                    let message = "found a second recording in motion by one instrument, expected one: --frames per-file gives each file an instrument of its own";
+                    let message = "found a second recording in motion by one instrument, expected one, whose clock is an unknown of the fit: --frames per-file gives each file an instrument with a clock and a frame of its own, also where the instrument did not move between them";
                     return Err(ErrorKind::Measurement.error(message).in_file(path));
                 }
             }
@@ -410,7 +410,11 @@ impl<'a> Reader<'a> {
             separator_line: table.separator_line,
             units_line: table.header.units_line,
             decimal_sign: inputs.numbers.sign(),
-            columns: self.own_columns(understanding::columns(&table.header, layout, &inputs.ranges)),
+            columns: table.with_sources(self.own_columns(understanding::columns(
+                &table.header,
+                layout,
+                &inputs.ranges,
+            ))),
             orientation: understanding::orientation(layout),
             pose: understanding::pose_word(layout.pose),
             ignored: layout.ignored.iter().map(|(name, _)| name.clone()).collect(),

@@ -7,6 +7,7 @@ use super::header::{Header, are_units, is_number};
 use super::mapping::ColumnMap;
 use super::places::Places;
 use super::text::{Blocks, Lines, Said};
+use super::understanding::ColumnUnderstanding;
 use crate::error::{Error, ErrorKind, Result};
 use crate::io::looks_like::model_for_table;
 
@@ -91,6 +92,7 @@ impl<'a> Table<'a> {
         let (header_end, places) = (header.last_line(), blocks.places().cloned());
         if let Some(places) = &places {
             header.line = places.line(header.line);
+            header.sheet.clone_from(&places.sheet);
             header.units_line = header.units_line.map(|line| places.line(line));
         }
         if above > map.skip_lines {
@@ -122,6 +124,17 @@ impl<'a> Table<'a> {
     /// What the file is that it was made of.
     pub(super) fn form(&self) -> Option<&'static str> {
         self.places.as_ref().map(|it| it.form)
+    }
+
+    /// Columns with what the file has in place of those that were made.
+    pub(super) fn with_sources(&self, mut columns: Vec<ColumnUnderstanding>) -> Vec<ColumnUnderstanding> {
+        let sources = self.places.as_ref().map(|it| &it.sources);
+        for own in columns.iter_mut().filter_map(|it| it.column.as_mut()) {
+            if let Some(source) = sources.and_then(|it| it.get(own.as_str())) {
+                own.clone_from(source);
+            }
+        }
+        columns
     }
 
     /// What was understood of a file in another form, in a few words.

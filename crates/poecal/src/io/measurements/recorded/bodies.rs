@@ -6,7 +6,7 @@ use super::Opening;
 use super::maker::{Made, Refused, Value};
 use super::rigid::{self, Places, Renamed};
 use super::words::{number, quoted};
-use crate::error::shown;
+use crate::error::{first_few, shown};
 
 /// A body or a marker that moved less than this, metres, stands.
 const MOVED_M: f64 = 0.02;
@@ -120,6 +120,12 @@ impl<'t> Frames<'t> {
             }
         }
         let names: Vec<String> = given.iter().map(|it| format!("`{}`", it.1.name)).collect();
+        made.sources = (columns.iter().skip(if has_several { 2 } else { 1 }))
+            .map(|it| {
+                let part = it.split('[').next().unwrap_or_default();
+                (it.clone(), format!("{part} of {}", first_few(&names)))
+            })
+            .collect();
         let count = self.rows.len();
         made.said.push(format!("{count} frames of {}, {unit}", names.join(", ")));
         if !left.is_empty() {

@@ -89,6 +89,12 @@ fn table(text: &str, _: &Opening<'_>) -> Result<Made, Refused> {
         };
         made.row(line, used.iter().map(value));
     }
+    let headers = cells(header, by);
+    for ((column, ours, _), made_of) in used.iter().zip(&columns) {
+        let own = headers.get(*column).copied().unwrap_or_default();
+        let divided = if ours.starts_with("sigma") { format!(" / {COVERAGE}") } else { String::new() };
+        made.sources.insert(made_of.clone(), format!("{own}{divided}"));
+    }
     made.said.push(format!("{} measurements", made.rows()));
     if used.iter().any(|it| it.1 == "sigma_x") {
         made.said.push(format!("U(95) divided by {COVERAGE} are the standard deviations"));

@@ -1,5 +1,6 @@
 //! Makes tables in our form.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
 use super::super::places::{Places, Sheet};
@@ -20,6 +21,8 @@ pub(super) struct Made {
     pub(super) said: Vec<String>,
     /// What should be looked at, a sentence each.
     pub(super) warned: Vec<String>,
+    /// Of columns what they were made of, where that has another name in the file.
+    pub(super) sources: BTreeMap<String, String>,
     /// Of a file with two sets of coordinates, what this one is called, and the other one.
     pub(super) called: Option<Called>,
     pub(super) other: Option<Box<Made>>,
@@ -118,7 +121,13 @@ impl Made {
             path.display(),
             if words.is_empty() { "" } else { ": " }
         );
-        let places = Places { lines: self.lines, sheet: self.sheet, form: title, understood: words };
+        let places = Places {
+            lines: self.lines,
+            sheet: self.sheet,
+            form: title,
+            understood: words,
+            sources: self.sources,
+        };
         let warnings = self.warned.into_iter().map(|it| format!("{}: {it}", path.display())).collect();
         let said = Said { notes: vec![said], warnings };
         Blocks::made(path, expected, self.text, sha256).with_places(places, said)

@@ -104,6 +104,11 @@ impl Body {
             let cells = numbers.map(|it| if is_seen { Value::Number(*it) } else { Value::Empty });
             made.row(number, [Value::Number(seconds(time_ns, since_s))].into_iter().chain(cells));
         }
+        let parts = ["stamp", "position.x", "position.y", "position.z"].into_iter();
+        let parts = parts.chain(["orientation.x", "orientation.y", "orientation.z", "orientation.w"]);
+        made.sources = (COLUMNS.into_iter().zip(parts))
+            .map(|(column, part)| (column.to_owned(), format!("{part} of {}", self.words(topic))))
+            .collect();
         let what = if is_posed { "poses" } else { "points" };
         made.said.push(format!(
             "{} {what} of {} in the frame `{}`, m; lines are its messages",

@@ -107,6 +107,9 @@ impl Readings {
             let time = Value::Number(seconds(time_ns, since_s));
             made.row(number, [time].into_iter().chain(values.iter().copied().map(Value::Number)));
         }
+        made.sources = (columns.iter().zip(&self.joints))
+            .map(|(column, joint)| (column.clone(), format!("position of `{joint}` in {topic}")))
+            .collect();
         made.said
             .push(format!("{} joint readings of `{topic}`, rad and m; lines are its messages", made.rows()));
         let others = self.messages - self.rows.len() - self.infinite;
