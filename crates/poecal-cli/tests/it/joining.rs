@@ -4,10 +4,10 @@ use std::fs;
 
 use crate::folder::Folder;
 
-const MODEL: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/elbow/robot.urdf");
+pub(crate) const MODEL: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/elbow/robot.urdf");
 
 /// Header and rows of a simulated session of an elbow with errors, cells by columns: joints first, then what was measured.
-fn session(folder: &Folder, kind: &str, count: usize) -> (Vec<String>, Vec<Vec<String>>, usize) {
+pub(crate) fn session(folder: &Folder, kind: &str, count: usize) -> (Vec<String>, Vec<Vec<String>>, usize) {
     folder.done(&format!("simulate {MODEL} --kind {kind} --count {count} --seed 3 --out made"));
     let text = folder.read("made/measurements.csv");
     let mut lines = text.lines().filter(|line| !line.starts_with('#'));
@@ -18,7 +18,7 @@ fn session(folder: &Folder, kind: &str, count: usize) -> (Vec<String>, Vec<Vec<S
 }
 
 /// Writes some columns of rows, with a name in front of each if there are names.
-fn table(
+pub(crate) fn table(
     folder: &Folder,
     name: &str,
     header: &[String],

@@ -8,6 +8,7 @@ use poecal::io::model::Model;
 use poecal::io::urdf::ChainSelection;
 
 use crate::folder::Folder;
+use crate::recordings::{Recordings, recordings};
 use crate::workbook::workbook;
 
 pub(crate) const MODEL: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/elbow/robot.urdf");
@@ -406,72 +407,8 @@ fn recordings_with_clocks_of_their_own_are_joined_at_their_stands() {
     let rows = session(&folder, 26);
     fs::write(folder.path("own.csv"), own(&rows, true)).unwrap();
     let (expected, _) = held_out(&folder, "own.csv");
-    let between = |one: &[f64], other: &[f64], share: f64| -> Vec<f64> {
-        one.iter().zip(other).map(|(a, b)| a + share * (b - a)).collect()
-    };
-    let next = |row: usize| (row + 1).min(rows.len() - 1);
-    let mut log = "timestamp,actual_q_0,actual_q_1,actual_q_2,actual_q_3,actual_q_4,actual_q_5\n".to_owned();
-    for (time, row, share) in stream(rows.len(), 125) {
-        let joints = between(&rows[row].0, &rows[next(row)].0, share);
-        let radians: Vec<f64> = joints.iter().map(|it| it.to_radians()).collect();
-        writeln!(log, "{:.6},{}", 12_621.061 + time, joined(&radians, 9, ",")).unwrap();
-    }
+    let Recordings { log, take, qualisys } = recordings(&rows);
     fs::write(folder.path("robot_data.csv"), log).unwrap();
-    // The body, one that stands, and a marker without a label; frames are lost.
-    let mut take = "Format Version,1.24,Take Name,A,Export Frame Rate,100.0,Rotation Type,Quaternion,Length Units,Millimeters\n\n".to_owned();
-    let head = |label: &str, of: &dyn Fn(usize) -> String| {
-        format!("{label}{}\n", (0..17).map(of).collect::<Vec<_>>().join(","))
-    };
-    let name = |k: usize| ["Table", "Tool"][usize::from(k >= 7)].to_owned();
-    take += &head(",Type,", &|k| if k < 14 { "Rigid Body".to_owned() } else { "Marker".to_owned() });
-    take += &head(",Name,", &|k| if k < 14 { name(k) } else { "Unlabeled 1189".to_owned() });
-    take += &head(",ID,", &|k| format!("\"{k}\""));
-    take += &head(",,", &|k| if k < 14 && k % 7 < 4 { "Rotation".to_owned() } else { "Position".to_owned() });
-    take += &head("Frame,Time (Seconds),", &|k| {
-        if k < 14 {
-            ["X", "Y", "Z", "W", "X", "Y", "Z"][k % 7].to_owned()
-        } else {
-            ["X", "Y", "Z"][k - 14].to_owned()
-        }
-    });
-    let mut qualisys = "NO_OF_FRAMES\t1\nNO_OF_BODIES\t1\nFREQUENCY\t100\nDATA_INCLUDED\t6D\nBODY_NAMES\tTool\nFrame\tTime\tTool X\tY\tZ\tRoll\tPitch\tYaw\tResidual\t".to_owned();
-    qualisys += &(0..9).map(|k| format!("Rot[{k}]")).collect::<Vec<_>>().join("\t");
-    qualisys += "\t\n";
-    for (frame, (time, row, share)) in stream(rows.len(), 100).into_iter().enumerate() {
-        let place = between(&rows[row].1, &rows[next(row)].1, share);
-        let mut turn = rows[next(row)].2;
-        if rows[row].2.iter().zip(&turn).map(|(a, b)| a * b).sum::<f64>() < 0.0 {
-            turn = turn.map(|it| -it);
-        }
-        let turn = between(&rows[row].2, &turn, share);
-        let length = turn.iter().map(|it| it * it).sum::<f64>().sqrt();
-        let [x, y, z, w]: [f64; 4] = std::array::from_fn(|k| turn[k] / length);
-        let is_lost = frame % 50 == 7;
-        let (time, drifted) = (time, time * (1.0 + 35e-6));
-        let body = if is_lost {
-            ",,,,,,".to_owned()
-        } else {
-            format!("{},{}", joined(&[x, y, z, w], 6, ","), joined(&place, 6, ","))
-        };
-        writeln!(take, "{frame},{drifted:.6},0,0.2588,0,0.9659,500,100,-700,{body},1,2,3").unwrap();
-        let m = [
-            1.0 - 2.0 * (y * y + z * z),
-            2.0 * (x * y + z * w),
-            2.0 * (x * z - y * w),
-            2.0 * (x * y - z * w),
-            1.0 - 2.0 * (x * x + z * z),
-            2.0 * (y * z + x * w),
-            2.0 * (x * z + y * w),
-            2.0 * (y * z - x * w),
-            1.0 - 2.0 * (x * x + y * y),
-        ];
-        let angles =
-            [(-m[7]).atan2(m[8]), m[6].clamp(-1.0, 1.0).asin(), (-m[3]).atan2(m[0])].map(f64::to_degrees);
-        let zeros = [0.0; 16];
-        let cells = [&place[..], &angles, &[0.3], &m].concat();
-        let cells = if is_lost { &zeros[..] } else { &cells };
-        writeln!(qualisys, "{}\t{time:.5}\t{}\t", frame + 1, joined(cells, 7, "\t")).unwrap();
-    }
     fs::write(folder.path("take.csv"), &take).unwrap();
     fs::write(folder.path("take_6D.tsv"), qualisys).unwrap();
     for other in ["take.csv", "take_6D.tsv"] {

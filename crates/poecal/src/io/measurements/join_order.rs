@@ -96,14 +96,6 @@ impl Pairing<'_> {
         }
     }
 
-    /// What a diagnosis says beside an order that fits badly, too.
-    pub(super) fn doubt(&self, missed_m: f64, pairs: &[Pair]) -> String {
-        let is_doubtful = join_doubt::is_doubtful(self.robot, missed_m);
-        let found =
-            is_doubtful.then(|| join_doubt::diagnosis(self.robot, &self.rows.session_of(pairs))).flatten();
-        found.map_or_else(String::new, |it| format!("; but {it}"))
-    }
-
     /// The warning of pairs that fit far worse than the others, if they are some.
     pub(super) fn wrong_pairs(&self, pairs: &[Pair]) -> Option<String> {
         let (wrong, usual_m) = self.rows.wrong(pairs);

@@ -220,15 +220,25 @@ impl<'a> Pairing<'a> {
         let found = self.rows.agreement(pairs);
         let mut warnings = Vec::new();
         match found {
-            Some(Agreement::Other { missed_m, order, other_m }) => {
+            Some(
+                Agreement::Other { missed_m, order, other_m } | Agreement::Alike { missed_m, order, other_m },
+            ) if !is_stated && join_doubt::is_doubtful(self.robot, missed_m.min(other_m)) => {
                 return self.refuse(format!(
-                    "found measurements that the nominal robot misses by {} (median) if they are joined {by_name}, and by {} {}, expected no other \
-                     order to fit better: {}{}",
+                    "found measurements that do not fit the joint readings: the nominal robot misses them by {} (median) if they are joined {by_name}, and by {} {}: {}",
                     mm(missed_m),
                     mm(other_m),
                     words(order),
-                    advice(order),
-                    self.doubt(other_m, pairs)
+                    join_doubt::reason(self.robot, &self.rows.session_of(pairs))
+                ));
+            }
+            Some(Agreement::Other { missed_m, order, other_m }) => {
+                return self.refuse(format!(
+                    "found measurements that the nominal robot misses by {} (median) if they are joined {by_name}, and by {} {}, expected no other \
+                     order to fit better: {}",
+                    mm(missed_m),
+                    mm(other_m),
+                    words(order),
+                    advice(order)
                 ));
             }
             Some(Agreement::Alike { missed_m, order, other_m }) => {
@@ -239,9 +249,9 @@ impl<'a> Pairing<'a> {
                     words(order)
                 );
                 if !is_stated {
+                    let names = if how == Join::Name { "" } else { ", or give both files a column `id`" };
                     return self.refuse(format!(
-                        "found files that can be joined in two ways: {message}; state the order by --join {option}, or give both files a column `id`{}",
-                        self.doubt(missed_m.min(other_m), pairs)
+                        "found files that can be joined in two ways: {message}; state the order by --join {option}{names}"
                     ));
                 }
                 warnings.push(format!("{joints}, {path}: {message}"));

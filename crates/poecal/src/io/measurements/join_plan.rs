@@ -161,16 +161,20 @@ impl<'p> Plan<'p> {
 /// Refuses a topic that was asked for and that no file has.
 fn refuse_other_topics(path: &Path, recordings: &[Option<Recording>], options: &ReadOptions) -> Result<()> {
     for (at, name) in options.topics.iter().enumerate() {
-        let mut all = recordings.iter().flatten();
-        if !all.any(|it| it.has_topic(at)) {
-            let contents: Vec<&str> = recordings.iter().flatten().map(Recording::contents).collect();
-            let message = format!(
-                "found no topic `{}` of joint readings or of what was measured, expected one of {}",
-                shown(name),
-                contents.join(", ")
-            );
-            return Err(ErrorKind::Option.error(message).in_file(path));
+        let found = recordings.iter().flatten().filter_map(|it| it.has_topic(at)).max();
+        if found == Some(true) {
+            continue;
         }
+        let contents: Vec<&str> = recordings.iter().flatten().map(Recording::contents).collect();
+        let contents = contents.join(", ");
+        let name = shown(name);
+        let message = match found {
+            None => format!("found no topic `{name}`, expected one of {contents}"),
+            Some(_) => format!(
+                "found the topic `{name}`, which has neither joint readings nor measurements, expected another one of {contents}"
+            ),
+        };
+        return Err(ErrorKind::Option.error(message).in_file(path));
     }
     Ok(())
 }

@@ -2,7 +2,8 @@
 
 use nalgebra::Vector3;
 
-use crate::distributions::median;
+use super::join_words::mm;
+use crate::distributions::{median, median_point};
 
 /// Times the usual distance from the middle beyond which a row is none of its stand.
 const FAR: f64 = 10.0;
@@ -20,7 +21,7 @@ pub(super) fn kept_values(values: &[f64], floor: f64) -> Vec<f64> {
 
 /// Of each place, whether it is near the middle of all, likewise.
 pub(super) fn kept(places: &[Vector3<f64>], floor_m: f64) -> Vec<bool> {
-    let middle = Vector3::from_fn(|at, _| median(places.iter().map(|it| it[at])).unwrap_or_default());
+    let middle = median_point(places);
     let usual = median(places.iter().map(|it| (it - middle).norm())).unwrap_or_default();
     places.iter().map(|it| (it - middle).norm() <= FAR * usual + floor_m).collect()
 }
@@ -75,9 +76,10 @@ impl Spread {
             let count: usize = own().map(|it| it.left_out).sum();
             let farthest = own().map(|it| it.farthest_m).fold(0.0, f64::max);
             said.push(format!(
-                "left out {count} row{} up to {:.3} mm from the others of the same stand, which begin at {}",
+                "left out {count} row{} up to {} from the others of the same stand: {} at {}",
                 if count == 1 { "" } else { "s" },
-                1e3 * farthest,
+                mm(farthest),
+                if disturbed.len() == 1 { "one that begins" } else { "some that begin" },
                 lines(&disturbed)
             ));
         }
@@ -85,12 +87,11 @@ impl Spread {
         if !wide.is_empty() {
             let most = wide.iter().filter_map(|at| all.get(*at)).map(Spread::root_m).fold(0.0, f64::max);
             said.push(format!(
-                "the rows of the stand{} that begin{} at {} scatter by up to {:.3} mm, those of the others by {:.3} mm (median)",
-                if wide.len() == 1 { "" } else { "s" },
-                if wide.len() == 1 { "s" } else { "" },
+                "the rows of {} at {} scatter by up to {}, those of the others by {} (median)",
+                if wide.len() == 1 { "the stand that begins" } else { "the stands that begin" },
                 lines(&wide),
-                1e3 * most,
-                1e3 * usual
+                mm(most),
+                mm(usual)
             ));
         }
         said
@@ -117,7 +118,7 @@ mod tests {
         let said = Spread::warnings(&[calm, spread, calm], |some| format!("{some:?}"));
         assert_eq!(
             said,
-            ["left out 1 row up to 600.000 mm from the others of the same stand, which begin at [1]"]
+            ["left out 1 row up to 600.000 mm from the others of the same stand: one that begins at [1]"]
         );
         assert!(Spread::of_all(&[calm, spread]) < 1e-4);
         // Readings of an encoder whose last digit changes.

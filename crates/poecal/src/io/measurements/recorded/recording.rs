@@ -88,8 +88,8 @@ pub(in super::super) struct Recording {
     pub(in super::super) measured: Result<OwnTable, Missing>,
     /// What is in it, in words.
     pub(super) contents: String,
-    /// Which of the topics that were asked for it has.
-    pub(super) has_topic: Vec<bool>,
+    /// Of the topics that were asked for those that it has, each with whether it is read.
+    pub(super) has_topic: Vec<Option<bool>>,
     /// Whether it names the bodies that were measured.
     pub(super) names_bodies: bool,
 }
@@ -128,9 +128,9 @@ impl Recording {
         found
     }
 
-    /// Whether it has a topic that was asked for, by its place among these.
-    pub(in super::super) fn has_topic(&self, at: usize) -> bool {
-        self.has_topic.get(at).copied().unwrap_or_default()
+    /// Whether a topic that was asked for is read, by its place among these; `None` of one that it does not have.
+    pub(in super::super) fn has_topic(&self, at: usize) -> Option<bool> {
+        self.has_topic.get(at).copied().flatten()
     }
 
     /// Whether it names the bodies that were measured.

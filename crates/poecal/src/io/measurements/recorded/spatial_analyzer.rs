@@ -277,7 +277,7 @@ impl Layout {
             );
         }
         // The index of a point in its group, and two coordinates.
-        if rest == 3 && points.len() > 2 && is_whole(named) && !all_whole {
+        if count == 3 && points.len() > 2 && is_whole(named) && !all_whole {
             return Refused::at(
                 first.line,
                 "found whole numbers alone as the first of three coordinates, as of the index of a point, expected x, y and z: a column was lost",

@@ -94,7 +94,9 @@ fn recording(topics: &Topics<'_>, opening: &Opening<'_>, sha256: &str, warned: V
         joints,
         measured,
         contents: topics.words(),
-        has_topic: asked.map(|name| topics.all.iter().any(|it| it.is_called(name) && it.is_read())).collect(),
+        has_topic: asked
+            .map(|name| topics.all.iter().filter(|it| it.is_called(name)).map(Topic::is_read).max())
+            .collect(),
         names_bodies: topics.all.iter().any(Topic::names_bodies),
     };
     let first = if found.joints.is_ok() { &mut found.joints } else { &mut found.measured };
