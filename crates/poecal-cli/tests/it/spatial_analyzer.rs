@@ -66,12 +66,12 @@ fn what_is_not_as_the_head_says_is_refused() {
         (
             "unit.txt",
             two(&HEAD.replace("(mm)", "(inches)")),
-            "unit.txt:26: found `= CARTESIAN: X,  Y,  Z (inches)` as axes and unit",
+            "unit.txt:26: found `CARTESIAN: X,  Y,  Z (inches)` as axes and unit",
         ),
         (
             "frame.txt",
             two(&HEAD.replace("A::", "B::")),
-            "frame.txt:25: found `'B::WORLD'` as the frame of the points below",
+            "frame.txt:25: found `B::WORLD` as the frame of the points below",
         ),
         ("cut.txt", whole[..end].to_owned(), "cut.txt:43: found no time behind the numbers of a point"),
         ("lost.txt", without(4), "lost.txt:4: found whole numbers alone as the first of three coordinates"),

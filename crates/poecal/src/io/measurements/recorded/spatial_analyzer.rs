@@ -133,7 +133,9 @@ impl<'t> Comments<'t> {
         let comment = |(at, line): (usize, &'t str)| Some((at, line.trim().strip_prefix("//")?.trim()));
         let all: Vec<(usize, &str)> = lines(text).filter_map(comment).collect();
         let behind = |key: &'static str| {
-            all.iter().filter_map(move |(at, it)| Some((*at, it.split_once(key)?.1.trim())))
+            all.iter().filter_map(move |(at, it)| {
+                Some((*at, it.split_once(key)?.1.trim_matches([' ', '=', '\'', '"'])))
+            })
         };
         // Points of several frames or units in one file are not told apart by a table.
         let only = |key: &'static str, what: &str| {
@@ -149,7 +151,7 @@ impl<'t> Comments<'t> {
                 None => Ok(first),
             }
         };
-        let frame = only("Coordinate Frame", "the frame")?.map(|it| it.1.trim_matches(['\'', '"']));
+        let frame = only("Coordinate Frame", "the frame")?.map(|it| it.1);
         let Some((line, axes)) = only("AXES", "axes and unit")? else {
             return Refused::whole(
                 "found points of SpatialAnalyzer without the line `// AXES = …` that states their unit, expected it: export them with comments, or \
