@@ -25,6 +25,7 @@ FOLLOWED = {
     "write `{si}`": HERE + "test_a_unit_that_is_missing_in_the_line_of_units",
     "has it: put `#` in front of the lines above it": HERE + "test_lines_above_the_header",
     "state it by --lag, like": "crates/poecal/tests/it/stands.rs::a_program_that_repeats_itself_is_refused_until_the_lag_is_stated",
+    "if they are {unit}, write `time[{unit}]` in the header": "crates/poecal-cli/tests/it/recordings.rs::a_log_without_usable_times_is_refused_at_once_and_says_why",
     "or number them in a mapping (--columns), like": "crates/poecal/tests/it/mapping_forms.rs::columns_of_a_table_without_names_are_named_by_their_numbers",
     "export them with comments, or name the columns by number in a mapping (--columns)": HERE + "test_points_without_a_unit",
     "expected one that was measured: name its columns in a mapping (--columns)": HERE + "test_two_sets_of_coordinates",

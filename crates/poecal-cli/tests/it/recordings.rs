@@ -255,3 +255,20 @@ fn a_table_of_rows_at_rest_is_refused_before_files_are_joined_in_motion() {
     fs::write(folder.path("broken.csv"), text).unwrap();
     refused(&folder, &[("broken.csv take.csv --join motion", "found --join motion, expected rows at rest")]);
 }
+
+#[test]
+fn a_recording_in_motion_is_of_one_instrument() {
+    let (folder, Recordings { take, .. }) = recorded();
+    let mut text = "time,x[mm],y[mm],z[mm],instrument\n".to_owned();
+    for (at, line) in take.lines().skip(7).enumerate() {
+        let cells: Vec<&str> = line.split(',').collect();
+        if !cells[13].is_empty() {
+            let name = if at < 1000 { "north" } else { "south" };
+            writeln!(text, "{},{},{name}", cells[1], cells[13..16].join(",")).unwrap();
+        }
+    }
+    fs::write(folder.path("two.csv"), &text).unwrap();
+    let run = folder.run(&format!("calibrate {MODEL} log.csv two.csv --join motion --out out --quiet"));
+    assert_eq!((run.code, run.err.lines().count()), (2, 1), "{}", run.err);
+    assert!(run.err.contains("found the instruments north, south in one recording"), "{}", run.err);
+}
