@@ -22,7 +22,7 @@ impl Pairing<'_> {
         let alike: Vec<&Lagged> = found.iter().filter(|it| it.missed_m < EVIDENT * best.missed_m).collect();
         // The lag at which most stands are the same says why none fits.
         let most = found.iter().max_by_key(|it| it.pairs.len()).unwrap_or(best);
-        let is_one = alike.len() == 1 && most.pairs.len() == best.pairs.len();
+        let is_one = alike.len() == 1 && 2 * most.pairs.len() <= 3 * best.pairs.len();
         if is_doubtful(self.robot, best.missed_m) && !is_one {
             return self.refuse(format!(
                 "found measurements that fit the joint readings at no lag of the clocks{stated}: the nominal robot misses them by {} (median) or more, and by {} at {:.2} s, where {} stands are the same, expected recordings of the same motion of the same robot: {}",

@@ -6,7 +6,7 @@ use super::Join;
 use super::join_doubt;
 use super::join_pairs::{Joined, Pairing, SOME_WRONG};
 use super::join_words::mm;
-use super::streams::NoStands;
+use super::no_stands::NoStands;
 use crate::error::Result;
 use crate::start::{Agreement, Aligned, Pair};
 

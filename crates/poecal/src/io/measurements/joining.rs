@@ -11,10 +11,11 @@ use super::joints::rows_of;
 use super::layout::ColumnLayout;
 use super::mapping::ColumnMap;
 use super::motions::{Sampled, motion_of_points, motion_of_target};
+use super::no_stands::NoStands;
 use super::number::Numbers;
 use super::read::Reader;
 use super::recorded::MEASURED;
-use super::streams::{NoStands, stands_of_joints, stands_of_measured};
+use super::streams::{stands_of_joints, stands_of_measured};
 use super::table::Table;
 use super::understanding::{self, FileUnderstanding};
 use super::units::UnitSource;
@@ -106,7 +107,7 @@ impl<'a> Reader<'a> {
             separator_line: table.separator_line,
             units_line: table.header.units_line,
             decimal_sign: inputs.numbers.sign(),
-            columns: table.with_sources(understanding::columns(&table.header, &layout, &inputs.ranges)),
+            columns: understanding::columns(&table, &layout, &inputs.ranges),
             orientation: None,
             pose: understanding::pose_word(layout.pose),
             ignored: layout.ignored.iter().map(|(name, _)| name.clone()).collect(),

@@ -42,6 +42,8 @@ mod mapping;
 mod messages;
 mod motions;
 mod naming;
+mod no_file_for;
+mod no_stands;
 mod number;
 mod numbered;
 mod orientation;

@@ -410,11 +410,7 @@ impl<'a> Reader<'a> {
             separator_line: table.separator_line,
             units_line: table.header.units_line,
             decimal_sign: inputs.numbers.sign(),
-            columns: table.with_sources(self.own_columns(understanding::columns(
-                &table.header,
-                layout,
-                &inputs.ranges,
-            ))),
+            columns: self.own_columns(understanding::columns(table, layout, &inputs.ranges)),
             orientation: understanding::orientation(layout),
             pose: understanding::pose_word(layout.pose),
             ignored: layout.ignored.iter().map(|(name, _)| name.clone()).collect(),

@@ -94,7 +94,7 @@ impl Reader<'_> {
         let pictures = self.found.data.len() - first;
         self.warn_of_ignored(path, layout);
         self.take_controller(path, layout)?;
-        let mut columns = understanding::columns(&table.header, layout, &inputs.ranges);
+        let mut columns = understanding::columns(table, layout, &inputs.ranges);
         columns.extend(own);
         self.found.understood.push(FileUnderstanding {
             understood: table.understood(),

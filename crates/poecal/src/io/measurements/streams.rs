@@ -7,11 +7,12 @@ use nalgebra::{Matrix3, Vector3};
 use super::join_pairs::JointRows;
 use super::join_words::numbered;
 use super::layout::ColumnLayout;
+use super::no_stands::NoStands;
 use super::stand_means::{Spread, kept, kept_values};
 use super::table::Row;
 use crate::lie::{Pose, rotation};
 use crate::measurement::{Dataset, Measurement, Observation};
-use crate::start::{NoStream, Span, Stand, Stream, StreamChannels, mean_rotation};
+use crate::start::{Span, Stand, Stream, StreamChannels, mean_rotation};
 
 /// Changes that are none: of a joint (rad, m), of a position (m), and of an orientation (rad).
 const STILL_JOINT: f64 = 5e-5;
@@ -26,44 +27,6 @@ pub(super) fn time_of(row: &Row<'_>, layout: &ColumnLayout) -> f64 {
     let text = row.cells.get(column).map_or("", |cell| cell.raw).trim_start_matches('\'');
     let value = if text.contains('.') { text.parse::<f64>() } else { text.replace(',', ".").parse() };
     value.map_or(f64::NAN, |it| it * seconds)
-}
-
-/// Why rows have no stands.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) enum NoStands {
-    /// They are a list, or have other measurements than places.
-    Listed,
-    /// They follow each other as in a recording, whose times cannot be used: what is wrong with these, and the line whose time is before the one above it.
-    Recorded { why: String, back: Option<usize> },
-}
-
-impl NoStands {
-    /// Of what is wrong with the times of rows with these lines.
-    fn of(why: NoStream, times: &[f64], lines: &[usize]) -> Self {
-        let line = |row: usize| lines.get(row).copied().unwrap_or_default();
-        let back = if let NoStream::Back(row) = why { Some(line(row)) } else { None };
-        let why = match why {
-            NoStream::NoTime(_) if times.iter().all(|it| it.is_nan()) => "no column of times".to_owned(),
-            NoStream::NoTime(row) => format!("no time in line {}", line(row)),
-            NoStream::Slow(0.0) => {
-                "times that are the same in most rows (write them with fractions of a second)".to_owned()
-            }
-            NoStream::Slow(step_s) => {
-                let units = [("ms", 1e-3), ("us", 1e-6), ("ns", 1e-9)];
-                let unit = units.into_iter().find(|it| (1e-4..0.25).contains(&(step_s * it.1)));
-                let advice = unit.map_or_else(
-                    || "a recording has four rows a second or more".to_owned(),
-                    |(unit, _)| format!("if they are {unit}, write `time[{unit}]` in the header"),
-                );
-                format!("times {step_s} s apart ({advice})")
-            }
-            NoStream::Back(row) => {
-                let time = |row: usize| times.get(row).copied().unwrap_or(f64::NAN);
-                format!("a time that goes back, from {} s to {} s", time(row.saturating_sub(1)), time(row))
-            }
-        };
-        NoStands::Recorded { why, back }
-    }
 }
 
 /// Stands of a stream of joint readings, as the rows that they are.

@@ -1,5 +1,6 @@
 //! A file as a table: header and rows with their places.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
 use super::cells::{Cell, Separator, character_column, split, split_line};
@@ -7,7 +8,6 @@ use super::header::{Header, are_units, is_number};
 use super::mapping::ColumnMap;
 use super::places::Places;
 use super::text::{Blocks, Lines, Said};
-use super::understanding::ColumnUnderstanding;
 use crate::error::{Error, ErrorKind, Result};
 use crate::io::looks_like::model_for_table;
 
@@ -126,15 +126,9 @@ impl<'a> Table<'a> {
         self.places.as_ref().map(|it| it.form)
     }
 
-    /// Columns with what the file has in place of those that were made.
-    pub(super) fn with_sources(&self, mut columns: Vec<ColumnUnderstanding>) -> Vec<ColumnUnderstanding> {
-        let sources = self.places.as_ref().map(|it| &it.sources);
-        for own in columns.iter_mut().filter_map(|it| it.column.as_mut()) {
-            if let Some(source) = sources.and_then(|it| it.get(own.as_str())) {
-                own.clone_from(source);
-            }
-        }
-        columns
+    /// Of columns that were made what they were made of.
+    pub(super) fn sources(&self) -> Option<&BTreeMap<String, String>> {
+        self.places.as_ref().map(|it| &it.sources)
     }
 
     /// What was understood of a file in another form, in a few words.

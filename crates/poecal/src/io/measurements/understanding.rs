@@ -6,12 +6,12 @@ use std::path::PathBuf;
 use serde::Serialize;
 
 use super::cells::Separator;
-use super::header::Header;
 use super::inputs::{Input, InputSource, Range};
 use super::layout::{ColumnLayout, SetRule};
 use super::lost::LostBeams;
 use super::mapping::PoseDirection;
 use super::number::DecimalSign;
+use super::table::Table;
 use super::units::UnitSource;
 
 /// Source of one of our columns.
@@ -73,11 +73,15 @@ pub struct FileUnderstanding {
 
 /// Our columns with their sources.
 pub(super) fn columns(
-    header: &Header<'_>,
+    table: &Table<'_>,
     layout: &ColumnLayout,
     ranges: &[Range],
 ) -> Vec<ColumnUnderstanding> {
-    let text_of = |index: usize| header.cells.get(index).map(|cell| cell.text.clone());
+    let (header, sources) = (&table.header, table.sources());
+    let text_of = |index: usize| {
+        let own = &header.cells.get(index)?.text;
+        Some(sources.and_then(|it| it.get(own)).unwrap_or(own).clone())
+    };
     let number = |(input, range): (&Input, &Range)| {
         let has_unit = input.unit.symbol() != "1";
         ColumnUnderstanding {

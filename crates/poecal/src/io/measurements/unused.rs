@@ -1,9 +1,10 @@
 //! Options that concern forms of files.
 
 use super::Join;
+use super::no_file_for::{BODIES, unused};
 use super::read::Reader;
 use super::recorded::{BAG, RECORDINGS, WORKBOOK};
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::Result;
 
 impl Reader<'_> {
     /// Refuses options that concern forms of files of which there is none.
@@ -27,13 +28,4 @@ impl Reader<'_> {
             None => Ok(()),
         }
     }
-}
-
-/// What `--body` is for.
-pub(super) const BODIES: &str = "a recording of bodies or markers with names";
-
-/// The error of an option that concerns a form of files of which there is none.
-pub(super) fn unused(option: &str, what: &str) -> Error {
-    ErrorKind::Option
-        .error(format!("found {option} and no file that it is for, expected {what}: leave the option out"))
 }
