@@ -67,20 +67,20 @@ fn what_hardly_fits_is_refused_unless_a_diagnosis_explains_it() {
     let (folder, header, rows) = named();
     // Of a robot that is far from its model, what is joined is right.
     let text = folder.read("joints.csv");
-    let turned = |by: f64, factor: f64| -> String {
+    let turned = |joint: usize, by: f64, factor: f64| -> String {
         let line = |(at, line): (usize, &str)| {
             let mut cells: Vec<String> = line.split(',').map(str::to_owned).collect();
             if at > 0 {
-                cells[5] = format!("{}", by + factor * cells[5].parse::<f64>().unwrap());
+                cells[joint] = format!("{}", by + factor * cells[joint].parse::<f64>().unwrap());
             }
             cells.join(",") + "\n"
         };
         text.lines().enumerate().map(line).collect()
     };
-    fs::write(folder.path("sign.csv"), turned(0.0, -1.0)).unwrap();
-    fs::write(folder.path("zero.csv"), turned(25.0, 1.0)).unwrap();
+    fs::write(folder.path("sign.csv"), turned(5, 0.0, -1.0)).unwrap();
+    fs::write(folder.path("zero.csv"), turned(3, 8.0, 1.0)).unwrap();
     for (files, expected) in
-        [("sign.csv points.csv", "counting joint5 the other way"), ("zero.csv points.csv", "joint5")]
+        [("sign.csv points.csv", "counting joint5 the other way"), ("zero.csv points.csv", "joint3")]
     {
         let run = import(&folder, files);
         assert_eq!(run.code, 0, "{files}: {}", run.err);

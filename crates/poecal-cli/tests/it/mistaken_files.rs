@@ -156,6 +156,11 @@ fn shifted_headers_other_units_and_mirrors_are_named() {
         ("right.csv points.csv", "the header has one name too few at its beginning"),
         ("left.csv points.csv", "left.csv:2: found the values of each name one column further to the left"),
         ("whole.csv", "whole.csv:1: found the values of each name one column further to the right"),
+        // Two of three coordinates may fit evidently; the nominal robot misses them by more than any is off.
+        (
+            "joints.csv shifted_points.csv",
+            "shifted_points.csv:1: found the values of each name one column further to the right",
+        ),
         ("joints.csv mirrored.csv", "mirroring the positions"),
         ("first.csv metres.csv", "most likely they are in m, not mm"),
     ] {
@@ -165,10 +170,6 @@ fn shifted_headers_other_units_and_mirrors_are_named() {
         assert!(run.err.contains(expected), "{files}: {}", run.err);
     }
     assert!(folder.listing() == before);
-    // Two of three coordinates may fit evidently: then the verdict says it.
-    let run = folder.run(&format!("calibrate {MODEL} joints.csv shifted_points.csv --out out"));
-    assert!(run.code == 1 && run.out.contains("do not use"), "{}{}", run.out, run.err);
-    fs::remove_dir_all(folder.path("out")).unwrap();
     for (name, words) in [
         ("cm.csv", "multiplying the positions of cm.csv alone by 10"),
         ("inches.csv", "multiplying the positions of inches.csv alone by 25.4"),
