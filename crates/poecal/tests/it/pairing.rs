@@ -118,3 +118,19 @@ fn wrong_orders_of_equal_counts_are_named() {
     );
     assert!(named.iter().all(|it| it * 100 >= 99 * all), "{named:?}");
 }
+
+#[test]
+fn lists_of_very_unequal_length_have_no_order_and_take_no_time() {
+    let (session, _) = session(Kind::POINT, 24, 3, &|_| (0..24).collect());
+    // As many rows as a recording has, in no order.
+    let rows = (0..5600).flat_map(|at| {
+        let width = session.data.reading_names().len();
+        let row = at * 7 % 24;
+        session.joints[row * width..(row + 1) * width].to_vec()
+    });
+    let joints: Vec<f64> = rows.collect();
+    let begun = std::time::Instant::now();
+    assert!(Unpaired::new(&session.robot, &joints, &session.data).aligned().is_none());
+    println!("{:?}", begun.elapsed());
+    assert!(begun.elapsed().as_secs() < 5);
+}

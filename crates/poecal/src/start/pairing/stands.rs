@@ -327,6 +327,22 @@ mod tests {
     }
 
     #[test]
+    fn what_is_wrong_with_times_is_said() {
+        let Stream { times, channels } = stream(1e-3);
+        let of = |change: &dyn Fn(usize, f64) -> f64| {
+            let times = times.iter().enumerate().map(|(at, it)| change(at, *it)).collect();
+            let stream = Stream::new(times, channels.clone());
+            assert!(stream.is_smooth());
+            stream.no_stream()
+        };
+        assert_eq!(of(&|_, it| it), None);
+        assert_eq!(of(&|at, it| if at == 70 { f64::NAN } else { it }), Some(NoStream::NoTime(70)));
+        assert_eq!(of(&|at, it| if at == 70 { it - 1.0 } else { it }), Some(NoStream::Back(70)));
+        assert_eq!(of(&|_, it| -it), Some(NoStream::Back(1)));
+        assert!(matches!(of(&|_, it| 1e3 * it), Some(NoStream::Slow(step)) if (step - 10.0).abs() < 1e-9));
+    }
+
+    #[test]
     fn a_list_of_places_is_no_stream() {
         let times: Vec<f64> = (0..100).map(|it| 0.001 * f64::from(it)).collect();
         let values: Vec<f64> = (0..100).map(|it| (f64::from(it) * 0.618).fract()).collect();
