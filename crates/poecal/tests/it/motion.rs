@@ -90,6 +90,8 @@ struct Recorded {
     late_s: f64,
     /// Moves after which the program begins again, if it does.
     repeats: Option<usize>,
+    /// Whether the measurements are of another session.
+    is_other: bool,
 }
 
 /// What was found of a session.
@@ -117,6 +119,8 @@ fn session(seed: u64, of: &Recorded) -> Result<Found, String> {
     if let Some(count) = of.repeats {
         moves.repeat(count, of.span_s);
     }
+    let mut elsewhere = ChaCha8Rng::seed_from_u64(seed + 1_000_000);
+    let other = of.is_other.then(|| Moves::new(&made.actual, of.span_s, of.stops, &mut elsewhere));
     let tip = |readings: &[f64]| {
         made.device_from_base * made.actual.forward_kinematics(&made.actual.joint_values(readings))
     };
@@ -134,7 +138,7 @@ fn session(seed: u64, of: &Recorded) -> Result<Found, String> {
     let middle = 0.5 * of.span_s;
     for step in 0..(of.span_s * of.rate) as u32 {
         let time = f64::from(step) / of.rate;
-        let pose = tip(&moves.at(time));
+        let pose = tip(&other.as_ref().unwrap_or(&moves).at(time));
         let noise = |generator: &mut ChaCha8Rng, size: f64| random::normal_vector(generator) * size;
         let pose = Pose::new(
             pose.rotation * rotation::exp(&noise(&mut generator, 1e-4)),
@@ -203,6 +207,7 @@ fn recorded(generator: &mut ChaCha8Rng) -> Recorded {
         drift: 1e-4 * random::uniform(generator) - 5e-5,
         late_s: 0.0,
         repeats: None,
+        is_other: false,
     }
 }
 
@@ -279,6 +284,19 @@ fn stamps_that_are_late_irregularly_are_part_of_the_lag_by_their_mean() {
     }
     println!("of {all}: {near} within 1 ms of the mean, {honest} with errors below twice the expected one");
     assert!(near * 100 >= 95 * all && honest * 100 >= 95 * all, "{near} {honest}");
+}
+
+#[test]
+fn recordings_in_motion_of_different_sessions_are_refused_however_short() {
+    for seed in 0..8 {
+        let mut generator = ChaCha8Rng::seed_from_u64(7000 + seed);
+        let span_s = [6.0, 12.0, 40.0][seed as usize % 3];
+        let of = Recorded { span_s, is_other: true, lag_s: 0.0, ..recorded(&mut generator) };
+        let error = session(seed, &of).err().unwrap_or_default();
+        println!("{span_s} s: {error}");
+        assert!(error.contains("at no lag") || error.contains("no lag of the clocks"), "{seed}: {error}");
+        assert!(!error.contains("like --lag"), "{error}");
+    }
 }
 
 #[test]
