@@ -127,7 +127,7 @@ fn recordings_that_do_not_belong_together_are_refused_without_a_lag() {
     fs::write(folder.path("mirrored.csv"), mirrored).unwrap();
     // Another session.
     let other = Folder::new();
-    let rows: Vec<Row> = session(&other, 40).split_off(16);
+    let rows: Vec<Row> = session(&other, 48).split_off(24);
     fs::write(folder.path("other.csv"), recordings(&rows).take).unwrap();
     let cases = [
         ("exchanged.csv take.csv", "exchanging the readings of joint2 and joint3"),
