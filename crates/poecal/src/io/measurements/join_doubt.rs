@@ -1,7 +1,7 @@
 //! Whether the nominal robot misses what was joined by so much that it may not belong together.
 
 use super::join_words::mm;
-use crate::forensics::{DiagnosisOptions, diagnose};
+use crate::forensics::{DiagnosisKind, DiagnosisOptions, diagnose};
 use crate::measurement::Dataset;
 use crate::robot::Robot;
 
@@ -14,7 +14,9 @@ const LOOK: &str = "look at the units, the signs and the order of joints and mea
 /// What a diagnosis of mistakes says of what was joined.
 pub(super) fn diagnosis(robot: &Robot, joined: &Dataset) -> Option<String> {
     let found = diagnose(robot, joined, &joined.all_rows(), &DiagnosisOptions::default());
-    found.first().map(|it| it.statement.clone())
+    // Rows that repeat others explain no error.
+    let mut known = found.iter().filter(|it| it.kind != DiagnosisKind::DuplicateRows);
+    known.next().map(|it| it.statement.clone())
 }
 
 /// The same, or where to look.
