@@ -12,6 +12,8 @@ use crate::start::{Agreement, Aligned, Pair};
 
 /// Times as many rows as the other list that a recording has, which is no list.
 const LONGER: usize = 3;
+/// Error of a pair that is never called wrong, metres.
+const LEAST_WRONG_M: f64 = 1e-3;
 
 impl Pairing<'_> {
     /// Lists of unequal length, by the errors of the nominal robot.
@@ -98,7 +100,8 @@ impl Pairing<'_> {
 
     /// The warning of pairs that fit far worse than the others, if they are some.
     pub(super) fn wrong_pairs(&self, pairs: &[Pair]) -> Option<String> {
-        let (wrong, usual_m) = self.rows.wrong(pairs);
+        let (mut wrong, usual_m) = self.rows.wrong(pairs);
+        wrong.retain(|it| it.1 > LEAST_WRONG_M);
         if wrong.is_empty() || wrong.len() as f64 > SOME_WRONG * pairs.len() as f64 {
             return None;
         }

@@ -294,7 +294,7 @@ impl<'a> Pairing<'a> {
             _ => String::new(),
         };
         let note = format!("{joints} and {path} were joined {by_name}: {}{missed}", counted(pairs.len()));
-        warnings.extend(self.wrong_pairs(pairs));
+        warnings.extend(found.and_then(|_| self.wrong_pairs(pairs)));
         warnings.extend(self.without_partner(pairs));
         let entry = self.entry(how, pairs, found.as_ref().map(Agreement::missed_m));
         let unmeasured = self.unmeasured(pairs);
