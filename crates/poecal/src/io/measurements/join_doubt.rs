@@ -39,8 +39,8 @@ pub(super) fn warning(
     joined: impl FnOnce() -> Dataset,
     how: &str,
 ) -> Result<Option<String>, String> {
-    // Also NaN, of a robot without reach.
-    if !(missed_m > ODD * robot.reach_m()) {
+    let is_odd = missed_m > ODD * robot.reach_m();
+    if !is_odd {
         return Ok(None);
     }
     let data = joined();

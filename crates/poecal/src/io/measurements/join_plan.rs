@@ -216,7 +216,7 @@ pub(super) fn part(path: &Path, opening: Opening<'_>, map: &ColumnMap) -> Result
         return Ok(error.map_or_else(Found::whole, |it| Found::unreadable(&it)));
     }
     let opened = opening.opened(path, MEASURED)?;
-    let table = if let Opened::Made(table) = &opened { Some(table.clone()) } else { None };
+    let table = if let Opened::Made(table) = &opened { Some((**table).clone()) } else { None };
     let found = part_of(path, opened.blocks(path, MEASURED), opening, map);
     Ok(Found { table, ..found.unwrap_or_else(|error| Found::unreadable(&error)) })
 }

@@ -55,7 +55,7 @@ impl Reader<'_> {
         if let Opened::Made(table) = &opened
             && let Some(sets) = table.sets()
         {
-            opened = Opened::Made(self.measured_set_of_whole(path, sets)?);
+            opened = Opened::Made(Box::new(self.measured_set_of_whole(path, sets)?));
         }
         Ok(opened.blocks(path, MEASURED))
     }

@@ -62,7 +62,7 @@ pub(super) enum Opened<'p> {
     /// One in our form.
     Own(Box<Blocks<'p>>),
     /// The table of one in another form.
-    Made(OwnTable),
+    Made(Box<OwnTable>),
 }
 
 impl<'p> Opened<'p> {
@@ -169,7 +169,7 @@ impl Opening<'_> {
         let read = input.by_ref().take(workbook::LARGEST + 1).read_to_end(&mut bytes);
         read.map_err(|error| source::unreadable(path, &error, expected))?;
         let made = workbook::table(bytes, self).map_err(|it| it.error(path))?;
-        Ok(Opened::Made(OwnTable { made, sha256: Some(input.sha256()), title: WORKBOOK }))
+        Ok(Opened::Made(Box::new(OwnTable { made, sha256: Some(input.sha256()), title: WORKBOOK })))
     }
 
     /// A text as it is, or the table that it makes.
@@ -187,6 +187,6 @@ impl Opening<'_> {
         let text = blocks.rest()?;
         let mut made = (form.table)(&text, self).map_err(|it| it.error(path))?;
         made.said.splice(0..0, blocks.said().notes);
-        Ok(Opened::Made(OwnTable { made, sha256: blocks.sha256(), title: form.title }))
+        Ok(Opened::Made(Box::new(OwnTable { made, sha256: blocks.sha256(), title: form.title })))
     }
 }

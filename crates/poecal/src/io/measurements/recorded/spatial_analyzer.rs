@@ -268,7 +268,7 @@ impl Layout {
         let all_whole = points
             .iter()
             .flat_map(|it| it.numbers.get(named..).unwrap_or_default())
-            .all(|it| is_whole_number(&it));
+            .all(|it| is_whole_number(it));
         if all_whole && rest >= 6 {
             return Refused::at(
                 first.line,
