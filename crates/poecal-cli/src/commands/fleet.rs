@@ -10,9 +10,10 @@ use std::sync::mpsc;
 use std::thread;
 
 use poecal::io::calibration_file::{CalibrationFile, Inputs};
-use poecal::io::fleet::{Found, LEDGER, Ledger, LedgerRow, Station, newest, read_ledgers};
+use poecal::io::fleet::{Found, InputRow, LEDGER, Ledger, LedgerRow, Station, newest, read_ledgers};
 use poecal::io::named_files::actual;
 use poecal::io::output::{Existing, FilePlace};
+use poecal::io::settings::{SettingValue, Settings};
 use poecal::io::validation::now;
 use poecal::{ErrorKind, Result, report};
 
@@ -71,7 +72,7 @@ fn work_off(
 ) -> Result<usize> {
     let mut failed = 0;
     let mut open: Vec<(Found, LedgerRow)> = Vec::new();
-    let shared = shared_checksums(station)?;
+    let shared = Shared::read(station)?;
     for found in all {
         let row = begun(station, found, &shared);
         if ledger.has(&row) && !again {
@@ -83,8 +84,8 @@ fn work_off(
     let before: Vec<Option<String>> = open
         .iter()
         .map(|(_, row)| {
-            let other = ledger.of(row).filter(|it| !again && it.exit != REFUSED && it.sha256 != row.sha256)?;
-            (other.sha256.get(&row.file) != row.sha256.get(&row.file)).then(|| {
+            let other = ledger.of(row).filter(|it| !again && it.exit != REFUSED && it.inputs != row.inputs)?;
+            (other.sha256(&row.file) != row.sha256(&row.file)).then(|| {
                 format!(
                     "found `{}` of {} again with other bytes, expected one file a robot and date: name it by another date, or repeat by --again",
                     row.serial, row.date
@@ -101,7 +102,7 @@ fn work_off(
     let mut passed = 0;
     thread::scope(|scope| {
         for _ in 0..workers {
-            let (next, open, before) = (&next, &open, &before);
+            let (next, open, before, shared) = (&next, &open, &before, &shared);
             let own = send.lock().map(|it| it.clone()).ok();
             scope.spawn(move || {
                 let Some(own) = own else { return };
@@ -110,7 +111,7 @@ fn work_off(
                     let Some((found, row)) = open.get(at) else { return };
                     let done = match &before[at] {
                         Some(sentence) => refused(row.clone(), sentence.clone()),
-                        None => calibrated(station, found, row.clone()),
+                        None => calibrated(station, found, row.clone(), &shared.prior),
                     };
                     if own.send((at, done)).is_err() {
                         return;
@@ -155,30 +156,56 @@ fn rayon_threads() -> usize {
     poecal::threads_now()
 }
 
-/// SHA-256 of what all robots share: models and settings.
-fn shared_checksums(station: &Station) -> Result<BTreeMap<String, String>> {
-    let files = station.models.values().chain(&station.settings);
-    Inputs::checksums(files.map(PathBuf::as_path))
+/// What all robots share.
+struct Shared {
+    /// SHA-256 of models and settings.
+    sha256: BTreeMap<String, String>,
+    /// What the line says of its next robot, as options.
+    prior: Vec<OsString>,
+}
+
+impl Shared {
+    fn read(station: &Station) -> Result<Self> {
+        let files = station.models.values().chain(&station.settings).chain(&station.prior);
+        let sha256 = Inputs::checksums(files.map(PathBuf::as_path))?;
+        let mut prior = Vec::new();
+        if let Some(path) = &station.prior {
+            let settings = Settings::read(path, &["tolerance", "corrections"])?;
+            for entry in &settings.entries {
+                let SettingValue::One(text) = &entry.value else {
+                    let message = format!(
+                        "found a list or a switch for `{}`, expected a text as `poecal fleet prior` writes it",
+                        entry.key
+                    );
+                    return Err(settings.error(entry, message));
+                };
+                prior.push(format!("--{}={text}", entry.key).into());
+            }
+        }
+        Ok(Shared { sha256, prior })
+    }
 }
 
 /// A row before its calibration.
-fn begun(station: &Station, found: &Found, shared: &BTreeMap<String, String>) -> LedgerRow {
-    let file = found.path.display().to_string();
-    let mut sha256 = BTreeMap::new();
-    let model = found.model(station).map(|it| it.display().to_string());
-    let settings = station.settings.as_ref().map(|it| it.display().to_string());
-    for name in model.iter().chain(&settings) {
-        sha256.extend(shared.get(name).map(|it| (name.clone(), it.clone())));
-    }
-    sha256.extend(found.sha256().map(|it| (file.clone(), it)));
+fn begun(station: &Station, found: &Found, shared: &Shared) -> LedgerRow {
+    let by_prior = station.prior.is_some() && !Station::is_in_full(&found.serial);
+    let files = found.model(station).into_iter().chain(&station.settings);
+    let files = files.chain(station.prior.iter().filter(|_| by_prior));
+    let input = |path: &PathBuf| {
+        let sha256 = shared.sha256.get(&path.display().to_string())?.clone();
+        Some(InputRow { file: station.from_folder(path), sha256 })
+    };
+    let file = station.from_folder(&found.path);
+    let own = found.sha256().map(|sha256| InputRow { file: file.clone(), sha256 });
     LedgerRow {
         serial: found.serial.clone(),
         date: found.date.clone(),
         of_type: found.of_type.clone(),
-        results: found.results(station).display().to_string(),
+        results: station.from_folder(&found.results(station)),
         poecal_version: env!("CARGO_PKG_VERSION").to_owned(),
+        inputs: own.into_iter().chain(files.filter_map(input)).collect(),
         file,
-        sha256,
+        by_prior,
         ..LedgerRow::default()
     }
 }
@@ -188,7 +215,7 @@ fn refused(row: LedgerRow, sentence: String) -> LedgerRow {
 }
 
 /// Calibrates a robot by a process of its own.
-fn calibrated(station: &Station, found: &Found, row: LedgerRow) -> LedgerRow {
+fn calibrated(station: &Station, found: &Found, row: LedgerRow, prior: &[OsString]) -> LedgerRow {
     if let Some(fault) = found.fault() {
         return refused(row, fault);
     }
@@ -210,6 +237,9 @@ fn calibrated(station: &Station, found: &Found, row: LedgerRow) -> LedgerRow {
     }
     if !station.accept.is_empty() {
         words.extend(["--accept".into(), OsString::from(station.accept.join(","))]);
+    }
+    if row.by_prior {
+        words.extend(prior.iter().cloned());
     }
     let (code, said) = ran(words);
     let sentence = || {
@@ -266,7 +296,7 @@ fn report_of(options: &FleetReport, console: &Console) -> Result<u8> {
     // Links of the page are from its folder.
     let folder = page.parent().unwrap_or(Path::new(""));
     for row in &mut rows {
-        let results = Path::new(&row.results);
+        let results = &station.folder.join(&row.results);
         let from_here = results.strip_prefix(folder).map(Path::to_owned);
         row.results = from_here.unwrap_or_else(|_| actual(results)).display().to_string();
     }

@@ -30,7 +30,7 @@ pub fn outliers(all: &[Series]) -> Vec<Outlier> {
             let each = series.values.iter().filter_map(move |value| {
                 let (own, sigma) = series.compared(value);
                 let away = own - spread.center;
-                let away = if series.is_size { away.max(0.0) } else { away.abs() };
+                let away = if series.is_size || series.is_sum() { away.max(0.0) } else { away.abs() };
                 let line = spread.own.max(0.5 * spread.seen);
                 let is_far = away > FAR * line && away > CERTAIN * line.hypot(sigma);
                 is_far.then(|| Outlier {

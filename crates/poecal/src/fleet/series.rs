@@ -77,6 +77,12 @@ impl Series {
         Some(Spread { count, center, seen, own })
     }
 
+    /// Whether it is the length of a size over all joints: of none, and near to normal without a logarithm.
+    #[must_use]
+    pub fn is_sum(&self) -> bool {
+        self.joint.is_none() && !self.is_size
+    }
+
     /// Whether there are robots enough to state more than their values.
     #[must_use]
     pub fn is_enough(&self) -> bool {

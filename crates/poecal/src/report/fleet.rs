@@ -3,6 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 
+use crate::distributions::median;
 use crate::error::{ErrorKind, Result};
 use crate::fleet::{Capability, FEWEST, Outlier, Series, Spread, Step, Value, outliers, steps};
 use crate::io::fleet::LedgerRow;
@@ -18,6 +19,57 @@ pub struct Figure {
     pub spread: Spread,
     /// How well it keeps its limits, where there are some.
     pub capability: Option<Capability>,
+}
+
+/// What the prior of the line did.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PriorUse {
+    /// Number of robots that were calibrated by it.
+    pub robots: usize,
+    /// Its share in what is known of their axes, 0 to 1: the median.
+    pub share: f64,
+    /// Median of their errors (RMS), millimetres.
+    pub error: f64,
+    /// Robots since the first of these that were measured in full and judged without it: their number, the share of the usual tolerance, and the
+    /// median of their errors.
+    pub in_full: Option<(usize, f64, f64)>,
+}
+
+impl PriorUse {
+    fn of(rows: &[&LedgerRow]) -> Option<Self> {
+        let done: Vec<&LedgerRow> = rows.iter().copied().filter(|row| row.verdict.is_some()).collect();
+        let first = done.iter().position(|row| row.by_prior)?;
+        let (own, others): (Vec<&LedgerRow>, Vec<&LedgerRow>) =
+            done[first..].iter().partition(|row| row.by_prior);
+        let error = |rows: &[&LedgerRow]| median(rows.iter().filter_map(|row| row.error_rms));
+        let share =
+            |rows: &[&LedgerRow]| median(rows.iter().filter_map(|row| row.prior_share())).unwrap_or_default();
+        Some(PriorUse {
+            robots: own.len(),
+            share: share(&own),
+            error: error(&own)?,
+            in_full: error(&others).map(|error| (others.len(), share(&others), error)),
+        })
+    }
+
+    /// In words.
+    #[must_use]
+    pub fn words(&self) -> String {
+        let percent = |share: f64| format!("{:.1} %", 100.0 * share);
+        let own = format!(
+            "{} robots by the prior of the line, its share in what is known of their axes {}, error {:.4} mm (medians)",
+            self.robots,
+            percent(self.share),
+            self.error
+        );
+        match self.in_full {
+            None => own + "; none since was measured in full and judged without it",
+            Some((count, share, error)) => format!(
+                "{own}; {count} measured in full and judged without it, {} of the usual tolerance, error {error:.4} mm",
+                percent(share)
+            ),
+        }
+    }
 }
 
 /// A line of robots.
@@ -37,6 +89,8 @@ pub struct Line {
     pub outliers: Vec<Outlier>,
     /// Steps in time, and whether each is the station's.
     pub steps: Vec<(Step, bool)>,
+    /// What the prior of the line did, where there is one.
+    pub prior: Option<PriorUse>,
 }
 
 /// Outliers that are printed.
@@ -88,6 +142,7 @@ impl Line {
         Ok(Line {
             first: first.len(),
             first_passed: first.iter().filter(|row| row.is_passed()).count(),
+            prior: PriorUse::of(&of_line),
             is_few: of_line.len() < FEWEST,
             outliers: outliers(&all),
             steps: found.iter().map(|step| (step.clone(), is_station(step))).collect(),
@@ -101,7 +156,7 @@ impl Line {
     pub fn csv(&self) -> String {
         let rows: Vec<&LedgerRow> = self.rows.iter().collect();
         let all = series(&rows);
-        let mut out = String::from("serial,date,type,exit,verdict,accepted,rows,error_rms,noise");
+        let mut out = String::from("serial,date,type,exit,verdict,accepted,rows,error_rms,noise,prior_share");
         for it in &all {
             let _ = write!(out, ",{}[{}],sigma_{}[{}]", it.name, it.unit, it.name, it.unit);
         }
@@ -115,7 +170,7 @@ impl Line {
             let number = |it: Option<f64>| it.map_or_else(String::new, |it| it.to_string());
             let _ = write!(
                 out,
-                "{},{},{},{},{},{},{},{},{}",
+                "{},{},{},{},{},{},{},{},{},{}",
                 quoted(&row.serial),
                 quoted(&row.date),
                 quoted(&row.of_type),
@@ -124,7 +179,8 @@ impl Line {
                 text(&row.accepted),
                 row.rows.map_or_else(String::new, |it| it.to_string()),
                 number(row.error_rms),
-                number(row.noise)
+                number(row.noise),
+                number(row.prior_share().filter(|_| row.by_prior))
             );
             for values in &by_robot {
                 match values.get(key(row).as_str()) {
@@ -154,6 +210,9 @@ impl Line {
         if self.is_few {
             let _ = writeln!(out, "spreads     none: fewer than {FEWEST} robots");
         }
+        if let Some(prior) = &self.prior {
+            let _ = writeln!(out, "prior       {}", prior.words());
+        }
         for it in self.outliers.iter().take(LISTED) {
             let _ = writeln!(
                 out,
@@ -169,38 +228,13 @@ impl Line {
     }
 }
 
-/// What a line says of its next robot before it is measured: how far axes are from nominal (RMS over robots and joints), and sizes of terms, as
-/// settings of `poecal calibrate`.
-///
-/// # Errors
-/// [`ErrorKind::Problem`] with fewer than thirty good robots.
-pub fn fleet_prior(rows: &[LedgerRow], of: &str) -> Result<String> {
-    let good: Vec<&LedgerRow> = rows.iter().filter(|row| row.is_passed()).collect();
-    if good.len() < FEWEST {
-        return ErrorKind::Problem.refuse(format!(
-            "found {} robots that passed, expected at least {FEWEST}: fewer do not show how far robots of the line are from nominal",
-            good.len()
-        ));
-    }
-    // Of a component: a tilt and a shift have two.
-    let rms = |each: Vec<f64>| {
-        (each.iter().map(|it| it * it).sum::<f64>() / (2.0 * each.len().max(1) as f64)).sqrt()
-    };
-    let all = || good.iter().flat_map(|row| &row.corrections);
-    let (tilt, shift) =
-        (rms(all().map(|it| it.tilt_deg).collect()), rms(all().map(|it| it.shift_mm).collect()));
-    let mut out = format!("# What {} robots of {of} say of the next one.\n", good.len());
-    let _ = writeln!(out, "tolerance = \"{:.4}deg,{:.4}mm\"", tilt.max(1e-4), shift.max(1e-4));
-    Ok(out)
-}
-
 /// A robot and date, as one value of a series.
 fn key(row: &LedgerRow) -> String {
     if row.date.is_empty() { row.serial.clone() } else { format!("{} {}", row.serial, row.date) }
 }
 
 /// All figures of some robots.
-fn series(rows: &[&LedgerRow]) -> Vec<Series> {
+pub(super) fn series(rows: &[&LedgerRow]) -> Vec<Series> {
     let mut found: BTreeMap<(usize, String), Series> = BTreeMap::new();
     let mut add =
         |order: usize, name: String, joint: Option<&str>, unit: &'static str, is_size: bool, value: Value| {
@@ -233,18 +267,33 @@ fn series(rows: &[&LedgerRow]) -> Vec<Series> {
             }
         }
         for it in row.terms.iter().filter(|it| it.group != "tilt") {
-            let unit = if it.group == "shift" || it.group == "runout" { "mm" } else { "mrad" };
+            let unit = unit(&it.group);
             add(
                 3,
                 format!("{}.{}", it.joint, it.group),
                 Some(&it.joint),
                 unit,
-                true,
+                // A ratio has a sign.
+                it.group != "ratio",
                 one(it.amplitude, Some(it.sigma)),
             );
         }
+        // One joint that errs more may be chance where all together are not.
+        let groups: BTreeSet<&str> = row.terms.iter().map(|it| it.group.as_str()).collect();
+        for group in groups.into_iter().filter(|group| *group != "tilt") {
+            let own = || row.terms.iter().filter(|it| it.group == group);
+            let length = own().map(|it| it.amplitude.powi(2)).sum::<f64>().sqrt();
+            let sigma = own().map(|it| (it.amplitude * it.sigma).powi(2)).sum::<f64>().sqrt();
+            let sigma = if length > 0.0 { sigma / length } else { 0.0 };
+            add(4, group.to_owned(), None, unit(group), false, one(length, Some(sigma)));
+        }
     }
     found.into_values().collect()
+}
+
+/// Unit of the terms of a group.
+fn unit(group: &str) -> &'static str {
+    if group == "shift" || group == "runout" { "mm" } else { "mrad" }
 }
 
 /// A cell that no separator can break.

@@ -4,6 +4,7 @@ mod acceptance;
 mod check;
 mod compared;
 mod fleet;
+mod fleet_prior;
 mod found;
 mod hand_eye;
 mod identify;
@@ -24,7 +25,8 @@ mod watched;
 
 pub use check::{Check, SetCounts};
 pub use compared::Comparison;
-pub use fleet::{Figure, Line, fleet_prior};
+pub use fleet::{Figure, Line, PriorUse};
+pub use fleet_prior::fleet_prior;
 pub use hand_eye::hand_eye;
 pub use identify::Identify;
 pub use judgement::judgement;

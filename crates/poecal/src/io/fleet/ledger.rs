@@ -1,5 +1,6 @@
 //! `fleet.jsonl`: a line a robot, appended and synced.
 
+use std::collections::BTreeMap;
 use std::io::{self, Read as _};
 use std::path::{Path, PathBuf};
 
@@ -23,7 +24,16 @@ const MOST: u64 = 1 << 32;
 pub struct Ledger {
     path: PathBuf,
     /// The lines, in their order.
-    pub rows: Vec<LedgerRow>,
+    rows: Vec<LedgerRow>,
+    /// Places of each robot's and date's lines.
+    places: BTreeMap<Key, Vec<usize>>,
+}
+
+/// Serial number, date and type.
+type Key = (String, String, String);
+
+fn key(row: &LedgerRow) -> Key {
+    (row.serial.clone(), row.date.clone(), row.of_type.clone())
 }
 
 impl Ledger {
@@ -32,34 +42,38 @@ impl Ledger {
     /// # Errors
     /// [`ErrorKind::File`] if it cannot be read, or the cut line cannot be; [`ErrorKind::Syntax`] if a line is none of this version.
     pub fn open(path: &Path) -> Result<Self> {
-        let Some(text) = bytes(path)? else { return Ok(Ledger { path: path.to_owned(), rows: Vec::new() }) };
+        let mut ledger = Ledger { path: path.to_owned(), ..Ledger::default() };
+        let Some(text) = bytes(path)? else { return Ok(ledger) };
         let whole = text.iter().rposition(|byte| *byte == b'\n').map_or(0, |at| at + 1);
-        let rows = rows(&text[..whole], path)?;
+        rows(&text[..whole], path)?.into_iter().for_each(|row| ledger.add(row));
         if whole < text.len() {
             let kept = String::from_utf8_lossy(&text[..whole]).into_owned();
             FilePlace::reserve(path, Existing::forced(true), &[], &mut |_| ())?.write(vec![kept.into()])?;
         }
-        Ok(Ledger { path: path.to_owned(), rows })
+        Ok(ledger)
+    }
+
+    fn add(&mut self, row: LedgerRow) {
+        self.places.entry(key(&row)).or_default().push(self.rows.len());
+        self.rows.push(row);
+    }
+
+    /// Lines of the same robot and date, the last first.
+    fn alike(&self, row: &LedgerRow) -> impl Iterator<Item = &LedgerRow> {
+        let places = self.places.get(&key(row)).map_or(&[][..], Vec::as_slice);
+        places.iter().rev().map(|at| &self.rows[*at])
     }
 
     /// Whether it has a row of the same inputs.
     #[must_use]
     pub fn has(&self, row: &LedgerRow) -> bool {
-        self.rows.iter().any(|it| {
-            it.serial == row.serial
-                && it.date == row.date
-                && it.of_type == row.of_type
-                && it.sha256 == row.sha256
-        })
+        self.alike(row).any(|it| it.inputs == row.inputs)
     }
 
     /// The last row of the same robot and date.
     #[must_use]
     pub fn of(&self, row: &LedgerRow) -> Option<&LedgerRow> {
-        self.rows
-            .iter()
-            .rev()
-            .find(|it| it.serial == row.serial && it.date == row.date && it.of_type == row.of_type)
+        self.alike(row).next()
     }
 
     /// Appends a row, in one piece, and waits until it is on the disk.
@@ -76,7 +90,7 @@ impl Ledger {
             out.sync()
         });
         written.map_err(|error| refused(&self.path, format!("the ledger cannot be written ({error})")))?;
-        self.rows.push(row);
+        self.add(row);
         Ok(())
     }
 }
@@ -97,10 +111,7 @@ pub fn read_ledgers(paths: &[PathBuf]) -> Result<Vec<LedgerRow>> {
         let whole = text.iter().rposition(|byte| *byte == b'\n').map_or(0, |at| at + 1);
         all.extend(rows(&text[..whole], path)?);
     }
-    let mut last = std::collections::BTreeMap::new();
-    for (at, row) in all.iter().enumerate() {
-        last.insert((row.serial.clone(), row.date.clone(), row.of_type.clone()), at);
-    }
+    let last: BTreeMap<Key, usize> = all.iter().enumerate().map(|(at, row)| (key(row), at)).collect();
     let mut kept: Vec<usize> = last.into_values().collect();
     kept.sort_unstable();
     let mut found: Vec<LedgerRow> = kept.into_iter().map(|at| all[at].clone()).collect();

@@ -7,5 +7,5 @@ mod station;
 
 pub use inbox::{Found, newest};
 pub use ledger::{LEDGER, Ledger, read_ledgers};
-pub use row::{CorrectionRow, LedgerRow, TermRow};
+pub use row::{CorrectionRow, InputRow, LedgerRow, SizeRow, TermRow};
 pub use station::Station;

@@ -1,7 +1,5 @@
 //! A line of the ledger: a robot's calibration in figures.
 
-use std::collections::BTreeMap;
-
 use serde::{Deserialize, Serialize};
 
 use crate::calibration::{AcceptedModel, Decision, Level};
@@ -26,6 +24,18 @@ pub struct CorrectionRow {
     pub shift_mm: f64,
     /// Standard deviation of that.
     pub sigma_shift_mm: Option<f64>,
+    /// Angle between the axis and its nominal direction, degrees: what a tolerance is of.
+    #[serde(default)]
+    pub axis_tilt_deg: f64,
+    /// Distance of the axis from the nominal joint's origin, millimetres.
+    #[serde(default)]
+    pub axis_shift_mm: f64,
+    /// The measurements' share in what is known of its direction, 0 to 1; the rest is the prior's. Null without a prior.
+    #[serde(default)]
+    pub tilt_from_data: Option<f64>,
+    /// The same of its place.
+    #[serde(default)]
+    pub shift_from_data: Option<f64>,
 }
 
 /// What one group of terms does at one joint: milliradians, of shift and runout millimetres.
@@ -43,6 +53,24 @@ pub struct TermRow {
     pub found: bool,
 }
 
+/// An input: the measurements, the model, settings.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+pub struct InputRow {
+    /// Its path, from the folder of the station where it is in it.
+    pub file: String,
+    /// SHA-256 of its bytes.
+    pub sha256: String,
+}
+
+/// The prior deviation of a group of terms, by which a robot was calibrated.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SizeRow {
+    /// The group.
+    pub group: String,
+    /// Radians, of shift and runout metres; 0 of a group that was left out.
+    pub size: f64,
+}
+
 /// A line of the ledger.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct LedgerRow {
@@ -57,12 +85,12 @@ pub struct LedgerRow {
     /// Type of the robot; empty where there is one.
     #[serde(rename = "type")]
     pub of_type: String,
-    /// The measurements.
+    /// The measurements, from the folder of the station.
     pub file: String,
-    /// The folder of the results.
+    /// The folder of the results, from that of the station.
     pub results: String,
-    /// SHA-256 of all inputs.
-    pub sha256: BTreeMap<String, String>,
+    /// All inputs, by their paths.
+    pub inputs: Vec<InputRow>,
     /// Version of the program.
     pub poecal_version: String,
     /// What the calibration ended with: 0 good, 1 not to be used or a limit not kept, 2 refused, 3 no result.
@@ -85,6 +113,12 @@ pub struct LedgerRow {
     pub corrections: Vec<CorrectionRow>,
     /// What joints do beyond geometry.
     pub terms: Vec<TermRow>,
+    /// Whether what the line says of its robots was the prior.
+    #[serde(default)]
+    pub by_prior: bool,
+    /// Sizes of the terms; none without terms.
+    #[serde(default)]
+    pub sizes: Vec<SizeRow>,
 }
 
 /// A figure without digits that say nothing.
@@ -117,6 +151,10 @@ impl LedgerRow {
                 sigma_tilt_deg: change.sigma_tilt_deg.map(shown),
                 shift_mm: shown(change.shift_mm.as_ref().map_or(0.0, length)),
                 sigma_shift_mm: change.sigma_shift_mm.map(shown),
+                axis_tilt_deg: shown(entry.tilt_deg),
+                axis_shift_mm: shown(entry.shift_mm),
+                tilt_from_data: entry.tilt_from_data.map(shown),
+                shift_from_data: entry.shift_from_data.map(shown),
             })
         };
         let effects = file.corrected.iter().flat_map(|it| &it.effects);
@@ -134,6 +172,8 @@ impl LedgerRow {
         let failed = file.acceptance.as_ref().filter(|it| it.decision != Decision::Pass);
         let reason = verdict.filter(|_| !is_good).and_then(|it| it.reasons.first().cloned());
         let limits = failed.map(|_| "a limit of `accept` is not shown to be kept".to_owned());
+        let sizes = file.corrected.iter().flat_map(|it| &it.sizes);
+        let size = |(group, size): (&String, &f64)| SizeRow { group: group.clone(), size: shown(*size) };
         let sigma = file.noise.sigma.iter().next().map(|(_, sigma)| sigma);
         LedgerRow {
             verdict: verdict.and_then(|it| word(it.level)),
@@ -145,6 +185,7 @@ impl LedgerRow {
             noise: sigma.map(shown),
             corrections: file.corrections.iter().filter_map(correction).collect(),
             terms,
+            sizes: sizes.map(size).collect(),
             ..self
         }
     }
@@ -153,5 +194,19 @@ impl LedgerRow {
     #[must_use]
     pub fn is_passed(&self) -> bool {
         self.exit == 0
+    }
+
+    /// The prior's share in what is known of its axes, 0 to 1; `None` without a prior.
+    #[must_use]
+    pub fn prior_share(&self) -> Option<f64> {
+        let each = self.corrections.iter().flat_map(|it| [it.tilt_from_data, it.shift_from_data]).flatten();
+        let (sum, count) = each.fold((0.0, 0.0), |(sum, count), it| (sum + 1.0 - it, count + 1.0));
+        (count > 0.0).then_some(sum / count)
+    }
+
+    /// SHA-256 of one of its inputs.
+    #[must_use]
+    pub fn sha256(&self, file: &str) -> Option<&str> {
+        self.inputs.iter().find(|it| it.file == file).map(|it| it.sha256.as_str())
     }
 }

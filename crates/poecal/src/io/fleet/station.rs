@@ -7,6 +7,7 @@ use serde::Deserialize;
 
 use super::super::source_text;
 use crate::error::{ErrorKind, Result};
+use crate::io::hashes::sha256_of;
 
 /// The keys of the file.
 #[derive(Deserialize)]
@@ -20,11 +21,12 @@ struct File {
     models: BTreeMap<String, String>,
     ledger: Option<String>,
     settings: Option<String>,
+    prior: Option<String>,
     #[serde(default)]
     accept: Vec<String>,
     reference: Option<String>,
     #[serde(default)]
-    limits: BTreeMap<String, [Option<f64>; 2]>,
+    limits: BTreeMap<String, [f64; 2]>,
 }
 
 /// A station at the end of a line.
@@ -32,6 +34,8 @@ struct File {
 pub struct Station {
     /// Its file.
     pub path: PathBuf,
+    /// Its folder, from which paths in it are.
+    pub folder: PathBuf,
     /// Where measurements lie: a path with `{serial}`, and `{date}` and `{type}` where there are some.
     pub inbox: String,
     /// Where results go: a path with `{serial}`, and with `{date}` where the inbox has it.
@@ -42,6 +46,8 @@ pub struct Station {
     pub ledger: PathBuf,
     /// Settings of `poecal calibrate`.
     pub settings: Option<PathBuf>,
+    /// What the line says of its next robot, as [`fleet_prior`](crate::report::fleet_prior) writes it: the prior of all but every twentieth.
+    pub prior: Option<PathBuf>,
     /// Limits of `--accept`.
     pub accept: Vec<String>,
     /// Serial number of the reference arm, which is measured again and again.
@@ -50,7 +56,30 @@ pub struct Station {
     pub limits: BTreeMap<String, [Option<f64>; 2]>,
 }
 
+/// Of so many robots one is measured in full, and judged without the prior.
+const IN_FULL: u64 = 20;
+
 impl Station {
+    /// A path as the ledger has it: from the folder of the station, wherever the program was started.
+    #[must_use]
+    pub fn from_folder(&self, path: &Path) -> String {
+        path.strip_prefix(&self.folder).unwrap_or(path).display().to_string()
+    }
+
+    /// Whether a robot is one of those that are measured in full and judged without the prior: where its serial number ends in a number that 20
+    /// divides, so that it is known before; a serial number without one by its SHA-256.
+    #[must_use]
+    pub fn is_in_full(serial: &str) -> bool {
+        let digits = serial.trim_start_matches(|letter: char| !letter.is_ascii_digit());
+        let last = digits.rsplit(|letter: char| !letter.is_ascii_digit()).next().unwrap_or_default();
+        let tail = last.get(last.len().saturating_sub(9)..).unwrap_or_default();
+        let number = tail.parse::<u64>().ok().or_else(|| {
+            let hash = sha256_of(serial);
+            u64::from_str_radix(hash.get(..8)?, 16).ok()
+        });
+        number.is_some_and(|number| number % IN_FULL == 0)
+    }
+
     /// Reads the file; paths in it are from its folder.
     ///
     /// # Errors
@@ -110,27 +139,28 @@ impl Station {
             return refuse(0, format!("found no model, expected {expected}"));
         }
         for (name, [low, high]) in &file.limits {
-            let are_numbers = low.iter().chain(high).all(|it| it.is_finite());
-            let is_range = low.zip(*high).is_none_or(|(low, high)| low < high);
-            if !(are_numbers && is_range && (low.is_some() || high.is_some())) {
-                return refuse(
-                    0,
-                    format!(
-                        "found limits of `{name}` that are no range, expected the lower one first, like [-0.3, 0.3]"
-                    ),
+            // Not a number is in no order.
+            if !(low < high && (low.is_finite() || high.is_finite())) {
+                let message = format!(
+                    "found limits of `{name}` that are no range, expected the lower one first, like [-0.3, 0.3], or [-inf, 0.3] of one limit"
                 );
+                return refuse(0, message);
             }
         }
+        let one = |limit: f64| limit.is_finite().then_some(limit);
+        let limits = file.limits.into_iter().map(|(name, [low, high])| (name, [one(low), one(high)]));
         Ok(Station {
             inbox: folder.join(file.inbox.into_inner()).display().to_string(),
             results: folder.join(file.results.into_inner()).display().to_string(),
             models,
             ledger: folder.join(file.ledger.as_deref().unwrap_or(super::LEDGER)),
             settings: file.settings.map(|path| folder.join(path)),
+            prior: file.prior.map(|path| folder.join(path)),
             accept: file.accept,
             reference: file.reference,
-            limits: file.limits,
+            limits: limits.collect(),
             path: path.to_owned(),
+            folder,
         })
     }
 }

@@ -32,6 +32,9 @@ pub fn fleet_page(line: &Line) -> Page {
                 p { (format!("{passed} of {} robots passed at their first measurement ({:.1} %).", line.first, rate(passed, line.first))) }
                 @if line.is_few { p { "With fewer than 30 robots no spread, no capability and no step is stated." } }
             }
+            @if let Some(prior) = &line.prior {
+                section { h2 { "Prior of the line" } p { (prior.words()) "." } }
+            }
             (failed(line))
             (outlying(line))
             (steps(line))
