@@ -35,7 +35,7 @@ pub(crate) use hand_eye::{HandEye, OutFrames, Tcp};
 pub(crate) use identify::Identify;
 pub(crate) use init::Init;
 pub(crate) use offsets::Offsets;
-pub(crate) use plan::{FitArgs, Plan};
+pub(crate) use plan::{FitArgs, Plan, PlannedDevice};
 pub(crate) use report::{Report, ReportPlace};
 pub(crate) use reproduce::{Experiment, Reproduce};
 pub(crate) use shared::{TreeArgs, with_mapping};
@@ -56,7 +56,8 @@ use poecal::io::record::Record;
 
 use crate::quantity::{sigma_m, threads};
 pub(crate) use shared::ChainArgs;
-use shared::{ColumnArgs, Meaning, OutFile, Reading};
+pub(crate) use shared::OutFile;
+use shared::{ColumnArgs, Meaning, Reading};
 use words::{EXPORT_FORMAT, FORM, FRAME, MODEL, PREDICT_IN, REFIT, REQUIRED_LEVEL, one_of};
 
 /// What the program ends with.

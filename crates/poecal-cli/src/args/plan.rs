@@ -9,7 +9,7 @@ use poecal::plan::{PlanCriterion, RobotError};
 use poecal::simulate::Kind;
 
 use super::shared::{ColumnArgs, OutFile, TreeArgs};
-use super::words::{CRITERION, FRAME, SELF_COLLISION, one_of, simulated};
+use super::words::{CRITERION, FRAME, SELF_COLLISION, TOOL, one_of, simulated};
 use crate::quantity::{
     BelievedTolerance, LengthAndAngle, Over, box_m, direction, distances_m, height_m, place_m, robot_error,
     seconds, sigma_m, sigma_rad, whole,
@@ -24,11 +24,17 @@ pub(crate) struct Plan {
     pub(crate) chain: TreeArgs,
     #[command(flatten)]
     pub(crate) columns: ColumnArgs,
+    /// Plan for something else than a calibration: drift chooses, of the configurations that a calibration.json was made of, those whose repeats
+    /// show the smallest shift of the worst joint, and prints what each joint would show; with --candidates among new ones
+    #[arg(long = "for", value_name = "PURPOSE", value_parser = ["drift"], conflicts_with_all = NOT_FOR_DRIFT)]
+    pub(crate) purpose: Option<String>,
+    #[command(flatten)]
+    pub(crate) visits: VisitArgs,
     /// What will be measured of the tip
     #[arg(long, visible_alias = "measure", value_parser = simulated(), default_value = "point")]
     pub(crate) kind: Kind,
-    /// Number of different configurations to fit
-    #[arg(long, value_name = "N", default_value_t = 30, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    /// Number of different configurations to fit [with --for drift: to measure at each visit, by default 8]
+    #[arg(long, value_name = "N", default_value_if("purpose", "drift", "8"), default_value_t = 30, value_parser = clap::value_parser!(u32).range(1..=1000))]
     pub(crate) count: u32,
     /// Number of further rows to judge by, at random over the workspace [default: a third of the configurations]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(..=1000))]
@@ -87,6 +93,80 @@ pub(crate) struct Plan {
     pub(crate) json: bool,
 }
 
+/// Options that say nothing of visits.
+const NOT_FOR_DRIFT: [&str; 33] = [
+    "base_link",
+    "tip_link",
+    "instrument",
+    "target",
+    "kind",
+    "report",
+    "stop",
+    "judge",
+    "over",
+    "keep",
+    "replace",
+    "criterion",
+    "targets",
+    "target_offset",
+    "seed",
+    "program",
+    "sigma_position",
+    "sigma_rotation",
+    "robot_error",
+    "frame",
+    "tolerance",
+    "corrections",
+    "gravity",
+    "margin",
+    "keep_out",
+    "floor",
+    "separation",
+    "cone",
+    "device_looks_at",
+    "distance",
+    "acceptance",
+    "facing",
+    "self_collision",
+    "report",
+    "stop",
+];
+
+/// What is known of the visits to a calibrated robot.
+#[derive(Args, Debug)]
+#[command(next_help_heading = "With --for drift")]
+pub(crate) struct VisitArgs {
+    /// Standard deviation of one visit and coordinate, like 0.03mm, as measured by repeats [default: the noise of the calibration]
+    #[arg(long, value_name = "LENGTH", value_parser = sigma_m, requires = "purpose")]
+    pub(crate) repeatability: Option<f64>,
+    /// Whether the tool with its targets will be on the flange as it was [default: same]
+    #[arg(long, value_parser = one_of(TOOL), value_name = "HOW", requires = "purpose", action = clap::ArgAction::Set)]
+    pub(crate) tool: Option<bool>,
+    /// Rows of an earlier visit whose configurations may be repeated [default: the measurements that the calibration was made of]
+    #[arg(long, value_name = "OLD.csv", requires = "purpose")]
+    pub(crate) reference: Vec<PathBuf>,
+}
+
+/// Where the measuring device is, or whether it will stand where it stood.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum PlannedDevice {
+    /// A place in the robot's base frame, metres.
+    At([f64; 3]),
+    /// At a visit: where it stood, or anew.
+    IsKnown(bool),
+}
+
+/// A place, or a word of a visit.
+fn planned_device(text: &str) -> Result<PlannedDevice, String> {
+    match text {
+        "known" => Ok(PlannedDevice::IsKnown(true)),
+        "anew" => Ok(PlannedDevice::IsKnown(false)),
+        place => place_m(place)
+            .map(PlannedDevice::At)
+            .map_err(|error| format!("{error}; or known or anew with --for drift")),
+    }
+}
+
 /// The fit that will be made, and what is believed before.
 #[derive(Args, Debug)]
 pub(crate) struct FitArgs {
@@ -131,9 +211,10 @@ pub(crate) struct ConditionArgs {
     /// Least change of some joint between any two configurations
     #[arg(long, value_name = "ANGLE", value_parser = sigma_rad)]
     pub(crate) separation: Option<f64>,
-    /// Where the measuring device is; targets that links hide from it are left out
-    #[arg(long, value_name = "X,Y,Zmm", value_parser = place_m, allow_hyphen_values = true)]
-    pub(crate) device: Option<[f64; 3]>,
+    /// Where the measuring device is; targets that links hide from it are left out. With --for drift: known where it will stand as it stood, as on
+    /// fixed nests, or anew
+    #[arg(long, value_name = "X,Y,Zmm|known|anew", value_parser = planned_device, allow_hyphen_values = true)]
+    pub(crate) device: Option<PlannedDevice>,
     /// Half the angle of the device's cone, about the direction from it to --device-looks-at
     #[arg(long, value_name = "ANGLE", value_parser = sigma_rad, requires = "device")]
     pub(crate) cone: Option<f64>,

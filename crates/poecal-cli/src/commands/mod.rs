@@ -34,6 +34,7 @@ mod tcp;
 mod track;
 mod typed;
 mod validate;
+mod visits;
 mod watch;
 
 #[cfg(any(unix, windows))]

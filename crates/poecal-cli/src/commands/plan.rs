@@ -15,16 +15,21 @@ use poecal::robot::Tolerance;
 use poecal::simulate::Kind;
 use poecal::{ErrorKind, Result, report};
 
+use super::visits::{Stated, Visited};
 use crate::DONE;
-use crate::args::{FitArgs, Plan};
+use crate::args::{FitArgs, OutFile, Plan, PlannedDevice};
 use crate::console::Console;
 use crate::quantity::{BelievedTolerance, Over};
 use crate::style::{labelled, shown};
 
 pub(crate) fn plan(arguments: &Plan, console: &Console) -> Result<u8> {
     let files = arguments.candidates.iter().chain(&arguments.keep).map(PathBuf::as_path);
+    let files = files.chain(arguments.visits.reference.iter().map(PathBuf::as_path));
     let inputs: Vec<_> = std::iter::once(arguments.model.as_path()).chain(files).collect();
     let place = arguments.place.reserve(&inputs, console)?;
+    if arguments.purpose.is_some() {
+        return visits(arguments, place, console);
+    }
     let existing = Existing::forced(arguments.place.force);
     let reserved = |path: &PathBuf| FilePlace::reserve(path, existing, &inputs, &mut console.warner());
     let program = arguments.program.as_ref().map(reserved).transpose()?;
@@ -67,7 +72,7 @@ pub(crate) fn plan(arguments: &Plan, console: &Console) -> Result<u8> {
         judge: arguments.judge.map(|count| count as usize),
         kept,
         replaced,
-        conditions: conditions(arguments, &model, console),
+        conditions: conditions(arguments, &model, console)?,
         seed: arguments.seed,
         ..PlanOptions::default()
     };
@@ -82,25 +87,57 @@ pub(crate) fn plan(arguments: &Plan, console: &Console) -> Result<u8> {
     if let Some(page) = page {
         page.write(report::plan_page(&model, &options, &found, &report))?;
     }
+    let text = if arguments.json { report::json(&report)? } else { report.text() };
+    deliver(&arguments.place, (table, place), (text, arguments.json), console)
+}
+
+/// Configurations of visits to a calibrated robot.
+fn visits(arguments: &Plan, place: Option<FilePlace>, console: &Console) -> Result<u8> {
+    let device_is_known = match arguments.conditions.device {
+        None => None,
+        Some(PlannedDevice::IsKnown(is_known)) => Some(is_known),
+        Some(PlannedDevice::At(_)) => {
+            return ErrorKind::Option
+                .refuse("--device: found a place, expected known or anew with --for drift");
+        }
+    };
+    let stated = Stated {
+        calibration: &arguments.model,
+        reference: &arguments.visits.reference,
+        meaning: arguments.columns.options()?,
+        device_is_known,
+        tool_is_anew: arguments.visits.tool.unwrap_or(false),
+        repeatability_m: arguments.visits.repeatability,
+    };
+    let visited = Visited::read(stated, console)?;
+    let count = arguments.count as usize;
+    let (told, table) = visited.planned("--for drift", count, None, arguments.candidates.as_ref())?;
+    let text = if arguments.json { report::json(&told)? } else { told.text() };
+    deliver(&arguments.place, (table, place), (text, arguments.json), console)
+}
+
+/// Delivers a list and what is said of it.
+fn deliver(
+    out: &OutFile,
+    (table, place): (String, Option<FilePlace>),
+    (mut text, is_json): (String, bool),
+    console: &Console,
+) -> Result<u8> {
     let written = place.is_some();
-    let is_data = !written && !arguments.json;
     if written {
         console.deliver(table.clone(), place)?;
     }
-    if arguments.json {
-        console.data(&report::json(&report)?)?;
-    } else {
-        let mut text = report.text();
-        if let Some(path) = arguments.place.out.as_ref().filter(|_| written) {
+    if is_json {
+        console.data(&text)?;
+    } else if written {
+        if let Some(path) = &out.out {
             text.push_str(&labelled("written", &shown(path)));
         }
-        if is_data {
-            // The list is on standard output.
-            text.lines().filter(|line| !line.is_empty()).for_each(|line| console.note(line));
-            console.data(&table)?;
-        } else {
-            console.say(&text)?;
-        }
+        console.say(&text)?;
+    } else {
+        // The list is on standard output.
+        text.lines().filter(|line| !line.is_empty()).for_each(|line| console.note(line));
+        console.data(&table)?;
     }
     Ok(DONE)
 }
@@ -142,23 +179,32 @@ pub(super) fn fit(arguments: &FitArgs, model: &Model, kind: Kind, count: u32) ->
 }
 
 /// What a configuration must fulfil.
-fn conditions(arguments: &Plan, model: &Model, console: &Console) -> Conditions {
+fn conditions(arguments: &Plan, model: &Model, console: &Console) -> Result<Conditions> {
     let it = &arguments.conditions;
     let (capsules, notes) = if it.self_collision { capsules_of(model) } else { Default::default() };
     notes.iter().for_each(|note| console.remark(note));
-    let sight = it.device.map(|place| Sight {
+    let device = match it.device {
+        Some(PlannedDevice::IsKnown(_)) => {
+            return ErrorKind::Option.refuse(
+                "--device: found known or anew, expected a place like 1500,0,800mm, or --for drift, which plans visits to a calibrated robot",
+            );
+        }
+        Some(PlannedDevice::At(place)) => Some(place),
+        None => None,
+    };
+    let sight = device.map(|place| Sight {
         place: place.into(),
         cone: it.cone.map(|half| (it.device_looks_at.unwrap_or_default().into(), half)),
         distance_m: it.distance.unwrap_or([0.0, f64::INFINITY]),
         acceptance_rad: it.acceptance,
         facing: it.facing.unwrap_or([0.0, 0.0, 1.0]).into(),
     });
-    Conditions {
+    Ok(Conditions {
         margin: [it.margin.angle_rad, it.margin.length_m],
         keep_out: it.keep_out.clone(),
         floor_m: it.floor,
         separation_rad: it.separation.unwrap_or(0.0),
         sight,
         capsules,
-    }
+    })
 }

@@ -2,17 +2,17 @@
 
 use std::ffi::OsString;
 
-use poecal::calibration::DeviceFrameKnowledge;
-use poecal::io::calibration_file::{CalibrationFile, Inputs, RecalibratedEntry, RepairedPart};
-use poecal::io::measurements::{self, ReadOptions};
+use poecal::io::calibration_file::{Inputs, RecalibratedEntry, RepairedPart};
+use poecal::io::measurements;
 use poecal::io::named_files::refuse_repeats;
 use poecal::io::output::{Existing, FilePlace};
 use poecal::io::validation::ValidationInputs;
-use poecal::track::{Earlier, State, TrackOptions, recalibrate, track as judged, witnesses};
-use poecal::{ErrorKind, MeasurementFile, Result, Robot, report};
+use poecal::track::{State, recalibrate, track as judged};
+use poecal::{ErrorKind, Result, report};
 
 use super::kept::Kept;
 use super::typed::command;
+use super::visits::{Stated, Visited};
 use crate::args::Track;
 use crate::console::Console;
 use crate::{DONE, WORSE};
@@ -30,28 +30,22 @@ pub(crate) fn track(arguments: &Track, typed: &[OsString], console: &Console) ->
             Some(FilePlace::reserve(out, existing, &arguments.inputs(), &mut console.warner())?)
         }
     };
-    let file = CalibrationFile::read(&arguments.calibration)?;
-    let in_file = |error: poecal::Error| {
-        if error.kind() == ErrorKind::Model { error.in_file(&arguments.calibration) } else { error }
-    };
-    let robot = file.robot().map_err(in_file)?;
-    let mut meaning = ReadOptions {
-        ignore_sets: true,
-        controller: file.controller.clone(),
-        ..arguments.meaning.options()?
-    };
-    if let Some(known) = &file.pictures {
-        known.complete(&mut meaning).map_err(|error| error.in_file(&arguments.calibration))?;
-    }
-    let options = TrackOptions {
-        device_is_known: arguments.device.unwrap_or(file.frame() == DeviceFrameKnowledge::Base),
+    let stated = Stated {
+        calibration: &arguments.calibration,
+        reference: &arguments.reference,
+        meaning: arguments.meaning.options()?,
+        device_is_known: arguments.device,
         tool_is_anew: arguments.tool,
         repeatability_m: arguments.repeatability,
     };
-    let earlier = EarlierRows::read(arguments, &file, &robot, &meaning, console)?;
+    let visited = Visited::read(stated, console)?;
     if let Some(count) = arguments.plan {
-        return plan(arguments, (&file, &robot, earlier, usize::from(count)), &options, place, console);
+        return plan(arguments, &visited, usize::from(count), place, console);
     }
+    let Visited { file, robot, meaning, options, earlier } = visited;
+    let in_file = |error: poecal::Error| {
+        if error.kind() == ErrorKind::Model { error.in_file(&arguments.calibration) } else { error }
+    };
     let mut history = Kept::read(arguments.history.as_ref(), &arguments.calibration)?;
     let read = measurements::read(&arguments.measurements, &robot, &meaning)?;
     let mut sha256 = Inputs::checksums(std::iter::once(arguments.calibration.as_path()))?;
@@ -105,21 +99,14 @@ pub(crate) fn track(arguments: &Track, typed: &[OsString], console: &Console) ->
 /// Chooses witness configurations, and prints what they would show.
 fn plan(
     arguments: &Track,
-    (file, robot, earlier, count): (&CalibrationFile, &Robot, EarlierRows, usize),
-    options: &TrackOptions,
+    visited: &Visited,
+    count: usize,
     place: Option<FilePlace>,
     console: &Console,
 ) -> Result<u8> {
-    let Some(rows) = earlier.rows() else {
-        return ErrorKind::Option.refuse(
-            "--plan: found no earlier rows, expected those of the calibration or of --reference: their configurations are those to be repeated",
-        );
-    };
-    let found = witnesses(file, rows.data, count, arguments.target.as_deref(), options)?;
-    let told = report::WitnessPlan::new(&found, &file.robot.name);
-    let text = measurements::to_measure_again(rows.data, &found.configurations, robot)?;
+    let (told, table) = visited.planned("--plan", count, arguments.target.as_deref(), None)?;
     if let Some(place) = place {
-        place.write(vec![text.into()])?;
+        place.write(vec![table.into()])?;
     }
     if arguments.json {
         console.data(&report::json(&told)?)?;
@@ -135,51 +122,5 @@ fn repaired_part(words: &str) -> (&str, RepairedPart) {
         Some((joint, "axis")) => (joint, RepairedPart::Axis),
         Some((joint, "offset")) => (joint, RepairedPart::Zero),
         _ => (words, RepairedPart::Zero),
-    }
-}
-
-/// The earlier rows.
-struct EarlierRows {
-    read: Option<MeasurementFile>,
-    /// Whether they are those of the calibration.
-    is_own: bool,
-}
-
-impl EarlierRows {
-    /// Those that are named, or else those of the calibration where they still are.
-    fn read(
-        arguments: &Track,
-        file: &CalibrationFile,
-        robot: &Robot,
-        meaning: &ReadOptions,
-        console: &Console,
-    ) -> Result<Self> {
-        if !arguments.reference.is_empty() {
-            refuse_repeats(&arguments.reference)?;
-            let read = measurements::read(&arguments.reference, robot, meaning)?;
-            let own: Vec<&String> =
-                file.inputs.measurements.iter().filter_map(|name| file.inputs.sha256.get(name)).collect();
-            let is_own = read.sha256.values().all(|sha256| own.contains(&sha256));
-            return Ok(EarlierRows { read: Some(read), is_own });
-        }
-        let names = file.inputs.measurements.join(", ");
-        let Some(paths) = file.own_measurements(&arguments.calibration) else {
-            console.remark(format!(
-                "the measurements of the calibration ({names}) are not where it was made, or have other bytes: name earlier rows by --reference; \
-                 without, rows are judged by the model"
-            ));
-            return Ok(EarlierRows { read: None, is_own: false });
-        };
-        let read = measurements::read(&paths, robot, meaning);
-        if let Err(error) = &read {
-            console.remark(format!(
-                "the measurements of the calibration ({names}) cannot be read as those of the visit ({error}): judged by the model"
-            ));
-        }
-        Ok(EarlierRows { read: read.ok(), is_own: true })
-    }
-
-    fn rows(&self) -> Option<Earlier<'_>> {
-        self.read.as_ref().map(|it| Earlier { data: &it.data, is_own: self.is_own })
     }
 }

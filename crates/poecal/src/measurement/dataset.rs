@@ -108,6 +108,29 @@ impl Dataset {
         Ok(())
     }
 
+    /// Some rows of one configuration as if they had been measured in others: what a plan is about. Their measured numbers are kept, and say nothing.
+    pub(crate) fn as_if_at(&self, rows: &[u32], readings: &[f64], width: usize) -> Result<Self> {
+        let mut made = Dataset {
+            readings: Vec::new(),
+            noise_shapes: Vec::new(),
+            moving: Moving::default(),
+            pictures: Pictures::default(),
+            observations: Vec::new(),
+            ids: Vec::new(),
+            ..self.clone()
+        };
+        for own in readings.chunks(width.max(1)) {
+            for &row in rows {
+                // What is of no joint is as it was.
+                let rest = self.readings(row as usize).get(own.len()..).unwrap_or_default();
+                let seen = self.observations[row as usize];
+                let seen = Observation { from: None, noise_shape: None, ..seen };
+                made.push_observation(&[own, rest].concat(), seen)?;
+            }
+        }
+        Ok(made)
+    }
+
     fn check_readings(&self, readings: &[f64]) -> Result<()> {
         if readings.len() != self.reading_names.len() {
             return ErrorKind::Measurement.refuse(format!(

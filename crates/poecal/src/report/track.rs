@@ -129,6 +129,8 @@ fn shown(value: f64, slides: bool) -> f64 {
 pub struct WitnessPlan {
     robot: String,
     configurations: usize,
+    /// Whether they are new, and no earlier visit has them.
+    are_new: bool,
     /// Standard deviation of a visit and coordinate for which this is, millimetres.
     noise_mm: f64,
     joints: Vec<SightEntry>,
@@ -139,10 +141,11 @@ pub struct WitnessPlan {
 impl WitnessPlan {
     /// Of chosen configurations.
     #[must_use]
-    pub fn new(found: &Witnesses, robot: &str) -> Self {
+    pub fn new(found: &Witnesses, robot: &str, are_new: bool) -> Self {
         WitnessPlan {
             robot: robot.to_owned(),
             configurations: found.configurations.len(),
+            are_new,
             noise_mm: 1e3 * found.sigma_m,
             joints: found.joints.iter().map(SightEntry::of).collect(),
             invisible: found.joints.iter().filter_map(InvisibleEntry::of).collect(),
@@ -154,7 +157,12 @@ impl WitnessPlan {
     pub fn text(&self) -> String {
         let mut out = String::new();
         line(&mut out, "robot", &self.robot);
-        line(&mut out, "witnesses", &self.configurations.to_string());
+        let new = if self.are_new {
+            ", new: measure them now, and name that visit by --reference later"
+        } else {
+            ""
+        };
+        line(&mut out, "witnesses", &format!("{}{new}", self.configurations));
         line(&mut out, "noise", &format!("{:.3} mm a visit and coordinate", self.noise_mm));
         out.push_str(&sight_table(&self.joints, &self.invisible));
         out

@@ -36,6 +36,8 @@ const UNSEEN: f64 = 0.01;
 pub struct Witnesses {
     /// Rows of the chosen configurations, by configuration.
     pub configurations: Vec<Vec<u32>>,
+    /// The rows that they are of; of new configurations, as if they had been measured.
+    pub rows: Dataset,
     /// What of each joint would be found.
     pub joints: Vec<JointSight>,
     /// Standard deviation of a visit and coordinate that this is for, metres.
@@ -102,8 +104,9 @@ impl Candidates {
     }
 }
 
-/// Chooses so many of the measured configurations that the shift of the worst joint that their repeats would find is smallest, by exchange.
-/// `target` alone is measured, where one is named.
+/// Chooses so many of the measured configurations that the shift of the worst joint that their repeats would find is smallest, by exchange; with
+/// `new`, readings of one configuration after the other, among these instead, with what the rows of the first measured one show. `target` alone is
+/// measured, where one is named.
 ///
 /// # Errors
 /// [`ErrorKind::Problem`] if there are fewer configurations than asked for, or so few that nothing would be found;
@@ -111,15 +114,22 @@ impl Candidates {
 pub fn witnesses(
     file: &CalibrationFile,
     measured: &Dataset,
+    new: Option<&[f64]>,
     count: usize,
     target: Option<&str>,
     options: &TrackOptions,
 ) -> Result<Witnesses> {
     let model = Model::of(file, options)?;
+    let elsewhere = new.map(|readings| elsewhere(&model, measured, readings)).transpose()?;
+    let measured = elsewhere.as_ref().unwrap_or(measured);
     let data = &*file.at_stage(measured, file.stages());
     let same_tool = TrackOptions { tool_is_anew: false, ..*options };
-    let visit =
-        Visit { device_is_known: options.device_is_known, ..earlier_visit(&model, data, &same_tool)? };
+    let visit = match new {
+        None => earlier_visit(&model, data, &same_tool)?,
+        // What was not measured shows no device: it is where the calibration has it.
+        Some(_) => Visit::of(&model, data, true, &same_tool)?,
+    };
+    let visit = Visit { device_is_known: options.device_is_known, ..visit };
     let is_named = |row: &u32| {
         let own = data.observations[*row as usize].target;
         target.is_none_or(|target| data.targets.get(own).and_then(Option::as_deref) == Some(target))
@@ -135,8 +145,9 @@ pub fn witnesses(
     let all = data.configurations(&rows);
     if all.len() < count {
         return ErrorKind::Problem.refuse(format!(
-            "found {} measured configurations, expected at least the {count} to be chosen: ask for fewer",
-            all.len()
+            "found {} {} configurations, expected at least the {count} to be chosen: ask for fewer",
+            all.len(),
+            if new.is_some() { "new" } else { "measured" }
         ));
     }
     let some: Vec<Vec<u32>> = all.iter().step_by(all.len().div_ceil(MOST).max(1)).cloned().collect();
@@ -167,7 +178,14 @@ pub fn witnesses(
     };
     let joints = joints(&changes, &visit, &model, (&hypotheses, &tests), (1.0, freedom), options);
     let configurations = chosen.iter().map(|at| some[*at].clone()).collect();
-    Ok(Witnesses { configurations, joints, sigma_m: model.noise[crate::measurement::Quantity::Position] })
+    let sigma_m = model.noise[crate::measurement::Quantity::Position];
+    Ok(Witnesses { configurations, rows: measured.clone(), joints, sigma_m })
+}
+
+/// The rows of the first measured configuration as if they had been measured in others.
+fn elsewhere(model: &Model, measured: &Dataset, readings: &[f64]) -> Result<Dataset> {
+    let first = measured.configurations(&measured.all_rows()).into_iter().next().unwrap_or_default();
+    measured.as_if_at(&first, readings, model.robot.reading_names().len())
 }
 
 /// Changes of rows from their own repeats, as if nothing had changed.

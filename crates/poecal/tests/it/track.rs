@@ -92,7 +92,7 @@ fn the_smallest_shift_is_found_as_often_as_stated() {
         let cell = Cell::new(&robot, 7);
         let mut generator = ChaCha8Rng::seed_from_u64(count as u64);
         let options = cell.options(known);
-        let chosen = witnesses(&cell.file, &cell.first, count, None, &options).unwrap();
+        let chosen = witnesses(&cell.file, &cell.first, None, count, None, &options).unwrap();
         let device = known.then_some(cell.device_from_base);
         for (joint, sight) in chosen.joints.iter().enumerate().filter(|(_, it)| it.unseen.is_none()) {
             let (mut own, mut named) = (0, 0);
@@ -144,9 +144,9 @@ fn the_smallest_shift_is_found_as_often_as_stated() {
 #[test]
 fn the_first_joint_is_not_seen_from_a_device_that_was_set_up_anew() {
     let cell = Cell::new(&elbow(), 3);
-    let chosen = witnesses(&cell.file, &cell.first, 8, None, &cell.options(false)).unwrap();
+    let chosen = witnesses(&cell.file, &cell.first, None, 8, None, &cell.options(false)).unwrap();
     assert_eq!(chosen.joints[0].unseen, Some(Unseen::Device));
-    let known = witnesses(&cell.file, &cell.first, 8, None, &cell.options(true)).unwrap();
+    let known = witnesses(&cell.file, &cell.first, None, 8, None, &cell.options(true)).unwrap();
     assert_eq!(known.joints[0].unseen, None);
     println!("device known: joint 1 from {:.4} deg", known.joints[0].smallest.to_degrees());
 }
@@ -157,7 +157,7 @@ fn one_joint_is_calibrated_anew() {
     let cell = Cell::new(&elbow(), 5);
     let mut generator = ChaCha8Rng::seed_from_u64(1);
     let options = cell.options(false);
-    let chosen = witnesses(&cell.file, &cell.first, 8, None, &options).unwrap();
+    let chosen = witnesses(&cell.file, &cell.first, None, 8, None, &options).unwrap();
     let by = 0.2f64.to_radians();
     let actual = cell.with_zero(3, by);
     let data = cell.visit(&actual, &chosen, None, &mut generator);

@@ -13,9 +13,19 @@ use crate::robot::Robot;
 ///
 /// # Errors
 /// [`ErrorKind::Option`](crate::ErrorKind::Option) if a reading has a name that no column can have.
-pub fn to_measure_again(data: &Dataset, configurations: &[Vec<u32>], robot: &Robot) -> Result<String> {
+pub fn to_measure_again(
+    data: &Dataset,
+    configurations: &[Vec<u32>],
+    robot: &Robot,
+    are_new: bool,
+) -> Result<String> {
     let units = reading_units(data.reading_names(), robot)?;
-    let mut out = "# Configurations to be measured again: fill in what the device shows, and judge it by `poecal track`.\n".to_owned();
+    let mut out = if are_new {
+        "# New configurations: measure them now, and judge later visits by `poecal track --reference` with this one.\n"
+    } else {
+        "# Configurations to be measured again: fill in what the device shows, and judge it by `poecal track`.\n"
+    }
+    .to_owned();
     let rows = || configurations.iter().flatten();
     let named = [&data.targets, &data.stations].map(|names| names.iter().any(Option::is_some));
     let sees = rows().any(|row| data.observations[*row as usize].measurement.sees_orientation());

@@ -1,0 +1,124 @@
+//! Earlier rows of a calibrated robot, and which configurations to measure at its visits: of `poecal track` and of `poecal plan --for drift`.
+
+use std::path::{Path, PathBuf};
+
+use poecal::calibration::DeviceFrameKnowledge;
+use poecal::io::calibration_file::CalibrationFile;
+use poecal::io::measurements::{self, ReadOptions, read_joints};
+use poecal::io::named_files::refuse_repeats;
+use poecal::track::{Earlier, TrackOptions, witnesses};
+use poecal::{ErrorKind, MeasurementFile, Result, Robot, report};
+
+use crate::console::Console;
+
+/// A calibration with what its rows mean and what is known of its visits.
+pub(super) struct Visited {
+    pub(super) file: CalibrationFile,
+    pub(super) robot: Robot,
+    pub(super) meaning: ReadOptions,
+    pub(super) options: TrackOptions,
+    pub(super) earlier: EarlierRows,
+}
+
+/// What is stated of the visits.
+pub(super) struct Stated<'a> {
+    pub(super) calibration: &'a Path,
+    pub(super) reference: &'a [PathBuf],
+    pub(super) meaning: ReadOptions,
+    pub(super) device_is_known: Option<bool>,
+    pub(super) tool_is_anew: bool,
+    pub(super) repeatability_m: Option<f64>,
+}
+
+impl Visited {
+    /// Reads the calibration and the earlier rows.
+    pub(super) fn read(stated: Stated<'_>, console: &Console) -> Result<Self> {
+        let file = CalibrationFile::read(stated.calibration)?;
+        let in_file = |error: poecal::Error| {
+            if error.kind() == ErrorKind::Model { error.in_file(stated.calibration) } else { error }
+        };
+        let robot = file.robot().map_err(in_file)?;
+        let mut meaning =
+            ReadOptions { ignore_sets: true, controller: file.controller.clone(), ..stated.meaning };
+        if let Some(known) = &file.pictures {
+            known.complete(&mut meaning).map_err(|error| error.in_file(stated.calibration))?;
+        }
+        let is_base = file.frame() == DeviceFrameKnowledge::Base;
+        let options = TrackOptions {
+            device_is_known: stated.device_is_known.unwrap_or(is_base),
+            tool_is_anew: stated.tool_is_anew,
+            repeatability_m: stated.repeatability_m,
+        };
+        let earlier =
+            EarlierRows::read(stated.calibration, stated.reference, (&file, &robot, &meaning), console)?;
+        Ok(Visited { file, robot, meaning, options, earlier })
+    }
+
+    /// Chooses so many configurations, of the earlier rows or of a file of joint readings: what they would show, and the table to fill in. `option` is
+    /// what asked for it.
+    pub(super) fn planned(
+        &self,
+        option: &str,
+        count: usize,
+        target: Option<&str>,
+        new: Option<&PathBuf>,
+    ) -> Result<(report::WitnessPlan, String)> {
+        let Some(rows) = self.earlier.rows() else {
+            return ErrorKind::Option.refuse(format!(
+                "{option}: found no earlier rows, expected those of the calibration or of --reference: their configurations are those to be repeated"
+            ));
+        };
+        let new = new.map(|path| read_joints(path, &self.robot, &self.meaning)).transpose()?;
+        let readings = new.as_ref().map(|it| it.readings.as_slice());
+        let found = witnesses(&self.file, rows.data, readings, count, target, &self.options)?;
+        let told = report::WitnessPlan::new(&found, &self.file.robot.name, new.is_some());
+        let table =
+            measurements::to_measure_again(&found.rows, &found.configurations, &self.robot, new.is_some())?;
+        Ok((told, table))
+    }
+}
+
+/// The earlier rows.
+pub(super) struct EarlierRows {
+    pub(super) read: Option<MeasurementFile>,
+    /// Whether they are those of the calibration.
+    is_own: bool,
+}
+
+impl EarlierRows {
+    /// Those that are named, or else those of the calibration where they still are.
+    fn read(
+        calibration: &Path,
+        reference: &[PathBuf],
+        (file, robot, meaning): (&CalibrationFile, &Robot, &ReadOptions),
+        console: &Console,
+    ) -> Result<Self> {
+        if !reference.is_empty() {
+            refuse_repeats(reference)?;
+            let read = measurements::read(reference, robot, meaning)?;
+            let own: Vec<&String> =
+                file.inputs.measurements.iter().filter_map(|name| file.inputs.sha256.get(name)).collect();
+            let is_own = read.sha256.values().all(|sha256| own.contains(&sha256));
+            return Ok(EarlierRows { read: Some(read), is_own });
+        }
+        let names = file.inputs.measurements.join(", ");
+        let Some(paths) = file.own_measurements(calibration) else {
+            console.remark(format!(
+                "the measurements of the calibration ({names}) are not where it was made, or have other bytes: name earlier rows by --reference; \
+                 without, rows are judged by the model"
+            ));
+            return Ok(EarlierRows { read: None, is_own: false });
+        };
+        let read = measurements::read(&paths, robot, meaning);
+        if let Err(error) = &read {
+            console.remark(format!(
+                "the measurements of the calibration ({names}) cannot be read as those of the visit ({error}): judged by the model"
+            ));
+        }
+        Ok(EarlierRows { read: read.ok(), is_own: true })
+    }
+
+    pub(super) fn rows(&self) -> Option<Earlier<'_>> {
+        self.read.as_ref().map(|it| Earlier { data: &it.data, is_own: self.is_own })
+    }
+}
