@@ -43,6 +43,12 @@ impl Visited {
         if let Some(known) = &file.pictures {
             known.complete(&mut meaning).map_err(|error| error.in_file(stated.calibration))?;
         }
+        if file.has_another_model(stated.calibration) {
+            console.remark(format!(
+                "the model {} has other bytes than when it was calibrated: the visit is judged by the model in the calibration",
+                file.inputs.model
+            ));
+        }
         let is_base = file.frame() == DeviceFrameKnowledge::Base;
         let options = TrackOptions {
             device_is_known: stated.device_is_known.unwrap_or(is_base),

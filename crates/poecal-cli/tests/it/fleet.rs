@@ -62,6 +62,92 @@ fn a_line_is_worked_off_once_and_restarts_where_it_was() {
     assert_eq!(folder.read("fleet.csv").lines().count(), 4);
 }
 
+/// Wherever the program is started, the ledger has the same paths, and nothing is done twice.
+#[test]
+fn paths_are_from_the_station() {
+    let folder = line(2);
+    folder.run("fleet station.toml");
+    let whole = ledger(&folder);
+    assert!(whole[0].contains("\"file\":\"inbox/SN0/2026-01-01.csv\""), "{}", whole[0]);
+    let run = folder.run(&format!("fleet {}", folder.path("station.toml").display()));
+    assert_eq!((run.code, ledger(&folder)), (0, whole), "{}", run.err);
+}
+
+#[test]
+fn a_file_that_came_with_other_bytes_is_refused_and_repeated_by_again() {
+    let folder = line(1);
+    folder.run("fleet station.toml");
+    let other = folder.read("inbox/SN0/2026-01-01.csv") + "\n";
+    folder.write("inbox/SN0/2026-01-01.csv", other);
+    let run = folder.run("fleet station.toml");
+    assert!(run.code == 1 && run.err.contains("again with other bytes"), "{}", run.err);
+    assert_eq!(ledger(&folder).len(), 2);
+    assert_eq!(folder.run("fleet station.toml --again").code, 0);
+}
+
+#[test]
+fn a_serial_number_that_is_no_name_of_a_folder_is_a_row_with_its_sentence() {
+    let folder = line(1);
+    let text = folder.read("inbox/SN0/2026-01-01.csv");
+    std::fs::create_dir_all(folder.path("inbox/..SN1")).unwrap();
+    folder.write("inbox/..SN1/2026-01-02.csv", text);
+    let run = folder.run("fleet station.toml");
+    assert!(run.code == 1 && run.err.contains("rename the file"), "{}", run.err);
+    assert_eq!(std::fs::read_dir(folder.path("results")).unwrap().count(), 1);
+}
+
+#[test]
+fn limits_are_of_a_figure_and_in_its_unit() {
+    let folder = line(1);
+    folder.run("fleet station.toml");
+    for (limit, expected) in [
+        ("\"joint2.offset[mm]\" = [-1.0, 1.0]", "in mm, expected deg"),
+        ("\"joint9.offset\" = [-1.0, 1.0]", "no figure of the line"),
+        ("\"error\" = [0.3, 0.1]", "the lower one first"),
+    ] {
+        folder.write("station.toml", format!("{STATION}\n[limits]\n{limit}\n"));
+        let run = folder.run("fleet report station.toml");
+        assert!(run.code == 2 && run.err.contains(expected), "{limit}: {}", run.err);
+        assert!(!folder.path("fleet.html").exists() && !folder.path("fleet.csv").exists());
+    }
+    for limit in ["\"joint2.offset[deg]\" = [-1.0, 1.0]", "\"error\" = [-inf, 0.3]"] {
+        folder.write("station.toml", format!("{STATION}\n[limits]\n{limit}\n"));
+        assert_eq!(folder.run("fleet report station.toml --force").code, 0);
+    }
+}
+
+/// The prior of the line is that of all robots but those that are measured in full, and what it was is in the ledger and in the report.
+#[test]
+fn the_prior_of_a_line_is_written_and_used() {
+    let folder = line(3);
+    let run = folder.run("fleet prior station.toml");
+    assert_eq!(run.code, 2, "no ledger: {}", run.out);
+    folder.run("fleet station.toml");
+    let run = folder.run("fleet prior station.toml");
+    assert!(run.code == 2 && run.err.contains("expected at least 30"), "{}", run.err);
+    // The same robots with other serial numbers make a line.
+    let rows: Vec<String> = folder.read("fleet.jsonl").lines().map(str::to_owned).collect();
+    let many = (0..36).map(|k| rows[k % 3].replace("\"serial\":\"SN", &format!("\"serial\":\"A{k}B")) + "\n");
+    folder.write("fleet.jsonl", many.collect::<String>());
+    let prior = folder.run("fleet prior station.toml");
+    assert_eq!(prior.code, 0, "{}", prior.err);
+    assert!(prior.out.contains("tolerance = \"") && prior.out.contains("corrections = \""), "{}", prior.out);
+    folder.write("prior.toml", prior.out);
+    folder.write("station.toml", format!("prior = \"prior.toml\"\n{STATION}"));
+    assert_eq!(folder.run("fleet station.toml").code, 0);
+    let rows = ledger(&folder);
+    let own =
+        |serial: &str| rows.iter().find(|row| row.contains(&format!("\"serial\":\"{serial}\""))).unwrap();
+    // Twenty divides nothing: it is measured in full.
+    assert!(own("SN0").contains("\"by_prior\":false") && own("SN1").contains("\"by_prior\":true"));
+    assert!(own("SN1").contains("prior.toml") && !own("SN0").contains("prior.toml"));
+    let run = folder.run("fleet report station.toml");
+    assert!(run.out.contains("2 robots by the prior of the line"), "{}{}", run.out, run.err);
+    folder.write("prior.toml", "poecal_settings = 1\nseed = 3\n");
+    let run = folder.run("fleet station.toml");
+    assert!(run.code == 2 && run.err.contains("prior.toml:2"), "{}", run.err);
+}
+
 #[test]
 fn parts_concatenate_to_the_whole() {
     let folder = line(4);

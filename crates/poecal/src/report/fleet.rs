@@ -114,14 +114,7 @@ impl Line {
         let mut seen = BTreeSet::new();
         let first: Vec<&&LedgerRow> = of_line.iter().filter(|row| seen.insert(&row.serial)).collect();
         let all = series(&of_line);
-        let names: BTreeSet<&str> = all.iter().map(|it| it.name.as_str()).collect();
-        if let Some(unknown) = limits.keys().find(|name| !names.contains(name.as_str())) {
-            let known: Vec<&str> = names.into_iter().collect();
-            return ErrorKind::Option.refuse(format!(
-                "found limits of `{unknown}`, which is no figure of the line, expected one of {}",
-                crate::error::first_few(&known)
-            ));
-        }
+        let limits = limits_of(&all, limits)?;
         let figure = |it: &Series| {
             let limits = limits.get(&it.name).copied().unwrap_or_default();
             Some(Figure {
@@ -226,6 +219,34 @@ impl Line {
         }
         out
     }
+}
+
+/// Limits by the names of the figures; a unit in brackets must be that of the figure.
+fn limits_of(
+    all: &[Series],
+    limits: &BTreeMap<String, [Option<f64>; 2]>,
+) -> Result<BTreeMap<String, [Option<f64>; 2]>> {
+    let plain = |(key, own): (&String, &[Option<f64>; 2])| {
+        let parts = key.strip_suffix(']').and_then(|it| it.split_once('['));
+        let (name, unit) = parts.map_or((key.as_str(), None), |(name, unit)| (name, Some(unit)));
+        let series = all.iter().find(|it| it.name == name);
+        match (series, unit) {
+            // Of robots that were all refused there are no figures.
+            (None, _) if !all.is_empty() => {
+                let known: Vec<&str> = all.iter().map(|it| it.name.as_str()).collect();
+                ErrorKind::Option.refuse(format!(
+                    "found limits of `{name}`, which is no figure of the line, expected one of {}",
+                    crate::error::first_few(&known)
+                ))
+            }
+            (Some(series), Some(unit)) if unit != series.unit => ErrorKind::Option.refuse(format!(
+                "found limits of `{name}` in {unit}, expected {}, the unit of the figure",
+                series.unit
+            )),
+            _ => Ok((name.to_owned(), *own)),
+        }
+    };
+    limits.iter().map(plain).collect()
 }
 
 /// A robot and date, as one value of a series.

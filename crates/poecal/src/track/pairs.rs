@@ -3,12 +3,15 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::visit::Visit;
-use crate::measurement::Dataset;
+use crate::measurement::{Dataset, Observation, Quantity};
 use crate::robot::{ReadingKind, Robot};
 
 /// Largest difference of readings of one configuration: 0.1°, 0.1 mm.
 const SAME_RAD: f64 = 0.1 * std::f64::consts::PI / 180.0;
 const SAME_M: f64 = 1e-4;
+
+/// Numbers of a place.
+const PLACE: usize = 3;
 
 /// Changes of measured numbers between visits, about the model.
 #[derive(Clone, Debug)]
@@ -45,14 +48,29 @@ fn tolerances<'a>(data: &'a Dataset, robot: &'a Robot) -> impl Iterator<Item = f
     })
 }
 
-/// Whether rows of two visits are of one configuration, target, instrument and kind.
+/// How many of their first numbers rows of two visits share: all of one kind of measurement, the place alone where one visit shows the orientation
+/// too; none otherwise.
+fn shared_numbers((a, rows): (&Dataset, &[u32]), (b, others): (&Dataset, &[u32])) -> usize {
+    let seen = |data: &Dataset, row: &u32| data.observations[*row as usize];
+    let all = || rows.iter().map(|row| seen(a, row)).chain(others.iter().map(|row| seen(b, row)));
+    let Some(first) = all().next() else { return 0 };
+    if all().all(|it| it.measurement.function() == first.measurement.function()) {
+        return first.measurement.dim();
+    }
+    // Numbers of a place are along the axes of the base, unless its noise has a shape.
+    let is_place = |it: &Observation| {
+        it.measurement.channels().of(Quantity::Position) == (0..PLACE) && it.noise_shape.is_none()
+    };
+    if all().all(|it| is_place(&it)) { PLACE } else { 0 }
+}
+
+/// Whether rows of two visits are of one configuration, target and instrument.
 fn is_same(a: &Dataset, row: u32, b: &Dataset, other: u32, robot: &Robot) -> bool {
     let (one, two) = (&a.observations[row as usize], &b.observations[other as usize]);
     let named = |data: &Dataset, at: usize| data.targets.get(at).cloned().flatten();
     let from = |data: &Dataset, at: usize| data.stations.get(at).cloned().flatten();
     named(a, one.target) == named(b, two.target)
         && from(a, one.station) == from(b, two.station)
-        && one.measurement.function() == two.measurement.function()
         && one.from.is_none()
         && two.from.is_none()
         && a.readings(row as usize)
@@ -75,7 +93,10 @@ impl Changes {
         for group in &own {
             let found = old.iter().find(|it| is_same(before, it[0], data, group[0], robot));
             let Some(found) = found else { continue };
-            pairs.push((group, found));
+            let numbers = shared_numbers((data, group), (before, found));
+            if numbers > 0 {
+                pairs.push((group, found, numbers));
+            }
         }
         if pairs.is_empty() {
             return None;
@@ -84,9 +105,8 @@ impl Changes {
         let mut sigma = Vec::new();
         let mut rows = Vec::new();
         let mut jacobian = Vec::new();
-        for (group, found) in pairs {
+        for (group, found, numbers) in pairs {
             let start = visit.starts[group[0] as usize];
-            let numbers = visit.starts[group[0] as usize + 1] - start;
             for number in 0..numbers {
                 let (value, variance) = mean(visit, group, number);
                 let (old, of_old) = mean(earlier, found, number);

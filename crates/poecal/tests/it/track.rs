@@ -229,3 +229,34 @@ fn other_configurations_are_judged_by_the_model() {
     );
     assert!(found.notes.iter().any(|note| note.contains("none of the rows repeats")), "{:?}", found.notes);
 }
+
+/// Places of a visit are compared with the places of poses.
+#[test]
+fn points_repeat_the_places_of_poses() {
+    let robot = elbow();
+    let simulation = Simulation { count: 40, seed: 3, noise_position_m: NOISE_M, ..Simulation::default() };
+    let made = simulation.run(&robot, Kind::POSE).unwrap();
+    let calibration = calibrate(&made.nominal, &made.data, &geometry()).unwrap();
+    let file = CalibrationFile::new(&calibration, &made.data, Inputs::default());
+    let options = TrackOptions { repeatability_m: Some(NOISE_M), ..TrackOptions::default() };
+    let earlier = Earlier { data: &made.data, is_own: true };
+    let mut generator = ChaCha8Rng::seed_from_u64(1);
+    let joint = 2;
+    let mut offsets = vec![0.0; robot.joints.len()];
+    for (by, state) in [(0.0, State::Unchanged), (2e-3, State::Changed)] {
+        offsets[joint] = by;
+        let actual = into_screws(&made.actual, &offsets).unwrap();
+        let mut data = Dataset::new(made.data.reading_names().to_vec());
+        for row in 0..12 {
+            let readings = made.data.readings(row);
+            let seen = made.device_from_base * actual.forward_kinematics(readings);
+            let noise = random::normal_vector(&mut generator) * NOISE_M;
+            data.push(readings, None, Measurement::point(seen.translation + noise)).unwrap();
+        }
+        let found = track(&file, &data, Some(earlier), &options).unwrap();
+        assert_eq!((found.state, found.repeated), (state, 12));
+        if let Some(explanation) = found.explanation {
+            assert_eq!(explanation.names.first(), Some(&made.actual.joints[joint].name));
+        }
+    }
+}
