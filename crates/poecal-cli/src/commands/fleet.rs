@@ -243,6 +243,8 @@ fn calibrated(station: &Station, found: &Found, row: LedgerRow, prior: &[OsStrin
     }
     let (code, said) = ran(words);
     let sentence = || {
+        // As the ledger has the path, wherever the program was started.
+        let said = said.replace(&found.path.display().to_string(), &row.file);
         let line = said.lines().rev().find_map(|line| line.strip_prefix("error: "));
         line.map_or_else(|| format!("the calibration ended with code {code}"), str::to_owned)
     };

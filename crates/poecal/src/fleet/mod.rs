@@ -9,7 +9,7 @@ mod steps;
 pub use capability::{Capability, Interval};
 pub use outlying::{Outlier, outliers};
 pub use series::{Series, Spread, Value};
-pub use steps::{Step, steps};
+pub use steps::{Step, moving_average, steps};
 
 /// Fewest robots from which spreads, capabilities and steps are stated.
 pub const FEWEST: usize = 30;

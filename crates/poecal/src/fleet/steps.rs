@@ -25,6 +25,19 @@ pub struct Step {
     pub seen_at: usize,
     /// By how much, in the figure's unit, of sizes as a factor.
     pub size: f64,
+    /// The figure's unit; `None` of a factor.
+    pub unit: Option<&'static str>,
+}
+
+/// The moving average after each value.
+#[must_use]
+pub fn moving_average(values: &[f64]) -> Vec<f64> {
+    let mut average = values.iter().take(FEWEST).sum::<f64>() / values.len().clamp(1, FEWEST) as f64;
+    let next = |value: &f64| {
+        average += NEWEST * (value - average);
+        average
+    };
+    values.iter().map(next).collect()
 }
 
 /// The first step of a figure after its first thirty robots, by what these are; `None` where there is none, or with fewer robots.
@@ -63,6 +76,7 @@ fn step(series: &Series) -> Option<Step> {
                 from,
                 seen_at: at,
                 size: if series.is_size { size.exp() } else { size },
+                unit: (!series.is_size).then_some(series.unit),
             });
         }
     }

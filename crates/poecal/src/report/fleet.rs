@@ -81,6 +81,8 @@ pub struct Line {
     pub first: usize,
     /// The latter.
     pub first_passed: usize,
+    /// All figures of the line, in the order measured.
+    pub series: Vec<Series>,
     /// Whether there are too few robots for spreads.
     pub is_few: bool,
     /// Spreads of all figures.
@@ -140,6 +142,7 @@ impl Line {
             outliers: outliers(&all),
             steps: found.iter().map(|step| (step.clone(), is_station(step))).collect(),
             figures,
+            series: all,
             rows,
         })
     }
@@ -215,7 +218,7 @@ impl Line {
         }
         for (step, is_station) in &self.steps {
             let of = if *is_station { " (the station's)" } else { "" };
-            let _ = writeln!(out, "step        {} since {}: {:+.4}{of}", step.series, step.since, step.size);
+            let _ = writeln!(out, "step        {}{of}", step_words(step));
         }
         out
     }
@@ -249,8 +252,17 @@ fn limits_of(
     limits.iter().map(plain).collect()
 }
 
+/// A step in words.
+pub(super) fn step_words(step: &Step) -> String {
+    let by = match step.unit {
+        Some(unit) => format!("{:+.4} {unit}", step.size),
+        None => format!("a factor of {:.2}", step.size),
+    };
+    format!("{} since {} by {by}", step.series, step.since)
+}
+
 /// A robot and date, as one value of a series.
-fn key(row: &LedgerRow) -> String {
+pub(super) fn key(row: &LedgerRow) -> String {
     if row.date.is_empty() { row.serial.clone() } else { format!("{} {}", row.serial, row.date) }
 }
 

@@ -31,6 +31,15 @@ pub struct LinePlot {
 impl LinePlot {
     /// The plot as SVG.
     pub fn svg(&self) -> String {
+        self.drawn(true)
+    }
+
+    /// The same with the points of the first line alone, not joined.
+    pub fn scattered(&self) -> String {
+        self.drawn(false)
+    }
+
+    fn drawn(&self, joins_first: bool) -> String {
         let points = || self.lines.iter().flat_map(|line| &line.points);
         let marked = self.mark.iter().map(|mark| mark.at);
         let x = self.x.ruler(points().map(|point| point[0]).chain(marked));
@@ -52,14 +61,14 @@ impl LinePlot {
         for (k, line) in self.lines.iter().enumerate() {
             // Lines that coincide stay visible: the later ones have smaller markers.
             let radius = if line.points.len() > MANY { 2.4 } else { (5.2 - 0.8 * k as f64).max(2.4) };
-            draw(&mut frame, &y, line, radius);
+            draw(&mut frame, &y, line, (radius, k > 0 || joins_first));
         }
         frame.finish(points().next().is_some(), &self.title, &self.description)
     }
 }
 
-/// Draws a line; where a point is not a number, it is broken.
-fn draw(frame: &mut Frame, y: &Ruler, line: &Line, radius: f64) {
+/// Draws a line, with markers of this radius, and joined or not; where a point is not a number, it is broken.
+fn draw(frame: &mut Frame, y: &Ruler, line: &Line, (radius, is_joined): (f64, bool)) {
     let Frame { canvas, area, x, unshown } = frame;
     let mut pieces: Vec<Vec<[f64; 2]>> = vec![Vec::new()];
     let mut markers = Vec::new();
@@ -80,7 +89,7 @@ fn draw(frame: &mut Frame, y: &Ruler, line: &Line, radius: f64) {
         }
     }
     canvas.begin_series(line.style);
-    for piece in pieces.iter().filter(|piece| piece.len() > 1) {
+    for piece in pieces.iter().filter(|piece| is_joined && piece.len() > 1) {
         canvas.path(line.style, piece);
     }
     for (at, inside) in markers {
