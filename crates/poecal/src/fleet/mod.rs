@@ -8,7 +8,7 @@ mod steps;
 
 pub use capability::{Capability, Interval};
 pub use outlying::{Outlier, outliers};
-pub use series::{Series, Spread, Value};
+pub use series::{Series, Spread, Value, typical};
 pub use steps::{Step, moving_average, steps};
 
 /// Fewest robots from which spreads, capabilities and steps are stated.

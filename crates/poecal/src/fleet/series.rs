@@ -90,6 +90,11 @@ impl Series {
     }
 }
 
+/// A figure of a typical robot: the median of all.
+pub fn typical(values: impl Iterator<Item = f64>) -> Option<f64> {
+    median(values)
+}
+
 /// Standard deviation of sorted values without those that are none of them: of what is within 3.5 of the quartiles' deviation.
 fn deviation(sorted: &[f64], center: f64) -> f64 {
     let at = |share: f64| {

@@ -3,9 +3,8 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 
-use crate::distributions::median;
 use crate::error::{ErrorKind, Result};
-use crate::fleet::{Capability, FEWEST, Outlier, Series, Spread, Step, Value, outliers, steps};
+use crate::fleet::{Capability, FEWEST, Outlier, Series, Spread, Step, Value, outliers, steps, typical};
 use crate::io::fleet::LedgerRow;
 
 /// A figure of the line with its spread.
@@ -41,9 +40,10 @@ impl PriorUse {
         let first = done.iter().position(|row| row.by_prior)?;
         let (own, others): (Vec<&LedgerRow>, Vec<&LedgerRow>) =
             done[first..].iter().partition(|row| row.by_prior);
-        let error = |rows: &[&LedgerRow]| median(rows.iter().filter_map(|row| row.error_rms));
-        let share =
-            |rows: &[&LedgerRow]| median(rows.iter().filter_map(|row| row.prior_share())).unwrap_or_default();
+        let error = |rows: &[&LedgerRow]| typical(rows.iter().filter_map(|row| row.error_rms));
+        let share = |rows: &[&LedgerRow]| {
+            typical(rows.iter().filter_map(|row| row.prior_share())).unwrap_or_default()
+        };
         Some(PriorUse {
             robots: own.len(),
             share: share(&own),

@@ -54,16 +54,26 @@ fn failed(line: &Line) -> Markup {
     for row in all.iter().take(LISTED) {
         let because = row.reason.as_deref().unwrap_or_default();
         let because = html! { @for (k, piece) in because.split('`').enumerate() { @if k % 2 == 1 { code { (piece) } } @else { (piece) } } };
-        table.row(&[&row.serial, &date(&row.date), &verdict(row.verdict.as_deref()), &because]);
+        table.row(&[
+            &row.serial,
+            &unbroken(&row.date),
+            &verdict(row.verdict.as_deref()),
+            &sentence(&because),
+        ]);
     }
     let more = (all.len() > LISTED).then(|| all.len() - LISTED);
     let content = html! { (table) @if let Some(more) = more { p { "… and " (more) " more in fleet.csv" } } };
     if all.is_empty() { Markup::default() } else { section("failed", "Robots that did not pass", &content) }
 }
 
-/// A date that is not broken.
-fn date(text: &str) -> Markup {
+/// A name or date that is not broken.
+fn unbroken(text: &str) -> Markup {
     html! { span style="white-space:nowrap" { (text) } }
+}
+
+/// Words of a cell that are broken where the page is narrow.
+fn sentence(words: &Markup) -> Markup {
+    html! { div style="white-space:normal;overflow-wrap:anywhere;min-width:14em" { (words) } }
 }
 
 fn verdict(word: Option<&str>) -> String {
@@ -91,10 +101,10 @@ fn outlying(line: &Line) -> Markup {
     for (serial, figures) in robots.iter().take(LISTED) {
         let row = line.rows.iter().find(|row| key(row) == *serial);
         let link = row.map_or_else(
-            || html! { (serial) },
-            |row| html! { a href={ (row.results) "/report.html" } { (serial) } },
+            || unbroken(serial),
+            |row| html! { a href={ (row.results) "/report.html" } { (unbroken(serial)) } },
         );
-        table.row(&[&link, &figures.join(", ")]);
+        table.row(&[&link, &sentence(&html! { (figures.join(", ")) })]);
     }
     section("outliers", "Robots beyond six spreads of the line", &html! { (table) })
 }
@@ -190,7 +200,7 @@ fn robots_table(line: &Line) -> Markup {
             html! { @if row.verdict.is_some() { a href={ (row.results) "/report.html" } { "report" } } };
         table.row(&[
             &row.serial,
-            &date(&row.date),
+            &unbroken(&row.date),
             &verdict(row.verdict.as_deref()),
             &report,
             &figure(row.error_rms),
