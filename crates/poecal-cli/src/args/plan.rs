@@ -128,8 +128,6 @@ const NOT_FOR_DRIFT: [&str; 33] = [
     "acceptance",
     "facing",
     "self_collision",
-    "report",
-    "stop",
 ];
 
 /// What is known of the visits to a calibrated robot.
