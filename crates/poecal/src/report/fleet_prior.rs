@@ -48,15 +48,16 @@ pub fn fleet_prior(rows: &[LedgerRow], of: &str) -> Result<String> {
     Ok(out)
 }
 
-/// The size of a group: the root mean square of those that the calibrations chose, where most of these robots have the group.
+/// The size of a group: the geometric mean of those that the calibrations chose, which a few odd robots change little, where most robots have the
+/// group.
 fn size(good: &[&LedgerRow], group: TermGroup) -> Option<String> {
     let of_row = |row: &&LedgerRow| {
         let own = row.sizes.iter().find(|it| it.group == group.name());
         own.map_or(0.0, |it| it.size)
     };
-    let all: Vec<f64> = good.iter().map(of_row).collect();
-    let taken = all.iter().filter(|size| **size > 0.0).count();
-    (2 * taken > all.len()).then(|| format!("{}={}", group.name(), two_digits(rms(&all))))
+    let taken: Vec<f64> = good.iter().map(of_row).filter(|size| *size > 0.0).collect();
+    let mean = (taken.iter().map(|size| size.ln()).sum::<f64>() / taken.len().max(1) as f64).exp();
+    (2 * taken.len() > good.len()).then(|| format!("{}={}", group.name(), two_digits(mean)))
 }
 
 /// Root mean square.
