@@ -27,13 +27,16 @@ fn import(folder: &Folder, files: &str) -> Run {
     folder.run(&format!("import {MODEL} {files} --out out.csv --force"))
 }
 
+/// A change of the cells of rows.
+type Fault = dyn Fn(&mut Vec<Vec<String>>);
+
 #[test]
 fn single_wrong_pairs_are_named_by_line() {
     let (folder, header, rows) = named();
     let run = import(&folder, "joints.csv points.csv");
     assert_eq!(run.code, 0, "{}", run.err);
     assert!(!run.err.contains("warning"), "{}", run.err);
-    let faults: [(&dyn Fn(&mut Vec<Vec<String>>), &[&str]); 3] = [
+    let faults: [(&Fault, &[&str]); 3] = [
         // Another name.
         (
             &|rows| rows[8][0] = "P8".to_owned(),

@@ -265,10 +265,8 @@ impl Layout {
         let rest = count - usize::from(has_index);
         let is_whole_number =
             |it: &&str| it.trim_start_matches(['+', '-']).bytes().all(|it| it.is_ascii_digit());
-        let all_whole = points
-            .iter()
-            .flat_map(|it| it.numbers.get(named..).unwrap_or_default())
-            .all(|it| is_whole_number(it));
+        let all_whole =
+            points.iter().flat_map(|it| it.numbers.get(named..).unwrap_or_default()).all(is_whole_number);
         if all_whole && rest >= 6 {
             return Refused::at(
                 first.line,
