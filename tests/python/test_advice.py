@@ -46,7 +46,7 @@ FOLLOWED = {
     "or in a mapping (`unit": HERE + "test_angles_in_another_unit",
     "check the convention of the angles; a mapping (--columns) with": "crates/poecal-cli/tests/it/diagnosis.rs::angles_of_a_controller_that_are_called_roll_pitch_yaw_are_named_with_the_mapping_that_reads_them",
     "take `--format hayati`": "crates/poecal/tests/it/export.rs",
-    "take `offsets`": HERE + "test_a_form_that_is_closed",
+    "use --format offsets for mastering": HERE + "test_a_form_that_is_closed",
     "write `third_axis = ": HERE + "test_options_of_programs",
     "state it by --factor": HERE + "test_a_factor",
     "expand the file with `xacro": HERE + "test_remains_of_xacro",
@@ -344,7 +344,7 @@ def test_angles_of_makers(here, names, unit):
 def test_a_form_that_is_closed(here):
     calibrates(here)
     said = run(here, "export", "out/calibration.json", "--format", "fanuc", code=2)
-    form = re.search(r"take `(\w+)`", said)[1]
+    form = re.search(r"use --format (\w+) for mastering", said)[1]
     assert json.loads(subprocess.run([program(), "export", "out/calibration.json", "--format", form], cwd=here, capture_output=True, text=True, check=True).stdout)["form"] == form
 
 
