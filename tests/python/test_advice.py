@@ -46,7 +46,6 @@ FOLLOWED = {
     "or in a mapping (`unit": HERE + "test_angles_in_another_unit",
     "check the convention of the angles; a mapping (--columns) with": "crates/poecal-cli/tests/it/diagnosis.rs::angles_of_a_controller_that_are_called_roll_pitch_yaw_are_named_with_the_mapping_that_reads_them",
     "take `--format hayati`": "crates/poecal/tests/it/export.rs",
-    "use --format offsets for mastering": HERE + "test_a_form_that_is_closed",
     "write `third_axis = ": HERE + "test_options_of_programs",
     "state it by --factor": HERE + "test_a_factor",
     "expand the file with `xacro": HERE + "test_remains_of_xacro",
