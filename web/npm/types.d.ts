@@ -127,7 +127,7 @@ export interface CalibrateOptions {
   acceptModel?: "corrected" | "calibrated";
   /**
    * What the report states of the session, like serial=4711 (repeatable): certificate, laboratory, customer, robot, serial, instrument,
-   * operator, date, place, temperature or note
+   * instrument_calibrated, tool, payload, operator, date, place, temperature, valid_until or note
    */
   record?: Value | readonly Value[];
   /** Parameterisation of joint errors; all but the default are for comparison */
@@ -328,6 +328,11 @@ export interface IdentifyOptions {
   sigmaPosition?: Value | readonly Value[];
   /** Standard deviation of each measured rotation component [default: 0.01deg] */
   sigmaRotation?: Value | readonly Value[];
+  /**
+   * Error of the tip (RMS) that a calibration leaves however much is measured, and that with corrections, like 0.3mm or 0.3mm,0.12mm, as an
+   * earlier calibration of such a robot found it [default: 0.3 mm for each metre of reach, which is a guess]
+   */
+  robotError?: Value | readonly Value[];
   /** The measuring device's frame */
   frame?: "unknown" | "base";
 }
@@ -1538,12 +1543,16 @@ export type Record = {
   date?: string | null;
   /** The measuring instrument: its serial number and its own certificate. */
   instrument?: string | null;
+  /** Day of the instrument's own calibration, `YYYY-MM-DD`. */
+  instrument_calibrated?: string | null;
   /** Who calibrated: name and address. */
   laboratory?: string | null;
   /** Anything else. */
   note?: string | null;
   /** Who measured. */
   operator?: string | null;
+  /** The load that the robot carried, with its unit. */
+  payload?: string | null;
   /** Where the robot stood. */
   place?: string | null;
   /** The robot as its owner calls it: maker and type. */
@@ -1552,6 +1561,10 @@ export type Record = {
   serial?: string | null;
   /** Temperature there, with its unit, `21.5 °C` or `21.5 ± 0.5 °C`. */
   temperature?: string | null;
+  /** The tool that was on the flange. */
+  tool?: string | null;
+  /** Day until which the certificate is valid, `YYYY-MM-DD`. */
+  valid_until?: string | null;
 };
 
 /** What of a joint was calibrated anew. */

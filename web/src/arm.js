@@ -14,7 +14,6 @@ export function showArm(place, data) {
     place.innerHTML = '<p class="note">This browser has no WebGL, which the picture that turns needs: it is drawn from two sides.</p>';
     return;
   }
-  document.getElementById("still")?.remove();
   const stage = element("div", data.draws_instruments ? "stage stays" : "stage");
   const frame = element("div", "scene");
   frame.append(scene.canvas, scene.paper, scene.labels.element);
@@ -32,6 +31,11 @@ export function showArm(place, data) {
   });
   choose(view, 0);
   scene.look("oblique");
+  // Until the picture is drawn, paper has the still.
+  scene.onDrawn = () => {
+    place.dataset.drawn = "true";
+    document.getElementById("still")?.setAttribute("hidden", "");
+  };
 }
 
 function element(name, className, text) {

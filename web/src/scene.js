@@ -59,6 +59,7 @@ export class Scene {
       this.begun = true;
       this.renderNow();
       this.canvas.dataset.drawn = "true";
+      this.onDrawn?.();
     });
   }
 

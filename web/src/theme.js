@@ -45,19 +45,11 @@ function printOnPaper(root) {
   addEventListener("beforeprint", () => {
     before = root.dataset.theme;
     root.dataset.theme = "light";
-    for (const details of document.querySelectorAll("details:not([open])")) {
-      details.open = true;
-      details.dataset.wasClosed = "true";
-    }
     changed();
   });
   addEventListener("afterprint", () => {
     if (before === undefined) delete root.dataset.theme;
     else root.dataset.theme = before;
-    for (const details of document.querySelectorAll("details[data-was-closed]")) {
-      details.open = false;
-      delete details.dataset.wasClosed;
-    }
     changed();
   });
 }

@@ -163,6 +163,10 @@ for (const [k, [name, make]] of [...CASES, ...Object.entries(TREES)].entries()) 
   });
 }
 
+/** Pages of a printed report at most, and the width of A4 without its margins (182 mm, 96 to the inch). */
+const MOST_PAGES = 11;
+const PAPER_PX = (182 / 25.4) * 96;
+
 describe("the page", { skip }, () => {
   let report;
   before(() => {
@@ -207,11 +211,22 @@ describe("the page", { skip }, () => {
     await page.close();
   });
 
-  test("prints, with every table open", async () => {
+  test("prints the certificate and an annex of few pages, with charts as wide as paper", async (t) => {
     const page = await open(browser, report, { colours: "dark" });
     const pdf = await page.pdf({ preferCSSPageSize: true, printBackground: true });
     assert.equal(pdf.subarray(0, 4).toString(), "%PDF");
     assert.ok(pdf.length > 50_000, `${pdf.length} bytes`);
+    const pages = pdf.toString("latin1").match(/\/Type\s*\/Page[^s]/g).length;
+    t.diagnostic(`${pages} pages`);
+    assert.ok(pages <= MOST_PAGES, `${pages} pages`);
+    // A4 without its margins, in pixels.
+    await page.evaluate(() => dispatchEvent(new Event("beforeprint")));
+    await page.emulateMedia({ media: "print" });
+    const places = await page.$$eval("main svg.plot, main .uplot canvas, main table", (all) =>
+      all.filter((it) => it.checkVisibility()).map((it) => [it.tagName, it.getBoundingClientRect().right - document.querySelector("main").getBoundingClientRect().left]));
+    const wide = places.filter(([, right]) => right > PAPER_PX + 1);
+    assert.ok(places.length > 10);
+    assert.deepEqual(wide, []);
     await page.close();
   });
 

@@ -48,13 +48,13 @@ const STYLE: &str = "
 .attested dl div { display: grid; grid-template-columns: 8rem 1fr; border-bottom: 1px solid #d9dde3; padding: .12rem 0; min-height: 1.5em; }
 .attested dt { color: #52606d; }
 .attested dd { margin: 0; overflow-wrap: anywhere; }
-.attested .result { display: flex; gap: 2.2rem; flex-wrap: wrap; margin: .2rem 0; }
+.attested .result { display: grid; grid-template-columns: 1fr 1fr; gap: .3rem 1.4rem; margin: .2rem 0; }
 .attested .result b { display: block; font-size: 1.35rem; font-variant-numeric: tabular-nums; }
 .attested table { width: 100%; }
 .attested p { margin: .2rem 0; max-width: none; }
 .attested code { font-size: .7rem; overflow-wrap: anywhere; }
 .attested .hands { display: grid; grid-template-columns: 1fr 1fr; gap: 1.5rem; margin-top: .5rem; }
-.attested .hands span { display: block; border-bottom: 1px solid #52606d; min-height: 1.9rem; color: #52606d; font-size: .72rem; }
+.attested .hands span { display: block; border-bottom: 1px solid #52606d; min-height: 4rem; color: #52606d; font-size: .72rem; }
 ";
 /// Where it is a page of its own.
 const ALONE: &str = "
