@@ -18,7 +18,7 @@ fn a_certificate_states_the_session_and_its_result() {
     assert_eq!(out, "written       poecal-out/certificate.html\n");
     let page = folder.read("poecal-out/certificate.html");
     for words in
-        ["4712", "Mia", "2027-11-28", "data:image/svg+xml,%3C", "k = 2", "calibration.json <code>", "kept"]
+        ["4712", "Mia", "2027-11-28", "data:image/svg+xml,%3C", "k = 2", "calibration.json <code>", "PASS"]
     {
         assert!(page.contains(words), "{words}");
     }

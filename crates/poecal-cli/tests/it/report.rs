@@ -95,7 +95,7 @@ fn mistakes_are_told() {
             "measurements.csv:1:1: found the column `id`, expected `file`",
         ),
         ("report poecal-out/calibration.json -o missing/page.html", "the folder above does not exist"),
-        ("report robot.urdf", "robot.urdf:1:1: found broken JSON"),
+        ("report robot.urdf", "robot.urdf: found a URDF, expected a calibration"),
     ] {
         let run = folder.run(words);
         assert!(run.code == 2 && run.err.contains(expected), "{words}: {}", run.err);
