@@ -1,6 +1,6 @@
 //! `plan` and `Watch`: which configurations to measure, and rows judged as they arrive.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use nalgebra::Vector3;
@@ -69,7 +69,9 @@ impl Believe<'_> {
                     "found `auto`, which measurements decide, expected two numbers, like (0.5, 5), or None";
                 return Err(argument("tolerance_deg_mm", message));
             }
-            other => tolerance(other)?.or(Some(Tolerance::WIDE)),
+            Believed::None | Believed::Given(_) | Believed::Of(_) => {
+                tolerance(self.tolerance_deg_mm)?.or(Some(Tolerance::WIDE))
+            }
         };
         Ok(PlannedFit {
             session: PlannedSession {
@@ -265,13 +267,7 @@ impl Plan {
 }
 
 impl Plan {
-    fn put(
-        &self,
-        py: Python<'_>,
-        path: &PathBuf,
-        force: bool,
-        page: poecal::io::output::Page,
-    ) -> PyResult<()> {
+    fn put(&self, py: Python<'_>, path: &Path, force: bool, page: poecal::io::output::Page) -> PyResult<()> {
         let place = reserved_file(py, path, Existing::forced(force), &[&self.model.path])?;
         py.detach(|| place.write(page)).map_err(raise)
     }
