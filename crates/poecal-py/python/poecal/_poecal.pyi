@@ -1181,7 +1181,22 @@ class Calibration:
         valid_until: str | None = None,
         record: Mapping[str, str] | None = None,
         force: bool = False,
-    ) -> None: ...
+    ) -> None:
+        """Writes the certificate, one page of paper (HTML).
+
+        Parameters
+        ----------
+        path
+            The file.
+        logo
+            Picture for its head: PNG, JPEG or SVG.
+        valid_until
+            Day until which it is valid, like "2027-11-28".
+        record
+            What it states beside and in place of what the calibration's record states, as {"serial": "4711"}.
+        force
+            Whether to write over a file that is none of poecal.
+        """
     @overload
     def predict(
         self,
@@ -1547,6 +1562,8 @@ class Calibration:
             Standard deviation of each measured component (default 0.05 mm, 0.01 deg).
         frame
             The measuring device's frame: "unknown" or "base".
+        robot_error_mm
+            Error of the tip (RMS) that a calibration leaves however much is measured, or that and the one with corrections (default what this calibration left).
 
         Returns
         -------
@@ -1563,28 +1580,97 @@ class Calibration:
 
 @final
 class Plan:
+    """A planned list of configurations. `str` is the program's table, `to_dict` what the program prints with `--json`."""
     @property
-    def joints(self) -> NDArray[np.float64]: ...
+    def joints(self) -> NDArray[np.float64]:
+        """The configurations in the order in which to measure them, shape (m, n), radians and metres, in the order of `robot.reading_names`."""
     @property
-    def sets(self) -> list[Literal["fit", "held_out"]]: ...
+    def sets(self) -> list[Literal["fit", "held_out"]]:
+        """What each row is for: "fit" or "held_out"."""
     @property
-    def returns(self) -> list[bool]: ...
+    def returns(self) -> list[bool]:
+        """Whether each row is the first configuration again."""
     @property
-    def candidates(self) -> list[int | None]: ...
+    def candidates(self) -> list[int | None]:
+        """Index of each row among the candidates, where these were given."""
     @property
-    def expected_calibrated_mm(self) -> float: ...
+    def expected_calibrated_mm(self) -> float:
+        """Expected error of the calibrated model (RMS over the workspace), millimetres."""
     @property
-    def expected_corrected_mm(self) -> float: ...
+    def expected_corrected_mm(self) -> float:
+        """Expected error of the corrected model (RMS over the workspace), millimetres."""
     @property
-    def enough(self) -> int | None: ...
-    def to_dict(self) -> dict[str, Any]: ...
-    def write(self, path: _Path, *, force: bool = False) -> None: ...
-    def write_program(self, path: _Path, *, force: bool = False) -> None: ...
-    def write_report(self, path: _Path, *, force: bool = False) -> None: ...
+    def enough(self) -> int | None:
+        """Number of configurations from which ten more gain less than 5 %; None if that is more than 100."""
+    def to_dict(self) -> dict[str, Any]:
+        """The plan as dicts and lists: what the program prints with `--json`.
+
+        Returns
+        -------
+        dict
+            The plan, with "curve" and "rows".
+        """
+    def write(self, path: _Path, *, force: bool = False) -> None:
+        """Writes the list as a table that `poecal.Measurements` reads once it has what was measured.
+
+        Parameters
+        ----------
+        path
+            The file (CSV).
+        force
+            Whether to write over a file that exists.
+        """
+    def write_program(self, path: _Path, *, force: bool = False) -> None:
+        """Writes the list as a program of slow joint motions with a stop at each row.
+
+        Parameters
+        ----------
+        path
+            The file: its name ends in .script (Universal Robots), .mod (ABB), .src (KUKA) or .ls (FANUC).
+        force
+            Whether to write over a file that exists.
+        """
+    def write_report(self, path: _Path, *, force: bool = False) -> None:
+        """Writes a page of the plan: the robot in every configuration, the device, errors by number, how each joint is sampled.
+
+        Parameters
+        ----------
+        path
+            The file (HTML).
+        force
+            Whether to write over a file that exists.
+        """
     def __len__(self) -> int: ...
 
 @final
 class Watch:
+    """A session that is watched: each row is judged before it is fitted, while the target is still there.
+
+    Parameters
+    ----------
+    robot
+        The nominal robot, or a calibrated one.
+    candidates
+        Configurations to choose the next from, shape (m, n) (default random ones within the limits).
+    over
+        Configurations in which the robot will work, shape (m, n) (default anywhere within the limits).
+    over_box_mm
+        Two corners of a box of the base frame in which the tip will work, shape (2, 3), instead of `over`.
+    sigma_position_mm, sigma_rotation_deg
+        Standard deviation of each measured component (default 0.05 mm, 0.01 deg).
+    robot_error_mm
+        Error of the tip (RMS) that a calibration leaves however much is measured, as of `plan`.
+    frame
+        The measuring device's frame: "unknown" or "base".
+    tolerance_deg_mm
+        Prior of the fit: deviation of each axis from nominal, as standard deviations, or None.
+    corrections
+        What joints are expected to do beyond geometry, as of `plan`.
+    gravity
+        Where gravity pulls, in the robot's base frame, default (0, 0, -1).
+    seed
+        Seed of everything random.
+    """
     def __new__(
         cls,
         robot: Robot,
@@ -1609,8 +1695,41 @@ class Watch:
         pose: ArrayLike | None = None,
         target: str | None = None,
         id: str | None = None,
-    ) -> Findings: ...
-    def add_all(self, measurements: Measurements) -> list[Findings]: ...
+    ) -> Findings:
+        """Judges one row, and fits it if it is as expected.
+
+        Parameters
+        ----------
+        joints
+            Readings, shape (n,), radians and metres, in the order of `robot.reading_names`.
+        position
+            Position of the target in the device's frame, shape (3,), metres.
+        pose
+            Pose device_from_target instead of `position`, shape (4, 4).
+        target
+            Name of the target, default the tip itself.
+        id
+            Name of the row.
+
+        Returns
+        -------
+        Findings
+            Whether the row is as expected (`ok`, None while there are too few rows to judge by), else its `mistake`; which error would be noticed
+            (`noticed_mm`); the errors to expect now and after ten more rows; the configuration that gains most (`next`).
+        """
+    def add_all(self, measurements: Measurements) -> list[Findings]:
+        """Judges the rows of measurements, one after the other.
+
+        Parameters
+        ----------
+        measurements
+            The rows.
+
+        Returns
+        -------
+        list of Findings
+            As of `add`, one for each row.
+        """
     def __len__(self) -> int: ...
 
 @final
@@ -1679,9 +1798,9 @@ def calibrate(
     Parameters
     ----------
     robot
-        The nominal robot.
+        The nominal robot, or the path of its model.
     measurements
-        Its measurements.
+        Its measurements, or the path of their file, or several paths.
     frame
         The measuring device's frame: "unknown" or "base".
     sigma_position_mm, sigma_rotation_deg
@@ -1731,7 +1850,7 @@ def calibrate(
         What the report states of the session: a dict of texts with keys among "certificate", "laboratory", "customer", "robot", "serial",
         "instrument", "operator", "date", "place", "temperature" and "note".
     progress
-        Called with the next stage, in words.
+        Called with the next stage, in words; True for a bar on standard error.
 
     Returns
     -------
@@ -1755,9 +1874,9 @@ def check(
     Parameters
     ----------
     robot
-        The nominal robot.
+        The nominal robot, or the path of its model.
     measurements
-        Its measurements, if there are any yet.
+        Its measurements, or the path of their file, or several paths; None if there are none yet.
     frame
         The measuring device's frame; with "base", mistakes in it are looked for too.
 
@@ -1871,6 +1990,9 @@ def identify(
         Standard deviation of each measured component (default 0.05 mm, 0.01 deg).
     frame
         The measuring device's frame: "unknown" or "base".
+    robot_error_mm
+        Error of the tip (RMS) that a calibration leaves however much is measured, or that and the one with corrections (default what a calibration left of this robot, else 0.3 mm for
+        each metre of reach, which is a guess).
 
     Returns
     -------
@@ -1913,9 +2035,9 @@ def init(
         Path of a robot model of any form.
     out
         The folder; files in it are never overwritten.
-    measure
-        "points", "poses", "distances", "distance-changes", "spheres", "sockets", "planes", "heights", "flush", "directions",
-        "ball-bars", "relative" or "components".
+    kind
+        Kind of the measurements: "point", "pose", "distance", "distance-change", "sphere", "socket", "plane", "height", "flush", "direction",
+        "ball-bar", "relative" or "component".
     count
         Number of configurations to suggest, from 1 to 100,000.
     seed
@@ -2136,7 +2258,76 @@ def plan(
     self_collision: Literal["avoid", "ignore"] = "avoid",
     stop_s: float = 30.0,
     seed: int = 1,
-) -> Plan: ...
+) -> Plan:
+    """Plans a session: configurations that determine the most, rows to judge by, how many are worth it, and the error to expect.
+
+    Parameters
+    ----------
+    robot
+        The robot; one that was read from a calibration.json plans the next session of it.
+    kind
+        Kind of the measurements of the tip: "point", "pose", "mixed" or "distance".
+    count
+        Number of different configurations to fit, from 1 to 1000.
+    judge
+        Number of further rows to judge by, at random over the workspace (default a third of `count`).
+    candidates
+        Configurations to choose from alone, shape (m, n).
+    over
+        Configurations in which the robot will work, shape (m, n), where predictions shall be good (default anywhere within the limits).
+    over_box_mm
+        Two corners of a box of the base frame in which the tip will work, shape (2, 3), instead of `over`.
+    keep
+        Rows that are there already, which new ones complete: a `Plan`, or configurations to fit of shape (m, n). `count` counts both.
+    replace
+        Rows of `keep`, from 0, that could not be measured: others take their places, and all other rows stay.
+    criterion
+        "expected" (expected error of the calibrated and the corrected model), or a measure of the design: "D", "A", "E", "G".
+    targets
+        Number of targets of a nest at the tip, from 1 to 8, all measured in each configuration.
+    target_offset_mm
+        Where the target is in the tip's frame, of several the first, the others turned about z.
+    sigma_position_mm, sigma_rotation_deg
+        Standard deviation of each measured component (default 0.05 mm, 0.01 deg).
+    robot_error_mm
+        Error of the tip (RMS) that a calibration leaves however much is measured, or that and the one with corrections (default what a calibration left of this robot, else 0.3 mm for
+        each metre of reach, which is a guess).
+    frame
+        The measuring device's frame: "unknown" or "base".
+    tolerance_deg_mm
+        Prior of the fit: deviation of each axis from nominal, as standard deviations, or None.
+    corrections
+        What joints are expected to do beyond geometry: "auto" and "all" terms of the common sizes, "off" nothing, or groups with their sizes.
+    gravity
+        Where gravity pulls, in the robot's base frame, default (0, 0, -1).
+    margin_deg_mm
+        How far every joint stays from its limits.
+    keep_out_mm
+        Boxes into which no part of the robot may reach, each two corners in the base frame.
+    floor_mm
+        Height above which all links that move stay.
+    separation_deg
+        Least change of some joint between any two configurations.
+    device_mm
+        Where the measuring device is, in the base frame; targets that links hide from it are left out.
+    cone_deg, device_looks_at_mm
+        Half the angle of the device's cone, and where it looks (default the base).
+    distance_mm
+        Least and largest distance of the target from the device.
+    acceptance_deg, facing
+        Largest angle between the direction in which the target looks, in its own frame (default (0, 0, 1)), and the line to the device.
+    self_collision
+        "avoid" links that overlap by their shapes in the URDF, or "ignore" shapes.
+    stop_s
+        How long the robot stands at each row, for how long all takes.
+    seed
+        Seed of everything random.
+
+    Returns
+    -------
+    Plan
+        The rows in the order in which to measure them, with the errors to expect. Only configurations are checked, never the way between them.
+    """
 def track(
     calibration: Calibration,
     measurements: Measurements,
