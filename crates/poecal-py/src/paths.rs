@@ -1,6 +1,6 @@
 //! Paths in place of what is read from them.
 
-use std::ffi::OsString;
+use std::path::PathBuf;
 
 use pyo3::prelude::*;
 use pyo3::types::{PyList, PyString, PyTuple};
@@ -11,7 +11,7 @@ use crate::robot::Robot;
 
 /// Whether it is a path: a text, or an `os.PathLike`.
 fn is_path(value: &Bound<'_, PyAny>) -> bool {
-    value.is_instance_of::<PyString>() || value.extract::<OsString>().is_ok()
+    value.is_instance_of::<PyString>() || value.extract::<PathBuf>().is_ok()
 }
 
 /// A robot, or that of the model at a path.

@@ -79,8 +79,10 @@ SENTENCES = [
     (lambda: calibrate(held_out="0.3"), "held_out: found the text `0.3`, expected a number"),
     (lambda: calibrate(frame=3), "frame: found 3, expected a text"),
     (lambda: calibrate(tolerance_deg_mm=5), "tolerance_deg_mm: found 5, expected two numbers"),
-    (lambda: calibrate(progress=5), "progress: found 5, expected a function of one text"),
-    (lambda: poecal.calibrate("robot.urdf", SEEN), "robot: found the text `robot.urdf`, expected a poecal.Robot; poecal.Robot.read reads one from a file"),
+    (lambda: calibrate(progress=5), "progress: found 5, expected a function of one text, or True for a bar"),
+    (lambda: poecal.calibrate("robot.urdf", SEEN), "robot.urdf: found no such file, expected a robot model (URDF, MJCF, SDF, TOML or calibration.json): check the path"),
+    (lambda: poecal.calibrate(5, SEEN), "robot: found 5, expected a poecal.Robot; poecal.Robot.read reads one from a file"),
+    (lambda: poecal.calibrate(elbow(), "no.csv"), "no.csv: found no such file, expected a measurement file (CSV): check the path"),
     (lambda: poecal.calibrate(elbow(), [SEEN]), "measurements: found list, expected poecal.Measurements, as of Measurements.from_csv, from_arrays or from_dataframe"),
     (lambda: poecal.simulate(elbow(), count=2.0), "count: found 2.0, expected a whole number from 0 to 18446744073709551615"),
     (lambda: poecal.Robot.read(5), "path: found 5, expected a path: a text, or an os.PathLike"),
@@ -205,6 +207,15 @@ def test_numbers_that_are_too_large_do_no_harm(scale):
     try:
         measured = arrays(positions=positions)
     except poecal.InputError as error:
-        assert scale >= 1e6 and "expected at most 1e6: correct the number or the unit" in str(error)
+        limit = "expected at most 1e6: correct the number or the unit" if scale >= 1e6 else 'if they are millimetres, write length_unit="mm"'
+        assert limit in str(error)
     else:
         poecal.calibrate(elbow(), measured).to_json()
+
+
+def test_degrees_and_millimetres_are_no_radians_and_metres():
+    joints = configurations(20)
+    with pytest.raises(poecal.OptionError, match=r'joints: found .* rad of .*: if they are degrees, write angle_unit="deg"'):
+        arrays(joints=joints * 180 / 3.14159)
+    with pytest.raises(poecal.OptionError, match=r'positions: found positions that spread over .*: if they are millimetres, write length_unit="mm"'):
+        arrays(positions=1e3 * joints[:, :3])

@@ -131,7 +131,7 @@ def test_a_project_folder_is_made_once(tmp_path):
     assert len(poecal.read_joints(folder / "joints.csv", poecal.Robot.read(folder / "robot.toml"))) == 12
     with pytest.raises(poecal.FileError):
         poecal.init(model, folder)
-    with pytest.raises(poecal.OptionError, match=r"measure: found `point`, .* did you mean `points`\?"):
+    with pytest.raises(poecal.OptionError, match=r"kind: found `points`, .* did you mean `point`\?"):
         poecal.init(model, tmp_path / "other", kind="points")
     assert not (tmp_path / "other").exists()
 

@@ -1,0 +1,90 @@
+"""`poecal.plan` and `poecal.Watch`, as the program plans and watches."""
+
+import json
+import subprocess
+import sys
+
+import numpy as np
+import poecal
+import pytest
+from robots import elbow
+
+
+def test_a_plan_is_that_of_the_program(tmp_path):
+    path = tmp_path / "robot.toml"
+    path.write_text(elbow().to_text("toml"))
+    robot = poecal.Robot.read(path)
+    planned = poecal.plan(robot, count=12, judge=4, robot_error_mm=(0.2, 0.1), target_offset_mm=(60, 0, 30))
+    words = ["plan", str(path), "--count", "12", "--judge", "4", "--robot-error", "0.2mm,0.1mm", "--target-offset", "60,0,30mm", "--json"]
+    by_program = json.loads(subprocess.run([sys.executable, "-m", "poecal", *words], capture_output=True, text=True, check=True).stdout)
+    found = planned.to_dict()
+    assert found == by_program | {"model": found["model"]}
+    assert planned.joints.shape == (16, 6) and len(planned) == 16
+    assert planned.sets.count("fit") == 12 and not any(planned.returns)
+    assert planned.expected_calibrated_mm == pytest.approx(found["expected"]["calibrated_mm"])
+    assert planned.expected_corrected_mm < planned.expected_calibrated_mm
+    assert "12 configurations to fit" in str(planned) and repr(planned).startswith("<poecal.Plan of elbow: 12 configurations")
+    planned.write(tmp_path / "joints.csv")
+    assert np.allclose(poecal.read_joints(tmp_path / "joints.csv", robot), planned.joints, atol=1e-6)
+    planned.write_program(tmp_path / "joints.script")
+    assert (tmp_path / "joints.script").read_text().count("movej") == 16
+    planned.write_report(tmp_path / "plan.html")
+    with pytest.raises(poecal.FileError):
+        planned.write(tmp_path / "joints.csv")
+    better = poecal.plan(robot, keep=planned, replace=[2, 13], robot_error_mm=(0.2, 0.1), target_offset_mm=(60, 0, 30))
+    changed = [row for row in range(16) if not np.array_equal(better.joints[row], planned.joints[row])]
+    assert changed == [2, 13] and better.sets == planned.sets
+
+
+def test_conditions_are_kept_and_mistakes_are_one_sentence():
+    robot = elbow()
+    planned = poecal.plan(robot, count=8, judge=0, margin_deg_mm=(20, 0), separation_deg=25, floor_mm=-700, device_mm=(3000, 0, 500), cone_deg=40, corrections="off")
+    tips = robot.forward_kinematics(planned.joints)[:, :3, 3]
+    away = tips - np.array([3.0, 0, 0.5])
+    angle = np.degrees(np.arccos((away @ np.array([-3.0, 0, -0.5])) / np.linalg.norm(away, axis=1) / np.hypot(3.0, 0.5)))
+    assert (tips[:, 2] >= -0.7).all() and (angle <= 40).all()
+    for change, words in [
+        ({"count": 0}, "count: found 0, expected 1 to 1000"),
+        ({"cone_deg": 30}, "cone_deg: found it without device_mm"),
+        ({"criterion": "F"}, "criterion: found `F`, expected one of expected, D, A, E, G"),
+        ({"robot_error_mm": (0.1, 0.2)}, "robot_error_mm: found .*, expected the error of the calibrated model and the smaller one"),
+        ({"keep_out_mm": [[1, 2, 3]]}, r"keep_out_mm\[0\]: found an array of shape \(3,\)"),
+        ({"replace": [0]}, "replace: found 0, expected a row of keep"),
+        ({"over": np.zeros((3, 6)), "over_box_mm": np.zeros((2, 3))}, "found both over and over_box_mm"),
+    ]:
+        with pytest.raises(poecal.OptionError, match=words):
+            poecal.plan(robot, **change)
+
+
+def test_rows_are_judged_as_they_arrive():
+    robot = elbow()
+    made = poecal.simulate(robot, kind="point", count=30, seed=4)
+    joints, positions = made.measurements.joints, made.measurements.positions.copy()
+    positions[20] += [0, 0.01, 0]
+    watch = poecal.Watch(made.nominal, robot_error_mm=(0.1, 0.05), candidates=joints)
+    rows = [watch.add(readings, position=position, id=f"row {at}") for at, (readings, position) in enumerate(zip(joints, positions))]
+    named = [at for at, row in enumerate(rows) if row["ok"] is False]
+    print("named", named, rows[20]["sentence"], "noticed", rows[20]["noticed_mm"])
+    assert named == [20] and rows[20]["id"] == "row 20" and len(watch) == 30
+    assert rows[0]["ok"] is None and rows[-1]["expected_corrected_mm"] < rows[6]["expected_corrected_mm"]
+    # What is measured is not advised again; the same rows at once are judged alike.
+    known = {tuple(row) for row in np.round(joints[:11], 9)}
+    assert tuple(np.round(rows[10]["next"], 9)) not in known
+    again = poecal.Watch(made.nominal, robot_error_mm=(0.1, 0.05), candidates=joints).add_all(made.measurements[:20])
+    assert [row.to_dict() | {"id": None} for row in again] == [row.to_dict() | {"id": None} for row in rows[:20]]
+    with pytest.raises(poecal.OptionError, match="positions: found neither positions nor poses"):
+        watch.add(joints[0])
+
+
+def test_paths_are_read_and_a_certificate_is_written(tmp_path, capfd):
+    made = poecal.simulate(elbow(), kind="point", count=40)
+    made.write(tmp_path / "made")
+    calibration = poecal.calibrate(tmp_path / "made/nominal.toml", [tmp_path / "made/measurements.csv"], progress=True)
+    assert "####" in capfd.readouterr().err
+    assert calibration == poecal.calibrate(poecal.Robot.read(tmp_path / "made/nominal.toml"), str(tmp_path / "made/measurements.csv"))
+    assert "40 points" in str(poecal.check(str(tmp_path / "made/nominal.toml"), tmp_path / "made/measurements.csv"))
+    calibration.certificate(tmp_path / "certificate.html", valid_until="2027-11-28", record={"serial": "4711"})
+    page = (tmp_path / "certificate.html").read_text()
+    assert "4711" in page and "2027-11-28" in page
+    with pytest.raises(poecal.OptionError, match="expected a day like"):
+        calibration.certificate(tmp_path / "no.html", valid_until="soon")
