@@ -21,6 +21,8 @@ const README: &str = include_str!("project/README.md");
 
 /// Numbers of rows that are planned: with fewer nothing is to choose, of more all lists are alike.
 const PLANNED_ROWS: RangeInclusive<usize> = 8..=200;
+/// How far joints stay from their limits, radians and metres: controllers stop at these.
+const MARGIN: [f64; 2] = [0.035, 0.002];
 /// Candidates of a list: few, since it is a beginning.
 const CANDIDATES: usize = 800;
 
@@ -80,7 +82,11 @@ impl Project<'_> {
             fit: PlannedFit { session, count: rows - judge, robot_error: self.model.left_error(), ..usual },
             judge: Some(judge),
             candidates: CANDIDATES,
-            conditions: Conditions { capsules: capsules_of(self.model).0, ..Conditions::default() },
+            conditions: Conditions {
+                margin: MARGIN,
+                capsules: capsules_of(self.model).0,
+                ..Conditions::default()
+            },
             seed: self.seed,
             ..PlanOptions::default()
         };

@@ -11,7 +11,7 @@ use crate::calibration::{DeviceFrameKnowledge, ModelAccuracy, SetAccuracy};
 use crate::io::calibration_file::CalibrationFile;
 
 /// Widths of the label and of each figure.
-const WIDTHS: [usize; 2] = [36, 11];
+const WIDTHS: [usize; 2] = [38, 10];
 
 /// The errors of a model: its words, the errors, and their key in `calibration.json`.
 pub(in crate::report) type ModelRow<'a> = (String, &'a ModelAccuracy, String);
