@@ -292,8 +292,11 @@ impl<'a> Checker<'a> {
             let end = place - line * (AT_TARGET_M / distance.max(AT_TARGET_M));
             let hides = |capsule: &Capsule| {
                 let segment = capsule.segment(&frames);
-                // Beside a target that is within a capsule its link is slimmer: it hides what is seen past its middle.
-                let around = capsule.radius_m.min(between(&segment, &[place, place]) - AT_TARGET_M);
+                // The link before may be slimmer beside the target than its capsule: then it hides what is seen past its middle.
+                let is_before = body.joint().map(|joint| self.robot.body_before(joint)) == Some(capsule.body);
+                let slim =
+                    if is_before { between(&segment, &[place, place]) - AT_TARGET_M } else { f64::INFINITY };
+                let around = capsule.radius_m.min(slim);
                 capsule.body != body && between(&segment, &[sight.place, end]) < around
             };
             if self.conditions.capsules.iter().any(hides) {
