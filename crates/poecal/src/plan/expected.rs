@@ -39,7 +39,7 @@ impl ExpectedErrors {
             undetermined_m: (squares.expected() - of_terms).max(0.0).sqrt(),
             robot_m: (of_terms + rest * rest * noise).sqrt(),
             corrected_undetermined_m: squares.corrected.max(0.0).sqrt(),
-            corrected_robot_m: rest * noise.sqrt(),
+            corrected_robot_m: experiment.left_m * noise.sqrt(),
         }
     }
 

@@ -72,6 +72,8 @@ pub(crate) struct Experiment {
     /// What geometry does not describe, metres: of the stated error, the part that the terms make and the rest.
     pub(crate) robot_error_m: f64,
     pub(crate) rest_m: f64,
+    /// What the corrected model is said to leave, metres: the same if it is not stated.
+    pub(crate) left_m: f64,
     /// Information of a row for a fit that takes all of the robot error for noise, as a share of that for one that knows the terms.
     share: f64,
     /// Whether the robot error is a guess.
@@ -142,6 +144,7 @@ impl Experiment {
             prior: DMatrix::zeros(0, 0),
             robot_error_m: 0.0,
             rest_m: 0.0,
+            left_m: 0.0,
             share: 1.0,
             is_guess: fit.robot_error.is_none(),
         };
@@ -250,7 +253,8 @@ impl Experiment {
             _ if of_terms <= 0.0 => 1.0,
             Some(rest_m) => {
                 let wanted = (error_m.powi(2) - rest_m.powi(2)).max((LEAST_TERMS * error_m).powi(2)).sqrt();
-                wanted / of_terms
+                // Lists that are chosen for terms beyond the common sizes determine geometry less.
+                (wanted / of_terms).min(1.0)
             }
             // Terms never describe all of it.
             None => (error_m * (1.0 - LEAST_REST).sqrt() / of_terms).min(1.0),
@@ -258,6 +262,7 @@ impl Experiment {
         self.turn *= scale;
         self.deviations.iter_mut().for_each(|it| it.deviation *= scale);
         self.rest_m = (error_m.powi(2) - (scale * of_terms).powi(2)).max(0.0).sqrt();
+        self.left_m = stated.corrected_m.unwrap_or(self.rest_m);
         // The rest is another in each configuration; what turns by it is as far away as a radian counts.
         let each = self.rest_m / 3f64.sqrt();
         let (stated, length_m) = (fit.session.noise, self.length_m);
