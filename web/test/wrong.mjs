@@ -16,7 +16,7 @@ const latin1 = (text) => Buffer.from(text, "latin1");
 
 export const WRONG = [
   ["an empty table", table(""), /^points\.csv: found no line with text/],
-  ["a PDF", table("%PDF-1.7\n1 0 obj\n<</Type/Catalog>>\nendobj\n"), /^points\.csv: found a PDF document/],
+  ["a PDF", table("%PDF-1.7\n1 0 obj\n<</Type/Catalog>>\nendobj\n"), /^points\.csv: found a PDF, expected/],
   ["a workbook", table(latin1("PK\x03\x04\x14\x00\x06\x00\x08\x00")), /\.xlsx/],
   ["a compressed table", table(latin1("\x1f\x8b\x08\x00\x00\x00\x00\x00")), /gzip/],
   ["a text without numbers", table("hello\nworld\n"), /^points\.csv:1: found no column `joint1`/, "1"],
