@@ -79,9 +79,13 @@ pub struct ListExpectation {
 ///
 /// ```
 /// use poecal::plan::{PlannedFit, expected_errors};
-/// use poecal::simulate::{elbow, random_readings};
-/// let robot = elbow();
-/// let of = |count| expected_errors(&robot, &random_readings(&robot, count, 1), &PlannedFit::default());
+/// use poecal::simulate::elbow;
+/// // Readings that fill their range: fractions of multiples of irrational numbers, from -2.5 to 2.5 radians.
+/// let reading = |k: usize| 5.0 * ((k as f64 * [0.618, 0.414, 0.732, 0.236, 0.646, 0.317][k % 6]).fract() - 0.5);
+/// let of = |rows: usize| {
+///     let readings: Vec<f64> = (0..6 * rows).map(reading).collect();
+///     expected_errors(&elbow(), &readings, &PlannedFit::default())
+/// };
 /// assert!(of(60)?.errors.corrected_m() < of(15)?.errors.corrected_m());
 /// # Ok::<(), poecal::Error>(())
 /// ```
