@@ -8,10 +8,10 @@ class Bar:
 
     STAGES = 4
 
-    def __init__(self):
+    def __init__(self) -> None:
         self.done = 0
 
-    def __call__(self, stage):
+    def __call__(self, stage: str) -> None:
         """Shows the stage that begins."""
         self.done = min(self.done + 1, self.STAGES)
         bar = "#" * self.done + "." * (self.STAGES - self.done)
