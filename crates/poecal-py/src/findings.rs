@@ -194,7 +194,7 @@ pub(crate) fn identify(
     };
     let work = || {
         let found = analysis::identify(&model.robot, &joints.readings, &session)?;
-        let is_free = !session.kind.is_touched() && !session.kind.is_paired();
+        let is_free = session.kind.is_chosen_freely();
         let expected = is_free.then(|| expected_errors(&model.robot, &joints.readings, &fit)).transpose()?;
         Ok((found, expected))
     };

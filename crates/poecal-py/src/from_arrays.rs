@@ -5,7 +5,9 @@ use std::collections::BTreeMap;
 use nalgebra::Vector3;
 use poecal::Error;
 use poecal::Unit;
-use poecal::io::measurements::{LARGEST_NUMBER, NamedUnit};
+use poecal::io::measurements::{
+    LARGEST_ANGLE_RAD, LARGEST_NUMBER, MOST_REACHES, NamedUnit, WRONG_UNIT_SHARE,
+};
 use poecal::lie::Pose;
 use poecal::measurement::{ByQuantity, Dataset, Measurement, Observation, Quantity, Set};
 use poecal::robot::{JointKind, Robot};
@@ -118,12 +120,6 @@ fn readings(robot: &Robot, columns: &ArrayColumns<'_, '_>, length: NamedUnit) ->
     Ok(readings)
 }
 
-/// Largest angle that is taken for radians where another unit fits, and share of the rows from which on it is no slip; as in files.
-const LARGEST_ANGLE_RAD: f64 = 4.0 * std::f64::consts::PI;
-const SHARE: f64 = 0.1;
-/// Positions that spread by more than this many reaches are in a wrong unit, as in files.
-const REACHES: f64 = 20.0;
-
 /// Refuses angles that no joint has in radians.
 fn refuse_degrees(robot: &Robot, readings: &[f64]) -> PyResult<()> {
     let names = robot.reading_names();
@@ -137,7 +133,7 @@ fn refuse_degrees(robot: &Robot, readings: &[f64]) -> PyResult<()> {
         let values = || readings.chunks_exact(names.len()).filter_map(|row| row.get(at).copied());
         let beyond = values().filter(|value| value.abs() > largest).count();
         let degrees_fit = values().all(|value| value.to_radians().abs() <= largest);
-        if turns && degrees_fit && beyond as f64 > SHARE * rows as f64 {
+        if turns && degrees_fit && beyond as f64 > WRONG_UNIT_SHARE * rows as f64 {
             let extreme = values().fold(0.0, |most: f64, value| most.max(value.abs()));
             let message = format!(
                 "found {extreme} rad of {name}, expected radians: if they are degrees, write angle_unit=\"deg\""
@@ -162,7 +158,7 @@ fn refuse_millimetres(robot: &Robot, seen: &[Measurement]) -> PyResult<()> {
             spread_m = spread_m.max(high - low);
         }
     }
-    if reach_m > 0.0 && spread_m > REACHES * reach_m {
+    if reach_m > 0.0 && spread_m > MOST_REACHES * reach_m {
         let message = format!(
             "found positions that spread over {spread_m:.1} m of a robot that reaches {reach_m:.2} m, expected metres: if they are millimetres, write \
              length_unit=\"mm\""

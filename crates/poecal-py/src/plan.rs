@@ -37,8 +37,6 @@ use crate::words::{chosen, frame as frame_word, from_mm, kind as kind_word, sigm
 const MOST: usize = 1000;
 /// Most targets of a nest, as by the program.
 const MOST_TARGETS: usize = 8;
-/// Where the first of several targets is if nothing else is stated, metres: beside the flange.
-const NEST_M: [f64; 3] = [0.05, 0.0, 0.0];
 
 /// What is believed of a session before it is measured.
 struct Believe<'a> {
@@ -403,7 +401,6 @@ pub(crate) fn plan(
         corrections,
         gravity,
     };
-    let offset = target_offset_mm.map(|it| it.map(from_mm)).or((targets > 1).then_some(NEST_M));
     let sight = [
         ("cone_deg", cone_deg.is_some()),
         ("device_looks_at_mm", device_looks_at_mm.is_some()),
@@ -445,11 +442,9 @@ pub(crate) fn plan(
         return Err(argument("replace", expected));
     }
     let options = PlanOptions {
-        fit: PlannedFit {
-            targets,
-            target_offset: offset.map(Vector3::from),
-            ..believe.fit(model, kind_word(kind)?, count)?
-        },
+        fit: believe
+            .fit(model, kind_word(kind)?, count)?
+            .with_targets(targets, target_offset_mm.map(|it| it.map(from_mm))),
         criterion: chosen("criterion", criterion, &PlanCriterion::WORDS)?,
         list: configurations(candidates, robot)?,
         workspace: workspace(robot, over, over_box_mm, seed)?,
@@ -513,10 +508,7 @@ struct Session {
 #[pyclass(frozen, module = "poecal", name = "Watch")]
 pub(crate) struct Watch {
     robot: Robot,
-    fit: PlannedFit,
-    candidates: Option<Vec<f64>>,
-    workspace: Option<Vec<f64>>,
-    seed: u64,
+    options: WatchOptions,
     session: Mutex<Session>,
 }
 
@@ -551,14 +543,13 @@ impl Watch {
             gravity,
         };
         let data = Dataset::new(robot.model.robot.reading_names());
-        Ok(Watch {
+        let options = WatchOptions {
             fit: believe.fit(&robot.model, Kind::POINT, PlannedFit::default().count)?,
             candidates: configurations(candidates, robot)?,
             workspace: workspace(robot, over, over_box_mm, seed)?,
-            robot: robot.clone(),
             seed,
-            session: Mutex::new(Session { data, watched: None }),
-        })
+        };
+        Ok(Watch { robot: robot.clone(), options, session: Mutex::new(Session { data, watched: None }) })
     }
 
     /// Judges one row, and fits it if it is as expected.
@@ -653,22 +644,9 @@ impl Watch {
             let Session { data, watched } = &mut *session;
             let first = data.len();
             data.extend(more)?;
-            let poses = data.observations.iter().any(|row| row.measurement.sees_orientation());
             let session = match watched {
                 Some(session) => session,
-                None => {
-                    let kind = if poses { Kind::POSE } else { Kind::POINT };
-                    let options = WatchOptions {
-                        fit: PlannedFit {
-                            session: PlannedSession { kind, ..self.fit.session },
-                            ..self.fit.clone()
-                        },
-                        candidates: self.candidates.clone(),
-                        workspace: self.workspace.clone(),
-                        seed: self.seed,
-                    };
-                    watched.insert(Watched::new(robot, options)?)
-                }
+                None => watched.insert(Watched::new(robot, self.options.clone().for_rows(data))?),
             };
             let judge = |row: usize| {
                 let found = session.add(data, row)?;

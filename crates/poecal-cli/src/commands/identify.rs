@@ -48,7 +48,7 @@ pub(crate) fn identify(arguments: &Identify, console: &Console) -> Result<u8> {
             readings.extend(joints.readings);
         }
         let found = foresee(&model.robot, &readings, &session)?;
-        if !session.kind.is_paired() {
+        if session.kind.is_chosen_freely() {
             let robot_error = arguments.robot_error.or_else(|| model.left_error());
             let fit = PlannedFit { session, robot_error, ..PlannedFit::default() };
             expected = Some(expected_errors(&model.robot, &readings, &fit)?);

@@ -57,15 +57,9 @@ pub(crate) fn plan(arguments: &Plan, console: &Console) -> Result<u8> {
         Over::Tasks(path) => Some(read(path)?),
         Over::Box(corners) => Some(workspace_in(&model.robot, corners, arguments.seed)?),
     };
-    // A nest of several beside the flange.
-    let nest = [0.05, 0.0, 0.0];
-    let offset = arguments.target_offset.or((arguments.targets > 1).then_some(nest));
+    let fit = fit(&arguments.fit, &model, arguments.kind, arguments.count)?;
     let options = PlanOptions {
-        fit: PlannedFit {
-            targets: arguments.targets as usize,
-            target_offset: offset.map(Into::into),
-            ..fit(&arguments.fit, &model, arguments.kind, arguments.count)?
-        },
+        fit: fit.with_targets(arguments.targets as usize, arguments.target_offset),
         criterion: arguments.criterion,
         list,
         workspace,

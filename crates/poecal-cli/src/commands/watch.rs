@@ -6,7 +6,7 @@ use std::time::Duration;
 use poecal::calibration::Corrections;
 use poecal::io::measurements::{GrowingFile, News};
 use poecal::io::model::Model;
-use poecal::plan::{PlannedFit, Watch as Watched, WatchOptions, workspace_in};
+use poecal::plan::{Watch as Watched, WatchOptions, workspace_in};
 use poecal::{ErrorKind, Kind, Result, report};
 
 use super::plan::{fit, readings};
@@ -34,11 +34,8 @@ pub(crate) fn watch(arguments: &Watch, console: &Console) -> Result<u8> {
         Over::Tasks(path) => Some(readings(path, &model, &reading, console)?),
         Over::Box(corners) => Some(workspace_in(&model.robot, corners, arguments.seed)?),
     };
-    let begin = |kind: Kind| -> Result<Watched> {
-        let fit: PlannedFit = fit(&arguments.fit, &model, kind, 30)?;
-        let (candidates, workspace) = (candidates.clone(), workspace.clone());
-        Watched::new(&model.robot, WatchOptions { fit, candidates, workspace, seed: arguments.seed })
-    };
+    let fit = fit(&arguments.fit, &model, Kind::POINT, 30)?;
+    let options = WatchOptions { fit, candidates, workspace, seed: arguments.seed };
     let mut file = GrowingFile::new(&arguments.measurements);
     let (mut watched, mut done, mut is_named, mut is_reached) = (None, 0, false, false);
     let is_corrected = arguments.fit.corrections != Corrections::Off;
@@ -49,10 +46,9 @@ pub(crate) fn watch(arguments: &Watch, console: &Console) -> Result<u8> {
                 (watched, done) = (None, 0);
             }
             let data = &file.data;
-            let poses = data.observations.iter().any(|row| row.measurement.sees_orientation());
             let session = match &mut watched {
                 Some(session) => session,
-                None => watched.insert(begin(if poses { Kind::POSE } else { Kind::POINT })?),
+                None => watched.insert(Watched::new(&model.robot, options.clone().for_rows(data))?),
             };
             while done < data.len() {
                 let row = session.add(data, done)?;

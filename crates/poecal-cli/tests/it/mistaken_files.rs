@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::fs;
 
 use crate::folder::Folder;
-use crate::recorded::{MODEL, Row, held_out, joined, session, stream};
+use crate::recorded::{MODEL, Row, between, held_out, joined, session, stream, turned};
 
 /// The places of four markers on the tool, metres in the tool's frame.
 const MARKERS: [[f64; 3]; 4] =
@@ -23,9 +23,6 @@ fn placed(place: &[f64], [x, y, z, w]: [f64; 4], [a, b, c]: [f64; 3]) -> [f64; 3
 /// A log of the robot, and takes of Motive with four markers and one without a label: as they are, and with names exchanged in some frames and
 /// lost in others.
 fn takes(rows: &[Row]) -> (String, String, String) {
-    let between = |one: &[f64], other: &[f64], share: f64| -> Vec<f64> {
-        one.iter().zip(other).map(|(a, b)| a + share * (b - a)).collect()
-    };
     let next = |row: usize| (row + 1).min(rows.len() - 1);
     let mut log = "timestamp,actual_q_0,actual_q_1,actual_q_2,actual_q_3,actual_q_4,actual_q_5\n".to_owned();
     for (time, row, share) in stream(rows.len(), 50) {
@@ -45,13 +42,7 @@ fn takes(rows: &[Row]) -> (String, String, String) {
     let mut damaged = take.clone();
     for (frame, (time, row, share)) in stream(rows.len(), 50).into_iter().enumerate() {
         let place = between(&rows[row].1, &rows[next(row)].1, share);
-        let mut turn = rows[next(row)].2;
-        if rows[row].2.iter().zip(&turn).map(|(a, b)| a * b).sum::<f64>() < 0.0 {
-            turn = turn.map(|it| -it);
-        }
-        let turn = between(&rows[row].2, &turn, share);
-        let length = turn.iter().map(|it| it * it).sum::<f64>().sqrt();
-        let turn: [f64; 4] = std::array::from_fn(|k| turn[k] / length);
+        let turn = turned(rows[row].2, rows[next(row)].2, share);
         let mut cells: Vec<String> =
             MARKERS.iter().map(|it| joined(&placed(&place, turn, *it), 4, ",")).collect();
         cells.push(",,".to_owned());

@@ -384,6 +384,20 @@ fn what_has_one_part_alone_or_none_is_named() {
     assert!(folder.listing() == before);
 }
 
+/// What is between two rows of numbers.
+pub(crate) fn between(one: &[f64], other: &[f64], share: f64) -> Vec<f64> {
+    one.iter().zip(other).map(|(a, b)| a + share * (b - a)).collect()
+}
+
+/// The orientation between two, as unit quaternions.
+pub(crate) fn turned(one: [f64; 4], other: [f64; 4], share: f64) -> [f64; 4] {
+    let dot = one.iter().zip(&other).map(|(a, b)| a * b).sum::<f64>();
+    let other = if dot < 0.0 { other.map(|it| -it) } else { other };
+    let turn = between(&one, &other, share);
+    let length = turn.iter().map(|it| it * it).sum::<f64>().sqrt();
+    std::array::from_fn(|k| turn[k] / length)
+}
+
 /// A stream of stands of a second and moves of 0.8 s: for each row its time, the configuration and how far it is on the way to the next one.
 pub(crate) fn stream(rows: usize, rate: usize) -> Vec<(f64, usize, f64)> {
     let mut found = Vec::new();

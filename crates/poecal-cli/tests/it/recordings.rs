@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::fs;
 
 use crate::folder::Folder;
-use crate::recorded::{MODEL, Row, joined, session, stream};
+use crate::recorded::{MODEL, Row, between, joined, session, stream, turned};
 
 /// A robot that stands at each row, by its controller and by two systems of motion capture.
 pub(crate) struct Recordings {
@@ -17,9 +17,6 @@ pub(crate) struct Recordings {
 }
 
 pub(crate) fn recordings(rows: &[Row]) -> Recordings {
-    let between = |one: &[f64], other: &[f64], share: f64| -> Vec<f64> {
-        one.iter().zip(other).map(|(a, b)| a + share * (b - a)).collect()
-    };
     let next = |row: usize| (row + 1).min(rows.len() - 1);
     let mut log = "timestamp,actual_q_0,actual_q_1,actual_q_2,actual_q_3,actual_q_4,actual_q_5\n".to_owned();
     for (time, row, share) in stream(rows.len(), 125) {
@@ -48,13 +45,7 @@ pub(crate) fn recordings(rows: &[Row]) -> Recordings {
     qualisys += "\t\n";
     for (frame, (time, row, share)) in stream(rows.len(), 100).into_iter().enumerate() {
         let place = between(&rows[row].1, &rows[next(row)].1, share);
-        let mut turn = rows[next(row)].2;
-        if rows[row].2.iter().zip(&turn).map(|(a, b)| a * b).sum::<f64>() < 0.0 {
-            turn = turn.map(|it| -it);
-        }
-        let turn = between(&rows[row].2, &turn, share);
-        let length = turn.iter().map(|it| it * it).sum::<f64>().sqrt();
-        let [x, y, z, w]: [f64; 4] = std::array::from_fn(|k| turn[k] / length);
+        let [x, y, z, w] = turned(rows[row].2, rows[next(row)].2, share);
         let is_lost = frame % 50 == 7;
         let (time, drifted) = (time, time * (1.0 + 35e-6));
         let body = if is_lost {

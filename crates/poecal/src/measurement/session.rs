@@ -116,6 +116,12 @@ impl Kind {
         matches!(self.0.drawn, Draw::Touched(_))
     }
 
+    /// Whether its configurations can be chosen freely: what is touched, or in pairs, is not.
+    #[must_use]
+    pub fn is_chosen_freely(self) -> bool {
+        !self.is_touched() && !self.is_paired()
+    }
+
     /// What it measures.
     #[must_use]
     pub fn quantities(self) -> &'static [Quantity] {

@@ -229,11 +229,11 @@ impl<'a> Checker<'a> {
             return Some(Obstacle::KeepOut);
         }
         // The frame of a joint on the base does not move, wherever it is.
-        let fixed: Vec<Vector3<f64>> = (0..frames.len())
-            .filter(|&joint| capsules.is_empty() && self.robot.body_before(joint) == Body::Base)
-            .filter_map(|joint| frames.get(joint).map(|frame| frame.translation))
-            .collect();
-        let is_low = |place: &Vector3<f64>, low: f64| place.z < low && !fixed.contains(place);
+        let is_fixed = |place: &Vector3<f64>| {
+            let mut own = (0..frames.len()).filter(|&joint| self.robot.body_before(joint) == Body::Base);
+            capsules.is_empty() && own.any(|joint| frames[joint].translation == *place)
+        };
+        let is_low = |place: &Vector3<f64>, low: f64| place.z < low && !is_fixed(place);
         if let Some(floor) = floor_m
             && parts.iter().any(|(ends, radius)| ends.iter().any(|end| is_low(end, floor + radius)))
         {

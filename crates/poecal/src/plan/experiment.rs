@@ -98,7 +98,7 @@ impl Experiment {
 
     fn made(robot: &Robot, fit: &PlannedFit, begun: Option<(&Dataset, &Estimate)>) -> Result<Self> {
         let kind = fit.session.kind;
-        if kind.is_touched() || kind.is_paired() {
+        if !kind.is_chosen_freely() {
             return ErrorKind::Option.refuse(format!(
                 "found the kind `{}`, expected one whose configurations can be chosen freely, as point, pose or distance: of what is touched, \
                  measure a dozen rows and ask poecal identify",

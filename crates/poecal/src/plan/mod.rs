@@ -19,6 +19,6 @@ pub use conditions::{Conditions, Obstacle, Refusals, Sight};
 pub use expected::{CurvePoint, ExpectedErrors, ListExpectation, expected_errors};
 pub use make::{Plan, plan, workspace_in};
 pub use options::{PlanCriterion, PlanOptions, PlannedFit, RobotError};
-pub use rows::{PlannedRow, RowPart, returns_of};
+pub use rows::{PlannedRow, RETURN_EVERY, RowPart, returns_of};
 pub use skeleton::skeleton;
 pub use watch::{Mistake, Watch, WatchOptions, WatchedRow};

@@ -8,6 +8,8 @@ use crate::analysis::PlannedSession;
 use crate::robot::{Corrections, Tolerance};
 use crate::simulate::Kind;
 
+/// Where the first of several targets is if nothing else is stated, metres.
+const NEST_M: [f64; 3] = [0.05, 0.0, 0.0];
 /// Candidates that are drawn where none are given.
 const CANDIDATES: usize = 2000;
 
@@ -142,6 +144,15 @@ impl PlanOptions {
             };
         }
         self.replaced_rows().iter().filter(|row| row.part == part).count()
+    }
+}
+
+impl PlannedFit {
+    /// The same with so many targets at the tip, the first at an offset, metres; several without one are beside the flange.
+    #[must_use]
+    pub fn with_targets(self, targets: usize, offset_m: Option<[f64; 3]>) -> Self {
+        let offset_m = offset_m.or((targets > 1).then_some(NEST_M));
+        PlannedFit { targets, target_offset: offset_m.map(Vector3::from), ..self }
     }
 }
 

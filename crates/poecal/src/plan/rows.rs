@@ -1,7 +1,7 @@
 //! Rows of a list: what each is for, and which return to the first.
 
-/// The first configuration is measured again behind so many rows.
-const ROWS_BETWEEN_VISITS: usize = 19;
+/// Every so many rows the first configuration is measured again.
+pub const RETURN_EVERY: usize = 20;
 
 /// What a planned row is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -52,7 +52,7 @@ impl PlannedRow {
 /// How many rows of a list of so many return to the first: every twentieth.
 #[must_use]
 pub fn returns_of(rows: usize) -> usize {
-    rows / (ROWS_BETWEEN_VISITS + 1)
+    rows / RETURN_EVERY
 }
 
 /// The rows with the first one again behind every so many.
@@ -62,7 +62,7 @@ pub(super) fn with_returns(rows: Vec<PlannedRow>) -> Vec<PlannedRow> {
     let mut found = Vec::new();
     for (at, row) in rows.into_iter().enumerate() {
         found.push(row);
-        if (at + 1) % ROWS_BETWEEN_VISITS == 0 {
+        if (at + 1) % (RETURN_EVERY - 1) == 0 {
             found.push(again.clone());
         }
     }

@@ -17,7 +17,7 @@ use crate::linalg;
 use crate::measurement::{Dataset, Quantity};
 use crate::problem::Prior;
 use crate::robot::{Robot, Tolerance};
-use crate::simulate::Configurations;
+use crate::simulate::{Configurations, Kind};
 use crate::start::{Registration, register};
 
 /// Probability with which a row that is as expected is named all the same, of normal errors; of those of real robots it is higher.
@@ -51,6 +51,16 @@ pub struct WatchOptions {
     pub workspace: Option<Vec<f64>>,
     /// Seed of what is random.
     pub seed: u64,
+}
+
+impl WatchOptions {
+    /// The same for the kind of these rows: poses if one has an orientation, else points.
+    #[must_use]
+    pub fn for_rows(mut self, data: &Dataset) -> Self {
+        let poses = data.observations.iter().any(|row| row.measurement.sees_orientation());
+        self.fit.session.kind = if poses { Kind::POSE } else { Kind::POINT };
+        self
+    }
 }
 
 /// What a row that is not as expected looks like.
@@ -470,7 +480,7 @@ impl Known {
 mod tests {
     use super::*;
     use crate::measurement::Measurement;
-    use crate::simulate::{Kind, Simulation, elbow};
+    use crate::simulate::{Simulation, elbow};
 
     /// Rows of a simulated session of points, one of them off by 5 mm, one with the wrong sign of joint 5, one stale.
     #[test]

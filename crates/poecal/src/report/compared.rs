@@ -8,7 +8,7 @@ use super::summary::{Detail, expected, leading};
 use super::table::{line, number, number_or_dash};
 use crate::compare::{ChiSquare, Compared, ComparedJoint};
 use crate::io::calibration_file::{CalibrationFile, JointChangeEntry};
-use crate::robot::{ReadingKind, Robot};
+use crate::robot::Robot;
 use crate::text::visible;
 
 /// Two calibrations compared, for a person to look over or a machine to read.
@@ -286,12 +286,8 @@ impl Comparison {
 
 impl ReadingEntry {
     fn new(robot: &Robot, name: &str, value: f64) -> Self {
-        let (value, unit) = match robot.reading_kind(name) {
-            ReadingKind::Angle => (value.to_degrees(), "deg"),
-            ReadingKind::Length => (1e3 * value, "mm"),
-            ReadingKind::Factor => (value, ""),
-        };
-        ReadingEntry { reading: name.to_owned(), value, unit }
+        let kind = robot.reading_kind(name);
+        ReadingEntry { reading: name.to_owned(), value: kind.shown(value), unit: kind.suffix() }
     }
 }
 

@@ -120,8 +120,7 @@ impl Watched {
 /// A reading as people read it.
 fn shown(kind: ReadingKind, value: f64) -> String {
     match kind {
-        ReadingKind::Angle => format!("{:.2} deg", value.to_degrees()),
-        ReadingKind::Length => format!("{:.2} mm", 1e3 * value),
+        ReadingKind::Angle | ReadingKind::Length => format!("{:.2} {}", kind.shown(value), kind.symbol()),
         ReadingKind::Factor => format!("{value}"),
     }
 }

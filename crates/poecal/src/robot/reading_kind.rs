@@ -27,6 +27,12 @@ impl ReadingKind {
         }
     }
 
+    /// The symbol behind a value; nothing of a factor.
+    #[must_use]
+    pub fn suffix(self) -> &'static str {
+        if self == ReadingKind::Factor { "" } else { self.symbol() }
+    }
+
     /// Its value in that unit.
     #[must_use]
     pub fn shown(self, value: f64) -> f64 {

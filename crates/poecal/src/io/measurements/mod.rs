@@ -105,6 +105,7 @@ pub use pose_lists::{FlangePoses, PosePairs, PoseSource, read_flange_poses, read
 pub use pose_table::pose_table;
 pub use read::{parse, read};
 pub use rewritten::{JointRow, RewrittenTable, rewrite_joints};
+pub use scale::{LARGEST_OTHERWISE as LARGEST_ANGLE_RAD, REACHES as MOST_REACHES, SHARE as WRONG_UNIT_SHARE};
 pub use socket_distance::SocketDistances;
 pub use template::planned_table;
 pub(in crate::io) use template::{plan, template};

@@ -19,13 +19,13 @@ use crate::unit::Unit;
 /// Without limits, readings beyond this many radians or metres need a stated unit.
 const LARGEST_UNLIMITED: f64 = 50.0;
 /// Without limits, largest reading in the supposed unit (two turns in radians, and metres).
-const LARGEST_OTHERWISE: f64 = 4.0 * std::f64::consts::PI;
+pub const LARGEST_OTHERWISE: f64 = 4.0 * std::f64::consts::PI;
 /// Least share of rows with implausible values: a few corrupt rows are no wrong unit.
-const SHARE: f64 = 0.1;
+pub const SHARE: f64 = 0.1;
 /// Motion below which a coordinate did not move, as a share of the reach.
 const STILL: f64 = 1e-2;
 /// Positions with a spread of more than this many reaches are in a wrong unit.
-const REACHES: f64 = 20.0;
+pub const REACHES: f64 = 20.0;
 /// The largest of all readings where they are per cent of the joints' ranges, from -100 to 100 and a little beyond.
 const PER_CENT: std::ops::RangeInclusive<f64> = 92.0..=102.0;
 /// Rounding allowed beyond a limit.

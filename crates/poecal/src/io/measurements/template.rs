@@ -8,13 +8,10 @@ use rand_core::SeedableRng as _;
 use super::write::{decimal, header, reading_header, reading_units, refuse_names};
 use crate::error::Result;
 use crate::measurement::Quantity;
-use crate::plan::{Plan, RowPart};
+use crate::plan::{Plan, RETURN_EVERY, RowPart};
 use crate::robot::Robot;
 use crate::simulate::{Configurations, Kind};
 use crate::text::visible;
-
-/// Number of rows between visits of the first configuration.
-const ROWS_BETWEEN_VISITS: usize = 20;
 
 /// A measurement file without rows: the columns for this robot, with instructions as comments.
 pub(in crate::io) fn template(robot: &Robot, kind: Kind) -> Result<String> {
@@ -93,7 +90,7 @@ pub(in crate::io) fn plan(robot: &Robot, count: usize, seed: u64) -> Result<Stri
     let configurations = Configurations::new(robot);
     let first = configurations.random(&mut generator);
     for row in 1..=count {
-        let again = row == 1 || row % ROWS_BETWEEN_VISITS == 0;
+        let again = row == 1 || row % RETURN_EVERY == 0;
         let readings = if again { first.clone() } else { configurations.random(&mut generator) };
         let cells: Vec<String> =
             readings.iter().zip(&units).map(|(&value, &unit)| decimal(value, unit, None)).collect();

@@ -73,7 +73,7 @@ impl Project<'_> {
         let robot = &self.model.robot;
         let rows = self.count - returns_of(self.count);
         let judge = rows / 4;
-        if self.kind.is_touched() || self.kind.is_paired() || !PLANNED_ROWS.contains(&rows) {
+        if !self.kind.is_chosen_freely() || !PLANNED_ROWS.contains(&rows) {
             return random_list(robot, self.count, self.seed);
         }
         let usual = PlannedFit::default();

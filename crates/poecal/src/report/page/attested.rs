@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use maud::{Markup, PreEscaped, html};
 
 use super::head;
-use crate::calibration::{Acceptance, Level};
+use crate::calibration::{Acceptance, DeviceFrameKnowledge, Level};
 use crate::io::calibration_file::CalibrationFile;
 use crate::io::output::Page;
 use crate::io::record::Record;
@@ -197,10 +197,9 @@ fn valid(file: &CalibrationFile) -> &'static str {
 
 fn method(file: &CalibrationFile) -> String {
     let terms = if delivered(file) == "corrected" { ", and what the joints do beyond geometry" } else { "" };
-    let frame = file.frame();
-    let place = match frame {
-        crate::calibration::DeviceFrameKnowledge::Unknown => "the device's place is fitted too",
-        crate::calibration::DeviceFrameKnowledge::Base => "the device measures in the robot's base",
+    let place = match file.frame() {
+        DeviceFrameKnowledge::Unknown => "the device's place is fitted too",
+        DeviceFrameKnowledge::Base => "the device measures in the robot's base",
     };
     format!(
         "Product of exponentials: joint screws, tool{terms} by least squares over {} rows; {place}. The errors are of rows that were held out where \

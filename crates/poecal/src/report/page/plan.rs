@@ -139,23 +139,6 @@ fn curve(found: &Found, told: &Plan) -> Markup {
     }
 }
 
-/// A reading as people read it.
-fn shown(kind: ReadingKind, value: f64) -> f64 {
-    match kind {
-        ReadingKind::Angle => value.to_degrees(),
-        ReadingKind::Length => 1e3 * value,
-        ReadingKind::Factor => value,
-    }
-}
-
-fn unit(kind: ReadingKind) -> &'static str {
-    match kind {
-        ReadingKind::Angle => "deg",
-        ReadingKind::Length => "mm",
-        ReadingKind::Factor => "",
-    }
-}
-
 fn joints(robot: &Robot, found: &Found) -> Markup {
     let names = robot.reading_names();
     let own = || found.rows.iter().filter(|row| row.part == RowPart::Fit && !row.returns);
@@ -174,7 +157,8 @@ fn joints(robot: &Robot, found: &Found) -> Markup {
                 *count += 1;
             }
         }
-        let end = |value: f64| format!("{} {}", decimal(shown(kind, value), 0), unit(kind)).trim().to_owned();
+        let end =
+            |value: f64| format!("{} {}", decimal(kind.shown(value), 0), kind.suffix()).trim().to_owned();
         Strip { name: name.clone(), ends: [end(low), end(high)], counts }
     };
     let plot = StripPlot {
@@ -188,7 +172,7 @@ fn joints(robot: &Robot, found: &Found) -> Markup {
 fn rows(robot: &Robot, found: &Found) -> Markup {
     let names = robot.reading_names();
     let kinds: Vec<ReadingKind> = names.iter().map(|name| robot.reading_kind(name)).collect();
-    let heads = names.iter().zip(&kinds).map(|(name, kind)| format!("{name}, {}", unit(*kind)));
+    let heads = names.iter().zip(&kinds).map(|(name, kind)| format!("{name}, {}", kind.suffix()));
     let heads: Vec<String> = ["row".to_owned(), "for".to_owned()].into_iter().chain(heads).collect();
     let heads: Vec<&str> = heads.iter().map(String::as_str).collect();
     let mut table = HtmlTable::new("The rows in their order", 2, &heads);
@@ -198,7 +182,7 @@ fn rows(robot: &Robot, found: &Found) -> Markup {
             (false, RowPart::Fit) => "fit",
             (false, RowPart::Judge) => "judge",
         };
-        let cells = row.readings.iter().zip(&kinds).map(|(value, kind)| decimal(shown(*kind, *value), 2));
+        let cells = row.readings.iter().zip(&kinds).map(|(value, kind)| decimal(kind.shown(*value), 2));
         table.cells([(at + 1).to_string(), part.to_owned()].into_iter().chain(cells));
     }
     html! { (table) }
