@@ -20,6 +20,8 @@ PYTEST = [PYTHON, "-m", "pytest", "-rs", "--rootdir", ".", "-p", "no:cacheprovid
 PYTEST_SHOWS = r"^=+ .* in [0-9.]+s|^documentation: \d|^SKIPPED |^(FAILED|ERROR) "
 NODE_SHOWS = r"^# (tests|pass|fail|skipped) |^# .*(bytes|differs? by|processor time|MB)|^# real robots|^# .* s after the drop|^[^ ].*# SKIP|^ *not ok"
 CARGO_SHOWS = r"^ *Finished|^(error|warning):"
+# Documentation of the crates that have users; scripts/build-docs puts it beside the site.
+DOCUMENTATION = ["cargo", "doc", "--locked", "--quiet", "--no-deps", "-p", "poecal", "-p", "poecal-arm", "-p", "poecal-detect", "-p", "poecal-lou2009"]
 # What only ./test packages needs.
 INSTALL = "tests/python/test_install.py"
 SITE = "tests/python/test_site.py"
@@ -120,7 +122,8 @@ def change() -> list[Step]:
         rust_build(),
         *tools(),
         # Beside the long compilation of the library, in a folder of its own: it would wait there, and a processor with it.
-        Step("lints", [["cargo", "clippy", "--locked", "--workspace", "--all-targets", "--", "-D", "warnings"]], shows=CARGO_SHOWS, lacks=lack("clippy", clippy)),
+        Step("lints", [["cargo", "clippy", "--locked", "--workspace", "--all-targets", "--", "-D", "warnings"], DOCUMENTATION], shows=CARGO_SHOWS, lacks=lack("clippy", clippy),
+             env={"RUSTDOCFLAGS": "-D warnings"}),
         Step("page build", [["node", "web/app/build.mjs"]], after=["web tools"], shows="^poecal.html: ", env={"POECAL_WEB_PROFILE": "tested-web"},
              lacks=lack(f"standard library of {WASM} (rustup target add {WASM})", has_standard_library(WASM))),
         package_build(),

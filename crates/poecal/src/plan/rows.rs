@@ -26,7 +26,7 @@ impl RowPart {
 /// A row of a plan.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlannedRow {
-    /// Readings in the order of [`Robot::reading_names`], radians and metres.
+    /// Readings in the order of [`Robot::reading_names`](crate::robot::Robot::reading_names), radians and metres.
     pub readings: Vec<f64>,
     /// What it is for.
     pub part: RowPart,

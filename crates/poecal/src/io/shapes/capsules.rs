@@ -16,7 +16,7 @@ use crate::robot::Body;
 /// Corners of the polygon around a circle.
 const CORNERS: usize = 16;
 
-/// Capsules of a model that has shapes, and sentences as of [`capsules`]; none of other models.
+/// Capsules of a model that has shapes, and sentences as of `capsules`; none of other models.
 #[must_use]
 pub fn capsules_of(model: &Model) -> (Vec<Capsule>, Vec<String>) {
     match &model.source {
