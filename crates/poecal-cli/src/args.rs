@@ -9,6 +9,7 @@ mod compensate;
 mod detect;
 #[cfg(any(unix, windows))]
 mod fleet;
+mod groups;
 mod hand_eye;
 mod identify;
 mod init;
@@ -31,6 +32,7 @@ pub(crate) use compensate::Compensate;
 pub(crate) use detect::Detect;
 #[cfg(any(unix, windows))]
 pub(crate) use fleet::{Fleet, FleetCommand, FleetPrior, FleetReport};
+pub(crate) use groups::command_line;
 pub(crate) use hand_eye::{HandEye, OutFrames, Tcp};
 pub(crate) use identify::Identify;
 pub(crate) use init::Init;
@@ -57,7 +59,7 @@ use poecal::io::record::Record;
 use crate::quantity::{sigma_m, threads};
 pub(crate) use shared::ChainArgs;
 pub(crate) use shared::OutFile;
-use shared::{ColumnArgs, Meaning, Reading};
+use shared::{ColumnArgs, JUDGED, Meaning, RESULTS, Reading};
 use words::{EXPORT_FORMAT, FORM, FRAME, MODEL, PREDICT_IN, REFIT, REQUIRED_LEVEL, one_of};
 
 /// What the program ends with.
@@ -198,42 +200,42 @@ pub(crate) struct Validate {
     #[command(flatten)]
     pub(crate) meaning: Meaning,
     /// Refit the measuring device's frame to these measurements
-    #[arg(long)]
+    #[arg(long, help_heading = JUDGED)]
     pub(crate) refit_frame: bool,
     /// Refit the targets to these measurements
-    #[arg(long)]
+    #[arg(long, help_heading = JUDGED)]
     pub(crate) refit_tool: bool,
     /// Refit the device's frame where these measurements show that the device stands elsewhere; without, that is said
-    #[arg(long, value_parser = one_of(REFIT), value_name = "WHEN", default_value = "never", action = clap::ArgAction::Set, conflicts_with = "refit_frame")]
+    #[arg(long, value_parser = one_of(REFIT), value_name = "WHEN", default_value = "never", action = clap::ArgAction::Set, conflicts_with = "refit_frame", help_heading = JUDGED)]
     pub(crate) refit: bool,
     /// End with code 1 unless the measurements confirm this: `good` if 80 % of all errors are inside their own 95 % bounds and the error
     /// (RMS) is at most twice the expected one; `inside_sampled_range` if that holds of the rows inside the sampled range
-    #[arg(long, value_parser = one_of(REQUIRED_LEVEL), value_name = "VERDICT")]
+    #[arg(long, value_parser = one_of(REQUIRED_LEVEL), value_name = "VERDICT", help_heading = JUDGED)]
     pub(crate) require: Option<Level>,
     /// Limits that the errors shall keep, like 0.2mm or 0.2mm,max:0.5mm,0.05deg: rms (the default), p95 or max of all errors in a unit. End with
     /// code 1 unless each is shown to be kept, with 95 % confidence
-    #[arg(long, value_name = "[rms:|p95:|max:]LIMIT", value_delimiter = ',')]
+    #[arg(long, value_name = "[rms:|p95:|max:]LIMIT", value_delimiter = ',', help_heading = JUDGED)]
     pub(crate) accept: Vec<Limit>,
     /// Which model shall keep them: the corrected one, if there is one (the default), or the calibrated one, which a URDF holds
-    #[arg(long, value_parser = one_of(MODEL))]
+    #[arg(long, value_parser = one_of(MODEL), help_heading = JUDGED)]
     pub(crate) accept_model: Option<AcceptedModel>,
     /// Folder for the results of the check: validation.json, errors.csv with each row beside its bound, and a report
-    #[arg(long, value_name = "DIR")]
+    #[arg(long, value_name = "DIR", help_heading = RESULTS)]
     pub(crate) out: Option<PathBuf>,
     /// Overwrite results of a check in an existing folder, and a report that exists
-    #[arg(long)]
+    #[arg(long, help_heading = RESULTS)]
     pub(crate) force: bool,
     /// File for the report, or `none` [default: report.html among the results]
-    #[arg(long, value_name = "FILE|none")]
+    #[arg(long, value_name = "FILE|none", help_heading = RESULTS)]
     pub(crate) report: Option<ReportPlace>,
     /// What the report states of this session, like operator=Mia (repeatable): the keys of `poecal calibrate`
-    #[arg(long, value_name = "KEY=TEXT", value_parser = Record::pair)]
+    #[arg(long, value_name = "KEY=TEXT", value_parser = Record::pair, help_heading = RESULTS)]
     pub(crate) record: Vec<(String, String)>,
     /// File to which the check is appended as a line, or `none` [default: history.jsonl beside the calibration]
-    #[arg(long, value_name = "FILE|none")]
+    #[arg(long, value_name = "FILE|none", help_heading = RESULTS)]
     pub(crate) history: Option<ReportPlace>,
     /// Print JSON instead of the table
-    #[arg(long)]
+    #[arg(long, help_heading = RESULTS)]
     pub(crate) json: bool,
 }
 
@@ -309,10 +311,10 @@ pub(crate) struct Import {
     #[command(flatten)]
     pub(crate) reading: Reading,
     /// The table to write (CSV); how it was made goes to NAME.map.toml beside it
-    #[arg(id = "table", long = "out", value_name = "FILE")]
+    #[arg(id = "table", long = "out", value_name = "FILE", help_heading = RESULTS)]
     pub(crate) out: PathBuf,
     /// Write over files that exist
-    #[arg(long)]
+    #[arg(long, help_heading = RESULTS)]
     pub(crate) force: bool,
 }
 

@@ -54,6 +54,9 @@ pub(crate) struct Console {
     quiet: bool,
 }
 
+/// Most columns of a line of help.
+const HELP_WIDTH: usize = 100;
+
 impl Console {
     pub(crate) fn new(quiet: bool) -> Self {
         Console { quiet }
@@ -177,6 +180,12 @@ impl Console {
     pub(crate) fn progress(&self, steps: u64) -> Progress {
         Progress::new(steps, self.quiet)
     }
+}
+
+/// Width of the program's help: that of the terminal or of `COLUMNS`, at most [`HELP_WIDTH`].
+pub(crate) fn help_width() -> usize {
+    let stated = || std::env::var("COLUMNS").ok().and_then(|it| it.parse().ok());
+    width_of(&std::io::stdout()).or_else(stated).unwrap_or(HELP_WIDTH).clamp(40, HELP_WIDTH)
 }
 
 /// Width of a stream, if it is a terminal.

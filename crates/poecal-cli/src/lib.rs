@@ -18,9 +18,9 @@ use std::error::Error as _;
 use std::ffi::OsString;
 use std::process::ExitCode;
 
-use args::{Arguments, Command};
+use args::{Arguments, Command, command_line};
+use clap::FromArgMatches as _;
 use clap::error::ContextKind;
-use clap::{CommandFactory as _, FromArgMatches as _};
 use console::Console;
 use poecal::problem::stated_level;
 use poecal::text::visible;
@@ -60,7 +60,7 @@ fn understood(typed: Vec<OsString>) -> Result<(Vec<OsString>, Arguments), u8> {
         REFUSED
     };
     let parsed = |words: &[OsString]| {
-        let matches = Arguments::command().try_get_matches_from(words)?;
+        let matches = command_line().try_get_matches_from(words)?;
         let arguments = Arguments::from_arg_matches(&matches)?;
         Ok((matches, arguments))
     };

@@ -6,12 +6,12 @@ use std::path::{Component, Path, PathBuf};
 
 use clap::error::ContextKind;
 use clap::parser::ValueSource;
-use clap::{Arg, ArgAction, ArgMatches, Command, CommandFactory as _};
+use clap::{Arg, ArgAction, ArgMatches, Command};
 use poecal::io::disk;
 use poecal::io::settings::{Setting, SettingValue, Settings};
 use poecal::{Error, ErrorKind, Result};
 
-use crate::args::Arguments;
+use crate::args::command_line;
 
 /// Settings file that is read if no model is named.
 const USUAL: &str = "poecal.toml";
@@ -66,7 +66,7 @@ pub(crate) fn complete(typed: &[OsString], matches: &ArgMatches) -> Result<Optio
              `poecal init MODEL` writes them"
         )).in_file(path));
     }
-    let whole = Arguments::command();
+    let whole = command_line();
     let (Some(command), Some(own)) = (whole.find_subcommand(COMMAND), whole.find_subcommand(name)) else {
         return Ok(None);
     };
@@ -227,7 +227,7 @@ mod tests {
         let names =
             section.lines().filter(|line| line.starts_with("| `")).filter_map(|line| line.split('|').nth(1));
         let documented: BTreeSet<&str> = names.flat_map(|cell| cell.split('`').skip(1).step_by(2)).collect();
-        let whole = Arguments::command();
+        let whole = command_line();
         let mut expected: BTreeSet<&str> =
             kept(whole.find_subcommand(COMMAND).unwrap()).map(|arg| arg.get_id().as_str()).collect();
         expected.insert("poecal_settings = 1");

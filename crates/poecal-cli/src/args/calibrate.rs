@@ -10,7 +10,7 @@ use poecal::robot::GravityDirection;
 use poecal_lou2009::{Formulation, Method, Residual};
 
 use super::report::ReportPlace;
-use super::shared::{Reading, TreeArgs};
+use super::shared::{FIT, JUDGED, RESULTS, Reading, TreeArgs};
 use super::words::{FORMULATION, FRAME, METHOD, MODEL, REPAIR, REQUIRED_LEVEL, RESIDUAL, ROBUST, one_of};
 use crate::quantity::{BelievedTolerance, share, sigma_m, sigma_rad, whole};
 
@@ -29,57 +29,57 @@ pub(crate) struct Calibrate {
     #[command(flatten)]
     pub(crate) reading: Reading,
     /// The measuring device's frame
-    #[arg(long, value_parser = one_of(FRAME), default_value = "unknown")]
+    #[arg(long, value_parser = one_of(FRAME), default_value = "unknown", help_heading = FIT)]
     pub(crate) frame: DeviceFrameKnowledge,
     /// Standard deviation of each measured position component, like 0.05mm [default: estimated from the data]
-    #[arg(long, value_name = "LENGTH", value_parser = sigma_m, allow_hyphen_values = true)]
+    #[arg(long, value_name = "LENGTH", value_parser = sigma_m, allow_hyphen_values = true, help_heading = FIT)]
     pub(crate) sigma_position: Option<f64>,
     /// Standard deviation of each measured rotation component, like 0.01deg [default: estimated from the data]
-    #[arg(long, value_name = "ANGLE", value_parser = sigma_rad, allow_hyphen_values = true)]
+    #[arg(long, value_name = "ANGLE", value_parser = sigma_rad, allow_hyphen_values = true, help_heading = FIT)]
     pub(crate) sigma_rotation: Option<f64>,
     /// Prior: deviation of each axis from nominal, as standard deviations, or none. It decides where the measurements determine
     /// nothing. auto takes the best of 0.05deg,0.5mm, 0.2deg,2mm, 0.5deg,5mm, 1deg,10mm and 3deg,10mm by cross-validation. A joint of a TOML model may state its own.
     /// MOC.cfg of a controller of ABB with Absolute Accuracy tells what the maker found
-    #[arg(long, value_name = "ANGLE,LENGTH|none|auto|MOC.cfg", default_value = "0.5deg,5mm")]
+    #[arg(long, value_name = "ANGLE,LENGTH|none|auto|MOC.cfg", default_value = "0.5deg,5mm", help_heading = FIT)]
     pub(crate) tolerance: BelievedTolerance,
     /// What joints do beyond geometry: auto fits the terms that predict rows best which were not fitted, all looks
     /// among more of them; groups of terms with their sizes
     /// in radians or metres, sag, tilt, ratio, harmonics, wobble, backlash, factors, payload, shift, runout
-    #[arg(long, value_name = "auto|all|off|GROUP[=SIZE],...", default_value = "auto")]
+    #[arg(long, value_name = "auto|all|off|GROUP[=SIZE],...", default_value = "auto", help_heading = FIT)]
     pub(crate) corrections: Corrections,
     /// Highest order of the harmonics of a turn among these terms, 1 to 8
-    #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u8).range(1..=8))]
+    #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u8).range(1..=8), help_heading = FIT)]
     pub(crate) harmonics: u8,
     /// Further columns of the measurements on which terms may depend, like temperature; approach or approach_JOINT says from which side joints
     /// came, 1 or -1, and payload which mass hangs at the tip, in kg
-    #[arg(long, value_name = "COLUMN", value_delimiter = ',')]
+    #[arg(long, value_name = "COLUMN", value_delimiter = ',', help_heading = FIT)]
     pub(crate) factors: Vec<String>,
     /// Where gravity pulls, in the robot's base frame, like 0,0,1 for a robot on the ceiling; find takes the direction with which the terms
     /// leave the least noise
-    #[arg(long, value_name = "X,Y,Z|find", default_value = "0,0,-1", allow_hyphen_values = true)]
+    #[arg(long, value_name = "X,Y,Z|find", default_value = "0,0,-1", allow_hyphen_values = true, help_heading = FIT)]
     pub(crate) gravity: GravityDirection,
     /// Blocks to hold as in the model: joints, targets, frames, or names like joint2.axis, in which * stands for any letters
-    #[arg(long, value_name = "NAME", value_delimiter = ',')]
+    #[arg(long, value_name = "NAME", value_delimiter = ',', help_heading = FIT)]
     pub(crate) fix: Vec<String>,
     /// Blocks to fit, also those that are usually held, like joint2.offset, and after --fix: `--fix joints --free joint2`. A target that is named
     /// may be anywhere, not only near the tip: `--free targets`
-    #[arg(long, value_name = "NAME", value_delimiter = ',')]
+    #[arg(long, value_name = "NAME", value_delimiter = ',', help_heading = FIT)]
     pub(crate) free: Vec<String>,
     /// Put the tip where the measured point is, for a model that ends in its reflector. Otherwise the links beyond the last joint stay as in the
     /// model, and the point is the target `measured`
-    #[arg(long)]
+    #[arg(long, help_heading = FIT)]
     pub(crate) move_tip: bool,
     /// Share of the configurations held out, where nothing else says which rows are; 0 fits every row in any case [default: 0.3]
-    #[arg(long, value_name = "SHARE", value_parser = share, allow_hyphen_values = true)]
+    #[arg(long, value_name = "SHARE", value_parser = share, allow_hyphen_values = true, help_heading = JUDGED)]
     pub(crate) held_out: Option<f64>,
     /// Seed of that choice [default: 1]
-    #[arg(long, value_parser = whole::<u64>)]
+    #[arg(long, value_parser = whole::<u64>, help_heading = JUDGED)]
     pub(crate) seed: Option<u64>,
     /// How to treat outliers: auto fits by least squares, and by the tukey loss where that shows outliers
-    #[arg(long, value_parser = one_of(ROBUST), default_value = "auto")]
+    #[arg(long, value_parser = one_of(ROBUST), default_value = "auto", help_heading = FIT)]
     pub(crate) robust: Robust,
     /// What to do where a device, a target, a nest or a joint's zero moved during the session, or configurations are wrong as a whole
-    #[arg(long, value_parser = one_of(REPAIR), default_value = "auto")]
+    #[arg(long, value_parser = one_of(REPAIR), default_value = "auto", help_heading = FIT)]
     pub(crate) repair: Repairs,
     /// Parameterisation of joint errors; all but the default are for comparison
     #[arg(long, value_parser = one_of(FORMULATION), default_value = "adjoint", help_heading = "Comparison")]
@@ -92,42 +92,42 @@ pub(crate) struct Calibrate {
     #[arg(long, value_parser = one_of(METHOD), help_heading = "Comparison")]
     pub(crate) method: Option<Method>,
     /// Measurement file to judge by: all other rows are fitted
-    #[arg(long, value_name = "FILE", conflicts_with = "fit_where")]
+    #[arg(long, value_name = "FILE", conflicts_with = "fit_where", help_heading = JUDGED)]
     pub(crate) validate: Vec<PathBuf>,
     /// Folder for the results [default: poecal-out; if it is there and --force is not stated, poecal-out-2, and so on]
-    #[arg(long, value_name = "DIR")]
+    #[arg(long, value_name = "DIR", help_heading = RESULTS)]
     pub(crate) out: Option<PathBuf>,
     /// Overwrite results in an existing folder, and a report that exists
-    #[arg(long)]
+    #[arg(long, help_heading = RESULTS)]
     pub(crate) force: bool,
     /// Overwrite them where poecal wrote them: the meaning of `force` in the settings
     #[arg(long, hide = true)]
     pub(crate) force_own: bool,
     /// File for the report, or `none` [default: report.html among the results]
-    #[arg(long, value_name = "FILE|none")]
+    #[arg(long, value_name = "FILE|none", help_heading = RESULTS)]
     pub(crate) report: Option<ReportPlace>,
     /// End with code 1 if the verdict is worse than this (results are written all the same); it also does if the verdict is `do not use`
-    #[arg(long, value_parser = one_of(REQUIRED_LEVEL), value_name = "VERDICT")]
+    #[arg(long, value_parser = one_of(REQUIRED_LEVEL), value_name = "VERDICT", help_heading = JUDGED)]
     pub(crate) require: Option<Level>,
     /// Limits that the errors of rows that were not fitted shall keep, like 0.2mm or 0.2mm,max:0.5mm,0.05deg: rms (the default), p95 or max of all
     /// errors in a unit. End with code 1 unless each is shown to be kept, with 95 % confidence
-    #[arg(long, value_name = "[rms:|p95:|max:]LIMIT", value_delimiter = ',')]
+    #[arg(long, value_name = "[rms:|p95:|max:]LIMIT", value_delimiter = ',', help_heading = JUDGED)]
     pub(crate) accept: Vec<Limit>,
     /// Which model shall keep them: the corrected one, if there is one (the default), or the calibrated one, which a URDF holds
-    #[arg(long, value_parser = one_of(MODEL))]
+    #[arg(long, value_parser = one_of(MODEL), help_heading = JUDGED)]
     pub(crate) accept_model: Option<AcceptedModel>,
     /// What the report states of the session, like serial=4711 (repeatable): certificate, laboratory, customer, robot, serial, instrument,
     /// instrument_calibrated, tool, payload, operator, date, place, temperature, valid_until or note
-    #[arg(long, value_name = "KEY=TEXT", value_parser = Record::pair)]
+    #[arg(long, value_name = "KEY=TEXT", value_parser = Record::pair, help_heading = RESULTS)]
     pub(crate) record: Vec<(String, String)>,
     /// Print everything: errors of fitted rows and of the nominal model, noise, solver, cross-validation, every joint
-    #[arg(long)]
+    #[arg(long, help_heading = RESULTS)]
     pub(crate) verbose: bool,
     /// Print the calibration as JSON instead of the table
-    #[arg(long)]
+    #[arg(long, help_heading = RESULTS)]
     pub(crate) json: bool,
     /// Print where the time went, as a line of JSON on standard error; the solve is repeated for that
-    #[arg(long)]
+    #[arg(long, help_heading = RESULTS)]
     pub(crate) timings: bool,
 }
 

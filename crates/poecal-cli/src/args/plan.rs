@@ -8,7 +8,7 @@ use poecal::calibration::{Corrections, DeviceFrameKnowledge};
 use poecal::plan::{PlanCriterion, RobotError};
 use poecal::simulate::Kind;
 
-use super::shared::{ColumnArgs, OutFile, TreeArgs};
+use super::shared::{ColumnArgs, FIT, OutFile, TreeArgs};
 use super::words::{CRITERION, FRAME, SELF_COLLISION, TOOL, one_of, simulated};
 use crate::quantity::{
     BelievedTolerance, LengthAndAngle, Over, box_m, direction, distances_m, height_m, place_m, robot_error,
@@ -167,6 +167,7 @@ fn planned_device(text: &str) -> Result<PlannedDevice, String> {
 
 /// The fit that will be made, and what is believed before.
 #[derive(Args, Debug)]
+#[command(next_help_heading = FIT)]
 pub(crate) struct FitArgs {
     /// Standard deviation of each measured position component
     #[arg(long, value_name = "LENGTH", value_parser = sigma_m, allow_hyphen_values = true, default_value = "0.05mm")]

@@ -15,8 +15,16 @@ use poecal::io::urdf::{ChainSelection, named_link};
 use super::words::{CONTACT, FRAMES, JOIN, one_of};
 use crate::console::Console;
 
+/// Headings of options that several commands have: of the model's links, of measurement files, of the fit, of what judges it, and of results.
+const LINKS: &str = "Links of the model";
+const FILES: &str = "Measurement files";
+pub(super) const FIT: &str = "Fit";
+pub(super) const JUDGED: &str = "How it is judged";
+pub(super) const RESULTS: &str = "Results";
+
 /// Which chain of a URDF.
 #[derive(Args, Debug)]
+#[command(next_help_heading = LINKS)]
 pub(crate) struct ChainArgs {
     /// First link of the chain, where a URDF has several
     #[arg(long, value_name = "LINK")]
@@ -44,6 +52,7 @@ impl ChainArgs {
 
 /// Which chain or tree of a URDF.
 #[derive(Args, Debug)]
+#[command(next_help_heading = LINKS)]
 pub(crate) struct TreeArgs {
     #[command(flatten)]
     pub(crate) chain: ChainArgs,
@@ -76,6 +85,7 @@ pub(crate) fn with_mapping(
 
 /// What columns of files mean.
 #[derive(Args, Debug)]
+#[command(next_help_heading = FILES)]
 pub(crate) struct ColumnArgs {
     /// Mapping file for files with other column names
     #[arg(long, value_name = "MAP.toml")]
@@ -96,6 +106,7 @@ impl ColumnArgs {
 
 /// Cameras and boards of corners in pixels.
 #[derive(Args, Debug)]
+#[command(next_help_heading = FILES)]
 pub(crate) struct CameraArgs {
     /// Cameras of corners in pixels: CSV with name, fx, fy, cx, cy, k1 and so on in OpenCV's order (FILE#VERSION where it has several), YAML of OpenCV,
     /// ROS, Kalibr or industrial_calibration, XML of ViSP, a calibration.json with what it found, or unknown:1920x1080 with the size of the pictures,
@@ -130,6 +141,7 @@ impl CameraArgs {
 
 /// What measurement files mean.
 #[derive(Args, Debug)]
+#[command(next_help_heading = FILES)]
 pub(crate) struct Meaning {
     #[command(flatten)]
     pub(crate) columns: ColumnArgs,
@@ -198,6 +210,7 @@ impl Meaning {
 
 /// How to read measurement files.
 #[derive(Args, Debug)]
+#[command(next_help_heading = FILES)]
 pub(crate) struct Reading {
     #[command(flatten)]
     pub(crate) meaning: Meaning,
@@ -215,6 +228,7 @@ impl Reading {
 
 /// Where a text goes.
 #[derive(Args, Debug)]
+#[command(next_help_heading = RESULTS)]
 pub(crate) struct OutFile {
     /// File to write; a device or a pipe is written to as it is [default: standard output]
     #[arg(long, value_name = "FILE")]

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use super::ReportPlace;
-use super::shared::Meaning;
+use super::shared::{JUDGED, Meaning, RESULTS};
 use super::words::{DEVICE, TOOL, one_of};
 use crate::quantity::sigma_m;
 
@@ -18,19 +18,19 @@ pub(crate) struct Track {
     #[arg(required_unless_present = "plan")]
     pub(crate) measurements: Vec<PathBuf>,
     /// Rows of an earlier visit whose configurations are repeated [default: the measurements that the calibration was made of, by their SHA-256]
-    #[arg(long, value_name = "OLD.csv")]
+    #[arg(long, value_name = "OLD.csv", help_heading = JUDGED)]
     pub(crate) reference: Vec<PathBuf>,
     #[command(flatten)]
     pub(crate) meaning: Meaning,
     /// Whether the measuring device stands where it stood [default: known where the calibration was made in the base frame]
-    #[arg(long, value_parser = one_of(DEVICE), value_name = "WHERE", action = clap::ArgAction::Set)]
+    #[arg(long, value_parser = one_of(DEVICE), value_name = "WHERE", action = clap::ArgAction::Set, help_heading = JUDGED)]
     pub(crate) device: Option<bool>,
     /// Whether the tool with its targets is on the flange as it was
-    #[arg(long, value_parser = one_of(TOOL), value_name = "HOW", default_value = "same", action = clap::ArgAction::Set)]
+    #[arg(long, value_parser = one_of(TOOL), value_name = "HOW", default_value = "same", action = clap::ArgAction::Set, help_heading = JUDGED)]
     pub(crate) tool: bool,
     /// Standard deviation of one visit and coordinate, like 0.03mm, as measured by repeats [default: what repeats within a visit and what no
     /// explanation takes away]
-    #[arg(long, value_name = "LENGTH", value_parser = sigma_m)]
+    #[arg(long, value_name = "LENGTH", value_parser = sigma_m, help_heading = JUDGED)]
     pub(crate) repeatability: Option<f64>,
     /// Choose so many of the earlier configurations that their repeats show the smallest shift of the worst joint, and print what each would show
     #[arg(long, value_name = "N", conflicts_with_all = ["measurements", "recalibrate", "history"], value_parser = clap::value_parser!(u16).range(2..=200))]
@@ -39,19 +39,19 @@ pub(crate) struct Track {
     #[arg(long, value_name = "NAME", requires = "plan")]
     pub(crate) target: Option<String>,
     /// Calibrate the zero of this joint anew (JOINT or JOINT.offset), or its axis (JOINT.axis), and hold all else; with --out
-    #[arg(long, value_name = "JOINT[.offset|.axis]", requires = "out", conflicts_with_all = ["history", "json"])]
+    #[arg(long, value_name = "JOINT[.offset|.axis]", requires = "out", conflicts_with_all = ["history", "json"], help_heading = RESULTS)]
     pub(crate) recalibrate: Option<String>,
     /// File to write: with --plan the table of configurations (CSV), with --recalibrate the new calibration.json
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", help_heading = RESULTS)]
     pub(crate) out: Option<PathBuf>,
     /// Write over a file that exists
-    #[arg(long)]
+    #[arg(long, help_heading = RESULTS)]
     pub(crate) force: bool,
     /// File to which the check is appended as a line, or `none` [default: history.jsonl beside the calibration]
-    #[arg(long, value_name = "FILE|none")]
+    #[arg(long, value_name = "FILE|none", help_heading = RESULTS)]
     pub(crate) history: Option<ReportPlace>,
     /// Print JSON instead of the table
-    #[arg(long)]
+    #[arg(long, help_heading = RESULTS)]
     pub(crate) json: bool,
 }
 

@@ -1,15 +1,14 @@
 //! `poecal completions`: what a shell needs to complete the program's words.
 
-use clap::CommandFactory as _;
 use poecal::Result;
 
 use crate::DONE;
-use crate::args::{Arguments, Completions};
+use crate::args::{Completions, command_line};
 use crate::console::Console;
 
 pub(crate) fn completions(arguments: &Completions, console: &Console) -> Result<u8> {
     let mut script = Vec::new();
-    clap_complete::generate(arguments.shell, &mut Arguments::command(), "poecal", &mut script);
+    clap_complete::generate(arguments.shell, &mut command_line(), "poecal", &mut script);
     console.data(&String::from_utf8_lossy(&script))?;
     Ok(DONE)
 }

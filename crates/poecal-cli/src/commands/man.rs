@@ -1,18 +1,17 @@
 //! `poecal man`: manual pages.
 
-use clap::CommandFactory as _;
 use poecal::text::visible;
 use poecal::{ErrorKind, Result, nearest};
 
 use crate::DONE;
-use crate::args::{Arguments, Man};
+use crate::args::{Man, command_line};
 use crate::console::Console;
 
 /// What the pages belong to.
 const SOURCE: &str = concat!("poecal ", env!("CARGO_PKG_VERSION"));
 
 pub(crate) fn man(arguments: &Man, console: &Console) -> Result<u8> {
-    let mut program = Arguments::command().disable_help_subcommand(true);
+    let mut program = command_line().disable_help_subcommand(true);
     program.build();
     let command = match &arguments.command {
         None => program,

@@ -186,3 +186,29 @@ fn a_station_that_is_none_is_refused_in_a_sentence() {
     let run = folder.run("fleet station.toml");
     assert!(run.code == 2 && run.err.contains("a newer poecal wrote it"), "{}", run.err);
 }
+
+/// The clock of the station jumped back: what was done is not done again, and the report is in the order measured, the same to the last byte.
+#[test]
+fn a_clock_that_jumped_changes_neither_what_is_done_nor_the_report() {
+    let folder = line(3);
+    folder.done("fleet station.toml");
+    folder.done("fleet report station.toml");
+    let page = folder.read("fleet.html");
+    let mut year = 2031;
+    let lines: Vec<String> = folder
+        .read("fleet.jsonl")
+        .lines()
+        .map(|line| {
+            let (before, after) = line.split_once("\"time\":\"").unwrap();
+            let rest = after.split_once('"').unwrap().1;
+            year -= 10;
+            format!("{before}\"time\":\"{year}-01-01T00:00:00Z\"{rest}")
+        })
+        .collect();
+    folder.write("fleet.jsonl", lines.join("\n") + "\n");
+    let run = folder.run("fleet station.toml");
+    assert_eq!(run.code, 0, "{}", run.err);
+    assert_eq!(folder.read("fleet.jsonl").lines().count(), 3, "{}", run.out);
+    folder.done("fleet report station.toml --force");
+    assert_eq!(folder.read("fleet.html"), page);
+}

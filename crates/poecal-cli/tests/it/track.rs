@@ -95,3 +95,75 @@ fn what_cannot_be_judged_is_refused() {
     let run = folder.run("track poecal-out/calibration.json cell/measurements.csv --out new.json");
     assert!(run.code == 2 && run.err.contains("--plan or --recalibrate"), "{}", run.err);
 }
+
+/// Of another robot with the same joints, in the same configurations or in others, nothing is called unchanged, and no joint is blamed.
+#[test]
+fn another_robot_is_not_called_unchanged() {
+    let folder = cell();
+    folder.done("simulate robot.urdf --kind point --count 60 --seed 4 --out other");
+    // The same readings with what the other robot shows in them.
+    folder.done("predict other/actual.urdf cell/measurements.csv --out places.csv");
+    let (rows, places) = (folder.read("cell/measurements.csv"), folder.read("places.csv"));
+    let mut joined = String::new();
+    for (row, place) in rows.lines().filter(|line| !line.starts_with('#')).zip(places.lines()) {
+        let readings: Vec<&str> = row.split(',').take(6).collect();
+        let place: Vec<&str> = place.split(',').take(3).collect();
+        joined += &format!("{},{}\n", readings.join(","), place.join(","));
+    }
+    folder.write("places.csv", joined);
+    for file in ["other/measurements.csv", "places.csv"] {
+        let run = folder.run(&format!("track poecal-out/calibration.json {file} --history none"));
+        println!("{file}: {}{}", run.out, run.err);
+        assert_eq!(run.code, 1, "{}{}", run.out, run.err);
+        assert!(run.out.contains("no single cause explains it"), "{}", run.out);
+        assert!(run.err.contains("if the calibration is of this robot and this tool"), "{}", run.err);
+    }
+}
+
+fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+/// Rows of the cell by its actual robot, with the target elsewhere on the flange and the device elsewhere, metres.
+fn visit(folder: &Folder, tool_m: [f64; 3], device_m: [f64; 3]) -> String {
+    folder.done("predict cell/actual.urdf cell/measurements.csv --out poses.csv --force");
+    let (rows, poses) = (folder.read("cell/measurements.csv"), folder.read("poses.csv"));
+    let mut rows = rows.lines().filter(|line| !line.starts_with('#'));
+    let mut joined =
+        rows.next().unwrap().split(',').take(6).collect::<Vec<_>>().join(",") + ",x[m],y[m],z[m]\n";
+    for (row, pose) in rows.zip(poses.lines().skip(1)) {
+        let readings: Vec<&str> = row.split(',').take(6).collect();
+        let pose: Vec<f64> = pose.split(',').map(|cell| cell.parse().unwrap()).collect();
+        let (q, w) = ([pose[3], pose[4], pose[5]], pose[6]);
+        let twice = cross(q, cross(q, tool_m).map(|it| 2.0 * it));
+        let once = cross(q, tool_m);
+        let place: Vec<f64> =
+            (0..3).map(|k| pose[k] + tool_m[k] + 2.0 * w * once[k] + twice[k] + device_m[k]).collect();
+        joined += &format!("{},{},{},{}\n", readings.join(","), place[0], place[1], place[2]);
+    }
+    joined
+}
+
+/// Another tool is named as the tool, and one that was mounted anew is none; a device that stands elsewhere is named where it is said to be known.
+#[test]
+fn another_tool_and_another_place_of_the_device_are_named() {
+    let folder = cell();
+    let none = [0.0; 3];
+    folder.write("old.csv", visit(&folder, none, none));
+    folder.write("tool.csv", visit(&folder, [0.03, -0.02, 0.05], none));
+    folder.write("device.csv", visit(&folder, none, [0.02, 0.0, -0.01]));
+    for (words, code, expected) in [
+        ("tool.csv", 1, "tool"),
+        ("tool.csv --tool anew", 0, "unchanged within"),
+        ("device.csv", 0, "unchanged within"),
+        ("device.csv --device known", 1, "device"),
+    ] {
+        let run = folder.run(&format!(
+            "track poecal-out/calibration.json {words} --reference old.csv --repeatability 0.05mm --history none"
+        ));
+        let verdict = run.out.lines().find(|line| line.starts_with("verdict")).unwrap_or_default();
+        println!("{words}: {verdict}");
+        assert_eq!(run.code, code, "{words}: {}{}", run.out, run.err);
+        assert!(verdict.contains(expected), "{words}: {}", run.out);
+    }
+}

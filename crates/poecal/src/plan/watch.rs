@@ -9,7 +9,7 @@ use super::experiment::{Blocks, Experiment, inverse};
 use super::options::PlannedFit;
 use super::order::Travel;
 use super::search::Search;
-use super::state::{Aim, Squares, State, Weights};
+use super::state::{Aim, Caches, Squares, State, Weights};
 use crate::distributions::f_quantile;
 use crate::error::{ErrorKind, Result};
 use crate::estimate::{Packed, Session, delivered};
@@ -33,6 +33,8 @@ const FEWEST_NUMBERS: usize = 6;
 /// Configurations to choose the next from, and of the workspace.
 const CANDIDATES: usize = 200;
 const WORKSPACE: usize = 300;
+/// Candidates among which the rows ahead are exchanged: those that gain most by themselves.
+const GAINING: usize = 50;
 /// Rows that are looked ahead.
 pub(super) const AHEAD: usize = 10;
 /// A candidate that is as near to a measured configuration, in all joints, is measured, radians.
@@ -118,6 +120,8 @@ struct Known {
     candidates: Vec<f64>,
     /// Whether each candidate is to be measured yet.
     open: Vec<bool>,
+    /// The best candidates to measure beside the rows so far, when last sought.
+    ahead: Vec<usize>,
     blocks: Blocks,
     gram: DMatrix<f64>,
     covariance: DMatrix<f64>,
@@ -193,7 +197,7 @@ impl Watch {
             self.fit(data)?;
             found.mistake = self.moved(data);
         }
-        if let Some(known) = &self.known {
+        if let Some(known) = &mut self.known {
             known.foresee(&mut found);
         }
         Ok(found)
@@ -284,6 +288,7 @@ impl Known {
             experiment,
             aim,
             open: vec![true; blocks.count()],
+            ahead: Vec::new(),
             candidates,
             blocks,
             gram: DMatrix::zeros(n, n),
@@ -446,22 +451,35 @@ impl Known {
         (step.dot(&pull) > limit).then(|| step.norm())
     }
 
-    /// Expected errors now and after more rows, and the next configuration.
-    fn foresee(&self, found: &mut WatchedRow) {
-        let Some((_, squares)) = State::new(&self.aim, &self.gram) else { return };
+    /// Expected errors now and after more rows, and the next configuration: of the best list of so many rows, which begins with that of
+    /// the row before, the one that gains most by itself.
+    fn foresee(&mut self, found: &mut WatchedRow) {
+        let Some((state, squares)) = State::new(&self.aim, &self.gram) else { return };
         found.now = Some(self.errors(&squares));
         let mut aim = self.aim.clone();
         if aim.weights.corrected > 0.0 {
             aim.weights.calibrated = 1.0 / squares.calibrated().max(f64::MIN_POSITIVE);
             aim.weights.corrected = 1.0 / squares.corrected.max(f64::MIN_POSITIVE);
         }
-        let open: Vec<usize> = (0..self.blocks.count()).filter(|&at| self.open[at]).collect();
+        let caches = Caches::new(&state, &aim, &self.blocks);
+        let mut ranked: Vec<(f64, usize)> = (0..self.blocks.count())
+            .filter(|&at| self.open[at])
+            .map(|at| (caches.gain(at, &aim.weights), at))
+            .collect();
+        ranked.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+        let begun = self.ahead.iter().copied().filter(|&at| self.open[at]);
+        let mut open: Vec<usize> = ranked.iter().take(GAINING).map(|it| it.1).chain(begun).collect();
+        open.sort_unstable();
+        open.dedup();
         let blocks = self.blocks.only(&open);
         let search = Search { aim: &aim, kept: &self.gram, blocks: &blocks, apart: &|_, _| true };
-        let chosen = search.greedy(Vec::new(), AHEAD.min(open.len()));
-        let mut each = self.candidates.chunks_exact(self.experiment.width());
-        found.next = chosen.first().and_then(|&at| each.nth(open[at])).map(<[f64]>::to_vec);
+        let begun = self.ahead.iter().filter_map(|at| open.binary_search(at).ok()).collect();
+        let chosen = search.exchange(search.greedy(begun, AHEAD.min(open.len())), 0);
         found.after = search.squares(&chosen).map(|squares| self.errors(&squares));
+        self.ahead = chosen.into_iter().map(|at| open[at]).collect();
+        let next = ranked.iter().find(|(_, at)| self.ahead.contains(at));
+        let mut each = self.candidates.chunks_exact(self.experiment.width());
+        found.next = next.and_then(|&(_, at)| each.nth(at)).map(<[f64]>::to_vec);
     }
 
     /// Errors with noise and terms as large as the rows show them.

@@ -329,7 +329,13 @@ impl Track {
     #[must_use]
     pub fn verdict(&self) -> String {
         let Some(found) = &self.explanation else {
-            return format!("unchanged within {:.3} mm", self.change_mm);
+            return match self.state {
+                State::Unchanged => format!("unchanged within {:.3} mm", self.change_mm),
+                State::Changed => {
+                    "changed, and no single cause explains it: another robot or tool, or calibrate anew"
+                        .to_owned()
+                }
+            };
         };
         let others: Vec<String> = self.alternatives.iter().map(ExplanationEntry::named).collect();
         let others = match others.as_slice() {

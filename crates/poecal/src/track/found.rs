@@ -44,7 +44,7 @@ pub struct Tracked {
     pub rows: usize,
     /// Of these, how many repeat configurations of the earlier visit.
     pub repeated: usize,
-    /// The simplest explanation that suffices; `None` of an unchanged robot.
+    /// The simplest explanation that suffices; `None` of an unchanged robot, and where none does.
     pub explanation: Option<Explanation>,
     /// Others that explain the changes nearly as well.
     pub alternatives: Vec<Explanation>,

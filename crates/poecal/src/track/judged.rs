@@ -50,7 +50,9 @@ impl Judged {
         let before = earlier.map(|it| before(file, &model, it, options)).transpose()?;
         let earlier = before.as_ref().map(|(visit, data)| (visit, data));
         let mut notes = Vec::new();
-        let pairs = earlier.and_then(|earlier| Changes::between((&visit, &data), earlier, &model.robot));
+        let pairs = earlier.and_then(|earlier| {
+            Changes::between((&visit, &data), earlier, &model.robot, options.tool_is_anew)
+        });
         let repeated = pairs.as_ref().map_or(0, |it| it.rows.len());
         let is_enough = |it: &Changes| {
             Evidence::new(&it.residual, &free(&it.jacobian, &visit, options)).left().1 >= FREEDOM

@@ -3,6 +3,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::visit::Visit;
+use crate::linalg;
 use crate::measurement::{Dataset, Observation, Quantity};
 use crate::robot::{ReadingKind, Robot};
 
@@ -81,11 +82,18 @@ fn is_same(a: &Dataset, row: u32, b: &Dataset, other: u32, robot: &Robot) -> boo
 }
 
 impl Changes {
-    /// Of a visit from an earlier one; `None` where no row repeats.
+    /// The largest standard deviation of a number, which is that of places.
+    pub(super) fn largest_sigma(&self) -> f64 {
+        self.sigma.iter().copied().fold(0.0, f64::max)
+    }
+
+    /// Of a visit from an earlier one; `None` where no row repeats. Where another place on the tool is measured, what the calibration is uncertain of
+    /// moves both places differently, and is part of the changes.
     pub(super) fn between(
         (visit, data): (&Visit, &Dataset),
         (earlier, before): (&Visit, &Dataset),
         robot: &Robot,
+        tool_is_anew: bool,
     ) -> Option<Self> {
         let (own, old) = (groups(data), groups(before));
         let (mut squares, mut freedom) = (0.0, 0.0);
@@ -105,6 +113,8 @@ impl Changes {
         let mut sigma = Vec::new();
         let mut rows = Vec::new();
         let mut jacobian = Vec::new();
+        let known = visit.by_known.as_ref().zip(earlier.by_known.as_ref()).filter(|_| tool_is_anew);
+        let mut by_known = Vec::new();
         for (group, found, numbers) in pairs {
             let start = visit.starts[group[0] as usize];
             for number in 0..numbers {
@@ -114,6 +124,10 @@ impl Changes {
                 residual.push((value - old) / deviation);
                 sigma.push(deviation);
                 jacobian.push(visit.jacobian.row(start + number) / deviation);
+                if let Some((own, old)) = known {
+                    let before = earlier.starts[found[0] as usize];
+                    by_known.push((own.row(start + number) - old.row(before + number)) / deviation);
+                }
                 for (of, rows) in [(visit, group), (earlier, found)] {
                     let (own, count) = scatter(of, rows, number);
                     squares += own;
@@ -123,9 +137,19 @@ impl Changes {
             rows.extend(group.iter().copied());
         }
         rows.sort_unstable();
+        let (mut residual, mut jacobian) = (DVector::from_vec(residual), DMatrix::from_rows(&jacobian));
+        if !by_known.is_empty() {
+            let by_known = DMatrix::from_rows(&by_known);
+            let all = DMatrix::identity(residual.len(), residual.len()) + &by_known * by_known.transpose();
+            let count = jacobian.ncols();
+            let mut both = jacobian.insert_column(count, 0.0);
+            both.set_column(count, &residual);
+            let both = linalg::whitened(all, &both)?;
+            (jacobian, residual) = (both.columns(0, count).into_owned(), both.column(count).into_owned());
+        }
         Some(Changes {
-            residual: DVector::from_vec(residual),
-            jacobian: DMatrix::from_rows(&jacobian),
+            residual,
+            jacobian,
             sigma: DVector::from_vec(sigma),
             scatter: (squares, freedom),
             rows,

@@ -1,16 +1,22 @@
 //! A visit judged: the steps in order.
 
-use super::explain::{Evidence, Tests, Tried, Verdict, explain, leave_unseen_out};
+use super::explain::{Evidence, Level, Tests, Tried, Verdict, explain, leave_unseen_out};
 use super::found::{Explanation, Tracked, explanation};
 use super::hypotheses::{free, hypotheses};
 use super::judged::{Earlier, Judged};
 use super::options::{State, TrackOptions};
 use super::pairs::Changes;
-use super::visit::Visit;
+use super::visit::{Model, Visit};
 use super::{sight, words};
 use crate::error::Result;
 use crate::io::calibration_file::CalibrationFile;
 use crate::measurement::{Dataset, Quantity};
+
+/// How many times what noise and errors of the model explain the changes may scatter beside the best explanation: beyond it no single change
+/// explains them, or the calibration is of another robot.
+const BEYOND: f64 = 5.0;
+/// Share of the changes that an explanation beyond what is linear may leave.
+const NEARLY: f64 = 0.3;
 
 /// Judges by a visit whether a robot is as it was when it was calibrated. `earlier` are the rows of the calibration, or of an earlier visit:
 /// rows that repeat their configurations are compared with them, others with the delivered model.
@@ -54,9 +60,9 @@ pub fn track(
         notes.push(words::copied());
     }
     let named = |it: &Tried| explanation(it, &hypotheses[it.at], &verdict, &model, &data);
-    let explanation = verdict.best.as_ref().map(named);
-    let alternatives: Vec<Explanation> = verdict.nearly.iter().map(named).collect();
-    notes.extend(explanation.as_ref().filter(|it| it.is_far()).map(words::far));
+    let mut explanation = verdict.best.as_ref().map(named);
+    let mut alternatives: Vec<Explanation> = verdict.nearly.iter().map(named).collect();
+    let is_far = explanation.as_ref().is_some_and(Explanation::is_far);
     let joints = sight::joints(
         &changes,
         &visit,
@@ -69,8 +75,17 @@ pub fn track(
     let gain = verdict.best.as_ref().map_or((0.0, 0), |it| (it.gain, it.rank));
     let (left_m, _) =
         in_metres(&changes, &verdict, (verdict.left.0 - gain.0, verdict.left.1 - gain.1 as f64));
+    let usual_m = usual_m(&changes, level, &model);
+    // Of a zero far off, what is not linear is left.
+    let is_nearly = is_far && left_m < NEARLY * change_m;
+    let is_unexplained = !is_nearly && noise_m > BEYOND * usual_m;
+    if is_unexplained {
+        (explanation, alternatives) = (None, Vec::new());
+        notes.push(words::unexplained(change_m, usual_m));
+    }
+    notes.extend(explanation.as_ref().filter(|_| is_far).map(words::far));
     Ok(Tracked {
-        state: if verdict.best.is_some() { State::Changed } else { State::Unchanged },
+        state: if is_unexplained || explanation.is_some() { State::Changed } else { State::Unchanged },
         judged_by,
         rows: data.len(),
         repeated,
@@ -86,6 +101,15 @@ pub fn track(
     })
 }
 
+/// Standard deviation of a coordinate, metres, that noise and errors of the model explain.
+fn usual_m(changes: &Changes, level: Level, model: &Model) -> f64 {
+    let variance = match level {
+        Level::Known(variance) => variance,
+        Level::Found(..) => 1.0,
+    };
+    model.own_m().max(changes.largest_sigma() * variance.sqrt())
+}
+
 /// Root mean square error of measured places, metres.
 fn error_m(visit: &Visit) -> f64 {
     let is_place = visit.quantities.contains(&Quantity::Position);
@@ -95,7 +119,6 @@ fn error_m(visit: &Visit) -> f64 {
 /// Root mean square change of places in metres from squares in variances, and the standard deviation of a coordinate.
 fn in_metres(changes: &Changes, verdict: &Verdict, (squares, _): (f64, f64)) -> (f64, f64) {
     let count = changes.residual.len().max(1) as f64;
-    let mean: f64 = changes.sigma.iter().copied().fold(0.0, f64::max);
-    let sigma = mean * verdict.variance.sqrt();
-    ((3.0 * squares.max(0.0) / count).sqrt() * mean, sigma)
+    let largest = changes.largest_sigma();
+    ((3.0 * squares.max(0.0) / count).sqrt() * largest, largest * verdict.variance.sqrt())
 }

@@ -43,6 +43,16 @@ pub(super) fn wider(is_stated: bool, times: f64) -> String {
     }
 }
 
+/// That no single change explains what is seen.
+pub(super) fn unexplained(change_m: f64, usual_m: f64) -> String {
+    format!(
+        "the rows are {:.3} mm off (RMS), where errors of the model and noise explain {:.3} mm a coordinate, and no change of one joint, the tool or the \
+         device explains the rest: if the calibration is of this robot and this tool, calibrate anew",
+        1e3 * change_m,
+        1e3 * usual_m
+    )
+}
+
 /// That a visit is a copy of the rows before.
 pub(super) fn copied() -> String {
     "the rows are those before to the last digit, a copy: nothing was measured anew".to_owned()

@@ -4,6 +4,7 @@
 //! `POECAL_TRIALS` says how many trials, as everywhere.
 
 mod disk;
+mod ledger;
 mod operations;
 
 use std::collections::BTreeMap;

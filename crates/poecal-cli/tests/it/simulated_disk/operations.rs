@@ -135,8 +135,17 @@ impl Disk for SimulatedDisk {
         Ok(Box::new(Handle { disk: self.clone(), number, at: 0 }))
     }
 
-    fn append(&self, _: &Path) -> io::Result<Box<dyn Output>> {
-        Err(error(ErrorKind::Unsupported))
+    fn append(&self, path: &Path) -> io::Result<Box<dyn Output>> {
+        let there = {
+            let mut state = self.state();
+            state.begin()?;
+            state.tree.get(&whole(path)).copied()
+        };
+        match there {
+            Some(Node::File(number)) => Ok(Box::new(Handle { disk: self.clone(), number, at: 0 })),
+            Some(Node::Folder) => Err(error(ErrorKind::IsADirectory)),
+            None => self.create(path),
+        }
     }
 
     fn stream(&self, _: &Path) -> io::Result<Box<dyn Output>> {
