@@ -41,7 +41,7 @@ pub struct Plan {
     pub expected: ExpectedErrors,
     /// Median expected errors of as many random configurations.
     pub random: ExpectedErrors,
-    /// Expected errors of fewer and more planned configurations.
+    /// Expected errors of fewer and more planned configurations, where they were wanted.
     pub curve: Vec<CurvePoint>,
     /// Number of configurations from which 10 more gain less than 5 %.
     pub enough: Option<usize>,
@@ -257,7 +257,7 @@ impl<'a> Planner<'a> {
         }
         let (squares, log_determinant) = self.squares(&rows)?;
         let expected = ExpectedErrors::new(&self.experiment, &squares);
-        let curve = self.curve(new, &squares)?;
+        let curve = if self.options.with_curve { self.curve(new, &squares)? } else { Vec::new() };
         let enough = enough(&curve);
         let rows = self.rows(readings, &origins);
         let travel = Travel::new(&self.experiment.robot, self.experiment.length_m());

@@ -86,6 +86,8 @@ pub struct PlanOptions {
     pub kept: Vec<PlannedRow>,
     /// Indices of kept rows that could not be measured: new ones take their places, not within 10° of them, and the plan has all rows in their order.
     pub replaced: Vec<usize>,
+    /// Whether lists of other lengths are planned too, which shows how many are enough and takes as long as the list.
+    pub with_curve: bool,
     /// Seed of what is random.
     pub seed: u64,
 }
@@ -102,6 +104,7 @@ impl Default for PlanOptions {
             conditions: Conditions::default(),
             kept: Vec::new(),
             replaced: Vec::new(),
+            with_curve: true,
             seed: 1,
         }
     }

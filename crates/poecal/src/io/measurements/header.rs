@@ -1,6 +1,6 @@
 //! Header: the line of column names, and the line of units that may follow it.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use super::cells::{Cell, Separator, character_column, split, split_line};
@@ -338,7 +338,10 @@ impl<'a> Header<'a> {
             let named = self.cells.iter().filter(|cell| !cell.name.is_empty());
             named.map(|cell| cell.name.as_str()).filter(|found| !is_known(found))
         };
-        if let Some(twice) = names().find(|found| self.count(found) > 1) {
+        // There may be very many columns.
+        let mut seen = BTreeSet::new();
+        let again: BTreeSet<&str> = names().filter(|found| !seen.insert(*found)).collect();
+        if let Some(twice) = names().find(|found| again.contains(found)) {
             return format!("`{twice}` is the name of {} columns", self.count(twice));
         }
         let with_unit = names().find_map(|found| Some((found, unit_in_name(found, name)?)));

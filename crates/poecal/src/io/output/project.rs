@@ -24,7 +24,7 @@ const PLANNED_ROWS: RangeInclusive<usize> = 8..=200;
 /// How far joints stay from their limits, radians and metres: controllers stop at these.
 const MARGIN: [f64; 2] = [0.035, 0.002];
 /// Candidates of a list: few, since it is a beginning.
-const CANDIDATES: usize = 800;
+const CANDIDATES: usize = 400;
 
 /// Contents of a project folder.
 #[derive(Clone, Copy, Debug)]
@@ -87,6 +87,7 @@ impl Project<'_> {
                 capsules: capsules_of(self.model).0,
                 ..Conditions::default()
             },
+            with_curve: false,
             seed: self.seed,
             ..PlanOptions::default()
         };
