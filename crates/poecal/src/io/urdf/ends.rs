@@ -48,6 +48,50 @@ pub(super) fn ends(tree: &Tree, base: Option<usize>) -> Vec<End> {
     ends
 }
 
+/// The links below a moving joint from which several of the ends lead on, such as a flange with two tools, the nearest to the ends first; each
+/// with the number of moving joints above it.
+pub(super) fn forks(tree: &Tree, base: Option<usize>, ends: &[End]) -> Vec<(usize, usize)> {
+    let mut ways = vec![0_usize; tree.links.len()];
+    for end in ends {
+        let mut at = end.link;
+        while base != Some(at)
+            && let Some((_, joint)) = tree.above(at)
+        {
+            at = joint.parent;
+            ways[at] += 1;
+            if ways[at] > 1 {
+                // Its own way up is counted.
+                break;
+            }
+        }
+    }
+    // Joints above links, each of which is found once.
+    let mut above: Vec<Option<usize>> = vec![None; tree.links.len()];
+    let mut forks: Vec<(usize, usize)> = Vec::new();
+    for fork in (0..ways.len()).filter(|link| ways[*link] > 1) {
+        let (mut way, mut at) = (Vec::new(), fork);
+        let mut count = loop {
+            match (above[at], tree.above(at).filter(|_| base != Some(at))) {
+                (Some(known), _) => break known,
+                (None, Some((_, joint))) => {
+                    way.push((at, joint.kind.moves()));
+                    at = joint.parent;
+                }
+                (None, None) => break 0,
+            }
+        };
+        for (link, moves) in way.into_iter().rev() {
+            count += usize::from(moves);
+            above[link] = Some(count);
+        }
+        if count > 0 {
+            forks.push((fork, count));
+        }
+    }
+    forks.sort_by_key(|it| std::cmp::Reverse(it.1));
+    forks
+}
+
 enum Step {
     To(usize, Option<usize>),
     Back(usize),
