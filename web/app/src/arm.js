@@ -3,7 +3,7 @@ import { add, configure, scale } from "../../src/kinematics.js";
 import { colour } from "../../src/theme.js";
 import { element } from "./dom.js";
 
-const ASPECT = 0.72;
+const ASPECT = 0.6;
 /** Angle (radians) that a key turns the eye. */
 const TURN = Math.PI / 24;
 /** Placeholders for "no limits" would leave a slider without a use. */

@@ -28,7 +28,9 @@ function pullDown(field, columns, chosen) {
   const offered = field.choices ? field.choices.map(({ value, text }) => [value, text]) : ofColumns();
   const select = element("select", { id: `column-${field.key}`, onchange: () => chosen(field.key, select.value) }, offered.map(([value, textContent]) => element("option", { value, textContent, selected: value === field.chosen })));
   if (field.required && !field.chosen) select.setAttribute("aria-invalid", "true");
-  return element("div", { class: "option" }, element("label", { htmlFor: select.id, textContent: field.label }), select);
+  // Words are longer than names.
+  const long = field.choices?.some(({ text }) => text.length > 24);
+  return element("div", { class: long ? "option long" : "option" }, element("label", { htmlFor: select.id, textContent: field.label }), select);
 }
 
 /** Shows a guess in `place`: `chosen` is called with a field and its column, `use` to read the file like this. */
@@ -49,7 +51,7 @@ export function showColumns(place, { file, guess, used, open }, chosen, use) {
     element(
       "div",
       { class: "row" },
-      element("button", { type: "button", class: "main", id: "use-columns", disabled: used || guess.missing.length > 0, textContent: used ? "The file is read like this" : "Read the file like this", onclick: use }),
+      element("button", { type: "button", class: "main", id: "use-columns", disabled: used, textContent: used ? "The file is read like this" : "Read the file like this", onclick: use }),
       element("ul", { class: "downloads", "aria-label": "Mapping to save" }, download(MAPPING, mapping)),
       element("span", { class: "note", textContent: `The mapping for the program: --columns ${MAPPING}` }),
     ),

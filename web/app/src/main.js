@@ -108,7 +108,7 @@ async function look(onwards = false) {
   drawRobot(understood?.model);
   const told = messages(result.err);
   const isOfColumns = told.some(({ kind, text }) => kind === "error" && /--columns|no column|\bunit\b/.test(text));
-  const asks = (await offerColumns(Boolean(understood), isOfColumns)) && isOfColumns;
+  const asks = (await offerColumns(Boolean(understood), told, isOfColumns)) && isOfColumns;
   for (const text of check?.warnings ?? []) if (!told.some((it) => it.text === text)) told.push({ kind: "warning", text });
   showMessages([...told, ...naming()], files);
   if (tips.links.length && result.code !== 0 && !understood) say("The model ends in several links: choose the last one.");
@@ -139,9 +139,10 @@ function offerTips(links) {
 const made = () => having("columns").find((file) => file.made);
 
 /** Offers pull-downs for the columns of the first table, unless a mapping was dropped; whether they are there. */
-async function offerColumns(understood, open) {
+async function offerColumns(understood, told, open) {
   const place = byId("columns");
-  const table = having("measurements")[0] ?? having("validate")[0];
+  const tables = [...having("measurements"), ...having("validate")];
+  const table = tables.find(({ name }) => told.some(({ text }) => text.startsWith(`${name}:`))) ?? tables[0];
   const [model] = having("model");
   place.hidden = true;
   if (!understood || !table || (having("columns").length && !made())) return false;

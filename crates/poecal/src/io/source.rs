@@ -39,7 +39,7 @@ const fn form(starts: &'static [&'static [u8]], ends: &'static [&'static str], w
     Form { starts, ends, words }
 }
 
-/// Forms that are not read as a text. What is told by names comes first: many of these begin like an archive.
+/// Forms that are not read as a text.
 const FORMS: [Form; 21] = [
     form(&[b"ISO-10303-21;"], &["step", "stp"], "a STEP file, which has shapes and no joints"),
     form(&[], &["igs", "iges"], "an IGES file, which has shapes and no joints"),
@@ -97,12 +97,9 @@ const FORMS: [Form; 21] = [
 ];
 
 impl Form {
-    /// The form of a file by its beginning, or by its name.
-    fn of(path: &Path, head: &[u8]) -> Option<&'static Form> {
-        let end = path.extension().map(|it| it.to_string_lossy().to_lowercase()).unwrap_or_default();
-        let begins = |it: &&Form| it.starts.iter().any(|start| head.starts_with(start));
-        let is_named = |it: &&Form| it.ends.contains(&end.as_str());
-        FORMS.iter().find(is_named).or_else(|| FORMS.iter().find(begins))
+    /// The error of a file of this form.
+    fn error(&self, path: &Path, expected: &str) -> Error {
+        ErrorKind::File.error(format!("found {}, expected {expected}", self.words)).in_file(path)
     }
 }
 
@@ -123,14 +120,18 @@ pub(super) fn open(path: &Path, expected: &str, largest: u64) -> Result<Input> {
     Ok(input)
 }
 
-/// Refuses a file that is no text, by its first bytes or its name.
+/// Refuses a file that is no text, by its name or its first bytes.
 pub(super) fn refuse_other_forms(path: &Path, expected: &str, head: &[u8]) -> Result<()> {
-    match Form::of(path, head) {
-        Some(Form { words, .. }) => {
-            Err(ErrorKind::File.error(format!("found {words}, expected {expected}")).in_file(path))
-        }
-        None => Ok(()),
-    }
+    refuse_named(path, expected)?;
+    let begins = |it: &&Form| it.starts.iter().any(|start| head.starts_with(start));
+    FORMS.iter().find(begins).map_or(Ok(()), |form| Err(form.error(path, expected)))
+}
+
+/// Refuses a file that is no text, by its name alone: many of these begin like a workbook.
+pub(super) fn refuse_named(path: &Path, expected: &str) -> Result<()> {
+    let end = path.extension().map(|it| it.to_string_lossy().to_lowercase()).unwrap_or_default();
+    let named = FORMS.iter().find(|form| form.ends.contains(&end.as_str()));
+    named.map_or(Ok(()), |form| Err(form.error(path, expected)))
 }
 
 /// The same of any form, with its first bytes.

@@ -179,6 +179,39 @@ mod tests {
         )
     }
 
+    /// A flange with a tool and a camera, beside a second arm: links that moving joints are above, where the ways part.
+    #[test]
+    fn links_before_a_fork_can_be_chosen() {
+        let fixed =
+            |name: &str, parent: &str, child: &str| joint(name, parent, child).replace("continuous", "fixed");
+        let arm =
+            joint("j1", "base", "torso") + &joint("j2", "torso", "wrist") + &fixed("f", "wrist", "flange");
+        let ends =
+            fixed("t", "flange", "tool0") + &fixed("c", "flange", "camera") + &joint("j3", "torso", "left");
+        let urdf = format!("<robot name=\"r\"><link name=\"base\"/>{arm}{ends}</robot>");
+        let error = UrdfDocument::parse(&urdf, "r.urdf", &ChainSelection::default()).unwrap_err();
+        assert!(
+            error.message().starts_with(
+                "found 3 end links with a moving joint above them (`tool0`, `camera`, `left`), expected one: choose it, or a link before they part \
+                 (`flange`, `torso`), with --tip-link"
+            ),
+            "{error}"
+        );
+        let choices = error.choices().unwrap();
+        assert_eq!(
+            (choices.option, choices.of.join(" ")),
+            ("--tip-link", "flange torso tool0 camera left".to_owned())
+        );
+        for (link, joints) in [("flange", 2), ("torso", 1), ("left", 2)] {
+            let selection = ChainSelection { tip_link: Some(link.to_owned()), ..ChainSelection::default() };
+            assert_eq!(
+                UrdfDocument::parse(&urdf, "r.urdf", &selection).unwrap().robot().joints.len(),
+                joints,
+                "{link}"
+            );
+        }
+    }
+
     /// A star, and a comb: each tooth's way to the root is long.
     #[test]
     fn the_ends_of_a_tree_of_very_many_branches_are_found_by_one_walk() {

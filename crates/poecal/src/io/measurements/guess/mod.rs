@@ -134,7 +134,7 @@ fn guess_at(path: &Path, robot: &Robot, chosen: &[(String, String)]) -> Result<C
     let mut table = Table::open(path, blocks, &ColumnMap::default())?;
     let (cells, largest) = first_rows(&mut table)?;
     let sample = Sample::new(&table.header, cells, largest);
-    let draft = sample.draft(robot, chosen).map_err(|error| error.in_file(path))?;
+    let draft = sample.draft(robot, chosen)?;
     Ok(sample.guess(&draft, path))
 }
 
@@ -256,14 +256,7 @@ impl<'h> Sample<'h> {
             };
             return Ok(());
         }
-        let known: Vec<&str> = self.columns.iter().map(|it| it.name.as_str()).collect();
-        if !value.is_empty() && !known.contains(&value) {
-            return ErrorKind::Option.refuse(format!(
-                "--column: found no column `{value}` for `{key}`, expected one of the file, {}",
-                nearest_or_all(value, &known)
-            ));
-        }
-        let column = Some(value.to_owned()).filter(|it| !it.is_empty());
+        let column = if value.is_empty() { None } else { Some(self.known(value, key)?) };
         let keys: Vec<String> = fields(draft).into_iter().map(|it| it.key).collect();
         let part = key.strip_prefix("orientation.").and_then(|it| it.parse::<usize>().ok()?.checked_sub(1));
         let axis = ["x", "y", "z"].iter().position(|it| *it == key);
@@ -288,6 +281,18 @@ impl<'h> Sample<'h> {
             }
         }
         Ok(())
+    }
+
+    /// A column of the file by its name, with or without its unit.
+    fn known(&self, name: &str, key: &str) -> Result<String> {
+        let known: Vec<&str> = self.columns.iter().map(|it| it.name.as_str()).collect();
+        let found = self.index(name).or_else(|| self.names.named(name)).and_then(|it| self.name(it));
+        found.ok_or_else(|| {
+            ErrorKind::Option.error(format!(
+                "--column: found no column `{name}` for `{key}`, expected one of the file, {}",
+                nearest_or_all(name, &known)
+            ))
+        })
     }
 
     fn named_parts(&self, form: OrientationForm, near: Option<&str>) -> Vec<Option<String>> {

@@ -153,6 +153,7 @@ impl Opening<'_> {
             return Blocks::open_or_join(path, expected).map(|it| Opened::Own(Box::new(it)));
         }
         let (input, head) = source::open_any(path, expected, LARGEST_TABLE)?;
+        source::refuse_named(path, expected)?;
         #[cfg(feature = "workbooks")]
         if workbook::is_one(&head) {
             return self.workbook(path, expected, input);
