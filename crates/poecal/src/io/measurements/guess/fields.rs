@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::Draft;
+use super::draft::Draft;
 use crate::io::measurements::orientation::OrientationForm;
 use crate::io::measurements::units::units_of;
 use crate::unit::Unit;

@@ -1,15 +1,16 @@
 //! Which columns of a file are the joints' readings and what was measured: a guess for a person to look over and correct, and the mapping file
 //! that it makes.
 
+mod draft;
 mod fields;
 mod names;
 mod text;
 
-use std::collections::BTreeMap;
 use std::path::Path;
 
 use serde::Serialize;
 
+use self::draft::Draft;
 use self::fields::fields;
 pub use self::fields::{MappedChoice, MappedField};
 use self::names::Names;
@@ -58,36 +59,6 @@ pub struct FoundColumn {
     pub name: String,
     /// Its first cells.
     pub cells: Vec<String>,
-}
-
-/// What is chosen.
-#[derive(Default)]
-struct Draft {
-    /// Joints, what they are measured in, and their columns.
-    joints: Vec<(String, Unit, Option<String>)>,
-    position: [Option<String>; 3],
-    form: Option<String>,
-    parts: Vec<Option<String>>,
-    /// Units by the names of their fields; none where the file states them.
-    units: BTreeMap<&'static str, Option<NamedUnit>>,
-    is_inverted: bool,
-    target: Option<String>,
-    id: Option<String>,
-    /// Columns with a name of ours that are not to be read.
-    left_out: Vec<String>,
-}
-
-impl Draft {
-    fn orientation(&self) -> Option<OrientationForm> {
-        self.form.as_ref()?.parse().ok()
-    }
-
-    /// All columns that something is read from.
-    fn used(&self) -> impl Iterator<Item = &String> {
-        let joints = self.joints.iter().map(|it| &it.2);
-        let others = self.position.iter().chain(&self.parts).chain([&self.target, &self.id]);
-        joints.chain(others).flatten()
-    }
 }
 
 /// A table's first rows.
