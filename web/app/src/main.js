@@ -176,8 +176,7 @@ async function calibrate(asked = false) {
   const started = performance.now();
   const result = await run(line, read(), "calibrating");
   if (!result) return;
-  const told = messages(result.err);
-  showMessages(told, files);
+  showMessages([...messages(result.err), ...naming()], files);
   calibration = result.files.find(([path]) => path.endsWith("calibration.json"))?.[1];
   if (!calibration) {
     if (result.out) showText("What the program prints", result.out);
@@ -199,7 +198,7 @@ async function judge() {
   byId("line").textContent = shown(line);
   const result = await run(line, read(), "judging");
   if (!result) return;
-  showMessages(messages(result.err), files);
+  showMessages([...messages(result.err), ...naming()], files);
   if (!result.out) return say("There is no result.");
   showText("The calibration on these measurements", result.out);
   say("Judged.");
