@@ -3,6 +3,7 @@
 import re
 import subprocess
 import sys
+from fnmatch import fnmatch
 from pathlib import Path
 
 import pytest
@@ -46,6 +47,16 @@ def test_what_is_run_is_there(path):
             assert (ROOT / name).exists(), f"{path.name} names {name}, which is not there"
     names = [step["uses"] for step in steps(path) if "uses" in step]
     assert all(re.search(r"@[0-9a-f]{40}$", name) for name in names), "actions are named by commit"
+
+
+def test_the_page_is_in_the_release():
+    jobs = yaml.safe_load((ROOT / ".github/workflows/packages.yml").read_text())["jobs"]
+    uploads = [step["with"] for step in jobs["page"]["steps"] if "upload-artifact" in step.get("uses", "")]
+    assert [it["path"].split() for it in uploads] == [["web/app/dist/poecal.html", "web/app/dist/poecal.html.sha256"]]
+    release = yaml.safe_load((ROOT / ".github/workflows/release.yml").read_text())["jobs"]["programs"]["steps"]
+    [taken] = [step["with"] for step in release if "download-artifact" in step.get("uses", "")]
+    assert fnmatch(uploads[0]["name"], taken["pattern"]) and taken["path"] == "dist"
+    assert any("gh release create" in step.get("run", "") and "dist/*" in step["run"] for step in release)
 
 
 def test_the_version_is_the_same_everywhere():

@@ -16,6 +16,11 @@ function changed() {
   for (const listener of listeners) listener();
 }
 
+/** What is chosen: system, light or dark. */
+export function themeOf() {
+  return document.documentElement.dataset.theme ?? "system";
+}
+
 /** The buttons. */
 export function themeSwitch(place) {
   const root = document.documentElement;

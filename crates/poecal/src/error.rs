@@ -92,6 +92,27 @@ struct Inner {
     kind: ErrorKind,
     place: Option<Place>,
     message: String,
+    choices: Option<Choices>,
+}
+
+/// What an option could be, where nothing else decides.
+///
+/// ```
+/// use poecal::{ChainSelection, Model};
+/// let two = r#"<robot name="r"><link name="a"/><link name="b"/><link name="c"/>
+///   <joint name="j" type="continuous"><parent link="a"/><child link="b"/></joint>
+///   <joint name="k" type="continuous"><parent link="a"/><child link="c"/></joint></robot>"#;
+/// let error = Model::parse(two, "r.urdf", &ChainSelection::default()).err().ok_or("two ends")?;
+/// let choices = error.choices().ok_or("choices")?;
+/// assert_eq!((choices.option, choices.of.as_slice()), ("--tip-link", ["b".to_owned(), "c".to_owned()].as_slice()));
+/// # Ok::<(), &str>(())
+/// ```
+#[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
+pub struct Choices {
+    /// The option, as it is typed.
+    pub option: &'static str,
+    /// Its possible values.
+    pub of: Vec<String>,
 }
 
 impl Error {
@@ -99,7 +120,7 @@ impl Error {
     /// quotes are written out, so that it is one line and moves no terminal's cursor.
     pub fn new(kind: ErrorKind, message: impl Into<String>) -> Self {
         let message = with_names_shown(message.into());
-        Error(Box::new(Inner { kind, place: None, message: visible(&message).into_owned() }))
+        Error(Box::new(Inner { kind, place: None, message: visible(&message).into_owned(), choices: None }))
     }
 
     /// The same error at a line and column (both from 1) of a file.
@@ -147,6 +168,18 @@ impl Error {
         self.0.message.push_str("; ");
         self.0.message.push_str(&visible(more));
         self
+    }
+
+    /// The same error, with what could be chosen.
+    pub(crate) fn with_choices(mut self, option: &'static str, of: Vec<String>) -> Self {
+        self.0.choices = Some(Choices { option, of });
+        self
+    }
+
+    /// What could be chosen, where one of several things is missing.
+    #[must_use]
+    pub fn choices(&self) -> Option<&Choices> {
+        self.0.choices.as_ref()
     }
 
     /// The kind of error.

@@ -124,7 +124,7 @@ pub use calibration::{
     Accuracy, CalibratedTarget, Calibration, CalibrationOptions, DeviceFrameKnowledge, Formulation,
     Judgement, Loss, ModelAccuracy, Robust, SetAccuracy, Statistic, Trust, Verdict, calibrate, judge,
 };
-pub use error::{Error, ErrorKind, Result};
+pub use error::{Choices, Error, ErrorKind, Result};
 pub use forensics::Diagnosis;
 pub use io::calibration_file::{CalibrationFile, Inputs};
 pub use io::measurements::{MeasurementFile, ReadOptions, read as read_measurements};

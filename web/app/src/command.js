@@ -35,6 +35,9 @@ function among(options, allowed) {
   return kept;
 }
 
+/** Those of the options that choose the chain. */
+export const chainOf = (options) => among(options, ["--base-link", "--tip-link"]);
+
 const names = (files, role) => files.filter((file) => file.role === role).map((file) => file.name);
 
 /** A folder for the results that no file of the input is in. */

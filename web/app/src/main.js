@@ -1,11 +1,14 @@
 // The page: files in, the program's words about them, a calibration, and its files out.
-import { themeSwitch } from "../../src/theme.js";
-import { calibrateWords, checkWords, shown, validateWords } from "./command.js";
-import { byId, counted } from "./dom.js";
+import { onColours, themeSwitch } from "../../src/theme.js";
+import { showRobot } from "./arm.js";
+import { MAPPING, choose, guessWords, showColumns } from "./columns.js";
+import { calibrateWords, chainOf, checkWords, shown, validateWords } from "./command.js";
+import { byId, counted, element } from "./dom.js";
 import { Ended, Engine } from "./engine.js";
 import { offerExports } from "./exports.js";
+import { named } from "./foreign.js";
 import { fromInput, fromText, fromTransfer } from "./intake.js";
-import { messages } from "./sentences.js";
+import { messages, verdictOf } from "./sentences.js";
 import { options } from "./options.js";
 import { unpacked } from "./packed.js";
 import { busy, say, showMessages } from "./progress.js";
@@ -19,6 +22,14 @@ let files = [];
 let calibration;
 /** What the program found in the files when it was last asked. */
 let found = new Map();
+/** Sentences of files that are read in no way, by their names. */
+let foreign = new Map();
+/** What was chosen of the columns of a file. */
+let columns = { file: undefined, chosen: [] };
+/** Last links that the model's chain can have, and of which model. */
+let tips = { of: undefined, links: [] };
+let redrawRobot;
+onColours(() => redrawRobot?.());
 const words = options(byId("controls"), () => {
   clearResult();
   look();
@@ -31,6 +42,9 @@ const read = () => files.filter((file) => file.role !== "unused" || file.bytes.l
 const having = (role) => files.filter((file) => file.role === role);
 /** Whether the model is a calibration, which other measurements can judge. */
 const judges = () => having("model").some(({ name, bytes }) => /\.json$/i.test(name) && /"schema"\s*:\s*"poecal-calibration/.test(new TextDecoder().decode(bytes.subarray(0, 1000))));
+
+/** Messages of files that are named only, since they are read in no way. */
+const naming = () => having("unused").flatMap(({ name }) => (foreign.has(name) ? [{ kind: having("model").length ? "warning" : "error", text: foreign.get(name) }] : []));
 
 /** Runs a command line; none if it was ended, or if the program had a defect, which is then told. */
 async function run(line, given, doing) {
@@ -74,8 +88,9 @@ async function look(onwards = false) {
   byId("line").textContent = lacking ? "" : shown(calibrateWords(files, words()));
   if (refused || !having("model").length) {
     showFiles(byId("list"), files, new Map(), change);
-    showMessages(refused ? [{ kind: "error", text: lacking }] : [], files);
+    showMessages([...(refused ? [{ kind: "error", text: lacking }] : []), ...naming()], files);
     say(refused ? "This cannot be calibrated yet." : lacking);
+    for (const id of ["robot", "columns", "tip"]) byId(id).hidden = true;
     busy(undefined);
     return;
   }
@@ -86,15 +101,72 @@ async function look(onwards = false) {
   const check = result.code === 0 ? JSON.parse(result.out) : undefined;
   // A model is shown also where the tables beside it are refused.
   const alone = check ? undefined : await run([...checkWords(having("model"), words()), "--json"], having("model"), "reading");
-  found = findings(check ?? (alone?.code === 0 ? JSON.parse(alone.out) : undefined));
+  const understood = check ?? (alone?.code === 0 ? JSON.parse(alone.out) : undefined);
+  found = findings(understood);
   showFiles(byId("list"), files, found, change);
+  offerTips(alone?.code && alone.out ? JSON.parse(alone.out).choices.of : undefined);
+  drawRobot(understood?.model);
   const told = messages(result.err);
+  const isOfColumns = told.some(({ kind, text }) => kind === "error" && /--columns|no column|\bunit\b/.test(text));
+  const asks = (await offerColumns(Boolean(understood), told, isOfColumns)) && isOfColumns;
   for (const text of check?.warnings ?? []) if (!told.some((it) => it.text === text)) told.push({ kind: "warning", text });
-  showMessages(told, files);
-  if (result.code !== 0) say("The files are not understood yet.");
+  showMessages([...told, ...naming()], files);
+  if (tips.links.length && result.code !== 0 && !understood) say("The model ends in several links: choose the last one.");
+  else if (result.code !== 0) say(asks ? "The files are not understood yet: choose which column is which." : "The files are not understood yet.");
   else if (lacking) say(lacking);
   else if (onwards && !judges()) await calibrate();
   else say(`Understood: ${counted(check.files.reduce((sum, file) => sum + file.rows, 0), "row")}. Ready to ${judges() ? "judge the calibration, or to calibrate again" : "calibrate"}.`);
+}
+
+/** Shows the arm of a model that is understood. */
+function drawRobot(model) {
+  byId("robot").hidden = !model || !byId("result").hidden;
+  redrawRobot = undefined;
+  if (model) redrawRobot = showRobot(byId("drawn"), model);
+}
+
+/** Offers the last links that the chain can have, as long as the model is the same. */
+function offerTips(links) {
+  const [model] = having("model");
+  if (links) tips = { of: model.bytes, links };
+  if (tips.of !== model.bytes) tips = { of: undefined, links: [] };
+  byId("tip").hidden = !tips.links.length;
+  const field = byId("option--tip-link");
+  byId("tips").replaceChildren(...["", ...tips.links].map((value) => element("option", { value, textContent: value || "choose a link", selected: value === field.value.trim() })));
+}
+
+/** The mapping that this page made, if it is used. */
+const made = () => having("columns").find((file) => file.made);
+
+/** Offers pull-downs for the columns of the first table, unless a mapping was dropped; whether they are there. */
+async function offerColumns(understood, told, open) {
+  const place = byId("columns");
+  const tables = [...having("measurements"), ...having("validate")];
+  const table = tables.find(({ name }) => told.some(({ text }) => text.startsWith(`${name}:`))) ?? tables[0];
+  const [model] = having("model");
+  place.hidden = true;
+  if (!understood || !table || (having("columns").length && !made())) return false;
+  if (columns.file !== table.name) columns = { file: table.name, chosen: [] };
+  const result = await run(guessWords(model.name, table.name, columns.chosen, chainOf(words())), [model, table], "reading");
+  // What has no columns of its own has none to choose.
+  if (result?.code !== 0) return false;
+  const guess = JSON.parse(result.out);
+  const read = () => {
+    const bytes = new TextEncoder().encode(guess.mapping);
+    files = [...files.filter((file) => file.name !== MAPPING), { name: MAPPING, bytes, role: "columns", made: true }];
+    clearResult();
+    look(true);
+  };
+  const take = async (key, value) => {
+    columns.chosen = choose(columns.chosen, key, value);
+    // What was read otherwise counts no longer.
+    if (made()) files = files.filter((file) => file !== made());
+    clearResult();
+    look();
+  };
+  const used = Boolean(made()) && new TextDecoder().decode(made().bytes) === guess.mapping;
+  showColumns(place, { file: table.name, guess, used, open: open || (columns.chosen.length > 0 && !used) }, take, read);
+  return true;
 }
 
 async function calibrate(asked = false) {
@@ -104,8 +176,7 @@ async function calibrate(asked = false) {
   const started = performance.now();
   const result = await run(line, read(), "calibrating");
   if (!result) return;
-  const told = messages(result.err);
-  showMessages(told, files);
+  showMessages([...messages(result.err), ...naming()], files);
   calibration = result.files.find(([path]) => path.endsWith("calibration.json"))?.[1];
   if (!calibration) {
     if (result.out) showText("What the program prints", result.out);
@@ -115,9 +186,9 @@ async function calibrate(asked = false) {
   }
   showPrinted("What the program prints", result.out, result.code !== 0);
   showCalibration(result.files);
-  const { level } = JSON.parse(new TextDecoder().decode(calibration)).verdict;
-  const verdict = { good: "good", inside_sampled_range: "good inside the sampled range", do_not_use: "do not use" }[level] ?? level;
-  say(`Calibrated in ${((performance.now() - started) / 1000).toFixed(1)} s; the verdict: ${verdict}.`);
+  byId("robot").hidden = true;
+  const verdict = verdictOf(result.out);
+  say(`Calibrated in ${((performance.now() - started) / 1000).toFixed(1)} s${verdict ? `; the verdict: ${verdict}` : ""}.`);
   if (asked) byId("result-title").focus();
 }
 
@@ -127,7 +198,7 @@ async function judge() {
   byId("line").textContent = shown(line);
   const result = await run(line, read(), "judging");
   if (!result) return;
-  showMessages(messages(result.err), files);
+  showMessages([...messages(result.err), ...naming()], files);
   if (!result.out) return say("There is no result.");
   showText("The calibration on these measurements", result.out);
   say("Judged.");
@@ -135,11 +206,14 @@ async function judge() {
 }
 
 /** Takes files in, in place of those of the same names. */
-function add(taken) {
+async function add(taken) {
   if (!taken.length) return;
+  const sentences = await nameForeign(taken);
+  for (const { name } of taken) foreign.delete(name);
+  for (const [name, text] of sentences) foreign.set(name, text);
   // A file that comes again keeps its role.
   const roles = new Map(files.map((file) => [file.name, file.role]));
-  const added = taken.map(({ name, bytes, whole }) => ({ name, bytes, role: roles.get(name) ?? guess(name, bytes, whole) }));
+  const added = taken.map(({ name, bytes, whole }) => ({ name, bytes, role: roles.get(name) ?? (sentences.has(name) ? "unused" : guess(name, bytes, whole)) }));
   files = [...files.filter((file) => !added.some((it) => it.name === file.name)), ...added];
   for (const file of besideUrdf(added.filter((it) => it.role === "model"))) file.role = "unused";
   // A new model takes the place of the one before, and with measurements of its own that of all measurements.
@@ -149,6 +223,16 @@ function add(taken) {
   for (const settings of having("settings")) for (const [file, role] of bySettings(settings, files)) file.role = role;
   clearResult();
   return look(true);
+}
+
+/** What the program says of files that it reads in no way. */
+async function nameForeign(taken) {
+  try {
+    return await named(engine, taken);
+  } catch {
+    // A run was ended, or the program cannot start, which is told when it is asked next.
+    return new Map();
+  }
 }
 
 function change(file, role) {
@@ -206,6 +290,10 @@ function wire() {
     const example = JSON.parse(new TextDecoder().decode(await unpacked("examples")));
     files = [];
     add(Object.entries(example).map(([name, text]) => ({ name, bytes: new TextEncoder().encode(text), whole: false })));
+  });
+  byId("tips").addEventListener("change", ({ target }) => {
+    byId("option--tip-link").value = target.value;
+    byId("option--tip-link").dispatchEvent(new Event("change"));
   });
   byId("calibrate").addEventListener("click", () => calibrate(true));
   byId("judge").addEventListener("click", judge);

@@ -1,5 +1,6 @@
 // What a run wrote: the report, the files to download, and the forms for controllers, drivers and simulators.
 import { byId, element, size } from "./dom.js";
+import { onColours, themeOf } from "../../src/theme.js";
 import { zip } from "./zip.js";
 
 const KINDS = { html: "text/html", json: "application/json", csv: "text/csv", urdf: "application/xml" };
@@ -25,11 +26,25 @@ export function download(path, content) {
 const ORDER = ["calibrated.urdf", "calibration.json", "report.html", "residuals.csv"];
 const place = (path) => (ORDER.includes(last(path)) ? ORDER.indexOf(last(path)) : ORDER.length);
 
+/** The report has the colours of the page, whose switch is the only one. */
+function follow(report) {
+  const own = report.querySelector(".theme");
+  if (!own) return;
+  own.hidden = true;
+  const take = () => [...own.querySelectorAll("button")].find((it) => it.textContent === themeOf())?.click();
+  take();
+  followed = take;
+}
+
+let followed;
+onColours(() => followed?.());
+
 /** The report in a frame. Its links to its own sections would lead to those of this page; what is dropped on it is dropped on this page. */
 function frame(text) {
   const made = element("iframe", { title: "Report of the calibration", srcdoc: text });
   made.addEventListener("load", () => {
     const report = made.contentDocument;
+    follow(report);
     for (const type of ["dragenter", "dragleave", "dragover", "drop"]) {
       report.addEventListener(type, (event) => {
         event.preventDefault();
@@ -89,4 +104,5 @@ export function showPrinted(title, text, open = false) {
 export function clearResult() {
   byId("result").hidden = true;
   byId("report").replaceChildren();
+  followed = undefined;
 }

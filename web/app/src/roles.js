@@ -32,6 +32,11 @@ export function guess(name, bytes, whole = false) {
   return MODELS.test(name) ? "model" : "measurements";
 }
 
+/** Whether the name and the beginning of a file leave open what it is. */
+export function isOpen(name, bytes) {
+  return OTHERS.test(name) || (!TABLES.test(name) && !MODELS.test(name) && !/\.toml$/i.test(name) && bytes[0] !== 0x3c);
+}
+
 /** Of several models in one folder, those that are not used because one of them is the URDF. */
 export function besideUrdf(models) {
   const urdf = models.filter(({ name }) => /\.urdf$/i.test(name));

@@ -48,3 +48,17 @@ function cut(content, column) {
     before: column === undefined ? undefined : at - from + (from ? 1 : 0),
   };
 }
+
+/** The verdict in the words that the program prints. */
+export function verdictOf(out) {
+  return /^verdict +([^:\n]+)/m.exec(out)?.[1].trim();
+}
+
+/** What a file is that the program reads neither as a model nor as measurements: its sentence; none of others. */
+export function foreign(name, asModel, asTable) {
+  const what = (err) => messages(err).filter(({ kind }) => kind === "error").map(({ text }) => [text, new RegExp(`^${escaped(name)}: found (.*), expected `).exec(text)?.[1]])[0] ?? [];
+  const [[text, found], [, other]] = [what(asModel), what(asTable)];
+  return found && found === other ? text : undefined;
+}
+
+const escaped = (text) => text.replace(/[.*+?^${}()|[\]\\]/g, "\\$&");

@@ -10,6 +10,13 @@ use super::shared::TreeArgs;
 use super::words::{HAND_EYE_CAMERA, measured, one_of};
 use crate::quantity::whole;
 
+/// What is chosen, and the column or the word for it.
+fn choice(text: &str) -> Result<(String, String), String> {
+    let (what, column) =
+        text.split_once('=').ok_or("expected what a column is for, and the column, like x=X_meas")?;
+    Ok((what.trim().to_owned(), column.trim().to_owned()))
+}
+
 /// Arguments of `poecal init`.
 #[derive(Args, Debug)]
 pub(crate) struct Init {
@@ -22,6 +29,15 @@ pub(crate) struct Init {
     /// Instead of a project with a model: the file of touches for `poecal tcp`
     #[arg(long, conflicts_with = "model")]
     pub(crate) tcp: bool,
+    /// Instead of a project: the mapping of this file's columns (columns.toml), as poecal guesses them, to look over
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["hand_eye", "tcp"])]
+    pub(crate) columns_from: Option<PathBuf>,
+    /// A column in place of the guessed one, as joint1=shoulder_pan, x=X_meas or target=; also orientation=FORM, unit.position=mm
+    #[arg(long, value_name = "WHAT=COLUMN", requires = "columns_from", value_parser = choice)]
+    pub(crate) column: Vec<(String, String)>,
+    /// With --columns-from: print the columns, what each is taken for, and what can be chosen, as JSON, and write nothing
+    #[arg(long, requires = "columns_from")]
+    pub(crate) json: bool,
     #[command(flatten)]
     pub(crate) chain: TreeArgs,
     /// Kind of the measurements

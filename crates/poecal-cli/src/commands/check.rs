@@ -1,12 +1,13 @@
 //! `poecal check`: how files are read.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
 use poecal::calibration::DeviceFrameKnowledge;
 use poecal::forensics::{DiagnosisOptions, diagnose};
 use poecal::io::measurements::{self, MeasurementFile};
 use poecal::io::model::Model;
-use poecal::{ErrorKind, Result, report};
+use poecal::{Error, ErrorKind, Result, report};
 
 use crate::DONE;
 use crate::args::Check;
@@ -19,7 +20,11 @@ pub(crate) fn check(arguments: &Check, console: &Console) -> Result<u8> {
         return ErrorKind::Option
             .refuse("found no model, expected `poecal check MODEL FILES…`, or settings that name it");
     };
-    let model = Model::read(path, &arguments.chain.selection(options.as_ref().ok())?)?;
+    let model = Model::read(path, &arguments.chain.selection(options.as_ref().ok())?);
+    if let (Some(choices), true) = (model.as_ref().err().and_then(Error::choices), arguments.json) {
+        console.data(&report::json(&BTreeMap::from([("choices", choices)]))?)?;
+    }
+    let model = model?;
     let options = model.reads(options?);
     let measurements = if arguments.measurements.is_empty() {
         None

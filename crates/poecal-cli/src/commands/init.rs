@@ -1,10 +1,13 @@
-//! `poecal init`: a project folder.
+//! `poecal init`: a project folder, or the mapping of a file's columns.
 
-use poecal::io::measurements::pose_table;
+use std::path::Path;
+
+use poecal::io::measurements::{ColumnGuess, guess_columns, pose_table};
 use poecal::io::model::Model;
 use poecal::io::output::{Contents, Existing, FolderPlace, Project, write_project, write_texts};
-use poecal::{ErrorKind, Result};
+use poecal::{ErrorKind, Result, report};
 
+use crate::DONE;
 use crate::args::Init;
 use crate::console::Console;
 use crate::style::{self, labelled, shown};
@@ -22,6 +25,9 @@ pub(crate) fn init(arguments: &Init, console: &Console) -> Result<u8> {
     };
     let chain = arguments.chain.selection(None)?;
     let model = Model::read(path, &chain)?;
+    if let Some(file) = &arguments.columns_from {
+        return columns(arguments, (path, file), &model, console);
+    }
     let project = Project {
         model: &model,
         chain: &chain,
@@ -36,6 +42,33 @@ pub(crate) fn init(arguments: &Init, console: &Console) -> Result<u8> {
     let next = format!(
         "read {}: measure, fill in measurements.csv, and run `poecal calibrate` in that folder",
         shown(&written.folder.join("README.md"))
+    );
+    let words = style::written(&written.folder, &written.files) + &labelled("next", &next);
+    Ok(console.say_of(&words, &written.folder))
+}
+
+/// Writes the mapping of a file's columns, and says how it is used.
+fn columns(arguments: &Init, (model, file): (&Path, &Path), of: &Model, console: &Console) -> Result<u8> {
+    let guess = guess_columns(file, &of.robot, &arguments.column)?;
+    if arguments.json {
+        console.data(&report::json(&guess)?)?;
+        return Ok(DONE);
+    }
+    let place =
+        FolderPlace::reserve(&arguments.out, Contents::Project, Existing::Kept, &[], &mut console.warner())?;
+    let ColumnGuess { mapping, missing, .. } = guess;
+    let written = write_texts(place, ("columns.toml", mapping), Vec::new())?;
+    if !missing.is_empty() {
+        console.warning(format!(
+            "found no column for {}, expected one for each: name it in the mapping",
+            missing.join(", ")
+        ));
+    }
+    let next = format!(
+        "look it over, then poecal check {} {} --columns {}",
+        shown(model),
+        shown(file),
+        shown(&written.folder.join("columns.toml"))
     );
     let words = style::written(&written.folder, &written.files) + &labelled("next", &next);
     Ok(console.say_of(&words, &written.folder))

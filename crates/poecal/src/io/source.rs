@@ -12,7 +12,7 @@ pub(super) const STANDARD_INPUT: &str = "-";
 pub(super) const LARGEST_TEXT: u64 = 256 << 20;
 /// Largest table, bytes.
 pub(super) const LARGEST_TABLE: u64 = 4 << 30;
-/// Number of bytes by which other formats are recognised.
+/// Number of bytes by which other forms are recognised.
 const HEAD: u64 = 16;
 
 /// What a bag is where it cannot be read.
@@ -25,35 +25,83 @@ const BAG: &str = if cfg!(feature = "bags") {
 /// What a bag in SQLite is.
 pub(super) const SQLITE_BAG: &str = "a ROS 2 bag in SQLite (.db3), which the Python package reads (`Measurements.from_files`); `rosbags-convert --src BAG --dst NEW --dst-storage mcap` writes it as MCAP";
 
-/// First bytes of other formats, with advice.
-const FORMS: [(&[u8], &str); 14] = [
-    (b"PK\x03\x04", "a ZIP archive or a workbook such as .xlsx; save the table as `CSV UTF-8`"),
-    (b"\xd0\xcf\x11\xe0", "a workbook of the old .xls form; save the table as `CSV UTF-8`"),
-    (b"\x1f\x8b", "a file compressed by gzip (.gz); unpack it first"),
-    (b"\xfd7zXZ", "a file compressed by xz; unpack it first"),
-    (b"\x28\xb5\x2f\xfd", "a file compressed by zstd; unpack it first"),
-    (b"BZh", "a file compressed by bzip2; unpack it first"),
-    (
-        b"MATLAB 5.0 MAT-f",
+/// A form of files that is not read as a text.
+struct Form {
+    /// How its files begin; empty where that says nothing.
+    starts: &'static [&'static [u8]],
+    /// How their names end, in small letters, where they begin like others or like a text.
+    ends: &'static [&'static str],
+    /// What they are, with advice.
+    words: &'static str,
+}
+
+const fn form(starts: &'static [&'static [u8]], ends: &'static [&'static str], words: &'static str) -> Form {
+    Form { starts, ends, words }
+}
+
+/// Forms that are not read as a text.
+const FORMS: [Form; 21] = [
+    form(&[b"ISO-10303-21;"], &["step", "stp"], "a STEP file, which has shapes and no joints"),
+    form(&[], &["igs", "iges"], "an IGES file, which has shapes and no joints"),
+    form(&[], &["stl", "dae", "obj", "ply", "glb", "gltf", "3mf"], "a mesh, which has a shape and no joints"),
+    form(
+        &[],
+        &["sldprt", "sldasm", "catpart", "catproduct", "ipt", "iam", "x_t", "x_b", "dwg", "dxf", "jt"],
+        "a drawing of a CAD program, which has shapes and no joints that could be read",
+    ),
+    form(
+        &[b"\x89PNG", b"\xff\xd8\xff", b"GIF8", b"II*\0", b"MM\0*"],
+        &["png", "jpg", "jpeg", "gif", "tif", "tiff", "bmp", "webp", "heic", "svg"],
+        "a picture",
+    ),
+    form(&[b"%PDF-"], &["pdf"], "a PDF"),
+    form(
+        &[],
+        &["docx", "doc", "odt", "pptx"],
+        "a document of an office program; save its table as `CSV UTF-8`",
+    ),
+    form(&[b"PK\x03\x04"], &[], "a ZIP archive or a workbook such as .xlsx; save the table as `CSV UTF-8`"),
+    form(&[b"\xd0\xcf\x11\xe0"], &[], "a workbook of the old .xls form; save the table as `CSV UTF-8`"),
+    form(&[b"\x1f\x8b"], &[], "a file compressed by gzip (.gz); unpack it first"),
+    form(&[b"\xfd7zXZ"], &[], "a file compressed by xz; unpack it first"),
+    form(&[b"\x28\xb5\x2f\xfd"], &[], "a file compressed by zstd; unpack it first"),
+    form(&[b"BZh"], &[], "a file compressed by bzip2; unpack it first"),
+    form(
+        &[b"MATLAB 5.0 MAT-f"],
+        &[],
         "a MATLAB file (.mat), whose numbers have no names; write them with `writetable`, or hand them to `Measurements.from_arrays` in Python (`scipy.io.loadmat`)",
     ),
-    (b"SQLite format 3\0", SQLITE_BAG),
-    (
-        b"#ROSBAG V",
+    form(&[b"SQLite format 3\0"], &[], SQLITE_BAG),
+    form(
+        &[b"#ROSBAG V"],
+        &[],
         "a ROS 1 bag, which `rosbags` reads in Python; `rosbags-convert --src BAG --dst NEW --dst-storage mcap` writes it as MCAP",
     ),
-    (b"\x89MCAP0\r\n", BAG),
-    (
-        b"\x89HDF\r\n\x1a\n",
+    form(&[b"\x89MCAP0\r\n"], &[], BAG),
+    form(
+        &[b"\x89HDF\r\n\x1a\n"],
+        &[],
         "an HDF5 file, or one of MATLAB 7.3; hand its arrays to `Measurements.from_arrays` in Python (`h5py`)",
     ),
-    (b"PAR1", "a Parquet file; hand it to `Measurements.from_dataframe` in Python (`pandas.read_parquet`)"),
-    (
-        b"\x93NUMPY",
+    form(
+        &[b"PAR1"],
+        &[],
+        "a Parquet file; hand it to `Measurements.from_dataframe` in Python (`pandas.read_parquet`)",
+    ),
+    form(
+        &[b"\x93NUMPY"],
+        &[],
         "an array of NumPy (.npy); hand it to `Measurements.from_arrays` in Python (`numpy.load`)",
     ),
-    (b"%PDF-", "a PDF"),
+    form(&[], &["mp4", "avi", "mov", "mkv"], "a film"),
 ];
+
+impl Form {
+    /// The error of a file of this form.
+    fn error(&self, path: &Path, expected: &str) -> Error {
+        ErrorKind::File.error(format!("found {}, expected {expected}", self.words)).in_file(path)
+    }
+}
 
 /// An input. Beyond its largest size it gives an error.
 pub(super) struct Input {
@@ -72,14 +120,18 @@ pub(super) fn open(path: &Path, expected: &str, largest: u64) -> Result<Input> {
     Ok(input)
 }
 
-/// Refuses a file that is no text, by its first bytes.
+/// Refuses a file that is no text, by its name or its first bytes.
 pub(super) fn refuse_other_forms(path: &Path, expected: &str, head: &[u8]) -> Result<()> {
-    match FORMS.iter().find(|(start, _)| head.starts_with(start)) {
-        Some((_, form)) => {
-            Err(ErrorKind::File.error(format!("found {form}, expected {expected}")).in_file(path))
-        }
-        None => Ok(()),
-    }
+    refuse_named(path, expected)?;
+    let begins = |it: &&Form| it.starts.iter().any(|start| head.starts_with(start));
+    FORMS.iter().find(begins).map_or(Ok(()), |form| Err(form.error(path, expected)))
+}
+
+/// Refuses a file that is no text, by its name alone: many of these begin like a workbook.
+pub(super) fn refuse_named(path: &Path, expected: &str) -> Result<()> {
+    let end = path.extension().map(|it| it.to_string_lossy().to_lowercase()).unwrap_or_default();
+    let named = FORMS.iter().find(|form| form.ends.contains(&end.as_str()));
+    named.map_or(Ok(()), |form| Err(form.error(path, expected)))
 }
 
 /// The same of any form, with its first bytes.
@@ -149,10 +201,21 @@ mod tests {
         };
         assert_eq!(read(1 << 10).unwrap(), text);
         assert!(read((1 << 10) - 1).unwrap_err().to_string().starts_with("it is larger than"));
-        for (start, _) in FORMS {
-            std::fs::write(&path, [start, b"rest of it"].concat()).unwrap();
-            let Err(error) = open(&path, "a text", 1 << 10) else { panic!("{start:?}") };
-            assert!(error.to_string().contains(", expected a text"), "{error}");
+        for Form { starts, ends, words } in FORMS {
+            let expected = format!("found {words}, expected a text");
+            for start in starts {
+                std::fs::write(&path, [start, &b"rest of it"[..]].concat()).unwrap();
+                let Err(error) = open(&path, "a text", 1 << 10) else { panic!("{start:?}") };
+                assert!(error.to_string().ends_with(&expected), "{error}");
+            }
+            for end in ends {
+                let named = path.with_extension(end.to_uppercase());
+                std::fs::write(&named, "a text\n").unwrap();
+                let refused = open(&named, "a text", 1 << 10).map(|_| ());
+                std::fs::remove_file(&named).unwrap();
+                let error = refused.unwrap_err();
+                assert!(error.to_string().ends_with(&expected), "{error}");
+            }
         }
         std::fs::write(&path, "ab").unwrap();
         assert_eq!(read(1 << 10).unwrap(), b"ab");

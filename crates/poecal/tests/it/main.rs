@@ -39,6 +39,7 @@ mod jacobians;
 mod largest;
 mod mapping_errors;
 mod mapping_forms;
+mod mapping_guess;
 mod masses;
 mod measurement_choices;
 mod measurement_errors;

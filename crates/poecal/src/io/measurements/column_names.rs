@@ -56,6 +56,12 @@ pub(super) fn three_columns<'de, D: Deserializer<'de>>(
     <[ColumnName; 3]>::deserialize(deserializer).map(|it| Some(it.map(|it| it.0)))
 }
 
+pub(super) fn some_columns<'de, D: Deserializer<'de>>(
+    deserializer: D,
+) -> std::result::Result<Vec<String>, D::Error> {
+    column_names(deserializer).map(Option::unwrap_or_default)
+}
+
 pub(super) fn column_names<'de, D: Deserializer<'de>>(
     deserializer: D,
 ) -> std::result::Result<Option<Vec<String>>, D::Error> {

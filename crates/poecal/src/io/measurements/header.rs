@@ -184,6 +184,17 @@ impl<'a> Header<'a> {
         self.names = taken.into_iter().map(|(index, _, name)| (index, name)).collect();
     }
 
+    /// Takes the names of columns away, which then have no meaning; a file need not have them.
+    pub(super) fn ignore(&mut self, names: &[String]) {
+        for name in names {
+            let Some(at) = self.find(name).ok().flatten() else { continue };
+            if let Some(cell) = self.cells.get_mut(at) {
+                (cell.text, cell.name, cell.unit) = (String::new(), String::new(), None);
+            }
+            self.named.retain(|_, places| places.0 != at);
+        }
+    }
+
     /// Stores the first lines below, for the message if this is no header.
     pub(super) fn look_below(&mut self, lines: impl Iterator<Item = (usize, String)>) {
         self.below = lines.collect();

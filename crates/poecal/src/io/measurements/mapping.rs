@@ -10,7 +10,7 @@ use serde::de::{Deserializer, Error as _, MapAccess, Visitor};
 
 use super::FitWhere;
 use super::cells::Separator;
-use super::column_names::{column_name, column_names, counted_column, three_columns};
+use super::column_names::{column_name, column_names, counted_column, some_columns, three_columns};
 use super::number::DecimalSign;
 use super::orientation::OrientationForm;
 use super::units::NamedUnit;
@@ -32,6 +32,9 @@ pub struct ColumnMap {
     pub(super) decimal: Option<DecimalSign>,
     pub(super) skip_lines: usize,
     pub(super) pose: PoseDirection,
+    /// Columns that are read as if they were not there.
+    #[serde(deserialize_with = "some_columns")]
+    pub(super) ignore: Vec<String>,
     #[serde(deserialize_with = "column_name")]
     pub(super) id: Option<String>,
     #[serde(deserialize_with = "column_name")]
@@ -49,13 +52,13 @@ pub struct ColumnMap {
     pub(super) sigma_position: Option<ColumnSpec>,
     pub(super) sigma_rotation: Option<ColumnSpec>,
     pub(super) targets: Vec<TargetSpec>,
-    mount: MountSpec,
+    pub(super) mount: MountSpec,
 }
 
 /// Links of a URDF on which instruments and targets are, by their names.
 #[derive(Clone, Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields, default)]
-struct MountSpec {
+pub(super) struct MountSpec {
     instruments: BTreeMap<String, String>,
     targets: BTreeMap<String, String>,
 }

@@ -12,7 +12,7 @@ const NUMBERED: [&str; 11] =
 /// What is written beside that of a reading.
 const MEASURED: [&str; 6] = ["actual", "measured", "meas", "current", "act", "feedback"];
 /// What is written beside a joint's name where it is no reading: what was wanted, and other quantities.
-const OTHERS: [&str; 21] = [
+pub(super) const OTHERS: [&str; 21] = [
     "target",
     "desired",
     "wanted",
@@ -53,7 +53,7 @@ pub(super) fn numbered(
 }
 
 /// Letters and digits, small.
-fn plain(text: &str) -> String {
+pub(super) fn plain(text: &str) -> String {
     text.chars().filter(|it| it.is_alphanumeric()).flat_map(char::to_lowercase).collect()
 }
 

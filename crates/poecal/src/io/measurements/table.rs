@@ -74,6 +74,7 @@ impl<'a> Table<'a> {
         }
         let separator = map.separator.or(stated).unwrap_or_else(|| Separator::recognised(&text));
         let mut header = Header::new(path, line, &text, separator)?;
+        header.ignore(&map.ignore);
         if let Some((line, text)) = next_line(&mut blocks, line)? {
             let mut cells = Vec::new();
             let is_table = split(&text, separator, &mut cells).is_ok() && cells.len() == header.cells.len();

@@ -82,7 +82,7 @@ fn words(unit: Unit) -> &'static str {
 }
 
 /// The units of one quantity.
-fn units_of(of: Unit) -> impl Iterator<Item = &'static NamedUnit> {
+pub(super) fn units_of(of: Unit) -> impl Iterator<Item = &'static NamedUnit> {
     UNITS.iter().filter(move |unit| unit.of == of)
 }
 

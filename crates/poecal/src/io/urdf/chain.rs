@@ -122,13 +122,29 @@ fn only_tip(tree: &Tree, base: Option<usize>) -> Result<usize> {
             "found no end link with a moving joint above it{}, expected a serial chain: choose one with --base-link and --tip-link",
             base.map_or(String::new(), |base| format!(" below base link `{}`", tree.link_name(base)))
         )),
-        several => error(format!(
-            "found {} end links with a moving joint above them ({}), expected one: choose it with --tip-link, and the base, if it is not the root, with --base-link",
-            several.len(),
-            list(several.iter().map(|end| tree.link_name(end.link)))
-        )),
+        several => {
+            let forks = ends::forks(tree, base, several);
+            let named: Vec<&str> = forks.iter().map(|it| tree.link_name(it.0)).collect();
+            let before = match named.get(..named.len().min(FORKS)) {
+                Some(some @ [_, ..]) => {
+                    format!(", or a link before they part ({}),", list(some.iter().copied()))
+                }
+                _ => String::new(),
+            };
+            let refused = error(format!(
+                "found {} end links with a moving joint above them ({}), expected one: choose it{before} with --tip-link, and the base, if it is not the root, with --base-link",
+                several.len(),
+                list(several.iter().map(|end| tree.link_name(end.link)))
+            ));
+            let last = several.iter().map(|end| tree.link_name(end.link));
+            let choices = named.iter().copied().chain(last).map(str::to_owned).collect();
+            refused.map_err(|error| error.with_choices("--tip-link", choices))
+        }
     }
 }
+
+/// Links before a fork that a message names.
+const FORKS: usize = 3;
 
 /// Path from `tip` up to `base`, or to the root. `what` is the link at its end, for messages.
 fn way_up(tree: &Tree, base: Option<usize>, tip: usize, what: &str) -> Result<UrdfChain> {

@@ -48,6 +48,50 @@ pub(super) fn ends(tree: &Tree, base: Option<usize>) -> Vec<End> {
     ends
 }
 
+/// The links below a moving joint from which several of the ends lead on, such as a flange with two tools, the nearest to the ends first; each
+/// with the number of moving joints above it.
+pub(super) fn forks(tree: &Tree, base: Option<usize>, ends: &[End]) -> Vec<(usize, usize)> {
+    let mut ways = vec![0_usize; tree.links.len()];
+    for end in ends {
+        let mut at = end.link;
+        while base != Some(at)
+            && let Some((_, joint)) = tree.above(at)
+        {
+            at = joint.parent;
+            ways[at] += 1;
+            if ways[at] > 1 {
+                // Its own way up is counted.
+                break;
+            }
+        }
+    }
+    // Joints above links, each of which is found once.
+    let mut above: Vec<Option<usize>> = vec![None; tree.links.len()];
+    let mut forks: Vec<(usize, usize)> = Vec::new();
+    for fork in (0..ways.len()).filter(|link| ways[*link] > 1) {
+        let (mut way, mut at) = (Vec::new(), fork);
+        let mut count = loop {
+            match (above[at], tree.above(at).filter(|_| base != Some(at))) {
+                (Some(known), _) => break known,
+                (None, Some((_, joint))) => {
+                    way.push((at, joint.kind.moves()));
+                    at = joint.parent;
+                }
+                (None, None) => break 0,
+            }
+        };
+        for (link, moves) in way.into_iter().rev() {
+            count += usize::from(moves);
+            above[link] = Some(count);
+        }
+        if count > 0 {
+            forks.push((fork, count));
+        }
+    }
+    forks.sort_by_key(|it| std::cmp::Reverse(it.1));
+    forks
+}
+
 enum Step {
     To(usize, Option<usize>),
     Back(usize),
@@ -133,6 +177,39 @@ mod tests {
             "<link name=\"{child}\"/><joint name=\"{name}\" type=\"continuous\"><parent link=\"{parent}\"/>\
              <child link=\"{child}\"/></joint>\n"
         )
+    }
+
+    /// A flange with a tool and a camera, beside a second arm: links that moving joints are above, where the ways part.
+    #[test]
+    fn links_before_a_fork_can_be_chosen() {
+        let fixed =
+            |name: &str, parent: &str, child: &str| joint(name, parent, child).replace("continuous", "fixed");
+        let arm =
+            joint("j1", "base", "torso") + &joint("j2", "torso", "wrist") + &fixed("f", "wrist", "flange");
+        let ends =
+            fixed("t", "flange", "tool0") + &fixed("c", "flange", "camera") + &joint("j3", "torso", "left");
+        let urdf = format!("<robot name=\"r\"><link name=\"base\"/>{arm}{ends}</robot>");
+        let error = UrdfDocument::parse(&urdf, "r.urdf", &ChainSelection::default()).unwrap_err();
+        assert!(
+            error.message().starts_with(
+                "found 3 end links with a moving joint above them (`tool0`, `camera`, `left`), expected one: choose it, or a link before they part \
+                 (`flange`, `torso`), with --tip-link"
+            ),
+            "{error}"
+        );
+        let choices = error.choices().unwrap();
+        assert_eq!(
+            (choices.option, choices.of.join(" ")),
+            ("--tip-link", "flange torso tool0 camera left".to_owned())
+        );
+        for (link, joints) in [("flange", 2), ("torso", 1), ("left", 2)] {
+            let selection = ChainSelection { tip_link: Some(link.to_owned()), ..ChainSelection::default() };
+            assert_eq!(
+                UrdfDocument::parse(&urdf, "r.urdf", &selection).unwrap().robot().joints.len(),
+                joints,
+                "{link}"
+            );
+        }
     }
 
     /// A star, and a comb: each tooth's way to the root is long.

@@ -10,7 +10,8 @@ use crate::io::measurements::Separator;
 use crate::io::measurements::column_names::numbered_column;
 use crate::io::measurements::mapping::ColumnMap;
 
-pub(super) const FORM: Form = Form { title: "a table without names of columns", is_it, table };
+pub(in crate::io::measurements) const FORM: Form =
+    Form { title: "a table without names of columns", is_it, table };
 
 /// A row: a name, if there is one, and numbers.
 struct Row<'t> {

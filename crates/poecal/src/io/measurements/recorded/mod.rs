@@ -6,7 +6,7 @@ mod auto_id;
 mod bags;
 mod bodies;
 mod figaroh;
-mod headerless;
+pub(super) mod headerless;
 mod leica;
 mod maker;
 mod motive;
@@ -77,9 +77,9 @@ impl<'p> Opened<'p> {
 
 /// A form of files.
 #[derive(Clone, Copy)]
-struct Form {
+pub(super) struct Form {
     /// What files of this form are, as in "points of SpatialAnalyzer".
-    title: &'static str,
+    pub(super) title: &'static str,
     /// Whether a text is of this form, by its beginning.
     is_it: fn(&str, &Opening<'_>) -> bool,
     /// The table of a text.
@@ -153,6 +153,7 @@ impl Opening<'_> {
             return Blocks::open_or_join(path, expected).map(|it| Opened::Own(Box::new(it)));
         }
         let (input, head) = source::open_any(path, expected, LARGEST_TABLE)?;
+        source::refuse_named(path, expected)?;
         #[cfg(feature = "workbooks")]
         if workbook::is_one(&head) {
             return self.workbook(path, expected, input);
