@@ -9,11 +9,13 @@ from matplotlib.axes import Axes  # type: ignore[import-not-found, unused-ignore
 from matplotlib.figure import Figure  # type: ignore[import-not-found, unused-ignore]
 from numpy.typing import ArrayLike, NDArray
 
+from ._results import Check, Comparison, Offsets, Validation, Visit, VisitPlan
+from ._session_results import Compensation, HandEye, Identification, Reproduction, ToolTip, WatchedRow
+
 __all__ = [
     "Accuracy",
     "Calibration",
     "Covariance",
-    "Findings",
     "Measurements",
     "ModelAccuracy",
     "Plan",
@@ -26,9 +28,11 @@ __all__ = [
     "Verdict",
     "Watch",
     "_calibration",
-    "_findings",
     "_measurements",
+    "_nearest",
     "_robot",
+    "_shown",
+    "_write_text",
     "calibrate",
     "check",
     "compare",
@@ -51,6 +55,9 @@ __all__ = [
 
 _Path: TypeAlias = str | PathLike[str]
 _Array: TypeAlias = NDArray[np.float64]
+# A number in the unit that ends a keyword's name, or a text with a unit; and two of them.
+_Number: TypeAlias = float | str
+_Pair: TypeAlias = tuple[_Number, _Number] | str
 _Kind: TypeAlias = Literal[
     "pose",
     "point",
@@ -67,6 +74,7 @@ _Kind: TypeAlias = Literal[
     "relative",
     "component",
 ]
+_Model: TypeAlias = Literal["delivered", "nominal", "registered", "calibrated", "corrected"]
 _Frame: TypeAlias = Literal["unknown", "base"]
 _End: TypeAlias = Literal["free", "kept"]
 _Form: TypeAlias = Literal["urdf", "toml"]
@@ -840,6 +848,8 @@ class Residuals:
     def rotation_corrected_deg(self) -> _Array:
         """Error of rotation of the corrected model, shape (m,), degrees; NaN without such a model, or where no orientation was measured."""
     @property
+    def model(self) -> Literal["corrected", "calibrated"]: ...
+    @property
     def quantities(self) -> dict[str, str]:
         """Quantities that some row measured, such as "position", with their units; first the one by which the calibration is judged."""
     def components(self, quantity: str) -> _Array:
@@ -855,7 +865,7 @@ class Residuals:
         numpy.ndarray
             Shape (m, n), millimetres or degrees; NaN where it was not measured.
         """
-    def errors(self, quantity: str, *, model: Literal["nominal", "registered", "calibrated", "corrected"] = "calibrated") -> _Array:
+    def errors(self, quantity: str, *, model: _Model = "delivered") -> _Array:
         """Error of any quantity of a model.
 
         Parameters
@@ -870,7 +880,7 @@ class Residuals:
         numpy.ndarray
             Shape (m,), millimetres or degrees; NaN where it was not measured.
         """
-    def corners_px(self, *, model: Literal["nominal", "registered", "calibrated", "corrected"] = "calibrated") -> _Array:
+    def corners_px(self, *, model: _Model = "delivered") -> _Array:
         """Root mean square distance of the corners of each picture from where a model sees them.
 
         Parameters
@@ -948,35 +958,6 @@ class Covariance:
     def axes(self) -> _Array:
         """Frames base_from_axis at zero joint values, z along the joint, shape (n, 4, 4)."""
     def __len__(self) -> int: ...
-
-@final
-class Findings:
-    """A result: `str` is the program's table, `to_dict` what the program prints with `--json`, and `found["key"]` a part of it."""
-    def to_dict(self) -> dict[str, Any]:
-        """The result as dicts and lists: what the program prints with `--json`.
-
-        Returns
-        -------
-        dict
-            The result.
-        """
-    def to_json(self) -> str:
-        """The result as JSON.
-
-        Returns
-        -------
-        str
-            The text.
-        """
-    @property
-    def warnings(self) -> list[str]:
-        """Warnings, a sentence each."""
-    def _repr_html_(self) -> str: ...
-    def __getitem__(self, key: str, /) -> Any: ...
-    def __eq__(self, other: object, /) -> bool: ...
-    def __ne__(self, other: object, /) -> bool: ...
-    def __reduce__(self) -> tuple[Callable[[bytes], Findings], tuple[bytes]]: ...
-    __hash__: None  # type: ignore[assignment]
 
 @final
 class Calibration:
@@ -1338,8 +1319,10 @@ class Calibration:
         *,
         factors: Mapping[str, float] | None = None,
         nearest: bool = False,
-        most_turn_rad: float | None = None,
-        most_slide_m: float | None = None,
+        most_turn_deg: _Number | None = None,
+        most_slide_mm: _Number | None = None,
+        most_turn_rad: _Number | None = None,
+        most_slide_m: _Number | None = None,
         summary: Literal[False] = False,
         model: Literal["corrected", "calibrated"] = "corrected",
         readings: Literal["model", "controller"] | None = None,
@@ -1377,12 +1360,14 @@ class Calibration:
         *,
         factors: Mapping[str, float] | None = None,
         nearest: bool = False,
-        most_turn_rad: float | None = None,
-        most_slide_m: float | None = None,
+        most_turn_deg: _Number | None = None,
+        most_slide_mm: _Number | None = None,
+        most_turn_rad: _Number | None = None,
+        most_slide_m: _Number | None = None,
         summary: Literal[True],
         model: Literal["corrected", "calibrated"] = "corrected",
         readings: Literal["model", "controller"] | None = None,
-    ) -> tuple[_Array, dict[str, Any]]: ...
+    ) -> tuple[_Array, Compensation]: ...
     def taught(self, *, model: Literal["corrected", "calibrated"] = "corrected") -> Robot:
         """The nominal robot with base and tool of the actual one: corrected programs take the actual robot to where this one would be.
 
@@ -1408,12 +1393,14 @@ class Calibration:
         start: str | None = None,
         factors: Mapping[str, float] | None = None,
         nearest: bool = False,
-        most_turn_rad: float | None = None,
-        most_slide_m: float | None = None,
+        most_turn_deg: _Number | None = None,
+        most_slide_mm: _Number | None = None,
+        most_turn_rad: _Number | None = None,
+        most_slide_m: _Number | None = None,
         third_axis: Literal["level", "arm"] | None = None,
         check: bool = False,
         model: Literal["corrected", "calibrated"] = "corrected",
-    ) -> tuple[bytes, dict[str, Any]]:
+    ) -> tuple[bytes, Compensation]:
         """A robot program with its targets corrected in place, everything else as it was, byte for byte.
 
         Parameters
@@ -1510,7 +1497,7 @@ class Calibration:
         report: bool | _Path = True,
         record: Mapping[str, str] | None = None,
         history: _Path | None = None,
-    ) -> Findings:
+    ) -> Validation:
         """Judges the calibration by measurements that it did not see; every row counts.
 
         Parameters
@@ -1548,11 +1535,11 @@ class Calibration:
         joints: ArrayLike,
         *,
         kind: _Kind = "pose",
-        sigma_position_mm: float | None = None,
-        sigma_rotation_deg: float | None = None,
+        sigma_position_mm: _Number | None = None,
+        sigma_rotation_deg: _Number | None = None,
         frame: _Frame = "unknown",
-        robot_error_mm: float | tuple[float, float] | None = None,
-    ) -> Findings:
+        robot_error_mm: _Number | _Pair | None = None,
+    ) -> Identification:
         """Which unknowns measurements of the calibrated robot in given configurations would determine; see `poecal.identify`.
 
         Parameters
@@ -1605,6 +1592,8 @@ class Plan:
     @property
     def enough(self) -> int | None:
         """Number of configurations from which ten more gain less than 5 %; None if that is more than 100."""
+    def to_json(self) -> str: ...
+    def to_dataframe(self) -> pandas.DataFrame: ...
     def to_dict(self) -> dict[str, Any]:
         """The plan as dicts and lists: what the program prints with `--json`.
 
@@ -1681,12 +1670,12 @@ class Watch:
         candidates: ArrayLike | None = None,
         over: ArrayLike | None = None,
         over_box_mm: ArrayLike | None = None,
-        sigma_position_mm: float | None = None,
-        sigma_rotation_deg: float | None = None,
-        robot_error_mm: float | tuple[float, float] | None = None,
+        sigma_position_mm: _Number | None = None,
+        sigma_rotation_deg: _Number | None = None,
+        robot_error_mm: _Number | _Pair | None = None,
         frame: _Frame = "unknown",
-        tolerance_deg_mm: tuple[float, float] | None = ...,
-        corrections: str | Mapping[str, float] = "auto",
+        tolerance_deg_mm: _Pair | None = ...,
+        corrections: str | Mapping[str, _Number] = "auto",
         gravity: ArrayLike = (0, 0, -1),
         seed: int = 1,
     ) -> Watch: ...
@@ -1698,7 +1687,7 @@ class Watch:
         pose: ArrayLike | None = None,
         target: str | None = None,
         id: str | None = None,
-    ) -> Findings:
+    ) -> WatchedRow:
         """Judges one row, and fits it if it is as expected.
 
         Parameters
@@ -1720,7 +1709,7 @@ class Watch:
             Whether the row is as expected (`ok`, None while there are too few rows to judge by), else its `mistake`; which error would be noticed
             (`noticed_mm`); the errors to expect now and after ten more rows; the configuration that gains most (`next`).
         """
-    def add_all(self, measurements: Measurements) -> list[Findings]:
+    def add_all(self, measurements: Measurements) -> list[WatchedRow]:
         """Judges the rows of measurements, one after the other.
 
         Parameters
@@ -1774,10 +1763,10 @@ def calibrate(
     measurements: Measurements | _Path | Sequence[_Path],
     *,
     frame: _Frame = "unknown",
-    sigma_position_mm: float | None = None,
-    sigma_rotation_deg: float | None = None,
-    tolerance_deg_mm: tuple[float, float] | str | None = ...,
-    corrections: str | Mapping[str, float] = "auto",
+    sigma_position_mm: _Number | None = None,
+    sigma_rotation_deg: _Number | None = None,
+    tolerance_deg_mm: _Pair | None = ...,
+    corrections: str | Mapping[str, _Number] = "auto",
     harmonics: int = 2,
     gravity: Sequence[float] | Literal["find"] = ...,
     fix: Sequence[str] | None = None,
@@ -1871,7 +1860,7 @@ def calibrate(
     """
 def check(
     robot: Robot | _Path, measurements: Measurements | _Path | Sequence[_Path] | None = None, *, frame: _Frame = "unknown"
-) -> Findings:
+) -> Check:
     """How a model and measurements are understood, and mistakes that they show.
 
     Parameters
@@ -1888,7 +1877,7 @@ def check(
     Findings
         What is understood, with mistakes under "diagnosis".
     """
-def compare(first: Calibration, second: Calibration, *, limit_mm: float | None = None) -> Findings:
+def compare(first: Calibration, second: Calibration, *, limit_mm: _Number | None = None) -> Comparison:
     """Two calibrations of one robot: what changed, and what is noise.
 
     Parameters
@@ -1942,7 +1931,7 @@ def hand_eye(
     target: Literal["camera-from-target", "target-from-camera"] | None = None,
     names: Sequence[str] | None = None,
     frames: Sequence[str] | None = None,
-) -> Findings:
+) -> HandEye:
     """Where a camera is on the flange or beside the robot, from poses of the flange and of a board that it saw.
 
     With bounds of 95 %; mistakes in the poses are named, wrong ones left out.
@@ -1974,11 +1963,11 @@ def identify(
     joints: ArrayLike,
     *,
     kind: _Kind = "pose",
-    sigma_position_mm: float | None = None,
-    sigma_rotation_deg: float | None = None,
+    sigma_position_mm: _Number | None = None,
+    sigma_rotation_deg: _Number | None = None,
     frame: _Frame = "unknown",
-    robot_error_mm: float | tuple[float, float] | None = None,
-) -> Findings:
+    robot_error_mm: _Number | _Pair | None = None,
+) -> Identification:
     """Which unknowns measurements in given configurations would determine, before anything is measured.
 
     Parameters
@@ -2057,7 +2046,7 @@ def init(
     """
 def offsets(
     nominal: Robot, actual: Robot | Calibration, *, base: _End | None = None, tip: _End | None = None
-) -> Findings:
+) -> Offsets:
     """The joint offsets with which the tip of a model comes nearest to that of a robot, and the remaining errors.
 
     Parameters
@@ -2102,7 +2091,7 @@ def reproduce(
     trials: int = 1000,
     starts: int = 100,
     seed: int = 1,
-) -> Findings:
+) -> Reproduction:
     """Repeats the experiment of a paper and checks its claims, or shows the effect of gross errors.
 
     Parameters
@@ -2160,13 +2149,13 @@ def simulate(
     kind: _Kind = "pose",
     count: int = 50,
     seed: int = 1,
-    error_position_mm: float = 2.0,
-    error_rotation_deg: float = 1.0,
-    noise_position_mm: float = 0.05,
-    noise_rotation_deg: float = 0.01,
+    error_position_mm: _Number = 2.0,
+    error_rotation_deg: _Number = 1.0,
+    noise_position_mm: _Number = 0.05,
+    noise_rotation_deg: _Number = 0.01,
     frame: _Frame = "unknown",
     held_out_count: int = 0,
-    terms: str | Mapping[str, float] = "off",
+    terms: str | Mapping[str, _Number] = "off",
     gravity: Sequence[float] = ...,
 ) -> Simulation:
     """Simulates a robot with errors and its measurements, for tests and for learning.
@@ -2206,7 +2195,7 @@ def tcp(
     points: Sequence[str] | None = None,
     tips: Sequence[str] | None = None,
     names: Sequence[str] | None = None,
-) -> Findings:
+) -> ToolTip:
     """The tip of a tool from poses of the flange in which it touched a fixed point.
 
     With bounds of 95 %; wrong touches are named and left out.
@@ -2227,11 +2216,13 @@ def tcp(
     Findings
         The "tips", with "position_m" and "bound95_mm", the "axis" of two, and the "verdict": all that `tcp.json` has.
     """
+@overload
 def plan(
-    robot: Robot,
+    robot: Robot | Calibration | _Path,
     *,
+    purpose: Literal["calibration"] = "calibration",
     kind: _Kind = "point",
-    count: int = 30,
+    count: int | None = None,
     judge: int | None = None,
     candidates: ArrayLike | None = None,
     over: ArrayLike | None = None,
@@ -2241,26 +2232,30 @@ def plan(
     criterion: Literal["expected", "D", "A", "E", "G"] = "expected",
     targets: int = 1,
     target_offset_mm: ArrayLike | None = None,
-    sigma_position_mm: float | None = None,
-    sigma_rotation_deg: float | None = None,
-    robot_error_mm: float | tuple[float, float] | None = None,
+    sigma_position_mm: _Number | None = None,
+    sigma_rotation_deg: _Number | None = None,
+    robot_error_mm: _Number | _Pair | None = None,
     frame: _Frame = "unknown",
-    tolerance_deg_mm: tuple[float, float] | None = ...,
-    corrections: str | Mapping[str, float] = "auto",
+    tolerance_deg_mm: _Pair | None = ...,
+    corrections: str | Mapping[str, _Number] = "auto",
     gravity: ArrayLike = (0, 0, -1),
-    margin_deg_mm: tuple[float, float] = (0.0, 0.0),
+    margin_deg_mm: _Pair = (0.0, 0.0),
     keep_out_mm: Sequence[ArrayLike] | None = None,
-    floor_mm: float | None = None,
-    separation_deg: float | None = None,
+    floor_mm: _Number | None = None,
+    separation_deg: _Number | None = None,
     device_mm: ArrayLike | None = None,
-    cone_deg: float | None = None,
+    cone_deg: _Number | None = None,
     device_looks_at_mm: ArrayLike | None = None,
-    distance_mm: tuple[float, float] | None = None,
-    acceptance_deg: float | None = None,
+    distance_mm: _Pair | None = None,
+    acceptance_deg: _Number | None = None,
     facing: ArrayLike | None = None,
     self_collision: Literal["avoid", "ignore"] = "avoid",
     stop_s: float = 30.0,
     seed: int = 1,
+    earlier: None = None,
+    device: None = None,
+    tool: None = None,
+    repeatability_mm: None = None,
 ) -> Plan:
     """Plans a session: configurations that determine the most, rows to judge by, how many are worth it, and the error to expect.
 
@@ -2331,6 +2326,59 @@ def plan(
     Plan
         The rows in the order in which to measure them, with the errors to expect. Only configurations are checked, never the way between them.
     """
+@overload
+def plan(
+    robot: Calibration,
+    *,
+    purpose: Literal["drift"],
+    count: int | None = None,
+    candidates: ArrayLike | None = None,
+    earlier: Measurements | None = None,
+    device: Literal["known", "anew"] | None = None,
+    tool: Literal["same", "anew"] | None = None,
+    repeatability_mm: _Number | None = None,
+) -> VisitPlan: ...
+@overload
+def plan(
+    robot: Robot | Calibration | _Path,
+    *,
+    purpose: Literal["calibration", "drift"],
+    kind: _Kind = "point",
+    count: int | None = None,
+    judge: int | None = None,
+    candidates: ArrayLike | None = None,
+    over: ArrayLike | None = None,
+    over_box_mm: ArrayLike | None = None,
+    keep: Plan | ArrayLike | None = None,
+    replace: Sequence[int] | None = None,
+    criterion: Literal["expected", "D", "A", "E", "G"] = "expected",
+    targets: int = 1,
+    target_offset_mm: ArrayLike | None = None,
+    sigma_position_mm: _Number | None = None,
+    sigma_rotation_deg: _Number | None = None,
+    robot_error_mm: _Number | _Pair | None = None,
+    frame: _Frame = "unknown",
+    tolerance_deg_mm: _Pair | None = ...,
+    corrections: str | Mapping[str, _Number] = "auto",
+    gravity: ArrayLike = (0, 0, -1),
+    margin_deg_mm: _Pair = (0.0, 0.0),
+    keep_out_mm: Sequence[ArrayLike] | None = None,
+    floor_mm: _Number | None = None,
+    separation_deg: _Number | None = None,
+    device_mm: ArrayLike | None = None,
+    cone_deg: _Number | None = None,
+    device_looks_at_mm: ArrayLike | None = None,
+    distance_mm: _Pair | None = None,
+    acceptance_deg: _Number | None = None,
+    facing: ArrayLike | None = None,
+    self_collision: Literal["avoid", "ignore"] = "avoid",
+    stop_s: float = 30.0,
+    seed: int = 1,
+    earlier: Measurements | None = None,
+    device: Literal["known", "anew"] | None = None,
+    tool: Literal["same", "anew"] | None = None,
+    repeatability_mm: _Number | None = None,
+) -> Plan | VisitPlan: ...
 def track(
     calibration: Calibration,
     measurements: Measurements,
@@ -2338,8 +2386,8 @@ def track(
     *,
     device: Literal["anew", "known"] = "anew",
     tool: Literal["same", "anew"] = "same",
-    repeatability_mm: float | None = None,
-) -> Findings:
+    repeatability_mm: _Number | None = None,
+) -> Visit:
     """Whether a robot is as it was calibrated, by a few measurements, and which joint is not.
 
     Parameters
@@ -2374,4 +2422,6 @@ def version() -> str:
 def _robot(state: bytes) -> Robot: ...
 def _measurements(state: bytes) -> Measurements: ...
 def _calibration(state: bytes) -> Calibration: ...
-def _findings(state: bytes) -> Findings: ...
+def _shown(text: str, warnings: Sequence[str]) -> str: ...
+def _nearest(word: str, words: Sequence[str]) -> str | None: ...
+def _write_text(path: _Path, text: str, force: bool) -> None: ...

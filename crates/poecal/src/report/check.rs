@@ -138,6 +138,22 @@ impl Check {
         }
     }
 
+    /// What was read, and the first mistake that it shows, in a sentence.
+    #[must_use]
+    pub fn answer(&self) -> String {
+        let rows: usize = self.files.iter().map(|file| file.rows).sum();
+        let read = match (self.files.is_empty(), rows) {
+            (true, _) => return self.robot_words.clone(),
+            (_, 1) => "1 row".to_owned(),
+            (_, rows) => format!("{rows} rows"),
+        };
+        match self.diagnosis.as_slice() {
+            [] => format!("{read}, no mistake found"),
+            [one] => format!("{read}, 1 mistake: {}", one.statement),
+            [first, more @ ..] => format!("{read}, {} mistakes: {}; …", 1 + more.len(), first.statement),
+        }
+    }
+
     /// As text of lines up to 80 characters (but for names that are longer).
     #[must_use]
     pub fn text(&self) -> String {
