@@ -25,11 +25,13 @@ def calibration(made) -> poecal.Calibration:
 
 
 @pytest.fixture(scope="module")
-def results(made, calibration) -> dict[str, poecal.Findings]:
+def results(made, calibration, tmp_path_factory) -> dict[str, poecal.Findings]:
+    folder = tmp_path_factory.mktemp("made") / "made"
+    made.write(folder)
     arm, seen = session()
     joints = made.measurements.joints
     return {
-        "Check": poecal.check(made.nominal, made.measurements),
+        "Check": poecal.check(folder / "nominal.toml", folder / "measurements.csv"),
         "Offsets": poecal.offsets(made.nominal, calibration),
         "Comparison": poecal.compare(calibration, calibration),
         "Validation": calibration.validate(made.held_out, accept="0.5mm"),
@@ -39,7 +41,7 @@ def results(made, calibration) -> dict[str, poecal.Findings]:
         "WatchedRow": poecal.Watch(made.nominal).add_all(made.measurements[:12])[-1],
         "HandEye": poecal.hand_eye(arm, seen, camera="in-hand"),
         "ToolTip": poecal.tcp(np.array([arm[k] for k in range(12)])),
-        "Compensation": calibration.compensate(joints, summary=True, most_turn_deg=10)[1],
+        "Compensation": calibration.compensate(joints, summary=True, most_turn_deg=60)[1],
         "Reproduction": poecal.reproduce("lou2009", trials=2, starts=1),
     }
 
@@ -85,7 +87,8 @@ def test_each_is_a_table(results):
 def test_attributes_are_the_numbers_of_the_parts(results, made):
     check, offsets, compared, judged = (results[name] for name in ("Check", "Offsets", "Comparison", "Validation"))
     assert (check.count, check.joints, check.mistakes) == (60, made.nominal.joint_names, [])
-    assert check.answer == "60 rows, no mistake found"
+    assert check.answer == "60 rows, no mistake found" == poecal.check(made.nominal, made.measurements).answer
+    assert poecal.check(made.nominal).count == 0 and poecal.check(made.nominal).answer.startswith("elbow: 6 revolute")
     assert list(offsets.offsets_deg) == made.nominal.joint_names and offsets.offsets_mm == {}
     assert offsets.offsets_deg["joint2"] == offsets["joints"][1]["offset_deg"]
     assert offsets.with_rms_mm == offsets["predictions"]["with_offsets"]["position_rms_mm"] <= offsets.with_max_mm
@@ -100,7 +103,7 @@ def test_attributes_are_the_numbers_of_the_parts(results, made):
     visit, plan = results["Visit"], results["VisitPlan"]
     assert not visit.changed and visit.explanation is None and visit.joint is None and visit.unseen == ["joint1"]
     assert visit.change_mm >= 0 and visit.noise_mm > 0 and visit.error_mm > 0 and "unchanged" in repr(visit)
-    assert plan.unseen == ["joint1"] and set(plan.smallest_deg) == set(made.nominal.joint_names) and plan.smallest_mm == {}
+    assert plan.unseen == ["joint1", "joint6"] and set(plan.smallest_deg) == set(made.nominal.joint_names) and plan.smallest_mm == {}
     assert plan.smallest_deg["joint1"] is None and 0 < plan.smallest_deg["joint3"] < 1 and plan.noise_mm > 0
 
 

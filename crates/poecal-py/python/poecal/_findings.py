@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import importlib
 import io
-import json
 from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, TypeVar, cast
 
@@ -59,6 +58,9 @@ class Findings(Mapping[str, Any]):
         dict
             The result.
         """
+        # Loaded where it is needed, as by the rest of the package.
+        import json
+
         return cast("dict[str, Any]", json.loads(self._json))
 
     def to_json(self) -> str:

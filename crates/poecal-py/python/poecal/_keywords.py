@@ -10,7 +10,7 @@ from typing import Any
 
 from ._errors import KeywordError
 
-REFUSED = re.compile(r"got an unexpected keyword argument '(\w+)'")
+REFUSED = re.compile(r"got an unexpected keyword argument '(\w+)'|takes no keyword arguments")
 # Units at the end of a keyword.
 UNIT = re.compile(r"_(nm|um|mm|cm|m|in|urad|mrad|rad|deg|arcmin|arcsec)$")
 
@@ -42,10 +42,11 @@ def answering(function: Callable[..., Any]) -> Callable[..., Any]:
             return function(*arguments, **keywords)
         except TypeError as error:
             refused = REFUSED.search(str(error))
+            keyword = refused and (refused[1] or next(iter(keywords), None))
             # Not one that a function of the user does not have.
-            if refused is None or refused[1] not in keywords:
+            if keyword not in keywords:
                 raise
-            wrong = unknown(function, refused[1])
+            wrong = unknown(function, keyword)
         raise wrong
 
     return call

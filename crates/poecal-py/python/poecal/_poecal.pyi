@@ -848,7 +848,8 @@ class Residuals:
     def rotation_corrected_deg(self) -> _Array:
         """Error of rotation of the corrected model, shape (m,), degrees; NaN without such a model, or where no orientation was measured."""
     @property
-    def model(self) -> Literal["corrected", "calibrated"]: ...
+    def model(self) -> Literal["corrected", "calibrated"]:
+        """The model that is delivered: "corrected" where it has terms, else "calibrated"."""
     @property
     def quantities(self) -> dict[str, str]:
         """Quantities that some row measured, such as "position", with their units; first the one by which the calibration is judged."""
@@ -873,7 +874,7 @@ class Residuals:
         quantity
             Its name, as in `quantities`.
         model
-            "nominal", "registered", "calibrated", or "corrected": NaN without such a model.
+            "delivered", "nominal", "registered", "calibrated", or "corrected": NaN without such a model.
 
         Returns
         -------
@@ -886,7 +887,7 @@ class Residuals:
         Parameters
         ----------
         model
-            "nominal", "registered", "calibrated", or "corrected": NaN without such a model.
+            "delivered", "nominal", "registered", "calibrated", or "corrected": NaN without such a model.
 
         Returns
         -------
@@ -1337,8 +1338,10 @@ class Calibration:
             Values of the corrected model's factors by their names, default their references.
         nearest
             Whether to give the nearest configuration where a pose cannot be reached, instead of leaving the row as it is.
-        most_turn_rad, most_slide_m
+        most_turn_deg, most_slide_mm
             How far a joint that turns, or slides, may be moved beyond its zero, default 2 degrees and 2 mm. A row that takes more, at a singularity, stays as it is.
+        most_turn_rad, most_slide_m
+            The same in radians and metres.
         summary
             Whether to give the summary as well.
         model
@@ -1351,7 +1354,7 @@ class Calibration:
         -------
         numpy.ndarray
             Readings to command, of the same shape. Rows that stay as they are are named by a PoecalWarning. With summary=True a tuple of these and a
-            dict: `targets` has every row that is corrected, by its index (`line`), `listed` every other one and why.
+            `Compensation`: `targets` has every row that is corrected, by its index (`line`), `listed` every other one and why.
         """
     @overload
     def compensate(
@@ -1423,8 +1426,10 @@ class Calibration:
             Values of the corrected model's factors by their names, default their references.
         nearest
             Whether to write the nearest configuration where the robot cannot reach a target, instead of leaving it as it is.
-        most_turn_rad, most_slide_m
+        most_turn_deg, most_slide_mm
             How far a joint that turns, or slides, may be moved beyond its zero, default 2 degrees and 2 mm. A target that takes more, at a singularity, stays as it is and is listed.
+        most_turn_rad, most_slide_m
+            The same in radians and metres.
         third_axis
             From where J3 of a program of FANUC counts: "level" or "arm"; default as the calibration's mapping says and its rows show.
         check
@@ -1434,7 +1439,7 @@ class Calibration:
 
         Returns
         -------
-        tuple of bytes and dict
+        tuple of bytes and Compensation
             The program, and the summary: how many targets are corrected, which are listed as they are and why, the largest corrections, and what is left.
         """
     @overload
@@ -1527,7 +1532,7 @@ class Calibration:
 
         Returns
         -------
-        Findings
+        Validation
             Errors of the nominal and the calibrated robot, their share inside the predicted bounds, and `acceptance`.
         """
     def identify(
@@ -1557,7 +1562,7 @@ class Calibration:
 
         Returns
         -------
-        Findings
+        Identification
             What would be determined, and the expected error.
         """
     def _repr_html_(self) -> str: ...
@@ -1592,8 +1597,22 @@ class Plan:
     @property
     def enough(self) -> int | None:
         """Number of configurations from which ten more gain less than 5 %; None if that is more than 100."""
-    def to_json(self) -> str: ...
-    def to_dataframe(self) -> pandas.DataFrame: ...
+    def to_json(self) -> str:
+        """The plan as JSON.
+
+        Returns
+        -------
+        str
+            The text.
+        """
+    def to_dataframe(self) -> pandas.DataFrame:
+        """The rows as a data frame of pandas, which has to be installed.
+
+        Returns
+        -------
+        pandas.DataFrame
+            The table that `write` writes: "id", "set", "returns", and the readings in degrees and millimetres.
+        """
     def to_dict(self) -> dict[str, Any]:
         """The plan as dicts and lists: what the program prints with `--json`.
 
@@ -1705,7 +1724,7 @@ class Watch:
 
         Returns
         -------
-        Findings
+        WatchedRow
             Whether the row is as expected (`ok`, None while there are too few rows to judge by), else its `mistake`; which error would be noticed
             (`noticed_mm`); the errors to expect now and after ten more rows; the configuration that gains most (`next`).
         """
@@ -1719,7 +1738,7 @@ class Watch:
 
         Returns
         -------
-        list of Findings
+        list of WatchedRow
             As of `add`, one for each row.
         """
     def __len__(self) -> int: ...
@@ -1804,7 +1823,7 @@ def calibrate(
     corrections
         What joints do beyond geometry: "auto" fits the terms that predict rows best which were not fitted, "all" looks among more of them,
         "off" fits none; or groups of terms, some of "sag,tilt,ratio,harmonics,wobble,backlash,factors,payload,shift,runout", or a dict of
-        their sizes in radians or metres.
+        their sizes in radians or metres, or as texts with a unit.
     harmonics
         Highest order of the harmonics of a turn among these terms, 1 to 8 (default 2).
     gravity
@@ -1874,7 +1893,7 @@ def check(
 
     Returns
     -------
-    Findings
+    Check
         What is understood, with mistakes under "diagnosis".
     """
 def compare(first: Calibration, second: Calibration, *, limit_mm: _Number | None = None) -> Comparison:
@@ -1889,7 +1908,7 @@ def compare(first: Calibration, second: Calibration, *, limit_mm: _Number | None
 
     Returns
     -------
-    Findings
+    Comparison
         Whether the tip moved by more than the limit (`moved`), by how much (`tip`), whether more changed than noise makes (`changed`), and each joint's
         change with its test.
     """
@@ -1910,7 +1929,7 @@ def convert(
     to
         "urdf" (a new one, of links, joints and a tip) or "toml" (a table of screws), default as the extension of `out` says.
     offset
-        Offsets of joint values by the joints' names, radians or metres: the text has the screws and home pose of the robot with these
+        Offsets of joint values by the joints' names, radians or metres, or texts with a unit: the text has the screws and home pose of the robot with these
         offsets. Mimic joints that follow a joint stay.
     out
         The file.
@@ -1954,7 +1973,7 @@ def hand_eye(
 
     Returns
     -------
-    Findings
+    HandEye
         The frame of the camera, "camera_frame", and of the board, "target_frame", each with "matrix", "bound95_mm" and "bound95_deg"; the "verdict", what
         was held out, and "findings": all that `hand_eye.json` has.
     """
@@ -1988,7 +2007,7 @@ def identify(
 
     Returns
     -------
-    Findings
+    Identification
         What would be determined, and the expected error.
     """
 def init(
@@ -2061,7 +2080,7 @@ def offsets(
 
     Returns
     -------
-    Findings
+    Offsets
         The offsets, and the errors with and without them.
     """
 def read_joints(path: _Path, robot: Robot, *, columns: _Path | None = None, units: str | None = None) -> _Array:
@@ -2111,7 +2130,7 @@ def reproduce(
 
     Returns
     -------
-    Findings
+    Reproduction
         The runs, and the claims with what was found.
     """
 def run_program(arguments: Sequence[str]) -> int:
@@ -2180,7 +2199,7 @@ def simulate(
         Number of further measurements, free of noise, to judge a calibration by.
     terms
         What the joints do beyond geometry: "off", or groups of terms with the standard deviations of their coefficients in radians or metres, as a dict
-        or "sag=1e-3,ratio=1e-4".
+        (also of texts with a unit) or "sag=1e-3,ratio=1e-4".
     gravity
         Where gravity pulls, in the robot's base frame, default (0, 0, -1).
 
@@ -2213,7 +2232,7 @@ def tcp(
 
     Returns
     -------
-    Findings
+    ToolTip
         The "tips", with "position_m" and "bound95_mm", the "axis" of two, and the "verdict": all that `tcp.json` has.
     """
 @overload
@@ -2259,14 +2278,19 @@ def plan(
 ) -> Plan:
     """Plans a session: configurations that determine the most, rows to judge by, how many are worth it, and the error to expect.
 
+    With `purpose="drift"` it plans visits to a calibrated robot: of the configurations that were measured, those whose repeats show the smallest shift
+    of the worst joint. `candidates`, `count`, `earlier`, `device`, `tool` and `repeatability_mm` say what is known of the visits.
+
     Parameters
     ----------
     robot
-        The robot; one that was read from a calibration.json plans the next session of it.
+        The robot, or the path of its model; a calibration, or a robot that was read from a calibration.json, plans the next session of it.
+    purpose
+        "calibration", or "drift" for visits to a calibration.
     kind
         Kind of the measurements of the tip: "point", "pose", "mixed" or "distance".
     count
-        Number of different configurations to fit, from 1 to 1000.
+        Number of different configurations to fit, from 1 to 1000 (default 30); with "drift" to measure at each visit (default 8).
     judge
         Number of further rows to judge by, at random over the workspace (default a third of `count`).
     candidates
@@ -2320,11 +2344,20 @@ def plan(
         How long the robot stands at each row, for how long all takes.
     seed
         Seed of everything random.
+    earlier
+        For "drift": rows of the calibration or of an earlier visit whose configurations may be repeated (default those of the calibration).
+    device
+        For "drift": "known" if the device will stand where it stood, "anew" if not (default "known" of a calibration with frame="base").
+    tool
+        For "drift": "same" if the tool will be on the flange as it was, "anew" if not (default "same").
+    repeatability_mm
+        For "drift": standard deviation of one visit and coordinate, as repeats show it (default the noise of the calibration).
 
     Returns
     -------
-    Plan
-        The rows in the order in which to measure them, with the errors to expect. Only configurations are checked, never the way between them.
+    Plan or VisitPlan
+        The rows in the order in which to measure them, with the errors to expect; with "drift" what each joint would show. Only configurations are
+        checked, never the way between them.
     """
 @overload
 def plan(
@@ -2408,7 +2441,7 @@ def track(
 
     Returns
     -------
-    Findings
+    Visit
         The state, the explanation with its size, others that explain the changes nearly as well, joints that are not seen, and the error now.
     """
 def version() -> str:

@@ -14,14 +14,14 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 class Check(Findings):
-    """How a model and measurements are understood: the result of `check`. Its data frame has a row for each column that was read."""
+    """How a model and measurements are understood: the result of `check`. Its data frame has a row for each column of a file that was read."""
 
     __slots__ = ()
 
     @property
     def count(self) -> int:
         """Number of rows that were read."""
-        return sum(file["rows"] for file in self["files"])
+        return sum((self["sets"] or {}).values())
 
     @property
     def joints(self) -> list[str]:

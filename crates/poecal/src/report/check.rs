@@ -141,11 +141,10 @@ impl Check {
     /// What was read, and the first mistake that it shows, in a sentence.
     #[must_use]
     pub fn answer(&self) -> String {
-        let rows: usize = self.files.iter().map(|file| file.rows).sum();
-        let read = match (self.files.is_empty(), rows) {
-            (true, _) => return self.robot_words.clone(),
-            (_, 1) => "1 row".to_owned(),
-            (_, rows) => format!("{rows} rows"),
+        let Some(SetCounts { fit, held_out, unstated }) = self.sets else { return self.robot_words.clone() };
+        let read = match fit + held_out + unstated {
+            1 => "1 row".to_owned(),
+            rows => format!("{rows} rows"),
         };
         match self.diagnosis.as_slice() {
             [] => format!("{read}, no mistake found"),
