@@ -94,9 +94,14 @@ impl VisitOptions<'_> {
         };
         let new = candidates.map(|it| Joints::of(it, robot)).transpose()?;
         let readings = new.as_ref().map(|it| it.readings.as_slice());
-        let own = self.earlier.is_none().then(|| calibration.own_rows()).transpose()?;
-        let earlier = self.earlier.map(Measurements::data).or(own.as_deref());
-        let earlier = earlier.ok_or_else(|| argument("earlier", "found none, expected measurements"))?;
+        let own;
+        let earlier = match self.earlier {
+            Some(measurements) => measurements.data(),
+            None => {
+                own = calibration.own_rows()?;
+                &*own
+            }
+        };
         let work = || {
             let found = witnesses(file, earlier, readings, count, None, &options)?;
             let told = report::WitnessPlan::new(&found, &file.robot.name, new.is_some());

@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Any, TypeVar, cast
 from ._errors import missing
 
 if TYPE_CHECKING:
-    import pandas  # type: ignore[import-untyped, import-not-found, unused-ignore]
+    # Of a private name, since pandas has no types, so that stubtest would look for it where this runs.
+    import pandas as _pandas  # type: ignore[import-untyped, import-not-found, unused-ignore]
 
 T = TypeVar("T")
 
@@ -23,7 +24,7 @@ def imported(package: str) -> Any:
         raise missing(package) from error
 
 
-def table(text: str) -> pandas.DataFrame:
+def table(text: str) -> _pandas.DataFrame:
     """A table of comma-separated values, with comments, as a data frame."""
     return imported("pandas").read_csv(io.StringIO(text), comment="#")
 
@@ -73,7 +74,7 @@ class Findings(Mapping[str, Any]):
         """
         return self._json
 
-    def to_dataframe(self) -> pandas.DataFrame:
+    def to_dataframe(self) -> _pandas.DataFrame:
         """The result as a data frame of pandas, which has to be installed; each kind of result says what its rows are.
 
         Returns

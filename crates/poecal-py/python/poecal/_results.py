@@ -10,7 +10,8 @@ from ._findings import Findings, imported, table
 
 if TYPE_CHECKING:
     import numpy as np
-    import pandas  # type: ignore[import-untyped, import-not-found, unused-ignore]
+    # Of a private name, since pandas has no types, so that stubtest would look for it where this runs.
+    import pandas as _pandas  # type: ignore[import-untyped, import-not-found, unused-ignore]
     from numpy.typing import NDArray
 
 class Check(Findings):
@@ -287,7 +288,7 @@ class VisitPlan(Findings):
         """Standard deviation of a visit and coordinate for which this is, millimetres."""
         return self._at(float, "noise_mm")
 
-    def to_dataframe(self) -> pandas.DataFrame:
+    def to_dataframe(self) -> _pandas.DataFrame:
         """The table to fill in as a data frame of pandas, which has to be installed.
 
         Returns

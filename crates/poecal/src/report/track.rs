@@ -160,14 +160,11 @@ impl WitnessPlan {
             Some(format!("{} {smallest:.3} {}", visible(&it.joint), it.unit))
         });
         let seen: Vec<String> = seen.collect();
+        let seen = if seen.is_empty() { "none".to_owned() } else { seen.join(", ") };
         let unseen: Vec<String> = self.invisible.iter().map(|it| visible(&it.joint).into_owned()).collect();
         let unseen =
             if unseen.is_empty() { String::new() } else { format!("; not seen: {}", unseen.join(", ")) };
-        format!(
-            "{} configurations; smallest shifts found (95 %): {}{unseen}",
-            self.configurations,
-            seen.join(", ")
-        )
+        format!("{} configurations; smallest shifts found (95 %): {seen}{unseen}", self.configurations)
     }
 
     /// The table.
