@@ -32,13 +32,12 @@ assert others is not None
 
 for count in [8, 40]:
     found = poecal.identify(nominal, made.measurements.joints[:count], kind="point")
-    told, mean_mm = found["identifiability"], found["expected_error"]["position_mean_mm"]
+    mean_mm = found["expected_error"]["position_mean_mm"]
     expected = "no prediction" if mean_mm is None else f"{mean_mm:.4f} mm expected error"
-    print(f"{count} points would determine {told['rank']} of {told['parameters']} unknowns: {expected}")
+    print(f"{count} points would determine {found.determined} of {found.unknowns} unknowns: {expected}")
 
 calibration = poecal.calibrate(nominal, made.measurements, held_out=0)
 judgement = calibration.validate(others)
-error = judgement["calibrated"]["position_mm"]
-print(f"{judgement['count']} other points: error {error['rms']:.4f} mm (RMS), {error['max']:.4f} mm at most")
-kept = judgement["promised"]["position_mm"]
-print(f"expected {kept['expected_rms']:.4f} mm with noise; {100 * kept['inside_bound95']:.1f} % are inside their 95 % bounds")
+assert judgement.inside_bound95 is not None
+print(f"{judgement.count} other points: error {judgement.position_rms_mm:.4f} mm (RMS), {judgement.position_max_mm:.4f} mm at most")
+print(f"expected {judgement.expected_rms_mm:.4f} mm with noise; {100 * judgement.inside_bound95:.1f} % are inside their 95 % bounds")

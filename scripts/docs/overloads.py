@@ -1,4 +1,4 @@
-"""Methods of which the stubs have overloads alone, on the page of the Python package: griffe leaves them out."""
+"""Functions of which the stubs have overloads alone, on the page of the Python package: griffe leaves them out."""
 
 import griffe
 
@@ -7,8 +7,15 @@ class Overloads(griffe.Extension):
     """Shows the last overload, the most general one, with the docstring of the first."""
 
     def on_class_members(self, *, cls, **kwargs):
-        for name, functions in cls.overloads.items():
-            if name not in cls.members:
-                shown = functions[-1]
-                shown.docstring = functions[0].docstring
-                cls.set_member(name, shown)
+        show(cls)
+
+    def on_module_members(self, *, mod, **kwargs):
+        show(mod)
+
+
+def show(owner):
+    for name, functions in owner.overloads.items():
+        if name not in owner.members:
+            shown = functions[-1]
+            shown.docstring = functions[0].docstring
+            owner.set_member(name, shown)

@@ -54,7 +54,7 @@ SHOWN = {
     "prints what your rows determine, and names what they do not": "tests/python/test_docs.py::test_every_block_does_what_the_page_says",
     "It is the only length here": ELSEWHERE,
     "The NEON code has been run under emulation only": ELSEWHERE,
-    "It gives a figure of matplotlib and does not show it": "crates/poecal-py/tests/test_residuals.py::test_a_picture_is_drawn_and_not_shown",
+    "It returns a figure of matplotlib and does not show it": "crates/poecal-py/tests/test_residuals.py::test_a_picture_is_drawn_and_not_shown",
     "The page adds only sums over the rows": "web/test/report.test.mjs",
     "So poecal has no offsets among its unknowns": "crates/poecal-lou2009/tests/it/formulations.rs",
     "they do not change during the fit": ELSEWHERE,

@@ -53,6 +53,16 @@ drawn, axes = plt.subplots(1, 2)
 calibration.plot(axes)
 residuals: NDArray[np.float64] = calibration.residuals.position_mm
 names: list[str] = calibration.covariance.names
+offsets: poecal.Offsets = poecal.offsets(robot, calibration)
+degrees: dict[str, float] = offsets.offsets_deg
+judged: poecal.Validation = calibration.validate(rows)
+error: float | None = judged.position_rms_mm
+whole: object = judged["verdict"]
+planned: poecal.Plan = poecal.plan(robot, count=8, floor_mm="-70cm", margin_deg_mm=(5, "1cm"))
+visit: poecal.VisitPlan = poecal.plan(calibration, purpose="drift", device="known", repeatability_mm=0.03)
+found_again: list[poecal.Findings] = [offsets, judged, visit, poecal.check(robot), poecal.track(calibration, rows)]
+in_texts = poecal.calibrate("robot.urdf", "points.csv", sigma_position_mm="0.05mm", tolerance_deg_mm="0.5deg,5mm", corrections={"sag": "0.05deg"})
+summary: poecal.Compensation = calibration.compensate(joints, summary=True, most_turn_deg=2)[1]
 """
 
 

@@ -284,7 +284,8 @@ impl Reproduction {
     }
 
     /// How many statements hold, and how many there are: of the paper's, or of the findings that it leaves out.
-    pub(crate) fn holding(&self, said_by_paper: bool) -> (usize, usize) {
+    #[must_use]
+    pub fn holding(&self, said_by_paper: bool) -> (usize, usize) {
         let claims = || self.claims.iter().filter(|claim| claim.said_by_paper == said_by_paper);
         (claims().filter(|claim| claim.holds).count(), claims().count())
     }

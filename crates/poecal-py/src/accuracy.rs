@@ -153,9 +153,14 @@ pub(crate) struct Accuracy {
 #[pymethods]
 impl Accuracy {
     fn __repr__(&self) -> String {
+        // Without terms the corrected model is the calibrated one.
+        let delivered = |set: &SetAccuracy| match set.corrected.filter(|it| *it != set.calibrated) {
+            Some(corrected) => (corrected, "corrected"),
+            None => (set.calibrated, "calibrated"),
+        };
         let words = |set: &SetAccuracy, name: &str| {
-            let calibrated = set.calibrated;
-            format!("{} {} RMS on {} {name} rows", calibrated.leading(), calibrated.unit(), set.count)
+            let (model, word) = delivered(set);
+            format!("{word} {} {} RMS on {} {name} rows", model.leading(), model.unit(), set.count)
         };
         let held_out = self.held_out.as_ref().map_or_else(String::new, |set| words(set, "held-out") + ", ");
         format!("<poecal.Accuracy: {held_out}{}>", words(&self.training, "fitted"))

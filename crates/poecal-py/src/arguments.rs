@@ -9,15 +9,13 @@ use poecal::io::record::Record;
 use poecal::io::urdf::ChainSelection;
 use poecal::plan::RobotError;
 use poecal::robot::GravityDirection;
-use poecal::text::visible;
+use pyo3::PyTypeInfo;
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyString};
 
 use crate::errors::argument;
-use crate::words::from_mm;
-
-/// Longest text that a message shows of what was found.
-const SHOWN: usize = 60;
+use crate::units;
+use crate::words::{from_mm, shortened};
 
 /// What an argument can be read as.
 pub(crate) trait Argument<'a, 'py>: Sized {
@@ -39,11 +37,21 @@ named! {
     convention corrections count criterion device device_looks_at_mm device_mm distance_mm earlier error_position_mm error_rotation_deg
     experiment facing fit_where fix flange floor_mm folder force format formulation frame frames free gravity harmonics hash held_out
     held_out_count history id ids ignore_sets instrument_noise instruments join judge kind kinds lag language length_unit level limit_mm
-    limits logo margin_deg_mm markers measurements method model most_slide_m most_turn_rad motors move_tip name names nearest
-    noise_position_mm noise_rotation_deg nominal offset out parts path paths points progress quantity readings record refit refit_frame
+    limits logo margin_deg_mm markers measurements method model most_slide_m most_slide_mm most_turn_deg most_turn_rad motors move_tip name names nearest
+    noise_position_mm noise_rotation_deg nominal offset out parts path paths points progress purpose quantity readings record refit refit_frame
     refit_tool repair repeatability_mm replace report residual residuals robot robot_error_mm robust seed self_collision separation_deg sets
     sheet sigma_position_mm sigma_rotation_deg socket_distance start starts stop_s strict summary target target_offset_mm targets terms text
     third_axis tip tip_link tips to tolerance_deg_mm tool tools topics trials units valid_until with_uncertainty
+}
+
+/// Refuses keywords that a class does not have, as `poecal._keywords` does for functions.
+pub(crate) fn refuse_unknown<T: PyTypeInfo>(
+    py: Python<'_>,
+    unknown: Option<&Bound<'_, PyDict>>,
+) -> PyResult<()> {
+    let Some((name, _)) = unknown.and_then(|it| it.iter().next()) else { return Ok(()) };
+    let refused = py.import("poecal._keywords")?.call_method1("unknown", (py.get_type::<T>(), name))?;
+    Err(PyErr::from_value(refused))
 }
 
 /// The error for an argument that is something else than expected.
@@ -68,14 +76,6 @@ pub(crate) fn found(value: &Bound<'_, PyAny>) -> String {
     type_name()
 }
 
-/// A text on one line, without its end if it is long.
-pub(crate) fn shortened(text: &str) -> String {
-    let line = text.trim().lines().next().unwrap_or_default();
-    let begin: String = line.chars().take(SHOWN).collect();
-    let mark = if begin.len() < text.trim().len() { "…" } else { "" };
-    format!("{}{mark}", visible(&begin))
-}
-
 /// Whether a text is that of a file, and not the path of one.
 pub(crate) fn is_content(text: &str) -> bool {
     let text = text.trim_start_matches('\u{feff}').trim();
@@ -97,6 +97,9 @@ whole_numbers! { u32 u64 usize }
 
 impl<'a, 'py> Argument<'a, 'py> for f64 {
     fn of(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
+        if let (Some(unit), true) = (units::of_name(name), value.is_instance_of::<PyString>()) {
+            return units::in_unit(<&str>::of(value, name)?, unit, name);
+        }
         value.extract().map_err(|_| unexpected(name, value, "a number"))
     }
 }
@@ -153,6 +156,7 @@ impl<'a, 'py, T: for<'b> Argument<'b, 'py>> Argument<'a, 'py> for Vec<T> {
 
 impl<'a, 'py> Argument<'a, 'py> for (f64, f64) {
     fn of(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
+        let value = &units::listed(value, name)?;
         if value.len().is_ok_and(|length| length != 2) || value.try_iter().is_err() {
             return Err(unexpected(name, value, "two numbers"));
         }
@@ -165,6 +169,7 @@ impl<'a, 'py> Argument<'a, 'py> for (f64, f64) {
 
 impl<'a, 'py> Argument<'a, 'py> for [f64; 3] {
     fn of(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
+        let value = &units::listed(value, name)?;
         if value.try_iter().is_err() {
             return Err(unexpected(name, value, "three numbers"));
         }
@@ -177,9 +182,12 @@ impl<'a, 'py> Argument<'a, 'py> for [f64; 3] {
 
 impl<'a, 'py> Argument<'a, 'py> for RobotError {
     fn of(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
+        let value = &units::listed(value, name)?;
         let (calibrated_mm, corrected_mm) = match value.try_iter() {
-            Ok(_) => <(f64, f64)>::of(value, name).map(|it| (it.0, Some(it.1)))?,
-            Err(_) => (f64::of(value, name)?, None),
+            Ok(_) if !value.is_instance_of::<PyString>() => {
+                <(f64, f64)>::of(value, name).map(|it| (it.0, Some(it.1)))?
+            }
+            _ => (f64::of(value, name)?, None),
         };
         let calibrated_m = crate::words::size(name, calibrated_mm, from_mm)?;
         let corrected_m = corrected_mm.map(|it| crate::words::size(name, it, from_mm)).transpose()?;
@@ -208,7 +216,12 @@ impl<'a, 'py> Argument<'a, 'py> for Believed {
         match value.cast::<PyString>().ok().map(|text| text.to_string_lossy().into_owned()) {
             Some(text) if text == "auto" => Ok(Believed::Auto),
             Some(text) if text.to_ascii_lowercase().ends_with(".cfg") => Ok(Believed::Of(text.into())),
-            Some(_) => Err(unexpected(name, value, "two numbers, \"auto\", the path of a MOC.cfg, or None")),
+            Some(text) if text.contains(',') => <(f64, f64)>::of(value, name).map(Believed::Given),
+            Some(_) => Err(unexpected(
+                name,
+                value,
+                "two numbers, a text like \"0.5deg,5mm\", \"auto\", the path of a MOC.cfg, or None",
+            )),
             None if value.is_none() => Ok(Believed::None),
             None => <(f64, f64)>::of(value, name).map(Believed::Given),
         }
@@ -244,7 +257,11 @@ impl<'a, 'py> Argument<'a, 'py> for BTreeMap<String, f64> {
         let entries = value.cast::<PyDict>().map_err(|_| unexpected(name, value, expected))?;
         let entry = |(key, number): (Bound<'py, PyAny>, Bound<'py, PyAny>)| {
             let key = String::of(&key, &format!("{name}, a key"))?;
-            let number = f64::of(&number, &format!("{name}[\"{key}\"]"))?;
+            let name = format!("{name}[\"{key}\"]");
+            let number = match number.cast::<PyString>() {
+                Ok(text) => units::in_si(&text.to_string_lossy(), &name)?,
+                Err(_) => f64::of(&number, &name)?,
+            };
             Ok((key, number))
         };
         entries.iter().map(entry).collect()

@@ -46,7 +46,7 @@ use crate::words::{chosen, frame as frame_word, from_mm, robust as robust_word, 
 /// corrections
 ///     What joints do beyond geometry: "auto" fits the terms that predict rows best which were not fitted, "all" looks among more of them,
 ///     "off" fits none; or groups of terms, some of "sag,tilt,ratio,harmonics,wobble,backlash,factors,payload,shift,runout", or a dict of
-///     their sizes in radians or metres.
+///     their sizes in radians or metres, or as texts with a unit.
 /// harmonics
 ///     Highest order of the harmonics of a turn among these terms, 1 to 8 (default 2).
 /// gravity

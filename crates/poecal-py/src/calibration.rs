@@ -9,7 +9,7 @@ use content::part;
 use std::path::{Path, PathBuf};
 
 use numpy::PyArray2;
-use poecal::calibration::AcceptanceLimits;
+use poecal::calibration::{AcceptanceLimits, AcceptedModel};
 use poecal::compensate::{Language, ProgramOptions};
 use poecal::io::calibration_file::{CalibrationFile, Counted};
 use poecal::io::export::{ExportFormat, ExportOptions, export};
@@ -579,8 +579,10 @@ impl Calibration {
     ///     Values of the corrected model's factors by their names, default their references.
     /// nearest
     ///     Whether to give the nearest configuration where a pose cannot be reached, instead of leaving the row as it is.
-    /// most_turn_rad, most_slide_m
+    /// most_turn_deg, most_slide_mm
     ///     How far a joint that turns, or slides, may be moved beyond its zero, default 2 degrees and 2 mm. A row that takes more, at a singularity, stays as it is.
+    /// most_turn_rad, most_slide_m
+    ///     The same in radians and metres.
     /// summary
     ///     Whether to give the summary as well.
     /// model
@@ -593,8 +595,8 @@ impl Calibration {
     /// -------
     /// numpy.ndarray
     ///     Readings to command, of the same shape. Rows that stay as they are are named by a PoecalWarning. With summary=True a tuple of these and a
-    ///     dict: `targets` has every row that is corrected, by its index (`line`), `listed` every other one and why.
-    #[pyo3(signature = (joints, *, factors=None, nearest=false, most_turn_rad=None, most_slide_m=None, summary=false, model="corrected", readings=None))]
+    ///     `Compensation`: `targets` has every row that is corrected, by its index (`line`), `listed` every other one and why.
+    #[pyo3(signature = (joints, *, factors=None, nearest=false, most_turn_deg=None, most_slide_mm=None, most_turn_rad=None, most_slide_m=None, summary=false, model="corrected", readings=None))]
     #[expect(clippy::too_many_arguments, reason = "the options of a Python function")]
     fn compensate<'py>(
         &self,
@@ -602,6 +604,8 @@ impl Calibration {
         joints: &Bound<'py, PyAny>,
         factors: Option<&Bound<'py, PyAny>>,
         #[pyo3(from_py_with = arg::nearest)] nearest: bool,
+        #[pyo3(from_py_with = arg::most_turn_deg)] most_turn_deg: Option<f64>,
+        #[pyo3(from_py_with = arg::most_slide_mm)] most_slide_mm: Option<f64>,
         #[pyo3(from_py_with = arg::most_turn_rad)] most_turn_rad: Option<f64>,
         #[pyo3(from_py_with = arg::most_slide_m)] most_slide_m: Option<f64>,
         #[pyo3(from_py_with = arg::summary)] summary: bool,
@@ -611,7 +615,13 @@ impl Calibration {
         let actual = self.actual(model)?;
         let taught = self.file().taught(&actual.model.robot).map_err(raise)?;
         let factors = reach::factors(&actual.model.robot, factors)?;
-        let options = reach::change(nearest, most_turn_rad, most_slide_m)?;
+        let most = reach::Most {
+            turn_deg: most_turn_deg,
+            slide_mm: most_slide_mm,
+            turn_rad: most_turn_rad,
+            slide_m: most_slide_m,
+        };
+        let options = reach::change(nearest, most)?;
         let counting = reach::counting(self.file(), readings)?;
         let joints = (joints, counting.as_ref());
         reach::compensate(py, (&taught.robot, &actual.model.robot), joints, &factors, &options, summary)
@@ -657,8 +667,10 @@ impl Calibration {
     ///     Values of the corrected model's factors by their names, default their references.
     /// nearest
     ///     Whether to write the nearest configuration where the robot cannot reach a target, instead of leaving it as it is.
-    /// most_turn_rad, most_slide_m
+    /// most_turn_deg, most_slide_mm
     ///     How far a joint that turns, or slides, may be moved beyond its zero, default 2 degrees and 2 mm. A target that takes more, at a singularity, stays as it is and is listed.
+    /// most_turn_rad, most_slide_m
+    ///     The same in radians and metres.
     /// third_axis
     ///     From where J3 of a program of FANUC counts: "level" or "arm"; default as the calibration's mapping says and its rows show.
     /// check
@@ -668,9 +680,9 @@ impl Calibration {
     ///
     /// Returns
     /// -------
-    /// tuple of bytes and dict
+    /// tuple of bytes and Compensation
     ///     The program, and the summary: how many targets are corrected, which are listed as they are and why, the largest corrections, and what is left.
-    #[pyo3(signature = (path, *, language=None, tools=None, frames=None, base=None, flange=None, start=None, factors=None, nearest=false, most_turn_rad=None, most_slide_m=None, third_axis=None, check=false, model="corrected"))]
+    #[pyo3(signature = (path, *, language=None, tools=None, frames=None, base=None, flange=None, start=None, factors=None, nearest=false, most_turn_deg=None, most_slide_mm=None, most_turn_rad=None, most_slide_m=None, third_axis=None, check=false, model="corrected"))]
     #[expect(clippy::too_many_arguments, reason = "the options of a Python function")]
     fn compensate_program<'py>(
         &self,
@@ -684,6 +696,8 @@ impl Calibration {
         #[pyo3(from_py_with = arg::start)] start: Option<String>,
         factors: Option<&Bound<'py, PyAny>>,
         #[pyo3(from_py_with = arg::nearest)] nearest: bool,
+        #[pyo3(from_py_with = arg::most_turn_deg)] most_turn_deg: Option<f64>,
+        #[pyo3(from_py_with = arg::most_slide_mm)] most_slide_mm: Option<f64>,
         #[pyo3(from_py_with = arg::most_turn_rad)] most_turn_rad: Option<f64>,
         #[pyo3(from_py_with = arg::most_slide_m)] most_slide_m: Option<f64>,
         #[pyo3(from_py_with = arg::third_axis)] third_axis: Option<&str>,
@@ -694,7 +708,13 @@ impl Calibration {
         let taught = self.file().taught(&actual.model.robot).map_err(raise)?;
         let factors = reach::factors(&actual.model.robot, factors)?;
         let language = reach::language(&path, language.as_deref())?;
-        let change = reach::change(nearest, most_turn_rad, most_slide_m)?;
+        let most = reach::Most {
+            turn_deg: most_turn_deg,
+            slide_mm: most_slide_mm,
+            turn_rad: most_turn_rad,
+            slide_m: most_slide_m,
+        };
+        let change = reach::change(nearest, most)?;
         let third_axis = third_axis
             .map(|word| chosen("third_axis", word, &[("level", ThirdAxis::Level), ("arm", ThirdAxis::Arm)]))
             .transpose()?;
@@ -802,7 +822,7 @@ impl Calibration {
     ///
     /// Returns
     /// -------
-    /// Findings
+    /// Validation
     ///     Errors of the nominal and the calibrated robot, their share inside the predicted bounds, and `acceptance`.
     #[pyo3(signature = (measurements, *, refit_frame=false, refit_tool=false, refit="never", accept=None, accept_model="corrected", out=None, force=false, report=None,
                         record=None, history=None),
@@ -849,7 +869,7 @@ impl Calibration {
     ///
     /// Returns
     /// -------
-    /// Findings
+    /// Identification
     ///     What would be determined, and the expected error.
     #[pyo3(signature = (joints, *, kind="pose", sigma_position_mm=None, sigma_rotation_deg=None, frame="unknown", robot_error_mm=None))]
     #[expect(clippy::too_many_arguments, reason = "the options of a Python function")]
@@ -892,16 +912,25 @@ impl Calibration {
             None => (&file.accuracy.training, "fitted"),
         };
         let verdict = file.verdict.as_ref().map_or("no verdict", |verdict| verdict.level.words());
-        let [registered, calibrated] = [set.registered, set.calibrated].map(|it| number(it.lead().rms));
-        let unit = set.calibrated.leading().map_or("mm", |(quantity, _)| quantity.unit().symbol());
+        let delivered = self.delivered();
+        let after = match delivered {
+            AcceptedModel::Corrected => set.corrected.unwrap_or(set.calibrated),
+            AcceptedModel::Calibrated => set.calibrated,
+        };
+        let [before, error] = [set.registered, after].map(|it| number(it.lead().rms));
+        let unit = after.leading().map_or("mm", |(quantity, _)| quantity.unit().symbol());
+        let expected = file.verdict.as_ref().and_then(|verdict| verdict.expected_error_mm);
+        let expected = expected.map_or_else(String::new, |it| format!(", {} mm expected", number(it)));
         format!(
-            "<poecal.Calibration of {}: {verdict}, {calibrated} {unit} RMS on {} {name} rows (your model, tool and device located: {registered})>",
-            file.robot.name, set.count
+            "<poecal.Calibration of {}: {verdict}, {} model {error} {unit} RMS on {} {name} rows{expected} (your model, tool and device located: {before})>",
+            file.robot.name,
+            delivered.word(),
+            set.count
         )
     }
 
     fn _repr_html_(&self) -> String {
-        notebook::calibration(self.file(), &self.warnings())
+        notebook::calibration(self.file(), self.delivered(), &self.warnings())
     }
 
     fn __eq__(&self, other: &Bound<'_, PyAny>) -> bool {

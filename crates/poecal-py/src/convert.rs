@@ -27,7 +27,7 @@ use crate::robot::{Robot, form};
 /// to
 ///     "urdf" (a new one, of links, joints and a tip) or "toml" (a table of screws), default as the extension of `out` says.
 /// offset
-///     Offsets of joint values by the joints' names, radians or metres: the text has the screws and home pose of the robot with these
+///     Offsets of joint values by the joints' names, radians or metres, or texts with a unit: the text has the screws and home pose of the robot with these
 ///     offsets. Mimic joints that follow a joint stay.
 /// out
 ///     The file.

@@ -1,102 +1,71 @@
-//! Results of `check`, `compare`, `identify`, `offsets`, `reproduce` and `Calibration.validate`.
-
-use std::path::PathBuf;
+//! Results of `check`, `compare`, `identify`, `offsets` and `track`.
 
 use poecal::analysis::{self, PlannedSession};
 use poecal::calibration::DeviceFrameKnowledge;
 use poecal::io::offsets::ModelOffsets;
-use poecal::io::output::{self, Contents, Existing};
 use poecal::io::validation::ValidationInputs;
 use poecal::measurement::{Noise, Quantity};
 use poecal::plan::{PlannedFit, RobotError, expected_errors};
 use poecal::report::Detail;
 use poecal::track::{Earlier, TrackOptions, track as tracked};
 use poecal::{compare as compared, forensics, report};
-use poecal_lou2009::{self as experiments, report as reproduced};
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyTuple};
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 
 use crate::arguments::{self as arg, Argument, unexpected};
 use crate::arrays::Joints;
 use crate::calibration::Calibration;
-use crate::errors::raise;
+use crate::errors::{python_words, raise};
 use crate::measurements::Measurements;
-use crate::notebook;
 use crate::paths;
-use crate::pickle;
-use crate::places::reserved_folder;
 use crate::robot::Robot;
 use crate::words::{chosen, end, frame as frame_word, from_mm, kind as kind_word, sigma, sigmas};
 
-/// A result: `str` is the program's table, `to_dict` what the program prints with `--json`, and `found["key"]` a part of it.
-#[pyclass(frozen, eq, module = "poecal", name = "Findings")]
-#[derive(Clone, PartialEq, Serialize, Deserialize)]
+/// A result on its way to Python: an object of the class of this name in `poecal`.
 pub(crate) struct Findings {
+    class: &'static str,
+    /// The program's table.
     text: String,
+    /// The answer in a sentence.
+    answer: String,
+    /// What the program prints with `--json`.
     json: String,
     warnings: Vec<String>,
 }
 
 impl Findings {
     /// Of a result's own JSON.
-    pub(crate) fn of_text(text: String, json: String, warnings: Vec<String>) -> PyResult<Self> {
-        let warnings = warnings.iter().map(|warning| crate::errors::python_words(warning)).collect();
-        Ok(Findings { text, json, warnings })
+    pub(crate) fn of_json(
+        class: &'static str,
+        text: String,
+        answer: impl Into<String>,
+        json: String,
+    ) -> Self {
+        Findings { class, text, answer: answer.into(), json, warnings: Vec::new() }
     }
 
-    pub(crate) fn new(text: String, found: &impl Serialize, warnings: Vec<String>) -> PyResult<Self> {
-        Self::of_text(text, report::json(found).map_err(raise)?, warnings)
+    pub(crate) fn new(
+        class: &'static str,
+        text: String,
+        answer: impl Into<String>,
+        found: &impl Serialize,
+    ) -> PyResult<Self> {
+        Ok(Self::of_json(class, text, answer, report::json(found).map_err(raise)?))
+    }
+
+    pub(crate) fn warned(self, warnings: &[String]) -> Self {
+        Findings { warnings: warnings.iter().map(|it| python_words(it)).collect(), ..self }
     }
 }
 
-#[pymethods]
-impl Findings {
-    /// The result as dicts and lists: what the program prints with `--json`.
-    ///
-    /// Returns
-    /// -------
-    /// dict
-    ///     The result.
-    fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        py.import("json")?.call_method1("loads", (&self.json,))
-    }
+impl<'py> IntoPyObject<'py> for Findings {
+    type Target = PyAny;
+    type Output = Bound<'py, PyAny>;
+    type Error = PyErr;
 
-    /// The result as JSON.
-    ///
-    /// Returns
-    /// -------
-    /// str
-    ///     The text.
-    fn to_json(&self) -> String {
-        self.json.clone()
-    }
-
-    /// Warnings, a sentence each.
-    #[getter]
-    fn warnings(&self) -> Vec<String> {
-        self.warnings.clone()
-    }
-
-    fn __getitem__<'py>(&self, py: Python<'py>, key: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
-        self.to_dict(py)?.get_item(key)
-    }
-
-    fn __str__(&self) -> String {
-        self.text.clone()
-    }
-
-    fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
-        let keys: Vec<String> = self.to_dict(py)?.cast::<PyDict>()?.keys().extract()?;
-        Ok(format!("<poecal.Findings: {}>", keys.join(", ")))
-    }
-
-    fn _repr_html_(&self) -> String {
-        notebook::findings(&self.text, &self.warnings)
-    }
-
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
-        pickle::reduce(py, "_findings", self)
+    fn into_pyobject(self, py: Python<'py>) -> PyResult<Self::Output> {
+        let class = py.import("poecal")?.getattr(self.class)?;
+        class.call1((self.text, python_words(&self.answer), self.json, self.warnings))
     }
 }
 
@@ -113,7 +82,7 @@ impl Findings {
 ///
 /// Returns
 /// -------
-/// Findings
+/// Check
 ///     What is understood, with mistakes under "diagnosis".
 #[pyfunction]
 #[pyo3(signature = (robot, measurements=None, *, frame="unknown"))]
@@ -137,7 +106,8 @@ pub(crate) fn check(
         let found = file.map_or_else(Vec::new, |file| diagnose(&file.data));
         report::Check::new(&robot.model, file, &found)
     });
-    Findings::new(check.text(), &check, file.map_or_else(Vec::new, |file| file.warnings.clone()))
+    let warnings = file.map_or(&[][..], |file| &file.warnings);
+    Ok(Findings::new("Check", check.text(), check.answer(), &check)?.warned(warnings))
 }
 
 /// Which unknowns measurements in given configurations would determine, before anything is measured.
@@ -160,7 +130,7 @@ pub(crate) fn check(
 ///
 /// Returns
 /// -------
-/// Findings
+/// Identification
 ///     What would be determined, and the expected error.
 #[pyfunction]
 #[pyo3(signature = (robot, joints, *, kind="pose", sigma_position_mm=None, sigma_rotation_deg=None, frame="unknown", robot_error_mm=None))]
@@ -200,7 +170,7 @@ pub(crate) fn identify(
     };
     let (found, expected) = py.detach(work).map_err(raise)?;
     let report = report::Identify::new(model, &["arrays".to_owned()], &session, (&found, expected));
-    Findings::new(report.text(), &report, Vec::new())
+    Findings::new("Identification", report.text(), report.answer(), &report)
 }
 
 /// A robot, or the calibrated one of a calibration.
@@ -233,7 +203,7 @@ impl<'a, 'py> Argument<'a, 'py> for RobotOrCalibration<'a> {
 ///
 /// Returns
 /// -------
-/// Findings
+/// Offsets
 ///     The offsets, and the errors with and without them.
 #[pyfunction]
 #[pyo3(signature = (nominal, actual, *, base=None, tip=None))]
@@ -265,7 +235,7 @@ pub(crate) fn offsets(
         }
     }
     crate::warn(py, &warnings)?;
-    Findings::new(found.text(), &found, warnings)
+    Ok(Findings::new("Offsets", found.text(), found.answer(), &found)?.warned(&warnings))
 }
 
 /// Two calibrations of one robot: what changed, and what is noise.
@@ -279,7 +249,7 @@ pub(crate) fn offsets(
 ///
 /// Returns
 /// -------
-/// Findings
+/// Comparison
 ///     Whether the tip moved by more than the limit (`moved`), by how much (`tip`), whether more changed than noise makes (`changed`), and each joint's
 ///     change with its test.
 #[pyfunction]
@@ -294,7 +264,7 @@ pub(crate) fn compare(
     let (one, other) = (first.file(), second.file());
     let found = py.detach(|| compared::compare(one, other, limit_m)).map_err(raise)?;
     let told = report::Comparison::new(("first", one), ("second", other), &found).map_err(raise)?;
-    Findings::new(told.text(Detail::Full), &told, Vec::new())
+    Findings::new("Comparison", told.text(Detail::Full), told.answer(), &told)
 }
 
 /// Whether a robot is as it was calibrated, by a few measurements, and which joint is not.
@@ -317,7 +287,7 @@ pub(crate) fn compare(
 ///
 /// Returns
 /// -------
-/// Findings
+/// Visit
 ///     The state, the explanation with its size, others that explain the changes nearly as well, joints that are not seen, and the error now.
 #[pyfunction]
 #[pyo3(signature = (calibration, measurements, earlier=None, *, device="anew", tool="same", repeatability_mm=None))]
@@ -340,71 +310,5 @@ pub(crate) fn track(
     let data = measurements.data();
     let found = py.detach(|| tracked(file, data, earlier, &options)).map_err(raise)?;
     let told = report::Track::new(&found, &file.robot.name, ValidationInputs::default());
-    Findings::new(told.text(), &told, found.notes.clone())
-}
-
-/// Repeats the experiment of a paper and checks its claims, or shows the effect of gross errors.
-///
-/// Parameters
-/// ----------
-/// experiment
-///     "lou2009" (the paper) or "breakdown" (gross errors).
-/// out
-///     Folder for the report.
-/// force
-///     Whether to write over files that exist.
-/// trials
-///     Number of sessions that compare the formulations, or the losses.
-/// starts
-///     Number of random starts for each size of error (lou2009).
-/// seed
-///     Seed of everything random.
-///
-/// Returns
-/// -------
-/// Findings
-///     The runs, and the claims with what was found.
-#[pyfunction]
-#[pyo3(signature = (experiment, *, out=None, force=false, trials=1000, starts=100, seed=1))]
-pub(crate) fn reproduce(
-    py: Python<'_>,
-    #[pyo3(from_py_with = arg::experiment)] experiment: &str,
-    #[pyo3(from_py_with = arg::out)] out: Option<PathBuf>,
-    #[pyo3(from_py_with = arg::force)] force: bool,
-    #[pyo3(from_py_with = arg::trials)] trials: u32,
-    #[pyo3(from_py_with = arg::starts)] starts: u32,
-    #[pyo3(from_py_with = arg::seed)] seed: u64,
-) -> PyResult<Findings> {
-    #[derive(Clone, Copy)]
-    enum Experiment {
-        Lou2009,
-        Breakdown,
-    }
-    let words = [("lou2009", Experiment::Lou2009), ("breakdown", Experiment::Breakdown)];
-    let experiment = chosen("experiment", experiment, &words)?;
-    let options = experiments::ReproductionOptions { trials: trials as usize, starts: starts as usize, seed };
-    let reserved =
-        |folder: &PathBuf| reserved_folder(py, folder, Contents::Reproduction, Existing::forced(force), &[]);
-    let place = out.as_ref().map(reserved).transpose()?;
-    let work = || {
-        let (json, words, files) = match experiment {
-            Experiment::Lou2009 => {
-                let found = experiments::lou2009(&options)?;
-                (report::json(&found)?, reproduced::claims(&found), reproduced::reproduction_files(&found)?)
-            }
-            Experiment::Breakdown => {
-                let found = experiments::breakdown(&options)?;
-                (
-                    report::json(&found)?,
-                    reproduced::breakdown_table(&found),
-                    reproduced::breakdown_files(&found)?,
-                )
-            }
-        };
-        let written = place.map(|place| output::write_reproduction(place, &files)).transpose()?;
-        Ok((words, json, written.map(|written| written.notes).unwrap_or_default()))
-    };
-    let (text, json, notes) = py.detach(work).map_err(raise)?;
-    crate::warn(py, &notes)?;
-    Ok(Findings { text, json, warnings: Vec::new() })
+    Ok(Findings::new("Visit", told.text(), told.answer(), &told)?.warned(&found.notes))
 }

@@ -12,7 +12,9 @@ use poecal::lie::Pose;
 use poecal::measurement::{ByQuantity, Dataset, Measurement, Observation, Quantity, Set};
 use poecal::robot::{JointKind, Robot};
 use pyo3::prelude::*;
+use pyo3::types::PyString;
 
+use crate::arguments::Argument as _;
 use crate::arrays::{Numbers, pose_of};
 use crate::errors::{argument, raise, raise_at_row};
 use crate::words::{chosen, from_mm};
@@ -259,7 +261,10 @@ fn sigma(
 ) -> PyResult<Vec<Option<f64>>> {
     let Some(value) = value else { return Ok(Vec::new()) };
     let expected = format!("a number, or shape ({m},): one for each row of joints");
-    let mut numbers = Numbers::of(value, name, &expected)?;
+    let mut numbers = match value.is_instance_of::<PyString>() {
+        true => Numbers::repeated(f64::of(value, name)?, m),
+        false => Numbers::of(value, name, &expected)?,
+    };
     if let (true, [number]) = (numbers.shape.is_empty(), numbers.values.as_slice()) {
         numbers = Numbers::repeated(*number, m);
     }

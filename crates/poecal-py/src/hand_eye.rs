@@ -67,7 +67,7 @@ fn inverted(name: &str, word: Option<&str>, words: [&'static str; 2]) -> PyResul
 ///
 /// Returns
 /// -------
-/// Findings
+/// HandEye
 ///     The frame of the camera, "camera_frame", and of the board, "target_frame", each with "matrix", "bound95_mm" and "bound95_deg"; the "verdict", what
 ///     was held out, and "findings": all that `hand_eye.json` has.
 #[pyfunction]
@@ -103,8 +103,10 @@ pub(crate) fn hand_eye(
     let found =
         py.detach(|| solved::hand_eye(&poses.flange, &poses.target, &options, &name)).map_err(raise)?;
     let result = HandEyeResult { found: &found, poses: &poses, names: &frames, command: "", arm: None };
-    let text = report::hand_eye(&result);
-    Findings::of_text(text, result.to_text().map_err(raise)?, sentences(&found.findings))
+    let json = result.to_text().map_err(raise)?;
+    let answer = report::hand_eye_answer(&result);
+    let told = Findings::of_json("HandEye", report::hand_eye(&result), answer, json);
+    Ok(told.warned(&sentences(&found.findings)))
 }
 
 /// The tip of a tool from poses of the flange in which it touched a fixed point.
@@ -124,7 +126,7 @@ pub(crate) fn hand_eye(
 ///
 /// Returns
 /// -------
-/// Findings
+/// ToolTip
 ///     The "tips", with "position_m" and "bound95_mm", the "axis" of two, and the "verdict": all that `tcp.json` has.
 #[pyfunction]
 #[pyo3(signature = (base_from_flange, *, points=None, tips=None, names=None))]
@@ -149,7 +151,10 @@ pub(crate) fn tcp(
     let name = |row: usize| poses.names.get(row).cloned().unwrap_or_default();
     let found = py.detach(|| solved::tool_tip(&poses.touches, &name)).map_err(raise)?;
     let result = ToolResult { found: &found, poses: &poses, command: "" };
-    Findings::of_text(report::tool_tip(&result), result.to_text().map_err(raise)?, sentences(&found.findings))
+    let json = result.to_text().map_err(raise)?;
+    let answer = report::tool_tip_answer(&found);
+    let told = Findings::of_json("ToolTip", report::tool_tip(&result), answer, json);
+    Ok(told.warned(&sentences(&found.findings)))
 }
 
 fn sentences(findings: &[solved::Finding]) -> Vec<String> {

@@ -15,17 +15,24 @@ mod from_dataframe;
 mod hand_eye;
 mod measurements;
 mod notebook;
+mod of_model;
 mod paths;
 mod pickle;
 mod places;
 mod plan;
+mod plan_options;
+mod planned;
 mod prediction;
 mod project;
 mod reach;
+mod reproduce;
 mod residuals;
 mod robot;
 mod rows;
 mod simulation;
+mod units;
+mod visit_plan;
+mod watch;
 mod words;
 
 use pyo3::prelude::*;
@@ -37,10 +44,24 @@ fn warn(py: Python<'_>, sentences: &[String]) -> PyResult<()> {
     }
     let category = py.import("poecal._errors")?.getattr("PoecalWarning")?;
     let warn = py.import("warnings")?.getattr("warn")?;
+    let level = level_of_caller(py)?;
     for sentence in sentences {
-        warn.call1((errors::python_words(sentence), &category, 1))?;
+        warn.call1((errors::python_words(sentence), &category, level))?;
     }
     Ok(())
+}
+
+/// The level of the frame that calls the package, beyond those of `poecal._keywords`.
+fn level_of_caller(py: Python<'_>) -> PyResult<usize> {
+    let mut frame = py.import("sys")?.call_method0("_getframe")?;
+    let mut level = 1;
+    let is_ours =
+        |frame: &Bound<'_, PyAny>| frame.getattr("f_globals")?.get_item("__name__")?.eq("poecal._keywords");
+    while !frame.is_none() && is_ours(&frame).unwrap_or(false) {
+        frame = frame.getattr("f_back")?;
+        level += 1;
+    }
+    Ok(level)
 }
 
 /// The compiled half of the Python package `poecal`.
@@ -61,29 +82,39 @@ mod _poecal {
     #[pymodule_export]
     use crate::covariance::Covariance;
     #[pymodule_export]
-    use crate::findings::{Findings, check, compare, identify, offsets, reproduce, track};
+    use crate::findings::{check, compare, identify, offsets, track};
     #[pymodule_export]
     use crate::hand_eye::{hand_eye, tcp};
     #[pymodule_export]
     use crate::measurements::Measurements;
     #[pymodule_export]
-    use crate::plan::{Plan, Watch, plan};
+    use crate::plan::plan;
+    #[pymodule_export]
+    use crate::planned::Plan;
     #[pymodule_export]
     use crate::prediction::Prediction;
     #[pymodule_export]
     use crate::project::init;
+    #[pymodule_export]
+    use crate::reproduce::reproduce;
     #[pymodule_export]
     use crate::residuals::Residuals;
     #[pymodule_export]
     use crate::robot::Robot;
     #[pymodule_export]
     use crate::simulation::{Simulation, simulate};
+    #[pymodule_export]
+    use crate::visit_plan::_write_text;
+    #[pymodule_export]
+    use crate::watch::Watch;
 
-    /// A level of vector instructions that `POECAL_SIMD` names and this machine does not have is refused before anything is computed.
+    /// A level of vector instructions that `POECAL_SIMD` names and this machine does not have is refused before anything is computed; keywords that a
+    /// function does not have are answered with the nearest one.
     #[pymodule_init]
-    fn check_level(_module: &Bound<'_, PyModule>) -> PyResult<()> {
+    fn begin(module: &Bound<'_, PyModule>) -> PyResult<()> {
         let refused = |sentence| crate::errors::raise(poecal::ErrorKind::Option.error(sentence));
-        poecal::problem::stated_level().map(drop).map_err(refused)
+        poecal::problem::stated_level().map(drop).map_err(refused)?;
+        module.py().import("poecal._keywords")?.call_method1("answer", (module,)).map(drop)
     }
 
     /// The version of poecal.
@@ -148,8 +179,15 @@ mod _poecal {
         Calibration::of_state(crate::pickle::value(state)?)
     }
 
+    /// A result as a notebook shows it.
     #[pyfunction]
-    fn _findings(state: &[u8]) -> PyResult<Findings> {
-        crate::pickle::value(state)
+    fn _shown(text: &str, warnings: Vec<String>) -> String {
+        crate::notebook::findings(text, &warnings)
+    }
+
+    /// The word that one is likely to be.
+    #[pyfunction]
+    fn _nearest(word: &str, words: Vec<String>) -> Option<String> {
+        poecal::nearest(word, words.iter().map(String::as_str)).map(str::to_owned)
     }
 }

@@ -2,6 +2,7 @@
 
 use maud::{Markup, html};
 use poecal::Unit;
+use poecal::calibration::AcceptedModel;
 use poecal::io::calibration_file::CalibrationFile;
 use poecal::measurement::Quantity;
 use poecal::robot::{Joint, JointKind, Robot};
@@ -46,8 +47,11 @@ pub(crate) fn findings(text: &str, warnings: &[String]) -> String {
     visible_markup(html! { div { pre { (text) } (warned(warnings)) } })
 }
 
-/// A calibration's verdict and errors.
-pub(crate) fn calibration(file: &CalibrationFile, warnings: &[String]) -> String {
+/// A calibration's verdict and errors; those of the corrected model where it is delivered.
+pub(crate) fn calibration(file: &CalibrationFile, delivered: AcceptedModel, warnings: &[String]) -> String {
+    let is_corrected = delivered == AcceptedModel::Corrected;
+    let corrected = is_corrected.then_some("corrected");
+    let columns = ["error (RMS)", "rows", "nominal", "registered", "calibrated"].into_iter().chain(corrected);
     let fitted = ("fitted", &file.accuracy.training);
     let sets = std::iter::once(fitted).chain(file.accuracy.held_out.iter().map(|set| ("held out", set)));
     visible_markup(html! {
@@ -56,13 +60,14 @@ pub(crate) fn calibration(file: &CalibrationFile, warnings: &[String]) -> String
                 p { (file.robot.name) ": " (verdict.level.words()) " (" (verdict.reasons.join("; ")) ")" }
             }
             table {
-                tr { @for name in ["error (RMS)", "rows", "nominal", "registered", "calibrated"] { th { (name) } } }
+                tr { @for name in columns { th { (name) } } }
                 @for (name, set) in sets {
-                    @let models = [&set.nominal, &set.registered, &set.calibrated];
+                    @let corrected = set.corrected.as_ref().filter(|_| is_corrected);
+                    @let models = [&set.nominal, &set.registered, &set.calibrated].into_iter().chain(corrected);
                     @for (quantity, _) in set.calibrated.iter() {
                         tr {
                             td { (quantity.name()) ", " (name) } td { (set.count) }
-                            @for found in models.map(|model| model.get(quantity)).into_iter().flatten() {
+                            @for found in models.clone().map(|model| model.get(quantity)).flatten() {
                                 td { (format_args!("{:.4}{}", found.rms, sign(quantity))) }
                             }
                         }

@@ -8,7 +8,7 @@ use poecal::compensate::{
     ChangeOptions, Compensation, Inverse, Kinematics, Language, MostChange, ProgramOptions, compensate_file,
 };
 use poecal::lie::Pose;
-use poecal::robot::Counting;
+use poecal::robot::{Counting, JointKind};
 use poecal::{CalibrationFile, Robot};
 use pyo3::IntoPyObjectExt as _;
 use pyo3::prelude::*;
@@ -16,8 +16,9 @@ use pyo3::types::{PyBytes, PyDict, PyList};
 
 use crate::arrays::{Numbers, pose_of, table};
 use crate::errors::{argument, raise};
+use crate::findings::Findings;
 use crate::robot::{Robot as Described, poses};
-use crate::words::chosen;
+use crate::words::{chosen, from_mm};
 
 /// Values of a robot's factors: those of a mapping from their names, else their references.
 pub(crate) fn factors(robot: &Robot, given: Option<&Bound<'_, PyAny>>) -> PyResult<Vec<f64>> {
@@ -103,23 +104,39 @@ fn rows<'py>(
     }
 }
 
+/// How far a joint may be moved: in degrees and millimetres, or as before in radians and metres.
+#[derive(Clone, Copy)]
+pub(crate) struct Most {
+    pub(crate) turn_deg: Option<f64>,
+    pub(crate) slide_mm: Option<f64>,
+    pub(crate) turn_rad: Option<f64>,
+    pub(crate) slide_m: Option<f64>,
+}
+
 /// How far readings may be changed.
-pub(crate) fn change(
-    nearest: bool,
-    most_turn_rad: Option<f64>,
-    most_slide_m: Option<f64>,
-) -> PyResult<ChangeOptions> {
-    let default = MostChange::default();
-    let most_change = MostChange {
-        turning_rad: most_turn_rad.unwrap_or(default.turning_rad),
-        sliding_m: most_slide_m.unwrap_or(default.sliding_m),
-    };
-    for (name, value) in [("most_turn_rad", most_change.turning_rad), ("most_slide_m", most_change.sliding_m)]
-    {
+pub(crate) fn change(nearest: bool, most: Most) -> PyResult<ChangeOptions> {
+    let usual = MostChange::default();
+    let one_of = |names: [&str; 2], values: [Option<f64>; 2], to_si: fn(f64) -> f64, usual: f64| {
+        let (name, value, si) = match values {
+            [Some(_), Some(_)] => {
+                let message = format!("found {} too, expected one of the two", names[1]);
+                return Err(argument(names[0], message));
+            }
+            [Some(value), None] => (names[0], value, to_si(value)),
+            [None, Some(value)] => (names[1], value, value),
+            [None, None] => return Ok(usual),
+        };
         if value.is_nan() || value <= 0.0 || value.is_infinite() {
             return Err(argument(name, format!("found {value}, expected a number above 0")));
         }
-    }
+        Ok(si)
+    };
+    let turn = [most.turn_deg, most.turn_rad];
+    let slide = [most.slide_mm, most.slide_m];
+    let most_change = MostChange {
+        turning_rad: one_of(["most_turn_deg", "most_turn_rad"], turn, f64::to_radians, usual.turning_rad)?,
+        sliding_m: one_of(["most_slide_mm", "most_slide_m"], slide, from_mm, usual.sliding_m)?,
+    };
     Ok(ChangeOptions { most_change, nearest })
 }
 
@@ -152,8 +169,10 @@ pub(crate) fn compensate<'py>(
     if !summary {
         return Ok(made);
     }
-    let json = poecal::report::json(&found).map_err(raise)?;
-    (made, py.import("json")?.call_method1("loads", (json,))?).into_bound_py_any(py)
+    let what = if found.rows == 1 { "row corrected" } else { "rows corrected" };
+    let text = found.text(&slides(actual), what);
+    let found = Findings::new("Compensation", text, found.answer(), &found)?.warned(&found.warnings());
+    (made, found.into_pyobject(py)?).into_bound_py_any(py)
 }
 
 /// The language of a robot program, by its name or the end of the file's.
@@ -186,8 +205,14 @@ pub(crate) fn program<'py>(
 ) -> PyResult<(Bound<'py, PyBytes>, Bound<'py, PyAny>)> {
     let (text, summary) = py.detach(|| compensate_file(path, robots, factors, options)).map_err(raise)?;
     crate::warn(py, &summary.changes.warnings())?;
-    let json = poecal::report::json(&summary).map_err(raise)?;
-    Ok((PyBytes::new(py, &text), py.import("json")?.call_method1("loads", (json,))?))
+    let (changes, table) = (&summary.changes, summary.text(&slides(robots.1)));
+    let found = Findings::new("Compensation", table, changes.answer(), &summary)?.warned(&changes.warnings());
+    Ok((PyBytes::new(py, &text), found.into_pyobject(py)?))
+}
+
+/// Whether the joint of a name slides.
+fn slides(robot: &Robot) -> impl Fn(&str) -> bool + '_ {
+    |name| robot.joints.iter().any(|joint| joint.name == name && joint.kind == JointKind::Prismatic)
 }
 
 /// Poses of an array of shape (m, 4, 4) or (4, 4), and whether it is one.

@@ -13,7 +13,8 @@ use crate::arguments as arg;
 use crate::arrays::table;
 use crate::calibration::Calibration;
 use crate::errors::no_package;
-use crate::words::{chosen, quantity as quantity_word};
+use crate::of_model::OfModel;
+use crate::words::quantity as quantity_word;
 
 /// Residuals and diagnostics of each row, fitted or held out, in the order of the measurements.
 ///
@@ -21,15 +22,6 @@ use crate::words::{chosen, quantity as quantity_word};
 #[pyclass(frozen, module = "poecal", name = "Residuals")]
 pub(crate) struct Residuals {
     calibration: Py<Calibration>,
-}
-
-/// A model whose errors a row has.
-#[derive(Clone, Copy)]
-enum OfModel {
-    Nominal,
-    Registered,
-    Calibrated,
-    Corrected,
 }
 
 impl Residuals {
@@ -41,6 +33,11 @@ impl Residuals {
 
     fn rows(&self) -> PyResult<&Rows> {
         self.calibration.get().rows()
+    }
+
+    /// The model that a word names.
+    fn model_of(&self, word: &str) -> PyResult<OfModel> {
+        OfModel::named(word, self.calibration.get().delivered())
     }
 
     /// A value of each row.
@@ -92,24 +89,6 @@ impl Residuals {
     /// The table in a class of another package.
     fn framed<'py>(&self, py: Python<'py>, package: &str) -> PyResult<Bound<'py, PyAny>> {
         framed(py, package, &self.to_dict(py)?)
-    }
-}
-
-impl OfModel {
-    const ALL: [(&'static str, OfModel); 4] = [
-        ("nominal", OfModel::Nominal),
-        ("registered", OfModel::Registered),
-        ("calibrated", OfModel::Calibrated),
-        ("corrected", OfModel::Corrected),
-    ];
-
-    fn of(self, [nominal, registered, calibrated]: [f64; 3], corrected: Option<f64>) -> f64 {
-        match self {
-            OfModel::Nominal => nominal,
-            OfModel::Registered => registered,
-            OfModel::Calibrated => calibrated,
-            OfModel::Corrected => corrected.unwrap_or(f64::NAN),
-        }
     }
 }
 
@@ -228,6 +207,12 @@ impl Residuals {
         self.errors_of(py, Quantity::Rotation, OfModel::Calibrated)
     }
 
+    /// The model that is delivered: "corrected" where it has terms, else "calibrated".
+    #[getter]
+    fn model(&self) -> &'static str {
+        self.calibration.get().delivered().word()
+    }
+
     /// Quantities that some row measured, such as "position", with their units; first the one by which the calibration is judged.
     #[getter]
     fn quantities<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
@@ -265,20 +250,20 @@ impl Residuals {
     /// quantity
     ///     Its name, as in `quantities`.
     /// model
-    ///     "nominal", "registered", "calibrated", or "corrected": NaN without such a model.
+    ///     "delivered", "nominal", "registered", "calibrated", or "corrected": NaN without such a model.
     ///
     /// Returns
     /// -------
     /// numpy.ndarray
     ///     Shape (m,), millimetres or degrees; NaN where it was not measured.
-    #[pyo3(signature = (quantity, *, model="calibrated"))]
+    #[pyo3(signature = (quantity, *, model="delivered"))]
     fn errors<'py>(
         &self,
         py: Python<'py>,
         #[pyo3(from_py_with = arg::quantity)] quantity: &str,
         #[pyo3(from_py_with = arg::model)] model: &str,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        self.errors_of(py, quantity_word(quantity)?, chosen("model", model, &OfModel::ALL)?)
+        self.errors_of(py, quantity_word(quantity)?, self.model_of(model)?)
     }
 
     /// Root mean square distance of the corners of each picture from where a model sees them.
@@ -286,19 +271,19 @@ impl Residuals {
     /// Parameters
     /// ----------
     /// model
-    ///     "nominal", "registered", "calibrated", or "corrected": NaN without such a model.
+    ///     "delivered", "nominal", "registered", "calibrated", or "corrected": NaN without such a model.
     ///
     /// Returns
     /// -------
     /// numpy.ndarray
     ///     Shape (m,), pixels; NaN of rows that are no pictures.
-    #[pyo3(signature = (*, model="calibrated"))]
+    #[pyo3(signature = (*, model="delivered"))]
     fn corners_px<'py>(
         &self,
         py: Python<'py>,
         #[pyo3(from_py_with = arg::model)] model: &str,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        let model = chosen("model", model, &OfModel::ALL)?;
+        let model = self.model_of(model)?;
         self.numbers(py, |row| row.corners.map(|corners| model.of(corners.models_px, corners.corrected_px)))
     }
 

@@ -16,13 +16,14 @@ use pyo3::IntoPyObjectExt as _;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
-use crate::arguments::{self as arg, Links, is_content, shortened};
+use crate::arguments::{self as arg, Links, is_content};
 use crate::arrays::{Joints, pose_array, pose_arrays, table};
 use crate::build::{DhTable, Naming, from_dh, from_screws};
 use crate::errors::{argument, raise};
 use crate::notebook;
 use crate::pickle;
 use crate::places::reserved_file;
+use crate::words::shortened;
 
 /// Path of a robot that was read from a text.
 const TEXT: &str = "text";

@@ -129,7 +129,7 @@ impl Simulation {
 ///     Number of further measurements, free of noise, to judge a calibration by.
 /// terms
 ///     What the joints do beyond geometry: "off", or groups of terms with the standard deviations of their coefficients in radians or metres, as a dict
-///     or "sag=1e-3,ratio=1e-4".
+///     (also of texts with a unit) or "sag=1e-3,ratio=1e-4".
 /// gravity
 ///     Where gravity pulls, in the robot's base frame, default (0, 0, -1).
 ///

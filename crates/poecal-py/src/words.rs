@@ -6,9 +6,13 @@ use poecal::measurement::Quantity;
 use poecal::nearest;
 use poecal::offsets::End;
 use poecal::simulate::Kind;
+use poecal::text::visible;
 use pyo3::prelude::*;
 
 use crate::errors::argument;
+
+/// Longest text that a message shows of what was found.
+const SHOWN: usize = 60;
 
 /// Meaning of `word`, which must be one of these.
 pub(crate) fn chosen<T: Copy>(name: &str, word: &str, words: &[(&str, T)]) -> PyResult<T> {
@@ -84,4 +88,12 @@ pub(crate) fn direction(numbers: [f64; 3]) -> PyResult<Vector3<f64>> {
         return Ok(direction);
     }
     Err(argument("gravity", format!("found {numbers:?}, expected a direction, like (0, 0, -1)")))
+}
+
+/// A text on one line, without its end if it is long.
+pub(crate) fn shortened(text: &str) -> String {
+    let line = text.trim().lines().next().unwrap_or_default();
+    let begin: String = line.chars().take(SHOWN).collect();
+    let mark = if begin.len() < text.trim().len() { "…" } else { "" };
+    format!("{}{mark}", visible(&begin))
 }

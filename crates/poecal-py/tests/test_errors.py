@@ -106,7 +106,7 @@ SENTENCES = [
     (lambda: arrays(ids=range(20)), "ids[0]: found 0, expected a text"),
     (lambda: arrays(joints=np.ma.masked_equal(JOINTS, JOINTS[3, 2])), "joints: found a masked number, or NaN, in row 3, expected finite numbers: leave such rows out"),
     (lambda: arrays(positions=np.ma.masked_all((20, 3))), "positions: found a masked number, or NaN, in row 0, expected finite numbers: leave such rows out"),
-    (lambda: poecal.convert(elbow(), offset={"joint1": "0.1"}, to="toml"), "offset[\"joint1\"]: found the text `0.1`, expected a number"),
+    (lambda: poecal.convert(elbow(), offset={"joint1": "0.1"}, to="toml"), "offset[\"joint1\"]: found the text `0.1`, expected a number, or a text of one with its unit, like \"0.05deg\""),
     (lambda: poecal.convert(elbow(), offset=[0.1], to="toml"), "offset: found list, expected a dict of names and numbers"),
     (lambda: poecal.offsets(elbow(), 5), "actual: found 5, expected a poecal.Robot or a poecal.Calibration"),
     (lambda: calibrate().predict(JOINTS, with_uncertainty="yes"), "with_uncertainty: found the text `yes`, expected True or False"),

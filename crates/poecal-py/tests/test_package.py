@@ -85,7 +85,8 @@ def test_objects_say_in_one_line_what_they_are():
         print(repr(each))
         assert repr(each).startswith(f"<poecal.{type(each).__name__}") and "\n" not in repr(each) and len(repr(each)) < 250
     error = f"{set_of_rows.calibrated.position_mm.rms:.4f}"
-    assert repr(calibration).startswith(f"<poecal.Calibration of elbow: good, {error} mm RMS on 30 held-out rows (your model, tool and device located: ")
+    assert repr(calibration).startswith(f"<poecal.Calibration of elbow: good, calibrated model {error} mm RMS on 30 held-out rows, ")
+    assert " mm expected (your model, tool and device located: " in repr(calibration)
     every = poecal.calibrate(made.nominal, made.measurements, held_out=0)
     assert "mm RMS on 100 fitted rows" in repr(every) and "100 fitted rows" in repr(every.accuracy)
 

@@ -88,3 +88,81 @@ def test_paths_are_read_and_a_certificate_is_written(tmp_path, capfd):
     assert "4711" in page and "2027-11-28" in page
     with pytest.raises(poecal.OptionError, match="expected a day like"):
         calibration.certificate(tmp_path / "no.html", valid_until="soon")
+
+
+def test_visits_are_planned_as_by_the_program(tmp_path):
+    made = poecal.simulate(elbow(), kind="point", count=60, seed=5)
+    made.write(tmp_path / "made")
+    robot = poecal.Robot.read(tmp_path / "made/nominal.toml")
+    measured = poecal.Measurements.from_csv(tmp_path / "made/measurements.csv", robot)
+    fitted = poecal.calibrate(robot, measured)
+    fitted.write(tmp_path / "results")
+    read = poecal.Calibration.read(tmp_path / "results/calibration.json")
+
+    def by_program(*words):
+        command = [sys.executable, "-m", "poecal", "plan", str(tmp_path / "results/calibration.json"), "--for", "drift", *words, "--json"]
+        command += ["--out", str(tmp_path / "by-program.csv"), "--force"]
+        return json.loads(subprocess.run(command, capture_output=True, text=True, check=True).stdout)
+
+    for options, words in [
+        ({}, []),
+        ({"count": 6, "device": "known", "tool": "anew", "repeatability_mm": "50um"}, ["--count", "6", "--device", "known", "--tool", "anew", "--repeatability", "0.05mm"]),
+    ]:
+        told = by_program(*words)
+        for calibration, earlier in [(fitted, None), (read, None), (read, measured)]:
+            planned = poecal.plan(calibration, purpose="drift", earlier=earlier, **options)
+            assert {key: part for key, part in planned.to_dict().items() if key not in ("rows", "table")} == told
+            assert planned["table"] == (tmp_path / "by-program.csv").read_text()
+            assert planned.joints.shape == (options.get("count", 8), 6)
+    # The configurations are measured ones, and the table is read once it is filled in.
+    assert all(np.abs(made.measurements.joints - row).max(axis=1).min() < 1e-9 for row in planned.joints)
+    planned.write(tmp_path / "visit.csv")
+    assert np.allclose(poecal.read_joints(tmp_path / "visit.csv", robot), planned.joints, atol=1e-6)
+    with pytest.raises(poecal.FileError):
+        planned.write(tmp_path / "visit.csv")
+    planned.write(tmp_path / "visit.csv", force=True)
+    frame = planned.to_dataframe()
+    assert np.allclose(np.radians(frame[[f"{name}[deg]" for name in robot.reading_names]]), planned.joints, atol=1e-6) and frame["x[mm]"].isna().all()
+    new = poecal.plan(fitted, purpose="drift", count=5, candidates=poecal.plan(robot, count=20, judge=0).joints)
+    assert new["are_new"] is True and len(new.joints) == 5
+
+
+def test_mistakes_in_planned_visits_are_one_sentence(tmp_path):
+    made = poecal.simulate(elbow(), kind="point", count=40)
+    made.write(tmp_path / "made")
+    robot = poecal.Robot.read(tmp_path / "made/nominal.toml")
+    calibration = poecal.calibrate(robot, tmp_path / "made/measurements.csv")
+    for change, words in [
+        ({"purpose": "drift", "floor_mm": 20}, 'floor_mm: found it with purpose="drift", expected only candidates, count, earlier'),
+        ({"purpose": "drift", "count": 41}, "40 measured configurations"),
+        ({"purpose": "drift", "count": 0}, "count: found 0, expected 1 to 1000"),
+        ({"purpose": "drift", "device": "moved"}, "device: found `moved`, expected one of anew, known"),
+        ({"purpose": "drifts"}, "purpose: found `drifts`, expected one of calibration, drift; did you mean `drift`?"),
+        ({"device": "known"}, 'device: found it without purpose="drift"'),
+    ]:
+        with pytest.raises(poecal.Error, match=words.replace("?", r"\?")):
+            poecal.plan(calibration, **change)
+    with pytest.raises(poecal.OptionError, match="robot: found Robot, expected a poecal.Calibration"):
+        poecal.plan(robot, purpose="drift")
+    calibration.write(tmp_path / "results")
+    (tmp_path / "made/measurements.csv").unlink()
+    read = poecal.Calibration.read(tmp_path / "results/calibration.json")
+    with pytest.raises(poecal.OptionError, match="earlier: found none, and the measurements of the calibration .* are not where it was made"):
+        poecal.plan(read, purpose="drift")
+
+
+def test_a_plan_is_made_of_a_path_and_of_a_calibration(tmp_path):
+    made = poecal.simulate(elbow(), kind="point", count=60, seed=5)
+    made.write(tmp_path / "made")
+    path = tmp_path / "made/nominal.toml"
+    of_robot = poecal.plan(poecal.Robot.read(path), count=8, judge=2)
+    assert np.array_equal(poecal.plan(path, count=8, judge=2).joints, of_robot.joints)
+    frame = of_robot.to_dataframe()
+    assert list(frame["set"]) == of_robot.sets and list(frame.columns[:3]) == ["id", "set", "returns"] and len(frame) == len(of_robot)
+    assert json.loads(of_robot.to_json()) == of_robot.to_dict()
+    calibration = poecal.calibrate(path, tmp_path / "made/measurements.csv")
+    calibration.write(tmp_path / "results")
+    read = poecal.Robot.read(tmp_path / "results/calibration.json")
+    next_session = poecal.plan(calibration, count=8, judge=2)
+    assert next_session.to_dict()["robot_error_is_a_guess"] is False
+    assert next_session.expected_calibrated_mm == poecal.plan(read, count=8, judge=2).expected_calibrated_mm

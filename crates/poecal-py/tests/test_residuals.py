@@ -64,7 +64,7 @@ def test_arrays_of_residuals_fit_together(calibrations):
     assert list(calibrations["point"].residuals.quantities) == ["position"]
     with pytest.raises(poecal.OptionError, match="quantity: found `positon`, expected one of position, rotation, distance, contact, height, tilt; did you mean `position`"):
         residuals.components("positon")
-    with pytest.raises(poecal.OptionError, match="model: found `best`, expected one of nominal, registered, calibrated"):
+    with pytest.raises(poecal.OptionError, match="model: found `best`, expected one of delivered, nominal, registered, calibrated, corrected"):
         residuals.errors("position", model="best")
     for name in DIAGNOSTICS:
         assert getattr(residuals, name).shape == (80,)

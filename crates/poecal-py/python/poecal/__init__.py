@@ -1,6 +1,7 @@
 """Kinematic calibration of robot arms by the product of exponentials.
 
-Lengths are in metres and angles in radians, unless a name ends in a unit. Poses are arrays of shape (4, 4), named ``a_from_b``.
+Lengths are in metres and angles in radians, unless a name ends in a unit: such a keyword takes a number in this unit, or a text with another
+(``sigma_position_mm="50um"``). Poses are arrays of shape (4, 4), named ``a_from_b``.
 
 Examples
 --------
@@ -21,6 +22,7 @@ from ._errors import (
     FileError,
     FormatError,
     InputError,
+    KeywordError,
     MeasurementError,
     ModelError,
     OptionError,
@@ -31,11 +33,11 @@ from ._errors import (
     SolverError,
     UnitError,
 )
+from ._findings import Findings
 from ._poecal import (
     Accuracy,
     Calibration,
     Covariance,
-    Findings,
     Measurements,
     ModelAccuracy,
     Plan,
@@ -65,27 +67,37 @@ from ._poecal import (
     track,
     version,
 )
+from ._results import Check, Comparison, Offsets, Validation, Visit, VisitPlan
+from ._session_results import Compensation, HandEye, Identification, Reproduction, ToolTip, WatchedRow
 
 __all__ = [
     "Accuracy",
     "Calibration",
+    "Check",
+    "Comparison",
+    "Compensation",
     "Covariance",
     "Error",
     "ExportError",
     "FileError",
     "Findings",
     "FormatError",
+    "HandEye",
+    "Identification",
     "InputError",
+    "KeywordError",
     "MeasurementError",
     "Measurements",
     "ModelAccuracy",
     "ModelError",
+    "Offsets",
     "OptionError",
     "PackageError",
     "Plan",
     "PoecalWarning",
     "Prediction",
     "ProblemError",
+    "Reproduction",
     "Residuals",
     "Robot",
     "RowError",
@@ -93,9 +105,14 @@ __all__ = [
     "Simulation",
     "SolverError",
     "Statistic",
+    "ToolTip",
     "UnitError",
+    "Validation",
     "Verdict",
+    "Visit",
+    "VisitPlan",
     "Watch",
+    "WatchedRow",
     "__version__",
     "calibrate",
     "check",

@@ -65,12 +65,21 @@ class OptionError(InputError):
     """An argument that is out of range, of the wrong shape, or contradicts another."""
 
 
+class KeywordError(OptionError, TypeError):
+    """A keyword that a function does not have."""
+
+
 class RowError(OptionError, IndexError):
     """A row that the measurements do not have."""
 
 
 class PackageError(Error, ImportError):
     """A Python package that is needed here and not installed."""
+
+
+def missing(package: str) -> PackageError:
+    """The error for a package that is not installed."""
+    return PackageError(f"found no package `{package}`, expected it to be installed: pip install {package}")
 
 
 class ProblemError(Error):

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, cast
 import numpy as np
 from numpy.typing import NDArray
 
-from ._errors import OptionError, PackageError
+from ._errors import OptionError, missing
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -20,13 +20,12 @@ SETS = [("fitted", False, "tab:blue", "."), ("held out", True, "tab:orange", "x"
 
 
 def plot(calibration: Calibration, axes: Sequence[Axes] | NDArray[Any] | None = None) -> Figure:
-    """Draws errors of the leading quantity, of poses and points the position, into two axes, and gives their figure."""
+    """Draws errors of the leading quantity (of poses and points the position) of the delivered model into two axes, and returns their figure."""
     try:
         import matplotlib.pyplot as plt
         from matplotlib.axes import Axes
     except ModuleNotFoundError as error:
-        message = "found no package `matplotlib`, expected it to be installed: pip install matplotlib"
-        raise PackageError(message) from error
+        raise missing("matplotlib") from error
     if axes is None:
         figure, axes = plt.subplots(1, 2, figsize=(11, 4), layout="constrained")
         # Notebooks would show it twice, as a figure that is open and as a result.
@@ -39,12 +38,13 @@ def plot(calibration: Calibration, axes: Sequence[Axes] | NDArray[Any] | None = 
     held_out = residuals.held_out
     judged, name = (held_out, "held-out") if held_out.any() else (~held_out, "fitted")
     quantity, unit = next(iter(residuals.quantities.items()))
-    calibrated = residuals.errors(quantity)
+    model = residuals.model
+    delivered = residuals.errors(quantity)
     models = [
         ("your model, tool and device located", residuals.errors(quantity, model="registered"), "0.5"),
-        ("calibrated", calibrated, "tab:orange" if held_out.any() else "tab:blue"),
+        (model, delivered, "tab:orange" if held_out.any() else "tab:blue"),
     ]
-    judged = judged & ~np.isnan(calibrated)
+    judged = judged & ~np.isnan(delivered)
     share = 100 * np.arange(1, judged.sum() + 1) / judged.sum()
     for label, values, colour in models:
         errors.step(np.sort(values[judged]), share, where="post", label=label, color=colour)
@@ -59,11 +59,11 @@ def plot(calibration: Calibration, axes: Sequence[Axes] | NDArray[Any] | None = 
     for label, of_set, colour, marker in SETS:
         chosen = held_out == of_set
         if chosen.any():
-            rows.plot(index[chosen], calibrated[chosen], marker, color=colour, label=label)
+            rows.plot(index[chosen], delivered[chosen], marker, color=colour, label=label)
     if residuals.suspected.any():
         suspected = residuals.suspected
-        rows.plot(index[suspected], calibrated[suspected], "o", mfc="none", color="tab:red", label="suspected")
-    rows.set(xlabel="row", ylabel=f"error of {quantity}, {unit}", ylim=(0, 1.2 * rows.get_ylim()[1]), title="calibrated, row by row")
+        rows.plot(index[suspected], delivered[suspected], "o", mfc="none", color="tab:red", label="suspected")
+    rows.set(xlabel="row", ylabel=f"error of {quantity}, {unit}", ylim=(0, 1.2 * rows.get_ylim()[1]), title=f"{model}, row by row")
     rows.legend(loc="upper right", ncols=len(SETS) + 1)
     for each in (errors, rows):
         each.grid(True, alpha=0.3)

@@ -9,11 +9,13 @@ from matplotlib.axes import Axes  # type: ignore[import-not-found, unused-ignore
 from matplotlib.figure import Figure  # type: ignore[import-not-found, unused-ignore]
 from numpy.typing import ArrayLike, NDArray
 
+from ._results import Check, Comparison, Offsets, Validation, Visit, VisitPlan
+from ._session_results import Compensation, HandEye, Identification, Reproduction, ToolTip, WatchedRow
+
 __all__ = [
     "Accuracy",
     "Calibration",
     "Covariance",
-    "Findings",
     "Measurements",
     "ModelAccuracy",
     "Plan",
@@ -26,9 +28,11 @@ __all__ = [
     "Verdict",
     "Watch",
     "_calibration",
-    "_findings",
     "_measurements",
+    "_nearest",
     "_robot",
+    "_shown",
+    "_write_text",
     "calibrate",
     "check",
     "compare",
@@ -51,6 +55,9 @@ __all__ = [
 
 _Path: TypeAlias = str | PathLike[str]
 _Array: TypeAlias = NDArray[np.float64]
+# A number in the unit that ends a keyword's name, or a text with a unit; and two of them.
+_Number: TypeAlias = float | str
+_Pair: TypeAlias = tuple[_Number, _Number] | str
 _Kind: TypeAlias = Literal[
     "pose",
     "point",
@@ -67,6 +74,7 @@ _Kind: TypeAlias = Literal[
     "relative",
     "component",
 ]
+_Model: TypeAlias = Literal["delivered", "nominal", "registered", "calibrated", "corrected"]
 _Frame: TypeAlias = Literal["unknown", "base"]
 _End: TypeAlias = Literal["free", "kept"]
 _Form: TypeAlias = Literal["urdf", "toml"]
@@ -840,6 +848,9 @@ class Residuals:
     def rotation_corrected_deg(self) -> _Array:
         """Error of rotation of the corrected model, shape (m,), degrees; NaN without such a model, or where no orientation was measured."""
     @property
+    def model(self) -> Literal["corrected", "calibrated"]:
+        """The model that is delivered: "corrected" where it has terms, else "calibrated"."""
+    @property
     def quantities(self) -> dict[str, str]:
         """Quantities that some row measured, such as "position", with their units; first the one by which the calibration is judged."""
     def components(self, quantity: str) -> _Array:
@@ -855,7 +866,7 @@ class Residuals:
         numpy.ndarray
             Shape (m, n), millimetres or degrees; NaN where it was not measured.
         """
-    def errors(self, quantity: str, *, model: Literal["nominal", "registered", "calibrated", "corrected"] = "calibrated") -> _Array:
+    def errors(self, quantity: str, *, model: _Model = "delivered") -> _Array:
         """Error of any quantity of a model.
 
         Parameters
@@ -863,20 +874,20 @@ class Residuals:
         quantity
             Its name, as in `quantities`.
         model
-            "nominal", "registered", "calibrated", or "corrected": NaN without such a model.
+            "delivered", "nominal", "registered", "calibrated", or "corrected": NaN without such a model.
 
         Returns
         -------
         numpy.ndarray
             Shape (m,), millimetres or degrees; NaN where it was not measured.
         """
-    def corners_px(self, *, model: Literal["nominal", "registered", "calibrated", "corrected"] = "calibrated") -> _Array:
+    def corners_px(self, *, model: _Model = "delivered") -> _Array:
         """Root mean square distance of the corners of each picture from where a model sees them.
 
         Parameters
         ----------
         model
-            "nominal", "registered", "calibrated", or "corrected": NaN without such a model.
+            "delivered", "nominal", "registered", "calibrated", or "corrected": NaN without such a model.
 
         Returns
         -------
@@ -948,35 +959,6 @@ class Covariance:
     def axes(self) -> _Array:
         """Frames base_from_axis at zero joint values, z along the joint, shape (n, 4, 4)."""
     def __len__(self) -> int: ...
-
-@final
-class Findings:
-    """A result: `str` is the program's table, `to_dict` what the program prints with `--json`, and `found["key"]` a part of it."""
-    def to_dict(self) -> dict[str, Any]:
-        """The result as dicts and lists: what the program prints with `--json`.
-
-        Returns
-        -------
-        dict
-            The result.
-        """
-    def to_json(self) -> str:
-        """The result as JSON.
-
-        Returns
-        -------
-        str
-            The text.
-        """
-    @property
-    def warnings(self) -> list[str]:
-        """Warnings, a sentence each."""
-    def _repr_html_(self) -> str: ...
-    def __getitem__(self, key: str, /) -> Any: ...
-    def __eq__(self, other: object, /) -> bool: ...
-    def __ne__(self, other: object, /) -> bool: ...
-    def __reduce__(self) -> tuple[Callable[[bytes], Findings], tuple[bytes]]: ...
-    __hash__: None  # type: ignore[assignment]
 
 @final
 class Calibration:
@@ -1338,8 +1320,10 @@ class Calibration:
         *,
         factors: Mapping[str, float] | None = None,
         nearest: bool = False,
-        most_turn_rad: float | None = None,
-        most_slide_m: float | None = None,
+        most_turn_deg: _Number | None = None,
+        most_slide_mm: _Number | None = None,
+        most_turn_rad: _Number | None = None,
+        most_slide_m: _Number | None = None,
         summary: Literal[False] = False,
         model: Literal["corrected", "calibrated"] = "corrected",
         readings: Literal["model", "controller"] | None = None,
@@ -1354,8 +1338,10 @@ class Calibration:
             Values of the corrected model's factors by their names, default their references.
         nearest
             Whether to give the nearest configuration where a pose cannot be reached, instead of leaving the row as it is.
-        most_turn_rad, most_slide_m
+        most_turn_deg, most_slide_mm
             How far a joint that turns, or slides, may be moved beyond its zero, default 2 degrees and 2 mm. A row that takes more, at a singularity, stays as it is.
+        most_turn_rad, most_slide_m
+            The same in radians and metres.
         summary
             Whether to give the summary as well.
         model
@@ -1368,7 +1354,7 @@ class Calibration:
         -------
         numpy.ndarray
             Readings to command, of the same shape. Rows that stay as they are are named by a PoecalWarning. With summary=True a tuple of these and a
-            dict: `targets` has every row that is corrected, by its index (`line`), `listed` every other one and why.
+            `Compensation`: `targets` has every row that is corrected, by its index (`line`), `listed` every other one and why.
         """
     @overload
     def compensate(
@@ -1377,12 +1363,14 @@ class Calibration:
         *,
         factors: Mapping[str, float] | None = None,
         nearest: bool = False,
-        most_turn_rad: float | None = None,
-        most_slide_m: float | None = None,
+        most_turn_deg: _Number | None = None,
+        most_slide_mm: _Number | None = None,
+        most_turn_rad: _Number | None = None,
+        most_slide_m: _Number | None = None,
         summary: Literal[True],
         model: Literal["corrected", "calibrated"] = "corrected",
         readings: Literal["model", "controller"] | None = None,
-    ) -> tuple[_Array, dict[str, Any]]: ...
+    ) -> tuple[_Array, Compensation]: ...
     def taught(self, *, model: Literal["corrected", "calibrated"] = "corrected") -> Robot:
         """The nominal robot with base and tool of the actual one: corrected programs take the actual robot to where this one would be.
 
@@ -1408,12 +1396,14 @@ class Calibration:
         start: str | None = None,
         factors: Mapping[str, float] | None = None,
         nearest: bool = False,
-        most_turn_rad: float | None = None,
-        most_slide_m: float | None = None,
+        most_turn_deg: _Number | None = None,
+        most_slide_mm: _Number | None = None,
+        most_turn_rad: _Number | None = None,
+        most_slide_m: _Number | None = None,
         third_axis: Literal["level", "arm"] | None = None,
         check: bool = False,
         model: Literal["corrected", "calibrated"] = "corrected",
-    ) -> tuple[bytes, dict[str, Any]]:
+    ) -> tuple[bytes, Compensation]:
         """A robot program with its targets corrected in place, everything else as it was, byte for byte.
 
         Parameters
@@ -1436,8 +1426,10 @@ class Calibration:
             Values of the corrected model's factors by their names, default their references.
         nearest
             Whether to write the nearest configuration where the robot cannot reach a target, instead of leaving it as it is.
-        most_turn_rad, most_slide_m
+        most_turn_deg, most_slide_mm
             How far a joint that turns, or slides, may be moved beyond its zero, default 2 degrees and 2 mm. A target that takes more, at a singularity, stays as it is and is listed.
+        most_turn_rad, most_slide_m
+            The same in radians and metres.
         third_axis
             From where J3 of a program of FANUC counts: "level" or "arm"; default as the calibration's mapping says and its rows show.
         check
@@ -1447,7 +1439,7 @@ class Calibration:
 
         Returns
         -------
-        tuple of bytes and dict
+        tuple of bytes and Compensation
             The program, and the summary: how many targets are corrected, which are listed as they are and why, the largest corrections, and what is left.
         """
     @overload
@@ -1510,7 +1502,7 @@ class Calibration:
         report: bool | _Path = True,
         record: Mapping[str, str] | None = None,
         history: _Path | None = None,
-    ) -> Findings:
+    ) -> Validation:
         """Judges the calibration by measurements that it did not see; every row counts.
 
         Parameters
@@ -1540,7 +1532,7 @@ class Calibration:
 
         Returns
         -------
-        Findings
+        Validation
             Errors of the nominal and the calibrated robot, their share inside the predicted bounds, and `acceptance`.
         """
     def identify(
@@ -1548,11 +1540,11 @@ class Calibration:
         joints: ArrayLike,
         *,
         kind: _Kind = "pose",
-        sigma_position_mm: float | None = None,
-        sigma_rotation_deg: float | None = None,
+        sigma_position_mm: _Number | None = None,
+        sigma_rotation_deg: _Number | None = None,
         frame: _Frame = "unknown",
-        robot_error_mm: float | tuple[float, float] | None = None,
-    ) -> Findings:
+        robot_error_mm: _Number | _Pair | None = None,
+    ) -> Identification:
         """Which unknowns measurements of the calibrated robot in given configurations would determine; see `poecal.identify`.
 
         Parameters
@@ -1570,7 +1562,7 @@ class Calibration:
 
         Returns
         -------
-        Findings
+        Identification
             What would be determined, and the expected error.
         """
     def _repr_html_(self) -> str: ...
@@ -1605,6 +1597,22 @@ class Plan:
     @property
     def enough(self) -> int | None:
         """Number of configurations from which ten more gain less than 5 %; None if that is more than 100."""
+    def to_json(self) -> str:
+        """The plan as JSON.
+
+        Returns
+        -------
+        str
+            The text.
+        """
+    def to_dataframe(self) -> pandas.DataFrame:
+        """The rows as a data frame of pandas, which has to be installed.
+
+        Returns
+        -------
+        pandas.DataFrame
+            The table that `write` writes: "id", "set", "returns", and the readings in degrees and millimetres.
+        """
     def to_dict(self) -> dict[str, Any]:
         """The plan as dicts and lists: what the program prints with `--json`.
 
@@ -1681,12 +1689,12 @@ class Watch:
         candidates: ArrayLike | None = None,
         over: ArrayLike | None = None,
         over_box_mm: ArrayLike | None = None,
-        sigma_position_mm: float | None = None,
-        sigma_rotation_deg: float | None = None,
-        robot_error_mm: float | tuple[float, float] | None = None,
+        sigma_position_mm: _Number | None = None,
+        sigma_rotation_deg: _Number | None = None,
+        robot_error_mm: _Number | _Pair | None = None,
         frame: _Frame = "unknown",
-        tolerance_deg_mm: tuple[float, float] | None = ...,
-        corrections: str | Mapping[str, float] = "auto",
+        tolerance_deg_mm: _Pair | None = ...,
+        corrections: str | Mapping[str, _Number] = "auto",
         gravity: ArrayLike = (0, 0, -1),
         seed: int = 1,
     ) -> Watch: ...
@@ -1698,7 +1706,7 @@ class Watch:
         pose: ArrayLike | None = None,
         target: str | None = None,
         id: str | None = None,
-    ) -> Findings:
+    ) -> WatchedRow:
         """Judges one row, and fits it if it is as expected.
 
         Parameters
@@ -1716,11 +1724,11 @@ class Watch:
 
         Returns
         -------
-        Findings
+        WatchedRow
             Whether the row is as expected (`ok`, None while there are too few rows to judge by), else its `mistake`; which error would be noticed
             (`noticed_mm`); the errors to expect now and after ten more rows; the configuration that gains most (`next`).
         """
-    def add_all(self, measurements: Measurements) -> list[Findings]:
+    def add_all(self, measurements: Measurements) -> list[WatchedRow]:
         """Judges the rows of measurements, one after the other.
 
         Parameters
@@ -1730,7 +1738,7 @@ class Watch:
 
         Returns
         -------
-        list of Findings
+        list of WatchedRow
             As of `add`, one for each row.
         """
     def __len__(self) -> int: ...
@@ -1774,10 +1782,10 @@ def calibrate(
     measurements: Measurements | _Path | Sequence[_Path],
     *,
     frame: _Frame = "unknown",
-    sigma_position_mm: float | None = None,
-    sigma_rotation_deg: float | None = None,
-    tolerance_deg_mm: tuple[float, float] | str | None = ...,
-    corrections: str | Mapping[str, float] = "auto",
+    sigma_position_mm: _Number | None = None,
+    sigma_rotation_deg: _Number | None = None,
+    tolerance_deg_mm: _Pair | None = ...,
+    corrections: str | Mapping[str, _Number] = "auto",
     harmonics: int = 2,
     gravity: Sequence[float] | Literal["find"] = ...,
     fix: Sequence[str] | None = None,
@@ -1815,7 +1823,7 @@ def calibrate(
     corrections
         What joints do beyond geometry: "auto" fits the terms that predict rows best which were not fitted, "all" looks among more of them,
         "off" fits none; or groups of terms, some of "sag,tilt,ratio,harmonics,wobble,backlash,factors,payload,shift,runout", or a dict of
-        their sizes in radians or metres.
+        their sizes in radians or metres, or as texts with a unit.
     harmonics
         Highest order of the harmonics of a turn among these terms, 1 to 8 (default 2).
     gravity
@@ -1871,7 +1879,7 @@ def calibrate(
     """
 def check(
     robot: Robot | _Path, measurements: Measurements | _Path | Sequence[_Path] | None = None, *, frame: _Frame = "unknown"
-) -> Findings:
+) -> Check:
     """How a model and measurements are understood, and mistakes that they show.
 
     Parameters
@@ -1885,10 +1893,10 @@ def check(
 
     Returns
     -------
-    Findings
+    Check
         What is understood, with mistakes under "diagnosis".
     """
-def compare(first: Calibration, second: Calibration, *, limit_mm: float | None = None) -> Findings:
+def compare(first: Calibration, second: Calibration, *, limit_mm: _Number | None = None) -> Comparison:
     """Two calibrations of one robot: what changed, and what is noise.
 
     Parameters
@@ -1900,7 +1908,7 @@ def compare(first: Calibration, second: Calibration, *, limit_mm: float | None =
 
     Returns
     -------
-    Findings
+    Comparison
         Whether the tip moved by more than the limit (`moved`), by how much (`tip`), whether more changed than noise makes (`changed`), and each joint's
         change with its test.
     """
@@ -1921,7 +1929,7 @@ def convert(
     to
         "urdf" (a new one, of links, joints and a tip) or "toml" (a table of screws), default as the extension of `out` says.
     offset
-        Offsets of joint values by the joints' names, radians or metres: the text has the screws and home pose of the robot with these
+        Offsets of joint values by the joints' names, radians or metres, or texts with a unit: the text has the screws and home pose of the robot with these
         offsets. Mimic joints that follow a joint stay.
     out
         The file.
@@ -1942,7 +1950,7 @@ def hand_eye(
     target: Literal["camera-from-target", "target-from-camera"] | None = None,
     names: Sequence[str] | None = None,
     frames: Sequence[str] | None = None,
-) -> Findings:
+) -> HandEye:
     """Where a camera is on the flange or beside the robot, from poses of the flange and of a board that it saw.
 
     With bounds of 95 %; mistakes in the poses are named, wrong ones left out.
@@ -1965,7 +1973,7 @@ def hand_eye(
 
     Returns
     -------
-    Findings
+    HandEye
         The frame of the camera, "camera_frame", and of the board, "target_frame", each with "matrix", "bound95_mm" and "bound95_deg"; the "verdict", what
         was held out, and "findings": all that `hand_eye.json` has.
     """
@@ -1974,11 +1982,11 @@ def identify(
     joints: ArrayLike,
     *,
     kind: _Kind = "pose",
-    sigma_position_mm: float | None = None,
-    sigma_rotation_deg: float | None = None,
+    sigma_position_mm: _Number | None = None,
+    sigma_rotation_deg: _Number | None = None,
     frame: _Frame = "unknown",
-    robot_error_mm: float | tuple[float, float] | None = None,
-) -> Findings:
+    robot_error_mm: _Number | _Pair | None = None,
+) -> Identification:
     """Which unknowns measurements in given configurations would determine, before anything is measured.
 
     Parameters
@@ -1999,7 +2007,7 @@ def identify(
 
     Returns
     -------
-    Findings
+    Identification
         What would be determined, and the expected error.
     """
 def init(
@@ -2057,7 +2065,7 @@ def init(
     """
 def offsets(
     nominal: Robot, actual: Robot | Calibration, *, base: _End | None = None, tip: _End | None = None
-) -> Findings:
+) -> Offsets:
     """The joint offsets with which the tip of a model comes nearest to that of a robot, and the remaining errors.
 
     Parameters
@@ -2072,7 +2080,7 @@ def offsets(
 
     Returns
     -------
-    Findings
+    Offsets
         The offsets, and the errors with and without them.
     """
 def read_joints(path: _Path, robot: Robot, *, columns: _Path | None = None, units: str | None = None) -> _Array:
@@ -2102,7 +2110,7 @@ def reproduce(
     trials: int = 1000,
     starts: int = 100,
     seed: int = 1,
-) -> Findings:
+) -> Reproduction:
     """Repeats the experiment of a paper and checks its claims, or shows the effect of gross errors.
 
     Parameters
@@ -2122,7 +2130,7 @@ def reproduce(
 
     Returns
     -------
-    Findings
+    Reproduction
         The runs, and the claims with what was found.
     """
 def run_program(arguments: Sequence[str]) -> int:
@@ -2160,13 +2168,13 @@ def simulate(
     kind: _Kind = "pose",
     count: int = 50,
     seed: int = 1,
-    error_position_mm: float = 2.0,
-    error_rotation_deg: float = 1.0,
-    noise_position_mm: float = 0.05,
-    noise_rotation_deg: float = 0.01,
+    error_position_mm: _Number = 2.0,
+    error_rotation_deg: _Number = 1.0,
+    noise_position_mm: _Number = 0.05,
+    noise_rotation_deg: _Number = 0.01,
     frame: _Frame = "unknown",
     held_out_count: int = 0,
-    terms: str | Mapping[str, float] = "off",
+    terms: str | Mapping[str, _Number] = "off",
     gravity: Sequence[float] = ...,
 ) -> Simulation:
     """Simulates a robot with errors and its measurements, for tests and for learning.
@@ -2191,7 +2199,7 @@ def simulate(
         Number of further measurements, free of noise, to judge a calibration by.
     terms
         What the joints do beyond geometry: "off", or groups of terms with the standard deviations of their coefficients in radians or metres, as a dict
-        or "sag=1e-3,ratio=1e-4".
+        (also of texts with a unit) or "sag=1e-3,ratio=1e-4".
     gravity
         Where gravity pulls, in the robot's base frame, default (0, 0, -1).
 
@@ -2206,7 +2214,7 @@ def tcp(
     points: Sequence[str] | None = None,
     tips: Sequence[str] | None = None,
     names: Sequence[str] | None = None,
-) -> Findings:
+) -> ToolTip:
     """The tip of a tool from poses of the flange in which it touched a fixed point.
 
     With bounds of 95 %; wrong touches are named and left out.
@@ -2224,14 +2232,16 @@ def tcp(
 
     Returns
     -------
-    Findings
+    ToolTip
         The "tips", with "position_m" and "bound95_mm", the "axis" of two, and the "verdict": all that `tcp.json` has.
     """
+@overload
 def plan(
-    robot: Robot,
+    robot: Robot | Calibration | _Path,
     *,
+    purpose: Literal["calibration"] = "calibration",
     kind: _Kind = "point",
-    count: int = 30,
+    count: int | None = None,
     judge: int | None = None,
     candidates: ArrayLike | None = None,
     over: ArrayLike | None = None,
@@ -2241,37 +2251,46 @@ def plan(
     criterion: Literal["expected", "D", "A", "E", "G"] = "expected",
     targets: int = 1,
     target_offset_mm: ArrayLike | None = None,
-    sigma_position_mm: float | None = None,
-    sigma_rotation_deg: float | None = None,
-    robot_error_mm: float | tuple[float, float] | None = None,
+    sigma_position_mm: _Number | None = None,
+    sigma_rotation_deg: _Number | None = None,
+    robot_error_mm: _Number | _Pair | None = None,
     frame: _Frame = "unknown",
-    tolerance_deg_mm: tuple[float, float] | None = ...,
-    corrections: str | Mapping[str, float] = "auto",
+    tolerance_deg_mm: _Pair | None = ...,
+    corrections: str | Mapping[str, _Number] = "auto",
     gravity: ArrayLike = (0, 0, -1),
-    margin_deg_mm: tuple[float, float] = (0.0, 0.0),
+    margin_deg_mm: _Pair = (0.0, 0.0),
     keep_out_mm: Sequence[ArrayLike] | None = None,
-    floor_mm: float | None = None,
-    separation_deg: float | None = None,
+    floor_mm: _Number | None = None,
+    separation_deg: _Number | None = None,
     device_mm: ArrayLike | None = None,
-    cone_deg: float | None = None,
+    cone_deg: _Number | None = None,
     device_looks_at_mm: ArrayLike | None = None,
-    distance_mm: tuple[float, float] | None = None,
-    acceptance_deg: float | None = None,
+    distance_mm: _Pair | None = None,
+    acceptance_deg: _Number | None = None,
     facing: ArrayLike | None = None,
     self_collision: Literal["avoid", "ignore"] = "avoid",
     stop_s: float = 30.0,
     seed: int = 1,
+    earlier: None = None,
+    device: None = None,
+    tool: None = None,
+    repeatability_mm: None = None,
 ) -> Plan:
     """Plans a session: configurations that determine the most, rows to judge by, how many are worth it, and the error to expect.
+
+    With `purpose="drift"` it plans visits to a calibrated robot: of the configurations that were measured, those whose repeats show the smallest shift
+    of the worst joint. `candidates`, `count`, `earlier`, `device`, `tool` and `repeatability_mm` say what is known of the visits.
 
     Parameters
     ----------
     robot
-        The robot; one that was read from a calibration.json plans the next session of it.
+        The robot, or the path of its model; a calibration, or a robot that was read from a calibration.json, plans the next session of it.
+    purpose
+        "calibration", or "drift" for visits to a calibration.
     kind
         Kind of the measurements of the tip: "point", "pose", "mixed" or "distance".
     count
-        Number of different configurations to fit, from 1 to 1000.
+        Number of different configurations to fit, from 1 to 1000 (default 30); with "drift" to measure at each visit (default 8).
     judge
         Number of further rows to judge by, at random over the workspace (default a third of `count`).
     candidates
@@ -2325,12 +2344,74 @@ def plan(
         How long the robot stands at each row, for how long all takes.
     seed
         Seed of everything random.
+    earlier
+        For "drift": rows of the calibration or of an earlier visit whose configurations may be repeated (default those of the calibration).
+    device
+        For "drift": "known" if the device will stand where it stood, "anew" if not (default "known" of a calibration with frame="base").
+    tool
+        For "drift": "same" if the tool will be on the flange as it was, "anew" if not (default "same").
+    repeatability_mm
+        For "drift": standard deviation of one visit and coordinate, as repeats show it (default the noise of the calibration).
 
     Returns
     -------
-    Plan
-        The rows in the order in which to measure them, with the errors to expect. Only configurations are checked, never the way between them.
+    Plan or VisitPlan
+        The rows in the order in which to measure them, with the errors to expect; with "drift" what each joint would show. Only configurations are
+        checked, never the way between them.
     """
+@overload
+def plan(
+    robot: Calibration,
+    *,
+    purpose: Literal["drift"],
+    count: int | None = None,
+    candidates: ArrayLike | None = None,
+    earlier: Measurements | None = None,
+    device: Literal["known", "anew"] | None = None,
+    tool: Literal["same", "anew"] | None = None,
+    repeatability_mm: _Number | None = None,
+) -> VisitPlan: ...
+@overload
+def plan(
+    robot: Robot | Calibration | _Path,
+    *,
+    purpose: Literal["calibration", "drift"],
+    kind: _Kind = "point",
+    count: int | None = None,
+    judge: int | None = None,
+    candidates: ArrayLike | None = None,
+    over: ArrayLike | None = None,
+    over_box_mm: ArrayLike | None = None,
+    keep: Plan | ArrayLike | None = None,
+    replace: Sequence[int] | None = None,
+    criterion: Literal["expected", "D", "A", "E", "G"] = "expected",
+    targets: int = 1,
+    target_offset_mm: ArrayLike | None = None,
+    sigma_position_mm: _Number | None = None,
+    sigma_rotation_deg: _Number | None = None,
+    robot_error_mm: _Number | _Pair | None = None,
+    frame: _Frame = "unknown",
+    tolerance_deg_mm: _Pair | None = ...,
+    corrections: str | Mapping[str, _Number] = "auto",
+    gravity: ArrayLike = (0, 0, -1),
+    margin_deg_mm: _Pair = (0.0, 0.0),
+    keep_out_mm: Sequence[ArrayLike] | None = None,
+    floor_mm: _Number | None = None,
+    separation_deg: _Number | None = None,
+    device_mm: ArrayLike | None = None,
+    cone_deg: _Number | None = None,
+    device_looks_at_mm: ArrayLike | None = None,
+    distance_mm: _Pair | None = None,
+    acceptance_deg: _Number | None = None,
+    facing: ArrayLike | None = None,
+    self_collision: Literal["avoid", "ignore"] = "avoid",
+    stop_s: float = 30.0,
+    seed: int = 1,
+    earlier: Measurements | None = None,
+    device: Literal["known", "anew"] | None = None,
+    tool: Literal["same", "anew"] | None = None,
+    repeatability_mm: _Number | None = None,
+) -> Plan | VisitPlan: ...
 def track(
     calibration: Calibration,
     measurements: Measurements,
@@ -2338,8 +2419,8 @@ def track(
     *,
     device: Literal["anew", "known"] = "anew",
     tool: Literal["same", "anew"] = "same",
-    repeatability_mm: float | None = None,
-) -> Findings:
+    repeatability_mm: _Number | None = None,
+) -> Visit:
     """Whether a robot is as it was calibrated, by a few measurements, and which joint is not.
 
     Parameters
@@ -2360,7 +2441,7 @@ def track(
 
     Returns
     -------
-    Findings
+    Visit
         The state, the explanation with its size, others that explain the changes nearly as well, joints that are not seen, and the error now.
     """
 def version() -> str:
@@ -2374,4 +2455,6 @@ def version() -> str:
 def _robot(state: bytes) -> Robot: ...
 def _measurements(state: bytes) -> Measurements: ...
 def _calibration(state: bytes) -> Calibration: ...
-def _findings(state: bytes) -> Findings: ...
+def _shown(text: str, warnings: Sequence[str]) -> str: ...
+def _nearest(word: str, words: Sequence[str]) -> str | None: ...
+def _write_text(path: _Path, text: str, force: bool) -> None: ...

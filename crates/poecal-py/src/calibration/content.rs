@@ -1,15 +1,18 @@
 //! Contents of a calibration, converted on demand.
 
+use std::borrow::Cow;
 use std::path::Path;
 use std::sync::{Arc, OnceLock};
 use std::time::Duration;
 
 use poecal::ErrorKind;
+use poecal::calibration::AcceptedModel;
 use poecal::io::calibration_file::{CalibrationFile, Inputs};
-use poecal::io::measurements::MeasurementFile;
+use poecal::io::measurements::{self, MeasurementFile, ReadOptions};
 use poecal::io::model::{Model, ModelSource};
 use poecal::io::record::Record;
 use poecal::io::residuals::Residuals;
+use poecal::measurement::Dataset;
 use poecal::report;
 use pyo3::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -144,6 +147,30 @@ impl Calibration {
         Ok(Calibration::written(Robot::of_state(nominal)?, robot, file, residuals, summary))
     }
 
+    /// The rows that it was made of: at hand, or read from the files that it names.
+    pub(crate) fn own_rows(&self) -> PyResult<Cow<'_, Dataset>> {
+        let written = match &self.found {
+            Found::Fit(fit) => return Ok(Cow::Borrowed(&fit.data.data)),
+            Found::Written(written) => written,
+        };
+        let file = &written.file;
+        let paths = self.source().and_then(|source| file.own_measurements(source)).ok_or_else(|| {
+            let names = file.inputs.measurements.join(", ");
+            let message = format!(
+                "found none, and the measurements of the calibration ({names}) are not where it was made or have other bytes, expected \
+                 measurements of the calibration or of an earlier visit"
+            );
+            argument("earlier", message)
+        })?;
+        let mut meaning =
+            ReadOptions { ignore_sets: true, controller: file.controller.clone(), ..ReadOptions::default() };
+        if let Some(known) = &file.pictures {
+            known.complete(&mut meaning).map_err(raise)?;
+        }
+        let read = measurements::read(&paths, &written.robot, &meaning).map_err(raise)?;
+        Ok(Cow::Owned(read.data))
+    }
+
     /// The contents of `calibration.json`.
     pub(crate) fn file(&self) -> &CalibrationFile {
         match &self.found {
@@ -203,6 +230,14 @@ impl Calibration {
                     "found a calibration without a verdict, expected one: calibrate again with this version";
                 raise(ErrorKind::Model.error(message))
             }),
+        }
+    }
+
+    /// The model that is delivered: the corrected one where it has terms.
+    pub(crate) fn delivered(&self) -> AcceptedModel {
+        match self.file().corrected.as_ref().is_some_and(|it| it.has_terms()) {
+            true => AcceptedModel::Corrected,
+            false => AcceptedModel::Calibrated,
         }
     }
 

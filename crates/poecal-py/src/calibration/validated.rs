@@ -81,6 +81,7 @@ impl Places {
         let text = report::judgement(&model.path.display().to_string(), &names, &found.judgement);
         let doubts: Vec<String> = found.doubt.iter().cloned().collect();
         crate::warn(py, &doubts)?;
-        Findings::new(text, &found, doubts)
+        let answer = report::judged(&found.judgement);
+        Ok(Findings::new("Validation", text, answer, &found)?.warned(&doubts))
     }
 }

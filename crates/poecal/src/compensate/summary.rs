@@ -263,6 +263,18 @@ impl Summary {
         }
     }
 
+    /// How many targets are corrected, how far off the tip would have been, and what is left, in a sentence.
+    #[must_use]
+    pub fn answer(&self) -> String {
+        format!(
+            "{} corrected, {} left as they are: the tip would be off by up to {:.4} mm, and is by up to {:.1e} mm",
+            self.rows,
+            self.listed.len(),
+            self.moved_m.value * 1e3,
+            self.left_m.value * 1e3
+        )
+    }
+
     /// The summary in words, for the terminal; joints that slide are told by their names.
     #[must_use]
     pub fn text(&self, slides: &dyn Fn(&str) -> bool, what: &str) -> String {

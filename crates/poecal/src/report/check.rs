@@ -138,6 +138,21 @@ impl Check {
         }
     }
 
+    /// What was read, and the first mistake that it shows, in a sentence.
+    #[must_use]
+    pub fn answer(&self) -> String {
+        let Some(SetCounts { fit, held_out, unstated }) = self.sets else { return self.robot_words.clone() };
+        let read = match fit + held_out + unstated {
+            1 => "1 row".to_owned(),
+            rows => format!("{rows} rows"),
+        };
+        match self.diagnosis.as_slice() {
+            [] => format!("{read}, no mistake found"),
+            [one] => format!("{read}, 1 mistake: {}", one.statement),
+            [first, more @ ..] => format!("{read}, {} mistakes: {}; …", 1 + more.len(), first.statement),
+        }
+    }
+
     /// As text of lines up to 80 characters (but for names that are longer).
     #[must_use]
     pub fn text(&self) -> String {

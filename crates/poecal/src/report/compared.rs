@@ -188,7 +188,7 @@ impl Comparison {
     #[must_use]
     pub fn text(&self, detail: Detail) -> String {
         let mut out = String::new();
-        line(&mut out, "verdict", &self.verdict());
+        line(&mut out, "verdict", &self.answer());
         line(&mut out, "largest", &self.tip.words());
         line(&mut out, "first", &self.first.words());
         line(&mut out, "second", &self.second.words());
@@ -221,8 +221,9 @@ impl Comparison {
         out
     }
 
-    /// The answer: by how much the tip moved, and whether that is within the limit.
-    fn verdict(&self) -> String {
+    /// By how much the tip moved, and whether that is within the limit, in a sentence.
+    #[must_use]
+    pub fn answer(&self) -> String {
         let rms = number(self.tip.rms_mm);
         let moved = format!("the tip moved by {rms} mm (RMS) in the range that both sampled");
         match (self.moved, self.tip.limit_mm) {

@@ -5,6 +5,23 @@ use crate::hand_eye::{FindingKind, HandEye, Placed};
 use crate::io::frame_texts::NamedFrame;
 use crate::io::hand_eye::{ArmByJoints, HandEyeResult};
 
+/// Where the camera is, how surely, and what to think of it, in a sentence.
+#[must_use]
+pub fn hand_eye_answer(result: &HandEyeResult<'_>) -> String {
+    let [(frame, placed), _] = result.frames();
+    format!("{}: {}", result.found.level.words(), in_parent(&frame, &placed))
+}
+
+/// Where a frame is in its parent, and how surely.
+fn in_parent(frame: &NamedFrame, placed: &Placed) -> String {
+    let t = 1e3 * frame.pose.translation;
+    let (bound_mm, bound_deg) = (1e3 * placed.bound95_m, placed.bound95_rad.to_degrees());
+    format!(
+        "{} in {}: ({:.3}, {:.3}, {:.3}) mm; 95 % within {bound_mm:.3} mm and {bound_deg:.4} deg",
+        frame.child, frame.parent, t.x, t.y, t.z
+    )
+}
+
 /// The table of a result.
 #[must_use]
 pub fn hand_eye(result: &HandEyeResult<'_>) -> String {

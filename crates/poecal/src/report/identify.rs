@@ -102,6 +102,19 @@ impl Identify {
         }
     }
 
+    /// How many unknowns are determined, and the errors to expect, in a sentence.
+    #[must_use]
+    pub fn answer(&self) -> String {
+        let found = &self.identifiability;
+        let weak: usize = found.weak.iter().map(|it| it.directions).sum();
+        let weak = if weak > 0 { format!(" ({weak} weakly)") } else { String::new() };
+        let expected = self.expected.as_ref().map_or_else(String::new, |it| {
+            let (calibrated, corrected) = (number(it.calibrated_mm), number(it.corrected_mm));
+            format!(": {calibrated} mm calibrated and {corrected} mm corrected are expected (RMS)")
+        });
+        format!("{} of {} unknowns determined{weak}{expected}", found.rank, found.parameters)
+    }
+
     /// As text of lines up to 80 characters (but for names that are longer).
     #[must_use]
     pub fn text(&self) -> String {

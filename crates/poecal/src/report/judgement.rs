@@ -66,7 +66,14 @@ pub(super) fn confirmed_words(level: Option<Level>) -> &'static str {
 
 /// The verdict with its one figure, and why it is no better.
 fn verdict(judgement: &Judgement) -> Vec<String> {
-    let (level, reasons) = judgement.confirmed();
+    let (_, reasons) = judgement.confirmed();
+    std::iter::once(judged(judgement)).chain(reasons).collect()
+}
+
+/// What the measurements confirm, with the error of the model that is delivered beside the expected one, in a sentence.
+#[must_use]
+pub fn judged(judgement: &Judgement) -> String {
+    let (level, _) = judgement.confirmed();
     let delivered = judgement.delivered();
     let figure = delivered.errors.leading().map(|(quantity, found)| {
         let part = delivered.promised.and_then(|it| it.parts.get(quantity));
@@ -74,8 +81,7 @@ fn verdict(judgement: &Judgement) -> Vec<String> {
         let (rms, unit, model) = (number(found.rms), quantity.unit().symbol(), delivered.model.word());
         format!(": {rms} {unit} (RMS) of the {model} model{}", expected.unwrap_or_default())
     });
-    let first = format!("{}{}", confirmed_words(level), figure.unwrap_or_default());
-    std::iter::once(first).chain(reasons).collect()
+    format!("{}{}", confirmed_words(level), figure.unwrap_or_default())
 }
 
 fn coverage(out: &mut String, label: &str, quantity: Quantity, check: &PartCoverage, found: f64) {

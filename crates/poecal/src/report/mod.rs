@@ -27,16 +27,16 @@ pub use check::{Check, SetCounts};
 pub use compared::Comparison;
 pub use fleet::{Figure, Line, PriorUse};
 pub use fleet_prior::fleet_prior;
-pub use hand_eye::hand_eye;
+pub use hand_eye::{hand_eye, hand_eye_answer};
 pub use identify::Identify;
-pub use judgement::judgement;
+pub use judgement::{judged, judgement};
 pub use offsets::Offsets;
 pub use page::{
     Attest, calibration_page, calibration_page_with, certificate_page, fleet_page, plan_page, validation_page,
 };
 pub use plan::Plan;
 pub use summary::{Detail, summary, unsaid};
-pub use tcp::tool_tip;
+pub use tcp::{tool_tip, tool_tip_answer};
 pub use track::{Track, WitnessPlan, recalibrated};
 pub use watched::Watched;
 

@@ -118,6 +118,19 @@ impl Offsets {
         }
     }
 
+    /// The offsets, and what they change of the tip's error, in a sentence.
+    #[must_use]
+    pub fn answer(&self) -> String {
+        let joints: Vec<String> = self.joints.iter().map(JointEntry::words).collect();
+        let [before, after] = [&self.predictions.without_offsets, &self.predictions.with_offsets];
+        format!(
+            "{}: the tip's error changes from {} to {} mm (RMS)",
+            joints.join(", "),
+            number(before.position_rms_mm),
+            number(after.position_rms_mm)
+        )
+    }
+
     /// As text of lines up to 80 characters (but for names that are longer).
     #[must_use]
     pub fn text(&self) -> String {
@@ -167,11 +180,22 @@ impl EndEntry {
 }
 
 impl JointEntry {
-    fn row(&self) -> String {
-        let (offset, unit) = match (self.offset_deg, self.offset_mm) {
+    /// The offset, and its unit.
+    fn offset(&self) -> (String, &'static str) {
+        match (self.offset_deg, self.offset_mm) {
             (Some(angle), _) => (fixed(angle), "deg"),
             (None, length) => (fixed(length.unwrap_or(0.0)), "mm"),
-        };
+        }
+    }
+
+    fn words(&self) -> String {
+        let (offset, unit) = self.offset();
+        let doubt = if self.determined { "" } else { " (not determined)" };
+        format!("{} {offset} {unit}{doubt}", visible(&self.joint))
+    }
+
+    fn row(&self) -> String {
+        let (offset, unit) = self.offset();
         let mark = if self.determined { "" } else { "*" };
         let shift = self.shift_mm.map_or_else(String::new, |shift| format!("{:>11} mm", fixed(shift)));
         let tilt = fixed(self.tilt_deg);

@@ -50,10 +50,10 @@ pub struct Plan {
 /// Expected errors (RMS over the workspace) in two parts each.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub(super) struct PlanErrors {
-    calibrated_mm: f64,
+    pub(super) calibrated_mm: f64,
     calibrated_undetermined_mm: f64,
     robot_error_mm: f64,
-    corrected_mm: f64,
+    pub(super) corrected_mm: f64,
     corrected_undetermined_mm: f64,
     corrected_robot_error_mm: f64,
 }

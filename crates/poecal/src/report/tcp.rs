@@ -1,8 +1,24 @@
 //! The table of a tool's tip.
 
 use super::table::lines;
+use crate::hand_eye::{Tip, Tool};
 use crate::io::frame_texts::tool_forms;
 use crate::io::tcp::ToolResult;
+
+/// Where the tip is, how surely, and what to think of it, in a sentence.
+#[must_use]
+pub fn tool_tip_answer(found: &Tool) -> String {
+    let tips: Vec<String> = found.tips.iter().map(tip_words).collect();
+    format!("{}: {}", found.level.words(), tips.join("; "))
+}
+
+/// The place of a tip.
+fn tip_words(tip: &Tip) -> String {
+    let t = 1e3 * tip.placed.pose.translation;
+    let name = if tip.name.is_empty() { String::new() } else { format!("{}: ", tip.name) };
+    let bound_mm = 1e3 * tip.placed.bound95_m;
+    format!("{name}({:.3}, {:.3}, {:.3}) mm in the flange; 95 % within {bound_mm:.3} mm", t.x, t.y, t.z)
+}
 
 /// The table of a result.
 #[must_use]
@@ -13,18 +29,7 @@ pub fn tool_tip(result: &ToolResult<'_>) -> String {
     let reasons: String = found.reasons.iter().map(|it| format!("\n{it}")).collect();
     say("verdict", &format!("{}{reasons}", found.level.words()));
     for tip in &found.tips {
-        let t = 1e3 * tip.placed.pose.translation;
-        let name = if tip.name.is_empty() { String::new() } else { format!("{}: ", tip.name) };
-        say(
-            "tip",
-            &format!(
-                "{name}({:.3}, {:.3}, {:.3}) mm in the flange; 95 % within {:.3} mm",
-                t.x,
-                t.y,
-                t.z,
-                1e3 * tip.placed.bound95_m
-            ),
-        );
+        say("tip", &tip_words(tip));
     }
     if let Some((direction, bound)) = &found.axis {
         say(

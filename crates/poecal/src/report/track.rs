@@ -152,6 +152,21 @@ impl WitnessPlan {
         }
     }
 
+    /// How many configurations are chosen, and the smallest shifts that their repeats show, in a sentence.
+    #[must_use]
+    pub fn answer(&self) -> String {
+        let seen = self.joints.iter().filter_map(|it| {
+            let smallest = it.smallest?;
+            Some(format!("{} {smallest:.3} {}", visible(&it.joint), it.unit))
+        });
+        let seen: Vec<String> = seen.collect();
+        let seen = if seen.is_empty() { "none".to_owned() } else { seen.join(", ") };
+        let unseen: Vec<String> = self.invisible.iter().map(|it| visible(&it.joint).into_owned()).collect();
+        let unseen =
+            if unseen.is_empty() { String::new() } else { format!("; not seen: {}", unseen.join(", ")) };
+        format!("{} configurations; smallest shifts found (95 %): {seen}{unseen}", self.configurations)
+    }
+
     /// The table.
     #[must_use]
     pub fn text(&self) -> String {
@@ -325,9 +340,9 @@ impl Track {
         }
     }
 
-    /// What the visit says, in one line.
+    /// What changed, in a sentence.
     #[must_use]
-    pub fn verdict(&self) -> String {
+    pub fn answer(&self) -> String {
         let Some(found) = &self.explanation else {
             return match self.state {
                 State::Unchanged => format!("unchanged within {:.3} mm", self.change_mm),
@@ -363,7 +378,7 @@ impl Track {
         };
         line(&mut out, "robot", &self.robot);
         line(&mut out, "state", &format!("{state} ({by})"));
-        line(&mut out, "verdict", &self.verdict());
+        line(&mut out, "verdict", &self.answer());
         let left = if self.explanation.is_some() {
             format!(", {:.3} mm of which the explanation leaves", self.left_mm)
         } else {

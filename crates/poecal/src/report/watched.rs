@@ -82,9 +82,9 @@ impl Watched {
         })
     }
 
-    /// As lines of text.
+    /// Whether the row is as expected, in a sentence.
     #[must_use]
-    pub fn text(&self) -> String {
+    pub fn answer(&self) -> String {
         let named = self.id.as_ref().map_or_else(String::new, |id| format!(" ({id})"));
         let mut out = format!("row {}{named}: ", self.row);
         out.push_str(match (&self.sentence, self.ok) {
@@ -96,6 +96,13 @@ impl Watched {
         if let Some(noticed) = self.noticed_mm {
             let _ = write!(out, "; {} mm would be noticed", number(noticed));
         }
+        out
+    }
+
+    /// As lines of text.
+    #[must_use]
+    pub fn text(&self) -> String {
+        let mut out = self.answer();
         if let (Some(calibrated), Some(corrected)) = (self.expected_calibrated_mm, self.expected_corrected_mm)
         {
             let _ = write!(

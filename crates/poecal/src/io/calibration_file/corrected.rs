@@ -161,7 +161,8 @@ fn of_sizes(sizes: &Sizes) -> BTreeMap<String, f64> {
 
 impl CorrectedEntry {
     /// Whether there are terms: cross-validation may have left out every group.
-    pub(crate) fn has_terms(&self) -> bool {
+    #[must_use]
+    pub fn has_terms(&self) -> bool {
         self.sizes.values().any(|size| *size > 0.0)
     }
 

@@ -1,0 +1,210 @@
+"""Results about sessions, cameras, tools and programs, with the numbers that matter as attributes."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from ._findings import Findings, imported
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+
+class Identification(Findings):
+    """Which unknowns configurations determine, and the errors to expect: the result of `identify`. Its data frame has a row for each joint."""
+
+    __slots__ = ()
+
+    @property
+    def determined(self) -> int:
+        """Number of unknowns that are determined."""
+        return self._at(int, "identifiability", "rank")
+
+    @property
+    def unknowns(self) -> int:
+        """Number of unknowns."""
+        return self._at(int, "identifiability", "parameters")
+
+    @property
+    def weak(self) -> list[str]:
+        """What is determined weakly, a sentence each."""
+        return [found["description"] for found in self["identifiability"]["weak"]]
+
+    @property
+    def undetermined(self) -> list[str]:
+        """What is not determined, a sentence each."""
+        return [found["description"] for found in self["identifiability"]["unidentifiable"]]
+
+    @property
+    def expected_calibrated_mm(self) -> float | None:
+        """Expected error of the calibrated model (RMS), millimetres; None of kinds whose configurations cannot be chosen freely."""
+        return self._maybe(float, "expected", "calibrated_mm")
+
+    @property
+    def expected_corrected_mm(self) -> float | None:
+        """Expected error of the corrected model (RMS), millimetres."""
+        return self._maybe(float, "expected", "corrected_mm")
+
+    def _rows(self) -> list[dict[str, Any]]:
+        return list(self["coverage"])
+
+
+class WatchedRow(Findings):
+    """A row of a session that is watched: the result of `Watch.add`. Its data frame has one row."""
+
+    __slots__ = ()
+
+    @property
+    def row(self) -> int:
+        """Number of the row, from 1."""
+        return self._at(int, "row")
+
+    @property
+    def ok(self) -> bool | None:
+        """Whether the row is as expected; None while there are too few rows to judge by."""
+        return self._maybe(bool, "ok")
+
+    @property
+    def mistake(self) -> str | None:
+        """What is wrong with the row: "stale", "sign", "joint", "off", "repeats" or "moved"; None where nothing is."""
+        return self._maybe(str, "mistake")
+
+    @property
+    def noticed_mm(self) -> float | None:
+        """The error that would be noticed, millimetres."""
+        return self._maybe(float, "noticed_mm")
+
+    @property
+    def expected_calibrated_mm(self) -> float | None:
+        """Expected error of the calibrated model now (RMS), millimetres."""
+        return self._maybe(float, "expected_calibrated_mm")
+
+    @property
+    def expected_corrected_mm(self) -> float | None:
+        """Expected error of the corrected model now (RMS), millimetres."""
+        return self._maybe(float, "expected_corrected_mm")
+
+    @property
+    def next(self) -> NDArray[np.float64] | None:
+        """The configuration that gains most, shape (n,), radians and metres."""
+        found = self._maybe(list, "next")
+        return None if found is None else imported("numpy").array(found, dtype=float)
+
+
+class HandEye(Findings):
+    """Where a camera is: the result of `hand_eye`. Its data frame has a row for each of both frames."""
+
+    __slots__ = ()
+
+    @property
+    def level(self) -> str:
+        """What to think of the result: "good", or how far it may be used."""
+        return self._at(str, "verdict", "level")
+
+    @property
+    def reasons(self) -> list[str]:
+        """Why it is no better, a sentence each."""
+        return self._texts("verdict", "reasons")
+
+    @property
+    def camera_pose(self) -> NDArray[np.float64]:
+        """Pose of the camera in the flange, or in the base where it is beside the robot, shape (4, 4), metres."""
+        pose: NDArray[np.float64] = imported("numpy").array(self["camera_frame"]["matrix"], dtype=float)
+        return pose
+
+    @property
+    def bound95_mm(self) -> float:
+        """The distance that the camera's place does not miss in 95 % of all cases, millimetres."""
+        return self._at(float, "camera_frame", "bound95_mm")
+
+    @property
+    def bound95_deg(self) -> float:
+        """The same of its direction, degrees."""
+        return self._at(float, "camera_frame", "bound95_deg")
+
+    def _rows(self) -> list[dict[str, Any]]:
+        return [self["camera_frame"], self["target_frame"]]
+
+
+class ToolTip(Findings):
+    """Where the tip of a tool is: the result of `tcp`. Its data frame has a row for each tip."""
+
+    __slots__ = ()
+
+    @property
+    def level(self) -> str:
+        """What to think of the result: "good", or how far it may be used."""
+        return self._at(str, "verdict", "level")
+
+    @property
+    def reasons(self) -> list[str]:
+        """Why it is no better, a sentence each."""
+        return self._texts("verdict", "reasons")
+
+    @property
+    def position_m(self) -> NDArray[np.float64]:
+        """Place of the tip in the flange, of several the first, shape (3,), metres."""
+        place: NDArray[np.float64] = imported("numpy").array(self["tips"][0]["position_m"], dtype=float)
+        return place
+
+    @property
+    def bound95_mm(self) -> float:
+        """The distance that it does not miss in 95 % of all cases, millimetres."""
+        bound: float = self["tips"][0]["bound95_mm"]
+        return bound
+
+    @property
+    def outliers(self) -> list[str]:
+        """Touches that are left out as wrong."""
+        return self._texts("outliers")
+
+    def _rows(self) -> list[dict[str, Any]]:
+        return list(self["tips"])
+
+
+class Compensation(Findings):
+    """What was corrected in a program or in joint readings: the summary of `Calibration.compensate` and `compensate_program`.
+
+    Its data frame has a row for each target that is corrected.
+    """
+
+    __slots__ = ()
+
+    @property
+    def count(self) -> int:
+        """Number of targets that are corrected."""
+        return self._at(int, "rows")
+
+    @property
+    def left_out(self) -> list[str]:
+        """Targets that stay as they are, with the line and the reason."""
+        return [f"line {it['line']}: {it['reason']}" for it in self["listed"]]
+
+    @property
+    def off_max_mm(self) -> float:
+        """How far off the tip would be at most without correction, millimetres."""
+        return 1e3 * self._at(float, "moved_m", "value")
+
+    @property
+    def left_max_mm(self) -> float:
+        """How far off it is at most with the correction, by the calibrated model, millimetres."""
+        return 1e3 * self._at(float, "left_m", "value")
+
+    def _rows(self) -> list[dict[str, Any]]:
+        return list(self.get("targets") or [])
+
+
+class Reproduction(Findings):
+    """The experiment of a paper: the result of `reproduce`. Its data frame has a row for each claim, or for each loss and share of gross errors."""
+
+    __slots__ = ()
+
+    @property
+    def holding(self) -> int | None:
+        """Number of the paper's claims that hold; None of "breakdown"."""
+        claims = self.get("claims")
+        return None if claims is None else sum(claim["holds"] and claim["said_by_paper"] for claim in claims)
+
+    def _rows(self) -> list[dict[str, Any]]:
+        return list(self.get("claims") or self.get("entries") or [])

@@ -1,0 +1,108 @@
+//! Arguments that `plan` and `Watch` share: what is believed of a session, configurations, boxes, the workspace.
+
+use nalgebra::Vector3;
+use poecal::analysis::PlannedSession;
+use poecal::calibration::{Corrections, DeviceFrameKnowledge};
+use poecal::io::model::Model;
+use poecal::measurement::{Noise, Quantity};
+use poecal::plan::{PlannedFit, RobotError, workspace_in};
+use poecal::robot::{GravityDirection, Tolerance};
+use poecal::simulate::Kind;
+use pyo3::prelude::*;
+
+use crate::arguments::Believed;
+use crate::arrays::{Joints, Numbers};
+use crate::calibrate::tolerance;
+use crate::errors::{argument, raise};
+use crate::robot::Robot;
+use crate::words::{frame as frame_word, from_mm, sigmas};
+
+/// What is believed of a session before it is measured.
+pub(crate) struct Believe<'a> {
+    pub(crate) sigma_position_mm: Option<f64>,
+    pub(crate) sigma_rotation_deg: Option<f64>,
+    pub(crate) robot_error_mm: Option<RobotError>,
+    pub(crate) frame: &'a str,
+    pub(crate) tolerance_deg_mm: &'a Believed,
+    pub(crate) corrections: Option<Corrections>,
+    pub(crate) gravity: Option<GravityDirection>,
+}
+
+impl Believe<'_> {
+    /// The fit that will be made of so many configurations of a kind.
+    pub(crate) fn fit(self, model: &Model, kind: Kind, count: usize) -> PyResult<PlannedFit> {
+        let [position_m, rotation_rad] = sigmas(self.sigma_position_mm, self.sigma_rotation_deg)?;
+        let usual = PlannedSession::default();
+        let gravity = match self.gravity {
+            None => -Vector3::z(),
+            Some(GravityDirection::Known(gravity)) => gravity,
+            Some(_) => {
+                return Err(argument("gravity", "found no direction, expected one, like (0, 0, -1)"));
+            }
+        };
+        let tolerance = match self.tolerance_deg_mm {
+            Believed::Auto => {
+                let message =
+                    "found `auto`, which measurements decide, expected two numbers, like (0.5, 5), or None";
+                return Err(argument("tolerance_deg_mm", message));
+            }
+            Believed::None | Believed::Given(_) | Believed::Of(_) => {
+                tolerance(self.tolerance_deg_mm)?.or(Some(Tolerance::WIDE))
+            }
+        };
+        Ok(PlannedFit {
+            session: PlannedSession {
+                kind,
+                noise: Noise::new(
+                    position_m.unwrap_or(usual.noise[Quantity::Position]),
+                    rotation_rad.unwrap_or(usual.noise[Quantity::Rotation]),
+                ),
+                device_free: frame_word(self.frame)? == DeviceFrameKnowledge::Unknown,
+            },
+            count,
+            tolerance,
+            corrections: self.corrections.unwrap_or_default(),
+            gravity,
+            robot_error: self.robot_error_mm.or_else(|| model.left_error()),
+            ..PlannedFit::default()
+        })
+    }
+}
+
+/// A place in metres.
+pub(crate) fn place(of_mm: Option<[f64; 3]>) -> Option<Vector3<f64>> {
+    of_mm.map(|it| Vector3::from(it.map(from_mm)))
+}
+
+/// Configurations of an argument.
+pub(crate) fn configurations(value: Option<&Bound<'_, PyAny>>, robot: &Robot) -> PyResult<Option<Vec<f64>>> {
+    value.map(|value| Ok(Joints::of(value, &robot.model.robot)?.readings)).transpose()
+}
+
+/// Two corners of a box, metres.
+pub(crate) fn corners(value: &Bound<'_, PyAny>, name: &str) -> PyResult<[[f64; 3]; 2]> {
+    let expected = "shape (2, 3): two corners of a box in the base frame, millimetres";
+    let numbers = Numbers::finite_of(value, name, &[Some(2), Some(3)], expected)?.values;
+    let at = |k: usize| numbers.get(k).copied().map_or(0.0, from_mm);
+    let (a, b) = ([at(0), at(1), at(2)], [at(3), at(4), at(5)]);
+    Ok([[0, 1, 2].map(|k: usize| a[k].min(b[k])), [0, 1, 2].map(|k: usize| a[k].max(b[k]))])
+}
+
+/// The workspace where predictions shall be good: configurations, or those with the tip in a box.
+pub(crate) fn workspace(
+    robot: &Robot,
+    over: Option<&Bound<'_, PyAny>>,
+    over_box_mm: Option<&Bound<'_, PyAny>>,
+    seed: u64,
+) -> PyResult<Option<Vec<f64>>> {
+    match (over, over_box_mm) {
+        (Some(_), Some(_)) => {
+            Err(argument("over_box_mm", "found both over and over_box_mm, expected one of the two"))
+        }
+        (over, None) => configurations(over, robot),
+        (None, Some(corners_mm)) => {
+            let corners = corners(corners_mm, "over_box_mm")?;
+            workspace_in(&robot.model.robot, &corners, seed).map(Some).map_err(raise)
+        }
+    }
+}

@@ -1,0 +1,128 @@
+//! `plan` of visits to a calibrated robot: which measured configurations to repeat.
+
+use std::path::PathBuf;
+
+use poecal::calibration::DeviceFrameKnowledge;
+use poecal::io::measurements::to_measure_again;
+use poecal::io::output::Existing;
+use poecal::report;
+use poecal::track::{TrackOptions, witnesses};
+use pyo3::prelude::*;
+use serde::Serialize;
+
+use crate::arguments::{self as arg, unexpected};
+use crate::arrays::Joints;
+use crate::calibration::Calibration;
+use crate::errors::{argument, raise};
+use crate::findings::Findings;
+use crate::measurements::Measurements;
+use crate::places::reserved_file;
+use crate::words::{chosen, from_mm, sigma};
+
+/// Most configurations of a visit, as by the program, and how many there are by default.
+const MOST: usize = 1000;
+const USUAL: usize = 8;
+
+/// What is known of the visits.
+pub(crate) struct VisitOptions<'a> {
+    pub(crate) earlier: Option<&'a Measurements>,
+    pub(crate) device: Option<&'a str>,
+    pub(crate) tool: Option<&'a str>,
+    pub(crate) repeatability_mm: Option<f64>,
+}
+
+/// A plan of visits, its configurations, and the table to fill in.
+#[derive(Serialize)]
+struct Planned<'a> {
+    #[serde(flatten)]
+    told: &'a report::WitnessPlan,
+    rows: Vec<Row<'a>>,
+    table: String,
+}
+
+/// A configuration to measure.
+#[derive(Serialize)]
+struct Row<'a> {
+    /// Readings, radians and metres.
+    readings: &'a [f64],
+}
+
+impl VisitOptions<'_> {
+    /// Refuses what is stated of visits where none are planned.
+    pub(crate) fn refuse(&self) -> PyResult<()> {
+        let stated = [
+            ("earlier", self.earlier.is_some()),
+            ("device", self.device.is_some()),
+            ("tool", self.tool.is_some()),
+            ("repeatability_mm", self.repeatability_mm.is_some()),
+        ];
+        match stated.into_iter().find(|it| it.1) {
+            Some((name, _)) => {
+                Err(argument(name, "found it without purpose=\"drift\", expected both or neither"))
+            }
+            None => Ok(()),
+        }
+    }
+
+    /// Chooses the configurations of a calibration's rows, or of candidates.
+    pub(crate) fn plan(
+        &self,
+        py: Python<'_>,
+        calibration: &Bound<'_, PyAny>,
+        count: Option<usize>,
+        candidates: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Findings> {
+        let expected =
+            "a poecal.Calibration, as of poecal.calibrate or Calibration.read, with purpose=\"drift\"";
+        let calibration =
+            calibration.cast::<Calibration>().map_err(|_| unexpected("robot", calibration, expected))?;
+        let calibration = calibration.get();
+        let count = count.unwrap_or(USUAL);
+        if !(1..=MOST).contains(&count) {
+            return Err(argument("count", format!("found {count}, expected 1 to {MOST}")));
+        }
+        let (file, robot) = (calibration.file(), &calibration.calibrated()?.model.robot);
+        let known = self.device.map(|word| chosen("device", word, &[("anew", false), ("known", true)]));
+        let anew = self.tool.map(|word| chosen("tool", word, &[("same", false), ("anew", true)]));
+        let options = TrackOptions {
+            device_is_known: known.transpose()?.unwrap_or(file.frame() == DeviceFrameKnowledge::Base),
+            tool_is_anew: anew.transpose()?.unwrap_or(false),
+            repeatability_m: self
+                .repeatability_mm
+                .map(|it| sigma("repeatability_mm", it, from_mm))
+                .transpose()?,
+        };
+        let new = candidates.map(|it| Joints::of(it, robot)).transpose()?;
+        let readings = new.as_ref().map(|it| it.readings.as_slice());
+        let own;
+        let earlier = match self.earlier {
+            Some(measurements) => measurements.data(),
+            None => {
+                own = calibration.own_rows()?;
+                &*own
+            }
+        };
+        let work = || {
+            let found = witnesses(file, earlier, readings, count, None, &options)?;
+            let told = report::WitnessPlan::new(&found, &file.robot.name, new.is_some());
+            let table = to_measure_again(&found.rows, &found.configurations, robot, new.is_some())?;
+            let first = found.configurations.iter().filter_map(|rows| rows.first());
+            let rows = first.map(|row| Row { readings: found.rows.readings(*row as usize) }).collect();
+            let json = report::json(&Planned { told: &told, rows, table })?;
+            Ok(Findings::of_json("VisitPlan", told.text(), told.answer(), json))
+        };
+        py.detach(work).map_err(raise)
+    }
+}
+
+/// Writes a text to a file, as `VisitPlan.write` does.
+#[pyfunction]
+pub(crate) fn _write_text(
+    py: Python<'_>,
+    #[pyo3(from_py_with = arg::path)] path: PathBuf,
+    #[pyo3(from_py_with = arg::text)] text: String,
+    #[pyo3(from_py_with = arg::force)] force: bool,
+) -> PyResult<()> {
+    let place = reserved_file(py, &path, Existing::forced(force), &[])?;
+    py.detach(|| place.write(vec![text.into()])).map_err(raise)
+}
