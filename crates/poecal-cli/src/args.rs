@@ -9,7 +9,6 @@ mod compensate;
 mod detect;
 #[cfg(any(unix, windows))]
 mod fleet;
-mod groups;
 mod hand_eye;
 mod identify;
 mod init;
@@ -32,7 +31,6 @@ pub(crate) use compensate::Compensate;
 pub(crate) use detect::Detect;
 #[cfg(any(unix, windows))]
 pub(crate) use fleet::{Fleet, FleetCommand, FleetPrior, FleetReport};
-pub(crate) use groups::command_line;
 pub(crate) use hand_eye::{HandEye, OutFrames, Tcp};
 pub(crate) use identify::Identify;
 pub(crate) use init::Init;

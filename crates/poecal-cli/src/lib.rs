@@ -7,6 +7,7 @@
 mod args;
 mod commands;
 mod console;
+mod help;
 mod progress;
 mod quantity;
 mod settings;
@@ -18,10 +19,11 @@ use std::error::Error as _;
 use std::ffi::OsString;
 use std::process::ExitCode;
 
-use args::{Arguments, Command, command_line};
+use args::{Arguments, Command};
 use clap::FromArgMatches as _;
 use clap::error::ContextKind;
 use console::Console;
+use help::command_line;
 use poecal::problem::stated_level;
 use poecal::text::visible;
 use poecal::{Error, ErrorKind};

@@ -11,7 +11,7 @@ use poecal::io::disk;
 use poecal::io::settings::{Setting, SettingValue, Settings};
 use poecal::{Error, ErrorKind, Result};
 
-use crate::args::command_line;
+use crate::help::command_line;
 
 /// Settings file that is read if no model is named.
 const USUAL: &str = "poecal.toml";

@@ -3,8 +3,9 @@
 use poecal::Result;
 
 use crate::DONE;
-use crate::args::{Completions, command_line};
+use crate::args::Completions;
 use crate::console::Console;
+use crate::help::command_line;
 
 pub(crate) fn completions(arguments: &Completions, console: &Console) -> Result<u8> {
     let mut script = Vec::new();

@@ -4,8 +4,9 @@ use poecal::text::visible;
 use poecal::{ErrorKind, Result, nearest};
 
 use crate::DONE;
-use crate::args::{Man, command_line};
+use crate::args::Man;
 use crate::console::Console;
+use crate::help::command_line;
 
 /// What the pages belong to.
 const SOURCE: &str = concat!("poecal ", env!("CARGO_PKG_VERSION"));

@@ -206,8 +206,11 @@ fn what_pictures_cannot_determine_is_named() {
             ..it
         }),
     ];
-    for seed in trials(8).seeds() {
-        for (name, free, expected, change) in &kinds {
+    let all = trials(8);
+    for seed in all.seeds() {
+        // Of few trials each kind has one.
+        let own = kinds.iter().skip(if all.count == 2 { seed as usize } else { 0 });
+        for (name, free, expected, change) in own.step_by(if all.count == 2 { 2 } else { 1 }) {
             let usual = PictureSimulation::usual(session(300 + seed), seed.is_multiple_of(2));
             let made = change(usual).run(&elbow()).unwrap();
             let data = read_with(&made, |_| ());
@@ -258,7 +261,7 @@ fn projection_squares(seed: u64, free: &[&str]) -> [[f64; 2]; 2] {
 #[test]
 fn pixels_are_predicted_as_well_as_the_map_says() {
     for (name, free) in [("lens known", vec![]), ("lens free", vec!["lens"])] {
-        let sessions = trials(40).at_least(8);
+        let sessions = trials(40).at_least(4);
         let all: Vec<_> = sessions.seeds().map(|seed| projection_squares(400 + seed, &free)).collect();
         for (part, place) in ["the middle", "the corners"].into_iter().enumerate() {
             let sum = |k: usize| all.iter().map(|it| it[part][k]).sum::<f64>() / all.len() as f64;

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use clap::{Command, CommandFactory as _};
 use poecal::report::table::broken;
 
-use super::Arguments;
+use crate::args::Arguments;
 use crate::console::help_width;
 
 /// Columns before what a command does.
