@@ -5,7 +5,7 @@ import { test } from "node:test";
 import { calibrateWords, checkWords, shown, validateWords, wordsOf } from "../app/src/command.js";
 import { distinct } from "../app/src/intake.js";
 import { besideUrdf, bySettings, guess } from "../app/src/roles.js";
-import { messages, placeOf } from "../app/src/sentences.js";
+import { foreign, messages, placeOf, verdictOf } from "../app/src/sentences.js";
 import { crc32 } from "../app/src/zip.js";
 
 const file = (name, text = "", role = guess(name, new TextEncoder().encode(text))) => ({ name, bytes: new TextEncoder().encode(text), role });
@@ -69,6 +69,20 @@ test("messages have their kinds, and places their lines", () => {
   assert.equal([...long.shown][long.before], "x");
   assert.ok(long.shown.length < 130 && long.shown.startsWith("…"));
   for (const text of ["a.csv: none", "b.csv:2: none", "a.csv:9: beyond"]) assert.equal(placeOf(text, files), undefined, text);
+});
+
+test("a file is foreign where the program says the same of it as a model and as measurements", () => {
+  const said = (what, expected) => `error: r.x: found ${what}, expected ${expected}\n`;
+  const [model, table] = ["a robot model (URDF)", "a measurement file (CSV)"];
+  assert.equal(foreign("r.x", said("a PDF", model), said("a PDF", table)), "r.x: found a PDF, expected a robot model (URDF)");
+  assert.equal(foreign("r.x", said("a workbook", model), "error: r.x: sheet `a`, row 1: found no column\n"), undefined);
+  assert.equal(foreign("r+x", said("a PDF", model), said("a PDF", table)), undefined);
+});
+
+test("the verdict is in the program's words", () => {
+  assert.equal(verdictOf("verdict       do not use: mirroring the positions\nbefore 1\n"), "do not use");
+  assert.equal(verdictOf("before   1\nverdict       use inside the sampled range\n"), "use inside the sampled range");
+  assert.equal(verdictOf("{}"), undefined);
 });
 
 test("the checksum is that of ZIP", () => {

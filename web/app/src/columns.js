@@ -29,7 +29,7 @@ function pullDown(field, columns, chosen) {
   const select = element("select", { id: `column-${field.key}`, onchange: () => chosen(field.key, select.value) }, offered.map(([value, textContent]) => element("option", { value, textContent, selected: value === field.chosen })));
   if (field.required && !field.chosen) select.setAttribute("aria-invalid", "true");
   // Words are longer than names.
-  const long = field.choices?.some(({ text }) => text.length > 24);
+  const long = field.choices?.some(({ text }) => text.length > 30);
   return element("div", { class: long ? "option long" : "option" }, element("label", { htmlFor: select.id, textContent: field.label }), select);
 }
 
