@@ -1,6 +1,6 @@
 //! Errors of models, and the verdict, as attributes.
 
-use poecal::calibration::{self, Level};
+use poecal::calibration::{self, AcceptedModel, Level};
 use poecal::report::table::number;
 use pyo3::exceptions::PyAttributeError;
 use pyo3::prelude::*;
@@ -141,35 +141,42 @@ impl From<calibration::SetAccuracy> for SetAccuracy {
 }
 
 /// Errors on the rows that were fitted and on those that were held out.
-#[pyclass(frozen, eq, get_all, module = "poecal", name = "Accuracy")]
+#[pyclass(frozen, eq, module = "poecal", name = "Accuracy")]
 #[derive(Clone, Copy, PartialEq)]
 pub(crate) struct Accuracy {
     /// On the rows that were fitted.
+    #[pyo3(get)]
     training: SetAccuracy,
     /// On the rows that were not; None if none was held out.
+    #[pyo3(get)]
     held_out: Option<SetAccuracy>,
+    /// The model that is delivered.
+    delivered: AcceptedModel,
 }
 
 #[pymethods]
 impl Accuracy {
     fn __repr__(&self) -> String {
-        // Without terms the corrected model is the calibrated one.
-        let delivered = |set: &SetAccuracy| match set.corrected.filter(|it| *it != set.calibrated) {
-            Some(corrected) => (corrected, "corrected"),
-            None => (set.calibrated, "calibrated"),
-        };
         let words = |set: &SetAccuracy, name: &str| {
-            let (model, word) = delivered(set);
-            format!("{word} {} {} RMS on {} {name} rows", model.leading(), model.unit(), set.count)
+            let model = match self.delivered {
+                AcceptedModel::Corrected => set.corrected.unwrap_or(set.calibrated),
+                AcceptedModel::Calibrated => set.calibrated,
+            };
+            format!("{} {} RMS on {} {name} rows", model.leading(), model.unit(), set.count)
         };
         let held_out = self.held_out.as_ref().map_or_else(String::new, |set| words(set, "held-out") + ", ");
-        format!("<poecal.Accuracy: {held_out}{}>", words(&self.training, "fitted"))
+        format!(
+            "<poecal.Accuracy of the {} model: {held_out}{}>",
+            self.delivered.word(),
+            words(&self.training, "fitted")
+        )
     }
 }
 
-impl From<calibration::Accuracy> for Accuracy {
-    fn from(found: calibration::Accuracy) -> Self {
-        Accuracy { training: found.training.into(), held_out: found.held_out.map(Into::into) }
+impl Accuracy {
+    pub(crate) fn new(found: calibration::Accuracy, delivered: AcceptedModel) -> Self {
+        let held_out = found.held_out.map(Into::into);
+        Accuracy { training: found.training.into(), held_out, delivered }
     }
 }
 
@@ -195,7 +202,7 @@ impl Verdict {
     /// The model that is delivered: "corrected" where it has terms, else "calibrated".
     #[getter]
     fn model(&self) -> Option<&'static str> {
-        self.0.model.map(poecal::calibration::AcceptedModel::word)
+        self.0.model.map(AcceptedModel::word)
     }
 
     /// Expected error of that model in configurations like those that were measured, millimetres (RMS); None where no use is advised.

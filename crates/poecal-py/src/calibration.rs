@@ -122,7 +122,7 @@ impl Calibration {
     /// Errors of the nominal, registered, calibrated and corrected model on fitted and held-out rows.
     #[getter]
     fn accuracy(&self) -> Accuracy {
-        self.errors().into()
+        Accuracy::new(self.errors(), self.delivered())
     }
 
     /// How far the calibration may be used, and why no farther; an error for a file that does not say so.

@@ -67,7 +67,7 @@ pub(crate) fn calibration(file: &CalibrationFile, delivered: AcceptedModel, warn
                     @for (quantity, _) in set.calibrated.iter() {
                         tr {
                             td { (quantity.name()) ", " (name) } td { (set.count) }
-                            @for found in models.clone().map(|model| model.get(quantity)).flatten() {
+                            @for found in models.clone().filter_map(|model| model.get(quantity)) {
                                 td { (format_args!("{:.4}{}", found.rms, sign(quantity))) }
                             }
                         }

@@ -145,7 +145,7 @@ def test_the_delivered_model_is_shown():
     assert calibration.verdict.model == "corrected" == calibration.residuals.model
     held_out = calibration.accuracy.held_out
     assert f"corrected model {held_out.corrected.position_mm.rms:.4f} mm RMS on" in repr(calibration)
-    assert f"corrected {held_out.corrected.position_mm.rms:.4f} mm RMS on" in repr(calibration.accuracy)
+    assert repr(calibration.accuracy).startswith(f"<poecal.Accuracy of the corrected model: {held_out.corrected.position_mm.rms:.4f} mm RMS on")
     assert f"{calibration.verdict.expected_error_mm:.4f} mm expected" in repr(calibration)
     assert "<th>corrected</th>" in calibration._repr_html_() and f"{held_out.corrected.position_mm.rms:.4f} mm" in calibration._repr_html_()
     residuals = calibration.residuals
@@ -157,5 +157,5 @@ def test_the_delivered_model_is_shown():
     shown = {line.get_label(): line for line in drawn[1].lines}["held out"].get_ydata()
     assert np.array_equal(shown, residuals.position_corrected_mm[held])
     off = poecal.calibrate(made.nominal, made.measurements, corrections="off")
-    assert "calibrated model" in repr(off) and off.residuals.model == "calibrated" and "<th>corrected</th>" not in off._repr_html_()
+    assert "calibrated model" in repr(off) and "of the calibrated model" in repr(off.accuracy) and off.residuals.model == "calibrated" and "<th>corrected</th>" not in off._repr_html_()
     assert off.plot().axes[1].get_title() == "calibrated, row by row"

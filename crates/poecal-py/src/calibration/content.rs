@@ -235,10 +235,17 @@ impl Calibration {
 
     /// The model that is delivered: the corrected one where it has terms.
     pub(crate) fn delivered(&self) -> AcceptedModel {
-        match self.file().corrected.as_ref().is_some_and(|it| it.has_terms()) {
-            true => AcceptedModel::Corrected,
-            false => AcceptedModel::Calibrated,
-        }
+        let verdict = match &self.found {
+            Found::Fit(fit) => Some(&fit.calibration.verdict),
+            Found::Written(written) => written.file.verdict.as_ref(),
+        };
+        verdict.and_then(|verdict| verdict.model).unwrap_or_else(|| {
+            // Files of earlier versions do not say it.
+            match self.file().corrected.as_ref().is_some_and(|it| it.has_terms()) {
+                true => AcceptedModel::Corrected,
+                false => AcceptedModel::Calibrated,
+            }
+        })
     }
 
     /// The calibrated robot with its targets, exactly as fitted.
