@@ -45,6 +45,9 @@ export function drawAhead() {
   });
 }
 
+// What is in a folded part waits until it is opened.
+addEventListener("toggle", drawAhead, true);
+
 /** Marks in a list of contents the section that is read: the last one that begins above the middle of the window. */
 export function followSections(nav) {
   const links = [...nav.querySelectorAll("a")];

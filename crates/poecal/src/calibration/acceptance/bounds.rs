@@ -217,7 +217,10 @@ mod tests {
             let seen = errors.configurations.iter().flatten().map(|(error, _)| *error).fold(0.0, f64::max);
             for statistic in [AcceptedStatistic::Rms, AcceptedStatistic::P95, AcceptedStatistic::Max] {
                 let Bounded { found, from, to } = errors.bounded(statistic).unwrap();
-                assert!(from <= found && to.is_none_or(|to| to >= found), "{statistic:?}: {from} {found} {to:?}");
+                assert!(
+                    from <= found && to.is_none_or(|to| to >= found),
+                    "{statistic:?}: {from} {found} {to:?}"
+                );
                 judged += 1;
             }
             assert!(errors.bounded(AcceptedStatistic::Max).unwrap().to.unwrap() >= seen);

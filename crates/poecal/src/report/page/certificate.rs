@@ -35,10 +35,14 @@ pub(super) fn limits(found: &Acceptance) -> Markup {
 
 /// Each limit with what was found, and the rule.
 pub(super) fn limits_table(found: &Acceptance) -> Markup {
-    let head = ["error", "decision", "limit", "found", "lower bound", "upper bound", "rows"];
-    let mut table = HtmlTable::new("Errors and their limits", 2, &head);
-    for (k, limit) in found.limits.iter().enumerate() {
-        row(&mut table, k, limit);
+    let columns: Vec<(String, [Markup; 6])> = found.limits.iter().enumerate().map(column).collect();
+    let heads: Vec<&str> = std::iter::once("").chain(columns.iter().map(|(name, _)| name.as_str())).collect();
+    let mut table = HtmlTable::new("Errors and their limits", 1, &heads);
+    for (at, label) in
+        ["decision", "limit", "found", "lower bound", "upper bound", "rows"].into_iter().enumerate()
+    {
+        let cells = columns.iter().map(|(_, cells)| cells[at].clone());
+        table.cells(std::iter::once(html! { (label) }).chain(cells));
     }
     html! {
         (table)
@@ -63,10 +67,10 @@ pub(super) fn title_of(found: &Acceptance) -> &'static str {
     }
 }
 
-fn row(table: &mut HtmlTable, k: usize, limit: &AcceptedLimit) {
+/// A limit's name, and its cells.
+fn column((k, limit): (usize, &AcceptedLimit)) -> (String, [Markup; 6]) {
     let key = |name: &str| format!("acceptance.limits.{k}.{name}");
     let unit = if limit.unit == "deg" { "°" } else { " mm" };
-    let name = html! { (limit.quantity) " " (limit.statistic.words()) };
     let most = html! { span data-key=(key("limit")) { (plain(limit.limit)) } (unit) };
     let found = html! { b { (figure(limit.found, key("found"))) (unit) } };
     let from = html! { (figure(limit.from, key("from"))) (unit) };
@@ -78,7 +82,7 @@ fn row(table: &mut HtmlTable, k: usize, limit: &AcceptedLimit) {
         html! { (counts(limit)) }
     };
     let decision = html! { b class={ "decision " (limit.decision.word()) } { (limit.decision.words()) } };
-    table.cells([name, decision, most, found, from, to, rows]);
+    (format!("{} {}", limit.quantity, limit.statistic.words()), [decision, most, found, from, to, rows])
 }
 
 /// Where something is signed: what it is, whether limits are kept, the files with their checksums, and lines for two hands.

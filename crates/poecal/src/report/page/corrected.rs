@@ -56,7 +56,7 @@ fn effects(found: &CorrectedEntry) -> Markup {
         return html! { p { "All " (faint) " effects are too small to distinguish from noise." } };
     }
     html! {
-        (table)
+        div.wide { (table) }
         @if faint > 0 { p { (faint) " further effect" (if faint == 1 { " is" } else { "s are" }) " too small to distinguish from noise." } }
     }
 }

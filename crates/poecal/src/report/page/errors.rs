@@ -111,18 +111,18 @@ fn lead_table(
     quantity: Quantity,
     gain: Option<&Improvements>,
 ) -> HtmlTable {
-    let heads = ["", "mean", "RMS", "95 %", "max", "smaller by"];
-    let mut table = HtmlTable::new(caption, 1, &heads[..if gain.is_some() { 6 } else { 5 }]);
-    for (name, model, key) in rows {
-        let cells = STATISTICS.map(|(_, statistic, value)| {
-            figure_or(
-                model.get(quantity).map(value),
-                format_args!("{key}.{}.{statistic}", quantity.key()),
-                "",
-            )
+    let heads: Vec<&str> = std::iter::once("").chain(rows.iter().map(|(name, ..)| name.as_str())).collect();
+    let mut table = HtmlTable::new(caption, 1, &heads);
+    for (label, statistic, value) in STATISTICS {
+        let cells = rows.iter().map(|(_, model, key)| {
+            let key = format_args!("{key}.{}.{statistic}", quantity.key());
+            figure_or(model.get(quantity).map(value), key, "")
         });
-        let gain = gain.map(|gain| smaller(gain, key, quantity));
-        table.cells(std::iter::once(name.render()).chain(cells).chain(gain));
+        table.cells(std::iter::once(label.render()).chain(cells));
+    }
+    if let Some(gain) = gain {
+        let cells = rows.iter().map(|(.., key)| smaller(gain, key, quantity));
+        table.cells(std::iter::once("smaller by".render()).chain(cells));
     }
     table
 }

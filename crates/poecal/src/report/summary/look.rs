@@ -203,3 +203,43 @@ fn cause_words(cause: Cause) -> &'static str {
         Cause::Other => "these configurations hardly determine their axes",
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::analysis::Observability;
+
+    #[test]
+    fn each_unknown_is_counted_in_one_sentence() {
+        let direction = |joint: &str, cause, directions| Direction {
+            description: format!("{joint} is odd"),
+            joints: vec![joint.to_owned()],
+            cause,
+            directions,
+        };
+        let known = IdentifiabilityEntry {
+            parameters: 30,
+            rank: 27,
+            told: None,
+            condition: None,
+            unidentifiable: vec![direction("a", Cause::StoodStill, 2), direction("b", Cause::TooFew, 1)],
+            weak: vec![
+                direction("a", Cause::StoodStill, 1),
+                direction("c", Cause::PointOnAxis, 1),
+                direction("c", Cause::PointOnAxis, 1),
+                direction("d", Cause::Other, 1),
+            ],
+            structural: Vec::new(),
+            observability: Observability::default(),
+        };
+        let told: Vec<String> = hardly_known(&known).into_iter().map(|point| point.text).collect();
+        let expected = [
+            "undetermined: a is odd (2 unknowns, 1 more weakly)",
+            "undetermined: b is odd",
+            "weakly determined: c is odd (2 unknowns)",
+            "weakly determined: d is odd",
+        ];
+        assert_eq!(told, expected);
+        assert_eq!(known.weakly(), 4);
+    }
+}
