@@ -89,6 +89,7 @@ describe("paper", { skip: noPaper }, () => {
       const out = make();
       for (const [how, by] of [["with WebGL", browser], ["without WebGL", flat]]) {
         const page = await open(by, join(out, "report.html"), { colours: "dark", whole: false });
+        if (by === browser) await page.waitForSelector(".scene canvas[data-drawn]", { state: "attached" });
         const pdf = join(folder, `${name}.pdf`);
         await page.pdf({ path: pdf, preferCSSPageSize: true, printBackground: true });
         await page.close();
