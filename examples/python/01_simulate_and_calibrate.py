@@ -40,5 +40,4 @@ noise_mm = calibration.to_dict()["noise"]["sigma_position_mm"]
 print(f"noise        {noise_mm:8.4f} mm each component, as the fit estimates it")
 print(f"verdict      {calibration.verdict.level}")
 for found in calibration.corrections:
-    tilt, sigma_tilt, shift, sigma_shift = (found[key] for key in ["tilt_deg", "sigma_tilt_deg", "shift_mm", "sigma_shift_mm"])
-    print(f"{found['joint']:<12} {tilt:.4f} deg (± {sigma_tilt:.4f}) and {shift:.4f} mm (± {sigma_shift:.4f}) from nominal")
+    print(f"{found['joint']:<12} {found['change']['words']}")

@@ -751,6 +751,10 @@ export type CorrectedEntry = {
 
 /** A joint's correction, its uncertainty, and its effect. */
 export type CorrectionEntry = {
+  /** Distance of the axis from the nominal joint's origin, millimetres: offsets of earlier joints included, unlike the shift in `change`. */
+  axis_shift_mm: number;
+  /** Angle between the axis and its nominal direction, degrees: offsets of earlier joints included, unlike the tilt in `change`. */
+  axis_tilt_deg: number;
   /** The correction in parts, with directions; missing in older files. */
   change?: JointChangeEntry | null;
   /** The joint. */
@@ -759,20 +763,16 @@ export type CorrectionEntry = {
   left_nominal_rms_mm: number;
   /** The same of the axis' place; absent of a joint that slides. */
   shift_from_data?: number | null;
-  /** Distance of the calibrated axis from the nominal joint's origin, millimetres. */
-  shift_mm: number;
-  /** The same of `sigma_shift_mm`; missing of a joint that slides. */
-  sigma_shift_held_mm?: number | null;
-  /** Standard deviation of the axis' place at the joint, millimetres; null where it is not determined. */
-  sigma_shift_mm?: number | null;
-  /** Standard deviation of the direction, degrees (root mean square); null where it is not determined. */
-  sigma_tilt_deg?: number | null;
-  /** The same as `sigma_tilt_deg` if the axes of all other joints were known; missing in older files, and where the axis was held. */
-  sigma_tilt_held_deg?: number | null;
+  /** The same of `sigma_axis_shift_mm`; missing of a joint that slides. */
+  sigma_axis_shift_held_mm?: number | null;
+  /** Standard deviation of `axis_shift_mm`; null where it is not determined. */
+  sigma_axis_shift_mm?: number | null;
+  /** Standard deviation of `axis_tilt_deg` (root mean square); null where it is not determined. */
+  sigma_axis_tilt_deg?: number | null;
+  /** `sigma_axis_tilt_deg` if the axes of all other joints were known; missing in older files, and where the axis was held. */
+  sigma_axis_tilt_held_deg?: number | null;
   /** Why the joint is suspicious: a correction beyond those of the others, or residuals that follow its position. */
   suspicious?: string | null;
-  /** Angle between nominal and calibrated direction, degrees. */
-  tilt_deg: number;
   /** The measurements' share in what is known of the direction, from 0 to 1; the rest is the tolerance's. Absent without a tolerance. */
   tilt_from_data?: number | null;
 };

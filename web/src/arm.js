@@ -14,6 +14,8 @@ export function showArm(place, data) {
     place.innerHTML = '<p class="note">This browser has no WebGL, which the picture that turns needs: it is drawn from two sides.</p>';
     return;
   }
+  const still = document.getElementById("still");
+  still?.classList.add("waiting");
   const stage = element("div", data.draws_instruments ? "stage stays" : "stage");
   const frame = element("div", "scene");
   frame.append(scene.canvas, scene.paper, scene.labels.element);
@@ -34,7 +36,7 @@ export function showArm(place, data) {
   // Until the picture is drawn, paper has the still.
   scene.onDrawn = () => {
     place.dataset.drawn = "true";
-    document.getElementById("still")?.setAttribute("hidden", "");
+    still?.setAttribute("hidden", "");
   };
 }
 

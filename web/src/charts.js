@@ -126,7 +126,7 @@ function joints(place, data) {
   choice.append("Residual", select);
   place.append(choice);
   const believed = inOrder(data, (row) => !data.rows.suspected[row]);
-  keys(place, [...bySet(data, believed, data.rows.error_mm, 5).series, line("smoothed, with two standard deviations to each side", "ink")]);
+  keys(place, [...bySet(data, believed, data.rows.error_mm, 5).series, line("smoothed, with one standard deviation to each side", "ink")]);
   const grid = gridIn(place);
   const readout = readoutLine(place);
   const draw = () => {
@@ -177,7 +177,7 @@ function joint(cell, data, { believed, reading, k, text, values, unit, range, re
     const beside = (factor) => curveAt({ places: curve.places, values: curve.values.map((value, at) => value + factor * curve.spreads[at]) }, xs);
     band = { series: [series.length + 2, series.length + 3], key: "ink" };
     series.push(line("smoothed", "ink"), edge(), edge());
-    columns.push(curveAt(curve, xs), beside(2), beside(-2));
+    columns.push(curveAt(curve, xs), beside(1), beside(-1));
   }
   const swing = curve ? Math.max(...curve.values) - Math.min(...curve.values) : NaN;
   plot(cell, {

@@ -25,15 +25,34 @@ function show(element) {
   draw?.(element);
 }
 
+/** What waits outside of folded parts, which are neither seen nor printed. */
+function unfolded() {
+  return [...waiting.keys()].filter((element) => !element.closest("details:not([open])"));
+}
+
 // Before any other listener: what is drawn now must be drawn in the colours of paper.
-addEventListener("beforeprint", () => {
-  for (const element of [...waiting.keys()]) show(element);
-});
+addEventListener("beforeprint", () => unfolded().forEach(show));
+
+const whenIdle = window.requestIdleCallback ?? ((action) => setTimeout(action, 200));
+
+/** Draws what is far below while there is nothing else to do, so that it is there when it is come to. */
+export function drawAhead() {
+  whenIdle(() => {
+    const [next] = unfolded();
+    if (!next) return;
+    show(next);
+    drawAhead();
+  });
+}
+
+// What is in a folded part waits until it is opened.
+addEventListener("toggle", drawAhead, true);
 
 /** Marks in a list of contents the section that is read: the last one that begins above the middle of the window. */
 export function followSections(nav) {
   const links = [...nav.querySelectorAll("a")];
   const sections = links.map((link) => document.getElementById(link.hash.slice(1)));
+  links.forEach((link, k) => link.addEventListener("click", () => sections[k]?.matches("details") && (sections[k].open = true)));
   let asked = false;
   const mark = () => {
     asked = false;

@@ -15,8 +15,8 @@ const ARGUMENTS = [
   "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-accelerated-2d-canvas",
 ];
 
-export async function launch() {
-  return chromium.launch({ executablePath: CHROMIUM, args: ARGUMENTS });
+export async function launch(...more) {
+  return chromium.launch({ executablePath: CHROMIUM, args: [...ARGUMENTS, ...more] });
 }
 
 /**
@@ -42,8 +42,9 @@ export async function open(browser, path, { width = 1300, colours = "light", who
   };
   await page.goto(address);
   await page.waitForSelector(":root[data-ready]", { state: "attached" });
-  // Below the first screen, things are drawn when they are come near.
+  // Below the first screen things are drawn later, and folded ones when they are opened.
   if (whole) {
+    await page.$$eval("#metrologist", (all) => all.forEach((it) => (it.open = true)));
     for (const place of await page.$$("#arm, [data-chart]")) {
       await place.scrollIntoViewIfNeeded();
       await place.waitForSelector("canvas, .note, svg", { state: "attached" });

@@ -35,6 +35,11 @@ export function calibrate(name, ...words) {
   return out;
 }
 
+/** What the terminal says of the example. */
+export function printed() {
+  return poecal("calibrate", join(ELBOW, "robot.urdf"), join(ELBOW, "points.csv"), "--out", join(folder, "printed"), "--force");
+}
+
 /** The example's points with joint 4 counted the other way. */
 function broken() {
   const path = join(folder, "broken.csv");

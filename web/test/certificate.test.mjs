@@ -38,9 +38,10 @@ describe("certificate", { skip }, () => {
       const page = await open(browser, path);
       for (const width of [400, 1300]) {
         await page.setViewportSize({ width, height: 900 });
-        assert.match(await page.textContent("#acceptance-title"), words);
-        const { y } = await page.locator(".acceptance").boundingBox();
-        assert.ok(y < 300, `acceptance begins ${y} px down at ${width} px`);
+        assert.match(await page.textContent("#verdict-title"), words);
+        const { y } = await page.locator(`.verdict.${decision}`).boundingBox();
+        assert.ok(y < 300, `the answer begins ${y} px down at ${width} px`);
+        assert.equal(await page.locator(".verdict").count(), 1, "one answer, in one colour");
         const scrollWidth = await page.evaluate(() => document.documentElement.scrollWidth);
         assert.ok(scrollWidth <= width, `the page is ${scrollWidth} px wide at ${width} px`);
       }
@@ -55,10 +56,10 @@ describe("certificate", { skip }, () => {
     const page = await open(browser, path);
     const shown = await page.$$eval(".record dd", (all) => all.map((it) => it.textContent));
     assert.deepEqual(new Set(shown), new Set(Object.values(record)));
-    assert.equal(await page.isVisible(".signature"), false);
+    assert.equal(await page.isVisible(".attested"), false);
     await page.emulateMedia({ media: "print" });
-    assert.ok(await page.isVisible(".signature"));
-    assert.match(await page.textContent(".signature"), /SHA-256 of.*points\.csv/s);
+    assert.ok(await page.isVisible(".attested .hands"));
+    assert.match(await page.textContent(".attested"), /SHA-256.*points\.csv/s);
     const pdf = join(folder, "stated.pdf");
     await page.pdf({ path: pdf, preferCSSPageSize: true, printBackground: false });
     await page.close();
@@ -67,7 +68,7 @@ describe("certificate", { skip }, () => {
       const text = execFileSync("pdftotext", ["-layout", pdf, "-"], { encoding: "utf8" });
       const pages = text.split("\f").length - 1;
       assert.match(text, /Calibration of .* · K "1"/);
-      assert.ok(text.includes(`${pages} / ${pages}`), "pages are numbered");
+      assert.match(text, new RegExp(`\\b${pages} ?/ ?${pages}\\b`), "pages are numbered");
     } catch (error) {
       // Without the tool the text of the paper is not read.
       if (error.code !== "ENOENT") throw error;

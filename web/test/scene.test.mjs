@@ -160,7 +160,7 @@ describe("meshes of a URDF", { skip }, () => {
     const out = shaped("broken-mesh", { link2: named("meshes/no.stl"), link4: named("meshes/arm.stl") }, { "arm.stl": arm.bytes.subarray(0, 300) });
     assert.equal(dataOf(out).shapes, undefined);
     const page = await open(browser, join(out, "report.html"));
-    const note = await page.locator("#view .note").first().textContent();
+    const note = await page.locator("#view .note", { hasText: "meshes/" }).textContent();
     assert.match(note, /meshes\/no\.stl was not found beside the URDF/);
     assert.match(note, /meshes\/arm\.stl is not drawn: found 216 bytes of triangles in it/);
     assert.ok((await extent(page)).height > 0.3);

@@ -28,7 +28,7 @@ fn what_would_stay_undetermined_is_said_before_anything_is_measured() {
         "to measure    40 points: still.csv\n",
         "noise         0.1000 mm each component\n",
         "determined    11 of 13 unknowns",
-        "undetermined: slide never moved: its screw is undetermined (2\n              directions)\n",
+        "undetermined: slide never moved: its screw is undetermined (2\n              unknowns)\n",
         "orientation of the tool: no orientation was measured\n",
         "; 993 others",
         " 120.0 to 120.0 mm           0.0 to 500.0 mm     0 %\n",

@@ -47,6 +47,14 @@ pub struct Identifiability {
     pub spectrum: Spectrum,
 }
 
+impl Identifiability {
+    /// Number of unknowns that are determined weakly.
+    #[must_use]
+    pub fn weakly(&self) -> usize {
+        self.weak.iter().map(|direction| direction.directions).sum()
+    }
+}
+
 /// Variance `s²` of the whitened residuals, `2F / (m − n)` as in theory.md §7 (36): 1 if the noise is as stated.
 #[must_use]
 pub fn residual_variance(normal: &Normal) -> f64 {

@@ -87,6 +87,8 @@ pub(super) struct Judged {
     drifted: Vec<String>,
     /// Against use outside the sampled range.
     everywhere: Vec<String>,
+    /// Unknowns that are determined weakly.
+    weakly: usize,
     reach_m: f64,
 }
 
@@ -140,7 +142,7 @@ impl Judged {
             ));
         }
         if level == Level::Good {
-            reasons = vec![in_favour(expected)];
+            reasons = vec![in_favour(expected, self.weakly)];
         }
         let expected = expected.measured.filter(|_| level != Level::DoNotUse);
         Verdict {
@@ -213,6 +215,7 @@ pub(super) fn judged(grounds: &Grounds<'_>) -> Judged {
         too_large,
         drifted: drifted(grounds),
         everywhere: against_use_everywhere(grounds),
+        weakly: grounds.figures.identifiability.weakly(),
         reach_m,
     }
 }
@@ -330,9 +333,12 @@ fn against_use_everywhere(grounds: &Grounds<'_>) -> Vec<String> {
     reasons
 }
 
-fn in_favour(expected: &Expectations) -> String {
+fn in_favour(expected: &Expectations, weakly: usize) -> String {
     let expected = expected.range.map_or(String::new(), |range| {
         format!(", and the expected error anywhere within the limits is {:.3} mm (RMS)", 1e3 * range.sigma_m)
     });
-    format!("all unknowns are determined, every joint was moved through half of its range or more{expected}")
+    let weakly = if weakly > 0 { format!(" ({weakly} weakly)") } else { String::new() };
+    format!(
+        "all unknowns are determined{weakly}, every joint was moved through half of its range or more{expected}"
+    )
 }

@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 use serde::Serialize;
 
 use super::plan::{PlanErrors, robot_error_words};
+use super::summary::{determined_words, unknowns_words};
 use super::table::{kinds_words, line, noise_words, number, robot_words};
 use crate::analysis::{Cause, Foresight, JointCoverage, MeasuredPictures, PlannedSession};
 use crate::io::calibration_file::{IdentifiabilityEntry, Keyed, SigmaKeys};
@@ -201,7 +202,7 @@ impl Identify {
 /// Which unknowns measurements determine, do not determine, determine weakly, and could not determine.
 fn identifiability_lines(out: &mut String, found: &IdentifiabilityEntry) {
     let condition = found.condition.map_or_else(String::new, |it| format!(", condition {it:.3e}"));
-    line(out, "determined", &format!("{} of {} unknowns{condition}", found.rank, found.parameters));
+    line(out, "determined", &format!("{}{condition}", determined_words(found)));
     if found.rank == 0 && found.parameters > 0 {
         let words = "undetermined: everything, since the residual is as large as the effect of the unknowns";
         line(out, "", words);
@@ -210,9 +211,11 @@ fn identifiability_lines(out: &mut String, found: &IdentifiabilityEntry) {
             [("undetermined", &found.unidentifiable), ("weakly determined", &found.weak)]
         {
             for direction in directions.iter().take(MOST_DIRECTIONS) {
-                let count = direction.directions;
-                let times = if count > 1 { format!(" ({count} directions)") } else { String::new() };
-                line(out, "", &format!("{label}: {}{times}", direction.description));
+                let count = match direction.directions {
+                    1 => String::new(),
+                    count => format!(" ({})", unknowns_words(count)),
+                };
+                line(out, "", &format!("{label}: {}{count}", direction.description));
             }
             if directions.len() > MOST_DIRECTIONS {
                 let rest = directions.len() - MOST_DIRECTIONS;

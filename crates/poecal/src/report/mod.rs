@@ -15,6 +15,7 @@ mod page;
 mod plan;
 #[doc(hidden)]
 pub mod plot;
+mod shade;
 mod sight;
 mod summary;
 #[doc(hidden)]

@@ -203,6 +203,31 @@ mod tests {
         }
     }
 
+    /// No interval ends below what was found: of a maximum, below the largest error that was seen.
+    #[test]
+    fn upper_bounds_are_not_below_what_was_found() {
+        let mut random = ChaCha8Rng::seed_from_u64(10);
+        let mut judged = 0;
+        for trial in 0..3000 {
+            let (configurations, rows) = (1 + trial % 90, 1 + trial % 3);
+            let noise = (trial % 5) as f64 * 0.2;
+            let row = |random: &mut ChaCha8Rng| (error(trial % 3, random), noise * uniform(random));
+            let all = (0..configurations).map(|_| (0..rows).map(|_| row(&mut random)).collect()).collect();
+            let errors = Errors { configurations: all, components: 3 };
+            let seen = errors.configurations.iter().flatten().map(|(error, _)| *error).fold(0.0, f64::max);
+            for statistic in [AcceptedStatistic::Rms, AcceptedStatistic::P95, AcceptedStatistic::Max] {
+                let Bounded { found, from, to } = errors.bounded(statistic).unwrap();
+                assert!(
+                    from <= found && to.is_none_or(|to| to >= found),
+                    "{statistic:?}: {from} {found} {to:?}"
+                );
+                judged += 1;
+            }
+            assert!(errors.bounded(AcceptedStatistic::Max).unwrap().to.unwrap() >= seen);
+        }
+        println!("{judged} intervals contain what was found");
+    }
+
     /// The noise of the measurement is added to the largest error before it passes, and taken off before it fails.
     #[test]
     fn the_largest_error_is_guarded_by_the_noise() {

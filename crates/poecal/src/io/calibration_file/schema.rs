@@ -296,6 +296,12 @@ pub struct IdentifiabilityEntry {
 }
 
 impl IdentifiabilityEntry {
+    /// Number of unknowns that are determined weakly.
+    #[must_use]
+    pub fn weakly(&self) -> usize {
+        self.weak.iter().map(|direction| direction.directions).sum()
+    }
+
     pub(crate) fn of(found: &Identifiability) -> Self {
         IdentifiabilityEntry {
             parameters: found.parameters,

@@ -92,20 +92,24 @@ pub struct RangeEntry {
 pub struct CorrectionEntry {
     /// The joint.
     pub joint: String,
-    /// Angle between nominal and calibrated direction, degrees.
-    pub tilt_deg: f64,
-    /// Distance of the calibrated axis from the nominal joint's origin, millimetres.
-    pub shift_mm: f64,
-    /// Standard deviation of the direction, degrees (root mean square); null where it is not determined.
-    pub sigma_tilt_deg: Option<f64>,
-    /// Standard deviation of the axis' place at the joint, millimetres; null where it is not determined.
-    pub sigma_shift_mm: Option<f64>,
-    /// The same as `sigma_tilt_deg` if the axes of all other joints were known; missing in older files, and where the axis was held.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub sigma_tilt_held_deg: Option<f64>,
-    /// The same of `sigma_shift_mm`; missing of a joint that slides.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub sigma_shift_held_mm: Option<f64>,
+    /// Angle between the axis and its nominal direction, degrees: offsets of earlier joints included, unlike the tilt in `change`.
+    #[serde(alias = "tilt_deg")]
+    pub axis_tilt_deg: f64,
+    /// Distance of the axis from the nominal joint's origin, millimetres: offsets of earlier joints included, unlike the shift in `change`.
+    #[serde(alias = "shift_mm")]
+    pub axis_shift_mm: f64,
+    /// Standard deviation of `axis_tilt_deg` (root mean square); null where it is not determined.
+    #[serde(alias = "sigma_tilt_deg")]
+    pub sigma_axis_tilt_deg: Option<f64>,
+    /// Standard deviation of `axis_shift_mm`; null where it is not determined.
+    #[serde(alias = "sigma_shift_mm")]
+    pub sigma_axis_shift_mm: Option<f64>,
+    /// `sigma_axis_tilt_deg` if the axes of all other joints were known; missing in older files, and where the axis was held.
+    #[serde(default, skip_serializing_if = "Option::is_none", alias = "sigma_tilt_held_deg")]
+    pub sigma_axis_tilt_held_deg: Option<f64>,
+    /// The same of `sigma_axis_shift_mm`; missing of a joint that slides.
+    #[serde(default, skip_serializing_if = "Option::is_none", alias = "sigma_shift_held_mm")]
+    pub sigma_axis_shift_held_mm: Option<f64>,
     /// The measurements' share in what is known of the direction, from 0 to 1; the rest is the tolerance's. Absent without a tolerance.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub tilt_from_data: Option<f64>,
@@ -241,12 +245,15 @@ impl CorrectionEntry {
     fn of((coverage, found): (&JointCoverage, &JointCorrection)) -> Self {
         CorrectionEntry {
             joint: coverage.joint.clone(),
-            tilt_deg: found.tilt_rad.to_degrees(),
-            shift_mm: found.shift_m * 1e3,
-            sigma_tilt_deg: found.sigma_tilt_rad.map(f64::to_degrees),
-            sigma_shift_mm: found.sigma_shift_m.map(|sigma| sigma * 1e3),
-            sigma_tilt_held_deg: found.held.map(|(tilt, _)| tilt.to_degrees()),
-            sigma_shift_held_mm: found.held.filter(|(_, shift)| *shift > 0.0).map(|(_, shift)| 1e3 * shift),
+            axis_tilt_deg: found.tilt_rad.to_degrees(),
+            axis_shift_mm: found.shift_m * 1e3,
+            sigma_axis_tilt_deg: found.sigma_tilt_rad.map(f64::to_degrees),
+            sigma_axis_shift_mm: found.sigma_shift_m.map(|sigma| sigma * 1e3),
+            sigma_axis_tilt_held_deg: found.held.map(|(tilt, _)| tilt.to_degrees()),
+            sigma_axis_shift_held_mm: found
+                .held
+                .filter(|(_, shift)| *shift > 0.0)
+                .map(|(_, shift)| 1e3 * shift),
             tilt_from_data: found.tilt_from_data,
             shift_from_data: found.shift_from_data,
             left_nominal_rms_mm: found.left_nominal_rms_m * 1e3,

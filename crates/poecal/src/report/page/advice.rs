@@ -8,11 +8,20 @@ use super::html::quoted;
 
 /// A sentence from `calibration.json`; what it says of options is folded.
 pub(super) fn told(text: &str, key: impl Render) -> Markup {
+    folded(text, &quoted(text, key))
+}
+
+/// The same of words that are put together from several of its sentences.
+pub(super) fn told_words(text: &str) -> Markup {
+    folded(text, &quoted_words(text))
+}
+
+fn folded(text: &str, whole: &Markup) -> Markup {
     match without_options(text) {
-        Cow::Borrowed(whole) => quoted(whole, key),
+        Cow::Borrowed(_) => html! { (whole) },
         Cow::Owned(plain) => html! {
             (quoted_words(&plain))
-            details.runs { summary { "For whoever runs poecal" } (quoted(text, key)) }
+            details.runs { summary { "For whoever runs poecal" } (whole) }
         },
     }
 }

@@ -7,7 +7,6 @@ use maud::{Markup, PreEscaped, html};
 use super::html::{HtmlTable, count, facts, figure, quoted};
 use super::short as shorter;
 use crate::calibration::{Acceptance, AcceptedLimit, Decision};
-use crate::io::calibration_file::CalibrationFile;
 use crate::io::record::Record;
 use crate::report::acceptance::{counts, plain};
 
@@ -26,25 +25,37 @@ pub(super) fn stated(record: &Record) -> Markup {
 
 /// Whether the limits are kept, each with what was found.
 pub(super) fn limits(found: &Acceptance) -> Markup {
-    let head = ["error", "decision", "limit", "found", "lower bound", "upper bound", "rows"];
-    let mut table = HtmlTable::new("Errors and their limits", 2, &head);
-    for (k, limit) in found.limits.iter().enumerate() {
-        row(&mut table, k, limit);
-    }
     html! {
-        section class={ "verdict acceptance " (found.decision.word()) } aria-labelledby="acceptance-title" {
-            h2 #acceptance-title { span.sign aria-hidden="true" {} (title(found)) }
-            (table)
-            p.note {
-                "Errors of the " b { (found.model.word()) } " model, measured minus predicted, by " (found.by.words())
-                ". Each bound holds with 95\u{a0}% confidence. A limit is kept if the upper bound does not exceed it, and exceeded if the lower bound \
-                 does; between them neither is shown."
-            }
+        section class={ "verdict " (found.decision.word()) } aria-labelledby="acceptance-title" {
+            h2 #acceptance-title { span.sign aria-hidden="true" {} (title_of(found)) }
+            (limits_table(found))
         }
     }
 }
 
-fn title(found: &Acceptance) -> &'static str {
+/// Each limit with what was found, and the rule.
+pub(super) fn limits_table(found: &Acceptance) -> Markup {
+    let columns: Vec<(String, [Markup; 6])> = found.limits.iter().enumerate().map(column).collect();
+    let heads: Vec<&str> = std::iter::once("").chain(columns.iter().map(|(name, _)| name.as_str())).collect();
+    let mut table = HtmlTable::new("Errors and their limits", 1, &heads);
+    for (at, label) in
+        ["decision", "limit", "found", "lower bound", "upper bound", "rows"].into_iter().enumerate()
+    {
+        let cells = columns.iter().map(|(_, cells)| cells[at].clone());
+        table.cells(std::iter::once(html! { (label) }).chain(cells));
+    }
+    html! {
+        (table)
+        p.note {
+            "Errors of the " b { (found.model.word()) } " model, measured minus predicted, by " (found.by.words())
+            ". Each bound holds with 95\u{a0}% confidence. A limit is kept if the upper bound does not exceed it, and exceeded if the lower bound \
+             does; between them neither is shown."
+        }
+    }
+}
+
+/// The decision in a title.
+pub(super) fn title_of(found: &Acceptance) -> &'static str {
     match (found.decision, found.limits.len()) {
         (Decision::Pass, 1) => "PASS: the limit is kept",
         (Decision::Pass, _) => "PASS: every limit is kept",
@@ -56,10 +67,10 @@ fn title(found: &Acceptance) -> &'static str {
     }
 }
 
-fn row(table: &mut HtmlTable, k: usize, limit: &AcceptedLimit) {
+/// A limit's name, and its cells.
+fn column((k, limit): (usize, &AcceptedLimit)) -> (String, [Markup; 6]) {
     let key = |name: &str| format!("acceptance.limits.{k}.{name}");
     let unit = if limit.unit == "deg" { "°" } else { " mm" };
-    let name = html! { (limit.quantity) " " (limit.statistic.words()) };
     let most = html! { span data-key=(key("limit")) { (plain(limit.limit)) } (unit) };
     let found = html! { b { (figure(limit.found, key("found"))) (unit) } };
     let from = html! { (figure(limit.from, key("from"))) (unit) };
@@ -71,21 +82,7 @@ fn row(table: &mut HtmlTable, k: usize, limit: &AcceptedLimit) {
         html! { (counts(limit)) }
     };
     let decision = html! { b class={ "decision " (limit.decision.word()) } { (limit.decision.words()) } };
-    table.cells([name, decision, most, found, from, to, rows]);
-}
-
-/// Where a calibration is signed, on paper alone: what is certified, of which files, and lines for two hands.
-pub(super) fn signature(file: &CalibrationFile) -> Markup {
-    let inputs = &file.inputs;
-    let names: Vec<&String> = std::iter::once(&inputs.model).chain(&inputs.measurements).collect();
-    let of = html! { (file.robot.name) @if let Some(serial) = &file.record.serial { ", serial number " (serial) } };
-    hands(
-        ("Robot", of),
-        &file.record,
-        file.acceptance.as_ref(),
-        (&names, &inputs.sha256),
-        ("Calibrated by", &file.poecal_version),
-    )
+    (format!("{} {}", limit.quantity, limit.statistic.words()), [decision, most, found, from, to, rows])
 }
 
 /// Where something is signed: what it is, whether limits are kept, the files with their checksums, and lines for two hands.
@@ -104,7 +101,7 @@ pub(super) fn hands(
     let files: Vec<Markup> = names.iter().filter_map(short).collect();
     let mut all = vec![of];
     all.extend(record.certificate.as_ref().map(|number| ("Certificate", html! { (number) })));
-    all.extend(acceptance.map(|found| ("Acceptance", html! { (title(found)) })));
+    all.extend(acceptance.map(|found| ("Acceptance", html! { (title_of(found)) })));
     all.push(("Made by", html! { "poecal " (version) }));
     if !files.is_empty() {
         all.push((

@@ -25,22 +25,6 @@ pub(super) fn are_all(set: &SetAccuracy) -> bool {
     set.calibrated.of_pictures(set.count).is_some()
 }
 
-/// The mean distance of the corners by each model, where all rows are pictures: these are known better than the poses of the pictures.
-pub(super) fn before_after(set: &SetAccuracy, rows: &[ModelRow<'_>], on: &str) -> Option<Markup> {
-    if !are_all(set) {
-        return None;
-    }
-    let steps = rows.iter().filter_map(|(name, model, key)| {
-        let mean = figure(model.pixels?.mean_px, format_args!("{key}.pixels.mean_px"));
-        Some(html! { li { b { (mean) " px" } " " span { (name) } } })
-    });
-    let steps: Vec<Markup> = steps.collect();
-    Some(html! {
-        p.steps-title { "Mean distance of a corner from where the model sees it, " (on) }
-        ol.steps { @for step in &steps { (step) } }
-    })
-}
-
 /// Errors of corners by each model; nothing without pictures.
 pub(super) fn table(rows: &[ModelRow<'_>], on: &str) -> Option<HtmlTable> {
     let caption = format!("Distance of corners {on} from where the model sees them");

@@ -9,8 +9,6 @@ use crate::report::plot::{Axis, Line, LinePlot, Scale};
 use crate::report::summary::has_terms;
 use crate::robot::JointKind;
 
-/// Standard deviations that the band of the terms reaches to each side.
-const BAND: f64 = 2.0;
 /// Most sizes of those that were tried.
 const TRIED: usize = 12;
 
@@ -24,26 +22,20 @@ pub(super) fn sections(file: &CalibrationFile) -> Markup {
             }
             (effects(found))
             (plots(&errors(file, found), "Error of each joint that explains most of the residuals in a part of its range: by the \
-                calibrated model, by the corrected one, and what the joint's own terms say, with two standard deviations to each side."))
+                calibrated model, by the corrected one, and what the joint's own terms say, with one standard deviation to each side."))
             @if !found.confused.is_empty() {
                 h3 { "Not told apart" }
                 (list(&found.confused.iter().enumerate().map(|(k, words)| quoted(words, format_args!("corrected.confused.{k}"))).collect::<Vec<_>>()))
             }
-            h3 { "How the sizes were chosen" }
-            p { "Terms are of these sizes because " (found.reason.words()) "." }
-            (tried(found))
         }
     } else {
-        html! {
-            p { "The corrected model is the calibrated one: " (found.reason.words()) "." }
-            (tried(found))
-        }
+        html! { p { "The corrected model is the calibrated one: " (found.reason.words()) "." } }
     };
     section("corrected", "What the joints do", &content)
 }
 
 fn effects(found: &CorrectedEntry) -> Markup {
-    let head = ["joint", "what it does", "± (1 σ), mrad or mm", "told, %", "at the target, mm (RMS)"];
+    let head = ["joint", "what it does", "±, mrad or mm", "told, %", "at the target, mm (RMS)"];
     let mut table = HtmlTable::new("What the terms do in the fitted configurations", 2, &head);
     let mut faint = 0;
     for (k, it) in found.effects.iter().enumerate() {
@@ -64,7 +56,7 @@ fn effects(found: &CorrectedEntry) -> Markup {
         return html! { p { "All " (faint) " effects are too small to distinguish from noise." } };
     }
     html! {
-        (table)
+        div.wide { (table) }
         @if faint > 0 { p { (faint) " further effect" (if faint == 1 { " is" } else { "s are" }) " too small to distinguish from noise." } }
     }
 }
@@ -86,8 +78,8 @@ fn errors(file: &CalibrationFile, found: &CorrectedEntry) -> Vec<Markup> {
             line("calibrated", 0, points(&|k| part(k).calibrated)),
             line("corrected", 2, points(&|k| part(k).corrected)),
             line("its terms", 1, points(&|k| part(k).terms)),
-            line("− 2 σ", 3, points(&|k| part(k).terms - BAND * part(k).sigma)),
-            line("+ 2 σ", 3, points(&|k| part(k).terms + BAND * part(k).sigma)),
+            line("its terms ±", 3, points(&|k| part(k).terms - part(k).sigma)),
+            line("its terms ±", 3, points(&|k| part(k).terms + part(k).sigma)),
         ];
         let plot = LinePlot {
             title: it.joint.clone(),
@@ -103,11 +95,11 @@ fn errors(file: &CalibrationFile, found: &CorrectedEntry) -> Vec<Markup> {
     found.joint_errors.iter().filter(|it| it.parts.len() > 1).map(plot).collect()
 }
 
-/// What was tried, the best first.
-fn tried(found: &CorrectedEntry) -> Markup {
-    if found.tried.is_empty() {
+/// The sizes of the terms that were tried, the best first.
+pub(super) fn tried(file: &CalibrationFile) -> Markup {
+    let Some(found) = file.corrected.as_deref().filter(|it| !it.tried.is_empty()) else {
         return Markup::default();
-    }
+    };
     let is_tried =
         |name: &&str| found.tried.iter().any(|it| it.sizes.get(*name).is_some_and(|size| *size > 0.0));
     let groups: Vec<TermGroup> = TermGroup::ALL.into_iter().filter(|group| is_tried(&group.name())).collect();
@@ -132,7 +124,8 @@ fn tried(found: &CorrectedEntry) -> Markup {
         table.cells(std::iter::once(first).chain(cells));
     }
     html! {
-        p { (found.tried.len()) " sizes were tried; the best:" }
+        h3 { "Sizes of the terms" }
+        p { (found.tried.len()) " sizes were tried. Chosen: " (found.reason.words()) ". The best:" }
         (table)
     }
 }

@@ -12,8 +12,6 @@ use crate::threads;
 
 /// Points of a distribution.
 const STEPS: usize = 20;
-/// Standard deviations that an interval reaches to each side.
-const INTERVAL: f64 = 2.0;
 
 /// Which share of the rows is off by how much, for the models.
 pub(super) fn distributions(file: &CalibrationFile, residuals: &Residuals) -> Markup {
@@ -95,33 +93,33 @@ fn distribution(mut errors: Vec<f64>) -> Vec<[f64; 2]> {
     (0..=steps).filter_map(point).collect()
 }
 
-/// Corrections of the joints with intervals: tilts, and shifts of those that turn.
+/// Sizes of the corrections with their standard deviations: tilts, and shifts of joints that turn.
 pub(super) fn corrections(file: &CalibrationFile) -> Vec<Markup> {
-    let row = |label: &str, value: f64, sigma: Option<f64>| RangeRow {
-        label: label.to_owned(),
-        line: sigma.map(|sigma| [(value - INTERVAL * sigma).max(0.0), value + INTERVAL * sigma]),
+    let row = |joint: &str, value: f64, sigma: Option<f64>| RangeRow {
+        label: joint.to_owned(),
+        line: sigma.map(|sigma| [(value - sigma).max(0.0), value + sigma]),
         bar: None,
         dot: Some(value),
     };
     let plot = |title: &str, axis: &str, rows: Vec<RangeRow>| {
         let plot = RangePlot {
             title: title.to_owned(),
-            description: "A dot for each joint, its interval of two standard deviations as a line; the table has the figures.".to_owned(),
+            description: "A dot for each joint, one standard deviation to each side as a line; the table has the figures.".to_owned(),
             x: Axis::new(axis, Scale::Linear).including(&[0.0]),
             rows,
         };
-        PreEscaped(plot.svg())
+        (!plot.rows.is_empty()).then(|| PreEscaped(plot.svg()))
     };
-    let tilts = file.corrections.iter().map(|it| row(&it.joint, it.tilt_deg, it.sigma_tilt_deg));
-    let shifts =
-        file.corrections.iter().zip(&file.joints).filter(|(_, joint)| joint.kind == JointKind::Revolute);
-    let shifts: Vec<RangeRow> =
-        shifts.map(|(it, _)| row(&it.joint, it.shift_mm, it.sigma_shift_mm)).collect();
-    let mut plots = vec![plot("Tilt of each axis", "degrees from nominal", tilts.collect())];
-    if !shifts.is_empty() {
-        plots.push(plot("Shift of each axis", "mm from nominal", shifts));
-    }
-    plots
+    let length = |it: &[f64; 3]| it.iter().map(|part| part * part).sum::<f64>().sqrt();
+    let changes = || file.corrections.iter().filter_map(|it| Some((&*it.joint, it.change.as_ref()?)));
+    let tilts = changes().map(|(joint, it)| row(joint, length(&it.tilt_deg), it.sigma_tilt_deg));
+    let shifts = changes()
+        .filter_map(|(joint, it)| Some(row(joint, length(it.shift_mm.as_ref()?), it.sigma_shift_mm)));
+    let plots = [
+        plot("Tilt of each axis", "degrees", tilts.collect()),
+        plot("Shift of each axis", "mm", shifts.collect()),
+    ];
+    plots.into_iter().flatten().collect()
 }
 
 /// What was sampled of each joint's range: those that turn, and those that slide.

@@ -1,4 +1,4 @@
-//! The robot: its axes in three dimensions, and what was corrected at each joint.
+//! The robot in three dimensions, and what was corrected at each joint.
 
 use maud::{Markup, html};
 use nalgebra::Vector3;
@@ -6,18 +6,15 @@ use nalgebra::Vector3;
 use super::devices::{device_of, further, picture_words};
 use super::figures;
 use super::frames::draws_instruments;
-use super::html::{HtmlTable, decimal, figure, figure_or, folded, list, plots, quoted, section};
+use super::html::{HtmlTable, decimal, figure, folded, plots, quoted, section};
 use super::sides::still;
 use crate::io::calibration_file::{CalibrationFile, JointEntry, ScrewEntry, StationEntry};
 use crate::io::shapes::Shapes;
 use crate::measurement::Device;
 use crate::robot::{Body, JointKind};
 
-pub(super) fn sections(file: &CalibrationFile, shapes: &Shapes) -> Markup {
-    html! { (view(file, shapes)) (corrections(file)) }
-}
-
-fn view(file: &CalibrationFile, shapes: &Shapes) -> Markup {
+/// The robot in three dimensions, and where everything is.
+pub(super) fn view(file: &CalibrationFile, shapes: &Shapes) -> Markup {
     let head = ["joint", "kind", "model", "x", "y", "z", "through x, mm", "y, mm", "z, mm"];
     let mut table = HtmlTable::new(
         "Axes in the base frame with all joints at zero: direction, and the point nearest to the base",
@@ -28,22 +25,24 @@ fn view(file: &CalibrationFile, shapes: &Shapes) -> Markup {
         axis(&mut table, (k, joint), ("nominal", &joint.nominal_screw, "nominal_screw"));
         axis(&mut table, (k, joint), ("calibrated", &joint.screw, "screw"));
     }
-    let content = html! {
-        p {
-            "The " (if draws_instruments(file) { "robot" } else { "arm" })
-            @if shapes.shapes.is_empty() { " as links from axis to axis" } @else { " with the shapes of its URDF" }
-            ": nominal in grey, calibrated in colour."
-            (picture_words(file, draws_instruments(file)))
+    html! {
+        section.view #view aria-label="The robot in 3D" {
+            div #still.still { (plots(&still(file), "The calibrated robot in the middle of the sampled range.")) }
+            div #arm.arm {}
+            p.note {
+                "The " (if draws_instruments(file) { "robot" } else { "arm" })
+                @if shapes.shapes.is_empty() { " as links from axis to axis" } @else { " with the shapes of its URDF" }
+                ": nominal in grey, calibrated in colour."
+                (picture_words(file, draws_instruments(file)))
+            }
+            @if !shapes.notes.is_empty() { p.note { (shapes.notes.join(" ").replace('`', "")) } }
+            noscript { p.note { "The picture that turns needs JavaScript." } }
+            (folded("The axes as numbers", &table))
+            @if let Some(table) = targets(file) { (folded("The targets as numbers", &table)) }
+            @if let Some(table) = stands(file) { (folded("What stands where", &table)) }
         }
-        div #still.still { (plots(&still(file), "The calibrated robot in the middle of the sampled range.")) }
-        div #arm.arm {}
-        @if !shapes.notes.is_empty() { p.note { (shapes.notes.join(" ").replace('`', "")) } }
-        noscript { p.note { "The picture that turns needs JavaScript." } }
-        (folded("The axes as numbers", &table))
-        @if let Some(table) = targets(file) { (table) }
-        @if let Some(table) = stands(file) { (folded("What stands where", &table)) }
-    };
-    section("view", "In 3D", &content)
+        "\n"
+    }
 }
 
 /// A joint's axis in one of the models.
@@ -124,51 +123,32 @@ fn stands(file: &CalibrationFile) -> Option<HtmlTable> {
     Some(table)
 }
 
-fn corrections(file: &CalibrationFile) -> Markup {
-    let head = [
-        "joint",
-        "tilt, °",
-        "± (1 σ)",
-        "by data",
-        "shift, mm",
-        "± (1 σ)",
-        "by data",
-        "left nominal, mm (RMS)",
-    ];
-    let mut table = HtmlTable::new("Corrections of the joints", 1, &head);
+/// The correction of each joint: one definition, that of theory.md §8 (38e).
+pub(super) fn corrections(file: &CalibrationFile) -> Markup {
+    let head = ["joint", "correction", "left nominal, mm (RMS)"];
+    let mut table = HtmlTable::new("Corrections of the joints", 2, &head);
     for (k, found) in file.corrections.iter().enumerate() {
-        let slides =
-            file.joints.iter().any(|joint| joint.name == found.joint && joint.kind == JointKind::Prismatic);
-        let figure = |value, name| figure_or(value, format_args!("corrections.{k}.{name}"), "not determined");
-        let shift = |value, name| {
-            if slides {
-                html! { "–" }
-            } else {
-                figure(value, name)
-            }
-        };
+        let change = found.change.as_ref();
+        let words = change.map(|it| quoted(&it.words, format_args!("corrections.{k}.change.words")));
         table.row(&[
             &quoted(&found.joint, format_args!("corrections.{k}.joint")),
-            &figure(Some(found.tilt_deg), "tilt_deg"),
-            &figure(found.sigma_tilt_deg, "sigma_tilt_deg"),
-            &figure_or(found.tilt_from_data, format_args!("corrections.{k}.tilt_from_data"), "–"),
-            &shift(Some(found.shift_mm), "shift_mm"),
-            &shift(found.sigma_shift_mm, "sigma_shift_mm"),
-            &figure_or(found.shift_from_data, format_args!("corrections.{k}.shift_from_data"), "–"),
-            &figure(Some(found.left_nominal_rms_mm), "left_nominal_rms_mm"),
+            &words.unwrap_or_else(|| html! { "–" }),
+            &figure(found.left_nominal_rms_mm, format_args!("corrections.{k}.left_nominal_rms_mm")),
         ]);
     }
     let content = html! {
         p {
-            "Correction of each axis from nominal, its standard deviation, and its effect: the error that would remain if this axis alone \
-             stayed nominal while all others are as calibrated, with tool and device refitted. The effect can be large even where the uncertainty \
-             is large, because neighbouring axes compensate for each other. By data: the measurements' share in what is known of the axis, from 0 to 1; the \
-             rest was said by the tolerance."
+            "Every ± on this page is one standard deviation, and so are the lines and bands of the charts. Left nominal: the error that would \
+             remain if this axis alone stayed nominal, with tool and device refitted. It can be large even where the uncertainty is large, because \
+             neighbouring axes compensate for each other."
         }
-        (plots(&figures::corrections(file), "Dots: corrections. Lines: two standard deviations to each side; none where a correction is not determined."))
-        (changes(file))
-        (table)
-        (common(file))
+        div.wide { (table) }
+        p.note {
+            "Shift, tilt and offset of each axis, in directions of the base frame with all joints at zero; the shift is that of the axis' point \
+             nearest to the joint's origin. Add the offset to the joint's value. Whatever an offset can explain counts as offset. The offset of the first \
+             joint is not determined where the base was fitted, that of the last where the tool was."
+        }
+        (plots(&figures::corrections(file), "Dots: size of tilt and shift. Lines: ±; none where a correction is not determined."))
         @for (k, found) in file.corrections.iter().enumerate() {
             @if let Some(words) = &found.suspicious {
                 p {
@@ -177,87 +157,6 @@ fn corrections(file: &CalibrationFile) -> Markup {
                 }
             }
         }
-        (offsets(file))
     };
     section("joints", "Joints", &content)
-}
-
-/// The corrections in words, with directions.
-fn changes(file: &CalibrationFile) -> Markup {
-    let mut table = HtmlTable::new("The corrections in words", 2, &["joint", "correction"]);
-    let mut any = false;
-    for (k, found) in file.corrections.iter().enumerate() {
-        let Some(change) = &found.change else { continue };
-        any = true;
-        table.row(&[
-            &quoted(&found.joint, format_args!("corrections.{k}.joint")),
-            &quoted(&change.words, format_args!("corrections.{k}.change.words")),
-        ]);
-    }
-    if !any {
-        return Markup::default();
-    }
-    html! {
-        (table)
-        p.note {
-            "Directions of the base frame with all joints at zero; a shift is that of the axis' point nearest to the joint's origin. "
-            "An offset is to be added to the joint's value: it turns or shifts everything beyond the joint. Tilts and shifts are what offsets and the base "
-            "do not explain, so they may be smaller than in the table above. The offset of the first joint is not determined where the base "
-            "was fitted, that of the last where the tool was."
-        }
-    }
-}
-
-/// What is known of several joints only together.
-fn common(file: &CalibrationFile) -> Markup {
-    if file.common.is_empty() {
-        return Markup::default();
-    }
-    let mut table = HtmlTable::new(
-        "Standard deviations of each axis, all axes unknown and those of the other joints held",
-        1,
-        &["joint", "tilt, °", "others held", "shift, mm", "others held"],
-    );
-    for (k, found) in file.corrections.iter().enumerate() {
-        let figure =
-            |value, name: &str, words| figure_or(value, format_args!("corrections.{k}.{name}"), words);
-        table.row(&[
-            &quoted(&found.joint, format_args!("corrections.{k}.joint")),
-            &figure(found.sigma_tilt_deg, "sigma_tilt_deg", "not determined"),
-            &figure(found.sigma_tilt_held_deg, "sigma_tilt_held_deg", "–"),
-            &figure(found.sigma_shift_mm, "sigma_shift_mm", "not determined"),
-            &figure(found.sigma_shift_held_mm, "sigma_shift_held_mm", "–"),
-        ]);
-    }
-    let items = file.common.iter().enumerate();
-    let items = items.map(|(k, it)| quoted(&it.words, format_args!("common.{k}.words")));
-    html! {
-        h3 { "Known only together" }
-        p {
-            "Some standard deviations are large because these joints can change together with little effect on what was measured; with the \
-             others held each is known better. One standard deviation of each such direction:"
-        }
-        (list(&items.collect::<Vec<_>>()))
-        (folded("Standard deviations with the others held", &table))
-    }
-}
-
-/// Joint offsets, where the formulation has them.
-fn offsets(file: &CalibrationFile) -> Markup {
-    let Some(offsets) = &file.solver.joint_offsets else { return Markup::default() };
-    let mut table = HtmlTable::new(
-        "Joint offsets of this formulation; in the calibrated model they are part of the axes",
-        1,
-        &["joint", "offset"],
-    );
-    for (k, offset) in offsets.iter().enumerate() {
-        let figure = |value, name| figure(value, format_args!("solver.joint_offsets.{k}.{name}"));
-        let words = match (offset.offset_deg, offset.offset_mm) {
-            (Some(value), _) => html! { (figure(value, "offset_deg")) "°" },
-            (None, Some(value)) => html! { (figure(value, "offset_mm")) " mm" },
-            (None, None) => Markup::default(),
-        };
-        table.row(&[&quoted(&offset.joint, format_args!("solver.joint_offsets.{k}.joint")), &words]);
-    }
-    html! { (table) }
 }

@@ -24,27 +24,27 @@ pub(super) fn sections(file: &CalibrationFile) -> Markup {
              joint and two for a prismatic one; this parameterisation has no singularity and needs no initial guess. The tool is fitted \
              too, and the device frame unless it was known. The documentation of poecal explains the figures and has the formulas."
         }
-        (solver(file))
-        @if !file.solver.trace.is_empty() { (convergence(file)) }
+        (held_and_found(file))
         (inputs(file))
     };
     section("method", "Method and inputs", &content)
 }
 
-fn solver(file: &CalibrationFile) -> Markup {
-    let solver = &file.solver;
-    let end = match solver.termination {
-        Termination::Optimum | Termination::StepVanished | Termination::NoProgress => "converged",
-        Termination::IterationLimit => "did not converge: the limit of iterations was reached",
-        Termination::NotFinite => "did not converge: residuals are not finite",
-    };
+/// How the fit was made.
+pub(super) fn for_the_metrologist(file: &CalibrationFile) -> Markup {
+    html! {
+        h3 { "Fit" }
+        (solver(file))
+        @if !file.solver.trace.is_empty() { (convergence(file)) }
+        (offsets(file))
+    }
+}
+
+/// What was held, terms of joint values, and where the device is.
+fn held_and_found(file: &CalibrationFile) -> Markup {
     let device = match file.measurement_frame.known {
         DeviceFrameKnowledge::Unknown => found_words(file),
         DeviceFrameKnowledge::Base => ("Device frame", html! { "measured in the robot's base frame" }),
-    };
-    let unknowns = html! {
-        (quoted(&solver.formulation, "solver.formulation")) " formulation, "
-        (quoted(&solver.pose_residual, "solver.pose_residual")) " residuals of poses"
     };
     let held = file.blocks.as_ref().map_or(&[][..], |blocks| &blocks.held);
     let held = html! {
@@ -55,6 +55,22 @@ fn solver(file: &CalibrationFile) -> Markup {
     let terms = html! {
         @for (k, (name, value)) in terms(file).enumerate() { @if k > 0 { ", " } (name) " " (value) }
     };
+    let all = [("Held as in the model", held), ("Terms of joint values", terms), device];
+    let all: Vec<_> = all.into_iter().filter(|(_, content)| !content.0.is_empty()).collect();
+    facts(&all)
+}
+
+fn solver(file: &CalibrationFile) -> Markup {
+    let solver = &file.solver;
+    let end = match solver.termination {
+        Termination::Optimum | Termination::StepVanished | Termination::NoProgress => "converged",
+        Termination::IterationLimit => "did not converge: the limit of iterations was reached",
+        Termination::NotFinite => "did not converge: residuals are not finite",
+    };
+    let unknowns = html! {
+        (quoted(&solver.formulation, "solver.formulation")) " formulation, "
+        (quoted(&solver.pose_residual, "solver.pose_residual")) " residuals of poses"
+    };
     let steps = html! {
         (method_words(&solver.method)) ", " (count(solver.iterations, "solver.iterations")) " iterations, " (end)
         @if solver.restarts > 0 { ", " (count(solver.restarts, "solver.restarts")) " further starts" }
@@ -62,14 +78,28 @@ fn solver(file: &CalibrationFile) -> Markup {
     let version = html! {
         "poecal " (quoted(&file.poecal_version, "poecal_version")) ", form " (quoted(&file.schema, "schema"))
     };
-    let own = [("Held as in the model", held), ("Terms of joint values", terms)];
-    let own = own.into_iter().filter(|(_, content)| !content.0.is_empty());
     let loss = html! { (file.robust.loss.map_or("least squares", |loss| loss.word())) };
-    let all: Vec<_> = std::iter::once(("Unknowns", unknowns))
-        .chain(own)
-        .chain([("Steps", steps), ("Loss", loss), device, ("Version", version)])
-        .collect();
-    facts(&all)
+    facts(&[("Unknowns", unknowns), ("Steps", steps), ("Loss", loss), ("Version", version)])
+}
+
+/// Joint offsets, where the formulation has them.
+fn offsets(file: &CalibrationFile) -> Markup {
+    let Some(offsets) = &file.solver.joint_offsets else { return Markup::default() };
+    let mut table = HtmlTable::new(
+        "Joint offsets of this formulation; in the calibrated model they are part of the axes",
+        1,
+        &["joint", "offset"],
+    );
+    for (k, offset) in offsets.iter().enumerate() {
+        let figure = |value, name| figure(value, format_args!("solver.joint_offsets.{k}.{name}"));
+        let words = match (offset.offset_deg, offset.offset_mm) {
+            (Some(value), _) => html! { (figure(value, "offset_deg")) "°" },
+            (None, Some(value)) => html! { (figure(value, "offset_mm")) " mm" },
+            (None, None) => Markup::default(),
+        };
+        table.row(&[&quoted(&offset.joint, format_args!("solver.joint_offsets.{k}.joint")), &words]);
+    }
+    html! { (table) }
 }
 
 /// The usual method by its name.

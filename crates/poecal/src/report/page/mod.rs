@@ -1,6 +1,7 @@
 //! The report of a calibration: one HTML page that holds its style, its script and its data, and loads nothing.
 
 mod advice;
+mod answer;
 mod attested;
 mod certificate;
 mod compensation;
@@ -8,8 +9,8 @@ mod corners;
 mod corrected;
 mod data;
 mod devices;
+mod errors;
 mod figures;
-mod first;
 mod fleet;
 mod frames;
 mod html;
@@ -88,16 +89,17 @@ pub fn calibration_page_with(file: &CalibrationFile, residuals: &Residuals, shap
         a.skip href="#main" { "Skip to the verdict" }
         main #main {
             (attested::first_page(file))
-            (first::screen(file, residuals))
+            (answer::screen(file, shapes))
+            (errors::section(file, residuals))
             (repairs::sections(file))
-            (joints::sections(file, shapes))
+            (joints::corrections(file))
             (corrected::sections(file))
             (compensation::sections(file))
             (pictures::sections(file, residuals))
             (rows::sections(file, residuals))
             (trust::sections(file))
             (method::sections(file))
-            (certificate::signature(file))
+            (for_the_metrologist(file, residuals))
         }
     };
     Ok(vec![
@@ -109,6 +111,22 @@ pub fn calibration_page_with(file: &CalibrationFile, residuals: &Residuals, shap
         SCRIPT.into(),
         "</script>\n</body>\n</html>\n".into(),
     ])
+}
+
+/// What only few readers need, folded.
+fn for_the_metrologist(file: &CalibrationFile, residuals: &Residuals) -> Markup {
+    html! {
+        section aria-labelledby="metrologist-title" {
+            details #metrologist {
+                summary { h2 #metrologist-title { "For the metrologist" } }
+                (corrected::tried(file))
+                (trust::for_the_metrologist(file))
+                h3 { "Distribution and weight of the rows" }
+                (rows::for_the_metrologist(residuals))
+                (method::for_the_metrologist(file))
+            }
+        }
+    }
 }
 
 /// A page up to its body: title, policy, style, and what is printed beside it.

@@ -4,8 +4,8 @@ use maud::{Markup, Render, html};
 
 use super::data::{MOST_ROWS, drawn, keep_first, place};
 use super::devices::devices;
-use super::first::{capital, error_table, error_words};
-use super::html::{HtmlTable, chart, count, decimal, figure, figure_or, folded, plots, section};
+use super::errors::{capital, error_table, error_words};
+use super::html::{HtmlTable, chart, count, decimal, figure, figure_or, folded, section};
 use super::lead::{Lead, component_words, sign, spaced};
 use super::{figures, readings_of, short};
 use crate::calibration::Statistic;
@@ -42,12 +42,28 @@ fn errors(file: &CalibrationFile, residuals: &Residuals) -> Markup {
         (chart(
             "joints",
             "By joint",
-            "Residuals over each joint's value, with a smoothed curve and two standard deviations to each side of it. A periodic curve (once or twice a turn, or with the period of a gear) is an error of a \
+            "Residuals over each joint's value, with a smoothed curve and one standard deviation to each side of it. A periodic curve (once or twice a turn, or with the period of a gear) is an error of a \
              gear or an encoder that is not modelled; a curve that follows the load is a flexible link.",
         ))
         (folded("Errors by parts of each joint's values", &joint_table(residuals)))
         div.pair {
             (chart("histogram", "How the errors are spread", &format!("Errors of {lead} in fitted and held-out rows, each as shares of its own rows.")))
+            figure {
+                h3 { "Fitted against held-out rows" }
+                div.plots { (figures::sets(residuals)) }
+                figcaption { "Fitted rows are always predicted a little better than others; only held-out rows measure the error of predictions." }
+            }
+        }
+        details { summary { "The errors of both sets as numbers" } (set_tables(file)) }
+    };
+    section("errors", "Errors of the rows", &content)
+}
+
+/// What only few readers need: whether the errors are noise, and which rows decide much of the result.
+pub(super) fn for_the_metrologist(residuals: &Residuals) -> Markup {
+    let lead = Lead::of(residuals).name();
+    html! {
+        div.pair {
             (chart(
                 "normal",
                 "Normal plot of the components",
@@ -56,24 +72,15 @@ fn errors(file: &CalibrationFile, residuals: &Residuals) -> Markup {
                      that bend away are gross errors or errors that the model does not describe."
                 ),
             ))
-        }
-        h3 { "Fitted against held-out rows" }
-        div.pair {
-            (plots(
-                &[figures::sets(residuals)],
-                "Fitted rows are always predicted a little better than others; only held-out rows measure the error of predictions.",
+            (chart(
+                "leverage",
+                "Leverage",
+                "To the right: rows of high leverage. Above: rows of large residuals, in units of their own standard deviation. \
+                 A row with both decides much of the result, unless it is suspected and has almost no weight.",
             ))
-            (set_tables(file))
         }
-        (chart(
-            "leverage",
-            "Leverage",
-            "To the right: rows of high leverage. Above: rows of large residuals, in units of their own standard deviation. \
-             A row with both decides much of the result, unless it is suspected and has almost no weight.",
-        ))
         @if let Some(table) = leverage_table(residuals) { (folded("The rows of largest leverage", &table)) }
-    };
-    section("errors", "Errors of the rows", &content)
+    }
 }
 
 /// In which axes residuals are, if they have any.

@@ -3,13 +3,16 @@
 use maud::{Markup, html};
 
 use super::figures;
-use super::html::{HtmlTable, count, decimal, figure, figure_or, list, plots, quoted, scaled, section};
+use super::html::{
+    HtmlTable, count, decimal, figure, figure_or, folded, list, plots, quoted, scaled, section,
+};
 use super::lead::{sign, spaced};
 use crate::analysis::Direction;
 use crate::io::calibration_file::{
     CalibrationFile, CorrelatedEntry, CrossValidationEntry, LeftOutEntry, RangeEntry, UncertaintyEntry,
 };
 use crate::measurement::Quantity;
+use crate::report::shade;
 use crate::report::summary::{delivered, uncertainty};
 use crate::robot::JointKind;
 use crate::uncertainty::Attribution;
@@ -20,8 +23,9 @@ pub(super) fn sections(file: &CalibrationFile) -> Markup {
         @if let Some(found) = &file.cross_validation { (cross_validation(found)) }
         @if !file.coverage.is_empty() { (coverage(file)) }
         @if let Some((found, key)) = uncertainty(file).filter(|(it, _)| !it.parts.is_empty()) { (parts(file, found, key)) }
+        (determined(file))
     };
-    html! { (section("trust", "How far to trust it", &content)) (told(file)) }
+    section("trust", "How far to trust it", &content)
 }
 
 /// The factor and unit by which a joint's values are shown.
@@ -79,6 +83,8 @@ fn expected(file: &CalibrationFile, found: &UncertaintyEntry, of: &str) -> Marku
 }
 
 fn cross_validation(found: &CrossValidationEntry) -> Markup {
+    let blocks = found.blocked.iter().enumerate();
+    let worst = blocks.max_by(|(_, a), (_, b)| a.rms.lead().total_cmp(&b.rms.lead()));
     let measured: Vec<(Quantity, String)> =
         found.random.rms.keys().map(|(quantity, key, _)| (quantity, key)).collect();
     let rms =
@@ -102,8 +108,23 @@ fn cross_validation(found: &CrossValidationEntry) -> Markup {
     }
     html! {
         h3 { "Cross-validation" }
-        p { "Where the error of a block is much larger than that of random rows, the model should not be trusted in that part of the joint range." }
-        (table)
+        p {
+            "Fitted rows, predicted by fits of the others: "
+            @for (k, (quantity, own)) in measured.iter().enumerate() {
+                @if k > 0 { ", " }
+                (figure_or(found.random.rms.get(*quantity), format_args!("cross_validation.random.{own}"), "–")) (spaced(quantity.unit()))
+            }
+            " (RMS) where random rows were left out"
+            @if let Some((k, worst)) = worst {
+                "; worst where " (quoted(&worst.left_out, format_args!("cross_validation.blocked.{k}.left_out"))) " was left out: "
+                @for (at, (quantity, own)) in measured.iter().enumerate() {
+                    @if at > 0 { ", " }
+                    (figure_or(worst.rms.get(*quantity), format_args!("cross_validation.blocked.{k}.{own}"), "–")) (spaced(quantity.unit()))
+                }
+            }
+            ". Where a block is much worse than random rows, do not trust the model in that part of the range."
+        }
+        (folded("All blocks", &table))
     }
 }
 
@@ -130,14 +151,13 @@ fn coverage(file: &CalibrationFile) -> Markup {
     html! {
         h3 { "Sampled part of each joint's range" }
         (plots(&figures::coverage(file), "Bars: sampled by the fitted rows. Thin lines: the limits of the model."))
-        (table)
+        (folded("The ranges as numbers", &table))
     }
 }
 
 /// The map of expected errors: a row a joint, a cell a part of its range.
 fn parts(file: &CalibrationFile, found: &UncertaintyEntry, key: &str) -> Markup {
     let worst = found.parts.iter().map(|part| part.sigma_position_mm).fold(0.0, f64::max);
-    let least = found.parts.iter().map(|part| part.sigma_position_mm).fold(f64::INFINITY, f64::min);
     let of = |joint: &str| {
         let joint = joint.to_owned();
         found.parts.iter().enumerate().filter(move |(_, part)| part.joint == joint)
@@ -151,72 +171,111 @@ fn parts(file: &CalibrationFile, found: &UncertaintyEntry, key: &str) -> Markup 
         table.marked(&html! {
             tr {
                 th scope="row" { (joint.name) }
-                @for (k, part) in of(&joint.name) { (map_cell((k, key), part, (least, worst), unit)) }
+                @for (k, part) in of(&joint.name) { (map_cell((k, key), part, worst, unit)) }
             }
         });
     }
     html! {
         h3 { "Expected error over the joint ranges" }
         p {
-            "Expected errors of position, mm (RMS), by parts of each joint's range, with the other joints anywhere in theirs. The darker a \
-             cell, the larger the error: the palest is the least of the table, the darkest the largest."
+            "Expected errors of position, mm (RMS), by parts of each joint's range, with the other joints anywhere in theirs. The colour grows \
+             with the error, from none at zero to the full one at the largest of the table."
         }
         div.map { (table) }
     }
 }
 
-fn map_cell(
-    (k, key): (usize, &str),
-    part: &RangeEntry,
-    (least, worst): (f64, f64),
-    (factor, unit): (f64, &str),
-) -> Markup {
-    let span = worst - least;
-    let level = if span > 0.0 { (10.0 * (part.sigma_position_mm - least) / span).round() } else { 0.0 };
+fn map_cell((k, key): (usize, &str), part: &RangeEntry, worst: f64, (factor, unit): (f64, &str)) -> Markup {
     let [from, to] = [part.from, part.to].map(|end| decimal(end * factor, 0));
     html! {
-        td class=(format_args!("heat h{level:.0}")) {
+        td.heat style=(shade::style(part.sigma_position_mm, worst)) {
             (figure(part.sigma_position_mm, format_args!("{key}.parts.{k}.sigma_position_mm")))
             small { (from) " to " (to) (unit) }
         }
     }
 }
 
-fn told(file: &CalibrationFile) -> Markup {
+/// How many unknowns are determined, and which are not, or weakly.
+fn determined(file: &CalibrationFile) -> Markup {
     let found = &file.identifiability;
     let groups = [
         ("Undetermined by these configurations", "unidentifiable", &found.unidentifiable),
-        ("Weakly determined", "weak", &found.weak),
-        ("Not observable (no effect on predictions)", "structural", &found.structural),
+        ("Weakly determined, little better than nominal", "weak", &found.weak),
     ];
-    let items = |directions: &[Direction], key: &str| {
-        let item = |(k, direction)| direction_words(direction, &format!("identifiability.{key}.{k}"));
-        directions.iter().enumerate().map(item).collect::<Vec<_>>()
-    };
-    let content = html! {
+    html! {
+        h3 { "Unknowns" }
         p {
             (count(found.rank, "identifiability.rank")) " of " (count(found.parameters, "identifiability.parameters"))
-            " unknowns are determined against the noise."
-            @if let Some(condition) = found.condition {
-                " The condition number over these is " (figure(condition, "identifiability.condition")) "."
-            }
+            " unknowns are determined"
+            @if found.weakly() > 0 { ", " (found.weakly()) " of them weakly" }
+            "."
         }
         @for (title, key, directions) in groups {
-            @if !directions.is_empty() { h3 { (title) } (list(&items(directions, key))) }
+            @if !directions.is_empty() { p { (title) ":" } (list(&items(directions, key))) }
+        }
+    }
+}
+
+/// Which unknowns no measurement of this kind shows, how well configurations show the others, and which are known only together.
+pub(super) fn for_the_metrologist(file: &CalibrationFile) -> Markup {
+    let found = &file.identifiability;
+    html! {
+        @if !found.structural.is_empty() {
+            h3 { "Not observable, without effect on predictions" }
+            (list(&items(&found.structural, "structural")))
         }
         (observability(file))
+        (common(file))
         (correlations(file))
-    };
-    section("told", "Unknowns that the data determine", &content)
+        (shares(file))
+    }
+}
+
+fn items(directions: &[Direction], key: &str) -> Vec<Markup> {
+    let item = |(k, direction)| direction_words(direction, &format!("identifiability.{key}.{k}"));
+    directions.iter().enumerate().map(item).collect()
+}
+
+/// What is known of several joints only together.
+fn common(file: &CalibrationFile) -> Markup {
+    let items = file.common.iter().enumerate();
+    let items = items.map(|(k, it)| quoted(&it.words, format_args!("common.{k}.words")));
+    let items: Vec<Markup> = items.collect();
+    html! {
+        @if !items.is_empty() {
+            h3 { "Known only together" }
+            p {
+                "These joints can change together with little effect on what was measured, so the standard deviations of each are large. One \
+                 standard deviation of each such direction:"
+            }
+            (list(&items))
+        }
+    }
+}
+
+/// How much of what is known of each axis the measurements say, beside the tolerance.
+fn shares(file: &CalibrationFile) -> Markup {
+    let mut table = HtmlTable::new(
+        "The measurements' share in what is known of each axis, from 0 to 1; the rest was said by the tolerance",
+        1,
+        &["joint", "direction", "place"],
+    );
+    for (k, found) in file.corrections.iter().enumerate() {
+        table.row(&[
+            &quoted(&found.joint, format_args!("corrections.{k}.joint")),
+            &figure_or(found.tilt_from_data, format_args!("corrections.{k}.tilt_from_data"), "–"),
+            &figure_or(found.shift_from_data, format_args!("corrections.{k}.shift_from_data"), "–"),
+        ]);
+    }
+    let has_any = file.corrections.iter().any(|it| it.tilt_from_data.or(it.shift_from_data).is_some());
+    html! { @if has_any { h3 { "Shares of the measurements" } (table) } }
 }
 
 /// A direction with the keys of its words.
-pub(super) fn direction_words(direction: &Direction, key: &str) -> Markup {
+fn direction_words(direction: &Direction, key: &str) -> Markup {
     html! {
         (quoted(&direction.description, format_args!("{key}.description")))
-        @if direction.directions > 1 {
-            " (" (count(direction.directions, format_args!("{key}.directions"))) " directions)"
-        }
+        @if direction.directions > 1 { " (" (count(direction.directions, format_args!("{key}.directions"))) " unknowns)" }
     }
 }
 
@@ -232,7 +291,7 @@ fn correlations(file: &CalibrationFile) -> Markup {
             tr {
                 th scope="row" { (quoted(block, format_args!("uncertainty.correlations.blocks.{i}"))) }
                 @for (j, value) in row.iter().enumerate() {
-                    td class=(format_args!("heat h{:.0}", (10.0 * value).round().min(10.0))) {
+                    td.heat style=(shade::style(*value, 1.0)) {
                         (figure(*value, format_args!("uncertainty.correlations.largest.{i}.{j}")))
                     }
                 }
@@ -260,7 +319,7 @@ fn correlations(file: &CalibrationFile) -> Markup {
             }
         }
         (list(&pairs))
-        details { summary { "Correlations of all blocks" } div.map { (map) } }
+        div.map { (map) }
     }
 }
 
@@ -288,5 +347,11 @@ fn observability(file: &CalibrationFile) -> Markup {
         let key = format_args!("identifiability.observability.{key}");
         table.row(&[&name, &words, &figure_or(value, key, "zero: a direction is not observed"), &unit]);
     }
-    html! { h3 { "Observability" } (table) }
+    html! {
+        h3 { "Observability" }
+        @if let Some(condition) = file.identifiability.condition {
+            p { "The condition number over the determined unknowns is " (figure(condition, "identifiability.condition")) "." }
+        }
+        (table)
+    }
 }

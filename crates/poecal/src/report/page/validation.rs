@@ -3,7 +3,7 @@
 use maud::{Markup, PreEscaped, html};
 
 use super::certificate::{self, limits, stated};
-use super::first::{capital, error_words, models_table};
+use super::errors::{capital, error_words, models_table};
 use super::html::{HtmlTable, count, facts, figure, list, plots, quoted, section};
 use super::lead::{sign, spaced};
 use super::{head, joins, method};

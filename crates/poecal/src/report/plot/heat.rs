@@ -1,7 +1,8 @@
-//! A map of square cells: the darker a cell, the larger its value, which stands in it.
+//! A map of square cells: the stronger the colour of a cell, the larger its value, which stands in it.
 
 use super::frame::{Area, WIDTH, head, vertical_title};
 use super::svg::{Anchor, Canvas, text_width};
+use crate::report::shade::share;
 
 /// Largest side of a cell, and height of all of them, px.
 const LARGEST: f64 = 46.0;
@@ -15,8 +16,8 @@ const MARGIN: f64 = 10.0;
 /// Longest arrow as a part of a cell, and the angle of its head, rad.
 const ARROW: f64 = 0.75;
 const HEAD: f64 = 0.5;
-/// Steps of colour.
-const LEVELS: f64 = 10.0;
+/// Boxes of the scale.
+const BOXES: usize = 24;
 /// Distance of labels along an axis, px.
 const APART: f64 = 44.0;
 
@@ -68,18 +69,14 @@ impl HeatMap {
         let [columns, rows] = ends.map(|(from, to)| (to - from).max(1) as f64);
         let side = ((WIDTH - LEFT - RIGHT) / columns).min(HEIGHT / rows).min(LARGEST);
         let area = Area { left: LEFT, top, right: LEFT + side * columns, bottom: top + side * rows };
-        let range = self.cells.iter().map(|cell| cell.value).filter(|value| value.is_finite());
-        let (least, largest) = range.fold((f64::INFINITY, 0.0), |(least, most), value| {
-            (f64::min(least, value), f64::max(most, value))
-        });
-        // Values that are nearly alike look alike.
-        let least = if least > 0.5 * largest { 0.0 } else { least };
+        let values = self.cells.iter().map(|cell| cell.value).filter(|value| value.is_finite());
+        let largest = values.fold(0.0, f64::max);
         let longest = self.longest();
         for cell in &self.cells {
             let [column, row] = [cell.at[0] - ends[0].0, cell.at[1] - ends[1].0].map(|it| it as f64);
             let down = if self.downwards { row } else { rows - 1.0 - row };
             let (left, top) = (area.left + side * column, area.top + side * down);
-            canvas.cell([left, top], side, level(cell.value, (least, largest)), &cell.told);
+            canvas.cell([left, top], side, share(cell.value, largest), &cell.told);
             let text = shown(cell.value, largest);
             let middle = if longest > 0.0 { 0.82 } else { 0.5 };
             if text_width(&text) <= 1.15 * side {
@@ -97,7 +94,7 @@ impl HeatMap {
             }
         }
         self.axes(&mut canvas, &area, side, ends);
-        let bottom = self.scale(&mut canvas, area.bottom + 33.0, (least.min(largest), largest));
+        let bottom = self.scale(&mut canvas, area.bottom + 33.0, largest);
         canvas.finish(WIDTH, bottom + MARGIN, &self.title, &self.description)
     }
 
@@ -130,16 +127,15 @@ impl HeatMap {
     }
 
     /// What the colours mean; gives the y below.
-    fn scale(&self, canvas: &mut Canvas, top: f64, (least, largest): (f64, f64)) -> f64 {
+    fn scale(&self, canvas: &mut Canvas, top: f64, largest: f64) -> f64 {
         const BOX: f64 = 12.0;
+        const WIDE: f64 = 5.5;
         let y = top + SCALE - BOX;
-        let text = shown(least, largest);
-        let mut x = LEFT;
-        canvas.text([x, y + 10.0], Anchor::Start, &text);
-        x += text_width(&text) + 6.0;
-        for level in 0..=LEVELS as usize {
-            canvas.cell([x, y], BOX, level, "");
-            x += BOX;
+        canvas.text([LEFT, y + 10.0], Anchor::Start, "0");
+        let mut x = LEFT + text_width("0") + 6.0;
+        for level in 0..=BOXES {
+            canvas.swatch([x, y], [WIDE, BOX], level as f64 / BOXES as f64);
+            x += WIDE;
         }
         let longest = self.longest();
         let arrows = if longest > 0.0 {
@@ -162,12 +158,6 @@ fn draw_arrow(canvas: &mut Canvas, [x, y]: [f64; 2], [along, down]: [f64; 2]) {
         let back = [cos * along - sin * down, sin * along + cos * down].map(|it| 0.3 * it);
         canvas.axis_line(to, [to[0] - back[0], to[1] - back[1]]);
     }
-}
-
-/// Step of colour of a value, from 0.
-fn level(value: f64, (least, largest): (f64, f64)) -> usize {
-    let share = (value - least) / (largest - least);
-    if share.is_finite() { (LEVELS * share.clamp(0.0, 1.0)).round() as usize } else { 0 }
 }
 
 #[cfg(test)]
@@ -206,10 +196,10 @@ mod tests {
     }
 
     #[test]
-    fn the_least_is_pale_and_the_largest_dark() {
-        assert_eq!(level(1.0, (1.0, 3.0)), 0);
-        assert_eq!(level(2.0, (1.0, 3.0)), 5);
-        assert_eq!(level(3.0, (1.0, 3.0)), 10);
-        assert_eq!(level(3.0, (3.0, 3.0)), 0);
+    fn colours_begin_at_zero() {
+        let svg = map(&[0.0983, 0.1004]).svg();
+        for share in ["--share:0.979", "--share:1.000", "--share:0.000"] {
+            assert!(svg.contains(share), "{share}");
+        }
     }
 }

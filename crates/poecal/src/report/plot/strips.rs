@@ -2,12 +2,11 @@
 
 use super::frame::{self, WIDTH};
 use super::svg::{Anchor, Canvas, text_width};
+use crate::report::shade::share;
 
 /// Cells of a strip, and the height of a row, px.
 pub const CELLS: usize = 20;
 const ROW: f64 = 26.0;
-/// Largest step of a cell's colour.
-const DARKEST: usize = 10;
 
 /// A row: its name, the ends of its range, and how many values are in each part.
 pub struct Strip {
@@ -33,15 +32,14 @@ impl StripPlot {
         let [low, high] = [0, 1].map(|end| widest(&|it| text_width(&it.ends[end])));
         let left = 10.0 + name + 12.0 + low + 6.0;
         let side = ((WIDTH - 10.0 - high - 6.0 - left) / CELLS as f64).max(4.0);
-        let most = self.strips.iter().flat_map(|it| it.counts).max().unwrap_or(0).max(1);
+        let most = self.strips.iter().flat_map(|it| it.counts).max().unwrap_or(0);
         for (at, strip) in self.strips.iter().enumerate() {
             let y = top + ROW * at as f64;
             canvas.text([10.0, y + 11.0], Anchor::Start, &strip.name);
             canvas.text([left - 6.0, y + 11.0], Anchor::End, &strip.ends[0]);
             for (cell, &count) in strip.counts.iter().enumerate() {
-                let level = (count * DARKEST).div_ceil(most);
                 let x = left + side * cell as f64;
-                canvas.cell([x, y], side, level, &count.to_string());
+                canvas.cell([x, y], side, share(count as f64, most as f64), &count.to_string());
             }
             canvas.text([left + side * CELLS as f64 + 6.0, y + 11.0], Anchor::Start, &strip.ends[1]);
         }

@@ -166,19 +166,33 @@ impl Canvas {
         ));
     }
 
-    /// A square of a map, in a step of colour from 0 to 10, and what is said of it.
-    pub(super) fn cell(&mut self, [left, top]: [f64; 2], side: f64, level: usize, told: &str) {
+    /// A square of a map, in its share of the full colour, and what is said of it.
+    pub(super) fn cell(&mut self, at: [f64; 2], side: f64, share: f64, told: &str) {
+        self.shaded(
+            at,
+            [side; 2],
+            share,
+            format_args!(r##" stroke="#ffffff"><title>{}</title></rect>"##, told.render().into_string()),
+        );
+    }
+
+    /// A piece of the scale of a map.
+    pub(super) fn swatch(&mut self, at: [f64; 2], size: [f64; 2], share: f64) {
+        self.shaded(at, size, share, format_args!("/>"));
+    }
+
+    fn shaded(
+        &mut self,
+        [left, top]: [f64; 2],
+        [width, height]: [f64; 2],
+        share: f64,
+        rest: std::fmt::Arguments<'_>,
+    ) {
         // The colour of the style sheet on light paper.
-        let share = 0.03 + 0.04 * level as f64;
         let [red, green, blue] =
-            [0.0, 114.0, 178.0].map(|it: f64| (255.0 + share * (it - 255.0)).round() as u8);
-        let title = if told.is_empty() {
-            String::new()
-        } else {
-            format!("<title>{}</title>", told.render().into_string())
-        };
+            [0.0, 114.0, 178.0].map(|it: f64| (255.0 + 0.65 * share * (it - 255.0)).round() as u8);
         self.put(format_args!(
-            r##"<rect class="heat h{level}" x="{left:.2}" y="{top:.2}" width="{side:.2}" height="{side:.2}" fill="#{red:02x}{green:02x}{blue:02x}" stroke="#ffffff">{title}</rect>"##
+            r##"<rect class="heat" style="--share:{share:.3}" x="{left:.2}" y="{top:.2}" width="{width:.2}" height="{height:.2}" fill="#{red:02x}{green:02x}{blue:02x}"{rest}"##
         ));
     }
 

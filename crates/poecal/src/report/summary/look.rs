@@ -6,7 +6,7 @@ use super::super::table::number;
 use super::names;
 use crate::analysis::{Cause, Direction};
 use crate::calibration::{EventKind, Level, Loss};
-use crate::io::calibration_file::{CalibrationFile, OutlierEntry};
+use crate::io::calibration_file::{CalibrationFile, IdentifiabilityEntry, OutlierEntry};
 
 /// Suspected rows that are named.
 const WORST: usize = 3;
@@ -27,8 +27,7 @@ pub(in crate::report) enum Place {
     Reason,
     Suspects,
     Joint(usize),
-    Open(usize),
-    Weak(usize),
+    HardlyKnown,
 }
 
 /// Something to look at.
@@ -66,23 +65,51 @@ pub(in crate::report) fn look_at(file: &CalibrationFile) -> Vec<Point> {
     }
     let known = &file.identifiability;
     if known.rank > 0 || known.parameters == 0 {
-        let open = known.unidentifiable.iter().enumerate();
-        points.extend(open.map(|(k, it)| point(Place::Open(k), &direction_words("undetermined", it))));
-        // What is open for a reason is also weak beside it for the same one.
-        let is_told = |weak: &Direction| {
-            known.unidentifiable.iter().any(|open| (open.cause, &open.joints) == (weak.cause, &weak.joints))
-        };
-        let weak = known.weak.iter().enumerate().filter(|(_, it)| !is_told(it));
-        points.extend(weak.map(|(k, it)| point(Place::Weak(k), &direction_words("weakly determined", it))));
+        points.extend(hardly_known(known));
     }
-    // Directions of the same joints for the same cause have the same few words.
     let mut told = BTreeSet::new();
     points.retain(|point| told.insert(point.text.clone()));
     points
 }
 
+/// Unknowns that are not determined, or weakly, each counted in one sentence: those of the same joints for the same cause together.
+fn hardly_known(known: &IdentifiabilityEntry) -> Vec<Point> {
+    // The direction that is told, its words, and the unknowns of each degree.
+    let mut groups: Vec<(&Direction, String, [usize; 2])> = Vec::new();
+    let open = known.unidentifiable.iter().map(|it| (it, 0));
+    for (direction, degree) in open.chain(known.weak.iter().map(|it| (it, 1))) {
+        let words = direction_words(["undetermined", "weakly determined"][degree], direction);
+        let is_same = |(first, own, [open, _]): &(&Direction, String, [usize; 2])| {
+            let beside = *open > 0 && (first.cause, &first.joints) == (direction.cause, &direction.joints);
+            *own == words || degree == 1 && beside
+        };
+        match groups.iter_mut().find(|group| is_same(group)) {
+            Some((.., counts)) => counts[degree] += direction.directions,
+            None => {
+                let mut counts = [0; 2];
+                counts[degree] = direction.directions;
+                groups.push((direction, words, counts));
+            }
+        }
+    }
+    let point = |(_, words, counts): &(&Direction, String, [usize; 2])| {
+        let count = match *counts {
+            [0, 1] | [1, 0] => String::new(),
+            [0, count] | [count, 0] => format!(" ({})", unknowns_words(count)),
+            [open, weak] => format!(" ({}, {weak} more weakly)", unknowns_words(open)),
+        };
+        Point { text: format!("{words}{count}"), place: Place::HardlyKnown }
+    };
+    groups.iter().map(point).collect()
+}
+
+/// `1 unknown`, `2 unknowns`.
+pub(in crate::report) fn unknowns_words(count: usize) -> String {
+    format!("{count} unknown{}", if count == 1 { "" } else { "s" })
+}
+
 /// Why the verdict is no better, in the verdict's words; joints that moved by little are named together.
-pub(super) fn reasons(file: &CalibrationFile) -> Vec<String> {
+pub(in crate::report) fn reasons(file: &CalibrationFile) -> Vec<String> {
     let Some(verdict) = file.verdict.as_ref().filter(|verdict| verdict.level != Level::Good) else {
         return Vec::new();
     };
@@ -148,17 +175,12 @@ fn named<'a>(outlier: &'a OutlierEntry, last: &mut &'a str) -> String {
 
 /// What of the robot is undetermined or weakly determined; in few words where there are many joints to name.
 fn direction_words(degree: &str, direction: &Direction) -> String {
-    let times = if direction.directions > 1 {
-        format!(" ({} directions)", direction.directions)
-    } else {
-        String::new()
-    };
     let is_short = direction.description.chars().count() <= SHORT && direction.joints.len() <= super::MOST;
     if is_short || direction.joints.is_empty() {
-        return format!("{degree}: {}{times}", direction.description);
+        return format!("{degree}: {}", direction.description);
     }
     let joints: Vec<&str> = direction.joints.iter().map(String::as_str).collect();
-    format!("{degree}: {}: {}{times}", names(&joints), cause_words(direction.cause))
+    format!("{degree}: {}: {}", names(&joints), cause_words(direction.cause))
 }
 
 fn cause_words(cause: Cause) -> &'static str {
@@ -179,5 +201,45 @@ fn cause_words(cause: Cause) -> &'static str {
         Cause::NoLength => "size unknown: nothing measured has a length",
         Cause::SeenOnce => "a target was measured once",
         Cause::Other => "these configurations hardly determine their axes",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::analysis::Observability;
+
+    #[test]
+    fn each_unknown_is_counted_in_one_sentence() {
+        let direction = |joint: &str, cause, directions| Direction {
+            description: format!("{joint} is odd"),
+            joints: vec![joint.to_owned()],
+            cause,
+            directions,
+        };
+        let known = IdentifiabilityEntry {
+            parameters: 30,
+            rank: 27,
+            told: None,
+            condition: None,
+            unidentifiable: vec![direction("a", Cause::StoodStill, 2), direction("b", Cause::TooFew, 1)],
+            weak: vec![
+                direction("a", Cause::StoodStill, 1),
+                direction("c", Cause::PointOnAxis, 1),
+                direction("c", Cause::PointOnAxis, 1),
+                direction("d", Cause::Other, 1),
+            ],
+            structural: Vec::new(),
+            observability: Observability::default(),
+        };
+        let told: Vec<String> = hardly_known(&known).into_iter().map(|point| point.text).collect();
+        let expected = [
+            "undetermined: a is odd (2 unknowns, 1 more weakly)",
+            "undetermined: b is odd",
+            "weakly determined: c is odd (2 unknowns)",
+            "weakly determined: d is odd",
+        ];
+        assert_eq!(told, expected);
+        assert_eq!(known.weakly(), 4);
     }
 }

@@ -8,16 +8,17 @@ mod names;
 use std::mem::discriminant;
 
 pub(super) use errors::{ModelRow, has_terms, leading};
-use look::reasons;
-pub(super) use look::{Place, Point, SEE_ROBUST, look_at};
+pub(super) use look::{Place, Point, SEE_ROBUST, look_at, reasons, unknowns_words};
 pub(super) use names::{MOST, names};
 
 use super::acceptance;
 use super::table::{line, lines, number, rounded};
-use crate::analysis::{Cause, Direction};
+use crate::analysis::Cause;
 use crate::calibration::{Event, Level, TermGroup};
 use crate::error::shown as name_shown;
-use crate::io::calibration_file::{CalibrationFile, ClockEntry, CorrectedEntry, UncertaintyEntry};
+use crate::io::calibration_file::{
+    CalibrationFile, ClockEntry, CorrectedEntry, IdentifiabilityEntry, UncertaintyEntry,
+};
 
 /// Angle of gravity from -z of the base below which it is not told, radians.
 const UPRIGHT: f64 = 1e-4;
@@ -63,6 +64,9 @@ pub fn summary(file: &CalibrationFile, detail: Detail) -> String {
         errors::table(&mut out, file);
         out.push('\n');
         details::all(&mut out, file);
+    }
+    if out.contains('±') {
+        line(&mut out, "±", "one standard deviation");
     }
     out
 }
@@ -162,7 +166,6 @@ fn shown(points: Vec<Point>, detail: Detail) -> (Vec<Point>, Vec<Point>) {
     parts
 }
 
-/// Which unknowns the rows determine, and which they do not.
 /// Lag and drift of an instrument's clock, with their standard deviations.
 fn clock_words(clock: &ClockEntry) -> String {
     let ClockEntry { lag_s, sigma_lag_ms, drift_ppm, sigma_drift_ppm, .. } = clock;
@@ -173,26 +176,27 @@ fn clock_words(clock: &ClockEntry) -> String {
     };
     let name = clock.instrument.as_deref().map_or(String::new(), |it| format!("{}: ", name_shown(it)));
     format!(
-        "{name}lag {lag_s:.5} s{} in the middle, drift {drift_ppm:.1}{} ppm (1σ)",
+        "{name}lag {lag_s:.5} s{} in the middle, drift {drift_ppm:.1}{} ppm",
         sigma(sigma_lag_ms, " ms"),
         sigma(sigma_drift_ppm, "")
     )
 }
 
-fn known(out: &mut String, file: &CalibrationFile) {
-    let found = &file.identifiability;
-    let count = |directions: &[Direction]| directions.iter().map(|it| it.directions).sum::<usize>();
-    let fitted = file.accuracy.training.count;
-    let all = fitted + file.accuracy.held_out.as_ref().map_or(0, |set| set.count);
-    let weak = match count(&found.weak) {
+/// How many unknowns are determined, and how many of them weakly.
+pub(super) fn determined_words(found: &IdentifiabilityEntry) -> String {
+    let weak = match found.weakly() {
         0 => String::new(),
         weak => format!(" ({weak} weakly)"),
     };
-    line(
-        out,
-        "determined",
-        &format!("{} of {} unknowns{weak}, from {fitted} of {all} rows", found.rank, found.parameters),
-    );
+    format!("{} of {}{weak}", found.rank, unknowns_words(found.parameters))
+}
+
+/// Which unknowns the rows determine, and which they do not.
+fn known(out: &mut String, file: &CalibrationFile) {
+    let found = &file.identifiability;
+    let fitted = file.accuracy.training.count;
+    let all = fitted + file.accuracy.held_out.as_ref().map_or(0, |set| set.count);
+    line(out, "determined", &format!("{}, from {fitted} of {all} rows", determined_words(found)));
     let mut undetermined = Vec::new();
     if found.rank == 0 && found.parameters > 0 {
         undetermined.push("everything: the residual is as large as the effect of the unknowns".to_owned());
@@ -204,9 +208,8 @@ fn known(out: &mut String, file: &CalibrationFile) {
             }
         }
         let open = found.parameters - found.rank;
-        let plural = if open == 1 { "" } else { "s" };
         let of = if joints.is_empty() { String::new() } else { format!(" of {}", names(&joints)) };
-        undetermined.push(format!("{open} unknown{plural}{of}"));
+        undetermined.push(format!("{}{of}", unknowns_words(open)));
     }
     let structural = found.structural.iter().filter(|it| it.cause == Cause::NoOrientation);
     undetermined.extend(structural.map(|direction| direction.description.clone()));
