@@ -272,42 +272,39 @@ impl<'h> Sample<'h> {
 
     /// Units of columns that state none.
     fn guess_units(&self, draft: &mut Draft) {
+        let index = |name: &String| self.index(name);
         let of_joints = |quantity: Unit| {
-            draft.joints.iter().filter(move |it| it.1 == quantity).filter_map(|it| it.2.clone())
+            let joints = draft.joints.iter().filter(move |it| it.1 == quantity);
+            joints.filter_map(|it| it.2.as_ref()).filter_map(index).collect()
         };
-        let [metre, millimetre] = ["m", "mm"];
-        let groups: [(&'static str, Vec<String>, Unit, (f64, &str, &str)); 4] = [
-            ("angle", of_joints(Unit::Radian).collect(), Unit::Radian, (MOST_RADIANS, "rad", "deg")),
-            ("length", of_joints(Unit::Metre).collect(), Unit::Metre, (MOST_METRES[0], metre, millimetre)),
-            (
-                "position",
-                draft.position.iter().flatten().cloned().collect(),
-                Unit::Metre,
-                (MOST_METRES[1], metre, millimetre),
-            ),
-            (
-                "orientation",
-                draft.parts.iter().flatten().cloned().collect(),
-                Unit::Radian,
-                (MOST_RADIANS, "rad", "deg"),
-            ),
+        let position = draft.position.iter().flatten().filter_map(index).collect();
+        let turns = draft.orientation().is_some_and(|it| it.quantity() == Unit::Radian);
+        let parts = draft.parts.iter().flatten().filter(|_| turns).filter_map(index).collect();
+        let units = [
+            ("angle", self.guess_unit(of_joints(Unit::Radian), Unit::Radian, MOST_RADIANS)),
+            ("length", self.guess_unit(of_joints(Unit::Metre), Unit::Metre, MOST_METRES[0])),
+            ("position", self.guess_unit(position, Unit::Metre, MOST_METRES[1])),
+            ("orientation", self.guess_unit(parts, Unit::Radian, MOST_RADIANS)),
         ];
-        for (group, columns, quantity, (most, small, large)) in groups {
-            let columns: Vec<usize> = columns.iter().filter_map(|it| self.index(it)).collect();
-            let is_stated =
-                |column: &usize| self.header.cells.get(*column).is_some_and(|it| it.units().next().is_some());
-            let has_none =
-                group == "orientation" && draft.orientation().is_none_or(|it| it.quantity() != quantity);
-            let unit = if columns.is_empty() || columns.iter().all(is_stated) || has_none {
-                None
-            } else {
-                let named =
-                    columns.first().and_then(|it| self.names.unit(*it)).filter(|it| it.of() == quantity);
-                let by_size = if self.largest_of(columns.into_iter()) > most { large } else { small };
-                named.or_else(|| NamedUnit::parse(by_size, quantity).ok())
-            };
-            draft.units.insert(group, unit);
+        draft.units = units.into();
+    }
+
+    /// The unit of some columns, unless all state theirs: that in the first one's name, or by the size of the numbers.
+    fn guess_unit(&self, columns: Vec<usize>, quantity: Unit, most: f64) -> Option<NamedUnit> {
+        let is_stated =
+            |column: &usize| self.header.cells.get(*column).is_some_and(|it| it.units().next().is_some());
+        if columns.iter().all(is_stated) {
+            return None;
         }
+        let named = columns.first().and_then(|it| self.names.unit(*it)).filter(|it| it.of() == quantity);
+        let is_large = self.largest_of(columns.into_iter()) > most;
+        let symbol = match (quantity, is_large) {
+            (Unit::Metre, true) => "mm",
+            (Unit::Metre, false) => "m",
+            (_, true) => "deg",
+            (_, false) => "rad",
+        };
+        named.or_else(|| NamedUnit::parse(symbol, quantity).ok())
     }
 
     /// Columns with a name of ours that would be read without being chosen.

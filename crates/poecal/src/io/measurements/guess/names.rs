@@ -29,6 +29,11 @@ const ANGLES: [([&str; 3], &str); 6] = [
     (["alpha", "beta", "gamma"], "intrinsic_xyz"),
 ];
 
+/// What the names of some columns begin with, and the columns.
+type Begun = (String, Vec<usize>);
+/// The form of an orientation, and its columns.
+type Oriented = (&'static str, Vec<usize>);
+
 /// The name of a column in words.
 struct Words {
     stem: String,
@@ -118,7 +123,7 @@ impl<'h> Names<'h> {
     }
 
     /// The columns whose names end with these words and begin alike, with what they begin with; those that were measured, if there are several.
-    fn ending(&self, last: &[&str], near: Option<&str>) -> Option<(String, Vec<usize>)> {
+    fn ending(&self, last: &[&str], near: Option<&str>) -> Option<Begun> {
         let mut stems: BTreeMap<&str, Vec<Option<usize>>> = BTreeMap::new();
         for (column, words) in self.words.iter().enumerate().filter(|(column, _)| self.is_numeric(*column)) {
             let Some(part) = last.iter().position(|it| *it == words.last) else { continue };
@@ -138,12 +143,12 @@ impl<'h> Names<'h> {
     }
 
     /// The columns of the position, and what their names begin with.
-    pub(super) fn position(&self) -> Option<(String, Vec<usize>)> {
+    pub(super) fn position(&self) -> Option<Begun> {
         AXES.iter().find_map(|axes| self.ending(axes, None))
     }
 
     /// The form of the orientation and its columns, beside a position whose columns begin with `near`.
-    pub(super) fn orientation(&self, near: Option<&str>) -> Option<(&'static str, Vec<usize>)> {
+    pub(super) fn orientation(&self, near: Option<&str>) -> Option<Oriented> {
         let ends = |last: &[&str]| self.ending(last, near).map(|it| it.1);
         let of_four = |last: [&str; 4], form| Some((form, ends(&last)?));
         let of_three = || ANGLES.iter().find_map(|(last, form)| Some((*form, ends(last)?)));
@@ -169,7 +174,7 @@ mod tests {
 
     use crate::io::measurements::Separator;
 
-    fn found(header: &str) -> (Option<(String, Vec<usize>)>, Option<(&'static str, Vec<usize>)>) {
+    fn found(header: &str) -> (Option<Begun>, Option<Oriented>) {
         let header = Header::new(Path::new("x.csv"), 1, header, Separator::Comma).unwrap();
         let names = Names::new(&header, vec![true; header.cells.len()]);
         let position = names.position();
