@@ -53,19 +53,14 @@ fn answer(file: &CalibrationFile) -> Markup {
 }
 
 /// The one colour and its title: of the limits where some were set, unless the calibration is not to be used at all.
-fn colour(file: &CalibrationFile) -> (&'static str, &'static str) {
+fn colour(file: &CalibrationFile) -> (&'static str, String) {
     let level = file.verdict.as_ref().map(|verdict| verdict.level);
-    let title = match level {
-        Some(Level::Good) => "Good to use anywhere within the limits",
-        Some(Level::InsideSampledRange) => "Use it inside the sampled range only",
-        Some(Level::DoNotUse) => "Do not use this calibration",
-        None => "No verdict: the calibration was written by an earlier version",
-    };
-    match &file.acceptance {
-        Some(found) if level != Some(Level::DoNotUse) || found.decision == Decision::Fail => {
-            (found.decision.word(), title_of(found))
+    match (&file.acceptance, level) {
+        (Some(found), level) if level != Some(Level::DoNotUse) || found.decision == Decision::Fail => {
+            (found.decision.word(), title_of(found).to_owned())
         }
-        _ => (level.map_or("unknown", Level::word), title),
+        (_, Some(level)) => (level.word(), format!("Verdict: {}", level.words())),
+        (_, None) => ("unknown", "No verdict: the calibration was written by an earlier version".to_owned()),
     }
 }
 
