@@ -14,7 +14,10 @@ export interface CalibrateOptions {
    * base and the named links
    */
   instrument?: Value | readonly Value[];
-  /** Target, as rows name it, and its link in a URDF (repeatable), likewise. Without --tip-link, the first that a joint moves is the tip */
+  /**
+   * Target, as rows name it, and its link in a URDF (repeatable), likewise. Without --tip-link, the first that a joint moves is the tip
+   * Measurement files:
+   */
   target?: Value | readonly Value[];
   /** Units of columns that state none, like mm,deg; those of a mapping precede */
   units?: Value | readonly Value[];
@@ -62,7 +65,7 @@ export interface CalibrateOptions {
    * OpenCV (YAML, XML), or a calibration.json with what it found; may be given again
    */
   markers?: Value | readonly Value[];
-  /** Fit only rows whose COLUMN has one of these values, and hold out all others */
+  /** Fit only rows whose COLUMN has one of these values, and hold out all others Fit: */
   fitWhere?: Value | readonly Value[];
   /** The measuring device's frame */
   frame?: "unknown" | "base";
@@ -106,16 +109,14 @@ export interface CalibrateOptions {
    * the model, and the point is the target `measured`
    */
   moveTip?: boolean;
-  /** Share of the configurations held out, where nothing else says which rows are; 0 fits every row in any case [default: 0.3] */
-  heldOut?: Value | readonly Value[];
-  /** Seed of that choice [default: 1] */
-  seed?: Value | readonly Value[];
   /** How to treat outliers: auto fits by least squares, and by the tukey loss where that shows outliers */
   robust?: "auto" | "off" | "huber" | "cauchy" | "tukey";
   /** What to do where a device, a target, a nest or a joint's zero moved during the session, or configurations are wrong as a whole */
   repair?: "auto" | "off";
-  /** File for the report, or `none` [default: report.html among the results] */
-  report?: Value | readonly Value[];
+  /** Share of the configurations held out, where nothing else says which rows are; 0 fits every row in any case [default: 0.3] */
+  heldOut?: Value | readonly Value[];
+  /** Seed of that choice [default: 1] */
+  seed?: Value | readonly Value[];
   /** End with code 1 if the verdict is worse than this (results are written all the same); it also does if the verdict is `do not use` */
   require?: "good" | "inside_sampled_range";
   /**
@@ -125,17 +126,19 @@ export interface CalibrateOptions {
   accept?: Value | readonly Value[];
   /** Which model shall keep them: the corrected one, if there is one (the default), or the calibrated one, which a URDF holds */
   acceptModel?: "corrected" | "calibrated";
-  /**
-   * What the report states of the session, like serial=4711 (repeatable): certificate, laboratory, customer, robot, serial, instrument,
-   * instrument_calibrated, tool, payload, operator, date, place, temperature, valid_until or note
-   */
-  record?: Value | readonly Value[];
   /** Parameterisation of joint errors; all but the default are for comparison */
   formulation?: "adjoint" | "screw" | "screw-offsets" | "adjoint-offsets";
   /** Residual of measured frames; the paper's is for comparison. Points have one residual only */
   residual?: "tool" | "spatial";
   /** Steps of the solver; plain Gauss-Newton may diverge [default: gauss-newton for formulations with free screws, else levenberg-marquardt] */
   method?: "levenberg-marquardt" | "gauss-newton";
+  /** File for the report, or `none` [default: report.html among the results] */
+  report?: Value | readonly Value[];
+  /**
+   * What the report states of the session, like serial=4711 (repeatable): certificate, laboratory, customer, robot, serial, instrument,
+   * instrument_calibrated, tool, payload, operator, date, place, temperature, valid_until or note
+   */
+  record?: Value | readonly Value[];
 }
 
 /** Options of `poecal validate`, by their long names. */
@@ -183,7 +186,7 @@ export interface ValidateOptions {
   /**
    * Board or solid that cameras see: CSV with target, x[mm], y[mm], z[mm] of its points, chessboard:10x7:27mm (squares along x and y, and
    * their side), charuco:, circles:, aprilgrid: or tags: as poecal detect has them, YAML of Kalibr or industrial_calibration, settings of
-   * OpenCV (YAML, XML), or a calibration.json with what it found; may be given again
+   * OpenCV (YAML, XML), or a calibration.json with what it found; may be given again How it is judged:
    */
   markers?: Value | readonly Value[];
   /** Refit the measuring device's frame to these measurements */
@@ -216,7 +219,7 @@ export interface ValidateOptions {
 export interface PredictOptions {
   /** First link of the chain, where a URDF has several */
   baseLink?: Value | readonly Value[];
-  /** Last link of the chain, where a URDF has several */
+  /** Last link of the chain, where a URDF has several Measurement files: */
   tipLink?: Value | readonly Value[];
   /** Units of columns that state none, like mm,deg; those of a mapping precede */
   units?: Value | readonly Value[];
@@ -226,7 +229,7 @@ export interface PredictOptions {
   withUncertainty?: boolean;
   /** Which model of a calibration predicts: the corrected one, if there is one, or the calibrated one, which a URDF holds */
   model?: "corrected" | "calibrated";
-  /** Predict this target of the model instead of the tip; of a URDF, with its link */
+  /** Predict this target of the model instead of the tip; of a URDF, with its link Results: */
   target?: Value | readonly Value[];
 }
 
@@ -241,7 +244,10 @@ export interface CheckOptions {
    * base and the named links
    */
   instrument?: Value | readonly Value[];
-  /** Target, as rows name it, and its link in a URDF (repeatable), likewise. Without --tip-link, the first that a joint moves is the tip */
+  /**
+   * Target, as rows name it, and its link in a URDF (repeatable), likewise. Without --tip-link, the first that a joint moves is the tip
+   * Measurement files:
+   */
   target?: Value | readonly Value[];
   /** Units of columns that state none, like mm,deg; those of a mapping precede */
   units?: Value | readonly Value[];
@@ -306,7 +312,10 @@ export interface IdentifyOptions {
    * base and the named links
    */
   instrument?: Value | readonly Value[];
-  /** Target, as rows name it, and its link in a URDF (repeatable), likewise. Without --tip-link, the first that a joint moves is the tip */
+  /**
+   * Target, as rows name it, and its link in a URDF (repeatable), likewise. Without --tip-link, the first that a joint moves is the tip
+   * Measurement files:
+   */
   target?: Value | readonly Value[];
   /** Units of columns that state none, like mm,deg; those of a mapping precede */
   units?: Value | readonly Value[];
