@@ -147,7 +147,12 @@ fn visit(folder: &Folder, tool_m: [f64; 3], device_m: [f64; 3]) -> String {
 /// Another tool is named as the tool, and one that was mounted anew is none; a device that stands elsewhere is named where it is said to be known.
 #[test]
 fn another_tool_and_another_place_of_the_device_are_named() {
-    let folder = cell();
+    let folder = Folder::new();
+    folder.write("robot.urdf", crate::session::ROBOT);
+    folder.done("simulate robot.urdf --kind point --count 60 --seed 3 --frame base --out cell");
+    folder.done(
+        "calibrate cell/nominal.urdf cell/measurements.csv --frame base --corrections off --report none",
+    );
     let none = [0.0; 3];
     folder.write("old.csv", visit(&folder, none, none));
     folder.write("tool.csv", visit(&folder, [0.03, -0.02, 0.05], none));
@@ -155,8 +160,8 @@ fn another_tool_and_another_place_of_the_device_are_named() {
     for (words, code, expected) in [
         ("tool.csv", 1, "tool"),
         ("tool.csv --tool anew", 0, "unchanged within"),
-        ("device.csv", 0, "unchanged within"),
-        ("device.csv --device known", 1, "device"),
+        ("device.csv", 1, "device"),
+        ("device.csv --device anew", 0, "unchanged within"),
     ] {
         let run = folder.run(&format!(
             "track poecal-out/calibration.json {words} --reference old.csv --repeatability 0.05mm --history none"

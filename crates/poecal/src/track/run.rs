@@ -81,7 +81,7 @@ pub fn track(
     let is_unexplained = !is_nearly && noise_m > BEYOND * usual_m;
     if is_unexplained {
         (explanation, alternatives) = (None, Vec::new());
-        notes.push(words::unexplained(change_m, usual_m));
+        notes.push(words::unexplained(change_m, usual_m, visit.device_is_known));
     }
     notes.extend(explanation.as_ref().filter(|_| is_far).map(words::far));
     Ok(Tracked {

@@ -44,10 +44,11 @@ pub(super) fn wider(is_stated: bool, times: f64) -> String {
 }
 
 /// That no single change explains what is seen.
-pub(super) fn unexplained(change_m: f64, usual_m: f64) -> String {
+pub(super) fn unexplained(change_m: f64, usual_m: f64, device_is_known: bool) -> String {
+    let device = if device_is_known { "if the device was set up anew, state --device anew; " } else { "" };
     format!(
         "the rows are {:.3} mm off (RMS), where errors of the model and noise explain {:.3} mm a coordinate, and no change of one joint, the tool or the \
-         device explains the rest: if the calibration is of this robot and this tool, calibrate anew",
+         device explains the rest: {device}if the calibration is of this robot and this tool, calibrate anew",
         1e3 * change_m,
         1e3 * usual_m
     )
