@@ -87,7 +87,8 @@ impl Errors {
         };
         let at = |errors: &[f64], k: usize| k.checked_sub(1).and_then(|index| errors.get(index)).copied();
         let from = at(&first, first_with(RISK) - 1).unwrap_or(0.0);
-        Some(Bounded { found, from, to: at(&largest, first_with(1.0 - RISK)) })
+        // Further rows of a configuration count for what was found, but not for its lower bound.
+        Some(Bounded { found, from: from.min(found), to: at(&largest, first_with(1.0 - RISK)) })
     }
 
     /// (49): the largest error that was found, and how far the noise of its measurement may be off.
