@@ -48,7 +48,7 @@ def test_one_figure_for_one_question(name, tmp_path):
     after = re.search(r"^after +([0-9.]+) mm \(RMS\) expected, 95 % below ([0-9.]+) mm:\s+(\w+)\s+model$", table, re.M)
     assert after and (after[1], after[2], after[3]) == (shown(expected), shown(verdict["bound95_mm"]), verdict["model"]), table
     page = (out / "report.html").read_text()
-    assert f"Expected error of the {verdict['model']} model: " in page and page.count('data-key="verdict.expected_error_mm"') == 1
+    assert re.search(rf"after: {verdict['model']}\s+model, expected", page) and page.count('data-key="verdict.expected_error_mm"') == 1
     assert expected == own["measured"]["sigma_position_mm"]
     # Predictions in the configurations that were measured, of every target.
     predicted = []

@@ -189,7 +189,7 @@ def test_the_guide_has_a_place_for_every_option():
     guide = GUIDE.read_text().split("## The program in Python\n")[1]
     rows = [[cell.strip() for cell in line.strip("|").split("|")] for line in guide.splitlines() if line.startswith("| `")]
     table = {row[0]: row[1] for row in rows}
-    commands = re.findall(r"^  ([a-z-]+) ", program("--help").split("Commands:")[1].split("Options:")[0], re.MULTILINE)
+    commands = re.findall(r"^  ([a-z-]+) ", program("--help").split("<COMMAND>")[1].split("Options:")[0], re.MULTILINE)
     commands.remove("help")
     everywhere = {"--quiet", "--threads"}
     expected = {f"`{option}`" for option in everywhere}

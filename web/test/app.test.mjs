@@ -334,7 +334,7 @@ describe("the page that calibrates", { skip: skipped }, () => {
       const page = await open(browser, { address: served.replace("poecal.html", `${name}.html`) });
       for (const files of [ELBOW, { "other.csv": POINTS }]) {
         await drop(page, files);
-        await status(page, /^Ended by a defect/);
+        await status(page, /^Stopped by an internal error/);
         const [{ kind, text }] = await messages(page);
         assert.match(`${kind}: ${text.replace(/^error: /, "")}`, words);
         await page.evaluate(() => (document.getElementById("status").textContent = ""));

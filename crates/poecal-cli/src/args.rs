@@ -62,7 +62,7 @@ use words::{EXPORT_FORMAT, FORM, FRAME, MODEL, PREDICT_IN, REFIT, REQUIRED_LEVEL
 
 /// What the program ends with.
 const EXIT_CODES: &str = "Exit codes: 0 done, and a calibration is usable; 1 there are results, but the verdict is `do not use` or \
-                          worse than --require asks for, a limit of --accept is not shown to be kept, or they could not be \
+                          worse than --require asks for, a limit of --accept is not met with 95 % confidence, or the output could not be \
                           printed; 2 refused: wrong input or usage, nothing was written; 3 no result at all";
 
 /// Calibrates robot arms: URDF and tracker, CMM or camera measurements in, a URDF that matches the real arm out.
@@ -119,7 +119,7 @@ pub(crate) enum Command {
     Predict(Predict),
     /// Show how a model and measurement files are understood
     Check(Check),
-    /// Write measurements of any form as a table of our own, and beside it how they were read
+    /// Write measurements of any form as a table of poecal's, and beside it how they were read
     Import(Import),
     /// Write a model in another form
     Convert(Convert),
@@ -127,7 +127,7 @@ pub(crate) enum Command {
     Export(Export),
     /// Write calibrated numbers into a URDF
     Apply(Apply),
-    /// Correct a program for the nominal robot so that the actual one does what it means
+    /// Correct a program for the nominal robot so that the actual one reaches the programmed poses
     Compensate(Compensate),
     /// Explain how a robot differs from its model by joint offsets
     Offsets(Offsets),
@@ -140,7 +140,7 @@ pub(crate) enum Command {
     Identify(Identify),
     /// Choose the configurations to measure: which, how many, and the error to expect
     Plan(Box<Plan>),
-    /// Judge measurements while they are made: is a row wrong, what to measure next, may one stop
+    /// Judge measurements while they are made: is a row wrong, what to measure next, is it enough
     ///
     /// Ends with code 0 where the error of --until is reached, or --once the rows are as expected; 1 where it is not, or a row is named.
     Watch(Box<Watch>),
@@ -210,11 +210,11 @@ pub(crate) struct Validate {
     /// (RMS) is at most twice the expected one; `inside_sampled_range` if that holds of the rows inside the sampled range
     #[arg(long, value_parser = one_of(REQUIRED_LEVEL), value_name = "VERDICT", help_heading = JUDGED)]
     pub(crate) require: Option<Level>,
-    /// Limits that the errors shall keep, like 0.2mm or 0.2mm,max:0.5mm,0.05deg: rms (the default), p95 or max of all errors in a unit. End with
+    /// Limits that the errors must meet, like 0.2mm or 0.2mm,max:0.5mm,0.05deg: rms (the default), p95 or max of all errors in a unit. End with
     /// code 1 unless each is shown to be kept, with 95 % confidence
     #[arg(long, value_name = "[rms:|p95:|max:]LIMIT", value_delimiter = ',', help_heading = JUDGED)]
     pub(crate) accept: Vec<Limit>,
-    /// Which model shall keep them: the corrected one, if there is one (the default), or the calibrated one, which a URDF holds
+    /// Which model must meet them: the corrected one, if there is one (the default), or the calibrated one, which a URDF holds
     #[arg(long, value_parser = one_of(MODEL), help_heading = JUDGED)]
     pub(crate) accept_model: Option<AcceptedModel>,
     /// Folder for the results of the check: validation.json, errors.csv with each row beside its bound, and a report
@@ -279,7 +279,7 @@ pub(crate) struct Check {
     pub(crate) model: Option<PathBuf>,
     /// Measurement files (CSV) [default: from the settings]
     pub(crate) measurements: Vec<PathBuf>,
-    /// Settings (TOML), of which those count that are options here [default: poecal.toml in this folder, if no model is named]
+    /// Settings (TOML); those that are no options of this command are ignored [default: poecal.toml in this folder, if no model is named]
     #[arg(long, value_name = "FILE")]
     pub(crate) settings: Option<PathBuf>,
     #[command(flatten)]

@@ -76,10 +76,10 @@ use crate::words::{chosen, frame as frame_word, from_mm, robust as robust_word, 
 /// validate
 ///     Measurements to judge by: all other rows are fitted.
 /// accept
-///     Limits that the errors of rows that were not fitted shall keep, like "0.2mm" or "0.2mm,max:0.5mm,0.05deg": rms (the default), p95 or
+///     Limits that the errors of rows that were not fitted must meet, like "0.2mm" or "0.2mm,max:0.5mm,0.05deg": rms (the default), p95 or
 ///     max of all errors in a unit. `Calibration.acceptance` says whether each is shown to be kept.
 /// accept_model
-///     Which model shall keep them: "corrected", if there is one, or "calibrated".
+///     Which model must meet them: "corrected", if there is one, or "calibrated".
 /// record
 ///     What the report states of the session: a dict of texts with keys among "certificate", "laboratory", "customer", "robot", "serial",
 ///     "instrument", "operator", "date", "place", "temperature" and "note".

@@ -806,9 +806,9 @@ impl Calibration {
     /// refit
     ///     "auto" refits the device's frame where the measurements show that the device stands elsewhere; "never" says it.
     /// accept
-    ///     Limits that the errors shall keep, like "0.2mm" or "0.2mm,max:0.5mm,0.05deg"; see `poecal.calibrate`.
+    ///     Limits that the errors must meet, like "0.2mm" or "0.2mm,max:0.5mm,0.05deg"; see `poecal.calibrate`.
     /// accept_model
-    ///     Which model shall keep them: "corrected", if there is one, or "calibrated".
+    ///     Which model must meet them: "corrected", if there is one, or "calibrated".
     /// out
     ///     Folder for the results of the check: validation.json, errors.csv with each row beside its bound, and a report.
     /// force

@@ -115,7 +115,7 @@ pub(crate) fn schema() -> String {
 /// columns
 ///     A mapping file for a file with other column names.
 /// units
-///     Units of columns that state none, "mm,deg"; those of a mapping precede.
+///     Units of columns that state none, "mm,deg"; a mapping file takes precedence.
 ///
 /// Returns
 /// -------

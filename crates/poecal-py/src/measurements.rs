@@ -99,7 +99,7 @@ impl Measurements {
     /// lag
     ///     Lag of the clocks of two recordings, the measurements' time less that of the joint readings, "12s+-2s"; by default it is found.
     /// units
-    ///     Units of columns that state none, "mm,deg"; those of a mapping precede.
+    ///     Units of columns that state none, "mm,deg"; a mapping file takes precedence.
     /// sheet
     ///     Sheet of workbooks; by default the only one that holds a table.
     /// body
@@ -310,7 +310,7 @@ impl Measurements {
     /// strict
     ///     Whether lost beams, empty or zero positions, are an error instead of being skipped with a warning.
     /// units
-    ///     Units of columns that state none, "mm,deg"; those of a mapping precede.
+    ///     Units of columns that state none, "mm,deg"; a mapping file takes precedence.
     /// socket_distance
     ///     Known distance between the two sockets of each place, "50mm", or of pairs by name, "A-B=50mm,B-C=70mm+-0.02mm".
     /// contact

@@ -45,14 +45,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     );
     println!("verdict      {}", calibration.verdict.level.word());
     for (joint, found) in made.nominal.joints.iter().zip(&calibration.trust.joints) {
-        let sigma_tilt_rad = found.sigma_tilt_rad.ok_or("every axis is determined")?;
-        let sigma_shift_m = found.sigma_shift_m.ok_or("every axis is determined")?;
-        let (tilt, shift) = (found.tilt_rad.to_degrees(), 1e3 * found.shift_m);
-        let (sigma_tilt, sigma_shift) = (sigma_tilt_rad.to_degrees(), 1e3 * sigma_shift_m);
-        println!(
-            "{:<12} {tilt:.4} deg (± {sigma_tilt:.4}) and {shift:.4} mm (± {sigma_shift:.4}) from nominal",
-            joint.name
-        );
+        println!("{:<12} {}", joint.name, found.change.words());
     }
     Ok(())
 }

@@ -55,7 +55,7 @@ async function run(line, given, doing) {
   } catch (error) {
     if (error instanceof Ended) return undefined;
     showMessages([{ kind: "error", text: error.message }], given);
-    say("Ended by a defect.");
+    say("Stopped by an internal error of poecal.");
     return undefined;
   } finally {
     if (!engine.runs) busy(undefined);
@@ -72,7 +72,7 @@ function missing() {
   if (!models.length) return tables.length ? "Measurements are there; add a robot model: URDF, MJCF, SDF, TOML, or a calibration.json." : "Add a robot model and measurements.";
   if (!tables.length) return "The robot model is there; add measurements: a CSV with a row for each configuration.";
   const fitted = having("measurements").length || having("settings").length || judges();
-  return fitted ? undefined : "Rows to judge by are there; add measurements to fit.";
+  return fitted ? undefined : "Only validation measurements are there; add measurements to fit.";
 }
 
 /** Asks the program how the files are understood, and calibrates if `onwards` says so and nothing is missing. */

@@ -6,10 +6,10 @@ import { element } from "./dom.js";
 const CONTROLS = [
   { flag: "--frame", label: "Device frame", note: "where the measuring device stands", values: { "": "unknown: found by the fit", base: "the robot's base frame" } },
   { flag: "--frames", label: "Device moved", note: "between the measurement files", values: { "": "no: one frame for all", "per-file": "yes: a frame for each file" } },
-  { flag: "--held-out", label: "Held out", note: "share of the configurations that judge the fit", hint: "0.3" },
+  { flag: "--held-out", label: "Held out", note: "share of configurations kept for validation", hint: "0.3" },
   { flag: "--tolerance", label: "Tolerance", note: "deviation of an axis from nominal", hint: "0.5deg,5mm", offers: ["auto", "none", "0.2deg,2mm", "3deg,10mm"] },
   { flag: "--corrections", label: "Corrections", note: "what joints do beyond geometry", values: { "": "auto: those that predict better", all: "all: look among more", off: "off: geometry alone" } },
-  { flag: "--robust", label: "Outliers", note: "and how they are treated", values: { "": "auto: found, and told", off: "off: every row counts in full", huber: "huber", cauchy: "cauchy", tukey: "tukey" } },
+  { flag: "--robust", label: "Outliers", note: "and how they are treated", values: { "": "auto: detected and reported", off: "off: every row counts in full", huber: "huber", cauchy: "cauchy", tukey: "tukey" } },
   { flag: "--accept", label: "Limits to keep", note: "errors of rows that were not fitted", hint: "none, or 0.2mm,max:0.5mm" },
   { flag: "--sigma-position", label: "Noise of a position", note: "standard deviation of each component", hint: "from the rows, or 0.05mm" },
   { flag: "--sigma-rotation", label: "Noise of an orientation", note: "likewise", hint: "from the rows, or 0.01deg" },

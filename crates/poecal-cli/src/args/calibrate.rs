@@ -69,7 +69,7 @@ pub(crate) struct Calibrate {
     /// model, and the point is the target `measured`
     #[arg(long, help_heading = FIT)]
     pub(crate) move_tip: bool,
-    /// Share of the configurations held out, where nothing else says which rows are; 0 fits every row in any case [default: 0.3]
+    /// Share of the configurations held out at random, unless a column `set`, --fit-where or --validate chooses them; 0 fits every row [default: 0.3]
     #[arg(long, value_name = "SHARE", value_parser = share, allow_hyphen_values = true, help_heading = JUDGED)]
     pub(crate) held_out: Option<f64>,
     /// Seed of that choice [default: 1]
@@ -109,11 +109,11 @@ pub(crate) struct Calibrate {
     /// End with code 1 if the verdict is worse than this (results are written all the same); it also does if the verdict is `do not use`
     #[arg(long, value_parser = one_of(REQUIRED_LEVEL), value_name = "VERDICT", help_heading = JUDGED)]
     pub(crate) require: Option<Level>,
-    /// Limits that the errors of rows that were not fitted shall keep, like 0.2mm or 0.2mm,max:0.5mm,0.05deg: rms (the default), p95 or max of all
+    /// Limits that the errors of rows that were not fitted must meet, like 0.2mm or 0.2mm,max:0.5mm,0.05deg: rms (the default), p95 or max of all
     /// errors in a unit. End with code 1 unless each is shown to be kept, with 95 % confidence
     #[arg(long, value_name = "[rms:|p95:|max:]LIMIT", value_delimiter = ',', help_heading = JUDGED)]
     pub(crate) accept: Vec<Limit>,
-    /// Which model shall keep them: the corrected one, if there is one (the default), or the calibrated one, which a URDF holds
+    /// Which model must meet them: the corrected one, if there is one (the default), or the calibrated one, which a URDF holds
     #[arg(long, value_parser = one_of(MODEL), help_heading = JUDGED)]
     pub(crate) accept_model: Option<AcceptedModel>,
     /// What the report states of the session, like serial=4711 (repeatable): certificate, laboratory, customer, robot, serial, instrument,

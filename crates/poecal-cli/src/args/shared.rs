@@ -90,7 +90,7 @@ pub(crate) struct ColumnArgs {
     /// Mapping file for files with other column names
     #[arg(long, value_name = "MAP.toml")]
     pub(crate) columns: Option<PathBuf>,
-    /// Units of columns that state none, like mm,deg; those of a mapping precede
+    /// Units of columns that state none, like mm,deg; a mapping file takes precedence
     #[arg(long, value_name = "UNIT[,UNIT]")]
     pub(crate) units: Option<String>,
 }
@@ -151,11 +151,11 @@ pub(crate) struct Meaning {
     /// Which rows share a frame of the measuring device: per-file if it was moved between the files
     #[arg(long, value_parser = one_of(FRAMES), default_value = "common")]
     pub(crate) frames: Frames,
-    /// How a file of joint readings and one of measurements find each other [default: by name, else recordings at the times of their stands and lists by
-    /// their order, if the nominal robot agrees with no other one as well]
+    /// How rows of a joint file are matched to rows of a measurement file [default: by name, else recordings by the times at which the robot stood still and
+    /// lists by their order, if the nominal model fits no other match as well]
     #[arg(long, value_parser = one_of(JOIN))]
     pub(crate) join: Option<Join>,
-    /// Lag of the clocks of two recordings, the measurements' time less that of the joint readings, where their stands fit at several [default: found]
+    /// Clock offset of two recordings, the measurements' time less that of the joint readings, where several fit [default: found]
     #[arg(long, value_name = "SECONDS[+-SECONDS]", allow_hyphen_values = true)]
     pub(crate) lag: Option<Lag>,
     /// Sheet of workbooks [default: the only one that holds a table]

@@ -14,7 +14,7 @@ use crate::quantity::sigma_m;
 pub(crate) struct Track {
     /// The calibration (calibration.json)
     pub(crate) calibration: PathBuf,
-    /// Measurements of the visit (CSV): best some configurations of the calibration again
+    /// Measurements of the visit, preferably of configurations of the calibration
     #[arg(required_unless_present = "plan")]
     pub(crate) measurements: Vec<PathBuf>,
     /// Rows of an earlier visit whose configurations are repeated [default: the measurements that the calibration was made of, by their SHA-256]

@@ -268,7 +268,7 @@ fn bad_use_gets_one_sentence_each() {
         case("calibrate robot.urdf good.csv --fit-where x=9", "",
              "good.csv: found no row with `9` in column `x`, expected at least one to fit"),
         case("calibrate robot.urdf good.csv --columns bad.toml", "sepparator = ';'\n",
-             "bad.toml:1:1: unknown field `sepparator`, expected one of `separator`, `decimal`, `skip_lines`, `pose`, `id`, `target`, `target_name`, `instrument`, `set`, `third_axis`, `units`, `joints`, `position`, `orientation`, `sigma_position`, `sigma_rotation`, `targets`, `mount`"),
+             "bad.toml:1:1: unknown field `sepparator`, expected one of `separator`, `decimal`, `skip_lines`, `pose`, `ignore`, `id`, `target`, `target_name`, `instrument`, `set`, `third_axis`, `units`, `joints`, `position`, `orientation`, `sigma_position`, `sigma_rotation`, `targets`, `mount`"),
         case("predict robot.urdf joints.csv --target tool", "",
              "robot.urdf: found no target `tool`, expected none: the model has no targets, leave out --target to predict the tip"),
         case("predict robot.urdf joints.csv --frame device", "",

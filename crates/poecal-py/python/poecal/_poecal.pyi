@@ -436,7 +436,7 @@ class Measurements:
         lag
             Lag of the clocks of two recordings, the measurements' time less that of the joint readings, "12s+-2s"; by default it is found.
         units
-            Units of columns that state none, "mm,deg"; those of a mapping precede.
+            Units of columns that state none, "mm,deg"; a mapping file takes precedence.
         sheet
             Sheet of workbooks; by default the only one that holds a table.
         body
@@ -580,7 +580,7 @@ class Measurements:
         strict
             Whether lost beams, empty or zero positions, are an error instead of being skipped with a warning.
         units
-            Units of columns that state none, "mm,deg"; those of a mapping precede.
+            Units of columns that state none, "mm,deg"; a mapping file takes precedence.
         socket_distance
             Known distance between the two sockets of each place, "50mm", or of pairs by name, "A-B=50mm,B-C=70mm+-0.02mm".
         contact
@@ -1516,9 +1516,9 @@ class Calibration:
         refit
             "auto" refits the device's frame where the measurements show that the device stands elsewhere; "never" says it.
         accept
-            Limits that the errors shall keep, like "0.2mm" or "0.2mm,max:0.5mm,0.05deg"; see `poecal.calibrate`.
+            Limits that the errors must meet, like "0.2mm" or "0.2mm,max:0.5mm,0.05deg"; see `poecal.calibrate`.
         accept_model
-            Which model shall keep them: "corrected", if there is one, or "calibrated".
+            Which model must meet them: "corrected", if there is one, or "calibrated".
         out
             Folder for the results of the check: validation.json, errors.csv with each row beside its bound, and a report.
         force
@@ -1853,10 +1853,10 @@ def calibrate(
     validate
         Measurements to judge by: all other rows are fitted.
     accept
-        Limits that the errors of rows that were not fitted shall keep, like "0.2mm" or "0.2mm,max:0.5mm,0.05deg": rms (the default), p95 or
+        Limits that the errors of rows that were not fitted must meet, like "0.2mm" or "0.2mm,max:0.5mm,0.05deg": rms (the default), p95 or
         max of all errors in a unit. `Calibration.acceptance` says whether each is shown to be kept.
     accept_model
-        Which model shall keep them: "corrected", if there is one, or "calibrated".
+        Which model must meet them: "corrected", if there is one, or "calibrated".
     record
         What the report states of the session: a dict of texts with keys among "certificate", "laboratory", "customer", "robot", "serial",
         "instrument", "operator", "date", "place", "temperature" and "note".
@@ -2095,7 +2095,7 @@ def read_joints(path: _Path, robot: Robot, *, columns: _Path | None = None, unit
     columns
         A mapping file for a file with other column names.
     units
-        Units of columns that state none, "mm,deg"; those of a mapping precede.
+        Units of columns that state none, "mm,deg"; a mapping file takes precedence.
 
     Returns
     -------

@@ -15,6 +15,8 @@ use crate::measurement::{Dataset, Quantity};
 /// How many times what noise and errors of the model explain the changes may scatter beside the best explanation: beyond it no single change
 /// explains them, or the calibration is of another robot.
 const BEYOND: f64 = 5.0;
+/// Changes in standard deviations below which a row is a copy: rounding of a device that is fitted.
+const ROUNDING: f64 = 1e-6;
 /// Share of the changes that an explanation beyond what is linear may leave.
 const NEARLY: f64 = 0.3;
 
@@ -56,7 +58,7 @@ pub fn track(
     if verdict.is_wider {
         notes.push(words::wider(options.repeatability_m.is_some(), verdict.variance.sqrt()));
     }
-    if repeated == data.len() && changes.residual.iter().all(|it| *it == 0.0) {
+    if repeated == data.len() && changes.residual.iter().all(|it| it.abs() < ROUNDING) {
         notes.push(words::copied());
     }
     let named = |it: &Tried| explanation(it, &hypotheses[it.at], &verdict, &model, &data);

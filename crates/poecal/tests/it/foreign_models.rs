@@ -60,7 +60,7 @@ fn bad_mjcf_gets_one_sentence_each() {
         (mjcf("", "type='ball'", ""),
          "m.xml: found no end link with a moving joint above it, expected a serial chain: choose one with --base-link and --tip-link"),
         (mjcf("", "", "<body name='b'><joint/></body><body name='c'><joint/></body>"),
-         "m.xml: found 2 end links with a moving joint above them (`b`, `c`), expected one: choose it with --tip-link, and the base, if it is not the root, with \
+         "m.xml: found 2 end links with a moving joint above them (`b`, `c`), expected one: choose it, or a link before they part (`a`), with --tip-link, and the base, if it is not the root, with \
           --base-link"),
     ];
     check("m.xml", &cases);

@@ -14,7 +14,7 @@ const MAPPINGS: &[(&str, &str)] = &[
     ("decimal = \"'\"", "map.toml:1:11: found the decimal sign `'`, expected `.` or `,`"),
     (
         "\n\nseparater = \";\"",
-        "map.toml:3:1: unknown field `separater`, expected one of `separator`, `decimal`, `skip_lines`, `pose`, `id`, `target`, `target_name`, `instrument`, `set`, `third_axis`, `units`, `joints`, `position`, `orientation`, `sigma_position`, `sigma_rotation`, `targets`, `mount`",
+        "map.toml:3:1: unknown field `separater`, expected one of `separator`, `decimal`, `skip_lines`, `pose`, `ignore`, `id`, `target`, `target_name`, `instrument`, `set`, `third_axis`, `units`, `joints`, `position`, `orientation`, `sigma_position`, `sigma_rotation`, `targets`, `mount`",
     ),
     (
         "[position]\nunit = \"furlong\"",

@@ -66,7 +66,7 @@ fn a_choice_takes_the_place_of_what_was_guessed() {
     ];
     let other = guess(FOREIGN, &choices).unwrap();
     assert_eq!(other.missing, ["a"]);
-    let expected = "# How the columns of points.csv are read (--columns).\nid = \"no\"\n\n[joints]\n# a = found no column\nlift = \"axis two\"\n\
+    let expected = "# How the columns of points.csv are read, by the option --columns.\nid = \"no\"\n\n[joints]\n# a = found no column\nlift = \"axis two\"\n\
                     b = { column = \"axis three\", unit = \"deg\" }\n\n[position]\ncolumns = [\"goal x\", \"meas_y\", \"meas_z\"]\nunit = \"in\"\n";
     assert_eq!(other.mapping, expected);
 }

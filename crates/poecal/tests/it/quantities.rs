@@ -41,8 +41,13 @@ fn a_file_of_the_earlier_schema_is_read_as_one_of_this() {
     let text = EARLIER.replace("poecal-calibration-1", SCHEMA);
     assert_ne!(text, EARLIER);
     assert_eq!(earlier(), CalibrationFile::parse(&text, "calibration.json").unwrap());
-    // All keys of poses and points are as they were.
-    assert_eq!(earlier().to_text().unwrap(), text);
+    // All keys of poses and points are as they were, but for those of a whole axis, which have its name now.
+    let mut renamed = text;
+    for key in ["tilt_deg", "shift_mm"] {
+        renamed = renamed.replace(&format!("\"{key}\""), &format!("\"axis_{key}\""));
+        renamed = renamed.replace(&format!("\"sigma_{key}\""), &format!("\"sigma_axis_{key}\""));
+    }
+    assert_eq!(earlier().to_text().unwrap(), renamed);
     assert_eq!(earlier().uncertainty(&[None]).unwrap().1, [0]);
 }
 

@@ -70,7 +70,7 @@ impl SizesReason {
         match self {
             SizesReason::Given => "the sizes were given",
             SizesReason::Predict => "they predict rows better that were left out",
-            SizesReason::NoBetter => "no terms of the joints predict other rows better",
+            SizesReason::NoBetter => "no joint terms predict other rows clearly better",
             SizesReason::Small => "no rows could be left out, so the sizes are small ones",
             SizesReason::WorseHeldOut => "the joints' terms predict the rows worse that were held out",
             SizesReason::TooFew => "too few configurations to tell what the joints do",

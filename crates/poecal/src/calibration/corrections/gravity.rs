@@ -73,7 +73,7 @@ impl CorrectionContext<'_> {
 
 /// What is said where terms are of no use, whatever the direction.
 pub(super) fn of_no_use() -> String {
-    "the direction of gravity was not found: no terms of the joints predict other rows better; if the robot does not stand upright, state it (--gravity \
+    "the direction of gravity was not found: no joint terms predict other rows clearly better; if the robot does not stand upright, state it (--gravity \
      X,Y,Z)"
         .to_owned()
 }

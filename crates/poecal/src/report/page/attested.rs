@@ -151,7 +151,7 @@ fn result(file: &CalibrationFile) -> Markup {
     let name = lead.map_or("position", Quantity::name);
     html! {
         div.result {
-            @if let Some(before) = of("registered") { div { b { (number(before)) (unit) } "before: the nominal model" } }
+            @if let Some(before) = of("registered") { div { b { (number(before)) (unit) } "before: nominal axes, tool and device located" } }
             @if let Some(after) = after { div { b { (number(after)) (unit) } "after: the " (delivered(file)) " model" } }
             @if let Some(found) = expected(file) {
                 div { b { (number(found.error_mm)) " mm" } "expected (RMS), 95 % below " (number(found.bound_mm)) " mm" }
@@ -159,8 +159,9 @@ fn result(file: &CalibrationFile) -> Markup {
             }
         }
         p {
-            "Before and after: " (name) " errors (RMS) on " (on) ". Expected: of the tip where it was measured, with the uncertainty of the fit and what the model "
-            "does not describe. The expanded uncertainty is twice its standard uncertainty in one coordinate."
+            "Before and after: " (name) " errors (RMS) on " (on) ". Expected: the RMS error of predicted tip positions in the configurations measured, by the uncertainty of the fit and "
+            "the error of the model. Expanded uncertainty of a coordinate: k = 2 times expected / √3. Errors that all measurements share, such as the \
+             instrument's scale, are not included."
         }
     }
 }
@@ -168,7 +169,7 @@ fn result(file: &CalibrationFile) -> Markup {
 fn limits(found: &Acceptance) -> Markup {
     html! {
         table {
-            thead { tr { th { "Limit (95 % confidence)" } th { "found" } th { "interval" } th { "decision" } } }
+            thead { tr { th { "Limit" } th { "found" } th { "one-sided 95 % bounds" } th { "decision" } } }
             tbody {
                 @for limit in found.limits.iter().take(LISTED) {
                     tr {
@@ -202,8 +203,8 @@ fn method(file: &CalibrationFile) -> String {
         DeviceFrameKnowledge::Base => "the device measures in the robot's base",
     };
     format!(
-        "Product of exponentials: joint screws, tool{terms} by least squares over {} rows; {place}. The errors are of rows that were held out where \
-         there are any; limits are decided with 95 % confidence. poecal {}.",
+        "Product of exponentials: joint axes, tool{terms} fitted to {} rows by least squares; {place}. Errors are those of held-out rows where there \
+         are any; limits are decided with 95 % confidence. Made by poecal {}.",
         file.accuracy.training.count, file.poecal_version
     )
 }

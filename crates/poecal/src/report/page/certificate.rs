@@ -48,8 +48,8 @@ pub(super) fn limits_table(found: &Acceptance) -> Markup {
         (table)
         p.note {
             "Errors of the " b { (found.model.word()) } " model, measured minus predicted, by " (found.by.words())
-            ". Each bound holds with 95\u{a0}% confidence. A limit is kept if the upper bound does not exceed it, and exceeded if the lower bound \
-             does; between them neither is shown."
+            ". The bounds are one-sided, each with 95\u{a0}% confidence. PASS: the upper bound is within the limit. FAIL: the lower bound is above it. \
+             NOT SHOWN: the limit is between them; measure more configurations."
         }
     }
 }

@@ -145,8 +145,8 @@ pub(super) fn corrections(file: &CalibrationFile) -> Markup {
         div.wide { (table) }
         p.note {
             "Shift, tilt and offset of each axis, in directions of the base frame with all joints at zero; the shift is that of the axis' point \
-             nearest to the joint's origin. Add the offset to the joint's value. Whatever an offset can explain counts as offset. The offset of the first \
-             joint is not determined where the base was fitted, that of the last where the tool was."
+             nearest to the joint's origin. Add the offset to the joint's value. Any part of a correction that an offset can explain is counted as offset. \
+             The first joint's offset is not determined if the base was fitted, the last joint's if the tool was."
         }
         (plots(&figures::corrections(file), "Dots: size of tilt and shift. Lines: ±; none where a correction is not determined."))
         @for (k, found) in file.corrections.iter().enumerate() {

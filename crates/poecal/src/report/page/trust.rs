@@ -58,8 +58,9 @@ fn expected(file: &CalibrationFile, found: &UncertaintyEntry, of: &str) -> Marku
                 Attribution::Robot => {
                     (figure_or(found.discrepancy.get(leading), format_args!("{of}.discrepancy_{}", leading.key()), "–"))
                     (spaced(leading.unit()))
-                    " per component of the residuals count as robot error in the figures above: nothing shows that they are \
-                     measurement noise. A stated noise that explains them, or repeated measurements, would."
+                    " per component: the error of the model, by residuals and cross-validation. No stated noise explains the residuals and no repeated \
+                     measurement shows it, so all of them count as robot error. State the noise (--sigma-position) or repeat measurements to \
+                     separate the two."
                 }
                 Attribution::StatedNoise => {
                     "The stated noise explains the residuals, so predictions are better than any single measurement."
@@ -256,7 +257,8 @@ fn common(file: &CalibrationFile) -> Markup {
 /// How much of what is known of each axis the measurements say, beside the tolerance.
 fn shares(file: &CalibrationFile) -> Markup {
     let mut table = HtmlTable::new(
-        "The measurements' share in what is known of each axis, from 0 to 1; the rest was said by the tolerance",
+        "What limits the uncertainty of each axis: the measurements' share of its variance, from 0 to 1; the rest is the tolerance's. A small share \
+         beside a small ± does not mean that the axis was not measured",
         1,
         &["joint", "direction", "place"],
     );

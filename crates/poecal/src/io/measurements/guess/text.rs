@@ -23,7 +23,7 @@ fn list<'a>(names: impl Iterator<Item = &'a str>) -> String {
 
 /// The mapping in TOML; what has no column is a comment.
 pub(super) fn mapping(draft: &Draft, file: &str) -> String {
-    let mut out = format!("# How the columns of {} are read (--columns).\n", visible(file));
+    let mut out = format!("# How the columns of {} are read, by the option --columns.\n", visible(file));
     let unit = |group: &str| draft.units.get(group).and_then(|it| it.map(|unit| unit.symbol()));
     for (name, column) in [("id", &draft.id), ("target", &draft.target)] {
         if let Some(column) = column {
