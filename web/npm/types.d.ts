@@ -19,21 +19,18 @@ export interface CalibrateOptions {
    * Measurement files:
    */
   target?: Value | readonly Value[];
-  /** Units of columns that state none, like mm,deg; those of a mapping precede */
+  /** Units of columns that state none, like mm,deg; a mapping file takes precedence */
   units?: Value | readonly Value[];
   /** Refuse lost beams (empty or zero positions) instead of skipping them with a warning */
   strict?: boolean;
   /** Which rows share a frame of the measuring device: per-file if it was moved between the files */
   frames?: "common" | "per-file";
   /**
-   * How a file of joint readings and one of measurements find each other [default: by name, else recordings at the times of their stands
-   * and lists by their order, if the nominal robot agrees with no other one as well]
+   * How rows of a joint file are matched to rows of a measurement file [default: by name, else recordings by the times at which the robot
+   * stood still and lists by their order, if the nominal model fits no other match as well]
    */
   join?: "name" | "rows" | "time" | "motion";
-  /**
-   * Lag of the clocks of two recordings, the measurements' time less that of the joint readings, where their stands fit at several
-   * [default: found]
-   */
+  /** Clock offset of two recordings, the measurements' time less that of the joint readings, where several fit [default: found] */
   lag?: Value | readonly Value[];
   /** Sheet of workbooks [default: the only one that holds a table] */
   sheet?: Value | readonly Value[];
@@ -113,18 +110,21 @@ export interface CalibrateOptions {
   robust?: "auto" | "off" | "huber" | "cauchy" | "tukey";
   /** What to do where a device, a target, a nest or a joint's zero moved during the session, or configurations are wrong as a whole */
   repair?: "auto" | "off";
-  /** Share of the configurations held out, where nothing else says which rows are; 0 fits every row in any case [default: 0.3] */
+  /**
+   * Share of the configurations held out at random, unless a column `set`, --fit-where or --validate chooses them; 0 fits every row
+   * [default: 0.3]
+   */
   heldOut?: Value | readonly Value[];
   /** Seed of that choice [default: 1] */
   seed?: Value | readonly Value[];
   /** End with code 1 if the verdict is worse than this (results are written all the same); it also does if the verdict is `do not use` */
   require?: "good" | "inside_sampled_range";
   /**
-   * Limits that the errors of rows that were not fitted shall keep, like 0.2mm or 0.2mm,max:0.5mm,0.05deg: rms (the default), p95 or max of
+   * Limits that the errors of rows that were not fitted must meet, like 0.2mm or 0.2mm,max:0.5mm,0.05deg: rms (the default), p95 or max of
    * all errors in a unit. End with code 1 unless each is shown to be kept, with 95 % confidence
    */
   accept?: Value | readonly Value[];
-  /** Which model shall keep them: the corrected one, if there is one (the default), or the calibrated one, which a URDF holds */
+  /** Which model must meet them: the corrected one, if there is one (the default), or the calibrated one, which a URDF holds */
   acceptModel?: "corrected" | "calibrated";
   /** Parameterisation of joint errors; all but the default are for comparison */
   formulation?: "adjoint" | "screw" | "screw-offsets" | "adjoint-offsets";
@@ -143,21 +143,18 @@ export interface CalibrateOptions {
 
 /** Options of `poecal validate`, by their long names. */
 export interface ValidateOptions {
-  /** Units of columns that state none, like mm,deg; those of a mapping precede */
+  /** Units of columns that state none, like mm,deg; a mapping file takes precedence */
   units?: Value | readonly Value[];
   /** Refuse lost beams (empty or zero positions) instead of skipping them with a warning */
   strict?: boolean;
   /** Which rows share a frame of the measuring device: per-file if it was moved between the files */
   frames?: "common" | "per-file";
   /**
-   * How a file of joint readings and one of measurements find each other [default: by name, else recordings at the times of their stands
-   * and lists by their order, if the nominal robot agrees with no other one as well]
+   * How rows of a joint file are matched to rows of a measurement file [default: by name, else recordings by the times at which the robot
+   * stood still and lists by their order, if the nominal model fits no other match as well]
    */
   join?: "name" | "rows" | "time" | "motion";
-  /**
-   * Lag of the clocks of two recordings, the measurements' time less that of the joint readings, where their stands fit at several
-   * [default: found]
-   */
+  /** Clock offset of two recordings, the measurements' time less that of the joint readings, where several fit [default: found] */
   lag?: Value | readonly Value[];
   /** Sheet of workbooks [default: the only one that holds a table] */
   sheet?: Value | readonly Value[];
@@ -201,11 +198,11 @@ export interface ValidateOptions {
    */
   require?: "good" | "inside_sampled_range";
   /**
-   * Limits that the errors shall keep, like 0.2mm or 0.2mm,max:0.5mm,0.05deg: rms (the default), p95 or max of all errors in a unit. End
+   * Limits that the errors must meet, like 0.2mm or 0.2mm,max:0.5mm,0.05deg: rms (the default), p95 or max of all errors in a unit. End
    * with code 1 unless each is shown to be kept, with 95 % confidence
    */
   accept?: Value | readonly Value[];
-  /** Which model shall keep them: the corrected one, if there is one (the default), or the calibrated one, which a URDF holds */
+  /** Which model must meet them: the corrected one, if there is one (the default), or the calibrated one, which a URDF holds */
   acceptModel?: "corrected" | "calibrated";
   /** File for the report, or `none` [default: report.html among the results] */
   report?: Value | readonly Value[];
@@ -221,7 +218,7 @@ export interface PredictOptions {
   baseLink?: Value | readonly Value[];
   /** Last link of the chain, where a URDF has several Measurement files: */
   tipLink?: Value | readonly Value[];
-  /** Units of columns that state none, like mm,deg; those of a mapping precede */
+  /** Units of columns that state none, like mm,deg; a mapping file takes precedence */
   units?: Value | readonly Value[];
   /** The frame of the poses */
   frame?: "base" | "device";
@@ -249,21 +246,18 @@ export interface CheckOptions {
    * Measurement files:
    */
   target?: Value | readonly Value[];
-  /** Units of columns that state none, like mm,deg; those of a mapping precede */
+  /** Units of columns that state none, like mm,deg; a mapping file takes precedence */
   units?: Value | readonly Value[];
   /** Refuse lost beams (empty or zero positions) instead of skipping them with a warning */
   strict?: boolean;
   /** Which rows share a frame of the measuring device: per-file if it was moved between the files */
   frames?: "common" | "per-file";
   /**
-   * How a file of joint readings and one of measurements find each other [default: by name, else recordings at the times of their stands
-   * and lists by their order, if the nominal robot agrees with no other one as well]
+   * How rows of a joint file are matched to rows of a measurement file [default: by name, else recordings by the times at which the robot
+   * stood still and lists by their order, if the nominal model fits no other match as well]
    */
   join?: "name" | "rows" | "time" | "motion";
-  /**
-   * Lag of the clocks of two recordings, the measurements' time less that of the joint readings, where their stands fit at several
-   * [default: found]
-   */
+  /** Clock offset of two recordings, the measurements' time less that of the joint readings, where several fit [default: found] */
   lag?: Value | readonly Value[];
   /** Sheet of workbooks [default: the only one that holds a table] */
   sheet?: Value | readonly Value[];
@@ -317,7 +311,7 @@ export interface IdentifyOptions {
    * Measurement files:
    */
   target?: Value | readonly Value[];
-  /** Units of columns that state none, like mm,deg; those of a mapping precede */
+  /** Units of columns that state none, like mm,deg; a mapping file takes precedence */
   units?: Value | readonly Value[];
   /**
    * Cameras of corners in pixels: CSV with name, fx, fy, cx, cy, k1 and so on in OpenCV's order (FILE#VERSION where it has several), YAML
