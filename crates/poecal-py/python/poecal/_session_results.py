@@ -92,8 +92,8 @@ class WatchedRow(Findings):
         return None if found is None else imported("numpy").array(found, dtype=float)
 
 
-class HandEye(Findings):
-    """Where a camera is: the result of `hand_eye`. Its data frame has a row for each of both frames."""
+class Judged(Findings):
+    """A result with a verdict."""
 
     __slots__ = ()
 
@@ -106,6 +106,12 @@ class HandEye(Findings):
     def reasons(self) -> list[str]:
         """Why it is no better, a sentence each."""
         return self._texts("verdict", "reasons")
+
+
+class HandEye(Judged):
+    """Where a camera is: the result of `hand_eye`. Its data frame has a row for each of both frames."""
+
+    __slots__ = ()
 
     @property
     def camera_pose(self) -> NDArray[np.float64]:
@@ -127,20 +133,10 @@ class HandEye(Findings):
         return [self["camera_frame"], self["target_frame"]]
 
 
-class ToolTip(Findings):
+class ToolTip(Judged):
     """Where the tip of a tool is: the result of `tcp`. Its data frame has a row for each tip."""
 
     __slots__ = ()
-
-    @property
-    def level(self) -> str:
-        """What to think of the result: "good", or how far it may be used."""
-        return self._at(str, "verdict", "level")
-
-    @property
-    def reasons(self) -> list[str]:
-        """Why it is no better, a sentence each."""
-        return self._texts("verdict", "reasons")
 
     @property
     def position_m(self) -> NDArray[np.float64]:
