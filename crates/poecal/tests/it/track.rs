@@ -80,64 +80,113 @@ impl Cell {
     }
 }
 
-/// The stated smallest shift of each joint is found in about 95 % of visits, the right joint is named, and an unchanged robot is unchanged in 99 %.
+/// What visits show of the shift of one joint, by its stated smallest size and by twice it.
+#[derive(Clone, Default)]
+struct Seen {
+    joint: String,
+    /// Sum of the stated smallest shifts, deg.
+    smallest_deg: f64,
+    visits: usize,
+    /// At the smallest size: changed; the joint is the explanation; it is among those that are named.
+    found: usize,
+    right: usize,
+    among: usize,
+    /// At twice the size: the joint is the explanation; it is among those that are named.
+    right_at_twice: usize,
+    among_at_twice: usize,
+}
+
+/// The stated smallest shift of each joint is found in 93 to 98 % of visits, the right joint is named, and an unchanged robot is unchanged in
+/// 99 %. Each first visit has its own noise, which all later ones are compared with: so there are many first visits, with ten later ones each.
 #[test]
 fn the_smallest_shift_is_found_as_often_as_stated() {
-    let each = trials(60).count.max(8);
-    let (mut all, mut found, mut right, mut among, mut twice, mut false_alarms) = (0, 0, 0, 0, 0, 0);
-    let mut unchanged = 0;
+    const VISITS: usize = 10;
+    let sessions = trials(40);
+    let (mut all, mut false_alarms, mut unchanged) = (Seen::default(), 0, 0);
     for (robot, known, count) in
         [(elbow(), false, 8), (elbow(), true, 5), (seven_axis(), false, 12), (scara(), true, 8)]
     {
-        let cell = Cell::new(&robot, 7);
+        let mut joints = vec![Seen::default(); robot.joints.len()];
         let mut generator = ChaCha8Rng::seed_from_u64(count as u64);
-        let options = cell.options(known);
-        let chosen = witnesses(&cell.file, &cell.first, None, count, None, &options).unwrap();
-        let device = known.then_some(cell.device_from_base);
-        for (joint, sight) in chosen.joints.iter().enumerate().filter(|(_, it)| it.unseen.is_none()) {
-            let (mut own, mut named) = (0, 0);
-            for _ in 0..each {
-                let sign = if random::uniform(&mut generator) < 0.5 { -1.0 } else { 1.0 };
-                let actual = cell.with_zero(joint, sign * sight.smallest);
-                let data = cell.visit(&actual, &chosen, device.as_ref(), &mut generator);
-                let (is_changed, is_best, is_among) = cell.found(&data, joint, &options);
-                all += 1;
-                own += usize::from(is_changed);
-                named += usize::from(is_best);
-                among += usize::from(is_among);
-                let actual = cell.with_zero(joint, sign * 2.0 * sight.smallest);
-                let data = cell.visit(&actual, &chosen, device.as_ref(), &mut generator);
-                twice += usize::from(cell.found(&data, joint, &options).2);
+        for seed in sessions.seeds() {
+            let cell = Cell::new(&robot, 7 + seed);
+            let options = cell.options(known);
+            let chosen = witnesses(&cell.file, &cell.first, None, count, None, &options).unwrap();
+            let device = known.then_some(cell.device_from_base);
+            for (joint, sight) in chosen.joints.iter().enumerate().filter(|(_, it)| it.unseen.is_none()) {
+                let seen = &mut joints[joint];
+                seen.joint = sight.joint.clone();
+                seen.smallest_deg += sight.smallest.to_degrees() * VISITS as f64;
+                for _ in 0..VISITS {
+                    let sign = if random::uniform(&mut generator) < 0.5 { -1.0 } else { 1.0 };
+                    let mut visit = |times: f64| {
+                        let actual = cell.with_zero(joint, sign * times * sight.smallest);
+                        let data = cell.visit(&actual, &chosen, device.as_ref(), &mut generator);
+                        cell.found(&data, joint, &options)
+                    };
+                    let ((is_changed, is_best, is_among), twice) = (visit(1.0), visit(2.0));
+                    seen.visits += 1;
+                    seen.found += usize::from(is_changed);
+                    seen.right += usize::from(is_best);
+                    seen.among += usize::from(is_among);
+                    seen.right_at_twice += usize::from(twice.1);
+                    seen.among_at_twice += usize::from(twice.2);
+                }
             }
-            found += own;
-            right += named;
+            for _ in 0..5 * VISITS {
+                let data = cell.visit(&cell.actual, &chosen, device.as_ref(), &mut generator);
+                false_alarms += usize::from(cell.found(&data, 0, &options).0);
+                unchanged += 1;
+            }
+        }
+        for seen in joints.iter().filter(|it| it.visits > 0) {
+            let percent = |count: usize| 100.0 * count as f64 / seen.visits as f64;
             println!(
-                "{} {count} points, device {}: {} smallest {:.4} deg, found {own} of {each}, right {named}",
+                "{} {count} points, device {}: {} smallest {:.4} deg, found {:.1} % of {}, right {:.1} %, among those named {:.1} %; at twice the size {:.1} and {:.1} %",
                 robot.name,
                 if known { "known" } else { "anew" },
-                sight.joint,
-                sight.smallest.to_degrees()
+                seen.joint,
+                seen.smallest_deg / seen.visits as f64,
+                percent(seen.found),
+                seen.visits,
+                percent(seen.right),
+                percent(seen.among),
+                percent(seen.right_at_twice),
+                percent(seen.among_at_twice)
             );
-        }
-        for _ in 0..5 * each {
-            let data = cell.visit(&cell.actual, &chosen, device.as_ref(), &mut generator);
-            false_alarms += usize::from(cell.found(&data, 0, &options).0);
-            unchanged += 1;
+            // Three standard errors of the numbers drawn beside the 93 to 98 % that are asked for.
+            let (found, count) = (seen.found as f64 / seen.visits as f64, seen.visits as f64);
+            let error = |share: f64| 3.0 * (share * (1.0 - share) / count).sqrt();
+            assert!(
+                found > 0.93 - error(0.93) && found < 0.98 + error(0.98),
+                "{}: found {found}",
+                seen.joint
+            );
+            let named = seen.among as f64 / seen.found as f64;
+            let named_at_twice = seen.among_at_twice as f64 / count;
+            assert!(
+                named.min(named_at_twice) > 0.98 - error(0.98),
+                "{}: named {named}, {named_at_twice}",
+                seen.joint
+            );
+            all.visits += seen.visits;
+            all.found += seen.found;
+            all.right += seen.right;
+            all.among += seen.among;
+            all.among_at_twice += seen.among_at_twice;
         }
     }
     let share = |count: usize, of: usize| count as f64 / of.max(1) as f64;
     println!(
-        "found {:.1} %, right {:.1} %, among those named {:.1} %, at twice the size among those named {:.1} % of {all}; unchanged ones named {:.2} % of {unchanged}",
-        100.0 * share(found, all),
-        100.0 * share(right, all),
-        100.0 * share(among, all),
-        100.0 * share(twice, all),
+        "all of {}: found {:.1} %, right {:.1} %, among those named {:.1} %, at twice the size {:.1} %; unchanged ones named {:.2} % of {unchanged}",
+        all.visits,
+        100.0 * share(all.found, all.visits),
+        100.0 * share(all.right, all.visits),
+        100.0 * share(all.among, all.visits),
+        100.0 * share(all.among_at_twice, all.visits),
         100.0 * share(false_alarms, unchanged)
     );
-    // Three standard errors of the numbers drawn beside the 93 to 98 % that are asked for.
-    let error = 3.0 * (0.95 * 0.05 / all as f64).sqrt();
-    assert!(share(found, all) > 0.93 - error && share(found, all) < 0.98 + error);
-    assert!(share(right, all) >= 0.8 && share(twice, all) >= 0.98 - error);
+    assert!(share(all.right, all.visits) >= 0.8);
     assert!(share(false_alarms, unchanged) <= 0.015 + 3.0 * (0.015 / unchanged as f64).sqrt());
 }
 
