@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""The steps of `./test` and of `./test packages`; scripts/steps.py runs them. `./test quick` is scripts/quick.
+"""The steps of `./test`, of `./test packages` and of validation/weekly; scripts/steps.py runs them. `./test quick` is scripts/quick.
 
-    scripts/run_tests.py change|packages [STEP…]    all steps, or those of these names with what they need
+    scripts/run_tests.py change|packages|weekly [STEP…]    all steps, or those of these names with what they need
 """
 
 import os
@@ -27,11 +27,13 @@ INSTALL = "tests/python/test_install.py"
 SITE = "tests/python/test_site.py"
 WASM = "wasm32-unknown-unknown"
 # Levels of vector instructions, the best first (crates/poecal/src/lanes/simd.rs), and what compares digits: programs of Rust tests, Python
-# files, and what web/ compares with the program.
+# files, and what web/ compares with the program. Every change is tried by a few of them at each level, and by all at the best.
 LEVELS = ["avx512", "avx2", "neon", "plain"]
 DIGITS_OF_RUST = ["poecal-cli it ", "poecal-lou2009 it ", "it determinism", "-simulated_disk", "-hostile",
                   "-detect::", "-photographs::"]  # pictures: no vector instructions but those of the calibration
 DIGITS_OF_PYTHON = ["tests/python/test_package_and_program.py", "tests/python/test_docs.py", "tests/python/test_examples.py"]
+SOME_OF_RUST = ["poecal-lou2009 it ", "it determinism", "poecal-cli it example", "poecal-cli it readme"]
+SOME_OF_PYTHON = ["tests/python/test_package_and_program.py", "tests/python/test_docs.py::test_every_block_does_what_the_page_says[README.md]"]
 
 
 def has(*command: str) -> bool:
@@ -139,8 +141,18 @@ def change() -> list[Step]:
         Step("report in a browser", [in_browser(name for name in pages if not name.startswith("app."))], after=["Rust build", "scripts and types"], shows=NODE_SHOWS, lacks=browser, waits=True),
         Step("page in a browser", [in_browser(name for name in pages if name.startswith("app."))], after=["Rust build", "page build"], shows=NODE_SHOWS, lacks=browser, waits=True,
              env={"POECAL_APP": str(ROOT / "web/app/dist-tested-web/poecal.html")}),
-        Step("digits at every level", [[sys.executable, "scripts/run_tests.py", "levels"]], after=["package build"], shows=r"^level |" + PYTEST_SHOWS + r"|^FAILED |^\d+ passed, "),
+        digits("some digits at every level", "some-levels"),
     ]  # fmt: skip
+
+
+def digits(name: str, kind: str) -> Step:
+    """What compares digits, at every level of vector instructions."""
+    return Step(name, [[sys.executable, "scripts/run_tests.py", kind]], after=["package build"], shows=r"^level |" + PYTEST_SHOWS + r"|^FAILED |^\d+ passed, ")
+
+
+def weekly() -> list[Step]:
+    """Of validation/weekly, what is built as every change is."""
+    return [*tools(), rust_build(), package_build(), digits("digits at every level", "levels")]
 
 
 def packages() -> list[Step]:
@@ -171,8 +183,8 @@ def packages() -> list[Step]:
     ]  # fmt: skip
 
 
-def at_every_level() -> int:
-    """What compares digits, at each level but the best, at which everything else runs."""
+def at_every_level(rust: list[str], python: list[str]) -> int:
+    """These tests, which compare digits, at each level but the best, at which everything else runs."""
     here = levels()
     usual = os.environ.get("POECAL_SIMD", here[0])
     print(f"level {usual}: all tests run at it", flush=True)
@@ -181,7 +193,7 @@ def at_every_level() -> int:
         if level == usual:
             continue
         print(f"level {level}", flush=True)
-        for command in [[sys.executable, "scripts/rust_tests.py", *DIGITS_OF_RUST], [*PYTEST, *DIGITS_OF_PYTHON]]:
+        for command in [[sys.executable, "scripts/rust_tests.py", *rust], [*PYTEST, *python]]:
             codes.append(subprocess.run(command, cwd=ROOT, env={**os.environ, "POECAL_SIMD": level}, check=False).returncode)
             sys.stdout.flush()
     return int(any(codes))
@@ -198,8 +210,10 @@ def main() -> int:
         os.environ["POECAL_DATASETS"] = str(datasets.resolve())
     kind = sys.argv[1] if len(sys.argv) > 1 else "change"
     if kind == "levels":
-        return at_every_level()
-    kinds = {"change": change, "packages": packages}
+        return at_every_level(DIGITS_OF_RUST, DIGITS_OF_PYTHON)
+    if kind == "some-levels":
+        return at_every_level(SOME_OF_RUST, SOME_OF_PYTHON)
+    kinds = {"change": change, "packages": packages, "weekly": weekly}
     if kind not in kinds:
         sys.exit(f"found `{kind}`, expected one of {', '.join(kinds)}")
     steps, names = kinds[kind](), sys.argv[2:]

@@ -5,7 +5,7 @@
     scripts/rust_tests.py [--build] [WORD…]    runs the tests whose names contain one of these words, and none of the words with - before;
                                                without a word all
 
-Each test has its time so; the slowest are printed. `./test` calls it, with POECAL_PROFILE=tested; the profile is `test` if that is not set.
+Each test has its time of processors so, with the programs that it runs; the slowest are printed. `./test` calls it, with POECAL_PROFILE=tested; the profile is `test` if that is not set.
 Needs only Python 3.10 and cargo.
 """
 
@@ -68,6 +68,18 @@ def tests_of(program):
     return [(f"{crate} {name} {test}", [executable, "--exact", test, "--nocapture"], folder) for test in tests]
 
 
+def once(command, folder):
+    """Runs a test; gives whether it passed, its seconds, which are those of processors where the system counts them, and what it printed."""
+    start = time.monotonic()
+    with subprocess.Popen(command, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, errors="replace") as process:
+        said = process.stdout.read()
+        if not hasattr(os, "wait4"):
+            return process.wait() == 0, time.monotonic() - start, said
+        _, status, used = os.wait4(process.pid, 0)
+        process.returncode = os.waitstatus_to_exitcode(status)
+    return process.returncode == 0, used.ru_utime + used.ru_stime, said
+
+
 def run(tests):
     """Runs all, as many at once as there are processors; gives seconds, whether it passed, and what it printed, by name."""
     waiting, results, lock = list(reversed(tests)), {}, threading.Lock()
@@ -80,11 +92,9 @@ def run(tests):
                 name, command, folder = waiting.pop()
             start = time.monotonic()
             try:
-                done = subprocess.run(command, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, errors="replace", check=False)
-                passed, said = done.returncode == 0, done.stdout
+                passed, seconds, said = once(command, folder)
             except OSError as error:
-                passed, said = False, f"it could not be run: {error}"
-            seconds = time.monotonic() - start
+                passed, seconds, said = False, time.monotonic() - start, f"it could not be run: {error}"
             with lock:
                 results[name] = (seconds, passed, said)
                 if not passed:
@@ -102,7 +112,7 @@ def report(results):
     """Prints the slowest tests and those that failed; gives the number that failed."""
     slowest = sorted(results.items(), key=lambda item: -item[1][0])[:SLOWEST]
     if slowest:
-        print(f"\nslowest tests ({PROCESSORS} at once, POECAL_TRIALS={os.environ.get('POECAL_TRIALS') or 'not set'})")
+        print(f"\nslowest tests (seconds of processors, {PROCESSORS} at once, POECAL_TRIALS={os.environ.get('POECAL_TRIALS') or 'not set'})")
     for name, (seconds, *_) in slowest:
         print(f"{seconds:6.2f} s  {name}")
     bad = sorted(name for name, (_, passed, _) in results.items() if not passed)

@@ -77,8 +77,10 @@ impl Candidates {
             Some(whitened) => left - whitened.tr_mul(&whitened),
             None => return (vec![(f64::INFINITY, f64::INFINITY); n - k], f64::INFINITY),
         };
-        let tool =
-            (left.nrows() - self.tool..left.nrows()).map(|at| left[(at, at)]).fold(f64::INFINITY, f64::min);
+        let at = left.nrows() - self.tool;
+        let of_tool = left.view((at, at), (self.tool, self.tool)).into_owned();
+        // The direction that is seen worst, which a coordinate need not be.
+        let tool = of_tool.symmetric_eigenvalues().iter().copied().fold(f64::INFINITY, f64::min);
         let seen = left.select_rows(&self.seen).select_columns(&self.seen);
         let mut held = seen.clone();
         ridge(&mut held);
