@@ -9,7 +9,9 @@ use poecal_arm::{AllBranches, Arm};
 
 use crate::calibrated::{KINDS, arm};
 use crate::numbers::Numbers;
+use crate::trials::trials;
 
+/// Targets of each arm, weekly.
 const TARGETS: usize = 120;
 const STARTS: usize = 150;
 
@@ -22,7 +24,7 @@ fn is_same(one: &[f64; 6], other: &[f64; 6]) -> bool {
 fn compared(arm: &Arm, numbers: &mut Numbers) -> ([usize; 4], f64) {
     let all = AllBranches::new(arm).unwrap();
     let (mut counts, mut worst) = ([0; 4], 0.0_f64);
-    for _ in 0..TARGETS {
+    for _ in trials(TARGETS).seeds() {
         let q = numbers.six(PI);
         let target = arm.forward_kinematics(&q);
         let found = all.at(&target);

@@ -8,3 +8,6 @@ mod held;
 mod kinematics;
 mod nearest;
 mod numbers;
+#[path = "../../../poecal/tests/trials/mod.rs"]
+#[allow(dead_code)]
+mod trials;

@@ -86,8 +86,9 @@ pub struct PlanOptions {
     pub kept: Vec<PlannedRow>,
     /// Indices of kept rows that could not be measured: new ones take their places, not within 10° of them, and the plan has all rows in their order.
     pub replaced: Vec<usize>,
-    /// Whether lists of other lengths are planned too, which shows how many are enough and takes as long as the list.
-    pub with_curve: bool,
+    /// Whether the list alone is wanted, and soon: without lists of other lengths, which show how many are enough, and without the local search
+    /// around each configuration, which gains 1 to 4 %.
+    pub is_draft: bool,
     /// Seed of what is random.
     pub seed: u64,
 }
@@ -104,7 +105,7 @@ impl Default for PlanOptions {
             conditions: Conditions::default(),
             kept: Vec::new(),
             replaced: Vec::new(),
-            with_curve: true,
+            is_draft: false,
             seed: 1,
         }
     }

@@ -19,6 +19,8 @@ use crate::simulate::random::uniform;
 /// Visits drawn of the calibration's own rows, and the share of them that may be called changed.
 const DRAWN: usize = 300;
 const CHANCE: f64 = 0.01;
+/// Where the model is geometry alone, how much larger squares may be elsewhere than the largest of the calibration's own rows.
+const OF_GEOMETRY: f64 = 1.3;
 /// Most configurations that are judged by the model: their errors are one covariance.
 pub(super) const MOST: usize = 40;
 /// Level by which errors of the model exceed those that the calibration states, where its rows are not there to say so.
@@ -141,9 +143,11 @@ pub(super) fn level(
         ratios.push(ratio(&evidence, &hypotheses, &tests));
     }
     ratios.sort_by(f64::total_cmp);
-    let at = ((1.0 - CHANCE) * ratios.len() as f64) as usize;
+    // Errors of geometry alone have few large values, which few rows do not show: then it is the largest.
+    let (chance, beyond) = if model.is_corrected { (CHANCE, 1.0) } else { (0.0, OF_GEOMETRY) };
+    let at = ((1.0 - chance) * ratios.len() as f64) as usize;
     let found = ratios.get(at.min(ratios.len().saturating_sub(1))).copied().unwrap_or(1.0);
-    Ok((Level::Known(found.max(1.0) * shrunk(model, visit)), true))
+    Ok((Level::Known(found.max(1.0) * beyond * shrunk(model, visit)), true))
 }
 
 /// How much larger squares of errors are of rows that the calibration has not seen, over those of its own rows.

@@ -25,7 +25,7 @@ const ROUNDS: usize = 30;
 /// Weight of how well joints are told apart beside how small their shifts are.
 const APART: f64 = 0.2;
 /// Weight of how well a knock of the tool is seen.
-const OF_TOOL: f64 = 0.2;
+const OF_TOOL: f64 = 1.0;
 /// Ridge of the information, as a share of its diagonal.
 const RIDGE: f64 = 1e-9;
 /// Standard deviation beyond which a joint is not seen, radians or metres.
@@ -61,7 +61,7 @@ impl Candidates {
         chosen.iter().fold(DMatrix::zeros(n, n), |sum, at| sum + &self.all[*at])
     }
 
-    /// Standard deviation of each zero alone, and beside all others; and of the tool where it is seen worst.
+    /// Standard deviation of each zero alone, and beside all others; and of the tool in the mean of its directions.
     fn deviations(&self, sum: &DMatrix<f64>) -> (Vec<(f64, f64)>, f64) {
         let n = sum.nrows();
         let ridge = |matrix: &mut DMatrix<f64>| {
@@ -78,9 +78,11 @@ impl Candidates {
             None => return (vec![(f64::INFINITY, f64::INFINITY); n - k], f64::INFINITY),
         };
         let at = left.nrows() - self.tool;
-        let of_tool = left.view((at, at), (self.tool, self.tool)).into_owned();
-        // The direction that is seen worst, which a coordinate need not be.
-        let tool = of_tool.symmetric_eigenvalues().iter().copied().fold(f64::INFINITY, f64::min);
+        // The geometric mean over its directions: most knocks are found by it, each of some direction.
+        let of_tool = left.view((at, at), (self.tool, self.tool)).into_owned().symmetric_eigenvalues();
+        let least = f64::MIN_POSITIVE;
+        let logarithms = of_tool.iter().map(|information| information.max(least).ln()).sum::<f64>();
+        let tool = (logarithms / self.tool.max(1) as f64).exp();
         let seen = left.select_rows(&self.seen).select_columns(&self.seen);
         let mut held = seen.clone();
         ridge(&mut held);

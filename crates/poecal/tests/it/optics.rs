@@ -261,7 +261,7 @@ fn projection_squares(seed: u64, free: &[&str]) -> [[f64; 2]; 2] {
 #[test]
 fn pixels_are_predicted_as_well_as_the_map_says() {
     for (name, free) in [("lens known", vec![]), ("lens free", vec!["lens"])] {
-        let sessions = trials(40).at_least(4);
+        let sessions = trials(24).at_least(4);
         let all: Vec<_> = sessions.seeds().map(|seed| projection_squares(400 + seed, &free)).collect();
         for (part, place) in ["the middle", "the corners"].into_iter().enumerate() {
             let sum = |k: usize| all.iter().map(|it| it[part][k]).sum::<f64>() / all.len() as f64;

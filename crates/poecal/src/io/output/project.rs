@@ -87,7 +87,7 @@ impl Project<'_> {
                 capsules: capsules_of(self.model).0,
                 ..Conditions::default()
             },
-            with_curve: false,
+            is_draft: true,
             seed: self.seed,
             ..PlanOptions::default()
         };
