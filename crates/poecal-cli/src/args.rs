@@ -44,7 +44,7 @@ pub(crate) use track::Track;
 pub(crate) use watch::Watch;
 #[cfg(any(unix, windows))]
 pub(crate) use words::CameraPlace;
-pub(crate) use words::{CONTACT, ExportForm, FRAMES, JOIN, ProgramLanguage, word_of};
+pub(crate) use words::{CONTACT, ExportForm, FRAMES, INSTEAD, JOIN, ProgramLanguage, word_of};
 
 use std::path::{Path, PathBuf};
 
@@ -58,7 +58,7 @@ use crate::quantity::{sigma_m, threads};
 pub(crate) use shared::ChainArgs;
 pub(crate) use shared::OutFile;
 use shared::{ColumnArgs, JUDGED, Meaning, RESULTS, Reading};
-use words::{EXPORT_FORMAT, FORM, FRAME, MODEL, PREDICT_IN, REFIT, REQUIRED_LEVEL, one_of};
+use words::{FORM, FRAME, MODEL, PREDICT_IN, REFIT, REQUIRED_LEVEL, export_form, export_form_help, one_of};
 
 /// What the program ends with.
 const EXIT_CODES: &str = "Exit codes: 0 done, and a calibration is usable; 1 there are results, but the verdict is `do not use` or \
@@ -324,7 +324,7 @@ pub(crate) struct Export {
     #[command(flatten)]
     pub(crate) chain: TreeArgs,
     /// The form
-    #[arg(long, value_parser = one_of(EXPORT_FORMAT))]
+    #[arg(long, value_parser = export_form(), long_help = export_form_help())]
     pub(crate) format: Option<ExportForm>,
     /// Which model of the calibration: geometry alone, or the corrected one, whose terms of the joints go to a file beside, FILE.joints.json
     #[arg(long = "model", value_parser = one_of(MODEL), default_value = "calibrated")]

@@ -185,14 +185,12 @@ impl OneJoint<'_> {
 
     /// The unit that explains readings far outside.
     fn other_unit(&self, input: &Input, extremes: [f64; 2], rows: usize) -> Option<NamedUnit> {
-        let candidates: &[&str] = match input.unit.symbol() {
-            "rad" => &["deg", "mrad"],
-            "m" => &["mm", "um"],
-            "cm" => &["mm"],
-            "mm" => &["um"],
-            _ => &[],
-        };
         let quantity = input.unit.of();
+        let candidates: &[&str] = match quantity {
+            Unit::Radian => &["deg", "mrad", "arcmin", "arcsec"],
+            Unit::Metre => &["mm", "um", "nm"],
+            Unit::One | Unit::Second => &[],
+        };
         let is_rare = (self.beyond as f64) < SHARE * rows as f64;
         if is_rare || !self.is_far_outside(quantity, extremes, input.unit_from) {
             return None;
@@ -200,6 +198,9 @@ impl OneJoint<'_> {
         let span = self.joint.limits.map_or(0.0, |limits| limits.upper - limits.lower);
         candidates.iter().find_map(|symbol| {
             let unit = NamedUnit::parse(symbol, quantity).ok()?;
+            if unit.to_si(1.0) >= input.unit.to_si(1.0) {
+                return None;
+            }
             let fits = extremes.into_iter().all(|reading| {
                 let reading = unit.to_si(input.unit.from_si(reading));
                 let plausible = self.joint.limits.is_some() || reading.abs() <= LARGEST_OTHERWISE;
@@ -342,7 +343,7 @@ fn positions_message(inputs: [&Input; 3], far: [f64; 3], apart: Vector3<f64>, re
     let mut headers = Vec::new();
     for input in own.iter().map(|axis| inputs[*axis]) {
         let smaller = match input.unit.symbol() {
-            "m" => "mm",
+            "m" | "cm" | "in" => "mm",
             "mm" => "um",
             "um" => "nm",
             _ => return None,

@@ -192,7 +192,7 @@ fn cause_words(cause: Cause) -> &'static str {
         Cause::Unseen => "no way from an instrument to its target passes them",
         Cause::StoodStill => "did not move",
         Cause::TooFew => "too few measurements",
-        Cause::PointOnAxis => "the point measured lies on the axis",
+        Cause::PointOnAxis => "the target is on the axis",
         Cause::OneOrientation => "the tool kept one orientation",
         Cause::OneTurningDirection => "the tool turned about one direction only",
         Cause::MovedTogether => "moved in a fixed relation only",
