@@ -192,7 +192,7 @@ pub(crate) struct Compare {
 pub(crate) struct Validate {
     /// Calibration to judge (calibration.json)
     pub(crate) calibration: PathBuf,
-    /// Measurement files (CSV), joined; every row counts
+    /// Measurement files (CSV, xlsx, or as instruments and recorders write them), joined; every row counts
     #[arg(required = true)]
     pub(crate) measurements: Vec<PathBuf>,
     #[command(flatten)]
@@ -250,7 +250,7 @@ impl Validate {
 pub(crate) struct Predict {
     /// Robot model: URDF, MJCF, SDF, TOML, a maker's YAML or conf, or calibration.json
     pub(crate) model: PathBuf,
-    /// Joint readings (CSV); other columns than the joints' and `id` are ignored
+    /// Joint readings (CSV, xlsx, or as controllers and recorders write them); other columns than the joints' and `id` are ignored
     pub(crate) joints: PathBuf,
     #[command(flatten)]
     pub(crate) chain: ChainArgs,
@@ -277,7 +277,7 @@ pub(crate) struct Predict {
 pub(crate) struct Check {
     /// Robot model: URDF, MJCF, SDF, TOML, a maker's YAML or conf, or calibration.json [default: from the settings]
     pub(crate) model: Option<PathBuf>,
-    /// Measurement files (CSV) [default: from the settings]
+    /// Measurement files (CSV, xlsx, or as instruments and recorders write them) [default: from the settings]
     pub(crate) measurements: Vec<PathBuf>,
     /// Settings (TOML); those that are no options of this command are ignored [default: poecal.toml in this folder, if no model is named]
     #[arg(long, value_name = "FILE")]

@@ -32,6 +32,7 @@ def results(made, calibration, tmp_path_factory) -> dict[str, poecal.Findings]:
     joints = made.measurements.joints
     return {
         "Check": poecal.check(folder / "nominal.toml", folder / "measurements.csv"),
+        "ColumnGuess": poecal.guess_columns(folder / "measurements.csv", made.nominal),
         "Offsets": poecal.offsets(made.nominal, calibration),
         "Comparison": poecal.compare(calibration, calibration),
         "Validation": calibration.validate(made.held_out, accept="0.5mm"),

@@ -104,7 +104,7 @@ fn what_is_held_out_can_be_said() {
     assert_eq!(json["accuracy"]["training"]["count"], 60);
 
     let out = folder.done("calibrate robot.urdf measurements.csv --fit-where stage=1 --out stage");
-    assert!(out.contains("from 40 of 60 rows") && out.contains("\nheld out      20 rows: "), "{out}");
+    assert!(out.contains("from 40 of 60 rows") && out.contains("\nheld out      20 rows, at most "), "{out}");
 
     let simulation = Simulation { count: 60, seed: 1, ..Simulation::default() };
     write_measurements(
@@ -115,7 +115,7 @@ fn what_is_held_out_can_be_said() {
         &Simulation { count: 25, noise_position_m: 6e-5, ..simulation },
     );
     let out = folder.done("calibrate robot.urdf measurements.csv --validate other.csv --out other");
-    assert!(out.contains("from 60 of 85 rows") && out.contains("\nheld out      25 rows: "), "{out}");
+    assert!(out.contains("from 60 of 85 rows") && out.contains("\nheld out      25 rows, at most "), "{out}");
 
     for stated in ["--fit-where stage=1", "--validate other.csv"] {
         let run = folder.run(&format!("calibrate robot.urdf measurements.csv --force {stated} --held-out 0"));

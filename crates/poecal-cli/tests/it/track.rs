@@ -31,7 +31,7 @@ fn witnesses_are_planned_and_written() {
     let run =
         folder.run("track poecal-out/calibration.json --plan 8 --repeatability 0.05mm --out witness.csv");
     assert_eq!(run.code, 0, "{}{}", run.out, run.err);
-    assert!(run.out.contains("not seen"), "{}", run.out);
+    assert!(run.out.contains("not visible"), "{}", run.out);
     // A comment, the names, and eight rows.
     assert_eq!(folder.read("witness.csv").lines().count(), 10);
 }

@@ -9,7 +9,7 @@ from matplotlib.axes import Axes  # type: ignore[import-not-found, unused-ignore
 from matplotlib.figure import Figure  # type: ignore[import-not-found, unused-ignore]
 from numpy.typing import ArrayLike, NDArray
 
-from ._results import Check, Comparison, Offsets, Validation, Visit, VisitPlan
+from ._results import Check, ColumnGuess, Comparison, Offsets, Validation, Visit, VisitPlan
 from ._session_results import Compensation, HandEye, Identification, Reproduction, ToolTip, WatchedRow
 
 __all__ = [
@@ -37,12 +37,14 @@ __all__ = [
     "check",
     "compare",
     "convert",
+    "guess_columns",
     "hand_eye",
     "identify",
     "init",
     "offsets",
     "plan",
     "read_joints",
+    "recalibrate",
     "reproduce",
     "run_program",
     "schema",
@@ -1941,6 +1943,7 @@ def convert(
     str
         The text.
     """
+def guess_columns(path: _Path, robot: Robot | _Path, *, columns: Mapping[str, str] | None = None) -> ColumnGuess: ...
 def hand_eye(
     base_from_flange: ArrayLike,
     camera_from_target: ArrayLike,
@@ -2102,6 +2105,16 @@ def read_joints(path: _Path, robot: Robot, *, columns: _Path | None = None, unit
     numpy.ndarray
         Configurations, shape (m, n), radians and metres, in the order of `robot.reading_names`.
     """
+def recalibrate(
+    calibration: Calibration,
+    measurements: Measurements,
+    earlier: Measurements | None = None,
+    *,
+    part: str,
+    device: Literal["anew", "known"] = "anew",
+    tool: Literal["same", "anew"] = "same",
+    repeatability_mm: _Number | None = None,
+) -> Calibration: ...
 def reproduce(
     experiment: Literal["lou2009", "breakdown"],
     *,
@@ -2275,6 +2288,7 @@ def plan(
     device: None = None,
     tool: None = None,
     repeatability_mm: None = None,
+    target: None = None,
 ) -> Plan:
     """Plans a session: configurations that determine the most, rows to judge by, how many are worth it, and the error to expect.
 
@@ -2370,6 +2384,7 @@ def plan(
     device: Literal["known", "anew"] | None = None,
     tool: Literal["same", "anew"] | None = None,
     repeatability_mm: _Number | None = None,
+    target: str | None = None,
 ) -> VisitPlan: ...
 @overload
 def plan(
@@ -2411,6 +2426,7 @@ def plan(
     device: Literal["known", "anew"] | None = None,
     tool: Literal["same", "anew"] | None = None,
     repeatability_mm: _Number | None = None,
+    target: str | None = None,
 ) -> Plan | VisitPlan: ...
 def track(
     calibration: Calibration,

@@ -134,7 +134,7 @@ impl Rules<'_> {
             (false, _) => angle,
             (true, true) => format!("{length} or {angle}"),
         };
-        format!("{verb} known from the rows alone to {known} only")
+        format!("{verb} known to {known} only (without the prior)")
     }
 
     /// Whether directions have a part in metres, and in radians.

@@ -109,11 +109,8 @@ impl PlanErrors {
 
 /// The part of a robot's error that no geometry describes.
 pub(super) fn robot_error_words(it: &PlanErrors, is_a_guess: bool) -> String {
-    let assumed = if is_a_guess {
-        " (assumed: 0.3 mm per metre of reach; state yours with --robot-error)"
-    } else {
-        ""
-    };
+    let assumed =
+        if is_a_guess { " (assumed: 0.3 mm per metre of reach; state yours with --robot-error)" } else { "" };
     format!("{} mm that no geometry of the axes describes{assumed}", number(it.robot_error_mm))
 }
 

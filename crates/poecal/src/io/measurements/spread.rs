@@ -51,9 +51,8 @@ pub(super) fn check(
     let rows: Vec<usize> = (first..data.len()).step_by(step).collect();
     let position = layout.targets.first().and_then(|target| layout.inputs.get(target.position?[0]));
     let (Some(input), true) = (position, rows.len() >= FEWEST_ROWS) else { return Ok(()) };
-    let placed = |row: &&usize| {
-        data.observations.get(**row).is_some_and(|row| row.measurement.position().is_some())
-    };
+    let placed =
+        |row: &&usize| data.observations.get(**row).is_some_and(|row| row.measurement.position().is_some());
     let rows: Vec<usize> = rows.iter().filter(placed).copied().collect();
     let positions = rows.iter().filter_map(|&row| data.observations.get(row)?.measurement.position());
     let positions: Vec<Vector3<f64>> = positions.collect();
@@ -121,9 +120,8 @@ fn near_unit(
     positions: &[Vector3<f64>],
     tips: &[Vector3<f64>],
 ) -> Option<f64> {
-    let ways = |of: &[Vector3<f64>]| -> Vec<f64> {
-        of.windows(2).map(|pair| (pair[1] - pair[0]).norm()).collect()
-    };
+    let ways =
+        |of: &[Vector3<f64>]| -> Vec<f64> { of.windows(2).map(|pair| (pair[1] - pair[0]).norm()).collect() };
     let (measured, modelled) = (ways(positions), ways(tips));
     let usual = median(modelled.iter().copied())?;
     let factors = units_of(Unit::Metre).map(|unit| stated.to_si(1.0) / unit.to_si(1.0));
@@ -172,6 +170,11 @@ fn angle_message(input: &Input, measured: f64, modelled: f64) -> String {
     )
 }
 
+/// A unit behind the word `in`.
+fn spoken(symbol: &str) -> &str {
+    if symbol == "in" { "inches" } else { symbol }
+}
+
 /// `factor`: how many times the model's spread the measured one is, as a ratio of units.
 fn position_message(input: &Input, measured: f64, modelled: f64, factor: f64) -> String {
     let stated = input.unit;
@@ -185,9 +188,10 @@ fn position_message(input: &Input, measured: f64, modelled: f64, factor: f64) ->
         .map(|unit| unit.symbol());
     let advice = match likely {
         Some(likely) => format!(
-            "most likely they are in {likely}, not {} (or {model}); write `x[{likely}],y[{likely}],z[{likely}]` in the \
+            "most likely they are in {}, not {} (or {model}); write `x[{likely}],y[{likely}],z[{likely}]` in the \
              header, or the unit in the mapping",
-            stated.symbol()
+            spoken(likely),
+            spoken(stated.symbol())
         ),
         None => format!("most likely {model}; correct its unit, or the unit of the positions"),
     };

@@ -95,7 +95,12 @@ fn expected_map(found: &CompensationEntry) -> Option<Markup> {
         number(sigma),
         place_words(found, place)
     );
-    Some(heat_map(found, sigma < SMALL, value, ("Expected error of a corrected program", description, "(RMS)")))
+    Some(heat_map(
+        found,
+        sigma < SMALL,
+        value,
+        ("Expected error of a corrected program", description, "(RMS)"),
+    ))
 }
 
 fn axis_words(found: &CompensationEntry) -> &'static str {
@@ -202,7 +207,11 @@ fn exceptions(found: &CompensationEntry) -> Markup {
     );
     if !found.joints.is_empty() {
         row("corrected values beyond a joint's limits", found.beyond_limits, "beyond_limits");
-        row("not corrected: near a singularity, where the arm would have to bend another way", found.unmended, "unmended");
+        row(
+            "not corrected: near a singularity, where the arm would have to bend another way",
+            found.unmended,
+            "unmended",
+        );
     }
     html! { (table) }
 }

@@ -130,7 +130,8 @@ fn convergence(file: &CalibrationFile) -> Markup {
 /// A checksum with places where a line may break: after each eight digits.
 fn grouped(hash: &str) -> Markup {
     let is_hash = hash.len() == 64 && hash.bytes().all(|it| it.is_ascii_hexdigit());
-    let parts: Vec<&str> = if is_hash { (0..8).filter_map(|k| hash.get(8 * k..8 * k + 8)).collect() } else { vec![hash] };
+    let parts: Vec<&str> =
+        if is_hash { (0..8).filter_map(|k| hash.get(8 * k..8 * k + 8)).collect() } else { vec![hash] };
     html! { @for (k, part) in parts.iter().enumerate() { @if k > 0 { wbr; } (part) } }
 }
 

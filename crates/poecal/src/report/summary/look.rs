@@ -11,7 +11,7 @@ use crate::io::calibration_file::{CalibrationFile, IdentifiabilityEntry, Outlier
 /// Suspected rows that are named.
 const WORST: usize = 3;
 /// Characters of a direction's description that are told as they stand.
-const SHORT: usize = 160;
+const SHORT: usize = 200;
 /// Words of the warning that is about suspected rows, which are given by their figures instead.
 const SUSPECTS: &str = "`outliers` in calibration.json";
 
