@@ -178,7 +178,7 @@ class Validation(Findings):
 
     @property
     def fitted(self) -> list[str]:
-        """Files of which the calibration itself was made: its errors there are smaller than those of new rows."""
+        """Files of which the calibration itself was made: it fits them better than new ones."""
         return self._texts("fitted")
 
     @property

@@ -24,6 +24,8 @@ pub const LARGEST_OTHERWISE: f64 = 4.0 * std::f64::consts::PI;
 pub const SHARE: f64 = 0.1;
 /// Motion below which a coordinate did not move, as a share of the reach.
 const STILL: f64 = 1e-2;
+/// A coordinate that moves by at most this many reaches is in the right unit where another one is in a wrong one.
+const RIGHT_REACHES: f64 = 4.0;
 /// Positions with a spread of more than this many reaches are in a wrong unit.
 pub const REACHES: f64 = 20.0;
 /// The largest of all readings where they are per cent of the joints' ranges, from -100 to 100 and a little beyond.
@@ -337,7 +339,7 @@ pub(super) fn check_positions(
 fn positions_message(inputs: [&Input; 3], far: [f64; 3], apart: Vector3<f64>, reach: f64) -> Option<String> {
     // The columns of which that is so: a header may state the unit of one of three wrongly.
     // One in which nothing moved shows nothing.
-    let is_right = |axis: usize| (STILL * reach..=REACHES * reach).contains(&far[axis]);
+    let is_right = |axis: usize| (STILL * reach..=RIGHT_REACHES * reach).contains(&far[axis]);
     let own: Vec<usize> = (0..3).filter(|axis| !is_right(*axis)).collect();
     let own = if own.is_empty() { vec![0, 1, 2] } else { own };
     let mut headers = Vec::new();

@@ -198,7 +198,7 @@ impl Validation {
     pub fn warnings(&self) -> Vec<String> {
         let fitted = (!self.fitted.is_empty()).then(|| {
             format!(
-                "{}: the calibration was made of this file, so its errors are smaller than those of new rows: validate with measurements that the \
+                "{}: the calibration was made of this file, so it fits these rows better than new ones: validate with measurements that the \
                  calibration has not seen",
                 self.fitted.join(", ")
             )

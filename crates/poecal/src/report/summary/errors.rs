@@ -7,7 +7,9 @@ use super::super::table::{
 };
 use super::look::reasons;
 use super::{Expectation, expected};
-use crate::calibration::{DeviceFrameKnowledge, ModelAccuracy, SetAccuracy};
+use crate::calibration::{
+    AcceptedLimit, AcceptedStatistic, DeviceFrameKnowledge, ModelAccuracy, SetAccuracy,
+};
 use crate::io::calibration_file::CalibrationFile;
 use crate::measurement::Quantity;
 
@@ -98,7 +100,18 @@ pub(super) fn figures(out: &mut String, file: &CalibrationFile) {
     line(out, "after", &format!("{} (RMS) on {on}: {} model", words(after.1), after.0));
     if let Some(Expectation { error_mm, bound_mm, anywhere }) = expected(file) {
         let (error, bound) = (number(error_mm), number(bound_mm));
-        line(out, "expected", &format!("{error} mm (RMS) of predictions, 95 % below {bound} mm"));
+        let is_exceeded = |limit: &AcceptedLimit| {
+            limit.quantity == Quantity::Position.name()
+                && limit.statistic == AcceptedStatistic::Rms
+                && limit.to.is_some_and(|to| to < error_mm)
+        };
+        // The bounds of a limit are of measured errors.
+        let why = if file.acceptance.as_ref().is_some_and(|it| it.limits.iter().any(is_exceeded)) {
+            "; above the upper bound of the measured error, since unexplained residuals count as robot error"
+        } else {
+            ""
+        };
+        line(out, "expected", &format!("{error} mm (RMS) of predictions, 95 % below {bound} mm{why}"));
         let valid = match (anywhere, reasons(file).into_iter().next()) {
             (Some((sigma, _)), _) => {
                 format!("anywhere within the limits, {} mm (RMS) expected there", number(sigma))
