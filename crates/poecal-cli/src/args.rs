@@ -101,6 +101,8 @@ pub(crate) enum Command {
     /// Write the certificate of a calibration: one page of paper
     Certificate(Certificate),
     /// Judge a calibration by other measurements
+    ///
+    /// Ends with code 1 if it does not hold for them, or a limit of --accept is not shown to be kept.
     Validate(Validate),
     /// Show by a few measurements whether a robot is as it was calibrated, and which joint is not
     ///
