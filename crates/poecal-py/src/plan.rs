@@ -159,6 +159,7 @@ pub(crate) fn plan<'py>(
     #[pyo3(from_py_with = arg::device)] device: Option<&str>,
     #[pyo3(from_py_with = arg::tool)] tool: Option<&str>,
     #[pyo3(from_py_with = arg::repeatability_mm)] repeatability_mm: Option<f64>,
+    #[pyo3(from_py_with = arg::target)] target: Option<&str>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let visits = VisitOptions { earlier, device, tool, repeatability_mm, target };
     if chosen("purpose", purpose, &[("calibration", false), ("drift", true)])? {
