@@ -76,7 +76,7 @@ def test_each_is_pickled_and_copied(results):
 
 def test_each_is_a_table(results):
     counts = {"Check": 9, "Offsets": 6, "Comparison": 6, "Validation": 1, "Visit": 6, "VisitPlan": 6, "Identification": 6, "WatchedRow": 1}
-    counts |= {"HandEye": 2, "ToolTip": 1, "Compensation": 60, "Reproduction": len(results["Reproduction"]["claims"])}
+    counts |= {"ColumnGuess": len(results["ColumnGuess"]["fields"]), "HandEye": 2, "ToolTip": 1, "Compensation": 60, "Reproduction": len(results["Reproduction"]["claims"])}
     for name, found in results.items():
         frame = found.to_dataframe()
         print(name, list(frame.columns))

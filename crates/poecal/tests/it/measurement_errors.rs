@@ -270,7 +270,7 @@ const FILES: &[(&[u8], &str)] = &[
     ),
     (
         b"a,lift,b,x[in],y[in],z[in]\n0,0,0,1000,0,300\n1,0,0,540,840,300\n2,0,0,-420,910,300\n3,0,0,-990,140,300\n",
-        "points.csv:1:10: found positions that spread over 962.5 in where the model moves its tip by 37.75 in, expected about the same: most likely they are in mm, not inches (or the model's lengths are 25.4 times too small); write `x[mm],y[mm],z[mm]` in the header, or the unit in the mapping",
+        "points.csv:5: found positions up to 1683 in from their middle, where the robot reaches 62.33 in, expected another unit, most likely mm; write `x[mm],y[mm],z[mm]` in the header, or the unit in the mapping",
     ),
     (
         b"a,lift,b,x[mm],y[mm],z[mm]\n0,0,0,39.4,0,11.8\n1,0,0,21.3,33.1,11.8\n2,0,0,-16.5,35.8,11.8\n3,0,0,-39,5.5,11.8\n",
