@@ -191,8 +191,8 @@ fn inputs(file: &CalibrationFile) -> Markup {
         (joins::sections(&inputs.joins))
         @if let Some(command) = &inputs.command {
             h3 { "How to make it again" }
+            p { "In the same folder, with files of these checksums and this version, the command writes the same bytes:" }
             pre tabindex="0" { code { (quoted(command, "inputs.command")) } }
-            p.note { "Run in the same folder, with the files of these checksums and this version, the command writes the same bytes." }
         } @else {
             p.note { "The calibration was not made by the program, or by an earlier version, so no command is recorded." }
         }
