@@ -32,7 +32,7 @@ FOLLOWED = {
     "since angles do not say their convention, which a mapping does (--columns)": HERE + "test_two_sets_of_coordinates",
     "is meant, write `{name}[{}]`": HERE + "test_a_unit_in_a_name",
     "spread over {} mm, expected about the same: most likely they are in rad": HERE + "test_radians_that_are_called_degrees",
-    "most likely they are in {likely}, not {}": HERE + "test_millimetres_that_are_called_metres",
+    "most likely they are in {}, not {}": HERE + "test_millimetres_that_are_called_metres",
     "write `{}[{symbol}]` in the header": HERE + "test_degrees_without_a_unit",
     "most likely {smaller}; write `{}` in the header": HERE + "test_millimetres_that_are_called_metres",
     "rename or add a column, or name the right one in a mapping file (--columns)": HERE + "test_a_column_of_another_name",
@@ -220,6 +220,16 @@ def test_millimetres_that_are_called_metres(here, scale):
     for name in written:
         header = re.sub(rf"{name[0]}\[\w+\]", name, header)
     table(here, header, POINTS[1:])
+    calibrates(here)
+
+
+@pytest.mark.parametrize("unit", ["cm", "in"])
+def test_millimetres_that_are_called_centimetres_or_inches(here, unit):
+    table(here, POINTS[0].replace("[mm]", f"[{unit}]"), POINTS[1:])
+    for command in ("check", "calibrate"):
+        said = run(here, command, "robot.urdf", "points.csv", code=2)
+        assert "write `x[mm],y[mm],z[mm]` in the header" in said, said
+    table(here, POINTS[0], POINTS[1:])
     calibrates(here)
 
 

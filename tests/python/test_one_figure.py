@@ -45,10 +45,12 @@ def test_one_figure_for_one_question(name, tmp_path):
     own = corrected["uncertainty"] if has_terms else file["uncertainty"]
     expected = verdict["expected_error_mm"]
     # The table, in its words and figures, and the report by its keys.
-    after = re.search(r"^after +([0-9.]+) mm \(RMS\) expected, 95 % below ([0-9.]+) mm:\s+(\w+)\s+model$", table, re.M)
-    assert after and (after[1], after[2], after[3]) == (shown(expected), shown(verdict["bound95_mm"]), verdict["model"]), table
+    line = re.search(r"^expected +([0-9.]+) mm \(RMS\) of predictions, 95 % below ([0-9.]+) mm(;|$)", table, re.M)
+    assert line and (line[1], line[2]) == (shown(expected), shown(verdict["bound95_mm"])), table
+    after = re.search(r"^after +.* \(RMS\)\s+on\s+rows\s+held\s+out:\s+(\w+)\s+model$", table, re.M)
+    assert after and after[1] == verdict["model"], table
     page = (out / "report.html").read_text()
-    assert re.search(rf"after: {verdict['model']}\s+model, expected", page) and page.count('data-key="verdict.expected_error_mm"') == 1
+    assert re.search(rf"after, on rows held out: {verdict['model']}\s+model", page) and page.count('data-key="verdict.expected_error_mm"') == 1
     assert expected == own["measured"]["sigma_position_mm"]
     # Predictions in the configurations that were measured, of every target.
     predicted = []

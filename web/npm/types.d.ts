@@ -71,9 +71,10 @@ export interface CalibrateOptions {
   /** Standard deviation of each measured rotation component, like 0.01deg [default: estimated from the data] */
   sigmaRotation?: Value | readonly Value[];
   /**
-   * Prior: deviation of each axis from nominal, as standard deviations, or none. It decides where the measurements determine nothing. auto
-   * takes the best of 0.05deg,0.5mm, 0.2deg,2mm, 0.5deg,5mm, 1deg,10mm and 3deg,10mm by cross-validation. A joint of a TOML model may state
-   * its own. MOC.cfg of a controller of ABB with Absolute Accuracy tells what the maker found [default: 0.5deg,5mm]
+   * How far the axes may be from the model's (the prior): standard deviations of their directions and places, or none. They matter only
+   * where the measurements leave an axis open, which then stays near the model. auto chooses by cross-validation among 0.05deg,0.5mm,
+   * 0.2deg,2mm, 0.5deg,5mm, 1deg,10mm and 3deg,10mm. A joint of a TOML model may state its own. MOC.cfg of an ABB controller with Absolute
+   * Accuracy has the deviations that the maker found [default: 0.5deg,5mm]
    */
   tolerance?: Value | readonly Value[];
   /**

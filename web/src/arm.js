@@ -301,6 +301,9 @@ function scaleLine(scene) {
   const { name, unit } = scene.data.lead;
   const what = residualWords(scene, "arrows", "dots");
   const of = name === "position" ? "" : ` of ${name}`;
-  line.append(`${what[0].toUpperCase()}${what.slice(1)}: ${least}`, ramp, `${withUnit(most, unit)}${of} and more. Squares of the grid: ${square} mm. Drag or arrow keys turn it, the wheel or + and − come nearer and go farther.`);
+  line.append(`${what[0].toUpperCase()}${what.slice(1)}: ${least}`, ramp, `${withUnit(most, unit)}${of} and more. Squares of the grid: ${square} mm.`);
+  const how = element("span", "on-screen");
+  how.textContent = " Drag or arrow keys turn it, the wheel or + and − come nearer and go farther.";
+  line.append(how);
   return line;
 }

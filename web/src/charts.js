@@ -266,7 +266,7 @@ function normal(place, data) {
 
 function leverage(place, data) {
   const { rows } = data;
-  const order = inOrder(data, (row) => rows.leverage[row] !== null && rows.studentized[row] !== null);
+  const order = inOrder(data, (row) => !rows.held_out[row] && rows.leverage[row] !== null && rows.studentized[row] !== null);
   if (!order.length) {
     place.textContent = "The rows were not judged.";
     return;
@@ -283,7 +283,7 @@ function leverage(place, data) {
     series,
     values: [order.map((row) => rows.leverage[row]), ...columns],
     range: (_, __, most) => [0, most * 1.05],
-    spoken: `Studentised residual over leverage of ${order.length} rows; the largest leverage, ${shown(rows.leverage[largest])}, is that of ${name(data, largest)}.`,
+    spoken: `Studentised residual over leverage of ${order.length} fitted rows; the largest leverage, ${shown(rows.leverage[largest])}, is that of ${name(data, largest)}.`,
     readout: readoutLine(place),
     tell: (index) => `${name(data, order[index])}, leverage ${shown(rows.leverage[order[index]])}`,
   });

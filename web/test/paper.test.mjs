@@ -98,7 +98,7 @@ describe("paper", { skip: noPaper }, () => {
         const at = (words) => text.flatMap((page, k) => (page.includes(words) ? [k] : []));
         assert.deepEqual(at("Where it is valid"), [0], "the certificate is the first page");
         assert.deepEqual(at("Calibrated by: name, date, signature"), [0], "and ends on it");
-        assert.ok(text[1].includes("Calibration of") && text[1].includes("before: your model"), "the annex begins on the second page");
+        assert.ok(text[1].includes("Calibration of") && text[1].includes("before, on rows held out: your model"), "the annex begins on the second page");
         assert.ok(pages.length - 1 <= MOST_ANNEX, `${pages.length - 1} pages of annex`);
         // A4, and every word inside of its margins, heads and feet in them.
         for (const [k, { width, height, words }] of pages.entries()) {

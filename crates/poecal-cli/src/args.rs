@@ -44,7 +44,7 @@ pub(crate) use track::Track;
 pub(crate) use watch::Watch;
 #[cfg(any(unix, windows))]
 pub(crate) use words::CameraPlace;
-pub(crate) use words::{CONTACT, ExportForm, FRAMES, JOIN, ProgramLanguage, word_of};
+pub(crate) use words::{CONTACT, ExportForm, FRAMES, INSTEAD, JOIN, ProgramLanguage, word_of};
 
 use std::path::{Path, PathBuf};
 
@@ -58,7 +58,7 @@ use crate::quantity::{sigma_m, threads};
 pub(crate) use shared::ChainArgs;
 pub(crate) use shared::OutFile;
 use shared::{ColumnArgs, JUDGED, Meaning, RESULTS, Reading};
-use words::{EXPORT_FORMAT, FORM, FRAME, MODEL, PREDICT_IN, REFIT, REQUIRED_LEVEL, one_of};
+use words::{FORM, FRAME, MODEL, PREDICT_IN, REFIT, REQUIRED_LEVEL, export_form, export_form_help, one_of};
 
 /// What the program ends with.
 const EXIT_CODES: &str = "Exit codes: 0 done, and a calibration is usable; 1 there are results, but the verdict is `do not use` or \
@@ -101,6 +101,8 @@ pub(crate) enum Command {
     /// Write the certificate of a calibration: one page of paper
     Certificate(Certificate),
     /// Judge a calibration by other measurements
+    ///
+    /// Ends with code 1 if it does not hold for them, or a limit of --accept is not shown to be kept.
     Validate(Validate),
     /// Show by a few measurements whether a robot is as it was calibrated, and which joint is not
     ///
@@ -192,7 +194,7 @@ pub(crate) struct Compare {
 pub(crate) struct Validate {
     /// Calibration to judge (calibration.json)
     pub(crate) calibration: PathBuf,
-    /// Measurement files (CSV), joined; every row counts
+    /// Measurement files (CSV, xlsx, or as instruments and recorders write them), joined; every row counts
     #[arg(required = true)]
     pub(crate) measurements: Vec<PathBuf>,
     #[command(flatten)]
@@ -250,7 +252,7 @@ impl Validate {
 pub(crate) struct Predict {
     /// Robot model: URDF, MJCF, SDF, TOML, a maker's YAML or conf, or calibration.json
     pub(crate) model: PathBuf,
-    /// Joint readings (CSV); other columns than the joints' and `id` are ignored
+    /// Joint readings (CSV, xlsx, or as controllers and recorders write them); other columns than the joints' and `id` are ignored
     pub(crate) joints: PathBuf,
     #[command(flatten)]
     pub(crate) chain: ChainArgs,
@@ -277,7 +279,7 @@ pub(crate) struct Predict {
 pub(crate) struct Check {
     /// Robot model: URDF, MJCF, SDF, TOML, a maker's YAML or conf, or calibration.json [default: from the settings]
     pub(crate) model: Option<PathBuf>,
-    /// Measurement files (CSV) [default: from the settings]
+    /// Measurement files (CSV, xlsx, or as instruments and recorders write them) [default: from the settings]
     pub(crate) measurements: Vec<PathBuf>,
     /// Settings (TOML); those that are no options of this command are ignored [default: poecal.toml in this folder, if no model is named]
     #[arg(long, value_name = "FILE")]
@@ -324,7 +326,7 @@ pub(crate) struct Export {
     #[command(flatten)]
     pub(crate) chain: TreeArgs,
     /// The form
-    #[arg(long, value_parser = one_of(EXPORT_FORMAT))]
+    #[arg(long, value_parser = export_form(), long_help = export_form_help())]
     pub(crate) format: Option<ExportForm>,
     /// Which model of the calibration: geometry alone, or the corrected one, whose terms of the joints go to a file beside, FILE.joints.json
     #[arg(long = "model", value_parser = one_of(MODEL), default_value = "calibrated")]

@@ -14,6 +14,7 @@ mod settings;
 mod signals;
 mod style;
 mod timings;
+mod without_json;
 
 use std::error::Error as _;
 use std::ffi::OsString;
@@ -67,7 +68,10 @@ fn understood(typed: Vec<OsString>) -> Result<(Vec<OsString>, Arguments), u8> {
         Ok((matches, arguments))
     };
     let told = |words: &[OsString], error: clap::Error| match parsed(&shown(words)) {
-        Err(shown) => usage(&shown),
+        Err(shown) => match without_json::sentence(words, &shown) {
+            Some(sentence) => refused(&ErrorKind::Option.error(sentence)),
+            None => usage(&shown),
+        },
         // Words that are valid without control characters can only be wrong because of these.
         Ok(_) => {
             let message = error.to_string();

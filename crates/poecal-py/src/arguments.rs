@@ -38,7 +38,7 @@ named! {
     experiment facing fit_where fix flange floor_mm folder force format formulation frame frames free gravity harmonics hash held_out
     held_out_count history id ids ignore_sets instrument_noise instruments join judge kind kinds lag language length_unit level limit_mm
     limits logo margin_deg_mm markers measurements method model most_slide_m most_slide_mm most_turn_deg most_turn_rad motors move_tip name names nearest
-    noise_position_mm noise_rotation_deg nominal offset out parts path paths points progress purpose quantity readings record refit refit_frame
+    noise_position_mm noise_rotation_deg nominal offset out part parts path paths points progress purpose quantity readings record refit refit_frame
     refit_tool repair repeatability_mm replace report residual residuals robot robot_error_mm robust seed self_collision separation_deg sets
     sheet sigma_position_mm sigma_rotation_deg socket_distance start starts stop_s strict summary target target_offset_mm targets terms text
     third_axis tip tip_link tips to tolerance_deg_mm tool tools topics trials units valid_until with_uncertainty

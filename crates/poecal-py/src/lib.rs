@@ -12,6 +12,7 @@ mod errors;
 mod findings;
 mod from_arrays;
 mod from_dataframe;
+mod guess;
 mod hand_eye;
 mod measurements;
 mod notebook;
@@ -25,6 +26,7 @@ mod planned;
 mod prediction;
 mod project;
 mod reach;
+mod recalibrate;
 mod reproduce;
 mod residuals;
 mod robot;
@@ -84,6 +86,8 @@ mod _poecal {
     #[pymodule_export]
     use crate::findings::{check, compare, identify, offsets, track};
     #[pymodule_export]
+    use crate::guess::guess_columns;
+    #[pymodule_export]
     use crate::hand_eye::{hand_eye, tcp};
     #[pymodule_export]
     use crate::measurements::Measurements;
@@ -95,6 +99,8 @@ mod _poecal {
     use crate::prediction::Prediction;
     #[pymodule_export]
     use crate::project::init;
+    #[pymodule_export]
+    use crate::recalibrate::recalibrate;
     #[pymodule_export]
     use crate::reproduce::reproduce;
     #[pymodule_export]

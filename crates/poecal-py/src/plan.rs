@@ -32,7 +32,7 @@ const MOST_TARGETS: usize = 8;
 /// Plans a session: configurations that determine the most, rows to judge by, how many are worth it, and the error to expect.
 ///
 /// With `purpose="drift"` it plans visits to a calibrated robot: of the configurations that were measured, those whose repeats show the smallest shift
-/// of the worst joint. `candidates`, `count`, `earlier`, `device`, `tool` and `repeatability_mm` say what is known of the visits.
+/// of the worst joint. `candidates`, `count`, `earlier`, `device`, `tool` and `repeatability_mm` state what is known of the visits, `target` which target will be measured.
 ///
 /// Parameters
 /// ----------
@@ -117,8 +117,8 @@ const MOST_TARGETS: usize = 8;
                     frame="unknown", tolerance_deg_mm=Believed::Given((0.5, 5.0)), corrections=None, gravity=None, margin_deg_mm=(0.0, 0.0),
                     keep_out_mm=None, floor_mm=None, separation_deg=None, device_mm=None, cone_deg=None, device_looks_at_mm=None,
                     distance_mm=None, acceptance_deg=None, facing=None, self_collision="avoid", stop_s=30.0, seed=1,
-                    earlier=None, device=None, tool=None, repeatability_mm=None),
-        text_signature = "(robot, *, purpose='calibration', kind='point', count=None, judge=None, candidates=None, over=None, over_box_mm=None, keep=None, replace=None, criterion='expected', targets=1, target_offset_mm=None, sigma_position_mm=None, sigma_rotation_deg=None, robot_error_mm=None, frame='unknown', tolerance_deg_mm=(0.5, 5.0), corrections='auto', gravity=(0, 0, -1), margin_deg_mm=(0.0, 0.0), keep_out_mm=None, floor_mm=None, separation_deg=None, device_mm=None, cone_deg=None, device_looks_at_mm=None, distance_mm=None, acceptance_deg=None, facing=None, self_collision='avoid', stop_s=30.0, seed=1, earlier=None, device=None, tool=None, repeatability_mm=None)")]
+                    earlier=None, device=None, tool=None, repeatability_mm=None, target=None),
+        text_signature = "(robot, *, purpose='calibration', kind='point', count=None, judge=None, candidates=None, over=None, over_box_mm=None, keep=None, replace=None, criterion='expected', targets=1, target_offset_mm=None, sigma_position_mm=None, sigma_rotation_deg=None, robot_error_mm=None, frame='unknown', tolerance_deg_mm=(0.5, 5.0), corrections='auto', gravity=(0, 0, -1), margin_deg_mm=(0.0, 0.0), keep_out_mm=None, floor_mm=None, separation_deg=None, device_mm=None, cone_deg=None, device_looks_at_mm=None, distance_mm=None, acceptance_deg=None, facing=None, self_collision='avoid', stop_s=30.0, seed=1, earlier=None, device=None, tool=None, repeatability_mm=None, target=None)")]
 #[expect(clippy::too_many_arguments, reason = "the options of a Python function")]
 pub(crate) fn plan<'py>(
     py: Python<'py>,
@@ -159,8 +159,9 @@ pub(crate) fn plan<'py>(
     #[pyo3(from_py_with = arg::device)] device: Option<&str>,
     #[pyo3(from_py_with = arg::tool)] tool: Option<&str>,
     #[pyo3(from_py_with = arg::repeatability_mm)] repeatability_mm: Option<f64>,
+    #[pyo3(from_py_with = arg::target)] target: Option<&str>,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let visits = VisitOptions { earlier, device, tool, repeatability_mm };
+    let visits = VisitOptions { earlier, device, tool, repeatability_mm, target };
     if chosen("purpose", purpose, &[("calibration", false), ("drift", true)])? {
         let usual = tolerance_deg_mm == Believed::Given((0.5, 5.0));
         // What a default says is no statement.

@@ -29,6 +29,7 @@ pub(crate) struct VisitOptions<'a> {
     pub(crate) device: Option<&'a str>,
     pub(crate) tool: Option<&'a str>,
     pub(crate) repeatability_mm: Option<f64>,
+    pub(crate) target: Option<&'a str>,
 }
 
 /// A plan of visits, its configurations, and the table to fill in.
@@ -55,6 +56,7 @@ impl VisitOptions<'_> {
             ("device", self.device.is_some()),
             ("tool", self.tool.is_some()),
             ("repeatability_mm", self.repeatability_mm.is_some()),
+            ("target", self.target.is_some()),
         ];
         match stated.into_iter().find(|it| it.1) {
             Some((name, _)) => {
@@ -103,7 +105,7 @@ impl VisitOptions<'_> {
             }
         };
         let work = || {
-            let found = witnesses(file, earlier, readings, count, None, &options)?;
+            let found = witnesses(file, earlier, readings, count, self.target, &options)?;
             let told = report::WitnessPlan::new(&found, &file.robot.name, new.is_some());
             let table = to_measure_again(&found.rows, &found.configurations, robot, new.is_some())?;
             let first = found.configurations.iter().filter_map(|rows| rows.first());

@@ -32,6 +32,7 @@ def results(made, calibration, tmp_path_factory) -> dict[str, poecal.Findings]:
     joints = made.measurements.joints
     return {
         "Check": poecal.check(folder / "nominal.toml", folder / "measurements.csv"),
+        "ColumnGuess": poecal.guess_columns(folder / "measurements.csv", made.nominal),
         "Offsets": poecal.offsets(made.nominal, calibration),
         "Comparison": poecal.compare(calibration, calibration),
         "Validation": calibration.validate(made.held_out, accept="0.5mm"),
@@ -75,7 +76,7 @@ def test_each_is_pickled_and_copied(results):
 
 def test_each_is_a_table(results):
     counts = {"Check": 9, "Offsets": 6, "Comparison": 6, "Validation": 1, "Visit": 6, "VisitPlan": 6, "Identification": 6, "WatchedRow": 1}
-    counts |= {"HandEye": 2, "ToolTip": 1, "Compensation": 60, "Reproduction": len(results["Reproduction"]["claims"])}
+    counts |= {"ColumnGuess": len(results["ColumnGuess"]["fields"]), "HandEye": 2, "ToolTip": 1, "Compensation": 60, "Reproduction": len(results["Reproduction"]["claims"])}
     for name, found in results.items():
         frame = found.to_dataframe()
         print(name, list(frame.columns))

@@ -19,7 +19,7 @@ use crate::quantity::{BelievedTolerance, share, sigma_m, sigma_rad, whole};
 pub(crate) struct Calibrate {
     /// Robot model: URDF, MJCF, SDF, TOML, a maker's YAML or conf, or calibration.json [default: from the settings]
     pub(crate) model: Option<PathBuf>,
-    /// Measurement files (CSV), joined [default: from the settings]
+    /// Measurement files (CSV, xlsx, or as instruments and recorders write them), joined [default: from the settings]
     pub(crate) measurements: Vec<PathBuf>,
     /// Settings (TOML) for options that are not given here [default: poecal.toml in this folder, if no model is named]
     #[arg(long, value_name = "FILE")]
@@ -37,9 +37,10 @@ pub(crate) struct Calibrate {
     /// Standard deviation of each measured rotation component, like 0.01deg [default: estimated from the data]
     #[arg(long, value_name = "ANGLE", value_parser = sigma_rad, allow_hyphen_values = true, help_heading = FIT)]
     pub(crate) sigma_rotation: Option<f64>,
-    /// Prior: deviation of each axis from nominal, as standard deviations, or none. It decides where the measurements determine
-    /// nothing. auto takes the best of 0.05deg,0.5mm, 0.2deg,2mm, 0.5deg,5mm, 1deg,10mm and 3deg,10mm by cross-validation. A joint of a TOML model may state its own.
-    /// MOC.cfg of a controller of ABB with Absolute Accuracy tells what the maker found
+    /// How far the axes may be from the model's (the prior): standard deviations of their directions and places, or none. They matter only
+    /// where the measurements leave an axis open, which then stays near the model. auto chooses by cross-validation among 0.05deg,0.5mm,
+    /// 0.2deg,2mm, 0.5deg,5mm, 1deg,10mm and 3deg,10mm. A joint of a TOML model may state its own. MOC.cfg of an ABB controller with Absolute
+    /// Accuracy has the deviations that the maker found
     #[arg(long, value_name = "ANGLE,LENGTH|none|auto|MOC.cfg", default_value = "0.5deg,5mm", help_heading = FIT)]
     pub(crate) tolerance: BelievedTolerance,
     /// What joints do beyond geometry: auto fits the terms that predict rows best which were not fitted, all looks

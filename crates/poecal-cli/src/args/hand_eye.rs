@@ -14,7 +14,7 @@ use super::words::{FLANGE_POSES, HAND_EYE_CAMERA, TARGET_POSES, one_of};
 /// Arguments of `poecal hand-eye`.
 #[derive(Args, Debug)]
 pub(crate) struct HandEye {
-    /// Poses (CSV): one file with those of the arm and of the target side by side, or two files, the arm's and the target's, joined by a column
+    /// Poses (CSV or xlsx): one file with those of the arm and of the target side by side, or two files, the arm's and the target's, joined by a column
     /// `image` or row by row. Instead of the target's poses the corners of its pictures, with --lens and --markers
     #[arg(required = true, num_args = 1..=2, value_name = "POSES")]
     pub(crate) poses: Vec<PathBuf>,
@@ -81,7 +81,7 @@ pub(super) fn units(text: &str) -> Result<PoseUnits, String> {
 /// Arguments of `poecal tcp`.
 #[derive(Args, Debug)]
 pub(crate) struct Tcp {
-    /// Poses of the flange (CSV) in which the tip touched a fixed point; a column `point` for several points, a column `tip` for two tips along the
+    /// Poses of the flange (CSV or xlsx) in which the tip touched a fixed point; a column `point` for several points, a column `tip` for two tips along the
     /// tool, which show its direction
     pub(crate) poses: PathBuf,
     /// Robot whose joint readings the file has instead of poses (URDF, MJCF, SDF or TOML)

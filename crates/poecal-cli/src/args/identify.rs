@@ -16,7 +16,7 @@ use crate::quantity::{robot_error, sigma_m, sigma_rad};
 pub(crate) struct Identify {
     /// Robot model: URDF, MJCF, SDF, TOML, a maker's YAML or conf, or calibration.json
     pub(crate) model: PathBuf,
-    /// Joint readings (CSV), joined; other columns than the joints' and `id` are ignored, but for kinds that touch something: these need the
+    /// Joint readings (CSV, xlsx, or as controllers and recorders write them), joined; other columns than the joints' and `id` are ignored, but for kinds that touch something: these need the
     /// columns that name it. With --camera and --markers pictures that were taken: the files that calibrate reads
     #[arg(required = true)]
     pub(crate) joints: Vec<PathBuf>,

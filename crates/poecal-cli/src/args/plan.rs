@@ -39,7 +39,7 @@ pub(crate) struct Plan {
     /// Number of further rows to judge by, at random over the workspace [default: a third of the configurations]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(..=1000))]
     pub(crate) judge: Option<u32>,
-    /// Choose from these configurations alone (CSV of joint readings)
+    /// Choose from these configurations alone (a table of joint readings)
     #[arg(long, value_name = "FILE")]
     pub(crate) candidates: Option<PathBuf>,
     /// Where the robot will work and predictions shall be good: anywhere within its limits, in the configurations of a file, or with the tip in a
@@ -51,7 +51,7 @@ pub(crate) struct Plan {
         allow_hyphen_values = true
     )]
     pub(crate) over: Over,
-    /// Rows that are in the list in any case, or were measured already (CSV of joint readings): new ones complete them, and --count counts both.
+    /// Rows that are in the list in any case, or were measured already (a table of joint readings): new ones complete them, and --count counts both.
     /// Rows whose `set` is held_out do not count
     #[arg(long, visible_alias = "measured", value_name = "FILE")]
     pub(crate) keep: Vec<PathBuf>,
@@ -176,13 +176,13 @@ pub(crate) struct FitArgs {
     #[arg(long, value_name = "ANGLE", value_parser = sigma_rad, allow_hyphen_values = true, default_value = "0.01deg")]
     pub(crate) sigma_rotation: f64,
     /// Error of the tip (RMS) that a calibration leaves however much is measured, and that with corrections, like 0.3mm or 0.3mm,0.12mm, as an
-    /// earlier calibration of such a robot found it [default: 0.3 mm for each metre of reach, which is a guess]
+    /// earlier calibration of such a robot found it [default: 0.3 mm for each metre of reach, which is an assumption]
     #[arg(long, value_name = "LENGTH[,LENGTH]", value_parser = robot_error, allow_hyphen_values = true)]
     pub(crate) robot_error: Option<RobotError>,
     /// The measuring device's frame
     #[arg(long, value_parser = one_of(FRAME), default_value = "unknown")]
     pub(crate) frame: DeviceFrameKnowledge,
-    /// Prior of the fit: deviation of each axis from nominal, as standard deviations, or none
+    /// How far the axes may be from the model's (the prior of the fit): standard deviations of their directions and places, or none
     #[arg(long, value_name = "ANGLE,LENGTH|none", default_value = "0.5deg,5mm")]
     pub(crate) tolerance: BelievedTolerance,
     /// What joints are expected to do beyond geometry: auto and all terms of the common sizes, off nothing, or groups with their sizes, as of

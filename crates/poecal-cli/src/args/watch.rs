@@ -21,7 +21,7 @@ pub(crate) struct Watch {
     pub(crate) columns: ColumnArgs,
     #[command(flatten)]
     pub(crate) fit: FitArgs,
-    /// Choose the next configuration among these (CSV of joint readings) [default: random ones within the limits]
+    /// Choose the next configuration among these (a table of joint readings) [default: random ones within the limits]
     #[arg(long, value_name = "FILE")]
     pub(crate) candidates: Option<PathBuf>,
     /// Where the robot will work, as of poecal plan

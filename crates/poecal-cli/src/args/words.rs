@@ -196,16 +196,39 @@ pub(crate) enum ExportForm {
     Closed(&'static str),
 }
 
-/// Why no file of a maker can be written.
-const CLOSED: &str = "not public";
-
 /// A form, by its word.
 const fn open(format: ExportFormat, help: &'static str) -> (&'static str, &'static str, ExportForm) {
     (format.word(), help, ExportForm::Open(format))
 }
 
-/// The forms of exports.
-pub(super) const EXPORT_FORMAT: Words<ExportForm> = &[
+/// A form that is not public, and why no file of it can be written.
+const fn closed(word: &'static str, why: &'static str) -> (&'static str, &'static str, ExportForm) {
+    (word, why, ExportForm::Closed(why))
+}
+
+/// Parser of the forms of exports: only those that can be written are offered.
+pub(super) fn export_form() -> impl TypedValueParser<Value = ExportForm> {
+    let value = |(word, help, form): &(&'static str, &'static str, ExportForm)| {
+        PossibleValue::new(*word).help(*help).hide(matches!(form, ExportForm::Closed(_)))
+    };
+    chosen(EXPORT_FORMAT.iter().map(value).collect(), EXPORT_FORMAT.to_vec())
+}
+
+/// Help of the form, with those that cannot be written.
+pub(super) fn export_form_help() -> String {
+    let closed = EXPORT_FORMAT.iter().filter_map(|(word, _, form)| match form {
+        ExportForm::Closed(why) => Some(format!("{word} ({why})")),
+        ExportForm::Open(_) => None,
+    });
+    let closed = closed.collect::<Vec<_>>().join(", ");
+    format!("The form. No file can be written for {closed}: {INSTEAD}")
+}
+
+/// The way to a controller whose form is not public.
+pub(crate) const INSTEAD: &str = "use --format offsets for mastering and `poecal compensate` for programs";
+
+/// The forms of exports, also those that cannot be written.
+const EXPORT_FORMAT: Words<ExportForm> = &[
     open(ExportFormat::Urdf, "The URDF that was calibrated, with other numbers"),
     open(ExportFormat::Toml, "A table of screws, which poecal reads"),
     open(ExportFormat::Poe, "Screws of a product of exponentials, JSON"),
@@ -227,15 +250,11 @@ pub(super) const EXPORT_FORMAT: Words<ExportForm> = &[
     open(ExportFormat::Csv, "Origins of the joints, a row each"),
     open(ExportFormat::Offsets, "The joint offsets, base and tool that come nearest, JSON"),
     open(ExportFormat::C, "Arrays of C for kinematics on a controller, with what joints do"),
-    ("kuka", CLOSED, ExportForm::Closed("KUKA's absolute accuracy is a file on the robot's own memory")),
-    (
-        "fanuc",
-        CLOSED,
-        ExportForm::Closed("FANUC's geometry is closed, and mastering takes counts of encoders"),
-    ),
-    ("staubli", CLOSED, ExportForm::Closed("Staeubli's arm.cfx takes the maker's numbers only")),
-    ("yaskawa", CLOSED, ExportForm::Closed("Yaskawa shows neither geometry nor its corrections")),
-    ("abb", CLOSED, ExportForm::Closed("the frames and signs of ABB's MOC.cfg are not published")),
+    closed("kuka", "KUKA's absolute accuracy is a file on the robot's own memory"),
+    closed("fanuc", "FANUC's geometry is closed, and mastering needs counts of encoders"),
+    closed("staubli", "Staeubli's arm.cfx accepts the maker's numbers only"),
+    closed("yaskawa", "Yaskawa shows neither geometry nor its corrections"),
+    closed("abb", "the frames and signs of ABB's MOC.cfg are not published"),
 ];
 
 /// The forms that a model can be written in.
@@ -248,8 +267,15 @@ pub(super) const FORM: Words<ModelFormat> = &[
 fn listed<T: Clone + Send + Sync + 'static>(
     words: Vec<(&'static str, &'static str, T)>,
 ) -> impl TypedValueParser<Value = T> {
-    let values: Vec<PossibleValue> =
-        words.iter().map(|(word, help, _)| PossibleValue::new(*word).help(*help)).collect();
+    let values = words.iter().map(|(word, help, _)| PossibleValue::new(*word).help(*help)).collect();
+    chosen(values, words)
+}
+
+/// Parser of words that are offered by these values.
+fn chosen<T: Clone + Send + Sync + 'static>(
+    values: Vec<PossibleValue>,
+    words: Vec<(&'static str, &'static str, T)>,
+) -> impl TypedValueParser<Value = T> {
     PossibleValuesParser::new(values).try_map(move |chosen| {
         let found = words.iter().find(|(word, ..)| *word == chosen);
         found.map(|(.., meaning)| meaning.clone()).ok_or("expected one of the words")

@@ -11,7 +11,7 @@ use poecal::io::urdf::ChainSelection;
 use poecal::{ErrorKind, Result};
 
 use crate::DONE;
-use crate::args::{Apply, Export, ExportForm};
+use crate::args::{Apply, Export, ExportForm, INSTEAD};
 use crate::console::Console;
 
 /// The form, with the options that it has.
@@ -25,8 +25,7 @@ fn format(arguments: &Export) -> Result<ExportFormat> {
         }
         Some(ExportForm::Closed(why)) => {
             return ErrorKind::Option.refuse(format!(
-                "--format: found a form that nobody outside can write ({why}), expected another: use --format offsets for mastering and `poecal \
-                 compensate` for programs"
+                "--format: found a form that nobody outside can write ({why}), expected another: {INSTEAD}"
             ));
         }
     };

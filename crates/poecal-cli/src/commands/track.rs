@@ -55,7 +55,7 @@ pub(crate) fn track(arguments: &Track, typed: &[OsString], console: &Console) ->
     let names: Vec<String> = arguments.measurements.iter().map(|path| path.display().to_string()).collect();
     console.said_of(&read);
     if let (Some(words), Some(place)) = (&arguments.recalibrate, place) {
-        let (joint, part) = repaired_part(words);
+        let (joint, part) = RepairedPart::named(words);
         let provenance = RecalibratedEntry {
             joint: joint.to_owned(),
             part,
@@ -114,13 +114,4 @@ fn plan(
         console.say(&told.text())?;
     }
     Ok(DONE)
-}
-
-/// A joint, and what of it is calibrated anew.
-fn repaired_part(words: &str) -> (&str, RepairedPart) {
-    match words.rsplit_once('.') {
-        Some((joint, "axis")) => (joint, RepairedPart::Axis),
-        Some((joint, "offset")) => (joint, RepairedPart::Zero),
-        _ => (words, RepairedPart::Zero),
-    }
 }

@@ -1,13 +1,11 @@
 //! `poecal validate`: a calibration judged by other measurements.
 
-use std::collections::HashSet;
 use std::ffi::OsString;
-use std::path::{Path, PathBuf};
 
-use poecal::calibration::{AcceptanceLimits, Decision};
+use poecal::calibration::{AcceptanceLimits, Decision, Level};
 use poecal::io::calibration_file::{CalibrationFile, Inputs};
 use poecal::io::measurements::{self, ReadOptions};
-use poecal::io::named_files::{actual, refuse_repeats};
+use poecal::io::named_files::refuse_repeats;
 use poecal::io::output::{Existing, ValidationPlaces};
 use poecal::io::record::Record;
 use poecal::io::validation::{JudgedRows, Judging, Validation, ValidationInputs};
@@ -69,7 +67,7 @@ pub(crate) fn validate(arguments: &Validate, typed: &[OsString], console: &Conso
     history.append(|history, time| history.append(&found, time), console)?;
     let table = || {
         let calibration = arguments.calibration.display().to_string();
-        report::judgement(&calibration, &named(arguments, &file), &found.judgement) + &written
+        report::judgement(&calibration, &found.inputs.measurements.join(", "), &found.judgement) + &written
     };
     let text = if arguments.json { found.to_text()? } else { table() };
     let told = match (place, arguments.json) {
@@ -78,27 +76,14 @@ pub(crate) fn validate(arguments: &Validate, typed: &[OsString], console: &Conso
         (None, true) => console.data(&text).map(|()| DONE)?,
         (None, false) => console.say(&text).map(|()| DONE)?,
     };
-    if let Some(doubt) = &found.doubt {
-        console.warning(doubt);
-    }
+    console.warnings(&found.warnings());
     let refused = found.judgement.acceptance.as_ref().is_some_and(|it| it.decision != Decision::Pass);
-    let code = if refused { WORSE } else { told };
+    let fails = found.verdict.level == Some(Level::DoNotUse);
+    let code = if refused || fails { WORSE } else { told };
     let Some(required) = arguments.require else { return Ok(code) };
     let Some(reason) = found.judgement.falls_short(required) else { return Ok(code) };
     console.warning(format!("not what --require {} asks for: {reason}", required.word()));
     Ok(WORSE.max(told))
-}
-
-/// The measurement files; those of the calibration are marked.
-fn named(arguments: &Validate, file: &CalibrationFile) -> String {
-    let training: HashSet<PathBuf> =
-        file.inputs.measurements.iter().map(|name| actual(Path::new(name))).collect();
-    let names = arguments.measurements.iter().map(|path| {
-        let name = path.display().to_string();
-        let mark = if training.contains(&actual(path)) { " (has training rows)" } else { "" };
-        name + mark
-    });
-    names.collect::<Vec<_>>().join(", ")
 }
 
 /// Places of the results.

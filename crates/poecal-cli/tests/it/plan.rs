@@ -17,7 +17,7 @@ fn a_planned_list_is_read_and_completed() {
     for words in [
         "planned       12 configurations to fit, 4 at random to judge by, 0 returns to\n",
         "expected      ",
-        "robot error   0.1000 mm that no geometry describes\n",
+        "robot error   0.1000 mm that no geometry of the axes describes\n",
         "NOT collisions of the robot with itself",
         "  12  planned",
         "advice        ",

@@ -94,11 +94,22 @@ fn the_first_command_prints_a_short_table() {
     let at = |label: &str| {
         order.iter().position(|it| it.starts_with(label)).unwrap_or_else(|| panic!("{order:?}"))
     };
-    let wanted =
-        ["verdict", "before", "after", "valid", "held out", "look at", "determined", "target", "written"];
+    let wanted = [
+        "verdict",
+        "before",
+        "after",
+        "expected",
+        "valid",
+        "held out",
+        "look at",
+        "determined",
+        "target",
+        "written",
+    ];
     assert!(wanted.windows(2).all(|two| at(two[0]) < at(two[1])), "{order:?}");
     assert!(
-        out.contains("(RMS): your model, tool and device located\n") && out.contains(": calibrated model\n"),
+        out.contains("before        20.40 mm (RMS) on rows held out: your model, tool and device\n")
+            && out.contains(" mm (RMS) on rows held out: calibrated model\n"),
         "{out}"
     );
 
@@ -161,7 +172,7 @@ fn without_held_out_rows_the_fitted_ones_are_shown_and_named() {
     let out = folder.done("calibrate robot.urdf measurements.csv --held-out 0");
     check(&out);
     assert!(
-        out.contains("\nfitted        60 rows: 0.")
+        out.contains("\nfitted        60 rows, at most 0.")
             && out.contains("\n              no row was held out; cross-validation 0."),
         "{out}"
     );

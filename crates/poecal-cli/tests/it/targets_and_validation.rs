@@ -85,7 +85,7 @@ fn validation_judges_other_sessions() {
     // The same robot with the device elsewhere: positions in the base's own frame.
     write_measurements(&folder, "moved.csv", Kind::POSE, "", &Simulation { device_anywhere: false, ..more });
     let run = folder.run("validate poecal-out/calibration.json moved.csv");
-    assert_eq!(run.code, 0);
+    assert_eq!(run.code, 1);
     println!("{}", run.err.trim_end());
     assert!(
         run.err

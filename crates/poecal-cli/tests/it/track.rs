@@ -16,7 +16,7 @@ fn the_same_rows_are_unchanged_and_a_line_of_the_history() {
     let folder = cell();
     let run = folder.run("track poecal-out/calibration.json cell/measurements.csv --repeatability 0.05mm");
     assert_eq!(run.code, 0, "{}{}", run.out, run.err);
-    assert!(run.out.contains("unchanged (60 of 60 rows repeat"), "{}", run.out);
+    assert!(run.out.contains("60 of 60 rows that repeat"), "{}", run.out);
     let history = folder.read("poecal-out/history.jsonl");
     assert!(history.contains("poecal-track-1") && history.lines().count() == 1, "{history}");
     // Both commands read a history that has lines of both.
@@ -31,7 +31,7 @@ fn witnesses_are_planned_and_written() {
     let run =
         folder.run("track poecal-out/calibration.json --plan 8 --repeatability 0.05mm --out witness.csv");
     assert_eq!(run.code, 0, "{}{}", run.out, run.err);
-    assert!(run.out.contains("not seen"), "{}", run.out);
+    assert!(run.out.contains("not visible"), "{}", run.out);
     // A comment, the names, and eight rows.
     assert_eq!(folder.read("witness.csv").lines().count(), 10);
 }
@@ -166,9 +166,9 @@ fn another_tool_and_another_place_of_the_device_are_named() {
         let run = folder.run(&format!(
             "track poecal-out/calibration.json {words} --reference old.csv --repeatability 0.05mm --history none"
         ));
-        let verdict = run.out.lines().find(|line| line.starts_with("verdict")).unwrap_or_default();
-        println!("{words}: {verdict}");
+        let state = run.out.lines().find(|line| line.starts_with("state")).unwrap_or_default();
+        println!("{words}: {state}");
         assert_eq!(run.code, code, "{words}: {}{}", run.out, run.err);
-        assert!(verdict.contains(expected), "{words}: {}", run.out);
+        assert!(state.contains(expected), "{words}: {}", run.out);
     }
 }

@@ -70,7 +70,10 @@ fn a_promise_is_required_of_all_rows_or_of_those_inside() {
     // Nothing can be said of a range from which there is no row.
     let run = judge("outside.csv --require inside_sampled_range");
     assert!(run.code == 1 && run.err.contains("no row lies inside the sampled range"), "{}", run.err);
-    assert_eq!(judge("other.csv").code, 0, "nothing was required");
+    assert_eq!(judge("other.csv").code, 1, "the calibration does not hold");
+    let run = judge("fit.csv");
+    assert_eq!(run.code, 0, "{}{}", run.out, run.err);
+    assert!(run.err.contains("warning: fit.csv: the calibration was made of this file"), "{}", run.err);
 }
 
 #[test]

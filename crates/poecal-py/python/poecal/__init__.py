@@ -53,12 +53,14 @@ from ._poecal import (
     check,
     compare,
     convert,
+    guess_columns,
     hand_eye,
     identify,
     init,
     offsets,
     plan,
     read_joints,
+    recalibrate,
     reproduce,
     schema,
     set_threads,
@@ -67,13 +69,14 @@ from ._poecal import (
     track,
     version,
 )
-from ._results import Check, Comparison, Offsets, Validation, Visit, VisitPlan
+from ._results import Check, ColumnGuess, Comparison, Offsets, Validation, Visit, VisitPlan
 from ._session_results import Compensation, HandEye, Identification, Reproduction, ToolTip, WatchedRow
 
 __all__ = [
     "Accuracy",
     "Calibration",
     "Check",
+    "ColumnGuess",
     "Comparison",
     "Compensation",
     "Covariance",
@@ -118,12 +121,14 @@ __all__ = [
     "check",
     "compare",
     "convert",
+    "guess_columns",
     "hand_eye",
     "identify",
     "init",
     "offsets",
     "plan",
     "read_joints",
+    "recalibrate",
     "reproduce",
     "schema",
     "set_threads",

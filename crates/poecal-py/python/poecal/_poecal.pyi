@@ -9,7 +9,7 @@ from matplotlib.axes import Axes  # type: ignore[import-not-found, unused-ignore
 from matplotlib.figure import Figure  # type: ignore[import-not-found, unused-ignore]
 from numpy.typing import ArrayLike, NDArray
 
-from ._results import Check, Comparison, Offsets, Validation, Visit, VisitPlan
+from ._results import Check, ColumnGuess, Comparison, Offsets, Validation, Visit, VisitPlan
 from ._session_results import Compensation, HandEye, Identification, Reproduction, ToolTip, WatchedRow
 
 __all__ = [
@@ -37,12 +37,14 @@ __all__ = [
     "check",
     "compare",
     "convert",
+    "guess_columns",
     "hand_eye",
     "identify",
     "init",
     "offsets",
     "plan",
     "read_joints",
+    "recalibrate",
     "reproduce",
     "run_program",
     "schema",
@@ -1941,6 +1943,26 @@ def convert(
     str
         The text.
     """
+def guess_columns(path: _Path, robot: Robot | _Path, *, columns: Mapping[str, str] | None = None) -> ColumnGuess:
+    """Guesses which columns of a foreign file are the joints and what was measured, as `poecal init --columns-from` does.
+
+    Look the mapping over, save it (`Path("columns.toml").write_text(guess.mapping)`), and read the file by
+    `Measurements.from_csv(path, robot, columns="columns.toml")`.
+
+    Parameters
+    ----------
+    path
+        The file: CSV or a workbook.
+    robot
+        The robot, or the path of its model.
+    columns
+        Columns or words in place of the guess, by the keys of `fields`: `{"position.x": "Tx"}`; an empty text for none.
+
+    Returns
+    -------
+    ColumnGuess
+        The columns of the file, the fields of a mapping with what is chosen, columns that are left, and the mapping as a text (TOML).
+    """
 def hand_eye(
     base_from_flange: ArrayLike,
     camera_from_target: ArrayLike,
@@ -2101,6 +2123,40 @@ def read_joints(path: _Path, robot: Robot, *, columns: _Path | None = None, unit
     -------
     numpy.ndarray
         Configurations, shape (m, n), radians and metres, in the order of `robot.reading_names`.
+    """
+def recalibrate(
+    calibration: Calibration,
+    measurements: Measurements,
+    earlier: Measurements | None = None,
+    *,
+    part: str,
+    device: Literal["anew", "known"] = "anew",
+    tool: Literal["same", "anew"] = "same",
+    repeatability_mm: _Number | None = None,
+) -> Calibration:
+    """Calibrates the zero or the axis of one joint anew, by the few measurements of a visit, and holds all else.
+
+    Parameters
+    ----------
+    calibration
+        The calibration before.
+    measurements
+        Measurements of the visit, as of `track`.
+    earlier
+        The rows that the calibration was made of, or those of an earlier visit; None: the visit is judged by the model.
+    part
+        What is calibrated anew: the zero of a joint ("joint2" or "joint2.offset"), or its axis ("joint2.axis").
+    device
+        "anew" if the device was set up anew, so that its frame is fitted; "known" if it stands where it stood.
+    tool
+        "same" if the tool stayed on the flange; "anew" if it was mounted anew, so that its targets are fitted.
+    repeatability_mm
+        Standard deviation of one visit and coordinate; None: what repeats within a visit and what no explanation removes.
+
+    Returns
+    -------
+    Calibration
+        The calibration with this joint corrected. `write(folder)` writes it.
     """
 def reproduce(
     experiment: Literal["lou2009", "breakdown"],
@@ -2275,11 +2331,12 @@ def plan(
     device: None = None,
     tool: None = None,
     repeatability_mm: None = None,
+    target: None = None,
 ) -> Plan:
     """Plans a session: configurations that determine the most, rows to judge by, how many are worth it, and the error to expect.
 
     With `purpose="drift"` it plans visits to a calibrated robot: of the configurations that were measured, those whose repeats show the smallest shift
-    of the worst joint. `candidates`, `count`, `earlier`, `device`, `tool` and `repeatability_mm` say what is known of the visits.
+    of the worst joint. `candidates`, `count`, `earlier`, `device`, `tool` and `repeatability_mm` state what is known of the visits, `target` which target will be measured.
 
     Parameters
     ----------
@@ -2370,6 +2427,7 @@ def plan(
     device: Literal["known", "anew"] | None = None,
     tool: Literal["same", "anew"] | None = None,
     repeatability_mm: _Number | None = None,
+    target: str | None = None,
 ) -> VisitPlan: ...
 @overload
 def plan(
@@ -2411,6 +2469,7 @@ def plan(
     device: Literal["known", "anew"] | None = None,
     tool: Literal["same", "anew"] | None = None,
     repeatability_mm: _Number | None = None,
+    target: str | None = None,
 ) -> Plan | VisitPlan: ...
 def track(
     calibration: Calibration,

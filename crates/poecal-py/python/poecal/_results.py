@@ -121,6 +121,43 @@ class Comparison(Findings):
         return list(self["joints"])
 
 
+class ColumnGuess(Findings):
+    """Which columns of a foreign file are the joints and what was measured: the result of `guess_columns`.
+
+    `str` is the mapping file. Its data frame has a row for each field of the mapping.
+    """
+
+    __slots__ = ()
+
+    @property
+    def mapping(self) -> str:
+        """The mapping file (TOML)."""
+        return self._at(str, "mapping")
+
+    @property
+    def columns(self) -> list[str]:
+        """The columns of the file, in their order."""
+        return [column["name"] for column in self["columns"]]
+
+    @property
+    def chosen(self) -> dict[str, str]:
+        """The column or word that was chosen for each field of the mapping; fields without one are left out."""
+        return {field["key"]: field["chosen"] for field in self["fields"] if field["chosen"]}
+
+    @property
+    def ignored(self) -> list[str]:
+        """Columns that nothing is read from."""
+        return self._texts("ignored")
+
+    @property
+    def missing(self) -> list[str]:
+        """What has no column, and nothing can be read without."""
+        return self._texts("missing")
+
+    def _rows(self) -> list[dict[str, Any]]:
+        return list(self["fields"])
+
+
 class Validation(Findings):
     """A calibration judged by measurements that it did not see: the result of `Calibration.validate`.
 
@@ -138,6 +175,11 @@ class Validation(Findings):
     def reasons(self) -> list[str]:
         """Why the verdict is no better, a sentence each."""
         return self._texts("verdict", "reasons")
+
+    @property
+    def fitted(self) -> list[str]:
+        """Files of which the calibration itself was made: it fits them better than new ones."""
+        return self._texts("fitted")
 
     @property
     def model(self) -> str:
@@ -206,9 +248,14 @@ class Visit(Findings):
     __slots__ = ()
 
     @property
+    def state(self) -> str:
+        """The state of the robot: "unchanged" or "changed"."""
+        return self._at(str, "state")
+
+    @property
     def changed(self) -> bool:
         """Whether more changed than noise makes."""
-        return self._at(str, "state") == "changed"
+        return self.state == "changed"
 
     @property
     def explanation(self) -> str | None:

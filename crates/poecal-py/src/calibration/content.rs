@@ -121,10 +121,15 @@ impl Calibration {
     }
 
     /// The file that it was read from; `None` of one that was made in a process.
-    pub(super) fn source(&self) -> Option<&Path> {
+    pub(crate) fn source(&self) -> Option<&Path> {
         let path = self.nominal.model.path.as_path();
         let is_file = path.extension().is_some_and(|it| it.eq_ignore_ascii_case("json"));
         matches!(self.found, Found::Written(_)).then_some(path).filter(|_| is_file)
+    }
+
+    /// The same robot with another result.
+    pub(crate) fn anew(&self, robot: poecal::robot::Robot, file: CalibrationFile, summary: String) -> Self {
+        Calibration::written(self.nominal.clone(), robot, file, None, summary)
     }
 
     /// The calibration as a state.

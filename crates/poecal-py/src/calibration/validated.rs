@@ -79,7 +79,7 @@ impl Places {
         let found: Validation = found.map_err(raise)?;
         let names = measurements.source.names.join(", ");
         let text = report::judgement(&model.path.display().to_string(), &names, &found.judgement);
-        let doubts: Vec<String> = found.doubt.iter().cloned().collect();
+        let doubts = found.warnings();
         crate::warn(py, &doubts)?;
         let answer = report::judged(&found.judgement);
         Ok(Findings::new("Validation", text, answer, &found)?.warned(&doubts))

@@ -134,7 +134,7 @@ impl Rules<'_> {
             (false, _) => angle,
             (true, true) => format!("{length} or {angle}"),
         };
-        format!("{verb} determined to {known} only")
+        format!("{verb} known to {known} only (without the prior)")
     }
 
     /// Whether directions have a part in metres, and in radians.
@@ -218,13 +218,16 @@ impl Rules<'_> {
         let several_axes = joints.len() > 1;
         let open = if several_axes { "are not determined" } else { "is not determined" };
         let words = self.degree_words(open, several_axes, &tilts);
-        let several = self.setup.session.data.targets.len() > 1;
-        let subject = if several { "all points measured lie" } else { "the point measured lies" };
-        let axes = if joints.len() > 1 { "the axes" } else { "the axis" };
-        let (it, points) =
-            if joints.len() > 1 { ("their tilts", "about it") } else { ("its tilt", "about the point") };
+        let several_targets = self.setup.session.data.targets.len() > 1;
+        let (targets, one) =
+            if several_targets { ("all targets are", "one") } else { ("the target is", "the target") };
+        let (axes, tilt, off) = if several_axes {
+            ("the axes", "the tilts of these axes", "these axes")
+        } else {
+            ("the axis", "the tilt of this axis", "the axis")
+        };
         let description = format!(
-            "{}: {subject} on {axes} (within {} mm): {it} {points} {words}",
+            "{targets} on {axes} of {} (within {} mm), so {tilt} {words}; mount {one} off {off}",
             self.names(&joints),
             rounded(away_m * 1e3)
         );

@@ -20,7 +20,7 @@ pub enum Cause {
     StoodStill,
     /// Fewer measured numbers than unknowns.
     TooFew,
-    /// A target measured as a point lies on the axis of a joint.
+    /// A target measured as a point is on the axis of a joint.
     PointOnAxis,
     /// The tool kept one orientation.
     OneOrientation,

@@ -212,6 +212,20 @@ pub(super) fn row_shifts(targets: usize) -> Vec<Hypothesis> {
     all
 }
 
+/// Factors that put lengths right which were read in another unit, and what happened then.
+const OTHER_LENGTHS: [(f64, &str); 10] = [
+    (1e-3, "millimetres had been read as metres"),
+    (1e3, "metres had been read as millimetres"),
+    (25.4, "inches had been read as millimetres"),
+    (0.0254, "inches had been read as metres"),
+    (1.0 / 25.4, "millimetres had been read as inches"),
+    (1.0 / 0.0254, "metres had been read as inches"),
+    (10.0, "centimetres had been read as millimetres"),
+    (0.1, "millimetres had been read as centimetres"),
+    (100.0, "metres had been read as centimetres"),
+    (0.01, "centimetres had been read as metres"),
+];
+
 /// Lengths of a quantity in another unit.
 pub(super) fn length_units(of: Quantity, is_all: bool) -> Vec<Hypothesis> {
     let is_position = of == Quantity::Position;
@@ -220,27 +234,18 @@ pub(super) fn length_units(of: Quantity, is_all: bool) -> Vec<Hypothesis> {
         Hypothesis::new(
             kind,
             Change::Resize(factor, of, is_all),
-            format!("multiplying the {}s by {factor}", of.name()),
+            format!("multiplying the {}s by {}", of.name(), factor_words(factor)),
             format!(
                 "check their unit, since it looks as if {words} (or the model's lengths are in another one)"
             ),
         )
     };
-    [
-        (1e-3, "millimetres had been read as metres"),
-        (1e3, "metres had been read as millimetres"),
-        (25.4, "inches had been read as millimetres"),
-        (0.0254, "inches had been read as metres"),
-        (1.0 / 25.4, "millimetres had been read as inches"),
-        (1.0 / 0.0254, "metres had been read as inches"),
-        (10.0, "centimetres had been read as millimetres"),
-        (0.1, "millimetres had been read as centimetres"),
-        (100.0, "metres had been read as centimetres"),
-        (0.01, "centimetres had been read as metres"),
-    ]
-    .into_iter()
-    .map(one)
-    .collect()
+    OTHER_LENGTHS.into_iter().map(one).collect()
+}
+
+/// A factor as people read it.
+fn factor_words(factor: f64) -> String {
+    format!("{factor:.3e}").parse::<f64>().unwrap_or(factor).to_string()
 }
 
 /// Positions of one of several files in another unit than those of the others.
@@ -258,7 +263,7 @@ pub(super) fn file_units(data: &Dataset) -> Vec<Hypothesis> {
             let factor = whole.resized();
             Hypothesis {
                 changes: vec![Change::ResizeFile(factor, file)],
-                action: format!("multiplying the positions of {name} alone by {factor}"),
+                action: format!("multiplying the positions of {name} alone by {}", factor_words(factor)),
                 ..whole
             }
         };
@@ -274,14 +279,13 @@ pub(super) fn axis_units() -> Vec<Hypothesis> {
         Hypothesis::new(
             DiagnosisKind::PositionUnit,
             Change::ResizeAxis(axis, factor),
-            format!("multiplying {name} alone by {factor}"),
+            format!("multiplying {name} alone by {}", factor_words(factor)),
             format!(
                 "state the unit of `{name}` in the header, since it looks as if {words} there, and not in the other two columns"
             ),
         )
     };
-    let units = [(1e-3, "millimetres had been read as metres"), (1e3, "metres had been read as millimetres")];
-    (0..3).flat_map(|axis| units.map(|unit| (axis, unit))).map(one).collect()
+    (0..3).flat_map(|axis| OTHER_LENGTHS.map(|unit| (axis, unit))).map(one).collect()
 }
 
 /// Distances that do not count from their anchor, or radii of other spheres.

@@ -173,9 +173,9 @@ impl Identify {
             .filter_map(|(k, index)| index.map(|index| format!("O{} {index:.3e}", k + 1)))
             .collect();
         if words.is_empty() {
-            "O1 to O5 are zero: a direction is not observed at all".to_owned()
+            "O1 to O5 are zero: an unknown is not determined at all".to_owned()
         } else {
-            words.join(", ")
+            format!("{} (larger is better)", words.join(", "))
         }
     }
 

@@ -47,6 +47,12 @@ pub struct Plan {
     robot_words: String,
 }
 
+/// Columns of the table of errors by number of configurations. Removable is the part of an error that more rows would remove.
+pub(super) const CURVE_HEAD: [&str; 5] =
+    ["configurations", "calibrated", "removable", "corrected", "removable"];
+/// What makes a number of configurations enough.
+const LITTLE_GAIN: &str = "from there 10 more gain less than 5 %";
+
 /// Expected errors (RMS over the workspace) in two parts each.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub(super) struct PlanErrors {
@@ -88,7 +94,7 @@ impl PlanErrors {
     pub(super) fn words(&self) -> [String; 2] {
         let words = |all, open, rest| {
             format!(
-                "to {} mm: {} not determined yet, {} that no such model describes",
+                "to {} mm: more rows would remove {} mm, and {} mm is robot error beyond such a model",
                 number(all),
                 number(open),
                 number(rest)
@@ -101,11 +107,11 @@ impl PlanErrors {
     }
 }
 
-/// What no geometry describes.
+/// The part of a robot's error that no geometry describes.
 pub(super) fn robot_error_words(it: &PlanErrors, is_a_guess: bool) -> String {
-    let guess =
-        if is_a_guess { ", a guess of 0.3 mm for each metre of reach: --robot-error states it" } else { "" };
-    format!("{} mm that no geometry describes{guess}", number(it.robot_error_mm))
+    let assumed =
+        if is_a_guess { " (assumed: 0.3 mm per metre of reach; state yours with --robot-error)" } else { "" };
+    format!("{} mm that no geometry of the axes describes{assumed}", number(it.robot_error_mm))
 }
 
 impl Plan {
@@ -173,11 +179,20 @@ impl Plan {
         self.configurations + self.kept
     }
 
-    /// Number of configurations from which more are not worth it, in words.
+    /// Whether as many configurations are planned as are worth it, in words.
     pub(super) fn advice(&self) -> String {
+        let planned = self.planned();
         match self.enough {
-            Some(enough) => format!("{enough} configurations; from there 10 more gain less than 5 %"),
-            None => "more than 100 configurations: 10 more still gain 5 %".to_owned(),
+            Some(enough) if enough > planned => format!(
+                "{planned} configurations are planned, {enough} would be worth it: --count {enough} ({LITTLE_GAIN})"
+            ),
+            Some(enough) if enough < planned => {
+                format!("{planned} configurations are planned, {enough} would do ({LITTLE_GAIN})")
+            }
+            Some(_) => format!("{planned} configurations are enough ({LITTLE_GAIN})"),
+            None => format!(
+                "{planned} configurations are planned, more than 100 would be worth it: 10 more still gain 5 % there"
+            ),
         }
     }
 
@@ -255,9 +270,9 @@ impl Plan {
         let mut out = String::new();
         self.facts().iter().for_each(|(name, words)| line(&mut out, name, words));
         // Writing to a String cannot fail.
-        let _ = writeln!(out);
+        let _ = writeln!(out, "\nExpected error, mm (RMS); removable: the part that more rows would remove");
         let widths = [26, 13];
-        row(&mut out, "configurations", widths, ["calibrated", "of it open", "corrected", "of it open"]);
+        row(&mut out, "configurations", widths, &CURVE_HEAD[1..]);
         for point in &self.curve {
             let it = &point.expected;
             let mark = if point.configurations == self.planned() { "  planned" } else { "" };

@@ -28,7 +28,7 @@ pub struct Track {
     repeated: usize,
     explanation: Option<ExplanationEntry>,
     alternatives: Vec<ExplanationEntry>,
-    /// Joints of whose zeros nothing is seen.
+    /// Joints of whose zeros no shift is visible.
     invisible: Vec<InvisibleEntry>,
     joints: Vec<SightEntry>,
     /// Root mean square change of measured places beside what is free, millimetres.
@@ -70,7 +70,7 @@ struct ExplanationEntry {
     words: String,
 }
 
-/// A joint that is not seen.
+/// A joint of which no shift of the zero is visible.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 struct InvisibleEntry {
     joint: String,
@@ -78,12 +78,12 @@ struct InvisibleEntry {
     words: String,
 }
 
-/// What would be found of a joint: in degrees, of a slide in millimetres.
+/// What would be visible of a joint: in degrees, of a slide in millimetres.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 struct SightEntry {
     joint: String,
     unit: &'static str,
-    /// Smallest shift of its zero that is found with 95 %; null where it is not seen.
+    /// Smallest shift of its zero that is visible with 95 %; null where none is.
     smallest: Option<f64>,
     sigma: Option<f64>,
 }
@@ -102,7 +102,7 @@ fn kind(of: Kind) -> &'static str {
     }
 }
 
-/// Words of why a joint is not seen.
+/// Words of why no shift of a joint is visible.
 fn because(unseen: Unseen) -> (&'static str, &'static str) {
     match unseen {
         Unseen::Device => (
@@ -134,7 +134,7 @@ pub struct WitnessPlan {
     /// Standard deviation of a visit and coordinate for which this is, millimetres.
     noise_mm: f64,
     joints: Vec<SightEntry>,
-    /// Joints of whose zeros nothing is seen.
+    /// Joints of whose zeros no shift is visible.
     invisible: Vec<InvisibleEntry>,
 }
 
@@ -163,8 +163,8 @@ impl WitnessPlan {
         let seen = if seen.is_empty() { "none".to_owned() } else { seen.join(", ") };
         let unseen: Vec<String> = self.invisible.iter().map(|it| visible(&it.joint).into_owned()).collect();
         let unseen =
-            if unseen.is_empty() { String::new() } else { format!("; not seen: {}", unseen.join(", ")) };
-        format!("{} configurations; smallest shifts found (95 %): {seen}{unseen}", self.configurations)
+            if unseen.is_empty() { String::new() } else { format!("; not visible: {}", unseen.join(", ")) };
+        format!("{} configurations; smallest visible shifts (95 %): {seen}{unseen}", self.configurations)
     }
 
     /// The table.
@@ -207,11 +207,11 @@ pub fn recalibrated(found: &Repaired, before: &CalibrationFile) -> String {
 
 fn sight_table(joints: &[SightEntry], invisible: &[InvisibleEntry]) -> String {
     let mut out = String::new();
-    let _ = writeln!(out, "\n  {:16} {:>28}", "joint", "smallest shift found (95 %)");
+    let _ = writeln!(out, "\n  {:16} {:>30}", "joint", "smallest visible shift (95 %)");
     for joint in joints {
         let smallest =
-            joint.smallest.map_or_else(|| "not seen".to_owned(), |it| format!("{it:.3} {}", joint.unit));
-        let _ = writeln!(out, "  {:16} {smallest:>28}", visible(&joint.joint));
+            joint.smallest.map_or_else(|| "not visible".to_owned(), |it| format!("{it:.3} {}", joint.unit));
+        let _ = writeln!(out, "  {:16} {smallest:>30}", visible(&joint.joint));
     }
     for it in invisible {
         let _ = writeln!(out, "  {}: {}", visible(&it.joint), it.words);
@@ -361,24 +361,28 @@ impl Track {
         format!("{}{others}", found.words)
     }
 
+    /// The state with what changed.
+    fn state_words(&self) -> String {
+        match (&self.explanation, self.state) {
+            (Some(_), State::Changed) => format!("changed: {}", self.answer()),
+            (..) => self.answer(),
+        }
+    }
+
     /// The table.
     #[must_use]
     pub fn text(&self) -> String {
         let mut out = String::new();
-        let state = match self.state {
-            State::Unchanged => "unchanged",
-            State::Changed => "changed",
-        };
         let by = match self.judged_by {
             JudgedBy::Repeats => format!(
-                "{} of {} rows repeat earlier ones, measured against measured",
+                "{} of {} rows that repeat earlier ones, measured against measured",
                 self.repeated, self.rows
             ),
-            JudgedBy::Model => format!("{} rows, judged by the model", self.rows),
+            JudgedBy::Model => format!("the model, at {} rows", self.rows),
         };
         line(&mut out, "robot", &self.robot);
-        line(&mut out, "state", &format!("{state} ({by})"));
-        line(&mut out, "verdict", &self.answer());
+        line(&mut out, "state", &self.state_words());
+        line(&mut out, "judged by", &by);
         let left = if self.explanation.is_some() {
             format!(", {:.3} mm of which the explanation leaves", self.left_mm)
         } else {

@@ -137,7 +137,7 @@ fn corrections_are_told_where_an_arm_can_be_corrected() {
 fn files_without_it_have_a_report_without_it() {
     let (mut file, residuals) = file_of(&elbow(), Kind::POINT, &CalibrationOptions::default());
     let page = poecal::report::calibration_page(&file, &residuals).unwrap().concat();
-    assert!(page.contains("id=\"compensation\"") && page.contains("How far an uncorrected program misses"));
+    assert!(page.contains("id=\"compensation\"") && page.contains("Error of an uncorrected program"));
     file.compensation = None;
     let text = file.to_text().unwrap();
     assert!(!text.contains("\"compensation\""));

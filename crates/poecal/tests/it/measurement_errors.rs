@@ -265,6 +265,18 @@ const FILES: &[(&[u8], &str)] = &[
         "points.csv:1:10: found positions that spread over 0.9625 mm where the model moves its tip by 958.9 mm, expected about the same: most likely they are in m, not mm (or the model's lengths are 1000 times too large); write `x[m],y[m],z[m]` in the header, or the unit in the mapping",
     ),
     (
+        b"a,lift,b,x[cm],y[cm],z[cm]\n0,0,0,1000,0,300\n1,0,0,540,840,300\n2,0,0,-420,910,300\n3,0,0,-990,140,300\n",
+        "points.csv:1:10: found positions that spread over 962.5 cm where the model moves its tip by 95.89 cm, expected about the same: most likely they are in mm, not cm (or the model's lengths are 10 times too small); write `x[mm],y[mm],z[mm]` in the header, or the unit in the mapping",
+    ),
+    (
+        b"a,lift,b,x[in],y[in],z[in]\n0,0,0,1000,0,300\n1,0,0,540,840,300\n2,0,0,-420,910,300\n3,0,0,-990,140,300\n",
+        "points.csv:5: found positions up to 1683 in from their middle, where the robot reaches 62.33 in, expected another unit, most likely mm; write `x[mm],y[mm],z[mm]` in the header, or the unit in the mapping",
+    ),
+    (
+        b"a,lift,b,x[mm],y[mm],z[mm]\n0,0,0,39.4,0,11.8\n1,0,0,21.3,33.1,11.8\n2,0,0,-16.5,35.8,11.8\n3,0,0,-39,5.5,11.8\n",
+        "points.csv:1:10: found positions that spread over 37.9 mm where the model moves its tip by 958.9 mm, expected about the same: most likely they are in inches, not mm (or the model's lengths are 25.4 times too large); write `x[in],y[in],z[in]` in the header, or the unit in the mapping",
+    ),
+    (
         b"a,lift,b,x,y,z\n0,0,0,1e-3,0,0\n1,0,0,0.54e-3,0.84e-3,0\n2,0,0,-0.42e-3,0.91e-3,0\n3,0,0,-0.99e-3,0.14e-3,0\n",
         "points.csv:1:10: found positions that spread over 0.0009625 m where the model moves its tip by 0.9589 m, expected about the same: most likely the model's lengths are 1000 times too large; correct its unit, or the unit of the positions",
     ),

@@ -24,6 +24,24 @@ pub enum RepairedPart {
     Axis,
 }
 
+impl RepairedPart {
+    /// The joint and the part of it that a text names: `joint2` and `joint2.offset` its zero, `joint2.axis` its axis.
+    ///
+    /// ```
+    /// use poecal::io::calibration_file::RepairedPart;
+    /// assert_eq!(RepairedPart::named("joint2.axis"), ("joint2", RepairedPart::Axis));
+    /// assert_eq!(RepairedPart::named("joint2"), ("joint2", RepairedPart::Zero));
+    /// ```
+    #[must_use]
+    pub fn named(text: &str) -> (&str, RepairedPart) {
+        match text.rsplit_once('.') {
+            Some((joint, "axis")) => (joint, RepairedPart::Axis),
+            Some((joint, "offset")) => (joint, RepairedPart::Zero),
+            _ => (text, RepairedPart::Zero),
+        }
+    }
+}
+
 /// A joint that was calibrated anew; all else is as the calibration before had it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct RecalibratedEntry {

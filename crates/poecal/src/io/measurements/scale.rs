@@ -24,6 +24,8 @@ pub const LARGEST_OTHERWISE: f64 = 4.0 * std::f64::consts::PI;
 pub const SHARE: f64 = 0.1;
 /// Motion below which a coordinate did not move, as a share of the reach.
 const STILL: f64 = 1e-2;
+/// A coordinate that moves by at most this many reaches is in the right unit where another one is in a wrong one.
+const RIGHT_REACHES: f64 = 4.0;
 /// Positions with a spread of more than this many reaches are in a wrong unit.
 pub const REACHES: f64 = 20.0;
 /// The largest of all readings where they are per cent of the joints' ranges, from -100 to 100 and a little beyond.
@@ -185,14 +187,12 @@ impl OneJoint<'_> {
 
     /// The unit that explains readings far outside.
     fn other_unit(&self, input: &Input, extremes: [f64; 2], rows: usize) -> Option<NamedUnit> {
-        let candidates: &[&str] = match input.unit.symbol() {
-            "rad" => &["deg", "mrad"],
-            "m" => &["mm", "um"],
-            "cm" => &["mm"],
-            "mm" => &["um"],
-            _ => &[],
-        };
         let quantity = input.unit.of();
+        let candidates: &[&str] = match quantity {
+            Unit::Radian => &["deg", "mrad", "arcmin", "arcsec"],
+            Unit::Metre => &["mm", "um", "nm"],
+            Unit::One | Unit::Second => &[],
+        };
         let is_rare = (self.beyond as f64) < SHARE * rows as f64;
         if is_rare || !self.is_far_outside(quantity, extremes, input.unit_from) {
             return None;
@@ -200,6 +200,9 @@ impl OneJoint<'_> {
         let span = self.joint.limits.map_or(0.0, |limits| limits.upper - limits.lower);
         candidates.iter().find_map(|symbol| {
             let unit = NamedUnit::parse(symbol, quantity).ok()?;
+            if unit.to_si(1.0) >= input.unit.to_si(1.0) {
+                return None;
+            }
             let fits = extremes.into_iter().all(|reading| {
                 let reading = unit.to_si(input.unit.from_si(reading));
                 let plausible = self.joint.limits.is_some() || reading.abs() <= LARGEST_OTHERWISE;
@@ -336,13 +339,13 @@ pub(super) fn check_positions(
 fn positions_message(inputs: [&Input; 3], far: [f64; 3], apart: Vector3<f64>, reach: f64) -> Option<String> {
     // The columns of which that is so: a header may state the unit of one of three wrongly.
     // One in which nothing moved shows nothing.
-    let is_right = |axis: usize| (STILL * reach..=REACHES * reach).contains(&far[axis]);
+    let is_right = |axis: usize| (STILL * reach..=RIGHT_REACHES * reach).contains(&far[axis]);
     let own: Vec<usize> = (0..3).filter(|axis| !is_right(*axis)).collect();
     let own = if own.is_empty() { vec![0, 1, 2] } else { own };
     let mut headers = Vec::new();
     for input in own.iter().map(|axis| inputs[*axis]) {
         let smaller = match input.unit.symbol() {
-            "m" => "mm",
+            "m" | "cm" | "in" => "mm",
             "mm" => "um",
             "um" => "nm",
             _ => return None,

@@ -8,7 +8,7 @@ use super::header::Header;
 use super::inputs::{Input, InputSource};
 use super::layout::ColumnLayout;
 use super::scale::short;
-use super::units::NamedUnit;
+use super::units::{NamedUnit, units_of};
 use crate::distributions::{median, median_point};
 use crate::error::{ErrorKind, Result};
 use crate::lie::Pose;
@@ -25,6 +25,11 @@ const FEWEST_ROWS: usize = 4;
 const SHARE_OF_REACH: f64 = 0.05;
 /// Longer tools than the model's change the spread by less than this factor.
 const FACTOR: f64 = 4.0;
+/// How many times too large or too small positions are at least that are clearly in another unit.
+const THOUSANDS: [f64; 4] = [1e3, 1e-3, 1e6, 1e-6];
+/// Of a unit near the stated one the spread is closer than this factor, and the ways between rows differ by less than this share.
+const NEAR: f64 = 1.5;
+const ALIKE: f64 = 0.3;
 /// Angles in degrees below this may be radians of a full turn.
 const FULL_TURN_AS_DEGREES: f64 = 6.4;
 /// Factor by which angles misread as degrees reduce the model's spread at least.
@@ -46,9 +51,13 @@ pub(super) fn check(
     let rows: Vec<usize> = (first..data.len()).step_by(step).collect();
     let position = layout.targets.first().and_then(|target| layout.inputs.get(target.position?[0]));
     let (Some(input), true) = (position, rows.len() >= FEWEST_ROWS) else { return Ok(()) };
-    let measured = rows.iter().filter_map(|&row| data.observations.get(row));
-    let measured = spread(measured.filter_map(|row| row.measurement.position()).collect());
-    let modelled = |angle_factor: f64| {
+    let placed =
+        |row: &&usize| data.observations.get(**row).is_some_and(|row| row.measurement.position().is_some());
+    let rows: Vec<usize> = rows.iter().filter(placed).copied().collect();
+    let positions = rows.iter().filter_map(|&row| data.observations.get(row)?.measurement.position());
+    let positions: Vec<Vector3<f64>> = positions.collect();
+    let measured = spread(&positions);
+    let tips = |angle_factor: f64| -> Vec<Vector3<f64>> {
         let tip = |&row: &usize| {
             let readings = data.readings(row).iter().zip(&layout.inputs);
             let readings: Vec<f64> = readings
@@ -59,8 +68,9 @@ pub(super) fn check(
                 pair => seen(robot, &Pose::identity(), pair, &readings).translation,
             }
         };
-        spread(rows.iter().map(tip).collect())
+        rows.iter().map(tip).collect()
     };
+    let modelled = |angle_factor: f64| spread(&tips(angle_factor));
     let smallest = SHARE_OF_REACH * robot.reach_m();
     let as_read = modelled(1.0);
     let message = if let Some(first_angle) = degrees_within_a_turn(layout, data, &rows)
@@ -73,10 +83,12 @@ pub(super) fn check(
         None
     };
     let message = message.or_else(|| {
-        let power = [3, -3, 6, -6].into_iter().find(|power| is_about(measured / as_read, 10f64.powi(*power)));
-        power
+        let ratio = measured / as_read;
+        let factor = THOUSANDS.into_iter().find(|factor| is_about(ratio, *factor));
+        let factor = factor.or_else(|| near_unit(input.unit, ratio, &positions, &tips(1.0)));
+        factor
             .filter(|_| as_read > smallest)
-            .map(|power| (input, position_message(input, measured, as_read, power)))
+            .map(|factor| (input, position_message(input, measured, as_read, factor)))
     });
     match message {
         None => Ok(()),
@@ -100,9 +112,29 @@ fn pair_of<'a>(robot: &'a Robot, data: &Dataset, row: usize) -> (Option<&'a Moun
     )
 }
 
+/// By how much positions in another unit would be too large or too small, of the units that are near the stated one: where the ways from row
+/// to row are then as long as the model's. A long tool, which changes the spread as much, does not make them so.
+fn near_unit(
+    stated: NamedUnit,
+    ratio: f64,
+    positions: &[Vector3<f64>],
+    tips: &[Vector3<f64>],
+) -> Option<f64> {
+    let ways =
+        |of: &[Vector3<f64>]| -> Vec<f64> { of.windows(2).map(|pair| (pair[1] - pair[0]).norm()).collect() };
+    let (measured, modelled) = (ways(positions), ways(tips));
+    let usual = median(modelled.iter().copied())?;
+    let factors = units_of(Unit::Metre).map(|unit| stated.to_si(1.0) / unit.to_si(1.0));
+    let is_near = |factor: &f64| !is_about(1.0, *factor) && (ratio / factor).ln().abs() < NEAR.ln();
+    factors.filter(is_near).find(|factor| {
+        let apart = measured.iter().zip(&modelled).map(|(way, model)| (way / factor - model).abs());
+        median(apart).is_some_and(|apart| apart < ALIKE * usual)
+    })
+}
+
 /// Median distance from the middle, which a few corrupt rows do not change.
-fn spread(positions: Vec<Vector3<f64>>) -> f64 {
-    let middle = median_point(&positions);
+fn spread(positions: &[Vector3<f64>]) -> f64 {
+    let middle = median_point(positions);
     median(positions.iter().map(|position| (position - middle).norm())).unwrap_or(0.0)
 }
 
@@ -138,23 +170,28 @@ fn angle_message(input: &Input, measured: f64, modelled: f64) -> String {
     )
 }
 
-/// `power`: power of ten by which the measured spread exceeds the model's.
-fn position_message(input: &Input, measured: f64, modelled: f64, power: i32) -> String {
+/// A unit behind the word `in`.
+fn spoken(symbol: &str) -> &str {
+    if symbol == "in" { "inches" } else { symbol }
+}
+
+/// `factor`: how many times the model's spread the measured one is, as a ratio of units.
+fn position_message(input: &Input, measured: f64, modelled: f64, factor: f64) -> String {
     let stated = input.unit;
     let model = format!(
         "the model's lengths are {} times too {}",
-        10f64.powi(power.abs()),
-        if power > 0 { "small" } else { "large" }
+        short(factor.max(1.0 / factor)),
+        if factor > 1.0 { "small" } else { "large" }
     );
-    let likely = ["m", "mm", "um", "nm"].into_iter().find(|symbol| {
-        NamedUnit::parse(symbol, Unit::Metre)
-            .is_ok_and(|unit| (unit.to_si(1.0) * 10f64.powi(power) / stated.to_si(1.0) - 1.0).abs() < 1e-9)
-    });
+    let likely = units_of(Unit::Metre)
+        .find(|unit| (unit.to_si(1.0) * factor / stated.to_si(1.0) - 1.0).abs() < 1e-9)
+        .map(|unit| unit.symbol());
     let advice = match likely {
         Some(likely) => format!(
-            "most likely they are in {likely}, not {} (or {model}); write `x[{likely}],y[{likely}],z[{likely}]` in the \
+            "most likely they are in {}, not {} (or {model}); write `x[{likely}],y[{likely}],z[{likely}]` in the \
              header, or the unit in the mapping",
-            stated.symbol()
+            spoken(likely),
+            spoken(stated.symbol())
         ),
         None => format!("most likely {model}; correct its unit, or the unit of the positions"),
     };

@@ -93,6 +93,9 @@ pub struct Validation {
     /// Which state of a repaired session the measurements were judged by, from 1: targets and devices before the first move, or after it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub stage: Option<usize>,
+    /// Files of the measurements of which the calibration itself was made, by their content.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub fitted: Vec<String>,
     /// What contradicts the calibration, as a sentence.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub doubt: Option<String>,
@@ -171,6 +174,11 @@ impl Validation {
     /// ```
     #[must_use]
     pub fn new(file: &CalibrationFile, judgement: Judgement, inputs: ValidationInputs) -> Self {
+        let sum = |name: &String, of: &BTreeMap<String, String>| of.get(name).cloned();
+        let own: Vec<String> =
+            file.inputs.measurements.iter().filter_map(|name| sum(name, &file.inputs.sha256)).collect();
+        let is_fitted = |name: &&String| sum(name, &inputs.sha256).is_some_and(|it| own.contains(&it));
+        let fitted = inputs.measurements.iter().filter(is_fitted).cloned().collect();
         Validation {
             schema: SCHEMA,
             poecal_version: env!("CARGO_PKG_VERSION"),
@@ -179,9 +187,23 @@ impl Validation {
             record: Record::default(),
             verdict: ValidationVerdict::of(&judgement),
             stage: None,
+            fitted,
             doubt: file.doubt(&judgement),
             judgement,
         }
+    }
+
+    /// Sentences of what weakens the judgement, and of what contradicts the calibration.
+    #[must_use]
+    pub fn warnings(&self) -> Vec<String> {
+        let fitted = (!self.fitted.is_empty()).then(|| {
+            format!(
+                "{}: the calibration was made of this file, so it fits these rows better than new ones: validate with measurements that the \
+                 calibration has not seen",
+                self.fitted.join(", ")
+            )
+        });
+        fitted.into_iter().chain(self.doubt.clone()).collect()
     }
 
     /// The text of `validation.json`.

@@ -12,7 +12,7 @@ use crate::calibration::{Decision, Event, Level};
 use crate::io::calibration_file::CalibrationFile;
 use crate::io::shapes::Shapes;
 use crate::report::summary::{
-    ModelRow, Place, Point, SEE_ROBUST, delivered, expected, leading, look_at, reasons,
+    ModelRow, Place, Point, SEE_ROBUST, expected, judged_on, leading, look_at, reasons, why_larger,
 };
 use crate::report::table::joints_words;
 use crate::unit::Unit;
@@ -64,7 +64,7 @@ fn colour(file: &CalibrationFile) -> (&'static str, String) {
     }
 }
 
-/// The error before, and what to expect after, in one unit.
+/// The errors before and after on the same rows, and the error to expect, all RMS and in one unit.
 fn before_after(file: &CalibrationFile) -> Markup {
     let (set, rows) = leading(file);
     let mut models = rows.iter().filter(|(.., key)| key.starts_with("accuracy"));
@@ -79,20 +79,20 @@ fn before_after(file: &CalibrationFile) -> Markup {
             (figure(error.rms, format_args!("{key}.{}.rms", quantity.key()))) (spaced(quantity.unit()))
         } }
     };
+    let on = judged_on(file);
     let corners = if set.calibrated.of_pictures(set.count).is_some() { ", at the board" } else { "" };
     html! {
         ol.steps {
-            li { b { (measured(before)) } " " span { "before: " (before.0) (corners) } }
-            @match expected(file).filter(|_| has_length) {
-                Some(found) => {
-                    li {
-                        b { (figure(found.error_mm, "verdict.expected_error_mm")) " mm" } " "
-                        span { "after: " (delivered(file)) " model, expected; 95\u{a0}% below " (figure(found.bound_mm, "verdict.bound95_mm")) "\u{a0}mm" }
-                    }
+            li { b { (measured(before)) } " " span { "before, on " (on) ": " (before.0) (corners) } }
+            li { b { (measured(after)) } " " span { "after, on " (on) ": " (after.0) " model" (corners) } }
+            @if let Some(found) = expected(file).filter(|_| has_length) {
+                li {
+                    b { (figure(found.error_mm, "verdict.expected_error_mm")) " mm" } " "
+                    span { "expected of predictions; 95\u{a0}% below " (figure(found.bound_mm, "verdict.bound95_mm")) "\u{a0}mm" }
                 }
-                None => li { b { (measured(after)) } " " span { "after: " (after.0) " model" (corners) } },
             }
         }
+        @if let Some(why) = why_larger(file) { p.note { (why) } }
     }
 }
 

@@ -11,7 +11,7 @@ use crate::io::output::Page;
 use crate::io::record::Record;
 use crate::measurement::Quantity;
 use crate::report::acceptance::plain;
-use crate::report::summary::{delivered, expected, leading};
+use crate::report::summary::{delivered, expected, judged_on, leading, why_larger};
 use crate::report::table::number;
 use crate::text::visible_markup;
 use crate::unit::Unit;
@@ -143,25 +143,27 @@ fn result(file: &CalibrationFile) -> Markup {
         lead.and_then(|quantity| model.get(quantity)).map(|it| it.rms)
     };
     let after = of(delivered(file));
-    let on = if file.accuracy.held_out.is_some() {
-        format!("{} rows that were not fitted", set.count)
+    let on = judged_on(file);
+    let count = if file.accuracy.held_out.is_some() {
+        format!("{} rows held out of the fit", set.count)
     } else {
         format!("the {} fitted rows, since none was held out", set.count)
     };
     let name = lead.map_or("position", Quantity::name);
     html! {
         div.result {
-            @if let Some(before) = of("registered") { div { b { (number(before)) (unit) } "before: nominal axes, tool and device located" } }
-            @if let Some(after) = after { div { b { (number(after)) (unit) } "after: the " (delivered(file)) " model" } }
+            @if let Some(before) = of("registered") { div { b { (number(before)) (unit) } "before, on " (on) ": nominal axes, tool and device located" } }
+            @if let Some(after) = after { div { b { (number(after)) (unit) } "after, on " (on) ": the " (delivered(file)) " model" } }
             @if let Some(found) = expected(file) {
-                div { b { (number(found.error_mm)) " mm" } "expected (RMS), 95 % below " (number(found.bound_mm)) " mm" }
+                div { b { (number(found.error_mm)) " mm" } "expected of predictions (RMS), 95 % below " (number(found.bound_mm)) " mm" }
                 div { b { (number(COVERAGE * found.error_mm / 3f64.sqrt())) " mm" } "expanded uncertainty of a coordinate, k = 2" }
             }
         }
         p {
-            "Before and after: " (name) " errors (RMS) on " (on) ". Expected: the RMS error of predicted tip positions in the configurations measured, by the uncertainty of the fit and "
+            "Before and after: measured " (name) " errors (RMS) on " (count) ". Expected: the RMS error of predicted tip positions in the configurations measured, by the uncertainty of the fit and "
             "the error of the model. Expanded uncertainty of a coordinate: k = 2 times expected / √3. Errors that all measurements share, such as the \
              instrument's scale, are not included."
+            @if let Some(why) = why_larger(file) { " " (why) }
         }
     }
 }

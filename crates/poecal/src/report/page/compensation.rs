@@ -19,22 +19,22 @@ pub(super) fn sections(file: &CalibrationFile) -> Markup {
         None => html! { "the z axis of the base" },
     };
     let caption = html! {
-        "Half a section of the workspace through " (about) ": each cell is a ring about it. In the cells the median distance by which the tip \
-         misses; the stronger the colour, the larger. Empty: none of the configurations."
+        "The workspace by distance from " (about) " and by height: each cell is a ring about this axis. Its colour shows the median distance by \
+         which the tip misses its target: the stronger the colour, the farther. A cell without colour has no configuration."
     };
     let content = html! {
         p.gain { (gain(file, found)) }
         p {
-            "Compared are the nominal and the actual robot in " (count(found.all.configurations, "compensation.configurations"))
+            "The nominal and the calibrated robot are compared in " (count(found.all.configurations, "compensation.configurations"))
             " configurations, spread evenly over the measured range of each joint. "
-            @if file.measurement_frame.known == DeviceFrameKnowledge::Base { "The tool of the nominal one is" }
-            @else { "Tool and base of the nominal one are" }
-            " fitted to the actual one first, as if taught on it, so that only the joints make a difference."
+            @if file.measurement_frame.known == DeviceFrameKnowledge::Base { "The tool of the nominal robot is" }
+            @else { "Tool and base of the nominal robot are" }
+            " fitted first, as if they had been taught on the real one. What remains is the error of the joints."
         }
         @if let Some(expected) = expected_map(found) {
             div.pair {
                 (plots(&[map(found)], caption))
-                (plots(&[expected], "The same cells by what corrected programs are expected to miss by (RMS)."))
+                (plots(&[expected], "The same cells: the error to expect of corrected programs (RMS)."))
             }
             div.pair { (joints(found)) (exceptions(found)) }
         } @else {
@@ -50,12 +50,12 @@ pub(super) fn gain(file: &CalibrationFile, found: &CompensationEntry) -> Markup 
     let expected = uncertainty(file)
         .map(|(own, key)| (own.measured.sigma_position_mm, format!("{key}.measured.sigma_position_mm")));
     html! {
-        "A program made for the nominal robot, with its frames taught on this one, misses by " (figure(found.all.median_mm, "compensation.median_mm")) " mm in the median, and by up to "
+        "A program made for the nominal robot, with its frames taught on this robot, misses its targets by " (figure(found.all.median_mm, "compensation.median_mm")) " mm (median), and by up to "
         (figure(found.all.max_mm, "compensation.max_mm")) " mm, within the measured part of the workspace. "
         @if let Some((sigma, key)) = expected {
-            "Corrected with this calibration, it is expected to miss by " (figure(sigma, key)) " mm (RMS)."
+            "After correction with this calibration, an error of " (figure(sigma, key)) " mm (RMS) is expected."
         } @else {
-            "Corrected with this calibration, it misses by what the calibration itself is off."
+            "After correction with this calibration, the error of the calibration itself remains."
         }
     }
 }
@@ -75,7 +75,7 @@ fn map(found: &CompensationEntry) -> Markup {
         found,
         found.all.max_mm < SMALL,
         value,
-        ("How far an uncorrected program misses", description, "in the median"),
+        ("Error of an uncorrected program", description, "(median)"),
     )
 }
 
@@ -95,7 +95,12 @@ fn expected_map(found: &CompensationEntry) -> Option<Markup> {
         number(sigma),
         place_words(found, place)
     );
-    Some(heat_map(found, sigma < SMALL, value, ("Expected error of a corrected program", description, "RMS")))
+    Some(heat_map(
+        found,
+        sigma < SMALL,
+        value,
+        ("Expected error of a corrected program", description, "(RMS)"),
+    ))
 }
 
 fn axis_words(found: &CompensationEntry) -> &'static str {
@@ -143,7 +148,7 @@ fn told(found: &CompensationEntry, it: &WorkspaceCellEntry) -> String {
     let expected =
         it.sigma_position_mm.map(|sigma| format!(", corrected {} mm (RMS) expected", number(sigma)));
     format!(
-        "{}: {} mm in the median, at most {} mm and {}°{} ({configurations})",
+        "{}: median {} mm, at most {} mm and {}°{} ({configurations})",
         place_words(found, it),
         number(own.median_mm),
         number(own.max_mm),
@@ -165,7 +170,7 @@ fn metres(found: &CompensationEntry, value: f64) -> String {
 
 fn joints(found: &CompensationEntry) -> Markup {
     if found.joints.is_empty() {
-        return html! { p.note { "Corrections of the joints are not listed: an arm with fewer than six cannot mend every displacement." } };
+        return html! { p.note { "Corrections of the joints are not listed: an arm with fewer than six joints cannot correct every displacement." } };
     }
     let mut table = HtmlTable::new(
         "Corrections of the joints; the largest are near singularities",
@@ -188,21 +193,25 @@ fn joints(found: &CompensationEntry) -> Markup {
     html! { (table) }
 }
 
-/// Configurations that are not mended as all others are.
+/// Configurations that are not corrected as all others are.
 fn exceptions(found: &CompensationEntry) -> Markup {
-    let mut table = HtmlTable::new("Configurations", 1, &["of these", "number"]);
+    let mut table = HtmlTable::new("Configurations that were compared", 1, &["configurations", "number"]);
     let mut row = |words: &str, value: usize, key: &str| {
         table.row(&[&words, &count(value, format_args!("compensation.{key}"))]);
     };
-    row("compared", found.all.configurations, "configurations");
+    row("all", found.all.configurations, "configurations");
     row(
-        "need no correction: they miss by less than the calibration\'s own expected error",
+        "need no correction: the error is within what is expected of the calibration",
         found.needless,
         "needless",
     );
     if !found.joints.is_empty() {
-        row("corrected beyond a joint\'s limits", found.beyond_limits, "beyond_limits");
-        row("near a singularity: the arm would have to bend another way", found.unmended, "unmended");
+        row("corrected values beyond a joint's limits", found.beyond_limits, "beyond_limits");
+        row(
+            "not corrected: near a singularity, where the arm would have to bend another way",
+            found.unmended,
+            "unmended",
+        );
     }
     html! { (table) }
 }

@@ -151,22 +151,22 @@ pub(super) fn coverage(file: &CalibrationFile) -> Vec<Markup> {
     plots.collect()
 }
 
-/// How each round of the fit went down: the weights differ from round to round, so that a step up is none of a round.
+/// How the mean square fell in each fit: weights differ from fit to fit, so that a step up is none of a fit.
 pub(super) fn convergence(file: &CalibrationFile) -> Markup {
     let trace = &file.solver.trace;
     let mut step = 0;
-    let rounds = trace.chunk_by(|before, after| after <= before).map(|round| {
-        let points = round.iter().enumerate().map(|(k, &value)| [(step + k) as f64, value]).collect();
-        step += round.len();
+    let fits = trace.chunk_by(|before, after| after <= before).map(|fit| {
+        let points = fit.iter().enumerate().map(|(k, &value)| [(step + k) as f64, value]).collect();
+        step += fit.len();
         Line { name: "fit".to_owned(), style: 0, points }
     });
     let plot = LinePlot {
         title: "How the fit converged".to_owned(),
-        description: "The mean square of the whitened residual by iteration, a line for each round; the table below has the figures."
+        description: "The mean square of the whitened residual by iteration, a line for each fit; the table below has the figures."
             .to_owned(),
         x: Axis::new("iteration", Scale::Count),
         y: Axis::new("mean square of the whitened residual (logarithmic)", Scale::Log),
-        lines: rounds.collect(),
+        lines: fits.collect(),
         mark: None,
     };
     PreEscaped(plot.svg())

@@ -138,7 +138,7 @@ pub(super) fn corrections(file: &CalibrationFile) -> Markup {
     }
     let content = html! {
         p {
-            "Every ± on this page is one standard deviation, and so are the lines and bands of the charts. Left nominal: the error that would \
+            "Every ± on this page is one standard deviation of the fit with its prior, and so are the lines and bands of the charts. Left nominal: the error that would \
              remain if this axis alone stayed nominal, with tool and device refitted. It can be large even where the uncertainty is large, because \
              neighbouring axes compensate for each other."
         }

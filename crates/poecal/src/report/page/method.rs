@@ -11,6 +11,7 @@ use super::joins;
 use crate::calibration::DeviceFrameKnowledge;
 use crate::io::calibration_file::CalibrationFile;
 use crate::io::measurements::InputEntry;
+use crate::measurement::Quantity;
 use crate::report::summary::terms;
 use crate::solve::Termination;
 
@@ -67,9 +68,10 @@ fn solver(file: &CalibrationFile) -> Markup {
         Termination::IterationLimit => "did not converge: the limit of iterations was reached",
         Termination::NotFinite => "did not converge: residuals are not finite",
     };
+    let has_poses = file.accuracy.training.calibrated.get(Quantity::Rotation).is_some();
     let unknowns = html! {
-        (quoted(&solver.formulation, "solver.formulation")) " formulation, "
-        (quoted(&solver.pose_residual, "solver.pose_residual")) " residuals of poses"
+        (quoted(&solver.formulation, "solver.formulation")) " formulation"
+        @if has_poses { ", " (quoted(&solver.pose_residual, "solver.pose_residual")) " residuals of poses" }
     };
     let steps = html! {
         (method_words(&solver.method)) ", " (count(solver.iterations, "solver.iterations")) " iterations, " (end)
@@ -120,9 +122,17 @@ fn convergence(file: &CalibrationFile) -> Markup {
     let words =
         if trace.len() > LISTED { "The first iterations as numbers" } else { "The iterations as numbers" };
     html! {
-        (plots(&[figures::convergence(file)], "Each line is a round of the fit with weights and rows of its own, so that values of different rounds do not compare. At 1 the residuals are as large as the noise that they are weighted by."))
+        (plots(&[figures::convergence(file)], "Each line is a fit with weights and rows of its own, so that values of different lines do not compare. At 1 the residuals are as large as the noise that they are weighted by."))
         (folded(words, &table))
     }
+}
+
+/// A checksum with places where a line may break: after each eight digits.
+fn grouped(hash: &str) -> Markup {
+    let is_hash = hash.len() == 64 && hash.bytes().all(|it| it.is_ascii_hexdigit());
+    let parts: Vec<&str> =
+        if is_hash { (0..8).filter_map(|k| hash.get(8 * k..8 * k + 8)).collect() } else { vec![hash] };
+    html! { @for (k, part) in parts.iter().enumerate() { @if k > 0 { wbr; } (part) } }
 }
 
 /// Files with their checksums: one with its key and what it is, the measurements with what was taken of each, and mappings.
@@ -141,7 +151,7 @@ pub(super) fn files(
     let mut table = HtmlTable::new("Files that were read", head.len(), head);
     let mut add = |name: &String, shown: Markup, what: &str, of: Option<(&InputEntry, usize)>| {
         let hash = sha256.get(name).map_or("not recorded", String::as_str);
-        let hash = html! { code.hash { (hash) } };
+        let hash = html! { code.hash { (grouped(hash)) } };
         match of {
             Some((entry, at)) => {
                 let rows = count(entry.rows, format_args!("inputs.files.{at}.rows"));
@@ -180,11 +190,9 @@ fn inputs(file: &CalibrationFile) -> Markup {
         (table)
         (joins::sections(&inputs.joins))
         @if let Some(command) = &inputs.command {
-            details {
-                summary { "How to make it again" }
-                pre tabindex="0" { code { (quoted(command, "inputs.command")) } }
-                p.note { "Run in the same folder, with the files of these checksums and this version, the command gives the same bytes." }
-            }
+            h3 { "How to make it again" }
+            p { "In the same folder, with files of these checksums and this version, the command writes the same bytes:" }
+            pre tabindex="0" { code { (quoted(command, "inputs.command")) } }
         } @else {
             p.note { "The calibration was not made by the program, or by an earlier version, so no command is recorded." }
         }

@@ -10,7 +10,7 @@ use crate::io::model::Model;
 use crate::io::output::Page;
 use crate::io::record::Record;
 use crate::plan::{CurvePoint, Plan as Found, PlanOptions, RowPart, Sight, skeleton};
-use crate::report::plan::Plan;
+use crate::report::plan::{CURVE_HEAD, Plan};
 use crate::report::plot::{Arms, Axis, CELLS, Line, LinePlot, Mark, Scale, Strip, StripPlot};
 use crate::robot::{ReadingKind, Robot};
 use crate::text::visible_markup;
@@ -122,9 +122,9 @@ fn curve(found: &Found, told: &Plan) -> Markup {
         mark: Some(Mark { at: told.planned() as f64, label: "planned".to_owned() }),
     };
     let mut table = HtmlTable::new(
-        "Expected errors, mm",
+        "Expected errors, mm; removable: the part that more rows would remove",
         0,
-        &["configurations", "calibrated", "of it open", "corrected", "of it open"],
+        &CURVE_HEAD,
     );
     for point in &found.curve {
         let it = &point.expected;
@@ -134,7 +134,7 @@ fn curve(found: &Found, told: &Plan) -> Markup {
     }
     html! {
         p { (told.advice()) }
-        (plots(&[PreEscaped(plot.svg())], "What is open falls with more configurations; the rest is what no such model describes."))
+        (plots(&[PreEscaped(plot.svg())], "More configurations remove a part of the error; the rest is robot error that such a model does not describe."))
         (folded("The same as numbers", &table))
     }
 }

@@ -75,11 +75,11 @@ pub(super) fn for_the_metrologist(residuals: &Residuals) -> Markup {
             (chart(
                 "leverage",
                 "Leverage",
-                "To the right: rows of high leverage. Above: rows of large residuals, in units of their own standard deviation. \
+                "Fitted rows. To the right: rows of high leverage. Above: rows of large residuals, in units of their own standard deviation. \
                  A row with both decides much of the result, unless it is suspected and has almost no weight.",
             ))
         }
-        @if let Some(table) = leverage_table(residuals) { (folded("The rows of largest leverage", &table)) }
+        @if let Some(table) = leverage_table(residuals) { (folded("The fitted rows of largest leverage", &table)) }
     }
 }
 
@@ -202,7 +202,9 @@ fn named(residuals: &Residuals, file: &str, row: u32, key: impl Render) -> Marku
 }
 
 fn leverage_table(residuals: &Residuals) -> Option<HtmlTable> {
-    let judged = residuals.rows().iter().enumerate().filter_map(|(k, row)| Some((k, row.judged?)));
+    // A row that was held out decides nothing of the fit.
+    let fitted = residuals.rows().iter().enumerate().filter(|(_, row)| !row.held_out);
+    let judged = fitted.filter_map(|(k, row)| Some((k, row.judged?)));
     let mut judged: Vec<_> = judged.filter(|(_, found)| found.leverage.is_finite()).collect();
     let larger = |a: &(usize, RowDiagnostics), b: &(usize, RowDiagnostics)| {
         b.1.leverage.total_cmp(&a.1.leverage).then(a.0.cmp(&b.0))
@@ -210,15 +212,13 @@ fn leverage_table(residuals: &Residuals) -> Option<HtmlTable> {
     keep_first(&mut judged, LEVERAGES, larger);
     judged.sort_unstable_by(larger);
     let mut table = HtmlTable::new(
-        "Rows of largest leverage",
-        2,
-        &["row", "set", "leverage", "studentised residual", "weight"],
+        "Fitted rows of largest leverage",
+        1,
+        &["row", "leverage", "studentised residual", "weight"],
     );
     for (k, found) in &judged {
-        let set =
-            if residuals.rows().get(*k).is_some_and(|row| row.held_out) { "held out" } else { "fitted" };
         let numbers = [found.leverage, found.studentized, found.weight].map(number);
-        table.row(&[&place(residuals, *k), &set, &numbers[0], &numbers[1], &numbers[2]]);
+        table.row(&[&place(residuals, *k), &numbers[0], &numbers[1], &numbers[2]]);
     }
     (!judged.is_empty()).then_some(table)
 }

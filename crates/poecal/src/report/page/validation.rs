@@ -77,6 +77,8 @@ fn verdict(found: &Validation) -> Markup {
             "° from where the calibration has it; its frame was refitted to these measurements"
         });
     }
+    let fitted = if found.fitted.is_empty() { None } else { found.warnings().into_iter().next() };
+    doubts.extend(fitted.map(|text| html! { (text) }));
     doubts.extend(found.doubt.as_ref().map(|text| quoted(text, "doubt")));
     html! {
         section class={ "verdict " (class) } aria-labelledby="verdict-title" {

@@ -7,8 +7,11 @@ use super::super::table::{
 };
 use super::look::reasons;
 use super::{Expectation, expected};
-use crate::calibration::{DeviceFrameKnowledge, ModelAccuracy, SetAccuracy};
+use crate::calibration::{
+    AcceptedLimit, AcceptedStatistic, DeviceFrameKnowledge, ModelAccuracy, SetAccuracy,
+};
 use crate::io::calibration_file::CalibrationFile;
+use crate::measurement::Quantity;
 
 /// Widths of the label and of each figure.
 const WIDTHS: [usize; 2] = [38, 10];
@@ -53,7 +56,30 @@ pub(in crate::report) fn has_terms(file: &CalibrationFile) -> bool {
     file.corrected.as_ref().is_some_and(|it| it.has_terms())
 }
 
-/// Before and after, where that is valid, and the rows that show it.
+/// The rows on which the errors before and after were measured.
+pub(in crate::report) fn judged_on(file: &CalibrationFile) -> &'static str {
+    let (set, _) = leading(file);
+    let are_pictures = set.calibrated.of_pictures(set.count).is_some();
+    match (file.accuracy.held_out.is_some(), are_pictures) {
+        (true, false) => "rows held out",
+        (true, true) => "pictures held out",
+        (false, false) => "fitted rows",
+        (false, true) => "fitted pictures",
+    }
+}
+
+/// Why the error to expect is larger than the one measured, where it is.
+pub(in crate::report) fn why_larger(file: &CalibrationFile) -> Option<&'static str> {
+    let (_, rows) = leading(file);
+    let (_, after, _) = rows.iter().rfind(|(.., key)| key.starts_with("accuracy"))?;
+    let measured_mm = after.get(Quantity::Position)?.rms;
+    (expected(file)?.error_mm > measured_mm).then_some(
+        "The expected error is larger than the measured one: it counts every residual that no stated noise explains as robot error, and it \
+         allows for joint effects that these rows leave open.",
+    )
+}
+
+/// Errors before and after on the same rows, the error to expect, and where that is valid.
 pub(super) fn figures(out: &mut String, file: &CalibrationFile) {
     let (set, rows) = leading(file);
     let mut models = rows.iter().filter(|(.., key)| key.starts_with("accuracy"));
@@ -69,25 +95,31 @@ pub(super) fn figures(out: &mut String, file: &CalibrationFile) {
         });
         each.collect::<Vec<_>>().join(", ")
     };
-    line(out, "before", &format!("{} (RMS): {}", words(before.1), before.0));
-    match expected(file) {
-        Some(Expectation { error_mm, bound_mm, anywhere }) => {
-            let (error, bound) = (number(error_mm), number(bound_mm));
-            line(
-                out,
-                "after",
-                &format!("{error} mm (RMS) expected, 95 % below {bound} mm: {} model", after.0),
-            );
-            let valid = match (anywhere, reasons(file).into_iter().next()) {
-                (Some((sigma, _)), _) => {
-                    format!("anywhere within the limits, {} mm (RMS) there", number(sigma))
-                }
-                (None, Some(reason)) => format!("inside the sampled range: {reason}"),
-                (None, None) => "inside the sampled range".to_owned(),
-            };
-            line(out, "valid", &valid);
-        }
-        None => line(out, "after", &format!("{} (RMS): {} model", words(after.1), after.0)),
+    let on = judged_on(file);
+    line(out, "before", &format!("{} (RMS) on {on}: {}", words(before.1), before.0));
+    line(out, "after", &format!("{} (RMS) on {on}: {} model", words(after.1), after.0));
+    if let Some(Expectation { error_mm, bound_mm, anywhere }) = expected(file) {
+        let (error, bound) = (number(error_mm), number(bound_mm));
+        let is_exceeded = |limit: &AcceptedLimit| {
+            limit.quantity == Quantity::Position.name()
+                && limit.statistic == AcceptedStatistic::Rms
+                && limit.to.is_some_and(|to| to < error_mm)
+        };
+        // The bounds of a limit are of measured errors.
+        let why = if file.acceptance.as_ref().is_some_and(|it| it.limits.iter().any(is_exceeded)) {
+            "; above the upper bound of the measured error, since unexplained residuals count as robot error"
+        } else {
+            ""
+        };
+        line(out, "expected", &format!("{error} mm (RMS) of predictions, 95 % below {bound} mm{why}"));
+        let valid = match (anywhere, reasons(file).into_iter().next()) {
+            (Some((sigma, _)), _) => {
+                format!("anywhere within the limits, {} mm (RMS) expected there", number(sigma))
+            }
+            (None, Some(reason)) => format!("inside the sampled range: {reason}"),
+            (None, None) => "inside the sampled range".to_owned(),
+        };
+        line(out, "valid", &valid);
     }
     let largest = after
         .1
@@ -103,7 +135,7 @@ pub(super) fn figures(out: &mut String, file: &CalibrationFile) {
         }
         None => {
             let largest = largest.unwrap_or_default();
-            line(out, judging, &format!("{} rows: {} (RMS){largest}{rest}", set.count, words(after.1)));
+            line(out, judging, &format!("{} rows{largest}{rest}", set.count));
         }
     }
     if let (Some(before), Some(after), None) =

@@ -11,7 +11,7 @@ use crate::io::calibration_file::{CalibrationFile, IdentifiabilityEntry, Outlier
 /// Suspected rows that are named.
 const WORST: usize = 3;
 /// Characters of a direction's description that are told as they stand.
-const SHORT: usize = 160;
+const SHORT: usize = 200;
 /// Words of the warning that is about suspected rows, which are given by their figures instead.
 const SUSPECTS: &str = "`outliers` in calibration.json";
 
@@ -192,7 +192,7 @@ fn cause_words(cause: Cause) -> &'static str {
         Cause::Unseen => "no way from an instrument to its target passes them",
         Cause::StoodStill => "did not move",
         Cause::TooFew => "too few measurements",
-        Cause::PointOnAxis => "the point measured lies on the axis",
+        Cause::PointOnAxis => "the target is on the axis",
         Cause::OneOrientation => "the tool kept one orientation",
         Cause::OneTurningDirection => "the tool turned about one direction only",
         Cause::MovedTogether => "moved in a fixed relation only",

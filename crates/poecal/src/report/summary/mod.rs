@@ -7,7 +7,7 @@ mod names;
 
 use std::mem::discriminant;
 
-pub(super) use errors::{ModelRow, has_terms, leading};
+pub(super) use errors::{ModelRow, has_terms, judged_on, leading, why_larger};
 pub(super) use look::{Place, Point, SEE_ROBUST, look_at, reasons, unknowns_words};
 pub(super) use names::{MOST, names};
 
@@ -44,7 +44,7 @@ pub enum Detail {
 /// let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default())?;
 /// let file = CalibrationFile::new(&calibration, &made.data, Inputs::default());
 /// let short = summary(&file, Detail::Short);
-/// assert!(short.starts_with("verdict       good\nbefore        ") && short.contains(" mm (RMS) expected, 95 % below "));
+/// assert!(short.starts_with("verdict       good\nbefore        ") && short.contains(" mm (RMS) of predictions, 95 % below "));
 /// assert!(summary(&file, Detail::Full).contains("solver"));
 /// # Ok::<(), poecal::Error>(())
 /// ```

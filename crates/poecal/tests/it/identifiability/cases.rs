@@ -167,7 +167,7 @@ pub(crate) const CASES: &[Case] = &[
         name: "SCARA, point on the spindle", robot: scara_spindle, kind: Kind::POINT, count: 60,
         motion: FREE,
         words: "15 of 17\n\
-                open 2: joint4: the point measured lies on the axis (within 0.0 mm): its tilt about the point is not determined",
+                open 2: the target is on the axis of joint4 (within 0.0 mm), so the tilt of this axis is not determined; mount the target off the axis",
     },
     Case {
         name: "SCARA without its slide", robot: scara, kind: Kind::POSE, count: 60,
@@ -179,13 +179,13 @@ pub(crate) const CASES: &[Case] = &[
         name: "point on the last axis", robot: elbow, kind: Kind::POINT, count: 60,
         motion: FREE,
         words: "25 of 27\n\
-                open 2: joint6: the point measured lies on the axis (within 0.0 mm): its tilt about the point is not determined",
+                open 2: the target is on the axis of joint6 (within 0.0 mm), so the tilt of this axis is not determined; mount the target off the axis",
     },
     Case {
         name: "point where the wrist's axes meet", robot: wrist_point, kind: Kind::POINT, count: 60,
         motion: FREE,
         words: "21 of 27\n\
-                open 6: joint4, joint5 and joint6: the point measured lies on the axes (within 0.0 mm): their tilts about it are not determined",
+                open 6: the target is on the axes of joint4, joint5 and joint6 (within 0.0 mm), so the tilts of these axes are not determined; mount the target off these axes",
     },
     Case {
         name: "parallel axes together", robot: elbow, kind: Kind::POSE, count: 60,
@@ -208,20 +208,20 @@ pub(crate) const CASES: &[Case] = &[
         name: "5 degrees, points", robot: bent_tool, kind: Kind::POINT, count: 60,
         motion: |_, q, g| q[4] = 1.0 + 5.0 * DEG * random::uniform(g),
         words: "27 of 27\n\
-                weak 1: joint5 moved by 4.8 deg only: part of its screw is determined to 1.3 mm or 0.14 deg only",
+                weak 1: joint5 moved by 4.8 deg only: part of its screw is known to 1.3 mm or 0.14 deg only (without the prior)",
     },
     Case {
         name: "1 degree, poses", robot: elbow, kind: Kind::POSE, count: 60,
         motion: |_, q, g| q[4] = 1.0 + DEG * random::uniform(g),
         words: "30 of 30\n\
-                weak 4: joint5 moved by 1.0 deg only: its screw is determined to 2.4 mm or 0.27 deg only",
+                weak 4: joint5 moved by 1.0 deg only: its screw is known to 2.4 mm or 0.27 deg only (without the prior)",
     },
     Case {
         name: "0.3 degrees, points", robot: bent_tool, kind: Kind::POINT, count: 60,
         motion: |_, q, g| q[4] = 1.0 + 0.3 * DEG * random::uniform(g),
         words: "25 of 27\n\
                 open 2: joint5 moved by 0.3 deg only: part of its screw is lost in the noise\n\
-                weak 2: joint5 moved by 0.3 deg only: part of its screw is determined to 4.9 mm or 0.52 deg only",
+                weak 2: joint5 moved by 0.3 deg only: part of its screw is known to 4.9 mm or 0.52 deg only (without the prior)",
     },
     Case {
         name: "every joint by 5 degrees, points", robot: bent_tool, kind: Kind::POINT, count: 60,
@@ -229,9 +229,9 @@ pub(crate) const CASES: &[Case] = &[
         words: "23 of 27\n\
                 open 2: joint5 moved by 4.8 deg only: part of its screw is lost in the noise\n\
                 open 2: joint6 moved by 4.8 deg only: part of its screw is lost in the noise\n\
-                weak 1: joint1 moved by 4.8 deg only: part of its screw is determined to 4.0 mm or 0.43 deg only\n\
-                weak 1: joint5 moved by 4.8 deg only: part of its screw is determined to 3.0 mm or 0.32 deg only\n\
-                weak 1: joint6 moved by 4.8 deg only: part of its screw is determined to 1.2 mm or 0.13 deg only",
+                weak 1: joint1 moved by 4.8 deg only: part of its screw is known to 4.0 mm or 0.43 deg only (without the prior)\n\
+                weak 1: joint5 moved by 4.8 deg only: part of its screw is known to 3.0 mm or 0.32 deg only (without the prior)\n\
+                weak 1: joint6 moved by 4.8 deg only: part of its screw is known to 1.2 mm or 0.13 deg only (without the prior)",
     },
     Case {
         name: "SCARA poses of one orientation", robot: scara, kind: Kind::POSE, count: 60,
@@ -250,7 +250,7 @@ pub(crate) const CASES: &[Case] = &[
         motion: one_orientation,
         words: "23 of 27\n\
                 open 4: the tool kept one orientation: its place on the last link and where the axes stand cannot be separated\n\
-                weak 6: joint1, joint2, joint3, joint4, joint5 and joint6 moved far enough, but not independently of the others: their screws are determined to 9.0 mm or 0.95 deg only",
+                weak 6: joint1, joint2, joint3, joint4, joint5 and joint6 moved far enough, but not independently of the others: their screws are known to 9.0 mm or 0.95 deg only (without the prior)",
     },
     Case {
         name: "upright tool", robot: elbow, kind: Kind::POSE, count: 60,

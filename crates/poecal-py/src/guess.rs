@@ -1,0 +1,54 @@
+//! `guess_columns`: the mapping of a foreign file.
+
+use std::path::PathBuf;
+
+use poecal::io::measurements::{ColumnGuess, guess_columns as guessed};
+use pyo3::prelude::*;
+
+use crate::arguments::{self as arg, Links};
+use crate::errors::raise;
+use crate::findings::Findings;
+use crate::paths;
+
+/// Guesses which columns of a foreign file are the joints and what was measured, as `poecal init --columns-from` does.
+///
+/// Look the mapping over, save it (`Path("columns.toml").write_text(guess.mapping)`), and read the file by
+/// `Measurements.from_csv(path, robot, columns="columns.toml")`.
+///
+/// Parameters
+/// ----------
+/// path
+///     The file: CSV or a workbook.
+/// robot
+///     The robot, or the path of its model.
+/// columns
+///     Columns or words in place of the guess, by the keys of `fields`: `{"position.x": "Tx"}`; an empty text for none.
+///
+/// Returns
+/// -------
+/// ColumnGuess
+///     The columns of the file, the fields of a mapping with what is chosen, columns that are left, and the mapping as a text (TOML).
+#[pyfunction]
+#[pyo3(signature = (path, robot, *, columns=None))]
+pub(crate) fn guess_columns(
+    py: Python<'_>,
+    #[pyo3(from_py_with = arg::path)] path: PathBuf,
+    robot: &Bound<'_, PyAny>,
+    #[pyo3(from_py_with = arg::columns)] columns: Option<Links>,
+) -> PyResult<Findings> {
+    let robot = paths::robot(robot)?;
+    let robot = &robot.get().model.robot;
+    let chosen = columns.map_or_else(Vec::new, |columns| columns.0);
+    let found = py.detach(|| guessed(&path, robot, &chosen)).map_err(raise)?;
+    Findings::new("ColumnGuess", found.mapping.clone(), answer(&found), &found)
+}
+
+/// How many fields have a column, and which lack one.
+fn answer(found: &ColumnGuess) -> String {
+    let mapped = found.fields.iter().filter(|it| it.choices.is_empty() && !it.chosen.is_empty()).count();
+    let missing = match found.missing.as_slice() {
+        [] => String::new(),
+        some => format!("; no column for {}", some.join(", ")),
+    };
+    format!("{mapped} of {} columns are mapped{missing}", found.columns.len())
+}

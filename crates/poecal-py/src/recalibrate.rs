@@ -1,0 +1,79 @@
+//! `recalibrate`: one joint of a calibration anew.
+
+use poecal::io::calibration_file::{Inputs, RecalibratedEntry, RepairedPart};
+use poecal::report;
+use poecal::track::{Earlier, TrackOptions, recalibrate as repaired};
+use pyo3::prelude::*;
+
+use crate::arguments as arg;
+use crate::calibration::Calibration;
+use crate::errors::raise;
+use crate::measurements::Measurements;
+use crate::words::{chosen, from_mm, sigma};
+
+/// Calibrates the zero or the axis of one joint anew, by the few measurements of a visit, and holds all else.
+///
+/// Parameters
+/// ----------
+/// calibration
+///     The calibration before.
+/// measurements
+///     Measurements of the visit, as of `track`.
+/// earlier
+///     The rows that the calibration was made of, or those of an earlier visit; None: the visit is judged by the model.
+/// part
+///     What is calibrated anew: the zero of a joint ("joint2" or "joint2.offset"), or its axis ("joint2.axis").
+/// device
+///     "anew" if the device was set up anew, so that its frame is fitted; "known" if it stands where it stood.
+/// tool
+///     "same" if the tool stayed on the flange; "anew" if it was mounted anew, so that its targets are fitted.
+/// repeatability_mm
+///     Standard deviation of one visit and coordinate; None: what repeats within a visit and what no explanation removes.
+///
+/// Returns
+/// -------
+/// Calibration
+///     The calibration with this joint corrected. `write(folder)` writes it.
+#[pyfunction]
+#[pyo3(signature = (calibration, measurements, earlier=None, *, part, device="anew", tool="same", repeatability_mm=None))]
+#[expect(clippy::too_many_arguments, reason = "the options of a Python function")]
+pub(crate) fn recalibrate(
+    py: Python<'_>,
+    calibration: &Calibration,
+    #[pyo3(from_py_with = arg::measurements)] measurements: &Measurements,
+    #[pyo3(from_py_with = arg::earlier)] earlier: Option<&Measurements>,
+    #[pyo3(from_py_with = arg::part)] part: &str,
+    #[pyo3(from_py_with = arg::device)] device: &str,
+    #[pyo3(from_py_with = arg::tool)] tool: &str,
+    #[pyo3(from_py_with = arg::repeatability_mm)] repeatability_mm: Option<f64>,
+) -> PyResult<Calibration> {
+    let options = TrackOptions {
+        device_is_known: chosen("device", device, &[("anew", false), ("known", true)])?,
+        tool_is_anew: chosen("tool", tool, &[("same", false), ("anew", true)])?,
+        repeatability_m: repeatability_mm.map(|it| sigma("repeatability_mm", it, from_mm)).transpose()?,
+    };
+    let (joint, what) = RepairedPart::named(part);
+    let source = calibration.source().filter(|path| path.is_file());
+    let own = Inputs::checksums(source.into_iter()).map_err(raise)?;
+    let sources = [Some(measurements), earlier].into_iter().flatten().map(|it| &it.source);
+    let provenance = RecalibratedEntry {
+        joint: joint.to_owned(),
+        part: what,
+        size: 0.0,
+        sigma: 0.0,
+        motion: [0.0; 6],
+        rows: 0,
+        repeated: 0,
+        measurements: measurements.source.names.clone(),
+        calibration: source.map_or_else(String::new, |path| path.display().to_string()),
+        sha256: own.into_iter().chain(sources.flat_map(|it| it.sha256.clone())).collect(),
+    };
+    let earlier = earlier.map(|it| Earlier { data: it.data(), is_own: true });
+    let (file, data) = (calibration.file(), measurements.data());
+    let found = py.detach(|| repaired(file, data, earlier, &options, (joint, what), provenance));
+    let found = found.map_err(raise)?;
+    crate::warn(py, &found.notes)?;
+    let summary = report::summary(&found.file, report::Detail::Short);
+    let robot = found.file.robot().map_err(raise)?;
+    Ok(calibration.anew(robot, found.file, summary))
+}
