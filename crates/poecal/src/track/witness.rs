@@ -77,12 +77,7 @@ impl Candidates {
             Some(whitened) => left - whitened.tr_mul(&whitened),
             None => return (vec![(f64::INFINITY, f64::INFINITY); n - k], f64::INFINITY),
         };
-        let at = left.nrows() - self.tool;
-        // The geometric mean over its directions: most knocks are found by it, each of some direction.
-        let of_tool = left.view((at, at), (self.tool, self.tool)).into_owned().symmetric_eigenvalues();
-        let least = f64::MIN_POSITIVE;
-        let logarithms = of_tool.iter().map(|information| information.max(least).ln()).sum::<f64>();
-        let tool = (logarithms / self.tool.max(1) as f64).exp();
+        let tool = mean_information(&left, self.tool);
         let seen = left.select_rows(&self.seen).select_columns(&self.seen);
         let mut held = seen.clone();
         ridge(&mut held);
@@ -106,6 +101,15 @@ impl Candidates {
         let tool = if tool > 0.0 { OF_TOOL * tool.min(1.0).ln() } else { 0.0 };
         alone.ln() + APART * apart.min(1.0).ln() + tool
     }
+}
+
+/// Information of the last unknowns, the geometric mean over its directions: by it most knocks are found, each of some direction.
+fn mean_information(all: &DMatrix<f64>, count: usize) -> f64 {
+    let from = all.nrows() - count;
+    let upper: Vec<f64> = (0..count * count).map(|k| all[(from + k / count, from + k % count)]).collect();
+    let (each, _) = linalg::symmetric_eigen(&upper, count);
+    let logarithms = each.iter().map(|it| it.max(f64::MIN_POSITIVE).ln()).sum::<f64>();
+    (logarithms / count.max(1) as f64).exp()
 }
 
 /// Chooses so many of the measured configurations that the shift of the worst joint that their repeats would find is smallest, by exchange; with
