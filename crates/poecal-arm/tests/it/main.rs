@@ -1,6 +1,6 @@
 //! Arms beside the screws' own exponentials, and all branches beside a search.
 
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::unwrap_used, clippy::panic)]
 
 mod branches;
 mod calibrated;
@@ -8,6 +8,7 @@ mod held;
 mod kinematics;
 mod nearest;
 mod numbers;
-#[path = "../../../poecal/tests/trials/mod.rs"]
+// Each crate uses what it needs of it.
 #[allow(dead_code)]
+#[path = "../../../poecal/tests/trials/mod.rs"]
 mod trials;
