@@ -252,13 +252,12 @@ impl<'a> Planner<'a> {
         let mut rows = self.blocks.only(&chosen);
         let origins: Vec<Option<usize>> =
             chosen.iter().map(|&at| self.origins.as_ref().and_then(|it| it.get(at)).copied()).collect();
-        let is_free = self.options.list.is_none() && !self.options.is_draft;
-        if is_free && self.options.criterion == PlanCriterion::Expected {
+        if self.options.list.is_none() && self.options.criterion == PlanCriterion::Expected {
             self.refine(&mut readings, &mut rows)?;
         }
         let (squares, log_determinant) = self.squares(&rows)?;
         let expected = ExpectedErrors::new(&self.experiment, &squares);
-        let curve = if self.options.is_draft { Vec::new() } else { self.curve(new, &squares)? };
+        let curve = if self.options.with_curve { self.curve(new, &squares)? } else { Vec::new() };
         let enough = enough(&curve);
         let rows = self.rows(readings, &origins);
         let travel = Travel::new(&self.experiment.robot, self.experiment.length_m());

@@ -86,9 +86,8 @@ pub struct PlanOptions {
     pub kept: Vec<PlannedRow>,
     /// Indices of kept rows that could not be measured: new ones take their places, not within 10° of them, and the plan has all rows in their order.
     pub replaced: Vec<usize>,
-    /// Whether the list alone is wanted, and soon: without lists of other lengths, which show how many are enough, and without the local search
-    /// around each configuration, which gains 1 to 4 %.
-    pub is_draft: bool,
+    /// Whether lists of other lengths are planned too, which shows how many are enough and takes as long as the list.
+    pub with_curve: bool,
     /// Seed of what is random.
     pub seed: u64,
 }
@@ -105,7 +104,7 @@ impl Default for PlanOptions {
             conditions: Conditions::default(),
             kept: Vec::new(),
             replaced: Vec::new(),
-            is_draft: false,
+            with_curve: true,
             seed: 1,
         }
     }

@@ -23,8 +23,11 @@ const README: &str = include_str!("project/README.md");
 const PLANNED_ROWS: RangeInclusive<usize> = 8..=200;
 /// How far joints stay from their limits, radians and metres: controllers stop at these.
 const MARGIN: [f64; 2] = [0.035, 0.002];
-/// Candidates of a list: few, since it is a beginning.
-const CANDIDATES: usize = 400;
+/// Candidates of a list: few, since it is a beginning; of more than eight joints as many fewer as the square of their number grows, which is how
+/// the time of each grows.
+fn candidates(joints: usize) -> usize {
+    (400 * 8 * 8 / joints.max(8).pow(2)).max(100)
+}
 
 /// Contents of a project folder.
 #[derive(Clone, Copy, Debug)]
@@ -81,13 +84,13 @@ impl Project<'_> {
         let options = PlanOptions {
             fit: PlannedFit { session, count: rows - judge, robot_error: self.model.left_error(), ..usual },
             judge: Some(judge),
-            candidates: CANDIDATES,
+            candidates: candidates(robot.joints.len()),
             conditions: Conditions {
                 margin: MARGIN,
                 capsules: capsules_of(self.model).0,
                 ..Conditions::default()
             },
-            is_draft: true,
+            with_curve: false,
             seed: self.seed,
             ..PlanOptions::default()
         };
