@@ -167,7 +167,7 @@ fn grids_of_dots_and_of_tags_calibrate_an_arm() {
 fn loose_tags_calibrate_an_arm_each_at_a_place_of_its_own() {
     let folder = Folder::new();
     let spec = "tags:36h11:25mm";
-    session_of(&folder, (spec, Board::chessboard("board", [10, 7], 0.025).unwrap()), 30, usize::MAX);
+    session_of(&folder, (spec, Board::chessboard("board", [10, 7], 0.025).unwrap()), 42, usize::MAX);
     folder.done(&format!("detect pictures --board {spec} --out corners.csv"));
     assert!(folder.read("corners.csv").contains("\n0.png,tag7.3,"));
     let words = format!(

@@ -1,5 +1,7 @@
 //! Witness configurations: those among the measured ones whose repeats show the smallest shifts.
 
+use std::collections::BTreeSet;
+
 use nalgebra::DMatrix;
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
@@ -190,10 +192,14 @@ pub fn witnesses(
     Ok(Witnesses { configurations, rows: measured.clone(), joints, sigma_m })
 }
 
-/// The rows of the first measured configuration as if they had been measured in others.
+/// The rows of the first measured configuration as if they had been measured in others, in each once.
 fn elsewhere(model: &Model, measured: &Dataset, readings: &[f64]) -> Result<Dataset> {
     let first = measured.configurations(&measured.all_rows()).into_iter().next().unwrap_or_default();
-    measured.as_if_at(&first, readings, model.robot.reading_names().len())
+    let width = model.robot.reading_names().len();
+    let mut seen = BTreeSet::new();
+    let is_new = |one: &&[f64]| seen.insert(one.iter().map(|it| it.to_bits()).collect::<Vec<u64>>());
+    let once: Vec<f64> = readings.chunks(width.max(1)).filter(is_new).flatten().copied().collect();
+    measured.as_if_at(&first, &once, width)
 }
 
 /// Changes of rows from their own repeats, as if nothing had changed.
