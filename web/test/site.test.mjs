@@ -100,4 +100,19 @@ describe("documentation site", { skip: skipped() }, () => {
       });
     }
   }
+
+  // What people ask first, in their words: the first result is the page that answers it, and shows the heading.
+  for (const question of ["How many poses do I need", "what accuracy can I expect", "my tracker is not level", "how do I get the numbers into a KUKA"]) {
+    test(`search answers: ${question}`, async () => {
+      const page = await open("index.html", 1300, "light", served);
+      await page.locator(".md-search__input").click();
+      await page.locator(".md-search__input").pressSequentially(question);
+      const first = page.locator(".md-search-result__item").first();
+      await first.waitFor();
+      const words = (await first.innerText()).toLowerCase().replace(/[^a-z ]/g, "");
+      console.log(`# ${question}: ${(await first.innerText()).split("\n").slice(0, 3).join(" | ")}`);
+      assert.ok(words.includes(question.toLowerCase()), words);
+      await page.close();
+    });
+  }
 });

@@ -25,7 +25,7 @@ fn format(arguments: &Export) -> Result<ExportFormat> {
         }
         Some(ExportForm::Closed(why)) => {
             return ErrorKind::Option.refuse(format!(
-                "--format: found a form that nobody outside can write ({why}), expected another: {INSTEAD}"
+                "--format: found a form whose maker publishes no format for this ({why}): {INSTEAD}"
             ));
         }
     };
