@@ -26,6 +26,9 @@ PAGES = {
     "validation/RESULTS.md": "validation.md",
 }
 
+# How much more a page counts in the search: what answers a question in people's words is before what has some of the words.
+BOOST = {"faq.md": 4, "architecture.md": 0.5, "contributing.md": 0.5, "changelog.md": 0.5}
+
 # Left alone by the patterns below: what is code.
 CODE = r"(?ms:^(?P<fence> *`{3,}).*?^(?P=fence)`* *$)|`[^`\n]+`"
 LINK = re.compile(rf"{CODE}|(?P<text>\[[^\]\n]*\])\((?P<target>[^)\s]+)\)")
@@ -49,7 +52,8 @@ def stage(folder):
     for source, page in sources.items():
         target = folder / page
         target.parent.mkdir(parents=True, exist_ok=True)
-        target.write_text(staged((ROOT / source).read_text(encoding="utf-8"), source, page, there), encoding="utf-8")
+        boost = f"---\nsearch:\n  boost: {BOOST[page]}\n---\n\n" if page in BOOST else ""
+        target.write_text(boost + staged((ROOT / source).read_text(encoding="utf-8"), source, page, there), encoding="utf-8")
 
 
 def staged(markdown, source, page, there):
