@@ -2369,8 +2369,8 @@ def plan(
     sigma_position_mm, sigma_rotation_deg
         Standard deviation of each measured component (default 0.05 mm, 0.01 deg).
     robot_error_mm
-        Error of the tip (RMS) that a calibration leaves however much is measured, or that and the one with corrections (default what a calibration left of this robot, else 0.3 mm for
-        each metre of reach, which is a guess).
+        Error of the tip (RMS) that a calibration leaves however much is measured, or that and the one with corrections (default what a calibration left of this robot, else 0.3 mm per
+        metre of reach is assumed).
     frame
         The measuring device's frame: "unknown" or "base".
     tolerance_deg_mm
@@ -2407,6 +2407,8 @@ def plan(
         For "drift": "known" if the device will stand where it stood, "anew" if not (default "known" of a calibration with frame="base").
     tool
         For "drift": "same" if the tool will be on the flange as it was, "anew" if not (default "same").
+    target
+        For "drift": the target that will be measured, of several (default all that the rows have).
     repeatability_mm
         For "drift": standard deviation of one visit and coordinate, as repeats show it (default the noise of the calibration).
 
