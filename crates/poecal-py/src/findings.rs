@@ -301,14 +301,23 @@ pub(crate) fn track(
     #[pyo3(from_py_with = arg::repeatability_mm)] repeatability_mm: Option<f64>,
 ) -> PyResult<Findings> {
     let file = calibration.file();
-    let options = TrackOptions {
-        device_is_known: chosen("device", device, &[("anew", false), ("known", true)])?,
-        tool_is_anew: chosen("tool", tool, &[("same", false), ("anew", true)])?,
-        repeatability_m: repeatability_mm.map(|it| sigma("repeatability_mm", it, from_mm)).transpose()?,
-    };
+    let options = visit_options(device, tool, repeatability_mm)?;
     let earlier = earlier.map(|it| Earlier { data: it.data(), is_own: true });
     let data = measurements.data();
     let found = py.detach(|| tracked(file, data, earlier, &options)).map_err(raise)?;
     let told = report::Track::new(&found, &file.robot.name, ValidationInputs::default());
     Ok(Findings::new("Visit", told.text(), told.answer(), &told)?.warned(&found.notes))
+}
+
+/// What is known of a visit, by the words of `track` and `recalibrate`.
+pub(crate) fn visit_options(
+    device: &str,
+    tool: &str,
+    repeatability_mm: Option<f64>,
+) -> PyResult<TrackOptions> {
+    Ok(TrackOptions {
+        device_is_known: chosen("device", device, &[("anew", false), ("known", true)])?,
+        tool_is_anew: chosen("tool", tool, &[("same", false), ("anew", true)])?,
+        repeatability_m: repeatability_mm.map(|it| sigma("repeatability_mm", it, from_mm)).transpose()?,
+    })
 }

@@ -1,15 +1,15 @@
 //! `recalibrate`: one joint of a calibration anew.
 
-use poecal::io::calibration_file::{Inputs, RecalibratedEntry, RepairedPart};
+use poecal::io::calibration_file::{Inputs, RecalibrationSources, RepairedPart};
 use poecal::report;
-use poecal::track::{Earlier, TrackOptions, recalibrate as repaired};
+use poecal::track::{Earlier, recalibrate as repaired};
 use pyo3::prelude::*;
 
 use crate::arguments as arg;
 use crate::calibration::Calibration;
 use crate::errors::raise;
+use crate::findings::visit_options;
 use crate::measurements::Measurements;
-use crate::words::{chosen, from_mm, sigma};
 
 /// Calibrates the zero or the axis of one joint anew, by the few measurements of a visit, and holds all else.
 ///
@@ -47,30 +47,19 @@ pub(crate) fn recalibrate(
     #[pyo3(from_py_with = arg::tool)] tool: &str,
     #[pyo3(from_py_with = arg::repeatability_mm)] repeatability_mm: Option<f64>,
 ) -> PyResult<Calibration> {
-    let options = TrackOptions {
-        device_is_known: chosen("device", device, &[("anew", false), ("known", true)])?,
-        tool_is_anew: chosen("tool", tool, &[("same", false), ("anew", true)])?,
-        repeatability_m: repeatability_mm.map(|it| sigma("repeatability_mm", it, from_mm)).transpose()?,
-    };
+    let options = visit_options(device, tool, repeatability_mm)?;
     let (joint, what) = RepairedPart::named(part);
     let source = calibration.source().filter(|path| path.is_file());
     let own = Inputs::checksums(source.into_iter()).map_err(raise)?;
-    let sources = [Some(measurements), earlier].into_iter().flatten().map(|it| &it.source);
-    let provenance = RecalibratedEntry {
-        joint: joint.to_owned(),
-        part: what,
-        size: 0.0,
-        sigma: 0.0,
-        motion: [0.0; 6],
-        rows: 0,
-        repeated: 0,
+    let read = [Some(measurements), earlier].into_iter().flatten().map(|it| &it.source);
+    let sources = RecalibrationSources {
         measurements: measurements.source.names.clone(),
         calibration: source.map_or_else(String::new, |path| path.display().to_string()),
-        sha256: own.into_iter().chain(sources.flat_map(|it| it.sha256.clone())).collect(),
+        sha256: own.into_iter().chain(read.flat_map(|it| it.sha256.clone())).collect(),
     };
     let earlier = earlier.map(|it| Earlier { data: it.data(), is_own: true });
     let (file, data) = (calibration.file(), measurements.data());
-    let found = py.detach(|| repaired(file, data, earlier, &options, (joint, what), provenance));
+    let found = py.detach(|| repaired(file, data, earlier, &options, (joint, what), sources));
     let found = found.map_err(raise)?;
     crate::warn(py, &found.notes)?;
     let summary = report::summary(&found.file, report::Detail::Short);

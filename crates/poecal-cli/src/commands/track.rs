@@ -2,7 +2,7 @@
 
 use std::ffi::OsString;
 
-use poecal::io::calibration_file::{Inputs, RecalibratedEntry, RepairedPart};
+use poecal::io::calibration_file::{Inputs, RecalibrationSources, RepairedPart};
 use poecal::io::measurements;
 use poecal::io::named_files::refuse_repeats;
 use poecal::io::output::{Existing, FilePlace};
@@ -56,19 +56,8 @@ pub(crate) fn track(arguments: &Track, typed: &[OsString], console: &Console) ->
     console.said_of(&read);
     if let (Some(words), Some(place)) = (&arguments.recalibrate, place) {
         let (joint, part) = RepairedPart::named(words);
-        let provenance = RecalibratedEntry {
-            joint: joint.to_owned(),
-            part,
-            size: 0.0,
-            sigma: 0.0,
-            motion: [0.0; 6],
-            rows: 0,
-            repeated: 0,
-            measurements: names,
-            calibration,
-            sha256,
-        };
-        let found = recalibrate(&file, &read.data, earlier.rows(), &options, (joint, part), provenance)
+        let sources = RecalibrationSources { measurements: names, calibration, sha256 };
+        let found = recalibrate(&file, &read.data, earlier.rows(), &options, (joint, part), sources)
             .map_err(in_file)?;
         let text = report::recalibrated(&found, &file);
         place.write(vec![found.file.to_text()?.into()])?;

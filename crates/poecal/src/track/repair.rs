@@ -7,7 +7,9 @@ use super::judged::{Earlier, Judged};
 use super::options::{JudgedBy, MOST_RAD, TrackOptions};
 use super::visit::Of;
 use crate::error::{ErrorKind, Result};
-use crate::io::calibration_file::{CalibrationFile, JointRepair, RecalibratedEntry, RepairedPart};
+use crate::io::calibration_file::{
+    CalibrationFile, JointRepair, RecalibratedEntry, RecalibrationSources, RepairedPart,
+};
 use crate::lie::Twist;
 use crate::measurement::Dataset;
 use crate::robot::JointKind;
@@ -26,7 +28,7 @@ pub struct Repaired {
 }
 
 /// Calibrates the zero or the axis of one joint anew by the rows of a visit. All else stays as the calibration has it, with its covariance, which
-/// is the prior: what repeats is compared with earlier rows, so that nothing else is learnt of it. `provenance` are the files.
+/// is the prior: what repeats is compared with earlier rows, so that nothing else is learnt of it. `sources` are the files.
 ///
 /// # Errors
 /// [`ErrorKind::Option`] if there is no such joint; [`ErrorKind::Problem`] if the rows do not show it, contradict that it alone changed, or show
@@ -37,7 +39,7 @@ pub fn recalibrate(
     earlier: Option<Earlier<'_>>,
     options: &TrackOptions,
     (joint, part): (&str, RepairedPart),
-    provenance: RecalibratedEntry,
+    sources: RecalibrationSources,
 ) -> Result<Repaired> {
     let Judged { model, data, visit, changes, level, judged_by, repeated, notes } =
         Judged::of(file, data, earlier, options)?;
@@ -115,7 +117,9 @@ pub fn recalibrate(
         motion: repair.motion(&model.robot),
         rows: data.len(),
         repeated,
-        ..provenance
+        measurements: sources.measurements,
+        calibration: sources.calibration,
+        sha256: sources.sha256,
     };
     Ok(Repaired { file: file.repaired(&repair, provenance)?, repair, judged_by, notes })
 }

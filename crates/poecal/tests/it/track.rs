@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 use poecal::calibration::{CalibrationOptions, calibrate};
-use poecal::io::calibration_file::{CalibrationFile, Inputs, RecalibratedEntry, RepairedPart};
+use poecal::io::calibration_file::{CalibrationFile, Inputs, RecalibrationSources, RepairedPart};
 use poecal::lie::Pose;
 use poecal::measurement::{Dataset, Measurement};
 use poecal::offsets::into_screws;
@@ -211,20 +211,9 @@ fn one_joint_is_calibrated_anew() {
     let actual = cell.with_zero(3, by);
     let data = cell.visit(&actual, &chosen, None, &mut generator);
     let earlier = Earlier { data: &cell.first, is_own: true };
-    let provenance = RecalibratedEntry {
-        joint: String::new(),
-        part: RepairedPart::Zero,
-        size: 0.0,
-        sigma: 0.0,
-        motion: [0.0; 6],
-        rows: 0,
-        repeated: 0,
-        measurements: Vec::new(),
-        calibration: String::new(),
-        sha256: Default::default(),
-    };
+    let sources = RecalibrationSources::default();
     let repaired =
-        recalibrate(&cell.file, &data, Some(earlier), &options, ("joint4", RepairedPart::Zero), provenance)
+        recalibrate(&cell.file, &data, Some(earlier), &options, ("joint4", RepairedPart::Zero), sources)
             .unwrap();
     let (size, sigma) = repaired.repair.size();
     println!("zero of joint 4 by {:.4} ± {:.4} deg, truth 0.2", size.to_degrees(), sigma.to_degrees());

@@ -39,7 +39,7 @@ pub use frames::*;
 pub use keyed::*;
 pub use original::OriginalUrdf;
 pub use outliers::{OutlierEntry, OutlierSet, RobustEntry};
-pub use recalibrated::{JointRepair, RecalibratedEntry, RepairedPart};
+pub use recalibrated::{JointRepair, RecalibratedEntry, RecalibrationSources, RepairedPart};
 pub use repeatability::{RepeatabilityEntry, RepeatedPoseEntry};
 pub use schema::*;
 pub(crate) use stages::only_target;

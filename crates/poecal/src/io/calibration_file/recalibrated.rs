@@ -67,6 +67,17 @@ pub struct RecalibratedEntry {
     pub sha256: BTreeMap<String, String>,
 }
 
+/// What a joint is calibrated anew by: fields of [`RecalibratedEntry`].
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct RecalibrationSources {
+    /// The measurement files.
+    pub measurements: Vec<String>,
+    /// The calibration before.
+    pub calibration: String,
+    /// SHA-256 of each, by name.
+    pub sha256: BTreeMap<String, String>,
+}
+
 /// A change of one joint: by base twists, whose coefficients have a covariance.
 #[derive(Clone, Debug, PartialEq)]
 pub struct JointRepair {
