@@ -9,10 +9,9 @@ use crate::text::visible;
 /// What went wrong, as a word that does not change between versions.
 ///
 /// ```
-/// use poecal::{ErrorKind, Model};
-/// let error = Model::read("no_such_file.urdf", &Default::default()).err().ok_or("a file that is not there")?;
-/// assert_eq!(error.kind(), ErrorKind::File);
-/// # Ok::<(), &str>(())
+/// use poecal::ErrorKind;
+/// let error = ErrorKind::Unit.error("found unit `inch`, expected a length (m, cm, mm, um)");
+/// assert_eq!(error.kind(), ErrorKind::Unit);
 /// ```
 #[non_exhaustive]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -97,16 +96,6 @@ struct Inner {
 
 /// What an option could be, where nothing else decides.
 ///
-/// ```
-/// use poecal::{ChainSelection, Model};
-/// let two = r#"<robot name="r"><link name="a"/><link name="b"/><link name="c"/>
-///   <joint name="j" type="continuous"><parent link="a"/><child link="b"/></joint>
-///   <joint name="k" type="continuous"><parent link="a"/><child link="c"/></joint></robot>"#;
-/// let error = Model::parse(two, "r.urdf", &ChainSelection::default()).err().ok_or("two ends")?;
-/// let choices = error.choices().ok_or("choices")?;
-/// assert_eq!((choices.option, choices.of.as_slice()), ("--tip-link", ["b".to_owned(), "c".to_owned()].as_slice()));
-/// # Ok::<(), &str>(())
-/// ```
 #[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
 pub struct Choices {
     /// The option, as it is typed.
@@ -129,6 +118,12 @@ impl Error {
         self.0.place =
             Some(Place { path: path.as_ref().to_path_buf(), line: Some(line), column: Some(column) });
         self
+    }
+
+    /// The same error at a byte offset of a file's text.
+    pub(crate) fn at_offset(self, path: &Path, text: &str, offset: usize) -> Self {
+        let (line, column) = position(text, offset);
+        self.at(path, line, column)
     }
 
     /// The same error at a line (from 1) of a file.
@@ -212,6 +207,14 @@ impl fmt::Display for Error {
 
 impl std::error::Error for Error {}
 
+/// Line and column (from 1, the column in characters) of a byte offset.
+pub(crate) fn position(text: &str, offset: usize) -> (usize, usize) {
+    let before = text.get(..offset).unwrap_or(text);
+    let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
+    let line = before.matches('\n').count() + 1;
+    (line, before.get(line_start..).unwrap_or("").trim_start_matches('\u{feff}').chars().count() + 1)
+}
+
 /// Names that a message lists at most.
 const NAMES_LISTED: usize = 12;
 /// Letters of a name that are shown, if it has more than [`LONG_NAME`].
@@ -224,8 +227,8 @@ const LONGEST_COMPARED: usize = 64;
 /// Result of the library's fallible functions.
 ///
 /// ```
-/// let model: poecal::Result<_> = poecal::Model::read("missing.urdf", &poecal::ChainSelection::default());
-/// assert!(model.is_err());
+/// let refused: poecal::Result<()> = poecal::ErrorKind::Option.refuse("found `--count 0`, expected 1 or more");
+/// assert!(refused.is_err());
 /// ```
 pub type Result<T> = std::result::Result<T, Error>;
 
@@ -346,5 +349,13 @@ mod tests {
     fn a_word_too_far_from_all_has_no_nearest() {
         assert_eq!(nearest("jiont1", ["joint1", "joint2", "x"]), Some("joint1"));
         assert_eq!(nearest("jiont1", ["x", "temperature"]), None);
+    }
+
+    #[test]
+    fn positions_count_characters_from_one() {
+        assert_eq!(position("ab\r\nµm x", 0), (1, 1));
+        assert_eq!(position("ab\r\nµm x", 7), (2, 3));
+        assert_eq!(position("\u{feff}ab", 4), (1, 2));
+        assert_eq!(position("ab", 99), (1, 3));
     }
 }

@@ -66,16 +66,6 @@ impl Cause {
 }
 
 /// Unknowns that the measurements do not determine, or only weakly.
-///
-/// ```
-/// # use poecal::{CalibrationOptions, Kind, Simulation, calibrate, simulate::elbow};
-/// # let made = Simulation { count: 40, ..Simulation::default() }.run(&elbow(), Kind::POINT)?;
-/// # let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default())?;
-/// let structural = &calibration.identifiability.structural;
-/// // Points of a tracker that stands anywhere do not determine the base frame: a choice that changes no prediction.
-/// assert!(structural.iter().any(|direction| direction.description.contains("base")));
-/// # Ok::<(), poecal::Error>(())
-/// ```
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Direction {
     /// Description.

@@ -14,16 +14,6 @@ use crate::robot::{Joint, JointKind};
 use crate::solve::Normal;
 
 /// What the measurements determine.
-///
-/// ```
-/// # use poecal::calibration::{CalibrationOptions, calibrate};
-/// # use poecal::simulate::{Kind, Simulation, elbow};
-/// let made = Simulation { count: 60, ..Simulation::default() }.run(&elbow(), Kind::POINT)?;
-/// let found = calibrate(&made.nominal, &made.data, &CalibrationOptions::default())?.identifiability;
-/// assert_eq!((found.rank, found.parameters), (27, 27));
-/// assert!(found.unidentifiable.is_empty() && found.spectrum.determined().iter().all(|&known| known));
-/// # Ok::<(), poecal::Error>(())
-/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Identifiability {
     /// Unknowns in the minimal basis: 4 a revolute joint, 2 a prismatic one, 6 a target frame, 3 a target point.

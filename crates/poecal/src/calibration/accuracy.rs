@@ -135,7 +135,7 @@ impl From<Measured<Statistic>> for ModelAccuracy {
     }
 }
 
-impl Measured<Statistic> {
+impl ModelAccuracy {
     /// Root mean square of the leading quantity, metres, if it is a length.
     pub(super) fn leading_m(&self) -> f64 {
         let length = self.leading().filter(|(quantity, _)| quantity.unit() == Unit::Metre);

@@ -1,7 +1,7 @@
 //! Where a camera is on a robot's flange, or beside the robot, from poses of the flange and of what the camera saw, without joint readings.
 //!
 //! The arm is taken as it is, so that the problem has twelve unknowns, two frames between known motions (`equations`). Beside the general
-//! fit of [`calibrate`](crate::calibrate), it knows more of a camera: that it errs otherwise along its line of sight than across it
+//! fit of `calibrate`, it knows more of a camera: that it errs otherwise along its line of sight than across it
 //! (`noise`), that a board is seen best in its middle (`fit`), and which mistakes people make with two lists of poses (`directions`,
 //! `readings`, `moved`).
 

@@ -8,7 +8,7 @@ use super::calibration_file::CalibrationFile;
 use super::foreign::Form;
 use super::measurements::ReadOptions;
 use super::proof::Difference;
-use super::urdf::{self, ChainSelection, UrdfDocument};
+use super::urdf::{self, ChainSelection, Converted, UrdfDocument};
 use super::{looks_like, robot_toml, source_text};
 use crate::error::{Error, ErrorKind, Result, first_few};
 use crate::plan::RobotError;
@@ -275,15 +275,6 @@ fn check_mounts(path: &Path, selection: &ChainSelection, robot: &Robot) -> Resul
         )).in_file(path));
     }
     Ok(())
-}
-
-/// A model in another form.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Converted {
-    /// The whole text.
-    pub text: String,
-    /// Losses and additions, a sentence each.
-    pub notes: Vec<String>,
 }
 
 /// Writes a model in another form, reads it back and compares forward kinematics on 1,000 configurations.

@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use super::source_text::{self, position};
-use crate::error::{Error, ErrorKind, Result, nearest_or_all};
+use super::source_text;
+use crate::error::{Error, ErrorKind, Result, nearest_or_all, position};
 
 /// Key with the version of the file.
 const VERSION_KEY: &str = "poecal_settings";

@@ -4,7 +4,7 @@ use std::io::Read as _;
 use std::path::Path;
 
 use super::source;
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::{ErrorKind, Result};
 
 /// The text of a file; `expected` describes it in messages.
 ///
@@ -51,25 +51,9 @@ fn latin(bytes: &[u8]) -> Option<String> {
 const LATIN: [&str; 3] = ["iso-8859-1", "iso_8859-1", "latin1"];
 const LONGEST_DECLARATION: usize = 200;
 
-impl Error {
-    /// The same error at a byte offset of a file's text.
-    pub(in crate::io) fn at_offset(self, path: &Path, text: &str, offset: usize) -> Self {
-        let (line, column) = position(text, offset);
-        self.at(path, line, column)
-    }
-}
-
-/// Line and column (from 1, the column in characters) of a byte offset.
-pub(super) fn position(text: &str, offset: usize) -> (usize, usize) {
-    let before = text.get(..offset).unwrap_or(text);
-    let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
-    let line = before.matches('\n').count() + 1;
-    (line, before.get(line_start..).unwrap_or("").trim_start_matches('\u{feff}').chars().count() + 1)
-}
-
 #[cfg(test)]
 mod tests {
-    use super::{latin, position};
+    use super::latin;
 
     #[test]
     fn a_declared_latin_text_becomes_utf_8() {
@@ -84,13 +68,5 @@ mod tests {
         ] {
             assert_eq!(latin(other), None);
         }
-    }
-
-    #[test]
-    fn positions_count_characters_from_one() {
-        assert_eq!(position("ab\r\nµm x", 0), (1, 1));
-        assert_eq!(position("ab\r\nµm x", 7), (2, 3));
-        assert_eq!(position("\u{feff}ab", 4), (1, 2));
-        assert_eq!(position("ab", 99), (1, 3));
     }
 }

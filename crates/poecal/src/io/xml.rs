@@ -7,9 +7,8 @@ use std::path::Path;
 
 use roxmltree::{Attribute, Document, Node};
 
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::{Error, ErrorKind, Result, position};
 use crate::io::numbers::LARGEST_NUMBER;
-use crate::io::source_text::position;
 
 /// Most attributes of an element: the parser compares each with all others.
 const MOST_ATTRIBUTES: usize = 1000;

@@ -29,7 +29,7 @@ impl Corners {
         Corners { point: [Wide::ZERO; POINT], pixel: [Wide::ZERO; 2], root: Wide::ZERO };
 }
 
-/// A lens of Brown and Conrady, in the order of [`crate::camera::LENS_NAMES`].
+/// A lens of Brown and Conrady, in the order of `LENS_NAMES` of cameras.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Brown {
     pub(crate) numbers: [f64; 12],

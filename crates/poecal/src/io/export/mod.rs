@@ -18,8 +18,9 @@ use std::borrow::Cow;
 pub use onto::onto;
 pub use written::Exported;
 
-use super::model::{Converted, Model, ModelFormat, convert};
+use super::model::{Model, ModelFormat, convert};
 use super::proof::Difference;
+use super::urdf::Converted;
 use crate::error::Result;
 use crate::forms::DhConvention;
 use crate::robot::Robot;

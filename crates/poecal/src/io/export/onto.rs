@@ -5,9 +5,9 @@ use std::path::Path;
 use super::{SAME, export_error, is_same, remaining};
 use crate::error::{ErrorKind, Result};
 use crate::io::hashes::sha256_of;
-use crate::io::model::{Converted, Model, ModelSource, verify};
+use crate::io::model::{Model, ModelSource, verify};
 use crate::io::source_text;
-use crate::io::urdf::{ChainSelection, UrdfDocument, holdable};
+use crate::io::urdf::{ChainSelection, Converted, UrdfDocument, holdable};
 use crate::lie::rotation;
 use crate::robot::Robot;
 

@@ -46,7 +46,7 @@ pub struct Station {
     pub ledger: PathBuf,
     /// Settings of `poecal calibrate`.
     pub settings: Option<PathBuf>,
-    /// What the line says of its next robot, as [`fleet_prior`](crate::report::fleet_prior) writes it: the prior of all but every twentieth.
+    /// What the line says of its next robot, as `fleet_prior` of the report writes it: the prior of all but every twentieth.
     pub prior: Option<PathBuf>,
     /// Limits of `--accept`.
     pub accept: Vec<String>,

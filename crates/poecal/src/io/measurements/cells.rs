@@ -208,7 +208,11 @@ pub(super) fn split_line<'a>(
 
 #[cfg(test)]
 mod tests {
+    use rand_chacha::ChaCha8Rng;
+    use rand_core::{Rng as _, SeedableRng as _};
+
     use super::*;
+    use crate::io::csv_text::{cell, is_number, is_run};
 
     fn texts(line: &str, separator: Separator) -> Vec<(String, usize)> {
         let mut cells = Vec::new();
@@ -245,5 +249,25 @@ mod tests {
         assert_eq!(Separator::recognised("\"a;b\",c"), Separator::Comma);
         assert_eq!(Separator::recognised("a\tb c"), Separator::Tab);
         assert_eq!(Separator::recognised("a b"), Separator::Whitespace);
+    }
+
+    #[test]
+    fn every_text_reads_back_the_same() {
+        let mut generator = ChaCha8Rng::seed_from_u64(1);
+        let alphabet: Vec<char> = "'=+-@\t\r\n,;\"#ab1.e \u{1b}\u{202e}µ".chars().collect();
+        let mut pick = |count: usize| (generator.next_u32() as usize) % count;
+        for _ in 0..20_000 {
+            let length = pick(6);
+            let text: String = (0..length).map(|_| alphabet[pick(alphabet.len())]).collect();
+            let written = cell(&text);
+            let line = format!("{written},{written}");
+            let mut cells = Vec::new();
+            split(&line, Separator::Comma, &mut cells).unwrap();
+            assert_eq!(cells.len(), 2, "{line}");
+            for found in cells {
+                assert_eq!(found.text(), text, "{written}");
+                assert!(!found.raw.starts_with(is_run) || is_number(found.raw), "{written}");
+            }
+        }
     }
 }

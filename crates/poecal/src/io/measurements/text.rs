@@ -6,10 +6,9 @@ use std::path::Path;
 use super::configurations::{self, Configurations};
 use super::encodings::{is_utf16, of_utf16, of_windows_1252};
 use super::places::Places;
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::{Error, ErrorKind, Result, position};
 use crate::io::hashes::Hashing;
 use crate::io::source::{self, Input, LARGEST_TABLE, LARGEST_TEXT, unreadable};
-use crate::io::source_text::position;
 
 /// Approximate number of bytes held at a time.
 const BLOCK: usize = 1 << 18;

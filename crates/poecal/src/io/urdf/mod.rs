@@ -26,7 +26,7 @@ pub use selection::{ChainSelection, named_link};
 pub(super) use splice::escaped;
 pub(super) use terms::holdable;
 pub(super) use visuals::{Geometry, Visual};
-pub use write::write_new;
+pub use write::{Converted, write_new};
 pub(super) use write::{UrdfText, WIDE_LIMITS, written_new};
 
 use crate::error::Result;

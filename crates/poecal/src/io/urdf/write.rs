@@ -6,10 +6,18 @@ use super::ChainSelection;
 use super::patch::{frame_on_axis, origin_values};
 use super::splice::{escaped, triple};
 use crate::error::{ErrorKind, Result};
-use crate::io::model::Converted;
 use crate::io::numbers::{shortest, tidy};
 use crate::lie::Pose;
 use crate::robot::{Body, Joint, JointKind, Limits, MEASURED, Robot};
+
+/// A model in another form.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Converted {
+    /// The whole text.
+    pub text: String,
+    /// Losses and additions, a sentence each.
+    pub notes: Vec<String>,
+}
 
 /// Limits of a prismatic joint without limits, metres: URDF requires some.
 pub(in crate::io) const WIDE_LIMITS: Limits = Limits { lower: -1000.0, upper: 1000.0 };
