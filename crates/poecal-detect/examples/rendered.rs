@@ -10,7 +10,7 @@ use std::path::Path;
 use cpu_time::ThreadTime;
 use nalgebra::Vector2;
 use poecal_detect::render::{Draw, Drawn, Random, clutter, finished};
-use poecal_detect::{Detector, Found, Gray, Layout, Rejected};
+use poecal_detect::{Detector, Found, Gray, Layout, Rejected, png};
 use rayon::prelude::*;
 
 const BOARDS: [(&str, &str); 12] = [
@@ -257,8 +257,7 @@ fn keep(folder: &Path, drawn: &[(usize, Drawn)]) -> Result<(), Box<dyn std::erro
     for (number, it) in drawn {
         let gray = &it.picture;
         let path = folder.join(format!("{number}.png"));
-        let (width, height) = (gray.width() as u32, gray.height() as u32);
-        image::save_buffer(path, &gray.bytes(), width, height, image::ExtendedColorType::L8)?;
+        fs::write(path, png(gray)?)?;
         for corner in &it.truth {
             let (place, visible) = (corner.place_px, u8::from(corner.visible));
             writeln!(

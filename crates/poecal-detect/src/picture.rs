@@ -1,12 +1,9 @@
 //! Pictures in files.
 
 use std::fmt;
-use std::io::Cursor;
 use std::path::Path;
 
-use image::metadata::Orientation;
-use image::{DynamicImage, ImageDecoder, ImageReader};
-
+use crate::decoded::Decoded;
 use crate::error::{Error, Result};
 use crate::gray::Gray;
 
@@ -35,18 +32,41 @@ impl Turned {
         *self != Turned::default()
     }
 
-    fn of(orientation: Orientation) -> Self {
+    /// By the orientation of EXIF, 1 to 8.
+    fn of(orientation: u8) -> Self {
         let (degrees, mirrored) = match orientation {
-            Orientation::NoTransforms => (0, false),
-            Orientation::Rotate90 => (90, false),
-            Orientation::Rotate180 => (180, false),
-            Orientation::Rotate270 => (270, false),
-            Orientation::FlipHorizontal => (0, true),
-            Orientation::FlipVertical => (180, true),
-            Orientation::Rotate90FlipH => (270, true),
-            Orientation::Rotate270FlipH => (90, true),
+            2 => (0, true),
+            3 => (180, false),
+            4 => (180, true),
+            5 => (270, true),
+            6 => (90, false),
+            7 => (90, true),
+            8 => (270, false),
+            _ => (0, false),
         };
         Turned { degrees, mirrored }
+    }
+
+    /// A picture after this.
+    fn apply(self, gray: Gray) -> Result<Gray> {
+        if !self.is_turned() {
+            return Ok(gray);
+        }
+        let (width, height) = (gray.width(), gray.height());
+        let (columns, rows) =
+            if self.degrees.is_multiple_of(180) { (width, height) } else { (height, width) };
+        let before = |column: usize, row: usize| {
+            let (x, y) = match self.degrees {
+                90 => (row, height - 1 - column),
+                180 => (width - 1 - column, height - 1 - row),
+                270 => (width - 1 - row, column),
+                _ => (column, row),
+            };
+            let x = if self.mirrored { width - 1 - x } else { x };
+            gray.levels()[y * width + x]
+        };
+        let levels = (0..rows).flat_map(|row| (0..columns).map(move |column| (column, row)));
+        Gray::new(columns, rows, levels.map(|(column, row)| before(column, row)).collect())
     }
 }
 
@@ -78,29 +98,9 @@ impl Picture {
         let no_picture = |reason: &dyn fmt::Display| {
             Error::new(format!("{}: found no picture, expected PNG or JPEG ({reason})", path.display()))
         };
-        let reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format();
-        let reader = reader.map_err(|error| no_picture(&error))?;
-        let mut decoder = reader.into_decoder().map_err(|error| no_picture(&error))?;
-        let orientation = decoder.orientation().map_err(|error| no_picture(&error))?;
-        let mut image = DynamicImage::from_decoder(decoder).map_err(|error| no_picture(&error))?;
-        image.apply_orientation(orientation);
-        let gray = gray_of(&image).map_err(|error| no_picture(&error))?;
-        Ok(Picture { gray, turned: Turned::of(orientation) })
+        let decoded = Decoded::of(bytes).map_err(|error| no_picture(&error))?;
+        let turned = Turned::of(decoded.orientation);
+        let gray = decoded.gray().and_then(|it| turned.apply(it)).map_err(|error| no_picture(&error))?;
+        Ok(Picture { gray, turned })
     }
-}
-
-/// Levels from 0 to 255, colours by the weights of OpenCV (ITU-R BT.601).
-fn gray_of(image: &DynamicImage) -> Result<Gray> {
-    let (width, height) = (image.width() as usize, image.height() as usize);
-    if let DynamicImage::ImageLuma8(bytes) = image {
-        return Gray::from_bytes(width, height, bytes.as_raw());
-    }
-    let weigh = |[red, green, blue]: [f32; 3]| 0.299 * red + 0.587 * green + 0.114 * blue;
-    let levels = if image.color().bytes_per_pixel() / image.color().channel_count() == 1 {
-        // A pixel of OpenCV is a whole number.
-        image.to_rgb8().pixels().map(|pixel| weigh(pixel.0.map(f32::from)).round()).collect()
-    } else {
-        image.to_rgb16().pixels().map(|pixel| weigh(pixel.0.map(f32::from)) * (255.0 / 65535.0)).collect()
-    };
-    Gray::new(width, height, levels)
 }

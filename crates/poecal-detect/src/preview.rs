@@ -1,8 +1,6 @@
 //! Pictures with the corners that were found in them, to look at.
 
-use std::io::Cursor;
-
-use image::{GrayImage, ImageFormat, Rgb, RgbImage};
+use png::{BitDepth, ColorType, Compression, Encoder, EncodingError, Filter};
 
 use crate::error::{Error, Result};
 use crate::found::Corner;
@@ -12,18 +10,16 @@ use crate::gray::Gray;
 const RADIUS_PX: f64 = 6.0;
 const PARTS: usize = 48;
 /// Colours of the first corner, and of the others.
-const FIRST: Rgb<u8> = Rgb([230, 30, 30]);
-const OTHER: Rgb<u8> = Rgb([30, 170, 60]);
+const FIRST: [u8; 3] = [230, 30, 30];
+const OTHER: [u8; 3] = [30, 170, 60];
 
 /// A picture as PNG, with a ring around each corner; that of `corner0` is red, the others are green.
 ///
 /// # Errors
 /// If it cannot be encoded.
 pub fn preview(gray: &Gray, corners: &[Corner]) -> Result<Vec<u8>> {
-    let (width, height) = (gray.width() as u32, gray.height() as u32);
-    let colours = gray.bytes().into_iter().flat_map(|level| [level; 3]).collect();
-    let mut image = RgbImage::from_raw(width, height, colours)
-        .ok_or_else(|| Error::new("found a picture of another size than its levels"))?;
+    let (width, height) = (gray.width(), gray.height());
+    let mut colours: Vec<[u8; 3]> = gray.bytes().into_iter().map(|level| [level; 3]).collect();
     for corner in corners {
         let colour = if corner.id == 0 { FIRST } else { OTHER };
         for part in 0..PARTS {
@@ -31,15 +27,13 @@ pub fn preview(gray: &Gray, corners: &[Corner]) -> Result<Vec<u8>> {
             for radius in [RADIUS_PX, RADIUS_PX + 0.7] {
                 let (u, v) = (corner.u_px + radius * angle.cos(), corner.v_px + radius * angle.sin());
                 let (u, v) = (u.round(), v.round());
-                if u >= 0.0 && v >= 0.0 && u < f64::from(width) && v < f64::from(height) {
-                    image.put_pixel(u as u32, v as u32, colour);
+                if u >= 0.0 && v >= 0.0 && u < width as f64 && v < height as f64 {
+                    colours[v as usize * width + u as usize] = colour;
                 }
             }
         }
     }
-    let mut bytes = Cursor::new(Vec::new());
-    image.write_to(&mut bytes, ImageFormat::Png).map_err(|error| Error::new(error.to_string()))?;
-    Ok(bytes.into_inner())
+    encoded(gray, ColorType::Rgb, colours.as_flattened())
 }
 
 /// A picture as PNG, as a camera saves it: 8 bits of gray.
@@ -47,16 +41,30 @@ pub fn preview(gray: &Gray, corners: &[Corner]) -> Result<Vec<u8>> {
 /// # Errors
 /// If it cannot be encoded.
 pub fn png(gray: &Gray) -> Result<Vec<u8>> {
-    let (width, height) = (gray.width() as u32, gray.height() as u32);
-    let image = GrayImage::from_raw(width, height, gray.bytes())
-        .ok_or_else(|| Error::new("found a picture of another size than its levels"))?;
-    let mut bytes = Cursor::new(Vec::new());
-    image.write_to(&mut bytes, ImageFormat::Png).map_err(|error| Error::new(error.to_string()))?;
-    Ok(bytes.into_inner())
+    encoded(gray, ColorType::Grayscale, &gray.bytes())
+}
+
+/// Samples of 8 bits of a picture of this size as PNG.
+fn encoded(gray: &Gray, colours: ColorType, samples: &[u8]) -> Result<Vec<u8>> {
+    let written = || -> std::result::Result<Vec<u8>, EncodingError> {
+        let mut bytes = Vec::new();
+        let mut encoder = Encoder::new(&mut bytes, gray.width() as u32, gray.height() as u32);
+        encoder.set_color(colours);
+        encoder.set_depth(BitDepth::Eight);
+        encoder.set_compression(Compression::Fast);
+        encoder.set_filter(Filter::Adaptive);
+        let mut writer = encoder.write_header()?;
+        writer.write_image_data(samples)?;
+        writer.finish()?;
+        Ok(bytes)
+    };
+    written().map_err(|error| Error::new(error.to_string()))
 }
 
 #[cfg(test)]
 mod tests {
+    use std::io::Cursor;
+
     use super::*;
     use crate::found::Kind;
 
@@ -68,8 +76,10 @@ mod tests {
             Corner { id: 1, kind: Kind::Corner, u_px: 1.0, v_px: 1.0, sigma_px: 0.1 },
         ];
         let bytes = preview(&gray, &corners).unwrap();
-        let image = image::load_from_memory(&bytes).unwrap().to_rgb8();
-        assert_eq!(image.dimensions(), (40, 30));
-        assert_eq!((image.get_pixel(26, 15), image.get_pixel(7, 1)), (&FIRST, &OTHER));
+        let mut reader = png::Decoder::new(Cursor::new(bytes)).read_info().unwrap();
+        let mut colours = vec![[0; 3]; 40 * 30];
+        let written = reader.next_frame(colours.as_flattened_mut()).unwrap();
+        assert_eq!((written.width, written.height, written.color_type), (40, 30, ColorType::Rgb));
+        assert_eq!((colours[15 * 40 + 26], colours[40 + 7]), (FIRST, OTHER));
     }
 }

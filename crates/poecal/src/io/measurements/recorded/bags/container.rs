@@ -1,20 +1,32 @@
 //! Records of MCAP: a file is read as a stream, a chunk at a time.
 
-use std::io::{self, Read};
-
-use mcap::McapError;
-use mcap::records::op;
-use mcap::sans_io::{LinearReadEvent, LinearReader, LinearReaderOptions};
+use std::io::{self, BufReader, Read};
 
 use super::topics::Topics;
 use super::unpack::{LARGEST, unpack};
 
 /// Bytes that files begin with.
-pub(super) const MAGIC: &[u8] = mcap::MAGIC;
+pub(super) const MAGIC: &[u8] = &[0x89, b'M', b'C', b'A', b'P', 0x30, b'\r', b'\n'];
 /// Bytes that are read at a time.
 const STEP: usize = 1 << 18;
 /// Bytes of a record before what it holds: its kind, and its length.
 const HEAD: usize = 9;
+
+/// Kinds of records, <https://mcap.dev/spec#opcodes>.
+pub(super) mod op {
+    /// The last record: where the summary is.
+    pub(in super::super) const FOOTER: u8 = 0x02;
+    /// A type of messages.
+    pub(in super::super) const SCHEMA: u8 = 0x03;
+    /// A topic.
+    pub(in super::super) const CHANNEL: u8 = 0x04;
+    /// A message.
+    pub(in super::super) const MESSAGE: u8 = 0x05;
+    /// Records, maybe packed.
+    pub(in super::super) const CHUNK: u8 = 0x06;
+    /// The end of the messages.
+    pub(in super::super) const DATA_END: u8 = 0x0F;
+}
 
 /// Why a file ends.
 const CUT: &str = "it is cut off";
@@ -30,56 +42,67 @@ pub(super) struct Damage {
 
 /// Reads a file up to the end of its messages, or as far as that goes.
 pub(super) fn read(input: &mut impl Read, topics: &mut Topics<'_>) -> io::Result<Damage> {
-    // Chunks are unpacked here: one that is damaged is left out as a whole.
-    let options = LinearReaderOptions::default()
-        .with_emit_chunks(true)
-        .with_skip_end_magic(true)
-        .with_record_length_limit(LARGEST);
-    let mut reader = LinearReader::new_with_options(options);
-    let (mut damage, mut unpacked) = (Damage::default(), Vec::new());
+    let mut input = BufReader::with_capacity(STEP, input);
+    let (mut damage, mut data, mut unpacked) = (Damage::default(), Vec::new(), Vec::new());
     let mut at = MAGIC.len() as u64;
-    while let Some(event) = reader.next_event() {
-        match event {
-            Ok(LinearReadEvent::ReadRequest(_)) => {
-                let count = read_some(input, reader.insert(STEP))?;
-                reader.notify_read(count);
-            }
-            Ok(LinearReadEvent::Record { opcode, data }) => {
-                match opcode {
-                    op::DATA_END | op::FOOTER => return Ok(damage),
-                    op::CHUNK => {
-                        if let Err((why, times)) = chunk(data, &mut unpacked, topics) {
-                            damage.chunks.push((at, why, times));
-                        }
-                    }
-                    _ => {
-                        if let Err(why) = record(opcode, data, topics) {
-                            damage.chunks.push((at, why, (0, 0)));
-                        }
-                    }
-                }
-                at = at.saturating_add((HEAD + data.len()) as u64);
-            }
-            Err(error) => {
-                let is_cut = matches!(error, McapError::UnexpectedEof);
-                damage.end = Some((at, if is_cut { CUT.to_owned() } else { error.to_string() }));
+    let is_whole = fill(&mut input, MAGIC.len(), &mut data)?;
+    if !is_whole || data != MAGIC {
+        damage.end = Some((at, if is_whole { "Bad magic number" } else { CUT }.to_owned()));
+        return Ok(damage);
+    }
+    loop {
+        let opcode = match next(&mut input, &mut data)? {
+            Ok(opcode) => opcode,
+            Err(why) => {
+                damage.end = Some((at, why));
                 return Ok(damage);
             }
+        };
+        match opcode {
+            op::DATA_END | op::FOOTER => return Ok(damage),
+            // Chunks are unpacked here: one that is damaged is left out as a whole.
+            op::CHUNK => {
+                if let Err((why, times)) = chunk(&data, &mut unpacked, topics) {
+                    damage.chunks.push((at, why, times));
+                }
+            }
+            _ => {
+                if let Err(why) = record(opcode, &data, topics) {
+                    damage.chunks.push((at, why, (0, 0)));
+                }
+            }
         }
+        at = at.saturating_add((HEAD + data.len()) as u64);
     }
-    // It ends behind a whole record, and not by the one that says so.
-    damage.end = Some((at, CUT.to_owned()));
-    Ok(damage)
 }
 
-/// Reads once; 0 at the end.
-fn read_some(input: &mut impl Read, into: &mut [u8]) -> io::Result<usize> {
-    loop {
-        match input.read(into) {
-            Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
-            read => return read,
-        }
+/// Reads the next record: its kind, and into `data` what it holds. The error within says why there is none.
+fn next(input: &mut impl Read, data: &mut Vec<u8>) -> io::Result<Result<u8, String>> {
+    if !fill(input, HEAD, data)? {
+        return Ok(Err(CUT.to_owned()));
     }
+    let mut head = Fields(data);
+    let (Some(opcode), Some(stated)) = (head.u8(), head.u64()) else { return Ok(Err(CUT.to_owned())) };
+    let Some(size) = usize::try_from(stated).ok().filter(|it| *it <= LARGEST) else {
+        return Ok(Err(format!("record with opcode {opcode:02x} length exceeds limit: `{stated}`")));
+    };
+    if !fill(input, size, data)? {
+        return Ok(Err(CUT.to_owned()));
+    }
+    // The least that these hold.
+    let least = match opcode {
+        op::DATA_END => 4,
+        op::FOOTER => 20,
+        _ => 0,
+    };
+    Ok(if size < least { Err("Record parse failed".to_owned()) } else { Ok(opcode) })
+}
+
+/// Reads so many bytes, and takes memory for no more than there are; false if there are fewer.
+fn fill(input: &mut impl Read, size: usize, into: &mut Vec<u8>) -> io::Result<bool> {
+    into.clear();
+    into.reserve(size.min(STEP));
+    Ok(input.take(size as u64).read_to_end(into)? == size)
 }
 
 /// Takes the records of a chunk, or says why not, with the times of its messages.

@@ -1,15 +1,11 @@
 //! Bags that are written here, and what is read of them.
 
-use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::fs;
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
 
-use mcap::records::MessageHeader;
-use mcap::{WriteOptions, Writer};
-
-use super::container;
+use super::container::{self, MAGIC, op};
 use super::messages::tests::Writer as Cdr;
 use super::topics::Topics;
 use super::unpack::unpack;
@@ -57,18 +53,70 @@ impl Drop for Folder {
     }
 }
 
-/// The bytes of a bag.
+/// Kinds of records that are not read.
+const HEADER: u8 = 0x01;
+const MESSAGE_INDEX: u8 = 0x07;
+/// Bytes of records from which on a chunk is full.
+const CHUNK: usize = 20_000;
+
+/// A text with its length.
+fn text(text: &str) -> Vec<u8> {
+    [&u32::try_from(text.len()).unwrap().to_le_bytes(), text.as_bytes()].concat()
+}
+
+/// A record of parts.
+fn record(opcode: u8, parts: &[&[u8]]) -> Vec<u8> {
+    let size: usize = parts.iter().map(|it| it.len()).sum();
+    [&[opcode], &(size as u64).to_le_bytes()[..], &parts.concat()].concat()
+}
+
+/// A chunk of records, not packed, and an index of it.
+fn chunk(records: &[u8], [first, last]: [u64; 2]) -> Vec<u8> {
+    let size = (records.len() as u64).to_le_bytes();
+    let times = [first.to_le_bytes(), last.to_le_bytes()].concat();
+    let checksum = crc32fast::hash(records).to_le_bytes();
+    let own = record(op::CHUNK, &[&times, &size, &checksum, &text(""), &size, records]);
+    [own, record(MESSAGE_INDEX, &[&[0; 6]])].concat()
+}
+
+/// The bytes of a bag: types and topics stand in the chunk of their first message.
 fn bag(messages: &[Message]) -> Vec<u8> {
-    let options = WriteOptions::new().compression(None).chunk_size(Some(20_000)).profile("ros2");
-    let mut out = Writer::with_options(Cursor::new(Vec::new()), options).unwrap();
-    for (sequence, (topic, name, log_time, data)) in (0..).zip(messages) {
-        let schema = out.add_schema(name, "ros2msg", b"").unwrap();
-        let channel_id = out.add_channel(schema, topic, "cdr", &BTreeMap::new()).unwrap();
-        let header = MessageHeader { channel_id, sequence, log_time: *log_time, publish_time: *log_time };
-        out.write_to_known_channel(&header, data).unwrap();
+    let mut out = [MAGIC, &record(HEADER, &[&text("ros2"), &text("tests")])].concat();
+    let (mut types, mut topics): (Vec<&str>, Vec<&str>) = (Vec::new(), Vec::new());
+    let (mut records, mut times) = (Vec::new(), [u64::MAX, 0]);
+    for (sequence, (topic, name, log_time, data)) in (0_u32..).zip(messages) {
+        let place = |all: &mut Vec<&'static str>, own: &'static str| {
+            let found = all.iter().position(|it| *it == own);
+            let at = found.unwrap_or(all.len());
+            all.extend(found.is_none().then_some(own));
+            (u16::try_from(at).unwrap(), found.is_none())
+        };
+        let (schema, is_new) = place(&mut types, name);
+        // Types count from one.
+        let schema = (schema + 1).to_le_bytes();
+        if is_new {
+            records.extend(record(op::SCHEMA, &[&schema, &text(name), &text("ros2msg"), &text("")]));
+        }
+        let (channel, is_new) = place(&mut topics, topic);
+        let channel = channel.to_le_bytes();
+        if is_new {
+            records.extend(record(op::CHANNEL, &[&channel, &schema, &text(topic), &text("cdr"), &[0; 4]]));
+        }
+        let (sequence, time) = (sequence.to_le_bytes(), log_time.to_le_bytes());
+        records.extend(record(op::MESSAGE, &[&channel, &sequence, &time, &time, data]));
+        times = [times[0].min(*log_time), times[1].max(*log_time)];
+        if records.len() > CHUNK {
+            out.extend(chunk(&records, times));
+            (records, times) = (Vec::new(), [u64::MAX, 0]);
+        }
     }
-    out.finish().unwrap();
-    out.into_inner().into_inner()
+    if !records.is_empty() {
+        out.extend(chunk(&records, times));
+    }
+    out.extend(record(op::DATA_END, &[&[0; 4]]));
+    out.extend(record(op::FOOTER, &[&[0; 20]]));
+    out.extend(MAGIC);
+    out
 }
 
 /// A number from -1 to 1 that belongs to another one.
@@ -324,6 +372,35 @@ fn no_bytes_end_in_a_panic() {
         try_bytes(&bytes);
         bytes[at] = 0xFF;
         try_bytes(&bytes);
+    }
+}
+
+#[test]
+fn what_ends_a_file_is_said() {
+    let header = record(HEADER, &[&text("ros2"), &text("tests")]);
+    let begun = [MAGIC, &header].concat();
+    let behind = begun.len() as u64;
+    let large = [&[0x80][..], &(1_u64 << 40).to_le_bytes()].concat();
+    let cut = "it is cut off";
+    for (bytes, expected) in [
+        (b"no magic".to_vec(), Some((8, "Bad magic number"))),
+        (MAGIC[..5].to_vec(), Some((8, cut))),
+        (MAGIC.to_vec(), Some((8, cut))),
+        (begun.clone(), Some((behind, cut))),
+        ([&begun[..], &header[..4]].concat(), Some((behind, cut))),
+        ([&begun[..], &header[..12]].concat(), Some((behind, cut))),
+        (
+            [&begun[..], &large].concat(),
+            Some((behind, "record with opcode 80 length exceeds limit: `1099511627776`")),
+        ),
+        ([&begun[..], &record(op::DATA_END, &[&[0; 3]])].concat(), Some((behind, "Record parse failed"))),
+        ([&begun[..], &record(op::FOOTER, &[&[0; 19]])].concat(), Some((behind, "Record parse failed"))),
+        ([&begun[..], &record(op::DATA_END, &[&[0; 4]])].concat(), None),
+        ([&begun[..], &record(op::FOOTER, &[&[0; 20]])].concat(), None),
+    ] {
+        let mut topics = Topics::new(&[]);
+        let damage = container::read(&mut Cursor::new(bytes), &mut topics).unwrap();
+        assert_eq!(damage.end, expected.map(|(at, why)| (at, why.to_owned())));
     }
 }
 
