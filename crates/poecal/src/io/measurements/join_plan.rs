@@ -3,10 +3,11 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
+use super::column_spec::ColumnSpec;
 use super::configurations::is_folder;
 use super::corner_columns::{are_corners, are_readings_of_pictures};
 use super::layout::ColumnLayout;
-use super::mapping::{ColumnMap, ColumnSpec};
+use super::mapping::ColumnMap;
 use super::messages::are_messages;
 use super::no_file_for::{BODIES, unused};
 use super::recorded::{MEASURED, Opened, Opening, OwnTable, RECORDINGS, Recording};
