@@ -83,7 +83,7 @@ pub(super) fn keep_measurable(
     (list, width): (&[f64], usize),
     conditions: &Conditions,
     refusals: &mut Refusals,
-) -> (Vec<f64>, Vec<usize>) {
+) -> (Vec<f64>, Option<Vec<usize>>) {
     let origins: Vec<usize> = (0..list.len() / width)
         .filter(|&at| {
             let found = checker.measured(&list[at * width..(at + 1) * width]);
@@ -94,7 +94,7 @@ pub(super) fn keep_measurable(
         })
         .collect();
     let own = origins.iter().flat_map(|&at| list[at * width..(at + 1) * width].to_vec());
-    (own.collect(), origins)
+    (own.collect(), Some(origins.clone()))
 }
 
 /// Takes some of many configurations of a workspace, at even distances.

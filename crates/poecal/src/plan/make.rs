@@ -63,11 +63,7 @@ impl<'a> Planner<'a> {
         let checker = Checker::new(&planned, &options.conditions).avoiding(&avoided, experiment.length_m());
         let mut refusals = Refusals::default();
         let (candidates, origins) = match &options.list {
-            Some(list) => {
-                let (found, origins) =
-                    keep_measurable(&checker, (list, width), &options.conditions, &mut refusals);
-                (found, Some(origins))
-            }
+            Some(list) => keep_measurable(&checker, (list, width), &options.conditions, &mut refusals),
             None => {
                 let wanted = options.candidates.max(options.fit.count);
                 (draw_measurable(&checker, wanted, &mut generator, &mut refusals), None)

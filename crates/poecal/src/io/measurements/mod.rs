@@ -32,6 +32,7 @@ mod instrument_noise;
 mod intrinsics;
 mod join_doubt;
 mod join_entry;
+mod join_judgement;
 mod join_lags;
 mod join_motion;
 mod join_order;
