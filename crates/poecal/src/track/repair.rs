@@ -2,12 +2,13 @@
 
 use nalgebra::DMatrix;
 
-use super::explain::{Evidence, Hypothesis, Kind, Tests, explain};
+use super::explain::{Evidence, Hypothesis, Kind, Tests, Verdict, explain};
 use super::found::explanation;
 use super::hypotheses::{free, hypotheses};
 use super::judged::{Earlier, Judged};
+use super::model::Model;
 use super::options::{JudgedBy, MOST_RAD, TrackOptions};
-use super::visit::{Model, Of};
+use super::visit::Of;
 use crate::error::{ErrorKind, Result};
 use crate::io::calibration_file::{
     CalibrationFile, JointRepair, RecalibratedEntry, RecalibrationSources, RepairedPart,
@@ -46,19 +47,15 @@ pub fn recalibrate(
     let Judged { model, data, visit, changes, level, judged_by, repeated, notes } =
         Judged::of(file, data, earlier, options)?;
     let at = find_joint(&model, joint)?;
-    let of = match part {
-        RepairedPart::Zero => Of::Zero(at),
-        RepairedPart::Axis => Of::Axis(at),
+    let (of, what) = match part {
+        RepairedPart::Zero => (Of::Zero(at), "zero"),
+        RepairedPart::Axis => (Of::Axis(at), "axis"),
     };
     let all = hypotheses(&changes.jacobian, &visit, options);
     let is_own = |it: &&Hypothesis| it.of == [of];
     let free_columns = free(&changes.jacobian, &visit, options);
     let evidence = Evidence::new(&changes.residual, &free_columns);
     let found = all.iter().find(is_own).and_then(|it| Some((it, evidence.tried(0, it)?)));
-    let what = match part {
-        RepairedPart::Zero => "zero",
-        RepairedPart::Axis => "axis",
-    };
     let Some((hypothesis, tried)) = found.filter(|(it, tried)| tried.rank == it.columns.ncols()) else {
         return ErrorKind::Problem.refuse(format!(
             "found rows that do not show the {what} of joint `{joint}`, expected some that do: measure configurations that `poecal track --plan` chooses, \
@@ -70,13 +67,7 @@ pub fn recalibrate(
     let rest: Vec<Hypothesis> =
         all.iter().filter(|it| it.kind <= Kind::Zero && it.of != [of]).cloned().collect();
     let verdict = explain(&Evidence::new(&changes.residual, &beside), &rest, &Tests::new(&rest), level);
-    if let Some(other) = &verdict.best {
-        let other = explanation(other, &rest[other.at], &verdict, &model, &data);
-        return ErrorKind::Problem.refuse(format!(
-            "found rows that contradict that the {what} of joint `{joint}` alone changed ({} did too), expected no other change: calibrate anew",
-            other.names.first().filter(|name| !name.is_empty()).map_or_else(|| "device or tool".to_owned(), |name| format!("`{name}`"))
-        ));
-    }
+    refuse_others(&verdict, &rest, (&model, &data), (what, joint))?;
     let variance = verdict.variance;
     let step: Vec<f64> = tried.step.iter().map(|it| it.0).collect();
     if tried.step.iter().zip(&hypothesis.turns).any(|((value, _), turns)| *turns && value.abs() > MOST_RAD) {
@@ -135,4 +126,19 @@ fn axis_twists(axis: &Pose, turns: bool) -> Vec<Twist> {
         Twist::from_vector(&(axis.adjoint() * unit))
     });
     twists.collect()
+}
+
+/// Refuses rows by which something else changed too.
+fn refuse_others(
+    verdict: &Verdict,
+    rest: &[Hypothesis],
+    (model, data): (&Model, &Dataset),
+    (what, joint): (&str, &str),
+) -> Result<()> {
+    let Some(other) = &verdict.best else { return Ok(()) };
+    let other = explanation(other, &rest[other.at], verdict, model, data);
+    ErrorKind::Problem.refuse(format!(
+        "found rows that contradict that the {what} of joint `{joint}` alone changed ({} did too), expected no other change: calibrate anew",
+        other.names.first().filter(|name| !name.is_empty()).map_or_else(|| "device or tool".to_owned(), |name| format!("`{name}`"))
+    ))
 }
