@@ -80,10 +80,7 @@ impl Layout {
     /// The combinations of motions that no held thing sees.
     fn unseen(&self, estimate: &Estimate, data: &Dataset, rows: &[u32], motions: &[Motion]) -> Vec<Vec<f64>> {
         let count = motions.len();
-        let mut moved: Vec<Vec<f64>> = vec![vec![0.0; self.dim()]; count];
-        for (step, motion) in moved.iter_mut().zip(motions) {
-            motion.offset.iter().for_each(|&(place, change)| step[place] = change);
-        }
+        let mut moved = begin_steps(motions, self.dim());
         // Information that the held things give about the motions.
         let mut gram = DMatrix::zeros(count, count);
         let mut add = |subject: Subject, body: Option<Body>, effect: &dyn Fn(&Twist) -> Vec<f64>| {
@@ -91,13 +88,7 @@ impl Layout {
                 parameter.model().subject() == subject && parameter.value_term().is_none()
             };
             let own = self.parameters().find(|(parameter, _)| is_of(parameter));
-            let effects: Vec<Vec<f64>> = motions
-                .iter()
-                .map(|motion| {
-                    let is_moved = motion.beyond.is_none_or(|joint| is_beyond(estimate, body, joint));
-                    if is_moved { effect(&motion.twist) } else { Vec::new() }
-                })
-                .collect();
+            let effects = effects_on(estimate, body, motions, effect);
             match own {
                 Some((_, places)) => {
                     for (step, effect) in moved.iter_mut().zip(&effects) {
@@ -168,6 +159,29 @@ impl Layout {
             (own.station == station).then_some(own.about)
         })
     }
+}
+
+/// A step for each motion, of the offsets alone.
+fn begin_steps(motions: &[Motion], dim: usize) -> Vec<Vec<f64>> {
+    let mut moved: Vec<Vec<f64>> = vec![vec![0.0; dim]; motions.len()];
+    for (step, motion) in moved.iter_mut().zip(motions) {
+        motion.offset.iter().for_each(|&(place, change)| step[place] = change);
+    }
+    moved
+}
+
+/// The effect of each motion on a body; none on one that it does not move.
+fn effects_on(
+    estimate: &Estimate,
+    body: Option<Body>,
+    motions: &[Motion],
+    effect: &dyn Fn(&Twist) -> Vec<f64>,
+) -> Vec<Vec<f64>> {
+    let of_motion = |motion: &Motion| {
+        let is_moved = motion.beyond.is_none_or(|joint| is_beyond(estimate, body, joint));
+        if is_moved { effect(&motion.twist) } else { Vec::new() }
+    };
+    motions.iter().map(of_motion).collect()
 }
 
 /// Orthonormal combinations of steps of which no held thing sees anything.
