@@ -146,7 +146,8 @@ fn is_repeated(data: &Dataset, before: usize, row: usize) -> bool {
 mod tests {
     use super::*;
     use crate::measurement::Measurement;
-    use crate::simulate::{Simulation, elbow};
+    use crate::plan::PlannedFit;
+    use crate::simulate::{Kind, Simulation, elbow};
 
     /// Rows of a simulated session of points, one of them off by 5 mm, one with the wrong sign of joint 5, one stale.
     #[test]

@@ -15,7 +15,7 @@ use super::no_stands::NoStands;
 use super::number::Numbers;
 use super::read::Reader;
 use super::recorded::MEASURED;
-use super::streams::{stands_of_joints, stands_of_measured};
+use super::streams::{MeasuredStands, stands_of_joints, stands_of_measured};
 use super::table::Table;
 use super::understanding::{self, FileUnderstanding};
 use super::units::UnitSource;
@@ -218,13 +218,7 @@ impl<'a> Reader<'a> {
             found => found?,
         };
         if let Some(stands) = stands {
-            found.notes.push(format!(
-                "{}: each stand is the mean of its rows, which scatter by {:.3} mm",
-                path.display(),
-                1e3 * stands.scatter_m
-            ));
-            found.warnings.extend(stands.warnings.iter().map(|it| format!("{}: {it}", path.display())));
-            found.readings.means = stands.means;
+            take_stands(&mut found, stands, path);
         }
         let by_time = found.entry.join == Join::Time;
         found.entry.measured_motion =
@@ -289,6 +283,17 @@ impl Unmeasured {
             None => (self.rows, self.at) = (Some(rows), at),
         }
     }
+}
+
+/// Takes the means of stands, and says how their rows scatter.
+fn take_stands(found: &mut Joined, stands: MeasuredStands, path: &Path) {
+    found.notes.push(format!(
+        "{}: each stand is the mean of its rows, which scatter by {:.3} mm",
+        path.display(),
+        1e3 * stands.scatter_m
+    ));
+    found.warnings.extend(stands.warnings.iter().map(|it| format!("{}: {it}", path.display())));
+    found.readings.means = stands.means;
 }
 
 /// Refuses a recording whose times go back.
