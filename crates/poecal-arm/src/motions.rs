@@ -65,7 +65,7 @@ impl Ways {
             point += v * *from;
             turn += w * *from;
         }
-        let (held, mut to) = self.keep_point(point, &mut turn, most)?;
+        let (held, mut to) = self.move_point(point, &mut turn, most)?;
         for ((_, w), to) in self.columns[..n].iter().zip(&to) {
             turn -= w * *to;
         }
@@ -101,9 +101,9 @@ impl Ways {
         Some(to)
     }
 
-    /// The motion that brings the point where it should be, with the joints held that cannot take their part, and these parts.
+    /// Holds joints that would have to move too far at their most: where these are, and how the others bring the point where it should be.
     #[inline]
-    fn keep_point(
+    fn move_point(
         &mut self,
         mut point: Vector3<f64>,
         turn: &mut Vector3<f64>,
