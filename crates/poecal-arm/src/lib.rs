@@ -30,6 +30,7 @@ mod chain;
 mod correction;
 pub mod lie;
 mod model;
+mod motions;
 mod newton;
 mod numbers;
 mod placed;
@@ -38,6 +39,7 @@ mod rows;
 mod small;
 mod terms;
 pub mod trig;
+mod zeros;
 
 pub use arm::Arm;
 pub use branches::{AllBranches, Branches, HeldBranches, MOST_BRANCHES};

@@ -229,37 +229,10 @@ pub(crate) fn damped(arm: &Arm, target: &Pose, q: &mut [f64], most: u32) -> f64 
         }
         let (p, w) = (left.position / reach, left.rotation);
         let e = [p.x, p.y, p.z, w.x, w.y, w.z];
-        let mut step = [0.0; MOST_JOINTS];
-        let is_solved = if n >= 6 {
-            // Jᵀ (J Jᵀ + λ)⁻¹ e: of all steps that do the same, the least.
-            let mut a = [[0.0; 6]; 6];
-            for (i, row) in a.iter_mut().enumerate() {
-                for (j, it) in row.iter_mut().enumerate() {
-                    *it = columns.iter().take(n).map(|column| column[i] * column[j]).sum();
-                }
-                row[i] += damping;
-            }
-            let mut x = e;
-            let is_solved = small::solve_symmetric(&mut a, &mut x, 6).is_some();
-            for (it, column) in step.iter_mut().zip(&columns).take(n) {
-                *it = column.iter().zip(x).map(|(column, x)| column * x).sum();
-            }
-            is_solved
-        } else {
-            let mut a = [[0.0; MOST_JOINTS]; MOST_JOINTS];
-            for i in 0..n {
-                for j in 0..n {
-                    a[i][j] = columns[i].iter().zip(&columns[j]).map(|(one, other)| one * other).sum();
-                }
-                a[i][i] += damping;
-                step[i] = columns[i].iter().zip(e).map(|(column, e)| column * e).sum();
-            }
-            small::solve_symmetric(&mut a, &mut step, n).is_some()
-        };
-        if !is_solved {
+        let Some(step) = damped_step(&columns, e, n, damping) else {
             damping = (damping * 10.0).max(1e-12);
             continue;
-        }
+        };
         let longest = step.iter().fold(0.0_f64, |most, it| most.max(it.abs()));
         let share = if longest > LONGEST_STEP { LONGEST_STEP / longest } else { 1.0 };
         let mut next = [0.0; MOST_JOINTS];
@@ -285,6 +258,44 @@ pub(crate) fn damped(arm: &Arm, target: &Pose, q: &mut [f64], most: u32) -> f64 
         }
     }
     squared.sqrt()
+}
+
+/// A damped step of `n` joints by their columns, the least motion that takes away what is left; `None` if it cannot be computed.
+#[inline]
+fn damped_step(
+    columns: &[[f64; 6]; MOST_JOINTS],
+    e: [f64; 6],
+    n: usize,
+    damping: f64,
+) -> Option<[f64; MOST_JOINTS]> {
+    let mut step = [0.0; MOST_JOINTS];
+    let is_solved = if n >= 6 {
+        // Jᵀ (J Jᵀ + λ)⁻¹ e: of all steps that do the same, the least.
+        let mut a = [[0.0; 6]; 6];
+        for (i, row) in a.iter_mut().enumerate() {
+            for (j, it) in row.iter_mut().enumerate() {
+                *it = columns.iter().take(n).map(|column| column[i] * column[j]).sum();
+            }
+            row[i] += damping;
+        }
+        let mut x = e;
+        let is_solved = small::solve_symmetric(&mut a, &mut x, 6).is_some();
+        for (it, column) in step.iter_mut().zip(columns).take(n) {
+            *it = column.iter().zip(x).map(|(column, x)| column * x).sum();
+        }
+        is_solved
+    } else {
+        let mut a = [[0.0; MOST_JOINTS]; MOST_JOINTS];
+        for i in 0..n {
+            for j in 0..n {
+                a[i][j] = columns[i].iter().zip(&columns[j]).map(|(one, other)| one * other).sum();
+            }
+            a[i][i] += damping;
+            step[i] = columns[i].iter().zip(e).map(|(column, e)| column * e).sum();
+        }
+        small::solve_symmetric(&mut a, &mut step, n).is_some()
+    };
+    is_solved.then_some(step)
 }
 
 /// Most steps of each kind to the nearest configuration.

@@ -153,40 +153,7 @@ fn run_to_code(arguments: impl IntoIterator<Item = OsString>) -> u8 {
         // Fails only if a pool exists already, which is then used.
         let _ = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
     }
-    let result = match &arguments.command {
-        Command::Init(options) => commands::init(options, &console),
-        Command::Calibrate(options) => commands::calibrate(options, &typed, &console),
-        Command::Tcp(options) => commands::tcp(options, &typed, &console),
-        Command::HandEye(options) => commands::hand_eye(options, &typed, &console),
-        #[cfg(any(unix, windows))]
-        Command::Detect(options) => commands::detect(options, &console),
-        Command::Simulate(options) => commands::simulate(options, &console),
-        Command::Validate(options) => commands::validate(options, &typed, &console),
-        Command::Track(options) => commands::track(options, &typed, &console),
-        #[cfg(any(unix, windows))]
-        Command::Fleet(options) => commands::fleet(options, &console),
-        Command::Compare(options) => commands::compare(options, &console),
-        Command::Predict(options) => commands::predict(options, &console),
-        Command::Check(options) => commands::check(options, &console),
-        Command::Import(options) => commands::import(options, &console),
-        Command::Convert(options) => commands::convert(options, &console),
-        Command::Export(options) => commands::export(options, &console),
-        Command::Apply(options) => commands::apply(options, &console),
-        Command::Compensate(options) => commands::compensate(options, &console),
-        Command::Offsets(options) => commands::offsets(options, &console),
-        #[cfg(any(unix, windows))]
-        Command::Board(options) => commands::board(options, &console),
-        Command::Reproduce(options) => commands::reproduce(options, &console),
-        Command::Identify(options) => commands::identify(options, &console),
-        Command::Plan(options) => commands::plan(options, &console),
-        Command::Report(options) => commands::report(options, &console),
-        Command::Certificate(options) => commands::certificate(options, &console),
-        Command::Watch(options) => commands::watch(options, &console),
-        Command::Schema => commands::schema(&console),
-        Command::Completions(options) => commands::completions(options, &console),
-        Command::Man(options) => commands::man(options, &console),
-    };
-    match result {
+    match run_command(&arguments.command, &typed, &console) {
         Ok(code) => code,
         Err(error) => {
             // After a signal, errors from removed files mean nothing.
@@ -194,5 +161,42 @@ fn run_to_code(arguments: impl IntoIterator<Item = OsString>) -> u8 {
             console.error(&error);
             if error.kind() == ErrorKind::Solver { NO_RESULT } else { REFUSED }
         }
+    }
+}
+
+/// Runs a command; gives the exit code.
+fn run_command(command: &Command, typed: &[OsString], console: &Console) -> poecal::Result<u8> {
+    match command {
+        Command::Init(options) => commands::init(options, console),
+        Command::Calibrate(options) => commands::calibrate(options, typed, console),
+        Command::Tcp(options) => commands::tcp(options, typed, console),
+        Command::HandEye(options) => commands::hand_eye(options, typed, console),
+        #[cfg(any(unix, windows))]
+        Command::Detect(options) => commands::detect(options, console),
+        Command::Simulate(options) => commands::simulate(options, console),
+        Command::Validate(options) => commands::validate(options, typed, console),
+        Command::Track(options) => commands::track(options, typed, console),
+        #[cfg(any(unix, windows))]
+        Command::Fleet(options) => commands::fleet(options, console),
+        Command::Compare(options) => commands::compare(options, console),
+        Command::Predict(options) => commands::predict(options, console),
+        Command::Check(options) => commands::check(options, console),
+        Command::Import(options) => commands::import(options, console),
+        Command::Convert(options) => commands::convert(options, console),
+        Command::Export(options) => commands::export(options, console),
+        Command::Apply(options) => commands::apply(options, console),
+        Command::Compensate(options) => commands::compensate(options, console),
+        Command::Offsets(options) => commands::offsets(options, console),
+        #[cfg(any(unix, windows))]
+        Command::Board(options) => commands::board(options, console),
+        Command::Reproduce(options) => commands::reproduce(options, console),
+        Command::Identify(options) => commands::identify(options, console),
+        Command::Plan(options) => commands::plan(options, console),
+        Command::Report(options) => commands::report(options, console),
+        Command::Certificate(options) => commands::certificate(options, console),
+        Command::Watch(options) => commands::watch(options, console),
+        Command::Schema => commands::schema(console),
+        Command::Completions(options) => commands::completions(options, console),
+        Command::Man(options) => commands::man(options, console),
     }
 }

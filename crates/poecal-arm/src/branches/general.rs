@@ -14,6 +14,7 @@ use nalgebra::Vector3;
 
 use super::axis::{Axis, back};
 use super::roots::{Angles, Care, Trigonometric};
+use super::tables::{EQUATIONS, Table, by_halves, functions, harmonics, third};
 use crate::lie::Pose;
 use crate::small::{determinant, null_vector};
 use crate::trig::cosine_and_sine;
@@ -24,17 +25,12 @@ use nalgebra::{ComplexField as _, RealField as _};
 
 /// Imaginary part of a pair of roots up to which a real pair of the arm may be near but for rounding, rad.
 const BEYOND: f64 = 0.075;
-/// Equations.
-const EQUATIONS: usize = 14;
 /// Unknown products of the cosines and sines of the first two angles.
 const UNKNOWN: usize = 8;
 /// Samples of a polynomial of degree 8.
 const SAMPLES: usize = 17;
 /// Zero of the fourth and fifth angle: half an angle has no tangent at π, where arms are often.
 const TURNED: [f64; 2] = [0.734, -1.187];
-
-/// Numbers of a function of two angles by 1, cos and sin of each.
-type Table = [[f64; 3]; 3];
 
 /// An arm of six axes, with what does not depend on the pose.
 #[derive(Clone, Debug, PartialEq)]
@@ -47,46 +43,6 @@ pub(crate) struct General {
     left: [[Table; 3]; EQUATIONS],
     /// Cosines and sines of the angles at which the polynomial is sampled.
     turns: [(f64, f64); SAMPLES],
-}
-
-/// What both ends see.
-fn functions(p: &Vector3<f64>, l: &Vector3<f64>) -> [f64; EQUATIONS] {
-    let (square, product) = (p.norm_squared(), p.dot(l));
-    let moment = p.cross(l);
-    let mirrored = l * square - p * (2.0 * product);
-    [
-        p.x, p.y, p.z, l.x, l.y, l.z, square, product, moment.x, moment.y, moment.z, mirrored.x, mirrored.y,
-        mirrored.z,
-    ]
-}
-
-/// Mean and first harmonics of three samples over a turn.
-fn harmonics(samples: [f64; 3]) -> [f64; 3] {
-    const HALF_ROOT: f64 = 0.866_025_403_784_438_6;
-    let [a, b, c] = samples;
-    [(a + b + c) / 3.0, (2.0 * a - b - c) / 3.0, (b - c) * 2.0 * HALF_ROOT / 3.0]
-}
-
-fn third(k: usize) -> (f64, f64) {
-    cosine_and_sine(TAU / 3.0 * k as f64)
-}
-
-/// 1, cos and sin of an angle as polynomials of the tangent of its half, times 1 + tan².
-const HALVES: [[f64; 3]; 3] = [[1.0, 0.0, 1.0], [1.0, 0.0, -1.0], [0.0, 2.0, 0.0]];
-
-/// The same of a table.
-fn by_halves(table: &Table) -> Table {
-    let mut out = [[0.0; 3]; 3];
-    for (row, one) in table.iter().zip(HALVES) {
-        for (number, other) in row.iter().zip(HALVES) {
-            for (out, one) in out.iter_mut().zip(one) {
-                for (out, other) in out.iter_mut().zip(other) {
-                    *out += number * one * other;
-                }
-            }
-        }
-    }
-    out
 }
 
 impl General {

@@ -6,6 +6,7 @@ mod general;
 mod held;
 mod parallel;
 mod roots;
+mod tables;
 mod ways;
 mod wrist;
 

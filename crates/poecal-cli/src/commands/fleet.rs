@@ -70,29 +70,9 @@ fn work_off(
     again: bool,
     console: &Console,
 ) -> Result<usize> {
-    let mut failed = 0;
-    let mut open: Vec<(Found, LedgerRow)> = Vec::new();
     let shared = Shared::read(station)?;
-    for found in all {
-        let row = begun(station, found, &shared);
-        if ledger.has(&row) && !again {
-            failed += usize::from(ledger.of(&row).is_some_and(|it| !it.is_passed()));
-            continue;
-        }
-        open.push((found.clone(), row));
-    }
-    let before: Vec<Option<String>> = open
-        .iter()
-        .map(|(_, row)| {
-            let other = ledger.of(row).filter(|it| !again && it.exit != REFUSED && it.inputs != row.inputs)?;
-            (other.sha256(&row.file) != row.sha256(&row.file)).then(|| {
-                format!(
-                    "found `{}` of {} again with other bytes, expected one file a robot and date: name it by another date, or repeat by --again",
-                    row.serial, row.date
-                )
-            })
-        })
-        .collect();
+    let (open, mut failed) = find_open(station, all, ledger, again, &shared);
+    let before = find_changed(&open, ledger, again);
     let (skipped, total) = (all.len() - open.len(), open.len());
     let workers = rayon_threads().min(total.max(1));
     let next = AtomicUsize::new(0);
@@ -106,17 +86,7 @@ fn work_off(
             let own = send.lock().map(|it| it.clone()).ok();
             scope.spawn(move || {
                 let Some(own) = own else { return };
-                loop {
-                    let at = next.fetch_add(1, Ordering::Relaxed);
-                    let Some((found, row)) = open.get(at) else { return };
-                    let done = match &before[at] {
-                        Some(sentence) => refused(row.clone(), sentence.clone()),
-                        None => calibrated(station, found, row.clone(), &shared.prior),
-                    };
-                    if own.send((at, done)).is_err() {
-                        return;
-                    }
-                }
+                calibrate_next(station, open, before, &shared.prior, (next, &own));
             });
         }
         drop(send);
@@ -146,6 +116,64 @@ fn work_off(
         console.say(&format!("{passed} of {total} robots passed; {skipped} were done before\n"))?;
     }
     Ok(failed)
+}
+
+/// Finds the robots that the ledger does not have, with their rows, and counts those before that failed.
+fn find_open(
+    station: &Station,
+    all: &[Found],
+    ledger: &Ledger,
+    again: bool,
+    shared: &Shared,
+) -> (Vec<(Found, LedgerRow)>, usize) {
+    let mut failed = 0;
+    let mut open: Vec<(Found, LedgerRow)> = Vec::new();
+    for found in all {
+        let row = begun(station, found, shared);
+        if ledger.has(&row) && !again {
+            failed += usize::from(ledger.of(&row).is_some_and(|it| !it.is_passed()));
+            continue;
+        }
+        open.push((found.clone(), row));
+    }
+    (open, failed)
+}
+
+/// Of each robot why it is refused, where the ledger has another file of it.
+fn find_changed(open: &[(Found, LedgerRow)], ledger: &Ledger, again: bool) -> Vec<Option<String>> {
+    open
+        .iter()
+        .map(|(_, row)| {
+            let other = ledger.of(row).filter(|it| !again && it.exit != REFUSED && it.inputs != row.inputs)?;
+            (other.sha256(&row.file) != row.sha256(&row.file)).then(|| {
+                format!(
+                    "found `{}` of {} again with other bytes, expected one file a robot and date: name it by another date, or repeat by --again",
+                    row.serial, row.date
+                )
+            })
+        })
+        .collect()
+}
+
+/// Calibrates one robot after the other, of those that no other thread took, until there is none.
+fn calibrate_next(
+    station: &Station,
+    open: &[(Found, LedgerRow)],
+    before: &[Option<String>],
+    prior: &[OsString],
+    (next, own): (&AtomicUsize, &mpsc::Sender<(usize, LedgerRow)>),
+) {
+    loop {
+        let at = next.fetch_add(1, Ordering::Relaxed);
+        let Some((found, row)) = open.get(at) else { return };
+        let done = match &before[at] {
+            Some(sentence) => refused(row.clone(), sentence.clone()),
+            None => calibrated(station, found, row.clone(), prior),
+        };
+        if own.send((at, done)).is_err() {
+            return;
+        }
+    }
 }
 
 /// Code of a refused calibration.

@@ -107,6 +107,12 @@ fn map(arguments: &Import, model: &Path, file: &MeasurementFile) -> String {
     let topics: Vec<String> = meaning.topic.iter().map(|it| quoted(it)).collect();
     text("topic", (!topics.is_empty()).then(|| format!("[{}]", topics.join(", "))));
     text("body", meaning.body.as_deref().map(quoted));
+    describe(&mut out, file);
+    out
+}
+
+/// Adds how each file was read, and what was said of them, as comments.
+fn describe(out: &mut String, file: &MeasurementFile) {
     for understood in &file.understood {
         let form = understood.form.map(|it| format!(", {it}")).unwrap_or_default();
         let _ = writeln!(out, "\n# {}: {} rows{form}", understood.path.display(), understood.rows);
@@ -128,7 +134,6 @@ fn map(arguments: &Import, model: &Path, file: &MeasurementFile) -> String {
     for words in file.notes.iter().chain(&file.warnings) {
         let _ = writeln!(out, "# {words}");
     }
-    out
 }
 
 /// Names and checksums of the files that made a table, by the settings that were written beside it.

@@ -1,6 +1,6 @@
 //! `poecal simulate --camera`: pictures of a board as a robot with errors would take them.
 
-use poecal::camera::{CommonError, Distortion, Lens};
+use poecal::camera::{Board, CommonError, Distortion, Lens};
 use poecal::io::measurements::read_boards;
 use poecal::io::model::Model;
 use poecal::io::output::{FolderPlace, PhotographedSession, write_photographs};
@@ -48,24 +48,8 @@ pub(super) fn photograph(
     let scene_from_board = scene_from_board(&layout);
     let mut body = read_boards(&board)?.into_iter().next().unwrap_or_default();
     body.points.iter_mut().for_each(|point| *point = scene_from_board.act(point));
-    let session = Simulation {
-        error_rotation_rad: arguments.errors.angle_rad,
-        error_position_m: arguments.errors.length_m,
-        count: arguments.count as usize,
-        seed: arguments.seed,
-        ..Simulation::default()
-    };
-    let middle_px = SIZE_PX.map(|size| 0.5 * (f64::from(size) - 1.0));
-    let pinhole = Lens::pinhole([FOCAL_PX; 2], middle_px);
-    let distortion = Distortion::Brown([K1, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
-    let lens = Lens { size_px: Some(SIZE_PX), distortion, ..pinhole };
-    let usual = PictureSimulation::usual(session, camera == CameraPlace::InHand);
-    let noise = CommonError {
-        shift_m: arguments.noise.length_m,
-        turn_rad: arguments.noise.angle_rad,
-        ..CommonError::default()
-    };
-    let simulation = PictureSimulation { common: noise, ..usual.before(body, lens) };
+    let simulation = simulation(arguments, camera, body);
+    let lens = simulation.lens;
     let mut made = simulation.run(&model.robot)?;
     let poses = made.camera_from_board.par_iter().enumerate();
     let pictures: Vec<Vec<u8>> = poses
@@ -90,6 +74,28 @@ pub(super) fn photograph(
     let count = written.files.len() - files.len();
     let files = [files, vec![format!("{count} pictures")]].concat();
     Ok(console.say_of(&style::written(&written.folder, &files), &written.folder))
+}
+
+/// The simulated session of a camera and a board.
+fn simulation(arguments: &Simulate, camera: CameraPlace, body: Board) -> PictureSimulation {
+    let session = Simulation {
+        error_rotation_rad: arguments.errors.angle_rad,
+        error_position_m: arguments.errors.length_m,
+        count: arguments.count as usize,
+        seed: arguments.seed,
+        ..Simulation::default()
+    };
+    let middle_px = SIZE_PX.map(|size| 0.5 * (f64::from(size) - 1.0));
+    let pinhole = Lens::pinhole([FOCAL_PX; 2], middle_px);
+    let distortion = Distortion::Brown([K1, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
+    let lens = Lens { size_px: Some(SIZE_PX), distortion, ..pinhole };
+    let usual = PictureSimulation::usual(session, camera == CameraPlace::InHand);
+    let noise = CommonError {
+        shift_m: arguments.noise.length_m,
+        turn_rad: arguments.noise.angle_rad,
+        ..CommonError::default()
+    };
+    PictureSimulation { common: noise, ..usual.before(body, lens) }
 }
 
 /// Pose of the axes in which a board has its points in those in which it is drawn, whose y is downwards from the first corner: Kalibr's are upwards.

@@ -46,12 +46,7 @@ pub(crate) fn plan(arguments: &Plan, console: &Console) -> Result<u8> {
         kept.extend(joints.planned());
     }
     let rows = kept.len();
-    if let Some(row) = arguments.replace.iter().find(|&&row| !(1..=rows).contains(&(row as usize))) {
-        return ErrorKind::Option.refuse(format!(
-            "found row {row} to replace, expected one of the {rows} rows of --keep, counted from 1"
-        ));
-    }
-    let replaced: Vec<usize> = arguments.replace.iter().map(|&row| row as usize - 1).collect();
+    let replaced = replaced_rows(&arguments.replace, rows)?;
     let workspace = match &arguments.over {
         Over::Limits => None,
         Over::Tasks(path) => Some(read(path)?),
@@ -83,6 +78,16 @@ pub(crate) fn plan(arguments: &Plan, console: &Console) -> Result<u8> {
     }
     let text = if arguments.json { report::json(&report)? } else { report.text() };
     deliver(&arguments.place, (table, place), (text, arguments.json), console)
+}
+
+/// The rows to replace among so many, counted from 0.
+fn replaced_rows(replace: &[u32], rows: usize) -> Result<Vec<usize>> {
+    if let Some(row) = replace.iter().find(|&&row| !(1..=rows).contains(&(row as usize))) {
+        return ErrorKind::Option.refuse(format!(
+            "found row {row} to replace, expected one of the {rows} rows of --keep, counted from 1"
+        ));
+    }
+    Ok(replace.iter().map(|&row| row as usize - 1).collect())
 }
 
 /// Configurations of visits to a calibrated robot.

@@ -2,12 +2,12 @@
 
 use std::ffi::OsString;
 
-use poecal::io::calibration_file::{Inputs, RecalibrationSources, RepairedPart};
+use poecal::io::calibration_file::{CalibrationFile, Inputs, RecalibrationSources, RepairedPart};
 use poecal::io::measurements;
 use poecal::io::named_files::refuse_repeats;
 use poecal::io::output::{Existing, FilePlace};
 use poecal::io::validation::ValidationInputs;
-use poecal::track::{State, recalibrate, track as judged};
+use poecal::track::{Repaired, State, recalibrate, track as judged};
 use poecal::{ErrorKind, Result, report};
 
 use super::kept::Kept;
@@ -19,17 +19,7 @@ use crate::{DONE, WORSE};
 
 pub(crate) fn track(arguments: &Track, typed: &[OsString], console: &Console) -> Result<u8> {
     refuse_repeats(&arguments.measurements)?;
-    if arguments.out.is_some() && arguments.plan.is_none() && arguments.recalibrate.is_none() {
-        return ErrorKind::Option
-            .refuse("--out: found a file to write, expected it with --plan or --recalibrate alone");
-    }
-    let place = match &arguments.out {
-        None => None,
-        Some(out) => {
-            let existing = Existing::forced(arguments.force);
-            Some(FilePlace::reserve(out, existing, &arguments.inputs(), &mut console.warner())?)
-        }
-    };
+    let place = reserve(arguments, console)?;
     let stated = Stated {
         calibration: &arguments.calibration,
         reference: &arguments.reference,
@@ -59,11 +49,7 @@ pub(crate) fn track(arguments: &Track, typed: &[OsString], console: &Console) ->
         let sources = RecalibrationSources { measurements: names, calibration, sha256 };
         let found = recalibrate(&file, &read.data, earlier.rows(), &options, (joint, part), sources)
             .map_err(in_file)?;
-        let text = report::recalibrated(&found, &file);
-        place.write(vec![found.file.to_text()?.into()])?;
-        console.say(&text)?;
-        console.warnings(&found.notes);
-        return Ok(DONE);
+        return deliver(&found, &file, place, console);
     }
     let found = judged(&file, &read.data, earlier.rows(), &options).map_err(in_file)?;
     let inputs = ValidationInputs {
@@ -83,6 +69,30 @@ pub(crate) fn track(arguments: &Track, typed: &[OsString], console: &Console) ->
     }
     console.warnings(&found.notes);
     Ok(if found.state == State::Changed { WORSE } else { DONE })
+}
+
+/// The place of what is written, which only a plan and a calibration of one joint have.
+fn reserve(arguments: &Track, console: &Console) -> Result<Option<FilePlace>> {
+    if arguments.out.is_some() && arguments.plan.is_none() && arguments.recalibrate.is_none() {
+        return ErrorKind::Option
+            .refuse("--out: found a file to write, expected it with --plan or --recalibrate alone");
+    }
+    match &arguments.out {
+        None => Ok(None),
+        Some(out) => {
+            let existing = Existing::forced(arguments.force);
+            FilePlace::reserve(out, existing, &arguments.inputs(), &mut console.warner()).map(Some)
+        }
+    }
+}
+
+/// Writes a calibration of which one joint was calibrated anew, and says so.
+fn deliver(found: &Repaired, before: &CalibrationFile, place: FilePlace, console: &Console) -> Result<u8> {
+    let text = report::recalibrated(found, before);
+    place.write(vec![found.file.to_text()?.into()])?;
+    console.say(&text)?;
+    console.warnings(&found.notes);
+    Ok(DONE)
 }
 
 /// Chooses witness configurations, and prints what they would show.

@@ -1,10 +1,11 @@
 //! `poecal validate`: a calibration judged by other measurements.
 
+use std::collections::BTreeMap;
 use std::ffi::OsString;
 
 use poecal::calibration::{AcceptanceLimits, Decision, Level};
 use poecal::io::calibration_file::{CalibrationFile, Inputs};
-use poecal::io::measurements::{self, ReadOptions};
+use poecal::io::measurements::{self, MeasurementFile, ReadOptions};
 use poecal::io::named_files::refuse_repeats;
 use poecal::io::output::{Existing, ValidationPlaces};
 use poecal::io::record::Record;
@@ -43,14 +44,7 @@ pub(crate) fn validate(arguments: &Validate, typed: &[OsString], console: &Conso
     };
     let sha256 = Inputs::checksums(std::iter::once(arguments.calibration.as_path()))?;
     let own = sha256.get(&arguments.calibration.display().to_string()).cloned();
-    let inputs = ValidationInputs {
-        calibration: arguments.calibration.display().to_string(),
-        measurements: arguments.measurements.iter().map(|path| path.display().to_string()).collect(),
-        sha256: sha256.into_iter().chain(read.sha256.clone()).collect(),
-        files: read.inputs(),
-        joins: read.joins.clone(),
-        command: Some(command(typed)),
-    };
+    let inputs = inputs(arguments, typed, &read, sha256);
     let record = Record::of(arguments.record.iter().map(|(key, text)| (key.as_str(), text.as_str())))?;
     let found = Validation::of(&file, &read.data, &judging, inputs).map_err(in_file)?;
     let found = Validation { record, ..found };
@@ -84,6 +78,23 @@ pub(crate) fn validate(arguments: &Validate, typed: &[OsString], console: &Conso
     let Some(reason) = found.judgement.falls_short(required) else { return Ok(code) };
     console.warning(format!("not what --require {} asks for: {reason}", required.word()));
     Ok(WORSE.max(told))
+}
+
+/// What was judged, and by what.
+fn inputs(
+    arguments: &Validate,
+    typed: &[OsString],
+    read: &MeasurementFile,
+    sha256: BTreeMap<String, String>,
+) -> ValidationInputs {
+    ValidationInputs {
+        calibration: arguments.calibration.display().to_string(),
+        measurements: arguments.measurements.iter().map(|path| path.display().to_string()).collect(),
+        sha256: sha256.into_iter().chain(read.sha256.clone()).collect(),
+        files: read.inputs(),
+        joins: read.joins.clone(),
+        command: Some(command(typed)),
+    }
 }
 
 /// Places of the results.

@@ -18,7 +18,9 @@ use super::run::Run;
 use super::signs::Signs;
 use super::verdict::{Grounds, Judged, judged};
 use super::view_doubts::view_doubts;
-use super::{CalibratedTarget, Calibration, Corrections, Level, Repaired};
+use super::{
+    Accuracy, CalibratedTarget, Calibration, Correction, Corrections, Level, Repaired, Trust, Verdict,
+};
 use crate::error::Result;
 use crate::forensics::Diagnosis;
 use crate::robot::Robot;
@@ -61,13 +63,7 @@ impl<'a> Found<'a> {
         let stations = stations(&fit.session(), &fit.estimate, fit.noise());
         let Figures { models, accuracy, robustness, trust, identifiability, correction } = figures;
         let judged = events.against.into_iter().fold(judged, Judged::against);
-        let verdict = match correction.as_ref().filter(|it| it.has_terms()) {
-            Some(found) => {
-                let rows = accuracy.held_out.map_or(accuracy.training.count, |set| set.count);
-                judged.of_corrected(&found.judging_errors().judging(rows), &found.expected)
-            }
-            None => judged.of_calibrated(&trust.expected),
-        };
+        let verdict = verdict(&judged, correction.as_ref(), &accuracy, &trust);
         let CalibratedFit { run, robust: RobustFit { fitted, .. }, noise_ratios, .. } = fit;
         let calibration = Calibration {
             nominal: run.robot.clone(),
@@ -125,5 +121,16 @@ impl CalibratedFit<'_> {
         warnings.extend(view_doubts(self));
         warnings.extend(events.early.clone());
         warnings
+    }
+}
+
+/// The verdict on the model that is delivered.
+fn verdict(judged: &Judged, correction: Option<&Correction>, accuracy: &Accuracy, trust: &Trust) -> Verdict {
+    match correction.filter(|it| it.has_terms()) {
+        Some(found) => {
+            let rows = accuracy.held_out.map_or(accuracy.training.count, |set| set.count);
+            judged.of_corrected(&found.judging_errors().judging(rows), &found.expected)
+        }
+        None => judged.of_calibrated(&trust.expected),
     }
 }

@@ -109,41 +109,8 @@ impl BlockChoice {
             }
         }
         let mut unknowns = Unknowns::default();
-        // A target that is named is unknown, whatever the model says of its place; a star that means everything means targets by the way.
-        for word in &self.free {
-            let meant = || blocks.iter().zip(chosen(&names, &blocks, word)).filter(|it| it.1);
-            if meant().all(|(block, _)| matches!(block, Block::Target(_))) {
-                unknowns.open_targets.extend(meant().filter_map(|(block, _)| match block {
-                    Block::Target(target) => Some(*target),
-                    Block::Axis(_)
-                    | Block::Frame(_)
-                    | Block::Term(..)
-                    | Block::Range(..)
-                    | Block::Clock(..) => None,
-                }));
-            }
-        }
-        for (block, is_free) in blocks.into_iter().zip(&is_free) {
-            match block {
-                Block::Axis(joint) if !is_free => unknowns.held_axes.push(joint),
-                Block::Target(target) if !is_free => unknowns.held_targets.push(target),
-                Block::Frame(station) if !is_free => unknowns.held_frames.push(station),
-                Block::Term(joint, term) if *is_free => unknowns.terms.push((joint, term)),
-                Block::Range(station, term) if *is_free => {
-                    if !data.is_ranging(station) {
-                        return Err(no_range(&names.of(block)));
-                    }
-                    unknowns.ranges.push((station, term));
-                }
-                Block::Clock(station, term) if !is_free => unknowns.held_clocks.push((station, term)),
-                Block::Axis(_)
-                | Block::Target(_)
-                | Block::Frame(_)
-                | Block::Term(..)
-                | Block::Range(..)
-                | Block::Clock(..) => {}
-            }
-        }
+        unknowns.open_targets.extend(self.open_targets(&names, &blocks));
+        sort_blocks(&mut unknowns, blocks.into_iter().zip(&is_free), (&names, data))?;
         further.sort_unstable();
         further.dedup();
         let is_any = !further.is_empty() || is_free.contains(&true);
@@ -159,6 +126,25 @@ impl BlockChoice {
                 .refuse("found that every block is held, expected at least one that is unknown: fix fewer");
         }
         Ok(unknowns)
+    }
+
+    /// Targets that are named, which are unknown whatever the model says of their places; a star that means everything means targets by the way.
+    fn open_targets(&self, names: &Names, blocks: &[Block]) -> Vec<usize> {
+        let mut open = Vec::new();
+        for word in &self.free {
+            let meant = || blocks.iter().zip(chosen(names, blocks, word)).filter(|it| it.1);
+            if meant().all(|(block, _)| matches!(block, Block::Target(_))) {
+                open.extend(meant().filter_map(|(block, _)| match block {
+                    Block::Target(target) => Some(*target),
+                    Block::Axis(_)
+                    | Block::Frame(_)
+                    | Block::Term(..)
+                    | Block::Range(..)
+                    | Block::Clock(..) => None,
+                }));
+            }
+        }
+        open
     }
 }
 
@@ -265,4 +251,34 @@ fn unknown_word(names: &Names, blocks: &[Block], word: &str) -> Error {
          which `*` stands for any letters ({})",
         listed.join(", ")
     ))
+}
+
+/// Sorts blocks that are unknown, or not, into the unknowns of a fit.
+fn sort_blocks<'a>(
+    unknowns: &mut Unknowns,
+    blocks: impl Iterator<Item = (Block, &'a bool)>,
+    (names, data): (&Names, &Dataset),
+) -> Result<()> {
+    for (block, is_free) in blocks {
+        match block {
+            Block::Axis(joint) if !is_free => unknowns.held_axes.push(joint),
+            Block::Target(target) if !is_free => unknowns.held_targets.push(target),
+            Block::Frame(station) if !is_free => unknowns.held_frames.push(station),
+            Block::Term(joint, term) if *is_free => unknowns.terms.push((joint, term)),
+            Block::Range(station, term) if *is_free => {
+                if !data.is_ranging(station) {
+                    return Err(no_range(&names.of(block)));
+                }
+                unknowns.ranges.push((station, term));
+            }
+            Block::Clock(station, term) if !is_free => unknowns.held_clocks.push((station, term)),
+            Block::Axis(_)
+            | Block::Target(_)
+            | Block::Frame(_)
+            | Block::Term(..)
+            | Block::Range(..)
+            | Block::Clock(..) => {}
+        }
+    }
+    Ok(())
 }

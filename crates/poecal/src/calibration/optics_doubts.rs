@@ -97,32 +97,7 @@ fn words(
                 if changes.is_empty() { "of several numbers".to_owned() } else { changes.join(", ") }
             ))
         }
-        PictureUnknown::Board(board) => {
-            let board = pictures.boards.get(board)?;
-            let [x, y, bend_x, bend_y] = numbers.as_slice() else { return None };
-            let covariance = |i: usize, j: usize| best.covariance[(i, j)] * x.prior * y.prior;
-            let spread = (covariance(0, 0) + covariance(1, 1) - 2.0 * covariance(0, 1)).max(0.0).sqrt();
-            let unequal = x.found - y.found;
-            let bend_mm = bend_x.found.hypot(bend_y.found);
-            let is_unequal = unequal.abs() > FAR * spread && unequal.abs() > UNEQUAL;
-            let is_bent = (differs(bend_x) || differs(bend_y)) && bend_mm > 1e3 * BENT * board.radius_m();
-            let mut found = Vec::new();
-            if is_unequal {
-                let (long, short) = if unequal > 0.0 { ("x", "y") } else { ("y", "x") };
-                let share = 100.0 * unequal.abs();
-                found.push(format!("its lengths along {long} are {share:.2} % larger than those along {short}, against what is stated"));
-            }
-            if is_bent {
-                found.push(format!("it is bent by {bend_mm:.2} mm"));
-            }
-            let name = shown(&board.name);
-            (!found.is_empty()).then(|| {
-                format!(
-                    "the corners are {both} with another shape of the board `{name}`: {}; measure the print, or calibrate with --free board",
-                    found.join(", and ")
-                )
-            })
-        }
+        PictureUnknown::Board(board) => shape_words(pictures.boards.get(board)?, &numbers, best, &both),
         PictureUnknown::Markers(board) => {
             let board = pictures.boards.get(board)?;
             let squares: f64 = numbers.iter().map(|it| (it.found - it.given).powi(2)).sum();
@@ -134,4 +109,32 @@ fn words(
             ))
         }
     }
+}
+
+/// What contradicts the stated shape of a board: scales that differ along its sides, and a bend.
+fn shape_words(board: &Board, numbers: &[PictureNumber], best: &BestStep, both: &str) -> Option<String> {
+    let [x, y, bend_x, bend_y] = numbers else { return None };
+    let differs = |it: &PictureNumber| (it.found - it.given).abs() > FAR * it.deviation;
+    let covariance = |i: usize, j: usize| best.covariance[(i, j)] * x.prior * y.prior;
+    let spread = (covariance(0, 0) + covariance(1, 1) - 2.0 * covariance(0, 1)).max(0.0).sqrt();
+    let unequal = x.found - y.found;
+    let bend_mm = bend_x.found.hypot(bend_y.found);
+    let is_unequal = unequal.abs() > FAR * spread && unequal.abs() > UNEQUAL;
+    let is_bent = (differs(bend_x) || differs(bend_y)) && bend_mm > 1e3 * BENT * board.radius_m();
+    let mut found = Vec::new();
+    if is_unequal {
+        let (long, short) = if unequal > 0.0 { ("x", "y") } else { ("y", "x") };
+        let share = 100.0 * unequal.abs();
+        found.push(format!("its lengths along {long} are {share:.2} % larger than those along {short}, against what is stated"));
+    }
+    if is_bent {
+        found.push(format!("it is bent by {bend_mm:.2} mm"));
+    }
+    let name = shown(&board.name);
+    (!found.is_empty()).then(|| {
+        format!(
+            "the corners are {both} with another shape of the board `{name}`: {}; measure the print, or calibrate with --free board",
+            found.join(", and ")
+        )
+    })
 }

@@ -7,7 +7,8 @@ use super::information::FitInformation;
 use super::optics::Optics;
 use super::robust::RobustFit;
 use super::run::Run;
-use crate::camera::{Centre, CommonError, Sighting};
+use crate::camera::{Centre, CommonError, Sighting, View};
+use crate::lie::Pose;
 use crate::measurement::{Dataset, Noise, SightingAbout, deviation};
 use crate::start::predicted_pose;
 
@@ -83,15 +84,7 @@ impl Run<'_> {
             let view = pictures.view(picture)?;
             let kept = view.sighting(&picture.directed(&measured), true)?;
             let expected = picture.directed(&predicted);
-            let is_near = |it: &Sighting| expected.apart(&it.camera_from_board).1 <= FLIPPED_RAD;
-            // To first order at the prediction, where the rounds end at the fit of the pixels; far from it at the nearest best pose.
-            let near = || view.sighting(&expected, true).filter(is_near);
-            let mean = |it: &Sighting| it.cost / it.freedom.max(1.0);
-            let is_as_good = |near: &Sighting| {
-                mean(near) <= AS_GOOD * AS_GOOD * mean(&kept).max(1.0) && near.freedom >= kept.freedom - 1.0
-            };
-            let sighting = view.near(&expected).filter(is_as_good);
-            let sighting = sighting.or_else(|| near().filter(is_as_good)).unwrap_or(kept);
+            let sighting = nearest_sighting(&view, kept, &expected);
             let pose = picture.directed(&sighting.camera_from_board);
             let moved = deviation(&sighting.camera_from_board, &picture.directed(&measured));
             has_moved |= (moved.transpose() * sighting.information * moved)[0] > CHANGE * CHANGE;
@@ -163,6 +156,19 @@ impl Run<'_> {
         }
         spreads
     }
+}
+
+/// The sighting of a picture that is nearest to its prediction and nearly as good as the one it has; else that one.
+fn nearest_sighting(view: &View<'_>, kept: Sighting, expected: &Pose) -> Sighting {
+    let is_near = |it: &Sighting| expected.apart(&it.camera_from_board).1 <= FLIPPED_RAD;
+    // To first order at the prediction, where the rounds end at the fit of the pixels; far from it at the nearest best pose.
+    let near = || view.sighting(expected, true).filter(is_near);
+    let mean = |it: &Sighting| it.cost / it.freedom.max(1.0);
+    let is_as_good = |near: &Sighting| {
+        mean(near) <= AS_GOOD * AS_GOOD * mean(&kept).max(1.0) && near.freedom >= kept.freedom - 1.0
+    };
+    let sighting = view.near(expected).filter(is_as_good);
+    sighting.or_else(|| near().filter(is_as_good)).unwrap_or(kept)
 }
 
 #[cfg(test)]

@@ -72,13 +72,7 @@ impl Linkage {
             }
         });
         let ends = ends.collect();
-        let further_from_first = match devices.get(1..) {
-            Some(further @ [_, ..]) => {
-                let base_from_first = first.inverse();
-                further.iter().map(|&device| device * base_from_first).collect()
-            }
-            _ => Vec::new(),
-        };
+        let further_from_first = relative_to_first(&devices);
         let of = |joint: usize| terms.iter().copied().enumerate().filter(move |(_, it)| it.joint == joint);
         let joints = if estimate.has_terms() { tree.kinds().len() } else { 0 };
         let terms = (0..joints).map(|joint| of(joint).collect()).collect();
@@ -352,5 +346,16 @@ impl Chain {
         let start = if first.is_some() { joint } else { 0 };
         let views = self.joints[start..].iter().filter(move |view| view.joint == joint);
         views.take(if self.in_two { 2 } else { 1 })
+    }
+}
+
+/// Device frame of the first station in that of each further one.
+fn relative_to_first(devices: &[Pose]) -> Vec<Pose> {
+    match devices {
+        [first, further @ ..] if !further.is_empty() => {
+            let base_from_first = first.inverse();
+            further.iter().map(|&device| device * base_from_first).collect()
+        }
+        _ => Vec::new(),
     }
 }

@@ -55,6 +55,11 @@ pub(super) fn joint_scales(
             *factor = 1.0;
         }
     }
+    describe(columns, factors, is_per_cent)
+}
+
+/// What some factors are called; none if none is off.
+fn describe(columns: &ReadingColumns, factors: Vec<f64>, is_per_cent: bool) -> Option<Hypothesis> {
     let off: Vec<(&str, f64)> = columns
         .names
         .iter()

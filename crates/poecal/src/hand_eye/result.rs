@@ -77,20 +77,9 @@ pub fn hand_eye(
     let all = pairs(&flange.poses, &target.poses, options.camera, &directions);
     let of = |rows: &[usize]| -> Vec<Pair> { rows.iter().map(|&row| all[row]).collect() };
     if let Some(step) = moved::found(&of(&counted)) {
-        let row = counted[step.from];
-        let (before, after) = counted.split_at(step.from);
-        let (longer, left_out) = if before.len() >= after.len() { (before, after) } else { (after, before) };
-        let statement = format!(
-            "{} moved by {:.2} mm and {:.2} deg before {}: the {} poses {} it were left out; fix it, and measure again",
-            moved::words(step.side, options.camera),
-            1e3 * step.shift_m,
-            step.turn_rad.to_degrees(),
-            name(row),
-            left_out.len(),
-            if before.len() >= after.len() { "from" } else { "before" }
-        );
-        findings.push(Finding::new(FindingKind::Moved, statement, left_out.to_vec()));
-        counted = longer.to_vec();
+        let (longer, finding) = leave_moved_out(&step, &counted, options.camera, name);
+        findings.push(finding);
+        counted = longer;
     }
     let Some(fit) = Fit::of(&of(&counted)) else {
         return ErrorKind::Problem.refuse(
@@ -98,6 +87,28 @@ pub fn hand_eye(
         );
     };
     finished(&all, &counted, (&fit, directions, turns), options.camera, findings, name)
+}
+
+/// Leaves the poses before or after a move out; gives those that stay.
+fn leave_moved_out(
+    step: &moved::Move,
+    counted: &[usize],
+    camera: CameraPlace,
+    name: &dyn Fn(usize) -> String,
+) -> (Vec<usize>, Finding) {
+    let row = counted[step.from];
+    let (before, after) = counted.split_at(step.from);
+    let (longer, left_out) = if before.len() >= after.len() { (before, after) } else { (after, before) };
+    let statement = format!(
+        "{} moved by {:.2} mm and {:.2} deg before {}: the {} poses {} it were left out; fix it, and measure again",
+        moved::words(step.side, camera),
+        1e3 * step.shift_m,
+        step.turn_rad.to_degrees(),
+        name(row),
+        left_out.len(),
+        if before.len() >= after.len() { "from" } else { "before" }
+    );
+    (longer.to_vec(), Finding::new(FindingKind::Moved, statement, left_out.to_vec()))
 }
 
 /// All that is said of a fit.
@@ -134,14 +145,7 @@ fn finished(
             RowError { shift_m, turn_rad, is_fitted: is_kept(row) }
         })
         .collect();
-    let outliers: Vec<Outlier> = counted
-        .iter()
-        .filter(|row| !is_kept(**row))
-        .map(|&row| {
-            let RowError { shift_m, turn_rad, .. } = rows_errors[row];
-            Outlier { row, shift_m, turn_rad, is_flipped: is_flipped(&all[row], fit) }
-        })
-        .collect();
+    let outliers = find_outliers((all, counted), &rows_errors, fit);
     say_outliers(&outliers, name, &mut findings);
     let scale = verdict::scale(&kept, fit);
     let held_out = held_out(&rows, fit);
@@ -165,6 +169,18 @@ fn finished(
     let distance = crate::distributions::median(kept.iter().map(|it| it.seen.translation.norm()));
     verdict::judge(&mut result, scale, distance.unwrap_or_default());
     Ok(result)
+}
+
+/// The rows that were left out of a fit of some.
+fn find_outliers((all, counted): (&[Pair], &[usize]), errors: &[RowError], fit: &Fit) -> Vec<Outlier> {
+    counted
+        .iter()
+        .filter(|row| !errors[**row].is_fitted)
+        .map(|&row| {
+            let RowError { shift_m, turn_rad, .. } = errors[row];
+            Outlier { row, shift_m, turn_rad, is_flipped: is_flipped(&all[row], fit) }
+        })
+        .collect()
 }
 
 /// Rows without those that repeat an earlier one.

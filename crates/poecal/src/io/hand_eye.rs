@@ -8,7 +8,7 @@ use super::json_text;
 use super::measurements::{self, PosePairs};
 use crate::calibration::ArmToo;
 use crate::error::{ErrorKind, Result};
-use crate::hand_eye::{CameraPlace, HandEye, Placed};
+use crate::hand_eye::{CameraPlace, Directions, HandEye, Placed};
 use crate::measurement::{Dataset, Noise};
 use crate::robot::Robot;
 
@@ -161,6 +161,16 @@ struct DirectionsEntry {
     stated: bool,
 }
 
+impl DirectionsEntry {
+    fn new(directions: &Directions) -> Self {
+        DirectionsEntry {
+            flange: if directions.flange_inverted { "flange_from_base" } else { "base_from_flange" },
+            target: if directions.target_inverted { "target_from_camera" } else { "camera_from_target" },
+            stated: directions.stated,
+        }
+    }
+}
+
 #[derive(Serialize)]
 struct NoiseEntry {
     across_mm: f64,
@@ -271,19 +281,7 @@ impl HandEyeResult<'_> {
             verdict: VerdictEntry::new(found.level, &found.reasons),
             camera_frame: FrameEntry::new(&camera.0, &camera.1),
             target_frame: FrameEntry::new(&target.0, &target.1),
-            directions: DirectionsEntry {
-                flange: if found.directions.flange_inverted {
-                    "flange_from_base"
-                } else {
-                    "base_from_flange"
-                },
-                target: if found.directions.target_inverted {
-                    "target_from_camera"
-                } else {
-                    "camera_from_target"
-                },
-                stated: found.directions.stated,
-            },
+            directions: DirectionsEntry::new(&found.directions),
             poses: found.rows.len(),
             fitted,
             noise: NoiseEntry {

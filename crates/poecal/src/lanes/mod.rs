@@ -1,4 +1,5 @@
 //! The hot path of a fit: several rows at a time, by vector instructions.
+mod batch;
 mod columns;
 mod corners;
 mod dense;

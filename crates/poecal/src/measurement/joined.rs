@@ -116,12 +116,17 @@ impl Dataset {
             observation.source.file += first_file;
             self.push_observation(&readings, observation)?;
         }
+        self.extend_ids(other);
+        Ok(())
+    }
+
+    /// The ids of rows that were added, and of those before where these have none.
+    fn extend_ids(&mut self, other: &Dataset) {
         if !self.ids.is_empty() || !other.ids.is_empty() {
             let known = self.len() - other.len();
             self.ids.resize(known, String::new());
             self.ids.extend(other.ids.iter().cloned());
             self.ids.resize(self.len(), String::new());
         }
-        Ok(())
     }
 }

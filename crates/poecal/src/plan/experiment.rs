@@ -4,69 +4,57 @@ use nalgebra::{DMatrix, Vector3};
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 
-use super::options::{PlannedFit, RobotError};
+use super::blocks::Blocks;
+use super::options::PlannedFit;
 use crate::analysis::{PlannedSession, predicted_data};
-use crate::calibration::{free_parameters, unknowns, whitened_rows};
+use crate::calibration::{unknowns, whitened_rows};
 use crate::error::{ErrorKind, Result};
 use crate::estimate::{Chain, Estimate, Linkage, Packed, Session, Unknowns, delivered, radian_m};
 use crate::lie::Pose;
 use crate::linalg;
-use crate::measurement::{ByQuantity, Dataset, Noise, Quantity};
-use crate::parameters::{Parameter, screw_axes};
-use crate::problem::{Layout, MOST_UNKNOWNS, Prior, Problem, TermPrior};
+use crate::measurement::{Dataset, Noise};
+use crate::parameters::Parameter;
+use crate::problem::{Layout, Prior, Problem, TermPrior};
 use crate::robot::{CorrectionModel, Corrections, Extent, Robot, Sizes, Tolerance};
 use crate::simulate::random_configuration;
-use crate::solve::{Normal, Options, minimize};
-use crate::unit::Unit;
+use crate::solve::{Options, minimize};
 
 /// Configurations of the workspace.
 pub(super) const WORKSPACE: usize = 1000;
 /// Random configurations by which unknowns are scaled and terms are combined, and their seed.
-const SAMPLE: usize = 400;
+pub(super) const SAMPLE: usize = 400;
 const SEED: u64 = 1;
-/// Information on every unknown that nothing else is known of, of the base's place too, 1/m²: it is known to a metre.
-const RIDGE: f64 = 1.0;
-/// A combination of terms of whose prior variance all rows together take less than this share is left out.
-const NEGLIGIBLE: f64 = 0.01;
-/// Robot error where none is stated, as a share of the reach.
-const USUAL_ERROR: f64 = 3e-4;
-/// Share of the squared robot error that no terms describe, at least: 0.14 of an IRB 120, more of others.
-const LEAST_REST: f64 = 0.16;
-/// Share of the robot error that terms make at least, where it is stated with and without them.
-const LEAST_TERMS: f64 = 0.2;
 /// Most iterations of a fit while rows arrive.
 const ITERATIONS: usize = 30;
-/// Largest number of places from which one configuration is measured.
-const MOST_PLACES: usize = 64;
 
 /// A planned session at the nominal model: columns, priors, and what noise and terms of the joints are expected.
 pub(crate) struct Experiment {
     /// The nominal robot.
     pub(crate) robot: Robot,
     /// The same with the terms of the joints.
-    model: Robot,
-    session: PlannedSession,
-    unknowns: Unknowns,
+    pub(super) model: Robot,
+    pub(super) session: PlannedSession,
+    pub(super) unknowns: Unknowns,
     pub(crate) estimate: Estimate,
     /// A row of each pair of an instrument and a target, of measurements that were begun.
-    template: Option<Dataset>,
+    pub(super) template: Option<Dataset>,
     /// Terms with their prior standard deviations.
-    deviations: Vec<TermPrior>,
-    tolerance: Tolerance,
+    pub(super) deviations: Vec<TermPrior>,
+    pub(super) tolerance: Tolerance,
     /// The free parameters: of the sample, so that device frames turn about the same points whatever the rows.
-    free: Vec<Parameter>,
-    targets: usize,
-    length_m: f64,
+    pub(super) free: Vec<Parameter>,
+    pub(super) targets: usize,
+    pub(super) length_m: f64,
     /// How often a configuration is repeated so that each place measures it once.
-    repeats: usize,
+    pub(super) repeats: usize,
     /// Numbers that are measured in a configuration.
     pub(crate) numbers: usize,
     /// Places of geometry's unknowns in a step.
-    geometry: Vec<usize>,
+    pub(super) geometry: Vec<usize>,
     /// Places of the terms.
-    terms: Vec<usize>,
+    pub(super) terms: Vec<usize>,
     /// Each term in units of its prior standard deviation, combined to modes.
-    turn: DMatrix<f64>,
+    pub(super) turn: DMatrix<f64>,
     /// Prior information of geometry.
     pub(crate) prior: DMatrix<f64>,
     /// What geometry does not describe, metres: of the stated error, the part that the terms make and the rest.
@@ -75,7 +63,7 @@ pub(crate) struct Experiment {
     /// What the corrected model is said to leave, metres: the same if it is not stated.
     pub(crate) left_m: f64,
     /// Information of a row for a fit that takes all of the robot error for noise, as a share of that for one that knows the terms.
-    share: f64,
+    pub(super) share: f64,
     /// Whether the robot error is a guess.
     pub(crate) is_guess: bool,
 }
@@ -152,160 +140,6 @@ impl Experiment {
         Ok(found)
     }
 
-    /// Layout, prior, robot error and modes, from a sample of configurations.
-    fn settle(
-        &mut self,
-        sample: &[f64],
-        fit: &PlannedFit,
-        (deviations, corrected): (&[f64], &CorrectionModel),
-        begun: Option<(&Dataset, &Estimate)>,
-    ) -> Result<()> {
-        let width = self.width();
-        if !self.session.kind.has_device() && begun.is_none() {
-            let often = sample[..width].repeat(MOST_PLACES);
-            let (data, _) = predicted_data(&self.robot, &often, &self.session)?;
-            let mut sights: Vec<(usize, usize)> =
-                data.observations.iter().map(|row| (row.station, row.target)).collect();
-            sights.sort_unstable();
-            sights.dedup();
-            self.repeats = sights.len().max(1);
-        }
-        let (data, devices) = self.data(sample)?;
-        let first = data.observations.first().map(|row| row.measurement.dim());
-        if data.observations.iter().any(|row| Some(row.measurement.dim()) != first) {
-            return ErrorKind::Option.refuse(format!(
-                "found the kind `{}`, of which rows measure different numbers, expected one kind: plan points or poses",
-                self.session.kind.word()
-            ));
-        }
-        self.numbers =
-            data.observations.iter().map(|row| row.measurement.dim()).sum::<usize>() / SAMPLE.max(1);
-        let packed = Packed::of(&self.model, &data);
-        let rows = data.all_rows();
-        let mut estimate = match begun {
-            Some((_, registered)) => self.with_gives(registered, &data),
-            None => delivered(&self.model, &data),
-        };
-        for (station, device) in devices.into_iter().enumerate() {
-            *estimate.device_mut(station) = device;
-        }
-        let session = self.session_of(&data, &packed);
-        estimate.recentre(&session, &rows);
-        self.estimate = estimate;
-        let session = self.session_of(&data, &packed);
-        let joints = screw_axes(self.estimate.kinds());
-        let free = match begun {
-            // Device frames turn about the middle of what was measured.
-            Some((data, _)) => {
-                let packed = Packed::of(&self.model, data);
-                free_parameters(&self.session_of(data, &packed), &self.estimate, &data.all_rows(), joints)
-            }
-            None => free_parameters(&session, &self.estimate, &rows, joints),
-        };
-        let layout = Layout::new(free.clone(), self.length_m);
-        if layout.dim() > MOST_UNKNOWNS {
-            return ErrorKind::Problem.refuse(format!(
-                "found {} unknowns, expected at most {MOST_UNKNOWNS} in one fit: plan a shorter chain",
-                layout.dim()
-            ));
-        }
-        let (mut geometry, mut terms, mut scales) = (Vec::new(), Vec::new(), Vec::new());
-        let mut priors = Vec::new();
-        let known: Vec<(usize, crate::robot::Term)> = corrected.terms().collect();
-        for (parameter, places) in layout.parameters() {
-            match parameter.value_term() {
-                Some(it) => {
-                    let own = known.iter().position(|&(joint, term)| (joint, term) == (it.joint, it.term));
-                    let deviation = own.and_then(|at| deviations.get(at)).copied().unwrap_or(0.0);
-                    priors.push(TermPrior { joint: it.joint, term: it.term, deviation });
-                    // A step along a term is in scaled units.
-                    terms.extend(places.iter().map(|(place, _)| *place));
-                    scales.extend(places.iter().map(|(_, scale)| deviation * scale));
-                }
-                None => geometry.extend(places.iter().map(|(place, _)| *place)),
-            }
-        }
-        geometry.sort_unstable();
-        let tolerance = fit.tolerance.unwrap_or(Tolerance::WIDE);
-        let mut prior = Normal::new(layout.dim());
-        Prior::of(&session, tolerance).without_terms().add(&self.estimate, &layout, 1.0, &mut prior);
-        let n = layout.dim();
-        let own = |i: usize, j: usize| {
-            let (a, b) = (geometry[i], geometry[j]);
-            prior.gram[a.min(b) * n + a.max(b)] + if i == j { RIDGE } else { 0.0 }
-        };
-        let prior = DMatrix::from_fn(geometry.len(), geometry.len(), own);
-        (self.prior, self.geometry, self.terms) = (prior, geometry, terms);
-        (self.free, self.targets, self.deviations) = (free, data.targets.len().max(1), priors);
-        self.turn = DMatrix::from_diagonal(&nalgebra::DVector::from_vec(scales));
-        self.settle_error(sample, fit)?;
-        self.settle_modes(sample, fit.count)
-    }
-
-    /// The robot error: what of it the terms make, which are made less where it is less, and what is left as noise of every row.
-    fn settle_error(&mut self, sample: &[f64], fit: &PlannedFit) -> Result<()> {
-        let usual = RobotError { calibrated_m: USUAL_ERROR * self.robot.reach_m(), corrected_m: None };
-        let stated = fit.robot_error.unwrap_or(usual);
-        let error_m = stated.calibrated_m;
-        self.robot_error_m = error_m;
-        let of_terms = if self.terms.is_empty() { 0.0 } else { self.error_of_terms(sample)? };
-        let scale = match stated.corrected_m {
-            _ if of_terms <= 0.0 => 1.0,
-            Some(rest_m) => {
-                let wanted = (error_m.powi(2) - rest_m.powi(2)).max((LEAST_TERMS * error_m).powi(2)).sqrt();
-                // Lists that are chosen for terms beyond the common sizes determine geometry less.
-                (wanted / of_terms).min(1.0)
-            }
-            // Terms never describe all of it.
-            None => (error_m * (1.0 - LEAST_REST).sqrt() / of_terms).min(1.0),
-        };
-        self.turn *= scale;
-        self.deviations.iter_mut().for_each(|it| it.deviation *= scale);
-        self.rest_m = (error_m.powi(2) - (scale * of_terms).powi(2)).max(0.0).sqrt();
-        self.left_m = stated.corrected_m.unwrap_or(self.rest_m);
-        // The rest is another in each configuration; what turns by it is as far away as a radian counts.
-        let each = self.rest_m / 3f64.sqrt();
-        let (stated, length_m) = (fit.session.noise, self.length_m);
-        let leading = fit.session.kind.quantities().first().copied().unwrap_or(Quantity::Position);
-        let noise = stated[leading] * if leading.unit() == Unit::Radian { length_m } else { 1.0 };
-        self.share = (noise.powi(2) + each.powi(2)) / (noise.powi(2) + error_m.powi(2) / 3.0);
-        self.session.noise = ByQuantity::from_fn(|quantity| match quantity.unit() {
-            Unit::Metre => stated[quantity].hypot(each),
-            Unit::Radian => stated[quantity].hypot(each / length_m),
-            Unit::One | Unit::Second => stated[quantity],
-        });
-        Ok(())
-    }
-
-    /// What terms of their sizes make of the tip's error in the limit of many random rows, RMS.
-    fn error_of_terms(&self, sample: &[f64]) -> Result<f64> {
-        let (rows, moments) = (self.blocks(sample)?, self.moments(sample));
-        let (g, c) = (self.geometry.len(), self.terms.len());
-        let gram = rows.gram(0..rows.count());
-        let h = gram.view((0, 0), (g, g)) + &self.prior;
-        let Some(inverse) = inverse(&h) else { return Ok(0.0) };
-        let a = inverse * gram.view((0, g), (g, c));
-        let (mgg, mgc) = (moments.view((0, 0), (g, g)), moments.view((0, g), (g, c)));
-        let bias =
-            (a.transpose() * (mgg * &a)).trace() - 2.0 * a.dot(&mgc) + moments.view((g, g), (c, c)).trace();
-        Ok(bias.max(0.0).sqrt())
-    }
-
-    /// Combines terms: directions of which a session of so many configurations says something.
-    fn settle_modes(&mut self, sample: &[f64], count: usize) -> Result<()> {
-        if self.terms.is_empty() {
-            return Ok(());
-        }
-        let rows = self.blocks(sample)?;
-        let (g, c) = (self.geometry.len(), self.terms.len());
-        let own = rows.gram(0..rows.count()).view((g, g), (c, c)).into_owned();
-        let own = own * (count.max(100) as f64 / rows.count().max(1) as f64);
-        let (values, vectors) = linalg::symmetric_eigen(own.as_slice(), c);
-        let first = values.iter().take_while(|&&value| value < NEGLIGIBLE).count();
-        self.turn = &self.turn * vectors.columns(first, c - first);
-        Ok(())
-    }
-
     /// Number of readings of a configuration.
     pub(crate) fn width(&self) -> usize {
         self.robot.reading_names().len().max(1)
@@ -331,7 +165,7 @@ impl Experiment {
     }
 
     /// Rows of configurations, and device frames that are not the model's.
-    fn data(&self, readings: &[f64]) -> Result<(Dataset, Vec<Pose>)> {
+    pub(super) fn data(&self, readings: &[f64]) -> Result<(Dataset, Vec<Pose>)> {
         let Some(template) = &self.template else {
             return predicted_data(&self.robot, &self.repeated(readings), &self.session);
         };
@@ -345,7 +179,7 @@ impl Experiment {
     }
 
     /// An estimate of the robot as one of the robot with gives and terms of zero.
-    fn with_gives(&self, registered: &Estimate, data: &Dataset) -> Estimate {
+    pub(super) fn with_gives(&self, registered: &Estimate, data: &Dataset) -> Estimate {
         let mut estimate = delivered(&self.model, data);
         estimate.base_from_target.clone_from(&registered.base_from_target);
         estimate.device_from_base = registered.device_from_base;
@@ -404,7 +238,7 @@ impl Experiment {
         own.flatten().filter_map(|place| self.geometry.binary_search(&place).ok()).collect()
     }
 
-    fn session_of<'a>(&'a self, data: &'a Dataset, packed: &'a Packed) -> Session<'a> {
+    pub(super) fn session_of<'a>(&'a self, data: &'a Dataset, packed: &'a Packed) -> Session<'a> {
         Session::new(&self.model, data, packed, self.session.device_free)
             .with_unknowns(&self.unknowns)
             .with_length(self.length_m)
@@ -500,49 +334,6 @@ fn with_targets(robot: &Robot, fit: &PlannedFit) -> Robot {
     });
     robot.mounted = mounts.collect();
     robot
-}
-
-/// Whitened rows of configurations, one after the other, of so many numbers and columns each.
-#[derive(Clone, Debug)]
-pub(crate) struct Blocks {
-    pub(crate) values: Vec<f64>,
-    pub(crate) numbers: usize,
-    pub(crate) columns: usize,
-}
-
-impl Blocks {
-    /// Number of configurations.
-    pub(crate) fn count(&self) -> usize {
-        self.values.len() / (self.numbers * self.columns).max(1)
-    }
-
-    /// Rows of a configuration, row after row.
-    pub(crate) fn of(&self, index: usize) -> &[f64] {
-        let size = self.numbers * self.columns;
-        &self.values[index * size..(index + 1) * size]
-    }
-
-    /// Information of some configurations together.
-    pub(crate) fn gram(&self, some: impl IntoIterator<Item = usize>) -> DMatrix<f64> {
-        let n = self.columns;
-        let mut upper = vec![0.0; n * n];
-        for index in some {
-            linalg::add_gram(&mut upper, n, self.of(index), 0);
-        }
-        DMatrix::from_fn(n, n, |i, j| upper[i.min(j) * n + i.max(j)])
-    }
-
-    /// The first columns alone.
-    pub(crate) fn first(&self, columns: usize) -> Blocks {
-        let rows = self.values.chunks_exact(self.columns);
-        Blocks { values: rows.flat_map(|row| row[..columns].iter().copied()).collect(), columns, ..*self }
-    }
-
-    /// The configurations of some indices.
-    pub(crate) fn only(&self, some: &[usize]) -> Blocks {
-        let values = some.iter().flat_map(|&index| self.of(index).iter().copied()).collect();
-        Blocks { values, ..*self }
-    }
 }
 
 /// The first row of each pair of an instrument and a target.

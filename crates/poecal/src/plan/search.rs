@@ -4,8 +4,9 @@ use nalgebra::DMatrix;
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 
-use super::experiment::Blocks;
-use super::state::{Aim, Caches, Squares, State};
+use super::blocks::Blocks;
+use super::caches::Caches;
+use super::state::{Aim, Squares, State};
 use crate::simulate::random;
 
 /// Information that a greedy choice begins with beside the prior: that of so many average rows.

@@ -1,6 +1,6 @@
 //! Motions that change nothing, in a fit in which some things are held or joint offsets are unknown.
 
-use nalgebra::{DMatrix, Vector6};
+use nalgebra::{DMatrix, Vector3, Vector6};
 
 use super::Layout;
 use crate::estimate::{Estimate, Session, Stand};
@@ -80,10 +80,7 @@ impl Layout {
     /// The combinations of motions that no held thing sees.
     fn unseen(&self, estimate: &Estimate, data: &Dataset, rows: &[u32], motions: &[Motion]) -> Vec<Vec<f64>> {
         let count = motions.len();
-        let mut moved: Vec<Vec<f64>> = vec![vec![0.0; self.dim()]; count];
-        for (step, motion) in moved.iter_mut().zip(motions) {
-            motion.offset.iter().for_each(|&(place, change)| step[place] = change);
-        }
+        let mut moved = begin_steps(motions, self.dim());
         // Information that the held things give about the motions.
         let mut gram = DMatrix::zeros(count, count);
         let mut add = |subject: Subject, body: Option<Body>, effect: &dyn Fn(&Twist) -> Vec<f64>| {
@@ -91,13 +88,7 @@ impl Layout {
                 parameter.model().subject() == subject && parameter.value_term().is_none()
             };
             let own = self.parameters().find(|(parameter, _)| is_of(parameter));
-            let effects: Vec<Vec<f64>> = motions
-                .iter()
-                .map(|motion| {
-                    let is_moved = motion.beyond.is_none_or(|joint| is_beyond(estimate, body, joint));
-                    if is_moved { effect(&motion.twist) } else { Vec::new() }
-                })
-                .collect();
+            let effects = effects_on(estimate, body, motions, effect);
             match own {
                 Some((_, places)) => {
                     for (step, effect) in moved.iter_mut().zip(&effects) {
@@ -122,18 +113,7 @@ impl Layout {
         let freedoms = data.target_freedoms(rows);
         for (target, frame) in estimate.base_from_target.iter().enumerate() {
             let body = estimate.tree.targets().get(target).copied();
-            let own = self.parameters().find_map(|(parameter, _)| match parameter {
-                Parameter::TargetFrame(own) if own.target == target => Some(own.freedom),
-                Parameter::TargetFrame(_)
-                | Parameter::TargetPlace(_)
-                | Parameter::ScrewAxis(_)
-                | Parameter::OtherScrew(_)
-                | Parameter::ValueTerm(_)
-                | Parameter::DeviceFrame(_)
-                | Parameter::RangeUnknown(_)
-                | Parameter::ClockUnknown(_) => None,
-            });
-            let freedom = own.or(freedoms.get(target).copied()).unwrap_or(Freedom::PLACE);
+            let freedom = self.freedom_of(target).or(freedoms.get(target).copied()).unwrap_or(Freedom::PLACE);
             add(Subject::Target(target), body, &|twist| seen_of(freedom, &local(frame, twist)));
         }
         for station in 0..=estimate.further_devices.len() {
@@ -144,28 +124,75 @@ impl Layout {
             // What no row sees holds nothing.
             let is_seen = data.station_count() == 1 || !data.seen_from(station, rows).is_empty();
             if estimate.tree.shared(station).is_none() && is_seen {
-                let about = self.parameters().find_map(|(parameter, _)| {
-                    let Parameter::DeviceFrame(own) = parameter else { return None };
-                    (own.station == station).then_some(own.about)
-                });
                 let device = estimate.device(station);
                 // What does not show is not held.
                 let freedom = data.device_freedom(station, rows);
-                let at = Pose::from_translation(about.unwrap_or_default());
+                let at = Pose::from_translation(self.point_of(station).unwrap_or_default());
                 // `device_from_base G⁻¹`, stepped in the device's axes about a point. The base itself moves under those that stand on it.
                 add(Subject::Instrument(station), Some(body), &|twist| {
                     seen_of(freedom, &-at.inverse().transform(&device.transform(twist)).to_vector())
                 });
             }
         }
-        orthonormal(null_space(&gram).into_iter().map(|shares| {
-            let mut step = vec![0.0; self.dim()];
-            for (share, moved) in shares.iter().zip(&moved) {
-                step.iter_mut().zip(moved).for_each(|(step, moved)| *step += share * moved);
-            }
-            step
-        }))
+        combine(&gram, &moved, self.dim())
     }
+
+    /// The freedom of a target whose frame is unknown.
+    fn freedom_of(&self, target: usize) -> Option<Freedom> {
+        self.parameters().find_map(|(parameter, _)| match parameter {
+            Parameter::TargetFrame(own) if own.target == target => Some(own.freedom),
+            Parameter::TargetFrame(_)
+            | Parameter::TargetPlace(_)
+            | Parameter::ScrewAxis(_)
+            | Parameter::OtherScrew(_)
+            | Parameter::ValueTerm(_)
+            | Parameter::DeviceFrame(_)
+            | Parameter::RangeUnknown(_)
+            | Parameter::ClockUnknown(_) => None,
+        })
+    }
+
+    /// The point about which the frame of a device turns, if that is unknown.
+    fn point_of(&self, station: usize) -> Option<Vector3<f64>> {
+        self.parameters().find_map(|(parameter, _)| {
+            let Parameter::DeviceFrame(own) = parameter else { return None };
+            (own.station == station).then_some(own.about)
+        })
+    }
+}
+
+/// A step for each motion, of the offsets alone.
+fn begin_steps(motions: &[Motion], dim: usize) -> Vec<Vec<f64>> {
+    let mut moved: Vec<Vec<f64>> = vec![vec![0.0; dim]; motions.len()];
+    for (step, motion) in moved.iter_mut().zip(motions) {
+        motion.offset.iter().for_each(|&(place, change)| step[place] = change);
+    }
+    moved
+}
+
+/// The effect of each motion on a body; none on one that it does not move.
+fn effects_on(
+    estimate: &Estimate,
+    body: Option<Body>,
+    motions: &[Motion],
+    effect: &dyn Fn(&Twist) -> Vec<f64>,
+) -> Vec<Vec<f64>> {
+    let of_motion = |motion: &Motion| {
+        let is_moved = motion.beyond.is_none_or(|joint| is_beyond(estimate, body, joint));
+        if is_moved { effect(&motion.twist) } else { Vec::new() }
+    };
+    motions.iter().map(of_motion).collect()
+}
+
+/// Orthonormal combinations of steps of which no held thing sees anything.
+fn combine(gram: &DMatrix<f64>, moved: &[Vec<f64>], dim: usize) -> Vec<Vec<f64>> {
+    orthonormal(null_space(gram).into_iter().map(|shares| {
+        let mut step = vec![0.0; dim];
+        for (share, moved) in shares.iter().zip(moved) {
+            step.iter_mut().zip(moved).for_each(|(step, moved)| *step += share * moved);
+        }
+        step
+    }))
 }
 
 /// The motions of a frame that are seen.

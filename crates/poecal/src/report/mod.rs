@@ -22,6 +22,7 @@ mod summary;
 pub mod table;
 mod tcp;
 mod track;
+mod track_entries;
 mod watched;
 
 pub use check::{Check, SetCounts};

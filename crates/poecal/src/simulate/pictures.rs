@@ -1,6 +1,7 @@
 //! Simulated sessions of a camera and a board.
 
 use nalgebra::{Vector2, Vector3, Vector6};
+use poecal_arm::Arm;
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 
@@ -76,6 +77,17 @@ const TRIES: usize = 2000;
 /// Remainder below which an arm has reached a pose.
 const REACHED: f64 = 1e-9;
 
+/// A robot before what stays, in a simulation of pictures.
+struct Scene<'a> {
+    arm: Arm,
+    /// Readings of the arm among all.
+    readings: Vec<usize>,
+    configurations: Configurations,
+    actual: &'a Robot,
+    tip_from_held: Pose,
+    base_from_other: Pose,
+}
+
 impl PictureSimulation {
     /// A camera of 1,500 px at 0.6 to 1 m from a board of 7 × 5 squares of 36 mm, with corners to 0.3 px.
     #[must_use]
@@ -127,6 +139,7 @@ impl PictureSimulation {
         let first = configurations.random(&mut generator);
         let base_from_held = nominal.forward_kinematics(&first) * tip_from_held;
         let base_from_other = base_from_held * self.relative(&self.sight(&mut generator));
+        let scene = Scene { arm, readings, configurations, actual: &actual, tip_from_held, base_from_other };
         let mut data = Dataset::new(nominal.reading_names());
         data.pictures.cameras = vec![Camera::new("camera".to_owned(), self.lens)];
         data.pictures.boards = vec![self.board.clone()];
@@ -134,35 +147,7 @@ impl PictureSimulation {
         let mut camera_from_boards = Vec::with_capacity(self.session.count);
         let mut near = first;
         for _ in 0..self.session.count {
-            let mut found = None;
-            for attempt in 0..TRIES {
-                // Another branch of the arm now and then.
-                if attempt % 20 == 19 {
-                    near = configurations.random(&mut generator);
-                }
-                let wanted = base_from_other
-                    * self.relative(&self.sight(&mut generator)).inverse()
-                    * tip_from_held.inverse();
-                let mut q: Vec<f64> = readings.iter().map(|&at| near[at]).collect();
-                if arm.nearest(&wanted, &mut q) > REACHED {
-                    continue;
-                }
-                let mut all = near.clone();
-                readings.iter().zip(&q).for_each(|(&at, value)| all[at] = *value);
-                if !configurations.contain(&all) {
-                    continue;
-                }
-                let held = self.held(&actual, &all, &tip_from_held, &mut generator);
-                let camera_from_board = if self.in_hand {
-                    held.inverse() * base_from_other
-                } else {
-                    base_from_other.inverse() * held
-                };
-                if let Some(corners) = self.corners(&camera_from_board, &mut generator) {
-                    found = Some((all, camera_from_board, corners));
-                    break;
-                }
-            }
+            let found = self.find_view(&scene, &mut near, &mut generator);
             let (all, camera_from_board, corners) = found.ok_or_else(refuse)?;
             let image = Some(format!("{:03}.png", data.len()));
             let picture = Picture::new(0, 0, image, corners);
@@ -173,6 +158,43 @@ impl PictureSimulation {
         data.settle_pixels();
         let (nominal, camera_from_board) = (nominal.clone(), camera_from_boards);
         Ok(Photographed { nominal, actual, tip_from_held, base_from_other, camera_from_board, data })
+    }
+
+    /// Tries configurations near one, and now and then elsewhere, until all of the board is seen; gives the board and its corners too.
+    fn find_view(
+        &self,
+        scene: &Scene<'_>,
+        near: &mut Vec<f64>,
+        generator: &mut ChaCha8Rng,
+    ) -> Option<(Vec<f64>, Pose, Vec<Corner>)> {
+        for attempt in 0..TRIES {
+            // Another branch of the arm now and then.
+            if attempt % 20 == 19 {
+                *near = scene.configurations.random(generator);
+            }
+            let wanted = scene.base_from_other
+                * self.relative(&self.sight(generator)).inverse()
+                * scene.tip_from_held.inverse();
+            let mut q: Vec<f64> = scene.readings.iter().map(|&at| near[at]).collect();
+            if scene.arm.nearest(&wanted, &mut q) > REACHED {
+                continue;
+            }
+            let mut all = near.clone();
+            scene.readings.iter().zip(&q).for_each(|(&at, value)| all[at] = *value);
+            if !scene.configurations.contain(&all) {
+                continue;
+            }
+            let held = self.held(scene.actual, &all, &scene.tip_from_held, generator);
+            let camera_from_board = if self.in_hand {
+                held.inverse() * scene.base_from_other
+            } else {
+                scene.base_from_other.inverse() * held
+            };
+            if let Some(corners) = self.corners(&camera_from_board, generator) {
+                return Some((all, camera_from_board, corners));
+            }
+        }
+        None
     }
 
     /// A pose of the board in the camera's frame.

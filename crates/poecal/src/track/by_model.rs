@@ -8,9 +8,10 @@ use rand_core::SeedableRng;
 
 use super::explain::{Evidence, Level, Tests, leave_unseen_out, ratio};
 use super::hypotheses::{free, hypotheses};
+use super::model::Model;
 use super::options::TrackOptions;
 use super::pairs::Changes;
-use super::visit::{Model, Visit};
+use super::visit::Visit;
 use crate::error::Result;
 use crate::linalg;
 use crate::measurement::{Dataset, Quantity};

@@ -1,9 +1,10 @@
 //! What a visit shows.
 
 use super::explain::{Hypothesis, Kind, Tried, Verdict};
+use super::model::Model;
 use super::options::{JudgedBy, MOST_RAD, State};
 use super::sight::JointSight;
-use super::visit::{Model, Of};
+use super::visit::Of;
 use crate::measurement::Dataset;
 use crate::robot::JointKind;
 

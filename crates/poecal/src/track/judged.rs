@@ -2,9 +2,10 @@
 
 use super::explain::{Evidence, Level};
 use super::hypotheses::free;
+use super::model::Model;
 use super::options::{JudgedBy, TrackOptions};
 use super::pairs::Changes;
-use super::visit::{Model, Visit};
+use super::visit::Visit;
 use super::{by_model, words};
 use crate::error::Result;
 use crate::io::calibration_file::CalibrationFile;

@@ -6,6 +6,7 @@ mod explain;
 mod found;
 mod hypotheses;
 mod judged;
+mod model;
 mod options;
 mod pairs;
 mod repair;

@@ -139,13 +139,7 @@ impl Changes {
         rows.sort_unstable();
         let (mut residual, mut jacobian) = (DVector::from_vec(residual), DMatrix::from_rows(&jacobian));
         if !by_known.is_empty() {
-            let by_known = DMatrix::from_rows(&by_known);
-            let all = DMatrix::identity(residual.len(), residual.len()) + &by_known * by_known.transpose();
-            let count = jacobian.ncols();
-            let mut both = jacobian.insert_column(count, 0.0);
-            both.set_column(count, &residual);
-            let both = linalg::whitened(all, &both)?;
-            (jacobian, residual) = (both.columns(0, count).into_owned(), both.column(count).into_owned());
+            (residual, jacobian) = weigh_known(&DMatrix::from_rows(&by_known), residual, jacobian)?;
         }
         Some(Changes {
             residual,
@@ -155,6 +149,20 @@ impl Changes {
             rows,
         })
     }
+}
+
+/// Residuals and their derivatives beside what the calibration is uncertain of, whitened by both.
+fn weigh_known(
+    by_known: &DMatrix<f64>,
+    residual: DVector<f64>,
+    jacobian: DMatrix<f64>,
+) -> Option<(DVector<f64>, DMatrix<f64>)> {
+    let all = DMatrix::identity(residual.len(), residual.len()) + by_known * by_known.transpose();
+    let count = jacobian.ncols();
+    let mut both = jacobian.insert_column(count, 0.0);
+    both.set_column(count, &residual);
+    let both = linalg::whitened(all, &both)?;
+    Some((both.column(count).into_owned(), both.columns(0, count).into_owned()))
 }
 
 /// Mean of a number over rows of one configuration, and its variance.

@@ -4,9 +4,10 @@ use super::explain::{Evidence, Level, Tests, Tried, Verdict, explain, leave_unse
 use super::found::{Explanation, Tracked, explanation};
 use super::hypotheses::{free, hypotheses};
 use super::judged::{Earlier, Judged};
+use super::model::Model;
 use super::options::{State, TrackOptions};
 use super::pairs::Changes;
-use super::visit::{Model, Visit};
+use super::visit::Visit;
 use super::{sight, words};
 use crate::error::Result;
 use crate::io::calibration_file::CalibrationFile;

@@ -2,9 +2,10 @@
 
 use super::explain::{Evidence, Hypothesis, Kind, Tests};
 use super::hypotheses::free;
+use super::model::Model;
 use super::options::{MOST_M, MOST_RAD, TrackOptions};
 use super::pairs::Changes;
-use super::visit::{Model, Of, Visit};
+use super::visit::{Of, Visit};
 use crate::robot::JointKind;
 
 /// Normal quantile of 95 %.

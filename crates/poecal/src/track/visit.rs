@@ -2,14 +2,14 @@
 
 use nalgebra::{DMatrix, DVector, Vector3};
 
+use super::model::Model;
 use super::options::TrackOptions;
-use crate::calibration::{AcceptedModel, whitened_rows};
+use crate::calibration::whitened_rows;
 use crate::error::{ErrorKind, Result};
 use crate::estimate::{Chain, Estimate, Linkage, Packed, Session, Stand, delivered};
-use crate::io::calibration_file::CalibrationFile;
 use crate::lie::Pose;
 use crate::linalg;
-use crate::measurement::{ByQuantity, Dataset, Noise, Quantity};
+use crate::measurement::{Dataset, Quantity};
 use crate::parameters::{Parameter, ScrewAxis, Subject, TargetFrame, TargetPlace, ValueTerm};
 use crate::problem::Problem;
 use crate::robot::{Body, Robot, Term};
@@ -65,47 +65,6 @@ pub(super) struct Visit {
     pub(super) device_is_known: bool,
 }
 
-/// The model that is delivered, as visits are compared by it.
-pub(super) struct Model {
-    /// The file whose entries are those of the delivered model.
-    pub(super) file: CalibrationFile,
-    pub(super) robot: Robot,
-    pub(super) noise: Noise,
-    /// The joints that have readings: all but the gives.
-    pub(super) joints: Vec<usize>,
-    pub(super) is_corrected: bool,
-}
-
-impl Model {
-    /// Of a calibration, with the noise of a visit where that is stated.
-    pub(super) fn of(file: &CalibrationFile, options: &TrackOptions) -> Result<Self> {
-        let corrected = file.corrected();
-        let is_corrected = corrected.is_some();
-        let file = corrected.unwrap_or_else(|| file.clone());
-        let robot = file.robot()?;
-        let usual = file.noise()?;
-        let noise = match options.repeatability_m {
-            None => usual,
-            Some(sigma_m) => {
-                let share = sigma_m / usual[Quantity::Position];
-                ByQuantity::from_fn(|quantity| {
-                    if quantity == Quantity::Position { sigma_m } else { usual[quantity] * share }
-                })
-            }
-        };
-        let joints = (0..robot.joints.len()).filter(|&joint| robot.joints[joint].give_of.is_none()).collect();
-        Ok(Model { file, robot, noise, joints, is_corrected })
-    }
-}
-
-impl Model {
-    /// Error of the calibration itself, metres a coordinate or distance.
-    pub(super) fn own_m(&self) -> f64 {
-        let model = if self.is_corrected { AcceptedModel::Corrected } else { AcceptedModel::Calibrated };
-        1e-3 * self.file.own_rms(model)
-    }
-}
-
 impl Visit {
     /// Root mean square of places, metres a coordinate.
     pub(super) fn rms(&self) -> f64 {
@@ -139,72 +98,15 @@ impl Visit {
         let (robot, rows) = (&model.robot, data.all_rows());
         let packed = Packed::of(robot, &data);
         let session = Session::new(robot, &data, &packed, !device_is_known);
-        let mut estimate = delivered(robot, &data);
-        for (station, device) in devices.iter().enumerate() {
-            *estimate.device_mut(station) = device.inverse();
-        }
-        if !device_is_known || options.tool_is_anew {
-            let registration = Registration {
-                session,
-                rows: &rows,
-                noise: model.noise,
-                targets_free: options.tool_is_anew,
-                prior: None,
-            };
-            check_count(&registration, &data, &rows)?;
-            estimate = register(&registration, &estimate).0;
-        }
+        let estimate = place(model, session, (&data, &rows), &devices, options)?;
         let free = unknowns(model, &session, &estimate, &rows);
         let problem = Problem::new(session, rows.clone(), free, model.noise);
         let (starts, mut jacobian, mut residual) = whitened_rows(&problem, &estimate, &rows);
-        let mut columns = Vec::new();
-        for (parameter, places) in problem.layout().parameters() {
-            places.iter().for_each(|&(place, scale)| jacobian.column_mut(place).scale_mut(scale));
-            let own = places.iter().map(|(place, _)| *place);
-            let turns = places.iter().map(|(_, scale)| *scale != 1.0);
-            let Some(of) = subject(parameter, robot) else { continue };
-            let known = columns.iter_mut().find(|it: &&mut Columns| it.of == of && matches!(of, Of::Give(_)));
-            match known {
-                Some(give) => (give.places.extend(own), give.turns.extend(turns)).0,
-                None => columns.push(Columns { of, places: own.collect(), turns: turns.collect() }),
-            }
-        }
+        let mut columns = sort_columns(&problem, robot, &mut jacobian);
         let mut by_known = by_known(model, &session, &estimate, &rows)?;
         let mut lengths = lengths(&columns, &jacobian, &starts, (&data, &estimate, &packed));
-        // From whitened numbers to metres and radians, places along the axes of the base.
-        let (mut sigma, mut quantities) = (DVector::zeros(residual.len()), Vec::new());
-        for (row, &start) in rows.iter().zip(&starts) {
-            let seen = session.observation(*row);
-            let noise = problem.noise(*row as usize);
-            let channels = seen.measurement.channels();
-            for (at, channel) in channels.iter().enumerate() {
-                sigma[start + at] = noise[channel.quantity];
-                quantities.push(channel.quantity);
-            }
-            let of_places = channels.of(Quantity::Position);
-            let on_base =
-                matches!(estimate.tree.instruments().get(seen.station), Some(Stand::On(Body::Base)));
-            if of_places.len() == 3 && on_base && seen.noise_shape.is_none() {
-                let turn = estimate.device(seen.station).rotation.transpose();
-                let first = start + of_places.start;
-                let turned = |matrix: &mut DMatrix<f64>| {
-                    let own = turn * matrix.rows(first, 3);
-                    matrix.rows_mut(first, 3).copy_from(&own);
-                };
-                turned(&mut jacobian);
-                by_known.iter_mut().for_each(turned);
-                lengths.iter_mut().for_each(turned);
-                let own = turn * residual.rows(first, 3);
-                residual.rows_mut(first, 3).copy_from(&own);
-            }
-        }
-        let unwhiten = |matrix: &mut DMatrix<f64>| {
-            matrix.row_iter_mut().zip(sigma.iter()).for_each(|(mut row, sigma)| row *= *sigma);
-        };
-        unwhiten(&mut jacobian);
-        by_known.iter_mut().for_each(unwhiten);
-        lengths.iter_mut().for_each(unwhiten);
-        residual.component_mul_assign(&sigma);
+        let matrices = std::iter::once(&mut jacobian).chain(&mut by_known).chain(&mut lengths).collect();
+        let (sigma, quantities) = unwhiten(&problem, &estimate, (&rows, &starts), &mut residual, matrices);
         if let Some(lengths) = lengths {
             let place = jacobian.ncols();
             jacobian = jacobian.insert_column(place, 0.0);
@@ -230,6 +132,86 @@ impl Visit {
             device_is_known,
         })
     }
+}
+
+/// The estimate of a visit: devices where the calibration has them or, like targets of a tool that is anew, registered.
+fn place(
+    model: &Model,
+    session: Session<'_>,
+    (data, rows): (&Dataset, &[u32]),
+    devices: &[Pose],
+    options: &TrackOptions,
+) -> Result<Estimate> {
+    let mut estimate = delivered(&model.robot, data);
+    for (station, device) in devices.iter().enumerate() {
+        *estimate.device_mut(station) = device.inverse();
+    }
+    if session.device_free || options.tool_is_anew {
+        let registration = Registration {
+            session,
+            rows,
+            noise: model.noise,
+            targets_free: options.tool_is_anew,
+            prior: None,
+        };
+        check_count(&registration, data, rows)?;
+        estimate = register(&registration, &estimate).0;
+    }
+    Ok(estimate)
+}
+
+/// Scales the columns of a Jacobian to the units of the unknowns, and says what they are of.
+fn sort_columns(problem: &Problem<'_>, robot: &Robot, jacobian: &mut DMatrix<f64>) -> Vec<Columns> {
+    let mut columns = Vec::new();
+    for (parameter, places) in problem.layout().parameters() {
+        places.iter().for_each(|&(place, scale)| jacobian.column_mut(place).scale_mut(scale));
+        let own = places.iter().map(|(place, _)| *place);
+        let turns = places.iter().map(|(_, scale)| *scale != 1.0);
+        let Some(of) = subject(parameter, robot) else { continue };
+        let known = columns.iter_mut().find(|it: &&mut Columns| it.of == of && matches!(of, Of::Give(_)));
+        match known {
+            Some(give) => (give.places.extend(own), give.turns.extend(turns)).0,
+            None => columns.push(Columns { of, places: own.collect(), turns: turns.collect() }),
+        }
+    }
+    columns
+}
+
+/// Turns whitened numbers into metres and radians, places along the axes of the base; gives the standard deviation and the quantity of each.
+fn unwhiten(
+    problem: &Problem<'_>,
+    estimate: &Estimate,
+    (rows, starts): (&[u32], &[usize]),
+    residual: &mut DVector<f64>,
+    mut matrices: Vec<&mut DMatrix<f64>>,
+) -> (DVector<f64>, Vec<Quantity>) {
+    let (mut sigma, mut quantities) = (DVector::zeros(residual.len()), Vec::new());
+    for (row, &start) in rows.iter().zip(starts) {
+        let seen = problem.session().observation(*row);
+        let noise = problem.noise(*row as usize);
+        let channels = seen.measurement.channels();
+        for (at, channel) in channels.iter().enumerate() {
+            sigma[start + at] = noise[channel.quantity];
+            quantities.push(channel.quantity);
+        }
+        let of_places = channels.of(Quantity::Position);
+        let on_base = matches!(estimate.tree.instruments().get(seen.station), Some(Stand::On(Body::Base)));
+        if of_places.len() == 3 && on_base && seen.noise_shape.is_none() {
+            let turn = estimate.device(seen.station).rotation.transpose();
+            let first = start + of_places.start;
+            for matrix in &mut matrices {
+                let own = turn * matrix.rows(first, 3);
+                matrix.rows_mut(first, 3).copy_from(&own);
+            }
+            let own = turn * residual.rows(first, 3);
+            residual.rows_mut(first, 3).copy_from(&own);
+        }
+    }
+    for matrix in matrices {
+        matrix.row_iter_mut().zip(sigma.iter()).for_each(|(mut row, sigma)| row *= *sigma);
+    }
+    residual.component_mul_assign(&sigma);
+    (sigma, quantities)
 }
 
 /// Refuses rows that do not determine where device and tool are.

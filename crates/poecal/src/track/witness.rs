@@ -9,10 +9,11 @@ use rand_core::SeedableRng;
 use super::explain::{Evidence, Level, Tests, leave_unseen_out, picked};
 use super::hypotheses::{free, hypotheses};
 use super::judged::earlier_visit;
+use super::model::Model;
 use super::options::TrackOptions;
 use super::pairs::Changes;
 use super::sight::{JointSight, joints};
-use super::visit::{Model, Of, Visit};
+use super::visit::{Of, Visit};
 use crate::error::{ErrorKind, Result};
 use crate::io::calibration_file::CalibrationFile;
 use crate::linalg;
@@ -140,18 +141,7 @@ pub fn witnesses(
         Some(_) => Visit::of(&model, data, true, &same_tool)?,
     };
     let visit = Visit { device_is_known: options.device_is_known, ..visit };
-    let is_named = |row: &u32| {
-        let own = data.observations[*row as usize].target;
-        target.is_none_or(|target| data.targets.get(own).and_then(Option::as_deref) == Some(target))
-    };
-    let rows: Vec<u32> = data.all_rows().into_iter().filter(is_named).collect();
-    if let (true, Some(target)) = (rows.is_empty(), target) {
-        let names: Vec<&str> = data.targets.iter().flatten().map(String::as_str).collect();
-        return ErrorKind::Option.refuse(format!(
-            "found no row of target `{target}`, expected one of {}",
-            crate::error::first_few(&names)
-        ));
-    }
+    let rows = rows_of_target(data, target)?;
     let all = data.configurations(&rows);
     if all.len() < count {
         return ErrorKind::Problem.refuse(format!(
@@ -190,6 +180,23 @@ pub fn witnesses(
     let configurations = chosen.iter().map(|at| some[*at].clone()).collect();
     let sigma_m = model.noise[crate::measurement::Quantity::Position];
     Ok(Witnesses { configurations, rows: measured.clone(), joints, sigma_m })
+}
+
+/// The rows of a target, if one is named; else all.
+fn rows_of_target(data: &Dataset, target: Option<&str>) -> Result<Vec<u32>> {
+    let is_named = |row: &u32| {
+        let own = data.observations[*row as usize].target;
+        target.is_none_or(|target| data.targets.get(own).and_then(Option::as_deref) == Some(target))
+    };
+    let rows: Vec<u32> = data.all_rows().into_iter().filter(is_named).collect();
+    if let (true, Some(target)) = (rows.is_empty(), target) {
+        let names: Vec<&str> = data.targets.iter().flatten().map(String::as_str).collect();
+        return ErrorKind::Option.refuse(format!(
+            "found no row of target `{target}`, expected one of {}",
+            crate::error::first_few(&names)
+        ));
+    }
+    Ok(rows)
 }
 
 /// The rows of the first measured configuration as if they had been measured in others, in each once.

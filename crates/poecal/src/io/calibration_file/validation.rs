@@ -176,13 +176,7 @@ impl CalibrationFile {
     #[must_use]
     pub fn doubt(&self, judgement: &Judgement) -> Option<String> {
         if let Some(moved) = judgement.moved_device.as_ref().filter(|it| !it.refitted) {
-            let (quantity, _) = judgement.delivered().errors.leading()?;
-            let (name, unit) = (quantity.name(), quantity.unit().symbol());
-            return Some(format!(
-                "the device stands {:.3} mm and {:.4} deg from where the calibration has it: with its frame refitted the {name} error is {:.4} {unit} \
-                 instead of {:.4} {unit} (RMS); judge the robot by --refit-frame, or let --refit auto do so",
-                moved.shift_mm, moved.turn_deg, moved.after_rms, moved.before_rms
-            ));
+            return doubt_of_device(judgement, moved);
         }
         let delivered = judgement.delivered();
         let own = self.own_rms(delivered.model).max(ROUNDING);
@@ -253,4 +247,15 @@ fn moved_words(leading: Quantity, rms: f64, own: f64) -> String {
         "the {name} error is {times:.0} times that of the calibration itself ({rms:.2e} {unit}, {own:.2e} {unit}): \
          if the measuring device was moved, refit its frame with --refit-frame"
     )
+}
+
+/// The sentence on a device that was moved since the calibration.
+fn doubt_of_device(judgement: &Judgement, moved: &MovedDevice) -> Option<String> {
+    let (quantity, _) = judgement.delivered().errors.leading()?;
+    let (name, unit) = (quantity.name(), quantity.unit().symbol());
+    Some(format!(
+        "the device stands {:.3} mm and {:.4} deg from where the calibration has it: with its frame refitted the {name} error is {:.4} {unit} \
+         instead of {:.4} {unit} (RMS); judge the robot by --refit-frame, or let --refit auto do so",
+        moved.shift_mm, moved.turn_deg, moved.after_rms, moved.before_rms
+    ))
 }

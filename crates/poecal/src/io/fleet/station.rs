@@ -29,6 +29,65 @@ struct File {
     limits: BTreeMap<String, [f64; 2]>,
 }
 
+/// Refuses a file at an offset.
+type Refuse<'a> = &'a dyn Fn(usize, String) -> Result<()>;
+
+impl File {
+    /// Refuses paths without a place for the serial number, or with places for what is not known.
+    fn check_paths(&self, refuse: Refuse<'_>) -> Result<()> {
+        for (key, of) in [("inbox", &self.inbox), ("results", &self.results)] {
+            let named = of.get_ref();
+            if named.matches("{serial}").count() != 1 {
+                let message = format!(
+                    "found `{named}` as {key}, expected a path with {{serial}} once, like {key}/{{serial}}/{{date}}.csv"
+                );
+                return refuse(of.span().start, message);
+            }
+            let known =
+                ["{serial}", "{date}", "{type}"].iter().fold(named.clone(), |rest, it| rest.replace(it, ""));
+            if known.contains(['{', '}']) {
+                return refuse(
+                    of.span().start,
+                    format!(
+                        "found `{named}` as {key}, expected no other braces than {{serial}}, {{date}} and {{type}}"
+                    ),
+                );
+            }
+        }
+        let dated = |of: &toml::Spanned<String>| of.get_ref().contains("{date}");
+        if dated(&self.inbox) && !dated(&self.results) {
+            let message = "found an inbox with {date} and results without, expected {date} in both: one result would replace another".to_owned();
+            return refuse(self.results.span().start, message);
+        }
+        Ok(())
+    }
+
+    /// Refuses a station without the models of its types.
+    fn check_models(&self, models: &BTreeMap<String, PathBuf>, refuse: Refuse<'_>) -> Result<()> {
+        let has_types = self.inbox.get_ref().contains("{type}");
+        if models.is_empty() || (!has_types && !models.contains_key("")) {
+            let expected =
+                if has_types { "`model`, or a table `models` with one for each {type}" } else { "`model`" };
+            return refuse(0, format!("found no model, expected {expected}"));
+        }
+        Ok(())
+    }
+
+    /// Refuses limits that are no range.
+    fn check_limits(&self, refuse: Refuse<'_>) -> Result<()> {
+        for (name, [low, high]) in &self.limits {
+            // Not a number is in no order.
+            if !(low < high && (low.is_finite() || high.is_finite())) {
+                let message = format!(
+                    "found limits of `{name}` that are no range, expected the lower one first, like [-0.3, 0.3], or [-inf, 0.3] of one limit"
+                );
+                return refuse(0, message);
+            }
+        }
+        Ok(())
+    }
+}
+
 /// A station at the end of a line.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Station {
@@ -86,67 +145,31 @@ impl Station {
     /// [`ErrorKind::File`] if it cannot be read; [`ErrorKind::Syntax`], with line and column, if it is no station.
     pub fn read(path: &Path) -> Result<Self> {
         let text = source_text::read(path, "a station (TOML: inbox, results and model)")?;
-        let refuse = |offset: usize, message: String| {
-            Err(ErrorKind::Syntax.error(message).at_offset(path, &text, offset))
-        };
+        let refused =
+            |offset: usize, message: String| ErrorKind::Syntax.error(message).at_offset(path, &text, offset);
+        let refuse = |offset: usize, message: String| Err(refused(offset, message));
         let file: File = match toml::from_str(&text) {
             Ok(file) => file,
             Err(error) => {
                 let at = error.span().map_or(0, |span| span.start);
-                return refuse(at, error.message().trim().replace('\n', ", "));
+                return Err(refused(at, error.message().trim().replace('\n', ", ")));
             }
         };
         let version = *file.poecal_station.get_ref();
         if version != 1 {
             let at = file.poecal_station.span().start;
-            return refuse(
+            return Err(refused(
                 at,
                 format!("found a station of version {version}, expected 1: a newer poecal wrote it"),
-            );
+            ));
         }
         let folder = path.parent().unwrap_or(Path::new("")).to_owned();
-        for (key, of) in [("inbox", &file.inbox), ("results", &file.results)] {
-            let named = of.get_ref();
-            if named.matches("{serial}").count() != 1 {
-                let message = format!(
-                    "found `{named}` as {key}, expected a path with {{serial}} once, like {key}/{{serial}}/{{date}}.csv"
-                );
-                return refuse(of.span().start, message);
-            }
-            let known =
-                ["{serial}", "{date}", "{type}"].iter().fold(named.clone(), |rest, it| rest.replace(it, ""));
-            if known.contains(['{', '}']) {
-                return refuse(
-                    of.span().start,
-                    format!(
-                        "found `{named}` as {key}, expected no other braces than {{serial}}, {{date}} and {{type}}"
-                    ),
-                );
-            }
-        }
-        let dated = |of: &toml::Spanned<String>| of.get_ref().contains("{date}");
-        if dated(&file.inbox) && !dated(&file.results) {
-            let message = "found an inbox with {date} and results without, expected {date} in both: one result would replace another".to_owned();
-            return refuse(file.results.span().start, message);
-        }
+        file.check_paths(&refuse)?;
         let mut models: BTreeMap<String, PathBuf> =
             file.models.iter().map(|(name, path)| (name.clone(), folder.join(path))).collect();
         models.extend(file.model.iter().map(|path| (String::new(), folder.join(path))));
-        let has_types = file.inbox.get_ref().contains("{type}");
-        if models.is_empty() || (!has_types && !models.contains_key("")) {
-            let expected =
-                if has_types { "`model`, or a table `models` with one for each {type}" } else { "`model`" };
-            return refuse(0, format!("found no model, expected {expected}"));
-        }
-        for (name, [low, high]) in &file.limits {
-            // Not a number is in no order.
-            if !(low < high && (low.is_finite() || high.is_finite())) {
-                let message = format!(
-                    "found limits of `{name}` that are no range, expected the lower one first, like [-0.3, 0.3], or [-inf, 0.3] of one limit"
-                );
-                return refuse(0, message);
-            }
-        }
+        file.check_models(&models, &refuse)?;
+        file.check_limits(&refuse)?;
         let one = |limit: f64| limit.is_finite().then_some(limit);
         let limits = file.limits.into_iter().map(|(name, [low, high])| (name, [one(low), one(high)]));
         Ok(Station {

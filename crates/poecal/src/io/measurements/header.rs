@@ -1,14 +1,14 @@
 //! Header: the line of column names, and the line of units that may follow it.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::path::Path;
 
-use super::cells::{Cell, Separator, character_column, split, split_line};
+use super::cells::{Cell, Separator, character_column, split_line};
 use super::column_names::number_of_column;
 use super::configurations::advice;
 use super::places::Sheet;
 use super::units::{NamedUnit, UnitSource};
-use crate::error::{Error, ErrorKind, Result, first_few, nearest};
+use crate::error::{Error, ErrorKind, Result};
 use crate::unit::Unit;
 
 /// A column of the header: `name[unit]` or `name (unit)`.
@@ -31,11 +31,11 @@ pub(super) struct Header<'a> {
     pub(super) line: usize,
     pub(super) cells: Vec<HeaderCell>,
     /// First and second column of each name, with and without its unit.
-    named: BTreeMap<String, (usize, Option<usize>)>,
+    pub(super) named: BTreeMap<String, (usize, Option<usize>)>,
     /// The line of units, if there is one.
     pub(super) units_line: Option<usize>,
     /// The first lines below, for the message if this is no header.
-    below: Vec<(usize, String)>,
+    pub(super) below: Vec<(usize, String)>,
     /// Columns whose cells name the joint of another column, with the name.
     pub(super) names: Vec<(usize, String)>,
     /// The sheet of a workbook.
@@ -259,17 +259,6 @@ impl<'a> Header<'a> {
         }
     }
 
-    /// The error for a column without a unit in the line of units or elsewhere.
-    pub(super) fn no_unit(&self, index: usize, line: usize, quantity: Unit, purpose: &str) -> Error {
-        let name = self.cells.get(index).map_or("", |cell| cell.text.as_str());
-        let si = NamedUnit::from(quantity).symbol();
-        let message = format!(
-            "found no unit below column `{name}` in the line of units (line {line}), expected one {purpose}: write `{si}` \
-             there if it is in {si}"
-        );
-        self.error(ErrorKind::Unit, index, message)
-    }
-
     /// Index of the column of this name, which may include the unit as in the file.
     pub(super) fn find(&self, name: &str) -> Result<Option<usize>> {
         if let Some(second) = self.second(name) {
@@ -289,83 +278,6 @@ impl<'a> Header<'a> {
     /// Number of columns with this name.
     pub(super) fn count(&self, name: &str) -> usize {
         self.cells.iter().filter(|cell| cell.name == name).count()
-    }
-
-    /// As [`Header::find`] for a required column; `is_known` recognises names that cannot be misspellings of another column's, and `advice`
-    /// is for the message.
-    pub(super) fn require(
-        &self,
-        name: &str,
-        purpose: &str,
-        is_known: impl Fn(&str) -> bool,
-        advice: &str,
-    ) -> Result<usize> {
-        if let Some(index) = self.find(name)? {
-            return Ok(index);
-        }
-        let hint = self.no_header(name).unwrap_or_else(|| self.other_names(name, is_known) + advice);
-        let message = format!("found no column `{name}`, expected one {purpose}; {hint}");
-        Err(match &self.sheet {
-            Some(sheet) => {
-                let message = format!("sheet `{}`, row {}: {message}", sheet.name, self.line);
-                ErrorKind::Measurement.error(message).in_file(self.path)
-            }
-            None => ErrorKind::Measurement.error(message).at_line(self.path, self.line),
-        })
-    }
-
-    /// Message if this line is no header.
-    fn no_header(&self, name: &str) -> Option<String> {
-        let has_name = |(_, text): &&(usize, String)| {
-            let mut cells = Vec::new();
-            split(text, Separator::recognised(text), &mut cells).is_ok()
-                && header_cells(text, &cells).iter().any(|cell| cell.name == name)
-        };
-        if let Some((line, _)) = self.below.iter().find(has_name) {
-            return Some(format!(
-                "line {line} has it: put `#` in front of the lines above it, or write `skip_lines = {}` in a mapping \
-                 file (--columns)",
-                line - 1
-            ));
-        }
-        let numbers = self.cells.iter().filter(|cell| is_number(&cell.text)).count();
-        if 2 * numbers > self.cells.len() {
-            return Some(
-                "the line holds mostly numbers: put a line above it that names the columns".to_owned(),
-            );
-        }
-        match self.cells.as_slice() {
-            [only] if only.text.len() > name.len() && only.text.contains(name) => Some(format!(
-                "the whole line is one column, `{}`: separate the columns by `,`, `;`, tabs or blanks",
-                only.text
-            )),
-            _ => None,
-        }
-    }
-
-    /// Another column that may be meant.
-    fn other_names(&self, name: &str, is_known: impl Fn(&str) -> bool) -> String {
-        let names = || {
-            let named = self.cells.iter().filter(|cell| !cell.name.is_empty());
-            named.map(|cell| cell.name.as_str()).filter(|found| !is_known(found))
-        };
-        // There may be very many columns.
-        let mut seen = BTreeSet::new();
-        let again: BTreeSet<&str> = names().filter(|found| !seen.insert(*found)).collect();
-        if let Some(twice) = names().find(|found| again.contains(found)) {
-            return format!("`{twice}` is the name of {} columns", self.count(twice));
-        }
-        let with_unit = names().find_map(|found| Some((found, unit_in_name(found, name)?)));
-        match (with_unit, nearest(name, names())) {
-            (Some((found, unit)), _) => {
-                format!("if `{found}` is meant, write `{name}[{}]`", unit.symbol())
-            }
-            (None, Some(near)) => format!("the nearest name found is `{near}`"),
-            (None, None) => {
-                let all = self.cells.iter().map(|cell| cell.name.as_str()).filter(|name| !name.is_empty());
-                format!("the columns are {}", first_few(&all.collect::<Vec<_>>()))
-            }
-        }
     }
 
     /// An error at a column's name.
@@ -388,7 +300,7 @@ impl<'a> Header<'a> {
     }
 }
 
-fn header_cells(text: &str, cells: &[Cell<'_>]) -> Vec<HeaderCell> {
+pub(super) fn header_cells(text: &str, cells: &[Cell<'_>]) -> Vec<HeaderCell> {
     // Counted from cell to cell, since there may be very many.
     let (mut column, mut offset) = (1, 0);
     let cell = |cell: &Cell<'_>| {

@@ -40,28 +40,8 @@ pub(super) fn in_motion(
     lag: Option<Lag>,
 ) -> Result<Joined> {
     let stated = lag.map(|it| (it.lag_s, it.off_s));
-    let in_file = |error: crate::error::Error| error.in_file(path);
-    let refuse = |message: String| {
-        let words = format!("{message} ({} has the joint readings)", joints.path.display());
-        Err(ErrorKind::Measurement.error(words).in_file(path))
-    };
-    let smooth = (smoothed(&joints.times), smoothed(times));
-    let mut found: Vec<(Stamps, Found)> = Vec::new();
-    for stamps in [(false, false), (true, false), (false, true), (true, true)] {
-        let stamps = Stamps { joints: stamps.0, measured: stamps.1 };
-        let own = if stamps.joints { smooth.0.as_ref() } else { Some(&joints.times) };
-        let seen = if stamps.measured { smooth.1.as_deref() } else { Some(times) };
-        let (Some(own), Some(seen)) = (own, seen) else { continue };
-        let Some(stream) = JointStream::new(own, &joints.readings, joints.turns.len()) else {
-            return refuse(
-                "found joint readings without times of their own, expected a column `time` in both files"
-                    .to_owned(),
-            );
-        };
-        let motion = Motion::new(robot, &stream, data, seen).map_err(in_file)?;
-        found.push((stamps, motion.found(stated)));
-    }
-    let Some((stamps, found)) = chosen(found) else {
+    let refuse = |message: String| refuse_pair(joints, path, message);
+    let Some((stamps, found)) = search(joints, (path, data, times), robot, stated)? else {
         return refuse("found no times, expected a column `time` in both files".to_owned());
     };
     let near = if lag.is_some() { " near the stated one" } else { "" };
@@ -111,6 +91,40 @@ pub(super) fn in_motion(
         },
         Err(NoLag::None(best)) => unfit(&best, " better than by chance"),
     }
+}
+
+/// Refuses a file of measurements beside one of joint readings.
+fn refuse_pair<T>(joints: &JointRows, path: &Path, message: String) -> Result<T> {
+    let words = format!("{message} ({} has the joint readings)", joints.path.display());
+    Err(ErrorKind::Measurement.error(words).in_file(path))
+}
+
+/// What is found by the stamps of both, as they are or smoothed: the best of these.
+fn search(
+    joints: &JointRows,
+    (path, data, times): (&Path, &Dataset, &[f64]),
+    robot: &Robot,
+    stated: Option<(f64, f64)>,
+) -> Result<Option<(Stamps, Found)>> {
+    let smooth = (smoothed(&joints.times), smoothed(times));
+    let mut found: Vec<(Stamps, Found)> = Vec::new();
+    for stamps in [(false, false), (true, false), (false, true), (true, true)] {
+        let stamps = Stamps { joints: stamps.0, measured: stamps.1 };
+        let own = if stamps.joints { smooth.0.as_ref() } else { Some(&joints.times) };
+        let seen = if stamps.measured { smooth.1.as_deref() } else { Some(times) };
+        let (Some(own), Some(seen)) = (own, seen) else { continue };
+        let Some(stream) = JointStream::new(own, &joints.readings, joints.turns.len()) else {
+            return refuse_pair(
+                joints,
+                path,
+                "found joint readings without times of their own, expected a column `time` in both files"
+                    .to_owned(),
+            );
+        };
+        let motion = Motion::new(robot, &stream, data, seen).map_err(|error| error.in_file(path))?;
+        found.push((stamps, motion.found(stated)));
+    }
+    Ok(chosen(found))
 }
 
 /// What was found by stamps as they are, or by smoothed ones where these fit evidently better.

@@ -3,10 +3,9 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-use super::join_doubt;
 use super::join_entry::{JoinEntry, MOST_ALONE, MOST_PAIRS, RowEntry};
 use super::join_plan::ReadingsByLine;
-use super::join_words::{advice, counted, mm, numbered, numbered_as, words};
+use super::join_words::{numbered, numbered_as};
 use super::motions::Sampled;
 use super::no_stands::NoStands;
 use super::picture_names::Partners;
@@ -14,7 +13,7 @@ use super::{Join, Lag};
 use crate::error::{Error, ErrorKind, Result};
 use crate::measurement::Dataset;
 use crate::robot::{Controller, Robot};
-use crate::start::{Agreement, JointStream, Pair, Span, Unpaired};
+use crate::start::{JointStream, Pair, Span, Unpaired};
 
 /// Fewest pairs that fit badly which show that rows were lost and taken twice.
 const FEW_WRONG: usize = 2;
@@ -206,114 +205,6 @@ impl<'a> Pairing<'a> {
             .filter_map(|(shot, name)| Some((row_of(name.as_ref()?)?, shot)))
             .collect();
         (2 * pairs.len() >= seen.len() && !pairs.is_empty()).then_some(pairs)
-    }
-
-    /// Pairs of one order, if the nominal robot agrees with them and with no other order; `is_stated` where the user said that they are right.
-    pub(super) fn judged(&self, pairs: &[Pair], how: Join, is_stated: bool) -> Result<Joined> {
-        let (joints, path) = (self.joints.path.display(), self.path.display());
-        let (by_name, option) = match how {
-            Join::Name => ("by name", "name"),
-            Join::Rows => ("row by row", "rows"),
-            Join::Time => ("at the times of their stands", "time"),
-            Join::Motion => ("in motion", "motion"),
-        };
-        let found = self.rows.agreement(pairs);
-        let mut warnings = Vec::new();
-        match found {
-            Some(
-                Agreement::Other { missed_m, order, other_m } | Agreement::Alike { missed_m, order, other_m },
-            ) if !is_stated && join_doubt::is_doubtful(self.robot, missed_m.min(other_m)) => {
-                return self.refuse(format!(
-                    "found measurements that do not fit the joint readings: the nominal robot misses them by {} (median) if they are joined {by_name}, and by {} {}: {}",
-                    mm(missed_m),
-                    mm(other_m),
-                    words(order),
-                    join_doubt::reason(self.robot, &self.rows.session_of(pairs))
-                ));
-            }
-            Some(Agreement::Other { missed_m, order, other_m }) => {
-                return self.refuse(format!(
-                    "found measurements that the nominal robot misses by {} (median) if they are joined {by_name}, and by {} {}, expected no other \
-                     order to fit better: {}",
-                    mm(missed_m),
-                    mm(other_m),
-                    words(order),
-                    advice(order)
-                ));
-            }
-            Some(Agreement::Alike { missed_m, order, other_m }) => {
-                let message = format!(
-                    "the nominal robot misses the measurements by {} (median) if they are joined {by_name}, and by {} {}, which is no evident difference",
-                    mm(missed_m),
-                    mm(other_m),
-                    words(order)
-                );
-                if !is_stated {
-                    let names = if how == Join::Name { "" } else { ", or give both files a column `id`" };
-                    return self.refuse(format!(
-                        "found files that can be joined in two ways: {message}; state the order by --join {option}{names}"
-                    ));
-                }
-                warnings.push(format!("{joints}, {path}: {message}"));
-            }
-            Some(Agreement::None { missed_m }) => {
-                let message = format!(
-                    "the nominal robot misses the measurements by {} (median) if they are joined {by_name}, no less than by chance: {}",
-                    mm(missed_m),
-                    join_doubt::reason(self.robot, &self.rows.session_of(pairs))
-                );
-                // A robot that moves little misses little in any order.
-                if !is_stated || join_doubt::is_doubtful(self.robot, missed_m) {
-                    return self.refuse(format!("found measurements that do not fit the joint readings: {message}"));
-                }
-                warnings.push(format!("{joints}, {path}: {message}"));
-            }
-            None if how == Join::Rows && !is_stated => {
-                return self.refuse(format!(
-                    "found {}, with which nothing shows whether the rows belong together, expected more, names in both (a column `id`), or \
-                     --join rows",
-                    counted(pairs.len())
-                ));
-            }
-            None => warnings.push(format!(
-                "{joints}, {path}: nothing shows whether the rows belong together: too few, or of a kind that one frame does not place"
-            )),
-            Some(Agreement::Right { .. }) => {}
-        }
-        self.refuse_exchanged(pairs)?;
-        if let Some(Agreement::Right { missed_m } | Agreement::Alike { missed_m, .. }) = found {
-            warnings.extend(self.refuse_doubtful(missed_m, pairs, by_name)?);
-        }
-        let missed = match found {
-            Some(Agreement::Right { missed_m }) => {
-                format!(
-                    "; the nominal robot misses them by {} (median), and by more than twice that in any other order",
-                    mm(missed_m)
-                )
-            }
-            _ => String::new(),
-        };
-        let note = format!("{joints} and {path} were joined {by_name}: {}{missed}", counted(pairs.len()));
-        warnings.extend(found.and_then(|_| self.wrong_pairs(pairs)));
-        warnings.extend(self.without_partner(pairs));
-        let entry = self.entry(how, pairs, found.as_ref().map(Agreement::missed_m));
-        let unmeasured = self.unmeasured(pairs);
-        Ok(Joined { entry, readings: self.readings(pairs), unmeasured, notes: vec![note], warnings })
-    }
-
-    /// Refuses rows that fit each other's readings.
-    fn refuse_exchanged(&self, pairs: &[Pair]) -> Result<()> {
-        let exchanged = self.rows.exchanged(pairs);
-        let Some((one, other)) = exchanged.first() else { return Ok(()) };
-        let (Some(one), Some(other)) = (pairs.get(*one), pairs.get(*other)) else { return Ok(()) };
-        let all: BTreeSet<usize> = exchanged.iter().filter_map(|it| Some(pairs.get(it.0)?.1)).collect();
-        self.refuse(format!(
-            "found the measurements of {} in another order than their joint readings, as {} that fits the readings of {}, expected the same order: \
-             exchange them",
-            self.shot_lines(&all.into_iter().collect::<Vec<_>>()),
-            self.shot_lines(&[one.1]),
-            self.joint_lines(&[other.0])
-        ))
     }
 
     /// What is kept of pairs.

@@ -3,10 +3,11 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
+use super::column_spec::ColumnSpec;
 use super::configurations::is_folder;
 use super::corner_columns::{are_corners, are_readings_of_pictures};
 use super::layout::ColumnLayout;
-use super::mapping::{ColumnMap, ColumnSpec};
+use super::mapping::ColumnMap;
 use super::messages::are_messages;
 use super::no_file_for::{BODIES, unused};
 use super::recorded::{MEASURED, Opened, Opening, OwnTable, RECORDINGS, Recording};
@@ -100,21 +101,7 @@ impl<'p> Plan<'p> {
         if paths.len() < 2 && first.is_none() {
             return Ok(None);
         }
-        let mut files: Vec<(&'p Path, Part, Option<OwnTable>)> = Vec::new();
-        let mut neither = Vec::new();
-        for (path, recording) in paths.iter().zip(&recordings) {
-            let Some(recording) = recording else {
-                let Found { part, table, why } = part(path, opening, map)?;
-                neither.extend(why);
-                files.push((path, part, table));
-                continue;
-            };
-            for (is_joints, table) in recording.tables() {
-                let is_named = map.target_name.is_some();
-                let part = if is_joints { Part::Joints } else { Part::Measured { is_named } };
-                files.push((path, part, Some(table)));
-            }
-        }
+        let (files, neither) = sort_parts(paths.iter().copied().zip(&recordings), opening, map)?;
         let measured = files.iter().filter(|it| matches!(it.1, Part::Measured { .. })).count();
         let joints = files.iter().filter(|it| it.1 == Part::Joints).count();
         if let Some((path, recording)) = first {
@@ -144,7 +131,7 @@ impl<'p> Plan<'p> {
             .filter_map(|it| it.2.as_ref()?.frame())
             .collect();
         let is_by_frames = frames.len() > 1 && options.frames == Frames::Common;
-        let planned = |(path, part, table): (&'p Path, Part, Option<OwnTable>)| {
+        let planned = |(path, part, table): FilePart<'p>| {
             let mut map = without_joints(map, robot);
             // Several files that were measured at the same configurations are of several targets, or of several instruments.
             let is_unnamed = part == (Part::Measured { is_named: false });
@@ -262,4 +249,31 @@ fn without_joints(map: &ColumnMap, robot: &Robot) -> ColumnMap {
     let mut own = map.clone();
     (own.joints, own.third_axis) = (joints.map(|name| (name, zero())).collect(), None);
     own
+}
+
+/// A file with what it has, and its table if it is in another form.
+type FilePart<'p> = (&'p Path, Part, Option<OwnTable>);
+
+/// Sorts files by what they have; with why some have neither joint readings nor measurements.
+fn sort_parts<'p, 'r>(
+    paths: impl Iterator<Item = (&'p Path, &'r Option<Recording>)>,
+    opening: Opening<'_>,
+    map: &ColumnMap,
+) -> Result<(Vec<FilePart<'p>>, Vec<Neither>)> {
+    let mut files: Vec<FilePart<'p>> = Vec::new();
+    let mut neither = Vec::new();
+    for (path, recording) in paths {
+        let Some(recording) = recording else {
+            let Found { part, table, why } = part(path, opening, map)?;
+            neither.extend(why);
+            files.push((path, part, table));
+            continue;
+        };
+        for (is_joints, table) in recording.tables() {
+            let is_named = map.target_name.is_some();
+            let part = if is_joints { Part::Joints } else { Part::Measured { is_named } };
+            files.push((path, part, Some(table)));
+        }
+    }
+    Ok((files, neither))
 }

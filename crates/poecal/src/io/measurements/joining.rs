@@ -15,7 +15,7 @@ use super::no_stands::NoStands;
 use super::number::Numbers;
 use super::read::Reader;
 use super::recorded::MEASURED;
-use super::streams::{stands_of_joints, stands_of_measured};
+use super::streams::{MeasuredStands, stands_of_joints, stands_of_measured};
 use super::table::Table;
 use super::understanding::{self, FileUnderstanding};
 use super::units::UnitSource;
@@ -94,24 +94,7 @@ impl<'a> Reader<'a> {
         self.warn_of_ignored(path, &layout);
         self.take_controller(path, &layout)?;
         self.found.sha256.extend(table.sha256().map(|sha256| (path.display().to_string(), sha256)));
-        self.found.understood.push(FileUnderstanding {
-            path: path.to_path_buf(),
-            form: table.form(),
-            understood: table.understood(),
-            rows: table_rows.rows,
-            points: 0,
-            poses: 0,
-            others: BTreeMap::from([("joint readings", table_rows.rows)]),
-            lost: LostBeams::default(),
-            separator: table.separator,
-            separator_line: table.separator_line,
-            units_line: table.header.units_line,
-            decimal_sign: inputs.numbers.sign(),
-            columns: understanding::columns(&table, &layout, &inputs.ranges),
-            orientation: None,
-            pose: understanding::pose_word(layout.pose),
-            ignored: layout.ignored.iter().map(|(name, _)| name.clone()).collect(),
-        });
+        self.understand_joints(&table, &layout, &inputs, table_rows.rows);
         let turning = layout.inputs.iter().filter(|it| it.unit.of() == Unit::Radian);
         let mut rows = JointRows {
             path: path.to_path_buf(),
@@ -156,6 +139,34 @@ impl<'a> Reader<'a> {
         Ok(stands)
     }
 
+    /// Says how a file of joint readings was understood.
+    fn understand_joints(
+        &mut self,
+        table: &Table<'_>,
+        layout: &ColumnLayout,
+        inputs: &InputReader<'_>,
+        rows: usize,
+    ) {
+        self.found.understood.push(FileUnderstanding {
+            path: table.header.path.to_path_buf(),
+            form: table.form(),
+            understood: table.understood(),
+            rows,
+            points: 0,
+            poses: 0,
+            others: BTreeMap::from([("joint readings", rows)]),
+            lost: LostBeams::default(),
+            separator: table.separator,
+            separator_line: table.separator_line,
+            units_line: table.header.units_line,
+            decimal_sign: inputs.numbers.sign(),
+            columns: understanding::columns(table, layout, &inputs.ranges),
+            orientation: None,
+            pose: understanding::pose_word(layout.pose),
+            ignored: layout.ignored.iter().map(|(name, _)| name.clone()).collect(),
+        });
+    }
+
     /// Reads a file of measurements alone, with the readings of another.
     fn measured(
         &mut self,
@@ -166,17 +177,7 @@ impl<'a> Reader<'a> {
         let path = planned.path;
         let (data, times) = self.without_readings(planned)?;
         if self.options.join == Some(Join::Motion) {
-            let joined =
-                |joints: &JointRows| in_motion(joints, (path, &data, &times), self.robot, self.options.lag);
-            let found = match joined(joints) {
-                Err(error) if joints.is_without_unit => {
-                    let mut found = joined(&joints.in_degrees()).map_err(|_| error)?;
-                    found.warnings.push(took_degrees(&joints.path, "as radians they fit no measurements"));
-                    self.found.is_in_degrees = true;
-                    found
-                }
-                found => found?,
-            };
+            let found = self.join_in_motion(joints, (path, &data, &times))?;
             return self.again(planned, found, unmeasured);
         }
         let is_by_rows = matches!(self.options.join, Some(Join::Rows | Join::Name));
@@ -217,18 +218,26 @@ impl<'a> Reader<'a> {
             found => found?,
         };
         if let Some(stands) = stands {
-            found.notes.push(format!(
-                "{}: each stand is the mean of its rows, which scatter by {:.3} mm",
-                path.display(),
-                1e3 * stands.scatter_m
-            ));
-            found.warnings.extend(stands.warnings.iter().map(|it| format!("{}: {it}", path.display())));
-            found.readings.means = stands.means;
+            take_stands(&mut found, stands, path);
         }
         let by_time = found.entry.join == Join::Time;
         found.entry.measured_motion =
             motion.or_else(|| points.as_deref().filter(|_| by_time).and_then(motion_of_points));
         self.again(planned, found, unmeasured)
+    }
+
+    /// Joins measurements in motion; joint readings that state no unit may be degrees.
+    fn join_in_motion(&mut self, joints: &JointRows, seen: (&Path, &Dataset, &[f64])) -> Result<Joined> {
+        let joined = |joints: &JointRows| in_motion(joints, seen, self.robot, self.options.lag);
+        match joined(joints) {
+            Err(error) if joints.is_without_unit => {
+                let mut found = joined(&joints.in_degrees()).map_err(|_| error)?;
+                found.warnings.push(took_degrees(&joints.path, "as radians they fit no measurements"));
+                self.found.is_in_degrees = true;
+                Ok(found)
+            }
+            found => found,
+        }
     }
 
     /// Reads a file of measurements again, with the readings of each line.
@@ -274,6 +283,17 @@ impl Unmeasured {
             None => (self.rows, self.at) = (Some(rows), at),
         }
     }
+}
+
+/// Takes the means of stands, and says how their rows scatter.
+fn take_stands(found: &mut Joined, stands: MeasuredStands, path: &Path) {
+    found.notes.push(format!(
+        "{}: each stand is the mean of its rows, which scatter by {:.3} mm",
+        path.display(),
+        1e3 * stands.scatter_m
+    ));
+    found.warnings.extend(stands.warnings.iter().map(|it| format!("{}: {it}", path.display())));
+    found.readings.means = stands.means;
 }
 
 /// Refuses a recording whose times go back.

@@ -1,16 +1,15 @@
 //! Mapping files: how files with their own column names are read.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::fmt;
 use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
-use serde::de::value::MapAccessDeserializer;
-use serde::de::{Deserializer, Error as _, MapAccess, Visitor};
 
 use super::FitWhere;
 use super::cells::Separator;
-use super::column_names::{column_name, column_names, counted_column, some_columns, three_columns};
+use super::column_names::{column_name, column_names, some_columns, three_columns};
+use super::column_spec::ColumnSpec;
+use super::mapping_values::{angle_unit, decimal_sign, length_unit, orientation_form, separator, third_axis};
 use super::number::DecimalSign;
 use super::orientation::OrientationForm;
 use super::units::NamedUnit;
@@ -90,21 +89,6 @@ impl UnitDefaults {
             Unit::One | Unit::Second => None,
         }
     }
-}
-
-/// One column, a sum of columns, or a constant. In TOML a column's name, or a table.
-#[derive(Clone, Debug, Default, Deserialize)]
-#[serde(remote = "Self", deny_unknown_fields)]
-pub(super) struct ColumnSpec {
-    #[serde(default, deserialize_with = "column_name")]
-    pub(super) column: Option<String>,
-    /// Columns with their factors.
-    pub(super) columns: Option<BTreeMap<String, f64>>,
-    pub(super) value: Option<f64>,
-    /// What is added to the columns, in the unit.
-    pub(super) offset: Option<f64>,
-    #[serde(default, deserialize_with = "any_unit")]
-    pub(super) unit: Option<NamedUnit>,
 }
 
 #[derive(Clone, Debug, Default, Deserialize)]
@@ -283,131 +267,4 @@ impl TryFrom<OrientationFields> for OrientationSpec {
         }
         Ok(OrientationSpec { form, columns, unit: fields.unit })
     }
-}
-
-impl<'de> Deserialize<'de> for ColumnSpec {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Self, D::Error> {
-        deserializer.deserialize_any(ColumnSpecVisitor)
-    }
-}
-
-struct ColumnSpecVisitor;
-
-impl<'de> Visitor<'de> for ColumnSpecVisitor {
-    type Value = ColumnSpec;
-
-    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("the name or the number of a column, or a table with `column`, `columns` or `value`, and `offset` and `unit`")
-    }
-
-    fn visit_str<E: serde::de::Error>(self, column: &str) -> std::result::Result<ColumnSpec, E> {
-        Ok(ColumnSpec { column: Some(column.to_owned()), ..ColumnSpec::default() })
-    }
-
-    fn visit_i64<E: serde::de::Error>(self, number: i64) -> std::result::Result<ColumnSpec, E> {
-        Ok(ColumnSpec { column: Some(counted_column(number)?), ..ColumnSpec::default() })
-    }
-
-    fn visit_map<A: MapAccess<'de>>(self, map: A) -> std::result::Result<ColumnSpec, A::Error> {
-        let spec = ColumnSpec::deserialize(MapAccessDeserializer::new(map))?;
-        let given = [
-            ("column", spec.column.is_some()),
-            ("columns", spec.columns.is_some()),
-            ("value", spec.value.is_some()),
-        ];
-        let mut given = given.into_iter().filter(|(_, given)| *given).map(|(key, _)| key);
-        if let (Some(first), Some(second)) = (given.next(), given.next()) {
-            return Err(A::Error::custom(format!(
-                "found both `{first}` and `{second}`, expected one of them"
-            )));
-        }
-        spec.columns.as_ref().map_or(Ok(()), check_columns)?;
-        if [spec.value, spec.offset].into_iter().flatten().any(|value| !value.is_finite()) {
-            return Err(A::Error::custom("found a value that is not finite, expected a finite number"));
-        }
-        if spec.value.is_some() && spec.offset.is_some() {
-            return Err(A::Error::custom("found `offset` beside `value`, expected their sum as `value`"));
-        }
-        Ok(spec)
-    }
-}
-
-/// The columns of a sum must be some, with factors that say something.
-fn check_columns<E: serde::de::Error>(columns: &BTreeMap<String, f64>) -> std::result::Result<(), E> {
-    if columns.is_empty() {
-        return Err(E::custom(
-            "found no column in `columns`, expected columns with their factors, like { J2 = -1, J3 = 1 }",
-        ));
-    }
-    if let Some((name, factor)) = columns.iter().find(|(_, factor)| !factor.is_normal()) {
-        let message = format!(
-            "found the factor {factor} of column `{name}`, expected a number other than 0, like 1 or -1"
-        );
-        return Err(E::custom(message));
-    }
-    Ok(())
-}
-
-/// A string for `parse`; its error becomes the TOML error's message.
-fn parsed<'de, D: Deserializer<'de>, T>(
-    deserializer: D,
-    parse: impl Fn(&str) -> Result<T>,
-) -> std::result::Result<Option<T>, D::Error> {
-    let text = String::deserialize(deserializer)?;
-    parse(&text).map(Some).map_err(D::Error::custom)
-}
-
-fn length_unit<'de, D: Deserializer<'de>>(
-    deserializer: D,
-) -> std::result::Result<Option<NamedUnit>, D::Error> {
-    parsed(deserializer, |text| NamedUnit::parse(text, Unit::Metre))
-}
-
-fn angle_unit<'de, D: Deserializer<'de>>(
-    deserializer: D,
-) -> std::result::Result<Option<NamedUnit>, D::Error> {
-    parsed(deserializer, |text| NamedUnit::parse(text, Unit::Radian))
-}
-
-fn any_unit<'de, D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Option<NamedUnit>, D::Error> {
-    parsed(deserializer, NamedUnit::parse_any)
-}
-
-fn orientation_form<'de, D: Deserializer<'de>>(
-    deserializer: D,
-) -> std::result::Result<OrientationForm, D::Error> {
-    String::deserialize(deserializer)?.parse().map_err(D::Error::custom)
-}
-
-fn third_axis<'de, D: Deserializer<'de>>(
-    deserializer: D,
-) -> std::result::Result<Option<ThirdAxis>, D::Error> {
-    parsed(deserializer, |text| match text {
-        "arm" => Ok(ThirdAxis::Arm),
-        "level" => Ok(ThirdAxis::Level),
-        _ => ErrorKind::Syntax.refuse(format!(
-            "found the third axis `{text}`, expected `arm` or `level`, from which it counts"
-        )),
-    })
-}
-
-fn separator<'de, D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Option<Separator>, D::Error> {
-    parsed(deserializer, |text| match text {
-        "," => Ok(Separator::Comma),
-        ";" => Ok(Separator::Semicolon),
-        "\t" | "tab" => Ok(Separator::Tab),
-        " " | "whitespace" => Ok(Separator::Whitespace),
-        _ => ErrorKind::Syntax
-            .refuse(format!("found the separator `{text}`, expected `,`, `;`, `tab` or `whitespace`")),
-    })
-}
-
-fn decimal_sign<'de, D: Deserializer<'de>>(
-    deserializer: D,
-) -> std::result::Result<Option<DecimalSign>, D::Error> {
-    parsed(deserializer, |text| match text {
-        "." => Ok(DecimalSign::Point),
-        "," => Ok(DecimalSign::Comma),
-        _ => ErrorKind::Syntax.refuse(format!("found the decimal sign `{text}`, expected `.` or `,`")),
-    })
 }

@@ -14,6 +14,7 @@ use super::read::Reader;
 use super::table::Table;
 use super::text::Blocks;
 use super::wrong_boards::refuse_wrong_boards;
+use crate::camera::Pictures;
 use crate::error::{Error, ErrorKind, Result, first_few};
 use crate::hand_eye::PoseList;
 use crate::lie::{Pose, Screw};
@@ -67,20 +68,7 @@ pub(super) fn poses_of_pictures(path: &Path, arm: &PoseFile, options: &ReadOptio
     found.data.settle_pixels();
     refuse_wrong_boards(&found.data).map_err(|error| error.in_file(path))?;
     let pictures = &found.data.pictures;
-    let seen: BTreeSet<(usize, usize)> = pictures.all.iter().map(|it| (it.camera, it.board)).collect();
-    let [(_, board)] = Vec::from_iter(seen.iter().copied())[..] else {
-        let names: Vec<&str> = (seen.iter())
-            .filter_map(|(camera, board)| match seen.iter().any(|it| it.0 != *camera) {
-                true => pictures.cameras.get(*camera).map(|it| it.name.as_str()),
-                false => pictures.boards.get(*board).map(|it| it.name.as_str()),
-            })
-            .collect();
-        let message = format!(
-            "found pictures of several cameras or boards ({}), expected one of each: leave the rows of one",
-            first_few(&names)
-        );
-        return Err(Error::new(ErrorKind::Measurement, message).in_file(path));
-    };
+    let board = only_board(pictures).map_err(|error| error.in_file(path))?;
     let half_turn = pictures.boards.get(board).and_then(|board| board.half_turn());
     let (mut rows, mut poses, mut other_poses) = (Vec::new(), Vec::new(), Vec::new());
     for picture in &pictures.all {
@@ -103,4 +91,23 @@ pub(super) fn poses_of_pictures(path: &Path, arm: &PoseFile, options: &ReadOptio
         warnings: found.warnings,
         sha256: found.sha256.into_iter().collect(),
     })
+}
+
+/// The one board of pictures, which one camera saw.
+fn only_board(pictures: &Pictures) -> Result<usize> {
+    let seen: BTreeSet<(usize, usize)> = pictures.all.iter().map(|it| (it.camera, it.board)).collect();
+    let [(_, board)] = Vec::from_iter(seen.iter().copied())[..] else {
+        let names: Vec<&str> = (seen.iter())
+            .filter_map(|(camera, board)| match seen.iter().any(|it| it.0 != *camera) {
+                true => pictures.cameras.get(*camera).map(|it| it.name.as_str()),
+                false => pictures.boards.get(*board).map(|it| it.name.as_str()),
+            })
+            .collect();
+        let message = format!(
+            "found pictures of several cameras or boards ({}), expected one of each: leave the rows of one",
+            first_few(&names)
+        );
+        return Err(Error::new(ErrorKind::Measurement, message));
+    };
+    Ok(board)
 }

@@ -318,13 +318,10 @@ fn columns(header: &Header<'_>, whose: Whose, named: &[&Named], stated: PoseUnit
             .join(", ")
     };
     let position = all(&["x", "y", "z"]).or_else(|| all(&["m03", "m13", "m23"]));
-    let position = match position.as_deref() {
-        Some([x, y, z]) => [*x, *y, *z],
-        _ => {
-            return Err(ErrorKind::Measurement
-                .error(format!("found no position of {who} among the columns {}, expected x, y, z or tvec_x, tvec_y, tvec_z: name them so", names()))
-                .at_line(header.path, header.line));
-        }
+    let Some(&[x, y, z]) = position.as_deref() else {
+        return Err(ErrorKind::Measurement
+            .error(format!("found no position of {who} among the columns {}, expected x, y, z or tvec_x, tvec_y, tvec_z: name them so", names()))
+            .at_line(header.path, header.line));
     };
     let found = FORMS.iter().find_map(|form| Some((form, all(form.columns)?)));
     let Some((form, orientation)) = found else {
@@ -337,31 +334,17 @@ fn columns(header: &Header<'_>, whose: Whose, named: &[&Named], stated: PoseUnit
             .at_line(header.path, header.line));
     };
     let usual = form.usual.unwrap_or(("m", "rad"));
-    let number =
-        |at: usize, quantity: Unit, stated: Option<NamedUnit>, usual: &str| -> Result<NumberColumn> {
-            let purpose = format!("for {who}");
-            let in_name = header
-                .cells
-                .get(at)
-                .and_then(|cell| without_unit(&cell.name).1)
-                .filter(|unit| unit.of() == quantity);
-            let unit = match header.unit(at, quantity, &purpose)? {
-                Some((unit, _)) => unit,
-                None => match in_name.or(stated) {
-                    Some(unit) => unit,
-                    None => NamedUnit::parse(usual, quantity)?,
-                },
-            };
-            Ok(NumberColumn { at, unit })
-        };
+    let number = |at: usize, quantity: Unit, stated: Option<NamedUnit>, usual: &str| {
+        number_column(header, (at, quantity), (stated, usual), who)
+    };
     let quantity = form.form.quantity();
     let angle =
         stated.angle.filter(|_| quantity == Unit::Radian && form.form != OrientationForm::RotationVector);
     let usual_angle = if quantity == Unit::Radian { usual.1 } else { "1" };
     let position = [
-        number(position[0], Unit::Metre, stated.length, usual.0)?,
-        number(position[1], Unit::Metre, stated.length, usual.0)?,
-        number(position[2], Unit::Metre, stated.length, usual.0)?,
+        number(x, Unit::Metre, stated.length, usual.0)?,
+        number(y, Unit::Metre, stated.length, usual.0)?,
+        number(z, Unit::Metre, stated.length, usual.0)?,
     ];
     let orientation: Vec<NumberColumn> =
         orientation.into_iter().map(|at| number(at, quantity, angle, usual_angle)).collect::<Result<_>>()?;
@@ -373,4 +356,24 @@ fn columns(header: &Header<'_>, whose: Whose, named: &[&Named], stated: PoseUnit
         symbol.map_or(String::new(), |it| format!(", {it}"))
     );
     Ok(PoseColumns { position, orientation, form: form.form, words, whose })
+}
+
+/// A column of numbers with its unit: as the header has it, as its name ends, as it is stated, or the usual one.
+fn number_column(
+    header: &Header<'_>,
+    (at, quantity): (usize, Unit),
+    (stated, usual): (Option<NamedUnit>, &str),
+    who: &str,
+) -> Result<NumberColumn> {
+    let purpose = format!("for {who}");
+    let in_name =
+        header.cells.get(at).and_then(|cell| without_unit(&cell.name).1).filter(|unit| unit.of() == quantity);
+    let unit = match header.unit(at, quantity, &purpose)? {
+        Some((unit, _)) => unit,
+        None => match in_name.or(stated) {
+            Some(unit) => unit,
+            None => NamedUnit::parse(usual, quantity)?,
+        },
+    };
+    Ok(NumberColumn { at, unit })
 }

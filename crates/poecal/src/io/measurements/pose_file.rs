@@ -134,9 +134,7 @@ pub(super) fn read_poses(
         }
     }
     if lines.is_empty() {
-        return Err(ErrorKind::Measurement
-            .error("found a header and no rows, expected a row for each pose")
-            .at_line(path, header_line));
+        return no_rows(path, header_line);
     }
     let mut file = PoseFile {
         path: path.to_owned(),
@@ -153,6 +151,13 @@ pub(super) fn read_poses(
         file.add_joints(robot)?;
     }
     Ok(file)
+}
+
+/// Refuses a file that has a header alone.
+fn no_rows<T>(path: &Path, line: usize) -> Result<T> {
+    Err(ErrorKind::Measurement
+        .error("found a header and no rows, expected a row for each pose")
+        .at_line(path, line))
 }
 
 impl PoseFile {

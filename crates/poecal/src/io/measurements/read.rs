@@ -9,27 +9,27 @@ use super::corner_columns::{are_corners, are_readings_of_pictures};
 use super::inputs::InputReader;
 use super::join_plan::{Plan, ReadingsByLine};
 use super::layout::ColumnLayout;
-use super::lost::{self, LostBeams};
+use super::lost::LostBeams;
 use super::mapping::ColumnMap;
 use super::messages::are_messages;
 use super::naming::Names;
 use super::number::Numbers;
 use super::picture_files::TakenByImage;
 use super::recorded::Opening;
-use super::scale::{self, JointWatch};
+use super::scale::JointWatch;
 use super::socket_distance::Sockets;
 use super::spread;
 use super::streams::time_of;
 use super::table::{Table, refuse_more_rows};
 use super::text::{Blocks, Said};
-use super::turns::{self, TurnWatch};
-use super::understanding::{self, ColumnUnderstanding, FileUnderstanding};
+use super::turns::TurnWatch;
 use super::wrong_boards::refuse_wrong_boards;
 use super::{FitWhere, Frames, MeasurementFile, ReadOptions};
+use super::{lost, scale};
 use crate::camera::{Board, Camera};
-use crate::error::{ErrorKind, Result, shown};
-use crate::measurement::{Clock, Dataset, Observation};
-use crate::robot::{Controller, Robot};
+use crate::error::{ErrorKind, Result};
+use crate::measurement::{Dataset, Observation};
+use crate::robot::Robot;
 use crate::start::{settle_faces, settle_pictures};
 use crate::text::visible;
 
@@ -101,9 +101,6 @@ fn parse_at(text: &str, path: &Path, robot: &Robot, options: &ReadOptions) -> Re
     reader.finish()
 }
 
-/// What rows are of that have some components of a position.
-const COMPONENTS: &str = "single components";
-
 /// The warning of rows that have some components of a position beside rows that have all.
 fn incomplete(path: &Path, rows: &[Observation]) -> Option<String> {
     let is_part = |row: &&Observation| row.measurement.is_part_of_position();
@@ -123,9 +120,6 @@ fn incomplete(path: &Path, rows: &[Observation]) -> Option<String> {
 fn counted(rows: usize) -> String {
     if rows == 1 { "one row".to_owned() } else { format!("{rows} rows") }
 }
-
-/// Most ignored columns in a warning.
-const IGNORED_NAMED: usize = 30;
 
 pub(super) struct Reader<'a> {
     pub(super) robot: &'a Robot,
@@ -302,52 +296,6 @@ impl<'a> Reader<'a> {
         Ok((watch, rows, lost))
     }
 
-    /// Takes what was measured on an average in place of the rows that stand for a stand.
-    fn take_means(&mut self, first: usize) {
-        let Some(by_line) = self.readings.as_ref().filter(|it| !it.means.is_empty()) else { return };
-        let (mut line, mut at) = (0, 0);
-        for row in self.found.data.observations.iter_mut().skip(first) {
-            (line, at) = if line == row.source.line { (line, at + 1) } else { (row.source.line, 0) };
-            if let Some(mean) = by_line.means.get(&(line as usize)).and_then(|it| it.get(at)) {
-                row.measurement = *mean;
-            }
-        }
-    }
-
-    /// Says of rows that were measured in motion how fast their readings changed, and by which clock.
-    fn take_motion(&mut self, path: &Path, first: usize) -> Result<()> {
-        let Some(motion) = self.readings.as_ref().and_then(|it| it.moving.as_ref()) else { return Ok(()) };
-        let data = &mut self.found.data;
-        for row in first..data.len() {
-            let Some(Observation { station, source, .. }) = data.observations.get(row).copied() else {
-                continue;
-            };
-            let Some((rates, time_s)) = motion.rows.get(&(source.line as usize)) else { continue };
-            let clock = Clock { station, ..motion.clock };
-            match data.moving.clock(station) {
-                None => data.moving.clocks.push(clock),
-                Some(known) if *known == clock => {}
-                Some(_) => {
-                    let message = "found a second recording in motion by one instrument, expected one, whose clock is an unknown of the fit: --frames per-file gives each file an instrument with a clock and a frame of its own, also where the instrument did not move between them";
-                    return Err(ErrorKind::Measurement.error(message).in_file(path));
-                }
-            }
-            data.state_motion(row, rates, *time_s);
-        }
-        Ok(())
-    }
-
-    /// Refuses a pair of which one row is missing.
-    fn refuse_single_rows(&mut self, path: &Path) -> Result<()> {
-        if let Some((name, (_, line))) = self.begun.iter().find(|(_, (index, _))| index.is_some()) {
-            return Err(ErrorKind::Measurement.error(format!(
-                "found one row of the pair `{name}`, expected two: the instrument's configuration, then the target's with what was measured"
-            )).at_line(path, *line));
-        }
-        self.begun.clear();
-        Ok(())
-    }
-
     /// Judges the scale of the readings and of what was measured.
     fn judge(
         &mut self,
@@ -365,99 +313,6 @@ impl<'a> Reader<'a> {
         scale::check_positions(path, self.robot, layout, slides_m, new_rows)?;
         scale::check_ranges(path, self.robot, slides_m, new_rows)?;
         spread::check(path, &table.header, self.robot, layout, &self.found.data, first)
-    }
-
-    /// Says how a file was understood.
-    fn understand(
-        &mut self,
-        table: &Table<'_>,
-        layout: &ColumnLayout,
-        inputs: &InputReader<'_>,
-        (first, rows, lost): (usize, usize, LostBeams),
-    ) -> Result<()> {
-        let path = table.header.path;
-        let (mut points, mut poses, mut others) = (0, 0, BTreeMap::new());
-        for row in self.found.data.observations.get(first..).unwrap_or_default() {
-            let seen = &row.measurement;
-            if seen.is_place() {
-                *(if seen.sees_orientation() { &mut poses } else { &mut points }) += 1;
-            } else {
-                let is_part = seen.is_part_of_position();
-                let name = if is_part { COMPONENTS } else { seen.function().leading().name() };
-                *others.entry(name).or_default() += 1;
-            }
-        }
-        if !self.found.data.ids.is_empty() {
-            self.found.data.ids.resize(self.found.data.len(), String::new());
-        }
-        self.warn_of_ignored(path, layout);
-        self.found
-            .warnings
-            .extend(layout.joint_words().into_iter().map(|words| format!("{}: {words}", path.display())));
-        self.take_controller(path, layout)?;
-        let turns = turns::warning(&table.header, layout, self.map);
-        self.found.warnings.extend(turns.map(|warning| format!("{}: {warning}", path.display())));
-        self.found.understood.push(FileUnderstanding {
-            path: path.to_path_buf(),
-            form: table.form(),
-            understood: table.understood(),
-            rows,
-            points,
-            poses,
-            others,
-            lost,
-            separator: table.separator,
-            separator_line: table.separator_line,
-            units_line: table.header.units_line,
-            decimal_sign: inputs.numbers.sign(),
-            columns: self.own_columns(understanding::columns(table, layout, &inputs.ranges)),
-            orientation: understanding::orientation(layout),
-            pose: understanding::pose_word(layout.pose),
-            ignored: layout.ignored.iter().map(|(name, _)| name.clone()).collect(),
-        });
-        Ok(())
-    }
-
-    /// Columns without those of joints whose readings another file has.
-    fn own_columns(&self, columns: Vec<ColumnUnderstanding>) -> Vec<ColumnUnderstanding> {
-        let skipped = if self.readings.is_some() { self.found.data.reading_names().len() } else { 0 };
-        columns.into_iter().skip(skipped).collect()
-    }
-
-    /// How the files' readings are made of columns, which must be the same in all.
-    pub(super) fn take_controller(&mut self, path: &Path, layout: &ColumnLayout) -> Result<()> {
-        let words = |it: &Option<Controller>| it.as_ref().map(|it| (it.third_axis, it.words()));
-        let is_first = self.found.understood.is_empty();
-        if !is_first && words(&self.found.data.controller) != words(&layout.controller) {
-            let shown =
-                |it: &Option<Controller>| it.as_ref().map_or("one by one".to_owned(), Controller::words);
-            return Err(ErrorKind::Measurement
-                .error(format!(
-                    "found joint readings of columns {} after a file with {}, expected the same in all files",
-                    shown(&layout.controller),
-                    shown(&self.found.data.controller)
-                ))
-                .in_file(path));
-        }
-        self.found.data.controller.clone_from(&layout.controller);
-        Ok(())
-    }
-
-    pub(super) fn warn_of_ignored(&mut self, path: &Path, layout: &ColumnLayout) {
-        if layout.ignored.is_empty() {
-            return;
-        }
-        let columns = layout.ignored.iter().take(IGNORED_NAMED).map(|(name, meant)| match meant {
-            Some(meant) => format!("`{}` (did you mean `{meant}`?)", shown(name)),
-            None => format!("`{}`", shown(name)),
-        });
-        let columns: Vec<String> = columns.collect();
-        let more = match layout.ignored.len() - columns.len() {
-            0 => String::new(),
-            more => format!(" and {more} more"),
-        };
-        let columns = columns.join(", ");
-        self.found.warnings.push(format!("{}: ignored the columns {columns}{more}", path.display()));
     }
 
     fn finish(self) -> Result<MeasurementFile> {

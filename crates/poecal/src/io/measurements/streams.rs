@@ -125,26 +125,7 @@ pub(super) fn stands_of_measured(data: &Dataset, times: &[f64]) -> Result<Measur
     if own.iter().any(|it| it.measurement.position().is_none()) {
         return Err(NoStands::Listed);
     }
-    let is_posed = own.iter().all(|it| it.measurement.sees_orientation());
-    let mut turned = Turned::default();
-    let mut numbers = |it: &&Observation| -> Vec<f64> {
-        let place = it.measurement.position().unwrap_or_default();
-        let turn = it.measurement.orientation().filter(|_| is_posed).map(|it| turned.after(&it));
-        place.iter().copied().chain(turn.iter().flat_map(|it| it.iter().copied())).collect()
-    };
-    let all: Vec<Vec<f64>> = own.iter().map(&mut numbers).collect();
-    let width = all.first().map_or(0, Vec::len);
-    let channel = |at: usize| -> Vec<f64> { all.iter().filter_map(|it| it.get(at)).copied().collect() };
-    let group = |range: std::ops::Range<usize>, floor: f64| StreamChannels {
-        values: range.map(channel).collect(),
-        freedom: 3,
-        floor,
-    };
-    let mut channels = vec![group(0..3, STILL_PLACE_M)];
-    channels.extend((width > 3).then(|| group(3..width, STILL_TURN)));
-    let own_times: Vec<f64> = rows.iter().filter_map(|at| times.get(*at)).copied().collect();
-    let lines: Vec<usize> = own.iter().map(|it| it.source.line as usize).collect();
-    let stream = dense(&own_times, channels, &lines)?;
+    let stream = stream_of_places(&own, (&rows, times))?;
     let mut found =
         MeasuredStands { data: Dataset::new(data.reading_names().to_vec()), ..MeasuredStands::default() };
     (found.data.targets, found.data.stations) = (data.targets.clone(), data.stations.clone());
@@ -188,6 +169,30 @@ pub(super) fn stands_of_measured(data: &Dataset, times: &[f64]) -> Result<Measur
         numbered(&some.iter().filter_map(|at| starts.get(*at)).cloned().collect::<Vec<_>>())
     });
     Ok(found)
+}
+
+/// The stream of a target's places and, where all rows have one, its orientation.
+fn stream_of_places(own: &[&Observation], (rows, times): (&[usize], &[f64])) -> Result<Stream, NoStands> {
+    let is_posed = own.iter().all(|it| it.measurement.sees_orientation());
+    let mut turned = Turned::default();
+    let mut numbers = |it: &&Observation| -> Vec<f64> {
+        let place = it.measurement.position().unwrap_or_default();
+        let turn = it.measurement.orientation().filter(|_| is_posed).map(|it| turned.after(&it));
+        place.iter().copied().chain(turn.iter().flat_map(|it| it.iter().copied())).collect()
+    };
+    let all: Vec<Vec<f64>> = own.iter().map(&mut numbers).collect();
+    let width = all.first().map_or(0, Vec::len);
+    let channel = |at: usize| -> Vec<f64> { all.iter().filter_map(|it| it.get(at)).copied().collect() };
+    let group = |range: std::ops::Range<usize>, floor: f64| StreamChannels {
+        values: range.map(channel).collect(),
+        freedom: 3,
+        floor,
+    };
+    let mut channels = vec![group(0..3, STILL_PLACE_M)];
+    channels.extend((width > 3).then(|| group(3..width, STILL_TURN)));
+    let own_times: Vec<f64> = rows.iter().filter_map(|at| times.get(*at)).copied().collect();
+    let lines: Vec<usize> = own.iter().map(|it| it.source.line as usize).collect();
+    dense(&own_times, channels, &lines)
 }
 
 /// The mean of measurements of one target, without those that are far from the others.

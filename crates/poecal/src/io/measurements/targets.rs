@@ -3,9 +3,10 @@
 use std::collections::BTreeMap;
 
 use super::builder::Builder;
+use super::column_spec::ColumnSpec;
 use super::inputs::{InputSource, Term};
 use super::kinds::{self, Kind, KindColumns};
-use super::mapping::{ColumnSpec, OrientationSpec, PositionSpec, TargetSpec};
+use super::mapping::{OrientationSpec, PositionSpec, TargetSpec};
 use super::orientation::OrientationForm;
 use crate::error::{ErrorKind, Result};
 use crate::unit::Unit;

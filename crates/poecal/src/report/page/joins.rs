@@ -12,6 +12,8 @@ const LINKS: usize = 180;
 const NAMED: usize = 20;
 /// Most rows of the table of pairs.
 const LISTED: usize = 200;
+/// What the two lists of the picture are called.
+const NAMES: [&str; 2] = ["robot", "measured"];
 /// What is odd about a row, with its style in the picture.
 const ODDITIES: [(usize, &str); 2] = [(3, "without partner"), (2, "measured more than once")];
 
@@ -127,71 +129,11 @@ fn table(join: &JoinEntry) -> HtmlTable {
 /// The picture of a join.
 fn plot(join: &JoinEntry) -> JoinPlot {
     let clocks = join.robot_motion.as_ref().zip(join.measured_motion.as_ref()).zip(join.lag_s);
-    let is_in = |rows: &[RowEntry], number: usize| rows.iter().any(|it| it.number == number);
-    let odd_of = |measured: bool, number: usize| {
-        if measured {
-            is_in(&join.unread, number).then_some(0)
-        } else if is_in(&join.unmeasured, number) {
-            Some(0)
-        } else {
-            is_in(&join.repeated, number).then_some(1)
-        }
-    };
-    let names = ["robot", "measured"];
     let (lists, lines, axis) = match clocks {
-        Some(((robot, measured), lag_s)) => {
-            let motions = [(robot, 0.0), (measured, measured.begin_s - lag_s - robot.begin_s)];
-            let lines = motions.iter().enumerate().filter(|it| !it.1.0.speeds_mm_s.is_empty());
-            let lines = lines.map(|(at, (motion, later))| speed(motion, *later, names[at], at)).collect();
-            let list = |at: usize| {
-                let (motion, later) = motions[at];
-                let entry = |(number, span): (usize, &[f64; 2])| Entry {
-                    from: span[0] + later,
-                    to: span[1] + later,
-                    odd: odd_of(at == 1, number),
-                };
-                let entries = (1..).zip(&motion.stands_s).map(entry).collect();
-                List { name: names[at].to_owned(), present: present(motion, later), entries }
-            };
-            ([list(0), list(1)], lines, "time since the first joint reading, s")
-        }
-        None => {
-            let list = |at: usize, rows: usize| {
-                let entry = |number: usize| Entry {
-                    from: number as f64,
-                    to: number as f64,
-                    odd: odd_of(at == 1, number),
-                };
-                List {
-                    name: names[at].to_owned(),
-                    present: vec![[1.0, rows as f64]],
-                    entries: (1..=rows).map(entry).collect(),
-                }
-            };
-            (
-                [list(0, join.joint_rows), list(1, join.measured_rows)],
-                Vec::new(),
-                "number of the row in its file",
-            )
-        }
+        Some(((robot, measured), lag_s)) => draw_in_time(join, robot, measured, lag_s),
+        None => draw_by_number(join),
     };
-    let middle = |at: usize, number: usize| {
-        let entry = lists[at].entries.get(number.checked_sub(1)?)?;
-        Some(0.5 * (entry.from + entry.to))
-    };
-    // Of many pairs some, and those at which the order jumps.
-    let step = join.pairs.len().div_ceil(LINKS).max(1);
-    let jumps = |at: usize| {
-        let of = |at: usize| join.pairs.get(at).map(|it| it[0] as f64 - it[1] as f64);
-        at > 0 && of(at) != of(at - 1)
-    };
-    let drawn = (0..join.pairs.len()).filter(|at| at % step == 0 || jumps(*at)).take(2 * LINKS);
-    let links = drawn
-        .filter_map(|at| {
-            let [one, other] = *join.pairs.get(at)?;
-            Some([middle(0, one)?, middle(1, other)?])
-        })
-        .collect();
+    let links = link(join, &lists);
     JoinPlot {
         title: "What belongs to what".to_owned(),
         description: format!(
@@ -205,6 +147,77 @@ fn plot(join: &JoinEntry) -> JoinPlot {
         links,
         oddities: ODDITIES.to_vec(),
     }
+}
+
+/// Two lists, lines of speed, and the name of the axis.
+type Drawn = ([List; 2], Vec<Line>, &'static str);
+
+/// What is odd about a row, by its place among the oddities.
+fn find_odd(join: &JoinEntry, measured: bool, number: usize) -> Option<usize> {
+    let is_in = |rows: &[RowEntry], number: usize| rows.iter().any(|it| it.number == number);
+    if measured {
+        is_in(&join.unread, number).then_some(0)
+    } else if is_in(&join.unmeasured, number) {
+        Some(0)
+    } else {
+        is_in(&join.repeated, number).then_some(1)
+    }
+}
+
+/// The rows of both files over time, with the speeds of both.
+fn draw_in_time(join: &JoinEntry, robot: &MotionEntry, measured: &MotionEntry, lag_s: f64) -> Drawn {
+    let motions = [(robot, 0.0), (measured, measured.begin_s - lag_s - robot.begin_s)];
+    let lines = motions.iter().enumerate().filter(|it| !it.1.0.speeds_mm_s.is_empty());
+    let lines = lines.map(|(at, (motion, later))| speed(motion, *later, NAMES[at], at)).collect();
+    let list = |at: usize| {
+        let (motion, later) = motions[at];
+        let entry = |(number, span): (usize, &[f64; 2])| Entry {
+            from: span[0] + later,
+            to: span[1] + later,
+            odd: find_odd(join, at == 1, number),
+        };
+        let entries = (1..).zip(&motion.stands_s).map(entry).collect();
+        List { name: NAMES[at].to_owned(), present: present(motion, later), entries }
+    };
+    ([list(0), list(1)], lines, "time since the first joint reading, s")
+}
+
+/// The rows of both files by their numbers.
+fn draw_by_number(join: &JoinEntry) -> Drawn {
+    let list = |at: usize, rows: usize| {
+        let entry = |number: usize| Entry {
+            from: number as f64,
+            to: number as f64,
+            odd: find_odd(join, at == 1, number),
+        };
+        List {
+            name: NAMES[at].to_owned(),
+            present: vec![[1.0, rows as f64]],
+            entries: (1..=rows).map(entry).collect(),
+        }
+    };
+    ([list(0, join.joint_rows), list(1, join.measured_rows)], Vec::new(), "number of the row in its file")
+}
+
+/// Lines between the pairs.
+fn link(join: &JoinEntry, lists: &[List; 2]) -> Vec<[f64; 2]> {
+    let middle = |at: usize, number: usize| {
+        let entry = lists[at].entries.get(number.checked_sub(1)?)?;
+        Some(0.5 * (entry.from + entry.to))
+    };
+    // Of many pairs some, and those at which the order jumps.
+    let step = join.pairs.len().div_ceil(LINKS).max(1);
+    let jumps = |at: usize| {
+        let of = |at: usize| join.pairs.get(at).map(|it| it[0] as f64 - it[1] as f64);
+        at > 0 && of(at) != of(at - 1)
+    };
+    let drawn = (0..join.pairs.len()).filter(|at| at % step == 0 || jumps(*at)).take(2 * LINKS);
+    drawn
+        .filter_map(|at| {
+            let [one, other] = *join.pairs.get(at)?;
+            Some([middle(0, one)?, middle(1, other)?])
+        })
+        .collect()
 }
 
 /// Speeds in the middle of their steps.

@@ -98,28 +98,8 @@ pub(super) fn figures(out: &mut String, file: &CalibrationFile) {
     let on = judged_on(file);
     line(out, "before", &format!("{} (RMS) on {on}: {}", words(before.1), before.0));
     line(out, "after", &format!("{} (RMS) on {on}: {} model", words(after.1), after.0));
-    if let Some(Expectation { error_mm, bound_mm, anywhere }) = expected(file) {
-        let (error, bound) = (number(error_mm), number(bound_mm));
-        let is_exceeded = |limit: &AcceptedLimit| {
-            limit.quantity == Quantity::Position.name()
-                && limit.statistic == AcceptedStatistic::Rms
-                && limit.to.is_some_and(|to| to < error_mm)
-        };
-        // The bounds of a limit are of measured errors.
-        let why = if file.acceptance.as_ref().is_some_and(|it| it.limits.iter().any(is_exceeded)) {
-            "; above the upper bound of the measured error, since unexplained residuals count as robot error"
-        } else {
-            ""
-        };
-        line(out, "expected", &format!("{error} mm (RMS) of predictions, 95 % below {bound} mm{why}"));
-        let valid = match (anywhere, reasons(file).into_iter().next()) {
-            (Some((sigma, _)), _) => {
-                format!("anywhere within the limits, {} mm (RMS) expected there", number(sigma))
-            }
-            (None, Some(reason)) => format!("inside the sampled range: {reason}"),
-            (None, None) => "inside the sampled range".to_owned(),
-        };
-        line(out, "valid", &valid);
+    if let Some(expectation) = expected(file) {
+        say_expected(out, file, expectation);
     }
     let largest = after
         .1
@@ -151,6 +131,32 @@ pub(super) fn figures(out: &mut String, file: &CalibrationFile) {
         let validated = validated.map_or_else(String::new, |rms| format!("; cross-validation {rms} (RMS)"));
         line(out, "", &format!("no row was held out{validated}"));
     }
+}
+
+/// The error to expect, and where that is valid.
+fn say_expected(out: &mut String, file: &CalibrationFile, expectation: Expectation) {
+    let Expectation { error_mm, bound_mm, anywhere } = expectation;
+    let (error, bound) = (number(error_mm), number(bound_mm));
+    let is_exceeded = |limit: &AcceptedLimit| {
+        limit.quantity == Quantity::Position.name()
+            && limit.statistic == AcceptedStatistic::Rms
+            && limit.to.is_some_and(|to| to < error_mm)
+    };
+    // The bounds of a limit are of measured errors.
+    let why = if file.acceptance.as_ref().is_some_and(|it| it.limits.iter().any(is_exceeded)) {
+        "; above the upper bound of the measured error, since unexplained residuals count as robot error"
+    } else {
+        ""
+    };
+    line(out, "expected", &format!("{error} mm (RMS) of predictions, 95 % below {bound} mm{why}"));
+    let valid = match (anywhere, reasons(file).into_iter().next()) {
+        (Some((sigma, _)), _) => {
+            format!("anywhere within the limits, {} mm (RMS) expected there", number(sigma))
+        }
+        (None, Some(reason)) => format!("inside the sampled range: {reason}"),
+        (None, None) => "inside the sampled range".to_owned(),
+    };
+    line(out, "valid", &valid);
 }
 
 /// Mean, RMS, 95 % and maximum of the errors of the rows held out, or if there are none, of those fitted.

@@ -12,7 +12,7 @@ use std::path::Path;
 use self::bodies::{Bodies, Seen, partner, seen};
 use self::parsed::{CameraInfo, Message, Observation};
 pub(super) use self::refused::are_messages;
-use super::cameras::{check, distortion};
+use super::lens_checks::{check, distortion};
 use super::mapping::ColumnMap;
 use super::picture_files::NO_CAMERA;
 use super::read::Reader;

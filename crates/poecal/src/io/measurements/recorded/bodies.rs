@@ -80,29 +80,12 @@ impl<'t> Frames<'t> {
         let has_several = taken.len() > 1;
         let is_posed = taken.iter().any(|it| it.quaternion.is_some());
         let unit = self.unit.0;
-        let mut columns = vec!["time[s]".to_owned()];
-        if has_several {
-            columns.push("target".to_owned());
-        }
-        columns.extend(["x", "y", "z"].map(|it| format!("{it}[{unit}]")));
-        if is_posed {
-            columns.extend(["qx", "qy", "qz", "qw"].map(str::to_owned));
-        }
+        let columns = columns_of_bodies(has_several, is_posed, unit);
         let mut made = Made::new(self.header, columns.iter().map(String::as_str));
         let renamed = if is_posed { None } else { self.renamed(&taken) };
         let places: Vec<&Body> = taken.iter().copied().chain(&self.unnamed).collect();
-        // Of markers without names those that make a body.
         let given: Vec<(usize, &Body)> = taken.iter().copied().enumerate().collect();
-        let given: Vec<(usize, &Body)> = match (&renamed, self.are_unnamed) {
-            (_, false) => given,
-            (Some(renamed), true) => given.into_iter().filter(|it| renamed.markers.contains(&it.0)).collect(),
-            (None, true) => {
-                return Refused::at(
-                    self.header,
-                    "found no marker with a name, and no three that keep their distances, expected a rigid body, or markers with names, on the robot",
-                );
-            }
-        };
+        let given = self.named(given, renamed.as_ref())?;
         for (frame, ((line, cells), time)) in self.rows.iter().zip(&self.times).enumerate() {
             for &(at, named) in &given {
                 let of = |at: usize| Value::Text(cells.get(at).copied().unwrap_or_default());
@@ -122,8 +105,7 @@ impl<'t> Frames<'t> {
         let names: Vec<String> = given.iter().map(|it| format!("`{}`", it.1.name)).collect();
         made.sources = (columns.iter().skip(if has_several { 2 } else { 1 }))
             .map(|it| {
-                let part = it.split('[').next().unwrap_or_default();
-                (it.clone(), format!("{part} of {}", first_few(&names)))
+                (it.clone(), format!("{} of {}", it.split('[').next().unwrap_or_default(), first_few(&names)))
             })
             .collect();
         let count = self.rows.len();
@@ -132,17 +114,40 @@ impl<'t> Frames<'t> {
             made.said.push(format!("left out {}", quoted(left)));
         }
         if let Some(renamed) = renamed {
-            let names: Vec<&str> = taken.iter().map(|it| it.name.as_str()).collect();
-            let lines: Vec<usize> = self.rows.iter().map(|it| it.0).collect();
-            let is_seen = |frame: usize, column: usize| {
-                let place = taken.get(column).zip(self.rows.get(frame));
-                place.is_some_and(|(body, row)| self.position(&row.1, body).is_some())
-            };
-            let (said, warned) = renamed.words(&names, &lines, is_seen);
-            made.said.extend(said);
-            made.warned.extend(warned);
+            self.say_renamed(&mut made, &renamed, &taken);
         }
         Ok(made)
+    }
+
+    /// Of markers without names those that make a body.
+    fn named<'b>(
+        &self,
+        given: Vec<(usize, &'b Body)>,
+        renamed: Option<&Renamed>,
+    ) -> Result<Vec<(usize, &'b Body)>, Refused> {
+        Ok(match (renamed, self.are_unnamed) {
+            (_, false) => given,
+            (Some(renamed), true) => given.into_iter().filter(|it| renamed.markers.contains(&it.0)).collect(),
+            (None, true) => {
+                return Refused::at(
+                    self.header,
+                    "found no marker with a name, and no three that keep their distances, expected a rigid body, or markers with names, on the robot",
+                );
+            }
+        })
+    }
+
+    /// Says which markers changed their names.
+    fn say_renamed(&self, made: &mut Made, renamed: &Renamed, taken: &[&Body]) {
+        let names: Vec<&str> = taken.iter().map(|it| it.name.as_str()).collect();
+        let lines: Vec<usize> = self.rows.iter().map(|it| it.0).collect();
+        let is_seen = |frame: usize, column: usize| {
+            let place = taken.get(column).zip(self.rows.get(frame));
+            place.is_some_and(|(body, row)| self.position(&row.1, body).is_some())
+        };
+        let (said, warned) = renamed.words(&names, &lines, is_seen);
+        made.said.extend(said);
+        made.warned.extend(warned);
     }
 
     /// What the distances between markers show of their names; `None` if they show nothing.
@@ -250,4 +255,17 @@ impl<'t> Frames<'t> {
 /// Names of the bodies that are not taken.
 fn others(bodies: &[Body], is_taken: impl Fn(&Body) -> bool) -> Vec<&str> {
     bodies.iter().filter(|it| !is_taken(it)).map(|it| it.name.as_str()).collect()
+}
+
+/// The columns of the table of bodies.
+fn columns_of_bodies(has_several: bool, is_posed: bool, unit: &str) -> Vec<String> {
+    let mut columns = vec!["time[s]".to_owned()];
+    if has_several {
+        columns.push("target".to_owned());
+    }
+    columns.extend(["x", "y", "z"].map(|it| format!("{it}[{unit}]")));
+    if is_posed {
+        columns.extend(["qx", "qy", "qz", "qw"].map(str::to_owned));
+    }
+    columns
 }

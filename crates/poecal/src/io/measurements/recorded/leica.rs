@@ -41,10 +41,11 @@ fn is_it(text: &str, _: &Opening<'_>) -> bool {
     has("X") && has("Y") && has("Z") && (has("U(95)") || has("U(95) X"))
 }
 
-fn table(text: &str, _: &Opening<'_>) -> Result<Made, Refused> {
-    let Some((at, header)) = lines(text).next() else { return Refused::whole("found no line") };
-    let by = Separator::recognised(header);
-    let names: Vec<(String, Option<&str>)> = cells(header, by).into_iter().map(parts).collect();
+/// A column with a meaning: its place, what we call it, and its unit if it is a length.
+type Used<'t> = (usize, &'static str, Option<&'t str>);
+
+/// Finds the columns with a meaning in a header.
+fn find_columns<'t>(names: &[(String, Option<&'t str>)], at: usize) -> Result<Vec<Used<'t>>, Refused> {
     let mut used = Vec::new();
     for (theirs, ours) in COLUMNS {
         let mut found = names.iter().enumerate().filter(|(_, it)| it.0 == theirs);
@@ -68,6 +69,14 @@ fn table(text: &str, _: &Opening<'_>) -> Result<Made, Refused> {
             format!("found {rotations} of the columns Q0, Q1, Q2, Q3, expected all of them, or none"),
         );
     }
+    Ok(used)
+}
+
+fn table(text: &str, _: &Opening<'_>) -> Result<Made, Refused> {
+    let Some((at, header)) = lines(text).next() else { return Refused::whole("found no line") };
+    let by = Separator::recognised(header);
+    let names: Vec<(String, Option<&str>)> = cells(header, by).into_iter().map(parts).collect();
+    let used = find_columns(&names, at)?;
     let columns: Vec<String> = (used.iter())
         .map(|(_, ours, unit)| unit.map_or_else(|| (*ours).to_owned(), |unit| format!("{ours}[{unit}]")))
         .collect();

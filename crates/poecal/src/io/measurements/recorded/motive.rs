@@ -74,6 +74,22 @@ fn table(text: &str, opening: &Opening<'_>) -> Result<Made, Refused> {
             "found no column `Time`, expected the time of each frame in seconds",
         );
     };
+    let (rows, times) = take_frames(text, &labels, time)?;
+    let are_unnamed = bodies.iter().all(|it| it.name.starts_with(UNNAMED));
+    let frames = Frames { rows, times, unnamed, are_unnamed, ..Frames::of(*unit, labels.line) };
+    let mut made = frames.table(&bodies, "body or marker", opening)?;
+    let stated: Option<usize> = value("Total Exported Frames").and_then(|it| it.parse().ok());
+    if let Some(stated) = stated.filter(|it| *it != frames.rows.len()) {
+        made.said.push(format!("its head says {stated} frames, and it has {}", frames.rows.len()));
+    }
+    Ok(made)
+}
+
+/// Lines with their cells, and the time of each.
+type TimedRows<'t> = (Vec<(usize, Vec<&'t str>)>, Vec<Option<f64>>);
+
+/// Takes the rows of a take, with times of a column.
+fn take_frames<'t>(text: &'t str, labels: &Labels<'_>, time: usize) -> Result<TimedRows<'t>, Refused> {
     let width = labels.axes.len();
     let (mut rows, mut times) = (Vec::new(), Vec::new());
     for (line, content) in lines(text).filter(|it| it.0 > labels.line) {
@@ -97,14 +113,7 @@ fn table(text: &str, opening: &Opening<'_>) -> Result<Made, Refused> {
         times.push(Some(at));
         rows.push((line, found));
     }
-    let are_unnamed = bodies.iter().all(|it| it.name.starts_with(UNNAMED));
-    let frames = Frames { rows, times, unnamed, are_unnamed, ..Frames::of(*unit, labels.line) };
-    let mut made = frames.table(&bodies, "body or marker", opening)?;
-    let stated: Option<usize> = value("Total Exported Frames").and_then(|it| it.parse().ok());
-    if let Some(stated) = stated.filter(|it| *it != frames.rows.len()) {
-        made.said.push(format!("its head says {stated} frames, and it has {}", frames.rows.len()));
-    }
-    Ok(made)
+    Ok((rows, times))
 }
 
 impl<'t> Labels<'t> {
@@ -139,14 +148,16 @@ impl<'t> Labels<'t> {
         count >= self.axes.len() || count > 0 && of(count) != of(count - 1)
     }
 
+    /// The column of an axis of what has a name and a type.
+    fn column(&self, name: &str, of: &str, kind: &str, axis: &str) -> Option<usize> {
+        (0..self.axes.len()).find(|&at| {
+            let is = |row: &[&str], word: &str| row.get(at).is_some_and(|it| *it == word);
+            is(&self.types, of) && is(&self.names, name) && is(&self.kinds, kind) && is(&self.axes, axis)
+        })
+    }
+
     /// Bodies with poses, or without them markers that have names, and those that have none.
     fn bodies(&self, rotation: &str) -> Result<(Vec<Body>, Vec<Body>), Refused> {
-        let column = |name: &str, of: &str, kind: &str, axis: &str| {
-            (0..self.axes.len()).find(|&at| {
-                let is = |row: &[&str], word: &str| row.get(at).is_some_and(|it| *it == word);
-                is(&self.types, of) && is(&self.names, name) && is(&self.kinds, kind) && is(&self.axes, axis)
-            })
-        };
         let names = |of: &str| {
             let mut names: Vec<&str> = Vec::new();
             for (kind, name) in self.types.iter().zip(&self.names) {
@@ -157,12 +168,12 @@ impl<'t> Labels<'t> {
             names
         };
         let position = |name: &str, of: &str| -> Option<[usize; 3]> {
-            let of = |axis| column(name, of, "Position", axis);
+            let of = |axis| self.column(name, of, "Position", axis);
             Some([of("X")?, of("Y")?, of("Z")?])
         };
         let mut bodies = Vec::new();
         for name in names("Rigid Body") {
-            let of = |axis| column(name, "Rigid Body", "Rotation", axis);
+            let of = |axis| self.column(name, "Rigid Body", "Rotation", axis);
             let parts = [of("X"), of("Y"), of("Z"), of("W")];
             let Some(position) = position(name, "Rigid Body") else { continue };
             let quaternion = match parts {

@@ -48,40 +48,10 @@ fn table(text: &str, opening: &Opening<'_>) -> Result<Made, Refused> {
     let header = cells(header);
     let at = |name: &str| header.iter().position(|it| *it == name);
     let columns = Columns { frame: at("Frame"), time: at("Time"), line };
-    let (first, step) = match (is_posed, names.first()) {
-        (true, Some(name)) => {
-            let first = at(&format!("{name} X"));
-            let step = names.get(1).and_then(|it| Some(at(&format!("{it} X"))? - first?)).unwrap_or(16);
-            (first, step)
-        }
-        (false, Some(name)) => (at(&format!("{name} X")).or(columns.frame.map(|_| 2)).or(Some(0)), 3),
-        (_, None) => (None, 0),
-    };
-    let Some(first) = first else {
-        return Refused::at(
-            line,
-            format!(
-                "found no column `{} X`, expected the position of the first body",
-                names.first().copied().unwrap_or_default()
-            ),
-        );
-    };
+    let (first, step) = first_place(&header, &columns, &names, is_posed)?;
     let mut frames = Frames::of(("mm", 1e-3), line);
-    for (number_of, (line, content)) in lines(text).filter(|it| it.0 > columns.line).enumerate() {
-        let found = cells(content);
-        let read = |at: Option<usize>| at.and_then(|at| number(found.get(at)?));
-        let frame = read(columns.frame).unwrap_or(number_of as f64 + 1.0);
-        let time = read(columns.time).or_else(|| Some((frame - 1.0) / frequency?));
-        let needed = first + step * names.len();
-        if found.len() < needed.min(header.len()) {
-            return Refused::at(
-                line,
-                format!("found {} cells, expected {} as in the header", found.len(), header.len()),
-            );
-        }
-        frames.times.push(time);
-        frames.rows.push((line, found));
-    }
+    let needed = (first + step * names.len()).min(header.len());
+    take_frames(&mut frames, text, &columns, (needed, header.len()), frequency)?;
     let bodies: Vec<Body> = (names.iter().enumerate())
         .map(|(at, name)| {
             let start = first + step * at;
@@ -91,13 +61,21 @@ fn table(text: &str, opening: &Opening<'_>) -> Result<Made, Refused> {
     if !is_posed {
         return frames.table(&bodies, "marker", opening);
     }
-    // Of each body: x, y, z, three angles, the residual and the matrix, column by column.
+    make_posed(&frames, bodies, header.len(), opening)
+}
+
+/// The table of bodies with poses: each has x, y, z, three angles, the residual and the matrix, column by column.
+fn make_posed(
+    frames: &Frames<'_>,
+    bodies: Vec<Body>,
+    width: usize,
+    opening: &Opening<'_>,
+) -> Result<Made, Refused> {
     for it in &bodies {
         let start = it.position[0];
         frames.refuse_words(&it.name, &(start..start + 16).collect::<Vec<_>>())?;
     }
     let texts = frames.turned(&bodies)?;
-    let width = header.len();
     let rows: Vec<(usize, Vec<&str>)> = (frames.rows.iter().zip(&texts))
         .map(|((line, cells), more)| {
             let mut all: Vec<&str> = cells.iter().take(width).copied().collect();
@@ -116,6 +94,60 @@ fn table(text: &str, opening: &Opening<'_>) -> Result<Made, Refused> {
     let mut made = posed.table(&bodies, "body", opening)?;
     made.said.push("orientations are of the matrix, which agrees with the angles".to_owned());
     Ok(made)
+}
+
+/// Where the place of the first body is, and how many columns later that of the next.
+fn first_place(
+    header: &[&str],
+    columns: &Columns,
+    names: &[&str],
+    is_posed: bool,
+) -> Result<(usize, usize), Refused> {
+    let at = |name: &str| header.iter().position(|it| *it == name);
+    let (first, step) = match (is_posed, names.first()) {
+        (true, Some(name)) => {
+            let first = at(&format!("{name} X"));
+            let step = names.get(1).and_then(|it| Some(at(&format!("{it} X"))? - first?)).unwrap_or(16);
+            (first, step)
+        }
+        (false, Some(name)) => (at(&format!("{name} X")).or(columns.frame.map(|_| 2)).or(Some(0)), 3),
+        (_, None) => (None, 0),
+    };
+    let Some(first) = first else {
+        return Refused::at(
+            columns.line,
+            format!(
+                "found no column `{} X`, expected the position of the first body",
+                names.first().copied().unwrap_or_default()
+            ),
+        );
+    };
+    Ok((first, step))
+}
+
+/// Takes the rows of a file, of which each must have so many cells; messages name the number of the header.
+fn take_frames<'t>(
+    frames: &mut Frames<'t>,
+    text: &'t str,
+    columns: &Columns,
+    (needed, expected): (usize, usize),
+    frequency: Option<f64>,
+) -> Result<(), Refused> {
+    for (number_of, (line, content)) in lines(text).filter(|it| it.0 > columns.line).enumerate() {
+        let found = cells(content);
+        let read = |at: Option<usize>| at.and_then(|at| number(found.get(at)?));
+        let frame = read(columns.frame).unwrap_or(number_of as f64 + 1.0);
+        let time = read(columns.time).or_else(|| Some((frame - 1.0) / frequency?));
+        if found.len() < needed {
+            return Refused::at(
+                line,
+                format!("found {} cells, expected {} as in the header", found.len(), expected),
+            );
+        }
+        frames.times.push(time);
+        frames.rows.push((line, found));
+    }
+    Ok(())
 }
 
 impl Frames<'_> {

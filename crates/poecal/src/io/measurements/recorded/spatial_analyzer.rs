@@ -54,26 +54,7 @@ fn table(text: &str, _: &Opening<'_>) -> Result<Made, Refused> {
     let Some(first) = points.first() else {
         return Refused::whole("found comments of SpatialAnalyzer and no point, expected at least one");
     };
-    let (words, count) = (first.names.len(), first.numbers.len());
-    if let Some(other) = points.iter().find(|it| it.names.len() != words || it.numbers.len() != count) {
-        return Refused::at(
-            other.line,
-            format!(
-                "found {} names and {} numbers, expected {words} and {count} as in line {}",
-                other.names.len(),
-                other.numbers.len(),
-                first.line
-            ),
-        );
-    }
-    // A line that was cut has no time, and its last number may have been cut.
-    let timed = points.iter().filter(|it| it.has_time).count();
-    if let Some(other) = points.iter().find(|it| 2 * timed > points.len() && !it.has_time) {
-        return Refused::at(
-            other.line,
-            "found no time behind the numbers of a point, expected one as in the other lines: the line was cut, export the points again, or leave it out",
-        );
-    }
+    refuse_unlike(first, &points)?;
     let layout = Layout::of(&points)?;
     let (names, have_targets) = layout.names(&points);
     let sigmas: &[&str] = if layout.uncertainties { &["sigma_x", "sigma_y", "sigma_z"] } else { &[] };
@@ -103,6 +84,44 @@ fn table(text: &str, _: &Opening<'_>) -> Result<Made, Refused> {
         }
         made.row(point.line, row);
     }
+    say_points(&mut made, &comments, &layout, (&points, &names), have_targets);
+    Ok(made)
+}
+
+/// Refuses points whose lines are not alike.
+fn refuse_unlike(first: &Point<'_>, points: &[Point<'_>]) -> Result<(), Refused> {
+    let (words, count) = (first.names.len(), first.numbers.len());
+    if let Some(other) = points.iter().find(|it| it.names.len() != words || it.numbers.len() != count) {
+        return Refused::at(
+            other.line,
+            format!(
+                "found {} names and {} numbers, expected {words} and {count} as in line {}",
+                other.names.len(),
+                other.numbers.len(),
+                first.line
+            ),
+        );
+    }
+    // A line that was cut has no time, and its last number may have been cut.
+    let timed = points.iter().filter(|it| it.has_time).count();
+    if let Some(other) = points.iter().find(|it| 2 * timed > points.len() && !it.has_time) {
+        return Refused::at(
+            other.line,
+            "found no time behind the numbers of a point, expected one as in the other lines: the line was cut, export the points again, or leave it out",
+        );
+    }
+    Ok(())
+}
+
+/// Says what was understood of points.
+fn say_points(
+    made: &mut Made,
+    comments: &Comments<'_>,
+    layout: &Layout,
+    (points, names): (&[Point<'_>], &[String]),
+    have_targets: bool,
+) {
+    let unit = comments.unit;
     made.frame = comments.frame.map(str::to_owned);
     made.said.push(match comments.frame {
         Some(frame) => format!("{} points in frame `{frame}`, {unit}", points.len()),
@@ -123,9 +142,8 @@ fn table(text: &str, _: &Opening<'_>) -> Result<Made, Refused> {
         made.said.push(format!("names come again, and are those of {} targets", all.len()));
     } else {
         let lines: Vec<usize> = points.iter().map(|it| it.line).collect();
-        made.warned.extend(repeats(&names, &lines));
+        made.warned.extend(repeats(names, &lines));
     }
-    Ok(made)
 }
 
 impl<'t> Comments<'t> {

@@ -182,32 +182,7 @@ fn made(range: &Range<Data>, table: &Found, name: &str) -> Result<Made, Refused>
         .collect();
     let mut stored = Vec::new();
     for &at in &table.rows {
-        let mut cells: Vec<(String, Option<f64>)> = Vec::with_capacity(table.columns);
-        for (column, is_numeric) in numeric.iter().enumerate() {
-            let cell = row(at).get(column).unwrap_or(&Data::Empty);
-            let is_text = matches!(cell, Data::String(_));
-            if *is_numeric && is_text && !is_empty(cell) {
-                let written = text(cell);
-                let place = sheet.cell(column, line(at));
-                let Some(value) = number(&written) else {
-                    cells.push((written, None));
-                    continue;
-                };
-                if is_ambiguous(&written) {
-                    return Refused::whole(format!(
-                        "sheet `{name}`, cell {place}: found the text `{written}`, which is {value} with a decimal comma and another number with a \
-                         separator of thousands, expected a number: type it in anew"
-                    ));
-                }
-                stored.push(format!("{place} (`{written}`)"));
-                cells.push((String::new(), Some(value)));
-                continue;
-            }
-            match value(cell).filter(|_| !is_text) {
-                Some(value) => cells.push((String::new(), Some(value))),
-                None => cells.push((text(cell), None)),
-            }
-        }
+        let cells = cells_of_row(row(at), &numeric, (&sheet, line(at)), &mut stored)?;
         let values = cells.iter().map(|(text, value)| match value {
             Some(value) => Value::Number(*value),
             None if text.is_empty() => Value::Empty,
@@ -224,6 +199,43 @@ fn made(range: &Range<Data>, table: &Found, name: &str) -> Result<Made, Refused>
         ));
     }
     Ok(made.in_sheet(sheet))
+}
+
+/// The cells of a row, as texts or numbers; numbers that are stored as text in a column of numbers are told.
+fn cells_of_row(
+    row: &[Data],
+    numeric: &[bool],
+    (sheet, line): (&Sheet, usize),
+    stored: &mut Vec<String>,
+) -> Result<Vec<(String, Option<f64>)>, Refused> {
+    let mut cells: Vec<(String, Option<f64>)> = Vec::with_capacity(numeric.len());
+    for (column, is_numeric) in numeric.iter().enumerate() {
+        let cell = row.get(column).unwrap_or(&Data::Empty);
+        let is_text = matches!(cell, Data::String(_));
+        if *is_numeric && is_text && !is_empty(cell) {
+            let written = text(cell);
+            let place = sheet.cell(column, line);
+            let Some(value) = number(&written) else {
+                cells.push((written, None));
+                continue;
+            };
+            if is_ambiguous(&written) {
+                return Refused::whole(format!(
+                    "sheet `{}`, cell {place}: found the text `{written}`, which is {value} with a decimal comma and another number with a \
+                     separator of thousands, expected a number: type it in anew",
+                    sheet.name
+                ));
+            }
+            stored.push(format!("{place} (`{written}`)"));
+            cells.push((String::new(), Some(value)));
+            continue;
+        }
+        match value(cell).filter(|_| !is_text) {
+            Some(value) => cells.push((String::new(), Some(value))),
+            None => cells.push((text(cell), None)),
+        }
+    }
+    Ok(cells)
 }
 
 /// Whether a number with a comma may be one of thousands: three digits behind it, and one to three before it that are not zero alone.

@@ -111,24 +111,7 @@ pub(super) fn measured<'t>(topics: &'t Topics<'_>, options: &ReadOptions) -> Res
         bodies.all.iter().map(|body| Measured { topic, is_posed, body, left: Vec::new() }).collect()
     };
     let found: Vec<Measured<'_>> = all.iter().flat_map(own).collect();
-    let names = |some: &[Measured<'_>]| {
-        let words: Vec<String> = some.iter().take(NAMED).map(|it| it.body.words(&it.topic.name)).collect();
-        let more = some.len().saturating_sub(NAMED);
-        format!("{}{}", words.join(", "), if more > 0 { format!(" and {more} more") } else { String::new() })
-    };
-    let mut pool = found.clone();
-    let has_names = found.iter().any(|it| !it.body.child.is_empty());
-    if let Some(name) = options.body.as_ref().filter(|_| has_names) {
-        pool.retain(|it| it.body.child == *name);
-        if pool.is_empty() {
-            return missing(format!("found no frame `{name}`, expected one of {}", names(&found)));
-        }
-    } else if all.iter().any(|it| !it.1.are_frames()) {
-        // Transforms are those of the robot's own links, too.
-        let is_frame =
-            |it: &Measured<'_>| all.iter().any(|of| std::ptr::eq(of.0, it.topic) && of.1.are_frames());
-        pool.retain(|it| !is_frame(it));
-    }
+    let pool = narrow(&found, &all, options)?;
     let moved: Vec<f64> = pool.iter().map(|it| it.body.moved_m()).collect();
     let moving: Vec<Measured<'_>> =
         pool.iter().zip(which_move(&moved)).filter(|it| it.1).map(|it| it.0.clone()).collect();
@@ -141,34 +124,66 @@ pub(super) fn measured<'t>(topics: &'t Topics<'_>, options: &ReadOptions) -> Res
         ([], _) => {
             return missing(format!(
                 "found {} that all stand, expected one that moves with the robot",
-                names(&pool)
+                name_some(&pool)
             ));
         }
-        (several, _) => {
-            let mut lists: Vec<&Topic> = Vec::new();
-            for it in several {
-                if !lists.iter().any(|known| std::ptr::eq(*known, it.topic)) {
-                    lists.push(it.topic);
-                }
-            }
-            if let [topic] = lists.as_slice() {
-                return missing(format!(
-                    "found {} frames that move in {}: {}, expected one: name the one on the robot by --body",
-                    several.len(),
-                    topic.words(),
-                    names(several)
-                ));
-            }
-            let words: Vec<String> = lists.iter().take(NAMED).map(|it| it.words()).collect();
-            return missing(format!(
-                "found {} topics with poses of what moves, {}, expected one: name it by --topic",
-                lists.len(),
-                words.join(", ")
-            ));
-        }
+        (several, _) => return refuse_several(several),
     };
     whole(one.topic)?;
     let is_other = |it: &&Measured<'_>| !std::ptr::eq(it.body, one.body);
     let left = found.iter().filter(is_other).map(|it| it.body.words(&it.topic.name)).collect();
     Ok(Measured { left, ..one })
+}
+
+/// Some of what was measured, in words.
+fn name_some(some: &[Measured<'_>]) -> String {
+    let words: Vec<String> = some.iter().take(NAMED).map(|it| it.body.words(&it.topic.name)).collect();
+    let more = some.len().saturating_sub(NAMED);
+    format!("{}{}", words.join(", "), if more > 0 { format!(" and {more} more") } else { String::new() })
+}
+
+/// Of all that was measured what can be meant: the frame that was asked for, or what is no frame of the robot's own.
+fn narrow<'t>(
+    found: &[Measured<'t>],
+    all: &[(&Topic, &Bodies)],
+    options: &ReadOptions,
+) -> Result<Vec<Measured<'t>>, Missing> {
+    let mut pool = found.to_vec();
+    let has_names = found.iter().any(|it| !it.body.child.is_empty());
+    if let Some(name) = options.body.as_ref().filter(|_| has_names) {
+        pool.retain(|it| it.body.child == *name);
+        if pool.is_empty() {
+            return missing(format!("found no frame `{name}`, expected one of {}", name_some(found)));
+        }
+    } else if all.iter().any(|it| !it.1.are_frames()) {
+        // Transforms are those of the robot's own links, too.
+        let is_frame =
+            |it: &Measured<'_>| all.iter().any(|of| std::ptr::eq(of.0, it.topic) && of.1.are_frames());
+        pool.retain(|it| !is_frame(it));
+    }
+    Ok(pool)
+}
+
+/// Refuses several things that move.
+fn refuse_several<T>(several: &[Measured<'_>]) -> Result<T, Missing> {
+    let mut lists: Vec<&Topic> = Vec::new();
+    for it in several {
+        if !lists.iter().any(|known| std::ptr::eq(*known, it.topic)) {
+            lists.push(it.topic);
+        }
+    }
+    if let [topic] = lists.as_slice() {
+        return missing(format!(
+            "found {} frames that move in {}: {}, expected one: name the one on the robot by --body",
+            several.len(),
+            topic.words(),
+            name_some(several)
+        ));
+    }
+    let words: Vec<String> = lists.iter().take(NAMED).map(|it| it.words()).collect();
+    missing(format!(
+        "found {} topics with poses of what moves, {}, expected one: name it by --topic",
+        lists.len(),
+        words.join(", ")
+    ))
 }
