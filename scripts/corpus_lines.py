@@ -120,9 +120,9 @@ GROUPS = {
         convert robot.urdf --offset joint2=1deg --offset joint3=-0.2deg --out offset.urdf
     """,
     "models": """
-        @take crates/poecal/tests/data/urdf/*
-        @take crates/poecal/tests/data/torso.urdf
-        @take crates/poecal/tests/data/calibration_schema_1.*
+        @take crates/poecal-testing/data/urdf/*
+        @take crates/poecal-testing/data/torso.urdf
+        @take crates/poecal-testing/data/calibration_schema_1.*
         @arm {kuka|ur|fanuc|abb}
         @seed robot_toml/{form0|form1|form2|form3|form4|gantry} {}.toml
         @seed urdf/{found-robot-without-a-name|mimic|slide} {}.urdf
@@ -157,8 +157,8 @@ GROUPS = {
         calibrate height/nominal.urdf height/measurements.csv --contact flush --out height/flush
     """,
     "robots": """
-        @take crates/poecal/tests/data/urdf/*
-        @take crates/poecal/tests/data/torso.urdf
+        @take crates/poecal-testing/data/urdf/*
+        @take crates/poecal-testing/data/torso.urdf
         simulate {ROBOTS}.urdf --count 60 --out {}
         calibrate {ROBOTS}/nominal.urdf {}/measurements.csv --out {}/results --verbose
         export seven_axis/results/calibration.json --format {franka|xarm|dh|mdh|hayati|origins}
@@ -451,8 +451,8 @@ GROUPS = {
     """,
     "programs": """
         @arm {kuka|ur|fanuc|abb}
-        @take crates/poecal/tests/it/programs/fanuc/*.ls
-        @take crates/poecal/tests/it/programs/rapid/*.*
+        @take crates/poecal-compensate/tests/it/programs/fanuc/*.ls
+        @take crates/poecal-compensate/tests/it/programs/rapid/*.*
         @text part.src part.dat part.script bare.script
         @seed programs/{fanuc|krl|rapid|urscript} {}.txt
         simulate {kuka|ur|fanuc|abb}.toml --errors 0.03deg,0.3mm --count 40 --out s-{}

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 ROOT = Path(__file__).resolve().parents[2]
-URDFS = ROOT / "crates/poecal/tests/data/urdf"
+URDFS = ROOT / "crates/poecal-testing/data/urdf"
 ELBOW = ROOT / "examples/elbow/robot.urdf"
 
 

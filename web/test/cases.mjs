@@ -78,7 +78,7 @@ export function predicted(out, readings, values, ...words) {
 
 /** A session of a robot with named links, calibrated: noise shows in which axes a residual is. */
 function mounted(name, named, ...words) {
-  const model = join(ROOT, "crates/poecal/tests/data/torso.urdf");
+  const model = join(ROOT, "crates/poecal-testing/data/torso.urdf");
   return calibrate(name, model, simulated(name, model, ...named, ...words, "--noise", "2mm,0.1deg"), ...named);
 }
 
@@ -122,7 +122,7 @@ export const CASES = [
   [
     "seven axes, poses",
     () => {
-      const model = join(ROOT, "crates/poecal/tests/data/urdf/seven_axis.urdf");
+      const model = join(ROOT, "crates/poecal-testing/data/urdf/seven_axis.urdf");
       return calibrate("seven", model, simulated("seven", model, "--kind", "pose", "--count", "80"));
     },
   ],

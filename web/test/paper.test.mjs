@@ -18,7 +18,7 @@ const FILLED = 0.35;
 const noPaper = skip || (spawnSync("pdftotext", ["-v"]).error ? "found no pdftotext; install poppler-utils" : false);
 
 const ELBOW = join(ROOT, "examples/elbow");
-const SEVEN = join(ROOT, "crates/poecal/tests/data/urdf/seven_axis.urdf");
+const SEVEN = join(ROOT, "crates/poecal-testing/data/urdf/seven_axis.urdf");
 const IRB = join(process.env.POECAL_DATASETS ?? join(ROOT, "../shared/datasets"), "irb120_faro");
 
 function sevenPoses() {

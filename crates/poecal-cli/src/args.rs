@@ -49,14 +49,13 @@ pub(crate) use words::{CONTACT, ExportForm, FRAMES, INSTEAD, JOIN, ProgramLangua
 use std::path::{Path, PathBuf};
 
 use clap::{Args, Parser, Subcommand};
-use poecal::calibration::{AcceptedModel, DeviceFrameKnowledge, Level, Limit};
-use poecal::io::model::ModelFormat;
-use poecal::io::predictions::PredictionFrame;
-use poecal::io::record::Record;
+use poecal_calibrate::{AcceptedModel, DeviceFrameKnowledge, Level, Limit};
+use poecal_results::model::ModelFormat;
+use poecal_results::predictions::PredictionFrame;
+use poecal_results::record::Record;
 
 use crate::quantity::{sigma_m, threads};
-pub(crate) use shared::ChainArgs;
-pub(crate) use shared::OutFile;
+pub(crate) use shared::{ChainArgs, OutFile};
 use shared::{ColumnArgs, JUDGED, Meaning, RESULTS, Reading};
 use words::{FORM, FRAME, MODEL, PREDICT_IN, REFIT, REQUIRED_LEVEL, export_form, export_form_help, one_of};
 

@@ -6,10 +6,10 @@ use std::io::{ErrorKind, Write as _};
 use std::path::Path;
 
 use anstream::{AutoStream, ColorChoice};
-use poecal::Result;
-use poecal::io::measurements::MeasurementFile;
-use poecal::io::output::FilePlace;
-use poecal::text::{visible, visible_lines};
+use poecal_import::MeasurementFile;
+use poecal_numerics::error::Result;
+use poecal_numerics::text::{visible, visible_lines};
+use poecal_results::output::FilePlace;
 
 use crate::progress::Progress;
 use crate::{DONE, Said, WORSE, style};
@@ -74,10 +74,11 @@ impl Console {
         }
         let mut out = std::io::stdout().lock();
         match out.write_all(bytes).and_then(|()| out.flush()) {
-            Err(error) if error.kind() != ErrorKind::BrokenPipe => poecal::ErrorKind::File.refuse(format!(
-                "standard output cannot be written to ({error}), expected room for {} bytes",
-                bytes.len()
-            )),
+            Err(error) if error.kind() != ErrorKind::BrokenPipe => poecal_numerics::error::ErrorKind::File
+                .refuse(format!(
+                    "standard output cannot be written to ({error}), expected room for {} bytes",
+                    bytes.len()
+                )),
             _ => Ok(()),
         }
     }

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use clap::{Command, CommandFactory as _};
-use poecal::report::table::broken;
+use poecal_report::table::broken;
 
 use crate::args::Arguments;
 use crate::console::help_width;

@@ -25,9 +25,9 @@ use clap::FromArgMatches as _;
 use clap::error::ContextKind;
 use console::Console;
 use help::command_line;
-use poecal::problem::stated_level;
-use poecal::text::visible;
-use poecal::{Error, ErrorKind};
+use poecal_fit::problem::stated_level;
+use poecal_numerics::error::{Error, ErrorKind};
+use poecal_numerics::text::visible;
 
 /// Done.
 pub(crate) const DONE: u8 = 0;
@@ -122,7 +122,7 @@ pub fn run_captured(arguments: impl IntoIterator<Item = OsString>) -> Said {
 }
 
 /// Refuses commands of pictures and drawings where the program has no part for them: without an operating system.
-fn need_pictures(typed: &[OsString]) -> Result<(), poecal::Error> {
+fn need_pictures(typed: &[OsString]) -> Result<(), poecal_numerics::error::Error> {
     match typed.get(1).and_then(|word| word.to_str()) {
         Some(command @ ("detect" | "board" | "fleet")) if cfg!(not(any(unix, windows))) => ErrorKind::Option.refuse(format!(
             "found {command}, which this build of the program does not have, expected the program of an operating system or of the Python package"
@@ -165,7 +165,11 @@ fn run_to_code(arguments: impl IntoIterator<Item = OsString>) -> u8 {
 }
 
 /// Runs a command; gives the exit code.
-fn run_command(command: &Command, typed: &[OsString], console: &Console) -> poecal::Result<u8> {
+fn run_command(
+    command: &Command,
+    typed: &[OsString],
+    console: &Console,
+) -> poecal_numerics::error::Result<u8> {
     match command {
         Command::Init(options) => commands::init(options, console),
         Command::Calibrate(options) => commands::calibrate(options, typed, console),

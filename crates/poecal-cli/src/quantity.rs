@@ -4,12 +4,13 @@ use std::path::PathBuf;
 use std::str::FromStr;
 use std::time::Duration;
 
-use poecal::Unit;
-use poecal::compensate::MostChange;
-use poecal::io::measurements::NamedUnit;
-use poecal::plan::RobotError;
-use poecal::robot::{Corrections, GravityDirection, Sizes, Tolerance};
-use poecal::{Error, ErrorKind, MOST_THREADS, Result};
+use poecal_compensate::MostChange;
+use poecal_model::robot::{Corrections, GravityDirection, Sizes, Tolerance};
+use poecal_numerics::error::{Error, ErrorKind, Result};
+use poecal_numerics::named_unit::NamedUnit;
+use poecal_numerics::threads::MOST_THREADS;
+use poecal_numerics::unit::Unit;
+use poecal_plan::plan::RobotError;
 
 /// A number with its unit, in SI: metres for a length, radians for an angle.
 ///

@@ -7,9 +7,9 @@ use std::path::{Component, Path, PathBuf};
 use clap::error::ContextKind;
 use clap::parser::ValueSource;
 use clap::{Arg, ArgAction, ArgMatches, Command};
-use poecal::io::disk;
-use poecal::io::settings::{Setting, SettingValue, Settings};
-use poecal::{Error, ErrorKind, Result};
+use poecal_numerics::error::{Error, ErrorKind, Result};
+use poecal_results::settings::{Setting, SettingValue, Settings};
+use poecal_storage::disk;
 
 use crate::help::command_line;
 

@@ -34,7 +34,7 @@ pub(crate) fn clean_up_on_signals() {
             // A second signal ends the program at once.
             if !ENDING.swap(true, Ordering::SeqCst) {
                 let _ = std::thread::Builder::new().spawn(move || {
-                    poecal::io::output::clean_up();
+                    poecal_results::output::clean_up();
                     let _ = emulate_default_handler(signal);
                 });
             } else {

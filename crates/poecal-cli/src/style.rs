@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use anstyle::{AnsiColor, Style};
-use poecal::report::table::{INDENT as LABELS, WIDTH, broken, lines};
-use poecal::text::visible;
+use poecal_numerics::text::visible;
+use poecal_report::table::{INDENT as LABELS, WIDTH, broken, lines};
 
 /// For the word before an error.
 pub(crate) const ERROR: Style = AnsiColor::Red.on_default().bold();

@@ -2,8 +2,8 @@
 
 use std::time::Duration;
 
-use poecal::solve::Summary;
-use poecal::{ErrorKind, Result};
+use poecal_numerics::error::{ErrorKind, Result};
+use poecal_numerics::solve::Summary;
 use serde_json::{Value, json};
 
 /// Time and number of repetitions of a solve, at most.

@@ -1,9 +1,5 @@
 //! Corners of one board in pictures.
 
-use crate::aprilgrid;
-use crate::charuco;
-use crate::chessboard;
-use crate::circles;
 use crate::found::{Found, Rejected};
 use crate::gray::Gray;
 use crate::layout::Layout;
@@ -11,7 +7,7 @@ use crate::light::{Light, noise};
 use crate::markers::Reader;
 use crate::spec::{AprilGrid, Charuco, Spec, Tags};
 use crate::suggest::{self, Suggestion};
-use crate::tags;
+use crate::{aprilgrid, charuco, chessboard, circles, tags};
 
 /// Finds the corners of one board.
 pub struct Detector {

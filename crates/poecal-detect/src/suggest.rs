@@ -2,10 +2,6 @@
 
 use std::fmt;
 
-use crate::aprilgrid;
-use crate::charuco;
-use crate::chessboard;
-use crate::circles;
 use crate::dictionary::Dictionary;
 use crate::ellipse::Dot;
 use crate::found::{Found, Rejected};
@@ -15,7 +11,7 @@ use crate::light::noise;
 use crate::markers::Reader;
 use crate::quads::{Quad, quads, quads_apart};
 use crate::spec::{AprilGrid, Charuco, Chessboard, Circles, Spec, Tags};
-use crate::tags;
+use crate::{aprilgrid, charuco, chessboard, circles, tags};
 
 /// A board that pictures show in place of the stated one.
 #[derive(Clone, Debug, PartialEq)]

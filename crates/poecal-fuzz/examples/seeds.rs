@@ -7,24 +7,24 @@ use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
 
-use poecal::calibration::{CalibrationOptions, calibrate};
-use poecal::camera::{Corner, Lens, Picture};
-use poecal::io::calibration_file::{CalibrationFile, Inputs};
-use poecal::io::measurements::read_boards;
-use poecal::io::residuals::Residuals;
-use poecal::io::robot_toml;
-use poecal::measurement::Dataset;
-use poecal::robot::Robot;
-use poecal::simulate::{Kind, PictureSimulation, Simulation, elbow, gantry, scara};
+use poecal_calibrate::{CalibrationOptions, calibrate};
+use poecal_formats::robot_toml;
 use poecal_fuzz::BETWEEN;
+use poecal_import::read_boards;
+use poecal_model::camera::{Corner, Lens, Picture};
+use poecal_model::measurement::Dataset;
+use poecal_model::robot::Robot;
+use poecal_model::simulate::{Kind, PictureSimulation, Simulation, elbow, gantry, scara};
+use poecal_results::calibration_file::{CalibrationFile, Inputs};
+use poecal_results::residuals::Residuals;
 
 const DOCUMENT: &str = include_str!("../../../docs/file-formats.md");
 const URDF: &str = include_str!("../../../examples/elbow/robot.urdf");
 const TOML: &str = include_str!("../../../examples/elbow/robot.toml");
 const POINTS: &str = include_str!("../../../examples/elbow/points.csv");
 /// Of an earlier schema: poses and points, suspected and repeated rows.
-const EARLIER: &str = include_str!("../../poecal/tests/data/calibration_schema_1.json");
-const EARLIER_ROWS: &str = include_str!("../../poecal/tests/data/calibration_schema_1.csv");
+const EARLIER: &str = include_str!("../../poecal-testing/data/calibration_schema_1.json");
+const EARLIER_ROWS: &str = include_str!("../../poecal-testing/data/calibration_schema_1.csv");
 const UR10_MAP: &str = include_str!("../../../validation/ur10_raw_columns.toml");
 /// A follower, a fixed joint within the chain, a comment, entities.
 const MIMIC: &str = r#"<?xml version="1.0"?>
@@ -42,8 +42,8 @@ const MIMIC: &str = r#"<?xml version="1.0"?>
 
 const WORKBOOK: &[u8] = include_bytes!("../../../examples/howto/joints.xlsx");
 const WORKBOOK_POINTS: &[u8] = include_bytes!("../../../examples/howto/points.txt");
-const RAPID: &str = include_str!("../../poecal/tests/it/programs/rapid/01_simple.mod");
-const FANUC: &str = include_str!("../../poecal/tests/it/programs/fanuc/01_simple.ls");
+const RAPID: &str = include_str!("../../poecal-compensate/tests/it/programs/rapid/01_simple.mod");
+const FANUC: &str = include_str!("../../poecal-compensate/tests/it/programs/fanuc/01_simple.ls");
 const URSCRIPT: &str = "def a():\n  set_tcp(p[0, 0, 0.1, 0, 0, 0])\n  movej([0.1, 0.2, 0.3, 0.4, 0.5, 0.6], a=1.4) # start\n  \
     movel(p[0.5, 0.1, 0.4, 0, 3.14, 0], v=0.1)\n  f = p[0.1, 0, 0, 0, 0, 0]\n  movel(pose_trans(f, p[0.4, 0.1, 0.4, 0, 3.14, 0]))\nend\n";
 const KRL: &str = "DEF a()\n  $TOOL={X 0,Y 0,Z 100,A 0,B 0,C 0}\n  $BASE={FRAME: X 0,Y 0,Z 0,A 0,B 0,C 0}\n  PTP {A1 10,A2 20,A3 30,A4 40,A5 50,A6 60} ; start\n  \

@@ -5,7 +5,7 @@ use std::io::{self, Cursor, ErrorKind, Read};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use poecal::io::disk::{self, Disk, Lock, Object, ObjectKind, Output};
+use poecal_storage::disk::{self, Disk, Lock, Object, ObjectKind, Output};
 
 struct Files(Vec<(PathBuf, Vec<u8>)>);
 

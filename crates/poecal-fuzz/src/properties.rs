@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
-use poecal::io::Difference;
-use poecal::robot::Robot;
-use poecal::{Error, Result};
+use poecal_formats::proof::Difference;
+use poecal_model::robot::Robot;
+use poecal_numerics::error::{Error, Result};
 
 use crate::{BETWEEN, LONGEST};
 

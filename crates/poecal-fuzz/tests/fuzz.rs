@@ -3,11 +3,6 @@
 
 #![allow(clippy::print_stdout, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-// Each crate uses what it needs of it.
-#[allow(dead_code)]
-#[path = "../../poecal/tests/trials/mod.rs"]
-mod trials;
-
 use std::fs;
 use std::panic::catch_unwind;
 use std::path::{Path, PathBuf};
@@ -15,7 +10,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
 use poecal_fuzz::{Mutator, TARGETS, Target};
-use trials::trials;
+use poecal_testing::trials::trials;
 
 /// Longest that one input may take: what takes a second on an idle machine may take many on a busy one.
 const PATIENCE: Duration = Duration::from_secs(60);

@@ -8,13 +8,13 @@ use super::seeds::{Purpose, derived};
 use super::session::PaperSession;
 use super::{Basin, LENGTH_M, MeasurementKind, tables};
 use crate::{Formulation, Method, Residual};
-use poecal::error::Result;
-use poecal::estimate::Estimate;
-use poecal::lie::Pose;
-use poecal::measurement::Noise;
-use poecal::problem::Problem;
-use poecal::simulate::Simulation;
-use poecal::solve::Options;
+use poecal_arm::lie::Pose;
+use poecal_fit::problem::Problem;
+use poecal_fit::state::Estimate;
+use poecal_model::measurement::Noise;
+use poecal_model::simulate::Simulation;
+use poecal_numerics::error::Result;
+use poecal_numerics::solve::Options;
 
 /// Configurations of a session.
 const ROWS: usize = 60;

@@ -4,12 +4,12 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use super::ReproductionOptions;
-use poecal::calibration::{CalibrationOptions, Loss, Models, Robust, calibrate};
-use poecal::error::Result;
-use poecal::estimate::{Packed, Session};
-use poecal::measurement::Dataset;
-use poecal::robot::Robot;
-use poecal::simulate::{Gross, Kind, Simulation, elbow, gantry, scara, seven_axis};
+use poecal_calibrate::{CalibrationOptions, Loss, Models, Robust, calibrate};
+use poecal_fit::state::{Packed, Session};
+use poecal_model::measurement::Dataset;
+use poecal_model::robot::Robot;
+use poecal_model::simulate::{Gross, Kind, Simulation, elbow, gantry, scara, seven_axis};
+use poecal_numerics::error::Result;
 
 /// Shares of the rows that are wrong, percent.
 const SHARES: [u32; 11] = [0, 5, 10, 15, 20, 25, 30, 35, 40, 45, 50];

@@ -1,12 +1,12 @@
 //! How far screws miss their constraints `v·ω = 0` and `|ω| = 1` while a fit goes on, before anything puts them right.
 
 use nalgebra::Vector3;
-use poecal::estimate::Estimate;
-use poecal::lie::{Pose, Twist};
-use poecal::parameters::Parameter;
-use poecal::problem::Problem;
-use poecal::robot::JointKind;
-use poecal::solve::{LeastSquares, Normal};
+use poecal_arm::lie::{Pose, Twist};
+use poecal_fit::parameters::Parameter;
+use poecal_fit::problem::Problem;
+use poecal_fit::state::Estimate;
+use poecal_model::robot::JointKind;
+use poecal_numerics::solve::{LeastSquares, Normal};
 
 /// A miss of the constraints of a revolute screw.
 #[derive(Clone, Copy, Default)]
@@ -100,11 +100,10 @@ impl LeastSquares for Watched<'_> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::MeasurementKind;
-    use super::super::runs;
+    use super::super::{MeasurementKind, runs};
     use super::*;
     use crate::{Formulation, Residual};
-    use poecal::measurement::Noise;
+    use poecal_model::measurement::Noise;
 
     /// A step of 1e-2 in every unknown.
     fn stepped(formulation: Formulation) -> WatchedState {

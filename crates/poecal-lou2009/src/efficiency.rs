@@ -7,11 +7,11 @@ use super::session::PaperSession;
 use super::{Efficiency, LENGTH_M, MeasurementKind, NOISE, runs, tables};
 use crate::{Formulation, Method, Residual};
 use nalgebra::{DMatrix, DVector, Vector3};
-use poecal::error::Result;
-use poecal::estimate::{Chain, Linkage};
-use poecal::lie::TargetTwist;
-use poecal::problem::Problem;
-use poecal::solve::{LeastSquares, Options};
+use poecal_arm::lie::TargetTwist;
+use poecal_fit::problem::Problem;
+use poecal_fit::state::{Chain, Linkage};
+use poecal_numerics::error::Result;
+use poecal_numerics::solve::{LeastSquares, Options};
 
 /// Configurations of a session.
 const ROWS: usize = 40;

@@ -1,11 +1,10 @@
 //! The ways to write and to solve a calibration that lou2009 discusses: unknowns of the joints, errors of measured frames, steps.
 
-use poecal::calibration;
-use poecal::measurement::PoseResidual;
-use poecal::parameters::{Parameter, ScrewAxis, ValueTerm};
-use poecal::robot::JointKind;
-use poecal::robot::Term;
-use poecal::solve::minimize;
+use poecal_calibrate as calibration;
+use poecal_fit::parameters::{Parameter, ScrewAxis, ValueTerm};
+use poecal_model::measurement::PoseResidual;
+use poecal_model::robot::{JointKind, Term};
+use poecal_numerics::solve::minimize;
 use serde::Serialize;
 
 use crate::{FreeScrew, Spatial, gauss_newton};

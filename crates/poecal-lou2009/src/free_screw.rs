@@ -1,10 +1,10 @@
 //! A joint's screw as free numbers, the original way (docs/theory.md §5 (22a) to (22c)).
 
 use nalgebra::{Matrix3, Vector3};
-use poecal::estimate::{Chain, JointView};
-use poecal::lie::{Pose, Screw, TargetTwist, Twist, rotation};
-use poecal::parameters::{Column, OtherScrew, Parameter, ScrewModel};
-use poecal::robot::JointKind;
+use poecal_arm::lie::{Pose, Screw, TargetTwist, Twist, rotation};
+use poecal_fit::parameters::{Column, OtherScrew, Parameter, ScrewModel};
+use poecal_fit::state::{Chain, JointView};
+use poecal_model::robot::JointKind;
 
 /// A screw with all its numbers free, `ξ ← ξ + dξ`, made a screw again by the retraction (okamura1996, lou2009
 /// equations 5 to 9): `ω/|ω|`, `(v - ω(ω·v))/|ω|`. `dξ` is written in the joint's axis frame A, `ξ = Ad_A ε_z`, where the

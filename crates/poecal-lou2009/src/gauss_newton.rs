@@ -1,6 +1,6 @@
 //! Plain Gauss-Newton: the iterated least squares of okamura1996 and lou2009. Every step is taken as it is.
 
-use poecal::solve::{LeastSquares, Normal, Options, Summary, Termination};
+use poecal_numerics::solve::{LeastSquares, Normal, Options, Summary, Termination};
 
 /// Minimises from `start` by full steps; gives the state reached, its normal information and a summary. It ends where the part of the
 /// step that the retraction keeps is nothing, which with constraints put right after each step need not be a minimum (docs/theory.md §5

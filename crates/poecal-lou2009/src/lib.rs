@@ -33,10 +33,10 @@ pub use spatial::Spatial;
 use claims::{Evidence, claims};
 use runs::Ended;
 
-use poecal::error::{ErrorKind, Result};
-use poecal::lie::Screw;
-use poecal::measurement::{Noise, Quantity};
-use poecal::robot::Term;
+use poecal_arm::lie::Screw;
+use poecal_model::measurement::{Noise, Quantity};
+use poecal_model::robot::Term;
+use poecal_numerics::error::{ErrorKind, Result};
 
 /// Metres that a radian counts in ranks and steps: some third of the elbow's reach.
 const LENGTH_M: f64 = 0.5;

@@ -6,8 +6,8 @@ use nalgebra::{DMatrix, Matrix3x6, Matrix6, Vector3, Vector6};
 
 use super::MeasurementKind;
 use crate::Formulation;
-use poecal::lie::{Pose, Screw, Twist, hat};
-use poecal::robot::Robot;
+use poecal_arm::lie::{Pose, Screw, Twist, hat};
+use poecal_model::robot::Robot;
 
 /// Adjoint errors of a robot: `ξ_i = Ad_exp(η_i) ξ_i^n` and `M = exp(Υ) M^n` (lou2009 (16) to (18); theory.md §3 (10)).
 #[derive(Clone, Debug, PartialEq)]

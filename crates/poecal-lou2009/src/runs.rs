@@ -1,17 +1,15 @@
 //! The paper's calibrations from the nominal screws, with every formulation, traced by iteration.
 
 use super::constraints::{Watched, WatchedState};
-use super::literal;
 use super::seeds::{Purpose, derived};
 use super::session::PaperSession;
-use super::tables;
-use super::{Iteration, LENGTH_M, MeasurementKind, NOISE, Run};
+use super::{Iteration, LENGTH_M, MeasurementKind, NOISE, Run, literal, tables};
 use crate::{Formulation, Residual, gauss_newton};
-use poecal::error::Result;
-use poecal::estimate::Estimate;
-use poecal::measurement::{Dataset, Noise, Quantity};
-use poecal::problem::Problem;
-use poecal::solve::{Options, Termination};
+use poecal_fit::problem::Problem;
+use poecal_fit::state::Estimate;
+use poecal_model::measurement::{Dataset, Noise, Quantity};
+use poecal_numerics::error::Result;
+use poecal_numerics::solve::{Options, Termination};
 
 /// Measurements of each kind that a run fits.
 const POSES: usize = 30;
@@ -44,7 +42,7 @@ pub(super) struct Ended {
 /// The truth of the experiment: the prescribed screws and point, with joint offsets or without.
 pub(super) fn truth(offsets: bool) -> Estimate {
     let robot = tables::prescribed();
-    let mut truth = Estimate::new(&robot, vec![robot.home], poecal::lie::Pose::identity());
+    let mut truth = Estimate::new(&robot, vec![robot.home], poecal_arm::lie::Pose::identity());
     if offsets {
         truth = truth.with_offsets(&tables::PRESCRIBED_OFFSETS_DEG.map(f64::to_radians));
     }

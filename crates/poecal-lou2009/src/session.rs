@@ -6,13 +6,13 @@ use rand_core::SeedableRng;
 use super::MeasurementKind;
 use crate::{Formulation, Residual};
 use nalgebra::Vector3;
-use poecal::error::Result;
-use poecal::estimate::{Chain, Estimate, Linkage, Packed, Session};
-use poecal::lie::{Pose, rotation};
-use poecal::measurement::{Dataset, Measurement, Noise, Quantity};
-use poecal::parameters::{Parameter, TargetFrame, TargetPlace};
-use poecal::robot::Robot;
-use poecal::simulate::{random, random_configuration};
+use poecal_arm::lie::{Pose, rotation};
+use poecal_fit::parameters::{Parameter, TargetFrame, TargetPlace};
+use poecal_fit::state::{Chain, Estimate, Linkage, Packed, Session};
+use poecal_model::measurement::{Dataset, Measurement, Noise, Quantity};
+use poecal_model::robot::Robot;
+use poecal_model::simulate::{random, random_configuration};
+use poecal_numerics::error::Result;
 
 /// Configurations that a fit never saw.
 const UNSEEN: usize = 60;

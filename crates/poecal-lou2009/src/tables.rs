@@ -2,9 +2,9 @@
 
 use nalgebra::{Vector3, Vector6};
 
-use poecal::lie::{Pose, Screw, Twist};
-use poecal::robot::Robot;
-use poecal::simulate;
+use poecal_arm::lie::{Pose, Screw, Twist};
+use poecal_model::robot::Robot;
+use poecal_model::simulate;
 
 /// Table II, right: the identified screws `(v; ω)` as printed, with four decimals and v in millimetres.
 pub const PRINTED_SCREWS_MM: [[f64; 6]; 6] = [

@@ -1,7 +1,8 @@
 //! Errors of models, and the verdict, as attributes.
 
-use poecal::calibration::{self, AcceptedModel, Level};
-use poecal::report::table::number;
+use poecal_calibrate as calibration;
+use poecal_calibrate::{AcceptedModel, Level};
+use poecal_report::table::number;
 use pyo3::exceptions::PyAttributeError;
 use pyo3::prelude::*;
 

@@ -4,11 +4,11 @@ use std::collections::BTreeMap;
 use std::fmt::Display;
 use std::path::PathBuf;
 
-use poecal::calibration::{AcceptanceLimits, Corrections};
-use poecal::io::record::Record;
-use poecal::io::urdf::ChainSelection;
-use poecal::plan::RobotError;
-use poecal::robot::GravityDirection;
+use poecal_calibrate::{AcceptanceLimits, Corrections};
+use poecal_formats::urdf::ChainSelection;
+use poecal_model::robot::GravityDirection;
+use poecal_plan::plan::RobotError;
+use poecal_results::record::Record;
 use pyo3::PyTypeInfo;
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyString};
@@ -273,7 +273,9 @@ impl<'a, 'py> Argument<'a, 'py> for AcceptanceLimits {
         if !value.is_instance_of::<PyString>() {
             return Err(unexpected(name, value, "a text, like \"0.2mm\" or \"0.2mm,max:0.5mm\""));
         }
-        String::of(value, name)?.parse().map_err(|error: poecal::Error| argument(name, error.message()))
+        String::of(value, name)?
+            .parse()
+            .map_err(|error: poecal_numerics::error::Error| argument(name, error.message()))
     }
 }
 

@@ -5,7 +5,7 @@ use numpy::{
     PyArray1, PyArray2, PyArray3, PyArrayMethods as _, PyReadonlyArrayDyn, PyUntypedArray,
     PyUntypedArrayMethods as _,
 };
-use poecal::lie::Pose;
+use poecal_arm::lie::Pose;
 use pyo3::prelude::*;
 use pyo3::types::{PyList, PyTuple};
 
@@ -222,7 +222,7 @@ pub(crate) struct Joints {
 
 impl Joints {
     /// From the argument `joints`.
-    pub(crate) fn of(value: &Bound<'_, PyAny>, robot: &poecal::robot::Robot) -> PyResult<Self> {
+    pub(crate) fn of(value: &Bound<'_, PyAny>, robot: &poecal_model::robot::Robot) -> PyResult<Self> {
         let names = robot.reading_names();
         let n = names.len();
         let expected = format!(

@@ -2,10 +2,10 @@
 
 use std::fmt::Write as _;
 
-use poecal::Error;
-use poecal::io::model::{Model, ModelSource};
-use poecal::io::robot_toml;
-use poecal::lie::Pose;
+use poecal_arm::lie::Pose;
+use poecal_formats::robot_toml;
+use poecal_numerics::error::Error;
+use poecal_results::model::{Model, ModelSource};
 use pyo3::prelude::*;
 
 use crate::arrays::{Numbers, pose};

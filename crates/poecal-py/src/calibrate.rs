@@ -4,19 +4,19 @@ use std::borrow::Cow;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use poecal::ErrorKind;
-use poecal::calibration::{
+use poecal_calibrate::{
     AcceptanceLimits, AcceptedModel, BlockChoice, CalibrationOptions, Corrections, Repaired, Repairs, Stage,
     calibrate_repairing, settle_sets,
 };
-use poecal::io::abb::AbbCalibration;
-use poecal::io::calibration_file::Inputs;
-use poecal::io::measurements::MeasurementFile;
-use poecal::io::named_files::refuse_fitted;
-use poecal::io::record::Record;
-use poecal::measurement::{ByQuantity, Dataset, Quantity};
-use poecal::robot::{GravityDirection, Tolerance};
+use poecal_formats::abb::AbbCalibration;
+use poecal_import::MeasurementFile;
 use poecal_lou2009::{Formulation, Method, Residual, formulated};
+use poecal_model::measurement::{ByQuantity, Dataset, Quantity};
+use poecal_model::robot::{GravityDirection, Tolerance};
+use poecal_numerics::error::ErrorKind;
+use poecal_results::calibration_file::Inputs;
+use poecal_results::record::Record;
+use poecal_storage::named_files::refuse_fitted;
 use pyo3::prelude::*;
 
 use crate::arguments::{self as arg, Believed, Function};
@@ -175,7 +175,7 @@ fn written(
     formulation: &str,
     residual: &str,
     method: Option<&str>,
-) -> PyResult<(poecal::Formulation, Residual)> {
+) -> PyResult<(poecal_calibrate::Formulation, Residual)> {
     let formulation = chosen("formulation", formulation, &Formulation::ALL.map(|it| (it.word(), it)))?;
     let residual = chosen("residual", residual, &Residual::ALL.map(|it| (it.word(), it)))?;
     let methods = Method::ALL.map(|it| (it.word(), it));
@@ -200,11 +200,11 @@ pub(crate) fn accept_limits(
 /// The fit, without the interpreter's lock, and the time of the library. Warns as the program does.
 fn fit(
     py: Python<'_>,
-    nominal: &poecal::robot::Robot,
+    nominal: &poecal_model::robot::Robot,
     data: &Dataset,
     options: &CalibrationOptions,
     progress: Option<Function>,
-) -> PyResult<(poecal::calibration::Calibration, Option<Dataset>, Duration)> {
+) -> PyResult<(poecal_calibrate::Calibration, Option<Dataset>, Duration)> {
     let mut raised = None;
     let mut tell = |stage: Stage| {
         if let (Some(Function(progress)), None) = (&progress, &raised) {

@@ -9,20 +9,21 @@ use content::part;
 use std::path::{Path, PathBuf};
 
 use numpy::PyArray2;
-use poecal::calibration::{AcceptanceLimits, AcceptedModel};
-use poecal::compensate::{Language, ProgramOptions};
-use poecal::io::calibration_file::{CalibrationFile, Counted};
-use poecal::io::export::{ExportFormat, ExportOptions, export};
-use poecal::io::model::{Model, ModelSource};
-use poecal::io::output::{self, Contents, Existing, Results};
-use poecal::io::predictions::{PredictionFrame, predicted};
-use poecal::io::record::Record;
-use poecal::io::residuals::{ResidualRows, Residuals as Rows};
-use poecal::io::shapes::Shapes;
-use poecal::io::validation::Judging;
-use poecal::plan::RobotError;
-use poecal::report::{self, table::number};
-use poecal::robot::ThirdAxis;
+use poecal_calibrate::{AcceptanceLimits, AcceptedModel};
+use poecal_compensate::{Language, ProgramOptions};
+use poecal_model::robot::ThirdAxis;
+use poecal_plan::plan::RobotError;
+use poecal_report as report;
+use poecal_report::table::number;
+use poecal_results::calibration_file::{CalibrationFile, Counted};
+use poecal_results::export::{ExportFormat, ExportOptions, export};
+use poecal_results::model::{Model, ModelSource};
+use poecal_results::output::{self, Contents, Existing, Results};
+use poecal_results::predictions::{PredictionFrame, predicted};
+use poecal_results::record::Record;
+use poecal_results::residuals::{ResidualRows, Residuals as Rows};
+use poecal_results::shapes::Shapes;
+use poecal_results::validation::Judging;
 use pyo3::IntoPyObjectExt as _;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyTuple};
@@ -35,14 +36,12 @@ use crate::covariance::Covariance;
 use crate::errors::{argument, python_words, raise};
 use crate::findings::{self, Findings};
 use crate::measurements::Measurements;
-use crate::notebook;
-use crate::pickle;
 use crate::places::{reserved_file, reserved_folder, said};
 use crate::prediction::Prediction;
-use crate::reach;
 use crate::residuals::Residuals;
 use crate::robot::{Robot, poses};
 use crate::words::chosen;
+use crate::{notebook, pickle, reach};
 
 /// Place of a report: among the results, a file, or none.
 enum ReportPlace {
@@ -82,7 +81,7 @@ impl Calibration {
         #[pyo3(from_py_with = arg::residuals)] residuals: Option<PathBuf>,
     ) -> PyResult<Self> {
         let file = CalibrationFile::read(&path).map_err(raise)?;
-        let in_file = |error: poecal::Error| raise(error.in_file(&path));
+        let in_file = |error: poecal_numerics::error::Error| raise(error.in_file(&path));
         let robot = file.robot().map_err(in_file)?;
         let nominal = file.nominal_robot().map_err(in_file)?;
         let beside = path.with_file_name("residuals.csv");
@@ -420,7 +419,7 @@ impl Calibration {
         let until = valid_until.as_deref().map(|day| ("valid_until", day));
         let stated = file.record.clone().overridden(&record.unwrap_or_default());
         let stated = stated.overridden(&Record::of(until).map_err(raise)?);
-        let logo = logo.as_deref().map(poecal::io::logo::read).transpose().map_err(raise)?;
+        let logo = logo.as_deref().map(poecal_formats::logo::read).transpose().map_err(raise)?;
         let existing = if force { Existing::Replaced } else { Existing::Own };
         let place = reserved_file(py, &path, existing, &[])?;
         // The checksum is that of calibration.json as it is written.

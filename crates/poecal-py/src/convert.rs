@@ -4,12 +4,13 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use numpy::PyArray2;
-use poecal::io::calibration_file::CalibrationFile;
-use poecal::io::measurements::{self, ColumnMap, ReadOptions};
-use poecal::io::model::{Model, convert as converted};
-use poecal::io::output::Existing;
-use poecal::nearest;
-use poecal::offsets::into_screws;
+use poecal_import as measurements;
+use poecal_import::{ColumnMap, ReadOptions};
+use poecal_model::offsets::into_screws;
+use poecal_numerics::error::nearest;
+use poecal_results::calibration_file::CalibrationFile;
+use poecal_results::model::{Model, convert as converted};
+use poecal_results::output::Existing;
 use pyo3::prelude::*;
 
 use crate::arguments as arg;
@@ -69,7 +70,7 @@ pub(crate) fn convert(
 /// The offsets in the order of the joints.
 fn offsets(
     stated: &BTreeMap<String, f64>,
-    robot: &poecal::robot::Robot,
+    robot: &poecal_model::robot::Robot,
     notes: &mut Vec<String>,
 ) -> PyResult<Vec<f64>> {
     let names: Vec<&str> = robot.joints.iter().map(|joint| joint.name.as_str()).collect();

@@ -1,9 +1,9 @@
 //! The covariance of a calibration's unknowns.
 
 use numpy::{PyArray1, PyArray2, PyArray3};
-use poecal::Unit;
-use poecal::io::calibration_file::CalibrationFile;
-use poecal::lie::Pose;
+use poecal_arm::lie::Pose;
+use poecal_numerics::unit::Unit;
+use poecal_results::calibration_file::CalibrationFile;
 use pyo3::prelude::*;
 
 use crate::arrays::{pose_arrays, table};

@@ -1,6 +1,6 @@
 //! The library's errors as Python exceptions.
 
-use poecal::{Error, ErrorKind};
+use poecal_numerics::error::{Error, ErrorKind};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 

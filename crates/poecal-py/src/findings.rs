@@ -1,14 +1,16 @@
 //! Results of `check`, `compare`, `identify`, `offsets` and `track`.
 
-use poecal::analysis::{self, PlannedSession};
-use poecal::calibration::DeviceFrameKnowledge;
-use poecal::io::offsets::ModelOffsets;
-use poecal::io::validation::ValidationInputs;
-use poecal::measurement::{Noise, Quantity};
-use poecal::plan::{PlannedFit, RobotError, expected_errors};
-use poecal::report::Detail;
-use poecal::track::{Earlier, TrackOptions, track as tracked};
-use poecal::{compare as compared, forensics, report};
+use poecal_calibrate::DeviceFrameKnowledge;
+use poecal_fit::analysis::{self, PlannedSession};
+use poecal_fit::forensics;
+use poecal_model::measurement::{Noise, Quantity};
+use poecal_plan::plan::{PlannedFit, RobotError, expected_errors};
+use poecal_report as report;
+use poecal_report::Detail;
+use poecal_results::compare as compared;
+use poecal_results::offsets::ModelOffsets;
+use poecal_results::track::{Earlier, TrackOptions, track as tracked};
+use poecal_results::validation::ValidationInputs;
 use pyo3::prelude::*;
 use serde::Serialize;
 

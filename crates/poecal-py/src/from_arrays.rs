@@ -3,14 +3,13 @@
 use std::collections::BTreeMap;
 
 use nalgebra::Vector3;
-use poecal::Error;
-use poecal::Unit;
-use poecal::io::measurements::{
-    LARGEST_ANGLE_RAD, LARGEST_NUMBER, MOST_REACHES, NamedUnit, WRONG_UNIT_SHARE,
-};
-use poecal::lie::Pose;
-use poecal::measurement::{ByQuantity, Dataset, Measurement, Observation, Quantity, Set};
-use poecal::robot::{JointKind, Robot};
+use poecal_arm::lie::Pose;
+use poecal_import::{LARGEST_ANGLE_RAD, LARGEST_NUMBER, MOST_REACHES, WRONG_UNIT_SHARE};
+use poecal_model::measurement::{ByQuantity, Dataset, Measurement, Observation, Quantity, Set};
+use poecal_model::robot::{JointKind, Robot};
+use poecal_numerics::error::Error;
+use poecal_numerics::named_unit::NamedUnit;
+use poecal_numerics::unit::Unit;
 use pyo3::prelude::*;
 use pyo3::types::PyString;
 
@@ -127,7 +126,7 @@ fn refuse_degrees(robot: &Robot, readings: &[f64]) -> PyResult<()> {
     let names = robot.reading_names();
     let rows = readings.len() / names.len().max(1);
     for (at, name) in names.iter().enumerate() {
-        let own: Vec<&poecal::robot::Joint> =
+        let own: Vec<&poecal_model::robot::Joint> =
             robot.joints.iter().filter(|joint| joint.reading.name == *name).collect();
         let turns = own.iter().all(|joint| joint.kind == JointKind::Revolute);
         let limit = own.iter().filter_map(|joint| joint.limits).map(|it| it.lower.abs().max(it.upper.abs()));

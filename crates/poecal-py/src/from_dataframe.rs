@@ -1,6 +1,6 @@
 //! Tables in memory as text of a table, read by the same rules as files.
 
-use poecal::Error;
+use poecal_numerics::error::Error;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyFloat, PyList, PyString, PyTuple};
 

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use poecal::io::measurements::{ColumnGuess, guess_columns as guessed};
+use poecal_import::{ColumnGuess, guess_columns as guessed};
 use pyo3::prelude::*;
 
 use crate::arguments::{self as arg, Links};

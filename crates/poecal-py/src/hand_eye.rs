@@ -1,11 +1,11 @@
 //! `hand_eye` and `tcp`: a camera, or the tip of a tool, from poses of the flange.
 
-use poecal::hand_eye::{self as solved, CameraPlace, HandEyeOptions, Touches};
-use poecal::io::hand_eye::{FrameNames, HandEyeResult};
-use poecal::io::measurements::{FlangePoses, PosePairs};
-use poecal::io::tcp::ToolResult;
-use poecal::lie::Pose;
-use poecal::report;
+use poecal_arm::lie::Pose;
+use poecal_fit::hand_eye::{self as solved, CameraPlace, HandEyeOptions, Touches};
+use poecal_import::{FlangePoses, PosePairs};
+use poecal_report as report;
+use poecal_results::hand_eye::{FrameNames, HandEyeResult};
+use poecal_results::tcp::ToolResult;
 use pyo3::prelude::*;
 
 use crate::arguments as arg;
@@ -94,9 +94,10 @@ pub(crate) fn hand_eye(
     let names = row_names(texts(names, "names", arm.len())?, arm.len());
     let frames = match frames {
         None => FrameNames::default(),
-        Some(frames) => {
-            frames.join(",").parse().map_err(|error: poecal::Error| argument("frames", error.message()))?
-        }
+        Some(frames) => frames
+            .join(",")
+            .parse()
+            .map_err(|error: poecal_numerics::error::Error| argument("frames", error.message()))?,
     };
     let poses = PosePairs { flange: arm.into(), target: seen.into(), names, ..PosePairs::default() };
     let name = |row: usize| poses.names.get(row).cloned().unwrap_or_default();

@@ -118,8 +118,9 @@ mod _poecal {
     /// function does not have are answered with the nearest one.
     #[pymodule_init]
     fn begin(module: &Bound<'_, PyModule>) -> PyResult<()> {
-        let refused = |sentence| crate::errors::raise(poecal::ErrorKind::Option.error(sentence));
-        poecal::problem::stated_level().map(drop).map_err(refused)?;
+        let refused =
+            |sentence| crate::errors::raise(poecal_numerics::error::ErrorKind::Option.error(sentence));
+        poecal_fit::problem::stated_level().map(drop).map_err(refused)?;
         module.py().import("poecal._keywords")?.call_method1("answer", (module,)).map(drop)
     }
 
@@ -142,8 +143,11 @@ mod _poecal {
     ///     From 1 to 256. It can be set once, before anything is computed.
     #[pyfunction]
     fn set_threads(#[pyo3(from_py_with = crate::arguments::count)] count: usize) -> PyResult<()> {
-        if !(1..=poecal::MOST_THREADS).contains(&count) {
-            let message = format!("found {count}, expected a number from 1 to {}", poecal::MOST_THREADS);
+        if !(1..=poecal_numerics::threads::MOST_THREADS).contains(&count) {
+            let message = format!(
+                "found {count}, expected a number from 1 to {}",
+                poecal_numerics::threads::MOST_THREADS
+            );
             return Err(crate::errors::argument("count", message));
         }
         rayon::ThreadPoolBuilder::new().num_threads(count).build_global().map_err(|_| {
@@ -194,6 +198,6 @@ mod _poecal {
     /// The word that one is likely to be.
     #[pyfunction]
     fn _nearest(word: &str, words: Vec<String>) -> Option<String> {
-        poecal::nearest(word, words.iter().map(String::as_str)).map(str::to_owned)
+        poecal_numerics::error::nearest(word, words.iter().map(String::as_str)).map(str::to_owned)
     }
 }

@@ -9,10 +9,11 @@ use content::{MeasurementSource, MeasurementState};
 use std::path::PathBuf;
 
 use numpy::{PyArray1, PyArray2, PyArray3};
-use poecal::io::calibration_file::Inputs;
-use poecal::io::measurements::{self, ColumnMap, Frames, Join, MeasurementFile, PlaneContact, ReadOptions};
-use poecal::io::named_files::refuse_repeats;
-use poecal::measurement::Set;
+use poecal_import as measurements;
+use poecal_import::{ColumnMap, Frames, Join, MeasurementFile, PlaneContact, ReadOptions};
+use poecal_model::measurement::Set;
+use poecal_results::calibration_file::Inputs;
+use poecal_storage::named_files::refuse_repeats;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
@@ -20,12 +21,9 @@ use crate::arguments::{self as arg, Paths};
 use crate::arrays::{pose_arrays, table};
 use crate::errors::{python_words, raise};
 use crate::from_arrays::{ArrayColumns, dataset};
-use crate::from_dataframe;
-use crate::notebook;
-use crate::pickle;
 use crate::robot::Robot;
-use crate::rows;
 use crate::words::chosen;
+use crate::{from_dataframe, notebook, pickle, rows};
 
 /// How planes are touched.
 const CONTACTS: [(&str, PlaneContact); 2] = [("point", PlaneContact::Point), ("flush", PlaneContact::Flush)];
@@ -39,7 +37,7 @@ fn options(
     (socket_distance, contact): (Option<&str>, PlaneContact),
     [units, sheet, body]: [Option<&str>; 3],
     [instrument_noise, cameras, markers, topics]: [Option<&[String]>; 4],
-) -> poecal::Result<ReadOptions> {
+) -> poecal_numerics::error::Result<ReadOptions> {
     let mut options = ReadOptions {
         frames,
         join,
@@ -429,8 +427,9 @@ impl Measurements {
     /// Measured positions in the device's frame, shape (m, 3), metres.
     #[getter]
     fn positions<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let position =
-            |row: &poecal::measurement::Observation| <[f64; 3]>::from(row.measurement.pose().translation);
+        let position = |row: &poecal_model::measurement::Observation| {
+            <[f64; 3]>::from(row.measurement.pose().translation)
+        };
         table(py, self.data().observations.iter().flat_map(position).collect(), 3)
     }
 

@@ -1,12 +1,12 @@
 //! How objects show themselves in notebooks, as HTML.
 
 use maud::{Markup, html};
-use poecal::Unit;
-use poecal::calibration::AcceptedModel;
-use poecal::io::calibration_file::CalibrationFile;
-use poecal::measurement::Quantity;
-use poecal::robot::{Joint, JointKind, Robot};
-use poecal::text::visible_markup;
+use poecal_calibrate::AcceptedModel;
+use poecal_model::measurement::Quantity;
+use poecal_model::robot::{Joint, JointKind, Robot};
+use poecal_numerics::text::visible_markup;
+use poecal_numerics::unit::Unit;
+use poecal_results::calibration_file::CalibrationFile;
 
 /// A robot's joints.
 pub(crate) fn robot(robot: &Robot, words: &str) -> String {

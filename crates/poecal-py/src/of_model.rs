@@ -1,6 +1,6 @@
 //! The model whose errors a row has.
 
-use poecal::calibration::AcceptedModel;
+use poecal_calibrate::AcceptedModel;
 use pyo3::prelude::*;
 
 use crate::words::chosen;

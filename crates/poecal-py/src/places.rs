@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use poecal::io::output::{Contents, Existing, FilePlace, FolderPlace};
+use poecal_results::output::{Contents, Existing, FilePlace, FolderPlace};
 use pyo3::prelude::*;
 
 use crate::errors::raise;
@@ -29,7 +29,7 @@ pub(crate) fn reserved_folder(
 /// Result of `reserve`; its messages become warnings.
 pub(crate) fn said<T>(
     py: Python<'_>,
-    reserve: impl FnOnce(&mut dyn FnMut(String)) -> poecal::Result<T>,
+    reserve: impl FnOnce(&mut dyn FnMut(String)) -> poecal_numerics::error::Result<T>,
 ) -> PyResult<T> {
     let mut notes = Vec::new();
     let place = reserve(&mut |note| notes.push(note));

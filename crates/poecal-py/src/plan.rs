@@ -3,13 +3,13 @@
 use std::sync::Arc;
 
 use nalgebra::Vector3;
-use poecal::calibration::Corrections;
-use poecal::io::shapes::capsules_of;
-use poecal::plan::{
+use poecal_calibrate::Corrections;
+use poecal_model::robot::GravityDirection;
+use poecal_plan::plan::{
     Conditions, PlanCriterion, PlanOptions, PlannedRow, RobotError, RowPart, Sight, plan as planned,
 };
-use poecal::report;
-use poecal::robot::GravityDirection;
+use poecal_report as report;
+use poecal_results::shapes::capsules_of;
 use pyo3::IntoPyObjectExt as _;
 use pyo3::prelude::*;
 

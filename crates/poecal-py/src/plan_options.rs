@@ -1,13 +1,13 @@
 //! Arguments that `plan` and `Watch` share: what is believed of a session, configurations, boxes, the workspace.
 
 use nalgebra::Vector3;
-use poecal::analysis::PlannedSession;
-use poecal::calibration::{Corrections, DeviceFrameKnowledge};
-use poecal::io::model::Model;
-use poecal::measurement::{Noise, Quantity};
-use poecal::plan::{PlannedFit, RobotError, workspace_in};
-use poecal::robot::{GravityDirection, Tolerance};
-use poecal::simulate::Kind;
+use poecal_calibrate::{Corrections, DeviceFrameKnowledge};
+use poecal_fit::analysis::PlannedSession;
+use poecal_model::measurement::{Noise, Quantity};
+use poecal_model::robot::{GravityDirection, Tolerance};
+use poecal_model::simulate::Kind;
+use poecal_plan::plan::{PlannedFit, RobotError, workspace_in};
+use poecal_results::model::Model;
 use pyo3::prelude::*;
 
 use crate::arguments::Believed;

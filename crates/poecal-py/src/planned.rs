@@ -4,12 +4,12 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use numpy::{PyArray1, PyArray2, PyArrayMethods as _};
-use poecal::io::measurements::planned_table;
-use poecal::io::model::Model;
-use poecal::io::output::Existing;
-use poecal::io::plan_program::plan_program;
-use poecal::plan::PlanOptions;
-use poecal::report;
+use poecal_import::planned_table;
+use poecal_plan::plan::PlanOptions;
+use poecal_report as report;
+use poecal_results::model::Model;
+use poecal_results::output::Existing;
+use poecal_results::plan_program::plan_program;
 use pyo3::prelude::*;
 
 use crate::arguments as arg;
@@ -21,7 +21,7 @@ use crate::places::reserved_file;
 pub(crate) struct Plan {
     pub(crate) model: Arc<Model>,
     pub(crate) options: PlanOptions,
-    pub(crate) found: poecal::plan::Plan,
+    pub(crate) found: poecal_plan::plan::Plan,
     pub(crate) told: report::Plan,
 }
 
@@ -176,7 +176,13 @@ impl Plan {
         planned_table(&self.model.robot, &self.found).map_err(raise)
     }
 
-    fn put(&self, py: Python<'_>, path: &Path, force: bool, page: poecal::io::output::Page) -> PyResult<()> {
+    fn put(
+        &self,
+        py: Python<'_>,
+        path: &Path,
+        force: bool,
+        page: poecal_results::output::Page,
+    ) -> PyResult<()> {
         let place = reserved_file(py, path, Existing::forced(force), &[&self.model.path])?;
         py.detach(|| place.write(page)).map_err(raise)
     }

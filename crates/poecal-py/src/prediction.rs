@@ -1,8 +1,8 @@
 //! Predictions with their expected errors.
 
 use numpy::{PyArray1, PyArray3};
-use poecal::lie::Pose;
-use poecal::uncertainty::PredictedError;
+use poecal_arm::lie::Pose;
+use poecal_fit::uncertainty::PredictedError;
 use pyo3::prelude::*;
 
 use crate::arrays::pose_arrays;

@@ -2,9 +2,9 @@
 
 use std::path::PathBuf;
 
-use poecal::io::model::Model;
-use poecal::io::output::{Contents, Existing, Project, write_project};
-use poecal::simulate::Kind;
+use poecal_model::simulate::Kind;
+use poecal_results::model::Model;
+use poecal_results::output::{Contents, Existing, Project, write_project};
 use pyo3::prelude::*;
 
 use crate::arguments::{self as arg, Links};

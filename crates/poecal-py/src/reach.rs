@@ -4,12 +4,12 @@ use std::borrow::Cow;
 use std::path::Path;
 
 use numpy::{PyArray1, PyArrayMethods as _};
-use poecal::compensate::{
+use poecal_arm::lie::Pose;
+use poecal_compensate::{
     ChangeOptions, Compensation, Inverse, Kinematics, Language, MostChange, ProgramOptions, compensate_file,
 };
-use poecal::lie::Pose;
-use poecal::robot::{Counting, JointKind};
-use poecal::{CalibrationFile, Robot};
+use poecal_model::robot::{Counting, JointKind, Robot};
+use poecal_results::calibration_file::CalibrationFile;
 use pyo3::IntoPyObjectExt as _;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyList};

@@ -1,8 +1,8 @@
 //! `recalibrate`: one joint of a calibration anew.
 
-use poecal::io::calibration_file::{Inputs, RecalibrationSources, RepairedPart};
-use poecal::report;
-use poecal::track::{Earlier, recalibrate as repaired};
+use poecal_report as report;
+use poecal_results::calibration_file::{Inputs, RecalibrationSources, RepairedPart};
+use poecal_results::track::{Earlier, recalibrate as repaired};
 use pyo3::prelude::*;
 
 use crate::arguments as arg;

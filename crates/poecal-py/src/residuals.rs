@@ -1,10 +1,10 @@
 //! Residuals of each row as arrays and as tables of other packages.
 
 use numpy::{PyArray1, PyArray2};
-use poecal::io::residuals::{
+use poecal_model::measurement::Quantity;
+use poecal_results::residuals::{
     ResidualRow, Residuals as Rows, RowDiagnostics, columns as names, corner_columns,
 };
-use poecal::measurement::Quantity;
 use pyo3::exceptions::PyModuleNotFoundError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;

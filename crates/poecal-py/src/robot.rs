@@ -7,11 +7,11 @@ pub(crate) use content::{Robot, RobotState, form, poses};
 use std::path::PathBuf;
 
 use numpy::{PyArray2, PyArray3, PyArrayMethods as _};
-use poecal::io::model::{Model, ModelSource};
-use poecal::io::output::Existing;
-use poecal::io::predictions::{PredictionFrame, predicted};
-use poecal::io::robot_toml;
-use poecal::io::urdf::UrdfDocument;
+use poecal_formats::robot_toml;
+use poecal_formats::urdf::UrdfDocument;
+use poecal_results::model::{Model, ModelSource};
+use poecal_results::output::Existing;
+use poecal_results::predictions::{PredictionFrame, predicted};
 use pyo3::IntoPyObjectExt as _;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
@@ -20,10 +20,9 @@ use crate::arguments::{self as arg, Links, is_content};
 use crate::arrays::{Joints, pose_array, pose_arrays, table};
 use crate::build::{DhTable, Naming, from_dh, from_screws};
 use crate::errors::{argument, raise};
-use crate::notebook;
-use crate::pickle;
 use crate::places::reserved_file;
 use crate::words::shortened;
+use crate::{notebook, pickle};
 
 /// Path of a robot that was read from a text.
 const TEXT: &str = "text";
@@ -370,8 +369,9 @@ impl Robot {
     #[getter]
     fn limits<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let none = [f64::NEG_INFINITY, f64::INFINITY];
-        let of =
-            |joint: &poecal::robot::Joint| joint.limits.map_or(none, |limits| [limits.lower, limits.upper]);
+        let of = |joint: &poecal_model::robot::Joint| {
+            joint.limits.map_or(none, |limits| [limits.lower, limits.upper])
+        };
         table(py, self.robot().joints.iter().flat_map(of).collect(), 2)
     }
 

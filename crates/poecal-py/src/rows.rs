@@ -1,6 +1,6 @@
 //! Chosen rows of measurements, and rows of several measurements joined.
 
-use poecal::measurement::Dataset;
+use poecal_model::measurement::Dataset;
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PySlice};
 

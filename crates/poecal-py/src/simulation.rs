@@ -3,12 +3,12 @@
 use std::path::PathBuf;
 
 use numpy::PyArray2;
-use poecal::calibration::DeviceFrameKnowledge;
-use poecal::io::model::{Model, ModelSource};
-use poecal::io::output::{self, Contents, Existing, SimulatedSession};
-use poecal::robot::{Corrections, Sizes, TermGroup};
-use poecal::simulate::{self as simulated, Kind, Simulated};
-use poecal::text::visible;
+use poecal_calibrate::DeviceFrameKnowledge;
+use poecal_model::robot::{Corrections, Sizes, TermGroup};
+use poecal_model::simulate::{self as simulated, Kind, Simulated};
+use poecal_numerics::text::visible;
+use poecal_results::model::{Model, ModelSource};
+use poecal_results::output::{self, Contents, Existing, SimulatedSession};
 use pyo3::prelude::*;
 
 use crate::arguments as arg;
@@ -29,7 +29,7 @@ pub(crate) struct Simulation {
     simulation: simulated::Simulation,
     kind: Kind,
     made: Simulated,
-    held_out: Option<poecal::measurement::Dataset>,
+    held_out: Option<poecal_model::measurement::Dataset>,
     command: String,
 }
 

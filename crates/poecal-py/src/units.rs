@@ -1,7 +1,7 @@
 //! Texts with units in place of numbers: `sigma_position_mm="50um"` is 0.05.
 
-use poecal::Unit;
-use poecal::io::measurements::NamedUnit;
+use poecal_numerics::named_unit::NamedUnit;
+use poecal_numerics::unit::Unit;
 use pyo3::prelude::*;
 use pyo3::types::{PyList, PyString};
 
@@ -28,8 +28,9 @@ pub(crate) fn of_name(name: &str) -> Option<NamedUnit> {
 /// A text with a unit as a number in the unit of the argument.
 pub(crate) fn in_unit(text: &str, unit: NamedUnit, name: &str) -> PyResult<f64> {
     let (value, symbol) = parted(text, name, unit.symbol())?;
-    let typed = NamedUnit::parse(symbol, unit.of())
-        .map_err(|error| raise(poecal::Error::new(error.kind(), format!("{name}: {}", error.message()))))?;
+    let typed = NamedUnit::parse(symbol, unit.of()).map_err(|error| {
+        raise(poecal_numerics::error::Error::new(error.kind(), format!("{name}: {}", error.message())))
+    })?;
     // A number in the same unit stays as it is, to the last digit.
     Ok(if typed == unit { value } else { unit.from_si(typed.to_si(value)) })
 }
@@ -37,8 +38,9 @@ pub(crate) fn in_unit(text: &str, unit: NamedUnit, name: &str) -> PyResult<f64> 
 /// A text with a unit as a number in radians or metres.
 pub(crate) fn in_si(text: &str, name: &str) -> PyResult<f64> {
     let (value, symbol) = parted(text, name, "deg")?;
-    let typed = NamedUnit::parse_any(symbol)
-        .map_err(|error| raise(poecal::Error::new(error.kind(), format!("{name}: {}", error.message()))))?;
+    let typed = NamedUnit::parse_any(symbol).map_err(|error| {
+        raise(poecal_numerics::error::Error::new(error.kind(), format!("{name}: {}", error.message())))
+    })?;
     Ok(typed.to_si(value))
 }
 

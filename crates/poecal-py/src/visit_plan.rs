@@ -2,11 +2,11 @@
 
 use std::path::PathBuf;
 
-use poecal::calibration::DeviceFrameKnowledge;
-use poecal::io::measurements::to_measure_again;
-use poecal::io::output::Existing;
-use poecal::report;
-use poecal::track::{TrackOptions, witnesses};
+use poecal_calibrate::DeviceFrameKnowledge;
+use poecal_import::to_measure_again;
+use poecal_report as report;
+use poecal_results::output::Existing;
+use poecal_results::track::{TrackOptions, witnesses};
 use pyo3::prelude::*;
 use serde::Serialize;
 

@@ -2,12 +2,12 @@
 
 use std::sync::{Mutex, PoisonError};
 
-use poecal::calibration::Corrections;
-use poecal::measurement::Dataset;
-use poecal::plan::{PlannedFit, RobotError, Watch as Watched, WatchOptions};
-use poecal::report;
-use poecal::robot::GravityDirection;
-use poecal::simulate::Kind;
+use poecal_calibrate::Corrections;
+use poecal_model::measurement::Dataset;
+use poecal_model::robot::GravityDirection;
+use poecal_model::simulate::Kind;
+use poecal_plan::plan::{PlannedFit, RobotError, Watch as Watched, WatchOptions};
+use poecal_report as report;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -202,7 +202,7 @@ impl Watch {
                 let line = report::Watched::new(robot, data, &found);
                 Ok(Findings::of_json("WatchedRow", line.text(), line.answer(), line.json()?))
             };
-            (first..data.len()).map(judge).collect::<poecal::Result<Vec<_>>>()
+            (first..data.len()).map(judge).collect::<poecal_numerics::error::Result<Vec<_>>>()
         };
         py.detach(work).map_err(raise)
     }

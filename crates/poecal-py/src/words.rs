@@ -1,12 +1,12 @@
 //! Arguments that are one of a few words, and numbers with a unit in their name.
 
 use nalgebra::Vector3;
-use poecal::calibration::{DeviceFrameKnowledge, Loss, Robust};
-use poecal::measurement::Quantity;
-use poecal::nearest;
-use poecal::offsets::End;
-use poecal::simulate::Kind;
-use poecal::text::visible;
+use poecal_calibrate::{DeviceFrameKnowledge, Loss, Robust};
+use poecal_model::measurement::Quantity;
+use poecal_model::offsets::End;
+use poecal_model::simulate::Kind;
+use poecal_numerics::error::nearest;
+use poecal_numerics::text::visible;
 use pyo3::prelude::*;
 
 use crate::errors::argument;

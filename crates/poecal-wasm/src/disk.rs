@@ -6,7 +6,7 @@ use std::io::{self, ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use poecal::io::disk::{Disk, Lock, Object, ObjectKind, Output};
+use poecal_storage::disk::{Disk, Lock, Object, ObjectKind, Output};
 
 use crate::names::{Names, Node, whole};
 

@@ -14,8 +14,8 @@ use std::ffi::OsString;
 use std::path::Path;
 use std::sync::Arc;
 
-use poecal::io::disk::on;
 use poecal_cli::{Said, run_captured};
+use poecal_storage::disk::on;
 
 pub use disk::MemoryDisk;
 pub use message::{decode, encode};

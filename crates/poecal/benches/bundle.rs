@@ -9,13 +9,13 @@ use std::time::Instant;
 
 use cpu_time::ProcessTime;
 use nalgebra::DVector;
-use poecal::camera::{Board, CommonError, Distortion, Lens, PictureUnknown, PictureUnknowns};
-use poecal::estimate::{Estimate, Packed, Session};
-use poecal::lie::Pose;
-use poecal::parameters::{DeviceFrame, Parameter, TargetFrame, screw_axes};
-use poecal::problem::{Bundle, Bundled};
-use poecal::robot::{JointKind, Robot};
-use poecal::simulate::{Photographed, PictureSimulation, Simulation, random_chain};
+use poecal_arm::lie::Pose;
+use poecal_fit::parameters::{DeviceFrame, Parameter, TargetFrame, screw_axes};
+use poecal_fit::problem::{Bundle, Bundled};
+use poecal_fit::state::{Estimate, Packed, Session};
+use poecal_model::camera::{Board, CommonError, Distortion, Lens, PictureUnknown, PictureUnknowns};
+use poecal_model::robot::{JointKind, Robot};
+use poecal_model::simulate::{Photographed, PictureSimulation, Simulation, random_chain};
 
 /// Fits are repeated for so many seconds.
 const LONG_ENOUGH: f64 = 0.5;
@@ -61,7 +61,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-fn session(robot: &Robot, count: usize, is_free: bool) -> poecal::Result<Photographed> {
+fn session(robot: &Robot, count: usize, is_free: bool) -> poecal_numerics::error::Result<Photographed> {
     let session =
         Simulation { count, error_rotation_rad: 2e-3, error_position_m: 1e-3, ..Simulation::default() };
     let usual = PictureSimulation::usual(session, true);

@@ -7,10 +7,10 @@ use std::fmt::Write as _;
 
 use divan::counter::BytesCount;
 use divan::{Bencher, black_box};
-use poecal::calibration::{CalibrationOptions, calibrate};
-use poecal::io::measurements::{ReadOptions, read};
-use poecal::io::residuals::{ResidualRows, Residuals};
-use poecal::simulate::{Kind, Simulated, Simulation, elbow};
+use poecal_calibrate::{CalibrationOptions, calibrate};
+use poecal_import::{ReadOptions, read};
+use poecal_model::simulate::{Kind, Simulated, Simulation, elbow};
+use poecal_results::residuals::{ResidualRows, Residuals};
 
 fn main() {
     divan::main();

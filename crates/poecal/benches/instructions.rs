@@ -8,12 +8,12 @@
 )]
 
 use cpu_time::ProcessTime;
-use poecal::calibration::{CalibrationOptions, delivered, fit_screws};
-use poecal::estimate::{Packed, Session};
-use poecal::measurement::Noise;
-use poecal::problem::Prior;
-use poecal::robot::Tolerance;
-use poecal::simulate::{Kind, Simulation, elbow};
+use poecal_calibrate::{CalibrationOptions, delivered, fit_screws};
+use poecal_fit::problem::Prior;
+use poecal_fit::state::{Packed, Session};
+use poecal_model::measurement::Noise;
+use poecal_model::robot::Tolerance;
+use poecal_model::simulate::{Kind, Simulation, elbow};
 
 fn main() {
     let arguments: Vec<String> = std::env::args().skip(1).filter(|it| !it.starts_with("--")).collect();

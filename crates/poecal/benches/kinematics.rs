@@ -9,14 +9,15 @@ use std::hint::black_box;
 use std::time::Instant;
 
 use nalgebra::Vector3;
-use poecal::compensate::Kinematics;
-use poecal::robot::{Gives, Gravity, JointTerm, Term, TermKind};
-use poecal::{Robot, simulate};
+use poecal_compensate::Kinematics;
+use poecal_model::robot::Robot;
+use poecal_model::robot::{Gives, Gravity, JointTerm, Term, TermKind};
+use poecal_model::simulate;
 
 const ROWS: usize = 4096;
 const TURNS: usize = 60;
 
-fn main() -> Result<(), poecal::Error> {
+fn main() -> Result<(), poecal_numerics::error::Error> {
     println!(
         "{:<34}{:>10}{:>10}{:>10}{:>10}{:>8}",
         "ns a configuration", "one", "median", "eight", "median", "ratio"

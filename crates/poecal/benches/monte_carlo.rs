@@ -10,16 +10,17 @@ use std::path::Path;
 use std::time::Instant;
 
 use cpu_time::ProcessTime;
-use poecal::calibration::delivered;
-use poecal::estimate::{Estimate, Packed, Session};
-use poecal::io::measurements::{self, ReadOptions};
-use poecal::io::model::Model;
-use poecal::measurement::{Dataset, Measurement};
-use poecal::parameters::{Parameter, TargetFrame, screw_axes};
-use poecal::problem::{Problem, Refit};
-use poecal::robot::Robot;
-use poecal::solve::{Options, minimize};
-use poecal::{Error, ErrorKind};
+use poecal_calibrate::delivered;
+use poecal_fit::parameters::{Parameter, TargetFrame, screw_axes};
+use poecal_fit::problem::{Problem, Refit};
+use poecal_fit::state::{Estimate, Packed, Session};
+use poecal_import as measurements;
+use poecal_import::ReadOptions;
+use poecal_model::measurement::{Dataset, Measurement};
+use poecal_model::robot::Robot;
+use poecal_numerics::error::{Error, ErrorKind};
+use poecal_numerics::solve::{Options, minimize};
+use poecal_results::model::Model;
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 use trials::{NOISE, disturbed};
@@ -58,7 +59,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-fn read(path: &str, robot: &Robot) -> poecal::Result<Dataset> {
+fn read(path: &str, robot: &Robot) -> poecal_numerics::error::Result<Dataset> {
     Ok(measurements::read(&[path], robot, &ReadOptions::default())?.data)
 }
 

@@ -9,17 +9,17 @@
 mod trials;
 
 use divan::{Bencher, black_box};
-use poecal::calibration::{
+use poecal_arm::lie::Freedom;
+use poecal_calibrate::{
     CalibrationOptions, Corrections, DeviceFrameKnowledge, Sizes, calibrate, delivered, fit_screws,
 };
-use poecal::estimate::{Packed, Session};
-use poecal::forensics::{self, diagnose};
-use poecal::lie::Freedom;
-use poecal::measurement::{Measurement, Quantity};
-use poecal::parameters::{DeviceFrame, Parameter, TargetFrame, TargetPlace, screw_axes};
-use poecal::problem::{Problem, Refit};
-use poecal::simulate::{Kind, Simulated, Simulation, elbow, random_chain};
-use poecal::solve::{LeastSquares, Options, minimize};
+use poecal_fit::forensics::{self, diagnose};
+use poecal_fit::parameters::{DeviceFrame, Parameter, TargetFrame, TargetPlace, screw_axes};
+use poecal_fit::problem::{Problem, Refit};
+use poecal_fit::state::{Packed, Session};
+use poecal_model::measurement::{Measurement, Quantity};
+use poecal_model::simulate::{Kind, Simulated, Simulation, elbow, random_chain};
+use poecal_numerics::solve::{LeastSquares, Options, minimize};
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 use trials::{NOISE, disturbed};

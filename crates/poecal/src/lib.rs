@@ -1,5 +1,7 @@
 //! Kinematic calibration of robot arms, and of trees of them, by the product of exponentials.
 //!
+//! What is public here follows semantic versioning.
+//!
 //! A robot is a screw `ξᵢ` for every joint and a home pose `M`. With joint values `θ`, its tip stands in the base frame at
 //!
 //! ```text
@@ -48,110 +50,36 @@
 //!
 //! Lengths are in metres and angles in radians, a twist is `(v; ω)`, `a_from_b` takes coordinates in b to coordinates in a. The
 //! formulas stand in `docs/theory.md`, the conventions in `docs/conventions.md`, the modules and what they may import in
-//! `ARCHITECTURE.md`. Modules without a place in this list are there for the program, the Python package and the tests, and change
-//! without notice.
+//! `ARCHITECTURE.md`. This crate hands on what users need of the parts that it is made of (`poecal-model`, `poecal-fit`,
+//! `poecal-calibrate` and others, all of the same version), whose interfaces change without notice.
 
 #![forbid(unsafe_code)]
 
-// The reference of the kernels is one file for the tests of this crate and of others.
-#[cfg(test)]
-extern crate self as poecal;
-#[cfg(test)]
-#[allow(dead_code)]
-#[path = "../tests/reference/mod.rs"]
-mod reference;
-
-// Hidden from readers only: for lints they are as public as they are.
-#[cfg_attr(doc, doc(hidden))]
-pub mod analysis;
-#[cfg_attr(doc, doc(hidden))]
-pub mod calibration;
-#[cfg_attr(doc, doc(hidden))]
-pub mod camera;
-#[cfg_attr(doc, doc(hidden))]
-pub mod compare;
-#[cfg_attr(doc, doc(hidden))]
-pub mod compensate;
-mod distributions;
-#[cfg_attr(doc, doc(hidden))]
-pub mod error;
-#[cfg_attr(doc, doc(hidden))]
-pub mod estimate;
-#[cfg_attr(doc, doc(hidden))]
-pub mod fleet;
-#[cfg_attr(doc, doc(hidden))]
-pub mod forensics;
-#[cfg_attr(doc, doc(hidden))]
-pub mod forms;
-#[cfg_attr(doc, doc(hidden))]
-pub mod gauge;
-#[cfg_attr(doc, doc(hidden))]
-pub mod hand_eye;
-#[cfg_attr(doc, doc(hidden))]
-pub mod io;
-mod lanes;
-mod linalg;
-#[cfg_attr(doc, doc(hidden))]
-pub mod measurement;
-#[cfg_attr(doc, doc(hidden))]
-pub mod offsets;
-#[cfg_attr(doc, doc(hidden))]
-pub mod parameters;
-#[cfg_attr(doc, doc(hidden))]
-pub mod plan;
-#[cfg_attr(doc, doc(hidden))]
-pub mod problem;
-mod programs;
-#[cfg_attr(doc, doc(hidden))]
-pub mod report;
-#[cfg_attr(doc, doc(hidden))]
-pub mod robot;
-pub mod simulate;
-pub mod solve;
-#[cfg_attr(doc, doc(hidden))]
-pub mod start;
-#[cfg_attr(doc, doc(hidden))]
-pub mod text;
-mod threads;
-#[cfg_attr(doc, doc(hidden))]
-pub mod track;
-#[cfg_attr(doc, doc(hidden))]
-pub mod uncertainty;
-mod unit;
-
-pub use analysis::{Direction, Foresight, Identifiability, PlannedSession, identify};
-pub use calibration::{
+pub use poecal_arm::{AllBranches, Arm, Branches, HeldBranches, lie};
+pub use poecal_calibrate::{
     Accuracy, CalibratedTarget, Calibration, CalibrationOptions, DeviceFrameKnowledge, Formulation,
     Judgement, Loss, ModelAccuracy, Robust, SetAccuracy, Statistic, Trust, Verdict, calibrate, judge,
 };
-pub use error::{Choices, Error, ErrorKind, Result};
-pub use forensics::Diagnosis;
-pub use io::calibration_file::{CalibrationFile, Inputs};
-pub use io::measurements::{MeasurementFile, ReadOptions, read as read_measurements};
-pub use io::model::{Model, ModelFormat, ModelSource};
-pub use io::predictions::{Predicted, PredictionFrame, predicted};
-pub use io::residuals::Residuals;
-pub use io::urdf::ChainSelection;
-pub use measurement::{Dataset, Kind, Measured, Measurement, Noise, Observation, Quantity, Set};
-pub use report::{calibration_page, summary};
-pub use robot::{Joint, JointKind, Limits, Reading, Robot, Tolerance};
-pub use simulate::{Simulated, Simulation};
+pub use poecal_fit::analysis::{Direction, Foresight, Identifiability, PlannedSession, identify};
+pub use poecal_fit::forensics::Diagnosis;
+pub use poecal_formats::urdf::ChainSelection;
+pub use poecal_import::{MeasurementFile, ReadOptions, read as read_measurements};
+pub use poecal_model::measurement::{
+    Dataset, Kind, Measured, Measurement, Noise, Observation, Quantity, Set,
+};
+pub use poecal_model::robot::{Joint, JointKind, Limits, Reading, Robot, Tolerance};
+pub use poecal_model::simulate::{Simulated, Simulation};
+pub use poecal_numerics::error::{Choices, Error, ErrorKind, Result};
+pub use poecal_report::{calibration_page, summary};
+pub use poecal_results::calibration_file::{CalibrationFile, Inputs};
+pub use poecal_results::model::{Model, ModelFormat, ModelSource};
+pub use poecal_results::predictions::{Predicted, PredictionFrame, predicted};
+pub use poecal_results::residuals::Residuals;
 
 #[doc(inline)]
-pub use poecal_arm::lie;
+pub use poecal_model::simulate;
 #[doc(inline)]
-pub use poecal_arm::{AllBranches, Arm, Branches, HeldBranches};
-
-#[doc(hidden)]
-pub use error::nearest;
-#[doc(hidden)]
-pub use measurement::ByQuantity;
-#[doc(hidden)]
-pub use poecal_arm as arm;
-#[doc(hidden)]
-pub use threads::{MOST_THREADS, threads_now};
-#[doc(hidden)]
-pub use unit::Unit;
+pub use poecal_numerics::solve;
 
 /// The example of the README is compiled with the tests.
 #[cfg(doctest)]

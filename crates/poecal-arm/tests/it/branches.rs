@@ -9,7 +9,7 @@ use poecal_arm::{AllBranches, Arm};
 
 use crate::calibrated::{KINDS, arm};
 use crate::numbers::Numbers;
-use crate::trials::trials;
+use poecal_testing::trials::trials;
 
 /// Targets of each arm, weekly.
 const TARGETS: usize = 120;

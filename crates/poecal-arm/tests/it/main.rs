@@ -8,7 +8,3 @@ mod held;
 mod kinematics;
 mod nearest;
 mod numbers;
-// Each crate uses what it needs of it.
-#[allow(dead_code)]
-#[path = "../../../poecal/tests/trials/mod.rs"]
-mod trials;

@@ -3,11 +3,11 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use poecal::calibration::{AcceptedModel, Corrections, DeviceFrameKnowledge, Level, Limit, Repairs, Robust};
-use poecal::io::output::Existing;
-use poecal::io::record::Record;
-use poecal::robot::GravityDirection;
+use poecal_calibrate::{AcceptedModel, Corrections, DeviceFrameKnowledge, Level, Limit, Repairs, Robust};
 use poecal_lou2009::{Formulation, Method, Residual};
+use poecal_model::robot::GravityDirection;
+use poecal_results::output::Existing;
+use poecal_results::record::Record;
 
 use super::report::ReportPlace;
 use super::shared::{FIT, JUDGED, RESULTS, Reading, TreeArgs};

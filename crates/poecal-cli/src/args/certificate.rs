@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use poecal::io::record::Record;
+use poecal_results::record::Record;
 
 /// Arguments of `poecal certificate`.
 #[derive(Args, Debug)]

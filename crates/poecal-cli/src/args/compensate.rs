@@ -3,9 +3,9 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use poecal::calibration::AcceptedModel;
-use poecal::compensate::MostChange;
-use poecal::robot::ThirdAxis;
+use poecal_calibrate::AcceptedModel;
+use poecal_compensate::MostChange;
+use poecal_model::robot::ThirdAxis;
 
 use super::shared::{ColumnArgs, OutFile};
 use super::words::{LANGUAGE, MODEL, ProgramLanguage, THIRD_AXIS, one_of};

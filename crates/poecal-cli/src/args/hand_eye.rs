@@ -3,10 +3,10 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use poecal::hand_eye::CameraPlace;
-use poecal::io::disk::is_file;
-use poecal::io::hand_eye::FrameNames;
-use poecal::io::measurements::{PoseUnits, ReadOptions, camera_file, read_cameras};
+use poecal_fit::hand_eye::CameraPlace;
+use poecal_import::{PoseUnits, ReadOptions, camera_file, read_cameras};
+use poecal_results::hand_eye::FrameNames;
+use poecal_storage::disk::is_file;
 
 use super::shared::ChainArgs;
 use super::words::{FLANGE_POSES, HAND_EYE_CAMERA, TARGET_POSES, one_of};
@@ -58,7 +58,7 @@ impl HandEye {
     }
 
     /// Lens and board of corners.
-    pub(crate) fn pictures(&self) -> poecal::Result<ReadOptions> {
+    pub(crate) fn pictures(&self) -> poecal_numerics::error::Result<ReadOptions> {
         let mut options = ReadOptions::default();
         if let Some(typed) = &self.lens {
             options.cameras = read_cameras(typed)?;
@@ -75,7 +75,7 @@ pub(super) fn units(text: &str) -> Result<PoseUnits, String> {
     if text.is_empty() {
         return Ok(PoseUnits::default());
     }
-    text.parse().map_err(|error: poecal::Error| error.to_string())
+    text.parse().map_err(|error: poecal_numerics::error::Error| error.to_string())
 }
 
 /// Arguments of `poecal tcp`.

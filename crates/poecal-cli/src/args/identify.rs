@@ -3,9 +3,9 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use poecal::calibration::DeviceFrameKnowledge;
-use poecal::plan::RobotError;
-use poecal::simulate::Kind;
+use poecal_calibrate::DeviceFrameKnowledge;
+use poecal_model::simulate::Kind;
+use poecal_plan::plan::RobotError;
 
 use super::shared::{CameraArgs, ColumnArgs, TreeArgs};
 use super::words::{FRAME, one_of, simulated};

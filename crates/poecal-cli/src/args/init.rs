@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use poecal::hand_eye::CameraPlace;
-use poecal::simulate::Kind;
+use poecal_fit::hand_eye::CameraPlace;
+use poecal_model::simulate::Kind;
 
 use super::shared::TreeArgs;
 use super::words::{HAND_EYE_CAMERA, measured, one_of};

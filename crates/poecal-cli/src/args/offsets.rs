@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use poecal::offsets::End;
+use poecal_model::offsets::End;
 
 use super::shared::{ChainArgs, OutFile};
 use super::words::{END, one_of};

@@ -4,9 +4,9 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use clap::Args;
-use poecal::calibration::{Corrections, DeviceFrameKnowledge};
-use poecal::plan::{PlanCriterion, RobotError};
-use poecal::simulate::Kind;
+use poecal_calibrate::{Corrections, DeviceFrameKnowledge};
+use poecal_model::simulate::Kind;
+use poecal_plan::plan::{PlanCriterion, RobotError};
 
 use super::shared::{ColumnArgs, FIT, OutFile, TreeArgs};
 use super::words::{CRITERION, FRAME, SELF_COLLISION, TOOL, one_of, simulated};
@@ -87,7 +87,7 @@ pub(crate) struct Plan {
     #[arg(long, value_name = "FILE")]
     pub(crate) report: Option<PathBuf>,
     #[command(flatten)]
-    pub(crate) place: OutFile,
+    pub place: OutFile,
     /// Print JSON instead of the table
     #[arg(long)]
     pub(crate) json: bool,

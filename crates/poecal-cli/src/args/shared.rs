@@ -3,14 +3,14 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use poecal::ErrorKind;
-use poecal::io::disk::is_file;
-use poecal::io::measurements::{
+use poecal_formats::urdf::{ChainSelection, named_link};
+use poecal_import::{
     ColumnMap, Frames, InstrumentNoise, Join, Lag, PlaneContact, ReadOptions, SocketDistances, camera_file,
     read_cameras,
 };
-use poecal::io::output::{Existing, FilePlace};
-use poecal::io::urdf::{ChainSelection, named_link};
+use poecal_numerics::error::ErrorKind;
+use poecal_results::output::{Existing, FilePlace};
+use poecal_storage::disk::is_file;
 
 use super::words::{CONTACT, FRAMES, JOIN, one_of};
 use crate::console::Console;
@@ -41,7 +41,7 @@ impl ChainArgs {
     }
 
     /// Refuses links of a model that is not stated.
-    pub(crate) fn refuse_without(&self, model: Option<&Path>) -> poecal::Result<()> {
+    pub(crate) fn refuse_without(&self, model: Option<&Path>) -> poecal_numerics::error::Result<()> {
         if model.is_none() && (self.base_link.is_some() || self.tip_link.is_some()) {
             let message = "found --base-link or --tip-link and no model, expected --model MODEL with them";
             return ErrorKind::Option.refuse(message);
@@ -67,7 +67,10 @@ pub(crate) struct TreeArgs {
 
 impl TreeArgs {
     /// The selection; with the links of a mapping, if it could be read.
-    pub(crate) fn selection(&self, options: Option<&ReadOptions>) -> poecal::Result<ChainSelection> {
+    pub(crate) fn selection(
+        &self,
+        options: Option<&ReadOptions>,
+    ) -> poecal_numerics::error::Result<ChainSelection> {
         with_mapping(self.chain.selection().joined(&self.instrument, &self.target)?, options)
     }
 }
@@ -76,7 +79,7 @@ impl TreeArgs {
 pub(crate) fn with_mapping(
     selection: ChainSelection,
     options: Option<&ReadOptions>,
-) -> poecal::Result<ChainSelection> {
+) -> poecal_numerics::error::Result<ChainSelection> {
     match options.and_then(|options| options.mapping.as_ref()) {
         Some(mapping) => mapping.mounts(selection),
         None => Ok(selection),
@@ -96,7 +99,7 @@ pub(crate) struct ColumnArgs {
 }
 
 impl ColumnArgs {
-    pub(crate) fn options(&self) -> poecal::Result<ReadOptions> {
+    pub(crate) fn options(&self) -> poecal_numerics::error::Result<ReadOptions> {
         let mapping = self.columns.as_ref().map(ColumnMap::read).transpose()?;
         let mut options = ReadOptions { mapping, ..ReadOptions::default() };
         self.units.as_deref().map_or(Ok(()), |units| options.state_units(units))?;
@@ -128,7 +131,7 @@ impl CameraArgs {
     }
 
     /// The same options with these cameras and boards.
-    pub(crate) fn add(&self, mut options: ReadOptions) -> poecal::Result<ReadOptions> {
+    pub(crate) fn add(&self, mut options: ReadOptions) -> poecal_numerics::error::Result<ReadOptions> {
         for typed in &self.camera {
             options.cameras.extend(read_cameras(typed)?);
         }
@@ -187,7 +190,7 @@ impl Meaning {
         self.columns.columns.iter().map(PathBuf::as_path).chain(self.cameras.files())
     }
 
-    pub(crate) fn options(&self) -> poecal::Result<ReadOptions> {
+    pub(crate) fn options(&self) -> poecal_numerics::error::Result<ReadOptions> {
         let (strict, frames, contact) = (self.strict, self.frames, self.contact);
         let socket_distances = self.socket_distance.clone();
         let instrument_noise = self.instrument_noise.clone();
@@ -220,7 +223,7 @@ pub(crate) struct Reading {
 }
 
 impl Reading {
-    pub(crate) fn options(&self) -> poecal::Result<ReadOptions> {
+    pub(crate) fn options(&self) -> poecal_numerics::error::Result<ReadOptions> {
         let fit_where = self.fit_where.as_deref().map(str::parse).transpose()?;
         Ok(ReadOptions { fit_where, ..self.meaning.options()? })
     }
@@ -240,7 +243,11 @@ pub(crate) struct OutFile {
 
 impl OutFile {
     /// Place of the output, which may be no input; `None` for standard output.
-    pub(crate) fn reserve(&self, inputs: &[&Path], console: &Console) -> poecal::Result<Option<FilePlace>> {
+    pub(crate) fn reserve(
+        &self,
+        inputs: &[&Path],
+        console: &Console,
+    ) -> poecal_numerics::error::Result<Option<FilePlace>> {
         let out = self.out.as_deref().filter(|out| *out != Path::new("-"));
         out.map(|out| FilePlace::reserve(out, Existing::forced(self.force), inputs, &mut console.warner()))
             .transpose()

@@ -3,11 +3,11 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use poecal::calibration::DeviceFrameKnowledge;
-use poecal::robot::Sizes;
-use poecal::simulate::Kind;
+use poecal_calibrate::DeviceFrameKnowledge;
 #[cfg(any(unix, windows))]
 use poecal_detect::Spec;
+use poecal_model::robot::Sizes;
+use poecal_model::simulate::Kind;
 
 use super::shared::TreeArgs;
 #[cfg(any(unix, windows))]

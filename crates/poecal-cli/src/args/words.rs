@@ -1,17 +1,17 @@
 //! Options that are one of a few words: of each its help and what it means to the library.
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
-use poecal::calibration::{AcceptedModel, DeviceFrameKnowledge, Level, Loss, Repairs, Robust};
-use poecal::compensate::Language;
-use poecal::io::export::ExportFormat;
-use poecal::io::measurements::{Frames, Join, PlaneContact};
-use poecal::io::model::ModelFormat;
-use poecal::io::predictions::PredictionFrame;
-use poecal::offsets::End;
-use poecal::plan::PlanCriterion;
-use poecal::robot::ThirdAxis;
-use poecal::simulate::Kind;
+use poecal_calibrate::{AcceptedModel, DeviceFrameKnowledge, Level, Loss, Repairs, Robust};
+use poecal_compensate::Language;
+use poecal_import::{Frames, Join, PlaneContact};
 use poecal_lou2009::{Formulation, Method, Residual};
+use poecal_model::offsets::End;
+use poecal_model::robot::ThirdAxis;
+use poecal_model::simulate::Kind;
+use poecal_plan::plan::PlanCriterion;
+use poecal_results::export::ExportFormat;
+use poecal_results::model::ModelFormat;
+use poecal_results::predictions::PredictionFrame;
 
 /// Words, each with its help and its meaning.
 type Words<T> = &'static [(&'static str, &'static str, T)];
@@ -53,9 +53,13 @@ pub(super) const CAMERA: Words<CameraPlace> = &[
 ];
 
 /// Where the camera of a hand-eye calibration is.
-pub(super) const HAND_EYE_CAMERA: Words<poecal::hand_eye::CameraPlace> = &[
-    ("in-hand", "On the flange, and the target stays", poecal::hand_eye::CameraPlace::InHand),
-    ("beside", "Beside the robot, and the target is on the flange", poecal::hand_eye::CameraPlace::Beside),
+pub(super) const HAND_EYE_CAMERA: Words<poecal_fit::hand_eye::CameraPlace> = &[
+    ("in-hand", "On the flange, and the target stays", poecal_fit::hand_eye::CameraPlace::InHand),
+    (
+        "beside",
+        "Beside the robot, and the target is on the flange",
+        poecal_fit::hand_eye::CameraPlace::Beside,
+    ),
 ];
 
 /// Whether the arm's poses are inverted.

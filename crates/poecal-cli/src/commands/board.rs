@@ -2,10 +2,10 @@
 
 use std::path::Path;
 
-use poecal::io::output::{Existing, FilePlace};
-use poecal::{ErrorKind, Result};
 use poecal_detect::Spec;
 use poecal_detect::print::{Measured, Sheet, described};
+use poecal_numerics::error::{ErrorKind, Result};
+use poecal_results::output::{Existing, FilePlace};
 
 use crate::DONE;
 use crate::args::Board;
@@ -109,6 +109,6 @@ fn larger(percent: f64) -> String {
     }
 }
 
-fn refused(option: &str, error: &poecal_detect::Error) -> poecal::Error {
+fn refused(option: &str, error: &poecal_detect::Error) -> poecal_numerics::error::Error {
     ErrorKind::Option.error(format!("{option}: {error}"))
 }

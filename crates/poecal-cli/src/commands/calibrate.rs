@@ -3,24 +3,26 @@
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
-use poecal::calibration::{
+use poecal_calibrate::{
     AcceptanceLimits, BlockChoice, Calibration, CalibrationOptions, Decision, Level, Repaired, Stage,
     calibrate_repairing, settle_sets,
 };
-use poecal::io::abb::AbbCalibration;
-use poecal::io::calibration_file::{CalibrationFile, Inputs};
-use poecal::io::measurements::{self, ReadOptions};
-use poecal::io::model::Model;
-use poecal::io::named_files::{refuse_fitted, refuse_repeats};
-use poecal::io::output::{self, Contents, Existing, FilePlace, FolderPlace, Page, Results, free_folder};
-use poecal::io::record::Record;
-use poecal::io::residuals::{ResidualRows, Residuals};
-use poecal::io::shapes::Shapes;
-use poecal::measurement::{ByQuantity, Dataset, Quantity};
-use poecal::report::Detail;
-use poecal::robot::Tolerance;
-use poecal::{ErrorKind, Result, report};
+use poecal_formats::abb::AbbCalibration;
+use poecal_import as measurements;
+use poecal_import::ReadOptions;
 use poecal_lou2009::{Residual, formulated};
+use poecal_model::measurement::{ByQuantity, Dataset, Quantity};
+use poecal_model::robot::Tolerance;
+use poecal_numerics::error::{ErrorKind, Result};
+use poecal_report as report;
+use poecal_report::Detail;
+use poecal_results::calibration_file::{CalibrationFile, Inputs};
+use poecal_results::model::Model;
+use poecal_results::output::{self, Contents, Existing, FilePlace, FolderPlace, Page, Results, free_folder};
+use poecal_results::record::Record;
+use poecal_results::residuals::{ResidualRows, Residuals};
+use poecal_results::shapes::Shapes;
+use poecal_storage::named_files::{refuse_fitted, refuse_repeats};
 
 use super::typed::command;
 use crate::args::{Calibrate, ReportPlace};

@@ -2,12 +2,12 @@
 
 use std::path::Path;
 
-use poecal::Result;
-use poecal::io::calibration_file::{CalibrationFile, Inputs};
-use poecal::io::logo;
-use poecal::io::output::{Existing, FilePlace};
-use poecal::io::record::Record;
-use poecal::report::{Attest, certificate_page};
+use poecal_formats::logo;
+use poecal_numerics::error::Result;
+use poecal_report::{Attest, certificate_page};
+use poecal_results::calibration_file::{CalibrationFile, Inputs};
+use poecal_results::output::{Existing, FilePlace};
+use poecal_results::record::Record;
 
 use crate::args::Certificate;
 use crate::console::Console;

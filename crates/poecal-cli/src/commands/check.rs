@@ -3,11 +3,13 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use poecal::calibration::DeviceFrameKnowledge;
-use poecal::forensics::{DiagnosisOptions, diagnose};
-use poecal::io::measurements::{self, MeasurementFile};
-use poecal::io::model::Model;
-use poecal::{Error, ErrorKind, Result, report};
+use poecal_calibrate::DeviceFrameKnowledge;
+use poecal_fit::forensics::{DiagnosisOptions, diagnose};
+use poecal_import as measurements;
+use poecal_import::MeasurementFile;
+use poecal_numerics::error::{Error, ErrorKind, Result};
+use poecal_report as report;
+use poecal_results::model::Model;
 
 use crate::DONE;
 use crate::args::Check;

@@ -1,9 +1,10 @@
 //! `poecal compare`: two calibrations of one robot.
 
-use poecal::compare;
-use poecal::io::calibration_file::CalibrationFile;
-use poecal::report::Detail;
-use poecal::{ErrorKind, Result, report};
+use poecal_numerics::error::{ErrorKind, Result};
+use poecal_report as report;
+use poecal_report::Detail;
+use poecal_results::calibration_file::CalibrationFile;
+use poecal_results::compare;
 
 use crate::args::Compare;
 use crate::console::Console;
@@ -13,7 +14,7 @@ pub(crate) fn compare(arguments: &Compare, console: &Console) -> Result<u8> {
     let place = arguments.place.reserve(&[&arguments.first, &arguments.second], console)?;
     let first = CalibrationFile::read(&arguments.first)?;
     let second = CalibrationFile::read(&arguments.second)?;
-    let in_file = |error: poecal::Error| {
+    let in_file = |error: poecal_numerics::error::Error| {
         if error.kind() == ErrorKind::Option { error.in_file(&arguments.second) } else { error }
     };
     first.robot().map_err(|error| error.in_file(&arguments.first))?;

@@ -2,16 +2,17 @@
 
 use std::path::{Path, PathBuf};
 
-use poecal::calibration::AcceptedModel;
-use poecal::compensate::{
+use poecal_calibrate::AcceptedModel;
+use poecal_compensate::{
     ChangeOptions, Given, Language, ProgramOptions, TableOptions, compensate_file, compensate_table,
 };
-use poecal::io::calibration_file::{Counted, TaughtRobot};
-use poecal::io::model::{Model, ModelSource};
-use poecal::io::output::FilePlace;
-use poecal::io::urdf::ChainSelection;
-use poecal::robot::JointKind;
-use poecal::{ErrorKind, Result, Robot, report};
+use poecal_formats::urdf::ChainSelection;
+use poecal_model::robot::{JointKind, Robot};
+use poecal_numerics::error::{ErrorKind, Result};
+use poecal_report as report;
+use poecal_results::calibration_file::{Counted, TaughtRobot};
+use poecal_results::model::{Model, ModelSource};
+use poecal_results::output::FilePlace;
 
 use crate::args::{Compensate, ProgramLanguage};
 use crate::console::Console;

@@ -1,6 +1,6 @@
 //! `poecal completions`: what a shell needs to complete the program's words.
 
-use poecal::Result;
+use poecal_numerics::error::Result;
 
 use crate::DONE;
 use crate::args::Completions;

@@ -1,10 +1,10 @@
 //! `poecal convert`: a model in another form, or without the offsets of its joints.
 
-use poecal::Unit;
-use poecal::io::model::{self, Model, ModelFormat};
-use poecal::offsets::into_screws;
-use poecal::robot::{JointKind, Robot};
-use poecal::{ErrorKind, Result, nearest};
+use poecal_model::offsets::into_screws;
+use poecal_model::robot::{JointKind, Robot};
+use poecal_numerics::error::{ErrorKind, Result, nearest};
+use poecal_numerics::unit::Unit;
+use poecal_results::model::{self, Model, ModelFormat};
 
 use crate::DONE;
 use crate::args::Convert;

@@ -5,12 +5,11 @@ use std::fmt::Write as _;
 use std::io::Read as _;
 use std::path::{Path, PathBuf};
 
-use poecal::error::ErrorKind;
-use poecal::io::disk::{self, ObjectKind};
-use poecal::io::measurements::board_of_file;
-use poecal::io::output::{Existing, FilePlace};
-use poecal::{Error, Result};
 use poecal_detect::{Detector, Found, Gray, Picture, Rejected, Spec, Turned, preview};
+use poecal_import::board_of_file;
+use poecal_numerics::error::{Error, ErrorKind, Result};
+use poecal_results::output::{Existing, FilePlace};
+use poecal_storage::disk::{self, ObjectKind};
 use rayon::prelude::*;
 
 use crate::DONE;

@@ -2,13 +2,13 @@
 
 use std::path::{Path, PathBuf};
 
-use poecal::calibration::AcceptedModel;
-use poecal::io::export::{self, ExportFormat, ExportOptions};
-use poecal::io::model::Model;
-use poecal::io::output::{Existing, FilePlace};
-use poecal::io::text_of;
-use poecal::io::urdf::ChainSelection;
-use poecal::{ErrorKind, Result};
+use poecal_calibrate::AcceptedModel;
+use poecal_formats::urdf::ChainSelection;
+use poecal_numerics::error::{ErrorKind, Result};
+use poecal_results::export::{self, ExportFormat, ExportOptions};
+use poecal_results::model::Model;
+use poecal_results::output::{Existing, FilePlace};
+use poecal_storage::text_of;
 
 use crate::DONE;
 use crate::args::{Apply, Export, ExportForm, INSTEAD};

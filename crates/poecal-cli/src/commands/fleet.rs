@@ -4,18 +4,18 @@ use std::collections::BTreeMap;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
-use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::mpsc;
+use std::sync::{Mutex, mpsc};
 use std::thread;
 
-use poecal::io::calibration_file::{CalibrationFile, Inputs};
-use poecal::io::fleet::{Found, InputRow, LEDGER, Ledger, LedgerRow, Station, newest, read_ledgers};
-use poecal::io::named_files::actual;
-use poecal::io::output::{Existing, FilePlace};
-use poecal::io::settings::{SettingValue, Settings};
-use poecal::io::validation::now;
-use poecal::{ErrorKind, Result, report};
+use poecal_numerics::error::{ErrorKind, Result};
+use poecal_report as report;
+use poecal_results::calibration_file::{CalibrationFile, Inputs};
+use poecal_results::fleet::{Found, InputRow, LEDGER, Ledger, LedgerRow, Station, newest, read_ledgers};
+use poecal_results::output::{Existing, FilePlace};
+use poecal_results::settings::{SettingValue, Settings};
+use poecal_results::validation::now;
+use poecal_storage::named_files::actual;
 
 use crate::args::{Fleet, FleetCommand, FleetPrior, FleetReport};
 use crate::console::Console;
@@ -181,7 +181,7 @@ const REFUSED: u8 = 2;
 
 /// How many processes run at once.
 fn rayon_threads() -> usize {
-    poecal::threads_now()
+    poecal_numerics::threads::threads_now()
 }
 
 /// What all robots share.
@@ -253,7 +253,7 @@ fn calibrated(station: &Station, found: &Found, row: LedgerRow, prior: &[OsStrin
     };
     let results = found.results(station);
     if let Some(parent) = results.parent()
-        && let Err(error) = poecal::io::disk::create_folders(parent)
+        && let Err(error) = poecal_storage::disk::create_folders(parent)
     {
         return refused(row, format!("the folder of the results cannot be made ({error})"));
     }

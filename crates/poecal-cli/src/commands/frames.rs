@@ -2,15 +2,14 @@
 
 use std::path::{Path, PathBuf};
 
-use poecal::Result;
-use poecal::hand_eye::Level;
-use poecal::io::model::Model;
-use poecal::io::output::{Contents, Existing, FolderPlace, write_texts};
+use poecal_fit::hand_eye::Level;
+use poecal_numerics::error::Result;
+use poecal_results::model::Model;
+use poecal_results::output::{Contents, Existing, FolderPlace, write_texts};
 
 use crate::args::{ChainArgs, OutFrames};
 use crate::console::Console;
-use crate::style;
-use crate::{DONE, WORSE};
+use crate::{DONE, WORSE, style};
 
 /// The model whose joint readings are read, if one is stated.
 pub(super) fn model(path: Option<&PathBuf>, chain: &ChainArgs) -> Result<Option<Model>> {

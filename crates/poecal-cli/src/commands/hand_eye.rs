@@ -3,14 +3,15 @@
 use std::ffi::OsString;
 use std::path::PathBuf;
 
-use poecal::calibration::{arm_too, session_of};
-use poecal::hand_eye::{HandEye as Found, HandEyeOptions, hand_eye as calibrated};
-use poecal::io::hand_eye::{ArmByJoints, FrameNames, HandEyeResult};
-use poecal::io::measurements::{PosePairs, PoseSource, read_pose_pairs};
-use poecal::io::named_files::refuse_repeats;
-use poecal::io::output::Contents;
-use poecal::robot::Robot;
-use poecal::{ErrorKind, Result, report};
+use poecal_calibrate::{arm_too, session_of};
+use poecal_fit::hand_eye::{HandEye as Found, HandEyeOptions, hand_eye as calibrated};
+use poecal_import::{PosePairs, PoseSource, read_pose_pairs};
+use poecal_model::robot::Robot;
+use poecal_numerics::error::{ErrorKind, Result};
+use poecal_report as report;
+use poecal_results::hand_eye::{ArmByJoints, FrameNames, HandEyeResult};
+use poecal_results::output::Contents;
+use poecal_storage::named_files::refuse_repeats;
 
 use super::frames::{Frames, model, row_name};
 use super::typed::{command, shell_word};

@@ -1,13 +1,14 @@
 //! `poecal identify`: identifiability by measurements in given configurations.
 
-use poecal::analysis::{PlannedSession, identify as foresee, identify_measured};
-use poecal::calibration::DeviceFrameKnowledge;
-use poecal::io::measurements;
-use poecal::io::model::Model;
-use poecal::io::named_files::refuse_repeats;
-use poecal::measurement::{Noise, Quantity};
-use poecal::plan::{PlannedFit, expected_errors};
-use poecal::{Error, ErrorKind, Result, report};
+use poecal_calibrate::DeviceFrameKnowledge;
+use poecal_fit::analysis::{PlannedSession, identify as foresee, identify_measured};
+use poecal_import as measurements;
+use poecal_model::measurement::{Noise, Quantity};
+use poecal_numerics::error::{Error, ErrorKind, Result};
+use poecal_plan::plan::{PlannedFit, expected_errors};
+use poecal_report as report;
+use poecal_results::model::Model;
+use poecal_storage::named_files::refuse_repeats;
 
 use crate::DONE;
 use crate::args::Identify;

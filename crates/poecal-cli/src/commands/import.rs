@@ -4,12 +4,13 @@ use std::fmt::Write as _;
 use std::io::Read as _;
 use std::path::{Component, Path, PathBuf};
 
-use poecal::io::disk;
-use poecal::io::measurements::{self, Frames, Join, MeasurementFile, PlaneContact};
-use poecal::io::model::Model;
-use poecal::io::named_files::{actual, refuse_repeats};
-use poecal::io::output::{Existing, FilePlace};
-use poecal::{ErrorKind, Result};
+use poecal_import as measurements;
+use poecal_import::{Frames, Join, MeasurementFile, PlaneContact};
+use poecal_numerics::error::{ErrorKind, Result};
+use poecal_results::model::Model;
+use poecal_results::output::{Existing, FilePlace};
+use poecal_storage::disk;
+use poecal_storage::named_files::{actual, refuse_repeats};
 
 use crate::args::{CONTACT, FRAMES, Import, JOIN, word_of};
 use crate::console::Console;

@@ -2,10 +2,11 @@
 
 use std::path::Path;
 
-use poecal::io::measurements::{ColumnGuess, guess_columns, pose_table};
-use poecal::io::model::Model;
-use poecal::io::output::{Contents, Existing, FolderPlace, Project, write_project, write_texts};
-use poecal::{ErrorKind, Result, report};
+use poecal_import::{ColumnGuess, guess_columns, pose_table};
+use poecal_numerics::error::{ErrorKind, Result};
+use poecal_report as report;
+use poecal_results::model::Model;
+use poecal_results::output::{Contents, Existing, FolderPlace, Project, write_project, write_texts};
 
 use crate::DONE;
 use crate::args::Init;

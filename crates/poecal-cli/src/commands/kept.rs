@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use poecal::Result;
-use poecal::io::validation::{HISTORY, History, now};
+use poecal_numerics::error::Result;
+use poecal_results::validation::{HISTORY, History, now};
 
 use crate::args::ReportPlace;
 use crate::console::Console;
@@ -14,7 +14,7 @@ pub(super) struct Kept {
     /// Whether it was asked for: then it must be written.
     is_asked: bool,
     /// Whether it is written at all, or why not.
-    is_kept: std::result::Result<bool, poecal::Error>,
+    is_kept: std::result::Result<bool, poecal_numerics::error::Error>,
 }
 
 impl Kept {

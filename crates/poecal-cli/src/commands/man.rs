@@ -1,7 +1,7 @@
 //! `poecal man`: manual pages.
 
-use poecal::text::visible;
-use poecal::{ErrorKind, Result, nearest};
+use poecal_numerics::error::{ErrorKind, Result, nearest};
+use poecal_numerics::text::visible;
 
 use crate::DONE;
 use crate::args::Man;

@@ -2,10 +2,11 @@
 
 use std::ffi::OsStr;
 
-use poecal::io::model::Model;
-use poecal::io::offsets::ModelOffsets;
-use poecal::io::urdf::ChainSelection;
-use poecal::{Result, report};
+use poecal_formats::urdf::ChainSelection;
+use poecal_numerics::error::Result;
+use poecal_report as report;
+use poecal_results::model::Model;
+use poecal_results::offsets::ModelOffsets;
 
 use super::convert::quoted;
 use crate::DONE;

@@ -1,14 +1,14 @@
 //! `poecal simulate --camera`: pictures of a board as a robot with errors would take them.
 
-use poecal::camera::{Board, CommonError, Distortion, Lens};
-use poecal::io::measurements::read_boards;
-use poecal::io::model::Model;
-use poecal::io::output::{FolderPlace, PhotographedSession, write_photographs};
-use poecal::lie::{Pose, rotation};
-use poecal::simulate::{PictureSimulation, Simulation};
-use poecal::{ErrorKind, Result};
+use poecal_arm::lie::{Pose, rotation};
 use poecal_detect::render::{Camera, Random, Scene, clutter};
 use poecal_detect::{Layout, Spec, png};
+use poecal_import::read_boards;
+use poecal_model::camera::{Board, CommonError, Distortion, Lens};
+use poecal_model::simulate::{PictureSimulation, Simulation};
+use poecal_numerics::error::{ErrorKind, Result};
+use poecal_results::model::Model;
+use poecal_results::output::{FolderPlace, PhotographedSession, write_photographs};
 use rayon::prelude::*;
 
 use crate::args::{CameraPlace, Simulate};

@@ -2,18 +2,19 @@
 
 use std::path::PathBuf;
 
-use poecal::analysis::PlannedSession;
-use poecal::calibration::DeviceFrameKnowledge;
-use poecal::io::measurements::{ReadOptions, planned_table, read_joints};
-use poecal::io::model::Model;
-use poecal::io::output::{Existing, FilePlace};
-use poecal::io::plan_program::plan_program;
-use poecal::io::shapes::capsules_of;
-use poecal::measurement::Noise;
-use poecal::plan::{Conditions, PlanOptions, PlannedFit, Sight, plan as planned, workspace_in};
-use poecal::robot::Tolerance;
-use poecal::simulate::Kind;
-use poecal::{ErrorKind, Result, report};
+use poecal_calibrate::DeviceFrameKnowledge;
+use poecal_fit::analysis::PlannedSession;
+use poecal_import::{ReadOptions, planned_table, read_joints};
+use poecal_model::measurement::Noise;
+use poecal_model::robot::Tolerance;
+use poecal_model::simulate::Kind;
+use poecal_numerics::error::{ErrorKind, Result};
+use poecal_plan::plan::{Conditions, PlanOptions, PlannedFit, Sight, plan as planned, workspace_in};
+use poecal_report as report;
+use poecal_results::model::Model;
+use poecal_results::output::{Existing, FilePlace};
+use poecal_results::plan_program::plan_program;
+use poecal_results::shapes::capsules_of;
 
 use super::visits::{Stated, Visited};
 use crate::DONE;

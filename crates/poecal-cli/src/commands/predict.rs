@@ -3,11 +3,12 @@
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
-use poecal::Result;
-use poecal::calibration::AcceptedModel;
-use poecal::io::model::Model;
-use poecal::io::urdf::named_link;
-use poecal::io::{measurements, predictions};
+use poecal_calibrate::AcceptedModel;
+use poecal_formats::urdf::named_link;
+use poecal_import as measurements;
+use poecal_numerics::error::Result;
+use poecal_results::model::Model;
+use poecal_results::predictions;
 
 use crate::DONE;
 use crate::args::{Predict, with_mapping};

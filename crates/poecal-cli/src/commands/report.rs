@@ -1,9 +1,9 @@
 //! `poecal report`: the report of a finished calibration, from its files.
 
-use poecal::Result;
-use poecal::io::calibration_file::CalibrationFile;
-use poecal::io::output::{self, Existing, FilePlace};
-use poecal::io::residuals::Residuals;
+use poecal_numerics::error::Result;
+use poecal_results::calibration_file::CalibrationFile;
+use poecal_results::output::{self, Existing, FilePlace};
+use poecal_results::residuals::Residuals;
 
 use super::calibrate::page;
 use crate::args::Report;

@@ -1,8 +1,8 @@
 //! `poecal reproduce`: a paper's experiment and its claims, or the effect of gross errors.
 
-use poecal::Result;
-use poecal::io::output::{self, Contents, Existing, FolderPlace};
 use poecal_lou2009::{ReproductionOptions, breakdown, lou2009, report};
+use poecal_numerics::error::Result;
+use poecal_results::output::{self, Contents, Existing, FolderPlace};
 
 use crate::args::{Experiment, Reproduce};
 use crate::console::Console;

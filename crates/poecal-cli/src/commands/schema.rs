@@ -1,7 +1,7 @@
 //! `poecal schema`: the JSON Schema of calibration.json.
 
-use poecal::Result;
-use poecal::io::calibration_file::CalibrationFile;
+use poecal_numerics::error::Result;
+use poecal_results::calibration_file::CalibrationFile;
 
 use crate::DONE;
 use crate::console::Console;

@@ -1,12 +1,12 @@
 //! `poecal simulate`: a robot with known errors, and its measurements.
 
-use poecal::Result;
-use poecal::calibration::DeviceFrameKnowledge;
-use poecal::io::model::Model;
-use poecal::io::output::{self, Contents, Existing, FolderPlace, SimulatedSession};
-use poecal::robot::{Sizes, TermGroup};
-use poecal::simulate::Simulation;
-use poecal::text::visible;
+use poecal_calibrate::DeviceFrameKnowledge;
+use poecal_model::robot::{Sizes, TermGroup};
+use poecal_model::simulate::Simulation;
+use poecal_numerics::error::Result;
+use poecal_numerics::text::visible;
+use poecal_results::model::Model;
+use poecal_results::output::{self, Contents, Existing, FolderPlace, SimulatedSession};
 
 use crate::args::{Simulate, TreeArgs};
 use crate::console::Console;

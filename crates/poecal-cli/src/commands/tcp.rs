@@ -2,11 +2,12 @@
 
 use std::ffi::OsString;
 
-use poecal::hand_eye::tool_tip;
-use poecal::io::measurements::read_flange_poses;
-use poecal::io::output::Contents;
-use poecal::io::tcp::ToolResult;
-use poecal::{Result, report};
+use poecal_fit::hand_eye::tool_tip;
+use poecal_import::read_flange_poses;
+use poecal_numerics::error::Result;
+use poecal_report as report;
+use poecal_results::output::Contents;
+use poecal_results::tcp::ToolResult;
 
 use super::frames::{Frames, model, row_name};
 use super::typed::command;

@@ -2,13 +2,14 @@
 
 use std::ffi::OsString;
 
-use poecal::io::calibration_file::{CalibrationFile, Inputs, RecalibrationSources, RepairedPart};
-use poecal::io::measurements;
-use poecal::io::named_files::refuse_repeats;
-use poecal::io::output::{Existing, FilePlace};
-use poecal::io::validation::ValidationInputs;
-use poecal::track::{Repaired, State, recalibrate, track as judged};
-use poecal::{ErrorKind, Result, report};
+use poecal_import as measurements;
+use poecal_numerics::error::{ErrorKind, Result};
+use poecal_report as report;
+use poecal_results::calibration_file::{CalibrationFile, Inputs, RecalibrationSources, RepairedPart};
+use poecal_results::output::{Existing, FilePlace};
+use poecal_results::track::{Repaired, State, recalibrate, track as judged};
+use poecal_results::validation::ValidationInputs;
+use poecal_storage::named_files::refuse_repeats;
 
 use super::kept::Kept;
 use super::typed::command;
@@ -33,7 +34,7 @@ pub(crate) fn track(arguments: &Track, typed: &[OsString], console: &Console) ->
         return plan(arguments, &visited, usize::from(count), place, console);
     }
     let Visited { file, robot, meaning, options, earlier } = visited;
-    let in_file = |error: poecal::Error| {
+    let in_file = |error: poecal_numerics::error::Error| {
         if error.kind() == ErrorKind::Model { error.in_file(&arguments.calibration) } else { error }
     };
     let mut history = Kept::read(arguments.history.as_ref(), &arguments.calibration)?;

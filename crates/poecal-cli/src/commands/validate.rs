@@ -3,14 +3,16 @@
 use std::collections::BTreeMap;
 use std::ffi::OsString;
 
-use poecal::calibration::{AcceptanceLimits, Decision, Level};
-use poecal::io::calibration_file::{CalibrationFile, Inputs};
-use poecal::io::measurements::{self, MeasurementFile, ReadOptions};
-use poecal::io::named_files::refuse_repeats;
-use poecal::io::output::{Existing, ValidationPlaces};
-use poecal::io::record::Record;
-use poecal::io::validation::{JudgedRows, Judging, Validation, ValidationInputs};
-use poecal::{ErrorKind, Result, report};
+use poecal_calibrate::{AcceptanceLimits, Decision, Level};
+use poecal_import as measurements;
+use poecal_import::{MeasurementFile, ReadOptions};
+use poecal_numerics::error::{ErrorKind, Result};
+use poecal_report as report;
+use poecal_results::calibration_file::{CalibrationFile, Inputs};
+use poecal_results::output::{Existing, ValidationPlaces};
+use poecal_results::record::Record;
+use poecal_results::validation::{JudgedRows, Judging, Validation, ValidationInputs};
+use poecal_storage::named_files::refuse_repeats;
 
 use super::kept::Kept;
 use super::typed::command;
@@ -24,7 +26,7 @@ pub(crate) fn validate(arguments: &Validate, typed: &[OsString], console: &Conso
     let places = places(arguments, console)?;
     let file = CalibrationFile::read(&arguments.calibration)?;
     let mut history = Kept::read(arguments.history.as_ref(), &arguments.calibration)?;
-    let in_file = |error: poecal::Error| {
+    let in_file = |error: poecal_numerics::error::Error| {
         if error.kind() == ErrorKind::Model { error.in_file(&arguments.calibration) } else { error }
     };
     let calibrated = file.robot().map_err(in_file)?;

@@ -2,12 +2,15 @@
 
 use std::path::{Path, PathBuf};
 
-use poecal::calibration::DeviceFrameKnowledge;
-use poecal::io::calibration_file::CalibrationFile;
-use poecal::io::measurements::{self, ReadOptions, read_joints};
-use poecal::io::named_files::refuse_repeats;
-use poecal::track::{Earlier, TrackOptions, witnesses};
-use poecal::{ErrorKind, MeasurementFile, Result, Robot, report};
+use poecal_calibrate::DeviceFrameKnowledge;
+use poecal_import as measurements;
+use poecal_import::{MeasurementFile, ReadOptions, read_joints};
+use poecal_model::robot::Robot;
+use poecal_numerics::error::{ErrorKind, Result};
+use poecal_report as report;
+use poecal_results::calibration_file::CalibrationFile;
+use poecal_results::track::{Earlier, TrackOptions, witnesses};
+use poecal_storage::named_files::refuse_repeats;
 
 use crate::console::Console;
 
@@ -34,7 +37,7 @@ impl Visited {
     /// Reads the calibration and the earlier rows.
     pub(super) fn read(stated: Stated<'_>, console: &Console) -> Result<Self> {
         let file = CalibrationFile::read(stated.calibration)?;
-        let in_file = |error: poecal::Error| {
+        let in_file = |error: poecal_numerics::error::Error| {
             if error.kind() == ErrorKind::Model { error.in_file(stated.calibration) } else { error }
         };
         let robot = file.robot().map_err(in_file)?;

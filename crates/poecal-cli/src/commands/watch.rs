@@ -3,11 +3,13 @@
 use std::thread::sleep;
 use std::time::Duration;
 
-use poecal::calibration::Corrections;
-use poecal::io::measurements::{GrowingFile, News};
-use poecal::io::model::Model;
-use poecal::plan::{Watch as Watched, WatchOptions, workspace_in};
-use poecal::{ErrorKind, Kind, Result, report};
+use poecal_calibrate::Corrections;
+use poecal_import::{GrowingFile, News};
+use poecal_model::measurement::Kind;
+use poecal_numerics::error::{ErrorKind, Result};
+use poecal_plan::plan::{Watch as Watched, WatchOptions, workspace_in};
+use poecal_report as report;
+use poecal_results::model::Model;
 
 use super::plan::{fit, readings};
 use crate::args::Watch;

@@ -1,7 +1,7 @@
 //! `--accept` and `--record`: decisions with their exit codes, texts of certificates, and what is refused.
 
-use poecal::calibration::{AcceptedModel, AcceptedRows, Decision};
-use poecal::simulate::Kind;
+use poecal_calibrate::{AcceptedModel, AcceptedRows, Decision};
+use poecal_model::simulate::Kind;
 
 use crate::folder::Folder;
 use crate::session::{calibration, session};

@@ -1,6 +1,6 @@
 //! `poecal certificate`.
 
-use poecal::simulate::Kind;
+use poecal_model::simulate::Kind;
 
 use crate::session::session;
 

@@ -1,6 +1,6 @@
 //! Results of `poecal validate`: the record and report of a repeat measurement, and the history of checks.
 
-use poecal::simulate::{Kind, Simulation};
+use poecal_model::simulate::{Kind, Simulation};
 use serde_json::Value;
 
 use crate::folder::Folder;

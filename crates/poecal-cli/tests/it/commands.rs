@@ -1,8 +1,9 @@
 //! Every command end to end, on simulated measurements.
 
-use poecal::io::calibration_file::CalibrationFile;
-use poecal::io::measurements::{self, ReadOptions};
-use poecal::simulate::{Kind, Simulation};
+use poecal_import as measurements;
+use poecal_import::ReadOptions;
+use poecal_model::simulate::{Kind, Simulation};
+use poecal_results::calibration_file::CalibrationFile;
 
 use crate::folder::Folder;
 use crate::session::{ROBOT, calibration, numbers, session, write_measurements};

@@ -2,8 +2,8 @@
 
 use std::fmt::Write as _;
 
-use poecal::io::calibration_file::CalibrationFile;
-use poecal::simulate::Kind;
+use poecal_model::simulate::Kind;
+use poecal_results::calibration_file::CalibrationFile;
 
 use crate::folder::Folder;
 use crate::session::{numbers, session};

@@ -2,8 +2,8 @@
 
 use std::fmt::Write as _;
 
-use poecal::io::model::Model;
-use poecal::simulate::Kind;
+use poecal_model::simulate::Kind;
+use poecal_results::model::Model;
 
 use crate::folder::Folder;
 use crate::session::{numbers, session};
@@ -148,7 +148,7 @@ fn poses_are_corrected_in_the_configuration_to_which_the_joints_before_lead() {
     let radians = |q: &[f64]| q.iter().map(|it| it.to_radians()).collect::<Vec<f64>>();
     let from = targets().remove(1);
     let to = robot.forward_kinematics(&radians(&from.iter().map(|it| it + 2.0).collect::<Vec<f64>>()));
-    let turn = poecal::lie::rotation::log(&to.rotation);
+    let turn = poecal_arm::lie::rotation::log(&to.rotation);
     let pose = line(&[to.translation.x, to.translation.y, to.translation.z, turn.x, turn.y, turn.z]);
     let job = |q: &[f64]| format!("movej([{}])\nmovel(p[{pose}])\n", line(&radians(q)));
     folder.write("plain.script", job(&from));

@@ -3,13 +3,13 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use poecal::camera::Board;
-use poecal::io::measurements::read_boards;
-use poecal::io::model::Model;
-use poecal::io::urdf::ChainSelection;
-use poecal::simulate::{PictureSimulation, Simulation};
 use poecal_detect::render::{Camera, Draw, Random, Scene};
 use poecal_detect::{Gray, Layout, preview};
+use poecal_formats::urdf::ChainSelection;
+use poecal_import::read_boards;
+use poecal_model::camera::Board;
+use poecal_model::simulate::{PictureSimulation, Simulation};
+use poecal_results::model::Model;
 
 use crate::folder::Folder;
 
@@ -27,9 +27,9 @@ fn session(folder: &Folder, count: usize, moved: usize) {
 /// The same of another board, drawn by its words; the arm looks at its points.
 fn session_of(folder: &Folder, (spec, board): (&str, Board), count: usize, moved: usize) {
     let model = Model::read(elbow(), &ChainSelection::default()).unwrap();
-    let lens = poecal::camera::Lens {
+    let lens = poecal_model::camera::Lens {
         size_px: Some([960, 600]),
-        ..poecal::camera::Lens::pinhole([800.0; 2], [479.5, 299.5])
+        ..poecal_model::camera::Lens::pinhole([800.0; 2], [479.5, 299.5])
     };
     let session = Simulation {
         count,
@@ -51,7 +51,7 @@ fn session_of(folder: &Folder, (spec, board): (&str, Board), count: usize, moved
     for at in 0..made.data.len() {
         let readings = made.data.readings(at);
         let along = if at >= moved { 0.02 } else { 0.0 };
-        let shift = poecal::lie::Pose::from_xyz_rpy([along, 0.0, 0.0], [0.0; 3]);
+        let shift = poecal_arm::lie::Pose::from_xyz_rpy([along, 0.0, 0.0], [0.0; 3]);
         let held = made.actual.forward_kinematics(readings) * made.tip_from_held;
         let pose = held.inverse() * made.base_from_other * shift;
         let scene = Scene {

@@ -2,11 +2,11 @@
 
 use std::fmt::Write as _;
 
-use poecal::forensics::DiagnosisKind;
-use poecal::io::measurements::{ReadOptions, read};
-use poecal::io::model::Model;
-use poecal::lie::{Pose, rotation};
-use poecal::simulate::Kind;
+use poecal_arm::lie::{Pose, rotation};
+use poecal_fit::forensics::DiagnosisKind;
+use poecal_import::{ReadOptions, read};
+use poecal_model::simulate::Kind;
+use poecal_results::model::Model;
 
 use crate::session::{calibration, session};
 

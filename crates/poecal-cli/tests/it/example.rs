@@ -24,9 +24,9 @@ fn the_shipped_points_come_from_the_command_in_their_first_line() {
 fn both_models_of_the_example_are_the_same_robot() {
     let read = |name: &str| {
         let path = root().join("examples/elbow").join(name);
-        poecal::io::model::Model::read(path, &Default::default()).unwrap().robot
+        poecal_results::model::Model::read(path, &Default::default()).unwrap().robot
     };
-    let difference = poecal::io::Difference::of(&read("robot.urdf"), &read("robot.toml"), 1000);
+    let difference = poecal_formats::proof::Difference::of(&read("robot.urdf"), &read("robot.toml"), 1000);
     // Rounding of the two texts' numbers along six joints.
     assert!(difference.is_within(1e-14, 1e-14), "{difference:?}");
 }
@@ -65,7 +65,7 @@ fn the_truth_names_the_robot_that_was_measured() {
         truth["measurement_frame"]["base_from_device"]["position_m"],
         serde_json::json!([0.0, 0.0, 0.0])
     );
-    let model = poecal::io::model::Model::read(session.join("actual.urdf"), &Default::default()).unwrap();
+    let model = poecal_results::model::Model::read(session.join("actual.urdf"), &Default::default()).unwrap();
     let screw = model.robot.joints[3].screw.v();
     for axis in 0..3 {
         let told = truth["joints"][3]["screw"]["v_m"][axis].as_f64().unwrap();

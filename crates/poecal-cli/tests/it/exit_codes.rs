@@ -1,6 +1,6 @@
 //! What the program ends with: 0 usable, 1 results that should not be used, 2 refused, 3 no result.
 
-use poecal::simulate::Kind;
+use poecal_model::simulate::Kind;
 
 use crate::folder::Folder;
 use crate::session::{calibration, session};
@@ -29,7 +29,7 @@ fn a_calibration_that_should_not_be_used_is_written_and_ends_with_1() {
         let run = folder.run(&format!("calibrate robot.urdf exchanged.csv --force{more}"));
         assert_eq!(run.code, 1, "{more}: {}{}", run.out, run.err);
         let verdict = calibration(&folder, "poecal-out").verdict.unwrap();
-        assert_eq!(verdict.level, poecal::calibration::Level::DoNotUse);
+        assert_eq!(verdict.level, poecal_calibrate::Level::DoNotUse);
     }
     let run = folder.run("calibrate robot.urdf exchanged.csv --force");
     assert!(

@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use poecal::lie::{Pose, rotation};
+use poecal_arm::lie::{Pose, rotation};
 
 use crate::folder::Folder;
 

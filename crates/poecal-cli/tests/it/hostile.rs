@@ -2,9 +2,9 @@
 
 use std::fmt::Write as _;
 
-use poecal::io::model::Model;
-use poecal::simulate::{Kind, Simulation};
-use poecal::text::visible_lines;
+use poecal_model::simulate::{Kind, Simulation};
+use poecal_numerics::text::visible_lines;
+use poecal_results::model::Model;
 
 use crate::folder::{Folder, Run};
 use crate::session::ROBOT;

@@ -2,9 +2,9 @@
 
 use std::fs;
 
-use poecal::io::model::{Model, ModelFormat, ModelSource, convert};
-use poecal::robot::Robot;
-use poecal::simulate::{gantry, scara, seven_axis};
+use poecal_model::robot::Robot;
+use poecal_model::simulate::{gantry, scara, seven_axis};
+use poecal_results::model::{Model, ModelFormat, ModelSource, convert};
 
 use crate::folder::Folder;
 use crate::session::{ROBOT, calibration};

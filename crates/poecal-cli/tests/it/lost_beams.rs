@@ -1,6 +1,6 @@
 //! Lost beams: rows that say nothing of where the target was.
 
-use poecal::simulate::Kind;
+use poecal_model::simulate::Kind;
 
 use crate::session::session;
 

@@ -16,9 +16,9 @@ mod detect;
 mod diagnosis;
 mod example;
 mod exit_codes;
-// Each crate uses what it needs of it.
-#[allow(dead_code)]
-#[path = "../../../poecal/tests/files/mod.rs"]
+// It has the commands that these tests run in it.
+#[allow(dead_code, unreachable_pub)]
+#[path = "../../../poecal-testing/src/files.rs"]
 mod files;
 #[cfg(any(unix, windows))]
 mod fleet;
@@ -54,11 +54,7 @@ mod table;
 mod targets_and_validation;
 mod tip;
 mod track;
-// Each crate uses what it needs of it.
 mod trees;
-#[allow(dead_code)]
-#[path = "../../../poecal/tests/trials/mod.rs"]
-mod trials;
 mod trust;
 mod validate;
 mod workbook;

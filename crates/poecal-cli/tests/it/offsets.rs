@@ -1,6 +1,6 @@
 //! `poecal offsets`, and `poecal convert --offset`, which it undoes.
 
-use poecal::simulate::Kind;
+use poecal_model::simulate::Kind;
 
 use crate::folder::Folder;
 use crate::session::{ROBOT, session};

@@ -4,7 +4,7 @@ use std::fs;
 use std::os::unix::fs::{FileTypeExt as _, symlink};
 use std::process::{Child, Command, Stdio};
 
-use poecal::simulate::Kind;
+use poecal_model::simulate::Kind;
 
 use crate::folder::Folder;
 use crate::session::session;

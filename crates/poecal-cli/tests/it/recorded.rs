@@ -3,9 +3,10 @@
 use std::fmt::Write as _;
 use std::fs;
 
-use poecal::io::measurements::{self, ReadOptions};
-use poecal::io::model::Model;
-use poecal::io::urdf::ChainSelection;
+use poecal_formats::urdf::ChainSelection;
+use poecal_import as measurements;
+use poecal_import::ReadOptions;
+use poecal_results::model::Model;
 
 use crate::folder::Folder;
 use crate::recordings::{Recordings, recordings};

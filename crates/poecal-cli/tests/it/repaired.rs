@@ -1,6 +1,6 @@
 //! `poecal calibrate` of sessions in which something moved: said, repaired, and judged by what comes after it.
 
-use poecal::simulate::{Kind, Simulation};
+use poecal_model::simulate::{Kind, Simulation};
 use serde_json::Value;
 
 use crate::folder::Folder;

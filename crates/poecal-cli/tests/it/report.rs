@@ -1,6 +1,6 @@
 //! The report: where it is written, and that it is made again from its files.
 
-use poecal::simulate::{Kind, Simulation};
+use poecal_model::simulate::{Kind, Simulation};
 
 use crate::folder::Folder;
 use crate::session::{calibration, session, write_measurements};

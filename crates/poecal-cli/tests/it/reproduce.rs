@@ -1,6 +1,6 @@
 //! `poecal reproduce`, and the formulations of `poecal calibrate`.
 
-use poecal::simulate::Kind;
+use poecal_model::simulate::Kind;
 
 use crate::folder::Folder;
 use crate::session::session;

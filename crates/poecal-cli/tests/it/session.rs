@@ -2,9 +2,9 @@
 
 use std::fmt::Write as _;
 
-use poecal::io::calibration_file::CalibrationFile;
-use poecal::io::model::Model;
-use poecal::simulate::{Kind, Simulation};
+use poecal_model::simulate::{Kind, Simulation};
+use poecal_results::calibration_file::CalibrationFile;
+use poecal_results::model::Model;
 
 use crate::folder::Folder;
 

@@ -1,7 +1,7 @@
 //! Several places of the measuring device: `--frames per-file`, the column `instrument`, and what is refused.
 
-use poecal::io::residuals::Residuals;
-use poecal::simulate::Kind;
+use poecal_model::simulate::Kind;
+use poecal_results::residuals::Residuals;
 
 use crate::folder::Folder;
 use crate::session::{calibration, session};

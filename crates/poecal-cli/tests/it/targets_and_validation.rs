@@ -1,7 +1,8 @@
 //! `poecal validate`, and targets by name.
 
-use poecal::io::measurements::{self, ReadOptions};
-use poecal::simulate::{Kind, Simulation};
+use poecal_import as measurements;
+use poecal_import::ReadOptions;
+use poecal_model::simulate::{Kind, Simulation};
 
 use crate::session::{calibration, numbers, session, write_measurements};
 

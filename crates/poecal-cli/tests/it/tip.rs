@@ -1,6 +1,6 @@
 //! The tip stays where the model has it, and what is measured is a target of its own; with `--move-tip` the tip is what was measured.
 
-use poecal::simulate::{Kind, Simulation};
+use poecal_model::simulate::{Kind, Simulation};
 
 use crate::folder::Folder;
 use crate::session::{ROBOT, calibration, numbers, session, write_measurements};

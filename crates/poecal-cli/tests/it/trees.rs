@@ -5,7 +5,7 @@ use serde_json::Value;
 use crate::folder::Folder;
 use crate::session::calibration;
 
-const TORSO: &str = include_str!("../../../poecal/tests/data/torso.urdf");
+const TORSO: &str = include_str!("../../../poecal-testing/data/torso.urdf");
 const TREE: &str = "--instrument eyes=head_camera --instrument chest=torso --target left=left_hand --target right=right_hand";
 
 /// A simulated session of two cameras that see two hands.

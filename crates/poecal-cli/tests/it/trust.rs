@@ -1,6 +1,6 @@
 //! The verdict, and the uncertainty of predictions.
 
-use poecal::simulate::Kind;
+use poecal_model::simulate::Kind;
 
 use crate::folder::Folder;
 use crate::session::session;

@@ -2,8 +2,8 @@
 
 use std::fmt::Write as _;
 
-use poecal::io::model::Model;
-use poecal::simulate::{Kind, Simulation};
+use poecal_model::simulate::{Kind, Simulation};
+use poecal_results::model::Model;
 
 use crate::folder::Folder;
 use crate::session::ROBOT;

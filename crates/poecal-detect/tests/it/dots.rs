@@ -4,7 +4,7 @@ use poecal_detect::render::Draw;
 use poecal_detect::{Detector, Kind, Layout};
 
 use crate::found::Tally;
-use crate::trials::trials;
+use poecal_testing::trials::trials;
 
 /// What the part of the dots that is found in a picture scatters by: a grid of which too much is covered is not found.
 const MISSED: f64 = 0.15;

@@ -4,7 +4,7 @@ use nalgebra::Vector2;
 use poecal_detect::render::{Draw, Drawn};
 use poecal_detect::{Detector, Found};
 
-use crate::trials::trials;
+use poecal_testing::trials::trials;
 
 /// What was found in some pictures.
 #[derive(Default)]

@@ -9,7 +9,3 @@ mod print;
 mod real;
 mod rejected;
 mod tags;
-// Each crate uses what it needs of it.
-#[allow(dead_code)]
-#[path = "../../../poecal/tests/trials/mod.rs"]
-mod trials;

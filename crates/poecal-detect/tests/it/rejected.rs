@@ -4,7 +4,7 @@ use nalgebra::Vector2;
 use poecal_detect::render::{Draw, Random, clutter, finished};
 use poecal_detect::{Detector, Gray, Layout, Rejected};
 
-use crate::trials::trials;
+use poecal_testing::trials::trials;
 
 const CHARUCO: &str = "charuco:7x5:36.195mm:18.256mm:DICT_6X6_250";
 const CHESSBOARD: &str = "chessboard:10x7:28mm";

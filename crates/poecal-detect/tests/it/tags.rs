@@ -4,7 +4,7 @@ use poecal_detect::render::Draw;
 use poecal_detect::{Detector, Kind, Layout};
 
 use crate::found::Tally;
-use crate::trials::trials;
+use poecal_testing::trials::trials;
 
 #[test]
 fn corners_of_loose_tags() {

@@ -1,11 +1,11 @@
 //! `calibration.json`, and the report made of it.
 
-use poecal::io::calibration_file::CalibrationFile;
-use poecal::io::measurements::parse_joints;
-use poecal::io::model::{Model, ModelSource};
-use poecal::io::predictions::{PredictionFrame, predict};
-use poecal::io::residuals::Residuals;
-use poecal::report::calibration_page;
+use poecal_import::parse_joints;
+use poecal_report::calibration_page;
+use poecal_results::calibration_file::CalibrationFile;
+use poecal_results::model::{Model, ModelSource};
+use poecal_results::predictions::{PredictionFrame, predict};
+use poecal_results::residuals::Residuals;
 
 use super::models::converted;
 use crate::properties::{PATH, certain, one_line, parts, text, understood};

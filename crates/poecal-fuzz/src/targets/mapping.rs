@@ -1,7 +1,7 @@
 //! Mapping files.
 
-use poecal::io::measurements::{ColumnMap, ReadOptions, parse, parse_joints};
-use poecal::simulate::scara;
+use poecal_import::{ColumnMap, ReadOptions, parse, parse_joints};
+use poecal_model::simulate::scara;
 
 use super::tables::{joints_sound, sound};
 use crate::properties::{PATH, text, understood};

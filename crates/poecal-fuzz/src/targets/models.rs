@@ -1,11 +1,11 @@
 //! Robot models: URDF, TOML, and forms of simulators and makers.
 
-use poecal::ErrorKind;
-use poecal::io::model::{Model, ModelFormat, ModelSource, convert};
-use poecal::io::robot_toml;
-use poecal::io::urdf::{ChainSelection, UrdfDocument};
-use poecal::lie::{Pose, Screw};
-use poecal::robot::Robot;
+use poecal_arm::lie::{Pose, Screw};
+use poecal_formats::robot_toml;
+use poecal_formats::urdf::{ChainSelection, UrdfDocument};
+use poecal_model::robot::Robot;
+use poecal_numerics::error::ErrorKind;
+use poecal_results::model::{Model, ModelFormat, ModelSource, convert};
 
 use crate::properties::{PATH, VAST_M, alike, certain, one_line, size_m, text, understood};
 

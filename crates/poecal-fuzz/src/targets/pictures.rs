@@ -3,11 +3,9 @@
 use std::collections::BTreeSet;
 
 use nalgebra::{Vector2, Vector3};
-use poecal::camera::{Board, Camera, Lens};
-use poecal::io::measurements::{
-    MeasurementFile, ReadOptions, board_of_file, parse, read_boards, read_cameras,
-};
-use poecal::simulate::elbow;
+use poecal_import::{MeasurementFile, ReadOptions, board_of_file, parse, read_boards, read_cameras};
+use poecal_model::camera::{Board, Camera, Lens};
+use poecal_model::simulate::elbow;
 
 use crate::one_file::with_file;
 use crate::properties::{PATH, certain, one_line, text, understood};

@@ -1,14 +1,14 @@
 //! All of a calibration, in memory.
 
-use poecal::calibration::{Calibration, CalibrationOptions, calibrate};
-use poecal::forensics::{DiagnosisOptions, diagnose};
-use poecal::io::calibration_file::{CalibrationFile, Inputs};
-use poecal::io::measurements::{ColumnMap, MeasurementFile, ReadOptions, parse, parse_joints};
-use poecal::io::model::{Model, ModelSource};
-use poecal::io::predictions::{PredictionFrame, predict};
-use poecal::io::residuals::Residuals;
-use poecal::io::urdf::ChainSelection;
-use poecal::report;
+use poecal_calibrate::{Calibration, CalibrationOptions, calibrate};
+use poecal_fit::forensics::{DiagnosisOptions, diagnose};
+use poecal_formats::urdf::ChainSelection;
+use poecal_import::{ColumnMap, MeasurementFile, ReadOptions, parse, parse_joints};
+use poecal_report as report;
+use poecal_results::calibration_file::{CalibrationFile, Inputs};
+use poecal_results::model::{Model, ModelSource};
+use poecal_results::predictions::{PredictionFrame, predict};
+use poecal_results::residuals::Residuals;
 
 use super::calibration::{page, same};
 use super::models::{converted, patched};

@@ -1,9 +1,9 @@
 //! Programs of robots, compensated.
 
-use poecal::compensate::{Language, ProgramOptions, compensate_program};
-use poecal::lie::Pose;
-use poecal::robot::{JointTerm, Term};
-use poecal::simulate::elbow;
+use poecal_arm::lie::Pose;
+use poecal_compensate::{Language, ProgramOptions, compensate_program};
+use poecal_model::robot::{JointTerm, Term};
+use poecal_model::simulate::elbow;
 
 use crate::LONGEST;
 use crate::properties::{one_line, understood};

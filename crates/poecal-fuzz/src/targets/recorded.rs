@@ -1,7 +1,7 @@
 //! Files as instruments, controllers and recorders write them.
 
-use poecal::io::measurements::{Join, MeasurementFile, ReadOptions, imported_table, parse, read};
-use poecal::simulate::elbow;
+use poecal_import::{Join, MeasurementFile, ReadOptions, imported_table, parse, read};
+use poecal_model::simulate::elbow;
 
 use crate::one_file::with_files;
 use crate::properties::one_line;

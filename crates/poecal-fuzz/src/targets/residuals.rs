@@ -1,6 +1,6 @@
 //! `residuals.csv`.
 
-use poecal::io::residuals::Residuals;
+use poecal_results::residuals::Residuals;
 
 use crate::properties::{PATH, certain, text, understood};
 

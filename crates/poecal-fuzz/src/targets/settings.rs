@@ -1,6 +1,6 @@
 //! Settings: `poecal.toml`.
 
-use poecal::io::settings::{SettingValue, Settings};
+use poecal_results::settings::{SettingValue, Settings};
 
 use crate::properties::{PATH, certain, text, understood};
 

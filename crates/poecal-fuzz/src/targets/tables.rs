@@ -1,10 +1,10 @@
 //! Tables: measurements and joint readings.
 
-use poecal::io::measurements::{ColumnMap, JointsTable, MeasurementFile, ReadOptions, parse, parse_joints};
-use poecal::io::model::{Model, ModelSource};
-use poecal::io::predictions::{PredictionFrame, predict};
-use poecal::robot::Robot;
-use poecal::simulate::{elbow, scara};
+use poecal_import::{ColumnMap, JointsTable, MeasurementFile, ReadOptions, parse, parse_joints};
+use poecal_model::robot::Robot;
+use poecal_model::simulate::{elbow, scara};
+use poecal_results::model::{Model, ModelSource};
+use poecal_results::predictions::{PredictionFrame, predict};
 
 use crate::properties::{PATH, certain, one_line, parts, text, understood};
 

@@ -3,7 +3,7 @@
 use super::super::{Basin, Claim, MeasurementKind};
 use super::{Evidence, said};
 use crate::{Formulation, Method, Residual};
-use poecal::error::Result;
+use poecal_numerics::error::Result;
 
 /// Share of starts that must reach the truth, from errors up to this angle: twice the largest turn in Table II, which is 5 deg.
 const ROBUST_SHARE: f64 = 0.99;

@@ -3,8 +3,8 @@
 use super::super::{Claim, MeasurementKind, Run, literal, runs, tables};
 use super::{Evidence, left_out};
 use crate::{Formulation, Residual};
-use poecal::error::Result;
-use poecal::estimate::Estimate;
+use poecal_fit::state::Estimate;
+use poecal_numerics::error::Result;
 
 /// Rank of the first matrix of the point simulation, and at its end.
 const FIRST_RANK: usize = 25;

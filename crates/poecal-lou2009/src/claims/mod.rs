@@ -8,8 +8,8 @@ mod simulations;
 use super::runs::Ended;
 use super::{Basin, Claim, Efficiency, MeasurementKind, Reproduction, Run, exact};
 use crate::{Formulation, Method, Residual};
-use poecal::error::{Error, ErrorKind, Result};
-use poecal::estimate::Estimate;
+use poecal_fit::state::Estimate;
+use poecal_numerics::error::{Error, ErrorKind, Result};
 
 /// Difference below which a coordinate is recovered and a prediction right: metres, or of a unit vector.
 const RECOVERED: f64 = 1e-9;

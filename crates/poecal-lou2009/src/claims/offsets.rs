@@ -3,9 +3,9 @@
 use super::super::{Claim, MeasurementKind, Run, runs, tables};
 use super::{Evidence, RECOVERED, ROUNDING, said};
 use crate::Formulation;
-use poecal::error::Result;
-use poecal::estimate::{Chain, Linkage};
-use poecal::lie::Pose;
+use poecal_arm::lie::Pose;
+use poecal_fit::state::{Chain, Linkage};
+use poecal_numerics::error::Result;
 
 /// A missed joint offset from which on it is not the prescribed one, degrees.
 const MISSED_DEG: f64 = 0.5;

@@ -3,7 +3,7 @@
 use super::super::{Claim, MeasurementKind, Run, tables};
 use super::{Evidence, RECOVERED, ROUNDING, said};
 use crate::Formulation;
-use poecal::error::Result;
+use poecal_numerics::error::Result;
 
 /// Iterations that the paper needs.
 const PAPER_POSES: usize = 6;

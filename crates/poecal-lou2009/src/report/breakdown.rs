@@ -1,9 +1,9 @@
 //! What gross errors do to a calibration: a figure, a table and a file.
 
 use crate::{Breakdown, BreakdownEntry};
-use poecal::error::Result;
-use poecal::report::plot::{Axis, Line, LinePlot, Scale};
-use poecal::report::table::row;
+use poecal_numerics::error::Result;
+use poecal_report::plot::{Axis, Line, LinePlot, Scale};
+use poecal_report::table::row;
 
 /// Widths of the shares and of each loss.
 const WIDTHS: [usize; 2] = [7, 17];
@@ -13,7 +13,7 @@ const ORDER: [&str; 4] = ["off", "huber", "cauchy", "tukey"];
 /// The files of a breakdown, each a name and a text: the figure, and every number of it.
 ///
 /// # Errors
-/// [`ErrorKind::Export`](poecal::ErrorKind::Export) if a number cannot be written.
+/// [`ErrorKind::Export`](poecal_numerics::error::ErrorKind::Export) if a number cannot be written.
 pub fn breakdown_files(found: &Breakdown) -> Result<Vec<(String, String)>> {
     let line = |(style, word): (usize, &&str)| Line {
         name: (*word).to_owned(),
@@ -36,7 +36,7 @@ pub fn breakdown_files(found: &Breakdown) -> Result<Vec<(String, String)>> {
     };
     Ok(vec![
         ("figure-breakdown.svg".to_owned(), plot.svg()),
-        ("results.json".to_owned(), poecal::report::json(found)?),
+        ("results.json".to_owned(), poecal_report::json(found)?),
     ])
 }
 

@@ -1,7 +1,7 @@
 //! The claims of a paper as text of lines up to 80 characters.
 
 use crate::Reproduction;
-use poecal::report::table::line;
+use poecal_report::table::line;
 
 /// What the paper says, and what it leaves out: for each statement its place, whether it holds, and what was measured.
 #[must_use]

@@ -1,6 +1,6 @@
 //! A report as blocks, so that Markdown and HTML say the same.
 
-use poecal::report::plot::NamedPlot;
+use poecal_report::plot::NamedPlot;
 
 /// A report.
 pub(super) struct Document {

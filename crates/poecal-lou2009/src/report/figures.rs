@@ -5,9 +5,8 @@ use std::ops::Range;
 use super::document::Figure;
 use super::numbers::stated;
 use super::tables::distinct;
-use crate::Formulation;
-use crate::{Iteration, MatrixSpectrum, MeasurementKind, Reproduction, Run, ScrewRow};
-use poecal::report::plot::{Axis, DotPlot, Dots, Line, LinePlot, Mark, NamedPlot, Scale};
+use crate::{Formulation, Iteration, MatrixSpectrum, MeasurementKind, Reproduction, Run, ScrewRow};
+use poecal_report::plot::{Axis, DotPlot, Dots, Line, LinePlot, Mark, NamedPlot, Scale};
 
 const SEEN: [MeasurementKind; 2] = [MeasurementKind::Poses, MeasurementKind::Points];
 /// Names of the parts of `v` and `ω`.

@@ -3,7 +3,7 @@
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use super::document::{Block, Document, DocumentTable, Figure};
-use poecal::text::visible_markup;
+use poecal_numerics::text::visible_markup;
 
 const STYLE: &str = include_str!("report.css");
 

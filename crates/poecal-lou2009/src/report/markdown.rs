@@ -1,7 +1,7 @@
 //! A report as Markdown, with its plots in files beside it.
 
 use super::document::{Block, Document, DocumentTable};
-use poecal::report::plot::NamedPlot;
+use poecal_report::plot::NamedPlot;
 
 pub(super) fn markdown(document: &Document) -> String {
     let mut out = format!("# {}\n", plain(&document.title));

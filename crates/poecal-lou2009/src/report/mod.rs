@@ -15,14 +15,14 @@ pub use breakdown::{breakdown_files, breakdown_table};
 pub use claims::claims;
 
 use crate::Reproduction;
-use poecal::error::Result;
-use poecal::report::json;
+use poecal_numerics::error::Result;
+use poecal_report::json;
 
 /// The files of a reproduction's report, each with its name: `report.html` (complete in itself), `report.md`, the plots that it
 /// shows (`figure-….svg`), and `results.json` (all findings).
 ///
 /// # Errors
-/// [`ErrorKind::Export`](poecal::ErrorKind::Export) if the findings cannot be written as JSON.
+/// [`ErrorKind::Export`](poecal_numerics::error::ErrorKind::Export) if the findings cannot be written as JSON.
 pub fn reproduction_files(found: &Reproduction) -> Result<Vec<(String, String)>> {
     let document = sections::document(found);
     let mut files = vec![

@@ -1,6 +1,6 @@
 //! Numbers as the report writes them.
 
-use poecal::report::table;
+use poecal_report::table;
 
 /// A number with about four digits, with an exponent where it is tiny or huge.
 pub(super) fn number(value: f64) -> String {

@@ -4,8 +4,7 @@ use super::document::{Block, Document};
 use super::numbers::{mm, number, stated};
 use super::tables::largest_difference;
 use super::{comparison, figures, tables};
-use crate::Formulation;
-use crate::{MeasurementKind, Reproduction, Run, ScrewRow};
+use crate::{Formulation, MeasurementKind, Reproduction, Run, ScrewRow};
 
 const REFERENCE: &str = "lou2009: Y. Lou, T. Chen, Y. Wu, Z. Li, S. Jiang. Improved and modified geometric formulation of POE based kinematic calibration of serial robots. IEEE/RSJ International Conference on Intelligent Robots and Systems (IROS), 2009.";
 const WHAT: &str = "This report repeats the experiment of lou2009 and sets what was measured beside what the paper says. The robot is the elbow manipulator of the paper's Tables I and II. Every number comes from the run that wrote this report, and stands in `results.json` too.";

@@ -2,8 +2,7 @@
 
 use super::document::DocumentTable;
 use super::numbers::{four_decimals, mm, number, number_or_dash, percent, stated, yes_no};
-use crate::Formulation;
-use crate::{MeasurementKind, Reproduction, ScrewRow};
+use crate::{Formulation, MeasurementKind, Reproduction, ScrewRow};
 
 pub(super) fn claims(found: &Reproduction) -> DocumentTable {
     statements(found, true, "Table 1. What the paper says.", "claim")

@@ -1,10 +1,10 @@
 //! The product of exponentials of lou2009, and its derivatives by differences.
 
 use nalgebra::{DMatrix, Vector3, Vector6};
-use poecal::lie::{Pose, Twist};
-use poecal::robot::Robot;
+use poecal_arm::lie::{Pose, Twist};
 use poecal_lou2009::literal::AdjointErrors;
 use poecal_lou2009::{Formulation, MeasurementKind};
+use poecal_model::robot::Robot;
 
 /// Everything that stands in the POE formula: free twists `ξ_i`, joint values, `M` as its logarithm or `exp(Υ) M`, `P_c0`.
 #[derive(Clone)]

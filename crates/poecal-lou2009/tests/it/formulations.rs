@@ -1,10 +1,10 @@
 //! The formulations of lou2009 side by side: what each finds, and where they part.
 
-use poecal::calibration::{Calibration, CalibrationOptions, DeviceFrameKnowledge, calibrate};
-use poecal::measurement::{Noise, Quantity};
-use poecal::robot::Robot;
-use poecal::simulate::{Kind, Simulated, Simulation, elbow, gantry, random_chain, scara, seven_axis};
+use poecal_calibrate::{Calibration, CalibrationOptions, DeviceFrameKnowledge, calibrate};
 use poecal_lou2009::{Formulation, Method, Residual, formulated};
+use poecal_model::measurement::{Noise, Quantity};
+use poecal_model::robot::Robot;
+use poecal_model::simulate::{Kind, Simulated, Simulation, elbow, gantry, random_chain, scara, seven_axis};
 
 /// Noise-free fits end at the truth but for rounding of some hundred operations on metres.
 const EXACT_MM: f64 = 1e-7;
@@ -25,7 +25,7 @@ fn session(robot: &Robot, kind: Kind, noise: Noise, device_anywhere: bool) -> Si
 }
 
 fn options(made: &Simulated, way: Formulation) -> CalibrationOptions {
-    let known = made.device_from_base == poecal::lie::Pose::identity();
+    let known = made.device_from_base == poecal_arm::lie::Pose::identity();
     let frame = if known { DeviceFrameKnowledge::Base } else { DeviceFrameKnowledge::Unknown };
     let formulation = formulated(way, Residual::Tool, way.usual_method());
     CalibrationOptions { frame, formulation, ..CalibrationOptions::default() }
@@ -68,7 +68,7 @@ fn offsets_of_the_joints_are_found_without_being_unknowns() {
         let mut made = session(&robot, Kind::POSE, none, false);
         let offsets: Vec<f64> =
             (0..robot.joints.len()).map(|k| 0.03 * (k as f64 * 1.3 + 0.4).sin()).collect();
-        let shifted = poecal::offsets::into_screws(&made.actual, &offsets).unwrap();
+        let shifted = poecal_model::offsets::into_screws(&made.actual, &offsets).unwrap();
         let exact = Simulation {
             noise_position_m: 0.0,
             noise_rotation_rad: 0.0,

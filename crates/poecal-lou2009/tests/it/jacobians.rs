@@ -4,15 +4,14 @@ use std::f64::consts::PI;
 
 use crate::reference;
 use nalgebra::Vector3;
-use poecal::estimate::{Chain, Estimate, Linkage, Packed, Session};
-use poecal::lie::{Pose, Screw, rotation};
-use poecal::measurement::{Dataset, Measurement, Noise};
-use poecal::parameters::{DeviceFrame, Parameter, ScrewAxis, TargetFrame, ValueTerm};
-use poecal::problem::Problem;
-use poecal::robot::Term;
-use poecal::robot::{Joint, Robot};
-use poecal::solve::LeastSquares as _;
+use poecal_arm::lie::{Pose, Screw, rotation};
+use poecal_fit::parameters::{DeviceFrame, Parameter, ScrewAxis, TargetFrame, ValueTerm};
+use poecal_fit::problem::Problem;
+use poecal_fit::state::{Chain, Estimate, Linkage, Packed, Session};
 use poecal_lou2009::{Formulation, FreeScrew, Residual};
+use poecal_model::measurement::{Dataset, Measurement, Noise};
+use poecal_model::robot::{Joint, Robot, Term};
+use poecal_numerics::solve::LeastSquares as _;
 
 /// What the differences can tell: their truncation error is some (0.2 rad)¹⁰ / 2772, far less.
 const RELATIVE: f64 = 1e-6;
@@ -144,11 +143,12 @@ fn problem_keeps(problem: &Problem<'_>, kept: &[f64], place: usize) -> bool {
 /// The kernels take the paper's residual as any function of the target's pose, and its screws as columns that rows give.
 #[test]
 fn the_kernels_sum_them_as_their_formulas_do() {
-    let simulation = poecal::Simulation { count: 60, ..poecal::Simulation::default() };
+    let simulation =
+        poecal_model::simulate::Simulation { count: 60, ..poecal_model::simulate::Simulation::default() };
     for (robot, kind) in [
-        (poecal::simulate::elbow(), poecal::Kind::POSE),
-        (poecal::simulate::gantry(), poecal::Kind::MIXED),
-        (poecal::simulate::scara(), poecal::Kind::POINT),
+        (poecal_model::simulate::elbow(), poecal_model::measurement::Kind::POSE),
+        (poecal_model::simulate::gantry(), poecal_model::measurement::Kind::MIXED),
+        (poecal_model::simulate::scara(), poecal_model::measurement::Kind::POINT),
     ] {
         for (formulation, residual) in [
             (Formulation::Adjoint, Residual::Spatial),
@@ -157,8 +157,8 @@ fn the_kernels_sum_them_as_their_formulas_do() {
         ] {
             let mut made = simulation.run(&robot, kind).unwrap();
             made.data.write_poses_by(residual.model());
-            let packed = poecal::estimate::Packed::of(&robot, &made.data);
-            let seen = poecal::estimate::Session::new(&robot, &made.data, &packed, true);
+            let packed = poecal_fit::state::Packed::of(&robot, &made.data);
+            let seen = poecal_fit::state::Session::new(&robot, &made.data, &packed, true);
             let about = Vector3::new(0.3, 0.1, 0.2);
             let mut free = vec![Parameter::DeviceFrame(DeviceFrame::new(0, about))];
             free.extend(

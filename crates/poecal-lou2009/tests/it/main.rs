@@ -2,18 +2,12 @@
 
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
-// Each crate uses what it needs of it.
-#[allow(dead_code)]
-#[path = "../../../poecal/tests/files/mod.rs"]
-mod files;
 mod findings;
 mod formula;
 mod formulations;
 mod jacobians;
-#[path = "../../../poecal/tests/largest/mod.rs"]
-mod largest;
 mod paper;
-#[path = "../../../poecal/tests/reference/mod.rs"]
+#[path = "../../../poecal-fit/tests/reference/mod.rs"]
 mod reference;
 mod reproduce;
 mod reproduction_report;

@@ -1,20 +1,17 @@
 //! The Jacobians of lou2009 as printed against quadrature, differences, the telescoping form and the solver's columns; and their ranks.
 
 use crate::formula::{Formula, differences, steps};
-use crate::largest::larger;
 use nalgebra::{DMatrix, Matrix3, Matrix6, Vector3, Vector6};
-use poecal::estimate::{Chain, Estimate, Linkage, Packed};
-use poecal::lie::{Pose, Twist, hat};
-use poecal::parameters::{Columns, Parameter, ScrewAxis, TargetPlace, ValueTerm};
-use poecal::robot::Term;
-use poecal::robot::{Limits, Robot};
-use poecal::simulate::{random, random_chain};
-use poecal_lou2009::MeasurementKind;
+use poecal_arm::lie::{Pose, Twist, hat};
+use poecal_fit::parameters::{Columns, Parameter, ScrewAxis, TargetPlace, ValueTerm};
+use poecal_fit::state::{Chain, Estimate, Linkage, Packed};
 use poecal_lou2009::literal::{
     AdjointErrors, Literal, adjoint_jacobian, jacobian, point_rows, singular_values, stacked,
 };
-use poecal_lou2009::tables;
-use poecal_lou2009::{Formulation, FreeScrew};
+use poecal_lou2009::{Formulation, FreeScrew, MeasurementKind, tables};
+use poecal_model::robot::{Limits, Robot, Term};
+use poecal_model::simulate::{random, random_chain};
+use poecal_testing::largest::larger;
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 use std::f64::consts::{PI, TAU};

@@ -1,8 +1,7 @@
 //! What the reproduction of lou2009 must show, and that it shows the same every time.
 
-use crate::largest::larger;
-use poecal_lou2009::Formulation;
-use poecal_lou2009::{MeasurementKind, Reproduction, ReproductionOptions, Run, lou2009};
+use poecal_lou2009::{Formulation, MeasurementKind, Reproduction, ReproductionOptions, Run, lou2009};
+use poecal_testing::largest::larger;
 
 const FEW: ReproductionOptions = ReproductionOptions { trials: 60, starts: 20, seed: 1 };
 
@@ -190,7 +189,7 @@ fn lengths_and_directions_are_told_apart() {
     // With offsets in the truth, the adjoint form ends at the equivalent robot, which equations (14) and (15) give without any fit.
     let prescribed = poecal_lou2009::tables::prescribed();
     let offsets = poecal_lou2009::tables::PRESCRIBED_OFFSETS_DEG.map(f64::to_radians);
-    let equivalent = poecal::offsets::into_screws(&prescribed, &offsets).unwrap();
+    let equivalent = poecal_model::offsets::into_screws(&prescribed, &offsets).unwrap();
     let pairs = || prescribed.joints.iter().zip(&equivalent.joints);
     let v = pairs().map(|(a, b)| (a.screw.v() - b.screw.v()).amax()).fold(0.0, larger);
     let omega = pairs().map(|(a, b)| (a.screw.w() - b.screw.w()).amax()).fold(0.0, larger);

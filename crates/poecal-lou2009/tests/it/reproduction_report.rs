@@ -1,10 +1,10 @@
 //! The report of a reproduction says what was found, in every form, and loads nothing.
 
-use crate::files::Folder;
 use crate::findings::findings;
-use poecal::io::output::{Contents, Existing, FolderPlace, write_reproduction};
 use poecal_lou2009::Reproduction;
 use poecal_lou2009::report::reproduction_files;
+use poecal_results::output::{Contents, Existing, FolderPlace, write_reproduction};
+use poecal_testing::files::Folder;
 
 fn text(found: &Reproduction, name: &str) -> String {
     reproduction_files(found).unwrap().into_iter().find(|(other, _)| other == name).unwrap().1

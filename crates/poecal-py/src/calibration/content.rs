@@ -5,15 +5,16 @@ use std::path::Path;
 use std::sync::{Arc, OnceLock};
 use std::time::Duration;
 
-use poecal::ErrorKind;
-use poecal::calibration::AcceptedModel;
-use poecal::io::calibration_file::{CalibrationFile, Inputs};
-use poecal::io::measurements::{self, MeasurementFile, ReadOptions};
-use poecal::io::model::{Model, ModelSource};
-use poecal::io::record::Record;
-use poecal::io::residuals::Residuals;
-use poecal::measurement::Dataset;
-use poecal::report;
+use poecal_calibrate::AcceptedModel;
+use poecal_import as measurements;
+use poecal_import::{MeasurementFile, ReadOptions};
+use poecal_model::measurement::Dataset;
+use poecal_numerics::error::ErrorKind;
+use poecal_report as report;
+use poecal_results::calibration_file::{CalibrationFile, Inputs};
+use poecal_results::model::{Model, ModelSource};
+use poecal_results::record::Record;
+use poecal_results::residuals::Residuals;
 use pyo3::prelude::*;
 use serde::{Deserialize, Serialize};
 
@@ -44,7 +45,7 @@ enum Found {
 
 /// A calibration of this process; its file is made on demand.
 struct Fit {
-    calibration: poecal::calibration::Calibration,
+    calibration: poecal_calibrate::Calibration,
     data: Arc<MeasurementFile>,
     inputs: Inputs,
     record: Record,
@@ -57,7 +58,7 @@ struct Fit {
 /// A calibration from files.
 struct Written {
     /// The calibrated robot with its targets, exactly as fitted.
-    robot: poecal::robot::Robot,
+    robot: poecal_model::robot::Robot,
     file: CalibrationFile,
     residuals: Option<Residuals>,
     summary: String,
@@ -67,7 +68,7 @@ struct Written {
 #[derive(Serialize, Deserialize)]
 pub(crate) struct CalibrationState {
     nominal: RobotState,
-    robot: poecal::robot::Robot,
+    robot: poecal_model::robot::Robot,
     file: String,
     residuals: Option<String>,
     summary: String,
@@ -80,7 +81,7 @@ impl Calibration {
     /// A calibration of `data` made in this process.
     pub(crate) fn of_fit(
         nominal: Robot,
-        calibration: poecal::calibration::Calibration,
+        calibration: poecal_calibrate::Calibration,
         data: Arc<MeasurementFile>,
         (inputs, record): (Inputs, Record),
         took: Duration,
@@ -106,7 +107,7 @@ impl Calibration {
     /// A calibration from files.
     pub(super) fn written(
         nominal: Robot,
-        robot: poecal::robot::Robot,
+        robot: poecal_model::robot::Robot,
         file: CalibrationFile,
         residuals: Option<Residuals>,
         summary: String,
@@ -128,7 +129,12 @@ impl Calibration {
     }
 
     /// The same robot with another result.
-    pub(crate) fn anew(&self, robot: poecal::robot::Robot, file: CalibrationFile, summary: String) -> Self {
+    pub(crate) fn anew(
+        &self,
+        robot: poecal_model::robot::Robot,
+        file: CalibrationFile,
+        summary: String,
+    ) -> Self {
         Calibration::written(self.nominal.clone(), robot, file, None, summary)
     }
 
@@ -219,7 +225,7 @@ impl Calibration {
     }
 
     /// Errors of the three models; those of a fit need no file.
-    pub(super) fn errors(&self) -> poecal::calibration::Accuracy {
+    pub(super) fn errors(&self) -> poecal_calibrate::Accuracy {
         match &self.found {
             Found::Fit(fit) => fit.calibration.accuracy,
             Found::Written(written) => written.file.accuracy,
@@ -227,7 +233,7 @@ impl Calibration {
     }
 
     /// The verdict.
-    pub(super) fn judged(&self) -> PyResult<&poecal::calibration::Verdict> {
+    pub(super) fn judged(&self) -> PyResult<&poecal_calibrate::Verdict> {
         match &self.found {
             Found::Fit(fit) => Ok(&fit.calibration.verdict),
             Found::Written(written) => written.file.verdict.as_ref().ok_or_else(|| {
@@ -254,7 +260,7 @@ impl Calibration {
     }
 
     /// The calibrated robot with its targets, exactly as fitted.
-    pub(super) fn as_fitted(&self) -> poecal::robot::Robot {
+    pub(super) fn as_fitted(&self) -> poecal_model::robot::Robot {
         match &self.found {
             Found::Fit(fit) => fit.calibration.robot_with_targets(),
             Found::Written(written) => written.robot.clone(),

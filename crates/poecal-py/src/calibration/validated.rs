@@ -2,11 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
-use poecal::io::calibration_file::Inputs;
-use poecal::io::output::{Existing, ValidationPlaces};
-use poecal::io::record::Record;
-use poecal::io::validation::{Earlier, History, JudgedRows, Judging, Validation, ValidationInputs, now};
-use poecal::report;
+use poecal_report as report;
+use poecal_results::calibration_file::Inputs;
+use poecal_results::output::{Existing, ValidationPlaces};
+use poecal_results::record::Record;
+use poecal_results::validation::{Earlier, History, JudgedRows, Judging, Validation, ValidationInputs, now};
 use pyo3::prelude::*;
 
 use super::{Calibration, ReportPlace};

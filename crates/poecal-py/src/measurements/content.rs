@@ -3,16 +3,15 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use poecal::io::measurements::{InputEntry, JoinEntry, MeasurementFile};
-use poecal::measurement::Dataset;
+use poecal_import::{InputEntry, JoinEntry, MeasurementFile};
+use poecal_model::measurement::Dataset;
 use pyo3::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::arguments::{Argument, unexpected};
 use crate::errors::{argument, raise};
-use crate::pickle;
 use crate::robot::Robot;
-use crate::rows;
+use crate::{pickle, rows};
 
 /// Measurements of a robot: in each row a configuration and the measurement of a target. Immutable.
 ///

@@ -2,8 +2,8 @@
 
 use std::path::PathBuf;
 
-use poecal::ErrorKind;
-use poecal::io::measurements::GivenBag;
+use poecal_import::GivenBag;
+use poecal_numerics::error::ErrorKind;
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 

@@ -4,10 +4,10 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
-use poecal::compensate::Inverse;
-use poecal::io::calibration_file::{CalibrationFile, Inputs};
-use poecal::io::model::{Model, ModelFormat, ModelSource, convert};
-use poecal::io::urdf::{ChainSelection, UrdfDocument};
+use poecal_compensate::Inverse;
+use poecal_formats::urdf::{ChainSelection, UrdfDocument};
+use poecal_results::calibration_file::{CalibrationFile, Inputs};
+use poecal_results::model::{Model, ModelFormat, ModelSource, convert};
 use pyo3::IntoPyObjectExt as _;
 use pyo3::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -40,7 +40,7 @@ impl Robot {
     }
 
     /// The same file with another robot.
-    pub(crate) fn with_robot(&self, robot: poecal::robot::Robot) -> Self {
+    pub(crate) fn with_robot(&self, robot: poecal_model::robot::Robot) -> Self {
         let model = Model { robot, source: self.model.source.clone(), path: self.model.path.clone() };
         Robot { model: Arc::new(model), sha256: Arc::clone(&self.sha256), inverse: Arc::default() }
     }
@@ -52,7 +52,7 @@ impl Robot {
     }
 
     /// Its inverse kinematics at these factors: made once as long as they stay the same, since that takes longer than many poses.
-    pub(crate) fn inverse(&self, factors: &[f64]) -> poecal::Result<Arc<Inverse>> {
+    pub(crate) fn inverse(&self, factors: &[f64]) -> poecal_numerics::error::Result<Arc<Inverse>> {
         let mut kept = self.inverse.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some((of, inverse)) = &*kept
             && of == factors
@@ -64,7 +64,7 @@ impl Robot {
         Ok(made)
     }
 
-    pub(super) fn robot(&self) -> &poecal::robot::Robot {
+    pub(super) fn robot(&self) -> &poecal_model::robot::Robot {
         &self.model.robot
     }
 
@@ -116,7 +116,7 @@ impl Robot {
 /// A robot and its file.
 #[derive(Serialize, Deserialize)]
 pub(crate) struct RobotState {
-    robot: poecal::robot::Robot,
+    robot: poecal_model::robot::Robot,
     path: PathBuf,
     source: SourceState,
     sha256: BTreeMap<String, String>,
@@ -162,7 +162,7 @@ impl Robot {
 /// Poses as an array, of shape (4, 4) for one configuration alone.
 pub(crate) fn poses<'py>(
     py: Python<'py>,
-    poses: &[poecal::lie::Pose],
+    poses: &[poecal_arm::lie::Pose],
     single: bool,
 ) -> PyResult<Bound<'py, PyAny>> {
     match poses {

@@ -3,7 +3,7 @@
 use std::io::{ErrorKind, Read as _, Write as _};
 use std::path::Path;
 
-use poecal::io::disk::{Disk as _, ObjectKind};
+use poecal_storage::disk::{Disk as _, ObjectKind};
 use poecal_wasm::MemoryDisk;
 
 fn disk() -> MemoryDisk {

@@ -1,8 +1,8 @@
 //! What the benchmarks of Monte Carlo share: noise, and measurements with it.
 
-use poecal::lie::{Pose, rotation};
-use poecal::measurement::{Dataset, Measurement, Noise, Quantity};
-use poecal::simulate::random;
+use poecal_arm::lie::{Pose, rotation};
+use poecal_model::measurement::{Dataset, Measurement, Noise, Quantity};
+use poecal_model::simulate::random;
 use rand_chacha::ChaCha8Rng;
 
 /// Of the workload: 0.05 mm and 0.0005 rad.

@@ -1,7 +1,8 @@
 //! Errors of calibrated poses, beside the least that is possible.
 
-use poecal::calibration::Corrections;
-use poecal::{CalibrationOptions, Error};
+use poecal_calibrate::CalibrationOptions;
+use poecal_calibrate::Corrections;
+use poecal_numerics::error::Error;
 use serde_json::{Value, json};
 
 use crate::information::Information;

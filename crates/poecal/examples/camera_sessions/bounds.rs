@@ -1,12 +1,14 @@
 //! Shares of errors inside their 95 % bounds.
 
 use nalgebra::{Matrix6, Vector6};
-use poecal::camera::{CommonError, moved};
-use poecal::lie::Pose;
-use poecal::measurement::{Dataset, Quantity, deviation};
-use poecal::simulate::random;
-use poecal::uncertainty::bound;
-use poecal::{CalibrationFile, CalibrationOptions, Error, Inputs};
+use poecal_arm::lie::Pose;
+use poecal_calibrate::CalibrationOptions;
+use poecal_fit::uncertainty::bound;
+use poecal_model::camera::{CommonError, moved};
+use poecal_model::measurement::{Dataset, Quantity, deviation};
+use poecal_model::simulate::random;
+use poecal_numerics::error::Error;
+use poecal_results::calibration_file::{CalibrationFile, Inputs};
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 use serde_json::{Value, json};
@@ -54,7 +56,7 @@ fn inside(session: &Session, data: &Dataset) -> Result<Value, Error> {
     let judgement = file.judge(&session.others, false, false)?;
     let kept = judgement.delivered().promised;
     let held_out = calibration.trust.held_out;
-    let parts = |check: poecal::calibration::CoverageCheck| {
+    let parts = |check: poecal_calibrate::CoverageCheck| {
         [Some(check.position_mm().inside_bound95), check.rotation_deg().map(|it| it.inside_bound95)]
     };
     Ok(json!({

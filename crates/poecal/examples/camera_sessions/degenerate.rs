@@ -1,10 +1,11 @@
 //! Sessions whose pictures leave something undetermined, which must be named, and clean ones, where nothing must be.
 
-use poecal::calibration::BlockChoice;
-use poecal::camera::{Board, Camera, Lens};
-use poecal::simulate::{PictureSimulation, Simulation, elbow};
-use poecal::start::settle_pictures;
-use poecal::{CalibrationOptions, Error};
+use poecal_calibrate::BlockChoice;
+use poecal_calibrate::CalibrationOptions;
+use poecal_fit::start::settle_pictures;
+use poecal_model::camera::{Board, Camera, Lens};
+use poecal_model::simulate::{PictureSimulation, Simulation, elbow};
+use poecal_numerics::error::Error;
 use serde_json::{Value, json};
 
 use crate::session::{calibrated, rebuilt, simulation};

@@ -1,11 +1,11 @@
 //! The bound of Cramér and Rao of predicted poses, from differences of the kinematics: nothing of the calibration is used.
 
 use nalgebra::{DMatrix, Matrix6, SMatrix, Vector6};
-use poecal::camera::{CommonError, moved};
-use poecal::lie::Pose;
-use poecal::measurement::deviation;
-use poecal::robot::Robot;
-use poecal::simulate::Photographed;
+use poecal_arm::lie::Pose;
+use poecal_model::camera::{CommonError, moved};
+use poecal_model::measurement::deviation;
+use poecal_model::robot::Robot;
+use poecal_model::simulate::Photographed;
 
 use crate::session::{Session, places, registered, true_pose, whitenings};
 

@@ -1,11 +1,13 @@
 //! Sessions whose joints are held, with all that another program needs to find the same frames.
 
-use poecal::calibration::BlockChoice;
-use poecal::camera::Corner;
-use poecal::measurement::Set;
-use poecal::simulate::{PictureSimulation, elbow};
-use poecal::start::settle_pictures;
-use poecal::{CalibrationOptions, Error, Simulation};
+use poecal_calibrate::BlockChoice;
+use poecal_calibrate::CalibrationOptions;
+use poecal_fit::start::settle_pictures;
+use poecal_model::camera::Corner;
+use poecal_model::measurement::Set;
+use poecal_model::simulate::Simulation;
+use poecal_model::simulate::{PictureSimulation, elbow};
+use poecal_numerics::error::Error;
 use serde_json::{Value, json};
 
 use crate::session::{COUNT, calibrated, common, hold_out_thirds, rebuilt, simulation};

@@ -18,7 +18,7 @@ use rayon::prelude::*;
 use serde_json::Value;
 
 /// What one seed shows.
-type Task = fn(u64) -> Result<Vec<Value>, poecal::Error>;
+type Task = fn(u64) -> Result<Vec<Value>, poecal_numerics::error::Error>;
 
 fn main() {
     let words: Vec<String> = std::env::args().skip(1).collect();

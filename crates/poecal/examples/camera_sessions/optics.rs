@@ -1,11 +1,12 @@
 //! Lenses, boards and markers that are not what they are said to be.
 
 use nalgebra::Vector6;
-use poecal::calibration::BlockChoice;
-use poecal::camera::{Board, Camera, Distortion, Lens, PictureNumber};
-use poecal::simulate::random;
-use poecal::start::settle_pictures;
-use poecal::{CalibrationOptions, Error};
+use poecal_calibrate::BlockChoice;
+use poecal_calibrate::CalibrationOptions;
+use poecal_fit::start::settle_pictures;
+use poecal_model::camera::{Board, Camera, Distortion, Lens, PictureNumber};
+use poecal_model::simulate::random;
+use poecal_numerics::error::Error;
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 use serde_json::{Value, json};
@@ -26,7 +27,7 @@ pub(crate) fn run(seed: u64) -> Result<Vec<Value>, Error> {
     let lens = Lens { distortion: Distortion::Brown([k1, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]), ..base.lens };
     let mut generator = ChaCha8Rng::seed_from_u64(seed);
     let mut lines = Vec::new();
-    let true_lens = poecal::simulate::PictureSimulation { lens, ..base };
+    let true_lens = poecal_model::simulate::PictureSimulation { lens, ..base };
     let session = of(true_lens)?;
     let (_, _, known) = judged(&session, &session.data, &all_rows())?;
     let known = rms(&shape(&session, &known))[0];
@@ -42,7 +43,7 @@ pub(crate) fn run(seed: u64) -> Result<Vec<Value>, Error> {
         let camera = Camera { is_guessed, ..Camera::new("camera".to_owned(), given) };
         let boards = session.data.pictures.boards.clone();
         let truth = |number: &PictureNumber| {
-            let at = poecal::camera::LENS_NAMES.iter().position(|name| number.name.ends_with(name));
+            let at = poecal_model::camera::LENS_NAMES.iter().position(|name| number.name.ends_with(name));
             at.map_or(0.0, |at| numbers[at])
         };
         lines.push(line(seed, (name, &free), (&session, (&[camera], &boards)), (known, truth))?);

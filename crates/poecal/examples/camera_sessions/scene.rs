@@ -1,12 +1,13 @@
 //! Random robots with a camera in the hand, beside the robot or in a head on another branch.
 
 use nalgebra::{Vector2, Vector3};
-use poecal::camera::{Board, Camera, Corner, Lens, Picture, middle};
-use poecal::lie::{Pose, Screw, rotation};
-use poecal::measurement::{Dataset, Source};
-use poecal::robot::{Body, Joint, Limits, Mount, Robot};
-use poecal::simulate::{Configurations, random, random_chain};
-use poecal::{Error, ErrorKind, Simulation};
+use poecal_arm::lie::{Pose, Screw, rotation};
+use poecal_model::camera::{Board, Camera, Corner, Lens, Picture, middle};
+use poecal_model::measurement::{Dataset, Source};
+use poecal_model::robot::{Body, Joint, Limits, Mount, Robot};
+use poecal_model::simulate::Simulation;
+use poecal_model::simulate::{Configurations, random, random_chain};
+use poecal_numerics::error::{Error, ErrorKind};
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 

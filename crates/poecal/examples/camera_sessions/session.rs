@@ -1,18 +1,20 @@
 //! Sessions with their truth, and what a calibration says of configurations that were not measured.
 
 use nalgebra::{Matrix3, Matrix6, SMatrix, Vector3, Vector6};
-use poecal::calibration::{Calibration, calibrate_repairing};
-use poecal::camera::{Board, Camera, Centre, CommonError, Picture};
-use poecal::lie::{Pose, hat};
-use poecal::measurement::{Dataset, Set, Source, deviation, picture_whitening};
-use poecal::robot::Robot;
-use poecal::simulate::{Photographed, PictureSimulation, elbow};
-use poecal::start::settle_pictures;
-use poecal::uncertainty::PredictedError;
-use poecal::{
-    CalibrationFile, CalibrationOptions, Error, ErrorKind, Inputs, Model, ModelSource, PredictionFrame,
-    Simulation, predicted,
-};
+use poecal_arm::lie::{Pose, hat};
+use poecal_calibrate::CalibrationOptions;
+use poecal_calibrate::{Calibration, calibrate_repairing};
+use poecal_fit::start::settle_pictures;
+use poecal_fit::uncertainty::PredictedError;
+use poecal_model::camera::{Board, Camera, Centre, CommonError, Picture};
+use poecal_model::measurement::{Dataset, Set, Source, deviation, picture_whitening};
+use poecal_model::robot::Robot;
+use poecal_model::simulate::Simulation;
+use poecal_model::simulate::{Photographed, PictureSimulation, elbow};
+use poecal_numerics::error::{Error, ErrorKind};
+use poecal_results::calibration_file::{CalibrationFile, Inputs};
+use poecal_results::model::{Model, ModelSource};
+use poecal_results::predictions::{PredictionFrame, predicted};
 
 /// Pictures of a session.
 pub(crate) const COUNT: usize = 60;
@@ -226,7 +228,8 @@ pub(crate) fn whitenings(session: &Session, common: CommonError) -> Vec<Matrix6<
         exact.corners.iter_mut().for_each(|corner| corner.weight = 1.0);
         let pose = true_pose(made, &made.actual, data.readings(picture.row as usize));
         let seen = exact.directed(&pose);
-        let pictures = poecal::camera::Pictures { sigma_px: simulation.noise_px, ..data.pictures.clone() };
+        let pictures =
+            poecal_model::camera::Pictures { sigma_px: simulation.noise_px, ..data.pictures.clone() };
         let information = pictures.view(&exact).map(|view| view.information(&seen)).unwrap_or_default();
         picture_whitening(common, (&seen, information), exact.of_camera)
     };

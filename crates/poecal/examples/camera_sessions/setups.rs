@@ -1,7 +1,8 @@
 //! Random set-ups of a camera, calibrated without a guess.
 
-use poecal::start::settle_pictures;
-use poecal::{CalibrationOptions, Error};
+use poecal_calibrate::CalibrationOptions;
+use poecal_fit::start::settle_pictures;
+use poecal_numerics::error::Error;
 use serde_json::{Value, json};
 
 use crate::scene::{Place, Scene};
@@ -23,8 +24,9 @@ pub(crate) fn run(seed: u64) -> Result<Vec<Value>, Error> {
     match calibrated(&nominal, &data, &CalibrationOptions::default()) {
         Ok((calibration, _)) => {
             let accuracy = &calibration.accuracy;
-            let px =
-                |of: &poecal::ModelAccuracy| of.pixels.map(|it| [it.rms_px, it.median_picture_px, it.rms_mm]);
+            let px = |of: &poecal_calibrate::ModelAccuracy| {
+                of.pixels.map(|it| [it.rms_px, it.median_picture_px, it.rms_mm])
+            };
             line["training"] = json!(px(&accuracy.training.calibrated));
             line["held_out"] = json!(accuracy.held_out.as_ref().map(|it| px(&it.calibrated)));
             line["registered"] = json!(accuracy.held_out.as_ref().map(|it| px(&it.registered)));

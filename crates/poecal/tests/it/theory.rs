@@ -1,7 +1,7 @@
 //! docs/theory.md: identities that no code uses in just that form, and whether the equations that the code cites exist.
 
 use nalgebra::{Matrix6, Vector3};
-use poecal::lie::{Pose, Screw, Twist};
+use poecal_arm::lie::{Pose, Screw, Twist};
 use std::fs;
 use std::path::{Path, PathBuf};
 

@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use poecal::io::disk::on;
-use poecal::io::fleet::{Ledger, LedgerRow, read_ledgers};
+use poecal_results::fleet::{Ledger, LedgerRow, read_ledgers};
+use poecal_storage::disk::on;
 
 use super::disk::{Chance, Faults, SimulatedDisk};
 

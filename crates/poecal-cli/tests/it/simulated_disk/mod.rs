@@ -13,10 +13,10 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use crate::trials::trials;
 use disk::{Chance, Faults, SimulatedDisk};
-use poecal::io::disk::on;
 use poecal_cli::{Said, run_captured};
+use poecal_storage::disk::on;
+use poecal_testing::trials::trials;
 
 /// An arm of two joints: thousands of calibrations run, and what a disk does asks for no more.
 const ROBOT: &str = r#"<robot name="two">

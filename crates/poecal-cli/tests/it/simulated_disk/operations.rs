@@ -4,7 +4,7 @@ use std::ffi::OsString;
 use std::io::{self, ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
 
-use poecal::io::disk::{Disk, Lock, Object, ObjectKind, Output};
+use poecal_storage::disk::{Disk, Lock, Object, ObjectKind, Output};
 
 use super::disk::{Chance, Content, Node, SimulatedDisk, error, whole};
 

@@ -1,0 +1,163 @@
+//! Whether a calibration keeps limits that were agreed on, with the confidence that the rows give: theory.md §9, *Acceptance*.
+
+mod bounds;
+mod limits;
+
+pub(crate) use bounds::{Bounded, Errors, mean_square};
+pub use limits::{AcceptanceLimits, AcceptedModel, AcceptedStatistic, Limit};
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use poecal_model::measurement::Quantity;
+
+/// What measurements say of a limit.
+#[derive(
+    Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, schemars::JsonSchema,
+)]
+#[serde(rename_all = "snake_case")]
+pub enum Decision {
+    /// The limit is kept: so is the upper bound.
+    Pass,
+    /// Neither is shown: the limit lies between the bounds.
+    NotShown,
+    /// The limit is exceeded: so it is by the lower bound.
+    Fail,
+}
+
+impl Decision {
+    /// For people.
+    #[must_use]
+    pub fn words(self) -> &'static str {
+        match self {
+            Decision::Pass => "PASS",
+            Decision::NotShown => "NOT SHOWN",
+            Decision::Fail => "FAIL",
+        }
+    }
+
+    /// The word used in files.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            Decision::Pass => "pass",
+            Decision::NotShown => "not_shown",
+            Decision::Fail => "fail",
+        }
+    }
+
+    /// Of a limit and the bounds of what it is for; without an upper bound nothing is passed.
+    #[must_use]
+    pub fn of(limit: f64, from: f64, to: Option<f64>) -> Self {
+        if to.is_some_and(|to| to <= limit) {
+            Decision::Pass
+        } else if from > limit {
+            Decision::Fail
+        } else {
+            Decision::NotShown
+        }
+    }
+}
+
+/// Which rows decided.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum AcceptedRows {
+    /// Those held out.
+    HeldOut,
+    /// Since none was held out, the fitted ones, each predicted by a fit without it.
+    CrossValidation,
+    /// Measurements that the calibration is judged by.
+    Judged,
+}
+
+impl AcceptedRows {
+    /// For people: `rows held out`.
+    #[must_use]
+    pub fn words(self) -> &'static str {
+        match self {
+            AcceptedRows::HeldOut => "rows held out",
+            AcceptedRows::CrossValidation => "fitted rows, each predicted by a fit without it",
+            AcceptedRows::Judged => "rows measured to judge it",
+        }
+    }
+}
+
+/// A limit, what was found, and the decision. Numbers are in millimetres or degrees.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct AcceptedLimit {
+    /// The measured quantity: `position`, `rotation` and so on.
+    pub quantity: String,
+    /// Unit of the numbers: `mm` or `deg`.
+    pub unit: String,
+    /// What of the errors is limited.
+    pub statistic: AcceptedStatistic,
+    /// The limit.
+    pub limit: f64,
+    /// What the rows have.
+    pub found: f64,
+    /// Lower bound, with 95 % confidence.
+    pub from: f64,
+    /// Upper bound, with 95 % confidence; null where the rows are too few for one.
+    pub to: Option<f64>,
+    /// What that says of the limit.
+    pub decision: Decision,
+    /// Number of rows that measured the quantity.
+    pub rows: usize,
+    /// Number of different configurations among them, which are what counts.
+    pub configurations: usize,
+}
+
+/// Whether a calibration keeps the limits that were asked for.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Acceptance {
+    /// The worst decision of all limits.
+    pub decision: Decision,
+    /// Which model was judged.
+    pub model: AcceptedModel,
+    /// By which rows.
+    pub by: AcceptedRows,
+    /// Each limit, by quantity.
+    pub limits: Vec<AcceptedLimit>,
+}
+
+impl Acceptance {
+    /// Of limits that were decided; at least one.
+    pub(crate) fn new(model: AcceptedModel, by: AcceptedRows, limits: Vec<AcceptedLimit>) -> Self {
+        let decision = limits.iter().map(|it| it.decision).max().unwrap_or(Decision::NotShown);
+        Acceptance { decision, model, by, limits }
+    }
+}
+
+impl AcceptedLimit {
+    /// A decided limit; numbers in metres or radians.
+    pub(crate) fn decided(limit: &Limit, quantity: Quantity, found: Bounded, counts: [usize; 2]) -> Self {
+        let unit = quantity.unit();
+        let [limit_shown, value, from] = [limit.most, found.found, found.from].map(|it| unit.shown(it));
+        let to = found.to.map(|it| unit.shown(it));
+        AcceptedLimit {
+            quantity: quantity.name().to_owned(),
+            unit: unit.symbol().to_owned(),
+            statistic: limit.statistic,
+            limit: limit_shown,
+            found: value,
+            from,
+            to,
+            decision: Decision::of(limit.most, found.from, found.to),
+            rows: counts[0],
+            configurations: counts[1],
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Decision;
+
+    #[test]
+    fn a_limit_is_kept_above_the_bounds_and_exceeded_below() {
+        assert_eq!(Decision::of(0.2, 0.08, Some(0.11)), Decision::Pass);
+        assert_eq!(Decision::of(0.1, 0.08, Some(0.11)), Decision::NotShown);
+        assert_eq!(Decision::of(0.07, 0.08, None), Decision::Fail);
+    }
+}

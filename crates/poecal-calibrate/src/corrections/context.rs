@@ -1,0 +1,125 @@
+//! A fit of geometry as the beginning of a fit with terms, and its rows as linear functions.
+
+use std::slice;
+
+use super::choice::{chosen, weight_of_prior};
+use super::linear::Linear;
+use super::modes::Class;
+use super::unknowns::{estimate, unknowns};
+use crate::run::task::Task;
+use crate::steps::calibrated::CalibratedFit;
+use poecal_fit::problem::Prior;
+use poecal_fit::state::{Packed, Session, Unknowns};
+use poecal_fit::uncertainty::{PriorInformation, View, parts_to_leave_out};
+use poecal_model::measurement::ByQuantity;
+use poecal_model::robot::{CorrectionModel, Extent, JointTerm, Robot, Sizes, TermGroup};
+
+/// Most measured numbers from which sizes are chosen.
+const NUMBERS: usize = 6000;
+
+/// Geometry with what a fit of terms needs beside it.
+pub(crate) struct CorrectionContext<'a> {
+    pub(crate) geometry: &'a CalibratedFit<'a>,
+    pub(crate) session: Session<'a>,
+    /// The nominal robot with all terms that geometry has.
+    pub(crate) nominal: Robot,
+    /// The fitted rows that have a weight.
+    pub(crate) rows: Vec<u32>,
+    /// Weights of all rows of the data.
+    weights: Option<Vec<f64>>,
+}
+
+/// Rows of a sample as linear functions, and the parts of them that are left out in turn.
+pub(crate) struct Sampled {
+    pub(crate) linear: Linear,
+    pub(crate) parts: Vec<Vec<u32>>,
+    pub(crate) configurations: usize,
+}
+
+impl<'g> CorrectionContext<'g> {
+    pub(crate) fn new(geometry: &'g CalibratedFit<'g>) -> Self {
+        let (session, rows, weights) = (geometry.session(), geometry.weighted_rows(), geometry.weights());
+        // Terms that geometry has are of no group.
+        let mut nominal = session.robot.clone();
+        for &(joint, term) in &session.unknowns.terms {
+            if !nominal.terms.iter().any(|it| (it.joint, it.term) == (joint, term)) {
+                nominal.terms.push(JointTerm { joint, term, coefficient: 0.0 });
+            }
+        }
+        CorrectionContext { geometry, session, nominal, rows, weights }
+    }
+
+    /// Weight of a row.
+    pub(crate) fn weight(&self, row: u32) -> f64 {
+        self.weights.as_ref().and_then(|it| it.get(row as usize)).copied().unwrap_or(1.0)
+    }
+
+    /// How far the model reaches; for terms of these sizes as far as they do.
+    pub(crate) fn extent(&self, sizes: Option<Sizes>) -> Extent {
+        let options = &self.geometry.run.options;
+        let gives = sizes.map_or(options.corrections.gives(), |sizes| sizes.gives());
+        Extent { orders: options.harmonics, gives }
+    }
+
+    pub(crate) fn session<'a>(
+        &'a self,
+        model: &'a CorrectionModel,
+        packed: &'a Packed,
+        unknowns: &'a Unknowns,
+    ) -> Session<'a> {
+        Session { robot: &model.robot, packed, unknowns, ..self.session }
+    }
+
+    pub(crate) fn task<'a>(&'a self, session: Session<'a>, prior: (&'a Prior, f64)) -> Task<'a> {
+        let (CorrectionContext { rows, weights, .. }, options) = (self, &self.geometry.run.options);
+        Task { session, rows, weights: weights.as_deref(), prior: Some(prior), options }
+    }
+
+    /// A sample of the rows, linear about the calibrated model; none if that determines nothing.
+    pub(crate) fn sampled(&self, model: &CorrectionModel, sizes: Option<Sizes>) -> Option<Sampled> {
+        let (of_geometry, noise) = (self.session, self.geometry.noise());
+        let (calibrated, options) = (&self.geometry.estimate, &self.geometry.run.options);
+        let none = PriorInformation::none(0);
+        let view = View {
+            session: of_geometry,
+            rows: &self.rows,
+            free: &[],
+            noise,
+            noise_is_stated: ByQuantity::default(),
+            prior: &none,
+            variance: 1.0,
+            estimate: calibrated,
+        };
+        let numbers = |row: &u32| of_geometry.observation(*row).measurement.dim();
+        let all: usize = self.rows.iter().map(numbers).sum();
+        let most = self.rows.len() * NUMBERS / all.max(NUMBERS);
+        let (sample, parts) = parts_to_leave_out(&view, most, options.seed);
+        // The rows of the sample alone, so that terms are evaluated at no others.
+        let data = of_geometry.data.only(&sample);
+        let rows = data.all_rows();
+        let among = |row: &u32| sample.binary_search(row).ok().and_then(|at| u32::try_from(at).ok());
+        let parts: Vec<Vec<u32>> = parts.iter().map(|part| part.iter().filter_map(among).collect()).collect();
+        let weights: Option<Vec<f64>> =
+            self.weights.as_ref().map(|_| sample.iter().map(|&row| self.weight(row)).collect());
+        let start = estimate(model, calibrated, &data);
+        let packed = Packed::of(&model.robot, &data);
+        let unknowns = unknowns(model, of_geometry.unknowns, &sizes.unwrap_or(Sizes::ALL));
+        let session =
+            Session { data: &data, robot: &model.robot, packed: &packed, unknowns: &unknowns, ..of_geometry };
+        let prior = options.prior_with_terms(&session);
+        let prior = Some((&prior, 1.0));
+        let task = Task { session, rows: &rows, weights: weights.as_deref(), prior, options };
+        let configurations = data.configurations(&rows).len();
+        let weight = weight_of_prior(configurations);
+        let classes: Vec<Class> = match sizes {
+            None => {
+                chosen().map(|(groups, sizes)| (groups, sizes.iter().copied().fold(0.0, f64::max))).collect()
+            }
+            Some(sizes) => {
+                TermGroup::ALL.iter().map(|group| (slice::from_ref(group), sizes[*group])).collect()
+            }
+        };
+        let linear = Linear::new(&task, model, (&start, noise), (&rows, weight), &classes)?;
+        Some(Sampled { linear, parts, configurations })
+    }
+}

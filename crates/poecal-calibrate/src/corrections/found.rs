@@ -1,0 +1,156 @@
+//! A fit of screws and terms, and what it is worth.
+
+use std::ops::Deref;
+
+use super::choice::{SizesReason, TriedSizes};
+use super::effect::Effects;
+use super::effects::effects;
+use crate::run::Run;
+use crate::run::accuracy::ModelAccuracy;
+use crate::run::options::DeviceFrameKnowledge;
+use crate::run::placed::{CalibratedStation, CalibratedTarget, place_tip, stations};
+use crate::steps::calibrated::CalibratedFit;
+use crate::trust::coverage_check::{CoverageCheck, held_out_check};
+use crate::trust::expected::{Expectations, expectations_beside};
+use poecal_fit::analysis::coverage;
+use poecal_fit::state::{Estimate, Packed, RowError, Session, Unknowns};
+use poecal_fit::uncertainty::{CrossValidation, Uncertainty};
+use poecal_model::measurement::{Dataset, Noise, Quantity};
+use poecal_model::robot::{CorrectionModel, Robot, Sizes};
+
+/// A fit of screws and terms together.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CorrectedFit {
+    /// The robot with its gives and terms, as in the model.
+    pub model: CorrectionModel,
+    /// Prior sizes of the groups of terms.
+    pub sizes: Sizes,
+    /// Why it has terms of these sizes.
+    pub reason: SizesReason,
+    /// Sizes that cross-validation tried, if it chose.
+    pub tried: Vec<TriedSizes>,
+    /// What was fitted.
+    pub unknowns: Unknowns,
+    /// What was found.
+    pub estimate: Estimate,
+    /// Noise of the fit.
+    pub noise: Noise,
+    /// Errors on the training rows.
+    pub training: ModelAccuracy,
+    /// Errors on the held-out rows.
+    pub held_out: Option<ModelAccuracy>,
+    /// Covariance of the unknowns and of terms that may be there, and model error.
+    pub uncertainty: Option<Uncertainty>,
+    /// What is said of a direction of gravity that was not found.
+    pub doubt: Option<String>,
+    /// Sizes of all terms that may be there.
+    pub(crate) possible: Sizes,
+    /// Weight of the priors in the fit.
+    pub(crate) prior_weight: f64,
+    pub(crate) packed: Packed,
+}
+
+impl CorrectedFit {
+    /// Whether it has terms at all, rather than geometry alone.
+    #[must_use]
+    pub fn has_terms(&self) -> bool {
+        self.sizes != Sizes::NONE
+    }
+
+    /// Its robot with the measurements.
+    pub(crate) fn session<'a>(&'a self, geometry: &'a CalibratedFit<'_>) -> Session<'a> {
+        let CorrectedFit { model, packed, unknowns, .. } = self;
+        Session { robot: &model.robot, packed, unknowns, ..geometry.session() }
+    }
+
+    /// Error of positions in cross-validation (metres, RMS): that of geometry alone times the share that terms leave on rows that are left out.
+    pub(crate) fn left_out_m(&self, of_geometry: Option<&CrossValidation>) -> Option<f64> {
+        let of = |sizes: &Sizes| self.tried.iter().find(|it| it.sizes == *sizes).map(|it| it.left_out);
+        let geometry_m = of_geometry?.random.rms.get(Quantity::Position)?;
+        let left = (0.5 * (of(&self.sizes)? - of(&Sizes::NONE)?)).exp();
+        Some(geometry_m * left).filter(|it| it.is_finite())
+    }
+
+    /// The fit with what it is worth, beside the cross-validation of geometry.
+    pub(crate) fn judged(
+        mut self,
+        geometry: &CalibratedFit<'_>,
+        of_geometry: Option<&CrossValidation>,
+    ) -> Correction {
+        let Run { options, held_out_rows, .. } = &geometry.run;
+        let left_out_m = self.left_out_m(of_geometry);
+        let mut uncertainty = self.uncertainty.take();
+        let (session, rows) = (self.session(geometry), &geometry.weighted_rows());
+        let CorrectedFit { model, estimate, noise, .. } = &self;
+        let coverage = coverage(&session, rows);
+        let expected = uncertainty.as_mut().map_or_else(Expectations::default, |uncertainty| {
+            expectations_beside(&session, rows, &coverage, (uncertainty, left_out_m), options.seed)
+        });
+        let found = uncertainty.as_ref().filter(|_| self.has_terms()).map(|uncertainty| {
+            let deviations: Vec<f64> = model.deviations(&self.possible).collect();
+            let before = (&geometry.session(), &geometry.estimate);
+            effects(model, (&session, estimate), before, rows, (uncertainty, &deviations), *noise)
+        });
+        let predicted = uncertainty.as_ref().map(|it| (it, &coverage[..]));
+        let kept = held_out_check((&session, estimate), (rows, held_out_rows), predicted);
+        let frames = session.data.frames(rows);
+        let (robot, targets) = place_tip(&model.robot, session.data, &frames, estimate, options.move_tip);
+        Correction {
+            robot: Robot { terms: estimate.terms.clone(), ..robot },
+            targets,
+            stations: stations(&session, estimate, *noise),
+            frame: options.frame,
+            effects: found.unwrap_or_default(),
+            expected,
+            left_out_m,
+            kept,
+            fit: CorrectedFit { uncertainty, ..self },
+        }
+    }
+}
+
+/// A fit of screws and terms: the robot that it found, with all that predicts rows.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Correction {
+    /// The fit.
+    pub fit: CorrectedFit,
+    /// The robot that was found, with its gives and its terms, and its tip as that of [`Calibration::robot`](crate::Calibration).
+    /// It predicts as the fit does.
+    pub robot: Robot,
+    /// The targets.
+    pub targets: Vec<CalibratedTarget>,
+    /// All stations.
+    pub stations: Vec<CalibratedStation>,
+    /// What was known of the device's frame.
+    pub frame: DeviceFrameKnowledge,
+    /// What the terms do; nothing without any.
+    pub effects: Effects,
+    /// Expected errors.
+    pub expected: Expectations,
+    /// Error of positions in cross-validation (metres, RMS): that of geometry alone times the share that terms leave; `None` if no sizes were
+    /// tried.
+    pub left_out_m: Option<f64>,
+    /// Coverage on the held-out rows.
+    pub kept: Option<CoverageCheck>,
+}
+
+impl Deref for Correction {
+    type Target = CorrectedFit;
+
+    fn deref(&self) -> &CorrectedFit {
+        &self.fit
+    }
+}
+
+impl Correction {
+    /// Errors of rows of the data that were fitted ([`Session::errors`]).
+    #[must_use]
+    pub fn errors(&self, data: &Dataset, rows: &[u32]) -> Vec<RowError> {
+        Session::new(&self.model.robot, data, &self.packed, true).errors(rows, &self.estimate)
+    }
+
+    /// Errors of the rows that were held out, or of those that were fitted where there are no such.
+    pub(crate) fn judging_errors(&self) -> &ModelAccuracy {
+        self.held_out.as_ref().unwrap_or(&self.training)
+    }
+}

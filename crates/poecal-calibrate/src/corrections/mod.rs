@@ -1,0 +1,27 @@
+//! What joints really do beyond geometry: terms of their values and of their bearings, fitted beside the screws with priors (theory.md §6).
+
+mod choice;
+mod context;
+mod effect;
+mod effects;
+mod fit;
+mod found;
+mod gravity;
+mod left_out;
+mod linear;
+mod matrices;
+mod modes;
+mod promise;
+mod suspects;
+mod unknowns;
+mod worse;
+
+pub(crate) use choice::weight_of_prior;
+pub use choice::{SizesReason, TriedSizes};
+pub use effect::{Effects, JointEffect, JointErrorPart, JointErrors};
+pub(crate) use fit::corrected;
+pub use found::{CorrectedFit, Correction};
+pub use linear::whitened_rows;
+pub(crate) use matrices::{ROUNDING_OF_TERMS, cholesky, solved};
+pub(crate) use unknowns::priors;
+pub use unknowns::unknowns;

@@ -1,0 +1,89 @@
+//! Uncertainty of what screws and terms predict: the priors' part, and the errors of the parts that were left out (theory.md §9,
+//! *Corrected models*).
+
+use std::collections::BTreeMap;
+
+use crate::pictures::optics::Optics;
+use crate::run::task::Task;
+use crate::steps::summary::FitSummary;
+use poecal_fit::problem::{Prior, Problem};
+use poecal_fit::state::{Estimate, sample_rows};
+use poecal_fit::uncertainty::{PriorInformation, Uncertainty, View, discrepancy};
+use poecal_model::measurement::{Dataset, Noise};
+use poecal_numerics::solve::{LeastSquares as _, Normal};
+
+/// Rows of which residuals are searched for structure.
+const MANY: usize = 4000;
+/// Most rows that are summed for the information of all.
+const SUMMED: usize = 8000;
+/// Fewest rows of each target seen from each station among them.
+const FEWEST: usize = 200;
+
+/// Uncertainty of a fit with all terms that may be there. The priors' weight is that of the number of configurations times the variance of
+/// the whitened residuals; `growth` is the mean squared error of parts that were left out over what their fits let expect. `None` with no more
+/// numbers than unknowns that they determine.
+pub(crate) fn uncertainty(
+    task: &Task<'_>,
+    (estimate, noise): (&Estimate, Noise),
+    (prior, [weight, variance]): (&Prior, [f64; 2]),
+    (growth, optics): (f64, Option<&Optics>),
+) -> Option<Uncertainty> {
+    // Thousands of rows determine the information to a few percent.
+    let (rows, weights) = representative(task.session.data, task.rows, task.weights).unzip();
+    let weights = weights.as_deref().or(task.weights);
+    let measured = Task { prior: None, rows: rows.as_deref().unwrap_or(task.rows), weights, ..*task };
+    let problem = measured.problem(estimate, noise);
+    let (layout, mut normal) = (problem.layout().clone(), problem.normal(estimate));
+    if let Some(optics) = optics {
+        optics.loosen(task.session.data, &problem, estimate, &mut normal);
+    }
+    let mut believed = Normal::new(layout.dim());
+    prior.add(estimate, &layout, 1.0, &mut believed);
+    let prior = PriorInformation { normal: believed, is_fitted: true, weight: Some(weight * variance) };
+    let of = (&task.session, estimate);
+    let summary = FitSummary::new(of, task.rows.to_vec(), (layout, normal), prior, noise, task.options);
+    let FitSummary { remainder, normal, .. } = &summary;
+    let mut view = summary.view(task.session, estimate);
+    if remainder.numbers as f64 <= remainder.effective_unknowns {
+        return None;
+    }
+    let mut found = if view.rows.len() > MANY {
+        // Of many rows the priors' weight decides: a sample tells whether their residuals have structure.
+        let few = sample_rows(view.rows, MANY);
+        let of_few = Problem::new(task.session, few.clone(), view.free.to_vec(), noise).normal(estimate);
+        discrepancy(&View { rows: &few, ..view }, &of_few, remainder, None)
+    } else {
+        discrepancy(&view, normal, remainder, None)
+    };
+    // What rows share beyond the terms: as the weight of the priors and the parts that were left out have it, or as it scatters.
+    view.variance = remainder.variance * (weight * growth).max(found.scatter);
+    (found.scatter, found.extrapolation) = (1.0, 1.0);
+    let root = growth.sqrt();
+    found.standard_deviation.values_mut().for_each(|(_, sigma)| *sigma *= root);
+    Uncertainty::new(&view, summary.layout.clone(), &normal.gram, &found)
+}
+
+/// Rows of every target seen from every station that stand for all of them, and the weights of all rows with which their information is that of
+/// all; `None` of few.
+fn representative(data: &Dataset, rows: &[u32], weights: Option<&[f64]>) -> Option<(Vec<u32>, Vec<f64>)> {
+    if rows.len() <= SUMMED {
+        return None;
+    }
+    let mut groups: BTreeMap<(usize, usize), Vec<u32>> = BTreeMap::new();
+    for &row in rows {
+        let seen = &data.observations[row as usize];
+        groups.entry((seen.station, seen.target)).or_default().push(row);
+    }
+    let mut found = Vec::with_capacity(SUMMED);
+    let mut of_rows = vec![0.0; data.len()];
+    for group in groups.values() {
+        let some = sample_rows(group, (group.len() * SUMMED / rows.len()).max(FEWEST));
+        let each = group.len() as f64 / some.len() as f64;
+        for &row in &some {
+            of_rows[row as usize] = each * weights.map_or(1.0, |weights| weights[row as usize]);
+        }
+        found.extend(some);
+    }
+    found.sort_unstable();
+    Some((found, of_rows))
+}

@@ -1,0 +1,223 @@
+//! What a session's search ended with, and the sentences of it.
+
+use std::collections::BTreeSet;
+
+use super::hypotheses::Moved;
+use super::names::{DEVICE, family, next_of};
+use super::search::Step;
+use super::told::{Event, EventKind};
+use crate::steps::calibrated::CalibratedFit;
+use poecal_model::measurement::Dataset;
+use poecal_model::robot::{MEASURED, Robot};
+
+/// Share of the residuals that a step leaves above which its repair cannot gain as much.
+const LITTLE: f64 = 0.8;
+/// Files and lines that a sentence lists.
+const LISTED: usize = 3;
+/// Ratio of the gain of the next best explanation to that of the best above which it is named too.
+const NEARLY: f64 = 0.9;
+
+/// What a session's search ended with.
+pub(crate) enum Happened {
+    Wrong(Vec<u32>),
+    Step(Step),
+}
+
+impl Happened {
+    /// Whether all rows of it are suspected as outliers anyway.
+    pub(crate) fn is_suspected(&self, best: &CalibratedFit<'_>) -> bool {
+        matches!(self, Happened::Wrong(rows) if rows.iter().all(|row| best.robust.robustness.suspects_row(*row)))
+    }
+
+    /// Whether the session without it can be better by much.
+    pub(crate) fn matters(&self) -> bool {
+        match self {
+            Happened::Wrong(_) => true,
+            Happened::Step(step) => step.leaves <= LITTLE,
+        }
+    }
+}
+
+/// An event with the sentence of it where it is repaired, and where it is only suspected.
+pub(crate) struct Said(Event, String);
+
+impl Said {
+    pub(crate) fn repaired(self, [before, after]: [f64; 2], residuals: Vec<[f64; 3]>) -> Event {
+        Event { error_before_mm: Some(before), error_after_mm: Some(after), residuals, ..self.0 }
+    }
+
+    pub(crate) fn suspected(self, before: f64, after: Option<f64>) -> Event {
+        let Said(event, statement) = self;
+        Event { statement, error_before_mm: Some(before), error_after_mm: after, ..event }
+    }
+}
+
+/// What happened, in words.
+pub(crate) fn event(happened: &Happened, data: &Dataset, robot: &Robot) -> Said {
+    let step = match happened {
+        Happened::Wrong(rows) => return wrong_words(data, rows),
+        Happened::Step(step) => step,
+    };
+    let number = step.first as usize + 1;
+    let has = |turns: bool| step.turns.contains(&turns);
+    let length = |turns: bool| {
+        let own = step.size.iter().zip(&step.turns).filter(|(_, it)| **it == turns);
+        own.map(|(value, _)| value * value).sum::<f64>().sqrt()
+    };
+    let size_mm = has(false).then(|| 1e3 * length(false));
+    let size_deg = has(true).then(|| length(true).to_degrees());
+    let Statement { kind, name, is, taken } = statement(step, &far_words(size_mm, size_deg), data, robot);
+    let remedy = if kind == EventKind::Drift {
+        "wait until it has settled, and measure again".to_owned()
+    } else {
+        let after = data.len() + 1 - number;
+        format!("measure the {} rows before it again, or the {after} from it on", number - 1)
+    };
+    let event = Event {
+        kind,
+        name,
+        from_row: number,
+        from: data.place(step.first),
+        rows: Vec::new(),
+        size_mm,
+        size_deg,
+        error_before_mm: None,
+        error_after_mm: None,
+        statement: format!("{is}: {taken}"),
+        residuals: Vec::new(),
+    };
+    Said(event, format!("{is}: {remedy}"))
+}
+
+/// What a step is of, in words: what happened, and what it is taken as where it is repaired.
+struct Statement {
+    kind: EventKind,
+    name: String,
+    is: String,
+    taken: String,
+}
+
+fn statement(step: &Step, far: &str, data: &Dataset, robot: &Robot) -> Statement {
+    let from = data.place(step.first);
+    let or = other_words(step, robot, data)
+        .map_or_else(String::new, |or| format!(" ({or} explains it nearly as well)"));
+    let named = |names: &[Option<String>], at: usize| names.get(at).cloned().flatten().unwrap_or_default();
+    let other = |name: &str, usual, names: &[Option<String>]| {
+        next_of(if name.is_empty() { usual } else { name }, names.iter().flatten())
+    };
+    let (kind, name, is, taken) = match step.moved {
+        Moved::Device(station) => {
+            let name = named(&data.stations, station);
+            let is = match files_apart(data, step.first) {
+                Some((before, after)) if name.is_empty() => format!(
+                    "the files {before} and {after} do not share one device frame, as --frames per-file says: the measuring device is {far} \
+                         from where it was{or}"
+                ),
+                _ => format!(
+                    "from {from} on the measuring device{} is {far} from where it was{or}",
+                    quoted(&name)
+                ),
+            };
+            let taken = format!("taken as set up anew there, `{}`", other(&name, DEVICE, &data.stations));
+            (EventKind::Device, name, is, taken)
+        }
+        Moved::Target(target) => {
+            let name = named(&data.targets, target);
+            let bases: BTreeSet<&str> =
+                data.targets.iter().map(|it| family(it.as_deref().unwrap_or(MEASURED)).0).collect();
+            let (kind, what) = if bases.len() > 1 {
+                (EventKind::Nest, "nest of target")
+            } else {
+                (EventKind::Target, "target")
+            };
+            let own = quoted(&name);
+            let is = format!("from {from} on the {what}{own} is {far} from where it was on the arm{or}");
+            let taken = format!("taken as another target, `{}`", other(&name, MEASURED, &data.targets));
+            (kind, name, is, taken)
+        }
+        Moved::Tool => {
+            let is =
+                format!("from {from} on the tool with all targets is {far} from where it was on the arm{or}");
+            (EventKind::Target, String::new(), is, "taken as other targets from there on".to_owned())
+        }
+        Moved::Zero(joint) => {
+            let name = robot.joints.get(joint).map(|joint| joint.name.clone()).unwrap_or_default();
+            let is = format!("from {from} on the zero of joint `{name}` is {far} from where it was{or}");
+            (EventKind::Zero, name, is, "readings before it are taken as those after it".to_owned())
+        }
+        Moved::Drift(station) => {
+            let name = named(&data.stations, station);
+            let own = quoted(&name);
+            let is = format!("the measuring device{own} drifts by {far} from the first row to the last{or}");
+            (EventKind::Drift, name, is, "measurements are taken as without the drift".to_owned())
+        }
+    };
+    Statement { kind, name, is, taken }
+}
+
+/// The files before and after a row with which one begins.
+fn files_apart(data: &Dataset, first: u32) -> Option<(String, String)> {
+    let file = |row: u32| {
+        let at = data.observations.get(row as usize)?.source.file as usize;
+        Some((at, data.files.get(at)?.display().to_string()))
+    };
+    let (before, after) = (file(first.checked_sub(1)?)?, file(first)?);
+    (before.0 != after.0).then_some((before.1, after.1))
+}
+
+fn wrong_words(data: &Dataset, rows: &[u32]) -> Said {
+    let configurations = data.configurations(rows);
+    let places: Vec<String> =
+        configurations.iter().filter_map(|it| it.first()).take(LISTED).map(|row| data.place(*row)).collect();
+    let more = configurations.len().saturating_sub(LISTED);
+    let and = if more > 0 { format!(" and {more} more") } else { String::new() };
+    let (is, it) = if configurations.len() == 1 {
+        ("1 configuration is wrong as a whole".to_owned(), "it")
+    } else {
+        (format!("{} configurations are wrong as a whole", configurations.len()), "them")
+    };
+    let is = format!("{is} ({}{and}), as if read before the arm had settled", places.join(", "));
+    let event = Event {
+        kind: EventKind::Rows,
+        name: String::new(),
+        from_row: rows.first().map_or(0, |row| *row as usize + 1),
+        from: rows.first().map(|row| data.place(*row)).unwrap_or_default(),
+        rows: rows.iter().map(|row| *row as usize + 1).collect(),
+        size_mm: None,
+        size_deg: None,
+        error_before_mm: None,
+        error_after_mm: None,
+        statement: format!("{is}: left out; measure {it} again"),
+        residuals: Vec::new(),
+    };
+    Said(event, format!("{is}: measure {it} again, or leave {it} out"))
+}
+
+/// What else explains a step nearly as well.
+fn other_words(step: &Step, robot: &Robot, data: &Dataset) -> Option<String> {
+    let (moved, less) = step.other?;
+    if less > (1.0 - NEARLY) * step.gain {
+        return None;
+    }
+    let target = |at: usize| data.targets.get(at).cloned().flatten().unwrap_or_default();
+    Some(match moved {
+        Moved::Device(_) => "the measuring device".to_owned(),
+        Moved::Target(at) => format!("the target{}", quoted(&target(at))),
+        Moved::Tool => "the tool".to_owned(),
+        Moved::Zero(joint) => format!("the zero of `{}`", robot.joints.get(joint)?.name),
+        Moved::Drift(_) => "a drift".to_owned(),
+    })
+}
+
+fn quoted(name: &str) -> String {
+    if name.is_empty() { String::new() } else { format!(" `{name}`") }
+}
+
+fn far_words(mm: Option<f64>, deg: Option<f64>) -> String {
+    match (mm, deg) {
+        (Some(mm), Some(deg)) => format!("{mm:.2} mm and {deg:.3} deg"),
+        (Some(mm), None) => format!("{mm:.2} mm"),
+        (None, Some(deg)) => format!("{deg:.3} deg"),
+        (None, None) => String::new(),
+    }
+}

@@ -1,0 +1,155 @@
+//! What may have happened during a session, as derivatives of its rows.
+
+use nalgebra::{DMatrix, Matrix3, Vector3};
+
+use crate::corrections::CorrectedFit;
+use poecal_fit::parameters::{Parameter, Subject, ValueTerm};
+use poecal_fit::start::device_parameter;
+use poecal_fit::state::Session;
+use poecal_model::robot::Term;
+
+/// What was moved.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Moved {
+    /// The device at a station.
+    Device(usize),
+    /// A target.
+    Target(usize),
+    /// All targets, as one body.
+    Tool,
+    /// The zero of a joint.
+    Zero(usize),
+    /// The device at a station, steadily.
+    Drift(usize),
+}
+
+/// A hypothesis with the parameters that it is made of.
+pub(crate) struct Hypothesis {
+    moved: Moved,
+    /// Index of each parameter, and what a step of each of the hypothesis' unknowns is of its own.
+    parts: Vec<(usize, Part)>,
+    unknowns: usize,
+}
+
+/// How a parameter follows.
+enum Part {
+    /// Its unknowns are those of the hypothesis.
+    Own,
+    /// A target that follows a motion of the tool: its orientation with all joints at zero, where it is from the middle, and what motions
+    /// its unknowns are.
+    Carried(Matrix3<f64>, Vector3<f64>, &'static [usize]),
+}
+
+/// The derivatives of all numbers by the unknowns of a hypothesis, metres and radians.
+pub(crate) struct Columns {
+    pub(crate) moved: Moved,
+    pub(crate) of: DMatrix<f64>,
+    /// Of each unknown, whether it is an angle.
+    pub(crate) turns: Vec<bool>,
+    /// Whether a row says something of it.
+    pub(crate) sees: Vec<bool>,
+}
+
+/// All hypotheses; parameters that the fit does not have are appended to `free`.
+pub(crate) fn hypotheses(
+    session: &Session<'_>,
+    found: &CorrectedFit,
+    rows: &[u32],
+    free: &mut Vec<Parameter>,
+) -> Vec<Hypothesis> {
+    let mut all = Vec::new();
+    let data = session.data;
+    let place = |free: &mut Vec<Parameter>, parameter: Parameter| {
+        free.push(parameter);
+        free.len() - 1
+    };
+    for station in 0..data.station_count() {
+        if data.seen_from(station, rows).is_empty() || found.estimate.tree.shared(station).is_some() {
+            continue;
+        }
+        let known = free.iter().position(|it| it.model().subject() == Subject::Instrument(station));
+        let at = known.unwrap_or_else(|| place(free, device_parameter(data, station, rows)));
+        let unknowns = free[at].model().columns().len();
+        for moved in [Moved::Device(station), Moved::Drift(station)] {
+            all.push(Hypothesis { moved, parts: vec![(at, Part::Own)], unknowns });
+        }
+    }
+    let targets: Vec<(usize, usize)> = (0..data.targets.len())
+        .filter_map(|target| {
+            let at = free.iter().position(|it| it.model().subject() == Subject::Target(target))?;
+            Some((target, at))
+        })
+        .collect();
+    for &(target, at) in &targets {
+        let unknowns = free[at].model().columns().len();
+        all.push(Hypothesis { moved: Moved::Target(target), parts: vec![(at, Part::Own)], unknowns });
+    }
+    if targets.len() > 1 {
+        let poses = &found.estimate.base_from_target;
+        let sum = targets.iter().filter_map(|(target, _)| poses.get(*target)).map(|it| it.translation);
+        let middle = sum.sum::<Vector3<f64>>() / targets.len() as f64;
+        let parts = targets.iter().filter_map(|&(target, at)| {
+            let pose = poses.get(target)?;
+            let (_, motions) = free[at].target_motions()?;
+            let turn = pose.rotation;
+            Some((at, Part::Carried(turn, pose.translation - middle, motions)))
+        });
+        all.push(Hypothesis { moved: Moved::Tool, parts: parts.collect(), unknowns: 6 });
+    }
+    for (joint, &at) in found.model.places.iter().enumerate() {
+        let Some(&kind) = found.estimate.kinds().get(at) else { continue };
+        let term = ValueTerm { joint: at, kind, term: Term::OFFSET };
+        let known = free.iter().position(|it| it.value_term().is_some_and(|own| *own == term));
+        let at = known.unwrap_or_else(|| place(free, Parameter::ValueTerm(term)));
+        all.push(Hypothesis { moved: Moved::Zero(joint), parts: vec![(at, Part::Own)], unknowns: 1 });
+    }
+    all
+}
+
+impl Hypothesis {
+    /// The derivatives of rows by its unknowns.
+    pub(crate) fn columns(
+        &self,
+        jacobian: &DMatrix<f64>,
+        places: &[Vec<(usize, f64)>],
+        rows: &[u32],
+        session: &Session<'_>,
+    ) -> Columns {
+        let mut of = DMatrix::zeros(jacobian.nrows(), self.unknowns);
+        let mut turns = vec![false; self.unknowns];
+        for (at, part) in &self.parts {
+            let own = places.get(*at).map(Vec::as_slice).unwrap_or_default();
+            match part {
+                Part::Own => {
+                    for (k, (place, scale)) in own.iter().enumerate() {
+                        of.column_mut(k).axpy(*scale, &jacobian.column(*place), 1.0);
+                        turns[k] = *scale != 1.0;
+                    }
+                }
+                Part::Carried(turn, arm, motions) => {
+                    for (k, is_turn) in turns.iter_mut().enumerate() {
+                        let axis = Vector3::ith(k % 3, 1.0);
+                        *is_turn = k >= 3;
+                        let (shift, angle) =
+                            if k < 3 { (axis, Vector3::zeros()) } else { (axis.cross(arm), axis) };
+                        let (shift, angle) = (turn.transpose() * shift, turn.transpose() * angle);
+                        for (&motion, (place, scale)) in motions.iter().zip(own) {
+                            let step = if motion < 3 { shift[motion] } else { angle[motion - 3] };
+                            of.column_mut(k).axpy(step * scale, &jacobian.column(*place), 1.0);
+                        }
+                    }
+                }
+            }
+        }
+        let sees = rows.iter().map(|&row| {
+            let seen = session.observation(row);
+            match self.moved {
+                Moved::Device(station) | Moved::Drift(station) => seen.station == station,
+                Moved::Target(target) => seen.target == target,
+                Moved::Tool | Moved::Zero(_) => true,
+            }
+        });
+        let sees = sees.collect();
+        Columns { moved: self.moved, of, turns, sees }
+    }
+}

@@ -1,0 +1,147 @@
+//! The search of a session for what happened in it, and the repair of what evidently did.
+
+use super::happened::{Happened, event};
+use super::repaired::without;
+use super::search::{Shown, search};
+use super::told::{Event, Repairs};
+use crate::run::Run;
+use crate::steps::corrected::Found;
+use crate::{Robust, Statistic};
+use poecal_fit::state::RowError;
+use poecal_model::measurement::Quantity;
+use poecal_numerics::error::Result;
+
+/// Most repairs of one session.
+const MOST: usize = 4;
+/// Largest share of the error before that a repair leaves.
+const BETTER: f64 = 0.8;
+/// The same of the error of the other rows, where some are left out.
+const OTHERS_BETTER: f64 = 0.95;
+/// Rows of the picture of a repair.
+const DRAWN: usize = 200;
+
+/// What happened in a session.
+#[derive(Default)]
+pub(crate) struct Events {
+    /// What was repaired.
+    pub(crate) repairs: Vec<Event>,
+    /// What seems to have happened and was not.
+    pub(crate) suspicions: Vec<Event>,
+    /// That readings were early in every configuration.
+    pub(crate) early: Option<String>,
+    /// Why the session is not to be used.
+    pub(crate) against: Option<String>,
+}
+
+/// Searches a session by its corrected model, and repairs what evidently happened where the repaired session predicts rows better that are left
+/// out.
+pub(crate) fn repair(best: &mut Found<'_>) -> Events {
+    let mut events = Events::default();
+    for _ in 0..MOST {
+        let (happened, early) = next(best);
+        events.early = early;
+        let Some(happened) = happened else { break };
+        let before = error_of(best);
+        let event = event(&happened, &best.fit.run.data, &best.fit.run.robot);
+        let matters = happened.matters();
+        let is_open = matters && best.fit.run.options.repair == Repairs::Auto;
+        let Some(repaired) = is_open.then(|| without(&best.fit.run, &happened)).flatten() else {
+            let event = event.suspected(before, None);
+            if matters && event.is_grave(before) {
+                events.against = Some(event.statement.clone());
+            }
+            events.suspicions.push(event);
+            break;
+        };
+        // Where the other session cannot be fitted, that is no reason to have no calibration of this one.
+        let Ok(other) = repaired.and_then(fitted) else {
+            events.suspicions.push(event.suspected(before, None));
+            break;
+        };
+        let after = error_of(&other);
+        let left_out = &other.fit.run.left_out;
+        let is_better = match happened {
+            // Rows that are wrong have errors of their own in any case: they matter by what they do to the others.
+            Happened::Wrong(_) => kept_error(&other, left_out) <= OTHERS_BETTER * kept_error(best, left_out),
+            Happened::Step(_) => after <= BETTER * before,
+        };
+        if !is_better {
+            if !happened.is_suspected(&best.fit) {
+                events.suspicions.push(event.suspected(before, Some(after)));
+            }
+            break;
+        }
+        events.repairs.push(event.repaired([before, after], picture(best, &other)));
+        *best = other;
+    }
+    events
+}
+
+/// Fits a session.
+fn fitted(run: Run<'_>) -> Result<Found<'_>> {
+    let start = run.register();
+    run.fit(start)?.correct()
+}
+
+/// What happened that is not repaired yet, and a doubt about all readings where nothing did.
+fn next(found: &Found<'_>) -> (Option<Happened>, Option<String>) {
+    let Found { fit, corrected: Some(corrected), .. } = found else { return (None, None) };
+    let run = &fit.run;
+    // Rows with a stated set may belong to another session.
+    let is_stated = run.data.observations.iter().any(|row| row.set.is_some());
+    let mut rows = if is_stated { run.fit_rows.clone() } else { run.data.all_rows() };
+    rows.sort_unstable();
+    rows.retain(|row| run.left_out.binary_search(row).is_err());
+    let Some(Shown { wrong, step, early }) = search(fit, corrected, &rows) else {
+        return (None, None);
+    };
+    let is_fitted = |row: &u32| run.fit_rows.binary_search(row).is_ok();
+    // Rows that are suspected already and have no part in the fit need no other one.
+    let is_done = wrong.iter().all(|row| fit.robust.robustness.suspects_row(*row))
+        && (!wrong.iter().any(is_fitted)
+            || fit.robust.robustness.loss.is_some()
+                && fit.robust.robustness.suspects().count() == wrong.len());
+    if !wrong.is_empty() && !is_done && run.options.robust == Robust::Auto {
+        return (Some(Happened::Wrong(wrong)), early);
+    }
+    (step.map(Happened::Step), early)
+}
+
+/// Error of the delivered model in cross-validation, millimetres or degrees; at least that of the fitted rows that are not left out.
+fn error_of(found: &Found<'_>) -> f64 {
+    let validated = found.cross_validation.as_ref();
+    let corrected = found.corrected.as_ref().filter(|it| it.has_terms());
+    let left_out = corrected.and_then(|it| it.left_out_m(validated)).map(|metres| 1e3 * metres);
+    let random = validated.and_then(|it| it.random.rms.leading());
+    let left_out = left_out.or_else(|| random.map(|(_, rms)| rms)).filter(|it| it.is_finite());
+    left_out.unwrap_or(0.0).max(kept_error(found, &found.fit.run.left_out))
+}
+
+/// Root mean square error of the delivered model on the fitted rows but for some, millimetres or degrees.
+fn kept_error(found: &Found<'_>, left_out: &[u32]) -> f64 {
+    let kept = found.fit.run.fit_rows.iter().copied().filter(|row| left_out.binary_search(row).is_err());
+    let errors = errors_of(found, &kept.collect::<Vec<u32>>());
+    Statistic::of(errors).map_or(f64::INFINITY, |it| it.rms)
+}
+
+/// Errors of the delivered model on some rows, millimetres or degrees.
+fn errors_of(found: &Found<'_>, rows: &[u32]) -> Vec<f64> {
+    let errors: Vec<RowError> = match found.corrected.as_ref().filter(|it| it.has_terms()) {
+        Some(corrected) => corrected.session(&found.fit).errors(rows, &corrected.estimate),
+        None => found.fit.session().errors(rows, &found.fit.estimate),
+    };
+    let shown = |error: &RowError| {
+        let quantity = error.leading().unwrap_or(Quantity::Position);
+        error.length(quantity).map_or(0.0, |length| quantity.unit().shown(length))
+    };
+    errors.iter().map(shown).collect()
+}
+
+/// Row numbers with the errors of two models, of some rows.
+fn picture(before: &Found<'_>, after: &Found<'_>) -> Vec<[f64; 3]> {
+    let rows: Vec<u32> = after.fit.run.data.all_rows();
+    let step = rows.len().div_ceil(DRAWN).max(1);
+    let some: Vec<u32> = rows.into_iter().step_by(step).collect();
+    let both = errors_of(before, &some).into_iter().zip(errors_of(after, &some)).zip(&some);
+    both.map(|((before, after), row)| [f64::from(*row) + 1.0, before, after]).collect()
+}

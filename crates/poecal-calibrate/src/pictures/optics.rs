@@ -1,0 +1,187 @@
+//! Lenses, boards and markers that are unknown beside the robot (theory.md §4, *Pictures* (17d)).
+
+use nalgebra::{DMatrix, DVector, Matrix2xX};
+
+use crate::corrections::{solved, whitened_rows};
+use crate::robust::RobustFit;
+use crate::run::Run;
+use crate::trust::information::{FitInformation, factor_of};
+use poecal_fit::problem::Problem;
+use poecal_fit::start::predicted_pose;
+use poecal_fit::state::Estimate;
+use poecal_model::camera::{
+    Board, Camera, OwnInformation, PictureNumber, PictureUnknown, PictureUnknowns, Pictures, Projection,
+    motion_by_inverse,
+};
+use poecal_model::measurement::Dataset;
+use poecal_numerics::linalg;
+use poecal_numerics::solve::Normal;
+
+/// Largest step of a number, standard deviations of its prior.
+const FARTHEST: f64 = 3.0;
+
+/// Unknown numbers of cameras and boards in a fit, and how far they are from what was given.
+#[derive(Clone)]
+pub(crate) struct Optics {
+    unknowns: PictureUnknowns,
+    step: DVector<f64>,
+    deviations: Vec<f64>,
+}
+
+/// Information of the numbers beside the robot's unknowns: with those, alone with its prior, and its pull.
+struct Coupling {
+    mixed: DMatrix<f64>,
+    gram: DMatrix<f64>,
+    pull: DVector<f64>,
+}
+
+/// A step of the numbers with what it explains, in squared standard deviations, their covariance, and the step of the robot's unknowns without it
+/// and by it.
+pub(crate) struct BestStep {
+    pub(crate) step: DVector<f64>,
+    gain: f64,
+    pub(crate) covariance: DMatrix<f64>,
+    still: DVector<f64>,
+    pub(crate) follow: DMatrix<f64>,
+}
+
+impl BestStep {
+    /// Standard deviations of the numbers.
+    fn deviations(&self) -> Vec<f64> {
+        self.covariance.diagonal().iter().map(|it| it.max(0.0).sqrt()).collect()
+    }
+}
+
+impl Optics {
+    /// Of the unknowns of a session with pictures, as they are given there.
+    pub(crate) fn of(run: &Run<'_>) -> Option<Self> {
+        let pictures = &run.data.pictures;
+        let has_any = !pictures.is_empty() && !run.unknowns.pictures.is_empty();
+        has_any.then(|| Optics::from_here(pictures, &run.unknowns.pictures))
+    }
+
+    /// Of these unknowns, from cameras and boards as they are.
+    pub(crate) fn from_here(pictures: &Pictures, unknowns: &[PictureUnknown]) -> Self {
+        let unknowns = PictureUnknowns::new(&pictures.cameras, &pictures.boards, unknowns);
+        let count = unknowns.count();
+        Optics { unknowns, step: DVector::zeros(count), deviations: vec![1.0; count] }
+    }
+
+    /// The numbers as they were found.
+    pub(crate) fn numbers(&self) -> Vec<PictureNumber> {
+        self.unknowns.numbers(&self.step, &self.deviations)
+    }
+
+    /// Cameras and boards after a step.
+    pub(crate) fn after(&self, step: &DVector<f64>) -> (Vec<Camera>, Vec<Board>) {
+        self.unknowns.at(step)
+    }
+
+    /// The numbers after a step, with their standard deviations.
+    pub(crate) fn numbers_after(&self, best: &BestStep) -> Vec<PictureNumber> {
+        self.unknowns.numbers(&best.step, &best.deviations())
+    }
+
+    /// How many numbers the pictures determine rather than the prior.
+    pub(crate) fn determined(&self) -> f64 {
+        self.deviations.iter().map(|it| 1.0 - it * it).sum::<f64>().max(0.0)
+    }
+
+    /// Rows of pictures among some, as functions of the robot's unknowns and of these numbers.
+    fn coupling(&self, data: &Dataset, problem: &Problem<'_>, estimate: &Estimate) -> Coupling {
+        let pictures = &data.pictures;
+        let rows: Vec<u32> =
+            problem.rows().iter().copied().filter(|row| pictures.of_row(*row).is_some()).collect();
+        let (starts, jacobian, residuals) = whitened_rows(problem, estimate, &rows);
+        let errors = problem.session().errors(&rows, estimate);
+        let count = self.unknowns.count();
+        let mut own = OwnInformation::none(count);
+        let mut by_numbers = DMatrix::zeros(residuals.len(), count);
+        for (at, (row, error)) in rows.iter().zip(&errors).enumerate() {
+            let Some(picture) = pictures.of_row(*row).and_then(|at| pictures.all.get(at)) else { continue };
+            let Some(view) = pictures.view(picture) else { continue };
+            let Some(whitening) = data.whitening_of_picture(*row) else { continue };
+            let measured = data.observations[*row as usize].measurement.pose();
+            if view.is_odd(&picture.directed(&measured)) {
+                continue;
+            }
+            // At the prediction: there a robot of another size and a board of another size are one direction, to the last digit.
+            let pose = picture.directed(&predicted_pose(&measured, error));
+            let information = view.information(&pose);
+            let of = (picture.camera, picture.board);
+            let mut follow = self.unknowns.add(of, &view, (&pose, &information), &mut own);
+            if picture.of_camera {
+                follow = motion_by_inverse(&pose.inverse()) * follow;
+            }
+            // The measured pose moves with the numbers: residuals fall by the opposite.
+            let weight = problem.weight(*row).sqrt();
+            by_numbers.rows_mut(starts[at], 6).copy_from(&(whitening * follow * -weight));
+        }
+        let gram = by_numbers.transpose() * &by_numbers + own.gram + DMatrix::identity(count, count);
+        let pull = by_numbers.tr_mul(&residuals) + own.pull - &self.step;
+        Coupling { mixed: jacobian.transpose() * by_numbers, gram, pull }
+    }
+
+    /// The best step of the numbers from the optimum of a fit, with their standard deviations and how the robot's unknowns follow.
+    pub(crate) fn best_step(&self, run: &Run<'_>, information: &FitInformation<'_>) -> Option<BestStep> {
+        let Coupling { mixed, gram, pull } =
+            self.coupling(&run.data, &information.problem, information.estimate);
+        let follow = information.solved(&mixed);
+        let pull = pull - follow.tr_mul(information.gradient());
+        let factor = factor_of(&(gram - mixed.transpose() * &follow))?;
+        let count = self.unknowns.count();
+        let inverse = DMatrix::from_row_slice(count, count, &linalg::inverse(&factor));
+        let step = &inverse * &pull;
+        let gain = step.dot(&pull).max(0.0);
+        Some(BestStep { step, gain, covariance: inverse, still: information.step(), follow })
+    }
+
+    /// Derivative of a pixel of a camera by the numbers, in deviations of their prior.
+    pub(crate) fn by_lens(&self, camera: usize, found: &Projection) -> Matrix2xX<f64> {
+        self.unknowns.by_lens(camera, found)
+    }
+
+    /// The data with the next numbers, from the optimum of a fit with the present ones, and the estimate as it follows them; `None` where they
+    /// change by less than so many standard deviations.
+    pub(crate) fn advance(
+        &mut self,
+        run: &Run<'_>,
+        (information, fit): (&FitInformation<'_>, &RobustFit),
+        least: f64,
+    ) -> Option<(Dataset, Estimate)> {
+        let best = self.best_step(run, information)?;
+        let deviations = best.deviations();
+        let BestStep { mut step, gain, still, follow, .. } = best;
+        self.deviations = deviations;
+        step *= (FARTHEST / step.amax().max(FARTHEST)).min(1.0);
+        if gain < least * least {
+            return None;
+        }
+        let of_robot = still - follow * &step;
+        let estimate = fit.fitted.layout.retract(&fit.fitted.estimate, of_robot.as_slice());
+        self.step += step;
+        let mut data = run.data.clone().into_owned();
+        let (cameras, boards) = self.unknowns.at(&self.step);
+        data.pictures = Pictures { cameras, boards, ..data.pictures };
+        Some((data, estimate))
+    }
+
+    /// Takes from the information of the robot's unknowns what the numbers could explain of the rows as well.
+    pub(crate) fn loosen(
+        &self,
+        data: &Dataset,
+        problem: &Problem<'_>,
+        estimate: &Estimate,
+        normal: &mut Normal,
+    ) {
+        let Coupling { mixed, gram, .. } = self.coupling(data, problem, estimate);
+        let Some(factor) = factor_of(&gram) else { return };
+        let explained = &mixed * solved(&factor, &mixed.transpose());
+        let n = normal.dim();
+        for i in 0..n {
+            for j in i..n {
+                normal.gram[i * n + j] -= explained[(i, j)];
+            }
+        }
+    }
+}

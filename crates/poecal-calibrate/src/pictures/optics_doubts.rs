@@ -1,0 +1,140 @@
+//! Lenses and boards that the corners of single pictures contradict (theory.md §4, *Pictures*).
+
+use super::optics::{BestStep, Optics};
+use crate::steps::calibrated::CalibratedFit;
+use crate::trust::information::FitInformation;
+use poecal_model::camera::{Board, Camera, PictureNumber, PictureUnknown, Pictures, is_flat_sheet};
+use poecal_numerics::error::shown;
+
+/// Least share of the squared errors of corners that another lens or board must explain.
+const EVIDENT: f64 = 0.1;
+/// Standard deviations beyond which a number is another than stated.
+const FAR: f64 = 5.0;
+/// Least difference of the scales of a board along x and y that is said.
+const UNEQUAL: f64 = 2e-3;
+/// Least sagitta of a bent board that is said, as a share of its radius.
+const BENT: f64 = 1e-3;
+/// Fewest numbers that are left of the corners of pictures that judge.
+const LEAST_FREEDOM: f64 = 30.0;
+/// Fewest corners of which something can be said.
+const FEWEST: usize = 100;
+
+/// What is doubtful of cameras and boards that were taken as stated: the one thing that explains most of the corners' errors, with what to do.
+pub(crate) fn optics_doubt(fit: &CalibratedFit<'_>) -> Option<String> {
+    let pictures = &fit.run.data.pictures;
+    if pictures.all.iter().map(|it| it.corners.len()).sum::<usize>() < FEWEST {
+        return None;
+    }
+    let held = |it: &PictureUnknown| !fit.run.unknowns.pictures.contains(it);
+    let lenses = (0..pictures.cameras.len()).map(PictureUnknown::Lens);
+    let boards = pictures.boards.iter().enumerate().map(|(at, board)| {
+        if is_flat_sheet(board) { PictureUnknown::Board(at) } else { PictureUnknown::Markers(at) }
+    });
+    let before = remaining(fit, (&pictures.cameras, &pictures.boards))?;
+    let weights = fit.robust.weights();
+    let information = FitInformation::of(&fit.run, &fit.noise_ratios, (&fit.robust, &weights))?;
+    let tried = lenses.chain(boards).filter(held).filter_map(|unknown| {
+        let optics = Optics::from_here(pictures, &[unknown]);
+        let best = optics.best_step(&fit.run, &information)?;
+        let (cameras, boards) = optics.after(&best.step);
+        let after = remaining(fit, (&cameras, &boards))?;
+        Some((after, unknown, optics, best))
+    });
+    let (after, unknown, optics, best) = tried.min_by(|a, b| a.0.total_cmp(&b.0))?;
+    if after > (1.0 - EVIDENT) * before {
+        return None;
+    }
+    words(pictures, unknown, (&optics, &best), [before, after].map(f64::sqrt))
+}
+
+/// Mean squared error of the coordinates of corners beside the best pose of each picture that was held out, pixels²: the numbers were found without
+/// them.
+fn remaining(fit: &CalibratedFit<'_>, (cameras, boards): (&[Camera], &[Board])) -> Option<f64> {
+    let data = &fit.run.data;
+    let others = Pictures {
+        cameras: cameras.to_vec(),
+        boards: boards.to_vec(),
+        all: Vec::new(),
+        ..data.pictures.clone()
+    };
+    let (mut squares, mut freedom) = (0.0, 0.0);
+    for picture in &data.pictures.all {
+        if fit.run.held_out_rows.binary_search(&picture.row).is_err()
+            || fit.robust.robustness.suspects_row(picture.row)
+        {
+            continue;
+        }
+        let pose = picture.directed(&data.observations[picture.row as usize].measurement.pose());
+        let found = others.view(picture)?.sighting(&pose, true)?;
+        squares += found.cost_px2;
+        freedom += found.freedom;
+    }
+    (freedom > LEAST_FREEDOM).then_some(squares / freedom)
+}
+
+fn words(
+    pictures: &Pictures,
+    unknown: PictureUnknown,
+    (optics, best): (&Optics, &BestStep),
+    [before_px, after_px]: [f64; 2],
+) -> Option<String> {
+    let numbers = optics.numbers_after(best);
+    let both = format!("{before_px:.2} px off the best pose of their picture, {after_px:.2} px");
+    let differs = |it: &PictureNumber| (it.found - it.given).abs() > FAR * it.deviation;
+    match unknown {
+        PictureUnknown::Lens(camera) => {
+            let own = |it: &PictureNumber| it.name.rsplit('.').next().unwrap_or_default().to_owned();
+            let digits = |it: &PictureNumber| if it.unit == "px" { 1 } else { 4 };
+            let changes = numbers.iter().filter(|it| differs(it));
+            let changes: Vec<String> = changes
+                .map(|it| {
+                    format!("{} {:.*} instead of {:.*}", own(it), digits(it), it.found, digits(it), it.given)
+                })
+                .collect();
+            let name = shown(&pictures.cameras.get(camera)?.name);
+            Some(format!(
+                "the corners are {both} with another lens of the camera `{name}` ({}): calibrate with --free lens",
+                if changes.is_empty() { "of several numbers".to_owned() } else { changes.join(", ") }
+            ))
+        }
+        PictureUnknown::Board(board) => shape_words(pictures.boards.get(board)?, &numbers, best, &both),
+        PictureUnknown::Markers(board) => {
+            let board = pictures.boards.get(board)?;
+            let squares: f64 = numbers.iter().map(|it| (it.found - it.given).powi(2)).sum();
+            let moved = (squares / board.points.len().max(1) as f64).sqrt();
+            let name = shown(&board.name);
+            Some(format!(
+                "the corners are {both} with points of the body `{name}` that are {moved:.2} mm (RMS) elsewhere: measure them, or calibrate with \
+                 --free markers"
+            ))
+        }
+    }
+}
+
+/// What contradicts the stated shape of a board: scales that differ along its sides, and a bend.
+fn shape_words(board: &Board, numbers: &[PictureNumber], best: &BestStep, both: &str) -> Option<String> {
+    let [x, y, bend_x, bend_y] = numbers else { return None };
+    let differs = |it: &PictureNumber| (it.found - it.given).abs() > FAR * it.deviation;
+    let covariance = |i: usize, j: usize| best.covariance[(i, j)] * x.prior * y.prior;
+    let spread = (covariance(0, 0) + covariance(1, 1) - 2.0 * covariance(0, 1)).max(0.0).sqrt();
+    let unequal = x.found - y.found;
+    let bend_mm = bend_x.found.hypot(bend_y.found);
+    let is_unequal = unequal.abs() > FAR * spread && unequal.abs() > UNEQUAL;
+    let is_bent = (differs(bend_x) || differs(bend_y)) && bend_mm > 1e3 * BENT * board.radius_m();
+    let mut found = Vec::new();
+    if is_unequal {
+        let (long, short) = if unequal > 0.0 { ("x", "y") } else { ("y", "x") };
+        let share = 100.0 * unequal.abs();
+        found.push(format!("its lengths along {long} are {share:.2} % larger than those along {short}, against what is stated"));
+    }
+    if is_bent {
+        found.push(format!("it is bent by {bend_mm:.2} mm"));
+    }
+    let name = shown(&board.name);
+    (!found.is_empty()).then(|| {
+        format!(
+            "the corners are {both} with another shape of the board `{name}`: {}; measure the print, or calibrate with --free board",
+            found.join(", and ")
+        )
+    })
+}

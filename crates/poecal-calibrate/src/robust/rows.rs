@@ -1,0 +1,254 @@
+//! Judgement of each row, and which rows are suspected (theory.md §6 (34d) to (34f)).
+
+use super::alike::TAILS;
+use super::{Configurations, Loss, RowParts, Scale, parts};
+use crate::SetAccuracy;
+use crate::run::located::located;
+use crate::run::task::Task;
+use poecal_fit::analysis::influence;
+use poecal_fit::state::Estimate;
+use poecal_model::measurement::{ByQuantity, Dataset, Noise};
+use poecal_numerics::distributions;
+use poecal_numerics::solve::Normal;
+
+/// Probability that normal data have a row beyond the bound.
+const FAMILY: f64 = 1e-3;
+
+/// Judgement of one row.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RowJudgement {
+    /// Weight in the fit, 0 to 1; of a held-out row the weight that it would have had (1 without a robust loss).
+    pub weight: f64,
+    /// Whether it is suspected of a gross error.
+    pub suspected: bool,
+}
+
+/// Treatment of outliers, and the judgement of each row.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Robustness {
+    /// Loss of the fit; `None`: least squares.
+    pub loss: Option<Loss>,
+    /// One for each row of the data.
+    pub rows: Vec<RowJudgement>,
+    /// Robust scale of the residuals over the calibration's noise, of each quantity: the unit by which rows are judged.
+    pub scale: ByQuantity<f64>,
+    /// Errors on the fitted rows without suspected ones; `None` if none is suspected.
+    pub training_rest: Option<SetAccuracy>,
+    /// The same on held-out rows; `None` if none is suspected, or none remains.
+    pub held_out_rest: Option<SetAccuracy>,
+}
+
+impl Robustness {
+    /// The same with the errors on training and held-out rows but for the suspected ones; `accuracy` gives those on some rows.
+    pub(crate) fn beside(
+        self,
+        [fitted, held_out]: [&[u32]; 2],
+        accuracy: impl Fn(&[u32]) -> SetAccuracy,
+    ) -> Self {
+        let of_rest = |rows: &[u32]| {
+            let rest = self.rest(rows);
+            (rest.len() < rows.len() && !rest.is_empty()).then(|| accuracy(&rest))
+        };
+        let (training_rest, held_out_rest) = (of_rest(fitted), of_rest(held_out));
+        Robustness { training_rest, held_out_rest, ..self }
+    }
+
+    /// The same with these rows suspected.
+    pub(crate) fn suspecting(mut self, suspected: &[bool]) -> Self {
+        self.rows.iter_mut().zip(suspected).for_each(|(row, suspected)| row.suspected = *suspected);
+        self
+    }
+
+    /// Whether a row is suspected.
+    pub(crate) fn suspects_row(&self, row: u32) -> bool {
+        self.rows.get(row as usize).is_some_and(|it| it.suspected)
+    }
+
+    /// The suspected rows, in the order of the data.
+    pub fn suspects(&self) -> impl Iterator<Item = u32> {
+        let rows = self.rows.iter().enumerate().filter(|(_, row)| row.suspected);
+        rows.filter_map(|(row, _)| u32::try_from(row).ok())
+    }
+
+    /// Whether so many rows are suspected that the whole session is doubtful.
+    pub(crate) fn suspects_many(&self) -> bool {
+        self.suspects().count() as f64 > MANY * self.rows.len() as f64
+    }
+
+    /// These rows without the suspected ones.
+    #[must_use]
+    pub fn rest(&self, rows: &[u32]) -> Vec<u32> {
+        rows.iter().copied().filter(|&row| !self.suspects_row(row)).collect()
+    }
+
+    /// Rows for registering device and targets: these without suspected ones, unless too few remain.
+    pub(crate) fn registrable(&self, rows: &[u32]) -> Vec<u32> {
+        let kept = self.rest(rows);
+        if kept.len() * 2 > rows.len() { kept } else { rows.to_vec() }
+    }
+
+    /// A sentence about the outliers among training and held-out rows, if there are any.
+    pub(crate) fn warning(&self, fit_rows: &[u32], held_out_rows: &[u32]) -> Option<String> {
+        let suspected = |rows: &[u32]| rows.len() - self.rest(rows).len();
+        let (fitted, held_out) = (suspected(fit_rows), suspected(held_out_rows));
+        if fitted + held_out == 0 {
+            return None;
+        }
+        let what = match self.loss {
+            Some(loss) => format!("the fit gives them almost no weight ({} loss, --robust)", loss.word()),
+            None if fitted == 0 => "none of them was fitted".to_owned(),
+            None => "the fit gives them full weight; use --robust tukey for a robust fit".to_owned(),
+        };
+        Some(format!(
+            "found {} ({fitted} of {} fitted rows, {held_out} of {} held out), too far off for noise: {what}; \
+             `outliers` in calibration.json and residuals.csv name the rows",
+            if fitted + held_out == 1 {
+                "1 outlier".to_owned()
+            } else {
+                format!("{} outliers", fitted + held_out)
+            },
+            fit_rows.len(),
+            held_out_rows.len()
+        ))
+    }
+}
+
+/// Share of suspected rows above which the whole session is doubtful.
+const MANY: f64 = 0.2;
+
+/// Bounds of a residual's length, by the number of its components.
+pub(crate) struct Bounds([f64; 6]);
+
+impl Bounds {
+    /// Length that normal noise exceeds in one of a thousand sets of so many rows, times a factor (theory.md §6 (34f)).
+    pub(crate) fn new(rows: usize, factor: f64) -> Self {
+        let probability = FAMILY / rows.max(1) as f64;
+        Bounds([1, 2, 3, 4, 5, 6].map(|dof| factor * distributions::upper_quantile(probability, dof).sqrt()))
+    }
+
+    /// Bounds above which a row is suspected.
+    pub(crate) fn suspected(rows: usize) -> Self {
+        Bounds::new(rows, TAILS)
+    }
+
+    pub(crate) fn of(&self, components: usize) -> f64 {
+        self.0[components.clamp(1, 6) - 1]
+    }
+}
+
+/// Whether there are numbers enough for a robust scale: twice the unknowns. Residuals of fewer show the fit, not the noise.
+pub(crate) fn is_judgeable<'a>(parts: impl Iterator<Item = &'a RowParts>, unknowns: f64) -> bool {
+    parts.flat_map(RowParts::iter).map(|(_, part)| part.components).sum::<usize>() as f64 >= 2.0 * unknowns
+}
+
+/// A fit by which rows are judged.
+#[derive(Clone, Copy)]
+pub(crate) struct JudgingFit<'a> {
+    /// Where it ended.
+    pub(crate) estimate: &'a Estimate,
+    /// Its noise.
+    pub(crate) noise: Noise,
+    /// Its information there.
+    pub(crate) normal: &'a Normal,
+    /// Number of unknowns that the rows determine.
+    pub(crate) unknowns: f64,
+}
+
+/// Judges every row of the data by a fit with these weights; held-out rows have weight 0.
+pub(crate) fn judge_rows(
+    task: &Task<'_>,
+    configurations: &Configurations,
+    fitted: JudgingFit<'_>,
+    weights: &[f64],
+    loss: Option<Loss>,
+) -> Robustness {
+    let all: Vec<u32> = task.session.data.all_rows();
+    let estimate = &*located(&task.session, task.rows, fitted.estimate, fitted.noise);
+    let mut fit_weights = vec![None; all.len()];
+    task.rows.iter().for_each(|&row| fit_weights[row as usize] = Some(weights[row as usize]));
+    let rows = Rows {
+        parts: parts(&task.session, &all, estimate, fitted.noise),
+        shares: configurations.shares(&task.session, estimate),
+        bounds: Bounds::suspected(all.len()),
+        weights: fit_weights,
+        all,
+    };
+    let unknowns = configurations.repeats * fitted.unknowns;
+    let robustness = |rows, scale: Scale| {
+        let (training_rest, held_out_rest) = (None, None);
+        Robustness { loss, rows, scale: scale.0, training_rest, held_out_rest }
+    };
+    let of_fit = || task.rows.iter().map(|&row| (row, &rows.parts[row as usize]));
+    let scale = Scale::of(of_fit().map(|(_, part)| part), unknowns).at_least_rounding(fitted.noise);
+    if !is_judgeable(of_fit().map(|(_, part)| part), unknowns) {
+        let judged = weights.iter().map(|&weight| RowJudgement { weight, suspected: false }).collect();
+        return robustness(judged, scale);
+    }
+    let judged = rows.judged(task, fitted, scale, loss);
+    if !judged.iter().any(|row| row.suspected) {
+        return robustness(judged, scale);
+    }
+    // Suspected rows widen their own scale: judge once more without them.
+    let kept = of_fit().filter(|(row, _)| !judged[*row as usize].suspected);
+    let scale = Scale::of(kept.map(|(_, part)| part), unknowns).at_least_rounding(fitted.noise);
+    robustness(rows.judged(task, fitted, scale, loss), scale)
+}
+
+/// All rows of the data as they are judged.
+struct Rows {
+    all: Vec<u32>,
+    parts: Vec<RowParts>,
+    /// Share of each row's length that counts.
+    shares: Vec<f64>,
+    /// Weight of each row in the fit; `None` of one that was held out.
+    weights: Vec<Option<f64>>,
+    bounds: Bounds,
+}
+
+impl Rows {
+    /// The part of a row's length that counts, at a scale, and the number of its components.
+    fn length(&self, row: u32, scale: Scale) -> (f64, usize) {
+        let (length, components) = scale.length(&self.parts[row as usize]);
+        (self.shares[row as usize] * length, components)
+    }
+
+    /// Every row judged at a scale.
+    fn judged(
+        &self,
+        task: &Task<'_>,
+        fitted: JudgingFit<'_>,
+        scale: Scale,
+        loss: Option<Loss>,
+    ) -> Vec<RowJudgement> {
+        let judged = |&row: &u32| {
+            let (length, components) = self.length(row, scale);
+            let usual = loss.map_or(1.0, |loss| loss.weight(length, components));
+            RowJudgement { weight: self.weights[row as usize].unwrap_or(usual), suspected: false }
+        };
+        let mut rows: Vec<RowJudgement> = self.all.iter().map(judged).collect();
+        // Influence is computed only where it may matter: rows with a leverage near 1 have no residual to judge them by.
+        let is_near = |row: &u32| {
+            let (length, components) = self.length(*row, scale);
+            length > 0.5 * self.bounds.of(components)
+        };
+        let near: Vec<u32> = self.all.iter().copied().filter(is_near).collect();
+        let counted: Vec<f64> = near.iter().map(|&row| self.weights[row as usize].unwrap_or(0.0)).collect();
+        let unweighted = Task { weights: None, ..*task };
+        let problem = unweighted.problem(fitted.estimate, fitted.noise);
+        let found = influence(&problem, fitted.estimate, fitted.normal, &near, &counted, |row, component| {
+            component_scale(task.session.data, scale.0, row, component)
+        });
+        for (&row, influence) in near.iter().zip(&found) {
+            let studentized = self.shares[row as usize] * influence.studentized;
+            let (_, components) = self.length(row, scale);
+            rows[row as usize].suspected = studentized > self.bounds.of(components);
+        }
+        rows
+    }
+}
+
+/// Scale of one component of a row's residual.
+pub(crate) fn component_scale(data: &Dataset, scale: ByQuantity<f64>, row: u32, component: usize) -> f64 {
+    let channels = data.observations[row as usize].measurement.channels();
+    channels.get(component).map_or(1.0, |channel| scale[channel.quantity])
+}

@@ -1,0 +1,145 @@
+//! Targets, instruments and tip at their calibrated places.
+
+use poecal_arm::lie::Pose;
+use poecal_fit::state::{Estimate, Range, Session};
+use poecal_model::measurement::{Dataset, Noise};
+use poecal_model::robot::{MEASURED, Mount, Robot};
+
+/// A target as calibrated.
+///
+/// ```
+/// # use poecal_calibrate::CalibrationOptions;
+/// # use poecal_model::measurement::Kind;
+/// # use poecal_model::simulate::{Simulation, elbow};
+/// # use poecal_calibrate::steps::calibrate;
+/// # let made = Simulation { count: 40, ..Simulation::default() }.run(&elbow(), Kind::POSE)?;
+/// # let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default())?;
+/// let [measured] = &calibration.targets[..] else { unreachable!() };
+/// assert!(measured.name.as_deref() == Some("measured") && measured.is_frame);
+/// # Ok::<(), poecal_numerics::error::Error>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct CalibratedTarget {
+    /// Its name; `None` is the tip itself ([`CalibrationOptions::move_tip`](crate::CalibrationOptions::move_tip)).
+    pub name: Option<String>,
+    /// Whether its orientation was measured; otherwise only the position means something.
+    pub is_frame: bool,
+    /// `tip_from_target` in the calibrated robot; of a target of its `mounted`, which is on a body of its own, at zero joint values.
+    pub tip_from_target: Pose,
+}
+
+/// A station of the device, as calibrated.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CalibratedStation {
+    /// Its name, if the measurements name it.
+    pub name: Option<String>,
+    /// `base_from_device` there; of an instrument on the robot, at zero joint values.
+    pub base_from_device: Pose,
+    /// Noise of its rows that state none.
+    pub noise: Noise,
+    /// Zero and scale of its distances.
+    pub range: Range,
+    /// What it is: an instrument, an anchor, a socket, a plane, a sphere, a direction, a pair of configurations.
+    pub kind: &'static str,
+    /// Radius of a sphere with that of the probe, known or found, metres.
+    pub radius_m: Option<f64>,
+}
+
+/// The stations of the device.
+pub(crate) fn stations(session: &Session<'_>, estimate: &Estimate, noise: Noise) -> Vec<CalibratedStation> {
+    let data = session.data;
+    let of = |station| CalibratedStation {
+        noise: session.usual_noise(station, noise),
+        range: estimate.range(station),
+        kind: data.station_word(station),
+        radius_m: data.sphere_reading(station).map(|reading| reading - estimate.range(station).zero_m),
+        name: data.stations.get(station).cloned().flatten(),
+        base_from_device: estimate.device_at_zero(station).inverse(),
+    };
+    (0..data.station_count()).map(of).collect()
+}
+
+/// The calibrated robot with its tip, and the targets in that tip. The tip keeps its nominal pose on the last joint, but for a target, or an
+/// instrument, of the model at its very place, and, with `move_tip`, for the target that no row names (measured as points, with its nominal
+/// orientation to the last joint). Targets and instruments of the model with bodies of their own stay on these.
+pub(crate) fn place_tip(
+    robot: &Robot,
+    data: &Dataset,
+    frames: &[bool],
+    estimate: &Estimate,
+    move_tip: bool,
+) -> (Robot, Vec<CalibratedTarget>) {
+    let mut calibrated = robot.with_screws(&estimate.screws());
+    calibrated.terms.clone_from(&estimate.terms);
+    calibrated.terms.retain(|it| it.coefficient != 0.0);
+    let last_joint = calibrated.tip_body().joint().and_then(|joint| calibrated.joints.get(joint));
+    calibrated.home =
+        last_joint.map_or_else(Pose::identity, |joint| joint.frame) * robot.last_joint_from_tip();
+    let is_tip = |name: &Option<String>| move_tip && name.is_none();
+    let is_placed = data.targets.iter().any(is_tip);
+    place_mounts(robot, &mut calibrated, (data, frames), estimate, is_placed);
+    for (target, name) in data.targets.iter().enumerate() {
+        if is_tip(name) {
+            let seen = estimate.base_from_target[target];
+            let rotation = if frames[target] { seen.rotation } else { calibrated.home.rotation };
+            calibrated.home = Pose::new(rotation, seen.translation);
+        }
+    }
+    let tip_from_base = calibrated.home.inverse();
+    let targets = data
+        .targets
+        .iter()
+        .enumerate()
+        .map(|(target, name)| {
+            let is_frame = frames[target];
+            let tip_from_target = tip_from_base * estimate.base_from_target[target];
+            let rotation = if is_frame { tip_from_target.rotation } else { nalgebra::Matrix3::identity() };
+            CalibratedTarget {
+                name: name.clone().or_else(|| (!move_tip).then(|| MEASURED.to_owned())),
+                is_frame,
+                tip_from_target: Pose::new(rotation, tip_from_target.translation),
+            }
+        })
+        .collect();
+    (calibrated, targets)
+}
+
+/// Puts the measured targets and the instruments of the model to their calibrated places. A target at the tip moves it too, or else an
+/// instrument there, unless the tip `is_placed`.
+fn place_mounts(
+    robot: &Robot,
+    calibrated: &mut Robot,
+    (data, frames): (&Dataset, &[bool]),
+    estimate: &Estimate,
+    is_placed: bool,
+) {
+    let mut is_placed = is_placed;
+    for (target, name) in data.targets.iter().enumerate() {
+        let name = name.as_deref().unwrap_or(MEASURED);
+        let known = calibrated.mounted.iter().position(|mount| mount.name == name);
+        if let Some(index) = known {
+            let Mount { name, body, .. } = calibrated.mounted[index].clone();
+            let seen = estimate.base_from_target[target];
+            let nominal = calibrated.base_from(&calibrated.mounted[index]);
+            let rotation = if frames[target] { seen.rotation } else { nominal.rotation };
+            let pose = Pose::new(rotation, seen.translation);
+            if !is_placed && robot.is_at_tip(&robot.mounted[index]) {
+                is_placed = true;
+                calibrated.home = pose;
+            }
+            calibrated.mounted[index] = calibrated.mount(&name, body, &pose);
+        }
+    }
+    for (station, name) in data.stations.iter().enumerate() {
+        let known = calibrated.instruments.iter().position(|mount| Some(&mount.name) == name.as_ref());
+        if let Some(index) = known {
+            let Mount { name, body, .. } = calibrated.instruments[index].clone();
+            let pose = estimate.device_at_zero(station).inverse();
+            if !is_placed && robot.is_at_tip(&robot.instruments[index]) {
+                is_placed = true;
+                calibrated.home = pose;
+            }
+            calibrated.instruments[index] = calibrated.mount(&name, body, &pose);
+        }
+    }
+}

@@ -1,0 +1,51 @@
+//! Whether the residuals of a fit are the pull of its prior, and not noise: theory.md §6, *Pull*.
+
+use poecal_numerics::linalg;
+use poecal_numerics::solve::Normal;
+
+/// The prior is let go where a step without it would leave a smaller share of the variance: the pull is then three times the noise.
+const LET_GO: f64 = 0.1;
+/// Least number of residuals beyond the unknowns: of so many that are noise, a step leaves so small a share by chance in four of a million
+/// sessions.
+const REDUNDANT: usize = 15;
+/// Share of the prior that stays in that step: what the rows do not determine stays where it is.
+const KEPT: f64 = 1e-2;
+/// The share may be so large where `JᵀJ` is that of an earlier state.
+const NEARLY: f64 = 0.5;
+/// Rounding, as a share of the largest information.
+const ROUNDING: f64 = 1e-13;
+/// The prior is let go if what is left is smaller than any instrument's noise, as a share of the length of physical scaling.
+pub(crate) const FINE: f64 = 1e-5;
+/// Weight of a prior that is let go, over that by the rule: small beside any residual, and large beside rounding.
+pub(crate) const RELEASED: f64 = 1e-6;
+/// A fit without its prior ends so many times sooner: what it would still move is the rest of the pull.
+pub(crate) const SOONER: f64 = 1000.0;
+/// Mean square of exact residuals over that of rounding: three picometres.
+pub(crate) const EXACT: f64 = 1e7;
+
+/// The share of the residuals' variance that is not the prior's pull, where that is little; `None` if they may be noise. `fitted` is the
+/// normal information of a fit, `believed` the prior's part of it, and `seen` gives that of the rows anew.
+pub(crate) fn left_by_pull(fitted: &Normal, believed: &Normal, seen: impl FnOnce() -> Normal) -> Option<f64> {
+    let less = |all: &[f64], part: &[f64]| all.iter().zip(part).map(|(all, part)| all - part).collect();
+    let nearly = Normal {
+        gram: less(&fitted.gram, &believed.gram),
+        gradient: less(&fitted.gradient, &believed.gradient),
+        cost: fitted.cost - believed.cost,
+        residuals: fitted.residuals,
+    };
+    left(&nearly, believed).filter(|left| *left < NEARLY)?;
+    left(&seen(), believed).filter(|left| *left < LET_GO)
+}
+
+/// Variance of the residuals after a step without the prior, over their mean square; `None` if too few are left to tell.
+fn left(seen: &Normal, believed: &Normal) -> Option<f64> {
+    let n = seen.dim();
+    let redundant = seen.residuals.checked_sub(n).filter(|it| *it >= REDUNDANT)?;
+    let kept: Vec<f64> =
+        seen.gram.iter().zip(&believed.gram).map(|(own, prior)| own + KEPT * prior).collect();
+    let largest = (0..n).map(|i| kept[i * n + i]).fold(0.0, f64::max);
+    let factor = linalg::cholesky(&kept, n, ROUNDING * largest)?;
+    let step = linalg::cholesky_solve(&factor, &seen.gradient);
+    let cost = (seen.cost - seen.predicted_reduction(&step)).max(0.0);
+    Some(cost / seen.cost * seen.residuals as f64 / redundant as f64)
+}

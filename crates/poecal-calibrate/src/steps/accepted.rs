@@ -1,0 +1,173 @@
+//! Limits judged by the rows of a calibration, or by other measurements.
+
+use std::collections::BTreeMap;
+
+use crate::acceptance::{Errors, mean_square};
+use crate::run::located::rows_of_fitted_stations;
+use crate::validate::judge::{check_count, judged_rows};
+use crate::{
+    Acceptance, AcceptanceLimits, AcceptedLimit, AcceptedModel, AcceptedRows, AcceptedStatistic, Calibration,
+    Limit, Subject,
+};
+use poecal_fit::state::{Packed, RowError, Session};
+use poecal_model::measurement::{Dataset, Measured, Noise, Quantity};
+use poecal_numerics::distributions::upper_quantile;
+use poecal_numerics::error::{Error, ErrorKind, Result};
+use poecal_numerics::unit::Unit;
+
+/// Probability that the noise of a measurement is larger than what is added to its error.
+const RISK: f64 = 0.05;
+
+/// Errors of rows, and what they are worth.
+struct Rows<'a> {
+    session: Session<'a>,
+    rows: &'a [u32],
+    errors: &'a [RowError],
+    noise: Noise,
+    /// Factor on the errors of rows that parts of the model were fitted to.
+    factor: f64,
+}
+
+/// Judges a finished calibration by its rows held out, or if there are none, by cross-validation.
+///
+/// # Errors
+/// [`ErrorKind::Option`] if no such row measured what a limit is for, [`ErrorKind::Problem`] if there are no such rows.
+pub(crate) fn accepted(
+    calibration: &Calibration,
+    data: &Dataset,
+    accept: &AcceptanceLimits,
+) -> Result<Acceptance> {
+    let rows = rows_of_fitted_stations(data, &calibration.fit_rows, &calibration.held_out_rows);
+    if rows.is_empty() {
+        return by_cross_validation(calibration, data, accept);
+    }
+    let packed = calibration.packed(data);
+    let session = calibration.session(data, &packed).with_noise_ratios(&calibration.noise_ratios);
+    let corrected = calibration.correction.as_ref().filter(|it| it.has_terms());
+    let corrected = corrected.filter(|_| accept.model == AcceptedModel::Corrected);
+    let (model, errors, noise) = match corrected {
+        Some(found) => (AcceptedModel::Corrected, found.errors(data, &rows), found.noise),
+        None => {
+            let errors = session.errors(&rows, &calibration.models.calibrated);
+            (AcceptedModel::Calibrated, errors, calibration.noise)
+        }
+    };
+    let judged = Rows { session, rows: &rows, errors: &errors, noise, factor: 1.0 };
+    Ok(Acceptance::new(model, AcceptedRows::HeldOut, judged.limits(&accept.limits)?))
+}
+
+/// Judges a calibration by other measurements. Errors of rows to which a device frame or targets were fitted count as larger, by the
+/// unknowns that took a part of them.
+///
+/// # Errors
+/// [`ErrorKind::Option`] if no row measured what a limit is for, [`ErrorKind::Problem`] if the rows are too few for the refit.
+pub fn accepted_by(
+    subject: &Subject<'_>,
+    data: &Dataset,
+    accept: &AcceptanceLimits,
+    model: AcceptedModel,
+) -> Result<Acceptance> {
+    check_count(subject, data)?;
+    let packed = Packed::of(subject.calibrated, data);
+    let judged = judged_rows(subject, subject.calibrated, data, &packed);
+    let numbers: usize = judged.errors.iter().map(RowError::dim).sum();
+    let fitted: usize = judged.free.iter().map(|it| it.model().columns().len()).sum();
+    let factor = (numbers as f64 / numbers.saturating_sub(fitted) as f64).sqrt();
+    let rows = data.all_rows();
+    let judged =
+        Rows { session: judged.session, rows: &rows, errors: &judged.errors, noise: subject.noise, factor };
+    Ok(Acceptance::new(model, AcceptedRows::Judged, judged.limits(&accept.limits)?))
+}
+
+impl Rows<'_> {
+    fn limits(&self, limits: &[Limit]) -> Result<Vec<AcceptedLimit>> {
+        let measured = Quantity::ALL.into_iter().filter_map(|quantity| Some((quantity, self.of(quantity)?)));
+        let measured: BTreeMap<Quantity, Errors> = measured.collect();
+        let own = |limit: &Limit| {
+            let of_it = measured.iter().filter(|(quantity, _)| quantity.unit() == limit.unit);
+            let decided = of_it.filter_map(|(quantity, errors)| {
+                let counts = [errors.rows(), errors.configurations.len()];
+                Some(AcceptedLimit::decided(limit, *quantity, errors.bounded(limit.statistic)?, counts))
+            });
+            let decided: Vec<AcceptedLimit> = decided.collect();
+            if decided.is_empty() { Err(unmeasured(limit, measured.keys().copied())) } else { Ok(decided) }
+        };
+        Ok(limits.iter().map(own).collect::<Result<Vec<_>>>()?.concat())
+    }
+
+    /// The errors of a quantity by configuration; `None` if no row measured it.
+    fn of(&self, quantity: Quantity) -> Option<Errors> {
+        let error = |row: &u32| {
+            let error = self.errors.get(self.rows.binary_search(row).ok()?)?;
+            let length = self.factor * error.length(quantity)?;
+            let sigma = self.session.noise_of(self.session.observation(*row), self.noise)[quantity];
+            let components = error.part(quantity).len();
+            Some((length, sigma * upper_quantile(RISK, components).sqrt()))
+        };
+        let grouped = self.session.data.configurations(self.rows);
+        let configurations: Vec<Vec<(f64, f64)>> =
+            grouped.iter().map(|rows| rows.iter().filter_map(error).collect()).collect();
+        let configurations: Vec<_> = configurations.into_iter().filter(|rows| !rows.is_empty()).collect();
+        let components = self.errors.iter().map(|error| error.part(quantity).len()).max().unwrap_or(1);
+        (!configurations.is_empty()).then_some(Errors { configurations, components })
+    }
+}
+
+/// The mean square of rows that were left out in turn, of no more degrees of freedom than configurations: their errors are not known one by
+/// one.
+fn by_cross_validation(
+    calibration: &Calibration,
+    data: &Dataset,
+    accept: &AcceptanceLimits,
+) -> Result<Acceptance> {
+    let none =
+        |what: &str| ErrorKind::Problem.error(format!("found limits to accept and no rows held out, {what}"));
+    let Some(found) = &calibration.trust.cross_validation else {
+        return Err(none(
+            "and too few for cross-validation, expected rows that judge the fit: measure more, or hold out a share of them",
+        ));
+    };
+    let configurations = data.configurations(&calibration.fit_rows).len();
+    let rms: &Measured<f64> = &found.random.rms;
+    let mut limits = Vec::new();
+    for limit in &accept.limits {
+        if limit.statistic != AcceptedStatistic::Rms {
+            return Err(none(&format!(
+                "expected limits of the RMS alone, since cross-validation has no errors of single rows: leave `{}` out, or hold out a share of the rows",
+                limit.words()
+            )));
+        }
+        let of_it: Vec<_> = rms.iter().filter(|(quantity, _)| quantity.unit() == limit.unit).collect();
+        if of_it.is_empty() {
+            return Err(unmeasured(limit, rms.iter().map(|(quantity, _)| quantity)));
+        }
+        limits.extend(of_it.into_iter().map(|(quantity, rms)| {
+            let bounded = mean_square(rms * rms, configurations as f64);
+            AcceptedLimit::decided(limit, quantity, bounded, [found.random.rows, configurations])
+        }));
+    }
+    Ok(Acceptance::new(AcceptedModel::Calibrated, AcceptedRows::CrossValidation, limits))
+}
+
+fn unmeasured(limit: &Limit, measured: impl Iterator<Item = Quantity>) -> Error {
+    let names = measured.map(Quantity::name).collect::<Vec<_>>().join(", ");
+    let what = if limit.unit == Unit::Radian { "angle" } else { "length" };
+    ErrorKind::Option.error(format!(
+        "found the limit `{}`, but the rows that decide measured no {what}, only {names}, expected limits of what was measured: leave it out",
+        limit.words()
+    ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn noise_is_bounded_by_the_numbers_of_a_row() {
+        let of = |components| upper_quantile(RISK, components).sqrt();
+        // 95 % points of the length of one, two and three normal numbers.
+        for (components, table) in [(1, 1.960), (2, 2.448), (3, 2.795)] {
+            assert!((of(components) - table).abs() < 1e-3);
+        }
+    }
+}

@@ -1,0 +1,136 @@
+//! The judgement of what was fitted, once, at the end.
+
+use std::sync::Arc;
+
+use super::accepted::accepted;
+use super::calibrated::CalibratedFit;
+use super::corrected::Found;
+use super::figures::Figures;
+use super::improvement::improvements;
+use super::verdict::{Grounds, Judged, judged};
+use crate::doubts::one_zero::one_zero;
+use crate::doubts::signs::Signs;
+use crate::events::Events;
+use crate::pictures::image_map::image_maps;
+use crate::pictures::optics_doubts::optics_doubt;
+use crate::pictures::view_doubts::view_doubts;
+use crate::robust::RobustFit;
+use crate::run::Run;
+use crate::run::placed::{place_tip, stations};
+use crate::run::rounding::rounded;
+use crate::{
+    Accuracy, CalibratedTarget, Calibration, Correction, Corrections, Level, Repaired, Trust, Verdict,
+};
+use poecal_fit::forensics::Diagnosis;
+use poecal_model::robot::Robot;
+use poecal_numerics::error::Result;
+use poecal_numerics::threads;
+
+impl<'a> Found<'a> {
+    /// Judges what was fitted; with `events` if the session was searched for them.
+    pub(crate) fn judge(self, events: Option<Events>) -> Result<Repaired<'a>> {
+        let rows = self.fit.run.data.len();
+        let (mut calibration, run) = threads::in_pool(rows, || self.judged(events));
+        let improvement = improvements(&calibration, &run.data);
+        if let Some(set) = &mut calibration.accuracy.held_out {
+            set.improvement = improvement;
+        }
+        if let Some(accept) = &run.options.accept {
+            calibration.acceptance = Some(accepted(&calibration, &run.data, accept)?);
+        }
+        Ok(Repaired { calibration, data: run.data })
+    }
+
+    fn judged(self, events: Option<Events>) -> (Calibration, Run<'a>) {
+        let Found { fit, corrected, summary, cross_validation } = self;
+        // Where a corrected model searches for steps and drifts, the residuals of geometry do not.
+        let finds_moves = events.is_none() || fit.run.corrections == Corrections::Off;
+        let events = events.unwrap_or_default();
+        let mut figures = fit.figures(&summary, corrected, cross_validation);
+        let signs = fit.signs(&summary, &figures, finds_moves);
+        let (robot, targets) = fit.placed(&figures);
+        let mistakes = signs.mistakes(&targets, fit.reach_m());
+        let judged =
+            judged(&Grounds { fit: &fit, summary: &summary, figures: &figures, signs: &signs, mistakes });
+        let is_doubtful = judged.of_calibrated(&figures.trust.expected).level == Level::DoNotUse;
+        if is_doubtful || signs.diagnosis.iter().any(Diagnosis::is_of_input) {
+            // Mistakes in the input are not the fault of a joint.
+            figures.trust.joints.iter_mut().for_each(|joint| joint.suspicious = None);
+        }
+        figures.explain_suspicions(&fit.run.robot);
+        let warnings = fit.warnings(&figures, &signs, &events);
+        let images = image_maps(&fit, &figures);
+        let stations = stations(&fit.session(), &fit.estimate, fit.noise());
+        let Figures { models, accuracy, robustness, trust, identifiability, correction } = figures;
+        let judged = events.against.into_iter().fold(judged, Judged::against);
+        let verdict = verdict(&judged, correction.as_ref(), &accuracy, &trust);
+        let CalibratedFit { run, robust: RobustFit { fitted, .. }, noise_ratios, .. } = fit;
+        let calibration = Calibration {
+            nominal: run.robot.clone(),
+            robot,
+            targets,
+            frame: run.options.frame,
+            unknowns: run.unknowns.clone(),
+            formulation: run.options.formulation,
+            chosen_tolerance: run.options.tolerance.filter(|_| run.options.chooses_tolerance),
+            base_from_device: models.calibrated.device_from_base.inverse(),
+            stations,
+            models,
+            accuracy,
+            solver: fitted.report,
+            identifiability,
+            trust,
+            acceptance: None,
+            verdict,
+            noise: fitted.noise,
+            noise_ratios,
+            noise_source: fitted.noise_source,
+            robustness,
+            warnings,
+            diagnosis: signs.diagnosis,
+            repairs: events.repairs,
+            suspicions: events.suspicions,
+            fit_rows: run.fit_rows.clone(),
+            held_out_rows: run.held_out_rows.clone(),
+            correction: correction.map(Box::new),
+            images,
+            packed: Arc::clone(&run.packed),
+        };
+        (calibration, run)
+    }
+}
+
+impl CalibratedFit<'_> {
+    /// The calibrated robot with its tip, and the targets in that.
+    fn placed(&self, figures: &Figures) -> (Robot, Vec<CalibratedTarget>) {
+        let Run { robot, data, options, fit_rows, .. } = &self.run;
+        place_tip(robot, data, &data.frames(fit_rows), &figures.models.calibrated, options.move_tip)
+    }
+
+    /// Warnings, a sentence each.
+    fn warnings(&self, figures: &Figures, signs: &Signs, events: &Events) -> Vec<String> {
+        let Figures { accuracy, robustness, correction, .. } = figures;
+        let mut warnings = signs.warnings();
+        warnings.extend(rounded(&self.session(), accuracy.training.calibrated.leading_m()));
+        if !signs.moved.as_ref().is_some_and(|it| it.explains(robustness)) {
+            warnings.extend(robustness.warning(&self.run.fit_rows, &self.run.held_out_rows));
+        }
+        warnings.extend(correction.as_ref().and_then(|it| it.doubt.clone()));
+        warnings.extend(one_zero(self));
+        warnings.extend(optics_doubt(self));
+        warnings.extend(view_doubts(self));
+        warnings.extend(events.early.clone());
+        warnings
+    }
+}
+
+/// The verdict on the model that is delivered.
+fn verdict(judged: &Judged, correction: Option<&Correction>, accuracy: &Accuracy, trust: &Trust) -> Verdict {
+    match correction.filter(|it| it.has_terms()) {
+        Some(found) => {
+            let rows = accuracy.held_out.map_or(accuracy.training.count, |set| set.count);
+            judged.of_corrected(&found.judging_errors().judging(rows), &found.expected)
+        }
+        None => judged.of_calibrated(&trust.expected),
+    }
+}

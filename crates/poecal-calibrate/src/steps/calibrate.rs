@@ -1,0 +1,70 @@
+//! From a robot and measurements to a calibrated robot: the steps in order.
+
+use std::borrow::Cow;
+
+use crate::events::repair;
+use crate::run::Run;
+use crate::run::refused::refuse_options;
+use crate::{Calibration, CalibrationOptions, Corrections, Repaired, Stage};
+use poecal_model::measurement::Dataset;
+use poecal_model::robot::Robot;
+use poecal_numerics::error::Result;
+
+/// Calibrates a robot from measurements.
+///
+/// # Errors
+/// [`ErrorKind::Problem`](poecal_numerics::error::ErrorKind::Problem) if there are too few measurements,
+/// [`ErrorKind::Option`](poecal_numerics::error::ErrorKind::Option) for options out of range, [`ErrorKind::Solver`](poecal_numerics::error::ErrorKind::Solver)
+/// if no finite result could be reached.
+pub fn calibrate(robot: &Robot, data: &Dataset, options: &CalibrationOptions) -> Result<Calibration> {
+    Ok(calibrated(robot, data, options, false, &mut |_| {})?.calibration)
+}
+
+/// [`calibrate`] with the session repaired where something evidently happened in it and the repaired one predicts rows better
+/// that are left out ([`CalibrationOptions::repair`]); reports each stage as it begins. All that belongs to the calibration belongs to
+/// [`Repaired::data`].
+///
+/// # Errors
+/// As [`calibrate`].
+pub fn calibrate_repairing<'a>(
+    robot: &Robot,
+    data: &'a Dataset,
+    options: &CalibrationOptions,
+    progress: &mut dyn FnMut(Stage),
+) -> Result<Repaired<'a>> {
+    calibrated(robot, data, options, true, progress)
+}
+
+/// All steps; `searches` the session for what happened in it.
+fn calibrated<'a>(
+    robot: &Robot,
+    data: &'a Dataset,
+    options: &CalibrationOptions,
+    searches: bool,
+    progress: &mut dyn FnMut(Stage),
+) -> Result<Repaired<'a>> {
+    refuse_options(data, options)?;
+    // Rows, unknowns and prior; refuses what cannot be fitted.
+    let run = Run::new(robot, Cow::Borrowed(data), options, Vec::new())?;
+    // A loop over fits, if it is asked for.
+    let run = run.with_best_tolerance()?;
+    progress(Stage::Registration);
+    let start = run.register();
+    progress(Stage::Fit);
+    // A loop where several instruments have different noises: fit, noises, fit.
+    let fit = run.fit(start)?;
+    if fit.run.corrections != Corrections::Off {
+        progress(Stage::Corrections);
+    }
+    // A loop where the corrected model suspects other rows than geometry: terms, rows, fit, terms.
+    let mut found = fit.correct()?;
+    // A loop over sessions where something happened: search, session as it would be without, its fit.
+    let events = searches.then(|| repair(&mut found));
+    progress(Stage::Analysis);
+    // All that is said of the fit, once.
+    let Repaired { calibration, data: repaired } = found.judge(events)?;
+    // What a formulation writes otherwise is given back as it was.
+    let is_as_given = calibration.repairs.is_empty() && data.pictures.is_empty();
+    let data = if is_as_given { Cow::Borrowed(data) } else { repaired };
+    Ok(Repaired { calibration, data })
+}

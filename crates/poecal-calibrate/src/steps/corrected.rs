@@ -1,0 +1,58 @@
+//! Screws and terms fitted together, after geometry.
+
+use super::calibrated::CalibratedFit;
+use super::summary::FitSummary;
+use crate::corrections::{CorrectedFit, corrected};
+use crate::{Corrections, Robust};
+use poecal_fit::uncertainty::CrossValidation;
+use poecal_numerics::error::Result;
+
+/// Most rounds of judging rows by the corrected model.
+const JUDGEMENTS: usize = 3;
+
+/// A session with all that was fitted to it.
+pub(crate) struct Found<'a> {
+    pub(crate) fit: CalibratedFit<'a>,
+    /// None without corrections.
+    pub(crate) corrected: Option<CorrectedFit>,
+    pub(crate) summary: FitSummary,
+    /// Cross-validation of geometry; `None` with too few rows.
+    pub(crate) cross_validation: Option<CrossValidation>,
+}
+
+impl<'a> CalibratedFit<'a> {
+    /// Fits screws and terms together, if terms are asked for. What joints do beyond geometry makes no outliers: where the corrected model
+    /// suspects other rows, geometry is fitted again without these, and so are the terms.
+    pub(crate) fn correct(self) -> Result<Found<'a>> {
+        let mut fit = self;
+        let mut corrected = fit.corrected();
+        for _ in 0..JUDGEMENTS {
+            let Some(suspected) = fit.other_suspects(corrected.as_ref()) else { break };
+            fit = fit.suspecting(&suspected)?;
+            corrected = fit.corrected();
+        }
+        let (summary, cross_validation) = fit.run.in_pool(|| {
+            let summary = FitSummary::of(&fit);
+            let cross_validation = summary.cross_validated(&fit);
+            (summary, cross_validation)
+        });
+        Ok(Found { fit, corrected, summary, cross_validation })
+    }
+
+    /// The corrected model; `None` without corrections.
+    fn corrected(&self) -> Option<CorrectedFit> {
+        let sizes = match self.run.corrections {
+            Corrections::Off => return None,
+            Corrections::Auto | Corrections::All => None,
+            Corrections::Sizes(sizes) => Some(sizes),
+        };
+        Some(self.run.in_pool(|| corrected(self, sizes)))
+    }
+
+    /// Whether each row is suspected by the corrected model, where these are other rows than those that geometry suspects.
+    fn other_suspects(&self, corrected: Option<&CorrectedFit>) -> Option<Vec<bool>> {
+        let is_open = self.run.options.robust == Robust::Auto && self.run.left_out.is_empty();
+        self.robust.robustness.suspects().next().filter(|_| is_open)?;
+        corrected?.other_suspects(self)
+    }
+}

@@ -1,0 +1,126 @@
+//! The figures of what was fitted: errors of all models, trust, determined unknowns.
+
+use super::calibrated::CalibratedFit;
+use super::summary::FitSummary;
+use super::trust::trust;
+use crate::corrections::CorrectedFit;
+use crate::robust::RobustFit;
+use crate::run::located::located;
+use crate::trust::coverage_check::held_out_check;
+use crate::trust::expected::expectations_with_terms;
+use crate::{Accuracy, Correction, JointEffect, Models, Robustness, Trust, set_accuracy};
+use poecal_fit::analysis::{Identifiability, Setup, identifiability};
+use poecal_fit::start::{register, register_again};
+use poecal_fit::state::Session;
+use poecal_fit::uncertainty::CrossValidation;
+use poecal_model::measurement::ByQuantity;
+use poecal_model::robot::Robot;
+use poecal_numerics::unit::Unit;
+
+/// Factor on the noise of rotations where tool and frame are registered for the best positions.
+const POSITIONS_FIRST: f64 = 100.0;
+
+/// Figures of what was fitted.
+pub(crate) struct Figures {
+    pub(crate) models: Models,
+    pub(crate) accuracy: Accuracy,
+    pub(crate) robustness: Robustness,
+    pub(crate) trust: Trust,
+    pub(crate) identifiability: Identifiability,
+    pub(crate) correction: Option<Correction>,
+}
+
+impl Figures {
+    /// Correlation of the residuals of consecutive rows.
+    pub(crate) fn lag_one(&self) -> Option<f64> {
+        self.trust.uncertainty.as_ref()?.discrepancy.lag_one
+    }
+
+    /// Adds to each suspicious joint what the corrected model finds there.
+    pub(crate) fn explain_suspicions(&mut self, robot: &Robot) {
+        let Some(found) = &self.correction else { return };
+        for (joint, correction) in robot.joints.iter().zip(&mut self.trust.joints) {
+            let own = found.effects.each.iter().filter(|it| it.joint == joint.name && it.is_found()).take(2);
+            let found: Vec<String> = own.map(JointEffect::words).collect();
+            if let Some(words) = correction.suspicious.as_mut().filter(|_| !found.is_empty()) {
+                *words = format!("{words}. By the corrected model {}", found.join(", and "));
+            }
+        }
+    }
+}
+
+impl CalibratedFit<'_> {
+    /// Computes the figures.
+    pub(crate) fn figures(
+        &self,
+        summary: &FitSummary,
+        corrected: Option<CorrectedFit>,
+        cross_validation: Option<CrossValidation>,
+    ) -> Figures {
+        let (run, session, RobustFit { fitted, robustness }) = (&self.run, self.session(), &self.robust);
+        let models = self.models(&session, &summary.kept);
+        let of = |rows: &[u32]| set_accuracy(&session, rows, &models);
+        let rows = [&run.fit_rows[..], &run.held_out_rows[..]];
+        let robustness = robustness.clone().beside(rows, of);
+        let mut trust =
+            trust(&summary.view(session, &self.estimate), summary, cross_validation, run.options.seed);
+        let correction = corrected.map(|it| it.judged(self, trust.cross_validation.as_ref()));
+        if let Some(found) = correction.as_ref().filter(|it| !it.has_terms()) {
+            self.allow_for_terms(&session, &mut trust, found);
+        }
+        let predicted = trust.uncertainty.as_ref().map(|it| (it, &trust.coverage[..]));
+        let of_calibrated = (&session, &models.calibrated);
+        trust.held_out = held_out_check(of_calibrated, (&run.fit_rows, &run.held_out_rows), predicted);
+        let held_out = (!run.held_out_rows.is_empty()).then(|| of(&run.held_out_rows));
+        let mut accuracy = Accuracy { training: of(&run.fit_rows), held_out };
+        if let Some(found) = &correction {
+            accuracy.training.corrected = Some(found.training);
+            accuracy.held_out.iter_mut().for_each(|set| set.corrected = found.held_out);
+        }
+        let setup = Setup {
+            session,
+            rows: &run.fit_rows,
+            estimate: &fitted.estimate,
+            layout: &fitted.layout,
+            noise: fitted.noise,
+        };
+        let identifiability = identifiability(&setup, &fitted.normal.gram, summary.remainder.variance);
+        let effective_unknowns = summary.remainder.effective_unknowns;
+        let identifiability = Identifiability { effective_unknowns, ..identifiability };
+        Figures { models, accuracy, robustness, trust, identifiability, correction }
+    }
+
+    /// The three models; the first two are registered by the rows that a robust fit keeps, the third in the nominal base frame.
+    fn models(&self, session: &Session<'_>, kept: &[u32]) -> Models {
+        let (run, noise) = (&self.run, self.noise());
+        // Positions decide tool and frame; orientations decide only the directions that positions do not determine.
+        let positions = ByQuantity::from_fn(|quantity| match quantity.unit() {
+            Unit::Metre => noise[quantity],
+            Unit::Radian | Unit::One | Unit::Second => POSITIONS_FIRST * noise[quantity],
+        });
+        let start = &self.start.registered;
+        let registration =
+            |targets_free| run.registration(*session, kept, positions, targets_free).weighed_by(start);
+        let again = |targets_free| register(&registration(targets_free), &run.delivered).0;
+        let registered = if self.robust.robustness.loss.is_some() {
+            again(true)
+        } else {
+            register_again(&registration(true), start)
+        };
+        let [nominal, registered] =
+            [again(false), registered].map(|it| located(session, &run.fit_rows, &it, noise).into_owned());
+        Models { nominal, registered, calibrated: self.estimate.clone() }
+    }
+
+    /// Beside a corrected model without terms, what terms might be there stays a part of the uncertainty of geometry, so that both are one.
+    fn allow_for_terms(&self, session: &Session<'_>, trust: &mut Trust, found: &Correction) {
+        let Some(uncertainty) = trust.uncertainty.as_mut() else { return };
+        let of = (uncertainty, &trust.expected, &found.expected);
+        let seed = self.run.options.seed;
+        if let Some(expected) =
+            expectations_with_terms(session, &self.run.fit_rows, &trust.coverage, of, seed)
+        {
+            trust.expected = expected;
+        }
+    }
+}

@@ -1,0 +1,152 @@
+//! Result of a calibration.
+
+use std::borrow::Cow;
+use std::sync::Arc;
+
+use crate::pictures::image_map::ImageMap;
+use crate::run::placed::{CalibratedStation, CalibratedTarget};
+use crate::{
+    Acceptance, Accuracy, CalibrationOptions, Correction, DeviceFrameKnowledge, Event, Formulation, Models,
+    NoiseSource, Robustness, SolverReport, Trust, Verdict, fit_screws,
+};
+use poecal_arm::lie::Pose;
+use poecal_fit::analysis::Identifiability;
+use poecal_fit::forensics::Diagnosis;
+use poecal_fit::problem::Prior;
+use poecal_fit::state::{Packed, Session, Unknowns};
+use poecal_model::measurement::{Dataset, Noise};
+use poecal_model::robot::{Robot, Tolerance};
+use poecal_numerics::{solve, threads};
+
+/// A finished calibration.
+///
+/// ```
+/// use poecal_calibrate::CalibrationOptions;
+/// use poecal_calibrate::steps::calibrate;
+/// use poecal_model::simulate::{Kind, Simulation, elbow};
+/// let simulation = Simulation { noise_position_m: 0.0, noise_rotation_rad: 0.0, ..Simulation::default() };
+/// let made = simulation.run(&elbow(), Kind::POSE)?;
+/// let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default())?;
+/// let held_out = calibration.accuracy.held_out.expect("30 % are held out");
+/// assert!(held_out.calibrated.position_mm().max < 1e-6);
+/// # Ok::<(), poecal_numerics::error::Error>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Calibration {
+    /// The nominal robot.
+    pub nominal: Robot,
+    /// The calibrated robot; targets and instruments of the model that were used are at their calibrated places.
+    pub robot: Robot,
+    /// The targets.
+    pub targets: Vec<CalibratedTarget>,
+    /// What was known of the device's frame.
+    pub frame: DeviceFrameKnowledge,
+    /// What the fit changed.
+    pub unknowns: Unknowns,
+    /// How the fit was written and minimised.
+    pub formulation: Formulation,
+    /// Tolerance of the prior, if cross-validation chose it.
+    pub chosen_tolerance: Option<Tolerance>,
+    /// `base_from_device`, of the first station.
+    pub base_from_device: Pose,
+    /// All stations, in the order of [`Dataset::stations`]; at least one.
+    pub stations: Vec<CalibratedStation>,
+    /// The three models.
+    pub models: Models,
+    /// Errors of the three models on training and held-out rows.
+    pub accuracy: Accuracy,
+    /// The minimisation.
+    pub solver: SolverReport,
+    /// Which unknowns the measurements determine.
+    pub identifiability: Identifiability,
+    /// Uncertainty, cross-validation, corrections.
+    pub trust: Trust,
+    /// Whether the limits that were asked for are kept; none if none were.
+    pub acceptance: Option<Acceptance>,
+    /// Verdict with its reasons, on the model that is delivered.
+    pub verdict: Verdict,
+    /// Noise by which residuals were whitened where a row stated none; of the first of several instruments.
+    pub noise: Noise,
+    /// Noise of each instrument in units of the first one's; empty if all are alike.
+    pub noise_ratios: Vec<Noise>,
+    /// Source of that noise.
+    pub noise_source: NoiseSource,
+    /// Outliers, and the judgement of each row.
+    pub robustness: Robustness,
+    /// Warnings, a sentence each.
+    pub warnings: Vec<String>,
+    /// Mistakes found in all rows: named, not corrected.
+    pub diagnosis: Vec<Diagnosis>,
+    /// What happened during the session and was repaired ([`calibrate_repairing`](crate::calibrate_repairing)).
+    pub repairs: Vec<Event>,
+    /// What seems to have happened and was not.
+    pub suspicions: Vec<Event>,
+    /// Rows fitted.
+    pub fit_rows: Vec<u32>,
+    /// Rows held out.
+    pub held_out_rows: Vec<u32>,
+    /// The corrected model: screws and terms fitted together; none if no terms were asked for.
+    pub correction: Option<Box<Correction>>,
+    /// Errors of corners over the image of each camera whose picture has a known size.
+    pub images: Vec<ImageMap>,
+    /// Joint values of its measurements with their sines and cosines.
+    pub(crate) packed: Arc<Packed>,
+}
+
+/// A calibration, and the session that it is of.
+#[derive(Clone, Debug)]
+pub struct Repaired<'a> {
+    /// The calibration, with what was repaired and what is suspected.
+    pub calibration: Calibration,
+    /// The measurements as they were fitted: those given where nothing was repaired but rows left out.
+    pub data: Cow<'a, Dataset>,
+}
+
+impl Calibration {
+    /// Joint values of measurements; the stored ones for the data of the calibration.
+    pub fn packed(&self, data: &Dataset) -> Arc<Packed> {
+        if self.packed.is_of(&self.nominal, data) {
+            return Arc::clone(&self.packed);
+        }
+        Arc::new(Packed::of(&self.nominal, data))
+    }
+
+    /// The session of these measurements and their joint values.
+    pub fn session<'a>(&'a self, data: &'a Dataset, packed: &'a Packed) -> Session<'a> {
+        Session::new(&self.nominal, data, packed, self.frame == DeviceFrameKnowledge::Unknown)
+            .with_unknowns(&self.unknowns)
+    }
+
+    /// The calibrated robot with the named targets in its tip frame, as written to model files.
+    #[must_use]
+    pub fn robot_with_targets(&self) -> Robot {
+        let is_mounted = |name: &str| self.robot.mounted.iter().any(|mount| mount.name == name);
+        let named = |target: &CalibratedTarget| {
+            let name = target.name.clone().filter(|name| !is_mounted(name))?;
+            Some((name, target.tip_from_target))
+        };
+        Robot { targets: self.targets.iter().filter_map(named).collect(), ..self.robot.clone() }
+    }
+
+    /// Solves the least-squares problem of a finished calibration again, from the nominal (with an unknown device frame, the registered)
+    /// model to the optimum: packing and minimisation, with the final noise and all fitted rows at full weight. For comparisons of solvers.
+    #[must_use]
+    pub fn solve_again(&self, data: &Dataset, options: &CalibrationOptions) -> solve::Summary {
+        threads::in_pool(data.len(), || self.solved_again(data, options))
+    }
+
+    fn solved_again(&self, data: &Dataset, options: &CalibrationOptions) -> solve::Summary {
+        let packed = Packed::of(&self.nominal, data);
+        let session = self.session(data, &packed);
+        let start = match self.frame {
+            DeviceFrameKnowledge::Base => self.models.nominal.clone(),
+            DeviceFrameKnowledge::Unknown => self.models.registered.clone(),
+        };
+        let prior = options.prior(&session);
+        let lacks_length = session.lacks_length(&self.fit_rows);
+        let of = |prior: &Prior| prior.looseness(&self.models.calibrated);
+        let looseness = |prior: &Prior| if lacks_length { 1.0 } else { of(prior) };
+        let prior = prior.as_ref().map(|prior| (prior, 1.0 / looseness(prior)));
+        fit_screws(session, &self.fit_rows, start, self.noise, prior, options).2
+    }
+}

@@ -1,0 +1,65 @@
+//! Whether poses of a camera are predicted better if the arm is fitted with the camera.
+
+use crate::acceptance::AcceptedModel;
+use crate::run::accuracy::ModelAccuracy;
+use crate::run::options::CalibrationOptions;
+use crate::steps::calibrate::calibrate;
+use poecal_arm::lie::Pose;
+use poecal_fit::hand_eye::{CameraPlace, HandEye, PoseList};
+use poecal_model::measurement::{Dataset, Measurement};
+use poecal_model::robot::Robot;
+use poecal_numerics::error::Result;
+
+/// Errors of poses that were held out, root mean square, by the arm as its model has it and by one that was fitted with the camera.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ArmToo {
+    /// Number of these poses.
+    pub rows: usize,
+    /// By the arm as it is: millimetres and degrees.
+    pub held: (f64, f64),
+    /// By an arm whose axes were fitted too.
+    pub fitted: (f64, f64),
+}
+
+impl ArmToo {
+    /// Whether the fitted arm predicts these poses evidently better.
+    #[must_use]
+    pub fn is_better(&self) -> bool {
+        const EVIDENT: f64 = 0.9;
+        self.fitted.0 < EVIDENT * self.held.0
+    }
+}
+
+/// The session of a hand-eye calibration whose arm's poses are by joint readings, one configuration after the other: the rows that count, each the
+/// pose of what is on the flange as the other frame sees it. So `calibrate` reads it.
+///
+/// # Errors
+/// [`ErrorKind::Measurement`](poecal_numerics::error::ErrorKind::Measurement) if the readings are not those of the robot.
+pub fn session_of(robot: &Robot, joints: &[f64], target: &PoseList, found: &HandEye) -> Result<Dataset> {
+    let names = robot.reading_names();
+    let width = names.len().max(1);
+    let mut data = Dataset::new(names);
+    let rows = joints.chunks_exact(width).zip(&target.poses).zip(&found.rows);
+    for ((readings, pose), _) in rows.filter(|(_, row)| row.is_fitted) {
+        let camera_from_target: Pose = if found.directions.target_inverted { pose.inverse() } else { *pose };
+        let (name, measured) = match found.camera {
+            CameraPlace::InHand => ("camera", camera_from_target.inverse()),
+            CameraPlace::Beside => ("target", camera_from_target),
+        };
+        data.push(readings, Some(name), Measurement::of_pose(&measured))?;
+    }
+    Ok(data)
+}
+
+/// Errors of held-out poses of such a session with the arm as it is, and fitted too; `None` if no rows could be held out.
+///
+/// # Errors
+/// As [`calibrate`], as of too few poses.
+pub fn arm_too(robot: &Robot, data: &Dataset) -> Result<Option<ArmToo>> {
+    let found = calibrate(robot, data, &CalibrationOptions::default())?;
+    let Some(errors) = found.accuracy.held_out else { return Ok(None) };
+    let is_corrected = found.verdict.model == Some(AcceptedModel::Corrected);
+    let delivered = errors.corrected.filter(|_| is_corrected).unwrap_or(errors.calibrated);
+    let of = |model: &ModelAccuracy| (model.position_mm().rms, model.rotation_deg().map_or(0.0, |it| it.rms));
+    Ok(Some(ArmToo { rows: errors.count, held: of(&errors.registered), fitted: of(&delivered) }))
+}

@@ -1,0 +1,370 @@
+//! A finished calibration judged by other measurements.
+
+use serde::Serialize;
+
+use crate::acceptance::{Acceptance, AcceptedModel};
+use crate::run::accuracy::{ModelAccuracy, model_accuracy};
+use crate::run::count::{measurements_words, of_device};
+use crate::steps::verdict::Level;
+use crate::trust::coverage_check::{
+    CoverageCheck, InSampledRange, JudgedRow, JudgedRows, PartCoverage, PredictedUncertainty, ROUNDING,
+    coverage_checks, promised_rows,
+};
+use crate::{DeviceFrameKnowledge, corner_error, delivered};
+use poecal_arm::lie::{Freedom, Pose};
+use poecal_fit::problem::MOST_UNKNOWNS;
+use poecal_fit::start::{Registration, free_parameters, register};
+use poecal_fit::state::{Packed, Range, Session};
+use poecal_model::measurement::{Dataset, Noise};
+use poecal_model::robot::Robot;
+use poecal_numerics::error::{ErrorKind, Result};
+
+/// Least share of the errors inside their 95 % bounds.
+const INSIDE: f64 = 0.8;
+/// Largest ratio of the error to the expected error.
+const TIMES: f64 = 2.0;
+
+/// A calibration to be judged, and the parts of it to be refitted to the judging measurements.
+#[derive(Clone, Copy, Debug)]
+pub struct Subject<'a> {
+    /// The calibrated robot with its named targets.
+    pub calibrated: &'a Robot,
+    /// The nominal robot.
+    pub nominal: &'a Robot,
+    /// Device frame of the calibration.
+    pub base_from_device: Pose,
+    /// Those of further stations, in the order of the judging measurements.
+    pub further_base_from_device: &'a [Pose],
+    /// Zeros and scales of the distances of the stations, in that order; empty if all are plain.
+    pub ranges: &'a [Range],
+    /// What was known of the device's frame.
+    pub frame: DeviceFrameKnowledge,
+    /// Noise by which positions and rotations are weighted in a refit.
+    pub noise: Noise,
+    /// Refit the device frame.
+    pub refit_frame: bool,
+    /// Refit every measured target.
+    pub refit_tool: bool,
+    /// Predicted uncertainty of the calibration; of refitted parts, only the screws' part of it counts.
+    pub uncertainty: Option<PredictedUncertainty<'a>>,
+}
+
+/// A part that was refitted to the judging measurements.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Refitted {
+    /// Device frame.
+    DeviceFrame,
+    /// Places of the targets, and their orientations where measured.
+    Tool,
+}
+
+/// Errors of a calibration on other measurements.
+///
+/// ```
+/// use poecal_model::measurement::{Measured, Quantity};
+/// use poecal_calibrate::{Judgement, Statistic};
+/// let errors = Statistic { mean: 0.1, rms: 0.11, p95: 0.2, max: 0.25 };
+/// let calibrated = Measured::of(|quantity| (quantity == Quantity::Position).then_some(errors));
+/// let judgement = Judgement { count: 20, refitted: vec![], calibrated: calibrated.into(), corrected: None, nominal: None, promised: None,
+///     in_sampled_range: None, acceptance: None, moved_device: None, base_from_device: poecal_arm::lie::Pose::identity(),
+///     rows: vec![] };
+/// assert_eq!(judgement.calibrated.position_mm().max, 0.25);
+/// ```
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Judgement {
+    /// Number of measurements.
+    pub count: usize,
+    /// Refitted parts.
+    pub refitted: Vec<Refitted>,
+    /// Errors of the calibrated model.
+    pub calibrated: ModelAccuracy,
+    /// Errors of the corrected model, with its own coverage; `None` if the calibration has none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub corrected: Option<JudgedModel>,
+    /// Errors of the nominal model with the same refit; `None` unless tool and an unknown device frame were both refitted.
+    pub nominal: Option<ModelAccuracy>,
+    /// Coverage of the predicted bounds, if there are any.
+    pub promised: Option<CoverageCheck>,
+    /// The same for rows inside the sampled range; `None` without such rows or without predicted bounds.
+    pub in_sampled_range: Option<InSampledRange>,
+    /// Whether the limits that were asked for are kept; `None` if none were.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub acceptance: Option<Acceptance>,
+    /// That the device stands elsewhere than at the calibration, where the rows show it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub moved_device: Option<MovedDevice>,
+    /// Where the first device stands: as in the calibration, or as it was refitted.
+    #[serde(skip)]
+    pub base_from_device: Pose,
+    /// Errors of each row by the model that is delivered, in the order read: the corrected one, if there is one.
+    #[serde(skip)]
+    pub rows: Vec<JudgedRow>,
+}
+
+/// How far a device stands from where the calibration has it.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct MovedDevice {
+    /// Distance, millimetres.
+    pub shift_mm: f64,
+    /// Angle, degrees.
+    pub turn_deg: f64,
+    /// Error of the delivered model (RMS of the leading quantity, millimetres or degrees) with the frame of the calibration.
+    pub before_rms: f64,
+    /// The same with the frame refitted.
+    pub after_rms: f64,
+    /// Whether it was refitted for that.
+    pub refitted: bool,
+}
+
+/// Errors of a model, and coverage of its predicted bounds.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct JudgedModel {
+    /// Its errors.
+    #[serde(flatten)]
+    pub errors: ModelAccuracy,
+    /// Coverage of the predicted bounds, if there are any.
+    pub promised: Option<CoverageCheck>,
+    /// The same for rows inside the sampled range; `None` without such rows or without predicted bounds.
+    pub in_sampled_range: Option<InSampledRange>,
+}
+
+/// Judges a calibration by measurements: theory.md §9, *Coverage*. The readings must be those of the robot, and every target one of its
+/// targets unless the tool is refitted.
+///
+/// # Errors
+/// [`ErrorKind::Problem`] if there are fewer measured numbers than unknowns to be refitted, or none at all.
+///
+/// ```
+/// use poecal_calibrate::{CalibrationOptions, DeviceFrameKnowledge, Subject};
+/// use poecal_calibrate::steps::calibrate;
+/// use poecal_calibrate::validate::judge;
+/// use poecal_model::simulate::{Kind, Simulation, elbow};
+/// let exact = Simulation { noise_position_m: 0.0, noise_rotation_rad: 0.0, ..Simulation::default() };
+/// let made = exact.run(&elbow(), Kind::POINT)?;
+/// let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default())?;
+/// let calibrated = calibration.robot_with_targets();
+/// let subject = Subject {
+///     calibrated: &calibrated,
+///     nominal: &calibration.nominal,
+///     base_from_device: calibration.base_from_device,
+///     further_base_from_device: &[],
+///     ranges: &[],
+///     frame: DeviceFrameKnowledge::Unknown,
+///     noise: calibration.noise,
+///     refit_frame: false,
+///     refit_tool: false,
+///     uncertainty: None,
+/// };
+/// let judgement = judge(&subject, &made.data)?;
+/// assert!(judgement.calibrated.position_mm().max < 1e-6);
+/// assert!(judgement.nominal.is_none());
+/// # Ok::<(), poecal_numerics::error::Error>(())
+/// ```
+pub fn judge(subject: &Subject<'_>, data: &Dataset) -> Result<Judgement> {
+    check_count(subject, data)?;
+    let mut refitted = Vec::new();
+    if subject.refit_frame {
+        refitted.push(Refitted::DeviceFrame);
+    }
+    if subject.refit_tool {
+        refitted.push(Refitted::Tool);
+    }
+    let frame_is_common = subject.refit_frame || subject.frame == DeviceFrameKnowledge::Base;
+    let nominal = (frame_is_common && subject.refit_tool).then(|| {
+        let packed = Packed::of(subject.nominal, data);
+        model_accuracy(data, &data.all_rows(), &judged_rows(subject, subject.nominal, data, &packed).errors)
+    });
+    let packed = Packed::of(subject.calibrated, data);
+    let rows = judged_rows(subject, subject.calibrated, data, &packed);
+    let promised =
+        subject.uncertainty.and_then(|predicted| promised_rows(&predicted, subject.refit_tool, &rows));
+    let (promised, in_sampled_range, mut each) = match promised {
+        None => (None, None, rows.errors.iter().map(JudgedRow::of).collect::<Vec<_>>()),
+        Some(each) => {
+            let (all, some) = coverage_checks(data, &each, &rows.errors);
+            (Some(all), some, each)
+        }
+    };
+    for (row, (judged, error)) in (0..).zip(each.iter_mut().zip(&rows.errors)) {
+        judged.corners = corner_error(data, row, error);
+    }
+    let calibrated = model_accuracy(data, &data.all_rows(), &rows.errors);
+    Ok(Judgement {
+        count: data.len(),
+        refitted,
+        calibrated,
+        corrected: None,
+        nominal,
+        promised,
+        in_sampled_range,
+        acceptance: None,
+        moved_device: None,
+        base_from_device: rows.estimate.device_from_base.inverse(),
+        rows: each,
+    })
+}
+
+/// Errors of a robot's predictions, with device frame and targets refitted as asked.
+pub(crate) fn judged_rows<'a>(
+    subject: &Subject<'_>,
+    robot: &'a Robot,
+    data: &'a Dataset,
+    packed: &'a Packed,
+) -> JudgedRows<'a> {
+    let session = Session::new(robot, data, packed, subject.refit_frame);
+    let rows: Vec<u32> = data.all_rows();
+    let mut estimate = delivered(robot, data);
+    estimate.device_from_base = subject.base_from_device.inverse();
+    let mut free = Vec::new();
+    for (device, base_from_device) in
+        estimate.further_devices.iter_mut().zip(subject.further_base_from_device)
+    {
+        *device = base_from_device.inverse();
+    }
+    estimate.ranges = subject.ranges.to_vec();
+    if subject.refit_frame || subject.refit_tool {
+        let registration = Registration {
+            session,
+            rows: &rows,
+            noise: subject.noise,
+            targets_free: subject.refit_tool,
+            prior: None,
+        };
+        estimate = register(&registration, &estimate).0;
+        free = free_parameters(&registration, &rows);
+    }
+    let errors = session.errors(&rows, &estimate);
+    JudgedRows { session, estimate, errors, free }
+}
+
+/// Refuses measurements that cannot determine the refitted unknowns, and empty ones.
+pub(crate) fn check_count(subject: &Subject<'_>, data: &Dataset) -> Result<()> {
+    let frames = (0..data.station_count()).map(|station| of_device(data, station, &data.all_rows()));
+    let frame: usize = if subject.refit_frame { frames.sum() } else { 0 };
+    let targets = data.target_freedoms(&data.all_rows()).into_iter().map(Freedom::count);
+    let tool: usize = if subject.refit_tool { targets.sum() } else { 0 };
+    if tool > MOST_UNKNOWNS {
+        return ErrorKind::Problem.refuse(format!(
+            "found {tool} unknowns of {} targets to be refitted, expected at most {MOST_UNKNOWNS} in one fit: \
+             leave --refit-tool out, or judge fewer targets",
+            data.targets.len()
+        ));
+    }
+    let given: usize = data.observations.iter().map(|row| row.measurement.dim()).sum();
+    if given > frame + tool {
+        return Ok(());
+    }
+    ErrorKind::Problem.refuse(format!(
+            "found {} with {given} measured numbers, expected more than the {} unknowns to be refitted \
+             ({frame} of the device frame, {tool} of the targets): measure more configurations, or refit less",
+            measurements_words(data.len()),
+            frame + tool
+        ))
+}
+
+/// Difference of two errors that are one, as a share: rounding of two fits of a frame.
+const SAME: f64 = 1e-6;
+
+/// What was found of the model that is delivered.
+#[derive(Clone, Copy, Debug)]
+pub struct DeliveredModel<'a> {
+    /// Which it is.
+    pub model: AcceptedModel,
+    /// Its errors.
+    pub errors: &'a ModelAccuracy,
+    /// Coverage of its predicted bounds, if there are any.
+    pub promised: Option<&'a CoverageCheck>,
+    /// The same for rows inside the sampled range.
+    pub in_sampled_range: Option<&'a InSampledRange>,
+}
+
+impl Judgement {
+    /// The corrected model, unless it is the calibrated one but for rounding: without terms.
+    #[must_use]
+    pub fn with_terms(&self) -> Option<&JudgedModel> {
+        let other = self.calibrated.lead().rms;
+        self.corrected.as_ref().filter(|model| (model.errors.lead().rms - other).abs() > SAME * other)
+    }
+
+    /// The model that is delivered: the corrected one where there is one with terms, otherwise the calibrated one.
+    #[must_use]
+    pub fn delivered(&self) -> DeliveredModel<'_> {
+        match self.with_terms() {
+            Some(found) => DeliveredModel {
+                model: AcceptedModel::Corrected,
+                errors: &found.errors,
+                promised: found.promised.as_ref(),
+                in_sampled_range: found.in_sampled_range.as_ref(),
+            },
+            None => DeliveredModel {
+                model: AcceptedModel::Calibrated,
+                errors: &self.calibrated,
+                promised: self.promised.as_ref(),
+                in_sampled_range: self.in_sampled_range.as_ref(),
+            },
+        }
+    }
+
+    /// The best level that the measurements confirm of the model that is delivered, and why not a better one, a sentence each; no level if the
+    /// calibration has no bounds to test.
+    #[must_use]
+    pub fn confirmed(&self) -> (Option<Level>, Vec<String>) {
+        if self.delivered().promised.is_none() {
+            return (None, Vec::new());
+        }
+        let mut reasons = Vec::new();
+        for asked in [Level::Good, Level::InsideSampledRange] {
+            match self.falls_short(asked) {
+                Some(reason) => reasons.push(reason),
+                None => return (Some(asked), reasons),
+            }
+        }
+        (Some(Level::DoNotUse), reasons)
+    }
+
+    /// Why the measurements do not confirm this level of the model that is delivered; `None` if they do. *Good* requires it of all rows, *use inside the sampled range* of
+    /// the rows inside it: at least 80 % of the errors inside their 95 % bounds, and the error (RMS) at most twice the expected one.
+    #[must_use]
+    pub fn falls_short(&self, required: Level) -> Option<String> {
+        let own = self.delivered();
+        let (which, found) = match required {
+            Level::DoNotUse => return None,
+            Level::InsideSampledRange => (
+                "inside the sampled range",
+                own.in_sampled_range.map(|some| (&some.calibrated, &some.promised)),
+            ),
+            Level::Good => ("of these rows", own.promised.map(|kept| (own.errors, kept))),
+        };
+        let Some((errors, kept)) = found else {
+            return Some(match own.promised {
+                None => "the calibration has no uncertainty, so there are no bounds to test".to_owned(),
+                Some(_) => "no row lies inside the sampled range".to_owned(),
+            });
+        };
+        let mut errors = kept
+            .parts
+            .iter()
+            .filter_map(|(quantity, part)| Some((quantity, part, errors.get(quantity)?.rms)));
+        errors.find_map(|(quantity, part, rms)| {
+            let (what, unit) = (quantity.name(), quantity.unit().symbol());
+            let PartCoverage { expected_rms, inside_bound95 } = part;
+            // Exact data leave only rounding.
+            if rms <= ROUNDING * 1e6 {
+                None
+            } else if inside_bound95 < INSIDE {
+                Some(format!(
+                    "{:.0} % of the {what} errors {which} are inside their 95 % bounds, {:.0} % are required",
+                    100.0 * inside_bound95,
+                    100.0 * INSIDE
+                ))
+            } else if rms > TIMES * expected_rms {
+                Some(format!(
+                    "the {what} error {which} is {rms:.3} {unit} (RMS), more than twice the expected {expected_rms:.3} {unit}"
+                ))
+            } else {
+                None
+            }
+        })
+    }
+}

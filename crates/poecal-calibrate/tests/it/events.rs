@@ -1,0 +1,224 @@
+//! What happens during a session: found, named, repaired where that is evident, and nothing is found where nothing happened.
+
+use nalgebra::Vector3;
+use poecal_arm::lie::rotation;
+use poecal_calibrate::{
+    Calibration, CalibrationOptions, EventKind, Repaired, Repairs, calibrate, calibrate_repairing,
+};
+use poecal_model::measurement::{Dataset, Measurement};
+use poecal_model::robot::Robot;
+use poecal_model::simulate::{Kind, Simulated, Simulation, elbow};
+
+use poecal_testing::trials::trials;
+
+const COUNT: usize = 80;
+/// What is said of readings that were all early.
+const EARLY: &str = "before they came to rest";
+
+fn session(seed: u64, kind: Kind) -> Simulated {
+    // Gears that give, so that the robot has errors of its own beside the noise.
+    let simulation = Simulation { count: COUNT, seed, noise_position_m: 5e-5, ..Simulation::default() };
+    simulation.run(&elbow(), kind).unwrap()
+}
+
+/// The measured places of the rows from one on, moved.
+fn moved(data: &mut Dataset, first: usize, by: impl Fn(usize, Vector3<f64>) -> Vector3<f64>) {
+    for (row, observation) in data.observations.iter_mut().enumerate().skip(first) {
+        observation.measurement = Measurement::point(by(row, observation.measurement.position().unwrap()));
+    }
+}
+
+fn found(robot: &Robot, data: &Dataset, options: &CalibrationOptions) -> (Calibration, Dataset) {
+    let Repaired { calibration, data } = calibrate_repairing(robot, data, options, &mut |_| {}).unwrap();
+    (calibration, data.into_owned())
+}
+
+/// Error of the first target's distances between places of the truth, which no frame changes. `slipped` is what the second joint reads more now.
+fn error_mm(made: &Simulated, calibration: &Calibration, slipped: f64) -> f64 {
+    let rows: Vec<&[f64]> = (0..COUNT).map(|row| made.data.readings(row)).collect();
+    let target = calibration.targets[0].tip_from_target.translation;
+    let is = |k: usize| made.actual.forward_kinematics(rows[k]).translation;
+    let found = |k: usize| {
+        let mut readings = rows[k].to_vec();
+        readings[1] += slipped;
+        calibration.robot.forward_kinematics(&readings).act(&target)
+    };
+    let off = |k: usize| {
+        let other = (k + 17) % COUNT;
+        (is(k) - is(other)).norm() - (found(k) - found(other)).norm()
+    };
+    let squares = (0..COUNT).map(|k| off(k).powi(2)).sum::<f64>();
+    1e3 * (squares / COUNT as f64).sqrt()
+}
+
+#[test]
+fn a_move_of_the_device_of_a_target_of_a_zero_and_a_drift_are_repaired() {
+    let trials = trials(8).at_least(4);
+    let tilt = |v: Vector3<f64>| rotation::exp(&Vector3::new(0.0, 0.002, 0.004)) * v;
+    for seed in trials.seeds() {
+        let clean = session(seed, Kind::POINT);
+        let (calibration, _) = found(&clean.nominal, &clean.data, &CalibrationOptions::default());
+        assert!(
+            calibration.repairs.is_empty() && calibration.suspicions.is_empty(),
+            "{:?}",
+            calibration.repairs
+        );
+        assert!(!calibration.warnings.iter().any(|it| it.contains(EARLY)), "{:?}", calibration.warnings);
+        let usual = error_mm(&clean, &calibration, 0.0);
+        let mut lines = vec![format!("seed {seed}: clean {usual:.4} mm")];
+        let mut check =
+            |words: &str, data: &Dataset, kind: EventKind, from_row: usize, size: f64, within: f64| {
+                let (calibration, repaired) = found(&clean.nominal, data, &CalibrationOptions::default());
+                let told: Vec<String> =
+                    calibration.suspicions.iter().map(|it| it.statement.clone()).collect();
+                assert_eq!(calibration.repairs.len(), 1, "{words}: {told:?} {:?}", calibration.repairs);
+                let event = &calibration.repairs[0];
+                let own = event.size_mm.or(event.size_deg).unwrap();
+                let slipped = if kind == EventKind::Zero { size.to_radians() } else { 0.0 };
+                let error = error_mm(&clean, &calibration, slipped);
+                lines.push(format!("  {words}: {} {error:.4} mm", event.statement));
+                assert_eq!((event.kind, event.from_row), (kind, from_row), "{}", event.statement);
+                assert!((own - size).abs() < within, "{}", event.statement);
+                assert!(event.error_after_mm.unwrap() < 0.8 * event.error_before_mm.unwrap());
+                // Half of the rows determine the arm with six numbers more: not by much worse.
+                assert!(error < 1.35 * usual + 0.01, "{words}: {error} mm, clean {usual} mm");
+                assert_eq!(repaired.len(), COUNT);
+                repaired
+            };
+        let mut data = clean.data.clone();
+        moved(&mut data, 40, |_, place| tilt(place) + Vector3::new(0.0, 0.002, 0.0));
+        let (calibration, _) = found(&clean.nominal, &data, &CalibrationOptions::default());
+        assert_eq!(calibration.repairs[0].kind, EventKind::Device);
+        let mut data = clean.data.clone();
+        moved(&mut data, 40, |_, place| place + Vector3::new(0.0, 0.0006, 0.0008));
+        let repaired = check("device 1 mm", &data, EventKind::Device, 41, 1.0, 0.1);
+        assert_eq!(repaired.stations.iter().flatten().collect::<Vec<_>>(), ["device", "device.2"]);
+        let mut data = clean.data.clone();
+        let axes: Vec<_> =
+            (0..COUNT).map(|row| clean.actual.forward_kinematics(clean.data.readings(row))).collect();
+        moved(&mut data, 40, |row, place| {
+            place + clean.device_from_base.rotation * axes[row].rotation * Vector3::new(0.001, 0.0, 0.0)
+        });
+        let repaired = check("target 1 mm", &data, EventKind::Target, 41, 1.0, 0.1);
+        assert_eq!(repaired.targets.iter().flatten().collect::<Vec<_>>(), ["measured", "measured.2"]);
+        let data = with_readings(&clean.data, |row, readings| {
+            if row >= 40 {
+                readings[1] += 0.2_f64.to_radians();
+            }
+        });
+        check("zero 0.2 deg", &data, EventKind::Zero, 41, 0.2, 0.02);
+        let mut data = clean.data.clone();
+        moved(&mut data, 0, |row, place| place + Vector3::new(0.0, 1e-3 * row as f64 / COUNT as f64, 0.0));
+        check("drift 1 mm", &data, EventKind::Drift, 1, 1.0, 0.15);
+        println!("{}", lines.join("\n"));
+    }
+}
+
+fn with_readings(data: &Dataset, change: impl Fn(usize, &mut [f64])) -> Dataset {
+    let mut other = Dataset::new(data.reading_names().to_vec());
+    other.targets.clone_from(&data.targets);
+    for row in 0..data.len() {
+        let mut readings = data.readings(row).to_vec();
+        change(row, &mut readings);
+        other.push_observation(&readings, data.observations[row]).unwrap();
+    }
+    other
+}
+
+#[test]
+fn configurations_that_are_wrong_as_a_whole_are_left_out() {
+    let clean = session(3, Kind::POSE);
+    let (calibration, _) = found(&clean.nominal, &clean.data, &CalibrationOptions::default());
+    let usual = error_mm(&clean, &calibration, 0.0);
+    // Read a degree before the arm was there.
+    let wrong = [7, 20, 33, 51, 64];
+    let data = with_readings(&clean.data, |row, readings| {
+        if wrong.contains(&row) {
+            readings.iter_mut().for_each(|value| *value += 0.01);
+        }
+    });
+    let (calibration, _) = found(&clean.nominal, &data, &CalibrationOptions::default());
+    let error = error_mm(&clean, &calibration, 0.0);
+    let known: Vec<u32> = calibration.robustness.suspects().collect();
+    println!(
+        "clean {usual:.4} mm, with wrong configurations {error:.4} mm: {known:?} {:?}",
+        calibration.repairs
+    );
+    assert_eq!(known, wrong.map(|row| row as u32));
+    assert!(error < 1.25 * usual);
+}
+
+#[test]
+fn without_repairs_an_evident_move_is_a_reason_not_to_use_the_result() {
+    let mut made = session(5, Kind::POINT);
+    moved(&mut made.data, 40, |_, place| place + Vector3::new(0.0, 0.002, 0.0));
+    let options = CalibrationOptions { repair: Repairs::Off, ..CalibrationOptions::default() };
+    let (calibration, data) = found(&made.nominal, &made.data, &options);
+    let [event] = &calibration.suspicions[..] else { panic!("{:?}", calibration.suspicions) };
+    println!("{:?}: {}", calibration.verdict.level, event.statement);
+    assert!(calibration.repairs.is_empty() && data == made.data);
+    assert_eq!((event.kind, event.error_after_mm), (EventKind::Device, None));
+    assert_eq!(calibration.verdict.reasons.first(), Some(&event.statement));
+    // What the library calibrates as it is given, it says too.
+    let plain = calibrate(&made.nominal, &made.data, &CalibrationOptions::default()).unwrap();
+    assert!(
+        plain.repairs.is_empty() && plain.warnings.iter().any(|it| it.contains("shifted by")),
+        "{:?}",
+        plain.warnings
+    );
+}
+
+/// Joints that turn at one speed and are read a constant time before they are there.
+#[test]
+fn readings_that_are_all_early_are_named_with_their_angle() {
+    for (seed, early_deg) in [(1, 0.05), (2, 0.2), (3, 0.1)] {
+        let made = session(seed, Kind::POINT);
+        let data = with_readings(&made.data, |row, readings| {
+            let Some(before) = row.checked_sub(1).map(|row| made.data.readings(row)) else { return };
+            let way: Vec<f64> = readings.iter().zip(before).map(|(own, before)| own - before).collect();
+            let largest = way.iter().fold(0.0, |most: f64, it| most.max(it.abs()));
+            readings
+                .iter_mut()
+                .zip(&way)
+                .for_each(|(own, way)| *own -= f64::to_radians(early_deg) * way / largest);
+        });
+        let (calibration, _) = found(&made.nominal, &data, &CalibrationOptions::default());
+        let said: Vec<&String> = calibration.warnings.iter().filter(|it| it.contains(EARLY)).collect();
+        println!("{early_deg} deg: {said:?} {:?}", calibration.repairs);
+        let [said] = said[..] else { panic!("{:?}", calibration.warnings) };
+        assert!(said.contains(&format!("{early_deg:.2} deg")), "{said}");
+        // The other way round nothing was early.
+        let data = with_readings(&made.data, |row, readings| {
+            if row + 1 < COUNT {
+                let after = made.data.readings(row + 1);
+                let way: Vec<f64> = after.iter().zip(&*readings).map(|(after, own)| after - own).collect();
+                let largest = way.iter().fold(0.0, |most: f64, it| most.max(it.abs()));
+                readings.iter_mut().zip(&way).for_each(|(own, way)| *own += 1e-3 * way / largest);
+            }
+        });
+        let (calibration, _) = found(&made.nominal, &data, &CalibrationOptions::default());
+        assert!(!calibration.warnings.iter().any(|it| it.contains(EARLY)), "{:?}", calibration.warnings);
+    }
+}
+
+/// What rounding makes is noise, up to half of what is left: the robot is better than the rows say.
+#[test]
+fn the_rounding_of_readings_is_noise_and_no_error_of_the_robot() {
+    for seed in trials(6).at_least(3).seeds() {
+        let made = session(seed, Kind::POINT);
+        let step = 0.1_f64.to_radians();
+        let data = with_readings(&made.data, |_, readings| {
+            readings.iter_mut().for_each(|value| *value = (*value / step).round() * step);
+        });
+        let (calibration, _) = found(&made.nominal, &data, &CalibrationOptions::default());
+        assert!(calibration.warnings.iter().any(|it| it.contains("are rounded to 0.1 deg")));
+        let left_mm = calibration.accuracy.held_out.unwrap().calibrated.position_mm().rms;
+        let expected_mm = calibration.verdict.expected_error_mm.unwrap();
+        // The truth is of points of the tip, which no row shows exactly: of distances of two.
+        let error_mm = error_mm(&made, &calibration, 0.0);
+        println!(
+            "seed {seed}: {left_mm:.3} mm left, {expected_mm:.3} mm expected, {error_mm:.3} mm of distances"
+        );
+        assert!(error_mm < 1.5 * expected_mm && expected_mm < 0.95 * left_mm);
+    }
+}

@@ -1,0 +1,229 @@
+//! Of the many ways to write one robot: predictions are the same in all, and the one chosen is nearest to nominal.
+
+use poecal_arm::lie::{Pose, rotation};
+use poecal_calibrate::{Calibration, CalibrationOptions, calibrate, delivered, radian_m};
+use poecal_fit::gauge::base_motion;
+use poecal_fit::state::{Chain, Estimate, Linkage, Packed};
+use poecal_model::measurement::{Dataset, Measurement};
+use poecal_model::robot::Robot;
+use poecal_model::simulate::{
+    Kind, Simulated, Simulation, elbow, gantry, random, random_chain, random_configuration, scara, seven_axis,
+};
+use poecal_testing::largest::larger;
+use poecal_testing::sessions as common;
+use poecal_testing::sessions::geometry;
+use rand_chacha::ChaCha8Rng;
+use rand_core::SeedableRng;
+
+/// Far above rounding at some metres, far below any device.
+const SAME: f64 = 1e-9;
+/// A gauge is settled to what its own iteration asks for.
+const SETTLED: f64 = 1e-9;
+/// Open directions are settled in a few rounds, each a thousandth of the one before; the last may leave nanometres.
+const STAYS: f64 = 1e-7;
+
+fn robots() -> Vec<Robot> {
+    vec![elbow(), scara(), gantry(), seven_axis(), random_chain(5, 2), random_chain(9, 4)]
+}
+
+fn simulated(robot: &Robot, kind: Kind) -> Simulated {
+    common::simulated(robot, kind, 80, 3)
+}
+
+fn calibrated(made: &Simulated) -> Calibration {
+    calibrate(&made.nominal, &made.data, &CalibrationOptions { tolerance: None, ..geometry() }).unwrap()
+}
+
+fn packed(robot: &Robot, data: &Dataset) -> Packed {
+    Packed::of(robot, data)
+}
+
+/// Largest distance and angle between predictions of two estimates.
+fn difference(a: &Estimate, b: &Estimate, data: &Dataset, packed: &Packed) -> (f64, f64) {
+    let (a, b) = (Linkage::new(a), Linkage::new(b));
+    let (mut at_a, mut at_b) = (Chain::default(), Chain::default());
+    (0..packed.rows()).fold((0.0, 0.0), |(shift, turn), row| {
+        let target = data.observations[row].target;
+        at_a.evaluate(&a, packed, row, target);
+        at_b.evaluate(&b, packed, row, target);
+        apart(&at_a.target, &at_b.target, (shift, turn))
+    })
+}
+
+fn apart(a: &Pose, b: &Pose, (shift, turn): (f64, f64)) -> (f64, f64) {
+    let angle = rotation::log(&(a.rotation * b.rotation.transpose())).norm();
+    (larger(shift, (a.translation - b.translation).norm()), larger(turn, angle))
+}
+
+/// What the gauge makes smallest, of the screws: tilts as arcs, and shifts seen from the nominal joint's origin (m²).
+fn deviation(estimate: &Estimate, robot: &Robot) -> f64 {
+    let length_m = robot.reach_m() / 3.0;
+    estimate.screws().iter().zip(&robot.joints).fold(0.0, |sum, (screw, joint)| {
+        let tilt = (screw.direction() - joint.screw.direction()).norm() * length_m;
+        let shift = screw.nearest_point(&joint.frame.translation) - joint.frame.translation;
+        sum + tilt.powi(2) + shift.norm_squared()
+    })
+}
+
+#[test]
+fn predictions_do_not_depend_on_the_gauge() {
+    let mut generator = ChaCha8Rng::seed_from_u64(1);
+    for robot in robots() {
+        let made = simulated(&robot, Kind::MIXED);
+        let estimate = calibrated(&made).models.calibrated;
+        let rows = packed(&robot, &made.data);
+        let motion = Pose::new(random::rotation(&mut generator), random::direction(&mut generator) * 2.0);
+        let (shift, turn) = difference(&estimate, &estimate.rebased(&motion), &made.data, &rows);
+        println!("{:12} {shift:.1e} m, {turn:.1e} rad", robot.name);
+        assert!(shift < SAME && turn < SAME);
+    }
+}
+
+#[test]
+fn gauge_brings_the_screws_nearest_to_nominal_once_and_for_all() {
+    let mut generator = ChaCha8Rng::seed_from_u64(2);
+    for robot in robots() {
+        let made = simulated(&robot, Kind::POSE);
+        let chosen = calibrated(&made).models.calibrated;
+        let packed = Packed::of(&robot, &made.data);
+        let length_m = radian_m(&robot, &packed);
+        let targets = delivered(&robot, &made.data).base_from_target;
+        let again = base_motion(&chosen, &robot, &targets, length_m).log().to_vector().norm();
+        let other = chosen.rebased(&Pose::exp(&common::random_twist(0.3, 0.2, &mut generator)));
+        let back = other.rebased(&base_motion(&other, &robot, &targets, length_m));
+        let [least, before, after] = [&chosen, &other, &back].map(|it| deviation(it, &robot).sqrt());
+        println!(
+            "{:12} second motion {again:.1e}; deviation {:.3} mm, moved away {:.1} mm, back {:.3} mm",
+            robot.name,
+            least * 1e3,
+            before * 1e3,
+            after * 1e3
+        );
+        assert!(again < SETTLED);
+        assert!(least < before && (after - least).abs() < SETTLED);
+    }
+}
+
+/// Deviation of one joint's screw from nominal.
+fn joint_deviation(result: &Calibration, joint: usize) -> f64 {
+    let screw = result.robot.joints[joint].screw.twist().to_vector();
+    (screw - result.nominal.joints[joint].screw.twist().to_vector()).norm()
+}
+
+/// A joint that stands still leaves its own axis open, or some combination with its neighbours: nominal is kept there.
+#[test]
+fn what_the_data_leave_open_stays_nominal() {
+    for (value, joint) in [(0.0, 2), (0.6, 2), (0.6, 0), (-1.1, 5)] {
+        let mut made = simulated(&elbow(), Kind::POSE);
+        let mut still = Dataset::new(made.nominal.reading_names());
+        let exact = made.device_from_base;
+        for row in 0..made.data.len() {
+            let mut readings = made.data.readings(row).to_vec();
+            readings[joint] = value;
+            let pose = exact * made.actual.forward_kinematics(&readings);
+            still.push(&readings, None, Measurement::of_pose(&pose)).unwrap();
+        }
+        made.data = still;
+        let result = calibrated(&made);
+        let held_out_m = result.accuracy.held_out.unwrap().calibrated.position_mm().max * 1e-3;
+        let deviation = joint_deviation(&result, joint);
+        // At zero the joint's own axis is open, and nothing else: it is exactly nominal. Elsewhere the later axes go with it.
+        assert!(value != 0.0 || deviation < STAYS, "{deviation:e}");
+        println!(
+            "joint {} at {value}: rank {} of {}, held out {held_out_m:.1e} m, its screw {deviation:.1e} off nominal",
+            joint + 1,
+            result.identifiability.rank,
+            result.identifiability.parameters
+        );
+        assert!(held_out_m < SAME);
+        assert!(result.identifiability.rank < result.identifiability.parameters);
+        let open = &result.identifiability.unidentifiable;
+        assert!(open.iter().any(|it| it.joints.contains(&format!("joint{}", joint + 1))), "{open:?}");
+    }
+}
+
+/// Targets of a session: name, whether a frame, and place in the tip frame.
+type Target = (Option<&'static str>, bool, Pose);
+
+fn session(robot: &Robot, targets: &[Target]) -> Simulated {
+    let simulation = Simulation { count: 0, seed: 5, ..Simulation::default() };
+    let mut made = simulation.run(robot, Kind::POSE).unwrap();
+    let mut generator = ChaCha8Rng::seed_from_u64(5);
+    for _ in 0..60 {
+        let readings = random_configuration(robot, &mut generator);
+        for (name, is_frame, tip_from_target) in targets {
+            let mut pose =
+                made.device_from_base * made.actual.forward_kinematics(&readings) * *tip_from_target;
+            pose.translation += random::normal_vector(&mut generator) * 5e-5;
+            let measurement =
+                if *is_frame { Measurement::of_pose(&pose) } else { Measurement::point(pose.translation) };
+            made.data.push(&readings, *name, measurement).unwrap();
+        }
+    }
+    made
+}
+
+/// The robot that is written, its tip and its targets, against the estimate that was fitted.
+#[test]
+fn calibrated_robot_predicts_what_the_estimate_predicts() {
+    let shifted = |x: f64| Pose::from_xyz_rpy([x, 0.1, 0.2], [0.3, -1.0, 2.0]);
+    let cases: [&[Target]; 4] = [
+        &[(None, true, shifted(0.0))],
+        &[(None, false, shifted(0.1))],
+        &[
+            (Some("a"), false, shifted(0.0)),
+            (Some("b"), true, shifted(0.2)),
+            (Some("c"), false, shifted(-0.1)),
+        ],
+        &[(None, true, shifted(0.0)), (Some("ball"), false, shifted(0.15))],
+    ];
+    for robot in [elbow(), gantry(), random_chain(7, 1)] {
+        for targets in cases {
+            let made = session(&robot, targets);
+            let result = calibrated(&made);
+            let device_from_base = result.base_from_device.inverse();
+            let rows = packed(&robot, &made.data);
+            let (linkage, mut chain) = (Linkage::new(&result.models.calibrated), Chain::default());
+            let mut largest = (0.0, 0.0);
+            for row in 0..made.data.len() {
+                let target = &result.targets[made.data.observations[row].target];
+                chain.evaluate(&linkage, &rows, row, made.data.observations[row].target);
+                let tip = device_from_base * result.robot.forward_kinematics(made.data.readings(row));
+                let mut predicted = tip * target.tip_from_target;
+                if !target.is_frame {
+                    predicted.rotation = chain.target.rotation;
+                }
+                largest = apart(&predicted, &chain.target, largest);
+            }
+            let names: Vec<_> = targets.iter().map(|it| (it.0.unwrap_or("tip"), it.1)).collect();
+            println!("{:12} {names:?}: {:.1e} m, {:.1e} rad", robot.name, largest.0, largest.1);
+            assert!(largest.0 < SAME && largest.1 < SAME);
+            check_tip(&result, targets);
+        }
+    }
+}
+
+/// An unnamed target is the tip; otherwise the tip stands on the last joint as nominally.
+fn check_tip(result: &Calibration, targets: &[Target]) {
+    let unnamed = result.targets.iter().find(|target| target.name.is_none());
+    let nominal = result.nominal.last_joint_from_tip();
+    let found = result.robot.last_joint_from_tip();
+    let (_, turn) = apart(&found, &nominal, (0.0, 0.0));
+    match unnamed {
+        Some(target) => {
+            assert!(apart(&target.tip_from_target, &Pose::identity(), (0.0, 0.0)).0 < SAME);
+            // Its place was some 0.2 m from the nominal tip.
+            assert!((found.translation - nominal.translation).norm() > 0.1);
+            assert!(targets[0].1 || turn < SAME);
+        }
+        None => {
+            assert!((found.translation - nominal.translation).norm() < SAME && turn < SAME);
+            let placed = result.targets.iter().zip(targets);
+            for (target, (_, _, truth)) in placed {
+                let off = target.tip_from_target.translation - truth.translation;
+                // As far off as the tip itself: its error is the target's, seen from the nominal tip.
+                assert!(off.norm() < 0.05, "{off}");
+            }
+        }
+    }
+}

@@ -1,0 +1,126 @@
+//! A joint with a bad transmission, or with an axis farther off than the others', is named; a sound robot is left alone.
+
+use nalgebra::Vector3;
+use poecal_arm::lie::{Pose, rotation};
+use poecal_calibrate::calibrate;
+use poecal_model::measurement::{Dataset, Measurement};
+use poecal_model::robot::{JointKind, Robot};
+use poecal_model::simulate::{
+    Kind, Simulation, elbow, gantry, random, random_configuration, scara, seven_axis,
+};
+use poecal_testing::sessions::geometry;
+use poecal_testing::trials::trials;
+use rand_chacha::ChaCha8Rng;
+use rand_core::SeedableRng;
+use rayon::prelude::*;
+
+/// Noise of the simulated points, metres.
+const NOISE_M: f64 = 5e-5;
+
+/// The suspicious joints with the words about them.
+fn named(robot: &Robot, data: &Dataset) -> Vec<(usize, String)> {
+    let found = calibrate(robot, data, &geometry()).unwrap();
+    let joints = found.trust.joints.into_iter().enumerate();
+    joints.filter_map(|(joint, it)| Some((joint, it.suspicious?))).collect()
+}
+
+/// Points of a robot one of whose joints errs by `amplitude` twice a turn (sliding: as a bow).
+fn with_bad_transmission(robot: &Robot, joint: usize, amplitude: f64, seed: u64) -> Dataset {
+    let simulation = Simulation { seed, ..Simulation::default() };
+    let mut generator = ChaCha8Rng::seed_from_u64(seed);
+    let actual = simulation.perturbed(robot, &mut generator);
+    let mut data = Dataset::new(robot.reading_names());
+    for _ in 0..200 {
+        let readings = random_configuration(robot, &mut generator);
+        let mut turned = readings.clone();
+        turned[joint] += match robot.joints[joint].kind {
+            JointKind::Revolute => amplitude * (2.0 * readings[joint] + 0.4).sin(),
+            JointKind::Prismatic => amplitude * (readings[joint] * 8.0).cos(),
+        };
+        // A point beside the last axis, so that every joint moves it.
+        let seen = actual.forward_kinematics(&turned).act(&Vector3::new(0.1, 0.02, 0.05));
+        let position = seen + random::normal_vector(&mut generator) * NOISE_M;
+        data.push(&readings, None, Measurement::point(position)).unwrap();
+    }
+    data
+}
+
+#[test]
+fn a_bad_transmission_is_named() {
+    let (mut right, mut all) = (0, 0);
+    let seeds = trials(5).seeds();
+    for robot in [elbow(), seven_axis(), scara(), gantry()] {
+        for joint in 0..robot.joints.len() {
+            let amplitude = match robot.joints[joint].kind {
+                JointKind::Revolute => 1e-3,
+                JointKind::Prismatic => 3e-4,
+            };
+            let found: Vec<_> = (seeds.clone())
+                .into_par_iter()
+                .map(|seed| named(&robot, &with_bad_transmission(&robot, joint, amplitude, 40 + seed)))
+                .collect();
+            let hits = found.iter().filter(|it| {
+                it.iter().any(|(named, words)| *named == joint && words.contains("follow its position"))
+            });
+            let hits = hits.count();
+            println!("{:12} {:12} {hits} of {seeds:?}: {:?}", robot.name, robot.joints[joint].name, found[0]);
+            right += hits;
+            all += found.len();
+        }
+    }
+    println!("{right} of {all} bad transmissions named");
+    assert!(right * 10 >= all * 9);
+}
+
+#[test]
+fn an_axis_that_stands_out_is_named() {
+    let (mut right, mut others, mut all) = (0, 0, 0);
+    for robot in [elbow(), seven_axis()] {
+        for joint in 0..robot.joints.len() {
+            let simulation = Simulation {
+                error_rotation_rad: 3e-3,
+                error_position_m: 4e-4,
+                count: 100,
+                seed: 7 + joint as u64,
+                ..Simulation::default()
+            };
+            let mut generator = ChaCha8Rng::seed_from_u64(simulation.seed);
+            let mut actual = simulation.perturbed(&robot, &mut generator);
+            let origin = robot.joints[joint].frame.translation;
+            let z = robot.joints[joint].screw.direction();
+            let across = z.cross(&random::direction(&mut generator)).normalize();
+            let turn = rotation::exp(&(across * 0.05));
+            let shift = z.cross(&across) * 8e-3;
+            let motion = Pose::new(turn, origin + shift - turn * origin);
+            let mut screws: Vec<_> = actual.joints.iter().map(|joint| joint.screw).collect();
+            screws[joint] = screws[joint].transformed(&motion);
+            actual = actual.with_screws(&screws);
+            let made = simulation.measure(&robot, actual, Kind::POSE, &mut generator).unwrap();
+            let found = named(&made.nominal, &made.data);
+            println!("{:12} {:12} {found:?}", robot.name, robot.joints[joint].name);
+            right += usize::from(found.iter().any(|(named, _)| *named == joint));
+            others += found.iter().filter(|(named, _)| *named != joint).count();
+            all += 1;
+        }
+    }
+    println!("{right} of {all} axes named, {others} others");
+    // With the device anywhere, an error of the first axis is one of all the others too.
+    assert!(right + 2 >= all && others <= 2);
+}
+
+#[test]
+fn sound_robots_are_not_suspected() {
+    let robots = [elbow(), scara(), seven_axis(), gantry()];
+    let sessions = trials(400);
+    let false_alarms: usize = (sessions.seeds())
+        .into_par_iter()
+        .map(|seed| {
+            let simulation = Simulation { seed: 900 + seed, count: 60, ..Simulation::default() };
+            let kind = if seed % 2 == 0 { Kind::POSE } else { Kind::POINT };
+            let made = simulation.run(&robots[seed as usize / 2 % 4], kind).unwrap();
+            named(&made.nominal, &made.data).len()
+        })
+        .sum();
+    println!("{false_alarms} false alarms on {} sound robots", sessions.count);
+    assert!(false_alarms as f64 <= (0.01 + sessions.more_of_a_share(0.01)) * sessions.count as f64);
+}

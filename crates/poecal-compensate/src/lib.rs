@@ -1,0 +1,349 @@
+//! What to command so that the robot as it is does what a program for its drawing meant.
+//!
+//! A part of [poecal](https://docs.rs/poecal): its interface follows the needs of the other parts and promises nothing by itself.
+
+#![forbid(unsafe_code)]
+
+mod inverse;
+mod kinematics;
+mod programs;
+mod reach;
+mod summary;
+mod table;
+
+use std::borrow::Cow;
+use std::sync::Arc;
+
+use poecal_arm::{Arm, Correction, Corrections};
+use reach::Reach;
+
+pub use inverse::Inverse;
+pub use kinematics::Kinematics;
+pub use poecal_arm::{MostChange, Outcome};
+pub use programs::{
+    LARGEST_PROGRAM, PoseCompensation, ProgramOptions, ProgramSummary, compensate_file, compensate_program,
+};
+pub use summary::{Checked, CorrectedTarget, Largest, Summary};
+pub use table::{TableOptions, compensate_table};
+
+pub use poecal_programs::{Given, Language, Listed};
+
+use poecal_model::robot::Robot;
+use poecal_numerics::error::{ErrorKind, Result};
+use poecal_numerics::threads::map_chunks;
+
+/// Distance (m) and angle (rad) below which a pose counts as reached.
+pub const REACHED: f64 = 1e-9;
+
+/// How far readings may be changed.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ChangeOptions {
+    /// How far a joint may move beyond its zero.
+    pub most_change: MostChange,
+    /// Whether the nearest configuration is taken where an arm of six or more joints cannot have the tip where it was meant.
+    pub nearest: bool,
+}
+
+/// Compensation of joint readings: those with which the actual robot has its tip where the nominal one has it,
+/// `base_from_tip(q) = nominal base_from_tip(q₀)`, on the branch of `q₀` (theory.md §2).
+#[derive(Clone, Debug)]
+pub struct Compensation {
+    corrections: Arc<Corrections>,
+    nearest: bool,
+    /// Of each reading of the arm, its index among the robot's.
+    readings: Vec<usize>,
+    names: Vec<String>,
+    /// The last change: where the next one begins.
+    last: Vec<f64>,
+    before: Vec<f64>,
+    /// Number of changes that are known of the configurations just before: 0, 1, or 2.
+    known: usize,
+    /// Number of configurations since the last one that began without.
+    since: usize,
+    expected: Vec<f64>,
+    q: Vec<f64>,
+    meant: Vec<f64>,
+    out: Vec<f64>,
+}
+
+/// A configuration, corrected or as it was.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Compensated<'a> {
+    /// Readings to command (rad, m), in the order of [`Robot::reading_names`].
+    pub readings: &'a [f64],
+    /// How far the actual robot's tip would have been off without correction, metres.
+    pub moved_m: f64,
+    /// The same of its orientation, radians.
+    pub turned_rad: f64,
+    /// Distance that is left, metres.
+    pub left_m: f64,
+    /// Angle that is left, radians.
+    pub left_rad: f64,
+    /// What became of it.
+    pub outcome: Outcome,
+    /// Whether it is corrected; otherwise the readings are as they were, and what is left is without correction.
+    pub is_corrected: bool,
+}
+
+impl Compensation {
+    /// Of two robots with the same joints, at these values of the actual one's factors.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Model`] if their joints differ, or as [`Robot::arm`].
+    pub fn new(nominal: &Robot, actual: &Robot, factors: &[f64], options: &ChangeOptions) -> Result<Self> {
+        Compensation::holding(nominal, actual, factors, &[], options)
+    }
+
+    /// The same where some readings (each by its index among the robot's, with its value in rad or m) stay as they are: the others are
+    /// corrected for them.
+    ///
+    /// # Errors
+    /// As [`Compensation::new`].
+    pub fn holding(
+        nominal: &Robot,
+        actual: &Robot,
+        factors: &[f64],
+        held: &[(usize, f64)],
+        options: &ChangeOptions,
+    ) -> Result<Self> {
+        let (nominal_arm, own) = nominal.arm_holding(&[], held)?;
+        let (actual_arm, readings) = actual.arm_holding(factors, held)?;
+        let names = actual.joint_reading_names();
+        let corrections = Corrections::new(&nominal_arm, &actual_arm, options.most_change);
+        let Some(corrections) =
+            corrections.filter(|_| names == nominal.joint_reading_names() && own == readings)
+        else {
+            return ErrorKind::Model
+                .refuse("the nominal robot has other joints than the actual one, expected the same");
+        };
+        let count = readings.len();
+        Ok(Compensation {
+            corrections: Arc::new(corrections),
+            nearest: options.nearest,
+            last: vec![0.0; count],
+            before: vec![0.0; count],
+            known: 0,
+            since: 0,
+            expected: vec![0.0; count],
+            q: vec![0.0; count],
+            meant: vec![0.0; count],
+            out: vec![0.0; names.len()],
+            readings,
+            names,
+        })
+    }
+
+    /// Names of the readings.
+    #[must_use]
+    pub fn names(&self) -> &[String] {
+        &self.names
+    }
+
+    /// The nominal arm.
+    #[must_use]
+    pub fn nominal(&self) -> &Arm {
+        self.corrections.nominal()
+    }
+
+    /// The actual arm.
+    #[must_use]
+    pub fn actual(&self) -> &Arm {
+        self.corrections.actual()
+    }
+
+    /// Corrections of the arms.
+    #[must_use]
+    pub fn corrections(&self) -> &Corrections {
+        &self.corrections
+    }
+
+    /// Of each reading of the arms, its index among all readings.
+    #[must_use]
+    pub fn readings(&self) -> &[usize] {
+        &self.readings
+    }
+
+    /// Whether readings are beyond the actual arm's limits.
+    #[must_use]
+    pub fn is_beyond_limits(&self, readings: &[f64]) -> bool {
+        let of = |&at: &usize| readings.get(at).copied().unwrap_or(0.0);
+        self.readings
+            .iter()
+            .map(of)
+            .zip(self.actual().limits())
+            .any(|(it, &(low, high))| it < low || it > high)
+    }
+
+    /// Readings of the actual robot for readings of the nominal one (rad, m); those that do not move the tip stay as they are, and all of a
+    /// configuration that cannot be corrected. The search begins with the changes before, and every [`TOGETHER`] configurations without.
+    pub fn joints(&mut self, meant: &[f64]) -> Compensated<'_> {
+        if self.since == TOGETHER {
+            self.forget();
+        }
+        self.since += 1;
+        self.out.clear();
+        self.out.extend_from_slice(meant);
+        self.out.resize(self.names.len().max(meant.len()), 0.0);
+        for (to, &at) in self.meant.iter_mut().zip(&self.readings) {
+            *to = meant.get(at).copied().unwrap_or(0.0);
+        }
+        let target = self.nominal().forward_kinematics(&self.meant);
+        let uncorrected = self.actual().forward_kinematics(&self.meant);
+        let (moved_m, turned_rad) = uncorrected.apart(&target);
+        if moved_m == 0.0 && turned_rad == 0.0 {
+            let nothing = Correction { outcome: Outcome::Reached, left_m: 0.0, left_rad: 0.0 };
+            return self.told((moved_m, turned_rad), nothing);
+        }
+        // Along a path, changes change evenly.
+        for (to, (last, before)) in self.expected.iter_mut().zip(self.last.iter().zip(&self.before)) {
+            *to = if self.known > 1 { 2.0 * last - before } else { *last };
+        }
+        let expected = (self.known > 0).then_some(&self.expected[..]);
+        let found = self.corrections.correct_to(&target, &self.meant, expected, &mut self.q);
+        if found.outcome == Outcome::Reached {
+            std::mem::swap(&mut self.last, &mut self.before);
+            for (last, (to, from)) in self.last.iter_mut().zip(self.q.iter().zip(&self.meant)) {
+                *last = to - from;
+            }
+            self.known = (self.known + 1).min(2);
+        } else {
+            self.known = 0;
+        }
+        if self.is_taken(found.outcome) {
+            for (&at, value) in self.readings.iter().zip(&self.q) {
+                if let Some(out) = self.out.get_mut(at) {
+                    *out = *value;
+                }
+            }
+        }
+        self.told((moved_m, turned_rad), found)
+    }
+
+    /// Whether what was found is commanded.
+    fn is_taken(&self, outcome: Outcome) -> bool {
+        match outcome {
+            Outcome::Reached | Outcome::Turned => true,
+            Outcome::Nearest => self.nearest || self.readings.len() < 6,
+            Outcome::TooFar(..) => false,
+        }
+    }
+
+    /// The largest change of a joint beyond its zero, over what is allowed.
+    #[must_use]
+    pub fn share_of_most(&self, meant: &[f64], commanded: &[f64]) -> f64 {
+        let own = |all: &[f64]| -> Vec<f64> {
+            self.readings.iter().map(|&at| all.get(at).copied().unwrap_or(0.0)).collect()
+        };
+        self.corrections.share_of_most(&own(meant), &own(commanded))
+    }
+
+    /// Why a configuration stays as it is, by what became of it and what is left (m, rad).
+    #[must_use]
+    pub fn reason(&self, outcome: Outcome, (left_m, left_rad): (f64, f64)) -> Cow<'static, str> {
+        match outcome {
+            Outcome::TooFar(joint, change) => {
+                let at = self.readings.get(joint).copied().unwrap_or(joint);
+                let slides = self.actual().screws().get(joint).is_some_and(|it| it.is_prismatic());
+                let most = self.corrections.most();
+                let in_words = |it: f64| if slides { format!("{:.3} mm", it * 1e3) } else { format!("{:.3} deg", it.to_degrees()) };
+                let most = if slides { most.sliding_m } else { most.turning_rad };
+                format!(
+                    "joint `{}` would have to move by {} beyond its zero, where {} are allowed: a singularity is near, or the \
+                     robot is far from its drawing (how far it may can be set)",
+                    self.names.get(at).map_or("", String::as_str),
+                    in_words(change),
+                    in_words(most)
+                )
+                .into()
+            }
+            Outcome::Nearest => format!(
+                "the actual robot does not reach it: {:.3} mm and {:.4} deg are left at the nearest configuration",
+                left_m * 1e3,
+                left_rad.to_degrees()
+            )
+            .into(),
+            Outcome::Reached | Outcome::Turned => Cow::Borrowed("it is corrected"),
+        }
+    }
+
+    /// The next configuration begins without those before.
+    fn forget(&mut self) {
+        (self.since, self.known) = (0, 0);
+    }
+
+    fn told(&self, moved: (f64, f64), found: Correction) -> Compensated<'_> {
+        Compensated {
+            readings: &self.out,
+            moved_m: moved.0,
+            turned_rad: moved.1,
+            left_m: found.left_m,
+            left_rad: found.left_rad,
+            outcome: found.outcome,
+            is_corrected: self.is_taken(found.outcome),
+        }
+    }
+
+    /// Readings of many configurations, one after the other, as [`Compensation::joints`] of a new compensation one by one, but by all threads;
+    /// and what changed, by the index of each row from 0, with every row, if that is asked for.
+    #[must_use]
+    pub fn of_many(&self, readings: &[f64], each: bool) -> (Vec<f64>, Summary) {
+        let width = self.names.len().max(1);
+        let parts = map_chunks(readings, TOGETHER * width, |_, some| {
+            let mut own = self.clone();
+            own.forget();
+            let mut out = Vec::with_capacity(some.len());
+            let mut found = Vec::with_capacity(some.len() / width);
+            for meant in some.chunks_exact(width) {
+                let it = own.joints(meant);
+                out.extend_from_slice(it.readings);
+                found.push(Compensated { readings: &[], ..it });
+            }
+            (out, found)
+        });
+        let mut summary = Summary::of_rows(self, each);
+        let mut out = Vec::with_capacity(readings.len());
+        for (some, found) in parts {
+            let first = out.len();
+            out.extend_from_slice(&some);
+            for (row, (meant, found)) in readings[first..].chunks_exact(width).zip(found).enumerate() {
+                let at = first / width + row;
+                if found.is_corrected {
+                    let commanded = &some[row * width..(row + 1) * width];
+                    summary.include(at, meant, &Compensated { readings: commanded, ..found });
+                } else {
+                    summary.list(at, "row", self.reason(found.outcome, (found.left_m, found.left_rad)));
+                }
+            }
+        }
+        (out, summary)
+    }
+}
+
+/// Configurations that are corrected one after the other, each from where the one before led; the next ones begin anew, so that several
+/// threads find the same bits.
+pub const TOGETHER: usize = 256;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use poecal_model::robot::{JointTerm, Term};
+    use poecal_testing::sessions::unlimited_elbow as elbow;
+
+    #[test]
+    fn an_offset_is_taken_off_the_reading() {
+        let nominal = elbow();
+        let mut actual = nominal.clone();
+        actual.terms.push(JointTerm { joint: 1, term: Term::OFFSET, coefficient: 0.01 });
+        let mut compensation = Compensation::new(&nominal, &actual, &[], &ChangeOptions::default()).unwrap();
+        let found = compensation.joints(&[0.1, 0.2, 0.3, 0.4, 0.5, 0.6]);
+        assert!((found.readings[1] - 0.19).abs() < 1e-12 && found.outcome == Outcome::Reached);
+    }
+
+    #[test]
+    fn a_robot_that_is_as_drawn_is_not_moved() {
+        let mut compensation = Compensation::new(&elbow(), &elbow(), &[], &ChangeOptions::default()).unwrap();
+        assert_eq!(compensation.joints(&[0.1; 6]).moved_m, 0.0);
+        let (out, summary) = compensation.of_many(&[0.1; 12], true);
+        assert_eq!((out, summary.rows, summary.moved_m.value), (vec![0.1; 12], 2, 0.0));
+    }
+}

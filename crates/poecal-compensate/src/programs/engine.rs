@@ -1,0 +1,389 @@
+//! Corrects the targets of a program.
+
+use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
+use std::ops::Range;
+
+use super::super::{ChangeOptions, Compensated, Compensation, Outcome, Summary};
+use super::fate::{Fate, Found, Placed, joined};
+use super::place::PoseCompensation;
+use super::reasons as reason;
+use super::written::{number, replaced, with_sign_as};
+use poecal_arm::lie::Pose;
+use poecal_model::robot::{Counting, Robot};
+use poecal_numerics::error::Result;
+use poecal_programs::Given;
+use poecal_programs::forms::PoseForm;
+use poecal_programs::parsed::{Meant, Motion, Parsed, Target};
+use poecal_programs::stated::Stated;
+
+/// Distance (m) and angle (rad) that rounding may leave of a corrected target.
+const ROUNDING: f64 = 2e-6;
+
+/// A corrected program.
+pub(crate) struct Corrected {
+    /// Its text.
+    pub(crate) text: Vec<u8>,
+    /// Targets that were corrected, and the configurations that they mean.
+    pub(crate) meant: Vec<(usize, Vec<f64>)>,
+    /// What changes, and what stays as it is.
+    pub(crate) summary: Summary,
+}
+
+/// Corrects a program's targets one after the other.
+pub(crate) struct Engine<'e> {
+    pub(crate) poses: PoseCompensation,
+    pub(crate) given: &'e Given,
+    /// Where the controller counts other readings than the model has.
+    pub(crate) counting: Option<Counting>,
+    robots: (&'e Robot, &'e Robot),
+    factors: &'e [f64],
+    options: &'e ChangeOptions,
+    /// Readings that programs state as external axes: they stay as they are, and the others are corrected for them.
+    external: Vec<usize>,
+    /// The compensation at each of their values, by the bits of these.
+    held: BTreeMap<Vec<u64>, PoseCompensation>,
+}
+
+impl<'e> Engine<'e> {
+    pub(crate) fn new(
+        robots: (&'e Robot, &'e Robot),
+        factors: &'e [f64],
+        given: &'e Given,
+        options: &'e ChangeOptions,
+    ) -> Result<Self> {
+        let poses = PoseCompensation::new(robots.0, robots.1, factors, options)?;
+        let (external, held) = (Vec::new(), BTreeMap::new());
+        Ok(Engine { poses, given, counting: None, robots, factors, options, external, held })
+    }
+
+    /// Holds external axes at the values of each target.
+    pub(crate) fn hold(&mut self, external: Vec<usize>, parsed: &Parsed) -> Result<()> {
+        self.external = external;
+        if self.external.is_empty() {
+            return Ok(());
+        }
+        for target in &parsed.targets {
+            let values = self.stated(target);
+            if let Entry::Vacant(place) = self.held.entry(bits(&values)) {
+                let held: Vec<(usize, f64)> = self.external.iter().copied().zip(values).collect();
+                let (nominal, actual) = self.robots;
+                let readings = Compensation::holding(nominal, actual, self.factors, &held, self.options)?;
+                place.insert(PoseCompensation::of(readings));
+            }
+        }
+        Ok(())
+    }
+
+    /// Values of the external axes at a target (rad, m).
+    fn stated(&self, target: &Target) -> Vec<f64> {
+        let numbers = target.scaled();
+        match target.meant {
+            Meant::Joints => self.external_of(&self.readings(numbers)),
+            // The last ones.
+            Meant::Pose(_) => {
+                numbers.get(numbers.len().saturating_sub(self.external.len())..).unwrap_or_default().to_vec()
+            }
+        }
+    }
+
+    fn external_of(&self, q: &[f64]) -> Vec<f64> {
+        self.external.iter().map(|&it| q.get(it).copied().unwrap_or(0.0)).collect()
+    }
+
+    /// The compensation at these values of the external axes.
+    fn holding(&self, external: &[f64]) -> &PoseCompensation {
+        self.held.get(&bits(external)).unwrap_or(&self.poses)
+    }
+
+    /// The compensation at a configuration.
+    pub(crate) fn at(&self, q: &[f64]) -> &PoseCompensation {
+        self.holding(&self.external_of(q))
+    }
+
+    /// A configuration with these values of the external axes.
+    fn with_external(&self, mut q: Vec<f64>, external: &[f64]) -> Vec<f64> {
+        for (&at, value) in self.external.iter().zip(external) {
+            if let Some(it) = q.get_mut(at) {
+                *it = *value;
+            }
+        }
+        q
+    }
+
+    /// The model's readings for those that a program states.
+    pub(crate) fn readings(&self, stated: Vec<f64>) -> Vec<f64> {
+        match &self.counting {
+            Some(counting) => counting.readings(&stated),
+            None => stated,
+        }
+    }
+
+    /// What the controller counts at readings of the model.
+    fn counted(&self, readings: &[f64]) -> Vec<f64> {
+        self.counting.as_ref().map_or_else(|| readings.to_vec(), |it| it.counted(readings))
+    }
+
+    /// The arm's readings at a configuration, and the same as they are counted.
+    fn both(&self, q: &[f64]) -> (Vec<f64>, Vec<f64>) {
+        let poses = self.at(q);
+        (poses.of_arm(q), poses.of_arm(&self.counted(q)))
+    }
+
+    /// Corrects all targets of a text.
+    pub(crate) fn correct(&mut self, text: &[u8], parsed: Parsed, each: bool) -> Corrected {
+        let fates = self.fates(&parsed);
+        let mut summary = Summary::new(self.poses.compensation());
+        summary.listed.clone_from(&parsed.listed);
+        summary.targets = each.then(Vec::new);
+        let mut changes: Vec<(Range<usize>, String)> = Vec::new();
+        let mut meant = Vec::new();
+        for (index, (target, fate)) in parsed.targets.iter().zip(fates).enumerate() {
+            let made = match fate {
+                Fate::Open => Err(reason::NO_MOTION.into()),
+                Fate::Listed(reason, line) if line == target.line => Err(reason),
+                Fate::Listed(reason, line) => Err(format!("{reason} (motion on line {line})").into()),
+                Fate::Placed(placed) => self.write(target, &placed, &mut summary).map(|it| (it, placed.q)),
+            };
+            match made {
+                Ok((made, q)) => {
+                    let signed = |(range, new): (Range<usize>, String)| {
+                        let old = text.get(range.clone()).unwrap_or_default();
+                        (range, with_sign_as(old, new))
+                    };
+                    changes.extend(made.into_iter().map(signed));
+                    meant.push((index, q));
+                }
+                Err(reason) => summary.list(target.line, &target.name, reason),
+            }
+        }
+        summary.listed.sort();
+        summary.listed.dedup();
+        Corrected { text: replaced(text, changes), meant, summary }
+    }
+
+    /// What the motions make of each target.
+    fn fates(&self, parsed: &Parsed) -> Vec<Fate> {
+        let mut fates: Vec<Fate> = parsed.targets.iter().map(|it| self.alone(it)).collect();
+        let mut reached: Vec<Option<Vec<f64>>> = Vec::with_capacity(parsed.motions.len());
+        let start = self.given.start.clone().map(|it| self.readings(it));
+        for (number, motion) in parsed.motions.iter().enumerate() {
+            let (Some(target), Some(fate)) =
+                (parsed.targets.get(motion.target), fates.get_mut(motion.target))
+            else {
+                reached.push(None);
+                continue;
+            };
+            let before = match motion.after {
+                Some(before) => reached.get(before).and_then(Option::as_deref),
+                None => start.as_deref().filter(|_| number == 0),
+            };
+            let placed = match (&target.meant, &*fate) {
+                (Meant::Joints, _) if motion.refused.is_some() => {
+                    Err(motion.refused.clone().unwrap_or_default().into())
+                }
+                (Meant::Joints, Fate::Placed(placed)) => Ok(Placed::clone(placed)),
+                (Meant::Joints, Fate::Open | Fate::Listed(..)) => Err(reason::NOT_A_POSE.into()),
+                (Meant::Pose(form), _) => self.place(target, *form, motion, before),
+            };
+            reached.push(placed.as_ref().ok().map(|it| it.q.clone()));
+            *fate = joined(std::mem::replace(fate, Fate::Open), placed, motion.line);
+        }
+        fates
+    }
+
+    /// What is known of a target without its motions.
+    fn alone(&self, target: &Target) -> Fate {
+        match target.meant {
+            Meant::Pose(_) => Fate::Open,
+            Meant::Joints => Fate::Placed(Box::new(Placed {
+                tool: Pose::identity(),
+                frame: Pose::identity(),
+                q: self.readings(target.scaled()),
+                stated: Stated::Nothing,
+            })),
+        }
+    }
+
+    /// Where a motion to a pose leads.
+    fn place(
+        &self,
+        target: &Target,
+        form: PoseForm,
+        motion: &Motion,
+        before: Option<&[f64]>,
+    ) -> Found<Placed> {
+        let external = self.stated(target);
+        let joints = self.holding(&external).compensation().readings().len();
+        if joints > 6 {
+            return Err(reason::JOINTS.into());
+        }
+        if let Some(reason) = &motion.refused {
+            return Err(reason.clone().into());
+        }
+        let tool = motion.tool.ok_or(reason::NO_TOOL)?;
+        let frame = motion.frame.ok_or(reason::NO_FRAME)?;
+        let numbers = target.scaled();
+        let pose = form.of_first(&numbers).ok_or(reason::NOT_A_POSE)?;
+        let tip_from_tool = self.given.flange * tool;
+        let base_from_tip = self.given.base * frame * pose * tip_from_tool.inverse();
+        let q = self.configuration(motion, &base_from_tip, &tip_from_tool, (before, &external))?;
+        if self.at(&q).is_singular(&q) {
+            return Err(reason::SINGULAR.into());
+        }
+        Ok(Placed { tool, frame, q, stated: motion.stated.clone() })
+    }
+
+    fn configuration(
+        &self,
+        motion: &Motion,
+        target: &Pose,
+        tip_from_tool: &Pose,
+        (before, external): (Option<&[f64]>, &[f64]),
+    ) -> Found<Vec<f64>> {
+        let poses = self.holding(external);
+        let nominal = poses.compensation().nominal();
+        // Where external axes move on the way too, it is none of the arm alone.
+        let is_straight = motion.is_straight && before.is_none_or(|it| self.external_of(it) == external);
+        match (&motion.stated, before) {
+            (Stated::Near(near), _) => self.nearest(target, &self.readings(near.clone()), external),
+            (Stated::Nothing, None) => Err(reason::NOTHING_STATED.into()),
+            (Stated::Nothing, Some(before)) if !is_straight => self.nearest(target, before, external),
+            (stated, Some(before)) if is_straight => {
+                let found = poses.follow(before, target, tip_from_tool).ok_or(reason::WAY)?;
+                let fits = stated.fits(nominal, &self.both(&found));
+                if fits { Ok(found) } else { Err(reason::OTHER.into()) }
+            }
+            _ if !poses.has_branches() => Err(reason::NO_BRANCHES.into()),
+            (stated, _) => {
+                let all = poses.all(target).into_iter();
+                let mut all: Vec<Vec<f64>> = all.map(|q| self.with_external(q, external)).collect();
+                if all.is_empty() {
+                    return Err(reason::UNREACHABLE.into());
+                }
+                all.retain(|q| stated.fits(nominal, &self.both(q)));
+                if all.len() > 1 {
+                    all.retain(|q| stated.fits_best(nominal, &poses.of_arm(q)));
+                }
+                match all.len() {
+                    0 => Err(reason::NONE_FITS.into()),
+                    1 => Ok(all.remove(0)),
+                    _ => Err(reason::SEVERAL_FIT.into()),
+                }
+            }
+        }
+    }
+
+    fn nearest(&self, target: &Pose, near: &[f64], external: &[f64]) -> Found<Vec<f64>> {
+        let poses = self.holding(external);
+        if !poses.has_branches() {
+            return Err(reason::NO_BRANCHES.into());
+        }
+        let found = poses.nearest(target, near).map(|q| self.with_external(q, external));
+        let why = || if poses.all(target).is_empty() { reason::UNREACHABLE } else { reason::NOT_SURE };
+        found.ok_or_else(|| why().into())
+    }
+
+    /// The changed numbers of a target that is placed, each with its bytes.
+    fn write(
+        &mut self,
+        target: &Target,
+        placed: &Placed,
+        summary: &mut Summary,
+    ) -> Found<Vec<(Range<usize>, String)>> {
+        let held = bits(&self.external_of(&placed.q));
+        let (told, found) = self.held.get_mut(&held).unwrap_or(&mut self.poses).at(&placed.q);
+        let readings = found.readings.to_vec();
+        let found = Compensated { readings: &readings, ..found };
+        let left = (found.left_m, found.left_rad);
+        if !found.is_corrected {
+            return Err(self.at(&placed.q).compensation().reason(found.outcome, left));
+        }
+        let numbers = match target.meant {
+            Meant::Joints => self.commanded(target, &placed.q, &readings),
+            Meant::Pose(form) => {
+                if self.at(&placed.q).compensation().is_beyond_limits(&readings) {
+                    return Err(reason::LIMITS.into());
+                }
+                let nominal = self.at(&placed.q).compensation().nominal();
+                let tip_from_tool = self.given.flange * placed.tool;
+                let pose = (self.given.base * placed.frame).inverse() * told * tip_from_tool;
+                let before = target.scaled();
+                let count = form.names().len();
+                let mut numbers = form.numbers(&pose, before.get(..count).unwrap_or(&[]));
+                let words = placed.stated.words(nominal, &self.both(&readings));
+                numbers.extend(words.ok_or(reason::WORDS)?);
+                numbers
+            }
+        };
+        let texts: Vec<String> = target
+            .numbers
+            .iter()
+            .zip(&numbers)
+            .enumerate()
+            .map(|(at, it)| number(at, it, target.meant))
+            .collect();
+        let written = self.left(target, placed, &readings, &texts, left);
+        let is_exact = found.outcome == Outcome::Reached;
+        let most = if is_exact { (ROUNDING, ROUNDING) } else { (left.0 + ROUNDING, left.1 + ROUNDING) };
+        if matches!(target.meant, Meant::Pose(_)) && (written.0 > most.0 || written.1 > most.1) {
+            return Err(reason::SINGULAR.into());
+        }
+        let found = Compensated { left_m: written.0, left_rad: written.1, ..found };
+        summary.include(target.line, &placed.q, &found);
+        let changed = target.numbers.iter().zip(texts).filter(|(_, text)| !text.is_empty());
+        Ok(changed.map(|(number, text)| (number.range.clone(), text)).collect())
+    }
+
+    /// The numbers of a joint target once its readings are changed.
+    fn commanded(&self, target: &Target, from: &[f64], to: &[f64]) -> Vec<f64> {
+        let Some(counting) = &self.counting else { return to.to_vec() };
+        counting.moved(&target.scaled(), from, to)
+    }
+
+    /// The arm's readings, near others, that a controller with the nominal robot commands for a pose of a tool in a frame.
+    pub(crate) fn commanded_by(
+        &self,
+        poses: &PoseCompensation,
+        pose: &Pose,
+        (tool, frame): (Pose, Pose),
+        near: &[f64],
+    ) -> Vec<f64> {
+        let told = self.given.base * frame * *pose * (self.given.flange * tool).inverse();
+        let mut q = poses.of_arm(near);
+        poses.compensation().nominal().nearest(&told, &mut q);
+        q
+    }
+
+    /// Distance and angle that are left with the numbers as they are written.
+    fn left(
+        &self,
+        target: &Target,
+        placed: &Placed,
+        readings: &[f64],
+        texts: &[String],
+        unrounded: (f64, f64),
+    ) -> (f64, f64) {
+        let written: Vec<f64> = target
+            .numbers
+            .iter()
+            .zip(texts)
+            .map(|(number, text)| text.parse().map_or(number.value, |it: f64| it) * number.scale)
+            .collect();
+        let poses = self.at(&placed.q);
+        let compensation = poses.compensation();
+        let meant = compensation.nominal().forward_kinematics(&poses.of_arm(&placed.q));
+        let commanded = match target.meant {
+            Meant::Joints => poses.of_arm(&self.readings(written)),
+            Meant::Pose(form) => {
+                let Some(pose) = form.of_first(&written) else { return unrounded };
+                self.commanded_by(poses, &pose, (placed.tool, placed.frame), readings)
+            }
+        };
+        compensation.actual().forward_kinematics(&commanded).apart(&meant)
+    }
+}
+
+fn bits(values: &[f64]) -> Vec<u64> {
+    values.iter().map(|it| it.to_bits()).collect()
+}

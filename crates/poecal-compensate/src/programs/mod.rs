@@ -1,0 +1,145 @@
+//! Robot programs in the languages of their controllers: targets corrected in place, everything else as it was, byte for byte.
+
+mod engine;
+mod fate;
+mod place;
+mod reasons;
+mod summary;
+mod written;
+
+use std::path::Path;
+
+use super::ChangeOptions;
+use engine::Engine;
+use poecal_model::robot::{Controller, Robot};
+use poecal_numerics::error::{ErrorKind, Result};
+use poecal_programs::axes::Axes;
+use poecal_programs::parsed::Meant;
+use poecal_programs::{Given, Language, parse};
+use poecal_results::programs::read_program;
+
+pub use place::PoseCompensation;
+pub use summary::ProgramSummary;
+
+/// Largest program, bytes.
+pub const LARGEST_PROGRAM: usize = 64 << 20;
+
+/// How programs are compensated.
+#[derive(Clone, Debug)]
+pub struct ProgramOptions {
+    /// The language.
+    pub language: Language,
+    /// Tools and frames that the program does not state.
+    pub given: Given,
+    /// Compute what is left once more, from the written text by the robots' own forward kinematics.
+    pub check: bool,
+    /// How far readings may be changed.
+    pub change: ChangeOptions,
+    /// Keep what became of every target.
+    pub each: bool,
+    /// How the readings of the nominal robot are made of those that the controller counts and programs state; `None` where they are the same.
+    pub controller: Option<Controller>,
+    /// Whether it is not known from where the third axis counts: joint targets of FANUC are refused then.
+    pub is_third_axis_open: bool,
+}
+
+impl ProgramOptions {
+    /// Of a language, nothing else stated.
+    #[must_use]
+    pub fn of(language: Language) -> Self {
+        ProgramOptions {
+            language,
+            given: Given::default(),
+            check: false,
+            change: ChangeOptions::default(),
+            each: false,
+            controller: None,
+            is_third_axis_open: false,
+        }
+    }
+}
+
+/// Corrects the targets of a program for the robot `actual` at these values of its factors, where it is written for `nominal`
+/// (theory.md §2). Joint targets become those of [`Compensation`](super::Compensation), poses those of [`PoseCompensation`]; what cannot
+/// be corrected for sure stays as it is and is listed. All bytes but those of the changed numbers stay.
+///
+/// # Errors
+/// [`ErrorKind::Syntax`] if the text is larger than [`LARGEST_PROGRAM`] or is no program, and as
+/// [`Compensation::new`](super::Compensation::new).
+pub fn compensate_program(
+    text: &[u8],
+    (nominal, actual): (&Robot, &Robot),
+    factors: &[f64],
+    options: &ProgramOptions,
+) -> Result<(Vec<u8>, ProgramSummary)> {
+    if text.len() > LARGEST_PROGRAM {
+        return ErrorKind::Syntax.refuse(format!(
+            "found a program of {} MB, expected at most {} MB: cut it into several",
+            text.len() >> 20,
+            LARGEST_PROGRAM >> 20
+        ));
+    }
+    let counting = options.controller.as_ref().filter(|it| !it.is_plain());
+    let counting = counting.map(Controller::counting).transpose()?;
+    let mut engine = Engine::new((nominal, actual), factors, &options.given, &options.change)?;
+    engine.counting = counting;
+    let axes = Axes::of(nominal);
+    if let Some(start) = options.given.start.as_ref().filter(|it| it.len() != axes.count()) {
+        return ErrorKind::Option.refuse(format!(
+            "found {} readings as the start, expected one of each joint: {}",
+            start.len(),
+            axes.names.join(", ")
+        ));
+    }
+    let parsed = parse(options.language, text, &options.given, &axes)?;
+    let joints = parsed.targets.iter().find(|it| it.meant == Meant::Joints);
+    if let (Language::Fanuc, true, Some(target)) = (options.language, options.is_third_axis_open, joints) {
+        return Err(ErrorKind::Option.error("found a joint target, and a calibration whose rows do not show from where the third axis counts, expected \
+                       `--third-axis level` where J3 counts from the level, as controllers of FANUC do by themselves, or `--third-axis arm`").at_line("", target.line));
+    }
+    engine.hold(axes.external.clone(), &parsed)?;
+    let mut made = engine.correct(text, parsed, options.each);
+    if options.check {
+        let again = parse(options.language, &made.text, &options.given, &axes)?;
+        made.summary.checked =
+            Some(summary::checked(&engine, (nominal, actual), factors, &again, &made.meant));
+    }
+    let corrected = made.meant.len();
+    let summary = ProgramSummary { language: options.language, corrected, changes: made.summary };
+    Ok((made.text, summary))
+}
+
+/// [`compensate_program`] of a file.
+///
+/// # Errors
+/// As [`read_program`] and [`compensate_program`], with the place in the file.
+pub fn compensate_file(
+    path: impl AsRef<Path>,
+    robots: (&Robot, &Robot),
+    factors: &[f64],
+    options: &ProgramOptions,
+) -> Result<(Vec<u8>, ProgramSummary)> {
+    let path = path.as_ref();
+    let text = read_program(path)?;
+    compensate_program(&text, robots, factors, options).map_err(|error| {
+        match error.place().and_then(|it| it.line) {
+            Some(line) => error.at_line(path, line),
+            None => error.in_file(path),
+        }
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_robot_that_is_as_drawn_leaves_every_byte() {
+        let robot = poecal_testing::sessions::unlimited_elbow();
+        let options = ProgramOptions::of(Language::UrScript);
+        let program = b"movej([0, 0, 0, 0, 0.5, 0])\n";
+        let (text, summary) = compensate_program(program, (&robot, &robot), &[], &options).unwrap();
+        assert!(summary.is_whole() && summary.corrected == 1);
+        assert_eq!(text, program);
+    }
+}

@@ -1,0 +1,72 @@
+//! What the compensation of a program changes.
+
+use serde::Serialize;
+
+use super::super::{Checked, Summary};
+use super::engine::Engine;
+use poecal_arm::lie::Pose;
+use poecal_model::robot::Robot;
+use poecal_programs::Language;
+use poecal_programs::parsed::{Meant, Parsed};
+
+/// What the compensation of a program changes, and what stays as it is.
+#[derive(Clone, Debug, Serialize)]
+pub struct ProgramSummary {
+    /// The language.
+    pub language: Language,
+    /// Number of targets that are corrected.
+    pub corrected: usize,
+    /// Corrections, what is left of the targets that are corrected, and what stays as it is.
+    #[serde(flatten)]
+    pub changes: Summary,
+}
+
+impl ProgramSummary {
+    /// Whether every target that was found is corrected.
+    #[must_use]
+    pub fn is_whole(&self) -> bool {
+        self.changes.is_whole()
+    }
+
+    /// The summary in words, for the terminal; joints that slide are told by their names.
+    #[must_use]
+    pub fn text(&self, slides: &dyn Fn(&str) -> bool) -> String {
+        self.changes.text(slides, if self.corrected == 1 { "target corrected" } else { "targets corrected" })
+    }
+}
+
+/// What a written program leaves, by the robots' own forward kinematics.
+pub(crate) fn checked(
+    engine: &Engine<'_>,
+    (nominal, actual): (&Robot, &Robot),
+    factors: &[f64],
+    written: &Parsed,
+    meant: &[(usize, Vec<f64>)],
+) -> Checked {
+    let mut places: Vec<Option<(Pose, Pose)>> = vec![None; written.targets.len()];
+    for motion in &written.motions {
+        if let (Some(place), Some(known)) = (places.get_mut(motion.target), motion.tool.zip(motion.frame)) {
+            *place = Some(known);
+        }
+    }
+    let mut largest = Checked::default();
+    for (index, q) in meant {
+        let Some(target) = written.targets.get(*index) else { continue };
+        let numbers = target.scaled();
+        let wanted = nominal.forward_kinematics(q);
+        let mut commanded = match target.meant {
+            Meant::Joints => engine.readings(numbers),
+            Meant::Pose(form) => {
+                let place = places.get(*index).copied().flatten();
+                let (Some(new), Some(place)) = (form.of_first(&numbers), place) else { continue };
+                let poses = engine.at(q);
+                poses.of_robot(&engine.commanded_by(poses, &new, place, q), q)
+            }
+        };
+        let share = engine.at(q).compensation().share_of_most(q, &commanded);
+        largest.change.include(share, target.line);
+        commanded.extend_from_slice(factors);
+        largest.include(actual.forward_kinematics(&commanded).apart(&wanted), target.line);
+    }
+    largest
+}

@@ -1,0 +1,63 @@
+//! An arm that moves to poses.
+
+use std::sync::{Arc, OnceLock};
+
+use poecal_arm::{AllBranches, Arm, HeldBranches};
+
+use poecal_arm::lie::Pose;
+
+/// Remainder (m, rad) of which it does not matter where it is.
+const NOTHING: f64 = 1e-11;
+
+/// An arm, and all its branches once they are asked for: what is computed once for them takes as long as thousands of searches.
+#[derive(Clone, Debug)]
+pub(crate) struct Reach {
+    arm: Arm,
+    branches: Arc<OnceLock<Option<AllBranches>>>,
+    /// Of an arm of seven, with each joint held.
+    held: Arc<[OnceLock<Option<HeldBranches>>; 7]>,
+    /// Index of the joint that is best held.
+    best: Arc<OnceLock<Option<usize>>>,
+}
+
+impl Reach {
+    pub(crate) fn new(arm: Arm) -> Self {
+        Reach { arm, branches: Arc::default(), held: Arc::default(), best: Arc::default() }
+    }
+
+    pub(crate) fn arm(&self) -> &Arm {
+        &self.arm
+    }
+
+    pub(crate) fn branches(&self) -> Option<&AllBranches> {
+        self.branches.get_or_init(|| AllBranches::new(&self.arm)).as_ref()
+    }
+
+    /// The branches of an arm of seven with one of its joints held.
+    pub(crate) fn held(&self, joint: usize) -> Option<&HeldBranches> {
+        self.held.get(joint)?.get_or_init(|| HeldBranches::new(&self.arm, Some(joint))).as_ref()
+    }
+
+    /// The joint of an arm of seven that is best held.
+    pub(crate) fn best(&self) -> Option<usize> {
+        *self.best.get_or_init(|| HeldBranches::new(&self.arm, None).map(|it| it.joint()))
+    }
+
+    /// As [`AllBranches::nearest`] and [`HeldBranches::nearest`], and as [`Arm::nearest`] of an arm that has neither; what is left.
+    pub(crate) fn nearest(&self, target: &Pose, q: &mut [f64]) -> f64 {
+        let start: Option<[f64; 6]> = (&*q).try_into().ok();
+        let left = self.arm.nearest(target, q);
+        if left < NOTHING && left * self.arm.reach_m() < NOTHING {
+            return left;
+        }
+        if let (Ok(six), Some(start)) = (<&mut [f64; 6]>::try_from(&mut *q), start) {
+            let Some(branches) = self.branches() else { return left };
+            *six = start;
+            return branches.nearest(target, six);
+        }
+        match (<&mut [f64; 7]>::try_from(q), self.best().and_then(|it| self.held(it))) {
+            (Ok(seven), Some(held)) => held.nearest(target, seven),
+            (Err(_), _) | (_, None) => left,
+        }
+    }
+}

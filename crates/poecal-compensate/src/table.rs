@@ -1,0 +1,70 @@
+//! Compensation of tables of joint readings.
+
+use std::path::Path;
+
+use super::{ChangeOptions, Checked, Compensation, Summary};
+use poecal_import::{ReadOptions, RewrittenTable, rewrite_joints};
+use poecal_model::robot::Robot;
+use poecal_numerics::error::Result;
+
+/// How tables are compensated.
+#[derive(Clone, Debug, Default)]
+pub struct TableOptions {
+    /// Columns, units and names.
+    pub read: ReadOptions,
+    /// Compute what is left once more, from the written numbers by the robots' own forward kinematics.
+    pub check: bool,
+    /// How far readings may be changed.
+    pub change: ChangeOptions,
+    /// Keep what became of every row.
+    pub each: bool,
+}
+
+/// Corrects the joint columns of a CSV row by row ([`rewrite_joints`]), for readings of `nominal` and the robot `actual` at these values of
+/// its factors. Rows that cannot be corrected stay as they are and are listed.
+///
+/// # Errors
+/// As [`rewrite_joints`] and [`Compensation::new`].
+pub fn compensate_table(
+    path: impl AsRef<Path>,
+    (nominal, actual): (&Robot, &Robot),
+    factors: &[f64],
+    options: &TableOptions,
+    out: &mut dyn FnMut(&str) -> Result<()>,
+) -> Result<(Summary, RewrittenTable)> {
+    let path = path.as_ref();
+    let mut compensation = Compensation::new(nominal, actual, factors, &options.change)?;
+    let mut summary = Summary::new(&compensation);
+    summary.targets = options.each.then(Vec::new);
+    let mut plain = actual.clone();
+    // Factors are values of this compensation, no columns of the program.
+    plain.factors.clear();
+    plain.terms.clear();
+    let mut with_factors: Vec<f64> = Vec::new();
+    let mut checked = options.check.then(Checked::default);
+    let mut change = |row: &poecal_import::JointRow<'_>, numbers: &mut [f64]| -> Result<()> {
+        let found = compensation.joints(row.readings);
+        numbers.copy_from_slice(found.readings);
+        if !found.is_corrected {
+            let kept = found.outcome;
+            let (left_m, left_rad) = (found.left_m, found.left_rad);
+            let reason = compensation.reason(kept, (left_m, left_rad));
+            summary.list(row.line, "row", reason);
+            return Ok(());
+        }
+        summary.include(row.line, row.readings, &found);
+        if let Some(checked) = &mut checked {
+            with_factors.clear();
+            with_factors.extend_from_slice(numbers);
+            with_factors.extend_from_slice(factors);
+            let left =
+                actual.forward_kinematics(&with_factors).apart(&nominal.forward_kinematics(row.readings));
+            checked.include(left, row.line);
+            checked.change.include(compensation.share_of_most(row.readings, numbers), row.line);
+        }
+        Ok(())
+    };
+    let table = rewrite_joints(path, &plain, &options.read, &mut change, out)?;
+    summary.checked = checked;
+    Ok((summary, table))
+}

@@ -1,0 +1,218 @@
+//! A torso with two arms, seen by a device beside it, by one hand that sees the other, and by planes that both hands touch: ranks in closed
+//! form, recovery without noise, and held-out figures with it (theory.md §7).
+
+use poecal_calibrate::{Calibration, CalibrationOptions, Corrections, Robust, calibrate};
+use poecal_fit::state::{Packed, Session};
+use poecal_formats::urdf::{ChainSelection, UrdfDocument};
+use poecal_model::measurement::{Dataset, Observation, Quantity};
+use poecal_model::robot::Robot;
+use poecal_model::simulate::{Kind, Simulated, Simulation};
+use poecal_testing::largest::larger;
+use poecal_testing::sessions::geometry;
+use rand_chacha::ChaCha8Rng;
+use rand_core::SeedableRng as _;
+
+/// Unknowns of twice six joints that turn.
+const ARMS: usize = 48;
+/// Unknowns of the torso: a joint that slides, and one that turns.
+const TORSO: usize = 2 + 4;
+
+/// The torso of the tests with what stands on its links; `base` is its base link, or `torso` for two arms on one base.
+fn robot(base: &str, instruments: &[(&str, &str)], targets: &[(&str, &str)]) -> Robot {
+    let pairs = |pairs: &[(&str, &str)]| {
+        pairs.iter().map(|(name, link)| ((*name).to_owned(), (*link).to_owned())).collect()
+    };
+    let selection = ChainSelection {
+        base_link: Some(base.to_owned()),
+        instruments: pairs(instruments),
+        targets: pairs(targets),
+        ..ChainSelection::default()
+    };
+    let text = include_str!("../../../poecal-testing/data/torso.urdf");
+    UrdfDocument::parse(text, "torso.urdf", &selection).unwrap().robot().clone()
+}
+
+/// Both hands with a target.
+pub(crate) fn both_hands(base: &str) -> Robot {
+    robot(base, &[], &[("left", "left_hand"), ("right", "right_hand")])
+}
+
+/// The left hand sees the right one.
+fn hand_to_hand() -> Robot {
+    robot("base_link", &[("eye", "left_hand")], &[("ball", "right_hand")])
+}
+
+fn exact(count: usize) -> Simulation {
+    Simulation {
+        noise_position_m: 0.0,
+        noise_rotation_rad: 0.0,
+        count,
+        error_rotation_rad: 0.5f64.to_radians(),
+        error_position_m: 1e-3,
+        ..Simulation::default()
+    }
+}
+
+fn fit(made: &Simulated) -> Calibration {
+    let options = CalibrationOptions { robust: Robust::Off, ..geometry() };
+    calibrate(&made.nominal, &made.data, &options).unwrap()
+}
+
+/// A session of so many places only, in their order.
+fn of_places(made: Simulated, count: usize) -> Simulated {
+    let mut data = Dataset::new(made.data.reading_names().to_vec());
+    for (row, observation) in made.data.observations.iter().enumerate() {
+        if observation.station >= count {
+            continue;
+        }
+        let target = data.target_index(made.data.targets[observation.target].as_deref());
+        let station = data.station_index(made.data.stations[observation.station].as_deref());
+        let own = Observation { target, station, ..*observation };
+        data.push_observation(made.data.readings(row), own).unwrap();
+    }
+    Simulated { data, ..made }
+}
+
+/// Rank and recovery of a session without noise.
+fn check(name: &str, made: &Simulated, rank: usize, unknowns: usize) {
+    let found = fit(made);
+    let (identified, held_out) = (&found.identifiability, found.accuracy.held_out.as_ref().unwrap());
+    let worst = held_out.calibrated.iter().map(|(_, it)| it.max).fold(0.0, larger);
+    println!(
+        "{name}: rank {} of {}, expected {rank} of {unknowns}; held out {worst:.1e} mm or degrees",
+        identified.rank, identified.parameters
+    );
+    assert_eq!((identified.rank, identified.parameters), (rank, unknowns), "{name}");
+    // 1e-9 m, and so many degrees.
+    assert!(worst < 1e-6, "{name}: {worst:e}");
+}
+
+/// All joints between device and hands are seen: g and 6 of each pose target, 3 of each point, 6 of the device less 6 of the base.
+#[test]
+fn a_device_beside_the_torso_sees_both_hands() {
+    for (kind, of_target) in [(Kind::POSE, 6), (Kind::POINT, 3)] {
+        let made = exact(200).run(&both_hands("base_link"), kind).unwrap();
+        let rank = TORSO + ARMS + 2 * of_target;
+        check(&format!("device, {}s of both hands", kind.word()), &made, rank, rank);
+    }
+}
+
+/// From one hand to the other is one chain of twelve joints; the torso moves both hands alike and is not seen. The eye's frame is the base's
+/// choice, and an anchor shows 3 of its 6 numbers.
+#[test]
+fn the_left_hand_sees_the_right() {
+    let places = [(Kind::POSE, 6), (Kind::POINT, 3), (Kind::DISTANCE, 0)];
+    for (kind, more) in places {
+        let made = exact(if kind == Kind::DISTANCE { 300 } else { 160 }).run(&hand_to_hand(), kind).unwrap();
+        assert!(made.data.stations == [Some("eye".to_owned())], "{:?}", made.data.stations);
+        check(&format!("hand to hand, {}s", kind.word()), &made, ARMS + more, TORSO + ARMS + more);
+    }
+}
+
+/// A session of both hands on six planes, three through one point and three through another.
+fn on_six_planes(count: usize) -> Simulated {
+    let first = exact(count).run(&both_hands("torso"), Kind::PLANE).unwrap();
+    let mut generator = ChaCha8Rng::seed_from_u64(9);
+    let other = Simulation { seed: 2, ..exact(count) };
+    let actual = first.actual.clone();
+    let mut more = other.measure(&first.nominal, actual, Kind::PLANE, &mut generator).unwrap().data;
+    more.stations.iter_mut().flatten().for_each(|name| *name = format!("second {name}"));
+    let mut data = first.data.clone();
+    data.extend(&more).unwrap();
+    Simulated { data, ..first }
+}
+
+/// Points of both hands on planes. Each arm that shares no joint with the other may be moved, turned and scaled by itself in any way that keeps
+/// all planes: 4 ways with one plane, 2 with two, 1 with three, none with four (theory.md §7).
+#[test]
+fn planes_that_both_hands_touch() {
+    for (planes, own) in [(1, 4), (2, 2), (3, 1), (4, 0)] {
+        let made = of_places(on_six_planes(450), planes);
+        // Without the base's 6: the axes, three numbers of each target and of each plane.
+        let unknowns = ARMS + 6 + 3 * planes - 6;
+        check(&format!("two arms on {planes} planes"), &made, unknowns - 1 - own, unknowns);
+    }
+}
+
+/// A torso that moves ties the arms together. One that turns leaves growth of the whole, and with a single plane growth of one arm about the
+/// point in which the axis meets it. Of one that slides too, a plane shows the slide's part along its normal alone: one plane leaves the
+/// slide's turn about the normal and growth with the slide's tilt, two planes the latter, three nothing.
+#[test]
+fn a_torso_that_moves_ties_both_arms_together() {
+    for (base, own, lacking) in [("torso_lift", 4, [2, 1, 1]), ("base_link", TORSO, [2, 1, 0])] {
+        for (planes, lacks) in (1..).zip(lacking) {
+            let made = of_places(exact(450).run(&both_hands(base), Kind::PLANE).unwrap(), planes);
+            let unknowns = own + ARMS + 6 + 3 * planes - 6;
+            check(&format!("{base}, arms on {planes} planes"), &made, unknowns - lacks, unknowns);
+        }
+    }
+}
+
+/// With noise of 0.05 mm and 0.01° the error of held-out rows is that noise, and what the fit adds to it.
+#[test]
+fn with_noise_held_out_rows_are_as_good_as_the_noise() {
+    let noisy = |count| Simulation { count, ..Simulation::default() };
+    let sessions = [
+        ("device", both_hands("base_link"), Kind::POSE, 300, Quantity::Position, 3.0),
+        ("hand to hand", hand_to_hand(), Kind::DISTANCE, 600, Quantity::Distance, 1.0),
+        ("planes", both_hands("torso"), Kind::PLANE, 600, Quantity::Height, 1.0),
+    ];
+    for (name, robot, kind, count, quantity, components) in sessions {
+        let made = noisy(count).run(&robot, kind).unwrap();
+        let found = fit(&made);
+        let held_out = found.accuracy.held_out.as_ref().unwrap();
+        let rms = held_out.calibrated.get(quantity).unwrap().rms;
+        let expected = 0.05 * f64::sqrt(components);
+        println!("{name}: held out {rms:.4} mm, noise {expected:.4} mm");
+        // n unknowns add n / m to the variance of m numbers, some 15 %; 90 rows or more scatter by 7 %.
+        assert!((0.8..1.3).contains(&(rms / expected)), "{name}: {rms} mm");
+    }
+}
+
+/// The rows of the left hand, with the readings of its chain alone.
+fn of_left(chain: &Robot, data: &Dataset) -> Dataset {
+    let mut own = Dataset::new(chain.reading_names());
+    let at: Vec<usize> = own
+        .reading_names()
+        .iter()
+        .map(|name| data.reading_names().iter().position(|it| it == name).unwrap())
+        .collect();
+    for (row, observation) in data.observations.iter().enumerate() {
+        if data.targets[observation.target].as_deref() == Some("left") {
+            let readings: Vec<f64> = at.iter().map(|&at| data.readings(row)[at]).collect();
+            own.push(&readings, None, observation.measurement).unwrap();
+        }
+    }
+    own
+}
+
+/// Error of the corrected model on other rows, metres (RMS).
+fn corrected_m(calibration: &Calibration, unseen: &Dataset, target: Option<&str>) -> f64 {
+    let found = calibration.correction.as_ref().unwrap();
+    let packed = Packed::of(&found.model.robot, unseen);
+    let session = Session::new(&found.model.robot, unseen, &packed, true);
+    let is_own = |row: &u32| unseen.targets[unseen.observations[*row as usize].target].as_deref() == target;
+    let rows: Vec<u32> = unseen.all_rows().into_iter().filter(is_own).collect();
+    let squares: f64 =
+        session.errors(&rows, &found.estimate).iter().map(|it| it.position_m().norm_squared()).sum();
+    (squares / rows.len() as f64).sqrt()
+}
+
+/// What hangs on the torso bends it. One tree of both arms knows where the other arm is; a chain of one arm does not.
+#[test]
+fn a_tree_of_two_soft_arms_has_half_the_error_of_a_chain() {
+    let Ok(Corrections::Sizes(terms)) = "sag=2e-2,tilt=2e-2".parse() else { panic!("no sizes") };
+    let tree = both_hands("base_link");
+    let selection = ChainSelection { tip_link: Some("left_hand".to_owned()), ..ChainSelection::default() };
+    let text = include_str!("../../../poecal-testing/data/torso.urdf");
+    let chain = UrdfDocument::parse(text, "torso.urdf", &selection).unwrap().robot().clone();
+    let drawn = Simulation { terms, count: 200, seed: 3, ..Simulation::default() };
+    let made = drawn.run(&tree, Kind::POINT).unwrap();
+    let unseen = drawn.held_out(&made, Kind::POINT, 100).unwrap();
+    let options = CalibrationOptions::default();
+    let whole = corrected_m(&calibrate(&tree, &made.data, &options).unwrap(), &unseen, Some("left"));
+    let left = of_left(&chain, &made.data);
+    let alone = corrected_m(&calibrate(&chain, &left, &options).unwrap(), &of_left(&chain, &unseen), None);
+    println!("tree {:.3} mm, chain {:.3} mm", 1e3 * whole, 1e3 * alone);
+    assert!(whole < 0.5 * alone);
+}

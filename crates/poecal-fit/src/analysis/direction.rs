@@ -1,0 +1,85 @@
+//! Directions of the unknowns that the measurements do not determine, and their causes.
+
+use serde::{Deserialize, Serialize};
+
+/// Why something is not determined. The words stand in `calibration.json` and do not change.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Cause {
+    /// Structure: along and about its own axis a joint may be moved without effect.
+    OwnAxis,
+    /// Structure: the device's frame is unknown, so the base frame is a matter of choice.
+    BaseFrame,
+    /// Structure: joint offsets cannot be separated from screws.
+    JointOffsets,
+    /// Structure: only positions were measured.
+    NoOrientation,
+    /// No way from an instrument to its target passes the joint.
+    Unseen,
+    /// A joint did not move, or its reading only jittered.
+    StoodStill,
+    /// Fewer measured numbers than unknowns.
+    TooFew,
+    /// A target measured as a point is on the axis of a joint.
+    PointOnAxis,
+    /// The tool kept one orientation.
+    OneOrientation,
+    /// The tool turned about one direction only.
+    OneTurningDirection,
+    /// Joints moved in a fixed relation only.
+    MovedTogether,
+    /// A joint moved little.
+    SmallMotion,
+    /// Joints moved in combinations that hide something; no simpler cause was found.
+    DependentMotion,
+    /// Nothing that was measured has a length, so that the size of the robot does not show.
+    NoLength,
+    /// A target was measured once, so that nothing checks it.
+    SeenOnce,
+    /// None of these.
+    #[default]
+    Other,
+}
+
+impl Cause {
+    /// Whether other combinations of the same joint values would have determined the direction.
+    pub(crate) fn is_combination(self) -> bool {
+        match self {
+            Cause::OneOrientation
+            | Cause::OneTurningDirection
+            | Cause::MovedTogether
+            | Cause::DependentMotion => true,
+            Cause::OwnAxis
+            | Cause::BaseFrame
+            | Cause::JointOffsets
+            | Cause::NoOrientation
+            | Cause::Unseen
+            | Cause::StoodStill
+            | Cause::TooFew
+            | Cause::PointOnAxis
+            | Cause::SmallMotion
+            | Cause::NoLength
+            | Cause::SeenOnce
+            | Cause::Other => false,
+        }
+    }
+}
+
+/// Unknowns that the measurements do not determine, or only weakly.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
+pub struct Direction {
+    /// Description.
+    pub description: String,
+    /// The joints concerned.
+    pub joints: Vec<String>,
+    /// Its cause.
+    #[serde(default)]
+    pub cause: Cause,
+    /// Number of independent directions.
+    #[serde(default = "one")]
+    pub directions: usize,
+}
+
+fn one() -> usize {
+    1
+}

@@ -1,0 +1,309 @@
+//! Identifiability of planned configurations, before anything is measured.
+
+use nalgebra::Vector3;
+use rand_chacha::ChaCha8Rng;
+use rand_core::SeedableRng;
+
+use super::coverage::{JointCoverage, coverage};
+use super::identifiability::{Identifiability, identifiability};
+use super::setup::Setup;
+use super::spectrum::PLAUSIBLE;
+use crate::parameters::{Parameter, screw_axes};
+use crate::problem::{MOST_UNKNOWNS, Problem};
+use crate::start::{
+    Registration, clock_parameters, device_parameter, range_parameters, register, target_parameters,
+};
+use crate::state::{Chain, Estimate, Linkage, Packed, Session, delivered};
+use poecal_arm::lie::Pose;
+use poecal_model::measurement::{Dataset, Noise, Observation};
+use poecal_model::robot::Robot;
+use poecal_model::simulate::{Kind, exactly, pairs, plan, random_configuration, seen};
+use poecal_numerics::error::{ErrorKind, Result};
+use poecal_numerics::solve::LeastSquares;
+
+/// Number of random configurations for the expected error, and their seed.
+const CONFIGURATIONS: usize = 1000;
+const SEED: u64 = 1;
+/// A prediction is determined if undetermined directions, uncertain by [`PLAUSIBLE`], move it by at most so many of its standard
+/// deviations.
+const UNDETERMINED_EFFECT: f64 = 1.0;
+
+/// A planned session: measurements and their noise.
+///
+/// ```
+/// use poecal_model::measurement::Kind;
+/// use poecal_fit::analysis::PlannedSession;
+/// let planned = PlannedSession { kind: Kind::POINT, ..PlannedSession::default() };
+/// assert!(planned.device_free);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PlannedSession {
+    /// Kind of the measurements of the tip, or of the targets.
+    pub kind: Kind,
+    /// Noise of each component.
+    pub noise: Noise,
+    /// Whether the device frame is unknown; otherwise measurements are in the robot's base frame.
+    pub device_free: bool,
+}
+
+impl Default for PlannedSession {
+    /// Poses with 0.05 mm and 0.01°, device frame unknown.
+    fn default() -> Self {
+        let noise = Noise::new(5e-5, 0.01_f64.to_radians());
+        PlannedSession { kind: Kind::POSE, noise, device_free: true }
+    }
+}
+
+/// Expected error of predicted tip positions by noise alone, from the covariance at the nominal model: root mean square length of the error
+/// vector in one configuration (theory.md §7 (36c)).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ExpectedError {
+    /// Number of random configurations within the joints' limits (±π and ±0.5 m without limits).
+    pub configurations: usize,
+    /// Number of those whose prediction the measurements determine.
+    pub determined: usize,
+    /// Mean over these, metres; `None` if there are none.
+    pub mean_m: Option<f64>,
+    /// Largest of these, metres.
+    pub worst_m: Option<f64>,
+}
+
+/// Expected result of measuring some configurations.
+///
+/// ```
+/// use poecal_model::measurement::Kind;
+/// use poecal_fit::analysis::{PlannedSession, identify};
+/// use poecal_model::simulate::{Simulation, elbow};
+/// let made = Simulation { count: 40, ..Simulation::default() }.run(&elbow(), Kind::POSE)?;
+/// let foresight = identify(&made.nominal, made.data.all_readings(), &PlannedSession::default())?;
+/// assert_eq!((foresight.count, foresight.identifiability.rank), (40, 30));
+/// # Ok::<(), poecal_numerics::error::Error>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Foresight {
+    /// Number of configurations.
+    pub count: usize,
+    /// Identifiability.
+    pub identifiability: Identifiability,
+    /// Coverage of each joint's range.
+    pub coverage: Vec<JointCoverage>,
+    /// Expected error of predictions within the joint limits.
+    pub expected: ExpectedError,
+    /// Metres that a radian counts.
+    pub length_m: f64,
+    /// The pictures by which the configurations are judged, if there are any.
+    pub pictures: Option<MeasuredPictures>,
+}
+
+/// Pictures whose corners say how well they determine a pose.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MeasuredPictures {
+    /// Their number.
+    pub count: usize,
+    /// Number of corners in all of them.
+    pub corners: usize,
+    /// Standard deviation of each coordinate of a corner that states none, pixels.
+    pub sigma_px: f64,
+    /// Standard deviations of each component of the shift (m) and the turn (rad) that the corners of a picture share: before a calibration what is
+    /// usual.
+    pub shared: [f64; 2],
+}
+
+/// Judges configurations, in which every instrument on the robot measures every target of the model, or a device beside it the tip (readings one after the other, in the order of [`Robot::reading_names`]; radians, metres) before they are
+/// measured: theory.md §7 (36), (36c), with the nominal model and the stated noise.
+///
+/// # Errors
+/// [`ErrorKind::Measurement`] if there is no configuration, the number of readings does not fit the robot, or one is not finite;
+/// [`ErrorKind::Problem`] if the robot has more unknowns than one fit allows.
+///
+/// ```
+/// use poecal_fit::analysis::{PlannedSession, identify};
+/// use poecal_model::simulate::{Kind, Simulation, seven_axis};
+/// let made = Simulation { count: 40, ..Simulation::default() }.run(&seven_axis(), Kind::POSE)?;
+/// let found = identify(&seven_axis(), made.data.all_readings(), &PlannedSession::default())?;
+/// assert_eq!((found.identifiability.rank, found.identifiability.parameters), (34, 34));
+/// assert!(found.expected.mean_m.is_some_and(|mean| mean < 2e-4));
+/// # Ok::<(), poecal_numerics::error::Error>(())
+/// ```
+pub fn identify(robot: &Robot, readings: &[f64], planned: &PlannedSession) -> Result<Foresight> {
+    let frames = robot.instruments.len().saturating_sub(1) + robot.mounted.len().max(1);
+    check_unknowns(robot, frames)?;
+    if planned.kind.is_touched() {
+        return ErrorKind::Option.refuse(format!(
+            "found the kind `{}` and configurations alone, expected a measurement file that names what each row touches",
+            planned.kind.word()
+        ));
+    }
+    let (data, devices) = predicted_data(robot, readings, planned)?;
+    let mut estimate = delivered(robot, &data);
+    for (station, device) in devices.into_iter().enumerate() {
+        *estimate.device_mut(station) = device;
+    }
+    let count = readings.len() / robot.reading_names().len().max(1);
+    Ok(Foresight { count, ..foresee(robot, &data, estimate, planned)? })
+}
+
+/// The same for rows that name more than a configuration, by the measurements (`poecal_import` reads them): pictures, as their corners
+/// determine their poses, and rows that touch something: balls in sockets, points and faces on planes, points of spheres. Cameras, boards and what
+/// is touched are where the nominal robot has them best.
+///
+/// # Errors
+/// As [`identify`].
+pub fn identify_measured(robot: &Robot, data: &Dataset, planned: &PlannedSession) -> Result<Foresight> {
+    check_unknowns(robot, data.station_count() + data.targets.len())?;
+    let packed = Packed::of(robot, data);
+    let rows: Vec<u32> = data.all_rows();
+    let session = Session::new(robot, data, &packed, planned.device_free);
+    let registration =
+        Registration { session, rows: &rows, noise: planned.noise, targets_free: false, prior: None };
+    let estimate = register(&registration, &delivered(robot, data)).0;
+    let pictures = (!data.pictures.is_empty()).then(|| MeasuredPictures {
+        count: data.pictures.all.len(),
+        corners: data.pictures.all.iter().map(|it| it.corners.len()).sum(),
+        sigma_px: data.pictures.sigma_px,
+        shared: [data.pictures.common.shift_m, data.pictures.common.turn_rad],
+    });
+    Ok(Foresight { pictures, ..foresee(robot, data, estimate, planned)? })
+}
+
+/// Refuses robots with more unknowns than one fit allows.
+fn check_unknowns(robot: &Robot, frames: usize) -> Result<()> {
+    let unknowns = 4 * robot.joints.len() + 6 * frames;
+    if unknowns <= MOST_UNKNOWNS {
+        return Ok(());
+    }
+    ErrorKind::Problem.refuse(format!(
+        "found about {unknowns} unknowns of {} joints, expected at most {MOST_UNKNOWNS} in one fit: identify a \
+         shorter chain",
+        robot.joints.len()
+    ))
+}
+
+/// What data would determine, at an estimate that predicts them.
+fn foresee(
+    robot: &Robot,
+    data: &Dataset,
+    mut estimate: Estimate,
+    planned: &PlannedSession,
+) -> Result<Foresight> {
+    let packed = Packed::of(robot, data);
+    let rows: Vec<u32> = data.all_rows();
+    let session = Session::new(robot, data, &packed, planned.device_free);
+    estimate.recentre(&session, &rows);
+    let mut free = screw_axes(estimate.kinds());
+    free.extend(target_parameters(&session, &rows));
+    // The first instrument's frame is a choice of the base.
+    let further = (1..data.station_count()).filter(|&station| estimate.tree.shared(station).is_none());
+    free.extend(further.map(|station| device_parameter(data, station, &rows)));
+    free.extend(range_parameters(&session, &rows).map(Parameter::RangeUnknown));
+    free.extend(clock_parameters(&session, &rows).map(Parameter::ClockUnknown));
+    let problem = Problem::new(session, rows.clone(), free, planned.noise);
+    let setup =
+        Setup { session, rows: &rows, estimate: &estimate, layout: problem.layout(), noise: planned.noise };
+    let gram = problem.normal(&estimate).gram;
+    if !gram.iter().all(|value| value.is_finite()) {
+        return ErrorKind::Measurement.refuse("found joint readings beyond what can be computed with, expected radians and metres: check their units");
+    }
+    let identifiability = identifiability(&setup, &gram, 1.0);
+    let expected = expected(&setup, &identifiability);
+    Ok(Foresight {
+        count: data.len(),
+        coverage: coverage(&session, &rows),
+        identifiability,
+        expected,
+        length_m: session.length_m,
+        pictures: None,
+    })
+}
+
+/// The measurements that the nominal model predicts, and device frames that are not the model's.
+pub fn predicted_data(
+    robot: &Robot,
+    readings: &[f64],
+    planned: &PlannedSession,
+) -> Result<(Dataset, Vec<Pose>)> {
+    let mut data = Dataset::new(robot.reading_names());
+    let width = data.reading_names().len();
+    if readings.is_empty() || !readings.len().is_multiple_of(width.max(1)) {
+        return ErrorKind::Measurement.refuse(format!(
+            "found {} joint readings, expected configurations of {width} readings each: {}",
+            readings.len(),
+            data.reading_names().join(", ")
+        ));
+    }
+    if !planned.kind.has_device() {
+        return plan(planned.kind, robot, readings);
+    }
+    let pairs = pairs(robot);
+    if pairs.is_empty() {
+        return ErrorKind::Problem.refuse(
+            "found instruments and targets on the same links only, expected joints between them: name others",
+        );
+    }
+    let planned_rows = readings.chunks_exact(width).enumerate();
+    let planned_rows =
+        planned_rows.flat_map(|(row, readings)| pairs.iter().map(move |&pair| (row, readings, pair)));
+    for (row, readings, (instrument, target)) in planned_rows {
+        let pose = match (instrument, target) {
+            (None, None) => robot.forward_kinematics(readings),
+            pair => seen(robot, &Pose::identity(), pair, readings),
+        };
+        let measurement = exactly(planned.kind, row, &pose);
+        let station = instrument.map_or(0, |mount| data.station_index(Some(&mount.name)));
+        let target = data.target_index(target.map(|mount| mount.name.as_str()));
+        let observation = Observation { station, ..Observation::new(target, measurement) };
+        data.push_observation(readings, observation)?;
+    }
+    Ok((data, Vec::new()))
+}
+
+/// Expected error of predicted positions in random configurations: theory.md §7 (36c).
+fn expected(setup: &Setup<'_>, found: &Identifiability) -> ExpectedError {
+    let robot = setup.session.robot;
+    let mut generator = ChaCha8Rng::seed_from_u64(SEED);
+    let readings: Vec<f64> =
+        (0..CONFIGURATIONS).flat_map(|_| random_configuration(robot, &mut generator)).collect();
+    let packed = Packed::new(robot, &readings, robot.reading_names().len());
+    let mut estimate = setup.estimate.clone();
+    estimate.device_from_base = Pose::identity();
+    let linkage = Linkage::new(&estimate);
+    let spectrum = &found.spectrum;
+    let plausible_m = PLAUSIBLE * setup.session.length_m;
+    let mut chain = Chain::default();
+    let mut twists = vec![(Vector3::zeros(), Vector3::zeros()); setup.layout.dim()];
+    let mut sigmas_m = Vec::new();
+    for row in 0..packed.rows() {
+        chain.evaluate(&linkage, &packed, row, 0);
+        setup.layout.target_twists(&chain, 0, &mut twists);
+        let (mut variance, mut undetermined) = (0.0, 0.0);
+        for (k, vector) in spectrum.vectors.column_iter().enumerate() {
+            let moved: Vector3<f64> = vector.iter().zip(&twists).map(|(part, (v, _))| v * *part).sum();
+            if k < spectrum.undetermined {
+                undetermined += moved.norm_squared() * plausible_m * plausible_m;
+            } else {
+                variance += moved.norm_squared() * spectrum.sigma_m(k).powi(2);
+            }
+        }
+        if undetermined <= variance * UNDETERMINED_EFFECT * UNDETERMINED_EFFECT {
+            sigmas_m.push(variance.sqrt());
+        }
+    }
+    let mean_m = (!sigmas_m.is_empty()).then(|| sigmas_m.iter().sum::<f64>() / sigmas_m.len() as f64);
+    let worst_m = sigmas_m.iter().copied().reduce(f64::max);
+    ExpectedError { configurations: CONFIGURATIONS, determined: sigmas_m.len(), mean_m, worst_m }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use poecal_model::simulate::{Simulation, elbow};
+
+    /// As of a calibration by them: 4 of each of six joints and 2 more; how large the robot is stays open.
+    #[test]
+    fn balls_in_sockets_have_the_rank_of_the_closed_form() {
+        let made = Simulation { count: 40, ..Simulation::default() }.run(&elbow(), Kind::SOCKET).unwrap();
+        let planned = PlannedSession { kind: Kind::SOCKET, ..PlannedSession::default() };
+        let found = identify_measured(&elbow(), &made.data, &planned).unwrap();
+        assert_eq!(found.identifiability.rank, 26);
+    }
+}

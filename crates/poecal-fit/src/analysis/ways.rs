@@ -1,0 +1,65 @@
+//! The joints between instruments and targets.
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+
+use crate::state::{Sight, Stand, Tree};
+use poecal_model::measurement::Dataset;
+use poecal_model::robot::{Body, Mount, Robot};
+use poecal_model::simulate::pairs;
+
+/// The joints that move a target against an instrument: measurements of such a pair can determine them and no others.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Way {
+    /// Name of the instrument; none of a device beside the robot.
+    pub instrument: Option<String>,
+    /// Name of the target; none of the tip.
+    pub target: Option<String>,
+    /// The joints, from the instrument on.
+    pub joints: Vec<String>,
+    /// Number of rows, if measurements are given.
+    pub rows: Option<usize>,
+}
+
+/// The ways of some measurements, else of all instruments and targets that a model names.
+#[must_use]
+pub fn ways(robot: &Robot, data: Option<&Dataset>) -> Vec<Way> {
+    match data {
+        Some(data) => of_rows(robot, data),
+        None => of_model(robot),
+    }
+}
+
+fn joints(robot: &Robot, tree: &Tree, sight: Sight) -> Vec<String> {
+    let passed = tree.route(sight).iter().filter_map(|passed| robot.joints.get(passed.joint));
+    passed.map(|joint| joint.name.clone()).collect()
+}
+
+fn of_rows(robot: &Robot, data: &Dataset) -> Vec<Way> {
+    let tree = Tree::of(robot, data);
+    let mut known: BTreeMap<_, (Sight, usize)> = BTreeMap::new();
+    for row in &data.observations {
+        let sight = Sight::from(row);
+        known.entry((sight.station, sight.target, sight.from.is_some())).or_insert((sight, 0)).1 += 1;
+    }
+    let way = |(sight, rows): (Sight, usize)| Way {
+        instrument: data.stations.get(sight.station).cloned().flatten(),
+        target: data.targets.get(sight.target).cloned().flatten(),
+        joints: joints(robot, &tree, sight),
+        rows: Some(rows),
+    };
+    known.into_values().map(way).collect()
+}
+
+fn of_model(robot: &Robot) -> Vec<Way> {
+    let way = |(instrument, target): (Option<&Mount>, Option<&Mount>)| {
+        let stand = Stand::On(instrument.map_or(Body::Base, |mount| mount.body));
+        let body = target.map_or_else(|| robot.tip_body(), |mount| mount.body);
+        let tree = Tree::new(robot, vec![stand], vec![body]);
+        let name = |mount: Option<&Mount>| mount.map(|mount| mount.name.clone());
+        let (instrument, target) = (name(instrument), name(target));
+        Way { instrument, target, joints: joints(robot, &tree, Sight::from(0)), rows: None }
+    };
+    pairs(robot).into_iter().map(way).collect()
+}

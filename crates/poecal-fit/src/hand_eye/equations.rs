@@ -1,0 +1,194 @@
+//! The equation `seen = outer · moved · inner`, its errors in the camera's axes, and one step of Gauss-Newton.
+//!
+//! A camera in the hand sees a board that stays: `camera_from_target = (flange_from_camera)⁻¹ · (base_from_flange)⁻¹ · base_from_target`.
+//! A camera beside the robot sees a board in the hand: `camera_from_target = (base_from_camera)⁻¹ · base_from_flange · flange_from_target`.
+//! Both are one known motion between two unknown frames.
+
+use nalgebra::{Matrix3, Vector3};
+
+use crate::start::{mean_rotation, rotation_maximising};
+use poecal_arm::lie::{Pose, hat, rotation};
+use poecal_numerics::linalg::{cholesky, cholesky_solve, inverse};
+
+/// Number of unknowns: two frames.
+pub(crate) const UNKNOWNS: usize = 12;
+/// Numbers of a pose: across, across and along the line of sight, then turns about the same axes.
+pub(crate) const NUMBERS: usize = 6;
+
+/// One pose of the arm, and what the camera saw there.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Pair {
+    /// The motion that the arm states.
+    pub(crate) moved: Pose,
+    /// `camera_from_target`.
+    pub(crate) seen: Pose,
+}
+
+/// The two unknown frames.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Frames {
+    pub(crate) outer: Pose,
+    pub(crate) inner: Pose,
+}
+
+impl Frames {
+    /// What the camera should see.
+    pub(crate) fn predicted(&self, moved: &Pose) -> Pose {
+        self.outer * *moved * self.inner
+    }
+
+    /// The frames after a step: shift and turn of the outer one in the camera's axes, of the inner one in its own parent's shift and its own
+    /// turn.
+    pub(crate) fn stepped(&self, step: &[f64]) -> Frames {
+        let at = |k: usize| Vector3::from_fn(|row, _| step.get(k + row).copied().unwrap_or(0.0));
+        let outer = Pose::new(rotation::exp(&at(3)) * self.outer.rotation, self.outer.translation + at(0));
+        let inner = Pose::new(self.inner.rotation * rotation::exp(&at(9)), self.inner.translation + at(6));
+        Frames { outer: outer.orthonormalized(), inner: inner.orthonormalized() }
+    }
+}
+
+/// Axes of a picture's errors: two across the line of sight, one along it.
+pub(crate) fn sight_axes(seen: &Pose) -> Matrix3<f64> {
+    let along = seen.translation.try_normalize(1e-12).unwrap_or_else(Vector3::z);
+    let across = rotation::perpendicular(&along);
+    Matrix3::from_rows(&[across.transpose(), along.cross(&across).transpose(), along.transpose()])
+}
+
+/// Seen minus predicted: metres across, across and along the line of sight, then radians about the same axes.
+pub(crate) fn errors(pair: &Pair, frames: &Frames) -> [f64; NUMBERS] {
+    let predicted = frames.predicted(&pair.moved);
+    let axes = sight_axes(&pair.seen);
+    let shift = axes * (pair.seen.translation - predicted.translation);
+    let turn = axes * rotation::log(&(pair.seen.rotation * predicted.rotation.transpose()));
+    [shift.x, shift.y, shift.z, turn.x, turn.y, turn.z]
+}
+
+/// Derivatives of the predicted numbers, row by row.
+pub(crate) fn derivatives(pair: &Pair, frames: &Frames) -> [[f64; UNKNOWNS]; NUMBERS] {
+    let axes = sight_axes(&pair.seen);
+    let turned = frames.outer.rotation * pair.moved.rotation;
+    let arm = frames.outer.rotation * pair.moved.act(&frames.inner.translation);
+    let predicted = turned * frames.inner.rotation;
+    let blocks = [
+        [axes, -axes * hat(&arm), axes * turned, Matrix3::zeros()],
+        [Matrix3::zeros(), axes, Matrix3::zeros(), axes * predicted],
+    ];
+    let number = |row: usize, column: usize| {
+        blocks.get(row / 3).and_then(|it| it.get(column / 3)).map_or(0.0, |it| it[(row % 3, column % 3)])
+    };
+    std::array::from_fn(|row| std::array::from_fn(|column| number(row, column)))
+}
+
+/// Normal equations: the upper triangle of `JᵀWJ` in a square, and `JᵀWe`.
+#[derive(Clone, Debug)]
+pub(crate) struct Normal {
+    pub(crate) gram: Vec<f64>,
+    pub(crate) gradient: Vec<f64>,
+}
+
+impl Normal {
+    pub(crate) fn zero() -> Self {
+        Normal { gram: vec![0.0; UNKNOWNS * UNKNOWNS], gradient: vec![0.0; UNKNOWNS] }
+    }
+
+    /// Adds a number with its derivatives and weight.
+    pub(crate) fn add(&mut self, row: &[f64; UNKNOWNS], error: f64, weight: f64) {
+        for (i, (gram, gradient)) in self.gram.chunks_exact_mut(UNKNOWNS).zip(&mut self.gradient).enumerate()
+        {
+            *gradient += weight * row[i] * error;
+            for (g, other) in gram.iter_mut().zip(row) {
+                *g += weight * row[i] * other;
+            }
+        }
+    }
+
+    /// The inverse of `JᵀWJ`, if all unknowns are determined.
+    pub(crate) fn covariance(&self) -> Option<Vec<f64>> {
+        Some(inverse(&cholesky(&self.gram, UNKNOWNS, 0.0)?))
+    }
+}
+
+/// Normal equations of rows with their weights of the six numbers.
+pub(crate) fn normal<'a>(rows: impl Iterator<Item = (&'a Pair, [f64; NUMBERS])>, frames: &Frames) -> Normal {
+    let mut normal = Normal::zero();
+    for (pair, weights) in rows {
+        let errors = errors(pair, frames);
+        for ((row, error), weight) in derivatives(pair, frames).iter().zip(errors).zip(weights) {
+            normal.add(row, error, weight);
+        }
+    }
+    normal
+}
+
+/// Most steps of a fit.
+const STEPS: usize = 30;
+/// Size of a step, metres and radians, at which a fit ends.
+const SMALL: f64 = 1e-13;
+
+/// The frames that fit rows best by the weights of their numbers. `None` where they do not determine them.
+pub(crate) fn minimised(pairs: &[Pair], start: Frames, weights: &[f64; NUMBERS]) -> Option<Frames> {
+    let mut frames = start;
+    for _ in 0..STEPS {
+        let normal = normal(pairs.iter().map(|pair| (pair, *weights)), &frames);
+        // Directions that nothing determines stay where they are.
+        let damping = 1e-12 * (0..UNKNOWNS).map(|k| normal.gram[k * (UNKNOWNS + 1)]).fold(0.0, f64::max);
+        let step = cholesky_solve(&cholesky(&normal.gram, UNKNOWNS, damping)?, &normal.gradient);
+        frames = frames.stepped(&step);
+        if step.iter().all(|it| it.abs() < SMALL) {
+            break;
+        }
+    }
+    frames
+        .outer
+        .translation
+        .iter()
+        .chain(frames.inner.translation.iter())
+        .all(|it| it.is_finite())
+        .then_some(frames)
+}
+
+/// Axis of a rotation times twice the sine of its angle.
+fn twice_sine(r: &Matrix3<f64>) -> Vector3<f64> {
+    Vector3::new(r[(2, 1)] - r[(1, 2)], r[(0, 2)] - r[(2, 0)], r[(1, 0)] - r[(0, 1)])
+}
+
+/// Frames in closed form: the turns from relative rotations (park1994handeye), the places from a linear system. `None` where the places are
+/// not determined at all.
+pub(crate) fn in_closed_form(pairs: &[&Pair]) -> Option<Frames> {
+    let mut correlation = Matrix3::zeros();
+    for (k, one) in pairs.iter().enumerate() {
+        // All pairs of few poses, and of many those at some distances.
+        let steps = if pairs.len() <= 40 { (1..pairs.len()).collect() } else { vec![1, 2, 5, 11, 23, 37] };
+        for other in steps.iter().filter_map(|step| pairs.get(k + step)) {
+            // Axis times sine: that of half a turn has no side.
+            let from = twice_sine(&(one.moved.rotation * other.moved.rotation.transpose()));
+            let to = twice_sine(&(one.seen.rotation * other.seen.rotation.transpose()));
+            correlation += from * to.transpose();
+        }
+    }
+    let outer = rotation_maximising(&correlation);
+    let inner = mean_rotation(
+        pairs.iter().map(|it| it.moved.rotation.transpose() * outer.transpose() * it.seen.rotation),
+    );
+    // seen = outer (R t_inner + t_moved) + t_outer, linear in both places.
+    let (mut gram, mut right) = ([0.0; 36], [0.0; 6]);
+    for pair in pairs {
+        let turned = outer * pair.moved.rotation;
+        let missing = pair.seen.translation - outer * pair.moved.translation;
+        for row in 0..3 {
+            let columns: [f64; 6] = std::array::from_fn(|k| match k {
+                0..3 => f64::from(u8::from(k == row)),
+                _ => turned[(row, k - 3)],
+            });
+            for i in 0..6 {
+                right[i] += columns[i] * missing[row];
+                for j in 0..6 {
+                    gram[6 * i + j] += columns[i] * columns[j];
+                }
+            }
+        }
+    }
+    let found = cholesky_solve(&cholesky(&gram, 6, 1e-9 * pairs.len() as f64)?, &right);
+    let at = |k: usize| Vector3::from_fn(|row, _| found[k + row]);
+    Some(Frames { outer: Pose::new(outer, at(0)), inner: Pose::new(inner, at(3)) })
+}

@@ -1,0 +1,78 @@
+//! Whether the camera or the target moved during the session: frames of the rows before and after differ by more than noise.
+
+use super::CameraPlace;
+use super::bounds::{Side, difference, placed};
+use super::equations::{Pair, errors};
+use super::fit::{FEW_STARTS, Fit, sizes, start};
+use super::noise::Spread;
+use poecal_arm::lie::Pose;
+
+/// Fewest rows of a part.
+const PART: usize = 5;
+/// Most places between rows that are tried.
+const PLACES: usize = 40;
+/// Probability by chance, over all places.
+const CHANCE: f64 = 1e-3;
+
+/// A move between two rows.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Move {
+    /// First row after it.
+    pub(crate) from: usize,
+    /// What moved.
+    pub(crate) side: Side,
+    pub(crate) shift_m: f64,
+    pub(crate) turn_rad: f64,
+}
+
+/// The move that the rows show, if they show one.
+pub(crate) fn found(pairs: &[Pair]) -> Option<Move> {
+    let count = pairs.len();
+    // The ends of a long session are no parts of it.
+    let part = PART.max(count / 8);
+    if count < 2 * part {
+        return None;
+    }
+    let every = ((count - 2 * part) / PLACES + 1).max(1);
+    let places = (part..=count - part).step_by(every);
+    let scores = places.filter_map(|at| Some((scored(&pairs[..at])? + scored(&pairs[at..])?, at)));
+    let (_, at) = scores.min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)))?;
+    let (first, second) = (Fit::of(&pairs[..at])?, Fit::of(&pairs[at..])?);
+    let [before, after] = [(&first, &pairs[..at]), (&second, &pairs[at..])]
+        .map(|(fit, rows)| Spread::of(&fit.noise, &fit.rows(&fit.seen_about(rows)), &fit.frames));
+    let (before, after) = (before?, after?);
+    let chance = CHANCE / (count / every) as f64;
+    let ratio = |side: Side| {
+        let one = (&first.frames, &first.point, &before, &first.noise);
+        difference(one, (&second.frames, &second.point, &after, &second.noise), side, chance)
+    };
+    let sides = [Side::Camera, Side::Target].map(|side| (ratio(side).unwrap_or(0.0), side));
+    let (most, side) = if sides[0].0 > sides[1].0 { sides[0] } else { sides[1] };
+    if most <= 1.0 {
+        return None;
+    }
+    let pose = |fit: &Fit| placed(&fit.frames, &fit.point, side).0;
+    let (shift_m, turn_rad) = Pose::apart(&pose(&first), &pose(&second));
+    Some(Move { from: at, side, shift_m, turn_rad })
+}
+
+/// How well rows fit by themselves: counted times the logarithms of their mean errors.
+fn scored(pairs: &[Pair]) -> Option<f64> {
+    let frames = start(pairs, FEW_STARTS)?;
+    let count = pairs.len() as f64;
+    let sums = pairs
+        .iter()
+        .map(|pair| sizes(&errors(pair, &frames)))
+        .fold((0.0, 0.0), |sum, it| (sum.0 + it.0, sum.1 + it.1));
+    Some(count * ((sums.0 / count).max(1e-9).ln() + (sums.1 / count).max(1e-9).ln()))
+}
+
+/// What moved, in words.
+pub(crate) fn words(side: Side, camera: CameraPlace) -> &'static str {
+    match (side, camera) {
+        (Side::Camera, CameraPlace::InHand) => "the camera on the flange",
+        (Side::Target, CameraPlace::InHand) => "the target",
+        (Side::Camera, CameraPlace::Beside) => "the camera",
+        (Side::Target, CameraPlace::Beside) => "the target on the flange",
+    }
+}

@@ -1,0 +1,203 @@
+//! Noise of the camera's poses by its parts, from the residuals: across and along the line of sight, of tilts and of the turn about it.
+
+use super::equations::{Frames, NUMBERS, Normal, Pair, UNKNOWNS, derivatives, errors};
+use poecal_numerics::distributions::f_quantile;
+use poecal_numerics::linalg::{cholesky, inverse};
+
+/// Smallest standard deviation, metres and radians: that of numbers without noise.
+const LEAST: f64 = 1e-10;
+/// Rounds of the estimate.
+const ROUNDS: usize = 50;
+/// Probability by chance at which two parts of a noise count as different.
+const DIFFERENT: f64 = 0.01;
+
+/// Standard deviations of the six numbers of a pose. Parts that do not differ evidently are one.
+#[derive(Clone, Debug)]
+pub(crate) struct Noise {
+    /// The part to which each number belongs.
+    pub(crate) part_of: [usize; NUMBERS],
+    /// Variance of each part.
+    pub(crate) variance: Vec<f64>,
+    /// Degrees of freedom with which it is known.
+    pub(crate) freedom: Vec<f64>,
+    /// Degrees of freedom of places that the point of the target has spent.
+    pub(crate) spent: f64,
+}
+
+/// Places and turns, each alike in all directions.
+const ALIKE: [usize; NUMBERS] = [0, 0, 0, 1, 1, 1];
+
+impl Noise {
+    /// Of stated standard deviations.
+    pub(crate) fn of(sigma_m: f64, sigma_rad: f64) -> Self {
+        let variance = [sigma_m, sigma_rad].map(|it| it.max(LEAST).powi(2)).to_vec();
+        Noise { part_of: ALIKE, variance, freedom: vec![f64::INFINITY; 2], spent: 0.0 }
+    }
+
+    /// The weights of the six numbers.
+    pub(crate) fn weights(&self) -> [f64; NUMBERS] {
+        self.part_of.map(|part| self.variance.get(part).map_or(0.0, |it| 1.0 / it))
+    }
+
+    /// The standard deviation of a number.
+    pub(crate) fn sigma(&self, number: usize) -> f64 {
+        let part = self.part_of.get(number).copied().unwrap_or_default();
+        self.variance.get(part).copied().unwrap_or_default().sqrt()
+    }
+
+    /// The sum of squares of errors in units of the noise.
+    pub(crate) fn squares(&self, errors: &[f64; NUMBERS]) -> f64 {
+        errors.iter().zip(self.weights()).map(|(error, weight)| error * error * weight).sum()
+    }
+
+    /// The same parts from the residuals of rows about their fit: each the mean square over its degrees of freedom, that is what remains
+    /// after its share of the unknowns. `None` where the rows do not determine the unknowns, or a part has no freedom.
+    pub(crate) fn estimated(&self, pairs: &[Pair], frames: &Frames) -> Option<Noise> {
+        let parts = Parts::of(self.part_of, self.variance.len(), pairs, frames);
+        let mut noise = self.clone();
+        for _ in 0..ROUNDS {
+            let known = parts.covariance(&noise.variance)?;
+            let mut change: f64 = 0.0;
+            for (part, normal) in parts.normals.iter().enumerate() {
+                let variance = noise.variance[part];
+                let places = self.part_of.iter().take(3).filter(|it| **it == part).count() as f64 / 3.0;
+                let told = product_trace(&known, &normal.gram) / variance;
+                let freedom = parts.counts[part] - told - self.spent * places;
+                if freedom < 0.5 {
+                    return None;
+                }
+                let next = (parts.squares[part] / freedom).max(LEAST * LEAST);
+                change = change.max((next / variance).ln().abs());
+                (noise.variance[part], noise.freedom[part]) = (next, freedom);
+            }
+            if change < 1e-9 {
+                break;
+            }
+        }
+        Some(noise)
+    }
+
+    /// The same with places, and turns, apart by direction where they differ by more than chance.
+    pub(crate) fn apart_where_they_differ(&self, pairs: &[Pair], frames: &Frames) -> Noise {
+        let mut noise = self.clone();
+        for (numbers, single) in [([0, 1, 2], 2), ([3, 4, 5], 5)] {
+            let part = noise.part_of[numbers[0]];
+            if numbers.iter().any(|&k| noise.part_of[k] != part) {
+                continue;
+            }
+            let mut apart = noise.clone();
+            apart.part_of[single] = apart.variance.len();
+            apart.variance.push(apart.variance[part]);
+            apart.freedom.push(0.0);
+            let Some(apart) = apart.estimated(pairs, frames) else { continue };
+            let last = apart.variance.len() - 1;
+            let (mut a, mut b) =
+                ((apart.variance[part], apart.freedom[part]), (apart.variance[last], apart.freedom[last]));
+            if a.0 < b.0 {
+                std::mem::swap(&mut a, &mut b);
+            }
+            if b.1 > 2.0 && a.0 / b.0 > f_quantile(0.5 * DIFFERENT, a.1, b.1) {
+                noise = apart;
+            }
+        }
+        noise
+    }
+}
+
+/// What the residuals of each part say.
+struct Parts {
+    normals: Vec<Normal>,
+    squares: Vec<f64>,
+    counts: Vec<f64>,
+}
+
+impl Parts {
+    fn of(part_of: [usize; NUMBERS], parts: usize, pairs: &[Pair], frames: &Frames) -> Self {
+        let mut all = Parts {
+            normals: vec![Normal::zero(); parts],
+            squares: vec![0.0; parts],
+            counts: vec![0.0; parts],
+        };
+        for pair in pairs {
+            let errors = errors(pair, frames);
+            for ((row, error), part) in derivatives(pair, frames).iter().zip(errors).zip(part_of) {
+                all.normals[part].add(row, error, 1.0);
+                all.squares[part] += error * error;
+                all.counts[part] += 1.0;
+            }
+        }
+        all
+    }
+
+    /// Covariance of the unknowns for these variances.
+    fn covariance(&self, variances: &[f64]) -> Option<Vec<f64>> {
+        let mut gram = vec![0.0; UNKNOWNS * UNKNOWNS];
+        for (normal, variance) in self.normals.iter().zip(variances) {
+            gram.iter_mut().zip(&normal.gram).for_each(|(sum, it)| *sum += it / variance);
+        }
+        Some(inverse(&cholesky(&gram, UNKNOWNS, 0.0)?))
+    }
+}
+
+/// `tr(A B)` of two symmetric matrices, all of both written.
+fn product_trace(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+/// Covariance of the unknowns, and the part of it that each part of the noise causes, with the degrees of freedom of that part.
+pub(crate) struct Spread {
+    pub(crate) covariance: Vec<f64>,
+    pub(crate) by_part: Vec<(Vec<f64>, f64)>,
+}
+
+impl Spread {
+    /// Of rows about their fit.
+    pub(crate) fn of(noise: &Noise, pairs: &[Pair], frames: &Frames) -> Option<Self> {
+        let parts = Parts::of(noise.part_of, noise.variance.len(), pairs, frames);
+        let mut covariance = parts.covariance(&noise.variance)?;
+        let wider = follows(noise, pairs, frames);
+        let by_part = parts.normals.iter().zip(&noise.variance).zip(&noise.freedom);
+        let by_part = by_part.map(|((normal, variance), freedom)| {
+            let share = product(&product(&covariance, &normal.gram), &covariance);
+            (share.iter().map(|it| wider * it / variance).collect(), freedom / wider)
+        });
+        let by_part = by_part.collect();
+        covariance.iter_mut().for_each(|it| *it *= wider);
+        Some(Spread { covariance, by_part })
+    }
+}
+
+/// Fewest rows in which errors that follow each other are sought.
+const ROWS_IN_ORDER: usize = 20;
+
+/// By how much variances grow because errors of consecutive rows are alike, as those of an arm along its way are: 1 where they are not by
+/// more than chance.
+fn follows(noise: &Noise, pairs: &[Pair], frames: &Frames) -> f64 {
+    if pairs.len() < ROWS_IN_ORDER {
+        return 1.0;
+    }
+    let weights = noise.weights();
+    let rows: Vec<[f64; NUMBERS]> = pairs
+        .iter()
+        .map(|pair| {
+            let mut errors = errors(pair, frames);
+            errors.iter_mut().zip(weights).for_each(|(error, weight)| *error *= weight.sqrt());
+            errors
+        })
+        .collect();
+    let product = |a: &[f64; NUMBERS], b: &[f64; NUMBERS]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+    let squares: f64 = rows.iter().map(|row| product(row, row)).sum();
+    let next: f64 = rows.iter().zip(rows.iter().skip(1)).map(|(row, next)| product(row, next)).sum();
+    let alike = (next / squares.max(f64::MIN_POSITIVE)).min(0.95);
+    let chance = 2.0 / ((NUMBERS * pairs.len()) as f64).sqrt();
+    if alike > chance { (1.0 + alike) / (1.0 - alike) } else { 1.0 }
+}
+
+/// Product of two square matrices of the unknowns.
+fn product(a: &[f64], b: &[f64]) -> Vec<f64> {
+    let cell = |at: usize| {
+        let (i, j) = (at / UNKNOWNS, at % UNKNOWNS);
+        (0..UNKNOWNS).map(|k| a[i * UNKNOWNS + k] * b[k * UNKNOWNS + j]).sum()
+    };
+    (0..UNKNOWNS * UNKNOWNS).map(cell).collect()
+}

@@ -1,0 +1,73 @@
+//! Which of several poses that the corners of a picture fit the other pictures agree with.
+
+use super::CameraPlace;
+use super::directions::pairs;
+use super::fit::{STARTS, medians, start};
+use super::readings::PoseList;
+use super::types::{Directions, HandEyeOptions};
+use poecal_arm::lie::{Pose, rotation};
+
+/// Most rounds in which pictures take another of their poses.
+const ROUNDS: usize = 6;
+
+/// The target's poses, of each row the one that the other rows agree with, and the rows in which that is not the first.
+pub(crate) fn settled(
+    flange: &[Pose],
+    target: &PoseList,
+    options: &HandEyeOptions,
+) -> (Vec<Pose>, Vec<usize>) {
+    if target.other_poses.is_empty() {
+        return (target.poses.clone(), Vec::new());
+    }
+    let inverted = match options.flange_inverted {
+        Some(stated) => vec![stated],
+        None => vec![false, true],
+    };
+    let tried = inverted.into_iter().filter_map(|flange_inverted| {
+        let directions = Directions { flange_inverted, target_inverted: false, stated: false };
+        by_rounds(flange, target, options.camera, &directions)
+    });
+    let best = tried.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, poses)| poses);
+    let poses = best.unwrap_or_else(|| target.poses.clone());
+    let changed = poses.iter().zip(&target.poses).enumerate().filter(|(_, (one, first))| one != first);
+    let changed = changed.map(|(row, _)| row).collect();
+    (poses, changed)
+}
+
+/// The poses in one direction of the arm's, with the median angle by which they are off.
+fn by_rounds(
+    flange: &[Pose],
+    target: &PoseList,
+    camera: CameraPlace,
+    directions: &Directions,
+) -> Option<(f64, Vec<Pose>)> {
+    let mut poses = target.poses.clone();
+    let mut best: Option<(f64, Vec<Pose>)> = None;
+    for _ in 0..ROUNDS {
+        let rows = pairs(flange, &poses, camera, directions);
+        let frames = start(&rows, STARTS)?;
+        let (_, off) = medians(&rows, &frames);
+        if best.as_ref().is_none_or(|(least, _)| off < *least) {
+            best = Some((off, poses.clone()));
+        }
+        let mut has_changed = false;
+        for (row, pair) in rows.iter().enumerate() {
+            let predicted = frames.predicted(&pair.moved);
+            let turned =
+                |pose: &&Pose| rotation::log(&(pose.rotation * predicted.rotation.transpose())).norm();
+            let first = target.poses.get(row).into_iter();
+            let nearest = first
+                .chain(target.other_poses.get(row).into_iter().flatten())
+                .min_by(|a, b| turned(a).total_cmp(&turned(b)));
+            if let (Some(pose), Some(nearest)) = (poses.get_mut(row), nearest)
+                && pose != nearest
+            {
+                (*pose, has_changed) = (*nearest, true);
+            }
+        }
+        if !has_changed {
+            break;
+        }
+    }
+    best
+}

@@ -1,0 +1,339 @@
+//! The steps in order, and their result.
+
+use nalgebra::Vector3;
+
+use super::bounds::{Placed, Side, bounded};
+use super::directions::{found, pairs};
+use super::equations::{Pair, errors, sight_axes};
+use super::findings::{Finding, FindingKind, listed};
+use super::fit::{Fit, sizes};
+use super::noise::Spread;
+use super::readings::{PoseList, least_score, misread_angles, mistaken, refuse_other_lengths};
+use super::turns::{refuse_one_axis, turns};
+use super::types::{Directions, HandEye, HandEyeOptions, HeldOut, Level, Outlier, RowError, Turns};
+use super::{CameraPlace, moved, other_poses, simulated, verdict};
+use poecal_arm::lie::{Pose, rotation};
+use poecal_numerics::error::{ErrorKind, Result};
+
+/// Fewest poses.
+const FEWEST: usize = 4;
+/// Difference below which numbers of two rows are the same, m and rad.
+const SAME: f64 = 1e-9;
+
+/// Where a camera is, from poses of the flange and of a target that were taken together. `name` says of a row what messages call it.
+///
+/// # Errors
+/// [`ErrorKind::Problem`] if the poses are too few, turn about one axis only, or do not fit together for a reason that can be named: their
+/// units, conventions, order or directions.
+///
+/// ```
+/// use poecal_fit::hand_eye::{CameraPlace, HandEyeOptions, hand_eye};
+/// use poecal_arm::lie::Pose;
+/// let (camera, board) = (Pose::from_xyz_rpy([0.04, -0.06, 0.09], [0.1, 0.0, 1.5]), Pose::from_xyz_rpy([0.6, 0.1, 0.0], [3.1, 0.0, 0.2]));
+/// let flange: Vec<Pose> = (0..10).map(|k| f64::from(k)).map(|k| {
+///     Pose::from_xyz_rpy([0.5 + 0.02 * k, 0.1 * k.sin(), 0.6], [3.0 + 0.3 * (1.3 * k).sin(), 0.3 * (2.1 * k).cos(), 0.4 * k.sin()])
+/// }).collect();
+/// let seen: Vec<Pose> = flange.iter().map(|it| (*it * camera).inverse() * board).collect();
+/// let found = hand_eye(&flange.into(), &seen.into(), &HandEyeOptions::of(CameraPlace::InHand), &|row| format!("row {}", row + 1))?;
+/// assert!((found.on_flange.pose.translation - camera.translation).norm() < 1e-9);
+/// # Ok::<(), poecal_numerics::error::Error>(())
+/// ```
+pub fn hand_eye(
+    flange: &PoseList,
+    target: &PoseList,
+    options: &HandEyeOptions,
+    name: &dyn Fn(usize) -> String,
+) -> Result<HandEye> {
+    let count = flange.poses.len();
+    if count != target.poses.len() {
+        return ErrorKind::Problem.refuse(format!(
+            "found {count} poses of the arm and {} of the target, expected as many: join them by a column of names",
+            target.poses.len()
+        ));
+    }
+    refuse_other_lengths(&flange.poses, &target.poses)?;
+    let mut findings = Vec::new();
+    let (poses, rows) = other_poses::settled(&flange.poses, target, options);
+    if !rows.is_empty() {
+        let statement = format!(
+            "took another pose of the board by the same corners in {}: so the pictures agree",
+            listed(&rows, name)
+        );
+        findings.push(Finding::new(FindingKind::OtherPose, statement, rows));
+    }
+    let target = &PoseList { poses, ..target.clone() };
+    let mut counted = once_each(flange, target, name, &mut findings);
+    refuse_few(flange, &counted)?;
+    let turns = turns(&flange.poses, &counted);
+    // Angles in another unit turn hardly at all.
+    refuse_one_axis(&turns).map_err(|error| misread_angles(flange, target, options).unwrap_or(error))?;
+    if let Some(error) = mistake(flange, target, options) {
+        return Err(error);
+    }
+    let part = |poses: &[Pose], rows: &[usize]| -> Vec<Pose> { rows.iter().map(|&row| poses[row]).collect() };
+    let [arm, seen] = [&flange.poses, &target.poses].map(|poses| part(poses, &counted));
+    let (directions, said) = found(&arm, &seen, options)?;
+    findings.extend(said.map(|said| Finding::new(FindingKind::Inverted, said, Vec::new())));
+    let all = pairs(&flange.poses, &target.poses, options.camera, &directions);
+    let of = |rows: &[usize]| -> Vec<Pair> { rows.iter().map(|&row| all[row]).collect() };
+    if let Some(step) = moved::found(&of(&counted)) {
+        let (longer, finding) = leave_moved_out(&step, &counted, options.camera, name);
+        findings.push(finding);
+        counted = longer;
+    }
+    let Some(fit) = Fit::of(&of(&counted)) else {
+        return ErrorKind::Problem.refuse(
+            "found poses that do not determine where the camera is, expected turns about two axes or more: add poses that turn about a second axis",
+        );
+    };
+    finished(&all, &counted, (&fit, directions, turns), options.camera, findings, name)
+}
+
+/// Leaves the poses before or after a move out; gives those that stay.
+fn leave_moved_out(
+    step: &moved::Move,
+    counted: &[usize],
+    camera: CameraPlace,
+    name: &dyn Fn(usize) -> String,
+) -> (Vec<usize>, Finding) {
+    let row = counted[step.from];
+    let (before, after) = counted.split_at(step.from);
+    let (longer, left_out) = if before.len() >= after.len() { (before, after) } else { (after, before) };
+    let statement = format!(
+        "{} moved by {:.2} mm and {:.2} deg before {}: the {} poses {} it were left out; fix it, and measure again",
+        moved::words(step.side, camera),
+        1e3 * step.shift_m,
+        step.turn_rad.to_degrees(),
+        name(row),
+        left_out.len(),
+        if before.len() >= after.len() { "from" } else { "before" }
+    );
+    (longer.to_vec(), Finding::new(FindingKind::Moved, statement, left_out.to_vec()))
+}
+
+/// All that is said of a fit.
+fn finished(
+    all: &[Pair],
+    counted: &[usize],
+    (fit, directions, turns): (&Fit, Directions, Turns),
+    camera: CameraPlace,
+    mut findings: Vec<Finding>,
+    name: &dyn Fn(usize) -> String,
+) -> Result<HandEye> {
+    let rows: Vec<Pair> = counted.iter().map(|&row| all[row]).collect();
+    let kept = fit.rows(&fit.seen_about(&rows));
+    let Some(spread) = Spread::of(&fit.noise, &kept, &fit.frames) else {
+        return ErrorKind::Problem.refuse(
+            "found poses that determine the camera's place in some directions only, expected turns about two axes or more: add such poses",
+        );
+    };
+    let factors = simulated::factors(&fit.rows(&rows), fit);
+    let side = |side: Side| {
+        let (by_m, by_rad) = factors.of(side);
+        let placed = bounded(&spread, &fit.frames, &fit.point, side);
+        Placed { bound95_m: by_m * placed.bound95_m, bound95_rad: by_rad * placed.bound95_rad, ..placed }
+    };
+    let (on_flange, in_base) = match camera {
+        CameraPlace::InHand => (side(Side::Camera), side(Side::Target)),
+        CameraPlace::Beside => (side(Side::Target), side(Side::Camera)),
+    };
+    let is_kept = |row: usize| counted.iter().position(|it| *it == row).is_some_and(|at| fit.kept[at]);
+    let frames = fit.own_frames();
+    let rows_errors: Vec<RowError> = (all.iter().enumerate())
+        .map(|(row, pair)| {
+            let (shift_m, turn_rad) = sizes(&errors(pair, &frames));
+            RowError { shift_m, turn_rad, is_fitted: is_kept(row) }
+        })
+        .collect();
+    let outliers = find_outliers((all, counted), &rows_errors, fit);
+    say_outliers(&outliers, name, &mut findings);
+    let scale = verdict::scale(&kept, fit);
+    let held_out = held_out(&rows, fit);
+    let noise = [0, 2, 3, 5].map(|number| fit.noise.sigma(number));
+    let mut result = HandEye {
+        camera,
+        on_flange,
+        in_base,
+        directions,
+        level: Level::Good,
+        reasons: Vec::new(),
+        noise,
+        noise_about: fit.point,
+        residual: root_mean_squares(&rows_errors),
+        held_out,
+        rows: rows_errors,
+        outliers,
+        turns,
+        findings,
+    };
+    let distance = poecal_numerics::distributions::median(kept.iter().map(|it| it.seen.translation.norm()));
+    verdict::judge(&mut result, scale, distance.unwrap_or_default());
+    Ok(result)
+}
+
+/// The rows that were left out of a fit of some.
+fn find_outliers((all, counted): (&[Pair], &[usize]), errors: &[RowError], fit: &Fit) -> Vec<Outlier> {
+    counted
+        .iter()
+        .filter(|row| !errors[**row].is_fitted)
+        .map(|&row| {
+            let RowError { shift_m, turn_rad, .. } = errors[row];
+            Outlier { row, shift_m, turn_rad, is_flipped: is_flipped(&all[row], fit) }
+        })
+        .collect()
+}
+
+/// Rows without those that repeat an earlier one.
+fn once_each(
+    flange: &PoseList,
+    target: &PoseList,
+    name: &dyn Fn(usize) -> String,
+    findings: &mut Vec<Finding>,
+) -> Vec<usize> {
+    let same = |one: &Pose, other: &Pose| {
+        let (shift, turn) = one.apart(other);
+        shift < SAME && turn < 1e-7
+    };
+    let mut counted: Vec<usize> = Vec::new();
+    let mut repeated = Vec::new();
+    for row in 0..flange.poses.len() {
+        let earlier = counted.iter().find(|&&it| {
+            same(&flange.poses[it], &flange.poses[row]) && same(&target.poses[it], &target.poses[row])
+        });
+        match earlier {
+            Some(&it) => repeated.push((row, it)),
+            None => counted.push(row),
+        }
+    }
+    if !repeated.is_empty() {
+        let words: Vec<String> =
+            repeated.iter().take(4).map(|&(row, it)| format!("{} repeats {}", name(row), name(it))).collect();
+        let more =
+            if repeated.len() > 4 { format!(" and {} more", repeated.len() - 4) } else { String::new() };
+        let statement = format!(
+            "{}{more}: the same numbers of arm and target count once; measure each pose anew",
+            words.join(", ")
+        );
+        findings.push(Finding::new(
+            FindingKind::Repeated,
+            statement,
+            repeated.iter().map(|it| it.0).collect(),
+        ));
+    }
+    counted
+}
+
+/// Refuses fewer different poses than determine anything that can be tested.
+fn refuse_few(flange: &PoseList, counted: &[usize]) -> Result<()> {
+    let mut different: Vec<&Pose> = Vec::new();
+    for &row in counted {
+        let pose = &flange.poses[row];
+        let is_new = different.iter().all(|it| {
+            let (shift, turn) = it.apart(pose);
+            shift > 1e-5 || turn > 1e-4
+        });
+        if is_new {
+            different.push(pose);
+        }
+        if different.len() >= FEWEST {
+            return Ok(());
+        }
+    }
+    let count = different.len();
+    ErrorKind::Problem.refuse(format!(
+        "found {count} different pose{}, expected {FEWEST} or more, and 15 to 30 for a good result: three poses fit themselves, and show no error; \
+         add poses that turn about different axes",
+        if count == 1 { "" } else { "s" }
+    ))
+}
+
+/// Median errors, metres and radians, above which other readings are tried.
+const SUSPICIOUS: (f64, f64) = (3e-3, 5e-3);
+
+/// The mistake of which the poses look, if they fit badly as they are.
+fn mistake(
+    flange: &PoseList,
+    target: &PoseList,
+    options: &HandEyeOptions,
+) -> Option<poecal_numerics::error::Error> {
+    let (score, (shift, turn)) = least_score(&flange.poses, &target.poses, options)?;
+    (shift > SUSPICIOUS.0 || turn > SUSPICIOUS.1).then(|| mistaken(flange, target, options, score)).flatten()
+}
+
+/// Whether a row is right once its board is turned to the other of the two sides that look alike from afar.
+fn is_flipped(pair: &Pair, fit: &Fit) -> bool {
+    let predicted = fit.own_frames().predicted(&pair.moved);
+    let normal = pair.seen.rotation.column(2).into_owned();
+    let along: Vector3<f64> = sight_axes(&pair.seen).row(2).transpose();
+    let other = 2.0 * normal.dot(&along) * along - normal;
+    let turned = rotation::shortest_arc(&normal, &other) * pair.seen.rotation;
+    let off = |seen: &nalgebra::Matrix3<f64>| rotation::log(&(seen * predicted.rotation.transpose())).norm();
+    let (as_read, as_other) = (off(&pair.seen.rotation), off(&turned));
+    as_read > 0.1 && as_other < 0.35 * as_read
+}
+
+fn say_outliers(outliers: &[Outlier], name: &dyn Fn(usize) -> String, findings: &mut Vec<Finding>) {
+    let rows = |flipped: bool| -> Vec<usize> {
+        outliers.iter().filter(|it| it.is_flipped == flipped).map(|it| it.row).collect()
+    };
+    let (flipped, others) = (rows(true), rows(false));
+    let verb = |count: usize| if count == 1 { "is" } else { "are" };
+    if !flipped.is_empty() {
+        let statement = format!(
+            "{} {} flipped: a flat board seen from its other side would look the same; left out; take the other solution (OpenCV: solvePnPGeneric with \
+             SOLVEPNP_IPPE), or tilt the board further",
+            listed(&flipped, name),
+            verb(flipped.len())
+        );
+        findings.push(Finding::new(FindingKind::Flipped, statement, flipped));
+    }
+    if !others.is_empty() {
+        let worst =
+            outliers.iter().filter(|it| !it.is_flipped).max_by(|a, b| a.shift_m.total_cmp(&b.shift_m));
+        let size = worst.map_or(String::new(), |it| {
+            format!(" (up to {:.1} mm and {:.2} deg)", 1e3 * it.shift_m, it.turn_rad.to_degrees())
+        });
+        let statement = format!(
+            "{} contradict{} all others{size} and {} left out: look at these pictures and poses",
+            listed(&others, name),
+            if others.len() == 1 { "s" } else { "" },
+            verb(others.len())
+        );
+        findings.push(Finding::new(FindingKind::Outliers, statement, others));
+    }
+}
+
+/// Errors of rows in five parts, each predicted by the others.
+fn held_out(rows: &[Pair], fit: &Fit) -> Option<HeldOut> {
+    let kept = fit.rows(rows);
+    if kept.len() < 6 {
+        return None;
+    }
+    let folds = if kept.len() < 10 { kept.len() } else { 5 };
+    let (mut squares_m, mut squares_rad) = (0.0, 0.0);
+    for fold in 0..folds {
+        let of = |held: bool| -> Vec<Pair> {
+            kept.iter().enumerate().filter(|(k, _)| (k % folds == fold) == held).map(|(_, it)| *it).collect()
+        };
+        let frames = fit.of_target(&fit.again(&of(false))?);
+        for pair in of(true) {
+            let (shift, turn) = sizes(&errors(&pair, &frames));
+            squares_m += shift * shift;
+            squares_rad += turn * turn;
+        }
+    }
+    let count = kept.len() as f64;
+    Some(HeldOut {
+        rows: kept.len(),
+        rms_m: (squares_m / count).sqrt(),
+        rms_rad: (squares_rad / count).sqrt(),
+    })
+}
+
+fn root_mean_squares(rows: &[RowError]) -> (f64, f64) {
+    let fitted: Vec<&RowError> = rows.iter().filter(|it| it.is_fitted).collect();
+    let of = |size: &dyn Fn(&RowError) -> f64| {
+        (fitted.iter().map(|it| size(it).powi(2)).sum::<f64>() / fitted.len().max(1) as f64).sqrt()
+    };
+    (of(&|it| it.shift_m), of(&|it| it.turn_rad))
+}

@@ -1,0 +1,247 @@
+//! The tip of a tool that touches a fixed point in many orientations: `R p + t = c`, linear in the tip and in the points.
+
+use nalgebra::{Matrix3, Vector3};
+
+use super::bounds::{Placed, length_within};
+use super::findings::{Finding, FindingKind, listed};
+use super::readings::refuse_arm_lengths;
+use super::touches::{FEWEST, Layout, TipFit, Touches};
+use super::types::{Level, RowError};
+use poecal_arm::lie::{Pose, rotation};
+use poecal_numerics::error::{Error, ErrorKind, Result};
+use poecal_numerics::linalg::symmetric_eigen;
+
+/// A tip of the tool.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Tip {
+    /// Its name, empty if no column names it.
+    pub name: String,
+    /// Its place in the flange's frame, with its bounds; not turned.
+    pub placed: Placed,
+}
+
+/// The tool as its touches show it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Tool {
+    /// The tips, in the order of the rows.
+    pub tips: Vec<Tip>,
+    /// With two tips or more: the direction from the second to the first, in the flange's frame, and the angle within which it is with 95 %
+    /// probability, radians.
+    pub axis: Option<(Vector3<f64>, f64)>,
+    /// The tool's frame: origin at the first tip; z along the axis, if it is known.
+    pub frame: Pose,
+    /// Root mean square distance of the tip from its point, metres.
+    pub rms_m: f64,
+    /// Standard deviation of each component of a touch, metres.
+    pub sigma_m: f64,
+    /// Rows with their errors.
+    pub rows: Vec<RowError>,
+    /// Touches that contradict the others.
+    pub outliers: Vec<usize>,
+    /// How far to use it.
+    pub level: Level,
+    /// Why, a sentence each.
+    pub reasons: Vec<String>,
+    /// What was found beside.
+    pub findings: Vec<Finding>,
+}
+
+/// Share of the tilt, as root mean square change of a unit vector, below which the tip is not determined along it.
+const UNTILTED: f64 = 0.03;
+/// The same that is enough: tilts of 20 deg.
+const TILTED: f64 = 0.25;
+/// Root mean square distance, metres, above which other readings are tried.
+const SUSPICIOUS: f64 = 5e-3;
+
+/// Finds the tip (or tips) of a tool from touches of fixed points of unknown place. `name` says of a row what messages call it.
+///
+/// # Errors
+/// [`ErrorKind::Problem`] if touches are too few, if the flange was not tilted, or if the poses are in other units or conventions.
+///
+/// ```
+/// use nalgebra::Vector3;
+/// use poecal_fit::hand_eye::{Touches, tool_tip};
+/// use poecal_arm::lie::Pose;
+/// let (tip, point) = (Vector3::new(0.01, 0.0, 0.15), Vector3::new(0.5, 0.1, 0.0));
+/// let poses: Vec<Pose> = [[3.1, 0.0, 0.0], [2.7, 0.2, 1.0], [3.0, -0.5, 2.0], [3.4, 0.3, 3.0]].into_iter().map(|rpy| {
+///     let turned = Pose::from_xyz_rpy([0.0; 3], rpy);
+///     Pose::new(turned.rotation, point - turned.rotation * tip)
+/// }).collect();
+/// let found = tool_tip(&Touches { flange: poses.into(), ..Touches::default() }, &|row| format!("row {}", row + 1))?;
+/// assert!((found.tips[0].placed.pose.translation - tip).norm() < 1e-9);
+/// # Ok::<(), poecal_numerics::error::Error>(())
+/// ```
+pub fn tool_tip(touches: &Touches, name: &dyn Fn(usize) -> String) -> Result<Tool> {
+    let count = touches.flange.poses.len();
+    if count < FEWEST {
+        return ErrorKind::Problem.refuse(format!(
+            "found {count} touches, expected {FEWEST} or more, and 6 to 10 for a good result: touch the same point with the flange tilted to other sides"
+        ));
+    }
+    refuse_arm_lengths(&touches.flange.poses)?;
+    let layout = Layout::of(touches);
+    layout.refuse_few(touches)?;
+    let poses = &touches.flange.poses;
+    let (weak, spread) = least_tilted(poses, &layout);
+    let solved = layout.robustly(poses).filter(|_| spread > UNTILTED);
+    let Some(fit) = solved else { return Err(untilted(&weak, spread)) };
+    if fit.rms(poses, &layout) > SUSPICIOUS
+        && let Some(error) = other_reading(touches, &layout, fit.rms(poses, &layout))
+    {
+        return Err(error);
+    }
+    Ok(finished(poses, &layout, &fit, (weak, spread), name))
+}
+
+/// The direction in the flange along which orientations tilted least, and the root mean square change of that unit vector.
+fn least_tilted(poses: &[Pose], layout: &Layout) -> (Vector3<f64>, f64) {
+    let mut upper = [0.0; 9];
+    for (tip, point) in
+        (0..layout.tips.len()).flat_map(|tip| (0..layout.points.len()).map(move |point| (tip, point)))
+    {
+        let own: Vec<&Pose> =
+            poses.iter().zip(&layout.rows).filter(|(_, row)| **row == (tip, point)).map(|it| it.0).collect();
+        let mean = own.iter().map(|it| it.rotation).sum::<Matrix3<f64>>() / own.len().max(1) as f64;
+        for pose in own {
+            let off = pose.rotation - mean;
+            let squares = off.transpose() * off / poses.len() as f64;
+            for (k, sum) in upper.iter_mut().enumerate() {
+                *sum += squares[(k / 3, k % 3)];
+            }
+        }
+    }
+    let (values, vectors) = symmetric_eigen(&upper, 3);
+    (Vector3::new(vectors[(0, 0)], vectors[(1, 0)], vectors[(2, 0)]), values[0].max(0.0).sqrt())
+}
+
+fn untilted(weak: &Vector3<f64>, spread: f64) -> Error {
+    ErrorKind::Problem.error(format!(
+        "found orientations that tilt the direction ({:.2} {:.2} {:.2} of the flange) by {:.1} deg only, expected 20 deg and more: the tip along it is not \
+         determined; touch the point with the flange tilted about two axes across it",
+        weak.x,
+        weak.y,
+        weak.z,
+        spread.to_degrees()
+    ))
+}
+
+/// Another reading of the poses that fits evidently better.
+fn other_reading(touches: &Touches, layout: &Layout, found: f64) -> Option<Error> {
+    let inverted: Vec<Pose> = touches.flange.poses.iter().map(Pose::inverse).collect();
+    let inverted = (
+        "poses inverted (flange from base): export base from flange, the pose of the flange in the base",
+        inverted,
+    );
+    let others = touches.flange.others.iter().map(|it| (it.advice.as_str(), it.poses.clone()));
+    let fits = others.chain([inverted]).filter_map(|(advice, poses)| {
+        let fit = layout.robustly(&poses)?;
+        Some((fit.rms(&poses, layout), advice))
+    });
+    let (rms, advice) = fits.min_by(|a, b| a.0.total_cmp(&b.0))?;
+    (rms < 0.2 * found).then(|| {
+        ErrorKind::Problem.error(format!(
+            "found touches that are {:.0} mm apart (RMS), expected one point; they fit within {:.1} mm with {advice}",
+            1e3 * found,
+            1e3 * rms
+        ))
+    })
+}
+
+/// All that is said of a fit.
+fn finished(
+    poses: &[Pose],
+    layout: &Layout,
+    fit: &TipFit,
+    (weak, spread): (Vector3<f64>, f64),
+    name: &dyn Fn(usize) -> String,
+) -> Tool {
+    let at = |tip: usize| {
+        Vector3::new(fit.unknowns[3 * tip], fit.unknowns[3 * tip + 1], fit.unknowns[3 * tip + 2])
+    };
+    let bound = |covariance: &Matrix3<f64>| length_within(covariance, &[(covariance.trace(), fit.freedom)]);
+    let tips: Vec<Tip> = layout
+        .tips
+        .iter()
+        .enumerate()
+        .map(|(k, name)| {
+            let covariance = fit.covariance_of(3 * k, None);
+            let placed = Placed {
+                pose: Pose::from_translation(at(k)),
+                bound95_m: bound(&covariance),
+                sigma_m: covariance.diagonal().map(|it| it.max(0.0).sqrt()),
+                ..Placed::default()
+            };
+            Tip { name: name.clone(), placed }
+        })
+        .collect();
+    let axis = (tips.len() > 1).then(|| {
+        let along = at(0) - at(1);
+        let direction = along.try_normalize(1e-9).unwrap_or_else(Vector3::z);
+        let across = Matrix3::identity() - direction * direction.transpose();
+        let covariance = across * fit.covariance_of(0, Some(3)) * across;
+        (direction, (bound(&covariance) / along.norm().max(1e-9)).atan())
+    });
+    let turn = axis
+        .map_or_else(Matrix3::identity, |(direction, _)| rotation::shortest_arc(&Vector3::z(), &direction));
+    let misses = layout.misses(poses, &fit.unknowns);
+    let rows: Vec<RowError> = misses
+        .iter()
+        .zip(&fit.kept)
+        .map(|(miss, kept)| RowError { shift_m: miss.norm(), turn_rad: 0.0, is_fitted: *kept })
+        .collect();
+    let outliers: Vec<usize> = (0..rows.len()).filter(|&row| !rows[row].is_fitted).collect();
+    let mut tool = Tool {
+        frame: Pose::new(turn, at(0)),
+        tips,
+        axis,
+        rms_m: fit.rms(poses, layout),
+        sigma_m: fit.sigma_m,
+        rows,
+        outliers,
+        level: Level::Good,
+        reasons: Vec::new(),
+        findings: Vec::new(),
+    };
+    judge(&mut tool, &weak, spread, name);
+    tool
+}
+
+fn judge(tool: &mut Tool, weak: &Vector3<f64>, spread: f64, name: &dyn Fn(usize) -> String) {
+    let (fitted, outliers) = (tool.rows.len() - tool.outliers.len(), tool.outliers.len());
+    let (mut against, mut reasons) = (Vec::new(), Vec::new());
+    if tool.rms_m > 0.02 {
+        against.push(format!(
+            "the touches are {:.0} mm apart (RMS): no one point was touched, or the poses are of another frame than the flange; check that the controller's \
+             tool is zero (flange) in what was recorded",
+            1e3 * tool.rms_m
+        ));
+    }
+    if 2 * outliers >= fitted {
+        against.push(format!("{outliers} of {} touches contradict the others", fitted + outliers));
+    }
+    if outliers > 0 {
+        let statement = format!(
+            "{} contradict{} the others and {} left out: touch the point anew there",
+            listed(&tool.outliers, name),
+            if outliers == 1 { "s" } else { "" },
+            if outliers == 1 { "is" } else { "are" }
+        );
+        tool.findings.push(Finding::new(FindingKind::Outliers, statement, tool.outliers.clone()));
+    }
+    if fitted < 5 {
+        reasons.push(format!("{fitted} touches show little of their own errors: take 6 or more"));
+    }
+    if spread < TILTED {
+        let statement = format!(
+            "the direction ({:.2} {:.2} {:.2} of the flange) was tilted by {:.0} deg only (RMS), so that the tip is known worst along it: tilt it by 20 deg \
+             and more to several sides",
+            weak.x,
+            weak.y,
+            weak.z,
+            spread.min(1.0).asin().to_degrees()
+        );
+        reasons.push(statement.clone());
+        tool.findings.push(Finding::new(FindingKind::MissingMoves, statement, Vec::new()));
+    }
+    (tool.level, tool.reasons) = Level::of(against, reasons);
+}

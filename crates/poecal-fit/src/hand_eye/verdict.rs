@@ -1,0 +1,131 @@
+//! How far to use the result: by what was promised of the frames, and not by what a tracker would do.
+
+use super::equations::{NUMBERS, Pair, UNKNOWNS, derivatives, errors, normal, sight_axes};
+use super::findings::{Finding, FindingKind};
+use super::fit::Fit;
+use super::types::{HandEye, Level};
+use poecal_numerics::distributions::f_quantile;
+
+/// Rows from which on a result is tested well.
+const ENOUGH: usize = 10;
+/// Standard deviation of turns about the second axis, radians, that is enough: turns of 20 deg to both sides.
+const TURNED: f64 = 0.17;
+/// Share of outliers up to which a result is good, and up to which it is used.
+const FEW: f64 = 0.2;
+const MANY: f64 = 0.4;
+/// Noise of orientations, radians, that no camera has.
+const NO_CAMERA: f64 = 0.1;
+/// The same of places, as a share of the distance.
+const NO_CAMERA_M: f64 = 0.06;
+/// Smallest difference of scales that is said.
+const OTHER_SCALE: f64 = 3e-3;
+/// Probability by chance at which scales differ.
+const CHANCE: f64 = 1e-4;
+
+/// How much longer the camera's lengths are than the arm's (a share), where that is more than chance.
+pub(crate) fn scale(kept: &[Pair], fit: &Fit) -> Option<f64> {
+    let weights = fit.noise.weights();
+    let known = normal(kept.iter().map(|it| (it, weights)), &fit.frames).covariance()?;
+    let (mut size, mut along, mut mixed) = (0.0, 0.0, [0.0; UNKNOWNS]);
+    for pair in kept {
+        // Without the point's share, which is of the same scale.
+        let seen = sight_axes(&pair.seen) * pair.seen.translation;
+        let numbers = [seen.x, seen.y, seen.z];
+        let rows = derivatives(pair, &fit.frames);
+        for (k, error) in errors(pair, &fit.frames).iter().take(NUMBERS / 2).enumerate() {
+            size += weights[k] * numbers[k] * numbers[k];
+            along += weights[k] * numbers[k] * error;
+            mixed.iter_mut().zip(rows[k]).for_each(|(sum, it)| *sum += weights[k] * numbers[k] * it);
+        }
+    }
+    let left = size - super::fit::variance_along(&known, &mixed);
+    if left <= 1e-9 * size {
+        return None;
+    }
+    let share = along / left;
+    let freedom = fit.noise.freedom.first().copied().unwrap_or(1.0).clamp(1.0, 1e6);
+    (share * share * left > f_quantile(CHANCE, 1.0, freedom) && share.abs() > OTHER_SCALE).then_some(share)
+}
+
+/// Sets level and reasons, and says which moves are missing.
+pub(crate) fn judge(result: &mut HandEye, scale: Option<f64>, distance_m: f64) {
+    let fitted = result.rows.iter().filter(|it| it.is_fitted).count();
+    let outliers = result.outliers.len();
+    let share = outliers as f64 / (fitted + outliers).max(1) as f64;
+    let (mut against, mut weak) = (Vec::new(), Vec::new());
+    let noise = result.noise[2].max(result.noise[3]);
+    if noise > NO_CAMERA {
+        let statement = format!(
+            "the poses do not fit together: orientations are off by {:.1} deg, more than the noise of any camera; check that both lists are of the same \
+             poses, their conventions of angles, and --camera",
+            noise.to_degrees()
+        );
+        result.findings.push(Finding::new(FindingKind::Inconsistent, statement.clone(), Vec::new()));
+        against.push(statement);
+    }
+    let places = result.noise[0].max(result.noise[1]);
+    if against.is_empty() && places > (NO_CAMERA_M * distance_m).max(0.01) {
+        let statement = format!(
+            "the poses do not fit together: places are off by {:.0} mm, more than the noise of any camera; check units, signs and origins of both lists",
+            1e3 * places
+        );
+        result.findings.push(Finding::new(FindingKind::Inconsistent, statement.clone(), Vec::new()));
+        against.push(statement);
+    }
+    if share > MANY {
+        against.push(format!("{outliers} of {} poses contradict the others", fitted + outliers));
+    } else if share > FEW {
+        weak.push(format!("{outliers} of {} poses were left out", fitted + outliers));
+    }
+    if let Some(share) = scale.filter(|_| against.is_empty()) {
+        let statement = format!(
+            "the camera's lengths are {:.1} % {} than the arm's: check the size of the board's squares or markers, and the camera's focal length",
+            100.0 * share.abs(),
+            if share > 0.0 { "longer" } else { "shorter" }
+        );
+        result.findings.push(Finding::new(FindingKind::Scale, statement.clone(), Vec::new()));
+        against.push(statement);
+    }
+    if fitted < ENOUGH {
+        weak.push(format!("{fitted} poses show little of their own errors: take 15 or more"));
+    }
+    let missing = missing_moves(result);
+    weak.extend(missing.iter().cloned());
+    result
+        .findings
+        .extend(missing.into_iter().map(|it| Finding::new(FindingKind::MissingMoves, it, Vec::new())));
+    if result.findings.iter().any(|it| it.kind == FindingKind::Moved) {
+        weak.push("something moved during the session".to_owned());
+    }
+    (result.level, result.reasons) = Level::of(against, weak);
+}
+
+/// Turns that would help.
+fn missing_moves(result: &HandEye) -> Vec<String> {
+    let [most, second, _] = result.turns.spread_rad;
+    if second >= TURNED {
+        return Vec::new();
+    }
+    let [first, other, _] = result.turns.directions;
+    let axis = |it: &nalgebra::Vector3<f64>| {
+        // Its largest part counts positive.
+        let sign = it[it.iamax()].signum();
+        format!("({:.2} {:.2} {:.2})", sign * it.x + 0.0, sign * it.y + 0.0, sign * it.z + 0.0)
+    };
+    let words = if most < TURNED {
+        format!(
+            "the flange turned by {:.0} deg only (standard deviation): turn it by 20 deg and more about two axes across each other",
+            most.to_degrees()
+        )
+    } else {
+        format!(
+            "the flange turned by {:.0} deg about its axis {}, and by {:.0} deg about others (standard deviations): turn about a second axis, as {}, by \
+             20 deg and more",
+            most.to_degrees(),
+            axis(&first),
+            second.to_degrees(),
+            axis(&other)
+        )
+    };
+    vec![words]
+}

@@ -1,0 +1,56 @@
+//! Zero or scale of an instrument's distances.
+
+use nalgebra::Vector3;
+
+use super::columns::{Column, Columns, Subject};
+use crate::state::{Chain, Estimate, Range, RangeTerm};
+use poecal_arm::lie::TargetTwist;
+use poecal_numerics::unit::Unit;
+
+/// A term of what an instrument reads: column `(p/|p|; 0)` of its zero, `(p; 0)` of its scale, motions of the place where the target is seen
+/// (theory.md §5 (25b)). It is zero in rows of another station.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RangeUnknown {
+    /// Index of the station.
+    pub station: usize,
+    /// The term.
+    pub term: RangeTerm,
+}
+
+const ZERO: [Column; 1] = [Column::shift("")];
+const SCALE: [Column; 1] = [Column { name: "", unit: Unit::One, shifts_only: true }];
+
+impl Columns for RangeUnknown {
+    fn subject(&self) -> Subject {
+        Subject::Range(self.station)
+    }
+
+    fn columns(&self) -> &'static [Column] {
+        match self.term {
+            RangeTerm::Zero => &ZERO,
+            RangeTerm::Scale => &SCALE,
+        }
+    }
+
+    fn target_twists(&self, chain: &Chain, _: usize, out: &mut [TargetTwist]) {
+        let moved = if chain.station == self.station {
+            Range::motion(&chain.target, self.term)
+        } else {
+            Vector3::zeros()
+        };
+        out.fill((moved, Vector3::zeros()));
+    }
+
+    fn has_curvature(&self) -> bool {
+        false
+    }
+
+    fn retract(&self, estimate: &mut Estimate, step: &[f64]) {
+        let range = estimate.range_mut(self.station);
+        let term = match self.term {
+            RangeTerm::Zero => &mut range.zero_m,
+            RangeTerm::Scale => &mut range.scale,
+        };
+        *term += step.first().copied().unwrap_or_default();
+    }
+}

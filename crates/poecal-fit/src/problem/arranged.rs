@@ -1,0 +1,51 @@
+//! Columns of a group of rows as the kernels have them, and their places in a step.
+
+use super::form::Form;
+use crate::parameters::OtherScrew;
+use crate::state::{ClockTerm, Passed, RangeTerm, Sight};
+use poecal_model::robot::Term;
+use poecal_numerics::kernels::Plan;
+
+/// Columns of one group of rows: their order in the kernels, and their places in a step.
+#[derive(Clone, Debug)]
+pub(crate) struct ColumnMap {
+    pub(crate) sight: Sight,
+    pub(crate) form: Form,
+    pub(crate) plan: Plan,
+    /// Places of the plan's translation and rotation columns in a step.
+    pub(crate) shift_places: Vec<Place>,
+    pub(crate) turn_places: Vec<Place>,
+    pub(crate) given_places: Vec<Place>,
+    /// Screws in another parameterisation, with the scale of each of their unknowns.
+    pub(crate) screws: Vec<(OtherScrew, Vec<f64>)>,
+    /// Terms of the range that are unknown, the last of the given columns, with the scale of each.
+    pub(crate) ranges: Vec<(RangeTerm, f64)>,
+    /// Joint and factor of each of the plan's terms, and its column in a step over that of the kernels.
+    pub(crate) terms: Vec<(Passed, ValueFactor, f64)>,
+}
+
+/// What the column of a joint's value is multiplied by in each row, for an unknown that moves it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum ValueFactor {
+    /// The function of a term.
+    Term(Term),
+    /// The joint's rate by a clock.
+    Clock(ClockTerm),
+}
+
+/// Place of a column in a step, and its sign: the same unknown may move a target twice, and against its own direction.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Place {
+    pub(crate) at: usize,
+    pub(crate) sign: f64,
+}
+
+impl Place {
+    /// Of a column that is no unknown.
+    pub(crate) const NONE: Place = Place { at: usize::MAX, sign: 1.0 };
+
+    /// Whether the column is an unknown.
+    pub(crate) fn is_unknown(self) -> bool {
+        self.at != usize::MAX
+    }
+}

@@ -1,0 +1,242 @@
+//! Motions that change nothing, in a fit in which some things are held or joint offsets are unknown.
+
+use nalgebra::{DMatrix, Vector3, Vector6};
+
+use super::Layout;
+use crate::parameters::{Parameter, Subject};
+use crate::state::{Estimate, Session, Stand};
+use poecal_arm::lie::{Freedom, Pose, Twist};
+use poecal_model::measurement::Dataset;
+use poecal_model::robot::{Body, JointKind, Term};
+use poecal_numerics::linalg;
+
+/// Share of the largest information about a motion below which held things do not see it: rounding.
+const UNSEEN: f64 = 1e-12;
+
+/// Directions of a step without effect on what some rows measure.
+pub struct WithoutEffect {
+    /// Orthonormal.
+    pub directions: Vec<Vec<f64>>,
+    /// How many of them are motions of the base alone.
+    pub(crate) of_base: usize,
+}
+
+/// A motion of all that stands on some bodies: everything (the base), or what is beyond a joint, against its offset.
+struct Motion {
+    twist: Twist,
+    beyond: Option<usize>,
+    /// Place of the offset in a step, and its change.
+    offset: Option<(usize, f64)>,
+}
+
+impl Layout {
+    /// Motions that leave all held things where they are and change nothing that these rows measure: of the base under everything
+    /// (theory.md §8 (37)), and of all that is beyond a joint with its offset turned back (§3 (9)).
+    #[must_use]
+    pub fn motions_without_effect(
+        &self,
+        estimate: &Estimate,
+        session: &Session<'_>,
+        rows: &[u32],
+    ) -> WithoutEffect {
+        let data = session.data;
+        let base = base_motions(self.length_m());
+        // Those of a formulation are what it is compared by.
+        let offsets =
+            if session.unknowns.terms.is_empty() { Vec::new() } else { self.offset_motions(estimate) };
+        let is_held = |station: usize| {
+            let of_it =
+                |(parameter, _): (&Parameter, _)| parameter.model().subject() == Subject::Instrument(station);
+            !self.parameters().any(of_it)
+        };
+        let sees_axes = |station: usize| data.device_freedom(station, rows) == Freedom::FRAME;
+        let first = data.first_station(rows);
+        let of_base = if is_held(first) && estimate.tree.shared(first).is_none() && sees_axes(first) {
+            // The first device frame holds the base.
+            0
+        } else {
+            self.unseen(estimate, data, rows, &base).len()
+        };
+        if offsets.is_empty() && of_base == 0 {
+            return WithoutEffect { directions: Vec::new(), of_base };
+        }
+        let all: Vec<Motion> = base.into_iter().chain(offsets).collect();
+        WithoutEffect { directions: self.unseen(estimate, data, rows, &all), of_base }
+    }
+
+    /// The motions of unknown offsets.
+    fn offset_motions(&self, estimate: &Estimate) -> Vec<Motion> {
+        let screws = estimate.screws();
+        let motion = |(parameter, places): (&Parameter, &[(usize, f64)])| {
+            let term = parameter.value_term().filter(|it| it.term == Term::OFFSET)?;
+            let &(place, scale) = places.first()?;
+            let size = if term.kind == JointKind::Revolute { 1.0 / self.length_m() } else { 1.0 };
+            let twist = Twist::from_vector(&(screws.get(term.joint)?.twist().to_vector() * size));
+            Some(Motion { twist, beyond: Some(term.joint), offset: Some((place, -size * scale)) })
+        };
+        self.parameters().filter_map(motion).collect()
+    }
+
+    /// The combinations of motions that no held thing sees.
+    fn unseen(&self, estimate: &Estimate, data: &Dataset, rows: &[u32], motions: &[Motion]) -> Vec<Vec<f64>> {
+        let count = motions.len();
+        let mut moved = begin_steps(motions, self.dim());
+        // Information that the held things give about the motions.
+        let mut gram = DMatrix::zeros(count, count);
+        let mut add = |subject: Subject, body: Option<Body>, effect: &dyn Fn(&Twist) -> Vec<f64>| {
+            let is_of = |parameter: &&Parameter| {
+                parameter.model().subject() == subject && parameter.value_term().is_none()
+            };
+            let own = self.parameters().find(|(parameter, _)| is_of(parameter));
+            let effects = effects_on(estimate, body, motions, effect);
+            match own {
+                Some((_, places)) => {
+                    for (step, effect) in moved.iter_mut().zip(&effects) {
+                        places.iter().zip(effect).for_each(|(&(at, scale), value)| step[at] = value * scale);
+                    }
+                }
+                None => gram += DMatrix::from_fn(count, count, |i, j| linalg::dot(&effects[i], &effects[j])),
+            }
+        };
+        // Of a motion, in the axes of what stands at `frame`: places, then turns.
+        let local = |frame: &Pose, twist: &Twist| frame.inverse().transform(twist).to_vector();
+        for (joint, (frame, kind)) in estimate.base_from_axis.iter().zip(estimate.kinds()).enumerate() {
+            let body = estimate.tree.joint_before(joint).map_or(Body::Base, Body::Link);
+            add(Subject::Joint(joint), Some(body), &|twist| {
+                let step = local(frame, twist);
+                match kind {
+                    JointKind::Revolute => vec![step[0], step[1], step[3], step[4]],
+                    JointKind::Prismatic => vec![step[3], step[4]],
+                }
+            });
+        }
+        let freedoms = data.target_freedoms(rows);
+        for (target, frame) in estimate.base_from_target.iter().enumerate() {
+            let body = estimate.tree.targets().get(target).copied();
+            let freedom = self.freedom_of(target).or(freedoms.get(target).copied()).unwrap_or(Freedom::PLACE);
+            add(Subject::Target(target), body, &|twist| seen_of(freedom, &local(frame, twist)));
+        }
+        for station in 0..=estimate.further_devices.len() {
+            let body = match estimate.tree.instruments().get(station) {
+                Some(Stand::On(body)) => *body,
+                Some(Stand::Target(_)) | None => Body::Base,
+            };
+            // What no row sees holds nothing.
+            let is_seen = data.station_count() == 1 || !data.seen_from(station, rows).is_empty();
+            if estimate.tree.shared(station).is_none() && is_seen {
+                let device = estimate.device(station);
+                // What does not show is not held.
+                let freedom = data.device_freedom(station, rows);
+                let at = Pose::from_translation(self.point_of(station).unwrap_or_default());
+                // `device_from_base G⁻¹`, stepped in the device's axes about a point. The base itself moves under those that stand on it.
+                add(Subject::Instrument(station), Some(body), &|twist| {
+                    seen_of(freedom, &-at.inverse().transform(&device.transform(twist)).to_vector())
+                });
+            }
+        }
+        combine(&gram, &moved, self.dim())
+    }
+
+    /// The freedom of a target whose frame is unknown.
+    fn freedom_of(&self, target: usize) -> Option<Freedom> {
+        self.parameters().find_map(|(parameter, _)| match parameter {
+            Parameter::TargetFrame(own) if own.target == target => Some(own.freedom),
+            Parameter::TargetFrame(_)
+            | Parameter::TargetPlace(_)
+            | Parameter::ScrewAxis(_)
+            | Parameter::OtherScrew(_)
+            | Parameter::ValueTerm(_)
+            | Parameter::DeviceFrame(_)
+            | Parameter::RangeUnknown(_)
+            | Parameter::ClockUnknown(_) => None,
+        })
+    }
+
+    /// The point about which the frame of a device turns, if that is unknown.
+    fn point_of(&self, station: usize) -> Option<Vector3<f64>> {
+        self.parameters().find_map(|(parameter, _)| {
+            let Parameter::DeviceFrame(own) = parameter else { return None };
+            (own.station == station).then_some(own.about)
+        })
+    }
+}
+
+/// A step for each motion, of the offsets alone.
+fn begin_steps(motions: &[Motion], dim: usize) -> Vec<Vec<f64>> {
+    let mut moved: Vec<Vec<f64>> = vec![vec![0.0; dim]; motions.len()];
+    for (step, motion) in moved.iter_mut().zip(motions) {
+        motion.offset.iter().for_each(|&(place, change)| step[place] = change);
+    }
+    moved
+}
+
+/// The effect of each motion on a body; none on one that it does not move.
+fn effects_on(
+    estimate: &Estimate,
+    body: Option<Body>,
+    motions: &[Motion],
+    effect: &dyn Fn(&Twist) -> Vec<f64>,
+) -> Vec<Vec<f64>> {
+    let of_motion = |motion: &Motion| {
+        let is_moved = motion.beyond.is_none_or(|joint| is_beyond(estimate, body, joint));
+        if is_moved { effect(&motion.twist) } else { Vec::new() }
+    };
+    motions.iter().map(of_motion).collect()
+}
+
+/// Orthonormal combinations of steps of which no held thing sees anything.
+fn combine(gram: &DMatrix<f64>, moved: &[Vec<f64>], dim: usize) -> Vec<Vec<f64>> {
+    orthonormal(null_space(gram).into_iter().map(|shares| {
+        let mut step = vec![0.0; dim];
+        for (share, moved) in shares.iter().zip(moved) {
+            step.iter_mut().zip(moved).for_each(|(step, moved)| *step += share * moved);
+        }
+        step
+    }))
+}
+
+/// The motions of a frame that are seen.
+fn seen_of(freedom: Freedom, motion: &Vector6<f64>) -> Vec<f64> {
+    freedom.motions().iter().filter_map(|&at| motion.get(at).copied()).collect()
+}
+
+/// The six motions of the base; rotations counted like lengths.
+fn base_motions(length_m: f64) -> Vec<Motion> {
+    let motion = |k: usize| {
+        let mut twist = Vector6::zeros();
+        twist[k] = if k < 3 { 1.0 } else { 1.0 / length_m };
+        Motion { twist: Twist::from_vector(&twist), beyond: None, offset: None }
+    };
+    (0..6).map(motion).collect()
+}
+
+/// Whether a body is moved by a joint.
+fn is_beyond(estimate: &Estimate, body: Option<Body>, joint: usize) -> bool {
+    let first = body.and_then(Body::joint);
+    std::iter::successors(first, |&at| estimate.tree.joint_before(at)).any(|at| at == joint)
+}
+
+/// Unit vectors of the null space.
+fn null_space(gram: &DMatrix<f64>) -> Vec<Vec<f64>> {
+    let (values, vectors) = linalg::symmetric_eigen(gram.as_slice(), gram.nrows());
+    let largest = values.last().copied().unwrap_or(0.0);
+    let count = values.iter().take_while(|&&value| value <= UNSEEN * largest.max(1.0)).count();
+    vectors.column_iter().take(count).map(|it| it.iter().copied().collect()).collect()
+}
+
+/// Orthonormal vectors of the same span.
+fn orthonormal(vectors: impl Iterator<Item = Vec<f64>>) -> Vec<Vec<f64>> {
+    let mut found: Vec<Vec<f64>> = Vec::new();
+    for mut vector in vectors {
+        for known in &found {
+            let along = linalg::dot(&vector, known);
+            vector.iter_mut().zip(known).for_each(|(value, known)| *value -= along * known);
+        }
+        let length = linalg::dot(&vector, &vector).sqrt();
+        if length > UNSEEN {
+            vector.iter_mut().for_each(|value| *value /= length);
+            found.push(vector);
+        }
+    }
+    found
+}

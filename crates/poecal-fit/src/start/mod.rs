@@ -1,0 +1,29 @@
+//! Device frame and targets without an initial guess, with nominal screws (theory.md §6, *Start*).
+
+mod averaging;
+mod faces;
+mod hand_eye;
+mod misread;
+mod one_station;
+mod others;
+mod pairing;
+mod pictures;
+mod registration;
+mod robust;
+mod stations;
+
+pub use averaging::mean_rotation;
+pub(crate) use averaging::rotation_maximising;
+pub use faces::{faces_on_known_planes, settle_faces};
+pub use pairing::{
+    Agreement, Aligned, AtLag, Channels as StreamChannels, EVIDENT, FEWEST_PAIRS, InMotion, JointStream,
+    Lagged, Motion, MovingRow, NoLag, NoStream, Order, Pair, Span, Stand, Stream, Unpaired, smoothed,
+};
+pub use pictures::{SettledPictures, predicted_pose, settle_pictures};
+pub use registration::{
+    Registration, clock_parameters, device_parameter, free_parameters, range_parameters, register_again,
+    target_parameters,
+};
+pub use robust::register_robustly;
+pub use stations::register;
+pub(crate) use stations::register_roughly;

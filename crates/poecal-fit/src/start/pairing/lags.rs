@@ -1,0 +1,120 @@
+//! Which stands of two streams are the same, where each has a clock of its own.
+
+use super::{FEWEST_PAIRS, Pair, Unpaired};
+use poecal_numerics::distributions::median;
+
+/// Largest difference of the begins of two stands that are the same, seconds.
+const NEAR_S: f64 = 0.3;
+/// Distance of two lags that are different, seconds.
+const APART_S: f64 = 0.6;
+/// Most lags that are compared by the nominal robot.
+const MOST: usize = 80;
+/// Share of the pairs of the lag with most that another lag has at least.
+const SHARE: f64 = 0.4;
+
+/// When a stand begins and ends, seconds; both the same of a point.
+pub type Span = (f64, f64);
+
+/// Pairs of stands at a lag.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Lagged {
+    /// Time of the measurements less that of the joint readings, seconds.
+    pub lag_s: f64,
+    /// The pairs.
+    pub pairs: Vec<Pair>,
+    /// Median error of the nominal robot, metres.
+    pub missed_m: f64,
+}
+
+impl Unpaired<'_> {
+    /// Pairs at the lags at which most stands are the same, the one with the smallest error first; with lags near one that is stated (lag and how far
+    /// it may be off, seconds), only these.
+    #[must_use]
+    pub fn lagged(&self, joints: &[Span], shots: &[Span], stated: Option<(f64, f64)>) -> Vec<Lagged> {
+        let is_allowed = |lag: f64| stated.is_none_or(|(middle, off)| (lag - middle).abs() <= off + NEAR_S);
+        let differences = joints.iter().flat_map(|joint| {
+            shots.iter().map(move |shot| {
+                // A point lies somewhere in its stand.
+                if shot.0 < shot.1 { shot.0 - joint.0 } else { shot.0 - 0.5 * (joint.0 + joint.1) }
+            })
+        });
+        let mut counted: Vec<(usize, f64)> = differences
+            .filter(|lag| is_allowed(*lag))
+            .map(|lag| (paired(joints, shots, lag).len(), lag))
+            .filter(|it| it.0 >= FEWEST_PAIRS)
+            .collect();
+        counted.sort_by(|a, b| b.0.cmp(&a.0).then(a.1.total_cmp(&b.1)));
+        let most = counted.first().map_or(0, |it| it.0);
+        let mut found: Vec<Lagged> = Vec::new();
+        for (count, lag) in counted {
+            if found.len() >= MOST || (count as f64) < SHARE * most as f64 {
+                break;
+            }
+            let refined = refined(joints, shots, lag);
+            if found.iter().any(|it| (it.lag_s - refined).abs() < APART_S) || !is_allowed(refined) {
+                continue;
+            }
+            let pairs = paired(joints, shots, refined);
+            if pairs.len() < FEWEST_PAIRS {
+                continue;
+            }
+            let Some(missed_m) = self.missed(&pairs) else { continue };
+            found.push(Lagged { lag_s: refined, pairs, missed_m });
+        }
+        found.sort_by(|a, b| a.missed_m.total_cmp(&b.missed_m));
+        found
+    }
+}
+
+/// A lag, by the middle of what the begins of its pairs differ by.
+fn refined(joints: &[Span], shots: &[Span], lag: f64) -> f64 {
+    let pairs = paired(joints, shots, lag);
+    let of = |&(joint, shot): &Pair| {
+        let (joint, shot): (&Span, &Span) = (joints.get(joint)?, shots.get(shot)?);
+        let middle = |it: &Span| 0.5 * (it.0 + it.1);
+        Some(middle(shot) - middle(joint))
+    };
+    median(pairs.iter().filter_map(of)).unwrap_or(lag)
+}
+
+/// Stands that are at the same time, each once: those that begin together, or where one was interrupted, that overlap; points in their stand.
+fn paired(joints: &[Span], shots: &[Span], lag: f64) -> Vec<Pair> {
+    let mut pairs = Vec::new();
+    let mut first = 0;
+    for (at, shot) in shots.iter().enumerate() {
+        let (from, to) = (shot.0 - lag, shot.1 - lag);
+        let is_point = from == to;
+        while joints.get(first).is_some_and(|it| it.1 < from) {
+            first += 1;
+        }
+        let Some(joint) = joints.get(first) else { break };
+        let overlap = to.min(joint.1) - from.max(joint.0);
+        let shorter = (to - from).min(joint.1 - joint.0);
+        let is_same = if is_point {
+            (joint.0..=joint.1).contains(&from)
+        } else {
+            overlap > 0.6 * shorter && ((from - joint.0).abs() < NEAR_S || (to - joint.1).abs() < NEAR_S)
+        };
+        if is_same && (is_point || pairs.last().is_none_or(|it: &Pair| it.0 != first)) {
+            pairs.push((first, at));
+        }
+    }
+    pairs
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn stands_at_the_same_time_are_paired() {
+        let joints: Vec<Span> = [(0.0, 1.0), (2.0, 2.6), (4.0, 5.0), (6.0, 6.5)].to_vec();
+        let shots: Vec<Span> = joints.iter().map(|it| (it.0 + 12.34, it.1 + 12.34)).collect();
+        assert_eq!(paired(&joints, &shots, 12.34), [(0, 0), (1, 1), (2, 2), (3, 3)]);
+        assert!((refined(&joints, &shots, 12.4) - 12.34).abs() < 1e-9);
+        // One was lost, and one was interrupted.
+        assert_eq!(paired(&joints, &shots[1..], 12.34), [(1, 0), (2, 1), (3, 2)]);
+        let points: Vec<Span> = joints.iter().map(|it| (it.0 + 0.3, it.0 + 0.3)).collect();
+        assert_eq!(paired(&joints, &points, 0.0).len(), 4);
+    }
+}

@@ -1,0 +1,188 @@
+//! Which joint readings belong to which measurements, where two files have them: the nominal robot, registered, misses what was measured by least
+//! where they are paired rightly.
+
+mod agreement;
+mod jitter;
+mod joint_stream;
+mod lags;
+mod motion;
+mod speeds;
+mod stands;
+mod uneven;
+
+pub use agreement::{Agreement, Order};
+pub use joint_stream::{JointStream, smoothed};
+pub use lags::{Lagged, Span};
+pub use motion::{AtLag, InMotion, Motion, MovingRow, NoLag};
+pub use stands::{Channels, NoStream, Stand, Stream};
+pub use uneven::Aligned;
+
+use std::collections::BTreeSet;
+
+use super::registration::Registration;
+use super::stations::register_roughly;
+use crate::state::{Estimate, Packed, RowError, Session, delivered};
+use poecal_model::measurement::{Dataset, Noise};
+use poecal_model::robot::Robot;
+use poecal_numerics::distributions::median;
+
+/// Noise of a registration, which the nominal robot misses by more than measurements do: m and rad.
+const NOISE: Noise = Noise::new(2e-3, 5e-3);
+/// Most pairs of a registration that only compares.
+const SOME: usize = 150;
+/// Times the usual error beyond which a pair does not count in a registration.
+const ODD: f64 = 4.0;
+/// How many times smaller the error of what is right is at least than that of anything else.
+pub const EVIDENT: f64 = 2.0;
+/// Fewest pairs that show anything: five points determine device and target, and leave no error.
+pub const FEWEST_PAIRS: usize = 7;
+
+/// A row of joint readings, and a configuration in which was measured; both from 0.
+pub type Pair = (usize, usize);
+
+/// Joint readings, and what was measured, with nothing that says what belongs to what.
+#[derive(Clone, Debug)]
+pub struct Unpaired<'a> {
+    robot: &'a Robot,
+    /// Joint readings, one row after the other.
+    joints: &'a [f64],
+    /// The measurements; their own readings mean nothing.
+    data: &'a Dataset,
+    /// The rows of each configuration in which was measured.
+    shots: Vec<Vec<u32>>,
+}
+
+impl<'a> Unpaired<'a> {
+    /// Rows of a file that are one below the other are of one configuration as long as none of their targets comes again.
+    #[must_use]
+    pub fn new(robot: &'a Robot, joints: &'a [f64], data: &'a Dataset) -> Self {
+        Unpaired { robot, joints, data, shots: Self::shots_of(data) }
+    }
+
+    /// The rows of each configuration of measurements, as [`Unpaired::new`] finds them.
+    #[must_use]
+    pub fn shots_of(data: &Dataset) -> Vec<Vec<u32>> {
+        let mut shots: Vec<Vec<u32>> = Vec::new();
+        let mut seen: BTreeSet<(usize, usize)> = BTreeSet::new();
+        let mut line = None;
+        for (row, observation) in (0_u32..).zip(&data.observations) {
+            let target = (observation.station, observation.target);
+            let is_same_line = line == Some(observation.source);
+            let name = |row: u32| data.ids.get(row as usize);
+            let is_other =
+                shots.last().and_then(|it| it.first()).is_some_and(|&first| name(first) != name(row));
+            if shots.is_empty() || !is_same_line && (is_other || !seen.insert(target)) {
+                shots.push(Vec::new());
+                seen = BTreeSet::from([target]);
+            }
+            line = Some(observation.source);
+            if let Some(last) = shots.last_mut() {
+                last.push(row);
+            }
+        }
+        shots
+    }
+
+    /// The rows of each configuration in which was measured.
+    #[must_use]
+    pub fn shots(&self) -> &[Vec<u32>] {
+        &self.shots
+    }
+
+    /// Number of rows of joint readings.
+    #[must_use]
+    pub fn joint_rows(&self) -> usize {
+        self.joints.len() / self.width()
+    }
+
+    fn width(&self) -> usize {
+        self.data.reading_names().len().max(1)
+    }
+
+    /// The readings of a row.
+    #[must_use]
+    pub fn readings(&self, row: usize) -> &'a [f64] {
+        let width = self.width();
+        self.joints.get(row * width..(row + 1) * width).unwrap_or_default()
+    }
+
+    /// The measurements of pairs, with their readings.
+    #[must_use]
+    pub fn session_of(&self, pairs: &[Pair]) -> Dataset {
+        self.paired(pairs).0
+    }
+
+    /// The same with the pair of each row.
+    fn paired(&self, pairs: &[Pair]) -> (Dataset, Vec<usize>) {
+        let mut data =
+            Dataset::new(self.data.reading_names().to_vec()).with_factors(self.robot.factors.len());
+        (data.targets, data.stations) = (self.data.targets.clone(), self.data.stations.clone());
+        let mut of = Vec::new();
+        for (at, (joint, shot)) in pairs.iter().enumerate() {
+            for &row in self.shots.get(*shot).into_iter().flatten() {
+                let Some(observation) = self.data.observations.get(row as usize) else { continue };
+                let plain = poecal_model::measurement::Observation { noise_shape: None, ..*observation };
+                if data.push_observation(self.readings(*joint), plain).is_ok() {
+                    of.push(at);
+                }
+            }
+        }
+        (data, of)
+    }
+
+    /// Registers pairs, twice, the second time without those that fit badly, and gives the estimate with the median error, metres.
+    fn registered(&self, pairs: &[Pair]) -> Option<(Estimate, f64)> {
+        let (data, _) = self.paired(pairs);
+        if data.is_empty() {
+            return None;
+        }
+        let packed = Packed::of(self.robot, &data);
+        let session = Session::new(self.robot, &data, &packed, true);
+        let mut rows = data.all_rows();
+        let mut best = None;
+        for _ in 0..2 {
+            let problem =
+                Registration { session, rows: &rows, noise: NOISE, targets_free: true, prior: None };
+            let estimate = register_roughly(&problem, &delivered(self.robot, &data));
+            let missed: Vec<f64> = session.errors(&data.all_rows(), &estimate).iter().map(size).collect();
+            let usual = median(missed.iter().copied()).filter(|it| it.is_finite())?;
+            rows = data
+                .all_rows()
+                .into_iter()
+                .zip(&missed)
+                .filter(|it| *it.1 <= ODD * usual)
+                .map(|it| it.0)
+                .collect();
+            best = Some((estimate, usual));
+        }
+        best
+    }
+
+    /// Median error of pairs, metres; of many, of some.
+    fn missed(&self, pairs: &[Pair]) -> Option<f64> {
+        let step = pairs.len().div_ceil(SOME).max(1);
+        let some: Vec<Pair> = pairs.iter().step_by(step).copied().collect();
+        self.registered(&some).map(|it| it.1)
+    }
+
+    /// Errors of pairs by an estimate, each the root mean square of its rows, metres.
+    fn errors_of(&self, pairs: &[Pair], estimate: &Estimate) -> Vec<f64> {
+        let (data, of) = self.paired(pairs);
+        let packed = Packed::of(self.robot, &data);
+        let session = Session::new(self.robot, &data, &packed, true);
+        let mut sums = vec![(0.0, 0.0); pairs.len()];
+        for (error, at) in session.errors(&data.all_rows(), estimate).iter().zip(of) {
+            if let Some(sum) = sums.get_mut(at) {
+                *sum = (sum.0 + size(error).powi(2), sum.1 + 1.0);
+            }
+        }
+        sums.into_iter()
+            .map(|(sum, count)| if count > 0.0 { f64::sqrt(sum / count) } else { f64::INFINITY })
+            .collect()
+    }
+}
+
+/// Size of a row's error: of its position or distance, metres; of others, of what is measured first.
+fn size(error: &RowError) -> f64 {
+    error.leading().and_then(|quantity| error.length(quantity)).unwrap_or_default()
+}

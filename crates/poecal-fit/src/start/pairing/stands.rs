@@ -1,0 +1,351 @@
+//! Times in which nothing moves, in a stream of readings or of measurements.
+
+use std::ops::Range;
+
+use poecal_numerics::distributions::{mean_square_quantile, median};
+
+/// Shortest time of a stand, and what is cut off at both of its ends, seconds.
+const SHORTEST_S: f64 = 0.3;
+const CUT_S: f64 = 0.1;
+/// Longest time without a row within a window, seconds, and as many steps from row to row where that is more.
+const LONGEST_GAP_S: f64 = 0.15;
+const LONGEST_GAP_STEPS: f64 = 2.5;
+/// Fewest rows of a window.
+const FEWEST: usize = 3;
+/// Share of the windows that stand at least: their scatter is below that of so many shows the noise.
+const QUIET: f64 = 0.1;
+/// Standard normal quantiles of that share, and of what a window that stands may reach.
+const QUIET_SCORE: f64 = -1.281_6;
+const STILL_SCORE: f64 = 3.3;
+/// How many times more than in the quietest windows, and than from row to row, a window may scatter: noise is not white, nor the same everywhere.
+const TIMES: f64 = 1.5;
+const TIMES_NOISE: f64 = 4.0;
+/// Two stands whose means differ by less than this many tolerances are one, which was interrupted.
+const SAME: f64 = 2.0;
+/// Share of the range of a channel beyond which its tolerance shows that nothing stands.
+const LARGEST: f64 = 0.05;
+
+/// A time in which nothing moves.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Stand {
+    /// Its rows, without those at its ends.
+    pub rows: Range<usize>,
+    /// When it begins and ends, seconds.
+    pub span_s: (f64, f64),
+}
+
+/// Numbers of the rows of a stream that move together, as the coordinates of a point.
+#[derive(Clone, Debug)]
+pub struct Channels {
+    /// The values of each number.
+    pub values: Vec<Vec<f64>>,
+    /// In how many directions they move.
+    pub freedom: usize,
+    /// A change that is none.
+    pub floor: f64,
+}
+
+/// Why rows that change as those of a recording are none.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum NoStream {
+    /// A row has no time.
+    NoTime(usize),
+    /// The time of a row is before that of the row above it.
+    Back(usize),
+    /// The usual time from one row to the next is too long, seconds.
+    Slow(f64),
+}
+
+/// Rows of a stream: times (seconds), and some numbers of each row.
+#[derive(Clone, Debug)]
+pub struct Stream {
+    times: Vec<f64>,
+    channels: Vec<Channels>,
+}
+
+impl Stream {
+    /// Of the times of rows, and of what moves.
+    #[must_use]
+    pub fn new(times: Vec<f64>, channels: Vec<Channels>) -> Self {
+        Stream { times, channels }
+    }
+
+    /// Whether it is one: rows in time, at most a quarter of a second from one to the next, and far more of them than places.
+    #[must_use]
+    pub fn is_dense(&self) -> bool {
+        self.is_smooth() && self.no_stream().is_none()
+    }
+
+    /// Whether most rows are near the ones before them, as in a recording.
+    #[must_use]
+    pub fn is_smooth(&self) -> bool {
+        const ROWS: usize = 50;
+        const STEP: f64 = 0.05;
+        let mut values = self.channels.iter().flat_map(|it| &it.values);
+        self.times.len() >= ROWS
+            && values.all(|it| {
+                let moved = median(it.windows(2).map(|it| (it[1] - it[0]).abs())).unwrap_or_default();
+                moved <= STEP * span(it)
+            })
+    }
+
+    /// What is wrong with the times, if rows are those of a recording.
+    #[must_use]
+    pub fn no_stream(&self) -> Option<NoStream> {
+        const STEP_S: f64 = 0.25;
+        if let Some(row) = self.times.iter().position(|it| !it.is_finite()) {
+            return Some(NoStream::NoTime(row));
+        }
+        let steps = self.times.windows(2).map(|it| it[1] - it[0]);
+        let step = median(steps.clone().map(f64::abs)).unwrap_or(f64::INFINITY);
+        if step > STEP_S || step == 0.0 {
+            return Some(NoStream::Slow(step));
+        }
+        self.times.windows(2).position(|it| it[1] < it[0]).map(|at| NoStream::Back(at + 1))
+    }
+
+    /// The times of 0.3 s or longer in which no channel moves by more than its own noise, without 0.1 s at both ends.
+    #[must_use]
+    pub fn stands(&self) -> Vec<Stand> {
+        let windows = self.windows();
+        if windows.len() < FEWEST {
+            return Vec::new();
+        }
+        let sums: Vec<Vec<Sums>> =
+            self.channels.iter().map(|it| it.values.iter().map(|it| Sums::of(it)).collect()).collect();
+        let mut still = vec![true; windows.len()];
+        let mut tolerances = Vec::with_capacity(self.channels.len());
+        for (channels, sums) in self.channels.iter().zip(&sums) {
+            let spreads: Vec<f64> = windows.iter().map(|it| deviation(sums, it)).collect();
+            let bends = bends(&channels.values, self.times.len());
+            let noises: Vec<f64> = windows.iter().map(|it| row_noise(&bends, it)).collect();
+            let rows = median(windows.iter().map(|it| it.len() as f64)).unwrap_or_default();
+            let freedom = channels.freedom as f64;
+            // A window of few rows scatters less than the noise, and more from window to window.
+            let (own, steps) = (freedom * (rows - 1.0), freedom * (rows - 2.0).max(1.0));
+            let noise = quantile(&spreads, QUIET) / mean_square_quantile(own, QUIET_SCORE).sqrt();
+            let row_noise = quantile(&noises, QUIET) / mean_square_quantile(steps, QUIET_SCORE).sqrt();
+            let most = mean_square_quantile(own, STILL_SCORE).sqrt();
+            let floor = channels.floor;
+            let tolerance = floor.max(most * (TIMES * noise).min(TIMES_NOISE * row_noise + floor));
+            let widest = channels.values.iter().map(|it| span(it)).fold(0.0, f64::max);
+            if tolerance > LARGEST * widest && widest > 10.0 * floor {
+                return Vec::new();
+            }
+            for (still, spread) in still.iter_mut().zip(&spreads) {
+                *still &= *spread <= tolerance;
+            }
+            tolerances.push(tolerance);
+        }
+        let mut rows: Vec<Range<usize>> = Vec::new();
+        for (window, _) in windows.iter().zip(&still).filter(|it| *it.1) {
+            match rows.last_mut() {
+                Some(last) if window.start < last.end => last.end = window.end,
+                _ => rows.push(window.clone()),
+            }
+        }
+        let mut joined: Vec<Range<usize>> = Vec::new();
+        for next in rows {
+            let is_near = |last: &Range<usize>, (sums, tolerance): (&Vec<Sums>, &f64)| {
+                let apart = sums.iter().map(|it| (it.mean(last) - it.mean(&next)).powi(2)).sum::<f64>();
+                apart.sqrt() <= SAME * tolerance
+            };
+            let is_same =
+                joined.last().is_some_and(|last| sums.iter().zip(&tolerances).all(|it| is_near(last, it)));
+            match joined.last_mut() {
+                Some(last) if is_same => last.end = next.end,
+                _ => joined.push(next),
+            }
+        }
+        joined.into_iter().filter_map(|it| self.cut(&it)).collect()
+    }
+
+    /// A stand without its ends.
+    fn cut(&self, rows: &Range<usize>) -> Option<Stand> {
+        let (first, last) = (*self.times.get(rows.start)?, *self.times.get(rows.end.checked_sub(1)?)?);
+        let cut = CUT_S.min(0.25 * (last - first));
+        let is_inside =
+            |at: &usize| self.times.get(*at).is_some_and(|it| (first + cut..=last - cut).contains(it));
+        let start = rows.clone().find(is_inside)?;
+        let end = rows.clone().rev().find(is_inside)? + 1;
+        Some(Stand { rows: start..end, span_s: (first, last) })
+    }
+
+    /// Windows of the shortest time of a stand, one from each row on, without gaps.
+    fn windows(&self) -> Vec<Range<usize>> {
+        let mut found = Vec::new();
+        let step = median(self.times.windows(2).map(|it| it[1] - it[0])).unwrap_or_default();
+        let longest = LONGEST_GAP_S.max(LONGEST_GAP_STEPS * step);
+        let (mut end, mut gap) = (0, None);
+        for start in 0..self.times.len() {
+            let time = |at: usize| self.times.get(at).copied();
+            let Some(begin) = time(start) else { break };
+            while let Some(next) = time(end) {
+                if end > start && next - time(end - 1).unwrap_or(next) > longest {
+                    gap = Some(end);
+                }
+                if next - begin >= SHORTEST_S {
+                    break;
+                }
+                end += 1;
+            }
+            let has_gap = gap.is_some_and(|it| it > start && it <= end);
+            if end < self.times.len() && !has_gap && end + 1 - start >= FEWEST {
+                found.push(start..end + 1);
+            }
+        }
+        found
+    }
+}
+
+/// Sums of a channel and of its squares up to each row, about its mean.
+struct Sums {
+    middle: f64,
+    first: Vec<f64>,
+    second: Vec<f64>,
+}
+
+impl Sums {
+    fn of(values: &[f64]) -> Self {
+        let middle = values.iter().sum::<f64>() / values.len().max(1) as f64;
+        let running = |of: &dyn Fn(f64) -> f64| {
+            let mut sum = 0.0;
+            let rest = values.iter().map(|it| {
+                sum += of(it - middle);
+                sum
+            });
+            std::iter::once(0.0).chain(rest.collect::<Vec<_>>()).collect()
+        };
+        Sums { middle, first: running(&|it| it), second: running(&|it| it * it) }
+    }
+
+    fn between(of: &[f64], rows: &Range<usize>) -> f64 {
+        of.get(rows.end).zip(of.get(rows.start)).map_or(0.0, |(end, start)| end - start)
+    }
+
+    fn mean(&self, rows: &Range<usize>) -> f64 {
+        self.middle + Self::between(&self.first, rows) / rows.len().max(1) as f64
+    }
+
+    /// The variance of rows.
+    fn variance(&self, rows: &Range<usize>) -> f64 {
+        let count = rows.len().max(2) as f64;
+        let mean = Self::between(&self.first, rows) / count;
+        (Self::between(&self.second, rows) - count * mean * mean).max(0.0) / (count - 1.0)
+    }
+}
+
+/// The standard deviation of numbers in a window, of all together.
+fn deviation(sums: &[Sums], rows: &Range<usize>) -> f64 {
+    sums.iter().map(|it| it.variance(rows)).sum::<f64>().sqrt()
+}
+
+/// Sums of squared second differences of numbers, of all together, up to each row.
+fn bends(values: &[Vec<f64>], rows: usize) -> Vec<f64> {
+    let square = |at: usize| -> f64 {
+        let of = |it: &Vec<f64>| it.get(at..at + 3).map_or(0.0, |it| (it[0] - 2.0 * it[1] + it[2]).powi(2));
+        values.iter().map(of).sum()
+    };
+    let mut sum = 0.0;
+    let sums = (0..rows.saturating_sub(2)).map(|at| {
+        sum += square(at);
+        sum
+    });
+    std::iter::once(0.0).chain(sums).collect()
+}
+
+/// The noise of numbers in a window, of all together, from row to row: of what is left of second differences.
+fn row_noise(bends: &[f64], rows: &Range<usize>) -> f64 {
+    let inner = rows.start..rows.end.saturating_sub(2).max(rows.start);
+    // White noise of one unit has second differences of √6.
+    (Sums::between(bends, &inner).max(0.0) / inner.len().max(1) as f64 / 6.0).sqrt()
+}
+
+/// The value that this share of all is below.
+fn quantile(values: &[f64], share: f64) -> f64 {
+    let mut sorted = values.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    let at = (share * sorted.len() as f64) as usize;
+    sorted.get(at.min(sorted.len().saturating_sub(1))).copied().unwrap_or_default()
+}
+
+fn span(values: &[f64]) -> f64 {
+    let (low, high) = values
+        .iter()
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |it, value| (it.0.min(*value), it.1.max(*value)));
+    (high - low).max(0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Five stands of one second between moves of half a second, at 100 rows a second, with noise.
+    fn stream(noise: f64) -> Stream {
+        let mut values = Vec::new();
+        for stand in 0..5 {
+            let place = f64::from(stand);
+            values.extend((0..100).map(|_| place));
+            values.extend((1..50).map(|it| {
+                let share = f64::from(it) / 50.0;
+                place + share * share * (3.0 - 2.0 * share)
+            }));
+        }
+        // A deterministic noise: digits of multiples of an irrational number.
+        let noisy = |(at, value): (usize, f64)| value + noise * ((at as f64 * 0.618_033_988_7).fract() - 0.5);
+        let values: Vec<f64> = values.into_iter().enumerate().map(noisy).collect();
+        let times = (0..values.len()).map(|it| 0.01 * it as f64).collect();
+        alone(times, values)
+    }
+
+    /// A stream of one number.
+    fn alone(times: Vec<f64>, values: Vec<f64>) -> Stream {
+        Stream::new(times, vec![Channels { values: vec![values], freedom: 1, floor: 1e-5 }])
+    }
+
+    #[test]
+    fn stands_are_found_whatever_the_noise() {
+        for noise in [0.0, 1e-4, 1e-3, 1e-2] {
+            let stream = stream(noise);
+            assert!(stream.is_dense());
+            let stands = stream.stands();
+            println!("noise {noise}: {:?}", stands.iter().map(|it| it.rows.clone()).collect::<Vec<_>>());
+            assert_eq!(stands.len(), 5, "{noise}");
+            for (at, stand) in stands.iter().enumerate() {
+                let begin = 149 * at;
+                assert!(stand.rows.start >= begin && stand.rows.end <= begin + 100, "{noise} {at} {stand:?}");
+                assert!(stand.rows.len() > 60, "{noise} {at}");
+            }
+        }
+    }
+
+    #[test]
+    fn what_never_stands_has_no_stands() {
+        let times: Vec<f64> = (0..2000).map(|it| 0.01 * f64::from(it)).collect();
+        let values: Vec<f64> = times.iter().map(|it| (0.7 * it).sin() + 0.3 * (1.9 * it).cos()).collect();
+        assert_eq!(alone(times, values).stands(), []);
+    }
+
+    #[test]
+    fn what_is_wrong_with_times_is_said() {
+        let Stream { times, channels } = stream(1e-3);
+        let of = |change: &dyn Fn(usize, f64) -> f64| {
+            let times = times.iter().enumerate().map(|(at, it)| change(at, *it)).collect();
+            let stream = Stream::new(times, channels.clone());
+            assert!(stream.is_smooth());
+            stream.no_stream()
+        };
+        assert_eq!(of(&|_, it| it), None);
+        assert_eq!(of(&|at, it| if at == 70 { f64::NAN } else { it }), Some(NoStream::NoTime(70)));
+        assert_eq!(of(&|at, it| if at == 70 { it - 1.0 } else { it }), Some(NoStream::Back(70)));
+        assert_eq!(of(&|_, it| -it), Some(NoStream::Back(1)));
+        assert!(matches!(of(&|_, it| 1e3 * it), Some(NoStream::Slow(step)) if (step - 10.0).abs() < 1e-9));
+    }
+
+    #[test]
+    fn a_list_of_places_is_no_stream() {
+        let times: Vec<f64> = (0..100).map(|it| 0.001 * f64::from(it)).collect();
+        let values: Vec<f64> = (0..100).map(|it| (f64::from(it) * 0.618).fract()).collect();
+        assert!(!alone(times, values).is_dense());
+    }
+}

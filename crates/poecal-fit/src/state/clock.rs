@@ -1,0 +1,67 @@
+//! Lag and drift of an instrument's clock, beyond those by which the joint readings of its rows were found.
+
+/// What a clock is off beyond the one by which the readings were found ([`Clock`](poecal_model::measurement::Clock)): the readings of a row at the time t
+/// from the middle of all change by `-(l + d t)` times their rates.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ClockChange {
+    /// Change of the lag l, seconds.
+    pub lag_s: f64,
+    /// Change of the drift d, seconds each second.
+    pub drift: f64,
+}
+
+/// One of the two, as an unknown.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum ClockTerm {
+    /// The lag, seconds.
+    Lag,
+    /// The drift, seconds each second.
+    Drift,
+}
+
+impl ClockTerm {
+    /// Both.
+    pub const ALL: [ClockTerm; 2] = [ClockTerm::Lag, ClockTerm::Drift];
+
+    /// Standard deviation of a clock's drift beside another, its prior: 50 ppm, as of plain quartz.
+    pub const DRIFT_DEVIATION: f64 = 5e-5;
+
+    /// Its name.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            ClockTerm::Lag => "lag",
+            ClockTerm::Drift => "drift",
+        }
+    }
+
+    /// By how much a reading changes each unit of the term, over its rate, at a time from the middle, seconds.
+    #[must_use]
+    pub(crate) fn factor(self, time_s: f64) -> f64 {
+        match self {
+            ClockTerm::Lag => -1.0,
+            ClockTerm::Drift => -time_s,
+        }
+    }
+}
+
+impl ClockChange {
+    /// Whether nothing changes.
+    pub(crate) fn is_none(&self) -> bool {
+        *self == ClockChange::default()
+    }
+
+    /// A term.
+    #[must_use]
+    pub fn term(&self, term: ClockTerm) -> f64 {
+        match term {
+            ClockTerm::Lag => self.lag_s,
+            ClockTerm::Drift => self.drift,
+        }
+    }
+
+    /// By how much a reading changes, over its rate, at a time from the middle, seconds.
+    pub(crate) fn shift(&self, time_s: f64) -> f64 {
+        -(self.lag_s + self.drift * time_s)
+    }
+}

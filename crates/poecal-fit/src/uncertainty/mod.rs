@@ -1,0 +1,255 @@
+//! How far a calibrated robot can be trusted, configuration by configuration (theory.md §9 (39) to (43)).
+
+mod bootstrap;
+mod clusters;
+mod correlation;
+mod discrepancy;
+mod folds;
+mod held;
+mod motions;
+mod neighbours;
+mod order;
+mod pattern;
+mod prediction;
+mod refit;
+mod remainder;
+mod share;
+mod view;
+
+pub use bootstrap::{Bootstrap, bootstrap};
+pub use correlation::Correlations;
+pub use discrepancy::{Discrepancy, discrepancy};
+pub use folds::{CrossValidation, LeftOut, cross_validate, leave_clusters_out, parts_to_leave_out};
+pub use held::held_covariance;
+pub use pattern::{Pattern, strongest_pattern};
+pub use prediction::{PredictedError, Quantile, bound};
+pub use refit::Refit;
+pub use remainder::{Attribution, Part, Remainder, Settled, remainder};
+pub use share::Shares;
+pub use view::{PriorInformation, View};
+
+use motions::{motions, products};
+
+use std::f64::consts::TAU;
+
+use nalgebra::{DMatrix, Matrix3};
+
+use crate::analysis::ranges;
+use crate::problem::Layout;
+use crate::state::{Estimate, Linkage, Packed, Sight};
+use poecal_model::measurement::{ByQuantity, Quantity};
+use poecal_model::robot::JointKind;
+use poecal_numerics::linalg::{self, Factor};
+
+/// Configurations whose columns share one matrix: enough for a quick product, few enough for the cache.
+const TOGETHER: usize = 32;
+/// Rounding of the normal equations, as a share of their largest diagonal element.
+const ROUNDING: f64 = 1e-15;
+
+/// Covariance of an estimate's unknowns, and the model error beside it (theory.md §9 (39) and (41)).
+#[derive(Clone, Debug, PartialEq)]
+pub struct Uncertainty {
+    /// The estimate.
+    pub estimate: Estimate,
+    /// The unknowns and their scales.
+    pub layout: Layout,
+    /// Covariance of the scaled unknowns (square metres), row-major `n × n`, with [`Discrepancy::scatter`] in it.
+    pub covariance: Vec<f64>,
+    /// The covariance outside the sampled range, with [`Discrepancy::extrapolation`]; `None` where that is no larger.
+    pub covariance_outside: Option<Vec<f64>>,
+    /// Sampled range of each joint, radians or metres.
+    pub sampled: Vec<[f64; 2]>,
+    /// Model error that the residuals show.
+    pub discrepancy: Discrepancy,
+    /// Metres that a radian counts in the scaled unknowns.
+    pub length_m: f64,
+}
+
+impl Uncertainty {
+    /// Covariance of a fit, theory.md §9 (39), from the upper triangle of its whitened `JᵀJ` and its unknowns. `None` if a number is not
+    /// finite.
+    #[must_use]
+    pub fn new(view: &View<'_>, layout: Layout, gram: &[f64], found: &Discrepancy) -> Option<Self> {
+        let outside = (found.extrapolation > found.scatter)
+            .then(|| extrapolated(gram, layout.dim(), view, found.extrapolation));
+        let sampled = ranges(&view.session, view.rows);
+        Some(Uncertainty {
+            estimate: view.estimate.clone(),
+            covariance: inflated(gram, layout.dim(), view, found.scatter)?,
+            covariance_outside: outside.flatten(),
+            sampled: sampled.into_iter().map(|(least, most)| [least, most]).collect(),
+            layout,
+            discrepancy: *found,
+            length_m: view.session.length_m,
+        })
+    }
+
+    /// Variance `aᵀ Σ a` of a quantity whose derivatives by the scaled unknowns are `row` (a), with the Σ of theory.md §9 (39).
+    #[must_use]
+    pub fn variance(&self, row: &[f64]) -> f64 {
+        let n = self.layout.dim().max(1);
+        self.covariance
+            .chunks_exact(n)
+            .zip(row)
+            .map(|(covariance, a)| a * covariance.iter().zip(row).map(|(c, b)| c * b).sum::<f64>())
+            .sum::<f64>()
+            .max(0.0)
+    }
+
+    /// Expected errors of a target's predictions, one for each row of joint values: theory.md §9 (40), in the axes of the first station's
+    /// device frame.
+    #[must_use]
+    pub fn predictions(&self, packed: &Packed, target: usize) -> Vec<PredictedError> {
+        self.predictions_of((0..packed.rows()).map(|row| (row, target)), packed)
+    }
+
+    /// Expected error of each `(row of joint values, target)`: theory.md §9 (40), in the axes of the first station's device frame.
+    #[must_use]
+    pub fn predictions_of(
+        &self,
+        rows: impl Iterator<Item = (usize, usize)>,
+        packed: &Packed,
+    ) -> Vec<PredictedError> {
+        let quantiles = self.quantiles();
+        let errors = self.spread::<2>(rows.map(in_first), packed).into_iter();
+        errors.map(|[position, rotation]| PredictedError { position, rotation, quantiles }).collect()
+    }
+
+    /// Factors by which 95 % bounds exceed those of a known covariance, of positions and of rotations: theory.md §9, below (40).
+    #[must_use]
+    pub fn quantiles(&self) -> ByQuantity<Quantile> {
+        self.discrepancy.freedom.map(Quantile::new)
+    }
+
+    /// Covariances of predicted places alone, square metres: `P_p` of theory.md §9 (40), in the axes of the first station's device frame.
+    pub fn positions(&self, packed: &Packed, target: usize) -> Vec<Matrix3<f64>> {
+        self.spread::<1>((0..packed.rows()).map(|row| in_first((row, target))), packed).into_flattened()
+    }
+
+    /// Distance of a configuration from the sampled range: 0 inside, 1 from a fifth of the range on. The blocks of cross-validation are a
+    /// fifth of the range (theory.md §9 (41)).
+    fn outside(&self, values: &[f64]) -> f64 {
+        const FULLY: f64 = 0.2;
+        let joints = values.iter().zip(&self.sampled).zip(self.estimate.kinds());
+        let beyond = joints.map(|((value, [least, most]), kind)| {
+            let way = match kind {
+                JointKind::Prismatic => (least - value).max(value - most),
+                // Whole turns change nothing.
+                JointKind::Revolute => {
+                    let value = value - TAU * ((value - least) / TAU).floor();
+                    (value - most).min(least + TAU - value)
+                }
+            };
+            if way > 1e-6 { way / (FULLY * (most - least)) } else { 0.0 }
+        });
+        beyond.fold(0.0, f64::max).min(1.0)
+    }
+
+    /// Covariances of the place, and with two `PARTS` of the rotation: theory.md §9 (40).
+    fn spread<const PARTS: usize>(
+        &self,
+        rows: impl Iterator<Item = (usize, Sight)>,
+        packed: &Packed,
+    ) -> Vec<[Matrix3<f64>; PARTS]> {
+        let linkage = Linkage::new(&self.estimate);
+        let n = self.layout.dim();
+        let inside = DMatrix::from_row_slice(n, n, &self.covariance);
+        let beyond = self.covariance_outside.as_ref().map(|outside| DMatrix::from_row_slice(n, n, outside));
+        let own = [Quantity::Position, Quantity::Rotation]
+            .map(|quantity| self.discrepancy.standard_deviation[quantity])
+            .map(|sigma| Matrix3::identity() * (sigma * sigma));
+        let rows: Vec<(usize, Sight)> = rows.collect();
+        let mut found = Vec::with_capacity(rows.len());
+        for some in rows.chunks(TOGETHER) {
+            let motions = motions(&self.layout, &linkage, packed, some, PARTS);
+            let spread = &motions * &inside;
+            let farther: Vec<f64> =
+                some.iter().map(|&(row, _)| self.outside(packed.joint_values(row))).collect();
+            let wider = beyond.as_ref().filter(|_| farther.iter().any(|share| *share > 0.0));
+            let wider = wider.map(|covariance| products(&motions, &(&motions * covariance)));
+            let nearer = products(&motions, &spread);
+            found.extend(farther.into_iter().enumerate().map(|(at, share)| {
+                std::array::from_fn(|part| {
+                    let here = nearer[PARTS * at + part];
+                    let there = wider.as_ref().filter(|_| share > 0.0).map(|there| there[PARTS * at + part]);
+                    there.map_or(here, |there| here * (1.0 - share) + there * share) + own[part]
+                })
+            }));
+        }
+        found
+    }
+}
+
+/// Predictions are stated in the device frame of the first station.
+fn in_first((row, target): (usize, usize)) -> (usize, Sight) {
+    (row, Sight::from(target))
+}
+
+/// Factor of `JᵀJ + variance · prior`, the H of theory.md §9 (39).
+fn factor(gram: &[f64], n: usize, prior: &PriorInformation, variance: f64) -> Option<Factor> {
+    let both = prior.with(gram, variance);
+    let largest = (0..n).map(|k| both[k * n + k]).fold(0.0, f64::max);
+    linalg::cholesky(&both, n, ROUNDING * largest)
+}
+
+/// Covariance of an estimate whose residuals scatter by `inflation` κ times as much as independent ones. With `H = N + s²Λ` and a prior Λ
+/// in the fit it is `s² H⁻¹ (κ N + s²Λ) H⁻¹`, which is `s² H⁻¹` for κ = 1. Without a prior in the fit it is `κ s² (N + κ s²Λ)⁻¹`
+/// (theory.md §9 (39)).
+fn inflated(gram: &[f64], n: usize, view: &View<'_>, inflation: f64) -> Option<Vec<f64>> {
+    let prior = (view.prior.normal.gram.as_slice(), view.prior.is_fitted);
+    inflated_by((gram, n), prior, view.variance, inflation)
+}
+
+/// The same by the upper triangles of N and Λ, and whether the fit contained the prior.
+fn inflated_by(
+    (gram, n): (&[f64], usize),
+    (prior, is_fitted): (&[f64], bool),
+    variance: f64,
+    inflation: f64,
+) -> Option<Vec<f64>> {
+    let of = |variance: f64| {
+        let both: Vec<f64> =
+            gram.iter().zip(prior).map(|(measured, prior)| measured + variance * prior).collect();
+        let largest = (0..n).map(|k| both[k * n + k]).fold(0.0, f64::max);
+        covariance(&linalg::cholesky(&both, n, ROUNDING * largest)?, variance)
+    };
+    if !is_fitted || inflation == 1.0 {
+        return of(variance * inflation);
+    }
+    let formal = DMatrix::from_row_slice(n, n, &of(variance)?);
+    let of_prior = DMatrix::from_fn(n, n, |i, j| prior[i.min(j) * n + i.max(j)]);
+    let spread = &formal * inflation - &formal * of_prior * &formal * (inflation - 1.0);
+    Some((&spread + spread.transpose()).scale(0.5).as_slice().to_vec())
+}
+
+/// Covariance outside the sampled range, where model error is a bias: `κ s² (N + κ s²(Λ + I/(0.1 L)²))⁻¹` with the prior Λ and the length
+/// L that a radian counts (theory.md §9, below (41)).
+fn extrapolated(gram: &[f64], n: usize, view: &View<'_>, inflation: f64) -> Option<Vec<f64>> {
+    const FARTHEST: f64 = 0.1;
+    let variance = view.variance * inflation;
+    let mut both = view.prior.with(gram, variance);
+    let bound = variance / (FARTHEST * view.session.length_m).powi(2);
+    both.iter_mut().step_by(n + 1).for_each(|value| *value += bound);
+    covariance(&linalg::cholesky(&both, n, 0.0)?, variance)
+}
+
+/// `(JᵀJ / variance + prior)⁻¹` from [`factor`], row-major: theory.md §9 (39) for κ = 1. `None` if a number is not finite.
+fn covariance(factor: &Factor, variance: f64) -> Option<Vec<f64>> {
+    let mut covariance = linalg::inverse(factor);
+    covariance.iter_mut().for_each(|value| *value *= variance);
+    covariance.iter().all(|value| value.is_finite()).then_some(covariance)
+}
+
+/// Mean over rows of `v_kᵀ v_l`, row-major: the Q of theory.md §9 (45). `δᵀ Q δ` is the mean square distance by which a step δ moves
+/// predicted places.
+pub fn position_information(view: &View<'_>, rows: &[u32]) -> Vec<f64> {
+    let problem = view.problem(Vec::new());
+    let layout = problem.layout();
+    let linkage = Linkage::new(view.estimate);
+    let mut sum = DMatrix::zeros(layout.dim(), layout.dim());
+    for some in rows.chunks(TOGETHER) {
+        let motions = motions(layout, &linkage, view.session.packed, &view.with_sights(some), 1);
+        sum += motions.transpose() * motions;
+    }
+    (sum / rows.len().max(1) as f64).as_slice().to_vec()
+}

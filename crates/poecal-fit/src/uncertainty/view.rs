@@ -1,0 +1,121 @@
+//! A finished fit, as input of its uncertainty.
+
+use std::cmp::Ordering;
+
+use crate::analysis::{PLAUSIBLE, ranges};
+use crate::parameters::Parameter;
+use crate::problem::{Layout, Prior, Problem};
+use crate::state::{Estimate, Session, Sight};
+use poecal_model::measurement::{ByQuantity, Noise};
+use poecal_numerics::solve::Normal;
+
+/// Prior of the unknowns: its information and gradient at the optimum, in the units of the scaled unknowns (metres), not whitened. The Λ
+/// of theory.md §6 (27a).
+#[derive(Clone, Debug)]
+pub struct PriorInformation {
+    /// Upper triangle of the information, 1/m², and the gradient.
+    pub normal: Normal,
+    /// Whether the fit contained the prior; if not, it only bounds undetermined directions.
+    pub is_fitted: bool,
+    /// Weight that the fit gave it beside whitened residuals; none if that was the variance of these.
+    pub weight: Option<f64>,
+}
+
+impl PriorInformation {
+    /// The information of a prior at an estimate (theory.md §6 (27a)); without a prior, `I/(0.03 L)²` (theory.md §9, below (39)).
+    #[must_use]
+    pub fn new(prior: Option<&Prior>, estimate: &Estimate, layout: &Layout, length_m: f64) -> Self {
+        let n = layout.dim();
+        let mut normal = Normal::new(n);
+        match prior {
+            Some(prior) => prior.add(estimate, layout, 1.0 / prior.looseness(estimate), &mut normal),
+            None => {
+                let information = 1.0 / (PLAUSIBLE * length_m).powi(2);
+                normal.gram.iter_mut().step_by(n + 1).for_each(|value| *value = information);
+            }
+        }
+        PriorInformation { normal, is_fitted: prior.is_some(), weight: None }
+    }
+
+    /// No information of `n` unknowns.
+    #[must_use]
+    pub fn none(n: usize) -> Self {
+        PriorInformation { normal: Normal::new(n), is_fitted: false, weight: None }
+    }
+
+    /// The same with directions that are a choice, such as motions of the base without effect: as if they were known.
+    #[must_use]
+    pub fn with_chosen(mut self, directions: &[Vec<f64>], length_m: f64) -> Self {
+        const CHOSEN: f64 = 1e-6;
+        let information = 1.0 / (CHOSEN * length_m).powi(2);
+        for direction in directions {
+            let n = direction.len();
+            for (k, value) in self.normal.gram.iter_mut().enumerate() {
+                *value += information * direction[k / n] * direction[k % n];
+            }
+        }
+        self
+    }
+
+    /// Upper triangle of `N + s²Λ`, the H of theory.md §9 (39), from that of N and the variance s² of the whitened residuals.
+    #[must_use]
+    pub fn with(&self, gram: &[f64], variance: f64) -> Vec<f64> {
+        gram.iter().zip(&self.normal.gram).map(|(measured, prior)| measured + variance * prior).collect()
+    }
+}
+
+/// Session, rows, unknowns and optimum of a fit.
+#[derive(Clone, Copy, Debug)]
+pub struct View<'a> {
+    /// Robot and measurements.
+    pub session: Session<'a>,
+    /// The rows that were fitted.
+    pub rows: &'a [u32],
+    /// The unknowns.
+    pub free: &'a [Parameter],
+    /// The noise by which residuals were whitened.
+    pub noise: Noise,
+    /// Whether that noise is stated rather than estimated, of positions and of rotations.
+    pub noise_is_stated: ByQuantity<bool>,
+    /// Prior of the unknowns.
+    pub prior: &'a PriorInformation,
+    /// Variance of the whitened residuals.
+    pub variance: f64,
+    /// The optimum.
+    pub estimate: &'a Estimate,
+}
+
+impl<'a> View<'a> {
+    /// The problem of some of the rows.
+    pub(crate) fn problem(&self, rows: Vec<u32>) -> Problem<'a> {
+        Problem::new(self.session, rows, self.free.to_vec(), self.noise)
+    }
+
+    /// Rows with their targets and stations.
+    pub(crate) fn with_sights(&self, rows: &[u32]) -> Vec<(usize, Sight)> {
+        rows.iter().map(|&row| (row as usize, Sight::from(self.session.observation(row)))).collect()
+    }
+
+    /// Joint values of a row.
+    pub(crate) fn values(&self, row: u32) -> &'a [f64] {
+        self.session.packed.joint_values(row as usize)
+    }
+
+    /// Sampled range of each joint in some rows, radians or metres.
+    pub(crate) fn spans(&self, rows: &[u32]) -> Vec<f64> {
+        let ranges = ranges(&self.session, rows);
+        ranges.into_iter().map(|(least, most)| most - least).collect()
+    }
+
+    /// Rows in the order of a joint's value.
+    pub(crate) fn sorted_by(&self, rows: &[u32], joint: usize) -> Vec<u32> {
+        let mut sorted = rows.to_vec();
+        sorted.sort_unstable_by(|&a, &b| self.by_joint(joint, a, b));
+        sorted
+    }
+
+    /// Order of two rows by a joint's value, and then by number.
+    pub(crate) fn by_joint(&self, joint: usize, a: u32, b: u32) -> Ordering {
+        self.values(a)[joint].total_cmp(&self.values(b)[joint]).then(a.cmp(&b))
+    }
+}

@@ -1,0 +1,86 @@
+//! Models in forms of simulators and makers. Each is read as links and joints, and the URDF that says the same is the robot's document: so
+//! chains are selected, and results written, as for any URDF.
+
+mod driver_yaml;
+mod links;
+mod mjcf;
+mod sdf;
+mod ur_conf;
+
+use std::path::{Path, PathBuf};
+
+use super::urdf::{ChainSelection, UrdfDocument};
+use poecal_numerics::error::Result;
+use poecal_storage::xml::root_name;
+
+/// A form.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Form {
+    /// MuJoCo's model.
+    Mjcf,
+    /// Gazebo's model.
+    Sdf,
+    /// Origins of joints, as drivers and descriptions of arms have them.
+    DriverYaml,
+    /// `calibration.conf` and `urcontrol.conf` of a controller of Universal Robots.
+    UrConf,
+}
+
+impl Form {
+    /// The form of a text; `None` for others.
+    pub fn of(text: &str, path: &Path) -> Option<Self> {
+        let extension = path.extension().and_then(|extension| extension.to_str()).unwrap_or_default();
+        match extension.to_ascii_lowercase().as_str() {
+            "yaml" | "yml" => return Some(Form::DriverYaml),
+            "conf" => return Some(Form::UrConf),
+            _ => {}
+        }
+        match root_name(text)? {
+            "mujoco" | "mujocoinclude" => Some(Form::Mjcf),
+            "sdf" | "gazebo" => Some(Form::Sdf),
+            _ => None,
+        }
+    }
+
+    /// Its name.
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Form::Mjcf => "MJCF",
+            Form::Sdf => "SDF",
+            Form::DriverYaml => "YAML",
+            Form::UrConf => "controller's DH table",
+        }
+    }
+
+    /// The file beside, without which a text says too little.
+    pub fn sibling(self, text: &str, path: &Path) -> Option<PathBuf> {
+        (self == Form::UrConf).then(|| ur_conf::sibling(text, path)).flatten()
+    }
+
+    /// The URDF that says what a text says, with the one of its sibling.
+    pub fn read(
+        self,
+        text: &str,
+        path: &Path,
+        beside: Option<(&str, &Path)>,
+        selection: &ChainSelection,
+    ) -> Result<UrdfDocument> {
+        let named: Vec<&str> = selection
+            .base_link
+            .iter()
+            .chain(&selection.tip_link)
+            .chain(selection.instruments.iter().chain(&selection.targets).map(|(_, link)| link))
+            .map(String::as_str)
+            .collect();
+        let links = match self {
+            Form::Mjcf => mjcf::read(text, path, &named),
+            Form::Sdf => sdf::read(text, path, &named),
+            Form::DriverYaml => driver_yaml::read(text, path),
+            Form::UrConf => ur_conf::read(text, path, beside),
+        }?;
+        // Its places are in no file.
+        UrdfDocument::parse(&links.urdf(), path, selection)
+            .map(|document| document.made_from(self.name()))
+            .map_err(|error| error.without_line())
+    }
+}

@@ -1,0 +1,271 @@
+//! Joints of the chain or tree: origins, axes, limits and mimic relations, with their places in the text.
+
+use std::collections::BTreeMap;
+use std::ops::Range;
+
+use nalgebra::Vector3;
+use roxmltree::Node;
+
+use super::chain::UrdfChain;
+use super::tree::{JointType, Tree, TreeJoint};
+use crate::mimic;
+use poecal_arm::lie::Pose;
+use poecal_model::robot::{Body, Joint, JointKind, Limits, Mass, Reading, Robot, check_name};
+use poecal_numerics::error::{Result, nearest_or_all};
+use poecal_storage::xml::{XmlSource, value_range};
+
+/// A fixed or moving joint, with the places for writing it back.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Part {
+    /// Name of the joint.
+    pub(crate) name: String,
+    /// The joint above its parent link; none for the base.
+    pub(crate) parent: Option<usize>,
+    /// `<origin>`: pose of the joint's frame in its parent link.
+    pub(crate) parent_from_joint: Pose,
+    /// Unit `<axis>` in the joint's frame; `None` for a fixed joint.
+    pub(crate) axis: Option<Vector3<f64>>,
+    pub(crate) place: Place,
+}
+
+/// Byte offsets in the text of a joint.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Place {
+    /// The whole `<joint>` element.
+    pub(crate) element: Range<usize>,
+    /// Start of its first child element.
+    pub(crate) first_child: usize,
+    /// The byte after `<origin`.
+    pub(crate) origin: Option<usize>,
+    pub(crate) xyz: Option<Range<usize>>,
+    pub(crate) rpy: Option<Range<usize>>,
+    /// The byte after `<axis`.
+    pub(crate) axis: Option<usize>,
+    pub(crate) axis_xyz: Option<Range<usize>>,
+}
+
+/// A named link: the tip's, an instrument's or a target's.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct End {
+    /// Name of the link.
+    pub(crate) link: String,
+    /// The joint above it; none for the base.
+    pub(crate) part: Option<usize>,
+}
+
+/// Where a link is.
+#[derive(Clone, Copy)]
+struct At {
+    base_from_link: Pose,
+    part: Option<usize>,
+    body: Body,
+}
+
+/// The joints in their order, the ends, the robot of the moving joints with frames and screws in the base link, and the pose in it of the link
+/// from which the chain leads down.
+pub(crate) fn read(tree: &Tree, chain: &UrdfChain, name: &str) -> Result<(Vec<Part>, Vec<End>, Robot, Pose)> {
+    // From the base up to the link from which the chain leads down.
+    let (mut base_from_top, mut top) = (Pose::identity(), chain.base);
+    for joint in chain.up.iter().filter_map(|&joint| tree.joints.get(joint)) {
+        base_from_top = base_from_top * read_part(&tree.source, joint)?.parent_from_joint.inverse();
+        top = joint.parent;
+    }
+    let base = At { base_from_link: base_from_top, part: None, body: Body::Base };
+    let mut links = BTreeMap::from([(top, base)]);
+    links.entry(chain.base).or_insert(At { base_from_link: Pose::identity(), ..base });
+    let (mut parts, mut joints) = (Vec::new(), Vec::new());
+    for joint in chain.joints.iter().filter_map(|&joint| tree.joints.get(joint)) {
+        let parent = links.get(&joint.parent).copied().unwrap_or(base);
+        let mut part = read_part(&tree.source, joint)?;
+        part.parent = parent.part;
+        let base_from_link = parent.base_from_link * part.parent_from_joint;
+        let mut body = parent.body;
+        if let Some(axis) = part.axis {
+            let before = joints.len().checked_sub(1).map_or(Body::Base, Body::Link);
+            body = Body::Link(joints.len());
+            let stands_on = Some(parent.body).filter(|&stands_on| stands_on != before);
+            joints.push(Joint { stands_on, ..moving_joint(tree, joint, &axis, base_from_link)? });
+        }
+        links.insert(joint.child, At { base_from_link, part: Some(parts.len()), body });
+        parts.push(part);
+    }
+    let at = |link: usize| links.get(&link).copied().unwrap_or(base);
+    let tip = at(chain.tip);
+    let mut robot =
+        Robot::new(name, joints, tip.base_from_link).map_err(|error| error.in_file(tree.source.path))?;
+    tree.link_name(chain.base).clone_into(&mut robot.base_name);
+    tree.link_name(chain.tip).clone_into(&mut robot.tip_name);
+    robot.tip = Some(tip.body).filter(|&body| body != robot.tip_body());
+    let mount = |(name, link): &(String, usize)| {
+        let At { base_from_link, body, .. } = at(*link);
+        check_name(name, "frame").map_err(|error| error.in_file(tree.source.path))?;
+        Ok(robot.mount(name, body, &base_from_link))
+    };
+    let instruments = chain.instruments.iter().map(mount).collect::<Result<_>>()?;
+    let mounted = chain.targets.iter().map(mount).collect::<Result<_>>()?;
+    (robot.instruments, robot.mounted) = (instruments, mounted);
+    robot.masses = masses(tree, &links, base);
+    let named = chain.instruments.iter().chain(&chain.targets).map(|(_, link)| *link);
+    let end = |link: usize| End { link: tree.link_name(link).to_owned(), part: at(link).part };
+    let ends = std::iter::once(chain.tip).chain(named).map(end).collect();
+    Ok((parts, ends, robot, base_from_top))
+}
+
+/// Masses of the links of the chain and of what they carry, other joints at zero. Nothing else needs them: what cannot be read is no mass.
+fn masses(tree: &Tree, links: &BTreeMap<usize, At>, base: At) -> Vec<Mass> {
+    let source = &tree.source;
+    let mut links = links.clone();
+    let mut found = Vec::new();
+    for node in source.children(source.document.root_element(), "link") {
+        let Some(link) = node.attribute("name").and_then(|name| tree.link(name)) else { continue };
+        // From the nearest link that is known down to this one; what is not carried by the chain is as if on the base.
+        let unknown = |&(_, joint): &(usize, &TreeJoint)| !links.contains_key(&joint.child);
+        let way: Vec<&TreeJoint> = tree.ancestors(link).take_while(unknown).map(|(_, joint)| joint).collect();
+        let known = way.last().map_or(links.get(&link), |joint| links.get(&joint.parent));
+        let mut at = known.copied().unwrap_or(base);
+        for joint in way.into_iter().rev() {
+            if at.body != Body::Base {
+                match read_part(source, joint) {
+                    Ok(part) => at.base_from_link = at.base_from_link * part.parent_from_joint,
+                    Err(_) => at = base,
+                }
+            }
+            links.insert(joint.child, at);
+        }
+        if at.body != Body::Base {
+            let of = format!("<inertial> of link `{}`", tree.link_name(link));
+            found.extend(mass(source, node, at, &of).ok().flatten());
+        }
+    }
+    found
+}
+
+/// The mass of a link.
+fn mass<'a>(source: &XmlSource<'a>, link: Node<'a, 'a>, at: At, of: &str) -> Result<Option<Mass>> {
+    let child = |node, name| source.only_child(node, name, of, true);
+    let Some(inertial) = child(link, "inertial")? else { return Ok(None) };
+    let Some(mass) = child(inertial, "mass")? else { return Ok(None) };
+    let Some(kg) = source.number(mass, "value", of)?.filter(|kg| Mass::is_mass(*kg)) else { return Ok(None) };
+    let centre = match child(inertial, "origin")? {
+        Some(origin) => source.numbers(origin, "xyz", of)?.unwrap_or_default(),
+        None => [0.0; 3],
+    };
+    Ok(Some(Mass { body: at.body, place: at.base_from_link.act(&Vector3::from(centre)), kg }))
+}
+
+/// The `<origin>` of any joint of the tree; none if it cannot be read.
+pub(crate) fn fixed_pose(source: &XmlSource, joint: &TreeJoint) -> Option<Pose> {
+    read_part(source, joint).ok().map(|part| part.parent_from_joint)
+}
+
+fn moving_joint(tree: &Tree, joint: &TreeJoint, axis: &Vector3<f64>, base_from_joint: Pose) -> Result<Joint> {
+    let direction = base_from_joint.rotation * axis;
+    let slides = joint.kind == JointType::Prismatic;
+    let kind = if slides { JointKind::Prismatic } else { JointKind::Revolute };
+    let screw = kind.screw(&direction, &base_from_joint.translation);
+    Ok(Joint {
+        frame: base_from_joint,
+        limits: read_limits(&tree.source, joint)?,
+        reading: read_reading(tree, joint)?,
+        ..Joint::with_screw(joint.name, kind, screw)
+    })
+}
+
+fn read_part<'a>(source: &XmlSource<'a>, joint: &TreeJoint<'a>) -> Result<Part> {
+    let child = |name| source.only_child(joint.node, name, &format!("joint `{}`", joint.name), true);
+    let (origin, axis) = (child("origin")?, child("axis")?);
+    let of = format!("<origin> of joint `{}`", joint.name);
+    let (mut xyz, mut rpy) = ([0.0; 3], [0.0; 3]);
+    if let Some(origin) = origin {
+        if origin.has_attribute("quat_xyzw") {
+            let message = format!("{of} has a quaternion, expected roll, pitch and yaw in `rpy`");
+            return Err(source.error(origin, message));
+        }
+        xyz = source.numbers(origin, "xyz", &of)?.unwrap_or(xyz);
+        rpy = source.numbers(origin, "rpy", &of)?.unwrap_or(rpy);
+    }
+    let unit_axis = if joint.kind.moves() { Some(read_axis(source, joint, axis)?) } else { None };
+    let attribute = |node: Option<Node>, name| node.and_then(|node| value_range(node, name));
+    Ok(Part {
+        name: joint.name.to_owned(),
+        parent: None,
+        parent_from_joint: Pose::from_xyz_rpy(xyz, rpy),
+        axis: unit_axis,
+        place: Place {
+            element: joint.node.range(),
+            first_child: joint
+                .node
+                .first_element_child()
+                .map_or(joint.node.range().end, |child| child.range().start),
+            origin: origin.map(|node| source.after_name(node)),
+            xyz: attribute(origin, "xyz"),
+            rpy: attribute(origin, "rpy"),
+            axis: axis.map(|node| source.after_name(node)),
+            axis_xyz: attribute(axis, "xyz"),
+        },
+    })
+}
+
+/// The unit axis in the joint's frame; without an `<axis>` it is x.
+fn read_axis<'a>(
+    source: &XmlSource<'a>,
+    joint: &TreeJoint<'a>,
+    axis: Option<Node<'a, 'a>>,
+) -> Result<Vector3<f64>> {
+    let of = format!("<axis> of joint `{}`", joint.name);
+    let Some(node) = axis else { return Ok(Vector3::x()) };
+    let axis = Vector3::from(source.numbers(node, "xyz", &of)?.unwrap_or([1.0, 0.0, 0.0]));
+    if axis == Vector3::zeros() {
+        return Err(source.error(node, format!("{of} is 0 0 0, expected a direction, such as 0 0 1")));
+    }
+    // Scaled first, so that tiny numbers do not vanish when squared.
+    Ok((axis / axis.amax()).normalize())
+}
+
+/// Limits, unless the joint is continuous or its range is empty (as exporters write unknown limits).
+fn read_limits<'a>(source: &XmlSource<'a>, joint: &TreeJoint<'a>) -> Result<Option<Limits>> {
+    let of = format!("joint `{}`", joint.name);
+    let Some(node) = source.only_child(joint.node, "limit", &of, false)? else { return Ok(None) };
+    if joint.kind == JointType::Continuous {
+        return Ok(None);
+    }
+    let of = format!("<limit> of joint `{}`", joint.name);
+    let number = |name| source.bounds::<1>(node, name, &of).map(|number| number.map_or(0.0, |[only]| only));
+    let (lower, upper) = (number("lower")?, number("upper")?);
+    if lower > upper {
+        let message = format!("{of} has lower {lower} above upper {upper}, expected lower < upper");
+        return Err(source.error(node, message));
+    }
+    Ok(Limits::between(lower, upper))
+}
+
+/// The reading that gives a joint its value, through all mimic relations.
+fn read_reading(tree: &Tree, joint: &TreeJoint) -> Result<Reading> {
+    let follows = |name: &str| tree.joint(name).map_or(Ok(None), |follower| read_mimic(tree, follower));
+    mimic::reading(joint.name, follows, |message| tree.source.error(joint.node, message))
+}
+
+fn read_mimic<'a>(tree: &Tree<'a>, follower: &TreeJoint<'a>) -> Result<Option<Reading>> {
+    let source = &tree.source;
+    let of = format!("joint `{}`", follower.name);
+    let Some(node) = source.only_child(follower.node, "mimic", &of, false)? else { return Ok(None) };
+    let of = format!("<mimic> of joint `{}`", follower.name);
+    let (name, attribute) = source.required(node, "joint", &of)?;
+    let error = |message| Err(source.error_at(attribute.range_value().start, message));
+    let Some(leader) = tree.joint(name) else {
+        let names: Vec<&str> = tree.joints.iter().map(|joint| joint.name).collect();
+        let known = nearest_or_all(name, &names);
+        return error(format!("{of} names joint `{name}`, expected a joint of this file, {known}"));
+    };
+    if !leader.kind.moves() {
+        return error(format!(
+            "{of} names joint `{name}`, which is {}, expected a revolute, continuous or prismatic joint",
+            leader.kind.word()
+        ));
+    }
+    Ok(Some(Reading {
+        name: name.to_owned(),
+        multiplier: source.number(node, "multiplier", &of)?.unwrap_or(1.0),
+        offset: source.number(node, "offset", &of)?.unwrap_or(0.0),
+    }))
+}

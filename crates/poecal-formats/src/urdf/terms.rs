@@ -1,0 +1,32 @@
+//! What URDF cannot hold of a robot: terms of joint values.
+
+use std::borrow::Cow;
+
+use crate::proof::Difference;
+use poecal_model::robot::{JointTerm, Robot};
+
+/// Configurations on which the loss is measured.
+const CONFIGURATIONS: usize = 1000;
+
+/// The robot as URDF can hold it: joint offsets within the screws, which changes nothing, and without other terms of joint values. A note
+/// says what that loses.
+pub fn holdable<'a>(robot: &'a Robot, notes: &mut Vec<String>) -> Cow<'a, Robot> {
+    if robot.terms.is_empty() {
+        return Cow::Borrowed(robot);
+    }
+    let mut plain = robot.without_offsets();
+    if !plain.terms.is_empty() {
+        let name = |it: &JointTerm| {
+            let joint = plain.joints.get(it.joint).map_or("", |joint| joint.name.as_str());
+            format!("{joint}.{}", it.term)
+        };
+        let left: Vec<String> = plain.terms.iter().map(name).collect();
+        plain.terms.clear();
+        let lost = Difference::of(robot, &plain, CONFIGURATIONS).position_m * 1e3;
+        notes.push(format!(
+            "URDF has no place for {}: without, the tip is off by up to {lost:.3} mm; calibration.json and the TOML model have it",
+            left.join(", ")
+        ));
+    }
+    Cow::Owned(plain)
+}

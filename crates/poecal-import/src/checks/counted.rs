@@ -1,0 +1,97 @@
+//! Joint readings that are made of what a controller counts: columns as a calibration kept them, and third axes that count from the level.
+
+use crate::table::builder::Builder;
+use crate::table::inputs::{Input, Term};
+use poecal_model::robot::{Controller, ControllerColumn, ControllerReading, Robot, ThirdAxis, level};
+use poecal_numerics::error::{ErrorKind, Result};
+use poecal_numerics::named_unit::{NamedUnit, UnitSource};
+use poecal_numerics::unit::Unit;
+
+impl Builder<'_> {
+    /// Takes the third axis as it counts.
+    pub(crate) fn third_axis(&mut self, robot: &Robot, names: &[String], counts: ThirdAxis) -> Result<()> {
+        let in_map = |message: String| Err(ErrorKind::Measurement.error(message).in_file(&self.map.path));
+        let at = |name: &String| names.iter().position(|it| it == name);
+        let found =
+            level(robot).and_then(|(second, third, factor)| Some((at(&second)?, at(&third)?, factor)));
+        let Some((second, third, factor)) = found else {
+            return in_map(format!(
+                "found `third_axis = \"{}\"`, expected a robot whose second and third axes are parallel",
+                counts.word()
+            ));
+        };
+        let (Some(of_second), Some(of_third)) = (self.inputs.get(second), self.inputs.get(third)) else {
+            return Ok(());
+        };
+        let terms = of_third.terms();
+        let found = match terms.len() {
+            0 => Some("constant"),
+            1 => None,
+            _ => Some("sum of columns"),
+        };
+        if let Some(found) = found {
+            return in_map(format!(
+                "found `third_axis` beside a {found} for joint `{}`, expected one column that counts its axis",
+                of_third.name
+            ));
+        }
+        if counts == ThirdAxis::Arm {
+            return Ok(());
+        }
+        let mut sum = terms;
+        let offset = of_third.added() - factor * of_second.added();
+        sum.extend(of_second.terms().into_iter().map(|it| Term { factor: -factor * it.factor, ..it }));
+        let label = self.label(&sum);
+        if let Some(input) = self.inputs.get_mut(third) {
+            (input.sum, input.offset, input.label) = (sum, offset, label);
+        }
+        Ok(())
+    }
+
+    /// Adds a joint's reading as the calibration kept it; units of the file precede those that were kept.
+    pub(crate) fn kept_input(
+        &mut self,
+        kept: &ControllerReading,
+        quantity: Unit,
+        purpose: &str,
+    ) -> Result<()> {
+        let name = kept.reading.as_str();
+        let column = |(column, it): (&'_ String, &ControllerColumn)| {
+            let unit = NamedUnit::parse_for(&it.unit, quantity, &format!(" {purpose}"))?;
+            Ok((column.clone(), it.factor, Some(unit)))
+        };
+        let columns = kept.columns.iter().map(column).collect::<Result<Vec<_>>>()?;
+        match &columns[..] {
+            [] => {
+                self.constant_input(name, kept.offset, (NamedUnit::from(quantity), UnitSource::Mapping));
+            }
+            [(column, factor, unit)] if *factor == 1.0 && kept.offset == 0.0 => {
+                self.column_or(name, column, quantity, (None, *unit), purpose)?;
+            }
+            _ => {
+                let at = self.joined_input(name, &columns, quantity, None, purpose)?;
+                if let Some(input) = self.inputs.get_mut(at) {
+                    input.offset = kept.offset;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// How the readings of the joints, the first inputs, are made of columns; `None` where each is one column and nothing is stated.
+    pub(crate) fn controller(&self, robot: &Robot) -> Option<Controller> {
+        let column = |term: &Term| {
+            let name = self.header.cells.get(term.column).map(|cell| cell.name.clone())?;
+            Some((name, ControllerColumn { factor: term.factor, unit: term.unit.symbol().to_owned() }))
+        };
+        let reading = |input: &Input| ControllerReading {
+            reading: input.name.clone(),
+            columns: input.terms().iter().filter_map(column).collect(),
+            offset: input.added(),
+        };
+        let count = robot.joint_reading_names().len();
+        let readings = self.inputs.iter().take(count).map(reading).collect();
+        let found = Controller { third_axis: self.map.third_axis, readings };
+        (found.third_axis.is_some() || !found.is_plain()).then_some(found)
+    }
+}

@@ -1,0 +1,397 @@
+//! Joint values in a wrong unit or beyond their limits.
+
+use std::f64::consts::TAU;
+use std::path::Path;
+
+use nalgebra::Vector3;
+
+use crate::table::Row;
+use crate::table::inputs::{Input, InputReader, Range};
+use crate::table::layout::ColumnLayout;
+use crate::table::lost::{NAMED_LINES, named_lines};
+use poecal_model::measurement::Observation;
+use poecal_model::robot::{Joint, JointKind, Limits, Robot};
+use poecal_numerics::distributions::{median, median_point};
+use poecal_numerics::error::{ErrorKind, Result};
+use poecal_numerics::named_unit::{NamedUnit, UnitSource};
+use poecal_numerics::unit::Unit;
+
+/// Without limits, readings beyond this many radians or metres need a stated unit.
+const LARGEST_UNLIMITED: f64 = 50.0;
+/// Without limits, largest reading in the supposed unit (two turns in radians, and metres).
+pub const LARGEST_OTHERWISE: f64 = 4.0 * std::f64::consts::PI;
+/// Least share of rows with implausible values: a few corrupt rows are no wrong unit.
+pub const SHARE: f64 = 0.1;
+/// Motion below which a coordinate did not move, as a share of the reach.
+const STILL: f64 = 1e-2;
+/// A coordinate that moves by at most this many reaches is in the right unit where another one is in a wrong one.
+const RIGHT_REACHES: f64 = 4.0;
+/// Positions with a spread of more than this many reaches are in a wrong unit.
+pub const REACHES: f64 = 20.0;
+/// The largest of all readings where they are per cent of the joints' ranges, from -100 to 100 and a little beyond.
+const PER_CENT: std::ops::RangeInclusive<f64> = 92.0..=102.0;
+/// Rounding allowed beyond a limit.
+const ROUNDING: f64 = 1e-6;
+
+/// Collects the joint values of a file.
+pub(crate) struct JointWatch<'a> {
+    joints: Vec<OneJoint<'a>>,
+    rows: usize,
+}
+
+struct OneJoint<'a> {
+    joint: &'a Joint,
+    reading: usize,
+    /// Whether a whole turn of its reading is one of the joint, and of no other.
+    is_periodic: bool,
+    turned: usize,
+    turned_lines: Vec<usize>,
+    beyond: usize,
+    first_lines: Vec<usize>,
+    extreme: f64,
+    extreme_place: (usize, usize),
+}
+
+impl<'a> JointWatch<'a> {
+    pub(crate) fn new(robot: &'a Robot) -> Self {
+        let joints = robot.joints.iter().zip(robot.reading_indices());
+        let joints = joints.map(|(joint, reading)| OneJoint {
+            joint,
+            reading,
+            is_periodic: joint.kind == JointKind::Revolute
+                && joint.reading.multiplier.abs() == 1.0
+                && robot.reading_indices().iter().filter(|it| **it == reading).count() == 1,
+            turned: 0,
+            turned_lines: Vec::new(),
+            beyond: 0,
+            first_lines: Vec::new(),
+            extreme: 0.0,
+            extreme_place: (0, 0),
+        });
+        JointWatch { joints: joints.collect(), rows: 0 }
+    }
+
+    /// Takes whole turns off the readings of a row that are inside the limits without, as 0 to 360° of a joint from -180 to 180°.
+    pub(crate) fn unwind(&mut self, row: &Row<'_>, inputs: &mut InputReader<'_>) {
+        for one in &mut self.joints {
+            let Some(turns) = inputs.value(one.reading).and_then(|reading| one.turns(reading)) else {
+                continue;
+            };
+            inputs.unwind(one.reading, turns);
+            one.turned += 1;
+            if one.turned_lines.len() < NAMED_LINES {
+                one.turned_lines.push(row.line);
+            }
+        }
+    }
+
+    /// Adds the readings of a row.
+    pub(crate) fn observe(&mut self, row: &Row<'_>, inputs: &InputReader<'_>) {
+        self.rows += 1;
+        for one in &mut self.joints {
+            let Some(reading) = inputs.value(one.reading) else { continue };
+            if one.allows(reading, ROUNDING) {
+                continue;
+            }
+            one.beyond += 1;
+            if one.first_lines.len() < NAMED_LINES {
+                one.first_lines.push(row.line);
+            }
+            if reading.abs() > one.extreme {
+                one.extreme = reading.abs();
+                one.extreme_place = row.place(inputs.column(one.reading));
+            }
+        }
+    }
+
+    /// A warning for each joint beyond its limits; the inputs lie in `ranges`.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Unit`] if only another unit explains the readings.
+    pub(crate) fn finish(&self, path: &Path, layout: &ColumnLayout, ranges: &[Range]) -> Result<Vec<String>> {
+        let mut warnings = Vec::new();
+        let turned = self.joints.iter().filter(|one| one.turned > 0);
+        warnings.extend(turned.map(|one| one.turn_warning(path)));
+        for one in self.joints.iter().filter(|one| one.beyond > 0) {
+            let (Some(input), Some(range)) = (layout.inputs.get(one.reading), ranges.get(one.reading)) else {
+                continue;
+            };
+            let Some((lowest, highest)) = range.0 else { continue };
+            if let Some(likely) = one.other_unit(input, [lowest, highest], self.rows) {
+                let (line, column) = one.extreme_place;
+                let of_joints = layout.inputs.iter().zip(ranges).take(self.joints.len());
+                let extremes = of_joints.filter_map(|(input, range)| {
+                    range.0.map(|(low, high)| input.unit.from_si(low.abs().max(high.abs())))
+                });
+                let is_per_cent = PER_CENT.contains(&extremes.fold(0.0, f64::max));
+                return Err(ErrorKind::Unit
+                    .error(one.unit_message(input, likely, is_per_cent))
+                    .at(path, line, column));
+            }
+            if let Some(limits) = one.joint.limits {
+                warnings.push(one.limit_warning(path, limits, NamedUnit::from(input.unit.of())));
+            }
+        }
+        Ok(warnings)
+    }
+
+    /// How far the slides without limits move in all (metres), by the ranges of the inputs.
+    pub(crate) fn unlimited_slides_m(&self, ranges: &[Range]) -> f64 {
+        let slides = self
+            .joints
+            .iter()
+            .filter(|one| one.joint.kind == JointKind::Prismatic && one.joint.limits.is_none());
+        slides
+            .filter_map(|one| {
+                let (lowest, highest) = ranges.get(one.reading)?.0?;
+                Some((one.joint.reading.multiplier * (highest - lowest)).abs())
+            })
+            .filter(|span| span.is_finite())
+            .sum()
+    }
+}
+
+impl OneJoint<'_> {
+    /// Whether a reading is inside the limits widened by `slack`; without limits, whether it is not too large.
+    fn allows(&self, reading: f64, slack: f64) -> bool {
+        let value = self.joint.reading.value(reading);
+        match self.joint.limits {
+            Some(limits) => value >= limits.lower - slack && value <= limits.upper + slack,
+            None => reading.abs() <= LARGEST_UNLIMITED,
+        }
+    }
+
+    /// Whole turns without which a reading is inside the limits, where it is beyond them with these.
+    fn turns(&self, reading: f64) -> Option<f64> {
+        let limits = self.joint.limits.filter(|_| self.is_periodic && !self.allows(reading, ROUNDING))?;
+        // More would rather be another unit.
+        if reading.abs() > LARGEST_OTHERWISE {
+            return None;
+        }
+        let middle = 0.5 * (limits.lower + limits.upper);
+        let turns =
+            ((self.joint.reading.value(reading) - middle) / TAU).round() * self.joint.reading.multiplier;
+        (turns != 0.0 && self.allows(reading - turns * TAU, ROUNDING)).then_some(turns)
+    }
+
+    fn turn_warning(&self, path: &Path) -> String {
+        format!(
+            "{}: whole turns are taken off the readings of joint `{}` in {} {} ({}), which brings them inside its limits",
+            path.display(),
+            self.joint.name,
+            self.turned,
+            if self.turned == 1 { "row" } else { "rows" },
+            named_lines(self.turned, &self.turned_lines)
+        )
+    }
+
+    /// The unit that explains readings far outside.
+    fn other_unit(&self, input: &Input, extremes: [f64; 2], rows: usize) -> Option<NamedUnit> {
+        let quantity = input.unit.of();
+        let candidates: &[&str] = match quantity {
+            Unit::Radian => &["deg", "mrad", "arcmin", "arcsec"],
+            Unit::Metre => &["mm", "um", "nm"],
+            Unit::One | Unit::Second => &[],
+        };
+        let is_rare = (self.beyond as f64) < SHARE * rows as f64;
+        if is_rare || !self.is_far_outside(quantity, extremes, input.unit_from) {
+            return None;
+        }
+        let span = self.joint.limits.map_or(0.0, |limits| limits.upper - limits.lower);
+        candidates.iter().find_map(|symbol| {
+            let unit = NamedUnit::parse(symbol, quantity).ok()?;
+            if unit.to_si(1.0) >= input.unit.to_si(1.0) {
+                return None;
+            }
+            let fits = extremes.into_iter().all(|reading| {
+                let reading = unit.to_si(input.unit.from_si(reading));
+                let plausible = self.joint.limits.is_some() || reading.abs() <= LARGEST_OTHERWISE;
+                plausible && self.allows(reading, 0.1 * span)
+            });
+            fits.then_some(unit)
+        })
+    }
+
+    /// Whether a reading is so far outside that the joint cannot have been there.
+    fn is_far_outside(&self, quantity: Unit, extremes: [f64; 2], unit_from: UnitSource) -> bool {
+        match self.joint.limits {
+            Some(limits) => {
+                let span = limits.upper - limits.lower;
+                // Limits may be narrow or wrong: only large readings count.
+                let (large, spans) = match quantity {
+                    Unit::Metre => (5.0, 5.0),
+                    Unit::Radian | Unit::One | Unit::Second => (std::f64::consts::TAU, 0.5),
+                };
+                extremes
+                    .into_iter()
+                    .any(|reading| reading.abs() > large && !self.allows(reading, spans * span))
+            }
+            None => unit_from == UnitSource::Si,
+        }
+    }
+
+    fn unit_message(&self, input: &Input, likely: NamedUnit, is_per_cent: bool) -> String {
+        let stated = input.unit.symbol();
+        let symbol = likely.symbol();
+        let outside = match self.joint.limits {
+            Some(limits) => {
+                let si = NamedUnit::from(input.unit.of()).symbol();
+                format!(
+                    "far outside the limits {} to {} {si} of joint `{}`",
+                    short(limits.lower),
+                    short(limits.upper),
+                    self.joint.name
+                )
+            }
+            None => format!("too far for joint `{}`", self.joint.name),
+        };
+        let extreme = input.unit.from_si(self.extreme);
+        let per_cent = if symbol == "deg" && is_per_cent {
+            " (per cent of the range are read as deg too: `poecal check` then names the factors)"
+        } else {
+            ""
+        };
+        format!(
+            "found readings of up to {} {stated}, {outside}, expected another unit, most likely {symbol}; \
+             write `{}[{symbol}]` in the header, or {}{per_cent}",
+            short(extreme),
+            input.name,
+            state_it(input.unit_from, symbol)
+        )
+    }
+
+    fn limit_warning(&self, path: &Path, limits: Limits, unit: NamedUnit) -> String {
+        format!(
+            "{}: joint `{}` lies beyond its limits {} to {} {} in {} {} ({})",
+            path.display(),
+            self.joint.name,
+            short(limits.lower),
+            short(limits.upper),
+            unit.symbol(),
+            self.beyond,
+            if self.beyond == 1 { "row" } else { "rows" },
+            named_lines(self.beyond, &self.first_lines)
+        )
+    }
+}
+
+/// Refuses distances that differ by more than the robot reaches, from which their unit must be smaller.
+pub(crate) fn check_ranges(path: &Path, robot: &Robot, slides_m: f64, rows: &[Observation]) -> Result<()> {
+    let ranged = || rows.iter().filter_map(|row| Some((row.measurement.range()?, row)));
+    let Some(middle) = median(ranged().map(|(range, _)| range)) else { return Ok(()) };
+    let reach = robot.reach_m() + slides_m;
+    let far = |range: f64| (range - middle).abs() > 2.0 * reach;
+    let count = ranged().filter(|(range, _)| far(*range)).count();
+    let furthest = ranged().max_by(|a, b| (a.0 - middle).abs().total_cmp(&(b.0 - middle).abs()));
+    let Some((range, row)) = furthest else { return Ok(()) };
+    if !far(range) || (count as f64) < SHARE * ranged().count() as f64 {
+        return Ok(());
+    }
+    Err(ErrorKind::Unit.error(format!(
+        "found distances up to {} m from their middle, where the robot reaches {} m, expected another unit, most likely mm; write \
+         the unit in the header, as `distance[mm]`",
+        short((range - middle).abs()),
+        short(reach)
+    )).at_line(path, row.source.line as usize))
+}
+
+/// Refuses positions whose spread shows that their unit must be smaller.
+pub(crate) fn check_positions(
+    path: &Path,
+    robot: &Robot,
+    layout: &ColumnLayout,
+    slides_m: f64,
+    rows: &[Observation],
+) -> Result<()> {
+    let columns = layout.targets.first().and_then(|target| target.position);
+    let Some(inputs) = columns.and_then(|at| {
+        let [x, y, z] = at.map(|at| layout.inputs.get(at));
+        Some([x?, y?, z?])
+    }) else {
+        return Ok(());
+    };
+    // The reach does not contain prismatic joints without limits.
+    let reach = robot.reach_m() + slides_m;
+    let placed = || rows.iter().filter_map(|row| Some((row.measurement.position()?, row)));
+    let positions: Vec<Vector3<f64>> = placed().map(|(position, _)| position).collect();
+    let middle = median_point(&positions);
+    let far = positions.iter().filter(|position| (*position - middle).norm() > 2.0 * reach).count();
+    let furthest = placed()
+        .map(|(position, row)| (position - middle, row.source.line))
+        .max_by(|a, b| a.0.norm().total_cmp(&b.0.norm()));
+    let Some((apart, line)) = furthest else { return Ok(()) };
+    let spread = apart.norm();
+    if spread <= REACHES * reach
+        || spread > 1e3 * REACHES * reach
+        || (far as f64) < SHARE * positions.len() as f64
+    {
+        return Ok(());
+    }
+    let far_of =
+        |axis: usize| positions.iter().fold(0.0, |most: f64, it| most.max((it[axis] - middle[axis]).abs()));
+    match positions_message(inputs, [0, 1, 2].map(far_of), apart, reach) {
+        Some(message) => Err(ErrorKind::Unit.error(message).at_line(path, line as usize)),
+        None => Ok(()),
+    }
+}
+
+/// What is wrong of positions of which one is so far from their middle, by how far each coordinate is at most; nothing without a smaller unit.
+fn positions_message(inputs: [&Input; 3], far: [f64; 3], apart: Vector3<f64>, reach: f64) -> Option<String> {
+    // The columns of which that is so: a header may state the unit of one of three wrongly.
+    // One in which nothing moved shows nothing.
+    let is_right = |axis: usize| (STILL * reach..=RIGHT_REACHES * reach).contains(&far[axis]);
+    let own: Vec<usize> = (0..3).filter(|axis| !is_right(*axis)).collect();
+    let own = if own.is_empty() { vec![0, 1, 2] } else { own };
+    let mut headers = Vec::new();
+    for input in own.iter().map(|axis| inputs[*axis]) {
+        let smaller = match input.unit.symbol() {
+            "m" | "cm" | "in" => "mm",
+            "mm" => "um",
+            "um" => "nm",
+            _ => return None,
+        };
+        headers.push((input.name.as_str(), smaller));
+    }
+    let (first, smaller) = headers.first()?;
+    let unit = inputs[own[0]].unit;
+    let what = match own.len() {
+        3 => "positions".to_owned(),
+        1 => format!("values of `{first}`"),
+        _ => format!(
+            "values of {}",
+            headers.iter().map(|(name, _)| format!("`{name}`")).collect::<Vec<_>>().join(" and ")
+        ),
+    };
+    let others: Vec<&str> =
+        (0..3).filter(|axis| !own.contains(axis)).map(|axis| inputs[axis].name.as_str()).collect();
+    let others = match others.as_slice() {
+        [] => String::new(),
+        [one] => format!(", beside `{one}`, which it can reach"),
+        several => format!(", beside `{}`, which it can reach", several.join("` and `")),
+    };
+    let written: Vec<String> = headers.iter().map(|(name, unit)| format!("{name}[{unit}]")).collect();
+    Some(format!(
+        "found {what} up to {} {stated} from their middle, where the robot reaches {} {stated}{others}, expected another \
+         unit, most likely {smaller}; write `{}` in the header, or {}",
+        short(unit.from_si(if own.len() == 3 { apart.norm() } else { apart[own[0]].abs() })),
+        short(unit.from_si(reach)),
+        written.join(","),
+        state_it(inputs[own[0]].unit_from, smaller),
+        stated = unit.symbol(),
+    ))
+}
+
+/// How to state a unit beside the header: where a column states none, by an option.
+fn state_it(unit_from: UnitSource, symbol: &str) -> String {
+    match unit_from {
+        UnitSource::Si => format!("say --units {symbol}"),
+        UnitSource::Header | UnitSource::UnitsLine | UnitSource::Mapping => {
+            "the unit in the mapping".to_owned()
+        }
+    }
+}
+
+/// A number to four significant digits.
+pub(crate) fn short(value: f64) -> String {
+    format!("{value:.3e}").parse::<f64>().unwrap_or(value).to_string()
+}

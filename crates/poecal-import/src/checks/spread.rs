@@ -1,0 +1,205 @@
+//! Units checked by the spread of measured positions, compared with the nominal model at the same configurations.
+
+use std::path::Path;
+
+use nalgebra::Vector3;
+
+use super::scale::short;
+use crate::table::header::Header;
+use crate::table::inputs::{Input, InputSource};
+use crate::table::layout::ColumnLayout;
+use poecal_arm::lie::Pose;
+use poecal_model::measurement::Dataset;
+use poecal_model::robot::{Mount, Robot};
+use poecal_model::simulate::seen;
+use poecal_numerics::distributions::{median, median_point};
+use poecal_numerics::error::{ErrorKind, Result};
+use poecal_numerics::named_unit::{NamedUnit, units_of};
+use poecal_numerics::unit::Unit;
+
+/// Most rows of the comparison.
+const ROWS: usize = 500;
+/// Fewest rows for a spread.
+const FEWEST_ROWS: usize = 4;
+/// Least motion of the model's tip, as a share of its reach.
+const SHARE_OF_REACH: f64 = 0.05;
+/// Longer tools than the model's change the spread by less than this factor.
+const FACTOR: f64 = 4.0;
+/// How many times too large or too small positions are at least that are clearly in another unit.
+const THOUSANDS: [f64; 4] = [1e3, 1e-3, 1e6, 1e-6];
+/// Of a unit near the stated one the spread is closer than this factor, and the ways between rows differ by less than this share.
+const NEAR: f64 = 1.5;
+const ALIKE: f64 = 0.3;
+/// Angles in degrees below this may be radians of a full turn.
+const FULL_TURN_AS_DEGREES: f64 = 6.4;
+/// Factor by which angles misread as degrees reduce the model's spread at least.
+const SMALLER: f64 = 10.0;
+
+/// Refuses positions or joint angles whose spread only another unit explains; `first` is the file's first row.
+///
+/// # Errors
+/// [`ErrorKind::Unit`].
+pub(crate) fn check(
+    path: &Path,
+    header: &Header<'_>,
+    robot: &Robot,
+    layout: &ColumnLayout,
+    data: &Dataset,
+    first: usize,
+) -> Result<()> {
+    let step = data.len().saturating_sub(first).div_ceil(ROWS).max(1);
+    let rows: Vec<usize> = (first..data.len()).step_by(step).collect();
+    let position = layout.targets.first().and_then(|target| layout.inputs.get(target.position?[0]));
+    let (Some(input), true) = (position, rows.len() >= FEWEST_ROWS) else { return Ok(()) };
+    let placed =
+        |row: &&usize| data.observations.get(**row).is_some_and(|row| row.measurement.position().is_some());
+    let rows: Vec<usize> = rows.iter().filter(placed).copied().collect();
+    let positions = rows.iter().filter_map(|&row| data.observations.get(row)?.measurement.position());
+    let positions: Vec<Vector3<f64>> = positions.collect();
+    let measured = spread(&positions);
+    let tips = |angle_factor: f64| -> Vec<Vector3<f64>> {
+        let tip = |&row: &usize| {
+            let readings = data.readings(row).iter().zip(&layout.inputs);
+            let readings: Vec<f64> = readings
+                .map(|(value, input)| if is_angle(input) { value * angle_factor } else { *value })
+                .collect();
+            match pair_of(robot, data, row) {
+                (None, None) => robot.forward_kinematics(&readings).translation,
+                pair => seen(robot, &Pose::identity(), pair, &readings).translation,
+            }
+        };
+        rows.iter().map(tip).collect()
+    };
+    let modelled = |angle_factor: f64| spread(&tips(angle_factor));
+    let smallest = SHARE_OF_REACH * robot.reach_m();
+    let as_read = modelled(1.0);
+    let message = if let Some(first_angle) = degrees_within_a_turn(layout, data, &rows)
+        && measured > SMALLER * as_read
+    {
+        let as_radians = modelled(1f64.to_degrees());
+        let explains = as_radians > smallest && is_about(measured / as_radians, 1.0);
+        explains.then(|| (first_angle, angle_message(first_angle, measured, as_read)))
+    } else {
+        None
+    };
+    let message = message.or_else(|| {
+        let ratio = measured / as_read;
+        let factor = THOUSANDS.into_iter().find(|factor| is_about(ratio, *factor));
+        let factor = factor.or_else(|| near_unit(input.unit, ratio, &positions, &tips(1.0)));
+        factor
+            .filter(|_| as_read > smallest)
+            .map(|factor| (input, position_message(input, measured, as_read, factor)))
+    });
+    match message {
+        None => Ok(()),
+        Some((input, message)) => Err(match input.source {
+            InputSource::Column(column) => header.error(ErrorKind::Unit, column, message),
+            InputSource::Constant(_) => ErrorKind::Unit.error(message).in_file(path),
+        }),
+    }
+}
+
+/// Instrument and target of a row, if the model says where they are.
+fn pair_of<'a>(robot: &'a Robot, data: &Dataset, row: usize) -> (Option<&'a Mount>, Option<&'a Mount>) {
+    let Some(observation) = data.observations.get(row) else { return (None, None) };
+    let find = |mounts: &'a [Mount], names: &[Option<String>], index: usize| {
+        let name = names.get(index).and_then(Option::as_ref)?;
+        mounts.iter().find(|mount| mount.name == *name)
+    };
+    (
+        find(&robot.instruments, &data.stations, observation.station),
+        find(&robot.mounted, &data.targets, observation.target),
+    )
+}
+
+/// By how much positions in another unit would be too large or too small, of the units that are near the stated one: where the ways from row
+/// to row are then as long as the model's. A long tool, which changes the spread as much, does not make them so.
+fn near_unit(
+    stated: NamedUnit,
+    ratio: f64,
+    positions: &[Vector3<f64>],
+    tips: &[Vector3<f64>],
+) -> Option<f64> {
+    let ways =
+        |of: &[Vector3<f64>]| -> Vec<f64> { of.windows(2).map(|pair| (pair[1] - pair[0]).norm()).collect() };
+    let (measured, modelled) = (ways(positions), ways(tips));
+    let usual = median(modelled.iter().copied())?;
+    let factors = units_of(Unit::Metre).map(|unit| stated.to_si(1.0) / unit.to_si(1.0));
+    let is_near = |factor: &f64| !is_about(1.0, *factor) && (ratio / factor).ln().abs() < NEAR.ln();
+    factors.filter(is_near).find(|factor| {
+        let apart = measured.iter().zip(&modelled).map(|(way, model)| (way / factor - model).abs());
+        median(apart).is_some_and(|apart| apart < ALIKE * usual)
+    })
+}
+
+/// Median distance from the middle, which a few corrupt rows do not change.
+fn spread(positions: &[Vector3<f64>]) -> f64 {
+    let middle = median_point(positions);
+    median(positions.iter().map(|position| (position - middle).norm())).unwrap_or(0.0)
+}
+
+fn is_about(ratio: f64, expected: f64) -> bool {
+    ratio > expected / FACTOR && ratio < expected * FACTOR
+}
+
+fn is_angle(input: &Input) -> bool {
+    input.unit.of() == Unit::Radian
+}
+
+/// The first joint angle, if all are in degrees and as small as radians.
+fn degrees_within_a_turn<'a>(layout: &'a ColumnLayout, data: &Dataset, rows: &[usize]) -> Option<&'a Input> {
+    let count = data.reading_names().len();
+    let mut angles = layout.inputs.iter().take(count).filter(|input| is_angle(input));
+    let first = angles.next().filter(|input| input.unit.symbol() == "deg")?;
+    let largest = FULL_TURN_AS_DEGREES.to_radians();
+    let small = |&row: &usize| {
+        let readings = data.readings(row).iter().zip(&layout.inputs);
+        readings.filter(|(_, input)| is_angle(input)).all(|(value, _)| value.abs() <= largest)
+    };
+    (angles.all(|input| input.unit.symbol() == "deg") && rows.iter().all(small)).then_some(first)
+}
+
+fn angle_message(input: &Input, measured: f64, modelled: f64) -> String {
+    format!(
+        "found joint angles of at most {FULL_TURN_AS_DEGREES} deg that move the model's tip by {} mm where the positions \
+         spread over {} mm, expected about the same: most likely they are in rad, not deg; write `{}[rad]` in the header \
+         (and so for each joint), or the unit in the mapping",
+        short(1e3 * modelled),
+        short(1e3 * measured),
+        input.name
+    )
+}
+
+/// A unit behind the word `in`.
+fn spoken(symbol: &str) -> &str {
+    if symbol == "in" { "inches" } else { symbol }
+}
+
+/// `factor`: how many times the model's spread the measured one is, as a ratio of units.
+fn position_message(input: &Input, measured: f64, modelled: f64, factor: f64) -> String {
+    let stated = input.unit;
+    let model = format!(
+        "the model's lengths are {} times too {}",
+        short(factor.max(1.0 / factor)),
+        if factor > 1.0 { "small" } else { "large" }
+    );
+    let likely = units_of(Unit::Metre)
+        .find(|unit| (unit.to_si(1.0) * factor / stated.to_si(1.0) - 1.0).abs() < 1e-9)
+        .map(|unit| unit.symbol());
+    let advice = match likely {
+        Some(likely) => format!(
+            "most likely they are in {}, not {} (or {model}); write `x[{likely}],y[{likely}],z[{likely}]` in the \
+             header, or the unit in the mapping",
+            spoken(likely),
+            spoken(stated.symbol())
+        ),
+        None => format!("most likely {model}; correct its unit, or the unit of the positions"),
+    };
+    format!(
+        "found positions that spread over {} {stated} where the model moves its tip by {} {stated}, expected about the \
+         same: {advice}",
+        short(stated.from_si(measured)),
+        short(stated.from_si(modelled)),
+        stated = stated.symbol(),
+    )
+}

@@ -1,0 +1,251 @@
+//! Orientations that may be misread: degrees as radians, and robot makers' columns without a unique meaning.
+
+use std::f64::consts::TAU;
+use std::path::Path;
+
+use crate::table::Row;
+use crate::table::header::Header;
+use crate::table::inputs::{InputReader, InputSource};
+use crate::table::layout::ColumnLayout;
+use crate::table::mapping::ColumnMap;
+use crate::table::orientation::OrientationForm;
+use poecal_numerics::error::{ErrorKind, Result};
+
+/// Least share of rows with implausible angles: a few corrupt rows are no wrong unit.
+const SHARE: f64 = 0.1;
+/// Rounding allowed beyond a full turn.
+const ROUNDING: f64 = 1e-3;
+
+/// Collects the angles of a file's orientations.
+#[derive(Default)]
+pub(crate) struct TurnWatch {
+    rows: usize,
+    beyond: usize,
+    largest: f64,
+    first: Option<First>,
+}
+
+/// The first orientation with too large an angle.
+struct First {
+    line: usize,
+    column: usize,
+    columns: Vec<String>,
+    is_vector: bool,
+    most: f64,
+}
+
+impl TurnWatch {
+    /// Adds the orientations of a row.
+    pub(crate) fn observe(&mut self, row: &Row<'_>, layout: &ColumnLayout, inputs: &InputReader<'_>) {
+        for (form, columns) in layout.targets.iter().filter_map(|target| target.orientation.as_ref()) {
+            let of_radians =
+                |&input: &usize| layout.inputs.get(input).is_some_and(|it| it.unit.symbol() == "rad");
+            let (is_vector, most) = match form {
+                OrientationForm::QuaternionXyzw
+                | OrientationForm::QuaternionWxyz
+                | OrientationForm::MatrixByRows
+                | OrientationForm::MatrixByColumns => continue,
+                OrientationForm::RotationVector => (true, TAU + ROUNDING),
+                // Angles that count on over many turns are in no other unit.
+                OrientationForm::Intrinsic(_) | OrientationForm::Extrinsic(_) => (false, 2.0 * TAU),
+            };
+            let values: Vec<f64> = columns.iter().filter_map(|&input| inputs.value(input)).collect();
+            if values.len() != 3 || !columns.iter().all(of_radians) {
+                continue;
+            }
+            self.rows += 1;
+            let size = if is_vector {
+                values.iter().map(|value| value * value).sum::<f64>().sqrt()
+            } else {
+                values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()))
+            };
+            if size <= most {
+                continue;
+            }
+            self.beyond += 1;
+            self.largest = self.largest.max(size);
+            self.first.get_or_insert_with(|| {
+                let (line, column) = row.place(columns.first().map_or(0, |&input| inputs.column(input)));
+                let labels = columns.iter().filter_map(|&input| layout.inputs.get(input));
+                let columns = labels.map(|input| input.label.clone()).collect();
+                First { line, column, columns, is_vector, most }
+            });
+        }
+    }
+
+    /// Checks the angles.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Unit`] if only degrees explain them.
+    pub(crate) fn finish(self, path: &Path) -> Result<()> {
+        let Some(first) = self.first else { return Ok(()) };
+        // Degrees of one or two turns; larger angles are neither.
+        if (self.beyond as f64) < SHARE * self.rows as f64 || self.largest > (2.0 * TAU).to_degrees() {
+            return Ok(());
+        }
+        let what =
+            if first.is_vector { "rotation vectors as long as" } else { "angles of an orientation up to" };
+        let degrees: Vec<String> = first.columns.iter().map(|name| format!("`{name}[deg]`")).collect();
+        Err(ErrorKind::Unit.error(format!(
+            "found {what} {:.1} rad in the columns {} ({} of {} rows are beyond {:.1} rad), expected radians: the unit is likely deg, \
+             which the header states as {} and a mapping as `unit = \"deg\"`",
+            self.largest,
+            first.columns.join(", "),
+            self.beyond,
+            self.rows,
+            first.most,
+            degrees.join(", ")
+        )).at(path, first.line, first.column))
+    }
+}
+
+/// Orientation columns of robot makers: names, maker, and form.
+const MAKERS: [(&[&str], &str, &str); 6] = [
+    (&["A", "B", "C"], "KUKA's A, B, C (turns about z, then the new y, then the new x)", "intrinsic_zyx"),
+    (&["W", "P", "R"], "FANUC's W, P, R (turns about the fixed x, y, z)", "roll_pitch_yaw"),
+    (&["O", "A", "T"], "Kawasaki's O, A, T (turns about z, then the new y, then the new z)", "intrinsic_zyz"),
+    (&["q1", "q2", "q3", "q4"], "ABB's q1 to q4 (a quaternion, its real part first)", "quaternion_wxyz"),
+    (&["q0", "q1", "q2", "q3"], "a quaternion with its real part first", "quaternion_wxyz"),
+    (
+        &["Rx", "Ry", "Rz"],
+        "a rotation vector (as Universal Robots has them; of Stäubli they are intrinsic_xyz, of Yaskawa roll_pitch_yaw)",
+        "rotation_vector",
+    ),
+];
+
+/// Advice on columns that may hold an orientation and are not read as one.
+pub(crate) fn warning(header: &Header<'_>, layout: &ColumnLayout, map: &ColumnMap) -> Option<String> {
+    let [target] = layout.targets.as_slice() else { return None };
+    match &target.orientation {
+        None => unread(header, layout),
+        Some((OrientationForm::RotationVector, columns)) if map.orientation.is_none() => {
+            backwards(header, layout, columns)
+        }
+        Some(_) => None,
+    }
+}
+
+/// Columns of a maker that the layout does not use.
+fn unread(header: &Header<'_>, layout: &ColumnLayout) -> Option<String> {
+    let left_alone = |name: &str| {
+        let mut cells = header.cells.iter().filter(|cell| cell.name.eq_ignore_ascii_case(name));
+        cells.find(|cell| layout.ignored.iter().any(|(text, _)| *text == cell.text))
+    };
+    let (names, words, form) = MAKERS.into_iter().find(|(names, ..)| {
+        // Joints may be called q1 to q6.
+        names.iter().all(|name| left_alone(name).is_some()) && (names.len() < 4 || left_alone("q5").is_none())
+    })?;
+    let cells: Vec<_> = names.iter().filter_map(|name| left_alone(name)).collect();
+    let stated = names.len() == 4 || cells.iter().all(|cell| cell.unit.is_some());
+    let unit = if stated { "" } else { ", unit = \"deg\"" };
+    let columns: Vec<&str> = cells.iter().map(|cell| cell.name.as_str()).collect();
+    Some(format!(
+        "the columns {} look like {words}; they are ignored and the rows read as points: a mapping (--columns) with {} reads them as poses",
+        columns.join(", "),
+        mapped(form, &columns, unit)
+    ))
+}
+
+/// Columns of a rotation vector in the order of turns about z, y, x.
+fn backwards(header: &Header<'_>, layout: &ColumnLayout, columns: &[usize]) -> Option<String> {
+    let place = |&input: &usize| match layout.inputs.get(input)?.source {
+        InputSource::Column(column) => Some(column),
+        InputSource::Constant(_) => None,
+    };
+    let places: Vec<usize> = columns.iter().filter_map(place).collect();
+    if !matches!(places.as_slice(), [x, y, z] if z < y && y < x) {
+        return None;
+    }
+    let names: Vec<&str> = places
+        .iter()
+        .rev()
+        .filter_map(|&place| header.cells.get(place))
+        .map(|cell| cell.name.as_str())
+        .collect();
+    Some(format!(
+        "the columns {} are read as a rotation vector, and stand in the order of turns about z, then the new y, then the new x: if \
+         they are these, a mapping (--columns) with {} has them read so",
+        names.join(", "),
+        mapped("intrinsic_zyx", &names, "")
+    ))
+}
+
+/// An orientation in a mapping.
+fn mapped(form: &str, columns: &[&str], unit: &str) -> String {
+    let columns: Vec<String> = columns.iter().map(|name| format!("\"{name}\"")).collect();
+    format!("`orientation = {{ form = \"{form}\", columns = [{}]{unit} }}`", columns.join(", "))
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::{MeasurementFile, ReadOptions, parse};
+    use poecal_model::simulate::scara;
+
+    fn read(header: &str, turns: &[&str]) -> poecal_numerics::error::Result<MeasurementFile> {
+        let row = |turn: &&str| format!("0,0.1,0.1,0,0.6,0.05,0.1,{turn}\n");
+        let rows: String = turns.iter().map(row).collect();
+        let text = format!("joint1,joint2,joint3,joint4,x,y,z,{header}\n{rows}");
+        parse(&text, "t.csv", &scara(), &ReadOptions::default())
+    }
+
+    #[test]
+    fn degrees_that_are_read_as_radians_are_told() {
+        let error = |header, turns| read(header, turns).unwrap_err().to_string();
+        assert_eq!(
+            error("rx,ry,rz", &["0,1,0.5", "90,-120,30"]),
+            "t.csv:3:26: found rotation vectors as long as 153.0 rad in the columns rx, ry, rz (1 of 2 rows are beyond 6.3 rad), expected \
+             radians: the unit is likely deg, which the header states as `rx[deg]`, `ry[deg]`, `rz[deg]` and a mapping as `unit = \"deg\"`"
+        );
+        assert!(error("rx[rad],ry[rad],rz[rad]", &["0,5,5"]).contains("as long as 7.1 rad"));
+        assert!(
+            error("roll,pitch,yaw", &["0,0,-178.5"])
+                .contains("angles of an orientation up to 178.5 rad in the columns roll,")
+        );
+        // Few rows, another unit, a full turn, and an angle that counts on.
+        let sound: Vec<&str> = ["0,1,0.5"; 19].into_iter().chain(["0,0,90"]).collect();
+        assert!(read("rx,ry,rz", &sound).is_ok());
+        for (header, turn) in [
+            ("rx[deg],ry[deg],rz[deg]", "90,-120,30"),
+            ("rx,ry,rz", "0,0,6.2832"),
+            ("roll,pitch,yaw", "0,0,9.5"),
+            ("rx,ry,rz", ",,"),
+        ] {
+            assert!(read(header, &[turn]).is_ok(), "{header} {turn}");
+        }
+    }
+
+    #[test]
+    fn columns_of_robot_makers_are_named_with_their_mapping() {
+        let told = |header, turn| {
+            let file = read(header, &[turn]).unwrap();
+            file.warnings.iter().find(|warning| warning.contains("--columns")).cloned().unwrap_or_default()
+        };
+        assert_eq!(
+            told("A,B,C", "10,20,30"),
+            "t.csv: the columns A, B, C look like KUKA's A, B, C (turns about z, then the new y, then the new x); they are ignored and the rows read as points: a mapping (--columns) with `orientation = { form = \"intrinsic_zyx\", columns = [\"A\", \"B\", \"C\"], unit = \"deg\" }` \
+             reads them as poses"
+        );
+        assert!(
+            told("w[deg],p[deg],r[deg]", "1,2,3")
+                .contains("`orientation = { form = \"roll_pitch_yaw\", columns = [\"w\", \"p\", \"r\"] }`")
+        );
+        assert!(
+            told("q1,q2,q3,q4", "1,0,0,0")
+                .contains("{ form = \"quaternion_wxyz\", columns = [\"q1\", \"q2\", \"q3\", \"q4\"] }")
+        );
+        assert!(
+            told("Rx,Ry,Rz", "1,0,0").contains("look like a rotation vector (as Universal Robots has them")
+        );
+        assert_eq!(
+            told("rz,ry,rx", "0.1,0.2,0.3"),
+            "t.csv: the columns rz, ry, rx are read as a rotation vector, and stand in the order of turns about z, then the new y, then the \
+             new x: if they are these, a mapping (--columns) with `orientation = { form = \"intrinsic_zyx\", columns = [\"rz\", \"ry\", \
+             \"rx\"] }` has them read so"
+        );
+        for (header, turn) in
+            [("rx,ry,rz", "0.1,0.2,0.3"), ("A,B", "1,2"), ("q1,q2,q3,q4,q5,q6", "1,2,3,4,5,6")]
+        {
+            assert_eq!(told(header, turn), "", "{header}");
+        }
+    }
+}

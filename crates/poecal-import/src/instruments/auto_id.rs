@@ -1,0 +1,53 @@
+//! The table that *Auto ID* of DELMIA reads: no header, tabs, the name, x, y, z in millimetres, roll, pitch, yaw in degrees, and the joints in
+//! degrees.
+
+use super::maker::{Made, Refused, Value};
+use super::words::{lines, number};
+use super::{Form, Opening};
+use crate::Separator;
+
+pub(crate) const FORM: Form = Form { title: "a table of Auto ID (DELMIA)", is_it, table };
+
+/// Numbers before the joints.
+const POSE: usize = 6;
+
+fn cells(line: &str) -> Vec<&str> {
+    super::words::cells(line, Separator::Tab)
+}
+
+fn is_it(text: &str, opening: &Opening<'_>) -> bool {
+    let count = opening.robot.joint_reading_names().len();
+    let is_row = |line: &str| {
+        let found = cells(line);
+        found.len() == 1 + POSE + count
+            && found.first().is_some_and(|it| number(it).is_none())
+            && found.iter().skip(1).all(|it| number(it).is_some())
+    };
+    let mut some = lines(text).take(3).peekable();
+    some.peek().is_some() && some.all(|it| is_row(it.1))
+}
+
+fn table(text: &str, opening: &Opening<'_>) -> Result<Made, Refused> {
+    let columns: Vec<String> = ["id", "x[mm]", "y[mm]", "z[mm]", "roll[deg]", "pitch[deg]", "yaw[deg]"]
+        .iter()
+        .map(|it| (*it).to_owned())
+        .chain(opening.joint_columns("deg"))
+        .collect();
+    let mut made = Made::new(1, columns.iter().map(String::as_str));
+    for (line, content) in lines(text) {
+        let found = cells(content);
+        if found.len() != columns.len() {
+            return Refused::at(
+                line,
+                format!(
+                    "found {} cells, expected {}: a name, x, y, z, roll, pitch, yaw and the joints",
+                    found.len(),
+                    columns.len()
+                ),
+            );
+        }
+        made.row(line, found.into_iter().map(Value::Text));
+    }
+    made.said.push(format!("{} poses in mm, with roll, pitch, yaw in deg; joints in deg", made.rows()));
+    Ok(made)
+}

@@ -1,0 +1,198 @@
+//! Records of MCAP: a file is read as a stream, a chunk at a time.
+
+use std::io::{self, BufReader, Read};
+
+use super::topics::Topics;
+use super::unpack::{LARGEST, unpack};
+
+/// Bytes that files begin with.
+pub(crate) const MAGIC: &[u8] = &[0x89, b'M', b'C', b'A', b'P', 0x30, b'\r', b'\n'];
+/// Bytes that are read at a time.
+const STEP: usize = 1 << 18;
+/// Bytes of a record before what it holds: its kind, and its length.
+const HEAD: usize = 9;
+
+/// Kinds of records, <https://mcap.dev/spec#opcodes>.
+pub(crate) mod op {
+    /// The last record: where the summary is.
+    pub(crate) const FOOTER: u8 = 0x02;
+    /// A type of messages.
+    pub(crate) const SCHEMA: u8 = 0x03;
+    /// A topic.
+    pub(crate) const CHANNEL: u8 = 0x04;
+    /// A message.
+    pub(crate) const MESSAGE: u8 = 0x05;
+    /// Records, maybe packed.
+    pub(crate) const CHUNK: u8 = 0x06;
+    /// The end of the messages.
+    pub(crate) const DATA_END: u8 = 0x0F;
+}
+
+/// Why a file ends.
+const CUT: &str = "it is cut off";
+
+/// What is wrong with a file.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Damage {
+    /// Where it ends before its end, or from where on nothing can be read, and why.
+    pub(crate) end: Option<(u64, String)>,
+    /// Chunks that were left out: where each begins, why, and the times of its messages.
+    pub(crate) chunks: Vec<(u64, String, (u64, u64))>,
+}
+
+/// Reads a file up to the end of its messages, or as far as that goes.
+pub(crate) fn read(input: &mut impl Read, topics: &mut Topics<'_>) -> io::Result<Damage> {
+    let mut input = BufReader::with_capacity(STEP, input);
+    let (mut damage, mut data, mut unpacked) = (Damage::default(), Vec::new(), Vec::new());
+    let mut at = MAGIC.len() as u64;
+    let is_whole = fill(&mut input, MAGIC.len(), &mut data)?;
+    if !is_whole || data != MAGIC {
+        damage.end = Some((at, if is_whole { "Bad magic number" } else { CUT }.to_owned()));
+        return Ok(damage);
+    }
+    loop {
+        let opcode = match next(&mut input, &mut data)? {
+            Ok(opcode) => opcode,
+            Err(why) => {
+                damage.end = Some((at, why));
+                return Ok(damage);
+            }
+        };
+        match opcode {
+            op::DATA_END | op::FOOTER => return Ok(damage),
+            // Chunks are unpacked here: one that is damaged is left out as a whole.
+            op::CHUNK => {
+                if let Err((why, times)) = chunk(&data, &mut unpacked, topics) {
+                    damage.chunks.push((at, why, times));
+                }
+            }
+            _ => {
+                if let Err(why) = record(opcode, &data, topics) {
+                    damage.chunks.push((at, why, (0, 0)));
+                }
+            }
+        }
+        at = at.saturating_add((HEAD + data.len()) as u64);
+    }
+}
+
+/// Reads the next record: its kind, and into `data` what it holds. The error within says why there is none.
+fn next(input: &mut impl Read, data: &mut Vec<u8>) -> io::Result<Result<u8, String>> {
+    if !fill(input, HEAD, data)? {
+        return Ok(Err(CUT.to_owned()));
+    }
+    let mut head = Fields(data);
+    let (Some(opcode), Some(stated)) = (head.u8(), head.u64()) else { return Ok(Err(CUT.to_owned())) };
+    let Some(size) = usize::try_from(stated).ok().filter(|it| *it <= LARGEST) else {
+        return Ok(Err(format!("record with opcode {opcode:02x} length exceeds limit: `{stated}`")));
+    };
+    if !fill(input, size, data)? {
+        return Ok(Err(CUT.to_owned()));
+    }
+    // The least that these hold.
+    let least = match opcode {
+        op::DATA_END => 4,
+        op::FOOTER => 20,
+        _ => 0,
+    };
+    Ok(if size < least { Err("Record parse failed".to_owned()) } else { Ok(opcode) })
+}
+
+/// Reads so many bytes, and takes memory for no more than there are; false if there are fewer.
+fn fill(input: &mut impl Read, size: usize, into: &mut Vec<u8>) -> io::Result<bool> {
+    into.clear();
+    into.reserve(size.min(STEP));
+    Ok(input.take(size as u64).read_to_end(into)? == size)
+}
+
+/// Takes the records of a chunk, or says why not, with the times of its messages.
+fn chunk(data: &[u8], unpacked: &mut Vec<u8>, topics: &mut Topics<'_>) -> Result<(), (String, (u64, u64))> {
+    let mut fields = Fields(data);
+    let head = |fields: &mut Fields<'_>| {
+        let times = (fields.u64()?, fields.u64()?);
+        Some((times, fields.u64()?, fields.u32()?))
+    };
+    let Some((times, size, crc)) = head(&mut fields) else { return Err((SHORT.to_owned(), (0, 0))) };
+    let with_times = |why: String| (why, times);
+    let short = || with_times(SHORT.to_owned());
+    let how = fields.text().ok_or_else(short)?;
+    let packed = fields.u64().and_then(|size| fields.bytes(usize::try_from(size).ok()?)).ok_or_else(short)?;
+    let mut records = packed;
+    if !how.is_empty() {
+        unpack(packed, how, unpacked).map_err(with_times)?;
+        records = unpacked;
+    }
+    if records.len() as u64 != size {
+        return Err(with_times(format!("{} bytes, expected {size}", records.len())));
+    }
+    if crc != 0 && crc32fast::hash(records) != crc {
+        return Err(with_times("another checksum than stated".to_owned()));
+    }
+    let mut rest = Fields(records);
+    while !rest.0.is_empty() {
+        let (Some(opcode), Some(size)) = (rest.u8(), rest.u64()) else { return Err(short()) };
+        let own = usize::try_from(size).ok().and_then(|size| rest.bytes(size)).ok_or_else(short)?;
+        record(opcode, own, topics).map_err(with_times)?;
+    }
+    Ok(())
+}
+
+/// Takes a record that is no chunk.
+fn record(opcode: u8, data: &[u8], topics: &mut Topics<'_>) -> Result<(), String> {
+    let mut fields = Fields(data);
+    let mut take = || -> Option<()> {
+        match opcode {
+            op::SCHEMA => topics.schema(fields.u16()?, fields.text()?),
+            op::CHANNEL => {
+                let (id, schema) = (fields.u16()?, fields.u16()?);
+                topics.channel(id, schema, fields.text()?, fields.text()?);
+            }
+            op::MESSAGE => {
+                let (channel, _, log_ns, _) = (fields.u16()?, fields.u32()?, fields.u64()?, fields.u64()?);
+                topics.message(channel, log_ns, fields.0);
+            }
+            _ => {}
+        }
+        Some(())
+    };
+    take().ok_or_else(|| SHORT.to_owned())
+}
+
+/// What is found in place of a record that ends too soon.
+const SHORT: &str = "a record that is shorter than what it holds";
+
+/// Fields of a record.
+struct Fields<'b>(&'b [u8]);
+
+impl<'b> Fields<'b> {
+    fn bytes(&mut self, count: usize) -> Option<&'b [u8]> {
+        let (found, rest) = self.0.split_at_checked(count)?;
+        self.0 = rest;
+        Some(found)
+    }
+
+    fn take<const N: usize>(&mut self) -> Option<[u8; N]> {
+        self.bytes(N)?.try_into().ok()
+    }
+
+    fn u8(&mut self) -> Option<u8> {
+        self.take().map(u8::from_le_bytes)
+    }
+
+    fn u16(&mut self) -> Option<u16> {
+        self.take().map(u16::from_le_bytes)
+    }
+
+    fn u32(&mut self) -> Option<u32> {
+        self.take().map(u32::from_le_bytes)
+    }
+
+    fn u64(&mut self) -> Option<u64> {
+        self.take().map(u64::from_le_bytes)
+    }
+
+    fn text(&mut self) -> Option<&'b str> {
+        let size = self.u32()? as usize;
+        std::str::from_utf8(self.bytes(size)?).ok()
+    }
+}

@@ -1,0 +1,61 @@
+//! The files of a bag: one, or those of a folder.
+
+use std::io::Read as _;
+use std::path::{Path, PathBuf};
+
+use super::EXPECTED;
+use super::container::MAGIC;
+use crate::table::configurations::is_folder;
+use crate::table::picture_names::number_at_end;
+use poecal_numerics::error::{ErrorKind, Result};
+use poecal_storage::disk::{self, is_file};
+use poecal_storage::source;
+
+/// Ending of the names of files.
+const ENDING: &str = "mcap";
+
+/// Whether a path is a bag, by the first bytes of the file, or by the names in the folder.
+pub(crate) fn is_bag(path: &Path) -> bool {
+    if is_folder(path) {
+        return names(path).is_ok_and(|it| !it.is_empty());
+    }
+    // A pipe is read once.
+    if source::is_standard_input(path) || !is_file(path) {
+        return false;
+    }
+    let mut head = Vec::new();
+    let read = disk::here().open(path).and_then(|file| file.take(MAGIC.len() as u64).read_to_end(&mut head));
+    read.is_ok() && head == MAGIC
+}
+
+/// Names of files of a folder that are parts of a bag.
+fn names(folder: &Path) -> std::io::Result<Vec<String>> {
+    let names = disk::here().names(folder)?;
+    let is_part = |name: &String| {
+        let ending = Path::new(name).extension();
+        ending.is_some_and(|it| it.eq_ignore_ascii_case(ENDING)) && is_file(&folder.join(name))
+    };
+    Ok(names.into_iter().filter_map(|it| it.into_string().ok()).filter(is_part).collect())
+}
+
+/// The files of a bag by their numbers.
+pub(crate) fn of(path: &Path) -> Result<Vec<PathBuf>> {
+    if !is_folder(path) {
+        return Ok(vec![path.to_path_buf()]);
+    }
+    let mut names = names(path).map_err(|error| source::unreadable(path, &error, EXPECTED))?;
+    // Names without their numbers, which are the same for all parts of a bag.
+    let stem = |name: &String| {
+        let stem = Path::new(name).file_stem().map(|it| it.to_string_lossy().into_owned());
+        stem.unwrap_or_default().trim_end_matches(|it: char| it.is_ascii_digit()).to_owned()
+    };
+    if let Some(other) = names.iter().find(|it| Some(stem(it)) != names.first().map(stem)) {
+        let first = names.first().map_or("", String::as_str);
+        let message = format!(
+            "found the files of two bags, `{first}` and `{other}`, expected the parts of one, whose names differ in the number at their end alone"
+        );
+        return Err(ErrorKind::Measurement.error(message).in_file(path));
+    }
+    names.sort_by_cached_key(|name| (number_at_end(name), name.clone()));
+    Ok(names.into_iter().map(|name| path.join(name)).collect())
+}

@@ -1,0 +1,429 @@
+//! Bags that are written here, and what is read of them.
+
+use std::fmt::Write as _;
+use std::fs;
+use std::io::Cursor;
+use std::path::{Path, PathBuf};
+
+use super::container::{self, MAGIC, op};
+use super::messages::tests::Writer as Cdr;
+use super::topics::Topics;
+use super::unpack::unpack;
+use crate::{MeasurementFile, ReadOptions, read};
+use poecal_arm::lie::rotation;
+use poecal_model::robot::Robot;
+use poecal_model::simulate::elbow;
+
+const JOINTS: &str = "sensor_msgs/msg/JointState";
+const POSE: &str = "geometry_msgs/msg/PoseStamped";
+const POINT: &str = "geometry_msgs/msg/PointStamped";
+const FRAMES: &str = "tf2_msgs/msg/TFMessage";
+/// The first stamp, nanoseconds, and how much later the clock of the poses is.
+const FIRST_NS: u64 = 1_700_000_000_400_000_000;
+const LAG_NS: u64 = 137_500_000;
+/// Time of a stand and of a motion, milliseconds.
+const STAND_MS: u64 = 500;
+const MOTION_MS: u64 = 400;
+const STANDS: u64 = 14;
+
+/// A message: topic, type, time in the log, and its bytes.
+type Message = (&'static str, &'static str, u64, Vec<u8>);
+
+/// A folder that is removed.
+struct Folder(PathBuf);
+
+impl Folder {
+    fn new(name: &str) -> Self {
+        let path = std::env::temp_dir().join(format!("poecal_bags_{name}_{}", std::process::id()));
+        fs::create_dir_all(&path).unwrap();
+        Folder(path)
+    }
+
+    fn write(&self, name: &str, bytes: impl AsRef<[u8]>) -> PathBuf {
+        let path = self.0.join(name);
+        fs::create_dir_all(path.parent().unwrap()).unwrap();
+        fs::write(&path, bytes).unwrap();
+        path
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        let _ = fs::remove_dir_all(&self.0);
+    }
+}
+
+/// Kinds of records that are not read.
+const HEADER: u8 = 0x01;
+const MESSAGE_INDEX: u8 = 0x07;
+/// Bytes of records from which on a chunk is full.
+const CHUNK: usize = 20_000;
+
+/// A text with its length.
+fn text(text: &str) -> Vec<u8> {
+    [&u32::try_from(text.len()).unwrap().to_le_bytes(), text.as_bytes()].concat()
+}
+
+/// A record of parts.
+fn record(opcode: u8, parts: &[&[u8]]) -> Vec<u8> {
+    let size: usize = parts.iter().map(|it| it.len()).sum();
+    [&[opcode], &(size as u64).to_le_bytes()[..], &parts.concat()].concat()
+}
+
+/// A chunk of records, not packed, and an index of it.
+fn chunk(records: &[u8], [first, last]: [u64; 2]) -> Vec<u8> {
+    let size = (records.len() as u64).to_le_bytes();
+    let times = [first.to_le_bytes(), last.to_le_bytes()].concat();
+    let checksum = crc32fast::hash(records).to_le_bytes();
+    let own = record(op::CHUNK, &[&times, &size, &checksum, &text(""), &size, records]);
+    [own, record(MESSAGE_INDEX, &[&[0; 6]])].concat()
+}
+
+/// The bytes of a bag: types and topics stand in the chunk of their first message.
+fn bag(messages: &[Message]) -> Vec<u8> {
+    let mut out = [MAGIC, &record(HEADER, &[&text("ros2"), &text("tests")])].concat();
+    let (mut types, mut topics): (Vec<&str>, Vec<&str>) = (Vec::new(), Vec::new());
+    let (mut records, mut times) = (Vec::new(), [u64::MAX, 0]);
+    for (sequence, (topic, name, log_time, data)) in (0_u32..).zip(messages) {
+        let place = |all: &mut Vec<&'static str>, own: &'static str| {
+            let found = all.iter().position(|it| *it == own);
+            let at = found.unwrap_or(all.len());
+            all.extend(found.is_none().then_some(own));
+            (u16::try_from(at).unwrap(), found.is_none())
+        };
+        let (schema, is_new) = place(&mut types, name);
+        // Types count from one.
+        let schema = (schema + 1).to_le_bytes();
+        if is_new {
+            records.extend(record(op::SCHEMA, &[&schema, &text(name), &text("ros2msg"), &text("")]));
+        }
+        let (channel, is_new) = place(&mut topics, topic);
+        let channel = channel.to_le_bytes();
+        if is_new {
+            records.extend(record(op::CHANNEL, &[&channel, &schema, &text(topic), &text("cdr"), &[0; 4]]));
+        }
+        let (sequence, time) = (sequence.to_le_bytes(), log_time.to_le_bytes());
+        records.extend(record(op::MESSAGE, &[&channel, &sequence, &time, &time, data]));
+        times = [times[0].min(*log_time), times[1].max(*log_time)];
+        if records.len() > CHUNK {
+            out.extend(chunk(&records, times));
+            (records, times) = (Vec::new(), [u64::MAX, 0]);
+        }
+    }
+    if !records.is_empty() {
+        out.extend(chunk(&records, times));
+    }
+    out.extend(record(op::DATA_END, &[&[0; 4]]));
+    out.extend(record(op::FOOTER, &[&[0; 20]]));
+    out.extend(MAGIC);
+    out
+}
+
+/// A number from -1 to 1 that belongs to another one.
+fn draw(seed: u64) -> f64 {
+    let mixed = (seed + 1).wrapping_mul(0x9E37_79B9_7F4A_7C15);
+    let mixed = (mixed ^ (mixed >> 29)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+    ((mixed ^ (mixed >> 32)) >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+}
+
+/// The configuration at a time of a motion from stand to stand.
+fn configuration(at_ms: f64) -> Vec<f64> {
+    let stand = (at_ms / (STAND_MS + MOTION_MS) as f64).floor().clamp(0.0, (STANDS - 1) as f64);
+    let moved = (at_ms - stand * (STAND_MS + MOTION_MS) as f64 - STAND_MS as f64) / MOTION_MS as f64;
+    let of = |stand: f64, joint: u64| 0.6 * draw(100 * stand as u64 + joint);
+    let at = |joint| {
+        let (from, to) = (of(stand, joint), of(stand + 1.0, joint));
+        from + (to - from) * moved.clamp(0.0, 1.0)
+    };
+    (0..6).map(at).collect()
+}
+
+/// Position and quaternion of the tip, with some noise.
+fn pose(robot: &Robot, at_ms: f64) -> [f64; 7] {
+    let tip = robot.forward_kinematics(&configuration(at_ms));
+    let noise = |axis: u64| 1e-4 * draw(10 * at_ms as u64 + axis);
+    let (place, turn) = (tip.translation, rotation::to_quaternion_xyzw(&tip.rotation));
+    [place.x + noise(0), place.y + noise(1), place.z + noise(2), turn.x, turn.y, turn.z, turn.w]
+}
+
+/// Messages of joints, a gripper among them, and of poses, in the order of the log.
+fn session(robot: &Robot) -> Vec<Message> {
+    let end_ms = STANDS * (STAND_MS + MOTION_MS);
+    let names = robot.joint_reading_names();
+    let mut messages = Vec::new();
+    for at_ms in (0..end_ms).step_by(10) {
+        let stamp_ns = FIRST_NS + at_ms * 1_000_000;
+        let late = |most: f64| stamp_ns + ((1.0 + draw(at_ms)) * most * 1e6) as u64;
+        if at_ms % 20 == 0 {
+            let own = configuration(at_ms as f64);
+            let mut joints: Vec<(&str, f64)> = names.iter().map(String::as_str).zip(own).collect();
+            joints.reverse();
+            joints.insert(2, ("gripper", 0.01));
+            messages.push(("/joint_states", JOINTS, late(1.0), Cdr::joints(stamp_ns, &joints)));
+        }
+        let data = Cdr::pose(stamp_ns + LAG_NS, &pose(robot, at_ms as f64));
+        messages.push(("/tool/pose", POSE, late(20.0), data));
+    }
+    messages.sort_by_key(|it| it.2);
+    messages
+}
+
+/// The same as two tables, with times since the same whole second.
+fn tables(robot: &Robot) -> (String, String) {
+    let names = robot.joint_reading_names();
+    let columns: Vec<String> = names.iter().map(|it| format!("{it}[rad]")).collect();
+    let (mut joints, mut seen) =
+        (format!("time[s],{}\n", columns.join(",")), "time[s],x[m],y[m],z[m],qx,qy,qz,qw\n".to_owned());
+    let cells = |numbers: &[f64]| numbers.iter().map(ToString::to_string).collect::<Vec<_>>().join(",");
+    for at_ms in (0..STANDS * (STAND_MS + MOTION_MS)).step_by(10) {
+        let seconds = |ns: u64| (ns - 1_700_000_000_000_000_000) as f64 / 1e9;
+        let stamp_ns = FIRST_NS + at_ms * 1_000_000;
+        if at_ms % 20 == 0 {
+            writeln!(joints, "{},{}", seconds(stamp_ns), cells(&configuration(at_ms as f64))).unwrap();
+        }
+        writeln!(seen, "{},{}", seconds(stamp_ns + LAG_NS), cells(&pose(robot, at_ms as f64))).unwrap();
+    }
+    (joints, seen)
+}
+
+fn read_all(paths: &[&Path], options: &ReadOptions) -> Result<MeasurementFile, String> {
+    read(paths, &elbow(), options).map_err(|error| error.to_string())
+}
+
+/// Whether two have the same rows.
+fn are_same(one: &MeasurementFile, other: &MeasurementFile) -> bool {
+    let measured =
+        |it: &MeasurementFile| it.data.observations.iter().map(|it| it.measurement).collect::<Vec<_>>();
+    one.data.all_readings() == other.data.all_readings() && measured(one) == measured(other)
+}
+
+#[test]
+fn both_parts_of_a_bag_are_the_same_rows_as_two_tables() {
+    let (robot, folder, options) = (elbow(), Folder::new("same"), ReadOptions::default());
+    let (joints, seen) = tables(&robot);
+    let (joints, seen) = (folder.write("joints.csv", joints), folder.write("seen.csv", seen));
+    let expected = read_all(&[&joints, &seen], &options).unwrap();
+    assert_eq!(expected.data.len() as u64, STANDS);
+    let messages = session(&robot);
+    let whole = folder.write("whole.mcap", bag(&messages));
+    let (first, second) = messages.split_at(messages.len() / 2);
+    // The parts in the order of their numbers, each with channels of its own.
+    let second: Vec<Message> = [("/other", "std_msgs/msg/String", second[0].2, vec![0, 1, 0, 0])]
+        .into_iter()
+        .chain(second.to_vec())
+        .collect();
+    folder.write("parts/run_10.mcap", bag(&second));
+    let part = folder.write("parts/run_9.mcap", bag(first));
+    let of = |topic: &str| messages.iter().filter(|it| it.0 == topic).cloned().collect::<Vec<_>>();
+    let only_joints = folder.write("joints.mcap", bag(&of("/joint_states")));
+    let only_poses = folder.write("poses.mcap", bag(&of("/tool/pose")));
+    let parts = part.parent().unwrap();
+    for paths in [
+        vec![whole.as_path()],
+        vec![parts],
+        vec![&only_joints, &only_poses],
+        vec![&only_poses, &joints],
+        vec![&only_joints, &seen],
+    ] {
+        let found = read_all(&paths, &options).unwrap();
+        assert!(are_same(&found, &expected), "{paths:?}: {:?}", found.warnings);
+        let said = found.notes.join("\n");
+        assert!(said.contains("at a lag of 0.13") || said.contains("at a lag of 0.14"), "{said}");
+    }
+    let found = read_all(&[&whole], &options).unwrap();
+    assert!(
+        found.notes[0].contains("`/tool/pose` (geometry_msgs/msg/PoseStamped, 1260 messages, "),
+        "{:?}",
+        found.notes
+    );
+    assert!(found.warnings.is_empty(), "{:?}", found.warnings);
+    let alone = read_all(&[&only_poses], &options).unwrap_err();
+    assert!(alone.contains("found no joint readings (sensor_msgs/msg/JointState) in the bag"), "{alone}");
+}
+
+#[test]
+fn several_topics_are_refused_unless_one_is_named() {
+    let (robot, folder) = (elbow(), Folder::new("several"));
+    let mut messages = session(&robot);
+    let expected = read_all(&[&folder.write("one.mcap", bag(&messages))], &ReadOptions::default()).unwrap();
+    let again: Vec<Message> = messages
+        .iter()
+        .map(|it| (if it.0 == "/tool/pose" { "/again" } else { "/wanted" }, it.1, it.2, it.3.clone()))
+        .collect();
+    // A body that stands, frames, another robot and messages of one joint are no candidates.
+    let stamp = FIRST_NS;
+    for at in 0..5 {
+        let log = stamp + at * 1_000_000_000;
+        messages.push(("/base/pose", POSE, log, Cdr::pose(log, &[1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0])));
+        let frame = [at as f64, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0];
+        messages.push(("/tf", FRAMES, log, Cdr::transforms(log, &[("link1", frame), ("link2", frame)])));
+        messages.push(("/mobile", JOINTS, log, Cdr::joints(log, &[("wheel", 0.0)])));
+        messages.push(("/joint_states", JOINTS, log + 1, Cdr::joints(log, &[("gripper", 0.0)])));
+    }
+    messages.sort_by_key(|it| it.2);
+    let path = folder.write("more.mcap", bag(&messages));
+    assert!(are_same(&read_all(&[&path], &ReadOptions::default()).unwrap(), &expected));
+    messages.extend(again);
+    let path = folder.write("both.mcap", bag(&messages));
+    let error = read_all(&[&path], &ReadOptions::default()).unwrap_err();
+    assert!(
+        error.contains("found 2 topics with joint readings of the robot, `/joint_states` (sensor_msgs"),
+        "{error}"
+    );
+    assert!(error.ends_with("expected one: name it by --topic"), "{error}");
+    let with = |topics: &[&str]| ReadOptions {
+        topics: topics.iter().map(|it| (*it).to_owned()).collect(),
+        ..ReadOptions::default()
+    };
+    let error = read_all(&[&path], &with(&["/joint_states"])).unwrap_err();
+    assert!(
+        error.contains("found 2 topics with poses of what moves, `/tool/pose` (geometry_msgs"),
+        "{error}"
+    );
+    let found = read_all(&[&path], &with(&["wanted", "/again"])).unwrap();
+    assert!(are_same(&found, &expected));
+    let error = read_all(&[&path], &with(&["/joint_state"])).unwrap_err();
+    assert!(
+        error.contains("found no topic `/joint_state`, expected one of `/base/pose` (geometry_msgs"),
+        "{error}"
+    );
+    let frames = ReadOptions { body: Some("link3".to_owned()), ..with(&["/joint_states"]) };
+    let error = read_all(&[&path], &frames).unwrap_err();
+    assert!(error.contains("found no frame `link3`, expected one of"), "{error}");
+    // What others cannot mean.
+    let none = vec![("/chatter", "std_msgs/msg/String", 5, vec![0, 1, 0, 0])];
+    let error = read_all(&[&folder.write("none.mcap", bag(&none))], &ReadOptions::default()).unwrap_err();
+    let expected = "found neither joint readings nor measurements, expected both: it has `/chatter` (std_msgs/msg/String, 1 message)";
+    assert!(error.contains(expected), "{error}");
+}
+
+#[test]
+fn messages_that_cannot_be_read_are_named() {
+    let (robot, folder) = (elbow(), Folder::new("malformed"));
+    let mut messages = session(&robot);
+    let third = messages.iter_mut().filter(|it| it.0 == "/joint_states").nth(2).unwrap();
+    third.3.truncate(60);
+    let error = read_all(&[&folder.write("a.mcap", bag(&messages))], &ReadOptions::default()).unwrap_err();
+    assert!(error.contains("message 3 of `/joint_states`: found "), "{error}");
+    // Without joints of this robot.
+    let other: Vec<Message> = vec![("/joint_states", JOINTS, 1, Cdr::joints(1, &[("wheel", 0.0)]))];
+    let error = read_all(&[&folder.write("b.mcap", bag(&other))], &ReadOptions::default()).unwrap_err();
+    assert!(error.contains("found `/joint_states` with the joints `wheel`, and not `joint1`"), "{error}");
+}
+
+#[test]
+fn stamps_that_are_zero_are_warned_of() {
+    let (robot, folder) = (elbow(), Folder::new("zero"));
+    let mut messages = session(&robot);
+    for (topic, name, log, data) in &mut messages {
+        if *topic == "/tool/pose" {
+            (*name, *data) =
+                (POINT, Cdr::pose(0, &pose(&robot, ((*log - FIRST_NS) / 1_000_000) as f64)[..3]));
+        }
+    }
+    let found = read_all(&[&folder.write("a.mcap", bag(&messages))], &ReadOptions::default()).unwrap();
+    assert!(found.warnings.iter().any(|it| it.contains("took the times of the log")), "{:?}", found.warnings);
+}
+
+#[test]
+fn a_bag_that_is_cut_or_damaged_is_read_as_far_as_it_goes() {
+    let (robot, folder, options) = (elbow(), Folder::new("cut"), ReadOptions::default());
+    let whole = bag(&session(&robot));
+    let cut = &whole[..whole.len() * 7 / 10];
+    let found = read_all(&[&folder.write("cut.mcap", cut)], &options).unwrap();
+    let is_cut = |it: &String| {
+        it.contains("read it up to the last whole chunk")
+            && it.contains("s after the first message: it is cut off")
+    };
+    assert!(found.warnings.iter().any(is_cut), "{:?}", found.warnings);
+    assert!((7..STANDS as usize).contains(&found.data.len()), "{}", found.data.len());
+    // A character of a message within a chunk.
+    let mut damaged = whole.clone();
+    let at = memchr::memmem::rfind(&damaged[..whole.len() / 2], b"gripper").unwrap();
+    damaged[at] ^= 0x10;
+    let found = read_all(&[&folder.write("damaged.mcap", &damaged)], &options).unwrap();
+    let warned = found.warnings.join("\n");
+    assert!(warned.contains("left out what is damaged from byte"), "{warned}");
+    assert!(warned.contains("found another checksum than stated"), "{warned}");
+}
+
+#[test]
+fn no_bytes_end_in_a_panic() {
+    let robot = elbow();
+    let names = robot.joint_reading_names();
+    let mut messages = session(&robot);
+    messages.truncate(120);
+    let whole = bag(&messages);
+    let try_bytes = |bytes: &[u8]| {
+        let mut topics = Topics::new(&names);
+        let damage = container::read(&mut Cursor::new(bytes), &mut topics).unwrap();
+        let read: u64 = topics.all.iter().map(|it| it.count).sum();
+        assert!(read <= 120);
+        (damage.end.is_some() || !damage.chunks.is_empty(), read)
+    };
+    assert_eq!(try_bytes(&whole), (false, 120));
+    for size in (0..whole.len()).step_by(97) {
+        let (is_said, read) = try_bytes(&whole[..size]);
+        assert!(is_said || read == 120, "{size}");
+    }
+    for (number, at) in (0..whole.len()).step_by(13).enumerate() {
+        let mut bytes = whole.clone();
+        bytes[at] ^= 1 << (number % 8);
+        try_bytes(&bytes);
+        bytes[at] = 0xFF;
+        try_bytes(&bytes);
+    }
+}
+
+#[test]
+fn what_ends_a_file_is_said() {
+    let header = record(HEADER, &[&text("ros2"), &text("tests")]);
+    let begun = [MAGIC, &header].concat();
+    let behind = begun.len() as u64;
+    let large = [&[0x80][..], &(1_u64 << 40).to_le_bytes()].concat();
+    let cut = "it is cut off";
+    for (bytes, expected) in [
+        (b"no magic".to_vec(), Some((8, "Bad magic number"))),
+        (MAGIC[..5].to_vec(), Some((8, cut))),
+        (MAGIC.to_vec(), Some((8, cut))),
+        (begun.clone(), Some((behind, cut))),
+        ([&begun[..], &header[..4]].concat(), Some((behind, cut))),
+        ([&begun[..], &header[..12]].concat(), Some((behind, cut))),
+        (
+            [&begun[..], &large].concat(),
+            Some((behind, "record with opcode 80 length exceeds limit: `1099511627776`")),
+        ),
+        ([&begun[..], &record(op::DATA_END, &[&[0; 3]])].concat(), Some((behind, "Record parse failed"))),
+        ([&begun[..], &record(op::FOOTER, &[&[0; 19]])].concat(), Some((behind, "Record parse failed"))),
+        ([&begun[..], &record(op::DATA_END, &[&[0; 4]])].concat(), None),
+        ([&begun[..], &record(op::FOOTER, &[&[0; 20]])].concat(), None),
+    ] {
+        let mut topics = Topics::new(&[]);
+        let damage = container::read(&mut Cursor::new(bytes), &mut topics).unwrap();
+        assert_eq!(damage.end, expected.map(|(at, why)| (at, why.to_owned())));
+    }
+}
+
+#[test]
+fn chunks_are_unpacked_and_damaged_ones_are_errors() {
+    let bytes: Vec<u8> = (0..100_000_u32).flat_map(|it| (it / 7).to_le_bytes()).collect();
+    let zstd = ruzstd::encoding::compress_to_vec(&bytes[..], ruzstd::encoding::CompressionLevel::Fastest);
+    let mut lz4 = lz4_flex::frame::FrameEncoder::new(Vec::new());
+    std::io::Write::write_all(&mut lz4, &bytes).unwrap();
+    let lz4 = lz4.finish().unwrap();
+    let mut into = Vec::new();
+    // Two frames are one after the other.
+    unpack(&[zstd.clone(), zstd.clone()].concat(), "zstd", &mut into).unwrap();
+    assert_eq!(into, [bytes.clone(), bytes.clone()].concat());
+    for (packed, how) in [(&zstd, "zstd"), (&lz4, "lz4")] {
+        unpack(packed, how, &mut into).unwrap();
+        assert_eq!(into, bytes);
+        for at in (0..packed.len()).step_by(packed.len() / 200 + 1) {
+            let _ = unpack(&packed[..at], how, &mut into);
+            let mut flipped = packed.clone();
+            flipped[at] ^= 0x41;
+            let _ = unpack(&flipped, how, &mut into);
+        }
+    }
+    assert!(unpack(&zstd, "brotli", &mut into).unwrap_err().contains("the compression `brotli`"));
+}

@@ -1,0 +1,178 @@
+//! Topics of a bag: what they are, how many messages they have, and of those that are read what these hold.
+
+use std::collections::HashMap;
+
+use super::bodies::Bodies;
+use super::joints::Readings;
+use super::messages::{Kind, joint_state, poses};
+use poecal_numerics::error::shown;
+
+/// Most topics in a list.
+const LISTED: usize = 30;
+
+/// What the messages of a topic hold, as far as it is read.
+#[derive(Clone, Debug)]
+pub(crate) enum Content {
+    Joints(Readings),
+    Bodies(Bodies),
+    /// Messages of another type.
+    Other,
+}
+
+/// A topic.
+#[derive(Clone, Debug)]
+pub(crate) struct Topic {
+    pub(crate) name: String,
+    /// Name of the type of its messages, with their encoding if that is not CDR.
+    pub(crate) title: String,
+    kind: Option<Kind>,
+    pub(crate) count: u64,
+    /// Times of its first and last message in the log, nanoseconds.
+    span_ns: (u64, u64),
+    pub(crate) content: Content,
+    /// The first message that cannot be read: its number and what was found.
+    pub(crate) broken: Option<(u64, String)>,
+}
+
+impl Topic {
+    /// Messages a second.
+    fn rate(&self) -> Option<f64> {
+        let span_s = self.span_ns.1.saturating_sub(self.span_ns.0) as f64 / 1e9;
+        (self.count > 1 && span_s > 0.0).then(|| (self.count - 1) as f64 / span_s)
+    }
+
+    /// The topic in words.
+    pub(crate) fn words(&self) -> String {
+        let messages = if self.count == 1 { "message" } else { "messages" };
+        let rate = self.rate().map_or(String::new(), |rate| format!(", {rate:.1} Hz"));
+        format!("`{}` ({}, {} {messages}{rate})", shown(&self.name), shown(&self.title), self.count)
+    }
+
+    /// Whether it is called so, with or without the stroke that names begin with.
+    pub(crate) fn is_called(&self, name: &str) -> bool {
+        self.name == name || self.name.strip_prefix('/') == Some(name)
+    }
+
+    /// Whether it has messages of a type that is read.
+    pub(crate) fn is_read(&self) -> bool {
+        self.count > 0 && !matches!(self.content, Content::Other)
+    }
+
+    /// Whether its messages name the bodies that they are about.
+    pub(crate) fn names_bodies(&self) -> bool {
+        matches!(&self.content, Content::Bodies(bodies) if bodies.all.iter().any(|it| !it.child.is_empty()))
+    }
+
+    /// Takes a message.
+    fn take(&mut self, log_ns: u64, message: &[u8]) {
+        self.span_ns = match self.count {
+            0 => (log_ns, log_ns),
+            _ => (self.span_ns.0.min(log_ns), self.span_ns.1.max(log_ns)),
+        };
+        self.count += 1;
+        let Some(kind) = self.kind.filter(|_| self.broken.is_none()) else { return };
+        let taken = match &mut self.content {
+            Content::Joints(readings) => joint_state(message).map(|it| readings.take(&it, log_ns)),
+            Content::Bodies(bodies) => {
+                poses(kind, message).map(|all| all.iter().for_each(|it| bodies.take(it, log_ns)))
+            }
+            Content::Other => Ok(()),
+        };
+        if let Err(found) = taken {
+            self.broken = Some((self.count, found));
+        }
+    }
+}
+
+/// All topics of a bag.
+#[derive(Debug)]
+pub(crate) struct Topics<'a> {
+    /// Names of the robot's joints.
+    joints: &'a [String],
+    /// Names of types of the file that is read.
+    schemas: HashMap<u16, String>,
+    /// Topics of the channels of the file that is read.
+    channels: HashMap<u16, usize>,
+    pub(crate) all: Vec<Topic>,
+    /// First and last time in the log, nanoseconds.
+    pub(crate) span_ns: Option<(u64, u64)>,
+    /// Number of messages of channels that are nowhere described.
+    pub(crate) unknown: u64,
+}
+
+impl<'a> Topics<'a> {
+    /// None, of a robot with these joints.
+    pub(crate) fn new(joints: &'a [String]) -> Self {
+        Topics {
+            joints,
+            schemas: HashMap::new(),
+            channels: HashMap::new(),
+            all: Vec::new(),
+            span_ns: None,
+            unknown: 0,
+        }
+    }
+
+    /// Begins another file, which has numbers of its own.
+    pub(crate) fn begin_file(&mut self) {
+        self.schemas.clear();
+        self.channels.clear();
+    }
+
+    /// Takes a type of messages.
+    pub(crate) fn schema(&mut self, id: u16, name: &str) {
+        self.schemas.insert(id, name.to_owned());
+    }
+
+    /// Takes a channel.
+    pub(crate) fn channel(&mut self, id: u16, schema: u16, name: &str, encoding: &str) {
+        let of = self.schemas.get(&schema).map_or("no type", String::as_str);
+        let is_cdr = encoding == "cdr";
+        let title = if is_cdr { of.to_owned() } else { format!("{of} in {encoding}") };
+        let known = self.all.iter().position(|it| it.name == name && it.title == title);
+        let at = known.unwrap_or_else(|| {
+            let kind = Kind::of(of).filter(|_| is_cdr);
+            let content = match kind {
+                Some(Kind::Joints) => Content::Joints(Readings::new(self.joints)),
+                Some(kind) => Content::Bodies(Bodies::new(kind)),
+                None => Content::Other,
+            };
+            self.all.push(Topic {
+                name: name.to_owned(),
+                title,
+                kind,
+                count: 0,
+                span_ns: (0, 0),
+                content,
+                broken: None,
+            });
+            self.all.len() - 1
+        });
+        self.channels.insert(id, at);
+    }
+
+    /// Takes a message.
+    pub(crate) fn message(&mut self, channel: u16, log_ns: u64, message: &[u8]) {
+        let (first, last) = self.span_ns.unwrap_or((log_ns, log_ns));
+        self.span_ns = Some((first.min(log_ns), last.max(log_ns)));
+        match self.channels.get(&channel).and_then(|at| self.all.get_mut(*at)) {
+            Some(topic) => topic.take(log_ns, message),
+            None => self.unknown += 1,
+        }
+    }
+
+    /// Seconds of a time in the log since the first message.
+    pub(crate) fn since_first_s(&self, log_ns: u64) -> f64 {
+        log_ns.saturating_sub(self.span_ns.map_or(0, |it| it.0)) as f64 / 1e9
+    }
+
+    /// All topics in words.
+    pub(crate) fn words(&self) -> String {
+        let words: Vec<String> = self.all.iter().take(LISTED).map(Topic::words).collect();
+        match self.all.len().saturating_sub(LISTED) {
+            _ if words.is_empty() => "no topic".to_owned(),
+            0 => words.join(", "),
+            more => format!("{} and {more} more", words.join(", ")),
+        }
+    }
+}

@@ -1,0 +1,214 @@
+//! Files as instruments, controllers, recorders and spreadsheets write them, as tables in our form. They are recognised by what is in them,
+//! never by their names.
+
+mod auto_id;
+#[cfg(feature = "bags")]
+mod bags;
+mod bodies;
+mod figaroh;
+pub(crate) mod headerless;
+mod leica;
+mod maker;
+mod motive;
+mod ndi;
+mod programs;
+mod qualisys;
+mod recording;
+mod refused;
+mod rigid;
+mod robodk;
+mod spatial_analyzer;
+mod two_sets;
+mod words;
+#[cfg(feature = "workbooks")]
+mod workbook;
+
+#[cfg(feature = "workbooks")]
+use std::io::Read as _;
+use std::path::Path;
+
+pub(crate) use self::maker::Called;
+use self::maker::{Made, Refused};
+pub(crate) use self::recording::{OwnTable, Recording};
+use super::ReadOptions;
+use crate::table::configurations;
+use crate::table::mapping::ColumnMap;
+use crate::table::text::Blocks;
+use poecal_model::robot::{ReadingKind, Robot};
+use poecal_numerics::error::ErrorKind;
+#[cfg(feature = "workbooks")]
+use poecal_storage::hashes::Hashing;
+#[cfg(feature = "workbooks")]
+use poecal_storage::source::Input;
+use poecal_storage::source::{self, LARGEST_TABLE};
+
+/// What a file of measurements is in messages.
+pub(crate) const MEASURED: &str = "a measurement file (CSV)";
+/// What a workbook is called, and a bag.
+pub(crate) const WORKBOOK: &str = "a workbook";
+pub(crate) const BAG: &str = "a ROS 2 bag";
+/// Recordings in which several bodies or markers may be.
+pub(crate) const RECORDINGS: [&str; 3] = [motive::FORM.title, qualisys::FORM.title, ndi::FORM.title];
+
+/// What files are opened with.
+#[derive(Clone, Copy)]
+pub(crate) struct Opening<'a> {
+    pub(crate) robot: &'a Robot,
+    pub(crate) options: &'a ReadOptions,
+}
+
+/// A file that is open.
+pub(crate) enum Opened<'p> {
+    /// One in our form.
+    Own(Box<Blocks<'p>>),
+    /// The table of one in another form.
+    Made(Box<OwnTable>),
+}
+
+impl<'p> Opened<'p> {
+    /// Its blocks.
+    pub(crate) fn blocks(self, path: &'p Path, expected: &'p str) -> Blocks<'p> {
+        match self {
+            Opened::Own(blocks) => *blocks,
+            Opened::Made(table) => table.into_blocks(path, expected),
+        }
+    }
+}
+
+/// A form of files.
+#[derive(Clone, Copy)]
+pub(crate) struct Form {
+    /// What files of this form are, as in "points of SpatialAnalyzer".
+    pub(crate) title: &'static str,
+    /// Whether a text is of this form, by its beginning.
+    is_it: fn(&str, &Opening<'_>) -> bool,
+    /// The table of a text.
+    table: fn(&str, &Opening<'_>) -> Result<Made, Refused>,
+}
+
+/// All forms of texts; the last one is what is left.
+const FORMS: [Form; 11] = [
+    spatial_analyzer::FORM,
+    motive::FORM,
+    qualisys::FORM,
+    ndi::FORM,
+    leica::FORM,
+    programs::FORM,
+    robodk::FORM,
+    figaroh::FORM,
+    auto_id::FORM,
+    two_sets::FORM,
+    headerless::FORM,
+];
+
+impl Opening<'_> {
+    /// Columns of the joints in the robot's order, those that turn in this unit, and slides in metres or millimetres.
+    fn joint_columns(&self, angle: &str) -> Vec<String> {
+        let length = if angle == "rad" { "m" } else { "mm" };
+        let names = self.robot.joint_reading_names();
+        let column =
+            |(name, slides): (&String, bool)| format!("{name}[{}]", if slides { length } else { angle });
+        names.iter().zip(self.slides()).map(column).collect()
+    }
+
+    /// Of each joint reading, whether it is a length.
+    fn slides(&self) -> Vec<bool> {
+        let names = self.robot.joint_reading_names();
+        names.iter().map(|name| self.robot.reading_kind(name) == ReadingKind::Length).collect()
+    }
+
+    /// A file that may hold joint readings and measurements, if it is one.
+    pub(crate) fn recording(&self, path: &Path) -> poecal_numerics::error::Result<Option<Recording>> {
+        #[cfg(feature = "bags")]
+        if let Some(given) = self.options.bags.iter().find(|it| it.path == path) {
+            return bags::read_given(given, self).map(Some);
+        }
+        #[cfg(feature = "bags")]
+        if bags::is_bag(path) {
+            return bags::read(path, self).map(Some);
+        }
+        let _ = path;
+        Ok(None)
+    }
+
+    /// The blocks of joint readings alone.
+    pub(crate) fn joint_blocks<'p>(
+        &self,
+        path: &'p Path,
+        expected: &'p str,
+    ) -> poecal_numerics::error::Result<Blocks<'p>> {
+        match self.recording(path)? {
+            Some(found) => match &found.joints {
+                Ok(table) => Ok(table.blocks(path, expected)),
+                Err(_) => Err(found.error(path, true)),
+            },
+            None => self.blocks(path, expected),
+        }
+    }
+
+    /// The blocks of a file in our form, or of the table that a file in another one makes.
+    pub(crate) fn blocks<'p>(
+        &self,
+        path: &'p Path,
+        expected: &'p str,
+    ) -> poecal_numerics::error::Result<Blocks<'p>> {
+        Ok(self.opened(path, expected)?.blocks(path, expected))
+    }
+
+    /// The same, with the table still to be read.
+    pub(crate) fn opened<'p>(
+        &self,
+        path: &'p Path,
+        expected: &'p str,
+    ) -> poecal_numerics::error::Result<Opened<'p>> {
+        if configurations::is_folder(path) {
+            return Blocks::open_or_join(path, expected).map(|it| Opened::Own(Box::new(it)));
+        }
+        let (input, head) = source::open_any(path, expected, LARGEST_TABLE)?;
+        source::refuse_named(path, expected)?;
+        #[cfg(feature = "workbooks")]
+        if workbook::is_one(&head) {
+            return self.workbook(path, expected, input);
+        }
+        source::refuse_other_forms(path, expected, &head)?;
+        self.of_text(path, Blocks::of_input(path, expected, input))
+    }
+
+    /// The table of a workbook.
+    #[cfg(feature = "workbooks")]
+    fn workbook<'p>(
+        &self,
+        path: &'p Path,
+        expected: &'p str,
+        input: Input,
+    ) -> poecal_numerics::error::Result<Opened<'p>> {
+        let mut bytes = Vec::new();
+        let mut input = Hashing::new(input);
+        let read = input.by_ref().take(workbook::LARGEST + 1).read_to_end(&mut bytes);
+        read.map_err(|error| source::unreadable(path, &error, expected))?;
+        let made = workbook::table(bytes, self).map_err(|it| it.error(path))?;
+        Ok(Opened::Made(Box::new(OwnTable { made, sha256: Some(input.sha256()), title: WORKBOOK })))
+    }
+
+    /// A text as it is, or the table that it makes.
+    pub(crate) fn of_text<'p>(
+        &self,
+        path: &'p Path,
+        mut blocks: Blocks<'p>,
+    ) -> poecal_numerics::error::Result<Opened<'p>> {
+        blocks.begin()?;
+        if let Some(message) = refused::found(blocks.text()) {
+            return Err(ErrorKind::Measurement.error(message).in_file(path));
+        }
+        // A mapping that names columns reads the text as it is.
+        let is_mapped = self.options.mapping.as_ref().is_some_and(ColumnMap::names_columns);
+        let mut forms = FORMS.iter().skip(if is_mapped { FORMS.len() - 1 } else { 0 });
+        let Some(form) = forms.find(|form| (form.is_it)(blocks.text(), self)) else {
+            return Ok(Opened::Own(Box::new(blocks)));
+        };
+        let text = blocks.rest()?;
+        let mut made = (form.table)(&text, self).map_err(|it| it.error(path))?;
+        made.said.splice(0..0, blocks.said().notes);
+        Ok(Opened::Made(Box::new(OwnTable { made, sha256: blocks.sha256(), title: form.title })))
+    }
+}

@@ -1,0 +1,159 @@
+//! Joint readings of robot programs: RAPID, that of Rokae, KRL, FANUC's and URScript, in the order of their motions.
+
+use super::maker::{Made, Refused, Value};
+use super::words::{lines, number};
+use super::{Form, Opening};
+use poecal_numerics::error::first_few;
+use poecal_programs::{Language, joint_targets};
+
+pub(crate) const FORM: Form = Form { title: "a robot program", is_it, table };
+
+/// Lines in which a language is sought.
+const FIRST: usize = 200;
+/// How Rokae writes joint targets.
+const ROKAE: &str = "= j:{";
+
+fn is_it(text: &str, _: &Opening<'_>) -> bool {
+    language(text).is_some() || is_rokae(text)
+}
+
+fn is_rokae(text: &str) -> bool {
+    lines(text).take(FIRST).any(|it| it.1.contains("jointtarget") && it.1.contains(ROKAE))
+}
+
+/// The language of a program by its words.
+fn language(text: &str) -> Option<Language> {
+    let first = lines(text).next()?.1.trim().to_ascii_uppercase();
+    if first.starts_with("/PROG") {
+        return Some(Language::Fanuc);
+    }
+    let begins = |words: &[&str]| words.iter().any(|it| first.starts_with(it));
+    // URScript has a colon behind the name of a function.
+    if begins(&["&ACCESS", "&REL", "&PARAM", "DEFDAT ", "DEF "]) && !first.ends_with(':') {
+        return Some(Language::Krl);
+    }
+    let mut some = lines(text).take(FIRST).map(|it| it.1.trim());
+    some.find_map(|line| {
+        let small = line.to_ascii_lowercase();
+        let is_declared = ["const ", "var ", "pers ", "local "].iter().any(|it| small.starts_with(it));
+        if small.starts_with("module ")
+            || is_declared && (small.contains("jointtarget") || small.contains("robtarget"))
+        {
+            Some(Language::Rapid)
+        } else if ["movej(", "movel(", "movep("].iter().any(|it| small.starts_with(it)) {
+            Some(Language::UrScript)
+        } else {
+            None
+        }
+    })
+}
+
+fn table(text: &str, opening: &Opening<'_>) -> Result<Made, Refused> {
+    if is_rokae(text) {
+        return of_rokae(text, opening);
+    }
+    let Some(language) = language(text) else { return Refused::whole("found no program") };
+    let found = joint_targets(language, text.as_bytes(), opening.robot);
+    let found = found.map_err(|error| Refused::of(&error))?;
+    let title = language.title();
+    if let Some(line) = found.poses.first() {
+        return Refused::at(
+            *line,
+            format!(
+                "found a program of {title} with {} that {}, which say nothing of the joints, expected joint targets alone: write them from the \
+                 controller's joint readings",
+                if found.poses.len() == 1 {
+                    "a target".to_owned()
+                } else {
+                    format!("{} targets", found.poses.len())
+                },
+                if found.poses.len() == 1 { "is a pose" } else { "are poses" }
+            ),
+        );
+    }
+    if let Some(listed) = found.listed.first() {
+        return Refused::at(
+            listed.line,
+            format!(
+                "found the target `{}` in a program of {title}, of which the joint readings are not known: {}",
+                listed.name, listed.reason
+            ),
+        );
+    }
+    // Targets that are numbers in a motion have no name.
+    let is_named = language != Language::UrScript;
+    let mut made = begun(opening, is_named, found.targets.first().map_or(1, |it| it.0));
+    for (line, name, readings) in &found.targets {
+        let name = name.replace(['[', ']'], "");
+        let name = name.split(':').next().unwrap_or_default();
+        let id = is_named.then_some(Value::Text(name));
+        made.row(*line, id.into_iter().chain(readings.iter().map(|it| Value::Number(*it))));
+    }
+    if made.rows() == 0 {
+        return Refused::whole(format!(
+            "found a program of {title} without joint targets, expected at least one"
+        ));
+    }
+    made.said
+        .push(format!("{title}, {} joint targets in the order of its motions, or of its text", made.rows()));
+    Ok(made)
+}
+
+/// The header: names of targets, and joints in the robot's order in radians and metres.
+fn begun(opening: &Opening<'_>, is_named: bool, line: usize) -> Made {
+    let joints = opening.joint_columns("rad");
+    let id = is_named.then(|| "id".to_owned());
+    let columns: Vec<String> = id.into_iter().chain(joints).collect();
+    Made::new(line, columns.iter().map(String::as_str))
+}
+
+/// Rokae's dialect: `LOCAL VAR jointtarget j1 = j:{63.68,…,0}{EJ 0,…}`, degrees.
+fn of_rokae(text: &str, opening: &Opening<'_>) -> Result<Made, Refused> {
+    let names = opening.robot.joint_reading_names();
+    let mut made = begun(opening, true, 1);
+    for (line, content) in lines(text).filter(|it| it.1.contains("jointtarget")) {
+        let parts = content.split_once(ROKAE).and_then(|(before, rest)| {
+            let name = before.split_whitespace().last()?;
+            Some((name, rest.split_once('}')?.0))
+        });
+        let Some((name, inside)) = parts else {
+            return Refused::at(
+                line,
+                "found a jointtarget without `= j:{…}`, expected one, as in the lines before",
+            );
+        };
+        let texts: Vec<&str> = inside.split(',').map(str::trim).collect();
+        let values: Vec<Option<f64>> = texts.iter().map(|it| number(it)).collect();
+        if let Some(bad) = values.iter().position(Option::is_none) {
+            return Refused::at(
+                line,
+                format!(
+                    "found `{}` in a jointtarget, expected a number",
+                    texts.get(bad).copied().unwrap_or_default()
+                ),
+            );
+        }
+        if values.len() < names.len() {
+            return Refused::at(
+                line,
+                format!(
+                    "found {} numbers of a jointtarget, expected {}: {}",
+                    values.len(),
+                    names.len(),
+                    first_few(&names)
+                ),
+            );
+        }
+        if values.iter().skip(names.len()).flatten().any(|it| *it != 0.0) {
+            return Refused::at(
+                line,
+                "found an axis that the model does not have and that is not at zero, expected the axes of the model",
+            );
+        }
+        let readings = values.iter().flatten().take(names.len()).zip(opening.slides());
+        let si = readings.map(|(value, slides)| if slides { value * 1e-3 } else { value.to_radians() });
+        made.row(line, std::iter::once(Value::Text(name)).chain(si.map(Value::Number)));
+    }
+    made.said.push(format!("joint targets of Rokae, {}, in degrees", made.rows()));
+    Ok(made)
+}

@@ -1,0 +1,376 @@
+//! Markers on one body by the distances between them, which stay: names that were exchanged, and markers that lost theirs.
+
+use std::collections::BTreeMap;
+
+use nalgebra::Vector3;
+
+use super::words::quoted;
+use poecal_numerics::distributions::median;
+use poecal_numerics::error::first_few;
+
+/// Where each marker is in a frame, metres; none where it was not seen.
+pub(crate) type Places = Vec<Option<Vector3<f64>>>;
+
+/// Fewest markers whose distances show which is which.
+pub(crate) const FEWEST: usize = 3;
+/// Most markers of a body, and most places in a frame: the search is among all orders of them.
+const MOST: usize = 12;
+const MOST_PLACES: usize = 24;
+/// Most frames of which distances are taken, and fewest in which two markers were seen together.
+const SOME: usize = 600;
+const TOGETHER: usize = 10;
+/// Share of the frames in which a distance is the usual one.
+const SHARE: f64 = 0.6;
+/// How far a distance may be from the usual one: times its scatter, and at least and at most, metres.
+const TIMES: f64 = 5.0;
+const LEAST_M: f64 = 5e-4;
+const MOST_M: f64 = 5e-3;
+/// Median deviation of normal noise, in standard deviations.
+const MEDIAN_DEVIATION: f64 = 0.6745;
+/// Fewest markers by which one without a name is found: two distances.
+const WITNESSES: usize = 2;
+
+/// Markers of one body.
+#[derive(Clone, Debug)]
+struct Group {
+    markers: Vec<usize>,
+    /// Of each two of them, the usual distance and how far it may be off.
+    usual: Vec<Vec<(f64, f64)>>,
+}
+
+/// What the distances between markers show, by frame.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Renamed {
+    /// Of a frame in which something is not as it is named, where each marker of the body is: at the place of which column, if at any.
+    pub(crate) frames: BTreeMap<usize, BTreeMap<usize, Option<usize>>>,
+    /// The markers of the body.
+    pub(crate) markers: Vec<usize>,
+}
+
+impl Group {
+    /// The largest group of some columns that keep their distances.
+    fn of(frames: &[Places], columns: &[usize]) -> Option<Self> {
+        let step = frames.len().div_ceil(SOME).max(1);
+        let distances = |a: usize, b: usize| -> Vec<f64> {
+            let apart = |frame: &Places| Some(((*frame.get(a)?)? - (*frame.get(b)?)?).norm());
+            frames.iter().step_by(step).filter_map(apart).collect()
+        };
+        let usual = |a: usize, b: usize| {
+            let all = distances(a, b);
+            let middle = median(all.iter().copied()).filter(|_| all.len() >= TOGETHER)?;
+            let scatter = median(all.iter().map(|it| (it - middle).abs()))? / MEDIAN_DEVIATION;
+            let off = (TIMES * scatter).clamp(LEAST_M, MOST_M);
+            let near = all.iter().filter(|it| (**it - middle).abs() <= off).count();
+            (near as f64 >= SHARE * all.len() as f64).then_some((middle, off))
+        };
+        let seen =
+            |column: usize| frames.iter().filter(|it| it.get(column).is_some_and(Option::is_some)).count();
+        let mut columns: Vec<usize> = columns.to_vec();
+        columns.sort_by_key(|it| (std::cmp::Reverse(seen(*it)), *it));
+        let known: BTreeMap<(usize, usize), (f64, f64)> = (columns.iter().enumerate())
+            .flat_map(|(at, a)| columns.iter().skip(at + 1).map(move |b| (*a, *b)))
+            .filter_map(|(a, b)| Some(((a, b), usual(a, b)?)))
+            .collect();
+        let of = |a: usize, b: usize| known.get(&(a, b)).or_else(|| known.get(&(b, a))).copied();
+        let grown = |first: &usize| {
+            let mut group = vec![*first];
+            for column in &columns {
+                let fits = group.iter().all(|it| it != column && of(*it, *column).is_some());
+                if fits && group.len() < MOST {
+                    group.push(*column);
+                }
+            }
+            group
+        };
+        let groups: Vec<Vec<usize>> = columns.iter().map(grown).collect();
+        let largest = groups.iter().map(Vec::len).max().filter(|it| *it >= FEWEST)?;
+        let mut markers = groups.into_iter().find(|it| it.len() == largest)?;
+        markers.sort_unstable();
+        let row = |a: &usize| markers.iter().map(|b| of(*a, *b).unwrap_or_default()).collect();
+        let usual = markers.iter().map(row).collect();
+        Some(Group { markers, usual })
+    }
+
+    /// Whether two places may be those of two markers, by their numbers in the group.
+    fn fits(&self, (a, at): (usize, Vector3<f64>), (b, other): (usize, Vector3<f64>)) -> bool {
+        let usual = self.usual.get(a).and_then(|it| it.get(b));
+        usual.is_some_and(|(usual, off)| ((at - other).norm() - usual).abs() <= *off)
+    }
+
+    /// Which marker is at which place, if the distances decide it; `None` where all are as they are named.
+    fn sorted(&self, frame: &Places, others: &[usize]) -> Option<Vec<Option<usize>>> {
+        let place = |column: usize| *frame.get(column)?;
+        let own: Vec<(usize, usize)> =
+            self.markers.iter().copied().enumerate().filter(|it| place(it.1).is_some()).collect();
+        let is_right = own.iter().enumerate().all(|(k, one)| {
+            own.iter().take(k).all(|other| match (place(one.1), place(other.1)) {
+                (Some(at), Some(other_at)) => self.fits((one.0, at), (other.0, other_at)),
+                _ => true,
+            })
+        });
+        let unnamed: Vec<usize> = others.iter().copied().filter(|it| place(*it).is_some()).collect();
+        let is_whole = own.len() == self.markers.len();
+        if is_right && (is_whole || unnamed.is_empty() || own.len() < WITNESSES) {
+            return None;
+        }
+        let places: Vec<(usize, Vector3<f64>)> = (own.iter().map(|it| it.1).chain(unnamed))
+            .filter_map(|column| Some((column, place(column)?)))
+            .take(MOST_PLACES)
+            .collect();
+        let mut search = Search { group: self, places: &places, taken: Vec::new(), best: None };
+        search.next();
+        let found = search.best.filter(|it| it.count >= FEWEST && !it.is_unclear).map(|it| it.of);
+        if is_right {
+            // Nothing is wrong where no marker is found.
+            let named: Vec<Option<usize>> =
+                self.markers.iter().map(|it| place(*it).is_some().then_some(*it)).collect();
+            return found.filter(|it| {
+                *it != named && named.iter().zip(it).all(|(named, found)| named.is_none() || named == found)
+            });
+        }
+        Some(found.unwrap_or_else(|| vec![None; self.markers.len()]))
+    }
+}
+
+/// A search for the places of markers.
+struct Search<'g> {
+    group: &'g Group,
+    /// Columns and places.
+    places: &'g [(usize, Vector3<f64>)],
+    /// The place of each marker so far, by its number.
+    taken: Vec<Option<usize>>,
+    best: Option<Assigned>,
+}
+
+/// Columns of the markers of a group.
+struct Assigned {
+    of: Vec<Option<usize>>,
+    count: usize,
+    /// Whether others are as good.
+    is_unclear: bool,
+}
+
+impl Search<'_> {
+    /// Assigns the next marker, to each place that it may be at, or to none.
+    fn next(&mut self) {
+        let marker = self.taken.len();
+        let count = self.taken.iter().flatten().count();
+        let least = self.best.as_ref().map_or(0, |it| it.count);
+        let left = self.group.markers.len() - marker;
+        if count + left < least {
+            return;
+        }
+        if left == 0 {
+            return self.judge(count);
+        }
+        for at in 0..self.places.len() {
+            let Some((_, place)) = self.places.get(at) else { continue };
+            let is_free = !self.taken.contains(&Some(at));
+            let fits = self.taken.iter().enumerate().all(|(other, it)| {
+                let other_place = it.and_then(|it| self.places.get(it));
+                other_place.is_none_or(|it| self.group.fits((marker, *place), (other, it.1)))
+            });
+            if is_free && fits {
+                self.taken.push(Some(at));
+                self.next();
+                self.taken.pop();
+            }
+        }
+        self.taken.push(None);
+        self.next();
+        self.taken.pop();
+    }
+
+    fn judge(&mut self, count: usize) {
+        let column = |it: &Option<usize>| it.and_then(|at| self.places.get(at)).map(|it| it.0);
+        let of: Vec<Option<usize>> = self.taken.iter().map(column).collect();
+        match &mut self.best {
+            Some(best) if count == best.count => best.is_unclear = true,
+            Some(best) if count < best.count => {}
+            best => *best = Some(Assigned { of, count, is_unclear: false }),
+        }
+    }
+}
+
+impl Renamed {
+    /// What the distances show of the markers in some columns, of which one body is made; the places of `others` may be theirs too. `None` if no
+    /// three of them keep their distances.
+    pub(crate) fn of(frames: &[Places], columns: &[usize], others: &[usize]) -> Option<Self> {
+        let group = Group::of(frames, columns)?;
+        let others: Vec<usize> = others.iter().copied().filter(|it| !group.markers.contains(it)).collect();
+        let mut found = Renamed { markers: group.markers.clone(), ..Renamed::default() };
+        for (at, frame) in frames.iter().enumerate() {
+            let Some(sorted) = group.sorted(frame, &others) else { continue };
+            found.frames.insert(at, group.markers.iter().copied().zip(sorted).collect());
+        }
+        Some(found)
+    }
+
+    /// The column at whose place a marker is in a frame.
+    pub(crate) fn place_of(&self, frame: usize, column: usize) -> Option<usize> {
+        self.frames.get(&frame).and_then(|it| it.get(&column)).copied().unwrap_or(Some(column))
+    }
+
+    /// What is said of it: notes, and what should be looked at. `lines` are those of the frames.
+    pub(crate) fn words(
+        &self,
+        names: &[&str],
+        lines: &[usize],
+        is_seen: impl Fn(usize, usize) -> bool,
+    ) -> (Vec<String>, Vec<String>) {
+        let line = |frame: &usize| lines.get(*frame).map_or_else(String::new, ToString::to_string);
+        let name = |column: usize| names.get(column).copied().unwrap_or_default();
+        let mut exchanged: BTreeMap<Vec<usize>, Vec<String>> = BTreeMap::new();
+        let (mut unnamed, mut lost) = (0, Vec::new());
+        for (frame, of) in &self.frames {
+            let moved = of.iter().filter(|(marker, at)| at.is_some_and(|at| at != **marker));
+            let (own, others): (Vec<_>, Vec<_>) =
+                moved.partition(|(_, at)| at.is_some_and(|at| self.markers.contains(&at)));
+            if !own.is_empty() {
+                exchanged.entry(own.iter().map(|it| *it.0).collect()).or_default().push(line(frame));
+            }
+            unnamed += others.len();
+            let is_left = |(marker, at): (&usize, &Option<usize>)| {
+                at.is_none() && is_seen(*frame, *marker) && !of.values().any(|it| *it == Some(*marker))
+            };
+            if of.iter().any(is_left) {
+                lost.push(line(frame));
+            }
+        }
+        let frames =
+            |count: usize| if count == 1 { "one frame".to_owned() } else { format!("{count} frames") };
+        let at = |lines: &[String]| {
+            format!(
+                "{} (line{} {})",
+                frames(lines.len()),
+                if lines.len() == 1 { "" } else { "s" },
+                first_few(lines)
+            )
+        };
+        let exchanges = exchanged.iter().map(|(markers, lines)| {
+            format!(
+                "exchanged the names of {} in {}, where their distances to the other markers are those of each other: check the labels there",
+                quoted(markers.iter().map(|it| name(*it))),
+                at(lines)
+            )
+        });
+        let mut warned: Vec<String> = exchanges.collect();
+        if !lost.is_empty() {
+            warned.push(format!(
+                "left out markers in {}, since their distances are those of no marker of the body",
+                at(&lost)
+            ));
+        }
+        let said = (unnamed > 0).then(|| {
+            format!("found {unnamed} places of its markers among those without a name, by the distances between them")
+        });
+        (said.into_iter().collect(), warned)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use poecal_arm::lie::rotation;
+
+    /// A body that turns and moves: its markers with noise, in frames.
+    fn moving(markers: &[Vector3<f64>], frames: usize, noise_m: f64, seed: u64) -> Vec<Places> {
+        let mut state = seed;
+        let mut random = move || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
+        };
+        let frame = |at: usize| {
+            let time = 0.02 * at as f64;
+            let turn = rotation::exp(&Vector3::new((0.7 * time).sin(), (0.4 * time).cos(), 0.3 * time));
+            let place = Vector3::new(time.sin(), (0.6 * time).cos(), 1.0 + 0.3 * (0.9 * time).sin());
+            let mut seen = |it: &Vector3<f64>| {
+                // The sum of three is nearly normal; its deviation is a half.
+                let noise = Vector3::from_fn(|_, _| 2.0 * noise_m * (random() + random() + random()));
+                Some(turn * it + place + noise)
+            };
+            markers.iter().map(&mut seen).collect()
+        };
+        (0..frames).map(frame).collect()
+    }
+
+    #[test]
+    fn exchanged_names_are_put_back_and_lost_ones_found() {
+        let (mut right, mut wrong, mut ghosts, mut left) = (0, 0, 0, 0);
+        for seed in 0..20_u64 {
+            let spread = |k: u64| {
+                let angle = (seed * 5 + k) as f64 * 2.399;
+                Vector3::new(
+                    0.05 * angle.cos() + 0.011 * k as f64,
+                    0.07 * angle.sin(),
+                    0.013 * (k * k) as f64,
+                )
+            };
+            let markers: Vec<Vector3<f64>> = (0..4 + seed % 2).map(spread).collect();
+            let count = markers.len();
+            let mut frames = moving(&markers, 400, 2e-4, seed + 1);
+            // Two columns without a name: one where a marker is without its own, and one of something that stands.
+            for frame in &mut frames {
+                frame.extend([None, Some(Vector3::new(3.0, 2.0, 1.0))]);
+            }
+            let truth = frames.clone();
+            for frame in &mut frames[100..140] {
+                frame.swap(0, 1);
+            }
+            for frame in &mut frames[200..230] {
+                frame.swap(2, count);
+            }
+            for frame in &mut frames[300..310] {
+                // A ghost in place of a marker.
+                frame[3] = frame[3].map(|it| it + Vector3::new(0.03, 0.02, 0.0));
+            }
+            let columns: Vec<usize> = (0..count).collect();
+            let found = Renamed::of(&frames, &columns, &[count, count + 1]).unwrap();
+            for (at, frame) in frames.iter().enumerate() {
+                for (marker, expected) in truth[at].iter().enumerate().take(count) {
+                    let place = found.place_of(at, marker).and_then(|it| frame[it]);
+                    match place {
+                        None => left += 1,
+                        Some(it) if Some(it) == *expected => right += 1,
+                        Some(_) if marker == 3 && (300..310).contains(&at) => ghosts += 1,
+                        Some(_) => wrong += 1,
+                    }
+                }
+            }
+            assert_eq!(found.markers, columns, "{seed}");
+        }
+        println!(
+            "{right} places are those of their markers, {wrong} are not, {ghosts} of 200 ghosts are taken, {left} are left out"
+        );
+        assert_eq!(wrong, 0);
+        // A ghost may be as far from three others as its marker, by chance.
+        assert!(ghosts <= 4, "{ghosts}");
+        // The ghosts, and frames in which two orders fit within the noise.
+        assert!((196..300).contains(&left), "{left}");
+    }
+
+    #[test]
+    fn markers_that_move_by_themselves_are_no_body() {
+        let mut frames = moving(&[Vector3::zeros(), Vector3::x() * 0.1], 200, 1e-4, 3);
+        for (at, frame) in frames.iter_mut().enumerate() {
+            frame.push(Some(Vector3::new(0.001 * at as f64, 0.0, 0.0)));
+        }
+        assert!(Renamed::of(&frames, &[0, 1, 2], &[]).is_none());
+    }
+
+    #[test]
+    fn what_is_alike_both_ways_is_not_decided() {
+        // An isosceles triangle: the exchange of its equal corners shows in no distance, and the ghost of its tip in both.
+        let markers =
+            [Vector3::new(-0.05, 0.0, 0.0), Vector3::new(0.05, 0.0, 0.0), Vector3::new(0.0, 0.12, 0.0)];
+        let mut frames = moving(&markers, 200, 1e-4, 4);
+        frames[50].swap(0, 1);
+        let found = Renamed::of(&frames, &[0, 1, 2], &[]).unwrap();
+        assert!(found.frames.is_empty(), "{:?}", found.frames);
+        frames[60].swap(0, 2);
+        let found = Renamed::of(&frames, &[0, 1, 2], &[]).unwrap();
+        assert_eq!(found.frames.keys().copied().collect::<Vec<_>>(), [60]);
+        let (_, warned) = found.words(&["A", "B", "C"], &(8..208).collect::<Vec<_>>(), |_, _| true);
+        assert!(warned[0].contains("left out markers in one frame (line 68)"), "{warned:?}");
+    }
+}

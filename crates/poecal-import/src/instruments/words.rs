@@ -1,0 +1,73 @@
+//! Lines and cells of texts in other forms.
+
+use std::collections::BTreeMap;
+
+use crate::join::join_words::numbered;
+use crate::table::cells::{Separator, split};
+use poecal_numerics::error::first_few;
+
+/// A finite number of a cell, with a decimal point or, where there is no other, a decimal comma.
+pub(crate) fn number(text: &str) -> Option<f64> {
+    let text = text.trim();
+    let is_plain = text.bytes().all(|it| it.is_ascii_digit() || b"+-.eE,".contains(&it));
+    if !is_plain || text.is_empty() {
+        return None;
+    }
+    let is_comma = text.contains(',') && !text.contains('.');
+    let found = if is_comma { text.replacen(',', ".", 1).parse() } else { text.parse() };
+    found.ok().filter(|it: &f64| it.is_finite())
+}
+
+/// Lines with text, with their numbers from 1.
+pub(crate) fn lines(text: &str) -> impl Iterator<Item = (usize, &str)> {
+    (1..).zip(text.lines()).filter(|(_, line)| !line.trim().is_empty())
+}
+
+/// Cells of a line, without quotes; empty ones at the end are left out. A line with a broken quote is one cell.
+pub(crate) fn cells(line: &str, separator: Separator) -> Vec<&str> {
+    let mut found = Vec::new();
+    if split(line, separator, &mut found).is_err() {
+        return vec![line.trim()];
+    }
+    let filled = found.iter().rposition(|it| !it.raw.is_empty()).map_or(0, |it| it + 1);
+    found.into_iter().take(filled).map(|it| it.raw).collect()
+}
+
+/// Names in backticks, the first few.
+pub(crate) fn quoted<T: std::fmt::Display>(names: impl IntoIterator<Item = T>) -> String {
+    first_few(&names.into_iter().map(|it| format!("`{it}`")).collect::<Vec<_>>())
+}
+
+/// Whether names are those of targets: each comes again and again.
+pub(crate) fn are_targets(names: &[String]) -> bool {
+    names.len() >= 2 * by_name(names).len()
+}
+
+/// The warning of names that come again, of others than targets; `lines` are those of the names.
+pub(crate) fn repeats(names: &[String], lines: &[usize]) -> Option<String> {
+    let again: Vec<String> = by_name(names)
+        .into_iter()
+        .filter(|(_, rows)| rows.len() > 1)
+        .map(|(name, rows)| {
+            let own: Vec<String> =
+                rows.iter().filter_map(|at| lines.get(*at)).map(usize::to_string).collect();
+            format!("`{name}` in {}", numbered(&own))
+        })
+        .collect();
+    (!again.is_empty()).then(|| format!("names come again: {}", first_few(&again)))
+}
+
+/// The rows of each name.
+fn by_name(names: &[String]) -> BTreeMap<&str, Vec<usize>> {
+    let mut found: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
+    for (at, name) in names.iter().enumerate() {
+        found.entry(name).or_default().push(at);
+    }
+    found
+}
+
+/// Whether a cell has a word that stands for no number, such as `NaN`.
+pub(crate) fn is_no_number(text: &str) -> bool {
+    ["nan", "-nan", "inf", "-inf", "+inf", "null", "none", "n/a"]
+        .contains(&text.trim().to_ascii_lowercase().as_str())
+}

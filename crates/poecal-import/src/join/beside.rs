@@ -1,0 +1,87 @@
+//! What files that are read together are to each other.
+
+use std::path::Path;
+
+use super::join_plan::{Part, part};
+use crate::instruments::{MEASURED, Opening};
+use crate::pictures::corner_columns::{are_corners, are_readings_of_pictures};
+use crate::pictures::picture_files::NO_CAMERA;
+use crate::table::Table;
+use crate::table::configurations::{advice, is_folder};
+use crate::table::header::HeaderCell;
+use crate::table::mapping::ColumnMap;
+use crate::table::text::Blocks;
+use poecal_model::robot::Robot;
+use poecal_numerics::error::{Error, ErrorKind};
+use poecal_storage::disk::is_file;
+
+/// Whether a file has readings of joints by picture. One that cannot be read is named when it is read.
+pub(crate) fn has_readings_of_pictures(path: &Path, robot: &Robot, map: &ColumnMap) -> bool {
+    // A pipe is read once.
+    if !is_file(path) && !is_folder(path) {
+        return false;
+    }
+    let table = Blocks::open_or_join(path, MEASURED).and_then(|blocks| Table::open(path, blocks, map));
+    table.is_ok_and(|table| are_readings_of_pictures(&table.header, &robot.reading_names(), map))
+}
+
+/// The error of a file that has joint readings alone, or measurements alone, and no other beside it.
+pub(crate) fn alone(error: Error, path: &Path, opening: &Opening<'_>, map: &ColumnMap) -> Error {
+    if error.kind() != ErrorKind::Measurement || !error.message().contains("found no column") {
+        return error;
+    }
+    let (is_lone, found, other) = match part(path, *opening, map).map(|it| it.part) {
+        Ok(Part::Joints) => (true, "joint readings and nothing that was measured", "measurements"),
+        Ok(Part::Measured { .. }) => (false, "measurements and no joint readings", "joint readings"),
+        Ok(Part::Whole) | Err(_) => return error,
+    };
+    let table = opening.blocks(path, MEASURED).and_then(|it| Table::open(path, it, map));
+    let Ok(table) = table else { return error };
+    // Of a file in our form, a column may have another name.
+    let names = opening.robot.reading_names();
+    let is_all = is_lone && table.header.cells.iter().all(|it| names.contains(&it.name) || it.name == "id");
+    if table.is_made() || is_all {
+        let message =
+            format!("found {found}, expected both: name the file of the {other} beside it{}", advice(path));
+        return Error::new(ErrorKind::Measurement, message).in_file(path);
+    }
+    // A column that looks like one of those that are missing may be one, under another name.
+    let header = || table.header.cells.iter();
+    let is_axis = |it: &HeaderCell| {
+        let mut letters = it.name.chars().map(|it| it.to_ascii_lowercase());
+        letters.next().is_some_and(|it| "xyz".contains(it))
+            && !letters.next().is_some_and(char::is_alphanumeric)
+    };
+    let says_it = if is_lone {
+        error.message().contains("for the position") && !header().any(is_axis)
+    } else {
+        error.message().contains("for joint") && !header().any(|it| names.contains(&it.name))
+    };
+    if !says_it {
+        return error;
+    }
+    error.with_more(&format!("or name the file of the {other} beside it"))
+}
+
+/// The error of readings of pictures that are read without a camera, where another file has their corners.
+pub(crate) fn beside(
+    error: Error,
+    path: &Path,
+    paths: &[&Path],
+    (robot, map, without_camera): (&Robot, &ColumnMap, bool),
+) -> Error {
+    // Readings of pictures without a camera are taken for measurements.
+    let has_corners = |other: &&&Path| {
+        let blocks = Blocks::open(other, MEASURED);
+        let table = blocks.and_then(|blocks| Table::open(other, blocks, map));
+        **other != path
+            && is_file(other)
+            && table.is_ok_and(|table| {
+                are_corners(&table.header, &robot.reading_names(), map).is_ok_and(|are_corners| are_corners)
+            })
+    };
+    if without_camera && let Some(corners) = paths.iter().find(has_corners) {
+        return Error::new(ErrorKind::Measurement, NO_CAMERA).in_file(corners);
+    }
+    error
+}

@@ -1,0 +1,65 @@
+//! Whether the nominal robot misses what was joined by so much that it may not belong together.
+
+use super::join_words::mm;
+use poecal_fit::forensics::{DiagnosisKind, DiagnosisOptions, diagnose};
+use poecal_model::measurement::Dataset;
+use poecal_model::robot::Robot;
+
+/// Share of the reach beyond which a diagnosis is asked, and beyond which nothing fits that it does not explain.
+const ODD: f64 = 0.01;
+const DOUBTFUL: f64 = 0.05;
+/// Where to look where a diagnosis finds nothing.
+const LOOK: &str = "look at the units, the signs and the order of joints and measurements";
+
+/// What a diagnosis of mistakes says of what was joined.
+pub(crate) fn diagnosis(robot: &Robot, joined: &Dataset) -> Option<String> {
+    let found = diagnose(robot, joined, &joined.all_rows(), &DiagnosisOptions::default());
+    // Rows that repeat others explain no error.
+    let mut known = found.iter().filter(|it| it.kind != DiagnosisKind::DuplicateRows);
+    known.next().map(|it| it.statement.clone())
+}
+
+/// The same, or where to look.
+pub(crate) fn reason(robot: &Robot, joined: &Dataset) -> String {
+    diagnosis(robot, joined).unwrap_or_else(|| LOOK.to_owned())
+}
+
+/// Whether a robot that misses places by so much fits them no more.
+pub(crate) fn is_doubtful(robot: &Robot, missed_m: f64) -> bool {
+    missed_m > DOUBTFUL * robot.reach_m()
+}
+
+/// The warning of what is missed by more than is usual, with what explains it.
+///
+/// # Errors
+/// What refuses what is missed by more than any robot is off, and is not explained.
+pub(crate) fn warning(
+    robot: &Robot,
+    missed_m: f64,
+    joined: impl FnOnce() -> Dataset,
+    how: &str,
+) -> Result<Option<String>, String> {
+    let is_odd = missed_m > ODD * robot.reach_m();
+    if !is_odd {
+        return Ok(None);
+    }
+    let data = joined();
+    // Errors of directions are no lengths.
+    if data.observations.iter().any(|it| it.measurement.position().is_none()) {
+        return Ok(None);
+    }
+    let share = 100.0 * missed_m / robot.reach_m();
+    let missed = format!(
+        "the nominal robot misses the measurements by {} (median) if they are joined {how}, which is {share:.1} % of its reach",
+        mm(missed_m)
+    );
+    match diagnosis(robot, &data) {
+        Some(statement) => Ok(Some(format!("{missed}: {statement}"))),
+        None if is_doubtful(robot, missed_m) => Err(format!(
+            "found measurements that do not fit the joint readings: {missed}, expected at most {:.0} %: {LOOK}; what does belong together is read as \
+             one table",
+            100.0 * DOUBTFUL
+        )),
+        None => Ok(None),
+    }
+}

@@ -1,0 +1,144 @@
+//! What is kept of files and of how they were joined.
+
+use std::collections::BTreeMap;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::table::understanding::FileUnderstanding;
+use crate::{Join, MeasurementFile};
+
+/// Most pairs that are listed, and most rows without partner.
+pub(crate) const MOST_PAIRS: usize = 2000;
+pub(crate) const MOST_ALONE: usize = 1000;
+
+/// A file as it was read.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct InputEntry {
+    /// Its name, as in `measurements`.
+    pub file: String,
+    /// What the file is; absent of a table in our form.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub form: Option<String>,
+    /// What was understood of one in another form, in a few words: sheet, frame, body, topic, unit.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub understood: Option<String>,
+    /// Its rows, those of lost beams included.
+    pub rows: usize,
+    /// What was taken of it, a number for each quantity: `joint readings`, `points`, `poses` and other measurements.
+    pub taken: BTreeMap<String, usize>,
+    /// Units of its columns.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub units: Vec<String>,
+    /// Lost beams: measurements without a position, which were left out.
+    #[serde(default, skip_serializing_if = "is_none")]
+    pub lost: usize,
+}
+
+/// How a file of measurements was joined with one of joint readings.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct JoinEntry {
+    /// The file of joint readings.
+    pub joints: String,
+    /// The file of measurements.
+    pub measurements: String,
+    /// How rows found each other.
+    pub join: Join,
+    /// Rows of joint readings, or stands of their stream.
+    pub joint_rows: usize,
+    /// Configurations in which was measured, or stands of the stream of measurements.
+    pub measured_rows: usize,
+    /// Number of pairs.
+    pub paired: usize,
+    /// By how much the nominal robot misses the pairs (median), millimetres; absent where they are too few to say.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub missed_mm: Option<f64>,
+    /// Time of the measurements less that of the joint readings, seconds; absent without clocks.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub lag_s: Option<f64>,
+    /// Pairs: number of the row of joint readings, and of the measured configuration, each from 1; at most 2,000.
+    pub pairs: Vec<[usize; 2]>,
+    /// Joint readings at which nothing was measured; at most 1,000, as of the next two.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub unmeasured: Vec<RowEntry>,
+    /// Joint readings at which more than once was measured.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub repeated: Vec<RowEntry>,
+    /// Measured configurations that were left out: they have no joint readings.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub unread: Vec<RowEntry>,
+    /// The robot's motion, of a stream of joint readings.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub robot_motion: Option<MotionEntry>,
+    /// The target's motion, of a stream of measurements, or of single points with times.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub measured_motion: Option<MotionEntry>,
+}
+
+/// A row of a file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+pub struct RowEntry {
+    /// Its number among the rows or stands, from 1.
+    pub number: usize,
+    /// Its line, row of a sheet or message; of a stand that of its first row.
+    pub line: usize,
+}
+
+/// Motion in a stream, by its own clock.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct MotionEntry {
+    /// Its rows.
+    pub rows: usize,
+    /// Time of the first row, seconds; all other times are after it.
+    pub begin_s: f64,
+    /// Time of the last row, seconds.
+    pub end_s: f64,
+    /// Seconds from one speed to the next; zero without speeds.
+    pub step_s: f64,
+    /// Speed of the nominal robot's tip, or of the target that was seen most, over each step, mm/s; null where no row is near.
+    pub speeds_mm_s: Vec<Option<f64>>,
+    /// Begin and end of each stand, seconds; both the same of a single point.
+    pub stands_s: Vec<[f64; 2]>,
+    /// Begin and end of the times without a row, as of lost frames, seconds; the longest 1,000.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub gaps_s: Vec<[f64; 2]>,
+}
+
+fn is_none(count: &usize) -> bool {
+    *count == 0
+}
+
+impl InputEntry {
+    fn of(it: &FileUnderstanding) -> Self {
+        let counts = [("points", it.points), ("poses", it.poses)];
+        let others = it.others.iter().map(|(name, count)| (*name, *count));
+        let mut units: Vec<String> = Vec::new();
+        for unit in it.columns.iter().filter_map(|column| column.unit) {
+            if !units.iter().any(|known| known == unit) {
+                units.push(unit.to_owned());
+            }
+        }
+        InputEntry {
+            file: it.path.display().to_string(),
+            form: it.form.map(str::to_owned),
+            understood: it.understood.clone(),
+            rows: it.rows,
+            taken: counts
+                .into_iter()
+                .chain(others)
+                .filter(|it| it.1 > 0)
+                .map(|(name, count)| (name.to_owned(), count))
+                .collect(),
+            units,
+            lost: it.lost.count,
+        }
+    }
+}
+
+impl MeasurementFile {
+    /// What `calibration.json` says of each file: one that has joint readings and measurements has two entries.
+    #[must_use]
+    pub fn inputs(&self) -> Vec<InputEntry> {
+        self.understood.iter().map(InputEntry::of).collect()
+    }
+}

@@ -1,0 +1,169 @@
+//! Lists of unequal length, and what is said of rows that fit badly or not at all.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::join_doubt;
+use super::join_pairs::{Joined, Pairing, SOME_WRONG};
+use super::join_words::mm;
+use super::no_stands::NoStands;
+use crate::Join;
+use poecal_fit::start::{Agreement, Aligned, Pair};
+use poecal_numerics::error::Result;
+
+/// Times as many rows as the other list that a recording has, which is no list.
+const LONGER: usize = 3;
+/// Error of a pair that is never called wrong, metres.
+const LEAST_WRONG_M: f64 = 1e-3;
+
+impl Pairing<'_> {
+    /// Lists of unequal length, by the errors of the nominal robot.
+    pub(crate) fn by_alignment(&self) -> Result<Joined> {
+        let (joints, shots) = (self.rows.joint_rows(), self.rows.shots().len());
+        if joints > LONGER * shots
+            && let NoStands::Recorded { why, .. } = &self.joints.no_stands
+        {
+            return self.refuse(format!(
+                "found {shots} measured configurations, and {joints} rows of joint readings that follow each other as in a recording, with {why}, \
+                 expected the time of each row in seconds, by which the stands of the robot are found"
+            ));
+        }
+        if shots > LONGER * joints
+            && let Some(NoStands::Recorded { why, .. }) = self.no_stands
+        {
+            return self.refuse(format!(
+                "found {joints} rows of joint readings, and {shots} measurements that follow each other as in a recording, with {why}, expected the \
+                 time of each row in seconds, by which the stands of the robot are found"
+            ));
+        }
+        self.aligned(self.rows.aligned())
+    }
+
+    /// Such lists, with what was found of them.
+    pub(crate) fn aligned(&self, found: Option<Aligned>) -> Result<Joined> {
+        let (joints, shots) = (self.rows.joint_rows(), self.rows.shots().len());
+        let counts = format!("found {shots} measured configurations and {joints} rows of joint readings");
+        let Some(found) = found else {
+            return self.refuse(format!(
+                "{counts}, expected as many, or names in both (a column `id`): nothing shows which belong together"
+            ));
+        };
+        let Aligned { pairs, repeated, unread, unclear, missed_m, .. } = &found;
+        if 2 * pairs.len() < shots.min(joints) {
+            return self.refuse(format!(
+                "{counts}, expected as many, or names in both (a column `id`): only {} of them fit the nominal robot in this order",
+                pairs.len()
+            ));
+        }
+        if !matches!(self.rows.agreement(pairs), Some(Agreement::Right { .. })) {
+            return self.refuse(format!(
+                "{counts}, expected as many, or names in both (a column `id`): no order fits evidently better than others"
+            ));
+        }
+        let mut warnings: Vec<String> =
+            self.refuse_doubtful(*missed_m, pairs, "in their order")?.into_iter().collect();
+        let (own, path) = (self.joints.path.display(), self.path.display());
+        if !repeated.is_empty() {
+            warnings.push(self.repeated(repeated));
+        }
+        if !unread.is_empty() {
+            warnings.push(self.left_out(unread, ["fits", "fit"], "no joint readings"));
+        }
+        if !unclear.is_empty() {
+            let what = "two neighbouring rows of joint readings";
+            warnings.push(self.left_out(unclear, ["fits", "fit"], what));
+        }
+        let note = format!(
+            "{own} and {path} were joined in their order, since they have {joints} and {shots} rows: {} configurations; the nominal robot misses them by \
+             {} (median)",
+            pairs.len(),
+            mm(*missed_m)
+        );
+        let entry = self.entry(Join::Rows, pairs, Some(*missed_m));
+        let unmeasured = found.unmeasured.clone();
+        Ok(Joined { entry, readings: self.readings(pairs), unmeasured, notes: vec![note], warnings })
+    }
+
+    /// The warning of an error that is larger than usual and explained.
+    ///
+    /// # Errors
+    /// Of one that is not, where it is larger than that of any robot.
+    pub(crate) fn refuse_doubtful(&self, missed_m: f64, pairs: &[Pair], how: &str) -> Result<Option<String>> {
+        let joined = || self.rows.session_of(pairs);
+        match join_doubt::warning(self.robot, missed_m, joined, how) {
+            Ok(warning) => {
+                let files = format!("{}, {}", self.joints.path.display(), self.path.display());
+                Ok(warning.map(|it| format!("{files}: {it}")))
+            }
+            Err(message) => self.refuse(message),
+        }
+    }
+
+    /// The warning of pairs that fit far worse than the others, if they are some.
+    pub(crate) fn wrong_pairs(&self, pairs: &[Pair]) -> Option<String> {
+        let (mut wrong, usual_m) = self.rows.wrong(pairs);
+        wrong.retain(|it| it.1 > LEAST_WRONG_M);
+        if wrong.is_empty() || wrong.len() as f64 > SOME_WRONG * pairs.len() as f64 {
+            return None;
+        }
+        let own: Vec<Pair> = wrong.iter().filter_map(|it| pairs.get(it.0)).copied().collect();
+        let farthest = wrong.iter().map(|it| it.1).fold(0.0, f64::max);
+        let shots: Vec<usize> = own.iter().map(|it| it.1).collect();
+        let joints: Vec<usize> = own.iter().map(|it| it.0).collect();
+        Some(format!(
+            "{}: {} fit{} the joint readings of {} far worse than others do theirs, the nominal robot misses {} by up to {}, the others by {} (median): \
+             look at the name and the numbers",
+            self.path.display(),
+            self.shot_lines(&shots),
+            if own.len() == 1 { "s" } else { "" },
+            self.joint_lines(&joints),
+            if own.len() == 1 { "it" } else { "them" },
+            mm(farthest),
+            mm(usual_m)
+        ))
+    }
+
+    /// Rows of joint readings at which nothing was measured.
+    pub(crate) fn unmeasured(&self, pairs: &[Pair]) -> Vec<usize> {
+        let joints: BTreeSet<usize> = pairs.iter().map(|it| it.0).collect();
+        (0..self.rows.joint_rows()).filter(|it| !joints.contains(it)).collect()
+    }
+
+    /// Rows of joint readings at which a target was measured more than once.
+    pub(crate) fn repeated_rows(&self, pairs: &[Pair]) -> Vec<usize> {
+        let (mut first, mut repeated) = (BTreeMap::new(), BTreeSet::new());
+        for (joint, shot) in pairs {
+            for &row in self.rows.shots().get(*shot).into_iter().flatten() {
+                let Some(it) = self.data.observations.get(row as usize) else { continue };
+                let what = it.measurement.function().leading().name();
+                if first.entry((*joint, it.station, it.target, what)).or_insert(*shot) != shot {
+                    repeated.insert(*joint);
+                }
+            }
+        }
+        repeated.into_iter().collect()
+    }
+
+    /// What was measured twice, and what has no partner.
+    pub(crate) fn without_partner(&self, pairs: &[Pair]) -> Vec<String> {
+        let repeated = self.repeated_rows(pairs);
+        let shots: BTreeSet<usize> = pairs.iter().map(|it| it.1).collect();
+        let unread = (0..self.rows.shots().len()).filter(|it| !shots.contains(it)).collect::<Vec<_>>();
+        let mut said = Vec::new();
+        if !repeated.is_empty() {
+            said.push(self.repeated(&repeated));
+        }
+        if !unread.is_empty() {
+            said.push(self.left_out(&unread, ["has", "have"], "no joint readings"));
+        }
+        said
+    }
+
+    fn repeated(&self, joints: &[usize]) -> String {
+        format!("{}: more than once was measured at {}", self.joints.path.display(), self.joint_lines(joints))
+    }
+
+    fn left_out(&self, shots: &[usize], verbs: [&str; 2], what: &str) -> String {
+        let verb = if shots.len() == 1 { verbs[0] } else { verbs[1] };
+        format!("{}: left out {}, which {verb} {what}", self.path.display(), self.shot_lines(shots))
+    }
+}

@@ -1,0 +1,279 @@
+//! Which of the files that are read together have joint readings alone, and which measurements alone.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+
+use super::no_file_for::{BODIES, unused};
+use crate::instruments::{MEASURED, Opened, Opening, OwnTable, RECORDINGS, Recording};
+use crate::messages::are_messages;
+use crate::pictures::corner_columns::{are_corners, are_readings_of_pictures};
+use crate::table::Table;
+use crate::table::column_spec::ColumnSpec;
+use crate::table::configurations::is_folder;
+use crate::table::layout::ColumnLayout;
+use crate::table::mapping::ColumnMap;
+use crate::table::text::Blocks;
+use crate::{Frames, ReadOptions};
+use poecal_model::measurement::{Clock, Measurement};
+use poecal_model::robot::{Controller, ReadingKind, Robot};
+use poecal_numerics::error::{Error, ErrorKind, Result, shown};
+use poecal_storage::disk::{self, is_file};
+use poecal_storage::source::is_standard_input;
+
+/// What a file has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Part {
+    /// Joint readings and nothing that was measured.
+    Joints,
+    /// What was measured, without joint readings; whether it names its targets.
+    Measured { is_named: bool },
+    /// All that belongs together, or something else.
+    Whole,
+}
+
+/// The readings of each line of a file of measurements, from another file.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct ReadingsByLine {
+    pub(crate) lines: BTreeMap<usize, Vec<f64>>,
+    /// What was measured on an average of a line's stand, where lines are those of a stream.
+    pub(crate) means: BTreeMap<usize, Vec<Measurement>>,
+    /// How fast they changed, and when, of lines that were measured in motion.
+    pub(crate) moving: Option<MotionByLine>,
+    /// How they are made of columns.
+    pub(crate) controller: Option<Controller>,
+}
+
+/// Lines that were measured in motion: rates of their readings (rad/s, m/s), and their times from the middle of all, seconds.
+#[derive(Clone, Debug)]
+pub(crate) struct MotionByLine {
+    pub(crate) rows: BTreeMap<usize, (Vec<f64>, f64)>,
+    /// The clock of the instrument.
+    pub(crate) clock: Clock,
+}
+
+/// Files of which some have the joint readings of others.
+pub(crate) struct Plan<'p> {
+    pub(crate) files: Vec<Planned<'p>>,
+}
+
+/// A file, and what it has.
+pub(crate) struct Planned<'p> {
+    pub(crate) path: &'p Path,
+    pub(crate) part: Part,
+    /// How one without readings is read.
+    pub(crate) map: ColumnMap,
+    /// The table, of a file in another form.
+    table: Option<OwnTable>,
+}
+
+impl<'p> Planned<'p> {
+    /// The tables of two sets of coordinates, of a file that has them.
+    pub(crate) fn sets(&self) -> Option<[OwnTable; 2]> {
+        self.table.as_ref()?.sets()
+    }
+
+    /// The same with another table.
+    pub(crate) fn with_table(&mut self, table: OwnTable) {
+        self.table = Some(table);
+    }
+
+    /// Its blocks.
+    pub(crate) fn blocks(&self, opening: Opening<'_>, expected: &'p str) -> Result<Blocks<'p>> {
+        match &self.table {
+            Some(table) => Ok(table.blocks(self.path, expected)),
+            None => opening.blocks(self.path, expected),
+        }
+    }
+}
+
+impl<'p> Plan<'p> {
+    /// The plan of files, if there are some to join.
+    pub(crate) fn of(
+        paths: &[&'p Path],
+        robot: &Robot,
+        options: &ReadOptions,
+        map: &ColumnMap,
+    ) -> Result<Option<Self>> {
+        let opening = Opening { robot, options };
+        let recordings: Vec<Option<Recording>> =
+            paths.iter().map(|path| opening.recording(path)).collect::<Result<_>>()?;
+        let first = paths.iter().zip(&recordings).find_map(|(path, it)| Some((*path, it.as_ref()?)));
+        if paths.len() < 2 && first.is_none() {
+            return Ok(None);
+        }
+        let (files, neither) = sort_parts(paths.iter().copied().zip(&recordings), opening, map)?;
+        let measured = files.iter().filter(|it| matches!(it.1, Part::Measured { .. })).count();
+        let joints = files.iter().filter(|it| it.1 == Part::Joints).count();
+        if let Some((path, recording)) = first {
+            refuse_other_topics(path, &recordings, options)?;
+            let has_bodies = recordings.iter().flatten().any(Recording::names_bodies)
+                || files.iter().any(|it| it.2.as_ref().is_some_and(|it| RECORDINGS.contains(&it.title())));
+            if options.body.is_some() && !has_bodies {
+                return Err(unused("--body", BODIES));
+            }
+            if joints == 0 || measured == 0 {
+                return Err(recording.error(path, joints == 0));
+            }
+        }
+        // Beside a file that has one of both, the error is that of the first that has neither.
+        if let Some(Neither { as_joints, as_measured }) = neither.into_iter().next()
+            && joints + measured > 0
+        {
+            return Err(if joints == 0 { as_joints } else { as_measured });
+        }
+        if joints == 0 || measured == 0 {
+            return Ok(None);
+        }
+        let several = joints == 1 && measured > 1;
+        // Files whose frames differ are of several places of the instrument.
+        let frames: BTreeSet<&str> = (files.iter())
+            .filter(|it| several && matches!(it.1, Part::Measured { .. }))
+            .filter_map(|it| it.2.as_ref()?.frame())
+            .collect();
+        let is_by_frames = frames.len() > 1 && options.frames == Frames::Common;
+        let planned = |(path, part, table): FilePart<'p>| {
+            let mut map = without_joints(map, robot);
+            // Several files that were measured at the same configurations are of several targets, or of several instruments.
+            let is_unnamed = part == (Part::Measured { is_named: false });
+            if several && is_unnamed && !is_by_frames && options.frames == Frames::Common {
+                map.target_name = path.file_stem().map(|it| it.to_string_lossy().into_owned());
+            }
+            let table = if is_by_frames { table.map(OwnTable::by_frame) } else { table };
+            Planned { path, part, map, table }
+        };
+        Ok(Some(Plan { files: files.into_iter().map(planned).collect() }))
+    }
+}
+
+/// Refuses a topic that was asked for and that no file has.
+fn refuse_other_topics(path: &Path, recordings: &[Option<Recording>], options: &ReadOptions) -> Result<()> {
+    for (at, name) in options.topics.iter().enumerate() {
+        let found = recordings.iter().flatten().filter_map(|it| it.has_topic(at)).max();
+        if found == Some(true) {
+            continue;
+        }
+        let contents: Vec<&str> = recordings.iter().flatten().map(Recording::contents).collect();
+        let contents = contents.join(", ");
+        let name = shown(name);
+        let message = match found {
+            None => format!("found no topic `{name}`, expected one of {contents}"),
+            Some(_) => format!(
+                "found the topic `{name}`, which has neither joint readings nor measurements, expected another one of {contents}"
+            ),
+        };
+        return Err(ErrorKind::Option.error(message).in_file(path));
+    }
+    Ok(())
+}
+
+/// What a file has, with its table if it is in another form.
+pub(crate) struct Found {
+    pub(crate) part: Part,
+    table: Option<OwnTable>,
+    /// Why it has neither joint readings nor measurements.
+    why: Option<Neither>,
+}
+
+/// Why a file has no joint readings, and no measurements.
+struct Neither {
+    as_joints: Error,
+    as_measured: Error,
+}
+
+impl Found {
+    fn whole() -> Self {
+        Found { part: Part::Whole, table: None, why: None }
+    }
+
+    /// Of a file that cannot be read.
+    fn unreadable(error: &Error) -> Self {
+        Found { why: Some(Neither { as_joints: error.clone(), as_measured: error.clone() }), ..Self::whole() }
+    }
+}
+
+/// What a file has; one that is no table is named when it is read, or where another has joint readings or measurements alone.
+///
+/// # Errors
+/// Of a file in another form that cannot be one.
+pub(crate) fn part(path: &Path, opening: Opening<'_>, map: &ColumnMap) -> Result<Found> {
+    // A pipe is read once.
+    if !is_file(path) {
+        let is_pipe = is_standard_input(path) || !is_folder(path) && disk::here().follow(path).is_ok();
+        let error = if is_pipe { None } else { opening.opened(path, MEASURED).err() };
+        return Ok(error.map_or_else(Found::whole, |it| Found::unreadable(&it)));
+    }
+    let opened = opening.opened(path, MEASURED)?;
+    let table = if let Opened::Made(table) = &opened { Some((**table).clone()) } else { None };
+    let found = part_of(path, opened.blocks(path, MEASURED), opening, map);
+    Ok(Found { table, ..found.unwrap_or_else(|error| Found::unreadable(&error)) })
+}
+
+fn part_of<'p>(
+    path: &'p Path,
+    mut blocks: Blocks<'p>,
+    opening: Opening<'_>,
+    map: &ColumnMap,
+) -> Result<Found> {
+    let Opening { robot, options } = opening;
+    blocks.begin()?;
+    if are_messages(path, blocks.text())? {
+        return Ok(Found::whole());
+    }
+    let table = Table::open(path, blocks, map)?;
+    let names = robot.reading_names();
+    if are_corners(&table.header, &names, map)?
+        || !options.cameras.is_empty() && are_readings_of_pictures(&table.header, &names, map)
+    {
+        return Ok(Found::whole());
+    }
+    let joints = ColumnLayout::joints(&table.header, robot, options, map);
+    let measured = ColumnLayout::new(&table.header, robot, options, &without_joints(map, robot));
+    let (part, why) = match (joints, measured) {
+        (Ok(_), Err(_)) => (Part::Joints, None),
+        (Err(_), Ok(layout)) => {
+            let is_named =
+                layout.target_column.is_some() || layout.targets.len() > 1 || map.target_name.is_some();
+            (Part::Measured { is_named }, None)
+        }
+        (Err(as_joints), Err(as_measured)) => (Part::Whole, Some(Neither { as_joints, as_measured })),
+        (Ok(_), Ok(_)) => (Part::Whole, None),
+    };
+    Ok(Found { part, table: None, why })
+}
+
+/// A mapping of a file that has no readings: those of joints are numbers that mean nothing.
+fn without_joints(map: &ColumnMap, robot: &Robot) -> ColumnMap {
+    let names = robot.reading_names();
+    let joints = names.into_iter().filter(|name| robot.reading_kind(name) != ReadingKind::Factor);
+    let zero = || ColumnSpec { value: Some(0.0), ..ColumnSpec::default() };
+    let mut own = map.clone();
+    (own.joints, own.third_axis) = (joints.map(|name| (name, zero())).collect(), None);
+    own
+}
+
+/// A file with what it has, and its table if it is in another form.
+type FilePart<'p> = (&'p Path, Part, Option<OwnTable>);
+
+/// Sorts files by what they have; with why some have neither joint readings nor measurements.
+fn sort_parts<'p, 'r>(
+    paths: impl Iterator<Item = (&'p Path, &'r Option<Recording>)>,
+    opening: Opening<'_>,
+    map: &ColumnMap,
+) -> Result<(Vec<FilePart<'p>>, Vec<Neither>)> {
+    let mut files: Vec<FilePart<'p>> = Vec::new();
+    let mut neither = Vec::new();
+    for (path, recording) in paths {
+        let Some(recording) = recording else {
+            let Found { part, table, why } = part(path, opening, map)?;
+            neither.extend(why);
+            files.push((path, part, table));
+            continue;
+        };
+        for (is_joints, table) in recording.tables() {
+            let is_named = map.target_name.is_some();
+            let part = if is_joints { Part::Joints } else { Part::Measured { is_named } };
+            files.push((path, part, Some(table)));
+        }
+    }
+    Ok((files, neither))
+}

@@ -1,0 +1,56 @@
+//! What is said of pairs.
+
+use poecal_fit::start::Order;
+use poecal_numerics::error::first_few;
+
+/// A length in words.
+pub(crate) fn mm(metres: f64) -> String {
+    format!("{:.3} mm", 1e3 * metres)
+}
+
+/// What is said of lags at which measurements fit alike, the best first.
+pub(crate) fn several_lags(listed: &[String], best_s: f64) -> String {
+    format!(
+        "found measurements that fit the joint readings at several lags of the clocks alike, {}, as of a program that repeats itself, expected one: state it by --lag, like --lag {best_s:.1}s+-0.5s",
+        first_few(listed)
+    )
+}
+
+/// Configurations in words.
+pub(crate) fn counted(configurations: usize) -> String {
+    if configurations == 1 {
+        "one configuration".to_owned()
+    } else {
+        format!("{configurations} configurations")
+    }
+}
+
+/// Lines in words.
+pub(crate) fn numbered(lines: &[String]) -> String {
+    numbered_as("line", lines)
+}
+
+/// The same as rows of a sheet.
+pub(crate) fn numbered_as(word: &str, lines: &[String]) -> String {
+    format!("{word}{} {}", if lines.len() == 1 { "" } else { "s" }, first_few(lines))
+}
+
+/// An order in words.
+pub(crate) fn words(order: Order) -> String {
+    let rows = |by: usize| if by == 1 { "one row".to_owned() } else { format!("{by} rows") };
+    match order {
+        Order::MeasuredLater(by) => format!("with the measurements {} later", rows(by)),
+        Order::JointsLater(by) => format!("with the joint readings {} later", rows(by)),
+        Order::Reversed => "in reverse order".to_owned(),
+    }
+}
+
+/// What to do where an order fits better.
+pub(crate) fn advice(order: Order) -> String {
+    let rows = |by: usize| if by == 1 { "the first row".to_owned() } else { format!("the first {by} rows") };
+    match order {
+        Order::MeasuredLater(by) => format!("remove {} of the joint readings", rows(by)),
+        Order::JointsLater(by) => format!("remove {} of the measurements", rows(by)),
+        Order::Reversed => "turn one of the files round".to_owned(),
+    }
+}

@@ -1,0 +1,41 @@
+//! Why rows that follow each other as in a recording have no stands.
+
+use poecal_fit::start::NoStream;
+
+/// Why rows have no stands.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum NoStands {
+    /// They are a list, or have other measurements than places.
+    Listed,
+    /// They follow each other as in a recording, whose times cannot be used: what is wrong with these, and the line whose time is before the one above it.
+    Recorded { why: String, back: Option<usize> },
+}
+
+impl NoStands {
+    /// Of what is wrong with the times of rows with these lines.
+    pub(crate) fn of(why: NoStream, times: &[f64], lines: &[usize]) -> Self {
+        let line = |row: usize| lines.get(row).copied().unwrap_or_default();
+        let back = if let NoStream::Back(row) = why { Some(line(row)) } else { None };
+        let why = match why {
+            NoStream::NoTime(_) if times.iter().all(|it| it.is_nan()) => "no column of times".to_owned(),
+            NoStream::NoTime(row) => format!("no time in line {}", line(row)),
+            NoStream::Slow(0.0) => {
+                "times that are the same in most rows (write them with fractions of a second)".to_owned()
+            }
+            NoStream::Slow(step_s) => {
+                let units = [("ms", 1e-3), ("us", 1e-6), ("ns", 1e-9)];
+                let unit = units.into_iter().find(|it| (1e-4..0.25).contains(&(step_s * it.1)));
+                let advice = unit.map_or_else(
+                    || "a recording has four rows a second or more".to_owned(),
+                    |(unit, _)| format!("if they are {unit}, write `time[{unit}]` in the header"),
+                );
+                format!("times {step_s} s apart ({advice})")
+            }
+            NoStream::Back(row) => {
+                let time = |row: usize| times.get(row).copied().unwrap_or(f64::NAN);
+                format!("a time that goes back, from {} s to {} s", time(row.saturating_sub(1)), time(row))
+            }
+        };
+        NoStands::Recorded { why, back }
+    }
+}

@@ -1,0 +1,213 @@
+//! Streams of joint readings and of measurements: their stands.
+
+use std::collections::BTreeMap;
+
+use nalgebra::{Matrix3, Vector3};
+
+use super::join_pairs::JointRows;
+use super::join_words::numbered;
+use super::no_stands::NoStands;
+use super::stand_means::{Spread, kept, kept_values};
+use crate::table::Row;
+use crate::table::layout::ColumnLayout;
+use poecal_arm::lie::{Pose, rotation};
+use poecal_fit::start::{Span, Stand, Stream, StreamChannels, mean_rotation};
+use poecal_model::measurement::{Dataset, Measurement, Observation};
+
+/// Changes that are none: of a joint (rad, m), of a position (m), and of an orientation (rad).
+const STILL_JOINT: f64 = 5e-5;
+/// Largest last digit of readings that counts as no change (rad, m).
+const COARSEST_JOINT: f64 = 1e-3;
+const STILL_PLACE_M: f64 = 3e-5;
+const STILL_TURN: f64 = 1e-4;
+
+/// The time of a row, seconds; NaN if it has none.
+pub(crate) fn time_of(row: &Row<'_>, layout: &ColumnLayout) -> f64 {
+    let Some((column, seconds)) = layout.time else { return f64::NAN };
+    let text = row.cells.get(column).map_or("", |cell| cell.raw).trim_start_matches('\'');
+    let value = if text.contains('.') { text.parse::<f64>() } else { text.replace(',', ".").parse() };
+    value.map_or(f64::NAN, |it| it * seconds)
+}
+
+/// Stands of a stream of joint readings, as the rows that they are.
+///
+/// # Errors
+/// [`NoStands`].
+pub(crate) fn stands_of_joints(rows: &JointRows, times: &[f64]) -> Result<JointRows, NoStands> {
+    let width = rows.turns.len();
+    let channel = |at: usize| rows.readings.iter().skip(at).step_by(width.max(1)).copied().collect();
+    let channels: Vec<Vec<f64>> = (0..width).map(channel).collect();
+    let alone = |values: &Vec<f64>| StreamChannels {
+        values: vec![values.clone()],
+        freedom: 1,
+        floor: STILL_JOINT.max(digit(values).min(COARSEST_JOINT)),
+    };
+    let floors: Vec<f64> = channels.iter().map(|it| alone(it).floor).collect();
+    let stream = dense(times, channels.iter().map(alone).collect(), &rows.lines)?;
+    let stands = stream.stands();
+    let mean = |stand: &Stand| {
+        let of = |(channel, floor): (&Vec<f64>, &f64)| {
+            let own = kept_values(channel.get(stand.rows.clone()).unwrap_or_default(), *floor);
+            own.iter().sum::<f64>() / own.len().max(1) as f64
+        };
+        channels.iter().zip(&floors).map(of).collect::<Vec<f64>>()
+    };
+    Ok(JointRows {
+        readings: stands.iter().flat_map(mean).collect(),
+        ids: Vec::new(),
+        lines: stands.iter().filter_map(|it| rows.lines.get(it.rows.start)).copied().collect(),
+        spans: Some(stands.iter().map(|it| it.span_s).collect()),
+        ..rows.clone()
+    })
+}
+
+/// The last digit of readings: the smallest change that is one.
+fn digit(values: &[f64]) -> f64 {
+    let changes = values.windows(2).map(|it| (it[1] - it[0]).abs()).filter(|it| *it > 1e-9);
+    changes.min_by(f64::total_cmp).unwrap_or_default()
+}
+
+/// A stream, if rows of these lines are one.
+fn dense(times: &[f64], channels: Vec<StreamChannels>, lines: &[usize]) -> Result<Stream, NoStands> {
+    let own = if times.len() == lines.len() { times.to_vec() } else { vec![f64::NAN; lines.len()] };
+    let stream = Stream::new(own, channels);
+    if !stream.is_smooth() {
+        return Err(NoStands::Listed);
+    }
+    match stream.no_stream() {
+        Some(why) => Err(NoStands::of(why, times, lines)),
+        None => Ok(stream),
+    }
+}
+
+/// The sum of the small turns from one orientation to the next, rad. Its parts have the same noise at every orientation, which those of a matrix
+/// do not have.
+#[derive(Clone, Debug, Default)]
+struct Turned {
+    last: Option<Matrix3<f64>>,
+    sum: Vector3<f64>,
+}
+
+impl Turned {
+    /// The sum up to the next orientation.
+    fn after(&mut self, next: &Matrix3<f64>) -> Vector3<f64> {
+        if let Some(last) = self.last.replace(*next) {
+            self.sum += rotation::log(&(next * last.transpose()));
+        }
+        self.sum
+    }
+}
+
+/// Stands of a stream of measurements: a row each, with the mean of each target, at the line of their first row.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct MeasuredStands {
+    /// The stands, as a file of measurements would have them.
+    pub(crate) data: Dataset,
+    pub(crate) spans: Vec<Span>,
+    /// Of each line, what was measured on an average, in the order of the file.
+    pub(crate) means: BTreeMap<usize, Vec<Measurement>>,
+    /// Root mean square of how single rows scatter about these, metres.
+    pub(crate) scatter_m: f64,
+    /// What should be looked at, a sentence each.
+    pub(crate) warnings: Vec<String>,
+}
+
+/// The stands of measurements with these times.
+///
+/// # Errors
+/// [`NoStands`].
+pub(crate) fn stands_of_measured(data: &Dataset, times: &[f64]) -> Result<MeasuredStands, NoStands> {
+    // The target that was seen most says when nothing moves.
+    let most = data.most_seen_target().ok_or(NoStands::Listed)?;
+    let rows: Vec<usize> =
+        (0..data.len()).filter(|at| data.observations.get(*at).is_some_and(|it| it.target == most)).collect();
+    let own: Vec<&Observation> = rows.iter().filter_map(|at| data.observations.get(*at)).collect();
+    if own.iter().any(|it| it.measurement.position().is_none()) {
+        return Err(NoStands::Listed);
+    }
+    let stream = stream_of_places(&own, (&rows, times))?;
+    let mut found =
+        MeasuredStands { data: Dataset::new(data.reading_names().to_vec()), ..MeasuredStands::default() };
+    (found.data.targets, found.data.stations) = (data.targets.clone(), data.stations.clone());
+    let (mut spreads, mut starts) = (Vec::new(), Vec::new());
+    for stand in stream.stands() {
+        let (Some(&first), Some(&last)) = (rows.get(stand.rows.start), rows.get(stand.rows.end - 1)) else {
+            continue;
+        };
+        let seen: Vec<&Observation> =
+            data.observations.get(first..=last).unwrap_or_default().iter().collect();
+        // The line that has most targets stands for all.
+        let mut by_line: BTreeMap<u32, Vec<&Observation>> = BTreeMap::new();
+        for it in &seen {
+            by_line.entry(it.source.line).or_default().push(it);
+        }
+        let Some((line, chosen)) = by_line.iter().max_by_key(|it| (it.1.len(), std::cmp::Reverse(*it.0)))
+        else {
+            continue;
+        };
+        let mut means = Vec::with_capacity(chosen.len());
+        let mut spread = Spread::default();
+        for of in chosen {
+            let same: Vec<&Measurement> =
+                seen.iter().filter(|it| it.target == of.target).map(|it| &it.measurement).collect();
+            let mean = mean_of(&same, &mut spread);
+            let averaged = Observation { measurement: mean, ..**of };
+            let nothing = vec![0.0; data.reading_names().len()];
+            if found.data.push_observation(&nothing, averaged).is_err() {
+                return Err(NoStands::Listed);
+            }
+            found.data.ids.push(found.spans.len().to_string());
+            means.push(mean);
+        }
+        found.spans.push(stand.span_s);
+        found.means.insert(*line as usize, means);
+        starts.push(format!("{line} ({:.2} s)", stand.span_s.0));
+        spreads.push(spread);
+    }
+    found.scatter_m = Spread::of_all(&spreads);
+    found.warnings = Spread::warnings(&spreads, |some| {
+        numbered(&some.iter().filter_map(|at| starts.get(*at)).cloned().collect::<Vec<_>>())
+    });
+    Ok(found)
+}
+
+/// The stream of a target's places and, where all rows have one, its orientation.
+fn stream_of_places(own: &[&Observation], (rows, times): (&[usize], &[f64])) -> Result<Stream, NoStands> {
+    let is_posed = own.iter().all(|it| it.measurement.sees_orientation());
+    let mut turned = Turned::default();
+    let mut numbers = |it: &&Observation| -> Vec<f64> {
+        let place = it.measurement.position().unwrap_or_default();
+        let turn = it.measurement.orientation().filter(|_| is_posed).map(|it| turned.after(&it));
+        place.iter().copied().chain(turn.iter().flat_map(|it| it.iter().copied())).collect()
+    };
+    let all: Vec<Vec<f64>> = own.iter().map(&mut numbers).collect();
+    let width = all.first().map_or(0, Vec::len);
+    let channel = |at: usize| -> Vec<f64> { all.iter().filter_map(|it| it.get(at)).copied().collect() };
+    let group = |range: std::ops::Range<usize>, floor: f64| StreamChannels {
+        values: range.map(channel).collect(),
+        freedom: 3,
+        floor,
+    };
+    let mut channels = vec![group(0..3, STILL_PLACE_M)];
+    channels.extend((width > 3).then(|| group(3..width, STILL_TURN)));
+    let own_times: Vec<f64> = rows.iter().filter_map(|at| times.get(*at)).copied().collect();
+    let lines: Vec<usize> = own.iter().map(|it| it.source.line as usize).collect();
+    dense(&own_times, channels, &lines)
+}
+
+/// The mean of measurements of one target, without those that are far from the others.
+fn mean_of(all: &[&Measurement], spread: &mut Spread) -> Measurement {
+    let all: Vec<(Vector3<f64>, Option<Matrix3<f64>>)> =
+        all.iter().filter_map(|it| Some((it.position()?, it.orientation()))).collect();
+    let places: Vec<Vector3<f64>> = all.iter().map(|it| it.0).collect();
+    let is_kept = kept(&places, STILL_PLACE_M);
+    let own = || all.iter().zip(&is_kept).filter(|it| *it.1).map(|it| it.0);
+    let mean = own().map(|it| it.0).sum::<Vector3<f64>>() / own().count().max(1) as f64;
+    spread.add(&places, &is_kept, &mean);
+    let turns: Vec<Matrix3<f64>> = own().filter_map(|it| it.1).collect();
+    if turns.len() == own().count() && !turns.is_empty() {
+        Measurement::of_pose(&Pose::new(mean_rotation(turns.into_iter()), mean))
+    } else {
+        Measurement::point(mean)
+    }
+}

@@ -1,0 +1,257 @@
+//! Measurement files: CSV with one row per configuration and target (docs/file-formats.md, "Measurements").
+//!
+//! Text becomes lines (`text`) and cells (`cells`), a table with places for messages (`table`), columns with a meaning and a unit
+//! (`layout` and `builder`, from header, mapping and robot), numbers in SI (`inputs`), without those of lost beams (`lost`), and at
+//! last measurements (`row`, [`read()`]), which are judged for their scale (`scale`, `spread`, `turns`).
+//!
+//! A part of [poecal](https://docs.rs/poecal): its interface follows the needs of the other parts and promises nothing by itself.
+
+#![forbid(unsafe_code)]
+
+pub(crate) mod checks;
+pub(crate) mod guess;
+pub(crate) mod instruments;
+pub(crate) mod join;
+pub(crate) mod messages;
+pub(crate) mod pictures;
+pub(crate) mod poses;
+pub(crate) mod read;
+pub mod stored_pictures;
+pub(crate) mod table;
+pub(crate) mod write;
+
+pub use crate::checks::scale::{
+    LARGEST_OTHERWISE as LARGEST_ANGLE_RAD, REACHES as MOST_REACHES, SHARE as WRONG_UNIT_SHARE,
+};
+pub use crate::join::join_entry::{InputEntry, JoinEntry, MotionEntry, RowEntry};
+pub use crate::join::witness::to_measure_again;
+pub use crate::pictures::board_files::{BoardOfFile, board_of_file};
+pub use crate::pictures::boards::read_boards;
+pub use crate::pictures::cameras::{camera_file, read_cameras};
+pub use crate::poses::pose_columns::PoseUnits;
+pub use crate::poses::pose_lists::{FlangePoses, PosePairs, PoseSource, read_flange_poses, read_pose_pairs};
+pub use crate::poses::pose_table::pose_table;
+pub use crate::read::joints::{JointsTable, parse_joints, read_joints};
+pub use crate::table::cells::{Cell, Separator, split};
+pub use crate::table::fit_where::FitWhere;
+pub use crate::table::instrument_noise::InstrumentNoise;
+pub use crate::table::lost::LostBeams;
+pub use crate::table::mapping::ColumnMap;
+pub use crate::table::number::DecimalSign;
+pub use crate::table::socket_distance::SocketDistances;
+pub use crate::table::understanding::{ColumnUnderstanding, FileUnderstanding};
+pub use crate::write::growing::{GrowingFile, News};
+pub use crate::write::imported::imported_table;
+pub use crate::write::rewritten::{JointRow, RewrittenTable, rewrite_joints};
+pub use crate::write::template::{plan, planned_table, template};
+pub use guess::{ColumnGuess, FoundColumn, MappedChoice, MappedField, guess_columns};
+pub use poecal_numerics::named_unit::{NamedUnit, UnitSource};
+pub use poecal_storage::numbers::LARGEST_NUMBER;
+pub use read::{parse, read};
+pub use write::text;
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use poecal_model::camera::{Board, Camera};
+use poecal_model::measurement::Dataset;
+use poecal_model::robot::Controller;
+use poecal_numerics::error::Result;
+
+/// Options for reading measurement files.
+///
+/// ```
+/// use poecal_import::ReadOptions;
+/// let options = ReadOptions { fit_where: Some("stage=1,2".parse()?), ..ReadOptions::default() };
+/// assert!(options.mapping.is_none());
+/// # Ok::<(), poecal_numerics::error::Error>(())
+/// ```
+#[derive(Clone, Debug, Default)]
+pub struct ReadOptions {
+    /// Mapping of columns with other names than ours; applies to every file.
+    pub mapping: Option<ColumnMap>,
+    /// How the joint readings are made of columns, as the calibration of this robot kept it, for files that have these columns; a mapping with
+    /// joints precedes it.
+    pub controller: Option<Controller>,
+    /// Training rows; precedes the `set` column and the mapping's `set`.
+    pub fit_where: Option<FitWhere>,
+    /// Whether sets are ignored ([`ReadOptions::fit_where`], the mapping's `set`, the `set` column), as for files that only judge a
+    /// calibration.
+    pub ignore_sets: bool,
+    /// Whether a lost beam, an empty or zero position, is an error; otherwise it is omitted and counted in a warning.
+    pub strict: bool,
+    /// Rows with a common device frame.
+    pub frames: Frames,
+    /// How joint readings and measurements in two files find each other; found if it is not stated.
+    pub join: Option<Join>,
+    /// The lag of the clocks of two streams, if it is known.
+    pub lag: Option<Lag>,
+    /// The sheet of workbooks; that which holds a table if it is not stated.
+    pub sheet: Option<String>,
+    /// The body, marker or tool of recordings; that which moves if it is not stated.
+    pub body: Option<String>,
+    /// Topics of bags, with or without the stroke that their names begin with; the only ones that can be meant if they are not stated.
+    pub topics: Vec<String>,
+    /// Bags whose messages were read from elsewhere: a file of these is not opened.
+    pub bags: Vec<GivenBag>,
+    /// Known distances between the sockets of a place.
+    pub socket_distances: Option<SocketDistances>,
+    /// What rows with a `plane` are that do not say it in `contact`.
+    pub contact: PlaneContact,
+    /// Cameras that saw corners in pixels.
+    pub cameras: Vec<Camera>,
+    /// The boards or solids of these corners.
+    pub boards: Vec<Board>,
+    /// Noise of instruments that depends on the distance, for rows that state none.
+    pub instrument_noise: Vec<InstrumentNoise>,
+    /// What was understood of files of boards, a sentence each, for the warnings.
+    pub said: Vec<String>,
+}
+
+/// A bag that was read from a file in another form, as the Python package reads `.db3`.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct GivenBag {
+    /// The file, as it is named among those that are read.
+    pub path: PathBuf,
+    /// Its messages as MCAP.
+    pub mcap: Arc<[u8]>,
+    /// SHA-256 of the file.
+    pub sha256: String,
+}
+
+impl ReadOptions {
+    /// States the units of columns that state none, in words like `mm`, `deg` or `mm,deg`; those of the mapping precede.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Unit`](poecal_numerics::error::ErrorKind::Unit) of an unknown unit, or of two of one kind.
+    pub fn state_units(&mut self, words: &str) -> Result<()> {
+        self.mapping.get_or_insert_default().state_units(words)
+    }
+
+    /// Adds the boards of a file or of words ([`read_boards`]), with what was understood of them.
+    ///
+    /// # Errors
+    /// As [`read_boards`].
+    pub fn add_boards(&mut self, typed: &str) -> Result<()> {
+        self.boards.extend(read_boards(typed)?);
+        self.said.extend(board_of_file(typed)?.map(|board| board.said));
+        Ok(())
+    }
+}
+
+/// How a target touches a plane.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum PlaneContact {
+    /// By a point: a height.
+    #[default]
+    Point,
+    /// By a face: a height and two tilts.
+    Flush,
+}
+
+impl PlaneContact {
+    /// Its word in the column `contact`.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            PlaneContact::Point => "point",
+            PlaneContact::Flush => "flush",
+        }
+    }
+}
+
+/// How the rows of a file of joint readings and of one of measurements find each other.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum Join {
+    /// By the names of their rows.
+    Name,
+    /// By their order.
+    Rows,
+    /// By their times, each file with a clock of its own: at the stands of the robot.
+    Time,
+    /// By their times, each file with a clock of its own, while the robot moves: lag and drift of the clocks are unknowns of the fit.
+    Motion,
+}
+
+/// The lag of two clocks: the time of measurements less that of joint readings.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Lag {
+    /// The lag, seconds.
+    pub lag_s: f64,
+    /// How far it may be off, seconds.
+    pub off_s: f64,
+}
+
+/// How far a lag may be off that does not say it, seconds.
+const LAG_OFF_S: f64 = 0.5;
+
+impl std::str::FromStr for Lag {
+    type Err = poecal_numerics::error::Error;
+
+    /// From `12s`, or `12s+-2s`.
+    fn from_str(text: &str) -> Result<Self> {
+        let seconds =
+            |word: &str| word.trim().strip_suffix('s')?.trim().parse().ok().filter(|it: &f64| it.is_finite());
+        let (lag, off) = text.split_once("+-").map_or((text, None), |(lag, off)| (lag, Some(off)));
+        let found = seconds(lag).zip(off.map_or(Some(LAG_OFF_S), seconds)).filter(|it| it.1 > 0.0);
+        let Some((lag_s, off_s)) = found else {
+            return poecal_numerics::error::ErrorKind::Option
+                .refuse(format!("found the lag `{text}`, expected seconds, like 12s or 12s+-2s"));
+        };
+        Ok(Lag { lag_s, off_s })
+    }
+}
+
+/// Rows with a common device frame.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Frames {
+    /// All rows, or those of one name in the column `instrument`.
+    #[default]
+    Common,
+    /// Those of a file.
+    PerFile,
+}
+
+/// Contents of measurement files, and how they were read.
+///
+/// ```
+/// use nalgebra::Vector3;
+/// use poecal_import;
+/// use poecal_import::ReadOptions;
+/// use poecal_arm::lie::{Pose, Screw};
+/// use poecal_model::robot::{Joint, Robot};
+/// let joint = Joint::revolute("joint1", Screw::revolute(&Vector3::z(), &Vector3::zeros()));
+/// let robot = Robot::new("one_axis", vec![joint], Pose::from_translation(Vector3::x()))?;
+/// let path = std::env::temp_dir().join("poecal_measurement_file_example.csv");
+/// # let write = |text: &str| std::fs::write(&path, text).unwrap();
+/// write("joint1[deg],x[mm],y[mm],z[mm]\n90,0,1000,0\n");
+/// let file = measurements::read(&[&path], &robot, &ReadOptions::default())?;
+/// # std::fs::remove_file(&path).unwrap();
+/// assert_eq!(file.data.readings(0), [std::f64::consts::FRAC_PI_2]);
+/// assert_eq!(file.understood[0].columns[1].unit, Some("mm"));
+/// # Ok::<(), poecal_numerics::error::Error>(())
+/// ```
+#[derive(Clone, Debug, Default)]
+pub struct MeasurementFile {
+    /// The rows of all files, in order.
+    pub data: Dataset,
+    /// How each file was read.
+    pub understood: Vec<FileUnderstanding>,
+    /// SHA-256 of each file by its name, of the bytes that were read.
+    pub sha256: BTreeMap<String, String>,
+    /// What was found in the rows and is nothing to be looked after, a sentence each.
+    pub notes: Vec<String>,
+    /// Warnings, a sentence each.
+    pub warnings: Vec<String>,
+    /// How files of joint readings and of measurements were joined, if some were.
+    pub join: Option<Join>,
+    /// Each join of two files, as `calibration.json` has it.
+    pub joins: Vec<JoinEntry>,
+    /// Whether angles of joints that state no unit were taken for degrees.
+    pub is_in_degrees: bool,
+}

@@ -1,0 +1,237 @@
+//! Boards as Kalibr, industrial_calibration and OpenCV state them, in YAML or XML, in the words of `poecal detect`.
+
+use std::path::Path;
+
+use roxmltree::Document;
+
+use poecal_numerics::error::{Error, ErrorKind, Result};
+use poecal_storage::text_of;
+use poecal_storage::yaml::{Leaf, leaves};
+
+/// What such a file is.
+const EXPECTED: &str = "a board: YAML of Kalibr (target_type, …) or industrial_calibration (target_finder), or settings of OpenCV's calibration \
+                        (BoardSize_Width, …)";
+/// Endings of such files.
+const ENDINGS: [&str; 3] = ["yaml", "yml", "xml"];
+/// Sides below this are metres in OpenCV's settings, which state no unit, others millimetres.
+const LEAST_MM: f64 = 1.0;
+/// Markers of industrial_calibration where it states none.
+const USUAL_MARKERS: &str = "DICT_6X6_250";
+/// Sets of markers in the order in which OpenCV numbers them.
+const DICTIONARIES: [&str; 21] = [
+    "DICT_4X4_50",
+    "DICT_4X4_100",
+    "DICT_4X4_250",
+    "DICT_4X4_1000",
+    "DICT_5X5_50",
+    "DICT_5X5_100",
+    "DICT_5X5_250",
+    "DICT_5X5_1000",
+    "DICT_6X6_50",
+    "DICT_6X6_100",
+    "DICT_6X6_250",
+    "DICT_6X6_1000",
+    "DICT_7X7_50",
+    "DICT_7X7_100",
+    "DICT_7X7_250",
+    "DICT_7X7_1000",
+    "DICT_ARUCO_ORIGINAL",
+    "DICT_APRILTAG_16h5",
+    "DICT_APRILTAG_25h9",
+    "DICT_APRILTAG_36h10",
+    "DICT_APRILTAG_36h11",
+];
+
+/// A board of a file in words.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct BoardOfFile {
+    /// The words, such as `aprilgrid:6x6:88mm:0.3`.
+    pub words: String,
+    /// What was read, a sentence.
+    pub said: String,
+}
+
+/// The board of a file of Kalibr, industrial_calibration or OpenCV (`.yaml`, `.yml`, `.xml`); `None` of what ends otherwise.
+///
+/// # Errors
+/// A file that cannot be read, or has no such board.
+pub fn board_of_file(typed: &str) -> Result<Option<BoardOfFile>> {
+    let path = Path::new(typed);
+    let ending = path.extension().and_then(|it| it.to_str()).map(str::to_ascii_lowercase);
+    let Some(ending) = ending.filter(|it| ENDINGS.contains(&it.as_str())) else { return Ok(None) };
+    let text = text_of(path, EXPECTED)?;
+    let leaves = if ending == "xml" { of_xml(&text, path)? } else { leaves(&text, path, EXPECTED)? };
+    let stated = Stated { leaves, path };
+    let (words, of) = if stated.find("target_type").is_some() {
+        (stated.kalibr()?, "Kalibr")
+    } else if stated.find("target_finder.type").is_some() {
+        (stated.industrial()?, "industrial_calibration")
+    } else if stated.find("BoardSize_Width").is_some() {
+        (stated.opencv()?, "OpenCV's settings")
+    } else {
+        return Err(
+            Error::new(ErrorKind::Option, format!("found no board, expected {EXPECTED}")).in_file(path)
+        );
+    };
+    let said = format!("{}: read the board `{words}` ({of})", path.display());
+    Ok(Some(BoardOfFile { words, said }))
+}
+
+/// The texts of an XML file with the names of their elements.
+fn of_xml(text: &str, path: &Path) -> Result<Vec<Leaf>> {
+    let document = Document::parse(text).map_err(|error| {
+        let (message, place) = (format!("found broken XML ({error}), expected {EXPECTED}"), error.pos());
+        Error::new(ErrorKind::Syntax, message).at(path, place.row as usize, place.col as usize)
+    })?;
+    let leaf = |node: roxmltree::Node<'_, '_>| {
+        let text = node.text()?.trim().trim_matches('"').trim().to_owned();
+        let line = document.text_pos_at(node.range().start).row as usize;
+        Some(Leaf { path: vec![node.tag_name().name().to_owned()], text, line })
+    };
+    let elements = document.descendants().filter(|node| node.is_element());
+    Ok(elements.filter(|node| !node.children().any(|it| it.is_element())).filter_map(leaf).collect())
+}
+
+/// What a file states.
+struct Stated<'a> {
+    leaves: Vec<Leaf>,
+    path: &'a Path,
+}
+
+impl Stated<'_> {
+    /// The value behind keys that are joined by dots, alone or below others.
+    fn find(&self, keys: &str) -> Option<&Leaf> {
+        let keys: Vec<&str> = keys.split('.').collect();
+        let is_it = |leaf: &&Leaf| {
+            let start = leaf.path.len().checked_sub(keys.len());
+            start.and_then(|start| leaf.path.get(start..)).is_some_and(|end| end.iter().eq(keys.iter()))
+        };
+        self.leaves.iter().find(is_it)
+    }
+
+    fn refuse(&self, leaf: &Leaf, expected: &str) -> Error {
+        let key = leaf.path.last().map_or("", String::as_str);
+        let message = format!("found `{}` for `{key}`, expected {expected}", leaf.text);
+        Error::new(ErrorKind::Option, message).at_line(self.path, leaf.line)
+    }
+
+    fn text(&self, keys: &str) -> Result<&Leaf> {
+        self.find(keys).ok_or_else(|| {
+            let message = format!("found no `{keys}`, expected it beside the other numbers of the board");
+            Error::new(ErrorKind::Option, message).in_file(self.path)
+        })
+    }
+
+    fn number(&self, keys: &str) -> Result<f64> {
+        let leaf = self.text(keys)?;
+        let number = leaf.text.parse().ok().filter(|it: &f64| it.is_finite() && *it > 0.0);
+        number.ok_or_else(|| self.refuse(leaf, "a number above 0"))
+    }
+
+    fn count(&self, keys: &str) -> Result<usize> {
+        let leaf = self.text(keys)?;
+        let count = leaf.text.parse().ok().filter(|it| (1..=1000).contains(it));
+        count.ok_or_else(|| self.refuse(leaf, "a count of 1 to 1000"))
+    }
+
+    /// Whether a key that may be missing says so.
+    fn is_true(&self, keys: &str) -> Result<bool> {
+        let Some(leaf) = self.find(keys) else { return Ok(false) };
+        match leaf.text.to_ascii_lowercase().as_str() {
+            "true" | "1" | "yes" => Ok(true),
+            "false" | "0" | "no" => Ok(false),
+            _ => Err(self.refuse(leaf, "true or false")),
+        }
+    }
+
+    fn kalibr(&self) -> Result<String> {
+        let kind = self.text("target_type")?;
+        match kind.text.as_str() {
+            "aprilgrid" => {
+                if let Some(offset) = self.find("codeOffset").filter(|it| it.text.parse() != Ok(0)) {
+                    return Err(self.refuse(offset, "0: a grid begins with tag 0"));
+                }
+                let (columns, rows) = (self.count("tagCols")?, self.count("tagRows")?);
+                let (size, spacing) = (millimetres(self.number("tagSize")?), self.number("tagSpacing")?);
+                Ok(format!("aprilgrid:{columns}x{rows}:{size}:{spacing}"))
+            }
+            "checkerboard" => {
+                let (columns, rows) = (self.count("targetCols")?, self.count("targetRows")?);
+                let side_m = self.number("rowSpacingMeters")?;
+                if self.number("colSpacingMeters")? != side_m {
+                    let other = self.text("colSpacingMeters")?;
+                    return Err(self.refuse(other, "the same as `rowSpacingMeters`: squares"));
+                }
+                // Kalibr counts inner corners.
+                Ok(format!("chessboard:{}x{}:{}", columns + 1, rows + 1, millimetres(side_m)))
+            }
+            "circlegrid" => {
+                let (columns, rows) = (self.count("targetCols")?, self.count("targetRows")?);
+                let pitch = millimetres(self.number("spacingMeters")?);
+                let end = if self.is_true("asymmetricGrid")? { ":asymmetric" } else { "" };
+                Ok(format!("circles:{columns}x{rows}:{pitch}{end}"))
+            }
+            _ => Err(self.refuse(kind, "aprilgrid, checkerboard or circlegrid")),
+        }
+    }
+
+    fn industrial(&self) -> Result<String> {
+        let kind = self.text("target_finder.type")?;
+        let size = || -> Result<String> {
+            Ok(format!("{}x{}", self.count("target_finder.cols")?, self.count("target_finder.rows")?))
+        };
+        match kind.text.as_str() {
+            "ModifiedCircleGridTargetFinder" | "CircleGridTargetFinder" => {
+                Ok(format!("circles:{}:{}", size()?, millimetres(self.number("target_finder.spacing")?)))
+            }
+            "CharucoGridTargetFinder" => {
+                let square = millimetres(self.number("target_finder.chessboard_dim")?);
+                let marker = millimetres(self.number("target_finder.aruco_marker_dim")?);
+                let markers = match self.find("target_finder.dictionary") {
+                    Some(leaf) => self.dictionary(leaf)?,
+                    None => USUAL_MARKERS,
+                };
+                Ok(format!("charuco:{}:{square}:{marker}:{markers}", size()?))
+            }
+            _ => Err(self.refuse(kind, "ModifiedCircleGridTargetFinder or CharucoGridTargetFinder")),
+        }
+    }
+
+    /// Markers by their name or OpenCV's number.
+    fn dictionary<'a>(&self, leaf: &'a Leaf) -> Result<&'a str> {
+        match leaf.text.parse::<usize>() {
+            Ok(at) => DICTIONARIES
+                .get(at)
+                .copied()
+                .ok_or_else(|| self.refuse(leaf, "a number of OpenCV's dictionaries, 0 to 20")),
+            Err(_) if leaf.text.bytes().all(|it| it.is_ascii_alphanumeric() || it == b'_') => Ok(&leaf.text),
+            Err(_) => Err(self.refuse(leaf, "the name of a dictionary, such as DICT_6X6_250")),
+        }
+    }
+
+    fn opencv(&self) -> Result<String> {
+        let (columns, rows) = (self.count("BoardSize_Width")?, self.count("BoardSize_Height")?);
+        let length = |keys: &str| -> Result<String> {
+            let stated = self.number(keys)?;
+            Ok(millimetres(if stated < LEAST_MM { stated } else { 1e-3 * stated }))
+        };
+        let (kind, square) = (self.text("Calibrate_Pattern")?, length("Square_Size")?);
+        match kind.text.trim_matches('"') {
+            // Inner corners; of a ChArUco board squares.
+            "CHESSBOARD" => Ok(format!("chessboard:{}x{}:{square}", columns + 1, rows + 1)),
+            "CIRCLES_GRID" => Ok(format!("circles:{columns}x{rows}:{square}")),
+            "ASYMMETRIC_CIRCLES_GRID" => Ok(format!("circles:{columns}x{rows}:{square}:asymmetric")),
+            "CHARUCOBOARD" => {
+                let (marker, markers) =
+                    (length("Marker_Size")?, self.dictionary(self.text("ArUco_Dict_Name")?)?);
+                Ok(format!("charuco:{columns}x{rows}:{square}:{marker}:{markers}"))
+            }
+            _ => Err(self.refuse(kind, "CHESSBOARD, CIRCLES_GRID, ASYMMETRIC_CIRCLES_GRID or CHARUCOBOARD")),
+        }
+    }
+}
+
+/// A length in millimetres, as words of boards have it.
+fn millimetres(length_m: f64) -> String {
+    format!("{}mm", (length_m * 1e9).round() / 1e6)
+}

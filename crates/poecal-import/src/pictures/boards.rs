@@ -1,0 +1,127 @@
+//! Boards and solids whose points cameras see: CSV, or in words.
+
+use std::path::Path;
+
+use nalgebra::Vector3;
+
+use super::board_files::board_of_file;
+use super::board_words::{BOARD, in_words};
+use crate::stored_pictures::stored_boards;
+use crate::table::header::{Header, unit_in_name};
+use crate::table::mapping::ColumnMap;
+use crate::table::number::Numbers;
+use crate::table::text::Blocks;
+use crate::table::{Row, Table};
+use poecal_model::camera::Board;
+use poecal_numerics::error::{Error, ErrorKind, Result};
+use poecal_numerics::named_unit::NamedUnit;
+use poecal_numerics::unit::Unit;
+
+/// The boards of a file of points, or of a specification such as `chessboard:10x7:27mm` (squares along x and y, and their side); the others are
+/// `charuco:…`, `circles:…`, `aprilgrid:…` and `tags:…`, as `poecal detect` has them. Files of Kalibr, industrial_calibration and OpenCV's settings
+/// (YAML, XML) do as well, and a `calibration.json` with what it found.
+///
+/// # Errors
+/// A file that cannot be read or has no points, or a specification that is none.
+pub fn read_boards(typed: &str) -> Result<Vec<Board>> {
+    let of_file = board_of_file(typed)?;
+    match in_words(of_file.as_ref().map_or(typed, |it| &it.words)) {
+        Some(board) => Ok(vec![match of_file {
+            Some(_) => board.map_err(|error| error.in_file(Path::new(typed)))?,
+            None => board?,
+        }]),
+        None if Path::new(typed).extension().is_some_and(|it| it.eq_ignore_ascii_case("json")) => {
+            stored_boards(Path::new(typed))
+        }
+        None => of_table(Path::new(typed)),
+    }
+}
+
+/// A column of a coordinate, with its unit: `x[mm]`, `x_mm`.
+fn coordinate(header: &Header<'_>, name: &str) -> Result<(usize, NamedUnit)> {
+    if let Some(at) = header.find(name)? {
+        let unit = header.unit(at, Unit::Metre, "for a point")?;
+        return Ok((at, unit.map_or(NamedUnit::from(Unit::Metre), |(unit, _)| unit)));
+    }
+    let found =
+        header.cells.iter().enumerate().find_map(|(at, cell)| Some((at, unit_in_name(&cell.name, name)?)));
+    match found.filter(|(_, unit)| unit.of() == Unit::Metre) {
+        Some(found) => Ok(found),
+        None => {
+            Err(header.require(name, "for a point of the board", |_| false, "").err().unwrap_or_else(|| {
+                Error::new(ErrorKind::Measurement, format!("found no column `{name}`"))
+                    .at_line(header.path, header.line)
+            }))
+        }
+    }
+}
+
+fn of_table(path: &Path) -> Result<Vec<Board>> {
+    let map = ColumnMap::default();
+    let mut table = Table::open(path, Blocks::open(path, "points of a board (CSV)")?, &map)?;
+    let header = &table.header;
+    let name = ["target", "marker", "corner", "name"].iter().find(|name| header.count(name) > 0);
+    let Some(name) = name else {
+        let message = "found no column `target`, expected one with the names of the points";
+        return Err(Error::new(ErrorKind::Measurement, message).at_line(path, header.line));
+    };
+    let (name_at, of_board) = (header.find(name)?.unwrap_or(0), header.find("board")?);
+    let columns = [coordinate(header, "x")?, coordinate(header, "y")?, coordinate(header, "z")?];
+    let mut numbers = Numbers::new(None);
+    let mut boards: Vec<Board> = Vec::new();
+    while let Some(mut rows) = table.next_block()? {
+        while let Some(row) = rows.next()? {
+            let text =
+                |at: usize| row.cells.get(at).map(|cell| cell.text().trim().to_owned()).unwrap_or_default();
+            let mut point = Vector3::zeros();
+            for ((value, (at, unit)), axis) in point.iter_mut().zip(columns).zip(["x", "y", "z"]) {
+                let words = (format!("`{axis}`"), axis);
+                *value = length_on_board(&row, (at, &text(at)), unit, (&mut numbers, (&words.0, words.1)))?;
+            }
+            let own = of_board.map(text).filter(|it| !it.is_empty()).unwrap_or_else(|| BOARD.to_owned());
+            let at = boards.iter().position(|it| it.name == own).unwrap_or_else(|| {
+                boards.push(Board { name: own, ..Board::default() });
+                boards.len() - 1
+            });
+            let Some(board) = boards.get_mut(at) else { continue };
+            // Points that are only numbered are named by their column too.
+            let word = text(name_at);
+            let point_name =
+                if word.bytes().all(|it| it.is_ascii_digit()) { format!("{name}{word}") } else { word };
+            if board.find(&point_name).is_some() {
+                let message = format!("found the point `{point_name}` a second time, expected it once");
+                return Err(row.error(name_at, message));
+            }
+            board.names.push(point_name);
+            board.points.push(point);
+        }
+    }
+    if boards.is_empty() {
+        let message = "found a header and no rows, expected the points of a board";
+        return Err(Error::new(ErrorKind::Measurement, message).at_line(path, table.header.line));
+    }
+    Ok(boards)
+}
+
+/// Largest coordinate of a point of a board, metres.
+pub(crate) const FARTHEST_M: f64 = 10.0;
+
+/// A coordinate of a point of a board in a cell, metres; `of` says of what, and `axis` how its column is called.
+pub(crate) fn length_on_board(
+    row: &Row<'_>,
+    (at, raw): (usize, &str),
+    unit: NamedUnit,
+    (numbers, (of, axis)): (&mut Numbers, (&str, &str)),
+) -> Result<f64> {
+    let found = numbers.parse(raw, row.line);
+    let found =
+        found.map_err(|expected| row.error(at, format!("found `{raw}` for {of}, expected {expected}")))?;
+    let value = unit.to_si(found);
+    if value.abs() > FARTHEST_M {
+        let message = format!(
+            "found `{raw}` for {of}, {value} m, expected a point of a board: state the unit of the column, as {axis}[mm]"
+        );
+        return Err(row.error(at, message));
+    }
+    Ok(value)
+}

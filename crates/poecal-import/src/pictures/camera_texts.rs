@@ -1,0 +1,148 @@
+//! Cameras as OpenCV, ROS, Kalibr and industrial_calibration write them (YAML).
+
+use std::path::Path;
+
+use super::intrinsics::of_intrinsics;
+use crate::table::lens_checks::{EXPECTED, distortion};
+use poecal_model::camera::{Camera, Lens};
+use poecal_numerics::error::{Error, ErrorKind, Result};
+use poecal_storage::yaml::{Leaf, leaves};
+
+/// The cameras of a text of OpenCV, ROS, Kalibr or industrial_calibration.
+pub(crate) fn read_yaml(text: &str, path: &Path) -> Result<Vec<Camera>> {
+    let leaves = leaves(text, path, EXPECTED)?;
+    let cameras = read_chain(&leaves, path)?;
+    if !cameras.is_empty() {
+        return Ok(cameras);
+    }
+    let none: [String; 0] = [];
+    if let Some(lens) = of_intrinsics(&leaves, path)? {
+        return Ok(vec![Camera::new(word_at(&leaves, &none, &["camera_name"]).unwrap_or_default(), lens)]);
+    }
+    Ok(vec![read_single(&leaves, path)?])
+}
+
+/// The cameras of Kalibr; none of another form.
+fn read_chain(leaves: &[Leaf], path: &Path) -> Result<Vec<Camera>> {
+    // Kalibr names its cameras by keys.
+    let mut chains: Vec<String> = leaves
+        .iter()
+        .filter(|leaf| leaf.path.get(1).is_some_and(|key| key == "intrinsics"))
+        .filter_map(|leaf| leaf.path.first().cloned())
+        .collect();
+    chains.dedup();
+    let mut cameras = Vec::new();
+    for name in chains {
+        let under = [name.clone()];
+        let [fx, fy, cx, cy] = exact(list(leaves, &under, &["intrinsics"], path)?, "intrinsics", path)?;
+        let model = word_at(leaves, &under, &["camera_model"]).unwrap_or_default();
+        if model != "pinhole" {
+            let message = format!("found the camera model `{model}` of `{name}`, expected `pinhole`");
+            return Err(Error::new(ErrorKind::Measurement, message).in_file(path));
+        }
+        let bent = list(leaves, &under, &["distortion_coeffs"], path)?;
+        let kind = word_at(leaves, &under, &["distortion_model"]).unwrap_or_else(|| "none".to_owned());
+        let distortion = distortion(&kind, &bent, path)?;
+        let size = list(leaves, &under, &["resolution"], path)?;
+        let size_px = if let [width, height] = size[..] { Some([width as u32, height as u32]) } else { None };
+        cameras
+            .push(Camera::new(name, Lens { focal_px: [fx, fy], centre_px: [cx, cy], distortion, size_px }));
+    }
+    Ok(cameras)
+}
+
+/// The camera of OpenCV or ROS.
+fn read_single(leaves: &[Leaf], path: &Path) -> Result<Camera> {
+    let none: [String; 0] = [];
+    let first = |ways: &[&[&str]]| -> Result<Vec<f64>> {
+        for keys in ways {
+            let found = list(leaves, &none, keys, path)?;
+            if !found.is_empty() {
+                return Ok(found);
+            }
+        }
+        Ok(Vec::new())
+    };
+    let matrix = first(&[
+        &["camera_matrix", "data"],
+        &["cameraMatrix", "data"],
+        &["Camera_Matrix", "data"],
+        &["K", "data"],
+        &["M1", "data"],
+        &["K"],
+        &["k"],
+        &["camera_matrix"],
+    ])?;
+    let bent = first(&[
+        &["distortion_coefficients", "data"],
+        &["dist_coeffs", "data"],
+        &["distCoeffs", "data"],
+        &["Distortion_Coefficients", "data"],
+        &["distortion_coeffs", "data"],
+        &["D", "data"],
+        &["D1", "data"],
+        &["D"],
+        &["d"],
+        &["distortion_coefficients"],
+    ])?;
+    let [fx, skew, cx, _, fy, cy, ..] = exact::<9>(matrix, "camera_matrix", path)?;
+    if skew != 0.0 {
+        let message = format!("found a skew of {skew} in `camera_matrix`, expected 0");
+        return Err(Error::new(ErrorKind::Measurement, message).in_file(path));
+    }
+    let is_fisheye =
+        word_at(leaves, &none, &["fisheye_model", "fisheye"]).is_some_and(|it| it == "1" || it == "true");
+    let kind = word_at(leaves, &none, &["distortion_model"]);
+    let kind = kind.unwrap_or_else(|| if is_fisheye { "fisheye".to_owned() } else { String::new() });
+    let number = |names: &[&str]| word_at(leaves, &none, names).and_then(|it| it.parse::<u32>().ok());
+    let (width, height) = (
+        number(&["image_width", "image_Width", "width"]),
+        number(&["image_height", "image_Height", "height"]),
+    );
+    let lens = Lens {
+        focal_px: [fx, fy],
+        centre_px: [cx, cy],
+        distortion: distortion(&kind, &bent, path)?,
+        size_px: width.zip(height).map(|(width, height)| [width, height]),
+    };
+    Ok(Camera::new(word_at(leaves, &none, &["camera_name"]).unwrap_or_default(), lens))
+}
+
+/// The word that one of some keys leads to, behind others.
+fn word_at(leaves: &[Leaf], under: &[String], names: &[&str]) -> Option<String> {
+    let own = |leaf: &&Leaf| {
+        leaf.path.len() == under.len() + 1
+            && leaf.path.get(..under.len()) == Some(under)
+            && leaf.path.last().is_some_and(|it| names.contains(&it.as_str()))
+    };
+    leaves.iter().find(own).map(|leaf| leaf.text.clone())
+}
+
+/// The numbers of a list that these keys lead to, behind others.
+fn list(leaves: &[Leaf], under: &[String], keys: &[&str], path: &Path) -> Result<Vec<f64>> {
+    let own = |leaf: &&Leaf| {
+        leaf.path.get(..under.len()) == Some(under)
+            && leaf.path.len() == under.len() + keys.len() + 1
+            && leaf
+                .path
+                .get(under.len()..under.len() + keys.len())
+                .is_some_and(|it| it.iter().eq(keys.iter()))
+            && leaf.path.last().is_some_and(|it| it.bytes().all(|byte| byte.is_ascii_digit()))
+    };
+    let number = |leaf: &Leaf| {
+        let found = leaf.text.parse::<f64>().ok().filter(|value| value.is_finite());
+        found.ok_or_else(|| {
+            let message = format!("found `{}` in `{}`, expected a number", leaf.text, keys.join("."));
+            Error::new(ErrorKind::Syntax, message).at_line(path, leaf.line)
+        })
+    };
+    leaves.iter().filter(own).map(number).collect()
+}
+
+/// As many numbers as a key must have.
+fn exact<const N: usize>(numbers: Vec<f64>, key: &str, path: &Path) -> Result<[f64; N]> {
+    numbers.try_into().map_err(|numbers: Vec<f64>| {
+        let message = format!("found {} numbers of `{key}`, expected {N}: {EXPECTED}", numbers.len());
+        Error::new(ErrorKind::Measurement, message).in_file(path)
+    })
+}

@@ -1,0 +1,275 @@
+//! The columns of files of pictures: what each means, and what HALCON, OpenCV and scripts around them call it.
+
+use crate::table::header::{Header, HeaderCell, unit_in_name};
+use crate::table::inputs::Range;
+use crate::table::kinds;
+use crate::table::mapping::ColumnMap;
+use crate::table::understanding::ColumnUnderstanding;
+use poecal_numerics::error::{ErrorKind, Result};
+use poecal_numerics::named_unit::{NamedUnit, UnitSource};
+use poecal_numerics::unit::Unit;
+
+/// Names of the pixel along and down the picture, ours first; case, separators and the unit px do not count. HALCON's row and column have their zero in
+/// the centre of the first pixel, as OpenCV's.
+const PIXELS: [[&str; 2]; 7] = [
+    ["u", "v"],
+    ["column", "row"],
+    ["col", "row"],
+    ["xpx", "ypx"],
+    ["px", "py"],
+    ["pixelx", "pixely"],
+    ["imagex", "imagey"],
+];
+/// Names of the corner.
+const CORNER: [&str; 8] = ["target", "corner", "cornerid", "id", "index", "mark", "point", "marker"];
+/// Names of the picture.
+const PICTURE: [&str; 6] = ["image", "picture", "file", "filename", "frame", "imageid"];
+/// Names of the standard deviation.
+const SIGMA: [&str; 2] = ["sigma", "sigmapx"];
+/// Names of the camera and of the board.
+const CAMERA: [&str; 1] = ["camera"];
+const BOARD: [&str; 1] = ["board"];
+/// What stands before x, y and z where they are the place of the corner on its board.
+const ON_BOARD: [&str; 5] = ["", "obj_", "object_", "obj", "object"];
+
+/// A column of a coordinate on the board, with its unit.
+type Coordinate = (usize, NamedUnit);
+
+/// Columns of a file of corners.
+#[derive(Clone, Debug)]
+pub(crate) struct CornerColumns {
+    pub(crate) u: usize,
+    pub(crate) v: usize,
+    pub(crate) sigma: Option<usize>,
+    /// The name of the corner.
+    pub(crate) name: Option<usize>,
+    /// Its place on the board.
+    pub(crate) place: Option<[Coordinate; 3]>,
+    pub(crate) camera: Option<usize>,
+    pub(crate) board: Option<usize>,
+    pub(crate) image: Option<usize>,
+}
+
+/// Letters and digits of a column's name, in small letters, with `px` behind them if that is its unit.
+fn key(cell: &HeaderCell) -> String {
+    let plain = |text: &str| -> String {
+        text.chars().filter(|it| it.is_alphanumeric()).flat_map(char::to_lowercase).collect()
+    };
+    let name = plain(&cell.name);
+    let short = ["pixels", "pixel"].iter().find_map(|end| name.strip_suffix(end));
+    let name = short.filter(|start| !start.is_empty()).map_or(name.clone(), |start| format!("{start}px"));
+    if cell.units().any(is_pixel) && !name.ends_with("px") { format!("{name}px") } else { name }
+}
+
+/// The column that has the first of some names which is there, and is no joint's; a second one of that name is an error.
+fn column(header: &Header<'_>, names: &[&str], joints: &[String]) -> Result<Option<usize>> {
+    let keys: Vec<String> = header.cells.iter().map(key).collect();
+    for name in names {
+        let is_it = |key: &String| key == name || key.strip_suffix("px") == Some(name);
+        let cells = header.cells.iter().zip(&keys).enumerate();
+        let mut found =
+            cells.filter(|(_, (cell, key))| is_it(key) && !joints.contains(&cell.name)).map(|(at, _)| at);
+        let Some(first) = found.next() else { continue };
+        let Some(second) = found.next() else { return Ok(Some(first)) };
+        let text = |at: usize| header.cells.get(at).map_or("", |cell| cell.text.as_str());
+        let message = format!(
+            "found a second column `{}` beside `{}`, expected one; rename or remove one of them",
+            text(second),
+            text(first)
+        );
+        return Err(header.error(ErrorKind::Measurement, second, message));
+    }
+    Ok(None)
+}
+
+/// Whether a file has columns of what other devices measure, or a mapping says where.
+fn is_measured(header: &Header<'_>, map: &ColumnMap) -> bool {
+    let has = |name: &str| header.cells.iter().any(|cell| cell.name == name && !key(cell).ends_with("px"));
+    let position = ["x", "y", "z"].iter().all(|name| has(name));
+    let is_vector = header.cells.iter().any(|cell| key(cell) == "pz");
+    let numbers = kinds::kinds().filter(|kind| kind.needs_numbers()).flat_map(|kind| kind.columns.numbers);
+    let is_other = numbers.copied().any(has);
+    position || is_vector || is_other || map.position.is_some() || !map.targets.is_empty()
+}
+
+/// The columns of the pixel; those of another name than ours only where nothing else is measured.
+fn pixels(header: &Header<'_>, joints: &[String], map: &ColumnMap) -> Result<Option<[usize; 2]>> {
+    if header.count("u") > 0 && header.count("v") > 0 {
+        return Ok(header.find("u")?.zip(header.find("v")?).map(<[usize; 2]>::from));
+    }
+    if is_measured(header, map) {
+        return Ok(None);
+    }
+    let mut found: Vec<[usize; 2]> = Vec::new();
+    for [u, v] in PIXELS {
+        let both = column(header, &[u], joints)?.zip(column(header, &[v], joints)?);
+        found.extend(both.map(<[usize; 2]>::from));
+    }
+    if let [[first, _], [second, _], ..] = *found {
+        let text = |at: usize| header.cells.get(at).map_or("", |cell| cell.text.as_str());
+        let message = format!(
+            "found the pixel in column `{}` and again in `{}`, expected it once: call the two columns that are meant u[px] and v[px]",
+            text(first),
+            text(second)
+        );
+        return Err(header.error(ErrorKind::Measurement, second, message));
+    }
+    Ok(found.into_iter().next())
+}
+
+/// Whether the columns of a file are those of corners.
+pub(crate) fn are_corners(header: &Header<'_>, joints: &[String], map: &ColumnMap) -> Result<bool> {
+    pixels(header, joints, map).map(|found| found.is_some())
+}
+
+/// Whether a file has readings of joints by picture, and nothing that was measured.
+pub(crate) fn are_readings_of_pictures(header: &Header<'_>, joints: &[String], map: &ColumnMap) -> bool {
+    let without = |names: &[&str]| names.iter().all(|name| header.count(name) == 0);
+    let has_picture = header.count("image") > 0
+        || !is_measured(header, map) && picture(header, joints).is_ok_and(|it| it.is_some());
+    has_picture
+        && without(&["u", "v", "x", "y", "z"])
+        && are_corners(header, joints, map).is_ok_and(|are_corners| !are_corners)
+}
+
+/// The column of the picture's name.
+pub(crate) fn picture(header: &Header<'_>, joints: &[String]) -> Result<Option<usize>> {
+    column(header, &PICTURE, joints)
+}
+
+/// The columns of the place on the board.
+fn place(header: &Header<'_>) -> Result<Option<[Coordinate; 3]>> {
+    for before in ON_BOARD {
+        let names = ["x", "y", "z"].map(|axis| format!("{before}{axis}"));
+        let [Some(x), Some(y), Some(z)] = names.each_ref().map(|name| of_length(header, name)) else {
+            continue;
+        };
+        return Ok(Some([x?, y?, z?]));
+    }
+    Ok(None)
+}
+
+/// A column of a length whose name is this one but for its case and unit.
+fn of_length(header: &Header<'_>, name: &str) -> Option<Result<Coordinate>> {
+    let named = |cell: &HeaderCell| {
+        let is_it = cell.name.eq_ignore_ascii_case(name) && !key(cell).ends_with("px");
+        let unit = unit_in_name(&cell.name, name).filter(|unit| unit.of() == Unit::Metre);
+        is_it.then_some(NamedUnit::from(Unit::Metre)).or(unit)
+    };
+    let (at, unit) = header.cells.iter().enumerate().find_map(|(at, cell)| Some((at, named(cell)?)))?;
+    let stated = header.unit(at, Unit::Metre, "for a point of the board");
+    Some(stated.map(|stated| (at, stated.map_or(unit, |(unit, _)| unit))))
+}
+
+/// Whether a column may as well count rows.
+fn is_count(header: &Header<'_>, at: usize) -> bool {
+    header.cells.get(at).is_some_and(|cell| ["id", "index"].contains(&key(cell).as_str()))
+}
+
+/// Whether a unit is that of pixels.
+fn is_pixel(unit: &str) -> bool {
+    ["px", "pixel", "pixels"].contains(&unit.to_lowercase().as_str())
+}
+
+impl CornerColumns {
+    /// The columns of a file of corners; `has_boards` says whether boards are stated, whose points have names.
+    pub(crate) fn new(
+        header: &Header<'_>,
+        joints: &[String],
+        (map, has_boards): (&ColumnMap, bool),
+    ) -> Result<Option<Self>> {
+        let Some([u, v]) = pixels(header, joints, map)? else { return Ok(None) };
+        let sigma = column(header, &SIGMA, joints)?;
+        for column in [Some(u), Some(v), sigma].into_iter().flatten() {
+            if !header.cells.get(column).is_some_and(|cell| cell.units().all(is_pixel)) {
+                header.only_unit(column, "px")?;
+            }
+        }
+        let place = place(header)?;
+        let name = match column(header, &CORNER, joints)? {
+            // What counts rows, where the file says where the corner is.
+            Some(at) if place.is_some() && is_count(header, at) => None,
+            name => name,
+        };
+        if name.is_none() && place.is_none() {
+            header.require("target", "for the name of the corner", |_| false, "")?;
+        }
+        Ok(Some(CornerColumns {
+            u,
+            v,
+            sigma,
+            name,
+            place: place.filter(|_| name.is_none() || !has_boards),
+            camera: column(header, &CAMERA, joints)?,
+            board: column(header, &BOARD, joints)?,
+            image: picture(header, joints)?,
+        }))
+    }
+
+    /// The column in which the corner is named, for messages.
+    pub(crate) fn corner(&self) -> usize {
+        let place = || self.place.map(|[(at, _), ..]| at);
+        self.name.or_else(place).unwrap_or(self.u)
+    }
+
+    /// Meaning and column of each.
+    fn all(&self) -> Vec<(&'static str, usize)> {
+        let mut all = vec![("u", self.u), ("v", self.v)];
+        let more = [
+            ("sigma", self.sigma),
+            ("target", self.name),
+            ("image", self.image),
+            ("camera", self.camera),
+            ("board", self.board),
+        ];
+        all.extend(more.into_iter().filter_map(|(name, at)| Some((name, at?))));
+        let place = self.place.iter().flatten().map(|(at, _)| *at);
+        all.extend(["point x", "point y", "point z"].into_iter().zip(place));
+        all
+    }
+
+    /// Whether a column is one of these.
+    pub(crate) fn has(&self, index: usize) -> bool {
+        self.all().iter().any(|(_, at)| *at == index)
+    }
+
+    /// Whether the column of the picture has our name, so that its rows have one configuration.
+    pub(crate) fn names_pictures(&self, header: &Header<'_>) -> bool {
+        self.image.and_then(|at| header.cells.get(at)).is_some_and(|cell| cell.name == "image")
+    }
+
+    /// What was taken for what, of columns whose name is not ours; `None` if all are ours.
+    pub(crate) fn words(&self, header: &Header<'_>) -> Option<String> {
+        let text = |at: usize| header.cells.get(at).map_or("", |cell| cell.text.as_str());
+        let is_foreign =
+            |(name, at): &(&str, usize)| header.cells.get(*at).is_some_and(|cell| cell.name != *name);
+        let foreign = self.all().into_iter().filter(is_foreign);
+        let words: Vec<String> = foreign.map(|(name, at)| format!("`{}` for {name}", text(at))).collect();
+        (!words.is_empty()).then(|| format!("took {}", words.join(", ")))
+    }
+
+    /// How they were read, for `poecal check`; `seen` are smallest and largest u, v and standard deviation.
+    pub(crate) fn understood(&self, header: &Header<'_>, seen: &[Range; 3]) -> Vec<ColumnUnderstanding> {
+        let of = |(name, at): (&'static str, usize)| {
+            let range = match name {
+                "u" => seen[0],
+                "v" => seen[1],
+                "sigma" => seen[2],
+                _ => Range::default(),
+            };
+            let place = self.place.iter().flatten().find(|(own, _)| *own == at);
+            let stated = header.cells.get(at).is_some_and(|cell| cell.units().next().is_some());
+            let is_pixel = ["u", "v", "sigma"].contains(&name);
+            let unit = if is_pixel { Some("px") } else { place.map(|(_, unit)| unit.symbol()) };
+            ColumnUnderstanding {
+                name: name.to_owned(),
+                column: header.cells.get(at).map(|cell| cell.text.clone()),
+                unit,
+                unit_from: (unit.is_some() && stated).then_some(UnitSource::Header),
+                min: range.0.map(|(min, _)| min),
+                max: range.0.map(|(_, max)| max),
+            }
+        };
+        self.all().into_iter().map(of).collect()
+    }
+}

@@ -1,0 +1,18 @@
+//! Pictures and corners as rows, cameras and boards of files.
+
+pub(crate) mod board_files;
+pub(crate) mod board_words;
+pub(crate) mod boards;
+pub(crate) mod camera_tables;
+pub(crate) mod camera_texts;
+pub(crate) mod cameras;
+pub(crate) mod corner_columns;
+pub(crate) mod corner_names;
+pub(crate) mod gathering;
+pub(crate) mod intrinsics;
+pub(crate) mod picture_files;
+pub(crate) mod pixels;
+pub(crate) mod sightings;
+pub(crate) mod taken;
+pub(crate) mod unknown_camera;
+pub(crate) mod wrong_boards;

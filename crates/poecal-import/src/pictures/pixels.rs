@@ -1,0 +1,329 @@
+//! Files of corners as cameras saw them: a row a corner, `u` and `v` in pixels, with the readings of the joints in each row, or in another file
+//! that has them by picture (docs/file-formats.md, "Pixels").
+
+use std::path::Path;
+
+use super::corner_columns::{self, CornerColumns};
+use super::gathering::{Gathering, Sight};
+use super::picture_files::{NO_CAMERA, Taken};
+use crate::checks::scale::JointWatch;
+use crate::read::Reader;
+use crate::table::header::Header;
+use crate::table::inputs::{InputReader, Range};
+use crate::table::layout::ColumnLayout;
+use crate::table::number::Numbers;
+use crate::table::{Row, Table, refuse_more_rows};
+use nalgebra::Vector2;
+use poecal_model::camera::Corner;
+use poecal_numerics::error::{Error, ErrorKind, Result, first_few};
+
+/// Largest pixel coordinate.
+const LARGEST_PX: f64 = 1e6;
+
+impl Reader<'_> {
+    /// Reads a file of readings by picture, whose corners are in another one.
+    pub(crate) fn readings_of_pictures(&mut self, path: &Path, mut table: Table<'_>) -> Result<()> {
+        let mut layout = ColumnLayout::pictures(&table.header, self.robot, self.options, self.map)?;
+        let image = match corner_columns::picture(&table.header, self.found.data.reading_names())? {
+            Some(image) => image,
+            None => table.header.require("image", "for the name of the picture", |_| false, "")?,
+        };
+        let column = table.header.cells.get(image).map_or(String::new(), |cell| cell.text.clone());
+        layout.ignored.retain(|(name, _)| *name != column);
+        let numbers = Numbers::new(self.map.decimal);
+        let mut inputs = InputReader::new(&layout.inputs, layout.inputs.len(), numbers);
+        let mut watch = JointWatch::new(self.robot);
+        while let Some(mut rows) = table.next_block()? {
+            while let Some(row) = rows.next()? {
+                let taken = self.taken(&row, &layout, &mut inputs, &mut watch)?;
+                let name = text(&row, Some(image)).unwrap_or_default();
+                if name.is_empty() {
+                    let message =
+                        format!("found an empty cell in column `{column}`, expected the name of a picture");
+                    return Err(row.error(image, message));
+                }
+                if let Some(first) = self.taken.get(&name) {
+                    let message = format!(
+                        "found the picture `{name}` a second time ({}:{} is the first), expected it once",
+                        first.place.0.display(),
+                        first.place.1
+                    );
+                    return Err(row.error(image, message));
+                }
+                self.taken.insert(name, taken);
+            }
+        }
+        if column != "image" {
+            self.found.warnings.push(format!("{}: took `{column}` for image", path.display()));
+        }
+        self.warn_of_ignored(path, &layout);
+        let words = layout.joint_words().into_iter().map(|words| format!("{}: {words}", path.display()));
+        self.found.warnings.extend(words);
+        self.found.warnings.extend(watch.finish(path, &layout, &inputs.ranges)?);
+        self.found.sha256.extend(table.sha256().map(|sha256| (path.display().to_string(), sha256)));
+        Ok(())
+    }
+
+    /// Reads a file of corners.
+    pub(crate) fn corners(&mut self, path: &Path, mut table: Table<'_>) -> Result<()> {
+        let joints = self.found.data.reading_names().to_vec();
+        let has_boards = !self.boards.is_empty();
+        let columns = CornerColumns::new(&table.header, &joints, (self.map, has_boards))?;
+        let Some(columns) = columns else { return Ok(()) };
+        self.refuse_without_cameras(&table.header, &columns)?;
+        let has_joints = self.taken.is_empty() || joints.iter().all(|name| table.header.count(name) > 0);
+        let layout = self.layout_of_corners(&table.header, &columns, has_joints)?;
+        let mut numbers = Numbers::new(self.map.decimal);
+        let mut inputs =
+            InputReader::new(&layout.inputs, layout.inputs.len(), Numbers::new(self.map.decimal));
+        let mut watch = JointWatch::new(self.robot);
+        let is_named = columns.names_pictures(&table.header);
+        let (mut gathering, mut rows, mut seen) = (Gathering::default(), 0, [Range::default(); 3]);
+        while let Some(mut some) = table.next_block()? {
+            while let Some(row) = some.next()? {
+                rows += 1;
+                refuse_more_rows(rows, &row)?;
+                let image = text(&row, columns.image).filter(|name| !name.is_empty());
+                let taken = match has_joints {
+                    true => Some(self.taken(&row, &layout, &mut inputs, &mut watch)?),
+                    false if image.is_none() => return Err(no_picture(&row, columns.image)),
+                    false => None,
+                };
+                if let Some(corner) = self.corner(&row, &columns, &mut numbers)? {
+                    let numbers = [Some(corner.pixel.x), Some(corner.pixel.y), corner.sigma_px];
+                    for (range, number) in seen.iter_mut().zip(numbers) {
+                        number.into_iter().for_each(|number| range.include(number));
+                    }
+                    let picture = (image, taken, is_named);
+                    self.gather(&row, &columns, &mut gathering, picture, corner)?;
+                }
+            }
+        }
+        if rows == 0 {
+            let message = "found a header and no rows, expected at least one corner";
+            return Err(Error::new(ErrorKind::Measurement, message).at_line(path, table.header.line));
+        }
+        let own = |words: String| format!("{}: {words}", path.display());
+        self.found.warnings.extend(columns.words(&table.header).map(own));
+        self.found.warnings.extend(gathering.settle_numbers(path, &self.boards)?.map(own));
+        let joined = gathering.joined(path, (!has_joints).then_some((&self.taken, self.taken_as)))?;
+        self.found.warnings.extend(joined.words.into_iter().map(own));
+        self.found.warnings.extend(self.board_of_file(&columns, has_boards).map(own));
+        self.found.sha256.extend(table.sha256().map(|sha256| (path.display().to_string(), sha256)));
+        self.found.warnings.extend(watch.finish(path, &layout, &inputs.ranges)?);
+        self.found.data.files.push(path.to_path_buf());
+        let first = self.found.data.len();
+        self.take_pictures(path, joined.pictures)?;
+        let own = columns.understood(&table.header, &seen);
+        self.understand_pictures(&table, &layout, &inputs, (first, rows, own))
+    }
+
+    /// The columns of the joints beside those of the corners, and what is ignored.
+    fn layout_of_corners(
+        &self,
+        header: &Header<'_>,
+        columns: &CornerColumns,
+        has_joints: bool,
+    ) -> Result<ColumnLayout> {
+        let mut layout = match has_joints {
+            true => ColumnLayout::pictures(header, self.robot, self.options, self.map)?,
+            false => {
+                let cells = header.cells.iter().filter(|cell| !cell.text.is_empty());
+                ColumnLayout::without(cells.map(|cell| (cell.text.clone(), None)).collect())
+            }
+        };
+        if !has_joints && columns.image.is_none() {
+            header.require("image", "for the name of the picture", |_| false, "")?;
+        }
+        // What counts corners is no id of their picture.
+        if let Some(id) = layout.id.filter(|at| columns.has(*at) || columns.place.is_some()) {
+            layout.ignored.extend(header.cells.get(id).map(|cell| (cell.text.clone(), None)));
+            layout.id = None;
+        }
+        let own = header.cells.iter().enumerate().filter(|(at, _)| columns.has(*at));
+        let own: Vec<&str> = own.map(|(_, cell)| cell.text.as_str()).collect();
+        layout.ignored.retain(|(name, _)| !own.contains(&name.as_str()));
+        Ok(layout)
+    }
+
+    fn refuse_without_cameras(&self, header: &Header<'_>, columns: &CornerColumns) -> Result<()> {
+        let missing = if self.cameras.is_empty() {
+            NO_CAMERA
+        } else if self.boards.is_empty() && columns.place.is_none() {
+            "found corners in pixels and no board, expected --markers with its points: a CSV file, or chessboard:10x7:27mm"
+        } else {
+            return Ok(());
+        };
+        Err(header.error(ErrorKind::Measurement, columns.u, missing))
+    }
+
+    /// The configuration of a row.
+    fn taken(
+        &mut self,
+        row: &Row<'_>,
+        layout: &ColumnLayout,
+        inputs: &mut InputReader<'_>,
+        watch: &mut JointWatch<'_>,
+    ) -> Result<Taken> {
+        inputs.read(row)?;
+        watch.unwind(row, inputs);
+        inputs.take_readings(row)?;
+        inputs.include_in_ranges();
+        watch.observe(row, inputs);
+        Ok(Taken {
+            readings: inputs.readings().to_vec(),
+            set: self.set(row, layout)?,
+            id: text(row, layout.id).unwrap_or_default(),
+            place: (row.path.to_path_buf(), row.line),
+        })
+    }
+
+    /// The corner of a row; `None` where it was not seen.
+    fn corner(
+        &self,
+        row: &Row<'_>,
+        columns: &CornerColumns,
+        numbers: &mut Numbers,
+    ) -> Result<Option<Corner>> {
+        let mut number = |column: usize, name: &str| match row.cells.get(column).map_or("", |cell| cell.raw) {
+            "" => Ok(None),
+            raw => {
+                let value = numbers.parse(raw, row.line).map_err(|expected| {
+                    row.error(column, format!("found `{raw}` in column `{name}`, expected {expected}"))
+                })?;
+                if value.abs() > LARGEST_PX {
+                    let message = format!("found `{raw}` in column `{name}`, expected a pixel below 1e6");
+                    return Err(row.error(column, message));
+                }
+                Ok(Some(value))
+            }
+        };
+        let (u, v) = (number(columns.u, "u")?, number(columns.v, "v")?);
+        let sigma_px = columns.sigma.map(|column| number(column, "sigma")).transpose()?.flatten();
+        if let (Some(column), Some(value)) = (columns.sigma, sigma_px.filter(|value| *value <= 0.0)) {
+            let message = format!("found `{value}` in column `sigma`, expected a standard deviation above 0");
+            return Err(row.error(column, message));
+        }
+        let pixel = match (u, v) {
+            (Some(u), Some(v)) => Vector2::new(u, v),
+            (None, None) => return Ok(None),
+            (Some(_), None) => {
+                return Err(row.error(
+                    columns.v,
+                    "found an empty cell in column `v`, expected both of u and v, or none",
+                ));
+            }
+            (None, Some(_)) => {
+                return Err(row.error(
+                    columns.u,
+                    "found an empty cell in column `u`, expected both of u and v, or none",
+                ));
+            }
+        };
+        Ok(Some(Corner {
+            point: 0,
+            pixel,
+            sigma_px,
+            weight: 1.0,
+            line: u32::try_from(row.line).unwrap_or(u32::MAX),
+        }))
+    }
+
+    /// Puts a corner to its picture.
+    fn gather(
+        &mut self,
+        row: &Row<'_>,
+        columns: &CornerColumns,
+        gathering: &mut Gathering,
+        (image, taken, is_named): (Option<String>, Option<Taken>, bool),
+        mut corner: Corner,
+    ) -> Result<()> {
+        let camera = self.camera(row, columns.camera)?;
+        let board = self.board(row, columns)?;
+        corner.point = self.point(row, columns, (board, gathering))?;
+        // A column that may have another meaning than the picture does not join configurations.
+        let own = taken.as_ref().filter(|_| image.is_none() || !is_named).map(|taken| &taken.readings);
+        let id = taken.as_ref().map_or("", |taken| taken.id.as_str());
+        let key = format!("{} {id} {own:?}", image.as_deref().unwrap_or_default());
+        let Gathering { pictures, known, .. } = gathering;
+        let at = *known.entry((key, camera, board)).or_insert_with(|| {
+            let (taken, image) = (taken.clone(), image.clone());
+            pictures.push(Sight { taken, image, camera, board, corners: Vec::new() });
+            pictures.len() - 1
+        });
+        let Some(picture) = pictures.get_mut(at) else { return Ok(()) };
+        if let (Some(first), Some(taken)) = (&picture.taken, &taken)
+            && (first.readings != taken.readings || first.set != taken.set)
+        {
+            let what = if first.set == taken.set { "joint readings" } else { "set" };
+            let message = format!(
+                "found another {what} of picture `{}` than in line {}, expected the same for all corners of a picture",
+                image.unwrap_or_default(),
+                first.place.1
+            );
+            return Err(row.error(columns.corner(), message));
+        }
+        if let Some(other) = picture.corners.iter().find(|it| it.point == corner.point) {
+            let message = format!(
+                "found the corner `{}` a second time in one picture (line {} is the first), expected it once",
+                text(row, Some(columns.corner())).unwrap_or_default(),
+                other.line
+            );
+            return Err(row.error(columns.corner(), message));
+        }
+        picture.corners.push(corner);
+        Ok(())
+    }
+
+    /// Index of the row's camera among those that are known.
+    fn camera(&mut self, row: &Row<'_>, column: Option<usize>) -> Result<usize> {
+        let cameras = &self.cameras;
+        let name = text(row, column).unwrap_or_default();
+        if let Some(at) = cameras.iter().position(|it| it.name == name) {
+            return Ok(at);
+        }
+        let is_nameless = cameras.len() == 1 && cameras.iter().all(|it| it.is_guessed);
+        if column.is_none() || name.is_empty() || is_nameless {
+            if cameras.len() == 1 {
+                return Ok(0);
+            }
+            let names: Vec<&str> = cameras.iter().map(|it| it.name.as_str()).collect();
+            let message = format!(
+                "found no name of a camera, expected one of {} in a column `camera`",
+                first_few(&names)
+            );
+            return Err(row.error(column.unwrap_or(0), message));
+        }
+        // One of which the name is a word of the other: `left` for `left_eye`.
+        let is_like = |own: &str| {
+            let word = |whole: &str, part: &str| whole.split(['_', '-', ' ', '/']).any(|it| it == part);
+            word(&name, own) || word(own, &name)
+        };
+        let like: Vec<usize> = (0..cameras.len()).filter(|&at| is_like(&cameras[at].name)).collect();
+        let [at] = like.as_slice() else {
+            let names: Vec<&str> = cameras.iter().map(|it| it.name.as_str()).collect();
+            let message = format!("found the camera `{name}`, expected one of {}", first_few(&names));
+            return Err(row.error(column.unwrap_or(0), message));
+        };
+        self.say_once(format!("took the camera `{}` for `{name}`", cameras[*at].name));
+        Ok(*at)
+    }
+
+    fn say_once(&mut self, sentence: String) {
+        if !self.found.warnings.contains(&sentence) {
+            self.found.warnings.push(sentence);
+        }
+    }
+}
+
+fn no_picture(row: &Row<'_>, image: Option<usize>) -> Error {
+    row.error(
+        image.unwrap_or(0),
+        "found an empty cell in the column of the picture, expected the name of a picture",
+    )
+}
+
+/// Text of a cell.
+pub(crate) fn text(row: &Row<'_>, column: Option<usize>) -> Option<String> {
+    Some(row.cells.get(column?)?.text().trim().to_owned())
+}

@@ -1,0 +1,119 @@
+//! The pictures of a file as rows of the session.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use super::gathering::Gathered;
+use crate::read::Reader;
+use crate::table::Table;
+use crate::table::inputs::InputReader;
+use crate::table::layout::ColumnLayout;
+use crate::table::understanding::{self, ColumnUnderstanding, FileUnderstanding};
+use poecal_model::camera::{Corner, FlatView, Picture, guessed_lens, is_flat_sheet};
+use poecal_model::measurement::Source;
+use poecal_numerics::error::{Error, ErrorKind, Result, first_few};
+
+impl Reader<'_> {
+    /// Adds pictures as rows, each with the poses that fit its corners; those without one are left out, and named.
+    pub(crate) fn take_pictures(&mut self, path: &Path, gathered: Vec<Gathered>) -> Result<()> {
+        let file = u32::try_from(self.found.data.files.len().saturating_sub(1)).unwrap_or(u32::MAX);
+        let (mut left_out, mut found) = (Vec::new(), 0);
+        self.found.data.pictures.cameras.clone_from(&self.cameras);
+        self.found.data.pictures.boards.clone_from(&self.boards);
+        self.guess_lenses(&gathered)?;
+        for one in gathered {
+            let name = one.image.clone().unwrap_or_else(|| format!("of line {}", one.taken.place.1));
+            let line = one.corners.first().map_or(0, |corner| corner.line);
+            let image = one.image.clone();
+            let picture = Picture::new(one.camera, one.board, one.image, one.corners);
+            let taken = (one.taken.set, Source { file, line });
+            let data = &mut self.found.data;
+            match data.push_picture(&one.taken.readings, picture, taken) {
+                Ok(Ok(())) => {}
+                Ok(Err(reason)) => {
+                    left_out.push(format!("{name} ({reason})"));
+                    continue;
+                }
+                Err(error) => {
+                    let kind = ErrorKind::Measurement;
+                    return Err(Error::new(kind, error.message()).at_line(path, line as usize));
+                }
+            }
+            let id = if one.taken.id.is_empty() { image.unwrap_or_default() } else { one.taken.id };
+            if !id.is_empty() || !data.ids.is_empty() {
+                data.ids.resize(data.len() - 1, String::new());
+                data.ids.push(id);
+            }
+            found += 1;
+        }
+        if !left_out.is_empty() {
+            self.found.warnings.push(format!(
+                "{}: left out {} of {} pictures: {}",
+                path.display(),
+                left_out.len(),
+                left_out.len() + found,
+                first_few(&left_out)
+            ));
+        }
+        if found == 0 {
+            let message =
+                "found no picture with a pose, expected at least four corners of a board in a picture";
+            return Err(Error::new(ErrorKind::Measurement, message).in_file(path));
+        }
+        Ok(())
+    }
+
+    /// Finds the lenses that are unknown from the corners of flat boards.
+    fn guess_lenses(&mut self, gathered: &[Gathered]) -> Result<()> {
+        let pictures = &mut self.found.data.pictures;
+        for (at, camera) in pictures.cameras.iter_mut().enumerate().filter(|(_, it)| it.is_guessed) {
+            let view = |one: &Gathered| -> Option<FlatView> {
+                let board = pictures.boards.get(one.board).filter(|board| is_flat_sheet(board))?;
+                let of =
+                    |corner: &Corner| Some((board.points.get(corner.point as usize)?.xy(), corner.pixel));
+                Some(one.corners.iter().filter_map(of).unzip())
+            };
+            let views: Vec<FlatView> =
+                gathered.iter().filter(|one| one.camera == at).filter_map(view).collect();
+            let size_px = camera.lens.size_px.unwrap_or([1, 1]);
+            camera.lens =
+                guessed_lens(size_px, &views).map_err(|found| Error::new(ErrorKind::Measurement, found))?;
+        }
+        Ok(())
+    }
+
+    /// Says how a file of corners was understood.
+    pub(crate) fn understand_pictures(
+        &mut self,
+        table: &Table<'_>,
+        layout: &ColumnLayout,
+        inputs: &InputReader<'_>,
+        (first, rows, own): (usize, usize, Vec<ColumnUnderstanding>),
+    ) -> Result<()> {
+        let path = table.header.path;
+        let pictures = self.found.data.len() - first;
+        self.warn_of_ignored(path, layout);
+        self.take_controller(path, layout)?;
+        let mut columns = understanding::columns(table, layout, &inputs.ranges);
+        columns.extend(own);
+        self.found.understood.push(FileUnderstanding {
+            understood: table.understood(),
+            path: path.to_path_buf(),
+            form: table.form(),
+            rows,
+            points: 0,
+            poses: 0,
+            others: BTreeMap::from([("pictures", pictures)]),
+            lost: crate::LostBeams::default(),
+            separator: table.separator,
+            separator_line: table.separator_line,
+            units_line: table.header.units_line,
+            decimal_sign: inputs.numbers.sign(),
+            columns,
+            orientation: None,
+            pose: understanding::pose_word(layout.pose),
+            ignored: layout.ignored.iter().map(|(name, _)| name.clone()).collect(),
+        });
+        Ok(())
+    }
+}

@@ -1,0 +1,238 @@
+//! Measurements of a row, taken into the session.
+
+use std::borrow::Cow;
+
+use crate::Frames;
+use crate::read::Reader;
+use crate::table::inputs::InputReader;
+use crate::table::kinds::KindColumns;
+use crate::table::layout::{ColumnLayout, SetRule};
+use crate::table::row::{component_noise, measurement};
+use crate::table::targets::TargetLayout;
+use crate::table::{Row, lost};
+use poecal_model::measurement::{Measurement, NoiseShape, Observation, Quantity, Set, Source, Stated};
+use poecal_model::robot::check_name;
+use poecal_numerics::error::Result;
+
+impl Reader<'_> {
+    pub(crate) fn row(
+        &mut self,
+        row: &Row<'_>,
+        layout: &ColumnLayout,
+        inputs: &InputReader<'_>,
+    ) -> Result<()> {
+        let set = self.set(row, layout)?;
+        for target in &layout.targets {
+            let may_be_missing = layout.targets.len() > 1;
+            let how = (may_be_missing, self.options.strict);
+            if let Some(measurement) = measurement(row, target, layout.pose, inputs, how)? {
+                let mut stated = Stated::default();
+                stated.set(Quantity::Position, inputs.sigma(row, target.sigma_position)?);
+                stated.set(Quantity::Rotation, inputs.sigma(row, target.sigma_rotation)?);
+                let shape =
+                    component_noise(row, target, inputs, &measurement)?.and_then(NoiseShape::by_component);
+                if let (Some(_), Some(input)) = (&shape, target.sigma_position) {
+                    let message = "found `sigma_position` beside standard deviations of the components, expected one of the two";
+                    return Err(row.error(inputs.column(input), message));
+                }
+                self.observation(row, layout, (target, set, None), (measurement, stated), inputs)?;
+                if let Some(shape) = shape {
+                    self.found.data.state_noise(self.found.data.len() - 1, shape);
+                }
+            }
+            let has_position = lost::has_position(target, inputs);
+            for kind in &target.kinds {
+                if let Some((measurement, stated)) =
+                    kind.measurement(row, inputs, (has_position, self.options.contact))?
+                {
+                    self.observation(row, layout, (target, set, Some(kind)), (measurement, stated), inputs)?;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether a row is the first one of a pair, the configuration from which the second is seen.
+    pub(crate) fn begins_pair(
+        &mut self,
+        row: &Row<'_>,
+        layout: &ColumnLayout,
+        inputs: &InputReader<'_>,
+    ) -> Result<bool> {
+        let Some((column, name)) = layout.pair.and_then(|at| Some((at, row.cells.get(at)?.text()))) else {
+            return Ok(false);
+        };
+        if name.is_empty() || self.begun.get(name.as_ref()).is_some_and(|(index, _)| index.is_some()) {
+            return Ok(false);
+        }
+        if let Some((_, line)) = self.begun.get(name.as_ref()) {
+            let message =
+                format!("found a third row of the pair `{name}` (line {line} is the first), expected two");
+            return Err(row.error(column, message));
+        }
+        let further = self.found.data.push_further(inputs.readings());
+        let further = further.map_err(|error| row.error(column, error.message()))?;
+        self.begun.insert(name.into_owned(), (Some(further), row.line));
+        Ok(true)
+    }
+
+    /// Adds a measurement of a row.
+    fn observation(
+        &mut self,
+        row: &Row<'_>,
+        layout: &ColumnLayout,
+        (target, set, kind): (&TargetLayout, Option<Set>, Option<&KindColumns>),
+        (measurement, stated): (Measurement, Stated),
+        inputs: &InputReader<'_>,
+    ) -> Result<()> {
+        let target = self.target(row, layout, target)?;
+        let pair = layout.pair.and_then(|at| row.cells.get(at)).map(|cell| cell.text());
+        let from = pair.and_then(|pair| self.begun.get_mut(pair.as_ref())?.0.take());
+        let observation = Observation {
+            station: self.station(row, layout, kind, from.map(|_| target))?,
+            from,
+            stated,
+            set,
+            source: Source {
+                // A file of joint readings alone has no rows.
+                file: u32::try_from(self.found.data.files.len().saturating_sub(1)).unwrap_or(u32::MAX),
+                line: u32::try_from(row.line).unwrap_or(u32::MAX),
+            },
+            ..Observation::new(target, measurement)
+        };
+        self.found
+            .data
+            .push_observation(inputs.readings(), observation)
+            .map_err(|error| row.error(0, error.message()))?;
+        if let Some(cell) = layout.id.and_then(|id| row.cells.get(id)) {
+            self.found.data.ids.push(cell.text().into_owned());
+        }
+        Ok(())
+    }
+
+    /// The stated set of a row.
+    pub(crate) fn set(&mut self, row: &Row<'_>, layout: &ColumnLayout) -> Result<Option<Set>> {
+        let text = |index: usize| row.cells.get(index).map(|cell| cell.text()).unwrap_or_default();
+        match &layout.set {
+            SetRule::Unstated => Ok(None),
+            SetRule::Words(index) => set_of(row, *index),
+            SetRule::Where(index, rule) => {
+                self.fit_values_seen.resize(rule.values.len(), false);
+                let Some(value) = rule.matching(&text(*index)) else { return Ok(Some(Set::HeldOut)) };
+                if let Some(seen) = self.fit_values_seen.get_mut(value) {
+                    *seen = true;
+                }
+                Ok(Some(Set::Fit))
+            }
+        }
+    }
+
+    /// Index of the row's target. Either all rows name their target or none does.
+    fn target(&mut self, row: &Row<'_>, layout: &ColumnLayout, target: &TargetLayout) -> Result<usize> {
+        let cell = layout.target_column.and_then(|column| row.cells.get(column)).map(|cell| cell.text());
+        let name = cell.as_deref().or(target.name.as_deref()).filter(|name| !name.is_empty());
+        let column = layout.target_column;
+        let index = self.targets.index(row, column, "target", name)?;
+        if index == self.found.data.targets.len() {
+            check_name(name.unwrap_or_default(), "target")
+                .map_err(|error| row.error(column.unwrap_or(0), error.message()))?;
+            self.found.data.targets.push(name.map(str::to_owned));
+        }
+        Ok(index)
+    }
+
+    /// Index of the row's station: of its instrument, or of the place from which it was measured. Either all rows that are measured alike name
+    /// theirs or none does.
+    fn station(
+        &mut self,
+        row: &Row<'_>,
+        layout: &ColumnLayout,
+        kind: Option<&KindColumns>,
+        shared: Option<usize>,
+    ) -> Result<usize> {
+        let text = |column: usize| row.cells.get(column).map(|cell| cell.text()).filter(|it| !it.is_empty());
+        let own = kind.and_then(|kind| kind.place_name(row));
+        let instrument = layout.instrument.and_then(text);
+        if let (Some(kind), Some(own), Some(other)) = (kind, &own, &instrument)
+            && own != other
+        {
+            let (what, columns) = kind.place();
+            let message = format!(
+                "found the {what} `{own}` beside the instrument `{other}`, expected one of the two: leave one cell empty"
+            );
+            return Err(row.error(columns.last().copied().unwrap_or(0), message));
+        }
+        let place = kind.map(KindColumns::place).filter(|(_, columns)| !columns.is_empty());
+        let (what, column) = match (&own, place, layout.instrument) {
+            (Some(_), Some((what, columns)), _) => (what, columns.last().copied()),
+            (None, Some((what, columns)), Some(_)) if instrument.is_none() => (what, columns.last().copied()),
+            (_, _, Some(column)) => ("instrument", Some(column)),
+            (None, Some((what, columns)), None) => (what, columns.last().copied()),
+            (_, None, None) => ("instrument", None),
+        };
+        let pair = shared.filter(|_| own.is_none() && instrument.is_none()).map(|target| {
+            let target = self.found.data.targets.get(target).cloned().flatten();
+            Cow::Owned(target.map_or_else(|| "pair".to_owned(), |target| format!("pair/{target}")))
+        });
+        let (what, column) = if pair.is_some() { ("pair", layout.pair) } else { (what, column) };
+        let name = match (own.or(pair), self.options.frames) {
+            (Some(own), _) => Some(own),
+            (None, Frames::PerFile) => Some(Cow::Owned(row.path.display().to_string())),
+            (None, Frames::Common) => instrument,
+        };
+        let name = name.as_deref();
+        if let Some(name) = name {
+            self.refuse_other_place(row, column, what, name)?;
+        }
+        let index = self.stations.index(row, column, what, name)?;
+        let known = &mut self.found.data.stations;
+        if index >= known.len() && (name.is_some() || index > 0) {
+            if let Some(name) = name.filter(|_| self.options.frames == Frames::Common) {
+                check_name(&name.replace('/', "_"), what)
+                    .map_err(|error| row.error(column.unwrap_or(0), error.message()))?;
+            }
+            // An unnamed instrument before the first name.
+            known.resize(index, None);
+            known.push(name.map(str::to_owned));
+            if what == "socket" {
+                let (place, socket) =
+                    name.and_then(|name| name.rsplit_once('/')).unwrap_or(("", name.unwrap_or_default()));
+                self.sockets.entry(place.to_owned()).or_default().push((socket.to_owned(), index));
+            }
+        }
+        Ok(index)
+    }
+
+    /// Refuses a name that places of two kinds share. An anchor may be an instrument that measures positions too.
+    fn refuse_other_place(
+        &mut self,
+        row: &Row<'_>,
+        column: Option<usize>,
+        what: &'static str,
+        name: &str,
+    ) -> Result<()> {
+        let place = |what: &'static str| if what == "anchor" { "instrument" } else { what };
+        let (known, path, line) =
+            self.places.entry(name.to_owned()).or_insert_with(|| (what, row.path.to_path_buf(), row.line));
+        if place(known) == place(what) {
+            return Ok(());
+        }
+        let message = format!(
+            "found the {what} `{name}`, which is the name of the {known} in {}:{line}, expected another name",
+            path.display()
+        );
+        Err(row.error(column.unwrap_or(0), message))
+    }
+}
+
+/// The set that a cell states.
+pub(crate) fn set_of(row: &Row<'_>, index: usize) -> Result<Option<Set>> {
+    match row.cells.get(index).map(|cell| cell.text()).unwrap_or_default().as_ref() {
+        "" => Ok(None),
+        "fit" => Ok(Some(Set::Fit)),
+        "held_out" => Ok(Some(Set::HeldOut)),
+        other => {
+            Err(row.error(index, format!("found `{other}` in column `set`, expected `fit` or `held_out`")))
+        }
+    }
+}

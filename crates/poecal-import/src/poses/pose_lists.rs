@@ -1,0 +1,188 @@
+//! Lists of poses: of an arm's flange, and of what a camera saw, side by side in one file or in two.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use super::picture_poses::{are_corners_of, poses_of_pictures};
+use super::pose_columns::{PoseUnits, Whose};
+use super::pose_file::{PoseFile, read_poses};
+use super::pose_names::by_name;
+use crate::ReadOptions;
+use poecal_fit::hand_eye::{PoseList, Touches};
+use poecal_model::robot::Robot;
+use poecal_numerics::error::{ErrorKind, Result};
+
+/// How files of poses are read.
+#[derive(Clone, Copy, Debug)]
+pub struct PoseSource<'a> {
+    /// Units of columns that state none.
+    pub units: PoseUnits,
+    /// The robot whose joint readings are read instead of the arm's poses.
+    pub robot: Option<&'a Robot>,
+    /// Cameras and boards of corners in pixels, which are read instead of the target's poses.
+    pub pictures: &'a ReadOptions,
+}
+
+/// Poses of an arm, and of what a camera saw, row by row.
+#[derive(Clone, Debug, Default)]
+pub struct PosePairs {
+    /// `base_from_flange`, unless they are inverted.
+    pub flange: PoseList,
+    /// `camera_from_target`, likewise.
+    pub target: PoseList,
+    /// Readings of the joints, one row after the other, where the arm's poses are by these; else empty.
+    pub joints: Vec<f64>,
+    /// What messages call each row.
+    pub names: Vec<String>,
+    /// How the columns were understood, a sentence each.
+    pub understood: Vec<String>,
+    /// Warnings, a sentence each.
+    pub warnings: Vec<String>,
+    /// SHA-256 of each file by its name.
+    pub sha256: BTreeMap<String, String>,
+}
+
+/// Poses of an arm in which a tip touched points.
+#[derive(Clone, Debug, Default)]
+pub struct FlangePoses {
+    /// The poses, with the point that each touched and the tip with which it did.
+    pub touches: Touches,
+    /// What messages call each row.
+    pub names: Vec<String>,
+    /// How the columns were understood, a sentence each.
+    pub understood: Vec<String>,
+    /// Warnings, a sentence each.
+    pub warnings: Vec<String>,
+    /// SHA-256 of each file by its name.
+    pub sha256: BTreeMap<String, String>,
+}
+
+/// Reads poses of an arm and of a target: side by side in one file, or in two, joined by a column of names that both have, else row by row. The
+/// second file may have the corners of pictures instead of the target's poses.
+///
+/// # Errors
+/// [`ErrorKind::File`] if a file cannot be read; [`ErrorKind::Syntax`], [`ErrorKind::Measurement`] and [`ErrorKind::Unit`] for what is no
+/// list of poses, with its place.
+pub fn read_pose_pairs(paths: &[PathBuf], source: &PoseSource<'_>) -> Result<PosePairs> {
+    let read = |path: &Path, alone: Option<Whose>| read_poses(path, alone, source.units, source.robot);
+    match paths {
+        [one] => side_by_side(read(one, None)?),
+        [first, second] => {
+            let corners = [first, second].map(|path| are_corners_of(path));
+            match corners {
+                [false, false] => joined(read(first, Some(Whose::Arm))?, read(second, Some(Whose::Target))?),
+                [false, true] => with_pictures(read(first, Some(Whose::Arm))?, second, source.pictures),
+                [true, false] => with_pictures(read(second, Some(Whose::Arm))?, first, source.pictures),
+                [true, true] => Err(ErrorKind::Measurement
+                    .error("found corners in pixels in both files, expected the arm's poses in one of them")
+                    .in_file(first)),
+            }
+        }
+        _ => ErrorKind::Option.refuse(format!(
+            "found {} files, expected one with the poses of arm and target side by side, or two: the arm's, then the target's",
+            paths.len()
+        )),
+    }
+}
+
+/// Reads poses of an arm, with the columns `point` and `tip` if there are any.
+///
+/// # Errors
+/// As [`read_pose_pairs`].
+pub fn read_flange_poses(path: &Path, units: PoseUnits, robot: Option<&Robot>) -> Result<FlangePoses> {
+    let mut file = read_poses(path, Some(Whose::Arm), units, robot)?;
+    let list = file.take(Whose::Arm)?;
+    Ok(FlangePoses {
+        understood: vec![list.words],
+        names: file.row_names(),
+        sha256: checksums([&file]),
+        touches: Touches { flange: list.poses, points: file.points, tips: file.tips },
+        warnings: file.warnings,
+    })
+}
+
+fn checksums<'a>(files: impl IntoIterator<Item = &'a PoseFile>) -> BTreeMap<String, String> {
+    let checksum = |it: &PoseFile| Some((it.path.display().to_string(), it.sha256.clone()?));
+    files.into_iter().filter_map(checksum).collect()
+}
+
+fn side_by_side(mut file: PoseFile) -> Result<PosePairs> {
+    let (flange, target) = (file.take(Whose::Arm)?, file.take(Whose::Target)?);
+    Ok(PosePairs {
+        understood: vec![flange.words, target.words],
+        flange: flange.poses,
+        target: target.poses,
+        names: file.row_names(),
+        sha256: checksums([&file]),
+        joints: file.joints,
+        warnings: file.warnings,
+    })
+}
+
+fn joined(mut first: PoseFile, second: PoseFile) -> Result<PosePairs> {
+    let mut warnings = std::mem::take(&mut first.warnings);
+    let rows: Vec<(usize, usize)> = match (first.named(), second.named()) {
+        (Some(one), Some(other)) => by_name(&one, &other, &mut warnings)?,
+        _ if first.lines.len() == second.lines.len() => {
+            (0..first.lines.len()).map(|row| (row, row)).collect()
+        }
+        _ => {
+            return Err(ErrorKind::Measurement
+                .error(format!(
+                    "found {} poses, and {} in {}, expected as many, or a column `image` of names in both files by which they are joined",
+                    first.lines.len(),
+                    second.lines.len(),
+                    second.path.display()
+                ))
+                .in_file(&first.path));
+        }
+    };
+    let sha256 = checksums([&first, &second]);
+    let (mut arm, mut arm_rows, mut seen, mut seen_rows) = {
+        let (left, right): (Vec<usize>, Vec<usize>) = rows.into_iter().unzip();
+        (first, left, second, right)
+    };
+    // Named the other way round.
+    if arm.lists.iter().all(|list| list.whose == Whose::Target) {
+        std::mem::swap(&mut arm, &mut seen);
+        std::mem::swap(&mut arm_rows, &mut seen_rows);
+    }
+    let (flange, target) = (arm.take(Whose::Arm)?, seen.take(Whose::Target)?);
+    let names = arm.row_names();
+    Ok(PosePairs {
+        understood: vec![flange.words, target.words],
+        flange: flange.poses.of_rows(&arm_rows),
+        target: target.poses.of_rows(&seen_rows),
+        joints: of_rows(&arm.joints, arm.lines.len(), &arm_rows),
+        names: arm_rows.iter().filter_map(|row| names.get(*row).cloned()).collect(),
+        warnings,
+        sha256,
+    })
+}
+
+/// Poses of an arm, and the corners of pictures that were taken there.
+fn with_pictures(mut arm: PoseFile, corners: &Path, options: &ReadOptions) -> Result<PosePairs> {
+    let pictures = poses_of_pictures(corners, &arm, options)?;
+    let flange = arm.take(Whose::Arm)?;
+    let names = arm.row_names();
+    let mut warnings = std::mem::take(&mut arm.warnings);
+    warnings.extend(pictures.warnings);
+    let mut sha256 = checksums([&arm]);
+    sha256.extend(pictures.sha256);
+    Ok(PosePairs {
+        understood: vec![flange.words, pictures.words],
+        flange: flange.poses.of_rows(&pictures.rows),
+        target: pictures.poses,
+        joints: of_rows(&arm.joints, arm.lines.len(), &pictures.rows),
+        names: pictures.rows.iter().filter_map(|row| names.get(*row).cloned()).collect(),
+        warnings,
+        sha256,
+    })
+}
+
+/// Readings of some rows.
+fn of_rows(readings: &[f64], count: usize, rows: &[usize]) -> Vec<f64> {
+    let width = readings.len() / count.max(1);
+    let row = |row: &usize| readings.get(row * width..(row + 1) * width).unwrap_or_default().iter().copied();
+    rows.iter().flat_map(row).collect()
+}

@@ -1,0 +1,74 @@
+//! How else the numbers of a list of poses could be read, to name the mistake where another reading fits.
+
+use nalgebra::Vector3;
+
+use super::pose_columns::{PoseColumns, list_words};
+use crate::table::orientation::OrientationForm;
+use poecal_arm::lie::Pose;
+use poecal_fit::hand_eye::Reading;
+
+/// A reading: its form, the factor of its numbers, and the advice.
+type Way = (OrientationForm, f64, String);
+
+/// How else the orientations of a list could be read.
+pub(crate) fn others(
+    columns: &PoseColumns,
+    positions: &[Vector3<f64>],
+    numbers: &[Vec<f64>],
+) -> Vec<Reading> {
+    let read = |form: OrientationForm, factor: f64| -> Option<Vec<Pose>> {
+        let rows = numbers.iter().zip(positions);
+        rows.map(|(numbers, place)| {
+            let numbers: Vec<f64> = numbers.iter().map(|it| it * factor).collect();
+            Some(Pose::new(form.rotation(&numbers).ok()?, *place))
+        })
+        .collect()
+    };
+    ways(columns)
+        .into_iter()
+        .filter_map(|(form, factor, advice)| Some(Reading { advice, poses: read(form, factor)? }))
+        .collect()
+}
+
+/// Other units and conventions of angles; other orders of quaternions and matrices.
+fn ways(columns: &PoseColumns) -> Vec<Way> {
+    let who = list_words(columns.whose);
+    let one = |form: OrientationForm, advice: String| vec![(form, 1.0, advice)];
+    match columns.form {
+        OrientationForm::QuaternionXyzw => one(
+            OrientationForm::QuaternionWxyz,
+            format!("quaternions of {who} with the real part first: exchange the names of the columns"),
+        ),
+        OrientationForm::QuaternionWxyz => one(
+            OrientationForm::QuaternionXyzw,
+            format!("quaternions of {who} with the real part last: name the columns qx, qy, qz, qw"),
+        ),
+        OrientationForm::MatrixByRows => one(
+            OrientationForm::MatrixByColumns,
+            format!("matrices of {who} written column by column: exchange rows and columns"),
+        ),
+        OrientationForm::MatrixByColumns => Vec::new(),
+        OrientationForm::RotationVector | OrientationForm::Intrinsic(_) | OrientationForm::Extrinsic(_) => {
+            ways_of_angles(columns, who)
+        }
+    }
+}
+
+fn ways_of_angles(columns: &PoseColumns, who: &str) -> Vec<Way> {
+    let degree = std::f64::consts::PI / 180.0;
+    let symbol = columns.orientation.first().map_or("rad", |it| it.unit.symbol());
+    let (other, short, factor) =
+        if symbol == "deg" { ("radians", "rad", 1.0 / degree) } else { ("degrees", "deg", degree) };
+    let unit = format!("angles of {who} in {other}: write `[{short}]` behind the names of these columns");
+    let forms = [
+        (OrientationForm::Intrinsic([2, 1, 0]), "angles about z, y, x as turned (KUKA)"),
+        (OrientationForm::ROLL_PITCH_YAW, "roll, pitch, yaw about fixed axes (FANUC, URDF)"),
+        (OrientationForm::Intrinsic([0, 1, 2]), "angles about x, y, z as turned (Stäubli)"),
+        (OrientationForm::Intrinsic([2, 1, 2]), "angles about z, y, z as turned (Kawasaki)"),
+        (OrientationForm::RotationVector, "rotation vectors (Universal Robots, OpenCV)"),
+    ];
+    let conventions = forms.into_iter().filter(|(form, _)| *form != columns.form).map(|(form, words)| {
+        (form, 1.0, format!("orientations of {who} as {words}: name the columns as that form has them"))
+    });
+    std::iter::once((columns.form, factor, unit)).chain(conventions).collect()
+}

@@ -1,0 +1,329 @@
+//! Files of joint readings and files of measurements, joined row with row (docs/file-formats.md, *Two files*).
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+
+use super::joints::rows_of;
+use crate::instruments::MEASURED;
+use crate::join::join_motion::in_motion;
+use crate::join::join_pairs::{Joined, JointRows, Pairing};
+use crate::join::join_plan::{Part, Plan, Planned};
+use crate::join::motions::{Sampled, motion_of_points, motion_of_target};
+use crate::join::no_stands::NoStands;
+use crate::join::streams::{MeasuredStands, stands_of_joints, stands_of_measured};
+use crate::read::Reader;
+use crate::table::Table;
+use crate::table::inputs::InputReader;
+use crate::table::layout::ColumnLayout;
+use crate::table::mapping::ColumnMap;
+use crate::table::number::Numbers;
+use crate::table::understanding::{self, FileUnderstanding};
+use crate::{Join, LostBeams};
+use poecal_fit::start::{FEWEST_PAIRS, JointStream, Span, Unpaired};
+use poecal_model::measurement::Dataset;
+use poecal_numerics::error::{Error, ErrorKind, Result};
+use poecal_numerics::named_unit::UnitSource;
+use poecal_numerics::unit::Unit;
+
+impl<'a> Reader<'a> {
+    /// Reads files of which some have the joint readings of others: each those of the files behind it, up to the next file of readings; the first
+    /// ones also those of files before them.
+    pub(crate) fn joined(&mut self, plan: &'a Plan<'_>) -> Result<()> {
+        let first = plan.files.iter().find(|it| it.part == Part::Joints);
+        let mut joints = first.map(|it| self.joint_rows(it)).transpose()?;
+        let mut of_joints = first;
+        let mut unmeasured = Unmeasured::default();
+        for it in &plan.files {
+            match (it.part, &joints) {
+                (Part::Joints, Some(known)) if known.path == it.path => {}
+                (Part::Joints, _) => {
+                    let known = joints.replace(self.joint_rows(it)?);
+                    self.warn_of_unmeasured(std::mem::take(&mut unmeasured), known.as_ref());
+                    of_joints = Some(it);
+                }
+                (Part::Measured { .. }, Some(known)) => {
+                    let read = self.measured(it, known, &mut unmeasured);
+                    read.map_err(|error| self.or_shifted(error, (of_joints, known), it))?;
+                }
+                (Part::Measured { .. }, None) | (Part::Whole, _) => {
+                    self.file(it.path, it.blocks(self.opening(), MEASURED)?)?;
+                }
+            }
+        }
+        self.warn_of_unmeasured(unmeasured, joints.as_ref());
+        Ok(())
+    }
+
+    /// Warns of joint readings at which nothing was measured in any file.
+    fn warn_of_unmeasured(&mut self, found: Unmeasured, joints: Option<&JointRows>) {
+        let (Some(rows), Some(joints)) = (found.rows.filter(|it| !it.is_empty()), joints) else { return };
+        let rows: Vec<usize> = rows.into_iter().collect();
+        let warning =
+            format!("{}: nothing was measured at {}", joints.path.display(), joints.lines_of(&rows));
+        self.found.warnings.insert(found.at.min(self.found.warnings.len()), warning);
+    }
+
+    /// Reads a file of joint readings alone. Angles without a unit that are no radians are degrees: the nominal robot then agrees with the pairs, or
+    /// they are refused.
+    pub(crate) fn joint_rows(&mut self, planned: &Planned<'_>) -> Result<JointRows> {
+        let found = self.joint_rows_by(planned, self.map);
+        let Err(error) = &found else { return found };
+        if error.kind() != ErrorKind::Unit || self.map.units.angle.is_some() {
+            return found;
+        }
+        let Ok(in_degrees) = self.map.clone().with_units("deg") else { return found };
+        let Ok(rows) = self.joint_rows_by(planned, &in_degrees) else { return found };
+        self.found.is_in_degrees = true;
+        self.found.warnings.push(took_degrees(planned.path, "as radians they are too large"));
+        Ok(rows)
+    }
+
+    fn joint_rows_by(&mut self, planned: &Planned<'_>, map: &ColumnMap) -> Result<JointRows> {
+        let path = planned.path;
+        let blocks = planned.blocks(self.opening(), "a file of joint readings (CSV)")?;
+        let mut table = Table::open(path, blocks, map)?;
+        let said = table.said();
+        self.header_line = table.header.line;
+        let layout = ColumnLayout::joints(&table.header, self.robot, self.options, map)?;
+        let layout = self.as_shifted(layout, &table)?;
+        let numbers = Numbers::new(map.decimal);
+        let mut inputs = InputReader::new(&layout.inputs, layout.inputs.len(), numbers);
+        let table_rows = rows_of(&mut table, &layout, &mut inputs, self.robot)?;
+        self.take_said(said);
+        self.found.warnings.extend(table_rows.warnings);
+        self.warn_of_ignored(path, &layout);
+        self.take_controller(path, &layout)?;
+        self.found.sha256.extend(table.sha256().map(|sha256| (path.display().to_string(), sha256)));
+        self.understand_joints(&table, &layout, &inputs, table_rows.rows);
+        let turning = layout.inputs.iter().filter(|it| it.unit.of() == Unit::Radian);
+        let mut rows = JointRows {
+            path: path.to_path_buf(),
+            readings: table_rows.readings,
+            ids: table_rows.ids.iter().map(|id| id.trim().to_owned()).collect(),
+            lines: table_rows.lines,
+            is_sheet: table.is_sheet(),
+            is_without_unit: turning.clone().count() > 0
+                && turning.clone().all(|it| it.unit_from == UnitSource::Si),
+            turns: layout.inputs.iter().map(|it| it.unit.of() == Unit::Radian).collect(),
+            times: table_rows.times,
+            spans: None,
+            sampled: None,
+            stream: None,
+            no_stands: NoStands::Listed,
+            controller: layout.controller,
+        };
+        // A stream has no names of rows.
+        let is_listed =
+            !rows.ids.is_empty() || matches!(self.options.join, Some(Join::Rows | Join::Name | Join::Motion));
+        let found = if is_listed { Err(NoStands::Listed) } else { stands_of_joints(&rows, &rows.times) };
+        let mut stands = match found {
+            Ok(stands) => stands,
+            Err(why) => {
+                refuse_backwards(path, &why)?;
+                if self.options.join == Some(Join::Motion) {
+                    rows.sampled = Sampled::new(&rows.times, &rows.readings, rows.turns.len());
+                }
+                return Ok(JointRows { no_stands: why, ..rows });
+            }
+        };
+        stands.stream = JointStream::new(&rows.times, &rows.readings, rows.turns.len());
+        if stands.lines.len() < FEWEST_PAIRS {
+            return Err(no_stands(path, "joint readings", stands.lines.len()));
+        }
+        self.found.notes.push(format!(
+            "{}: took the {} stands of the robot in its stream of joint readings",
+            path.display(),
+            stands.lines.len()
+        ));
+        stands.sampled = Sampled::new(&rows.times, &rows.readings, rows.turns.len());
+        Ok(stands)
+    }
+
+    /// Says how a file of joint readings was understood.
+    fn understand_joints(
+        &mut self,
+        table: &Table<'_>,
+        layout: &ColumnLayout,
+        inputs: &InputReader<'_>,
+        rows: usize,
+    ) {
+        self.found.understood.push(FileUnderstanding {
+            path: table.header.path.to_path_buf(),
+            form: table.form(),
+            understood: table.understood(),
+            rows,
+            points: 0,
+            poses: 0,
+            others: BTreeMap::from([("joint readings", rows)]),
+            lost: LostBeams::default(),
+            separator: table.separator,
+            separator_line: table.separator_line,
+            units_line: table.header.units_line,
+            decimal_sign: inputs.numbers.sign(),
+            columns: understanding::columns(table, layout, &inputs.ranges),
+            orientation: None,
+            pose: understanding::pose_word(layout.pose),
+            ignored: layout.ignored.iter().map(|(name, _)| name.clone()).collect(),
+        });
+    }
+
+    /// Reads a file of measurements alone, with the readings of another.
+    fn measured(
+        &mut self,
+        planned: &'a Planned<'_>,
+        joints: &JointRows,
+        unmeasured: &mut Unmeasured,
+    ) -> Result<()> {
+        let path = planned.path;
+        let (data, times) = self.without_readings(planned)?;
+        if self.options.join == Some(Join::Motion) {
+            let found = self.join_in_motion(joints, (path, &data, &times))?;
+            return self.again(planned, found, unmeasured);
+        }
+        let is_by_rows = matches!(self.options.join, Some(Join::Rows | Join::Name));
+        let found = if is_by_rows || !joints.ids.is_empty() && !data.ids.iter().all(String::is_empty) {
+            Err(NoStands::Listed)
+        } else {
+            stands_of_measured(&data, &times)
+        };
+        let (stands, why) = match found {
+            Ok(stands) => (Some(stands), None),
+            Err(why) => (None, Some(why)),
+        };
+        if let Some(why) = &why {
+            refuse_backwards(path, why)?;
+        }
+        let few = |count: usize| count < FEWEST_PAIRS;
+        if let Some(stands) = stands.as_ref().filter(|it| few(it.spans.len())) {
+            return Err(no_stands(path, "measurements", stands.spans.len()));
+        }
+        let stream = stands.as_ref().map(|_| (&data, times.as_slice()));
+        let motion = stands.as_ref().and_then(|it| motion_of_target(&data, &times, &it.spans));
+        let data = stands.as_ref().map_or(&data, |it| &it.data);
+        let points: Option<Vec<Span>> = (times.len() == data.len() && times.iter().all(|it| it.is_finite()))
+            .then(|| points(data, &times));
+        let spans = stands.as_ref().map(|it| &it.spans).or(points.as_ref()).map(Vec::as_slice);
+        let paired = |joints: &JointRows| {
+            let (lag, no_stands) = (self.options.lag, why.as_ref());
+            let lists = Pairing::of_lists(joints, path, data, self.robot);
+            Pairing { spans, lag, no_stands, stream, ..lists }.found(self.options.join)
+        };
+        let mut found = match paired(joints) {
+            Err(error) if joints.is_without_unit => {
+                let mut found = paired(&joints.in_degrees()).map_err(|_| error)?;
+                found.warnings.push(took_degrees(&joints.path, "as radians they fit no measurements"));
+                self.found.is_in_degrees = true;
+                found
+            }
+            found => found?,
+        };
+        if let Some(stands) = stands {
+            take_stands(&mut found, stands, path);
+        }
+        let by_time = found.entry.join == Join::Time;
+        found.entry.measured_motion =
+            motion.or_else(|| points.as_deref().filter(|_| by_time).and_then(motion_of_points));
+        self.again(planned, found, unmeasured)
+    }
+
+    /// Joins measurements in motion; joint readings that state no unit may be degrees.
+    fn join_in_motion(&mut self, joints: &JointRows, seen: (&Path, &Dataset, &[f64])) -> Result<Joined> {
+        let joined = |joints: &JointRows| in_motion(joints, seen, self.robot, self.options.lag);
+        match joined(joints) {
+            Err(error) if joints.is_without_unit => {
+                let mut found = joined(&joints.in_degrees()).map_err(|_| error)?;
+                found.warnings.push(took_degrees(&joints.path, "as radians they fit no measurements"));
+                self.found.is_in_degrees = true;
+                Ok(found)
+            }
+            found => found,
+        }
+    }
+
+    /// Reads a file of measurements again, with the readings of each line.
+    fn again(&mut self, planned: &'a Planned<'_>, found: Joined, unmeasured: &mut Unmeasured) -> Result<()> {
+        let (path, unread) = (planned.path, &planned.map);
+        self.found.join = Some(found.entry.join);
+        self.found.joins.push(found.entry);
+        self.found.notes.extend(found.notes);
+        unmeasured.include(found.unmeasured, self.found.warnings.len());
+        self.found.warnings.extend(found.warnings);
+        let usual = std::mem::replace(&mut self.map, unread);
+        self.readings = Some(found.readings);
+        let blocks = planned.blocks(self.opening(), MEASURED);
+        let read = blocks.and_then(|blocks| self.file(path, blocks));
+        (self.map, self.readings) = (usual, None);
+        read
+    }
+
+    /// What was measured, with readings that mean nothing, and the time of each row, seconds, NaN where it has none.
+    fn without_readings(&self, planned: &'a Planned<'_>) -> Result<(Dataset, Vec<f64>)> {
+        let map = &planned.map;
+        let mut reader =
+            Reader { map, times: Some(Vec::new()), ..Reader::new(self.robot, self.options, map) };
+        reader.rows_alone(planned.path, planned.blocks(self.opening(), MEASURED)?)?;
+        Ok((reader.found.data, reader.times.unwrap_or_default()))
+    }
+}
+
+/// Joint readings at which no file so far has a measurement.
+#[derive(Clone, Debug, Default)]
+struct Unmeasured {
+    rows: Option<BTreeSet<usize>>,
+    /// Where the warning of these is among all.
+    at: usize,
+}
+
+impl Unmeasured {
+    /// Adds a file of measurements.
+    fn include(&mut self, rows: Vec<usize>, at: usize) {
+        let rows: BTreeSet<usize> = rows.into_iter().collect();
+        match &mut self.rows {
+            Some(known) => known.retain(|it| rows.contains(it)),
+            None => (self.rows, self.at) = (Some(rows), at),
+        }
+    }
+}
+
+/// Takes the means of stands, and says how their rows scatter.
+fn take_stands(found: &mut Joined, stands: MeasuredStands, path: &Path) {
+    found.notes.push(format!(
+        "{}: each stand is the mean of its rows, which scatter by {:.3} mm",
+        path.display(),
+        1e3 * stands.scatter_m
+    ));
+    found.warnings.extend(stands.warnings.iter().map(|it| format!("{}: {it}", path.display())));
+    found.readings.means = stands.means;
+}
+
+/// Refuses a recording whose times go back.
+fn refuse_backwards(path: &Path, why: &NoStands) -> Result<()> {
+    let NoStands::Recorded { why, back: Some(line) } = why else { return Ok(()) };
+    let message = format!(
+        "found {why}, expected rows in the order of their times: sort them, or leave out those of another recording"
+    );
+    Err(ErrorKind::Measurement.error(message).at_line(path, *line))
+}
+
+/// The error of a stream in which the robot hardly stands.
+fn no_stands(path: &Path, what: &str, count: usize) -> Error {
+    ErrorKind::Measurement
+        .error(format!(
+            "found a stream of {what} with {count} times in which nothing moves for 0.3 s or longer, expected at least {FEWEST_PAIRS} stands: let the robot stop at each configuration, or join the recordings in motion (--join motion), or rows of the same time (--join rows)"
+        ))
+        .in_file(path)
+}
+
+/// When each configuration was measured, where rows are points.
+fn points(data: &Dataset, times: &[f64]) -> Vec<Span> {
+    let shots = Unpaired::shots_of(data);
+    shots.iter().filter_map(|it| times.get(*it.first()? as usize)).map(|it| (*it, *it)).collect()
+}
+
+/// The warning of readings without a unit that are degrees.
+fn took_degrees(path: &Path, reason: &str) -> String {
+    format!(
+        "{}: took the joint readings, which state no unit, as degrees: {reason}; --units deg says so",
+        path.display()
+    )
+}

@@ -1,0 +1,136 @@
+//! Tables of joint readings alone, for predictions.
+
+use std::path::Path;
+
+use crate::ReadOptions;
+use crate::checks::scale::JointWatch;
+use crate::instruments::Opening;
+use crate::join::streams::time_of;
+use crate::pictures::taken::set_of;
+use crate::table::configurations::in_its_file;
+use crate::table::inputs::InputReader;
+use crate::table::layout::{ColumnLayout, SetRule};
+use crate::table::mapping::ColumnMap;
+use crate::table::number::Numbers;
+use crate::table::text::Blocks;
+use crate::table::{Table, refuse_more_rows};
+use poecal_model::measurement::Set;
+use poecal_model::robot::Robot;
+use poecal_numerics::error::{ErrorKind, Result};
+use poecal_numerics::text::visible;
+use poecal_plan::plan::{PlannedRow, RowPart};
+
+/// Configurations from a file.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct JointsTable {
+    /// Readings of all rows, in the order of [`Robot::reading_names`] (radians, metres).
+    pub readings: Vec<f64>,
+    /// Number of rows.
+    pub rows: usize,
+    /// The rows' `id`, empty if there is no such column.
+    pub ids: Vec<String>,
+    /// The rows' `set`, empty if there is no such column.
+    pub sets: Vec<Option<Set>>,
+    /// The rows' line numbers, from 1.
+    pub lines: Vec<usize>,
+    /// The rows' times, seconds; empty if there is no such column.
+    pub times: Vec<f64>,
+    /// Warnings, a sentence each.
+    pub warnings: Vec<String>,
+}
+
+impl JointsTable {
+    /// The rows as those of a list: rows that state none are to fit.
+    #[must_use]
+    pub fn planned(&self) -> Vec<PlannedRow> {
+        let part = |row: usize| match self.sets.get(row) {
+            Some(Some(Set::HeldOut)) => RowPart::Judge,
+            _ => RowPart::Fit,
+        };
+        let parts: Vec<RowPart> = (0..self.rows).map(part).collect();
+        PlannedRow::of_list(&self.readings, self.readings.len() / self.rows.max(1), &parts)
+    }
+}
+
+/// Reads the joint columns of a file, and `id` if there is one; other columns are ignored.
+///
+/// # Errors
+/// As [`crate::read`], of what concerns joints.
+pub fn read_joints(path: impl AsRef<Path>, robot: &Robot, options: &ReadOptions) -> Result<JointsTable> {
+    let path = path.as_ref();
+    let blocks = Opening { robot, options }.joint_blocks(path, "a file of joint readings (CSV)")?;
+    of_blocks(path, blocks, robot, options).map_err(|error| in_its_file(error, path))
+}
+
+/// Reads the text of such a file; `path` is for the messages only.
+///
+/// # Errors
+/// As [`crate::read`], of what concerns joints.
+pub fn parse_joints(
+    text: &str,
+    path: impl AsRef<Path>,
+    robot: &Robot,
+    options: &ReadOptions,
+) -> Result<JointsTable> {
+    let path = path.as_ref();
+    of_blocks(path, Blocks::new(path, text.as_bytes()), robot, options)
+}
+
+fn of_blocks<'p>(
+    path: &'p Path,
+    blocks: Blocks<'p>,
+    robot: &Robot,
+    options: &ReadOptions,
+) -> Result<JointsTable> {
+    let no_map = ColumnMap::default();
+    let map = options.mapping.as_ref().unwrap_or(&no_map);
+    let mut table = Table::open(path, blocks, map)?;
+    let layout = ColumnLayout::joints(&table.header, robot, options, map)?;
+    let mut inputs = InputReader::new(&layout.inputs, layout.inputs.len(), Numbers::new(map.decimal));
+    let joints = rows_of(&mut table, &layout, &mut inputs, robot)?;
+    let warnings = joints.warnings.iter().map(|warning| visible(warning).into_owned()).collect();
+    Ok(JointsTable { warnings, ..joints })
+}
+
+/// All rows of a table of joint readings.
+pub(crate) fn rows_of(
+    table: &mut Table<'_>,
+    layout: &ColumnLayout,
+    inputs: &mut InputReader<'_>,
+    robot: &Robot,
+) -> Result<JointsTable> {
+    let path = table.header.path;
+    let mut watch = JointWatch::new(robot);
+    let mut joints = JointsTable::default();
+    while let Some(mut rows) = table.next_block()? {
+        while let Some(row) = rows.next()? {
+            inputs.read(&row)?;
+            watch.unwind(&row, inputs);
+            inputs.include_in_ranges();
+            watch.observe(&row, inputs);
+            inputs.take_readings(&row)?;
+            joints.readings.extend_from_slice(inputs.readings());
+            joints.rows += 1;
+            refuse_more_rows(joints.rows, &row)?;
+            joints.lines.push(row.line);
+            if layout.time.is_some() {
+                joints.times.push(time_of(&row, layout));
+            }
+            if let SetRule::Words(index) = layout.set {
+                joints.sets.push(set_of(&row, index)?);
+            }
+            if let Some(cell) = layout.id.and_then(|id| row.cells.get(id)) {
+                joints.ids.push(cell.text().into_owned());
+            }
+        }
+    }
+    if joints.rows == 0 {
+        return Err(ErrorKind::Measurement
+            .error("found a header and no rows, expected at least one row of joint readings")
+            .at_line(path, table.header.line));
+    }
+    joints.warnings = watch.finish(path, layout, &inputs.ranges)?;
+    let own = |words: String| format!("{}: {words}", path.display());
+    joints.warnings.extend(layout.joint_words().into_iter().map(own));
+    Ok(joints)
+}

@@ -1,0 +1,361 @@
+//! Reads measurement files.
+
+pub(crate) mod joining;
+pub(crate) mod joints;
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use super::messages::are_messages;
+use super::table::{Table, refuse_more_rows};
+use super::{FitWhere, Frames, MeasurementFile, ReadOptions};
+use crate::checks::scale::JointWatch;
+use crate::checks::turns::TurnWatch;
+use crate::checks::{scale, spread};
+use crate::instruments::Opening;
+use crate::join::beside::{alone, beside, has_readings_of_pictures};
+use crate::join::join_plan::{Plan, ReadingsByLine};
+use crate::join::streams::time_of;
+use crate::pictures::corner_columns::{are_corners, are_readings_of_pictures};
+use crate::pictures::picture_files::TakenByImage;
+use crate::pictures::wrong_boards::refuse_wrong_boards;
+use crate::table::configurations::in_its_file;
+use crate::table::inputs::InputReader;
+use crate::table::layout::ColumnLayout;
+use crate::table::lost;
+use crate::table::lost::LostBeams;
+use crate::table::mapping::ColumnMap;
+use crate::table::naming::Names;
+use crate::table::number::Numbers;
+use crate::table::socket_distance::Sockets;
+use crate::table::text::{Blocks, Said};
+use poecal_fit::start::{settle_faces, settle_pictures};
+use poecal_model::camera::{Board, Camera};
+use poecal_model::measurement::{Dataset, Observation};
+use poecal_model::robot::Robot;
+use poecal_numerics::error::{ErrorKind, Result};
+use poecal_numerics::text::visible;
+
+/// Reads measurement files, joined in their order.
+///
+/// # Errors
+/// A file that cannot be read ([`ErrorKind::File`]), is no table ([`ErrorKind::Syntax`]), has a wrong or missing unit
+/// ([`ErrorKind::Unit`]), or has wrong columns or cells ([`ErrorKind::Measurement`]); a [`ReadOptions::fit_where`] that fits no file
+/// ([`ErrorKind::Option`]).
+pub fn read(paths: &[impl AsRef<Path>], robot: &Robot, options: &ReadOptions) -> Result<MeasurementFile> {
+    let paths: Vec<&Path> = paths.iter().map(AsRef::as_ref).collect();
+    read_all(&paths, robot, options)
+}
+
+/// Compiled once, and not for each kind of path.
+fn read_all(paths: &[&Path], robot: &Robot, options: &ReadOptions) -> Result<MeasurementFile> {
+    if paths.is_empty() {
+        return ErrorKind::Option.refuse("found no measurement file, expected at least one");
+    }
+    let no_map = ColumnMap::default();
+    if let Some(mut plan) = Plan::of(paths, robot, options, options.mapping.as_ref().unwrap_or(&no_map))? {
+        plan.settle_sets(robot, options, &no_map)?;
+        let mut reader = Reader::new(robot, options, &no_map);
+        reader.joined(&plan)?;
+        return reader.finish();
+    }
+    let mut reader = Reader::new(robot, options, &no_map);
+    // Readings by picture come before the corners of the pictures, in whatever order the files are named.
+    let mut order = paths.to_vec();
+    if !options.cameras.is_empty() {
+        order.sort_by_key(|path| !has_readings_of_pictures(path, robot, reader.map));
+    }
+    for path in order {
+        let opening = reader.opening();
+        let blocks = reader.blocks_of_set(path)?;
+        let first = reader.found.data.len();
+        let read = reader.file(path, blocks);
+        let is_own = reader.found.understood.last().is_none_or(|it| it.form.is_none());
+        let is_doubtful = is_own && read.as_ref().err().is_none_or(|it| it.kind() == ErrorKind::Measurement);
+        if is_doubtful && let Some(error) = reader.shifted_whole(path, read.is_ok().then_some(first)) {
+            return Err(error);
+        }
+        read.map_err(|error| in_its_file(error, path))
+            .map_err(|error| alone(error, path, &opening, reader.map))
+            .map_err(|error| beside(error, path, paths, (robot, reader.map, options.cameras.is_empty())))?;
+    }
+    reader.finish()
+}
+
+/// Reads the text of a measurement file; `path` is for the messages only.
+///
+/// # Errors
+/// As [`read()`].
+pub fn parse(
+    text: &str,
+    path: impl AsRef<Path>,
+    robot: &Robot,
+    options: &ReadOptions,
+) -> Result<MeasurementFile> {
+    parse_at(text, path.as_ref(), robot, options)
+}
+
+/// Compiled once, and not for each kind of path.
+fn parse_at(text: &str, path: &Path, robot: &Robot, options: &ReadOptions) -> Result<MeasurementFile> {
+    let no_map = ColumnMap::default();
+    let mut reader = Reader::new(robot, options, &no_map);
+    let blocks = reader.opening().of_text(path, Blocks::new(path, text.as_bytes()))?;
+    reader.file(path, blocks.blocks(path, "a table (CSV)"))?;
+    reader.finish()
+}
+
+/// The warning of rows that have some components of a position beside rows that have all.
+fn incomplete(path: &Path, rows: &[Observation]) -> Option<String> {
+    let is_part = |row: &&Observation| row.measurement.is_part_of_position();
+    let lines: Vec<usize> = rows.iter().filter(is_part).map(|row| row.source.line as usize).collect();
+    let has_whole = rows.iter().any(|row| row.measurement.is_place() && !row.measurement.sees_orientation());
+    let first = lines.get(..lines.len().min(lost::NAMED_LINES))?;
+    (has_whole && !lines.is_empty()).then(|| {
+        format!(
+            "{}: took {} ({}) as positions of which only some components were measured; --strict refuses empty cells",
+            path.display(),
+            counted(lines.len()),
+            lost::named_lines(lines.len(), first)
+        )
+    })
+}
+
+fn counted(rows: usize) -> String {
+    if rows == 1 { "one row".to_owned() } else { format!("{rows} rows") }
+}
+
+pub(crate) struct Reader<'a> {
+    pub(crate) robot: &'a Robot,
+    pub(crate) options: &'a ReadOptions,
+    pub(crate) map: &'a ColumnMap,
+    pub(crate) targets: Names,
+    pub(crate) stations: Names,
+    /// What each named place is, and where it was named first.
+    pub(crate) places: BTreeMap<String, (&'static str, PathBuf, usize)>,
+    /// Pairs of rows: the first one's configuration until the second is read, and its line.
+    pub(crate) begun: BTreeMap<String, (Option<u32>, usize)>,
+    /// Readings of joints by picture.
+    pub(crate) taken: TakenByImage,
+    /// What messages call one of these.
+    pub(crate) taken_as: &'static str,
+    /// The joint readings of each line, where another file has them.
+    pub(crate) readings: Option<ReadingsByLine>,
+    /// The time of each row so far, seconds, where it is asked for.
+    pub(crate) times: Option<Vec<f64>>,
+    /// The cameras.
+    pub(crate) cameras: Vec<Camera>,
+    /// The boards, one that is at several places by its names there.
+    pub(crate) boards: Vec<Board>,
+    /// The sockets of each place.
+    pub(crate) sockets: Sockets,
+    /// Which of the values that mark a row to fit were seen.
+    pub(crate) fit_values_seen: Vec<bool>,
+    /// By how many columns values are taken to stand to the right of their names, and the line of names that was read last.
+    pub(crate) shift: isize,
+    pub(crate) header_line: usize,
+    pub(crate) found: MeasurementFile,
+}
+
+impl<'a> Reader<'a> {
+    pub(crate) fn new(robot: &'a Robot, options: &'a ReadOptions, no_map: &'a ColumnMap) -> Self {
+        Reader {
+            robot,
+            options,
+            map: options.mapping.as_ref().unwrap_or(no_map),
+            targets: Names::default(),
+            stations: Names::default(),
+            places: BTreeMap::new(),
+            begun: BTreeMap::new(),
+            taken: TakenByImage::new(),
+            taken_as: "joint readings",
+            readings: None,
+            times: None,
+            cameras: options.cameras.clone(),
+            boards: options.boards.clone(),
+            sockets: Sockets::new(),
+            fit_values_seen: Vec::new(),
+            shift: 0,
+            header_line: 0,
+            found: MeasurementFile {
+                data: Dataset::new(robot.reading_names()).with_factors(robot.factors.len()),
+                warnings: options.said.clone(),
+                ..MeasurementFile::default()
+            },
+        }
+    }
+
+    /// What files are opened with.
+    pub(crate) fn opening(&self) -> Opening<'a> {
+        Opening { robot: self.robot, options: self.options }
+    }
+
+    /// Takes what was understood of a file when it was opened.
+    pub(crate) fn take_said(&mut self, said: Said) {
+        self.found.notes.extend(said.notes);
+        self.found.warnings.extend(said.warnings);
+    }
+
+    pub(crate) fn file<'p>(&mut self, path: &'p Path, mut blocks: Blocks<'p>) -> Result<()> {
+        blocks.begin()?;
+        if are_messages(path, blocks.text())? {
+            return self.messages(path, blocks);
+        }
+        let mut table = Table::open(path, blocks, self.map)?;
+        self.take_said(table.said());
+        let joints = self.found.data.reading_names();
+        if are_corners(&table.header, joints, self.map)? {
+            return self.corners(path, table);
+        }
+        if !self.cameras.is_empty() && are_readings_of_pictures(&table.header, joints, self.map) {
+            return self.readings_of_pictures(path, table);
+        }
+        let mut layout = ColumnLayout::new(&table.header, self.robot, self.options, self.map)?;
+        if let Some(by_line) = &self.readings {
+            layout.controller.clone_from(&by_line.controller);
+        }
+        if let Some(column) = layout.instrument.filter(|_| self.options.frames == Frames::PerFile) {
+            let message = "found a column that names the instrument beside --frames per-file, expected one of the two: leave the option \
+                           out, or the column";
+            return Err(table.header.error(ErrorKind::Measurement, column, message));
+        }
+        let numbers = Numbers::new(self.map.decimal);
+        let mut inputs = InputReader::new(&layout.inputs, self.found.data.reading_names().len(), numbers);
+        let first = self.found.data.len();
+        self.found.data.files.push(path.to_path_buf());
+        if layout.id.is_some() {
+            self.found.data.ids.resize(first, String::new());
+        }
+        let (watch, rows, lost) = self.rows(&mut table, &layout, &mut inputs)?;
+        self.take_means(first);
+        self.take_motion(path, first)?;
+        self.refuse_single_rows(path)?;
+        self.found.sha256.extend(table.sha256().map(|sha256| (path.display().to_string(), sha256)));
+        let refuse = |message| Err(ErrorKind::Measurement.error(message).at_line(path, table.header.line));
+        if rows == 0 {
+            return refuse("found a header and no rows, expected at least one measurement");
+        }
+        if self.found.data.len() == first {
+            return refuse(
+                "found no position in any row, expected at least one that is neither empty nor zero",
+            );
+        }
+        self.found.warnings.extend(lost.warning(path));
+        let new_rows = self.found.data.observations.get(first..).unwrap_or_default();
+        self.found.warnings.extend(incomplete(path, new_rows));
+        self.judge(&table, &layout, watch, &inputs, first)?;
+        self.understand(&table, &layout, &inputs, (first, rows, lost))
+    }
+
+    /// Takes the rows of a file and judges nothing.
+    pub(crate) fn rows_alone<'p>(&mut self, path: &'p Path, blocks: Blocks<'p>) -> Result<()> {
+        let mut table = Table::open(path, blocks, self.map)?;
+        self.header_line = table.header.line;
+        let layout = ColumnLayout::new(&table.header, self.robot, self.options, self.map)?;
+        let layout = self.as_shifted(layout, &table)?;
+        let numbers = Numbers::new(self.map.decimal);
+        let mut inputs = InputReader::new(&layout.inputs, self.found.data.reading_names().len(), numbers);
+        self.found.data.files.push(path.to_path_buf());
+        self.rows(&mut table, &layout, &mut inputs)?;
+        self.found.data.ids.resize(self.found.data.len(), String::new());
+        // A wrong unit would be taken for a wrong order.
+        scale::check_positions(path, self.robot, &layout, 0.0, &self.found.data.observations)
+    }
+
+    /// Takes all rows of a file, and counts them with the lost beams among them.
+    fn rows(
+        &mut self,
+        table: &mut Table<'_>,
+        layout: &ColumnLayout,
+        inputs: &mut InputReader<'_>,
+    ) -> Result<((JointWatch<'a>, TurnWatch), usize, LostBeams)> {
+        let mut watch = (JointWatch::new(self.robot), TurnWatch::default());
+        let (mut rows, mut lost) = (0, LostBeams::default());
+        while let Some(mut some) = table.next_block()? {
+            while let Some(row) = some.next()? {
+                rows += 1;
+                inputs.read(&row)?;
+                if let Some(by_line) = &self.readings {
+                    // A line without readings has no partner.
+                    let Some(readings) = by_line.lines.get(&row.line) else { continue };
+                    inputs.put_readings(readings);
+                }
+                watch.0.unwind(&row, inputs);
+                inputs.take_readings(&row)?;
+                if self.begins_pair(&row, layout, inputs)?
+                    || lost.take_out(&row, &layout.targets, inputs, self.options.strict)?
+                {
+                    continue;
+                }
+                inputs.include_in_ranges();
+                watch.0.observe(&row, inputs);
+                watch.1.observe(&row, layout, inputs);
+                self.row(&row, layout, inputs)?;
+                if let Some(times) = &mut self.times {
+                    times.resize(self.found.data.len(), time_of(&row, layout));
+                }
+                refuse_more_rows(self.found.data.len(), &row)?;
+            }
+        }
+        Ok((watch, rows, lost))
+    }
+
+    /// Judges the scale of the readings and of what was measured.
+    fn judge(
+        &mut self,
+        table: &Table<'_>,
+        layout: &ColumnLayout,
+        (joints, turns): (JointWatch<'_>, TurnWatch),
+        inputs: &InputReader<'_>,
+        first: usize,
+    ) -> Result<()> {
+        let path = table.header.path;
+        self.found.warnings.extend(joints.finish(path, layout, &inputs.ranges)?);
+        turns.finish(path)?;
+        let new_rows = self.found.data.observations.get(first..).unwrap_or_default();
+        let slides_m = joints.unlimited_slides_m(&inputs.ranges);
+        scale::check_positions(path, self.robot, layout, slides_m, new_rows)?;
+        scale::check_ranges(path, self.robot, slides_m, new_rows)?;
+        spread::check(path, &table.header, self.robot, layout, &self.found.data, first)
+    }
+
+    fn finish(self) -> Result<MeasurementFile> {
+        self.refuse_unused()?;
+        let rule = self.options.fit_where.as_ref().or(self.map.set.as_ref());
+        if let Some(FitWhere { column, values }) = rule
+            && !self.options.ignore_sets
+            && let Some((value, _)) = values.iter().zip(&self.fit_values_seen).find(|(_, seen)| !**seen)
+        {
+            let message =
+                format!("found no row with `{value}` in column `{column}`, expected at least one to fit");
+            let error = ErrorKind::Option.error(message);
+            return Err(match self.found.data.files.as_slice() {
+                [only] => error.in_file(only),
+                _ => error,
+            });
+        }
+        if let Some(taken) = self.taken.values().next().filter(|_| self.found.data.is_empty()) {
+            let message = format!(
+                "found the joint readings of {} pictures and no corners, expected a second file with these: image, target, u[px], v[px], as \
+                 `poecal detect` writes it",
+                self.taken.len()
+            );
+            return Err(ErrorKind::Measurement.error(message).in_file(&taken.place.0));
+        }
+        let mut found = self.found;
+        if let Some(distances) = &self.options.socket_distances {
+            found.data.lengths = distances.lengths(&self.sockets)?;
+        }
+        for noise in &self.options.instrument_noise {
+            noise.state(&mut found.data)?;
+        }
+        settle_faces(&mut found.data, self.robot);
+        found.data.settle_pixels();
+        refuse_wrong_boards(&found.data)?;
+        let settled = settle_pictures(&mut found.data, self.robot);
+        found.notes.extend(settled.notes);
+        found.warnings.extend(settled.warnings);
+        let said = found.notes.iter_mut().chain(&mut found.warnings);
+        said.for_each(|words| *words = visible(words).into_owned());
+        Ok(found)
+    }
+}

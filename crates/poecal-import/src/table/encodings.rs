@@ -1,0 +1,73 @@
+//! Texts that are not UTF-8: UTF-16, and Windows-1252 with Latin-1, as programs of instruments write them.
+
+/// Characters of the bytes from 0x80 to 0x9F; those that are none are `\0`.
+const WINDOWS: [char; 32] = [
+    '€', '\0', '‚', 'ƒ', '„', '…', '†', '‡', 'ˆ', '‰', 'Š', '‹', 'Œ', '\0', 'Ž', '\0', '\0', '‘', '’', '“',
+    '”', '•', '–', '—', '˜', '™', 'š', '›', 'œ', '\0', 'ž', 'Ÿ',
+];
+
+/// Whether bytes are the beginning of UTF-16: with a byte order mark, or every other byte of the first two characters is zero.
+pub(crate) fn is_utf16(bytes: &[u8]) -> bool {
+    bytes.starts_with(&[0xff, 0xfe])
+        || bytes.starts_with(&[0xfe, 0xff])
+        || matches!(bytes, [0, 1..=255, 0, 1..=255, ..] | [1..=255, 0, 1..=255, 0, ..])
+}
+
+/// The text of UTF-16; else the line and what was found.
+pub(crate) fn of_utf16(bytes: &[u8]) -> Result<String, (usize, &'static str)> {
+    let is_big = bytes.starts_with(&[0xfe, 0xff]) || bytes.first() == Some(&0);
+    let marked = bytes.strip_prefix(&[0xff, 0xfe]).or_else(|| bytes.strip_prefix(&[0xfe, 0xff]));
+    let (pairs, odd) = marked.unwrap_or(bytes).as_chunks::<2>();
+    let units = pairs.iter().map(|it| if is_big { u16::from_be_bytes(*it) } else { u16::from_le_bytes(*it) });
+    let mut text = String::with_capacity(pairs.len());
+    let line = |text: &str| 1 + text.matches('\n').count();
+    for character in char::decode_utf16(units) {
+        match character {
+            Ok('\0') => return Err((line(&text), "a NUL character")),
+            Ok(character) => text.push(character),
+            Err(_) => return Err((line(&text), "half a character")),
+        }
+    }
+    if odd.is_empty() { Ok(text) } else { Err((line(&text), "an odd number of bytes")) }
+}
+
+/// The text of Windows-1252, in which Latin-1 is but for control characters; else the index of a byte that is no character.
+pub(crate) fn of_windows_1252(bytes: &[u8]) -> Result<String, usize> {
+    let mut text = String::with_capacity(bytes.len() + bytes.len() / 8);
+    for (at, &byte) in bytes.iter().enumerate() {
+        let character = match byte {
+            0x80..=0x9f => WINDOWS.get(usize::from(byte) - 0x80).copied().unwrap_or('\0'),
+            _ => char::from(byte),
+        };
+        if character == '\0' {
+            return Err(at);
+        }
+        text.push(character);
+    }
+    Ok(text)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn texts_of_windows_and_utf16_are_read() {
+        assert_eq!(of_windows_1252(b"\xb5m \xb0 \x80 \x93x\x94"), Ok("µm ° € “x”".to_owned()));
+        assert_eq!(of_windows_1252(b"ab\x81"), Err(2));
+        for is_big in [false, true] {
+            for is_marked in [false, true] {
+                let text = "a;b\nµ;𝄞\n";
+                let marked = if is_marked { format!("\u{feff}{text}") } else { text.to_owned() };
+                let units = marked.encode_utf16();
+                let bytes: Vec<u8> =
+                    units.flat_map(|it| if is_big { it.to_be_bytes() } else { it.to_le_bytes() }).collect();
+                assert!(is_utf16(&bytes));
+                assert_eq!(of_utf16(&bytes).as_deref(), Ok(text), "{is_big} {is_marked}");
+                assert_eq!(of_utf16(&bytes[..bytes.len() - 1]), Err((2, "an odd number of bytes")));
+            }
+        }
+        assert!(!is_utf16(b"a,b\n"));
+        assert!(!is_utf16(b""));
+    }
+}

@@ -1,0 +1,344 @@
+//! Header: the line of column names, and the line of units that may follow it.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use super::cells::{Cell, Separator, character_column, split_line};
+use super::column_names::number_of_column;
+use super::configurations::advice;
+use super::places::Sheet;
+use poecal_numerics::error::{Error, ErrorKind, Result};
+use poecal_numerics::named_unit::{NamedUnit, UnitSource};
+use poecal_numerics::unit::Unit;
+
+/// A column of the header: `name[unit]` or `name (unit)`.
+#[derive(Clone, Debug)]
+pub(crate) struct HeaderCell {
+    /// As in the file.
+    pub(crate) text: String,
+    /// Without the unit.
+    pub(crate) name: String,
+    /// Text in brackets.
+    pub(crate) unit: Option<String>,
+    /// NamedUnit in the line of units, with its column there.
+    below: Option<(usize, String)>,
+    column: usize,
+}
+
+/// The line of column names.
+pub(crate) struct Header<'a> {
+    pub(crate) path: &'a Path,
+    pub(crate) line: usize,
+    pub(crate) cells: Vec<HeaderCell>,
+    /// First and second column of each name, with and without its unit.
+    pub(crate) named: BTreeMap<String, (usize, Option<usize>)>,
+    /// The line of units, if there is one.
+    pub(crate) units_line: Option<usize>,
+    /// The first lines below, for the message if this is no header.
+    pub(crate) below: Vec<(usize, String)>,
+    /// Columns whose cells name the joint of another column, with the name.
+    pub(crate) names: Vec<(usize, String)>,
+    /// The sheet of a workbook.
+    pub(crate) sheet: Option<Sheet>,
+}
+
+impl HeaderCell {
+    fn new(text: &str, column: usize) -> Self {
+        // Round brackets may be part of a name.
+        let is_unit = |unit: &str| NamedUnit::parse_any(unit.trim()).is_ok();
+        // A number in brackets is one of a list, as in `q[0]`.
+        let is_index = |unit: &str| !unit.is_empty() && unit.bytes().all(|it| it.is_ascii_digit());
+        let (name, unit) = bracketed(text, '[', ']')
+            .filter(|(_, unit)| !is_index(unit.trim()))
+            .or_else(|| bracketed(text, '(', ')').filter(|(_, unit)| is_unit(unit)))
+            .map_or((text, None), |(name, unit)| (name.trim_end(), Some(unit.trim().to_owned())));
+        HeaderCell {
+            text: text.to_owned(),
+            name: name.to_owned(),
+            unit: unit.filter(|unit| !unit.is_empty()),
+            below: None,
+            column,
+        }
+    }
+}
+
+impl HeaderCell {
+    /// Its units as they are written, in brackets and in the line of units.
+    pub(crate) fn units(&self) -> impl Iterator<Item = &str> {
+        self.unit.as_deref().into_iter().chain(self.below.iter().map(|(_, unit)| bare(unit)))
+    }
+}
+
+/// A text that ends with brackets: the parts before and in them.
+fn bracketed(text: &str, open: char, close: char) -> Option<(&str, &str)> {
+    text.strip_suffix(close)?.rsplit_once(open)
+}
+
+/// The unit in a column's name, as `x_mm` or `x in mm`.
+pub(crate) fn unit_in_name(text: &str, name: &str) -> Option<NamedUnit> {
+    let start = text.get(..name.len()).filter(|start| start.eq_ignore_ascii_case(name))?;
+    let rest = text.get(start.len()..).filter(|rest| !rest.starts_with(char::is_alphanumeric))?;
+    let words = rest.split(|c: char| !c.is_alphanumeric() && c != '°').filter(|word| !word.is_empty());
+    match words.collect::<Vec<_>>().as_slice() {
+        [unit] | ["in", unit] => {
+            NamedUnit::parse_any(unit).or_else(|_| NamedUnit::parse_any(&unit.to_lowercase())).ok()
+        }
+        _ => None,
+    }
+}
+
+/// Whether the cells below a header are units: one is, and none is a number. (Each is checked when it is needed.)
+pub(crate) fn are_units(cells: &[Cell<'_>]) -> bool {
+    cells.iter().any(|cell| NamedUnit::parse_any(bare(cell.raw)).is_ok())
+        && !cells.iter().any(|cell| is_number(cell.raw))
+}
+
+/// A unit without brackets.
+fn bare(text: &str) -> &str {
+    let inside = |open, close| text.strip_prefix(open)?.strip_suffix(close);
+    inside('[', ']').or_else(|| inside('(', ')')).unwrap_or(text).trim()
+}
+
+/// The column of a joint's position beside one of its name: `field.position0` of `field.name0`, and `position[0]` of `name[0]`.
+fn beside_name(text: &str) -> Option<String> {
+    let end = text.strip_suffix(']').unwrap_or(text);
+    let digits = end.len() - end.trim_end_matches(|it: char| it.is_ascii_digit()).len();
+    let (start, number) = (text.get(..end.len() - digits)?, text.get(end.len() - digits..)?);
+    let stem = start
+        .strip_suffix("name")
+        .map(|stem| (stem, ""))
+        .or(start.strip_suffix("name[").map(|stem| (stem, "[")));
+    let (stem, bracket) = stem.filter(|_| digits > 0)?;
+    Some(format!("{stem}position{bracket}{number}"))
+}
+
+pub(crate) fn is_number(text: &str) -> bool {
+    text.replace(',', ".").parse::<f64>().is_ok()
+}
+
+impl<'a> Header<'a> {
+    pub(crate) fn new(path: &'a Path, line: usize, text: &str, separator: Separator) -> Result<Self> {
+        let mut cells = Vec::new();
+        split_line(path, line, text, separator, &mut cells)?;
+        if cells.iter().all(|cell| is_number(&cell.text())) {
+            return Err(ErrorKind::Syntax
+                .error(format!(
+                    "found a line of numbers, expected a header that names the columns \
+                     (a line that begins with `#` is a comment){}",
+                    advice(path)
+                ))
+                .at_line(path, line));
+        }
+        let cells = header_cells(text, &cells);
+        let mut named: BTreeMap<String, (usize, Option<usize>)> = BTreeMap::new();
+        for (index, cell) in cells.iter().enumerate() {
+            let texts = [Some(&cell.name), Some(&cell.text).filter(|text| **text != cell.name)];
+            for text in texts.into_iter().flatten() {
+                let places = named.entry(text.clone());
+                places.and_modify(|(_, second)| *second = second.or(Some(index))).or_insert((index, None));
+            }
+        }
+        Ok(Header {
+            path,
+            line,
+            cells,
+            named,
+            units_line: None,
+            below: Vec::new(),
+            names: Vec::new(),
+            sheet: None,
+        })
+    }
+
+    /// Adds the line of units.
+    pub(crate) fn set_units(&mut self, line: usize, text: &str, cells: &[Cell<'_>]) {
+        self.units_line = Some(line);
+        for (header, cell) in self.cells.iter_mut().zip(cells) {
+            let unit = cell.text();
+            let unit = Some(bare(&unit)).filter(|unit| !unit.is_empty());
+            header.below = unit.map(|unit| (character_column(text, cell.offset), unit.to_owned()));
+        }
+    }
+
+    /// Columns `…position0` whose joint's name is in the cells of `…name0`, as a recorded `JointState` has them, get these names; of the first
+    /// row, with which all others must agree.
+    pub(crate) fn take_names(&mut self, cells: &[Cell<'_>]) {
+        let mut taken = Vec::new();
+        for (index, (header, cell)) in self.cells.iter().zip(cells).enumerate() {
+            let Some(position) = beside_name(&header.text) else { continue };
+            let at = self.cells.iter().position(|other| other.text == position);
+            let name = cell.text().trim().to_owned();
+            if let Some(at) = at.filter(|_| !name.is_empty() && !is_number(&name)) {
+                taken.push((index, at, name));
+            }
+        }
+        for (_, at, name) in &taken {
+            if let Some(cell) = self.cells.get_mut(*at) {
+                (cell.name, cell.unit) = (name.clone(), None);
+            }
+            self.named
+                .entry(name.clone())
+                .and_modify(|(_, second)| *second = second.or(Some(*at)))
+                .or_insert((*at, None));
+        }
+        self.names = taken.into_iter().map(|(index, _, name)| (index, name)).collect();
+    }
+
+    /// Takes the names of columns away, which then have no meaning; a file need not have them.
+    pub(crate) fn ignore(&mut self, names: &[String]) {
+        for name in names {
+            let Some(at) = self.find(name).ok().flatten() else { continue };
+            if let Some(cell) = self.cells.get_mut(at) {
+                (cell.text, cell.name, cell.unit) = (String::new(), String::new(), None);
+            }
+            self.named.retain(|_, places| places.0 != at);
+        }
+    }
+
+    /// Stores the first lines below, for the message if this is no header.
+    pub(crate) fn look_below(&mut self, lines: impl Iterator<Item = (usize, String)>) {
+        self.below = lines.collect();
+    }
+
+    /// The first row, if it is near.
+    pub(crate) fn first_row(&self) -> Option<String> {
+        let row = self.below.iter().find(|(line, _)| *line > self.last_line());
+        row.map(|(_, text)| text.clone())
+    }
+
+    /// The last line of the header.
+    pub(crate) fn last_line(&self) -> usize {
+        self.units_line.unwrap_or(self.line)
+    }
+
+    /// Refuses a column of a number without dimension whose unit is another one than this.
+    pub(crate) fn only_unit(&self, index: usize, expected: &str) -> Result<()> {
+        let Some(cell) = self.cells.get(index) else { return Ok(()) };
+        let below = self.units_line.zip(cell.below.as_ref());
+        let below = below.map(|(line, (column, unit))| (line, *column, bare(unit)));
+        let stated = cell.unit.as_deref().map(|unit| (self.line, cell.column, unit));
+        match stated.into_iter().chain(below).find(|(.., unit)| *unit != expected) {
+            Some((line, column, unit)) => Err(self.error_at(
+                ErrorKind::Unit,
+                (line, column, index),
+                format!("found the unit `{unit}` of `{}`, expected `{expected}` or none", cell.name),
+            )),
+            None => Ok(()),
+        }
+    }
+
+    /// NamedUnit of a column by the header, the line of units, or both.
+    pub(crate) fn unit(
+        &self,
+        index: usize,
+        quantity: Unit,
+        purpose: &str,
+    ) -> Result<Option<(NamedUnit, UnitSource)>> {
+        let Some(cell) = self.cells.get(index) else { return Ok(None) };
+        let parse = |symbol: &str, place: (usize, usize)| {
+            NamedUnit::parse_for(symbol, quantity, &format!(" {purpose}"))
+                .map_err(|error| self.error_at(ErrorKind::Unit, (place.0, place.1, index), error.message()))
+        };
+        let in_header = cell.unit.as_deref().map(|unit| parse(unit, (self.line, cell.column))).transpose()?;
+        let Some((line, (column, symbol))) = self.units_line.zip(cell.below.as_ref()) else {
+            return Ok(in_header.map(|unit| (unit, UnitSource::Header)));
+        };
+        let below = parse(symbol, (line, *column))?;
+        match in_header {
+            Some(unit) if unit != below => {
+                let message = format!(
+                    "found the unit `{symbol}` below `{}`, expected `{}` as in the header (line {}), or an empty cell",
+                    cell.text,
+                    unit.symbol(),
+                    self.line
+                );
+                Err(self.error_at(ErrorKind::Unit, (line, *column, index), message))
+            }
+            Some(unit) => Ok(Some((unit, UnitSource::Header))),
+            None => Ok(Some((below, UnitSource::UnitsLine))),
+        }
+    }
+
+    /// Index of the column of this name, which may include the unit as in the file.
+    pub(crate) fn find(&self, name: &str) -> Result<Option<usize>> {
+        if let Some(second) = self.second(name) {
+            let message =
+                format!("found a second column `{name}`, expected one; rename or remove one of them");
+            return Err(self.error(ErrorKind::Measurement, second, message));
+        }
+        let by_number = || number_of_column(name).map(|it| it - 1).filter(|it| *it < self.cells.len());
+        Ok(self.named.get(name).map(|(first, _)| *first).or_else(by_number))
+    }
+
+    /// Index of a second column of this name, if there is one.
+    pub(crate) fn second(&self, name: &str) -> Option<usize> {
+        self.named.get(name)?.1
+    }
+
+    /// Number of columns with this name.
+    pub(crate) fn count(&self, name: &str) -> usize {
+        self.cells.iter().filter(|cell| cell.name == name).count()
+    }
+
+    /// An error at a column's name.
+    pub(crate) fn error(&self, kind: ErrorKind, index: usize, message: impl Into<String>) -> Error {
+        let column = self.cells.get(index).map_or(1, |cell| cell.column);
+        self.error_at(kind, (self.line, column, index), message)
+    }
+
+    /// An error at a line, a character and a column of the table.
+    fn error_at(
+        &self,
+        kind: ErrorKind,
+        (line, column, index): (usize, usize, usize),
+        message: impl Into<String>,
+    ) -> Error {
+        match &self.sheet {
+            Some(sheet) => sheet.error(self.path, (line, index), kind, &message.into()),
+            None => Error::new(kind, message).at(self.path, line, column),
+        }
+    }
+}
+
+pub(crate) fn header_cells(text: &str, cells: &[Cell<'_>]) -> Vec<HeaderCell> {
+    // Counted from cell to cell, since there may be very many.
+    let (mut column, mut offset) = (1, 0);
+    let cell = |cell: &Cell<'_>| {
+        column += text.get(offset..cell.offset).map_or(0, |passed| passed.chars().count());
+        offset = offset.max(cell.offset);
+        HeaderCell::new(&cell.text(), column)
+    };
+    cells.iter().map(cell).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn round_brackets_are_units_only_where_they_hold_one() {
+        let parts = |text: &str| {
+            let cell = HeaderCell::new(text, 1);
+            (cell.name, cell.unit)
+        };
+        let is = |name: &str, unit: &str| (name.to_owned(), Some(unit.to_owned()));
+        assert_eq!(parts("x (mm)"), is("x", "mm"));
+        assert_eq!(parts("joint1(Degrees)"), is("joint1", "Degrees"));
+        assert_eq!(parts("x [parsec]"), is("x", "parsec"));
+        for name in ["joint(1)", "A (left)", "x (MM)", "x (-)", "x ()"] {
+            assert_eq!(parts(name), (name.to_owned(), None));
+        }
+    }
+
+    #[test]
+    fn units_are_seen_in_names() {
+        let symbol = |text: &str, name: &str| unit_in_name(text, name).map(NamedUnit::symbol);
+        for text in ["x_mm", "x-mm", "X.mm", "x in mm", "x / MM", "x (MM)", "x_[mm]"] {
+            assert_eq!(symbol(text, "x"), Some("mm"), "{text}");
+        }
+        assert_eq!(symbol("joint1_degrees", "joint1"), Some("deg"));
+        for text in ["xmm", "x_left", "x_left_mm", "x", "ax_mm", "x1_mm"] {
+            assert_eq!(symbol(text, "x"), None, "{text}");
+        }
+    }
+}

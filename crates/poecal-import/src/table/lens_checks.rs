@@ -1,0 +1,77 @@
+//! What files of cameras may say of a lens.
+
+use std::path::Path;
+
+use poecal_model::camera::{Distortion, LENS_NAMES, Lens};
+use poecal_numerics::error::{Error, ErrorKind, Result};
+use poecal_storage::numbers::LARGEST_NUMBER;
+
+/// What a file of cameras is expected to be.
+pub(crate) const EXPECTED: &str = "a camera: CSV with name, fx, fy, cx, cy, k1, … in OpenCV's order, or YAML of OpenCV, ROS (camera_info) or Kalibr (camchain), \
+                        or XML of ViSP";
+
+/// Refuses numbers that are no lens's.
+pub(crate) fn check(name: &str, lens: &Lens) -> Result<()> {
+    let of = || if name.is_empty() { String::new() } else { format!(" of camera `{name}`") };
+    let [fx, fy] = lens.focal_px;
+    let refuse = |found: String, expected: &str| {
+        Err(Error::new(ErrorKind::Measurement, format!("found {found}{}, expected {expected}", of())))
+    };
+    let is_none = |number: f64| !number.is_finite() || number.abs() > LARGEST_NUMBER;
+    if let Some((own, number)) = LENS_NAMES.iter().zip(lens.numbers()).find(|it| is_none(it.1)) {
+        return refuse(
+            format!("{number:?} for `{own}`"),
+            &format!("a finite number of at most {LARGEST_NUMBER:e}"),
+        );
+    }
+    if !(fx > 0.0 && fy > 0.0) {
+        return refuse(format!("the focal lengths {fx} and {fy}"), "pixels above 0");
+    }
+    // In millimetres they are about 4 to 50, and cx, cy about 2 to 12.
+    if fx < 60.0 && fy < 60.0 {
+        return refuse(
+            format!("the focal lengths {fx} and {fy}"),
+            "pixels, not millimetres: focal length over the size of a pixel",
+        );
+    }
+    if !(0.5..2.0).contains(&(fx / fy)) {
+        return refuse(format!("the focal lengths {fx} and {fy}"), "two that are nearly alike");
+    }
+    let [cx, cy] = lens.centre_px;
+    if let Some([width, height]) = lens.size_px {
+        let inside = |at: f64, size: u32| (0.0..f64::from(size)).contains(&at);
+        if !inside(cx, width) || !inside(cy, height) {
+            let size = format!(
+                "a place in the picture of {width} × {height} pixels; are width and height, or cx and cy, exchanged?"
+            );
+            return refuse(format!("the centre ({cx}, {cy})"), &size);
+        }
+    }
+    Ok(())
+}
+
+/// A distortion by the name of its model and its coefficients.
+pub(crate) fn distortion(kind: &str, numbers: &[f64], path: &Path) -> Result<Distortion> {
+    let refuse = |expected: &str| {
+        let message =
+            format!("found the distortion `{kind}` with {} coefficients, expected {expected}", numbers.len());
+        Err(Error::new(ErrorKind::Measurement, message).in_file(path))
+    };
+    match kind {
+        "" | "none" | "plumb_bob" | "radtan" | "rational_polynomial" => {
+            // OpenCV writes up to 14, of which those of thin prisms and tilts are mostly 0.
+            if numbers.iter().skip(8).any(|it| *it != 0.0) {
+                return refuse("none of a thin prism or a tilted sensor");
+            }
+            let mut k = [0.0; 8];
+            k.iter_mut().zip(numbers).for_each(|(k, number)| *k = *number);
+            Ok(Distortion::Brown(k))
+        }
+        "equidistant" | "fisheye" => match *numbers {
+            [k1, k2, k3, k4] => Ok(Distortion::Fisheye([k1, k2, k3, k4])),
+            [] => Ok(Distortion::Fisheye([0.0; 4])),
+            _ => refuse("4"),
+        },
+        _ => refuse("plumb_bob, radtan, rational_polynomial, equidistant, fisheye or none"),
+    }
+}

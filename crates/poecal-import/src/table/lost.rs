@@ -1,0 +1,151 @@
+//! Lost beams: measurements without a position.
+
+use std::path::Path;
+
+use nalgebra::Matrix3;
+use serde::Serialize;
+
+use super::inputs::InputReader;
+use super::orientation::MOST_PARTS;
+use super::targets::TargetLayout;
+use crate::table::Row;
+use poecal_numerics::error::{Error, Result};
+
+/// Most lines in a warning.
+pub(crate) const NAMED_LINES: usize = 5;
+
+/// Measurements omitted because the device did not see the target: their position is empty, or exactly zero in all coordinates.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct LostBeams {
+    /// Their number.
+    pub count: usize,
+    /// Lines of the first ones.
+    pub first_lines: Vec<usize>,
+}
+
+/// State of a target in a row.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Beam {
+    /// Measured.
+    Seen,
+    /// All cells are empty.
+    Empty,
+    /// The position is zero, and the orientation zero, the identity or empty.
+    Zero,
+}
+
+impl LostBeams {
+    /// Removes lost beams from a row's numbers; true if the row has no measurement then.
+    ///
+    /// # Errors
+    /// [`poecal_numerics::error::ErrorKind::Measurement`] at a lost beam if it is refused (`strict`).
+    pub(crate) fn take_out(
+        &mut self,
+        row: &Row<'_>,
+        targets: &[TargetLayout],
+        inputs: &mut InputReader<'_>,
+        strict: bool,
+    ) -> Result<bool> {
+        let before = self.count;
+        let mut seen = false;
+        for target in targets {
+            match beam(row, target, inputs) {
+                Beam::Seen => seen = true,
+                // With several targets in a row, some may not have been measured.
+                Beam::Empty => {}
+                Beam::Zero if strict => return Err(refused(row, target, inputs, zero_words(target))),
+                Beam::Zero => {
+                    self.add(row.line);
+                    inputs.forget(target.position.as_ref().map_or(&[][..], |position| position));
+                    target.kinds.iter().for_each(|kind| inputs.forget(&kind.numbers));
+                    inputs.forget(target.orientation.as_ref().map_or(&[], |(_, parts)| parts));
+                }
+            }
+        }
+        if !seen && self.count == before {
+            if let (true, Some(target)) = (strict, targets.first()) {
+                return Err(refused(row, target, inputs, "an empty position"));
+            }
+            self.add(row.line);
+        }
+        Ok(!seen)
+    }
+
+    fn add(&mut self, line: usize) {
+        self.count += 1;
+        if self.first_lines.len() < NAMED_LINES && self.first_lines.last() != Some(&line) {
+            self.first_lines.push(line);
+        }
+    }
+
+    /// Omitted measurements in words; `None` if there are none.
+    #[must_use]
+    pub fn words(&self) -> Option<String> {
+        let what = match self.count {
+            0 => return None,
+            1 => "1 measurement".to_owned(),
+            count => format!("{count} measurements"),
+        };
+        let lines = named_lines(self.count, &self.first_lines);
+        Some(format!("{what} with an empty or zero position, as of a lost beam ({lines})"))
+    }
+
+    /// Warning for a file.
+    pub(crate) fn warning(&self, path: &Path) -> Option<String> {
+        Some(format!("{}: skipped {}; --strict refuses them", path.display(), self.words()?))
+    }
+}
+
+/// The first few lines of so many cases, in words.
+pub(crate) fn named_lines(count: usize, first_lines: &[usize]) -> String {
+    let lines: Vec<String> = first_lines.iter().map(usize::to_string).collect();
+    let word = if lines.len() == 1 { "line" } else { "lines" };
+    let more = if count > NAMED_LINES { ", …" } else { "" };
+    format!("{word} {}{more}", lines.join(", "))
+}
+
+/// Whether the row has a position of a target.
+pub(crate) fn has_position(target: &TargetLayout, inputs: &InputReader<'_>) -> bool {
+    target.position.iter().flatten().any(|&input| inputs.value(input).is_some())
+}
+
+/// State of a target in the current row.
+fn beam(row: &Row<'_>, target: &TargetLayout, inputs: &InputReader<'_>) -> Beam {
+    let has_position = has_position(target, inputs);
+    let mut measured = target.kinds.iter().filter(|kind| kind.is_measured(row, inputs, has_position));
+    if let Some(first) = measured.next() {
+        return if first.is_lost(inputs) && target.position.is_none() { Beam::Zero } else { Beam::Seen };
+    }
+    let position = target.position.map_or([None; 3], |position| inputs.all(position));
+    let orientation =
+        || target.orientation.iter().flat_map(|(_, parts)| parts).map(|&part| inputs.value(part));
+    if position == [None; 3] {
+        return if orientation().all(|part| part.is_none()) { Beam::Empty } else { Beam::Seen };
+    }
+    if position != [Some(0.0); 3] {
+        return Beam::Seen;
+    }
+    let is_none = orientation().all(|part| part.is_none_or(|part| part == 0.0));
+    let is_identity = || {
+        let mut values = [0.0; MOST_PARTS];
+        for (value, part) in values.iter_mut().zip(orientation()) {
+            *value = part.unwrap_or(f64::NAN);
+        }
+        let form = target.orientation.as_ref().map(|(form, _)| form);
+        form.and_then(|form| form.rotation(&values).ok()) == Some(Matrix3::identity())
+    };
+    if is_none || is_identity() { Beam::Zero } else { Beam::Seen }
+}
+
+/// What a target at zero has.
+fn zero_words(target: &TargetLayout) -> &'static str {
+    if target.position.is_some() { "the position 0, 0, 0" } else { "0" }
+}
+
+fn refused(row: &Row<'_>, target: &TargetLayout, inputs: &InputReader<'_>, found: &str) -> Error {
+    let first =
+        target.position.iter().flatten().chain(target.kinds.iter().flat_map(|kind| &kind.numbers)).next();
+    let first = first.copied().unwrap_or(0);
+    let message = format!("found {found}, as of a lost beam, expected what was measured; leave out the row");
+    row.error(inputs.column(first), message)
+}

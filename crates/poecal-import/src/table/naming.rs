@@ -1,0 +1,58 @@
+//! Names that all rows have or none: targets and instruments.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+use crate::table::Row;
+use poecal_numerics::error::Result;
+
+/// The names so far. `first` is whether the first row of each kind of name has one, and its place.
+#[derive(Default)]
+pub(crate) struct Names {
+    first: BTreeMap<&'static str, (bool, PathBuf, usize)>,
+    indices: BTreeMap<String, usize>,
+}
+
+impl Names {
+    /// Index of a row's name, the next one for a name that is new; `what` is named.
+    pub(crate) fn index(
+        &mut self,
+        row: &Row<'_>,
+        column: Option<usize>,
+        what: &'static str,
+        name: Option<&str>,
+    ) -> Result<usize> {
+        self.check(row, column, what, name)?;
+        let name = name.unwrap_or_default();
+        if let Some(&index) = self.indices.get(name) {
+            return Ok(index);
+        }
+        let next = self.indices.len();
+        self.indices.insert(name.to_owned(), next);
+        Ok(next)
+    }
+
+    /// Refuses a row that names it where the first did not, or the reverse.
+    fn check(
+        &mut self,
+        row: &Row<'_>,
+        column: Option<usize>,
+        what: &'static str,
+        name: Option<&str>,
+    ) -> Result<()> {
+        let (named, path, line) =
+            self.first.entry(what).or_insert_with(|| (name.is_some(), row.path.to_path_buf(), row.line));
+        if *named == name.is_some() {
+            return Ok(());
+        }
+        let (found, expected) = match name {
+            Some(name) => (format!("the {what} `{name}`"), "no name"),
+            None => (format!("no {what} name"), "one"),
+        };
+        let message = format!(
+            "found {found}, expected {expected} as in {}:{line}; all rows name their {what} or none does",
+            path.display()
+        );
+        Err(row.error(column.unwrap_or(0), message))
+    }
+}

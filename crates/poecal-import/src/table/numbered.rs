@@ -1,0 +1,124 @@
+//! Columns of joints that are not called like the joints: numbered ones, and the joints' names with more before or behind.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::header::Header;
+use super::mapping::ColumnMap;
+use poecal_model::robot::{ReadingKind, Robot};
+
+/// What numbered columns of joints are called, in small letters and without what separates: alone, or with a word of [`MEASURED`] before or behind.
+const NUMBERED: [&str; 11] =
+    ["q", "j", "a", "joint", "axis", "theta", "th", "jnt", "jointposition", "jointangle", "angle"];
+/// What is written beside that of a reading.
+const MEASURED: [&str; 6] = ["actual", "measured", "meas", "current", "act", "feedback"];
+/// What is written beside a joint's name where it is no reading: what was wanted, and other quantities.
+pub(crate) const OTHERS: [&str; 21] = [
+    "target",
+    "desired",
+    "wanted",
+    "command",
+    "commanded",
+    "cmd",
+    "goal",
+    "setpoint",
+    "reference",
+    "velocity",
+    "speed",
+    "acceleration",
+    "torque",
+    "effort",
+    "moment",
+    "temperature",
+    "voltage",
+    "amps",
+    "tau",
+    "error",
+    "load",
+];
+
+/// Joints with the columns that are taken for them, if no column has the name of a joint.
+pub(crate) fn numbered(
+    header: &Header<'_>,
+    robot: &Robot,
+    map: &ColumnMap,
+    names: &[String],
+) -> Option<Vec<(String, String)>> {
+    let joints: Vec<&String> =
+        names.iter().filter(|name| robot.reading_kind(name) != ReadingKind::Factor).collect();
+    if !map.joints.is_empty() || joints.iter().any(|name| header.count(name) > 0) {
+        return None;
+    }
+    let columns = with_more(header, &joints).or_else(|| by_numbers(header, joints.len()))?;
+    Some(joints.into_iter().cloned().zip(columns).collect())
+}
+
+/// Letters and digits, small.
+pub(crate) fn plain(text: &str) -> String {
+    text.chars().filter(|it| it.is_alphanumeric()).flat_map(char::to_lowercase).collect()
+}
+
+/// The columns that have the names of all joints with the same before and behind, if they are the only ones.
+fn with_more(header: &Header<'_>, joints: &[&String]) -> Option<Vec<String>> {
+    let cells: Vec<(String, &String)> =
+        header.cells.iter().map(|cell| (plain(&cell.name), &cell.name)).collect();
+    let first = plain(joints.first()?);
+    // One letter is in many names.
+    if first.chars().count() < 2 {
+        return None;
+    }
+    let around: BTreeSet<(&str, &str)> =
+        cells.iter().filter_map(|(text, _)| text.split_once(first.as_str())).collect();
+    let columns = |(before, behind): (&str, &str)| -> Option<Vec<String>> {
+        let is_other = OTHERS.iter().any(|word| before.contains(word) || behind.contains(word));
+        let of = |joint: &&String| {
+            let wanted = format!("{before}{}{behind}", plain(joint));
+            let mut found = cells.iter().filter(|(text, _)| *text == wanted);
+            let (_, name) = found.next()?;
+            found.next().is_none().then(|| (*name).clone())
+        };
+        if is_other { None } else { joints.iter().map(of).collect() }
+    };
+    only(around.into_iter().filter_map(columns))
+}
+
+/// The columns with numbers from 0 or from 1 and the same before and behind, if they are the only ones.
+fn by_numbers(header: &Header<'_>, joints: usize) -> Option<Vec<String>> {
+    let mut groups: BTreeMap<String, BTreeMap<usize, Option<&String>>> = BTreeMap::new();
+    for cell in &header.cells {
+        let Some((stem, number)) = split_number(&cell.name) else { continue };
+        let own = groups.entry(stem).or_default().entry(number);
+        own.and_modify(|it| *it = None).or_insert(Some(&cell.name));
+    }
+    let whole = |numbers: &BTreeMap<usize, Option<&String>>| -> Option<Vec<String>> {
+        let first = *numbers.keys().next()?;
+        let is_counted = first <= 1 && numbers.keys().copied().eq(first..first + joints);
+        if is_counted { numbers.values().map(|name| name.cloned()).collect() } else { None }
+    };
+    let of = |is_it: &dyn Fn(&str) -> bool| {
+        only(groups.iter().filter(|(stem, _)| is_it(stem)).filter_map(|(_, numbers)| whole(numbers)))
+    };
+    let is_measured = |stem: &str| {
+        MEASURED.iter().any(|word| {
+            let rest = stem.strip_prefix(word).or_else(|| stem.strip_suffix(word));
+            rest.is_some_and(|rest| NUMBERED.contains(&rest))
+        })
+    };
+    of(&is_measured).or_else(|| of(&|stem| NUMBERED.contains(&stem)))
+}
+
+/// The letters of a name and its one number.
+fn split_number(name: &str) -> Option<(String, usize)> {
+    let mut numbers = name.split(|it: char| !it.is_ascii_digit()).filter(|it| !it.is_empty());
+    let number = numbers.next()?;
+    if numbers.next().is_some() {
+        return None;
+    }
+    let letters: String = plain(name).chars().filter(|it| !it.is_ascii_digit()).collect();
+    Some((letters, number.parse().ok()?))
+}
+
+/// The only one.
+fn only<T>(mut all: impl Iterator<Item = T>) -> Option<T> {
+    let found = all.next()?;
+    all.next().is_none().then_some(found)
+}

@@ -1,0 +1,238 @@
+//! Finds the columns of what was measured.
+
+use std::collections::BTreeMap;
+
+use super::builder::Builder;
+use super::column_spec::ColumnSpec;
+use super::inputs::{InputSource, Term};
+use super::kinds::{self, Kind, KindColumns};
+use super::mapping::{OrientationSpec, PositionSpec, TargetSpec};
+use super::orientation::OrientationForm;
+use poecal_numerics::error::{ErrorKind, Result};
+use poecal_numerics::unit::Unit;
+
+const DEFAULT_FORMS: [OrientationForm; 3] =
+    [OrientationForm::QuaternionXyzw, OrientationForm::RotationVector, OrientationForm::ROLL_PITCH_YAW];
+
+/// Beginning of columns of expanded uncertainties (95 %), in place of `sigma_`, and their coverage factor.
+const EXPANDED: &str = "U95_";
+
+const COVERAGE_FACTOR: f64 = 2.0;
+
+/// One target of a row; numbers are indices into [`Builder::inputs`].
+#[derive(Clone, Debug)]
+pub(crate) struct TargetLayout {
+    pub(crate) name: Option<String>,
+    /// None in a file of other kinds of measurements.
+    pub(crate) position: Option<[usize; 3]>,
+    pub(crate) orientation: Option<(OrientationForm, Vec<usize>)>,
+    pub(crate) sigma_position: Option<usize>,
+    /// Of each component.
+    pub(crate) sigma_components: [Option<usize>; 3],
+    pub(crate) sigma_rotation: Option<usize>,
+    /// Other kinds of measurements.
+    pub(crate) kinds: Vec<KindColumns>,
+}
+
+impl Builder<'_> {
+    /// The targets of a row: those of the mapping, or the only one.
+    pub(crate) fn targets(&mut self) -> Result<Vec<TargetLayout>> {
+        let map = self.map;
+        if !map.targets.is_empty() {
+            return map.targets.iter().map(|target| self.target(target, false)).collect();
+        }
+        let only = TargetSpec {
+            name: String::new(),
+            position: map.position.clone().unwrap_or_default(),
+            orientation: map.orientation.clone(),
+            sigma_position: map.sigma_position.clone(),
+            sigma_rotation: map.sigma_rotation.clone(),
+        };
+        Ok(vec![TargetLayout { name: map.target_name.clone(), ..self.target(&only, true)? }])
+    }
+
+    /// One target of a row; the columns of the only one may have our names.
+    fn target(&mut self, target: &TargetSpec, is_only: bool) -> Result<TargetLayout> {
+        let prefix = if is_only { String::new() } else { format!("{} ", target.name) };
+        let kinds = if is_only { self.kinds()? } else { Vec::new() };
+        let is_named = target.position.columns.is_some()
+            || ["x", "y", "z"].iter().any(|name| self.has(name))
+            || self.has_large_axes();
+        let position = match kinds.is_empty() || is_named {
+            true => Some(self.position(&prefix, &target.position)?),
+            false => None,
+        };
+        let orientation = match &target.orientation {
+            Some(spec) => Some(self.mapped_orientation(&prefix, spec)?),
+            None if is_only && position.is_some() => self.default_orientation()?,
+            None => None,
+        };
+        let mut sigma = |name: &str, spec: Option<&ColumnSpec>, quantity| {
+            self.sigma(&format!("{prefix}{name}"), spec, quantity, is_only && position.is_some())
+        };
+        let sigma_position = sigma("sigma_position", target.sigma_position.as_ref(), Unit::Metre)?;
+        let sigma_rotation = sigma("sigma_rotation", target.sigma_rotation.as_ref(), Unit::Radian)?;
+        let mut sigma_components = [None; 3];
+        for (name, of) in ["sigma_x", "sigma_y", "sigma_z"].into_iter().zip(&mut sigma_components) {
+            *of = sigma(name, None, Unit::Metre)?;
+        }
+        let name = Some(target.name.clone());
+        Ok(TargetLayout {
+            name,
+            position,
+            orientation,
+            sigma_position,
+            sigma_components,
+            sigma_rotation,
+            kinds,
+        })
+    }
+
+    /// Whether the position is in columns X, Y, Z, in large letters.
+    fn has_large_axes(&self) -> bool {
+        !["x", "y", "z"].iter().any(|name| self.has(name))
+            && ["X", "Y", "Z"].iter().all(|name| self.has(name))
+    }
+
+    /// Whether the header has a column of this name that is not used otherwise.
+    fn has(&self, name: &str) -> bool {
+        self.header.count(name) > 0 && !self.readings.contains(name)
+    }
+
+    /// The other kinds of measurements of which the header has columns.
+    fn kinds(&mut self) -> Result<Vec<KindColumns>> {
+        let mut found: Vec<KindColumns> = Vec::new();
+        let mut known: BTreeMap<&str, usize> = BTreeMap::new();
+        for kind in kinds::kinds() {
+            let Kind { function, columns } = kind;
+            let has_number = columns.numbers.iter().any(|name| self.has(name));
+            if !(self.has(kind.key()) || kind.needs_numbers() && has_number) {
+                continue;
+            }
+            let (dimension, purpose) =
+                (function.leading().unit(), format!("for the {}", function.leading().name()));
+            let mut numbers = Vec::with_capacity(columns.numbers.len());
+            let names = columns.numbers.iter().filter(|name| kind.needs_numbers() || self.has(name));
+            for &name in names.collect::<Vec<_>>() {
+                // Kinds that a word tells apart have their numbers in the same columns.
+                let input = match known.get(name) {
+                    Some(&input) => input,
+                    None => self.column_input(name, name, dimension, None, &purpose)?,
+                };
+                known.insert(name, input);
+                numbers.push(input);
+            }
+            let mut sigmas = Vec::with_capacity(function.quantities.len());
+            for &quantity in function.quantities {
+                let name = format!("sigma_{}", quantity.name());
+                let sigma = self.sigma(&name, None, quantity.unit(), true)?;
+                sigmas.extend(sigma.map(|input| (quantity, input)));
+            }
+            let mut places = Vec::with_capacity(columns.places.len());
+            for name in columns.places {
+                places.extend(self.shared_text_column(name)?);
+            }
+            let word = columns.word.map(|(column, _)| self.shared_text_column(column)).transpose()?.flatten();
+            found.push(KindColumns { kind, numbers, sigmas, places, word });
+        }
+        Ok(found)
+    }
+
+    /// Index of an optional column that several kinds may use.
+    fn shared_text_column(&mut self, name: &str) -> Result<Option<usize>> {
+        let index = self.header.find(name)?.filter(|_| !self.readings.contains(name));
+        if let Some(index) = index {
+            self.mark(index);
+        }
+        Ok(index)
+    }
+
+    fn position(&mut self, prefix: &str, spec: &PositionSpec) -> Result<[usize; 3]> {
+        let mut indices = [0; 3];
+        for (i, (axis, index)) in ["x", "y", "z"].into_iter().zip(&mut indices).enumerate() {
+            let own = if self.has_large_axes() { ["X", "Y", "Z"][i] } else { axis };
+            let column = spec.columns.as_ref().and_then(|columns| columns.get(i)).map_or(own, String::as_str);
+            let purpose = format!("for the position {prefix}{axis}");
+            *index =
+                self.column_input(&format!("{prefix}{axis}"), column, Unit::Metre, spec.unit, &purpose)?;
+        }
+        Ok(indices)
+    }
+
+    fn mapped_orientation(
+        &mut self,
+        prefix: &str,
+        spec: &OrientationSpec,
+    ) -> Result<(OrientationForm, Vec<usize>)> {
+        let indices = spec.columns.iter().zip(spec.form.part_names()).map(|(column, name)| {
+            let purpose = format!("for the {}orientation ({})", prefix, spec.form);
+            self.column_input(&format!("{prefix}{name}"), column, spec.form.quantity(), spec.unit, &purpose)
+        });
+        let indices = indices.collect::<Result<_>>()?;
+        Ok((spec.form, indices))
+    }
+
+    /// The orientation columns with our own names: all of one form, or none.
+    fn default_orientation(&mut self) -> Result<Option<(OrientationForm, Vec<usize>)>> {
+        let mut chosen: Option<(OrientationForm, &str)> = None;
+        for form in DEFAULT_FORMS {
+            for name in form.own_columns() {
+                let Some(index) = self.header.find(name)?.filter(|&index| !self.is_used(index)) else {
+                    continue;
+                };
+                match chosen {
+                    Some((other, first)) if other != form => {
+                        let message = format!(
+                            "found the orientation columns `{first}` and `{name}`, expected one form only"
+                        );
+                        return Err(self.header.error(ErrorKind::Measurement, index, message));
+                    }
+                    Some(_) => {}
+                    None => chosen = Some((form, name)),
+                }
+            }
+        }
+        let Some((form, _)) = chosen else { return Ok(None) };
+        let purpose = format!("for the orientation ({form})");
+        let names = form.own_columns().iter();
+        let indices = names.map(|name| self.column_input(name, name, form.quantity(), None, &purpose));
+        Ok(Some((form, indices.collect::<Result<_>>()?)))
+    }
+
+    fn sigma(
+        &mut self,
+        name: &str,
+        spec: Option<&ColumnSpec>,
+        quantity: Unit,
+        by_our_name: bool,
+    ) -> Result<Option<usize>> {
+        let default = ColumnSpec::default();
+        let purpose = format!("for `{name}`");
+        let expanded = name.replacen("sigma_", EXPANDED, 1);
+        let has_expanded = by_our_name && spec.is_none() && self.header.find(&expanded)?.is_some();
+        let spec = match spec {
+            Some(spec) => spec,
+            None if by_our_name && self.header.find(name)?.is_some() => &default,
+            None if has_expanded => {
+                return self.expanded_input(name, &expanded, quantity, &purpose).map(Some);
+            }
+            None => return Ok(None),
+        };
+        if let Some(second) = self.header.find(&expanded)?.filter(|_| has_expanded) {
+            let message = format!("found `{expanded}` beside `{name}`, expected one of the two");
+            return Err(self.header.error(ErrorKind::Measurement, second, message));
+        }
+        self.spec_input(name, spec, quantity, &purpose).map(Some)
+    }
+
+    /// A standard deviation from a column of expanded uncertainties.
+    fn expanded_input(&mut self, name: &str, column: &str, quantity: Unit, purpose: &str) -> Result<usize> {
+        let index = self.column_input(name, column, quantity, None, purpose)?;
+        if let Some(input) = self.inputs.get_mut(index)
+            && let InputSource::Column(column) = input.source
+        {
+            input.sum = vec![Term { column, unit: input.unit, factor: 1.0 / COVERAGE_FACTOR }];
+        }
+        Ok(index)
+    }
+}

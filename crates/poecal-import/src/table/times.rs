@@ -1,0 +1,42 @@
+//! Columns with the times of rows.
+
+/// What columns with the time of a row are called, in small letters without what separates.
+const NAMES: [&str; 8] = ["time", "t", "timestamp", "stamp", "times", "timeseconds", "seconds", "elapsed"];
+/// Units of times, with their seconds.
+const UNITS: [(&str, f64); 6] =
+    [("s", 1.0), ("sec", 1.0), ("seconds", 1.0), ("ms", 1e-3), ("us", 1e-6), ("ns", 1e-9)];
+
+/// Seconds of one in a column of times with this name and unit; `None` of another column.
+pub(crate) fn seconds_of(name: &str, unit: Option<&str>) -> Option<f64> {
+    let plain: String = name.chars().filter(|it| it.is_alphanumeric()).flat_map(char::to_lowercase).collect();
+    let own = |unit: &str| UNITS.iter().find(|it| it.0.eq_ignore_ascii_case(unit)).map(|it| it.1);
+    match unit {
+        Some(unit) => own(unit).filter(|_| NAMES.contains(&plain.as_str())),
+        None if NAMES.contains(&plain.as_str()) => Some(1.0),
+        None => {
+            let stem = ["timestamp", "time"].into_iter().find_map(|it| plain.strip_prefix(it))?;
+            own(stem)
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::seconds_of;
+
+    #[test]
+    fn columns_of_times_are_known_by_their_names() {
+        for (name, unit, expected) in [
+            ("time", None, Some(1.0)),
+            ("Time (Seconds)", None, Some(1.0)),
+            ("timestamp", Some("ms"), Some(1e-3)),
+            ("time_ns", None, Some(1e-9)),
+            ("t", Some("s"), Some(1.0)),
+            ("t", Some("mm"), None),
+            ("torque", None, None),
+            ("theta", None, None),
+        ] {
+            assert_eq!(seconds_of(name, unit), expected, "{name} {unit:?}");
+        }
+    }
+}

@@ -1,0 +1,116 @@
+//! What a file was understood as, while it is read.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use super::inputs::InputReader;
+use super::layout::ColumnLayout;
+use super::lost::LostBeams;
+use super::understanding;
+use super::understanding::{ColumnUnderstanding, FileUnderstanding};
+use crate::checks::turns;
+use crate::read::Reader;
+use crate::table::Table;
+use poecal_model::robot::Controller;
+use poecal_numerics::error::{ErrorKind, Result, shown};
+
+/// What rows are of that have some components of a position.
+const COMPONENTS: &str = "single components";
+
+/// Most ignored columns in a warning.
+const IGNORED_NAMED: usize = 30;
+
+impl Reader<'_> {
+    /// Says how a file was understood.
+    pub(crate) fn understand(
+        &mut self,
+        table: &Table<'_>,
+        layout: &ColumnLayout,
+        inputs: &InputReader<'_>,
+        (first, rows, lost): (usize, usize, LostBeams),
+    ) -> Result<()> {
+        let path = table.header.path;
+        let (mut points, mut poses, mut others) = (0, 0, BTreeMap::new());
+        for row in self.found.data.observations.get(first..).unwrap_or_default() {
+            let seen = &row.measurement;
+            if seen.is_place() {
+                *(if seen.sees_orientation() { &mut poses } else { &mut points }) += 1;
+            } else {
+                let is_part = seen.is_part_of_position();
+                let name = if is_part { COMPONENTS } else { seen.function().leading().name() };
+                *others.entry(name).or_default() += 1;
+            }
+        }
+        if !self.found.data.ids.is_empty() {
+            self.found.data.ids.resize(self.found.data.len(), String::new());
+        }
+        self.warn_of_ignored(path, layout);
+        self.found
+            .warnings
+            .extend(layout.joint_words().into_iter().map(|words| format!("{}: {words}", path.display())));
+        self.take_controller(path, layout)?;
+        let turns = turns::warning(&table.header, layout, self.map);
+        self.found.warnings.extend(turns.map(|warning| format!("{}: {warning}", path.display())));
+        self.found.understood.push(FileUnderstanding {
+            path: path.to_path_buf(),
+            form: table.form(),
+            understood: table.understood(),
+            rows,
+            points,
+            poses,
+            others,
+            lost,
+            separator: table.separator,
+            separator_line: table.separator_line,
+            units_line: table.header.units_line,
+            decimal_sign: inputs.numbers.sign(),
+            columns: self.own_columns(understanding::columns(table, layout, &inputs.ranges)),
+            orientation: understanding::orientation(layout),
+            pose: understanding::pose_word(layout.pose),
+            ignored: layout.ignored.iter().map(|(name, _)| name.clone()).collect(),
+        });
+        Ok(())
+    }
+
+    /// Columns without those of joints whose readings another file has.
+    fn own_columns(&self, columns: Vec<ColumnUnderstanding>) -> Vec<ColumnUnderstanding> {
+        let skipped = if self.readings.is_some() { self.found.data.reading_names().len() } else { 0 };
+        columns.into_iter().skip(skipped).collect()
+    }
+
+    /// How the files' readings are made of columns, which must be the same in all.
+    pub(crate) fn take_controller(&mut self, path: &Path, layout: &ColumnLayout) -> Result<()> {
+        let words = |it: &Option<Controller>| it.as_ref().map(|it| (it.third_axis, it.words()));
+        let is_first = self.found.understood.is_empty();
+        if !is_first && words(&self.found.data.controller) != words(&layout.controller) {
+            let shown =
+                |it: &Option<Controller>| it.as_ref().map_or("one by one".to_owned(), Controller::words);
+            return Err(ErrorKind::Measurement
+                .error(format!(
+                    "found joint readings of columns {} after a file with {}, expected the same in all files",
+                    shown(&layout.controller),
+                    shown(&self.found.data.controller)
+                ))
+                .in_file(path));
+        }
+        self.found.data.controller.clone_from(&layout.controller);
+        Ok(())
+    }
+
+    pub(crate) fn warn_of_ignored(&mut self, path: &Path, layout: &ColumnLayout) {
+        if layout.ignored.is_empty() {
+            return;
+        }
+        let columns = layout.ignored.iter().take(IGNORED_NAMED).map(|(name, meant)| match meant {
+            Some(meant) => format!("`{}` (did you mean `{meant}`?)", shown(name)),
+            None => format!("`{}`", shown(name)),
+        });
+        let columns: Vec<String> = columns.collect();
+        let more = match layout.ignored.len() - columns.len() {
+            0 => String::new(),
+            more => format!(" and {more} more"),
+        };
+        let columns = columns.join(", ");
+        self.found.warnings.push(format!("{}: ignored the columns {columns}{more}", path.display()));
+    }
+}

@@ -1,0 +1,217 @@
+//! Tables whose joint readings are replaced, row by row; all else stays as it is.
+
+use std::f64::consts::TAU;
+use std::path::Path;
+
+use crate::ReadOptions;
+use crate::checks::scale::JointWatch;
+use crate::table::header::Header;
+use crate::table::inputs::{Input, InputReader, InputSource, Term};
+use crate::table::layout::ColumnLayout;
+use crate::table::mapping::ColumnMap;
+use crate::table::number::{DecimalSign, Numbers};
+use crate::table::text::Blocks;
+use crate::table::{Table, TableRows};
+use poecal_model::robot::{Counting, Robot};
+use poecal_numerics::error::{ErrorKind, Result};
+use poecal_numerics::named_unit::NamedUnit;
+use poecal_numerics::text::visible;
+use poecal_storage::numbers::push_number;
+
+/// A row of joint readings, and what stands in their place.
+#[derive(Debug)]
+pub struct JointRow<'a> {
+    /// Line of the file, from 1.
+    pub line: usize,
+    /// Readings (rad, m), in the order of [`Robot::reading_names`].
+    pub readings: &'a [f64],
+}
+
+/// A rewritten table.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct RewrittenTable {
+    /// Number of rows.
+    pub rows: usize,
+    /// Warnings, a sentence each.
+    pub warnings: Vec<String>,
+}
+
+/// Reads a file of joint readings (CSV) and hands it on with new readings: `change` gets each row and changes its numbers (rad, m) in place,
+/// `out` gets the text piece by piece. Everything but the digits of changed readings stays byte for byte; they keep the column's unit and the
+/// decimal sign. Nothing is held but a few hundred kilobytes.
+///
+/// # Errors
+/// As [`crate::read_joints`]; [`ErrorKind::Measurement`] if a reading is a constant, [`ErrorKind::Option`] if sums of columns
+/// cannot be taken apart again; what `change` and `out` return.
+pub fn rewrite_joints(
+    path: impl AsRef<Path>,
+    robot: &Robot,
+    options: &ReadOptions,
+    change: &mut dyn FnMut(&JointRow<'_>, &mut [f64]) -> Result<()>,
+    out: &mut dyn FnMut(&str) -> Result<()>,
+) -> Result<RewrittenTable> {
+    let path = path.as_ref();
+    let no_map = ColumnMap::default();
+    let map = options.mapping.as_ref().unwrap_or(&no_map);
+    let blocks = Blocks::open(path, "a file of joint readings (CSV)")?;
+    let mut table = Table::open(path, blocks.keeping(), map)?;
+    let layout = ColumnLayout::joints(&table.header, robot, options, map)?;
+    let counting = counting(&layout, path)?;
+    let columns = columns(&layout, counting.as_ref(), &table.header)?;
+    let mut inputs = InputReader::new(&layout.inputs, layout.inputs.len(), Numbers::new(map.decimal));
+    let mut watch = JointWatch::new(robot);
+    let mut rewritten = RewrittenTable::default();
+    if table.is_marked() {
+        out("\u{feff}")?;
+    }
+    out(&table.passed())?;
+    let mut row_of = Rewriting { columns, counting, numbers: Vec::new(), text: String::new() };
+    while let Some(rows) = table.next_block()? {
+        rewritten.rows += row_of.block(rows, &mut inputs, &mut watch, change)?;
+        out(&row_of.text)?;
+    }
+    if rewritten.rows == 0 {
+        return Err(ErrorKind::Measurement
+            .error("found a header and no rows, expected at least one row of joint readings")
+            .at_line(path, table.header.line));
+    }
+    let mut warnings = watch.finish(path, &layout, &inputs.ranges)?;
+    warnings.extend(layout.joint_words().into_iter().map(|words| format!("{}: {words}", path.display())));
+    rewritten.warnings = warnings.iter().map(|warning| visible(warning).into_owned()).collect();
+    Ok(rewritten)
+}
+
+/// Column and unit of each number that is counted: of each reading, or, where these are sums, of the columns in the order of
+/// [`Counting::names`].
+fn columns(
+    layout: &ColumnLayout,
+    counting: Option<&Counting>,
+    header: &Header<'_>,
+) -> Result<Vec<(usize, NamedUnit)>> {
+    let terms: Vec<Term> = layout.inputs.iter().flat_map(Input::terms).collect();
+    let Some(counting) = counting else { return Ok(terms.iter().map(|it| (it.column, it.unit)).collect()) };
+    let mut columns = Vec::with_capacity(terms.len());
+    for name in counting.names() {
+        let mut own =
+            terms.iter().filter(|it| header.cells.get(it.column).is_some_and(|cell| cell.name == *name));
+        let Some(first) = own.next() else { continue };
+        if let Some(other) = own.find(|it| it.unit.symbol() != first.unit.symbol()) {
+            return Err(ErrorKind::Measurement
+                .error(format!(
+                    "found column `{name}` in {} and in {} by the mapping, expected one unit",
+                    first.unit.symbol(),
+                    other.unit.symbol()
+                ))
+                .in_file(header.path));
+        }
+        columns.push((first.column, first.unit));
+    }
+    Ok(columns)
+}
+
+/// The way back from readings that are sums to their columns; `None` where each reading is a column.
+fn counting(layout: &ColumnLayout, path: &Path) -> Result<Option<Counting>> {
+    if let Some(input) = layout.inputs.iter().find(|it| matches!(it.source, InputSource::Constant(_))) {
+        return Err(ErrorKind::Measurement.error(format!(
+            "joint `{}` is a constant by the mapping, expected a column of its own, which can be corrected",
+            input.name
+        )).in_file(path));
+    }
+    let sums = layout.controller.as_ref().filter(|it| !it.is_plain());
+    sums.map(|it| it.counting().map_err(|error| error.in_file(path))).transpose()
+}
+
+/// The current block with its new numbers.
+struct Rewriting {
+    columns: Vec<(usize, NamedUnit)>,
+    counting: Option<Counting>,
+    numbers: Vec<f64>,
+    text: String,
+}
+
+impl Rewriting {
+    fn block(
+        &mut self,
+        mut rows: TableRows<'_>,
+        inputs: &mut InputReader<'_>,
+        watch: &mut JointWatch,
+        change: &mut dyn FnMut(&JointRow<'_>, &mut [f64]) -> Result<()>,
+    ) -> Result<usize> {
+        let block = rows.text;
+        self.text.clear();
+        let (mut count, mut copied) = (0, 0);
+        // Cells in the order of the file.
+        let mut order: Vec<usize> = (0..self.columns.len()).collect();
+        order.sort_by_key(|&at| self.columns[at].0);
+        while let Some(row) = rows.next()? {
+            inputs.read(&row)?;
+            watch.unwind(&row, inputs);
+            inputs.include_in_ranges();
+            watch.observe(&row, inputs);
+            inputs.take_readings(&row)?;
+            self.numbers.clear();
+            self.numbers.extend_from_slice(inputs.readings());
+            change(&JointRow { line: row.line, readings: inputs.readings() }, &mut self.numbers)?;
+            let start = row.text.as_ptr() as usize - block.as_ptr() as usize;
+            // Of sums the columns change, by what makes the change of the readings.
+            let changes = self.counting.as_ref().map(|counting| {
+                let of = self.numbers.iter().zip(inputs.readings());
+                counting.change(&of.map(|(new, old)| new - old).collect::<Vec<f64>>())
+            });
+            for &at in &order {
+                let (column, unit) = self.columns[at];
+                let Some(cell) = row.cells.get(column) else { continue };
+                let number = match &changes {
+                    None if self.numbers[at].to_bits() == inputs.readings()[at].to_bits() => continue,
+                    // The controller counts on with the turns that were taken off.
+                    None => self.numbers[at] + inputs.turns()[at] * TAU,
+                    Some(changes) if changes[at] == 0.0 => continue,
+                    Some(changes) => {
+                        // It was read before, as a part of a sum.
+                        let counted = inputs.numbers.parse(cell.raw, row.line);
+                        unit.to_si(counted.map_err(|error| row.error(column, error))?) + changes[at]
+                    }
+                };
+                let from = start + (cell.raw.as_ptr() as usize - row.text.as_ptr() as usize);
+                self.text.push_str(block.get(copied..from).unwrap_or_default());
+                let digits = self.text.len();
+                push_number(&mut self.text, unit.from_si(number));
+                if inputs.numbers.sign() == DecimalSign::Comma {
+                    let with_comma = self.text.split_off(digits).replace('.', ",");
+                    self.text.push_str(&with_comma);
+                }
+                copied = from + cell.raw.len();
+            }
+            count += 1;
+        }
+        self.text.push_str(block.get(copied..).unwrap_or_default());
+        Ok(count)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fs;
+
+    use super::*;
+    use poecal_model::simulate::scara;
+
+    #[test]
+    fn readings_that_stay_keep_their_digits() {
+        let path = std::env::temp_dir().join(format!("poecal_rewritten_{}.csv", std::process::id()));
+        fs::write(&path, "note,joint1[deg],joint2,joint3,joint4\nstart,90.0,0,0,0\n").unwrap();
+        let mut text = String::new();
+        let mut change = |_: &JointRow<'_>, numbers: &mut [f64]| {
+            numbers[1] += 0.5;
+            Ok(())
+        };
+        let mut out = |piece: &str| {
+            text.push_str(piece);
+            Ok(())
+        };
+        let table = rewrite_joints(&path, &scara(), &ReadOptions::default(), &mut change, &mut out);
+        fs::remove_file(&path).unwrap();
+        assert_eq!(table.unwrap().rows, 1);
+        assert_eq!(text, "note,joint1[deg],joint2,joint3,joint4\nstart,90.0,0.5,0,0\n");
+    }
+}

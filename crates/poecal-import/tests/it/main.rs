@@ -1,0 +1,18 @@
+//! What this crate does, seen from outside: one program, since linking it once takes less than linking one for each subject.
+
+#![allow(clippy::unwrap_used, clippy::panic, clippy::print_stdout)]
+
+mod components;
+mod drawing;
+mod foreign_corners;
+mod foreign_messages;
+mod mapping_errors;
+mod mapping_forms;
+mod mapping_guess;
+mod measurement_choices;
+mod measurement_errors;
+mod measurement_forms;
+mod measurement_long;
+mod motion;
+mod shop;
+mod stands;

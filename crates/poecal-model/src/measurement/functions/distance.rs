@@ -1,0 +1,175 @@
+//! Distance of a point from the instrument's origin.
+
+use super::Row;
+use crate::measurement::columns::{Columns, From};
+use crate::measurement::session::{Draw, Kind, Session, Stands};
+use crate::measurement::{Channel, Channels, Clue, Device, Function, Kernel, Measurement, Quantity};
+use poecal_arm::lie::Freedom;
+
+static CHANNELS: Channels = Channels::new(&[Channel { name: "distance", quantity: Quantity::Distance }]);
+
+const READ: Function = Function {
+    name: "distance",
+    plural: "distances",
+    quantities: &[Quantity::Distance],
+    channels: |_| &CHANNELS,
+    residual: |[distance, ..], predicted, out| out[0] = distance - predicted.translation.norm(),
+    sensitivity: |_, predicted, out| {
+        let direction = predicted.translation.try_normalize(0.0).unwrap_or_default();
+        out[0] = [direction.x, direction.y, direction.z, 0.0, 0.0, 0.0];
+    },
+    lengths: 1,
+    kernel: Kernel::Distance,
+    device: Device::Anchor,
+    device_freedom: |_| Freedom::PLACE,
+    clue: |[distance, ..]| Clue::Range(*distance),
+    ..Function::USUAL
+};
+
+/// Measured distance, `e = d - |p|`, `S = [pᵀ/|p| 0]`. It shows where its instrument is, and not how it is turned (theory.md §4 (15a)).
+static DISTANCE: Function = READ;
+
+/// The same where the zero of the instrument's readings is unknown, so that only changes count: of an interferometer, of a sphere whose radius
+/// is unknown (theory.md §4 (15d)).
+static CHANGE: Function = Function { name: "distance change", zero_is_unknown: true, ..READ };
+
+pub(crate) const ROW: Row = Row {
+    function: &DISTANCE,
+    columns: &[Columns {
+        numbers: &["distance"],
+        places: &["anchor"],
+        word: None,
+        from: From::Numbers { above_zero: true },
+        of: |numbers| Measurement::distance(numbers[0]),
+        numbers_of: |seen| Some(vec![seen.values()[0]]),
+    }],
+    sessions: &[ANCHORS, BALL_BAR],
+};
+
+pub(crate) const CHANGE_ROW: Row = Row {
+    function: &CHANGE,
+    columns: &[
+        Columns {
+            numbers: &["distance_change"],
+            places: &["anchor"],
+            word: None,
+            from: From::Numbers { above_zero: false },
+            of: |numbers| Measurement::distance_change(numbers[0]),
+            numbers_of: |seen| Some(vec![seen.values()[0]]).filter(|it| *it != [0.0]),
+        },
+        Columns {
+            numbers: &["radius"],
+            places: &["sphere"],
+            word: None,
+            from: From::Name { size: true },
+            of: |numbers| {
+                let is_known = numbers[0] > 0.0;
+                if is_known { Measurement::distance(numbers[0]) } else { Measurement::distance_change(0.0) }
+            },
+            numbers_of: |_| Some(vec![0.0]),
+        },
+    ],
+    sessions: &[CHANGES, SPHERE],
+};
+
+const ANCHORS: Session = Session {
+    word: "distance",
+    plural: Some("distances"),
+    help: "Distances from anchors, as of a draw-wire",
+    function: &DISTANCE,
+    places: &["wall", "floor", "door"],
+    stands: Stands::Around,
+    drawn: Draw::Seen(|target, drawn| Measurement::distance(target.translation.norm() + drawn.length.x)),
+    columns: &["anchor", "distance[mm]"],
+    about: "# anchor      from where the distance was measured; three places or more tell most. Where they are is found.\n\
+            # distance    from there to the target.\n",
+};
+
+const BALL_BAR: Session = Session {
+    word: "ball-bar",
+    plural: Some("ball-bars"),
+    help: "Distances between two configurations",
+    places: &["pair"],
+    stands: Stands::Before,
+    columns: &["pair", "distance[mm]"],
+    about: "# pair        two rows with the same name are one measurement, of two configurations; the second has the number.\n\
+            # distance    of the target between the two.\n",
+    ..ANCHORS
+};
+
+const CHANGES: Session = Session {
+    word: "distance-change",
+    plural: Some("distance-changes"),
+    help: "Changes of distances, as of an interferometer",
+    function: &CHANGE,
+    drawn: Draw::Seen(|target, drawn| {
+        Measurement::distance_change(target.translation.norm() + drawn.length.x + drawn.zero_m)
+    }),
+    columns: &["anchor", "distance_change[mm]"],
+    about: "# anchor           the instrument, or where it stood; another name whenever it was moved or set to zero.\n\
+            # distance_change  what it shows: the distance from it, counted from any zero.\n",
+    ..ANCHORS
+};
+
+/// Radius of the simulated sphere, metres.
+const SPHERE_M: f64 = 0.05;
+
+const SPHERE: Session = Session {
+    word: "sphere",
+    plural: Some("spheres"),
+    help: "Points of spheres",
+    function: &CHANGE,
+    places: &["ball"],
+    stands: Stands::Within,
+    drawn: Draw::Touched(|drawn| {
+        [Measurement::distance(SPHERE_M + drawn.length.x), Measurement::distance_change(0.0)]
+    }),
+    columns: &["sphere", "radius[mm]"],
+    about: "# sphere      the sphere that the target touches. Where it is is found.\n\
+            # radius      its radius, and that of the probe; leave it empty if it is unknown (then it is found too).\n",
+};
+
+impl Kind {
+    /// Distances from three anchors.
+    pub const DISTANCE: Kind = Kind::new(&ANCHORS);
+    /// Distances of the tip between two configurations.
+    pub const BALL_BAR: Kind = Kind::new(&BALL_BAR);
+    /// Changes of the distances from three instruments.
+    pub const CHANGE: Kind = Kind::new(&CHANGES);
+    /// Points of a sphere.
+    pub const SPHERE: Kind = Kind::new(&SPHERE);
+}
+
+impl Measurement {
+    /// Distance of a target from the instrument's origin, metres.
+    #[must_use]
+    pub fn distance(metres: f64) -> Self {
+        Measurement::new(&DISTANCE, &[metres])
+    }
+
+    /// A reading of an instrument of distances whose zero is unknown, metres.
+    #[must_use]
+    pub fn distance_change(metres: f64) -> Self {
+        Measurement::new(&CHANGE, &[metres])
+    }
+
+    /// The same with the zero of its readings unknown, if it is a distance.
+    pub fn with_unknown_zero(self) -> Self {
+        if *self.function() == DISTANCE { self.of(&CHANGE) } else { self }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::Vector3;
+
+    use super::*;
+    use poecal_arm::lie::Pose;
+
+    #[test]
+    fn a_distance_is_measured_minus_predicted() {
+        let mut e = [0.0];
+        Measurement::distance(5.5).residual(&Pose::from_translation(Vector3::new(3.0, 0.0, 4.0)), &mut e);
+        assert_eq!(e, [0.5]);
+    }
+}

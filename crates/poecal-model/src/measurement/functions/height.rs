@@ -1,0 +1,98 @@
+//! Height of a point over a plane.
+
+use nalgebra::Vector3;
+
+use super::Row;
+use crate::measurement::columns::{Columns, From};
+use crate::measurement::session::{Draw, Kind, Session, Stands};
+use crate::measurement::{Channel, Channels, Clue, Device, Function, Kernel, Measurement, Quantity};
+use poecal_arm::lie::Freedom;
+
+static CHANNELS: Channels = Channels::new(&[Channel { name: "height", quantity: Quantity::Height }]);
+
+/// Height of a target over a plane, the device's xy, `e = h - p_z`: zero of a probe that touches, the reading of a dial gauge that looks
+/// along z. The device shows its height and its tilts alone (theory.md §4 (15c)).
+static HEIGHT: Function = Function {
+    name: "height",
+    plural: "heights",
+    quantities: &[Quantity::Height],
+    channels: |_| &CHANNELS,
+    residual: |[height, ..], predicted, out| out[0] = height - predicted.translation.z,
+    sensitivity: |_, _, out| out[0] = [0.0, 0.0, 1.0, 0.0, 0.0, 0.0],
+    is_wrench: true,
+    lengths: 1,
+    kernel: Kernel::Height,
+    device: Device::Plane,
+    device_freedom: |_| Freedom::plane(2),
+    clue: |[height, ..]| Clue::Height { point: Vector3::zeros(), height: *height, up: None },
+    ..Function::USUAL
+};
+
+pub(crate) const ROW: Row = Row {
+    function: &HEIGHT,
+    columns: &[Columns {
+        numbers: &["height"],
+        places: &["plane"],
+        word: Some(("contact", "point")),
+        from: From::Name { size: false },
+        of: |numbers| Measurement::height(numbers[0]),
+        numbers_of: |seen| Some(vec![seen.values()[0]]),
+    }],
+    sessions: &[PLANES, HEIGHTS],
+};
+
+const PLANES: Session = Session {
+    word: "plane",
+    plural: Some("planes"),
+    help: "Points of planes",
+    function: &HEIGHT,
+    places: &["table", "side", "front"],
+    stands: Stands::Within,
+    drawn: Draw::Touched(|drawn| [drawn.length.x, 0.0].map(Measurement::height)),
+    columns: &["plane", "contact", "height[mm]"],
+    about: "# plane       the plane that is touched. Where it is is found.\n\
+            # contact     point, or flush where a face lies on it.\n\
+            # height      of the target over it, as a dial gauge shows; leave it empty where it is touched.\n",
+};
+
+/// Range of the simulated gauge, metres.
+const GAUGE_M: f64 = 0.02;
+
+const HEIGHTS: Session = Session {
+    word: "height",
+    plural: Some("heights"),
+    help: "Heights over planes, as of a dial gauge",
+    drawn: Draw::Touched(|drawn| {
+        let height = (drawn.uniform)() * GAUGE_M;
+        [height + drawn.length.x, height].map(Measurement::height)
+    }),
+    ..PLANES
+};
+
+impl Kind {
+    /// Points of three planes.
+    pub const PLANE: Kind = Kind::new(&PLANES);
+    /// Heights over three planes.
+    pub const HEIGHT: Kind = Kind::new(&HEIGHTS);
+}
+
+impl Measurement {
+    /// Height of a target over a plane, metres.
+    #[must_use]
+    pub fn height(metres: f64) -> Self {
+        Measurement::new(&HEIGHT, &[metres])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use poecal_arm::lie::Pose;
+
+    #[test]
+    fn a_height_is_measured_minus_predicted() {
+        let mut e = [0.0];
+        Measurement::height(0.0).residual(&Pose::from_translation(Vector3::new(0.3, 0.1, 1e-4)), &mut e);
+        assert_eq!(e, [-1e-4]);
+    }
+}

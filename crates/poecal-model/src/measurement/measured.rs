@@ -1,0 +1,237 @@
+//! A measurement: a function and the numbers that were read.
+
+use nalgebra::{Matrix3, Vector3};
+
+use super::{Channels, Clue, Device, Function, Quantity, Sensitivity, Values};
+use poecal_arm::lie::{Freedom, Pose, rotation};
+
+/// One measurement of a target in the measuring device's frame: a function and its numbers. What it shows depends on the predicted pose of the
+/// target alone, not on joints or parameters.
+///
+/// ```
+/// use nalgebra::Vector3;
+/// use poecal_model::measurement::Measurement;
+/// let seen = Measurement::point(Vector3::new(1.0, 2.0, 3.0));
+/// assert_eq!((seen.dim(), seen.function().name), (3, "point"));
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Measurement {
+    function: &'static Function,
+    values: Values,
+}
+
+impl Measurement {
+    /// Of a function, with its first numbers.
+    pub(crate) fn new(function: &'static Function, first: &[f64]) -> Self {
+        let mut values = [0.0; 12];
+        values.iter_mut().zip(first).for_each(|(value, first)| *value = *first);
+        Measurement { function, values }
+    }
+
+    /// What was measured.
+    #[must_use]
+    #[inline]
+    pub fn function(&self) -> &'static Function {
+        self.function
+    }
+
+    /// Its numbers.
+    #[must_use]
+    #[inline]
+    pub fn values(&self) -> &Values {
+        &self.values
+    }
+
+    /// Its numbers, to change them.
+    #[inline]
+    pub fn values_mut(&mut self) -> &mut Values {
+        &mut self.values
+    }
+
+    /// The same numbers of another function.
+    pub(crate) fn of(self, function: &'static Function) -> Self {
+        Measurement { function, ..self }
+    }
+
+    /// The numbers that are compared with predicted ones.
+    #[must_use]
+    #[inline]
+    pub fn channels(&self) -> &'static Channels {
+        (self.function.channels)(&self.values)
+    }
+
+    /// How many of them there are.
+    #[must_use]
+    #[inline]
+    pub fn dim(&self) -> usize {
+        self.channels().len()
+    }
+
+    /// Writes the residual for the predicted `device_from_target`, metres and radians.
+    #[inline]
+    pub fn residual(&self, predicted: &Pose, out: &mut [f64]) {
+        (self.function.residual)(&self.values, predicted, out);
+    }
+
+    /// Writes the sensitivity of each predicted number.
+    #[inline]
+    pub fn sensitivity(&self, predicted: &Pose, out: &mut [Sensitivity]) {
+        (self.function.sensitivity)(&self.values, predicted, out);
+    }
+
+    /// The motions of the device that it shows.
+    #[must_use]
+    #[inline]
+    pub fn device_freedom(&self) -> Freedom {
+        (self.function.device_freedom)(&self.values)
+    }
+
+    /// The motions of the target that it shows.
+    #[must_use]
+    #[inline]
+    pub fn target_freedom(&self) -> Freedom {
+        (self.function.target_freedom)(&self.values)
+    }
+
+    /// Whether it depends on the target's orientation, so that the target is a frame and not only a point.
+    #[must_use]
+    #[inline]
+    pub fn sees_orientation(&self) -> bool {
+        self.target_freedom().turns()
+    }
+
+    /// Whether a number of this quantity was measured.
+    #[must_use]
+    #[inline]
+    pub fn has(&self, quantity: Quantity) -> bool {
+        self.channels().has(quantity)
+    }
+
+    /// What it says by itself.
+    #[must_use]
+    #[inline]
+    pub fn clue(&self) -> Clue {
+        (self.function.clue)(&self.values)
+    }
+
+    /// Measured components of the position, metres, device frame; none of those that were not measured.
+    #[must_use]
+    pub fn position_components(&self) -> [Option<f64>; 3] {
+        match self.clue() {
+            Clue::Frame(pose) => [0, 1, 2].map(|k| Some(pose.translation[k])),
+            Clue::Place(components) => components,
+            Clue::Range(_) | Clue::Middle | Clue::Height { .. } | Clue::Up(_) | Clue::None => [None; 3],
+        }
+    }
+
+    /// Measured position, metres, device frame, if all of it was measured.
+    #[must_use]
+    pub fn position(&self) -> Option<Vector3<f64>> {
+        match self.position_components() {
+            [Some(x), Some(y), Some(z)] => Some(Vector3::new(x, y, z)),
+            _ => None,
+        }
+    }
+
+    /// Measured `device_from_target`, if all of it was measured.
+    #[must_use]
+    pub fn frame(&self) -> Option<Pose> {
+        match self.clue() {
+            Clue::Frame(pose) => Some(pose),
+            Clue::Place(_)
+            | Clue::Range(_)
+            | Clue::Middle
+            | Clue::Height { .. }
+            | Clue::Up(_)
+            | Clue::None => None,
+        }
+    }
+
+    /// Measured `device_from_target` rotation, if it was measured.
+    #[must_use]
+    pub fn orientation(&self) -> Option<Matrix3<f64>> {
+        self.frame().map(|pose| pose.rotation)
+    }
+
+    /// The measured `device_from_target`, with the identity for what was not measured.
+    #[must_use]
+    pub fn pose(&self) -> Pose {
+        self.frame().unwrap_or_else(|| self.position().map_or_else(Pose::identity, Pose::from_translation))
+    }
+
+    /// Measured distance of the target from the device's origin, metres, if that is what was measured.
+    #[must_use]
+    pub fn range(&self) -> Option<f64> {
+        match self.clue() {
+            Clue::Range(distance) => Some(distance),
+            Clue::Frame(_)
+            | Clue::Place(_)
+            | Clue::Middle
+            | Clue::Height { .. }
+            | Clue::Up(_)
+            | Clue::None => None,
+        }
+    }
+
+    /// Lengths that were read, metres.
+    #[must_use]
+    pub fn lengths(&self) -> &[f64] {
+        self.values.get(..self.function.lengths).unwrap_or_default()
+    }
+
+    /// Whether what it measures has a length, by which the size of the robot shows: a place, or a length other than zero.
+    #[must_use]
+    pub fn has_length(&self) -> bool {
+        self.has(Quantity::Position) || self.lengths().iter().any(|length| *length != 0.0)
+    }
+
+    /// Whether it has a length of this quantity, which its first numbers are of.
+    #[must_use]
+    pub fn has_length_of(&self, quantity: Quantity) -> bool {
+        self.function.leading() == quantity && self.has_length()
+    }
+
+    /// The lengths that were read, to change them.
+    pub fn lengths_mut(&mut self) -> &mut [f64] {
+        self.values.get_mut(..self.function.lengths).unwrap_or_default()
+    }
+
+    /// The same with the angles that were read times a factor; as it is where none were.
+    #[must_use]
+    pub fn with_angles_times(self, factor: f64) -> Self {
+        let values = self.function.with_angles_times.map_or(self.values, |times| times(&self.values, factor));
+        Measurement { values, ..self }
+    }
+
+    /// What the device is.
+    #[must_use]
+    pub fn device(&self) -> Device {
+        let is_sphere = self.function.zero_is_unknown && self.range() == Some(0.0);
+        if is_sphere { Device::Sphere } else { self.function.device }
+    }
+
+    /// How far apart two measurements of the same numbers are: metres, and radians of orientations. `None` of different ones.
+    #[must_use]
+    pub fn apart(&self, other: &Measurement) -> Option<(f64, f64)> {
+        let angle = |a: Vector3<f64>, b: Vector3<f64>| a.cross(&b).norm().atan2(a.dot(&b));
+        let metres = || {
+            let both = self.lengths().iter().zip(other.lengths());
+            Vector3::from_iterator(both.map(|(a, b)| a - b).chain([0.0; 3])).norm()
+        };
+        let turned = match (self.clue(), other.clue()) {
+            (Clue::Frame(a), Clue::Frame(b)) => rotation::log(&(a.rotation * b.rotation.transpose())).norm(),
+            (Clue::Up(a), Clue::Up(b))
+            | (Clue::Height { up: Some(a), .. }, Clue::Height { up: Some(b), .. }) => angle(a, b),
+            _ => 0.0,
+        };
+        let are_places = self.position().is_some() && other.position().is_some();
+        let are_alike = self.channels().as_ptr() == other.channels().as_ptr();
+        (are_places || are_alike).then(|| (metres(), turned))
+    }
+
+    /// Whether all numbers are finite.
+    #[must_use]
+    pub fn is_finite(&self) -> bool {
+        self.values.iter().all(|number| number.is_finite())
+    }
+}

@@ -1,0 +1,138 @@
+//! Joint offsets and the screws that are equivalent to them: a robot with offsets written without, and the offsets that explain best
+//! how one robot differs from another (theory.md §8, lou2009 equations 11 to 15).
+
+mod at_tip;
+mod changes;
+mod fit;
+mod options;
+mod prediction;
+mod screws;
+mod start;
+mod taught;
+
+pub use changes::{ChangeBySteps, Changes, JointChange, direction};
+pub use options::{End, OffsetOptions};
+pub use prediction::TipError;
+pub use screws::into_screws;
+pub use taught::{Taught, with_tool_of};
+
+use crate::robot::{JointKind, Robot};
+use at_tip::TipFit;
+use fit::{Comparison, OffsetState};
+use poecal_arm::lie::{Pose, rotation};
+use poecal_numerics::error::Result;
+use prediction::Predictions;
+use screws::check_same_joints;
+
+/// Difference of a joint's screw that offsets do not explain.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct JointRemainder {
+    /// Angle between the directions, radians.
+    pub tilt_rad: f64,
+    /// Distance of the axis from the actual joint's origin, metres; none for a sliding joint.
+    pub shift_m: Option<f64>,
+}
+
+/// Difference of the home pose that offsets do not explain.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HomeRemainder {
+    /// Distance of the tips at zero, metres.
+    pub position_m: f64,
+    /// Angle between the tip frames at zero, radians.
+    pub rotation_rad: f64,
+}
+
+/// The offsets with which one robot comes nearest to another, and the remaining differences.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Explanation {
+    /// How the robots were compared.
+    pub options: OffsetOptions,
+    /// Offset of each joint's value, radians in (-π, π] or metres.
+    pub offsets: Vec<f64>,
+    /// Joints (by index) whose offsets are not determined, alone or in combination; theirs are the smallest that explain as much.
+    pub undetermined: Vec<usize>,
+    /// Motion of the nominal robot in the base frame; none where the base is kept.
+    pub base_motion: Pose,
+    /// `tip_from_tip` from the nominal tip to the actual one; none where the tip is kept.
+    pub tip_motion: Pose,
+    /// Remaining difference of each joint.
+    pub joints: Vec<JointRemainder>,
+    /// Remaining difference of the home pose; none where the tip is free.
+    pub home: Option<HomeRemainder>,
+    /// Error of the nominal robot's tip against the actual one's, with the best base and tip where these are free.
+    pub without_offsets: TipError,
+    /// The same with the offsets put in.
+    pub with_offsets: TipError,
+}
+
+/// The offsets, and the motions of base and tip where these are free, with which the tip of `nominal` comes nearest to that of `actual`: least
+/// squares of its places and of its turns, at a tenth of a metre, in random configurations within the limits of `nominal` (theory.md §8 (38d)), from
+/// those with which the screws and the home pose come nearest (38b), which also decide where no tip does. Offsets may be of any size. It is what a controller gains that takes
+/// offsets, a base and a tool, and nothing else.
+///
+/// # Errors
+/// [`ErrorKind::Option`](poecal_numerics::error::ErrorKind::Option) if the robots do not have the same joints (number, names in order, kinds and readings), or have branches.
+pub fn explain(nominal: &Robot, actual: &Robot, options: &OffsetOptions) -> Result<Explanation> {
+    explained(nominal, actual, options, true)
+}
+
+/// The same by the screws alone, (38b): where [`explain`] starts.
+///
+/// # Errors
+/// As [`explain`].
+pub fn explain_screws(nominal: &Robot, actual: &Robot, options: &OffsetOptions) -> Result<Explanation> {
+    explained(nominal, actual, options, false)
+}
+
+fn explained(nominal: &Robot, actual: &Robot, options: &OffsetOptions, at_tip: bool) -> Result<Explanation> {
+    check_same_joints(nominal, actual)?;
+    let (nominal, actual) = (&nominal.without_offsets(), &actual.without_offsets());
+    let comparison = Comparison::new(nominal, actual, options);
+    let found = comparison.best();
+    let unmoved = comparison.best_without_offsets();
+    let undetermined = comparison.undetermined(&found);
+    let predictions = Predictions::new(nominal, actual, options);
+    let nearest = |moves_offsets: bool, state: OffsetState| {
+        let length_m = comparison.length_m;
+        let fit = TipFit { nominal, predictions: &predictions, options, moves_offsets, length_m };
+        if at_tip {
+            return fit.nearest(state);
+        }
+        fit.compared(&state).map(|(tip_motion, left)| (state, tip_motion, left))
+    };
+    let (found, tip_motion, with_offsets) = nearest(true, found)?;
+    let (_, _, without_offsets) = nearest(false, unmoved)?;
+    let (joints, home) = remainder(&comparison, &found);
+    Ok(Explanation {
+        options: *options,
+        undetermined,
+        offsets: found.offsets,
+        base_motion: found.base,
+        tip_motion,
+        joints,
+        home,
+        without_offsets,
+        with_offsets,
+    })
+}
+
+fn remainder(
+    comparison: &Comparison<'_>,
+    found: &OffsetState,
+) -> (Vec<JointRemainder>, Option<HomeRemainder>) {
+    let (screws, home) = comparison.moved(found);
+    let actual = comparison.actual;
+    let joints = screws.iter().zip(&actual.joints).map(|(screw, joint)| {
+        let (direction, goal) = (screw.direction(), joint.screw.direction());
+        let tilt_rad = direction.cross(&goal).norm().atan2(direction.dot(&goal));
+        let origin = joint.screw.nearest_point(&joint.frame.translation);
+        let shift_m =
+            (joint.kind == JointKind::Revolute).then(|| (screw.nearest_point(&origin) - origin).norm());
+        JointRemainder { tilt_rad, shift_m }
+    });
+    let home = (comparison.options.tip == End::Kept).then(|| HomeRemainder {
+        position_m: (home.translation - actual.home.translation).norm(),
+        rotation_rad: rotation::log(&(home.rotation * actual.home.rotation.transpose())).norm(),
+    });
+    (joints.collect(), home)
+}

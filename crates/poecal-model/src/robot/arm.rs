@@ -1,0 +1,240 @@
+//! The arm of a robot as `poecal_arm` computes with it.
+
+use nalgebra::Vector3;
+use poecal_arm::{
+    Argument, Arm, Curve, Drawn, Function, Joint as ArmJoint, JointValue, MOST_JOINTS, Model, Pull, Term,
+    Wave,
+};
+
+use super::{JointTerm, Limits, Robot, Statics};
+use poecal_numerics::error::{ErrorKind, Result};
+
+impl Robot {
+    /// The joints from the base to the tip, their terms at these values of the factors, and the limits of their readings, for forward and
+    /// inverse kinematics; beside it, of each of the arm's readings the index among the robot's ([`Robot::reading_names`]). Joints of other
+    /// branches are at zero.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Model`] if more than [`MOST_JOINTS`] readings move the tip, or one of them does not move it.
+    ///
+    /// ```
+    /// let robot = poecal_model::simulate::elbow();
+    /// let (arm, readings) = robot.arm(&[]).unwrap();
+    /// assert_eq!(readings, [0, 1, 2, 3, 4, 5]);
+    /// let apart = arm.forward_kinematics(&[0.3; 6]).translation - robot.forward_kinematics(&[0.3; 6]).translation;
+    /// assert!(apart.norm() < 1e-14);
+    /// ```
+    pub fn arm(&self, factors: &[f64]) -> Result<(Arm, Vec<usize>)> {
+        self.arm_holding(factors, &[])
+    }
+
+    /// The same where some readings, each by its index among the robot's, stay at a value (rad, m): they are none of the arm's.
+    ///
+    /// # Errors
+    /// As [`Robot::arm`].
+    pub fn arm_holding(&self, factors: &[f64], held: &[(usize, f64)]) -> Result<(Arm, Vec<usize>)> {
+        let (model, readings) = self.model_holding(factors, held)?;
+        let names = self.reading_names();
+        let arm = Arm::of(&model).ok_or_else(|| {
+            let names: Vec<&str> =
+                readings.iter().filter_map(|&it| names.get(it)).map(String::as_str).collect();
+            ErrorKind::Model.error(format!(
+                "not every one of the joints {} moves the tip of robot `{}`",
+                names.join(", "),
+                self.name
+            ))
+        })?;
+        Ok((arm, readings))
+    }
+
+    /// What [`Robot::arm`] is made of.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Model`] if more than [`MOST_JOINTS`] readings move the tip.
+    pub fn arm_model(&self, factors: &[f64]) -> Result<(Model, Vec<usize>)> {
+        self.model_holding(factors, &[])
+    }
+
+    fn model_holding(&self, factors: &[f64], held: &[(usize, f64)]) -> Result<(Model, Vec<usize>)> {
+        let indices = self.reading_indices();
+        let path = self.joints_to(self.tip_body());
+        let moving: Vec<usize> =
+            path.iter().copied().filter(|&it| self.joints[it].give_of.is_none()).collect();
+        let mut readings: Vec<usize> = Vec::new();
+        for &joint in &moving {
+            let is_held = held.iter().any(|it| it.0 == indices[joint]);
+            if !is_held && !readings.contains(&indices[joint]) {
+                readings.push(indices[joint]);
+            }
+        }
+        if readings.len() > MOST_JOINTS {
+            return ErrorKind::Model
+                .refuse(format!("{} joints move the tip, expected at most {MOST_JOINTS}", readings.len()));
+        }
+        let statics = Statics::new(self);
+        let factors: Vec<f64> = (self.factors.iter().enumerate())
+            .map(|(index, it)| factors.get(index).map_or(0.0, |value| value - it.reference))
+            .collect();
+        let values = Values {
+            robot: self,
+            statics,
+            moving: &moving,
+            readings: &readings,
+            indices: &indices,
+            held,
+            factors,
+        };
+        let mut model = Model::new(readings.len(), &self.home);
+        for &joint in &path {
+            let value = values.of(joint);
+            if value != JointValue::default() {
+                model.joints.push(ArmJoint { screw: self.joints[joint].screw, value });
+            }
+        }
+        if let Some(gravity) = &self.gravity {
+            model.gravity = gravity.direction;
+            for &joint in &moving {
+                let screw = gravity.axes.get(joint).map_or(self.joints[joint].screw, |it| it.0);
+                let (constant, linear) = values.by_reading(joint);
+                let (reading, factor) = linear.unwrap_or((0, 0.0));
+                model.drawing.push(Drawn { screw, reading, factor, constant });
+            }
+        } else {
+            model.gravity = Vector3::zeros();
+        }
+        model.limits = readings.iter().map(|&reading| self.limits_of(&moving, &indices, reading)).collect();
+        Ok((model, readings))
+    }
+
+    /// Limits of a reading: those of the joint that is named by it, without placeholders.
+    fn limits_of(&self, moving: &[usize], indices: &[usize], reading: usize) -> Option<(f64, f64)> {
+        let joint =
+            moving.iter().map(|&it| (it, &self.joints[it])).find(|(it, _)| indices[*it] == reading)?.1;
+        let limits = joint.limits.filter(|it| it.upper - it.lower < Limits::PLACEHOLDER_M)?;
+        let (low, high) = (limits.lower, limits.upper);
+        (joint.reading.multiplier == 1.0 && joint.reading.offset == 0.0).then_some((low, high))
+    }
+}
+
+/// Values of joints as functions of the readings of an arm.
+struct Values<'a> {
+    robot: &'a Robot,
+    statics: Option<Statics<'a>>,
+    /// The joints of the arm but gives.
+    moving: &'a [usize],
+    /// Of each reading of the arm the index among the robot's.
+    readings: &'a [usize],
+    /// Of each joint the index of its reading.
+    indices: &'a [usize],
+    /// Readings that stay at a value.
+    held: &'a [(usize, f64)],
+    /// The factors, from their references.
+    factors: Vec<f64>,
+}
+
+impl Values<'_> {
+    fn of(&self, joint: usize) -> JointValue {
+        let (constant, linear) = self.by_reading(joint);
+        let linear = linear.into_iter().collect();
+        let mut value = JointValue { constant, linear, ..JointValue::default() };
+        let mut moments = Vec::new();
+        let terms = self.robot.terms.iter().filter(|it| it.joint == joint && it.coefficient != 0.0);
+        for &JointTerm { term, coefficient, .. } in terms {
+            let is_linear = matches!(term.kind().row().function, Function::Identity);
+            match term.argument() {
+                Argument::Nothing => value.constant += coefficient * term.function(0.0)[0],
+                Argument::Factor => value.constant += coefficient * term.function(self.factor(term))[0],
+                Argument::OwnValue => self.add_of_value(&mut value, term, coefficient, joint),
+                Argument::OtherJoint => self.add_of_value(&mut value, term, coefficient, term.index()),
+                Argument::Masses | Argument::Weight | Argument::Payload if is_linear => {
+                    moments.push((term, coefficient));
+                }
+                Argument::Masses | Argument::Weight | Argument::Payload => {
+                    let (linear, pull) = (Vec::new(), self.pull(joint, &[(term, 1.0)]));
+                    value.curves.push(Curve { term, coefficient, constant: 0.0, linear, pull });
+                }
+            }
+        }
+        value.waves = together(&value.waves);
+        value.pull = self.pull(joint, &moments);
+        value
+    }
+
+    /// The value of a joint by its reading: a constant, and the arm's reading with a factor.
+    fn by_reading(&self, joint: usize) -> (f64, Option<(usize, f64)>) {
+        let (own, reading) = (&self.robot.joints[joint].reading, self.indices[joint]);
+        let of_arm = self.readings.iter().position(|it| *it == reading);
+        match of_arm.filter(|_| own.multiplier != 0.0) {
+            Some(at) => (own.offset, Some((at, own.multiplier))),
+            None => {
+                let held = self.held.iter().find(|it| it.0 == reading).map_or(0.0, |it| it.1);
+                (own.offset + own.multiplier * held, None)
+            }
+        }
+    }
+
+    /// Adds a term that is a function of the value of a joint, of a give that of the joint which gives.
+    fn add_of_value(&self, value: &mut JointValue, term: Term, coefficient: f64, of: usize) {
+        let Some(joint) = self.robot.joints.get(of) else { return };
+        let (constant, linear) = self.by_reading(joint.give_of.unwrap_or(of));
+        let Some((reading, factor)) = linear else {
+            value.constant += coefficient * term.function(constant)[0];
+            return;
+        };
+        let wave =
+            Wave { reading, factor, offset: constant, order: term.number() as f64, cosine: 0.0, sine: 0.0 };
+        match term.kind().row().function {
+            Function::One => value.constant += coefficient,
+            Function::Identity => {
+                value.constant += coefficient * constant;
+                match value.linear.iter_mut().find(|it| it.0 == reading) {
+                    Some(it) => it.1 += coefficient * factor,
+                    None => value.linear.push((reading, coefficient * factor)),
+                }
+            }
+            Function::Sine => value.waves.push(Wave { sine: coefficient, ..wave }),
+            Function::Cosine => value.waves.push(Wave { cosine: coefficient, ..wave }),
+            Function::Other(_) => {
+                let linear = vec![(reading, factor)];
+                value.curves.push(Curve { term, coefficient, constant, linear, pull: None });
+            }
+        }
+    }
+
+    /// The factor of a term's number, from its reference.
+    fn factor(&self, term: Term) -> f64 {
+        self.factors.get(term.index()).copied().unwrap_or(0.0)
+    }
+
+    /// The moments about a joint that terms are functions of, by these coefficients.
+    fn pull(&self, joint: usize, terms: &[(Term, f64)]) -> Option<Pull> {
+        let weights = self.robot.gravity.as_ref()?.weights.len();
+        let (mut sags, mut of_masses) = (vec![0.0; weights], 0.0);
+        for &(term, coefficient) in terms {
+            match term.argument() {
+                Argument::Masses => of_masses += coefficient,
+                Argument::Weight => sags.get_mut(term.index()).into_iter().for_each(|it| *it += coefficient),
+                Argument::Payload => {
+                    sags.last_mut().into_iter().for_each(|it| *it += coefficient * self.factor(term));
+                }
+                Argument::Nothing | Argument::OwnValue | Argument::OtherJoint | Argument::Factor => {}
+            }
+        }
+        self.statics.as_ref()?.pull(joint, self.moving, &sags, of_masses)
+    }
+}
+
+/// Waves with those of one order as one.
+fn together(waves: &[Wave]) -> Vec<Wave> {
+    let mut out: Vec<Wave> = Vec::new();
+    for wave in waves {
+        match out.iter_mut().find(|it| it.order == wave.order && it.reading == wave.reading) {
+            Some(it) => {
+                it.cosine += wave.cosine;
+                it.sine += wave.sine;
+            }
+            None => out.push(*wave),
+        }
+    }
+    out
+}

@@ -1,0 +1,64 @@
+//! How large the terms of joints are: one prior standard deviation for each group of them.
+
+use std::ops::{Index, IndexMut};
+
+use poecal_arm::TermGroup;
+
+use super::Gives;
+
+const COUNT: usize = TermGroup::ALL.len();
+
+/// Prior standard deviation of the terms of each group, radians or metres ([`TermGroup::is_of_lengths`]); 0 leaves a group out.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sizes([f64; COUNT]);
+
+impl Sizes {
+    /// No term at all: geometry alone.
+    pub const NONE: Sizes = Sizes([0.0; COUNT]);
+    /// Sizes of all groups: the common ones, and of a group that is commonly left out what is usual where it is not.
+    pub const ALL: Sizes = Sizes::of_table(0);
+    /// Sizes that are common among industrial robots.
+    pub const COMMON: Sizes = Sizes::of_table(1);
+    /// A third of these: what does no harm where nothing tells the size.
+    pub const SMALL: Sizes = Sizes::of_table(2);
+
+    /// The sizes of a column of the table of groups.
+    const fn of_table(column: usize) -> Self {
+        let mut sizes = [0.0; COUNT];
+        let mut at = 0;
+        while at < COUNT {
+            sizes[at] = TermGroup::ALL[at].row().sizes[column];
+            at += 1;
+        }
+        Sizes(sizes)
+    }
+
+    /// In which directions bearings and links give that have terms of these sizes.
+    #[must_use]
+    pub fn gives(&self) -> Gives {
+        let slides = |group: TermGroup| group.is_of_lengths() && self[group] > 0.0;
+        if TermGroup::ALL.into_iter().any(slides) { Gives::All } else { Gives::Tilting }
+    }
+
+    /// The larger of both, group by group.
+    #[must_use]
+    pub fn max(&self, other: &Sizes) -> Sizes {
+        let mut both = *self;
+        TermGroup::ALL.iter().for_each(|&group| both[group] = both[group].max(other[group]));
+        both
+    }
+}
+
+impl Index<TermGroup> for Sizes {
+    type Output = f64;
+
+    fn index(&self, group: TermGroup) -> &f64 {
+        &self.0[group as usize]
+    }
+}
+
+impl IndexMut<TermGroup> for Sizes {
+    fn index_mut(&mut self, group: TermGroup) -> &mut f64 {
+        &mut self.0[group as usize]
+    }
+}

@@ -1,0 +1,6 @@
+//! What this crate does, seen from outside: one program, since linking it once takes less than linking one for each subject.
+
+#![allow(clippy::unwrap_used, clippy::panic, clippy::print_stdout)]
+
+mod modern_robotics;
+mod offsets;

@@ -1,0 +1,262 @@
+//! Input of the kernels: an arm's frames, its columns, and rows side by side.
+
+use super::gram::TILE;
+use super::rows::Shape;
+use super::vector::{WIDTH, Wide};
+use poecal_arm::lie::Pose;
+
+/// A fixed motion: three columns of a rotation, and a translation in metres.
+#[derive(Clone, Copy, Debug)]
+pub struct FixedMotion {
+    pub(crate) columns: [[f64; 3]; 3],
+    pub(crate) translation: [f64; 3],
+}
+
+impl From<&Pose> for FixedMotion {
+    fn from(pose: &Pose) -> Self {
+        FixedMotion { columns: pose.rotation.data.0, translation: pose.translation.into() }
+    }
+}
+
+/// A joint on the way to the target.
+#[derive(Clone, Copy, Debug)]
+pub struct JointPlan {
+    /// Whether it is revolute.
+    pub turns: bool,
+    /// Its first translation and rotation column, if its axis is unknown.
+    pub columns: Option<(usize, usize)>,
+    /// Its first unknown term among all, and how many it has.
+    pub terms: (usize, usize),
+}
+
+/// An unknown term of a joint's value: its translation column and, of a revolute joint, its rotation column. The translation column of a
+/// revolute joint is the direction of that rotation only, and no unknown.
+#[derive(Clone, Copy, Debug)]
+pub struct TermPlan {
+    /// Its translation column.
+    pub shift: usize,
+    /// Its rotation column.
+    pub turn: Option<usize>,
+}
+
+/// An unknown device frame: the first three translation columns, and the first three rotation columns if it `turns`.
+#[derive(Clone, Copy, Debug)]
+pub struct DevicePlan {
+    /// The point about which it rotates.
+    pub about: [f64; 3],
+    /// Whether it rotates.
+    pub turns: bool,
+}
+
+/// One number of a target's place.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Along {
+    /// Its height, along the device's z.
+    Height,
+    /// Its distance from the device's origin.
+    Distance,
+}
+
+/// Columns of one group of rows: *shifts* are translation columns (a direction times the row's weight); *turns* are rotation columns
+/// about the direction of one of the shifts, `w = v / L`, of which the first `tilts` also translate.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    /// The joints' columns.
+    pub joints: Vec<JointPlan>,
+    /// Whether these are all joints of a row in their order, none backward, and their values do not depend on the estimate.
+    pub in_order: bool,
+    /// Unknown terms, joint after joint.
+    pub terms: Vec<TermPlan>,
+    /// The device frame, if it is unknown.
+    pub device: Option<DevicePlan>,
+    /// First translation column of the target's place, if that is unknown.
+    pub place: Option<usize>,
+    /// First rotation column of the target's frame, if that is unknown.
+    pub frame: Option<usize>,
+    /// Number of translation columns.
+    pub shifts: usize,
+    /// Number of rotation columns that also translate.
+    pub tilts: usize,
+    /// The translation column of each rotation column.
+    pub turns: Vec<usize>,
+    /// Of each tile of columns, whether they are all directions of rotation columns and no unknowns; empty if none is.
+    pub idle: Vec<bool>,
+    /// Metres that a radian counts.
+    pub length_m: f64,
+    /// Whether the rows depend on the target's orientation.
+    pub framed: bool,
+    /// Columns that the rows themselves give, after all others.
+    pub given: usize,
+    /// Numbers of each row, if they are another function of the target's pose than its position and orientation ([`Arm::shape`]); else 0.
+    pub shaped: usize,
+    /// The direction along which a row measured one number, if it did not measure a position.
+    pub along: Option<Along>,
+    /// Position over rotation noise in m/rad, if it is the same in all rows: rotation products then follow from those of the translation
+    /// columns (theory.md §6 (28a)).
+    pub ratio: Option<f64>,
+}
+
+impl Plan {
+    /// Columns of position rows; all columns of shaped rows.
+    pub fn columns(&self) -> usize {
+        self.shifts + if self.shaped > 0 { self.turns.len() + self.given } else { self.tilts }
+    }
+
+    /// Groups of three numbers of a row whose products are summed at once.
+    pub(crate) fn slots(&self) -> usize {
+        self.shaped.div_ceil(3).max(1)
+    }
+
+    /// Whether the products of the tile at these two columns are wanted: those of directions only with each other's translation columns, from
+    /// which the products of rotations follow (theory.md §6 (28a)), and only where an orientation was measured.
+    #[inline(always)]
+    pub(crate) fn needs(&self, column: usize, other: usize) -> bool {
+        let is_idle = |column: usize| self.idle.get(column / TILE).copied().unwrap_or(false);
+        let both_shift = column.max(other) < self.shifts;
+        !is_idle(column) && !is_idle(other) || self.is_pose() && both_shift
+    }
+
+    /// Whether the rows are positions and poses of an arm whose joints have no unknown terms: kernels of their own, without all else.
+    pub fn is_plain(&self) -> bool {
+        self.shaped == 0 && self.along.is_none() && self.terms.is_empty()
+    }
+
+    /// Whether a row has a measured orientation beside its position.
+    pub fn is_pose(&self) -> bool {
+        self.framed && self.shaped == 0
+    }
+
+    /// Rows that rotation adds to the products of rotation columns: two of the curvature of the logarithm, which may be left out, or all
+    /// three where the ratio of noises differs between rows (theory.md §6 (28a)).
+    pub(crate) fn turned_rows(&self, nearly: bool) -> usize {
+        match (self.is_pose(), self.ratio) {
+            (false, _) => 0,
+            (true, Some(_)) => {
+                if nearly {
+                    0
+                } else {
+                    2
+                }
+            }
+            (true, None) => 3,
+        }
+    }
+
+    /// Wide numbers of a block of [`WIDTH`] rows: the weight `1/σ` and the ratio of noises, the measured position, the columns of a
+    /// measured orientation, `(cos θ, sin θ)` or `(θ, 0)` of each joint, and the factor of each unknown term.
+    pub fn block_len(&self) -> usize {
+        let seen = if self.is_pose() { 12 } else { 3 };
+        2 + seen + 2 * self.joints.len() + self.terms.len()
+    }
+}
+
+/// Rows side by side, in blocks of [`WIDTH`]; the last is padded with rows of weight zero.
+#[derive(Clone, Debug, Default)]
+pub struct PackedRows {
+    /// The numbers of one block after another.
+    pub blocks: Vec<Wide>,
+}
+
+/// One row to be packed.
+pub struct RowData<'a> {
+    /// `(cos θ, sin θ)` or `(θ, 0)` of each joint.
+    pub joints: &'a [(f64, f64)],
+    /// The measured position in the device frame, metres.
+    pub position: [f64; 3],
+    /// Columns of the measured orientation, and position over rotation noise.
+    pub orientation: Option<(&'a [[f64; 3]; 3], f64)>,
+    /// `1/σ` of a position component, or zero.
+    pub weight: f64,
+}
+
+impl PackedRows {
+    /// No rows.
+    pub const EMPTY: PackedRows = PackedRows { blocks: Vec::new() };
+
+    /// Packs rows in place of those packed before. Where joints do not lie in order, `joint` gives the values of each on the way, by minus
+    /// the value where it is passed backward; `term` gives the factor of each unknown term.
+    #[inline(always)]
+    pub fn pack<'a>(
+        &mut self,
+        plan: &Plan,
+        count: usize,
+        row: impl Fn(usize) -> RowData<'a>,
+        joint: impl Fn(usize, usize) -> (f64, f64),
+        term: impl Fn(usize, usize) -> f64,
+    ) {
+        let len = plan.block_len();
+        let blocks = count.div_ceil(WIDTH);
+        self.blocks.resize(blocks * len, Wide::ZERO);
+        for (index, block) in self.blocks.chunks_exact_mut(len).enumerate() {
+            let first = index * WIDTH;
+            // The last block is padded with its last row, at weight zero.
+            let at = |lane: usize| (first + lane).min(count - 1);
+            // One by one: what builds arrays may not be inlined, and each row then costs calls.
+            let [a, b, c, d, e, f, g, h] = [0, 1, 2, 3, 4, 5, 6, 7].map(at);
+            let rows: [RowData<'a>; WIDTH] = [row(a), row(b), row(c), row(d), row(e), row(f), row(g), row(h)];
+            put(plan, block, &rows);
+            if !plan.in_order {
+                let (_, joints) = block.split_at_mut(len - plan.terms.len() - 2 * plan.joints.len());
+                let (joints, terms) = joints.split_at_mut(2 * plan.joints.len());
+                for (k, pair) in joints.as_chunks_mut::<2>().0.iter_mut().enumerate() {
+                    for lane in 0..WIDTH {
+                        (pair[0].0[lane], pair[1].0[lane]) = joint(at(lane), k);
+                    }
+                }
+                for (k, wide) in terms.iter_mut().enumerate() {
+                    *wide = Wide(std::array::from_fn(|lane| term(at(lane), k)));
+                }
+            }
+            if let Some(weights) = block.first_mut() {
+                weights.0[(count - first).min(WIDTH)..].fill(0.0);
+            }
+        }
+    }
+}
+
+/// Writes a block, number after number, each of all rows.
+#[inline(always)]
+fn put(plan: &Plan, block: &mut [Wide], rows: &[RowData<'_>; WIDTH]) {
+    let Some((noise, rest)) = block.split_first_chunk_mut::<2>() else { return };
+    noise[0] = Wide(std::array::from_fn(|lane| rows[lane].weight));
+    noise[1] = Wide(std::array::from_fn(|lane| rows[lane].orientation.map_or(0.0, |(_, ratio)| ratio)));
+    let Some((position, rest)) = rest.split_first_chunk_mut::<3>() else { return };
+    for (k, wide) in position.iter_mut().enumerate() {
+        *wide = Wide(std::array::from_fn(|lane| rows[lane].position[k]));
+    }
+    let (turned, joints) = rest.split_at_mut(if rows[0].orientation.is_some() { 9 } else { 0 });
+    if let [Some(a), Some(b), Some(c), Some(d), Some(e), Some(f), Some(g), Some(h)] =
+        rows.each_ref().map(|row| row.orientation.map(|(columns, _)| columns))
+    {
+        let columns = [a, b, c, d, e, f, g, h];
+        for (k, wide) in turned.iter_mut().enumerate() {
+            *wide = Wide(std::array::from_fn(|lane| columns[lane][k / 3][k % 3]));
+        }
+    }
+    if !plan.in_order {
+        return;
+    }
+    let values = rows.each_ref().map(|row| row.joints);
+    for (joint, pair) in joints.as_chunks_mut::<2>().0.iter_mut().enumerate() {
+        for (lane, values) in values.iter().enumerate() {
+            let (cosine, sine) = values[joint];
+            pair[0].0[lane] = cosine;
+            pair[1].0[lane] = sine;
+        }
+    }
+}
+
+/// An arm at an estimate: its columns, its relative frames at zero joint values, and the target in the last one.
+#[derive(Clone, Copy)]
+pub struct Arm<'a> {
+    /// Its columns.
+    pub plan: &'a Plan,
+    /// Frame of each joint in the one before, at zero joint values.
+    pub steps: &'a [FixedMotion],
+    /// The target in the last frame.
+    pub end: &'a FixedMotion,
+    /// The rows' own functions, if they have them ([`Plan::shaped`]).
+    pub shape: Option<&'a dyn Shape>,
+    /// Whether the products may omit the curvature of the logarithm, to save time (theory.md §6 (28a)).
+    pub nearly: bool,
+}

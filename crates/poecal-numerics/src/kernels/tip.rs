@@ -1,0 +1,33 @@
+//! The chain alone: frames of the last link in several rows.
+
+use pulp::Simd;
+
+use super::frame::{Frame, moved, turned};
+use super::plan::FixedMotion;
+use super::vector::{Lanes, Wide, parts};
+
+/// Writes the frame of the last link after all motions, `X T_n` of theory.md §4 (13), as rows of `[x, y, z, origin]`. Of each joint are
+/// given whether it is revolute, its frame in the one before at zero joint values, and `(cos θ, sin θ)` or `(θ, 0)`.
+#[inline(always)]
+pub(crate) fn last_links<S: Simd>(
+    simd: S,
+    joints: &[(bool, FixedMotion)],
+    values: &[[Wide; 2]],
+    out: &mut [[Wide; 4]; 3],
+) {
+    for part in parts(simd) {
+        let mut link = Frame([[Lanes::splat(simd, 0.0); 4]; 3]);
+        for (index, ((turns, step), [cosine, sine])) in joints.iter().zip(values).enumerate() {
+            if index == 0 {
+                link = Frame::fixed(simd, step);
+            }
+            let (cosine, sine) = (Lanes::load(simd, cosine, part), Lanes::load(simd, sine, part));
+            for row in &mut link.0 {
+                *row = moved(if index == 0 { *row } else { turned(simd, *row, step) }, *turns, cosine, sine);
+            }
+        }
+        for (row, out) in link.0.iter().zip(&mut *out) {
+            row.iter().zip(out).for_each(|(number, out)| number.store(out, part));
+        }
+    }
+}

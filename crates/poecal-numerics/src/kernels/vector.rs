@@ -1,0 +1,228 @@
+//! Numbers of several rows side by side: the vectors of the kernels, whatever the width of the machine's vectors.
+
+use std::any::TypeId;
+use std::ops::{Add, Mul, Neg, Sub};
+
+use pulp::{Scalar128b, Simd};
+
+/// Rows side by side in memory, whatever the width of the instructions.
+pub const WIDTH: usize = 8;
+
+/// One number of [`WIDTH`] rows, on a cache line of its own.
+#[derive(Clone, Copy, Debug)]
+#[repr(align(64))]
+pub struct Wide(pub [f64; WIDTH]);
+
+impl Wide {
+    /// Zeros.
+    pub const ZERO: Wide = Wide([0.0; WIDTH]);
+}
+
+/// One number of each of as many rows as a vector of the machine has lanes, a divisor of [`WIDTH`].
+#[derive(Clone, Copy)]
+pub(crate) struct Lanes<S: Simd> {
+    /// The instructions that the machine has.
+    simd: S,
+    numbers: S::f64s,
+}
+
+/// Parts of a wide number.
+#[inline(always)]
+pub(crate) fn parts<S: Simd>(_simd: S) -> std::ops::Range<usize> {
+    0..WIDTH / S::F64_LANES
+}
+
+impl<S: Simd> Lanes<S> {
+    #[inline(always)]
+    pub(crate) fn splat(simd: S, value: f64) -> Self {
+        Lanes { simd, numbers: simd.splat_f64s(value) }
+    }
+
+    /// Part `part` of the rows of a wide number.
+    #[inline(always)]
+    pub(crate) fn load(simd: S, wide: &Wide, part: usize) -> Self {
+        Lanes { simd, numbers: S::as_simd_f64s(&wide.0).0[part] }
+    }
+
+    #[inline(always)]
+    pub(crate) fn store(self, wide: &mut Wide, part: usize) {
+        S::as_mut_simd_f64s(&mut wide.0).0[part] = self.numbers;
+    }
+
+    /// This value in every lane.
+    #[inline(always)]
+    pub(crate) fn all(self, value: f64) -> Self {
+        Self::splat(self.simd, value)
+    }
+
+    /// `self * factor + term`, fused if the machine can.
+    #[inline(always)]
+    pub(crate) fn times_plus(self, factor: Self, term: Self) -> Self {
+        if is_fused::<S>() {
+            Lanes { numbers: self.simd.mul_add_f64s(self.numbers, factor.numbers, term.numbers), ..self }
+        } else {
+            self * factor + term
+        }
+    }
+
+    /// `term - self * factor`, fused if the machine can.
+    #[inline(always)]
+    pub(crate) fn times_from(self, factor: Self, term: Self) -> Self {
+        if is_fused::<S>() {
+            let numbers = self.simd.negate_mul_add_f64s(self.numbers, factor.numbers, term.numbers);
+            Lanes { numbers, ..self }
+        } else {
+            term - self * factor
+        }
+    }
+
+    #[inline(always)]
+    pub(crate) fn sqrt(self) -> Self {
+        Lanes { numbers: self.simd.sqrt_f64s(self.numbers), ..self }
+    }
+
+    /// `self / other`, or `otherwise` where `other` is not positive.
+    #[inline(always)]
+    pub(crate) fn over(self, other: Self, otherwise: f64) -> Self {
+        let positive = self.simd.greater_than_f64s(other.numbers, self.all(0.0).numbers);
+        let quotient = self.simd.div_f64s(self.numbers, other.numbers);
+        Lanes { numbers: self.simd.select_f64s(positive, quotient, self.all(otherwise).numbers), ..self }
+    }
+
+    /// The sum of all, in a fixed order.
+    #[inline(always)]
+    pub(crate) fn sum(self) -> f64 {
+        self.simd.reduce_sum_f64s(self.numbers)
+    }
+
+    /// Whether all are below a bound, and all others below theirs.
+    #[inline(always)]
+    pub(crate) fn are_below(self, bound: f64, (other, other_bound): (Self, f64)) -> bool {
+        let simd = self.simd;
+        let is_below = simd.less_than_f64s(self.numbers, self.all(bound).numbers);
+        let other_is_below = simd.less_than_f64s(other.numbers, self.all(other_bound).numbers);
+        let both = simd.and_m64s(is_below, other_is_below);
+        simd.reduce_max_f64s(simd.select_f64s(both, self.all(0.0).numbers, self.all(1.0).numbers)) == 0.0
+    }
+
+    /// Adds these to part `part` of a wide number.
+    #[inline(always)]
+    pub(crate) fn add_to(self, sum: &mut Wide, part: usize) {
+        (Self::load(self.simd, sum, part) + self).store(sum, part);
+    }
+
+    /// The polynomial `c₀ + c₁ x + …` of these numbers.
+    #[inline(always)]
+    pub(crate) fn polynomial<const N: usize>(self, coefficients: [f64; N]) -> Self {
+        let mut sum = self.all(coefficients[N - 1]);
+        for c in coefficients.iter().rev().skip(1) {
+            sum = sum.times_plus(self, self.all(*c));
+        }
+        sum
+    }
+}
+
+/// Whether the instructions multiply and add at once; for those of every machine, and for WebAssembly's, a function of software would.
+#[inline(always)]
+fn is_fused<S: Simd>() -> bool {
+    cfg!(not(target_arch = "wasm32")) && TypeId::of::<S>() != TypeId::of::<Scalar128b>()
+}
+
+impl<S: Simd> Add for Lanes<S> {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        Lanes { numbers: self.simd.add_f64s(self.numbers, other.numbers), ..self }
+    }
+}
+
+impl<S: Simd> Sub for Lanes<S> {
+    type Output = Self;
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        Lanes { numbers: self.simd.sub_f64s(self.numbers, other.numbers), ..self }
+    }
+}
+
+impl<S: Simd> Mul for Lanes<S> {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, other: Self) -> Self {
+        Lanes { numbers: self.simd.mul_f64s(self.numbers, other.numbers), ..self }
+    }
+}
+
+impl<S: Simd> Neg for Lanes<S> {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Lanes { numbers: self.simd.neg_f64s(self.numbers), ..self }
+    }
+}
+
+/// A vector in space for each row.
+#[derive(Clone, Copy)]
+pub(crate) struct Vectors<S: Simd>(pub(crate) [Lanes<S>; 3]);
+
+impl<S: Simd> Vectors<S> {
+    #[inline(always)]
+    pub(crate) fn splat(simd: S, v: &[f64; 3]) -> Self {
+        Vectors([Lanes::splat(simd, v[0]), Lanes::splat(simd, v[1]), Lanes::splat(simd, v[2])])
+    }
+
+    /// Part `part` of three wide numbers.
+    #[inline(always)]
+    pub(crate) fn load(simd: S, [x, y, z]: &[Wide; 3], part: usize) -> Self {
+        Vectors([Lanes::load(simd, x, part), Lanes::load(simd, y, part), Lanes::load(simd, z, part)])
+    }
+
+    #[inline(always)]
+    pub(crate) fn store(self, wide: &mut [Wide; 3], part: usize) {
+        self.0[0].store(&mut wide[0], part);
+        self.0[1].store(&mut wide[1], part);
+        self.0[2].store(&mut wide[2], part);
+    }
+
+    #[inline(always)]
+    pub(crate) fn scale(self, factor: Lanes<S>) -> Self {
+        let [x, y, z] = self.0;
+        Vectors([x * factor, y * factor, z * factor])
+    }
+
+    /// `self * factor + term`.
+    #[inline(always)]
+    pub(crate) fn times_plus(self, factor: Lanes<S>, term: Self) -> Self {
+        let ([x, y, z], [a, b, c]) = (self.0, term.0);
+        Vectors([x.times_plus(factor, a), y.times_plus(factor, b), z.times_plus(factor, c)])
+    }
+
+    #[inline(always)]
+    pub(crate) fn dot(self, other: Self) -> Lanes<S> {
+        let ([x, y, z], [a, b, c]) = (self.0, other.0);
+        x.times_plus(a, y.times_plus(b, z * c))
+    }
+
+    #[inline(always)]
+    pub(crate) fn cross(self, other: Self) -> Self {
+        let ([x, y, z], [a, b, c]) = (self.0, other.0);
+        Vectors([z.times_from(b, y * c), x.times_from(c, z * a), y.times_from(a, x * b)])
+    }
+}
+
+impl<S: Simd> Add for Vectors<S> {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        let ([x, y, z], [a, b, c]) = (self.0, other.0);
+        Vectors([x + a, y + b, z + c])
+    }
+}
+
+impl<S: Simd> Sub for Vectors<S> {
+    type Output = Self;
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        let ([x, y, z], [a, b, c]) = (self.0, other.0);
+        Vectors([x - a, y - b, z - c])
+    }
+}

@@ -1,0 +1,334 @@
+//! What can be measured: limits with a margin, boxes to keep out of, the floor, self-collision, and what the device sees.
+
+use std::fmt::Write as _;
+
+use nalgebra::Vector3;
+use rand_chacha::ChaCha8Rng;
+use rand_core::SeedableRng;
+
+use super::capsule::{Capsule, between};
+use super::order::Travel;
+use super::skeleton::{links, targets, to_targets};
+use poecal_arm::lie::Pose;
+use poecal_model::robot::{Body, ReadingKind, Robot};
+use poecal_model::simulate::Configurations;
+
+/// Random configurations in all of which capsules overlap that belong together, and their seed.
+const TOGETHER: usize = 1000;
+const SEED: u64 = 7;
+/// How far new configurations stay from those that they replace, in some joint, radians.
+const AWAY_RAD: f64 = 0.175;
+/// A line of sight ends so many metres before its target, which hides itself else.
+const AT_TARGET_M: f64 = 1e-3;
+
+/// What a configuration must fulfil to be measured. All places are in the robot's base frame.
+///
+/// ```
+/// use poecal_plan::plan::Conditions;
+/// assert!(Conditions::default().capsules.is_empty());
+/// ```
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Conditions {
+    /// How far every joint stays from its limits: turning, radians, and sliding, metres.
+    pub margin: [f64; 2],
+    /// Boxes into which no part of the robot may reach, by two corners, metres.
+    pub keep_out: Vec<[[f64; 3]; 2]>,
+    /// Height above which all links that move stay, metres.
+    pub floor_m: Option<f64>,
+    /// Least change of a joint between any two configurations, radians, or of one that slides by the length that a radian counts.
+    pub separation_rad: f64,
+    /// What the device sees.
+    pub sight: Option<Sight>,
+    /// Shapes of the links; without any, neither self-collision nor hidden targets are found, and keep-out boxes and floor hold for the axes alone.
+    pub capsules: Vec<Capsule>,
+}
+
+/// Where a device is, and what it sees.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sight {
+    /// Its place, metres.
+    pub place: Vector3<f64>,
+    /// A place at which it looks, and half the angle of its cone, radians.
+    pub cone: Option<(Vector3<f64>, f64)>,
+    /// Least and largest distance of the target, metres.
+    pub distance_m: [f64; 2],
+    /// Largest angle at the target between the line to the device and the direction in which the target looks, radians.
+    pub acceptance_rad: Option<f64>,
+    /// The direction in which the target looks, in its own frame.
+    pub facing: Vector3<f64>,
+}
+
+/// A condition that a configuration does not fulfil.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Obstacle {
+    /// A joint is at its limit, or beyond.
+    Limits,
+    /// A link is in a keep-out box.
+    KeepOut,
+    /// A link is below the floor.
+    Floor,
+    /// Two links overlap.
+    Collision,
+    /// The target is outside the device's cone.
+    Cone,
+    /// The target is too near or too far from the device.
+    Distance,
+    /// The target looks elsewhere.
+    Incidence,
+    /// A link is between device and target.
+    Hidden,
+    /// It is near one that could not be measured.
+    Avoided,
+}
+
+impl Obstacle {
+    const ALL: [Obstacle; 9] = [
+        Obstacle::Limits,
+        Obstacle::KeepOut,
+        Obstacle::Floor,
+        Obstacle::Collision,
+        Obstacle::Cone,
+        Obstacle::Distance,
+        Obstacle::Incidence,
+        Obstacle::Hidden,
+        Obstacle::Avoided,
+    ];
+
+    /// It in words.
+    #[must_use]
+    pub fn words(self) -> &'static str {
+        match self {
+            Obstacle::Limits => "limits of the joints with their margin",
+            Obstacle::KeepOut => "keep-out boxes",
+            Obstacle::Floor => "the floor",
+            Obstacle::Collision => "links that overlap",
+            Obstacle::Cone => "the device's cone",
+            Obstacle::Distance => "the device's distances",
+            Obstacle::Incidence => "the direction in which the target looks",
+            Obstacle::Hidden => "links before the target",
+            Obstacle::Avoided => "rows that are replaced",
+        }
+    }
+}
+
+/// How many configurations each condition took.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Refusals {
+    counts: [usize; Obstacle::ALL.len()],
+    /// Number of configurations that were looked at.
+    pub tried: usize,
+}
+
+impl Refusals {
+    pub(crate) fn add(&mut self, obstacle: Option<Obstacle>) {
+        self.tried += 1;
+        if let Some(obstacle) = obstacle {
+            self.counts[obstacle as usize] += 1;
+        }
+    }
+
+    /// Conditions that took some, with their numbers.
+    pub fn each(&self) -> impl Iterator<Item = (Obstacle, usize)> {
+        Obstacle::ALL.into_iter().zip(self.counts).filter(|it| it.1 > 0)
+    }
+
+    /// The numbers in words.
+    #[must_use]
+    pub fn words(&self) -> String {
+        let mut out = String::new();
+        for (obstacle, count) in self.each() {
+            // Writing to a String cannot fail.
+            let _ = write!(out, "{}{count} by {}", if out.is_empty() { "" } else { ", " }, obstacle.words());
+        }
+        out
+    }
+}
+
+/// Conditions of a robot, ready to judge configurations.
+pub(crate) struct Checker<'a> {
+    robot: &'a Robot,
+    configurations: Configurations,
+    conditions: &'a Conditions,
+    avoided: &'a [f64],
+    travel: Travel,
+    /// Pairs of capsules that must not overlap.
+    pairs: Vec<(usize, usize)>,
+    /// Pairs that overlap in every configuration and are left out.
+    pub(crate) left_out: Vec<(String, String)>,
+}
+
+impl<'a> Checker<'a> {
+    pub(crate) fn new(robot: &'a Robot, conditions: &'a Conditions) -> Self {
+        let configurations = Configurations::new(robot).within(conditions.margin);
+        let capsules = &conditions.capsules;
+        let before = |body: Body| body.joint().map(|joint| robot.body_before(joint));
+        let are_neighbours = |a: Body, b: Body| a == b || before(a) == Some(b) || before(b) == Some(a);
+        let all = (0..capsules.len()).flat_map(|a| (a + 1..capsules.len()).map(move |b| (a, b)));
+        let mut pairs: Vec<(usize, usize)> =
+            all.filter(|&(a, b)| !are_neighbours(capsules[a].body, capsules[b].body)).collect();
+        let mut always = vec![!pairs.is_empty(); pairs.len()];
+        let mut generator = ChaCha8Rng::seed_from_u64(SEED);
+        for _ in 0..TOGETHER {
+            if !always.contains(&true) {
+                break;
+            }
+            let frames = robot.joint_poses(&configurations.random(&mut generator));
+            let segments: Vec<_> = capsules.iter().map(|it| it.segment(&frames)).collect();
+            for (is_always, &(a, b)) in always.iter_mut().zip(&pairs) {
+                *is_always = *is_always
+                    && between(&segments[a], &segments[b]) < capsules[a].radius_m + capsules[b].radius_m;
+            }
+        }
+        let mut left_out: Vec<(String, String)> = Vec::new();
+        let mut always = always.into_iter();
+        pairs.retain(|&(a, b)| {
+            let is_always = always.next() == Some(true);
+            let names = (capsules[a].link.clone(), capsules[b].link.clone());
+            if is_always && !left_out.contains(&names) {
+                left_out.push(names);
+            }
+            !is_always
+        });
+        Checker {
+            robot,
+            configurations,
+            conditions,
+            avoided: &[],
+            travel: Travel::new(robot, 1.0),
+            pairs,
+            left_out,
+        }
+    }
+
+    /// The same with configurations from which others stay away.
+    pub(crate) fn avoiding(self, avoided: &'a [f64], length_m: f64) -> Self {
+        Checker { avoided, travel: Travel::new(self.robot, length_m), ..self }
+    }
+
+    /// Ranges of the readings with their margin.
+    pub(crate) fn configurations(&self) -> &Configurations {
+        &self.configurations
+    }
+
+    /// What forbids the robot to be there; the device aside.
+    pub(crate) fn robot(&self, readings: &[f64]) -> Option<Obstacle> {
+        if !self.configurations.contain(readings) {
+            return Some(Obstacle::Limits);
+        }
+        let Conditions { keep_out, floor_m, capsules, .. } = self.conditions;
+        if keep_out.is_empty() && floor_m.is_none() && self.pairs.is_empty() {
+            return None;
+        }
+        let frames = self.robot.joint_poses(readings);
+        let segments: Vec<[Vector3<f64>; 2]> = capsules.iter().map(|it| it.segment(&frames)).collect();
+        let parts = self.parts(readings, &frames, &segments);
+        if keep_out
+            .iter()
+            .any(|corners| parts.iter().any(|(segment, radius)| is_in(segment, *radius, corners)))
+        {
+            return Some(Obstacle::KeepOut);
+        }
+        // The frame of a joint on the base does not move, wherever it is.
+        let is_fixed = |place: &Vector3<f64>| {
+            let mut own = (0..frames.len()).filter(|&joint| self.robot.body_before(joint) == Body::Base);
+            capsules.is_empty() && own.any(|joint| frames[joint].translation == *place)
+        };
+        let is_low = |place: &Vector3<f64>, low: f64| place.z < low && !is_fixed(place);
+        if let Some(floor) = floor_m
+            && parts.iter().any(|(ends, radius)| ends.iter().any(|end| is_low(end, floor + radius)))
+        {
+            return Some(Obstacle::Floor);
+        }
+        let overlaps = |&(a, b): &(usize, usize)| {
+            between(&segments[a], &segments[b]) < capsules[a].radius_m + capsules[b].radius_m
+        };
+        self.pairs.iter().any(overlaps).then_some(Obstacle::Collision)
+    }
+
+    /// What moves: the capsules, else the lines between axes, with the targets.
+    fn parts(
+        &self,
+        readings: &[f64],
+        frames: &[Pose],
+        segments: &[[Vector3<f64>; 2]],
+    ) -> Vec<([Vector3<f64>; 2], f64)> {
+        let moving = self.conditions.capsules.iter().zip(segments).filter(|(it, _)| it.body != Body::Base);
+        let mut parts: Vec<_> = moving.map(|(it, segment)| (*segment, it.radius_m)).collect();
+        if parts.is_empty() {
+            parts.extend(links(self.robot, frames).into_iter().map(|line| (line, 0.0)));
+        }
+        parts.extend(to_targets(self.robot, readings, frames).into_iter().map(|line| (line, 0.0)));
+        parts
+    }
+
+    /// What forbids to measure there.
+    pub(crate) fn measured(&self, readings: &[f64]) -> Option<Obstacle> {
+        let mut avoided = self.avoided.chunks_exact(readings.len().max(1));
+        if avoided.any(|it| self.travel.distance(it, readings) < AWAY_RAD) {
+            return Some(Obstacle::Avoided);
+        }
+        self.robot(readings).or_else(|| self.sight(readings))
+    }
+
+    fn sight(&self, readings: &[f64]) -> Option<Obstacle> {
+        let sight = self.conditions.sight.as_ref()?;
+        let frames = self.robot.joint_poses(readings);
+        for (place, pose, body) in targets(self.robot, readings, &frames) {
+            let line = place - sight.place;
+            let distance = line.norm();
+            if !(sight.distance_m[0]..=sight.distance_m[1]).contains(&distance) {
+                return Some(Obstacle::Distance);
+            }
+            if let Some((at, half)) = sight.cone
+                && (at - sight.place).angle(&line) > half
+            {
+                return Some(Obstacle::Cone);
+            }
+            if let Some(acceptance) = sight.acceptance_rad
+                && (pose.rotation * sight.facing).angle(&-line) > acceptance
+            {
+                return Some(Obstacle::Incidence);
+            }
+            let end = place - line * (AT_TARGET_M / distance.max(AT_TARGET_M));
+            let hides = |capsule: &Capsule| {
+                let segment = capsule.segment(&frames);
+                // The link before may be slimmer beside the target than its capsule: then it hides what is seen past its middle.
+                let is_before = body.joint().map(|joint| self.robot.body_before(joint)) == Some(capsule.body);
+                let slim =
+                    if is_before { between(&segment, &[place, place]) - AT_TARGET_M } else { f64::INFINITY };
+                let around = capsule.radius_m.min(slim);
+                capsule.body != body && between(&segment, &[sight.place, end]) < around
+            };
+            if self.conditions.capsules.iter().any(hides) {
+                return Some(Obstacle::Hidden);
+            }
+        }
+        None
+    }
+
+    /// Places of joints of a kind, for the conditions' words.
+    pub(crate) fn without_limits(&self) -> Vec<String> {
+        let robot = self.robot;
+        let open = |name: &&String| {
+            robot.reading_kind(name) != ReadingKind::Factor
+                && robot
+                    .joints
+                    .iter()
+                    .filter(|joint| joint.reading.name == **name)
+                    .all(|it| it.limits.is_none())
+        };
+        robot.reading_names().iter().filter(open).cloned().collect()
+    }
+}
+
+/// Whether a capsule reaches into a box: steps along it of half its radius, at most a centimetre, each with as much around it.
+fn is_in([a, b]: &[Vector3<f64>; 2], radius: f64, corners: &[[f64; 3]; 2]) -> bool {
+    let length = (b - a).norm();
+    let steps = (length / (0.5 * radius).clamp(2e-3, 1e-2)).ceil().max(1.0) as usize;
+    let reach = radius + 0.5 * length / steps as f64;
+    (0..=steps).any(|step| {
+        let at = a + (b - a) * (step as f64 / steps as f64);
+        let off = |k: usize| (corners[0][k] - at[k]).max(at[k] - corners[1][k]).max(0.0);
+        (0..3).map(|k| off(k).powi(2)).sum::<f64>() < reach * reach
+    })
+}

@@ -1,0 +1,204 @@
+//! What is planned, and how.
+
+use nalgebra::Vector3;
+
+use super::conditions::Conditions;
+use super::rows::{PlannedRow, RowPart};
+use poecal_fit::analysis::PlannedSession;
+use poecal_model::robot::{Corrections, Tolerance};
+use poecal_model::simulate::Kind;
+
+/// Where the first of several targets is if nothing else is stated, metres.
+const NEST_M: [f64; 3] = [0.05, 0.0, 0.0];
+/// Candidates that are drawn where none are given.
+const CANDIDATES: usize = 2000;
+
+/// The fit that will be made of planned measurements: what is measured, and what is believed before.
+///
+/// ```
+/// use poecal_plan::plan::PlannedFit;
+/// assert_eq!(PlannedFit::default().count, 30);
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct PlannedFit {
+    /// Kind and noise of the measurements, and whether the device's frame is unknown.
+    pub session: PlannedSession,
+    /// Number of different configurations.
+    pub count: usize,
+    /// Prior of the axes ([`poecal_calibrate::CalibrationOptions::tolerance`]).
+    pub tolerance: Option<Tolerance>,
+    /// Terms of the joints that are expected and will be fitted for the corrected model; of the common sizes unless sizes are given.
+    pub corrections: Corrections,
+    /// Where weights are pulled, in the base frame.
+    pub gravity: Vector3<f64>,
+    /// Error of the tip that remains however much is measured; 0.3 mm for each metre of reach if unknown.
+    pub robot_error: Option<RobotError>,
+    /// Number of targets of a nest at the tip, all measured in each configuration.
+    pub targets: usize,
+    /// Place of the first target in the tip's frame, metres, the others turned about its z; `None` plans for the targets of the model.
+    pub target_offset: Option<Vector3<f64>>,
+}
+
+impl Default for PlannedFit {
+    /// Points with 0.05 mm of 30 configurations.
+    fn default() -> Self {
+        PlannedFit {
+            session: PlannedSession { kind: Kind::POINT, ..PlannedSession::default() },
+            count: 30,
+            tolerance: Some(Tolerance::default()),
+            corrections: Corrections::Auto,
+            gravity: -Vector3::z(),
+            robot_error: None,
+            targets: 1,
+            target_offset: None,
+        }
+    }
+}
+
+/// What to plan.
+///
+/// ```
+/// use poecal_plan::plan::{PlanOptions, PlannedFit, plan};
+/// use poecal_model::simulate::elbow;
+/// let options = PlanOptions { fit: PlannedFit { count: 12, ..Default::default() }, candidates: 200, ..Default::default() };
+/// let found = plan(&elbow(), &options)?;
+/// assert_eq!(found.rows.iter().filter(|row| !row.returns && row.part == poecal_plan::plan::RowPart::Fit).count(), 12);
+/// assert!(found.expected.calibrated_m() < found.random.calibrated_m());
+/// # Ok::<(), poecal_numerics::error::Error>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct PlanOptions {
+    /// The fit that will be made.
+    pub fit: PlannedFit,
+    /// What the list shall be good at.
+    pub criterion: PlanCriterion,
+    /// Configurations to choose from, readings one after the other; where there are none, random ones are drawn and improved.
+    pub list: Option<Vec<f64>>,
+    /// Number of random ones that are drawn.
+    pub candidates: usize,
+    /// Configurations in which the robot will work, where predictions shall be good; random ones within the limits if there are none.
+    pub workspace: Option<Vec<f64>>,
+    /// Number of random rows to judge by; a third of the configurations if it is not stated.
+    pub judge: Option<usize>,
+    /// What a configuration must fulfil to be measured.
+    pub conditions: Conditions,
+    /// Rows that are there already: those to fit count, those that return to an earlier one do not.
+    pub kept: Vec<PlannedRow>,
+    /// Indices of kept rows that could not be measured: new ones take their places, not within 10° of them, and the plan has all rows in their order.
+    pub replaced: Vec<usize>,
+    /// Whether lists of other lengths are planned too, which shows how many are enough and takes as long as the list.
+    pub with_curve: bool,
+    /// Seed of what is random.
+    pub seed: u64,
+}
+
+impl Default for PlanOptions {
+    fn default() -> Self {
+        PlanOptions {
+            fit: PlannedFit::default(),
+            criterion: PlanCriterion::Expected,
+            list: None,
+            candidates: CANDIDATES,
+            workspace: None,
+            judge: None,
+            conditions: Conditions::default(),
+            kept: Vec::new(),
+            replaced: Vec::new(),
+            with_curve: true,
+            seed: 1,
+        }
+    }
+}
+
+impl PlanOptions {
+    /// Readings of the kept configurations to fit that stay, one after the other.
+    #[must_use]
+    pub fn fitted(&self) -> Vec<f64> {
+        let replaced = self.replaced_rows();
+        let stays = |row: &&PlannedRow| {
+            row.part == RowPart::Fit && !row.returns && replaced.iter().all(|it| it.readings != row.readings)
+        };
+        self.kept.iter().filter(stays).flat_map(|row| row.readings.clone()).collect()
+    }
+
+    /// The rows that are replaced: of a row that returns, the one to which it does.
+    pub(crate) fn replaced_rows(&self) -> Vec<&PlannedRow> {
+        let mut found: Vec<&PlannedRow> = Vec::new();
+        for row in self.replaced.iter().filter_map(|&at| self.kept.get(at)) {
+            let first = self.kept.iter().find(|it| it.readings == row.readings).unwrap_or(row);
+            if !found.iter().any(|it| it.readings == first.readings) {
+                found.push(first);
+            }
+        }
+        found
+    }
+
+    /// Readings of the rows that are replaced, one after the other.
+    pub(crate) fn avoided(&self) -> Vec<f64> {
+        self.replaced_rows().into_iter().flat_map(|row| row.readings.clone()).collect()
+    }
+
+    /// How many new configurations there will be of a part: some that complete the kept ones, or those that take places.
+    pub(crate) fn new_of(&self, part: RowPart, kept: usize) -> usize {
+        if self.replaced.is_empty() {
+            return match part {
+                RowPart::Fit => self.fit.count.saturating_sub(kept),
+                RowPart::Judge => self.judge.unwrap_or(self.fit.count.div_ceil(3)),
+            };
+        }
+        self.replaced_rows().iter().filter(|row| row.part == part).count()
+    }
+}
+
+impl PlannedFit {
+    /// The same with so many targets at the tip, the first at an offset, metres; several without one are beside the flange.
+    #[must_use]
+    pub fn with_targets(self, targets: usize, offset_m: Option<[f64; 3]>) -> Self {
+        let offset_m = offset_m.or((targets > 1).then_some(NEST_M));
+        PlannedFit { targets, target_offset: offset_m.map(Vector3::from), ..self }
+    }
+}
+
+/// Root mean square error of the tip that a calibration leaves however much is measured, metres.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RobotError {
+    /// Of the calibrated model: what no geometry describes.
+    pub calibrated_m: f64,
+    /// Of the corrected model: what neither geometry nor terms of the joints describe; if unknown, what terms of the common sizes leave of the
+    /// former, and 0.4 of it at least.
+    pub corrected_m: Option<f64>,
+}
+
+/// What a list of configurations shall be good at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum PlanCriterion {
+    /// Expected squared error of the tip over the workspace, of the calibrated and of the corrected model, each relative to that of random
+    /// configurations.
+    #[default]
+    Expected,
+    /// Determinant of geometry's information.
+    D,
+    /// Mean variance of geometry's unknowns.
+    A,
+    /// Largest variance of geometry's unknowns.
+    E,
+    /// Largest variance of a prediction in the workspace.
+    G,
+}
+
+impl PlanCriterion {
+    /// Each with its word.
+    pub const WORDS: [(&'static str, PlanCriterion); 5] = [
+        ("expected", PlanCriterion::Expected),
+        ("D", PlanCriterion::D),
+        ("A", PlanCriterion::A),
+        ("E", PlanCriterion::E),
+        ("G", PlanCriterion::G),
+    ];
+
+    /// Its word.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        Self::WORDS.into_iter().find(|it| it.1 == self).map_or("expected", |it| it.0)
+    }
+}

@@ -1,0 +1,106 @@
+//! The configuration of a position: `CONFIG : 'N U T, 0, 0, 0'`.
+
+use std::f64::consts::TAU;
+
+use poecal_arm::Arm;
+
+use super::super::parsed::Number;
+use super::super::posture::{MARGIN, Posture};
+use super::super::scan::{Token, signed};
+
+/// Letters and turn numbers.
+///
+/// `N` (no flip) and `F` (flip) tell the sign of the fifth joint, negative and positive, where negative angles bend the hand down of an arm
+/// whose forearm is level and to the front. `T` (toward, front) and `B` (back) tell on which side of the first axis the wrist's centre is;
+/// `U` (up) and `D` (down) whether the elbow is above the line from shoulder to wrist. With the wrist at the back it is not plain which of
+/// the two elbows is up: there, letters say nothing of it. A turn number t says that its joint is within half a turn of t turns. It is of
+/// joints 1, 4 and 6 or of joints 4, 5 and 6, as the controller is set up: both are tried.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Configuration {
+    is_flipped: bool,
+    is_up: bool,
+    is_front: bool,
+    turns: [i32; 3],
+}
+
+/// Joints of the turn numbers, from 0.
+const ORDERS: [[usize; 3]; 2] = [[0, 3, 5], [3, 4, 5]];
+
+impl Configuration {
+    /// Of what stands in quotes, with its turn numbers.
+    pub(crate) fn read(text: &[u8], tokens: &[Token]) -> Option<(Self, Vec<Number>)> {
+        let mut parts = tokens.split(|it| it.is(b','));
+        let mut letters = (None, None, None);
+        for letter in parts.next()? {
+            let place = match letter.text(text).to_ascii_uppercase().as_str() {
+                "N" => (&mut letters.0, false),
+                "F" => (&mut letters.0, true),
+                "U" => (&mut letters.1, true),
+                "D" => (&mut letters.1, false),
+                "T" => (&mut letters.2, true),
+                "B" => (&mut letters.2, false),
+                // Others are of other arms.
+                _ => return None,
+            };
+            if place.0.replace(place.1).is_some() {
+                return None;
+            }
+        }
+        let numbers: Vec<Number> = parts.map(signed).collect::<Option<_>>()?;
+        let turns: Vec<i32> = numbers.iter().map(|it| it.value as i32).collect();
+        let is_whole = numbers.iter().all(|it| it.value.fract() == 0.0 && it.value.abs() < 100.0);
+        let turns: [i32; 3] = turns.try_into().ok().filter(|_| is_whole)?;
+        let (Some(is_flipped), Some(is_up), Some(is_front)) = letters else { return None };
+        Some((Configuration { is_flipped, is_up, is_front, turns }, numbers))
+    }
+
+    /// Whether a configuration of the nominal arm (rad) fits, borders included; none of an arm that is built otherwise.
+    pub(crate) fn fits(&self, nominal: &Arm, q: &[f64], counted: &[f64]) -> bool {
+        self.letters(nominal, q) && self.orders(nominal).any(|order| self.turns_off(order, counted) < MARGIN)
+    }
+
+    /// Whether letters fit.
+    fn letters(&self, nominal: &Arm, q: &[f64]) -> bool {
+        let Ok(q) = <&[f64; 6]>::try_from(q) else { return false };
+        let Some(posture) = Posture::new(nominal).filter(Posture::is_down_negative) else { return false };
+        let bent = posture.at(q);
+        let agrees = |found: Option<bool>, stated: bool| found.is_none_or(|it| it == stated);
+        agrees(bent.is_wrist_positive, self.is_flipped)
+            && agrees(bent.is_front, self.is_front)
+            && (!self.is_front || agrees(bent.is_before_arm, self.is_up))
+    }
+
+    /// How far (rad) a joint is beyond the half turns of its turn number, at most.
+    fn turns_off(&self, order: &[usize; 3], q: &[f64]) -> f64 {
+        let off = |(&joint, &turns): (&usize, &i32)| {
+            let value = q.get(joint).copied().unwrap_or(f64::INFINITY);
+            (value - f64::from(turns) * TAU).abs() - 0.5 * TAU
+        };
+        order.iter().zip(&self.turns).map(off).fold(f64::NEG_INFINITY, f64::max)
+    }
+
+    /// The orders of turn numbers that are possible within limits.
+    fn orders(&self, nominal: &Arm) -> impl Iterator<Item = &'static [usize; 3]> {
+        let limits = nominal.limits();
+        ORDERS.iter().filter(move |order| {
+            order.iter().zip(&self.turns).all(|(&joint, &turns)| {
+                let (low, high) = limits.get(joint).copied().unwrap_or((0.0, 0.0));
+                let middle = f64::from(turns) * TAU;
+                low < middle + 0.5 * TAU - MARGIN && high > middle - 0.5 * TAU + MARGIN
+            })
+        })
+    }
+
+    /// The turn numbers at a configuration of the nominal arm (rad); `None` if letters change, or if it is not plain which number would.
+    pub(crate) fn words(&self, nominal: &Arm, q: &[f64], counted: &[f64]) -> Option<Vec<f64>> {
+        let mut is_possible = false;
+        for order in self.orders(nominal) {
+            is_possible = true;
+            if self.turns_off(order, counted) > 0.0 {
+                return None;
+            }
+        }
+        let turns = self.turns.iter().map(|it| f64::from(*it)).collect();
+        (is_possible && self.letters(nominal, q)).then_some(turns)
+    }
+}

@@ -1,0 +1,339 @@
+//! Values of KRL that are stated in numbers, and the variables that have them.
+
+use std::collections::BTreeMap;
+
+use super::super::axes::Axes;
+use super::super::parsed::Number;
+use super::super::scan::{Kind, Rules, Scanner, Token, bracket, is_one_of, outside, parts, signed};
+use super::reason;
+use super::status::Status;
+
+/// What an expression is.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Value {
+    /// A pose: X, Y, Z, A, B, C, then S and T as far as they are stated.
+    Pose(Vec<Number>, Status),
+    /// Of each reading.
+    Joints(Vec<Number>),
+    /// An aggregate of a target that cannot be taken, and why.
+    Broken(&'static str),
+    /// Tool and base of a point of an inline form.
+    Place(Place),
+    /// A variable, or an element of one.
+    Name(String),
+    /// Anything else.
+    Other,
+}
+
+/// Tool and base by their numbers.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Place {
+    pub(crate) tool: Option<i64>,
+    pub(crate) base: Option<i64>,
+    /// Whether the tool stands and the workpiece moves.
+    pub(crate) is_external: bool,
+}
+
+/// A variable as a file has it.
+#[derive(Clone, Debug)]
+pub(crate) struct Variable {
+    pub(crate) assignments: usize,
+    pub(crate) line: usize,
+    pub(crate) value: Value,
+    /// Name as it is written.
+    pub(crate) name: String,
+    /// Whether it is declared as a frame.
+    pub(crate) is_frame: bool,
+}
+
+/// The variables of a file.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Variables {
+    /// By name in capitals.
+    pub(crate) known: BTreeMap<String, Variable>,
+    /// Whether the file is a list of data.
+    pub(crate) is_data: bool,
+    /// Whether the file moves the robot's foot.
+    pub(crate) moves_root: bool,
+}
+
+/// Name and assigned value of a statement: name, whether a part of it is assigned, its first token, and the value.
+pub(crate) struct Assignment<'t> {
+    pub(crate) key: String,
+    pub(crate) is_part: bool,
+    pub(crate) name: &'t Token,
+    pub(crate) is_frame: bool,
+    pub(crate) value: &'t [Token],
+}
+
+/// An assignment, if a statement is one.
+pub(crate) fn assignment<'t>(text: &[u8], tokens: &'t [Token]) -> Option<Assignment<'t>> {
+    let (equals, _) = outside(tokens).find(|(_, it)| it.is(b'='))?;
+    let (left, value) = (&tokens[..equals], &tokens[equals + 1..]);
+    // `DECL GLOBAL E6POS XP1`: the name is the last word before an index or a part.
+    let words = left.iter().take_while(|it| it.kind == Kind::Word).count();
+    let at = words.checked_sub(1)?;
+    let name = left.get(at)?;
+    let is_frame = left[..at].iter().any(|it| it.is_word(text, "FRAME"));
+    let index = bracket(&left[words..], b'[', b']');
+    let is_part = !index.map_or(&left[words..], |it| it.1).is_empty();
+    Some(Assignment { key: key(text, name, index.map(|it| it.0)), is_part, name, is_frame, value })
+}
+
+/// The name of a variable in capitals, with its index, `*` if that is no number.
+pub(crate) fn key(text: &[u8], name: &Token, index: Option<&[Token]>) -> String {
+    let name = name.text(text).to_ascii_uppercase();
+    match index {
+        None => name,
+        Some([Token { kind: Kind::Number(value, 0), .. }]) => format!("{name}[{value}]"),
+        Some(_) => format!("{name}[*]"),
+    }
+}
+
+/// Statements that compare, and assign nothing.
+const CONDITIONS: &str = "IF WHILE UNTIL WAIT FOR SIGNAL INTERRUPT TRIGGER ON_ERROR_PROCEED";
+
+impl Variables {
+    /// Of a text.
+    pub(crate) fn of(text: &[u8], rules: &Rules, axes: &Axes) -> Self {
+        let mut out = Variables::default();
+        let mut scanner = Scanner::new(text, rules);
+        let mut tokens = Vec::new();
+        while scanner.statement(&mut tokens).is_some() {
+            let Some(first) = tokens.first() else { continue };
+            if ["DEF", "DEFFCT", "GLOBAL"].iter().any(|it| first.is_word(text, it))
+                && let Some(open) = tokens.iter().position(|it| it.is(b'('))
+            {
+                for parameter in tokens[open..].iter().filter(|it| it.kind == Kind::Word) {
+                    out.assign(&key(text, parameter, None), text, parameter, Value::Other, 2, false);
+                }
+                continue;
+            }
+            out.is_data |= first.is_word(text, "DEFDAT");
+            let word = first.text(text).to_ascii_uppercase();
+            if super::MOTIONS.iter().any(|(it, _)| *it == word) || is_one_of(CONDITIONS, &word) {
+                continue;
+            }
+            out.hand_over(text, &tokens);
+            if let Some(it) = assignment(text, &tokens) {
+                out.moves_root |= it.key == "$ROBROOT";
+                let value = if it.is_part { Value::Other } else { value(text, it.value, axes) };
+                let times = if it.is_part { 2 } else { 1 };
+                out.assign(&it.key, text, it.name, value, times, it.is_frame);
+            }
+        }
+        out
+    }
+
+    /// Variables that a routine gets may be changed by it.
+    fn hand_over(&mut self, text: &[u8], tokens: &[Token]) {
+        for (at, token) in tokens.iter().enumerate().filter(|(_, it)| it.kind == Kind::Word) {
+            let Some((inside, _)) = bracket(&tokens[at + 1..], b'(', b')') else { continue };
+            if token.is_word(text, "BAS") {
+                continue;
+            }
+            for argument in parts(inside) {
+                if let [name, rest @ ..] = argument
+                    && name.kind == Kind::Word
+                    && (rest.is_empty() || rest[0].is(b'['))
+                {
+                    let index = bracket(rest, b'[', b']').map(|it| it.0);
+                    self.assign(&key(text, name, index), text, name, Value::Other, 2, false);
+                }
+            }
+        }
+    }
+
+    fn assign(&mut self, key: &str, text: &[u8], name: &Token, value: Value, times: usize, is_frame: bool) {
+        let name_as_written = match key.find('[') {
+            Some(at) => format!("{}{}", name.text(text), &key[at..]),
+            None => name.text(text).to_owned(),
+        };
+        let new = || Variable { assignments: 0, line: name.line, value, name: name_as_written, is_frame };
+        self.known.entry(key.to_owned()).or_insert_with(new).assignments += times;
+    }
+
+    /// The variable by a name in capitals, if it is assigned once, or why it has no value.
+    pub(crate) fn of_name(&self, key: &str) -> Result<&Variable, &'static str> {
+        let base = key.split('[').next().unwrap_or(key);
+        let is_written = |key: String| self.known.contains_key(&key);
+        if key.ends_with("[*]") {
+            return Err(reason::COMPUTED);
+        }
+        match self.known.get(key) {
+            None => Err(reason::ABSENT),
+            Some(it) if it.assignments > 1 => Err(reason::SEVERAL),
+            // An element may be written by an index that is computed, or with all the others.
+            Some(_) if key != base && (is_written(format!("{base}[*]")) || is_written(base.to_owned())) => {
+                Err(reason::SEVERAL)
+            }
+            Some(it) => Ok(it),
+        }
+    }
+
+    /// Tool and base of a point by its name in capitals.
+    pub(crate) fn place(&self, key: &str) -> Option<Place> {
+        let Value::Place(place) = self.of_name(key).ok()?.value else { return None };
+        Some(place)
+    }
+}
+
+/// What an expression is.
+pub(crate) fn value(text: &[u8], tokens: &[Token], axes: &Axes) -> Value {
+    match tokens {
+        [name] if name.kind == Kind::Word => Value::Name(key(text, name, None)),
+        [name, rest @ ..] if name.kind == Kind::Word => match bracket(rest, b'[', b']') {
+            Some((index, [])) => Value::Name(key(text, name, Some(index))),
+            _ => Value::Other,
+        },
+        _ => match bracket(tokens, b'{', b'}') {
+            Some((inside, [])) => aggregate(text, inside, axes),
+            _ => Value::Other,
+        },
+    }
+}
+
+/// Fields of an aggregate: the name of each in capitals, its number if it is one, and its tokens.
+struct Fields<'t>(Vec<(String, Option<Number>, &'t [Token])>);
+
+impl<'t> Fields<'t> {
+    /// Of an aggregate without its brackets; `None` if it has a field twice, or none of a name.
+    fn of(text: &[u8], inside: &'t [Token]) -> Option<Self> {
+        let inside = match inside {
+            [kind, colon, rest @ ..] if kind.kind == Kind::Word && colon.is(b':') => rest,
+            all => all,
+        };
+        let mut fields = Fields(Vec::new());
+        for part in parts(inside) {
+            let [name, value @ ..] = part else { return None };
+            let name = name.text(text).to_ascii_uppercase();
+            if fields.get(&name).is_some() {
+                return None;
+            }
+            fields.0.push((name, signed(value).or_else(|| bits(text, value)), value));
+        }
+        Some(fields)
+    }
+
+    /// The number of a field, if it is one, and its tokens.
+    fn get(&self, name: &str) -> Option<(Option<&Number>, &'t [Token])> {
+        self.0.iter().find(|it| it.0 == name).map(|it| (it.1.as_ref(), it.2))
+    }
+
+    /// The number of a field, or why there is none.
+    fn number(&self, name: &str, absent: &'static str) -> Result<Number, &'static str> {
+        self.get(name).ok_or(absent)?.0.cloned().ok_or(reason::EXPRESSIONS)
+    }
+
+    /// How many fields are axes of a letter.
+    fn axes(&self, letter: u8) -> usize {
+        self.0.iter().filter(|it| is_axis(&it.0, letter)).count()
+    }
+
+    /// Whether fields of external axes that are none of the model's, nor of these names, are other than zero.
+    fn has_external(&self, axes: &Axes, names: &[String]) -> bool {
+        let is_known = |name: &str| names.iter().any(|it| it.eq_ignore_ascii_case(name));
+        let is_of_model = |name: &str| (1..=axes.external.len()).any(|it| name == format!("E{it}"));
+        let mut external =
+            self.0.iter().filter(|it| is_axis(&it.0, b'E') && !is_known(&it.0) && !is_of_model(&it.0));
+        external.any(|it| it.1.as_ref().is_none_or(|number| number.value != 0.0))
+    }
+}
+
+fn aggregate(text: &[u8], inside: &[Token], axes: &Axes) -> Value {
+    let Some(fields) = Fields::of(text, inside) else { return Value::Other };
+    let has = |name: &str| fields.get(name).is_some();
+    let found = if has("TOOL_NO") || has("BASE_NO") {
+        return Value::Place(place(text, &fields));
+    } else if POSE.into_iter().any(has) {
+        pose(&fields, axes)
+    } else if fields.axes(b'A') > 0 {
+        joints(&fields, axes)
+    } else {
+        return Value::Other;
+    };
+    found.unwrap_or_else(Value::Broken)
+}
+
+/// Fields of a frame.
+const POSE: [&str; 6] = ["X", "Y", "Z", "A", "B", "C"];
+
+fn is_axis(name: &str, letter: u8) -> bool {
+    matches!(name.as_bytes(), [first, b'1'..=b'9'] if *first == letter)
+}
+
+/// A number in bits, `'B0101'`, or in base 16, `'H1F'`.
+fn bits(text: &[u8], tokens: &[Token]) -> Option<Number> {
+    let [token] = tokens else { return None };
+    let text: String = token.text(text).split_whitespace().collect();
+    let inside = text.strip_prefix('\'')?.strip_suffix('\'')?;
+    let (letter, digits) = (inside.get(..1)?, inside.get(1..)?);
+    let base = match letter {
+        "B" | "b" => 2,
+        "H" | "h" => 16,
+        _ => return None,
+    };
+    let value = u32::from_str_radix(digits, base).ok()?;
+    Some(Number { range: token.range.clone(), value: f64::from(value), decimals: 0, scale: 1.0 })
+}
+
+fn place(text: &[u8], fields: &Fields<'_>) -> Place {
+    let number = |name: &str| {
+        let number = fields.get(name)?.0?;
+        (number.value.fract() == 0.0).then_some(number.value as i64)
+    };
+    let mode = fields.get("IPO_FRAME");
+    let is_external = mode.is_some_and(|it| !it.1.iter().any(|word| word.is_word(text, "BASE")));
+    Place { tool: number("TOOL_NO"), base: number("BASE_NO"), is_external }
+}
+
+fn pose(fields: &Fields<'_>, axes: &Axes) -> Result<Value, &'static str> {
+    let number = |name: &str| fields.number(name, reason::PARTIAL);
+    let mut numbers = POSE.into_iter().map(number).collect::<Result<Vec<_>, _>>()?;
+    if fields.has_external(axes, &[]) {
+        return Err(reason::EXTERNAL);
+    }
+    let mut words = [None, None];
+    for (word, name) in words.iter_mut().zip(["S", "T"]) {
+        let Some((number, _)) = fields.get(name) else { continue };
+        let is_whole = |it: &&Number| it.value >= 0.0 && it.value.fract() == 0.0;
+        let number = number.filter(is_whole).ok_or(reason::EXPRESSIONS)?;
+        *word = Some(number.value as u32);
+        numbers.push(number.clone());
+    }
+    // A frame has none.
+    if fields.axes(b'E') > 0 || words.iter().any(Option::is_some) {
+        for it in 1..=axes.external.len() {
+            let number = fields.number(&format!("E{it}"), reason::NO_EXTERNAL)?;
+            numbers.push(Number { scale: 1e-3, ..number });
+        }
+    }
+    Ok(Value::Pose(numbers, Status { status: words[0], turn: words[1] }))
+}
+
+fn joints(fields: &Fields<'_>, axes: &Axes) -> Result<Value, &'static str> {
+    if fields.has_external(axes, &axes.names) {
+        return Err(reason::EXTERNAL);
+    }
+    let names: Vec<String> = axes.names.iter().map(|it| it.to_ascii_uppercase()).collect();
+    let is_named = names.iter().all(|it| is_axis(it, b'A') || is_axis(it, b'E'));
+    if !is_named && axes.external.is_empty() && axes.count() != 6 {
+        return Err(reason::COUNT);
+    }
+    let mut numbers = Vec::new();
+    for (index, own) in names.iter().enumerate() {
+        let external = axes.external.iter().position(|it| *it == index);
+        let before = axes.external.iter().filter(|it| **it < index).count();
+        let name = match external {
+            _ if is_named => own.clone(),
+            Some(external) => format!("E{}", external + 1),
+            None => format!("A{}", index + 1 - before),
+        };
+        let scale = axes.scale(index, 1.0_f64.to_radians(), 1e-3);
+        numbers.push(Number { scale, ..fields.number(&name, reason::PARTIAL)? });
+    }
+    let is_own =
+        |&it: &usize| if is_named { is_axis(&names[it], b'A') } else { !axes.external.contains(&it) };
+    let own = (0..axes.count()).filter(is_own).count();
+    if fields.axes(b'A') == own { Ok(Value::Joints(numbers)) } else { Err(reason::COUNT) }
+}

@@ -1,0 +1,74 @@
+//! Robot programs in the languages of their controllers: targets and the motions to them.
+//!
+//! A part of [poecal](https://docs.rs/poecal): its interface follows the needs of the other parts and promises nothing by itself.
+
+#![forbid(unsafe_code)]
+
+pub mod axes;
+mod build;
+mod fanuc;
+mod flow;
+pub mod forms;
+mod given;
+mod krl;
+mod language;
+mod listed;
+pub(crate) mod number;
+pub mod parsed;
+mod posture;
+mod rapid;
+pub(crate) mod scan;
+mod shape;
+pub mod stated;
+mod urscript;
+
+use axes::Axes;
+use parsed::{Meant, Parsed};
+use poecal_model::robot::Robot;
+use poecal_numerics::error::Result;
+
+pub use given::Given;
+pub use language::Language;
+pub use listed::Listed;
+
+/// The targets of a program and its motions.
+///
+/// # Errors
+/// [`ErrorKind::Syntax`](poecal_numerics::error::ErrorKind::Syntax) if it is none.
+pub fn parse(language: Language, text: &[u8], given: &Given, axes: &Axes) -> Result<Parsed> {
+    match language {
+        Language::UrScript => urscript::parse(text, given, axes),
+        Language::Krl => krl::parse(text, given, axes),
+        Language::Rapid => Ok(rapid::parse(text, given, axes)),
+        Language::Fanuc => Ok(fanuc::parse(text, given, axes)),
+    }
+}
+
+/// Joint readings of a program, in the order of its motions, or of its text where it has none.
+#[derive(Clone, Debug, Default)]
+pub struct JointTargets {
+    /// Line, name and readings (rad, m) of each.
+    pub targets: Vec<(usize, String, Vec<f64>)>,
+    /// Lines of targets that are poses.
+    pub poses: Vec<usize>,
+    /// What is not known.
+    pub listed: Vec<Listed>,
+}
+
+/// The joint targets of a program of a robot.
+///
+/// # Errors
+/// As [`parse`].
+pub fn joint_targets(language: Language, text: &[u8], robot: &Robot) -> Result<JointTargets> {
+    let parsed = parse(language, text, &Given::default(), &Axes::of(robot))?;
+    let is_joints = |at: &usize| parsed.targets.get(*at).is_some_and(|it| it.meant == Meant::Joints);
+    let moved: Vec<usize> = parsed.motions.iter().map(|it| it.target).filter(is_joints).collect();
+    let all: Vec<usize> = (0..parsed.targets.len()).filter(is_joints).collect();
+    let order = if moved.is_empty() { all } else { moved };
+    let of = |at: usize| {
+        let target = parsed.targets.get(at)?;
+        Some((target.line, target.name.clone(), target.scaled()))
+    };
+    let poses = parsed.targets.iter().filter(|it| it.meant != Meant::Joints).map(|it| it.line).collect();
+    Ok(JointTargets { targets: order.into_iter().filter_map(of).collect(), poses, listed: parsed.listed })
+}

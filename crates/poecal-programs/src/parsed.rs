@@ -1,0 +1,145 @@
+//! What the languages make of a program: its targets, its motions, and what cannot be corrected.
+
+use std::collections::BTreeMap;
+
+use super::forms::PoseForm;
+use super::listed::Listed;
+pub use super::number::Number;
+use super::stated::Stated;
+use poecal_arm::lie::Pose;
+
+/// A program as its language understands it.
+#[derive(Clone, Debug, Default)]
+pub struct Parsed {
+    /// Targets that are stated by numbers, in the order of the text.
+    pub targets: Vec<Target>,
+    /// Motions to these targets, in the order of motion as far as it is known; each comes after [`Motion::after`].
+    pub motions: Vec<Motion>,
+    /// What cannot be corrected, as the language alone says.
+    pub listed: Vec<Listed>,
+    /// Targets by the byte where their numbers begin.
+    known: BTreeMap<usize, usize>,
+}
+
+impl Parsed {
+    /// Lists a target that stays as it is.
+    pub(crate) fn list(&mut self, line: usize, name: impl Into<String>, reason: impl Into<String>) {
+        self.listed.push(Listed { line, name: name.into(), reason: reason.into() });
+    }
+
+    /// The same with what is listed in the order of the text, each once.
+    pub(crate) fn sorted(mut self) -> Self {
+        self.listed.sort();
+        self.listed.dedup();
+        self
+    }
+
+    /// The index of a target, made if its numbers are new.
+    pub(crate) fn target(&mut self, target: Target) -> usize {
+        let new = self.targets.len();
+        let index = *self.known.entry(target.start()).or_insert(new);
+        if index == new {
+            self.targets.push(target);
+        }
+        index
+    }
+
+    /// Whether a target with these numbers is there.
+    pub(crate) fn knows(&self, numbers: &[Number]) -> bool {
+        numbers.first().is_some_and(|it| self.known.contains_key(&it.range.start))
+    }
+}
+
+/// A target that is stated by numbers. It is corrected if all motions to it mean the same.
+#[derive(Clone, Debug)]
+pub struct Target {
+    /// Line of the program where the numbers stand, from 1.
+    pub line: usize,
+    /// Its name, or its text.
+    pub name: String,
+    /// Its numbers: of each reading; or as its form has a pose, then the words of its configuration, if there are some
+    /// ([`Stated::words`]).
+    pub numbers: Vec<Number>,
+    /// What it means.
+    pub meant: Meant,
+}
+
+impl Target {
+    /// The byte where its numbers begin.
+    fn start(&self) -> usize {
+        self.numbers.first().map_or(0, |it| it.range.start)
+    }
+
+    /// Its numbers in the unit of what it means.
+    pub fn scaled(&self) -> Vec<f64> {
+        self.numbers.iter().map(Number::scaled).collect()
+    }
+}
+
+/// What the numbers of a target mean.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Meant {
+    /// Readings in the order of the robot's; a number times its [`Number::scale`] is in rad, or m of a joint that slides.
+    Joints,
+    /// A pose of the tool in its frame; a number times its [`Number::scale`] is in the unit of the form.
+    Pose(PoseForm),
+}
+
+/// A motion to a target.
+#[derive(Clone, Debug)]
+pub struct Motion {
+    /// Index of the target.
+    pub target: usize,
+    /// Line of the program, from 1.
+    pub line: usize,
+    /// Index of the motion before it, if the program has one that is always the one before.
+    pub after: Option<usize>,
+    /// Whether the way to it is straight in space, or an arc.
+    pub is_straight: bool,
+    /// `flange_from_tcp`, the tool in the controller's flange; `None` if it is not known. Of poses only.
+    pub tool: Option<Pose>,
+    /// `base_from_frame`, the frame of the pose in the controller's base; `None` if it is not known. Of poses only.
+    pub frame: Option<Pose>,
+    /// What the program says of the configuration.
+    pub stated: Stated,
+    /// Why the target cannot be corrected, if the language says so already.
+    pub refused: Option<String>,
+}
+
+impl Motion {
+    /// A motion to a target of which nothing else is known.
+    pub(crate) fn to(target: usize, line: usize) -> Self {
+        let (tool, frame, stated, refused) = (None, None, Stated::Nothing, None);
+        Motion { target, line, after: None, is_straight: false, tool, frame, stated, refused }
+    }
+}
+
+impl PoseForm {
+    /// The pose of numbers of a program; `None` as of [`PoseForm::pose`].
+    pub(crate) fn of_numbers(self, numbers: &[Number]) -> Option<Pose> {
+        self.pose(&numbers.iter().map(Number::scaled).collect::<Vec<f64>>())
+    }
+}
+
+/// A tool or a frame while a program runs.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) enum Setting {
+    /// The program has not set it: it is what the user says.
+    #[default]
+    Unset,
+    /// The program has set it to this pose.
+    Is(Pose),
+    /// The program has set it to something that is not known.
+    Unknown,
+}
+
+impl Setting {
+    /// The pose, or what the user says of programs that set none.
+    pub(crate) fn or(&self, given: Option<Pose>) -> Option<Pose> {
+        match self {
+            Setting::Unset => given,
+            Setting::Is(pose) => Some(*pose),
+            Setting::Unknown => None,
+        }
+    }
+}

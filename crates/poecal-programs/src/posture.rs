@@ -1,0 +1,204 @@
+//! How an arm of six axes is bent, in the words by which makers tell its configurations apart.
+
+use nalgebra::Vector3;
+use poecal_arm::Arm;
+
+use super::shape::{axes, wrist_centre};
+
+/// Angle (rad) within which a joint may be on either side of a border.
+pub(crate) const MARGIN: f64 = 0.01;
+/// Share of the reach below which a place is on neither side of an axis.
+const ASIDE: f64 = 0.005;
+/// Share of the reach within which axes of a wrist meet.
+const MEET: f64 = 1e-3;
+
+/// An axis: a point on it, and its direction.
+type Axis = (Vector3<f64>, Vector3<f64>);
+
+/// An arm whose readings are 0 where makers have them so: lower arm upright, forearm level and to the front, wrist straight. Only of such an
+/// arm it is plain what front, elbow and wrist are.
+///
+/// Its sides are told by places of axes, not by signs of readings: the wrist's centre W before or behind the first axis,
+/// `(W - o₁)·f` with the front f turned by the first joint; the same before or behind the line of the lower arm from o₂ to o₃,
+/// `((o₃ - o₂) × (W - o₂))·z₂`. Of the fifth joint, the sign of its angle.
+#[derive(Clone, Debug)]
+pub(crate) struct Posture<'a> {
+    arm: &'a Arm,
+    /// Front at zero, level, of length 1.
+    front: Vector3<f64>,
+    /// Sign of the lower arm's side on which the wrist is at zero.
+    side: f64,
+    /// Direction of the lower arm at zero.
+    up: Vector3<f64>,
+    /// Whether negative angles of the fifth joint bend the hand down where the other joints are at zero.
+    is_down_negative: bool,
+}
+
+/// How an arm is bent; `None` of what is too near to its border.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Bent {
+    /// The wrist's centre is before the first axis.
+    pub(crate) is_front: Option<bool>,
+    /// The wrist's centre is before the lower arm, on the side where it is at zero.
+    pub(crate) is_before_arm: Option<bool>,
+    /// The lower arm points up.
+    pub(crate) is_arm_up: Option<bool>,
+    /// The angle of the fifth joint is positive.
+    pub(crate) is_wrist_positive: Option<bool>,
+}
+
+impl<'a> Posture<'a> {
+    /// Of an arm; `None` if it is not built and zeroed so.
+    pub(crate) fn new(arm: &'a Arm) -> Option<Self> {
+        let (axes, wrist) = placed(arm, &[0.0; 6])?;
+        let reach = arm.reach_m();
+        let meets = |(point, direction): &Axis| {
+            let off = wrist - point;
+            (off - direction * direction.dot(&off)).norm() < MEET * reach
+        };
+        let level = |it: Vector3<f64>| it - axes[0].1 * axes[0].1.dot(&it);
+        let across = |it: Vector3<f64>| it - axes[1].1 * axes[1].1.dot(&it);
+        let lower = across(axes[2].0 - axes[1].0);
+        let front = level(wrist - axes[0].0);
+        let up = lower.try_normalize(MEET * reach)?;
+        let is_built = axes[3..].iter().all(meets)
+            && axes[1].1.cross(&axes[2].1).norm() < MARGIN
+            && axes[0].1.dot(&axes[1].1).abs() < MARGIN
+            && axes[3].1.dot(&axes[4].1).abs() < MARGIN
+            && axes[3].1.cross(&axes[5].1).norm() < MARGIN
+            && axes[4].1.cross(&axes[1].1).norm() < MARGIN;
+        let is_zeroed = up.dot(&axes[0].1).abs() > 0.95
+            && axes[3].1.dot(&axes[0].1).abs() < 0.2
+            && across(front).norm() > 0.1 * reach;
+        if !is_built || !is_zeroed {
+            return None;
+        }
+        let front = across(front).normalize();
+        // Turning by the fifth joint moves the hand, which points to the front, by z₅ × f.
+        let down = -axes[4].1.cross(&front).dot(&up);
+        let side = lower.cross(&(wrist - axes[1].0)).dot(&axes[1].1).signum();
+        Some(Posture { arm, front, side, up, is_down_negative: down < 0.0 })
+    }
+
+    /// Whether negative angles of the fifth joint bend the hand down where the other joints are at zero.
+    pub(crate) fn is_down_negative(&self) -> bool {
+        self.is_down_negative
+    }
+
+    /// How it is bent at readings (rad).
+    pub(crate) fn at(&self, q: &[f64; 6]) -> Bent {
+        let Some((axes, wrist)) = placed(self.arm, q) else { return Bent::default() };
+        let reach = self.arm.reach_m();
+        let first = axes[0].1;
+        // The front turns with the second axis, which at zero is across it.
+        let front = self.turned(&axes, self.front);
+        let ahead = front.dot(&(wrist - axes[0].0));
+        let across = |it: Vector3<f64>| it - axes[1].1 * axes[1].1.dot(&it);
+        let (lower, whole) = (across(axes[2].0 - axes[1].0), across(wrist - axes[1].0));
+        let side = self.side * lower.cross(&whole).dot(&axes[1].1) / lower.norm();
+        let upright = lower.normalize().dot(&(first * self.up.dot(&first).signum()));
+        let told = |value: f64, least: f64| (value.abs() > least).then_some(value > 0.0);
+        Bent {
+            is_front: told(ahead, ASIDE * reach),
+            is_before_arm: told(side, ASIDE * reach),
+            is_arm_up: told(upright, 0.05),
+            is_wrist_positive: told(q[4].sin(), MARGIN),
+        }
+    }
+
+    /// A level direction that is fixed to the link between the first two joints, at zero, where that link is now.
+    fn turned(&self, axes: &[Axis; 6], direction: Vector3<f64>) -> Vector3<f64> {
+        let Some(second) = self.arm.screws().get(1).map(poecal_arm::lie::Screw::direction) else {
+            return direction;
+        };
+        let first = axes[0].1;
+        let other = first.cross(&second);
+        let now = first.cross(&axes[1].1);
+        axes[1].1 * direction.dot(&second) + now * direction.dot(&other)
+    }
+}
+
+/// The axes of six joints at readings, directions of length 1, and the centre of the wrist.
+fn placed(arm: &Arm, q: &[f64; 6]) -> Option<([Axis; 6], Vector3<f64>)> {
+    if arm.joints() != 6 {
+        return None;
+    }
+    let mut axes: [Axis; 6] = axes(arm, q).try_into().ok()?;
+    for (_, direction) in &mut axes {
+        *direction = direction.try_normalize(1e-3)?;
+    }
+    let wrist = wrist_centre(&axes)?;
+    Some((axes, wrist))
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+
+    use nalgebra::Vector3;
+    use poecal_arm::Arm;
+
+    use super::Posture;
+    use poecal_arm::lie::{Pose, Screw};
+
+    /// An arm by directions of its axes and points on them.
+    fn arm(axes: [([f64; 3], [f64; 3]); 6], tip: [f64; 3]) -> Arm {
+        let screws = axes.map(|(axis, point)| Screw::revolute(&Vector3::from(axis), &Vector3::from(point)));
+        Arm::new(&screws, &Pose::from_translation(Vector3::from(tip))).unwrap()
+    }
+
+    /// The sides change where the arm passes the border, and nowhere else.
+    #[test]
+    fn sides_are_those_of_the_drawing() {
+        let arm = arm(
+            [
+                ([0.0, 0.0, 1.0], [0.0, 0.0, 0.0]),
+                ([0.0, 1.0, 0.0], [0.15, 0.0, 0.0]),
+                ([0.0, -1.0, 0.0], [0.15, 0.0, 0.57]),
+                ([-1.0, 0.0, 0.0], [0.15, 0.0, 0.72]),
+                ([0.0, 1.0, 0.0], [0.784, 0.0, 0.72]),
+                ([-1.0, 0.0, 0.0], [0.784, 0.0, 0.72]),
+            ],
+            [0.834, 0.0, 0.72],
+        );
+        let posture = Posture::new(&arm).unwrap();
+        let at = |degrees: [f64; 6]| posture.at(&degrees.map(f64::to_radians));
+        let level = at([0.0, 0.0, 0.0, 0.0, 30.0, 0.0]);
+        assert_eq!(level.is_front, Some(true));
+        assert_eq!(level.is_before_arm, Some(true));
+        assert_eq!(level.is_arm_up, Some(true));
+        assert_eq!(level.is_wrist_positive, Some(true));
+        // Its third axis turns the forearm up: over the top of the lower arm to the other side.
+        let over = at([70.0, 0.0, 120.0, 0.0, -30.0, 0.0]);
+        assert_eq!(
+            (over.is_front, over.is_before_arm, over.is_wrist_positive),
+            (Some(false), Some(false), Some(false))
+        );
+        // Leaning back, the elbow is bent as before.
+        let back = at([-50.0, -80.0, 40.0, 10.0, 30.0, 0.0]);
+        assert_eq!(
+            (back.is_front, back.is_before_arm, back.is_arm_up),
+            (Some(false), Some(true), Some(true))
+        );
+        assert_eq!(at([0.0; 6]).is_wrist_positive, None);
+        // Its fifth axis is to the left, so that positive angles bend the hand down.
+        assert!(!posture.is_down_negative());
+    }
+
+    /// An arm whose second to fourth axes are parallel has no wrist in which three axes meet.
+    #[test]
+    fn arms_of_another_kind_have_no_sides() {
+        let arm = arm(
+            [
+                ([0.0, 0.0, 1.0], [0.0, 0.0, 0.0]),
+                ([0.0, 1.0, 0.0], [0.0, 0.0, 0.16]),
+                ([0.0, 1.0, 0.0], [0.0, 0.0, 0.58]),
+                ([0.0, 1.0, 0.0], [0.39, 0.0, 0.58]),
+                ([0.0, 0.0, -1.0], [0.39, 0.13, 0.58]),
+                ([0.0, 1.0, 0.0], [0.39, 0.13, 0.48]),
+            ],
+            [0.39, 0.23, 0.48],
+        );
+        assert!(Posture::new(&arm).is_none());
+    }
+}

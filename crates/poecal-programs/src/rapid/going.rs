@@ -1,0 +1,115 @@
+//! Moves to targets, in the order of the text.
+
+use std::collections::HashMap;
+
+use super::declared::Declared;
+use super::outline::Statement;
+use super::tokens::Value;
+
+/// A tool or a work object of a move.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) enum Held {
+    /// `tool0`, `wobj0`.
+    BuiltIn,
+    /// Declared in the file.
+    Data(usize),
+    /// Not declared there, or no name.
+    Unknown(String),
+}
+
+impl Held {
+    /// Of what a move writes.
+    pub(crate) fn of(written: &str, statement: &Statement, declared: &Declared) -> Self {
+        let name = written.to_ascii_lowercase();
+        match declared.find(&name, statement) {
+            Some(data) => Held::Data(data),
+            None if matches!(name.as_str(), "tool0" | "wobj0") => Held::BuiltIn,
+            None => Held::Unknown(written.to_owned()),
+        }
+    }
+}
+
+/// What a move says of its target.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Move {
+    pub(crate) line: usize,
+    pub(crate) tool: Held,
+    pub(crate) object: Held,
+    /// Line of a program displacement that may be active.
+    pub(crate) displaced: Option<usize>,
+    /// Whether a `ConfL\Off` or `ConfJ\Off` may be active.
+    pub(crate) is_not_followed: bool,
+    pub(crate) is_straight: bool,
+}
+
+impl Move {
+    fn says_as(&self, other: &Move) -> bool {
+        *self == Move { line: self.line, ..other.clone() }
+    }
+}
+
+/// Most different moves to all elements of an array that are kept: three already disagree.
+const MOST: usize = 4;
+
+/// A place of numbers: data and the indices of an element, or a target in a move.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub(crate) enum To {
+    Data(usize, Vec<usize>),
+    InPlace(usize),
+}
+
+/// A move and the move before it, where that is always the one before.
+#[derive(Clone, Debug)]
+pub(crate) struct Going {
+    pub(crate) to: To,
+    pub(crate) of: Move,
+    pub(crate) after: Option<usize>,
+}
+
+/// All moves of a file to targets with numbers, in the order of the text.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Moves {
+    pub(crate) going: Vec<Going>,
+    /// Moves to any element of an array.
+    pub(crate) to_any: HashMap<usize, Vec<Move>>,
+    pub(crate) in_place: Vec<(String, Value, bool)>,
+}
+
+impl Moves {
+    /// Adds a move to declared data; its number, unless it goes to an element that is not known.
+    pub(crate) fn add_to_data(
+        &mut self,
+        data: usize,
+        indices: Option<Vec<Option<usize>>>,
+        of: Move,
+        after: Option<usize>,
+    ) -> Option<usize> {
+        let element: Option<Vec<usize>> = indices.unwrap_or_default().into_iter().collect();
+        if let Some(element) = element {
+            return Some(self.add(To::Data(data, element), of, after));
+        }
+        let any = self.to_any.entry(data).or_default();
+        if any.len() < MOST && !any.iter().any(|it| it.says_as(&of)) {
+            any.push(of);
+        }
+        None
+    }
+
+    /// Adds a move to a target that stands in it; its number.
+    pub(crate) fn in_place(
+        &mut self,
+        name: String,
+        value: Value,
+        is_joints: bool,
+        of: Move,
+        after: Option<usize>,
+    ) -> usize {
+        self.in_place.push((name, value, is_joints));
+        self.add(To::InPlace(self.in_place.len() - 1), of, after)
+    }
+
+    fn add(&mut self, to: To, of: Move, after: Option<usize>) -> usize {
+        self.going.push(Going { to, of, after });
+        self.going.len() - 1
+    }
+}

@@ -1,0 +1,104 @@
+//! What instructions of RAPID leave switched on for moves after them: program displacements, and configurations that are not followed.
+
+use super::super::scan::{Token, is_one_of};
+use super::moves::{Instruction, layout};
+use super::outline::Outline;
+use super::tokens::ASSIGN;
+
+/// What can be switched on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Switch {
+    /// `PDispOn`, `PDispSet`: targets are displaced.
+    Displacement,
+    /// `ConfL\Off`: the configuration that a target states is not that which the robot takes on lines and arcs.
+    Lines,
+    /// `ConfJ\Off`: the same where joints move on their own ways.
+    Joints,
+}
+
+/// Where something is on: of each statement, the line of what has switched it on.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Modal {
+    on: Vec<Option<usize>>,
+    everywhere: Option<usize>,
+}
+
+impl Modal {
+    /// Follows a switch through a file. It is off where a routine begins; where it may be on at the end of a block, or is on while other
+    /// routines are called, it may be on everywhere.
+    pub(crate) fn follow(switch: Switch, outline: &Outline, tokens: &[Token], text: &[u8]) -> Self {
+        let mut out = Modal { on: vec![None; outline.statements.len()], everywhere: None };
+        // Line and block of what has switched it on.
+        let mut on: Option<(usize, usize)> = None;
+        let (mut routine, mut handler) = (None, 0);
+        let everywhere = |all: &mut Option<usize>, on: Option<(usize, usize)>| {
+            *all = all.or(on.map(|(line, _)| line));
+        };
+        for (index, statement) in outline.statements.iter().enumerate() {
+            let outermost = outline.outermost(statement.block);
+            if statement.routine != routine || outermost != handler {
+                everywhere(&mut out.everywhere, on.take());
+                (routine, handler) = (statement.routine, outermost);
+            }
+            everywhere(&mut out.everywhere, on.filter(|(_, block)| !outline.is_in(statement.block, *block)));
+            let own = tokens.get(statement.tokens.clone()).unwrap_or_default();
+            let instruction = Instruction::of(own, text);
+            match instruction.as_ref().and_then(|it| switched(switch, it)) {
+                Some(true) => {
+                    on.get_or_insert((statement.line, statement.block));
+                }
+                Some(false) => {
+                    // Within a branch, it may stay on.
+                    on = on.filter(|(_, block)| *block != statement.block);
+                }
+                None => {
+                    let leads = on.is_some() && leads_elsewhere(own, instruction.as_ref());
+                    everywhere(&mut out.everywhere, on.filter(|_| leads));
+                }
+            }
+            if let Some(of) = out.on.get_mut(index) {
+                *of = on.map(|(line, _)| line);
+            }
+        }
+        everywhere(&mut out.everywhere, on);
+        out
+    }
+
+    /// The line of what may have switched it on at a statement.
+    pub(crate) fn at(&self, index: usize) -> Option<usize> {
+        self.on.get(index).copied().flatten().or(self.everywhere)
+    }
+}
+
+/// Whether an instruction switches it on or off.
+fn switched(switch: Switch, instruction: &Instruction<'_>) -> Option<bool> {
+    let of = |name: &str| {
+        if instruction.name != name {
+            return None;
+        }
+        if instruction.option("off").is_some() {
+            Some(true)
+        } else {
+            instruction.option("on").is_some().then_some(false)
+        }
+    };
+    match (switch, instruction.name.as_str()) {
+        (Switch::Displacement, "pdispon" | "pdispset") => Some(true),
+        (Switch::Displacement, "pdispoff") => Some(false),
+        (Switch::Displacement, _) => None,
+        (Switch::Lines, _) => of("confl"),
+        (Switch::Joints, _) => of("confj"),
+    }
+}
+
+/// Whether a statement may run other routines or leave this one: all that is no instruction known to do neither.
+pub(crate) fn leads_elsewhere(tokens: &[Token], instruction: Option<&Instruction<'_>>) -> bool {
+    const STAY: &str = "accset clkreset clkstart clkstop confj confl const decr eoffsoff eoffson eoffsset gripload incr \
+                        invertdo moveextj pdispoff pdispon pdispset pers pulsedo reset set setao setdo setgo singarea stop \
+                        tperase tpwrite var velset waitdi waitdo waitrob waittime waituntil";
+    let is_assignment = tokens.get(1).is_some_and(|it| it.is(ASSIGN) || it.is(b'.') || it.is(b'{'));
+    match instruction {
+        Some(it) => !is_assignment && layout(&it.name).is_none() && !is_one_of(STAY, &it.name),
+        None => !tokens.is_empty(),
+    }
+}

@@ -1,0 +1,131 @@
+//! Instructions of RAPID that move the robot, and where their arguments are.
+
+use super::super::parsed::Number;
+use super::super::scan::{Kind, Token, cut, signed};
+use super::tokens::{ASSIGN, lower};
+
+/// Where an instruction has its tool.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum ToolAt {
+    /// At this place.
+    Place(usize),
+    /// Last.
+    Last,
+}
+
+/// What an instruction's arguments are, counted without optional ones.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Layout {
+    /// Whether its target is a `jointtarget`.
+    pub(crate) is_joints: bool,
+    /// Whether joints move on their own ways (`ConfJ`), else on lines or arcs (`ConfL`).
+    pub(crate) is_free: bool,
+    /// Places of its targets, in the order in which they are reached.
+    pub(crate) targets: &'static [usize],
+    /// Place of what it sets.
+    pub(crate) sets: Option<usize>,
+    pub(crate) tool: ToolAt,
+}
+
+/// The arguments of an instruction (its name in lower case) that moves the robot to targets.
+pub(crate) fn layout(name: &str) -> Option<Layout> {
+    use ToolAt::{Last, Place};
+    let (targets, tool): (&'static [usize], ToolAt) = match name {
+        "movej" | "movel" | "moveabsj" | "movejdo" | "moveldo" | "movejao" | "movelao" | "movejgo"
+        | "movelgo" | "movejsync" | "movelsync" | "trigglios" => (&[0], Place(3)),
+        "movec" | "movecdo" | "movecao" | "movecgo" | "movecsync" => (&[0, 1], Place(4)),
+        "triggj" | "triggl" | "triggabsj" => (&[0], Place(4)),
+        "triggc" => (&[0, 1], Place(5)),
+        "searchl" => (&[2], Place(4)),
+        "searchc" => (&[2, 3], Place(5)),
+        "arcl" | "arclstart" | "arclend" | "spotl" | "spotj" | "paintl" | "displ" => (&[0], Last),
+        "arcc" | "arccstart" | "arccend" | "paintc" | "dispc" => (&[0, 1], Last),
+        _ => return None,
+    };
+    let is_joints = matches!(name, "moveabsj" | "triggabsj");
+    let sets = matches!(name, "searchl" | "searchc").then_some(1);
+    let is_free = name.starts_with("movej") || matches!(name, "triggj" | "spotj");
+    Some(Layout { is_joints, is_free, targets, sets, tool })
+}
+
+/// An instruction's name in lower case and its arguments.
+#[derive(Clone, Debug)]
+pub(crate) struct Instruction<'a> {
+    pub(crate) name: String,
+    pub(crate) arguments: Vec<&'a [Token]>,
+    /// Optional arguments: their names in lower case, and their values.
+    pub(crate) options: Vec<(String, &'a [Token])>,
+}
+
+impl<'a> Instruction<'a> {
+    /// Of a statement's tokens; `None` if it does not begin with a word, or if its brackets do not match.
+    pub(crate) fn of(tokens: &'a [Token], text: &[u8]) -> Option<Self> {
+        let (first, rest) = tokens.split_first()?;
+        if first.kind != Kind::Word {
+            return None;
+        }
+        let mut out = Instruction { name: lower(text, first), arguments: Vec::new(), options: Vec::new() };
+        for part in cut(rest, b',')? {
+            let mut pieces = cut(part, b'\\')?.into_iter();
+            let argument = pieces.next().unwrap_or_default();
+            if !argument.is_empty() {
+                out.arguments.push(argument);
+            }
+            for option in pieces {
+                if let Some((name, value)) = option.split_first() {
+                    let value = value.split_first().filter(|(it, _)| it.is(ASSIGN));
+                    out.options.push((lower(text, name), value.map_or(&[], |(_, value)| value)));
+                }
+            }
+        }
+        Some(out)
+    }
+
+    /// The value of an option, if it is there.
+    pub(crate) fn option(&self, name: &str) -> Option<&'a [Token]> {
+        self.options.iter().find(|(it, _)| it == name).map(|(_, value)| *value)
+    }
+}
+
+/// How a target is written.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Argument<'a> {
+    /// A name in lower case, and its indices if it is an element of an array: `None` in place of those that are no numbers.
+    Name(String, Option<Vec<Option<usize>>>),
+    /// Numbers in place.
+    Numbers(&'a [Token]),
+    /// `Offs` or `RelTool` of a target.
+    Relative(Box<Argument<'a>>),
+    /// Anything else.
+    Computed,
+}
+
+/// How these tokens write a target.
+pub(crate) fn argument<'a>(tokens: &'a [Token], text: &[u8]) -> Argument<'a> {
+    argument_in(tokens, text, 0)
+}
+
+fn argument_in<'a>(tokens: &'a [Token], text: &[u8], depth: usize) -> Argument<'a> {
+    match tokens {
+        [name] if name.kind == Kind::Word => Argument::Name(lower(text, name), None),
+        [name, open, inner @ .., close] if name.kind == Kind::Word && open.is(b'{') && close.is(b'}') => {
+            let Some(parts) = cut(inner, b',') else { return Argument::Computed };
+            let whole = |it: &Number| it.value.fract() == 0.0 && (1.0..1e9).contains(&it.value);
+            let index = |part: &[Token]| signed(part).filter(whole).map(|it| it.value as usize);
+            Argument::Name(lower(text, name), Some(parts.into_iter().map(index).collect()))
+        }
+        [name, open, inner @ .., close]
+            if name.kind == Kind::Word && open.is(b'(') && close.is(b')') && depth < 8 =>
+        {
+            let first = cut(inner, b',').and_then(|it| it.first().copied());
+            match (lower(text, name).as_str(), first) {
+                ("offs" | "reltool", Some(first)) => {
+                    Argument::Relative(Box::new(argument_in(first, text, depth + 1)))
+                }
+                _ => Argument::Computed,
+            }
+        }
+        [open, .., close] if open.is(b'[') && close.is(b']') => Argument::Numbers(tokens),
+        _ => Argument::Computed,
+    }
+}

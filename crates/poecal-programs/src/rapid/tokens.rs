@@ -1,0 +1,108 @@
+//! Values of RAPID, from their tokens.
+
+use super::super::parsed::Number;
+use super::super::scan::{Kind, Rules, Scanner, Token, cut, signed};
+
+/// How RAPID is written.
+const RULES: Rules = Rules { comments: &["!"], quotes: b"\"", letters: b"", is_open_in_brackets: false };
+
+/// The sign that stands for `:=`, which is one token.
+pub(crate) const ASSIGN: u8 = b'\x01';
+
+/// The tokens of a file, without line ends and without the header of older files, which stands between lines that begin with `%%%`.
+pub(crate) fn tokens(text: &[u8]) -> Vec<Token> {
+    let mut out: Vec<Token> = Vec::new();
+    let mut is_header = false;
+    let mut line_start = 0;
+    for token in Scanner::new(text, &RULES) {
+        if token.kind == Kind::LineEnd {
+            if is_header {
+                out.truncate(line_start);
+            }
+            line_start = out.len();
+            continue;
+        }
+        let follows =
+            |sign: u8| out.last().is_some_and(|it| it.is(sign) && it.range.end == token.range.start);
+        if token.is(b'=') && follows(b':') {
+            if let Some(colon) = out.last_mut() {
+                colon.kind = Kind::Sign(ASSIGN);
+                colon.range.end = token.range.end;
+            }
+            continue;
+        }
+        let is_third = token.is(b'%') && follows(b'%') && out.len() == line_start + 2;
+        out.push(token);
+        if is_third && out.iter().rev().take(3).all(|it| it.is(b'%')) {
+            is_header = !is_header;
+            out.truncate(line_start);
+        }
+    }
+    out
+}
+
+/// A value as it is written.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Value {
+    Number(Number),
+    List(Vec<Value>),
+    /// A name alone, in lower case: `TRUE`, or a constant.
+    Word(String),
+    /// A text in quotes, and whether it is empty.
+    Text(bool),
+    /// An expression.
+    Other,
+}
+
+impl Value {
+    /// The values of a list of so many.
+    pub(crate) fn list(&self, count: usize) -> Option<&[Value]> {
+        let Value::List(values) = self else { return None };
+        Some(&values[..]).filter(|it| it.len() == count)
+    }
+
+    /// The numbers of a list of so many.
+    pub(crate) fn numbers(&self, count: usize) -> Option<Vec<Number>> {
+        let number = |it: &Value| if let Value::Number(number) = it { Some(number.clone()) } else { None };
+        self.list(count)?.iter().map(number).collect()
+    }
+
+    /// Whether it is this name.
+    pub(crate) fn is(&self, word: &str) -> bool {
+        matches!(self, Value::Word(it) if it == word)
+    }
+}
+
+/// Most brackets in one another that are looked into: arrays of three dimensions of data of three levels are fewer.
+const DEEPEST: usize = 8;
+
+/// The value that these tokens are.
+pub(crate) fn value(tokens: &[Token], text: &[u8], depth: usize) -> Value {
+    if let Some(number) = signed(tokens) {
+        return Value::Number(number);
+    }
+    match tokens {
+        [only] => match only.kind {
+            Kind::Word => Value::Word(lower(text, only)),
+            Kind::Text => Value::Text(only.range.len() <= 2),
+            Kind::Number(..) | Kind::Sign(_) | Kind::LineEnd => Value::Other,
+        },
+        [open, inner @ .., close] if open.is(b'[') && close.is(b']') && depth < DEEPEST => {
+            match cut(inner, b',') {
+                Some(parts) => Value::List(parts.into_iter().map(|it| value(it, text, depth + 1)).collect()),
+                None => Value::Other,
+            }
+        }
+        _ => Value::Other,
+    }
+}
+
+/// A word in lower case.
+pub(crate) fn lower(text: &[u8], token: &Token) -> String {
+    written(text, token).to_ascii_lowercase()
+}
+
+/// A token as it is written.
+pub(crate) fn written(text: &[u8], token: &Token) -> String {
+    String::from_utf8_lossy(text.get(token.range.clone()).unwrap_or_default()).into_owned()
+}

@@ -1,0 +1,134 @@
+//! Values of URScript that are stated in numbers, and the variables that have them.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::super::axes::Axes;
+use super::super::parsed::Number;
+use super::super::scan::{Kind, Rules, Scanner, Token, bracket, is_one_of, parts, signed};
+use super::blocks::{cut, header};
+use super::reason;
+
+/// What an expression is.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Value {
+    /// `p[x, y, z, rx, ry, rz]`, all in numbers.
+    Pose(Vec<Number>),
+    /// A list of as many numbers as the robot has readings.
+    Joints(Vec<Number>),
+    /// A pose or list that is not of numbers alone, and what is wrong.
+    Broken(&'static str),
+    /// A variable.
+    Name(String),
+    /// Anything else.
+    Other,
+}
+
+#[derive(Clone, Debug)]
+struct Variable {
+    assignments: usize,
+    line: usize,
+    value: Value,
+}
+
+/// The variables and routines of a program.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Variables {
+    known: BTreeMap<String, Variable>,
+    /// Names of routines and threads.
+    pub(crate) routines: BTreeSet<String>,
+}
+
+impl Variables {
+    /// Of a text.
+    pub(crate) fn of(text: &[u8], rules: &Rules, axes: &Axes) -> Self {
+        let mut out = Variables::default();
+        let mut scanner = Scanner::new(text, rules);
+        let mut line = Vec::new();
+        while scanner.statement(&mut line).is_some() {
+            for tokens in cut(text, &line) {
+                if let Some((name, parameters)) = header(text, tokens) {
+                    out.routines.insert(name.to_owned());
+                    for parameter in parameters.iter().filter(|it| it.kind == Kind::Word) {
+                        out.assign(parameter.text(text), parameter.line, Value::Other, 2);
+                    }
+                    continue;
+                }
+                let rest = match tokens {
+                    [word, rest @ ..] if is_one_of("global local", word.text(text)) => rest,
+                    all => all,
+                };
+                let Some(name) = rest.first().filter(|it| it.kind == Kind::Word) else { continue };
+                if let Some((_, after)) = bracket(&rest[1..], b'[', b']') {
+                    if is_assigned(after) {
+                        out.assign(name.text(text), name.line, Value::Other, 2);
+                    }
+                } else if is_assigned(&rest[1..]) {
+                    let value = out.value(text, &rest[2..], axes);
+                    out.assign(name.text(text), name.line, value, 1);
+                }
+            }
+        }
+        out
+    }
+
+    fn assign(&mut self, name: &str, line: usize, value: Value, times: usize) {
+        let new = || Variable { assignments: 0, line, value };
+        self.known.entry(name.to_owned()).or_insert_with(new).assignments += times;
+    }
+
+    /// Line where a variable is assigned.
+    pub(crate) fn line(&self, name: &str) -> usize {
+        self.known.get(name).map_or(0, |it| it.line)
+    }
+
+    /// The value of a variable that is assigned once, or why it has none.
+    pub(crate) fn of_name(&self, name: &str) -> Result<Value, String> {
+        match self.known.get(name) {
+            None => Err(reason::ABSENT.to_owned()),
+            Some(it) if it.assignments > 1 => Err(reason::SEVERAL.to_owned()),
+            Some(it) => Ok(it.value.clone()),
+        }
+    }
+
+    /// What an expression is.
+    pub(crate) fn value(&self, text: &[u8], tokens: &[Token], axes: &Axes) -> Value {
+        let list = |tokens: &[Token]| {
+            let (inside, rest) = bracket(tokens, b'[', b']')?;
+            let all = parts(inside);
+            let numbers: Option<Vec<Number>> = all.iter().map(|it| element(text, it)).collect();
+            rest.is_empty().then_some((all.len(), numbers))
+        };
+        match tokens {
+            [word] if word.kind == Kind::Word => Value::Name(word.text(text).to_owned()),
+            [p, rest @ ..] if p.is_word(text, "p") && !rest.is_empty() => match list(rest) {
+                None => Value::Other,
+                Some((6, Some(numbers))) => Value::Pose(numbers),
+                Some(_) => Value::Broken(reason::EXPRESSIONS),
+            },
+            _ => match list(tokens) {
+                None => Value::Other,
+                Some((count, _)) if count != axes.count() => Value::Broken(reason::COUNT),
+                Some((_, numbers)) => numbers.map_or(Value::Broken(reason::EXPRESSIONS), Value::Joints),
+            },
+        }
+    }
+}
+
+fn is_assigned(tokens: &[Token]) -> bool {
+    matches!(tokens, [sign, value, ..] if sign.is(b'=') && !value.is(b'='))
+}
+
+/// A number, or `d2r(number)`, with its sign.
+fn element(text: &[u8], tokens: &[Token]) -> Option<Number> {
+    if let Some(number) = signed(tokens) {
+        return Some(number);
+    }
+    let (sign, rest) = match tokens {
+        [sign, rest @ ..] if sign.is(b'-') => (-1.0, rest),
+        all => (1.0, all),
+    };
+    let [word, rest @ ..] = rest else { return None };
+    let (inside, []) = bracket(rest, b'(', b')')? else { return None };
+    let number = signed(inside).filter(|_| word.text(text) == "d2r")?;
+    Some(Number { scale: sign * 1.0_f64.to_radians(), ..number })
+}

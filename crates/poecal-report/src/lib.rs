@@ -1,0 +1,60 @@
+//! Results as text for people. No number here that is not in the result.
+//!
+//! A part of [poecal](https://docs.rs/poecal): its interface follows the needs of the other parts and promises nothing by itself.
+
+#![forbid(unsafe_code)]
+
+mod acceptance;
+mod check;
+mod compared;
+mod fleet;
+mod fleet_prior;
+mod found;
+mod hand_eye;
+mod identify;
+mod judgement;
+mod offsets;
+mod outliers;
+mod page;
+mod plan;
+#[doc(hidden)]
+pub mod plot;
+mod shade;
+mod sight;
+mod summary;
+#[doc(hidden)]
+pub mod table;
+mod tcp;
+mod track;
+mod track_entries;
+mod watched;
+
+pub use check::{Check, SetCounts};
+pub use compared::Comparison;
+pub use fleet::{Figure, Line, PriorUse};
+pub use fleet_prior::fleet_prior;
+pub use hand_eye::{hand_eye, hand_eye_answer};
+pub use identify::Identify;
+pub use judgement::{judged, judgement};
+pub use offsets::Offsets;
+pub use page::{
+    Attest, calibration_page, calibration_page_with, certificate_page, fleet_page, plan_page, validation_page,
+};
+pub use plan::Plan;
+pub use summary::{Detail, summary, unsaid};
+pub use tcp::{tool_tip, tool_tip_answer};
+pub use track::{Track, WitnessPlan, recalibrated};
+pub use watched::Watched;
+
+use serde::Serialize;
+
+use poecal_numerics::error::Result;
+use poecal_storage::json_text;
+
+/// A result as JSON, with a line break at its end.
+///
+/// # Errors
+/// [`ErrorKind::Export`](poecal_numerics::error::ErrorKind::Export) if it cannot be written as JSON.
+pub fn json(result: &impl Serialize) -> Result<String> {
+    json_text(result, "result")
+}

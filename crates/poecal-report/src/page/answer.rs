@@ -1,0 +1,191 @@
+//! The first screen: one answer in one colour, before, after and where it holds; the robot; what to look at. The same words as on the
+//! terminal.
+
+use maud::{Markup, html};
+
+use super::advice::{told, told_words};
+use super::certificate::{limits_table, stated, title_of};
+use super::html::{figure, list, quoted};
+use super::joints;
+use super::lead::spaced;
+use crate::summary::{
+    ModelRow, Place, Point, SEE_ROBUST, expected, judged_on, leading, look_at, reasons, why_larger,
+};
+use crate::table::joints_words;
+use poecal_calibrate::{Decision, Event, Level};
+use poecal_numerics::unit::Unit;
+use poecal_results::calibration_file::CalibrationFile;
+use poecal_results::shapes::Shapes;
+
+pub(crate) fn screen(file: &CalibrationFile, shapes: &Shapes) -> Markup {
+    html! {
+        header {
+            h1 { "Calibration of " (quoted(&file.robot.name, "robot.name")) }
+            p.made { (kinds(file)) " · made by poecal " (quoted(&file.poecal_version, "poecal_version")) }
+            div.theme hidden role="group" aria-label="Colours" {}
+        }
+        (stated(&file.record))
+        (answer(file))
+        (joints::view(file, shapes))
+        (look(file))
+        (contents(file))
+    }
+}
+
+/// How many joints of which kind, and from where to where.
+fn kinds(file: &CalibrationFile) -> Markup {
+    html! {
+        (joints_words(file.joints.iter().map(|joint| joint.kind))) " joints, from " (quoted(&file.robot.base_link, "robot.base_link"))
+        " to " (quoted(&file.robot.tip_link, "robot.tip_link"))
+    }
+}
+
+fn answer(file: &CalibrationFile) -> Markup {
+    let (class, title) = colour(file);
+    html! {
+        section class={ "verdict " (class) } aria-labelledby="verdict-title" {
+            h2 #verdict-title { span.sign aria-hidden="true" {} (title) }
+            (before_after(file))
+            div.holds { (holds(file)) }
+            @if let Some(found) = &file.acceptance { (limits_table(found)) }
+        }
+    }
+}
+
+/// The one colour and its title: of the limits where some were set, unless the calibration is not to be used at all.
+fn colour(file: &CalibrationFile) -> (&'static str, String) {
+    let level = file.verdict.as_ref().map(|verdict| verdict.level);
+    match (&file.acceptance, level) {
+        (Some(found), level) if level != Some(Level::DoNotUse) || found.decision == Decision::Fail => {
+            (found.decision.word(), title_of(found).to_owned())
+        }
+        (_, Some(level)) => (level.word(), format!("Verdict: {}", level.words())),
+        (_, None) => ("unknown", "No verdict: the calibration was written by an earlier version".to_owned()),
+    }
+}
+
+/// The errors before and after on the same rows, and the error to expect, all RMS and in one unit.
+fn before_after(file: &CalibrationFile) -> Markup {
+    let (set, rows) = leading(file);
+    let mut models = rows.iter().filter(|(.., key)| key.starts_with("accuracy"));
+    let (Some(before), Some(after)) = (models.next(), models.next_back()) else { return Markup::default() };
+    let has_length = set.calibrated.leading().is_some_and(|(quantity, _)| quantity.unit() == Unit::Metre);
+    let measured = |(_, model, key): &ModelRow<'_>| {
+        if let Some(pixels) = model.of_pictures(set.count) {
+            return html! { (figure(pixels.rms_mm, format_args!("{key}.pixels.rms_mm"))) " mm" };
+        }
+        let leading = model.leading();
+        html! { @if let Some((quantity, error)) = leading {
+            (figure(error.rms, format_args!("{key}.{}.rms", quantity.key()))) (spaced(quantity.unit()))
+        } }
+    };
+    let on = judged_on(file);
+    let corners = if set.calibrated.of_pictures(set.count).is_some() { ", at the board" } else { "" };
+    html! {
+        ol.steps {
+            li { b { (measured(before)) } " " span { "before, on " (on) ": " (before.0) (corners) } }
+            li { b { (measured(after)) } " " span { "after, on " (on) ": " (after.0) " model" (corners) } }
+            @if let Some(found) = expected(file).filter(|_| has_length) {
+                li {
+                    b { (figure(found.error_mm, "verdict.expected_error_mm")) " mm" } " "
+                    span { "expected of predictions; 95\u{a0}% below " (figure(found.bound_mm, "verdict.bound95_mm")) "\u{a0}mm" }
+                }
+            }
+        }
+        @if let Some(why) = why_larger(file) { p.note { (why) } }
+    }
+}
+
+/// Where it holds, in a sentence.
+fn holds(file: &CalibrationFile) -> Markup {
+    let first = reasons(file).into_iter().next();
+    let why = html! { @if let Some(text) = &first { ": " (reason(file, text)) } };
+    match file.verdict.as_ref().map(|verdict| verdict.level) {
+        Some(Level::Good) => html! {
+            "It holds " b { "anywhere within the limits" } " of the joints"
+            @if let Some((sigma, key)) = expected(file).and_then(|it| it.anywhere) { ", with " (figure(sigma, key)) " mm (RMS) expected there" }
+            "."
+        },
+        Some(Level::InsideSampledRange) => {
+            html! { "It holds " b { "inside the sampled range" } ", not beyond" (why) "." }
+        }
+        Some(Level::DoNotUse) => html! { "It holds " b { "nowhere" } (why) "." },
+        None => html! { "Calibrate again to see where it holds." },
+    }
+}
+
+/// A reason of the verdict, with its key where it is one of the file's own sentences.
+fn reason(file: &CalibrationFile, text: &str) -> Markup {
+    let stated = file.verdict.as_ref().map_or(&[][..], |verdict| &verdict.reasons);
+    match stated.iter().position(|own| own == text) {
+        Some(k) => told(text, format_args!("verdict.reasons.{k}")),
+        None => told_words(text),
+    }
+}
+
+/// What was repaired, and what to look at.
+fn look(file: &CalibrationFile) -> Markup {
+    let points: Vec<Markup> = look_at(file).iter().filter_map(|point| point_words(file, point)).collect();
+    html! {
+        @if !file.repairs.is_empty() {
+            section.doubts aria-labelledby="repaired-title" { h2 #repaired-title { "Repaired" } (list(&repaired(file))) }
+        }
+        @if !points.is_empty() {
+            section.doubts aria-labelledby="doubts-title" { h2 #doubts-title { "Look at" } (list(&points)) }
+        }
+    }
+}
+
+/// What was repaired, in words, with what that gains.
+fn repaired(file: &CalibrationFile) -> Vec<Markup> {
+    let one = |(k, found): (usize, &Event)| {
+        let key = |name: &str| format!("repairs.{k}.{name}");
+        let gain = found.error_before_mm.zip(found.error_after_mm);
+        html! {
+            (told(&found.statement, key("statement")))
+            @if let Some((before, after)) = gain {
+                "; cross-validation " (figure(after, key("error_after_mm"))) " mm (RMS) instead of " (figure(before, key("error_before_mm")))
+            }
+        }
+    };
+    file.repairs.iter().enumerate().map(one).collect()
+}
+
+/// A point with the keys of what it quotes.
+fn point_words(file: &CalibrationFile, point: &Point) -> Option<Markup> {
+    match point.place {
+        Place::Reason => Some(reason(file, &point.text)),
+        Place::Suspicion(k) => Some(told(&point.text, format_args!("suspicions.{k}.statement"))),
+        Place::Diagnosis(k) => Some(told(&point.text, format_args!("diagnosis.{k}.statement"))),
+        Place::Warning(k) => Some(told(&point.text, format_args!("warnings.{k}"))),
+        Place::Suspects => Some(html! { a href="#suspects" { (point.text.replace(SEE_ROBUST, "")) } }),
+        Place::Joint(k) => {
+            let joint = file.corrections.get(k)?;
+            let words = quoted(joint.suspicious.as_deref()?, format_args!("corrections.{k}.suspicious"));
+            Some(html! { (quoted(&joint.joint, format_args!("corrections.{k}.joint"))) ": " (words) })
+        }
+        Place::HardlyKnown => Some(told_words(&point.text)),
+    }
+}
+
+fn contents(file: &CalibrationFile) -> Markup {
+    let all = [
+        (true, "before-after", "Errors"),
+        (!file.repairs.is_empty(), "repairs", "Repairs"),
+        (true, "joints", "Joints"),
+        (file.corrected.is_some(), "corrected", "What the joints do"),
+        (file.compensation.is_some(), "compensation", "Corrected programs"),
+        (file.pictures.is_some(), "pictures", "Pictures"),
+        (true, "errors", "Errors of the rows"),
+        (true, "suspects", "Suspected rows"),
+        (file.repeatability.is_some(), "repeatability", "Repeatability"),
+        (true, "trust", "How far to trust it"),
+        (true, "method", "Method and inputs"),
+        (true, "metrologist", "For the metrologist"),
+    ];
+    html! {
+        nav aria-label="Contents" {
+            @for (_, id, title) in all.into_iter().filter(|(has, ..)| *has) { a href={ "#" (id) } { (title) } " " }
+        }
+    }
+}

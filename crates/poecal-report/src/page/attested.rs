@@ -1,0 +1,262 @@
+//! The certificate: one page of paper that says who, what, the result, its limits, and how far to trust it.
+
+use std::fmt::Write as _;
+
+use maud::{Markup, PreEscaped, html};
+
+use super::head;
+use crate::acceptance::plain;
+use crate::summary::{delivered, expected, judged_on, leading, why_larger};
+use crate::table::number;
+use poecal_calibrate::{Acceptance, DeviceFrameKnowledge, Level};
+use poecal_model::measurement::Quantity;
+use poecal_numerics::text::visible_markup;
+use poecal_numerics::unit::Unit;
+use poecal_results::calibration_file::CalibrationFile;
+use poecal_results::output::Page;
+use poecal_results::record::Record;
+
+/// Files that are listed at most, and limits.
+const LISTED: usize = 4;
+/// Coverage factor of the expanded uncertainty.
+const COVERAGE: f64 = 2.0;
+/// What a certificate states, in the order of its table; what is missing is a blank line to write on.
+const STATED: [(&str, &str); 14] = [
+    ("certificate", "Certificate"),
+    ("laboratory", "Laboratory"),
+    ("customer", "Customer"),
+    ("robot", "Robot"),
+    ("serial", "Serial number"),
+    ("tool", "Tool"),
+    ("payload", "Payload"),
+    ("instrument", "Instrument"),
+    ("instrument_calibrated", "Instrument calibrated"),
+    ("date", "Date"),
+    ("place", "Place"),
+    ("temperature", "Temperature"),
+    ("operator", "Measured by"),
+    ("valid_until", "Valid until"),
+];
+/// The form of the page: A4 with a margin, all in one.
+const STYLE: &str = "
+.attested { font-size: .82rem; line-height: 1.3; }
+.attested .title { font-size: 1.75rem; }
+.attested h2, .attested h3 { font-size: 1rem; margin: .7rem 0 .25rem; }
+.attested .top { display: flex; justify-content: space-between; gap: 1rem; align-items: flex-start; }
+.attested .top img { max-width: 10rem; max-height: 4rem; }
+.attested dl { display: grid; grid-template-columns: 1fr 1fr; gap: 0 1.4rem; margin: 0; }
+.attested dl div { display: grid; grid-template-columns: 8rem 1fr; border-bottom: 1px solid #d9dde3; padding: .12rem 0; min-height: 1.5em; }
+.attested dt { color: #52606d; }
+.attested dd { margin: 0; overflow-wrap: anywhere; }
+.attested .result { display: grid; grid-template-columns: 1fr 1fr; gap: .3rem 1.4rem; margin: .2rem 0; }
+.attested .result b { display: block; font-size: 1.35rem; font-variant-numeric: tabular-nums; }
+.attested table { width: 100%; }
+.attested p { margin: .2rem 0; max-width: none; }
+.attested code { font-size: .7rem; overflow-wrap: anywhere; }
+.attested .hands { display: grid; grid-template-columns: 1fr 1fr; gap: 1.5rem; margin-top: .5rem; }
+.attested .hands span { display: block; border-bottom: 1px solid #52606d; min-height: 4rem; color: #52606d; font-size: .72rem; }
+";
+/// Where it is a page of its own.
+const ALONE: &str = "
+:root { color-scheme: light; }
+@page { size: A4; margin: 14mm 15mm; }
+main { max-width: 48rem; }
+@media print { main { padding: 0; max-width: none; } }
+";
+/// Where it is the first page of a report's print.
+const BEFORE: &str = "
+.attested { display: none; }
+@media print { .attested { display: block; break-after: page; border: 0; margin: 0; padding: 0; } }
+";
+
+/// What a certificate has beside the calibration.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Attest {
+    /// SHA-256 of the calibration's file, if it is known.
+    pub sha256: Option<String>,
+    /// A picture for its head: its media type and its bytes.
+    pub logo: Option<(&'static str, Vec<u8>)>,
+}
+
+/// A certificate of a calibration as a page that is complete in itself, without a script; it prints on one page of A4.
+#[must_use]
+pub fn certificate_page(file: &CalibrationFile, record: &Record, attest: &Attest) -> Page {
+    let title = format!("Calibration certificate of {}", file.robot.name);
+    // The page is the whole document: no heads and feet beside it.
+    let head = head(&title, &Record::default(), &file.poecal_version);
+    let body = html! {
+        style { (PreEscaped(ALONE)) }
+        main #main { (sheet(file, record, attest, &html! { h1 { "Calibration certificate" } })) }
+    };
+    vec![visible_markup(head).into(), visible_markup(body).into(), "\n</body>\n</html>\n".into()]
+}
+
+/// The certificate as the first page of a report's print.
+pub(crate) fn first_page(file: &CalibrationFile) -> Markup {
+    html! {
+        style { (PreEscaped(BEFORE)) }
+        (sheet(file, &file.record, &Attest::default(), &html! { p.title { b { "Calibration certificate" } } }))
+    }
+}
+
+fn sheet(file: &CalibrationFile, record: &Record, attest: &Attest, title: &Markup) -> Markup {
+    let entries = record.entries();
+    let text = |key: &str| entries.iter().find(|it| it.0 == key).map(|it| it.2.to_owned());
+    let robot = |key: &str| (key == "robot").then(|| file.robot.name.clone());
+    let stated = STATED.map(|(key, label)| (label, text(key).or_else(|| robot(key)).unwrap_or_default()));
+    html! {
+        style { (PreEscaped(STYLE)) }
+        section.attested aria-label="Certificate" {
+            div.top {
+                (title)
+                @if let Some((kind, bytes)) = &attest.logo { img src=(data_uri(kind, bytes)) alt="Logo"; }
+            }
+            dl { @for (label, text) in &stated { div { dt { (label) } dd { (text) } } } }
+            h2 { "Result" }
+            (result(file))
+            @if let Some(found) = &file.acceptance { (limits(found)) }
+            h2 { "Where it is valid" }
+            p { (valid(file)) }
+            h2 { "Method" }
+            p { (method(file)) }
+            h2 { "Files, SHA-256" }
+            (files(file, attest))
+            @if let Some(note) = text("note") { p { (note) } }
+            div.hands {
+                @for hand in ["Calibrated by: name, date, signature", "Approved by: name, date, signature"] { span { (hand) } }
+            }
+        }
+    }
+}
+
+/// Errors before and after, and the uncertainty.
+fn result(file: &CalibrationFile) -> Markup {
+    let (set, rows) = leading(file);
+    let lead = set.calibrated.leading().map(|(quantity, _)| quantity);
+    let unit = match lead.map(Quantity::unit) {
+        Some(Unit::Radian) => "°",
+        Some(Unit::One | Unit::Second) => "",
+        Some(Unit::Metre) | None => " mm",
+    };
+    let of = |key: &str| {
+        let model = rows.iter().find(|(.., path)| path.starts_with("accuracy") && path.ends_with(key))?.1;
+        lead.and_then(|quantity| model.get(quantity)).map(|it| it.rms)
+    };
+    let after = of(delivered(file));
+    let on = judged_on(file);
+    let count = if file.accuracy.held_out.is_some() {
+        format!("{} rows held out of the fit", set.count)
+    } else {
+        format!("the {} fitted rows, since none was held out", set.count)
+    };
+    let name = lead.map_or("position", Quantity::name);
+    html! {
+        div.result {
+            @if let Some(before) = of("registered") { div { b { (number(before)) (unit) } "before, on " (on) ": nominal axes, tool and device located" } }
+            @if let Some(after) = after { div { b { (number(after)) (unit) } "after, on " (on) ": the " (delivered(file)) " model" } }
+            @if let Some(found) = expected(file) {
+                div { b { (number(found.error_mm)) " mm" } "expected of predictions (RMS), 95 % below " (number(found.bound_mm)) " mm" }
+                div { b { (number(COVERAGE * found.error_mm / 3f64.sqrt())) " mm" } "expanded uncertainty of a coordinate, k = 2" }
+            }
+        }
+        p {
+            "Before and after: measured " (name) " errors (RMS) on " (count) ". Expected: the RMS error of predicted tip positions in the configurations measured, by the uncertainty of the fit and "
+            "the error of the model. Expanded uncertainty of a coordinate: k = 2 times expected / √3. Errors that all measurements share, such as the \
+             instrument's scale, are not included."
+            @if let Some(why) = why_larger(file) { " " (why) }
+        }
+    }
+}
+
+fn limits(found: &Acceptance) -> Markup {
+    html! {
+        table {
+            thead { tr { th { "Limit" } th { "found" } th { "one-sided 95 % bounds" } th { "decision" } } }
+            tbody {
+                @for limit in found.limits.iter().take(LISTED) {
+                    tr {
+                        td { (limit.quantity) " " (limit.statistic.words()) " at most " (plain(limit.limit)) " " (limit.unit) }
+                        td { (number(limit.found)) }
+                        td { (number(limit.from)) " to " @if let Some(to) = limit.to { (number(to)) } @else { "not shown" } }
+                        td { b { (limit.decision.words()) } }
+                    }
+                }
+            }
+        }
+        @if found.limits.len() > LISTED { p { "and " (found.limits.len() - LISTED) " more in the report" } }
+    }
+}
+
+fn valid(file: &CalibrationFile) -> &'static str {
+    match file.verdict.as_ref().map(|verdict| verdict.level) {
+        Some(Level::Good) => "Anywhere within the limits of the joints.",
+        Some(Level::InsideSampledRange) => {
+            "Inside the range of the joints that was measured, and not beyond it."
+        }
+        Some(Level::DoNotUse) => "Nowhere: this calibration is not to be used (see the report).",
+        None => "Not judged: the calibration was written by an earlier version.",
+    }
+}
+
+fn method(file: &CalibrationFile) -> String {
+    let terms = if delivered(file) == "corrected" { ", and what the joints do beyond geometry" } else { "" };
+    let place = match file.frame() {
+        DeviceFrameKnowledge::Unknown => "the device's place is fitted too",
+        DeviceFrameKnowledge::Base => "the device measures in the robot's base",
+    };
+    format!(
+        "Product of exponentials: joint axes, tool{terms} fitted to {} rows by least squares; {place}. Errors are those of held-out rows where there \
+         are any; limits are decided with 95 % confidence. Made by poecal {}.",
+        file.accuracy.training.count, file.poecal_version
+    )
+}
+
+fn files(file: &CalibrationFile, attest: &Attest) -> Markup {
+    let inputs = &file.inputs;
+    let names = std::iter::once(&inputs.model).chain(&inputs.measurements);
+    let hashed: Vec<(&String, &String)> =
+        names.filter_map(|name| Some((name, inputs.sha256.get(name)?))).collect();
+    html! {
+        @if let Some(hash) = &attest.sha256 { p { "calibration.json " code { (hash) } } }
+        @for (name, hash) in hashed.iter().take(LISTED) { p { (name.rsplit(['/', '\\']).next().unwrap_or(name)) " " code { (hash) } } }
+        @if hashed.len() > LISTED { p { "and " (hashed.len() - LISTED) " more in calibration.json" } }
+    }
+}
+
+/// Bytes as the address of a picture.
+fn data_uri(kind: &str, bytes: &[u8]) -> String {
+    let mut out = format!("data:{kind},");
+    for byte in bytes {
+        // Writing to a String cannot fail.
+        let _ = write!(out, "%{byte:02X}");
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use poecal_calibrate::{CalibrationOptions, calibrate};
+    use poecal_model::simulate::{Kind, Simulation, elbow};
+    use poecal_results::calibration_file::Inputs;
+
+    #[test]
+    fn what_is_missing_is_a_blank_line_and_what_is_stated_is_text() {
+        let made = Simulation::default().run(&elbow(), Kind::POINT).unwrap();
+        let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default()).unwrap();
+        let file = CalibrationFile::new(&calibration, &made.data, Inputs::default());
+        let record = Record::of([("serial", "<b>4711</b>"), ("valid_until", "2027-11-28")]).unwrap();
+        let attest = Attest { sha256: Some("ab".repeat(32)), logo: Some(("image/png", vec![0x89, 0x50])) };
+        let page = certificate_page(&file, &record, &attest).concat();
+        for words in [
+            "&lt;b&gt;4711&lt;/b&gt;",
+            "2027-11-28",
+            "data:image/png,%89%50",
+            "<dt>Customer</dt><dd></dd>",
+            "k = 2",
+        ] {
+            assert!(page.contains(words), "{words}");
+        }
+        assert!(!page.contains("<script"));
+    }
+}

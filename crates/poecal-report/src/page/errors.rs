@@ -1,0 +1,217 @@
+//! The errors before and after, on rows that were not fitted, and what was measured.
+
+use maud::{Markup, Render, html};
+
+use super::devices::devices;
+use super::html::{HtmlTable, count, facts, figure, figure_or, path, plots, section as titled};
+use super::lead::{kinds_words, sign, spaced};
+use super::{corners, figures};
+use crate::found::found_words;
+use crate::summary::{ModelRow, has_terms, leading};
+use crate::table::{STATISTICS, further_words, models};
+use poecal_calibrate::{Improvements, ModelAccuracy, NoiseSource, SetAccuracy};
+use poecal_model::measurement::{Device, Quantity};
+use poecal_numerics::unit::Unit;
+use poecal_results::calibration_file::CalibrationFile;
+use poecal_results::residuals::Residuals;
+
+/// A quantity's errors as a caption: `Position error on …, mm`.
+pub(crate) fn error_words(quantity: Quantity, of: &str) -> String {
+    let unit = match quantity.unit() {
+        Unit::Metre => ", mm",
+        Unit::Radian => ", degrees",
+        Unit::One | Unit::Second => "",
+    };
+    let of = if of.is_empty() { String::new() } else { format!(" {of}") };
+    capital(&format!("{} error{of}{unit}", quantity.name()))
+}
+
+/// Words with a capital letter.
+pub(crate) fn capital(words: &str) -> String {
+    let (first, rest) = words.split_at(words.len().min(1));
+    format!("{}{rest}", first.to_uppercase())
+}
+
+/// Errors of the rows that were held out, or if there are none of those fitted, by each model, and what was measured.
+pub(crate) fn section(file: &CalibrationFile, residuals: &Residuals) -> Markup {
+    let held_out = file.accuracy.held_out.as_ref();
+    let (of, key) = match held_out {
+        Some(_) => ("rows held out", "accuracy.held_out.count"),
+        None => ("the fitted rows, since none was held out", "accuracy.training.count"),
+    };
+    let (set, mut rows) = leading(file);
+    rows.retain(|(.., key)| key.starts_with("accuracy"));
+    let rest = without_suspected(file, &rows);
+    let on = format!("on {of}");
+    let tables = set.calibrated.iter().flat_map(|(quantity, _)| {
+        let words = error_words(quantity, &on);
+        let all = lead_table(&words, &rows, quantity, set.improvement.as_ref());
+        let rest = rest.as_ref().map(|(suspected, rows)| {
+            lead_table(&format!("{words}, without {suspected} suspected"), rows, quantity, None)
+        });
+        std::iter::once(all).chain(rest)
+    });
+    let tables: Vec<HtmlTable> = corners::table(&rows, &on).into_iter().chain(tables).collect();
+    let caption = html! { (count(set.count, key)) " " (of) ". Registered: your model, with only tool and device located." };
+    let content = html! {
+        div.first {
+            div {
+                @for table in &tables { (table) }
+                @if corners::are_all(set) {
+                    p.note {
+                        "Position and rotation are those of the pose that fits the corners of a picture, which is uncertain along the ray: the corners "
+                        "judge."
+                    }
+                }
+                @if let (None, Some(found)) = (held_out, &file.cross_validation) {
+                    @if let Some((quantity, key, rms)) = found.random.rms.leading_key() {
+                        p.note {
+                            "Cross-validation: " (figure(rms, format_args!("cross_validation.random.{key}"))) " " (sign(quantity.unit()))
+                            " (RMS) on rows that were not fitted."
+                        }
+                    }
+                }
+                p.note {
+                    b { "Before" } ": your model, with only tool and device located. " b { "After" } ": the joint axes are corrected too. "
+                    @if has_terms(file) { b { "Corrected" } ": with them what the joints do beyond geometry. " }
+                    "The gain of the calibration is the difference."
+                }
+                (facts(&the_facts(file, residuals)))
+            }
+            (plots(&[figures::distributions(file, residuals)], caption))
+        }
+    };
+    titled("before-after", "Errors before and after", &content)
+}
+
+/// The same models without the suspected rows, and how many these are; nothing without suspected rows.
+fn without_suspected<'a>(
+    file: &'a CalibrationFile,
+    rows: &[ModelRow<'a>],
+) -> Option<(usize, Vec<ModelRow<'a>>)> {
+    let robust = &file.robust;
+    let (set, suspected, key) = match file.accuracy.held_out {
+        Some(_) => (&robust.held_out_without_suspected, robust.suspected_held_out, "held_out"),
+        None => (&robust.training_without_suspected, robust.suspected_fit, "training"),
+    };
+    let set = set.as_ref()?;
+    let own = rows.iter().filter_map(|(name, _, path)| {
+        let word = path.rsplit('.').next()?;
+        let (_, model) = models(set).into_iter().find(|(own, _)| *own == word)?;
+        Some((name.clone(), model(set)?, format!("robust.{key}_without_suspected.{word}")))
+    });
+    Some((suspected, own.collect()))
+}
+
+/// Errors before and after, of the rows held out or, if there are none, of those fitted; of the former also how many times smaller they are.
+fn lead_table(
+    caption: &str,
+    rows: &[ModelRow<'_>],
+    quantity: Quantity,
+    gain: Option<&Improvements>,
+) -> HtmlTable {
+    let heads: Vec<&str> = std::iter::once("").chain(rows.iter().map(|(name, ..)| name.as_str())).collect();
+    let mut table = HtmlTable::new(caption, 1, &heads);
+    for (label, statistic, value) in STATISTICS {
+        let cells = rows.iter().map(|(_, model, key)| {
+            let key = format_args!("{key}.{}.{statistic}", quantity.key());
+            figure_or(model.get(quantity).map(value), key, "")
+        });
+        table.cells(std::iter::once(label.render()).chain(cells));
+    }
+    if let Some(gain) = gain {
+        let cells = rows.iter().map(|(.., key)| smaller(gain, key, quantity));
+        table.cells(std::iter::once("smaller by".render()).chain(cells));
+    }
+    table
+}
+
+/// How many times smaller the errors of a model are than the registered model's, with the interval.
+fn smaller(gain: &Improvements, key: &str, quantity: Quantity) -> Markup {
+    let word = key.rsplit('.').next().unwrap_or_default();
+    let of = match word {
+        "calibrated" => gain.calibrated.get(quantity),
+        "corrected" => gain.corrected.as_ref().and_then(|it| it.get(quantity)),
+        _ => None,
+    };
+    let Some(found) = of else { return Markup::default() };
+    let key = |name: &str| format!("accuracy.held_out.improvement.{word}.{}.{name}", quantity.key());
+    html! {
+        "× " (factor(found.factor, &key("factor"))) small { "(" (factor(found.from, &key("from"))) " to " (factor(found.to, &key("to"))) ")" }
+    }
+}
+
+/// A factor with two or three digits.
+fn factor(value: f64, key: &str) -> Markup {
+    let decimals = if value < 10.0 { 1 } else { 0 };
+    html! { span data-key=(key) { (format!("{value:.decimals$}")) } }
+}
+
+/// Errors of the models of a set.
+pub(crate) fn error_table(caption: &str, set: &SetAccuracy, key: &str, quantity: Quantity) -> HtmlTable {
+    let models: Vec<_> = models(set).iter().map(|(name, model)| (*name, model(set))).collect();
+    models_table(caption, &models, &format!("{key}."), quantity)
+}
+
+/// Errors of some models, by the statistics of each.
+pub(crate) fn models_table(
+    caption: &str,
+    models: &[(&str, Option<&ModelAccuracy>)],
+    key: &str,
+    quantity: Quantity,
+) -> HtmlTable {
+    let heads: Vec<&str> = std::iter::once("").chain(models.iter().map(|(name, _)| *name)).collect();
+    let mut table = HtmlTable::new(caption, 1, &heads);
+    for (label, statistic, value) in STATISTICS {
+        let cells = models.iter().map(|(name, model)| {
+            let found = model.and_then(|model| model.get(quantity)).map(value);
+            figure_or(found, format_args!("{key}{name}.{}.{statistic}", quantity.key()), "")
+        });
+        table.cells(std::iter::once(label.render()).chain(cells));
+    }
+    table
+}
+
+fn the_facts(file: &CalibrationFile, residuals: &Residuals) -> Vec<(&'static str, Markup)> {
+    let files = html! {
+        @for (k, name) in file.inputs.measurements.iter().enumerate() {
+            @if k > 0 { br; } (path(name, format_args!("inputs.measurements.{k}")))
+        }
+    };
+    let rows = html! {
+        (kinds_words(residuals)) @if devices(file) == [Device::Pair] { " between two configurations" } @if residuals.targets.len() > 1 { " of " (residuals.targets.len()) " targets" } ": "
+        (count(file.accuracy.training.count, "accuracy.training.count")) " fitted, "
+        @if let Some(set) = &file.accuracy.held_out { (count(set.count, "accuracy.held_out.count")) } @else { "none" }
+        " held out"
+    };
+    let mut all =
+        vec![("Model", path(&file.inputs.model, "inputs.model")), ("Measurements", files), ("Rows", rows)];
+    all.extend(corners::fact(file).map(|corners| ("Corners", corners)));
+    let found = found_words(file);
+    if !found.is_empty() {
+        all.push((
+            "Found",
+            html! { @for (k, words) in found.iter().enumerate() { @if k > 0 { br; } (words) } },
+        ));
+    }
+    all.push(("Noise", noise(file)));
+    all
+}
+
+fn noise(file: &CalibrationFile) -> Markup {
+    let noise = &file.noise;
+    let source = match noise.source {
+        NoiseSource::Rows => return html! { "as each row states it" },
+        NoiseSource::Exact => return html! { "none: the residual is rounding error only" },
+        NoiseSource::Given => "as stated",
+        NoiseSource::Estimated => "estimated from the fit",
+    };
+    html! {
+        @for (k, (quantity, key, sigma)) in noise.sigma.keys().enumerate() {
+            @if k > 0 { ", " }
+            (figure(sigma, format_args!("noise.{key}"))) (spaced(quantity.unit())) (further_words(quantity))
+        }
+        @if noise.sigma.iter().any(|(quantity, _)| quantity.components() > 1) { " each component" }
+        ", " (source)
+    }
+}

@@ -1,0 +1,173 @@
+//! Plots that need no script. They are markup already, in which the plots' own writer has escaped every text.
+
+use maud::{Markup, PreEscaped};
+
+use super::lead::Lead;
+use crate::plot::{Axis, Line, LinePlot, RangePlot, RangeRow, Scale};
+use crate::summary::has_terms;
+use poecal_model::robot::JointKind;
+use poecal_numerics::threads;
+use poecal_results::calibration_file::CalibrationFile;
+use poecal_results::residuals::Residuals;
+
+/// Points of a distribution.
+const STEPS: usize = 20;
+
+/// Which share of the rows is off by how much, for the models.
+pub(crate) fn distributions(file: &CalibrationFile, residuals: &Residuals) -> Markup {
+    let lead = Lead::of(residuals);
+    let held_out = file.accuracy.held_out.is_some();
+    // Of an unknown tool the nominal model says nothing, and its errors would take most of the axis.
+    let lines = [(1, "registered"), (2, "calibrated")].into_iter().map(|(model, name)| {
+        let rows = residuals.rows().iter().filter(|row| row.held_out == held_out);
+        let errors = rows.filter_map(|row| lead.models(row)?.get(model).copied()).collect();
+        // The same colours as the residuals of the calibrated model everywhere else.
+        Line { name: name.to_owned(), style: [1, 3, 0][model], points: distribution(errors) }
+    });
+    let rows = residuals.rows().iter().filter(|row| row.held_out == held_out);
+    // A corrected model without terms is the calibrated one.
+    let corrected: Vec<f64> =
+        rows.filter(|_| has_terms(file)).filter_map(|row| lead.corrected(row)).collect();
+    let corrected = (!corrected.is_empty()).then(|| Line {
+        name: "corrected".to_owned(),
+        style: 2,
+        points: distribution(corrected),
+    });
+    let name = lead.name();
+    let plot = LinePlot {
+        title: format!("Distribution of the {name} error"),
+        description: format!(
+            "For each model the share of the rows whose {name} error is below a value; the table beside has the figures."
+        ),
+        x: Axis::new(&format!("{name} error, {} (logarithmic)", lead.unit()), Scale::Log),
+        y: Axis::new("share of the rows below, %", Scale::Linear).including(&[0.0, 100.0]),
+        lines: lines.chain(corrected).collect(),
+        mark: None,
+    };
+    PreEscaped(plot.svg())
+}
+
+/// Largest error over that below which 95 % lie, from which on a linear axis would leave all others in a corner.
+const FAR_OFF: f64 = 4.0;
+
+/// Errors of the calibrated model on fitted rows and on those held out.
+pub(crate) fn sets(residuals: &Residuals) -> Markup {
+    let lead = Lead::of(residuals);
+    let errors = |held_out: bool| -> Vec<f64> {
+        let rows = residuals.rows().iter().filter(|row| row.held_out == held_out);
+        rows.filter_map(|row| lead.error(row)).collect()
+    };
+    let sets = [("fitted", 0, errors(false)), ("held out", 1, errors(true))];
+    let is_far_off = sets.iter().any(|(_, _, errors)| {
+        let points = distribution(errors.clone());
+        let most = points.iter().find(|[_, share]| *share >= 95.0).zip(points.last());
+        most.is_some_and(|([usual, _], [largest, _])| *largest > FAR_OFF * usual)
+    });
+    let (scale, words, from) =
+        if is_far_off { (Scale::Log, " (logarithmic)", None) } else { (Scale::Linear, "", Some(0.0)) };
+    let lines =
+        sets.map(|(name, style, errors)| Line { name: name.to_owned(), style, points: distribution(errors) });
+    let name = lead.name();
+    let plot = LinePlot {
+        title: "Calibrated model: fitted against held-out rows".to_owned(),
+        description: format!(
+            "The share of fitted and of held-out rows whose {name} error is below a value; the table below has the figures."
+        ),
+        x: Axis::new(&format!("{name} error, {}{words}", lead.unit()), scale).including(from.as_slice()),
+        y: Axis::new("share of the rows below, %", Scale::Linear).including(&[0.0, 100.0]),
+        lines: lines.into_iter().filter(|line| !line.points.is_empty()).collect(),
+        mark: None,
+    };
+    PreEscaped(plot.svg())
+}
+
+/// Points (error, share in per cent) of the distribution of some errors.
+fn distribution(mut errors: Vec<f64>) -> Vec<[f64; 2]> {
+    threads::sort_by(&mut errors, f64::total_cmp);
+    let last = errors.len().saturating_sub(1);
+    let steps = STEPS.min(last.max(1));
+    let point = |step: usize| {
+        let rank = (step * last).div_ceil(steps);
+        Some([*errors.get(rank)?, 100.0 * rank as f64 / last.max(1) as f64])
+    };
+    (0..=steps).filter_map(point).collect()
+}
+
+/// Sizes of the corrections with their standard deviations: tilts, and shifts of joints that turn.
+pub(crate) fn corrections(file: &CalibrationFile) -> Vec<Markup> {
+    let row = |joint: &str, value: f64, sigma: Option<f64>| RangeRow {
+        label: joint.to_owned(),
+        line: sigma.map(|sigma| [(value - sigma).max(0.0), value + sigma]),
+        bar: None,
+        dot: Some(value),
+    };
+    let plot = |title: &str, axis: &str, rows: Vec<RangeRow>| {
+        let plot = RangePlot {
+            title: title.to_owned(),
+            description: "A dot for each joint, one standard deviation to each side as a line; the table has the figures.".to_owned(),
+            x: Axis::new(axis, Scale::Linear).including(&[0.0]),
+            rows,
+        };
+        (!plot.rows.is_empty()).then(|| PreEscaped(plot.svg()))
+    };
+    let length = |it: &[f64; 3]| it.iter().map(|part| part * part).sum::<f64>().sqrt();
+    let changes = || file.corrections.iter().filter_map(|it| Some((&*it.joint, it.change.as_ref()?)));
+    let tilts = changes().map(|(joint, it)| row(joint, length(&it.tilt_deg), it.sigma_tilt_deg));
+    let shifts = changes()
+        .filter_map(|(joint, it)| Some(row(joint, length(it.shift_mm.as_ref()?), it.sigma_shift_mm)));
+    let plots = [
+        plot("Tilt of each axis", "degrees", tilts.collect()),
+        plot("Shift of each axis", "mm", shifts.collect()),
+    ];
+    plots.into_iter().flatten().collect()
+}
+
+/// What was sampled of each joint's range: those that turn, and those that slide.
+pub(crate) fn coverage(file: &CalibrationFile) -> Vec<Markup> {
+    let kinds = [
+        (JointKind::Revolute, "Joints that turn", "degrees", 1f64.to_degrees()),
+        (JointKind::Prismatic, "Joints that slide", "mm", 1e3),
+    ];
+    let plots = kinds.into_iter().filter_map(|(kind, title, unit, factor)| {
+        let joints = file.coverage.iter().filter(|found| {
+            file.joints.iter().any(|joint| joint.name == found.joint && joint.kind == kind)
+        });
+        let rows: Vec<RangeRow> = joints
+            .map(|found| RangeRow {
+                label: found.joint.clone(),
+                line: found.limit_min.zip(found.limit_max).map(|(least, most)| [least * factor, most * factor]),
+                bar: Some([found.sampled_min * factor, found.sampled_max * factor]),
+                dot: None,
+            })
+            .collect();
+        let plot = RangePlot {
+            title: title.to_owned(),
+            description: "For each joint its limits as a thin line and what was sampled as a bar; the table has the figures.".to_owned(),
+            x: Axis::new(unit, Scale::Linear),
+            rows,
+        };
+        (!plot.rows.is_empty()).then(|| PreEscaped(plot.svg()))
+    });
+    plots.collect()
+}
+
+/// How the mean square fell in each fit: weights differ from fit to fit, so that a step up is none of a fit.
+pub(crate) fn convergence(file: &CalibrationFile) -> Markup {
+    let trace = &file.solver.trace;
+    let mut step = 0;
+    let fits = trace.chunk_by(|before, after| after <= before).map(|fit| {
+        let points = fit.iter().enumerate().map(|(k, &value)| [(step + k) as f64, value]).collect();
+        step += fit.len();
+        Line { name: "fit".to_owned(), style: 0, points }
+    });
+    let plot = LinePlot {
+        title: "How the fit converged".to_owned(),
+        description: "The mean square of the whitened residual by iteration, a line for each fit; the table below has the figures."
+            .to_owned(),
+        x: Axis::new("iteration", Scale::Count),
+        y: Axis::new("mean square of the whitened residual (logarithmic)", Scale::Log),
+        lines: fits.collect(),
+        mark: None,
+    };
+    PreEscaped(plot.svg())
+}

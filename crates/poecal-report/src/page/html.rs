@@ -1,0 +1,148 @@
+//! What the page is made of: figures, each with the key of `calibration.json` that it is, tables, pictures. maud escapes every text.
+
+use maud::{Markup, PreEscaped, Render, html};
+
+use crate::table::number;
+
+/// A figure as people read it, with the place in `calibration.json` that it comes from.
+pub(crate) fn figure(value: f64, key: impl Render) -> Markup {
+    scaled(value, key, 1.0)
+}
+
+/// A figure that the file holds in another unit: what is shown is `factor` times what the file says.
+pub(crate) fn scaled(value: f64, key: impl Render, factor: f64) -> Markup {
+    let shown = value * factor;
+    let sign = if shown < 0.0 { "−" } else { "" };
+    let scale = (factor != 1.0).then_some(factor);
+    html! {
+        span data-key=(key) data-factor=[scale] {
+            @if shown.is_finite() { (sign) (number(shown.abs())) } @else { "–" }
+        }
+    }
+}
+
+/// A figure, or these words where there is none.
+pub(crate) fn figure_or(value: Option<f64>, key: impl Render, words: &str) -> Markup {
+    value.map_or_else(|| words.render(), |value| figure(value, key))
+}
+
+/// A whole number from `calibration.json`.
+pub(crate) fn count(value: usize, key: impl Render) -> Markup {
+    html! { span data-key=(key) { (value) } }
+}
+
+/// Text from `calibration.json`, as it stands there; words between backticks are code.
+pub(crate) fn quoted(text: &str, key: impl Render) -> Markup {
+    html! {
+        span data-key=(key) {
+            @for (k, piece) in text.split('`').enumerate() {
+                @if k % 2 == 1 { code { (piece) } } @else { (piece) }
+            }
+        }
+    }
+}
+
+/// A path from `calibration.json`, which may be broken after its folders.
+pub(crate) fn path(text: &str, key: impl Render) -> Markup {
+    let mut folders: Vec<&str> = text.split_inclusive(['/', '\\']).collect();
+    let name = folders.pop().unwrap_or_default();
+    html! { span data-key=(key) { @for folder in folders { (folder) wbr; } (name) } }
+}
+
+/// A value with decimals and a true minus; what rounds to zero has none.
+pub(crate) fn decimal(value: f64, decimals: usize) -> String {
+    let text = format!("{value:.decimals$}");
+    if text.trim_matches(['-', '0', '.']).is_empty() {
+        return text.trim_start_matches('-').to_owned();
+    }
+    text.replace('-', "−")
+}
+
+/// A table.
+pub(crate) struct HtmlTable {
+    caption: String,
+    head: Vec<String>,
+    rows: String,
+    /// How many columns, from the left, hold words; the others hold numbers.
+    words: usize,
+}
+
+impl HtmlTable {
+    pub(crate) fn new(caption: &str, words: usize, head: &[&str]) -> Self {
+        let head = head.iter().map(|name| (*name).to_owned()).collect();
+        HtmlTable { caption: caption.to_owned(), head, rows: String::new(), words }
+    }
+
+    fn class(&self, column: usize) -> &'static str {
+        if column < self.words { "word" } else { "number" }
+    }
+
+    /// A row of cells of several kinds.
+    pub(crate) fn row(&mut self, cells: &[&dyn Render]) {
+        self.cells(cells);
+    }
+
+    /// A row of cells of one kind.
+    pub(crate) fn cells(&mut self, cells: impl IntoIterator<Item = impl Render>) {
+        let row = html! {
+            tr {
+                @for (k, cell) in cells.into_iter().enumerate() {
+                    @if k == 0 { th scope="row" { (cell) } } @else { td class=(self.class(k)) { (cell) } }
+                }
+            }
+        };
+        self.marked(&row);
+    }
+
+    /// A row of cells that are marked up already.
+    pub(crate) fn marked(&mut self, row: &Markup) {
+        row.render_to(&mut self.rows);
+        self.rows.push('\n');
+    }
+}
+
+impl Render for HtmlTable {
+    fn render(&self) -> Markup {
+        // The box scrolls on narrow screens, and is reached by the keyboard.
+        html! {
+            div.scroll tabindex="0" role="region" aria-label=(self.caption) {
+                table {
+                    caption { (self.caption) }
+                    thead { tr { @for (k, name) in self.head.iter().enumerate() { th scope="col" class=(self.class(k)) { (name) } } } }
+                    tbody { (PreEscaped(&self.rows)) }
+                }
+            }
+        }
+    }
+}
+
+/// A section with its heading.
+pub(crate) fn section(id: &str, title: &str, content: &Markup) -> Markup {
+    let title_id = format!("{id}-title");
+    html! { section id=(id) aria-labelledby=(title_id) { h2 id=(title_id) { (title) } (content) } "\n" }
+}
+
+/// A list; nothing if it has no items.
+pub(crate) fn list(items: &[Markup]) -> Markup {
+    html! { @if !items.is_empty() { ul { @for item in items { li { (item) } } } } }
+}
+
+/// Names with what they are.
+pub(crate) fn facts(facts: &[(&str, Markup)]) -> Markup {
+    html! { dl.facts { @for (name, fact) in facts { div { dt { (name) } dd { (fact) } } } } }
+}
+
+/// A table that is opened on demand, and printed in any case.
+pub(crate) fn folded(summary: &str, table: &HtmlTable) -> Markup {
+    html! { details { summary { (summary) } (table) } }
+}
+
+/// Plots side by side, with a caption.
+pub(crate) fn plots(plots: &[Markup], caption: impl Render) -> Markup {
+    html! { @if !plots.is_empty() { figure { div.plots { @for plot in plots { (plot) } } figcaption { (caption) } } } }
+}
+
+/// A place that the script fills with a chart.
+pub(crate) fn chart(name: &str, title: &str, caption: &str) -> Markup {
+    html! { figure.chart data-chart=(name) { h3 { (title) } div.drawing {} figcaption { (caption) } } }
+}

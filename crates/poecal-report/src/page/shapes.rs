@@ -1,0 +1,67 @@
+//! The shapes of links, for the picture.
+
+use std::borrow::Cow;
+
+use serde::Serialize;
+
+use poecal_numerics::text::visible;
+use poecal_results::calibration_file::PoseEntry;
+use poecal_results::shapes::{Form, Mesh, Shape};
+
+/// A shape on a body.
+#[derive(Serialize)]
+pub(crate) struct ShapeData<'a> {
+    link: Cow<'a, str>,
+    /// The joint that moves its body; none for the base.
+    on: Option<usize>,
+    /// Its pose in the base at zero joint values.
+    pose: PoseEntry,
+    nominal_pose: PoseEntry,
+    #[serde(flatten)]
+    form: FormData,
+}
+
+/// What it is, metres.
+#[derive(Serialize)]
+#[serde(rename_all = "snake_case")]
+enum FormData {
+    Box([f64; 3]),
+    /// Radius and length.
+    Cylinder([f64; 2]),
+    Sphere(f64),
+    Mesh(usize),
+}
+
+impl<'a> ShapeData<'a> {
+    pub(crate) fn of(shape: &'a Shape) -> Self {
+        ShapeData {
+            link: visible(&shape.link),
+            on: shape.body.joint(),
+            pose: (&shape.pose).into(),
+            nominal_pose: (&shape.nominal_pose).into(),
+            form: match shape.form {
+                Form::Box(sides) => FormData::Box(sides),
+                Form::Cylinder(sizes) => FormData::Cylinder(sizes),
+                Form::Sphere(radius) => FormData::Sphere(radius),
+                Form::Mesh(index) => FormData::Mesh(index),
+            },
+        }
+    }
+}
+
+/// A mesh as `io::shapes` has it.
+#[derive(Serialize)]
+pub(crate) struct MeshData<'a> {
+    least: [f32; 3],
+    step: f32,
+    places: &'a str,
+    corners: &'a str,
+    wide: bool,
+}
+
+impl<'a> MeshData<'a> {
+    pub(crate) fn of(mesh: &'a Mesh) -> Self {
+        let Mesh { least, step, places, corners, wide, .. } = mesh;
+        MeshData { least: *least, step: *step, places, corners, wide: *wide }
+    }
+}

@@ -1,0 +1,60 @@
+//! A robot as lines, drawn from two sides: for paper, and for browsers that do not draw in three dimensions.
+
+use maud::{Markup, PreEscaped};
+use nalgebra::Vector3;
+
+use crate::plot::{ArmPlot, Arms};
+use poecal_plan::plan::skeleton;
+use poecal_results::calibration_file::CalibrationFile;
+
+/// A picture from a side: which coordinate is across and which is up.
+pub(crate) struct View {
+    title: &'static str,
+    axes: [usize; 2],
+    names: [&'static str; 2],
+}
+
+impl View {
+    /// What is seen of a place.
+    pub(crate) fn flat(&self, at: &Vector3<f64>) -> [f64; 2] {
+        self.axes.map(|axis| at[axis])
+    }
+}
+
+const VIEWS: [View; 2] = [
+    View { title: "From the side", axes: [0, 2], names: ["x of the base, m", "z, m"] },
+    View { title: "From above", axes: [0, 1], names: ["x of the base, m", "y, m"] },
+];
+
+/// Both pictures.
+pub(crate) fn pictures(arms: impl Fn(&View) -> Vec<Arms>) -> Vec<Markup> {
+    let one = |view: &View| {
+        let plot = ArmPlot {
+            title: view.title.to_owned(),
+            description: format!("{}: the robot as lines between the frames of its joints", view.title),
+            x_title: view.names[0].to_owned(),
+            y_title: view.names[1].to_owned(),
+            arms: arms(view),
+        };
+        PreEscaped(plot.svg())
+    };
+    VIEWS.iter().map(one).collect()
+}
+
+/// The calibrated robot in the middle of what was sampled; nothing of a file without a valid robot.
+pub(crate) fn still(file: &CalibrationFile) -> Vec<Markup> {
+    let Ok(robot) = file.robot() else { return Vec::new() };
+    let middle = |name: &String| {
+        let joint = robot.joints.iter().find(|joint| joint.reading.name == *name)?;
+        let sampled = file.coverage.iter().find(|it| it.joint == joint.name)?;
+        Some(0.5 * (sampled.sampled_min + sampled.sampled_max))
+    };
+    let readings: Vec<f64> =
+        robot.reading_names().iter().map(|name| middle(name).unwrap_or_default()).collect();
+    let lines = skeleton(&robot, &readings);
+    pictures(|view| {
+        let ends = lines.iter().map(|line| view.flat(&line[1])).collect();
+        let lines = lines.iter().map(|[a, b]| [view.flat(a), view.flat(b)]).collect();
+        vec![Arms { name: "calibrated".to_owned(), style: 0, lines, points: ends }]
+    })
+}

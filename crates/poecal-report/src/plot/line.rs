@@ -1,0 +1,149 @@
+//! Lines with markers over two numeric axes.
+
+use super::Mark;
+use super::axis::{Axis, Ruler};
+use super::frame::{self, Area, Frame, WIDTH};
+use super::svg::Canvas;
+
+/// Height of the area of the data, px.
+const HEIGHT: f64 = 210.0;
+/// Points of a line from which on its markers are small.
+const MANY: usize = 25;
+
+/// A line of a [`LinePlot`].
+pub struct Line {
+    pub name: String,
+    /// Which colour, dash and marker: the same thing has the same in every plot.
+    pub style: usize,
+    pub points: Vec<[f64; 2]>,
+}
+
+/// Lines over two axes.
+pub struct LinePlot {
+    pub title: String,
+    pub description: String,
+    pub x: Axis,
+    pub y: Axis,
+    pub lines: Vec<Line>,
+    pub mark: Option<Mark>,
+}
+
+impl LinePlot {
+    /// The plot as SVG.
+    pub fn svg(&self) -> String {
+        self.drawn(true)
+    }
+
+    /// The same with the points of the first line alone, not joined.
+    pub fn scattered(&self) -> String {
+        self.drawn(false)
+    }
+
+    fn drawn(&self, joins_first: bool) -> String {
+        let points = || self.lines.iter().flat_map(|line| &line.points);
+        let marked = self.mark.iter().map(|mark| mark.at);
+        let x = self.x.ruler(points().map(|point| point[0]).chain(marked));
+        let y = self.y.ruler(points().map(|point| point[1]));
+        let mut canvas = Canvas::new();
+        // Lines of one name are one in pieces. A single one needs no legend: the title says what it is.
+        let mut legend: Vec<(usize, &str)> =
+            self.lines.iter().map(|line| (line.style, line.name.as_str())).collect();
+        legend.dedup();
+        if legend.len() == 1 {
+            legend.clear();
+        }
+        let below = frame::head(&mut canvas, &self.title, &legend, true);
+        let top =
+            frame::vertical_title(&mut canvas, below, &self.y.title) + frame::mark_room(self.mark.as_ref());
+        let area = Area { left: 56.0, top, right: WIDTH - 20.0, bottom: top + HEIGHT };
+        frame::vertical_axis(&mut canvas, &area, &y);
+        let mut frame = Frame::new(canvas, area, (x, &self.x.title), self.mark.as_ref());
+        for (k, line) in self.lines.iter().enumerate() {
+            // Lines that coincide stay visible: the later ones have smaller markers.
+            let radius = if line.points.len() > MANY { 2.4 } else { (5.2 - 0.8 * k as f64).max(2.4) };
+            draw(&mut frame, &y, line, (radius, k > 0 || joins_first));
+        }
+        frame.finish(points().next().is_some(), &self.title, &self.description)
+    }
+}
+
+/// Draws a line, with markers of this radius, and joined or not; where a point is not a number, it is broken.
+fn draw(frame: &mut Frame, y: &Ruler, line: &Line, (radius, is_joined): (f64, bool)) {
+    let Frame { canvas, area, x, unshown } = frame;
+    let mut pieces: Vec<Vec<[f64; 2]>> = vec![Vec::new()];
+    let mut markers = Vec::new();
+    for &[across_value, up_value] in &line.points {
+        let (Some(across), Some(up)) = (x.place(across_value), y.place(up_value)) else {
+            unshown.not_numbers += 1;
+            pieces.push(Vec::new());
+            continue;
+        };
+        let at = [area.x(across.share), area.y(up.share)];
+        let inside = across.inside && up.inside;
+        if !inside {
+            unshown.beyond(if up.inside { across_value } else { up_value });
+        }
+        markers.push((at, inside));
+        if let Some(piece) = pieces.last_mut() {
+            piece.push(at);
+        }
+    }
+    canvas.begin_series(line.style);
+    for piece in pieces.iter().filter(|piece| is_joined && piece.len() > 1) {
+        canvas.path(line.style, piece);
+    }
+    for (at, inside) in markers {
+        canvas.marker(line.style, at, radius, inside);
+    }
+    canvas.end_series();
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::plot::Scale;
+
+    fn plot(scale: Scale, lines: Vec<Vec<[f64; 2]>>) -> String {
+        let line = |(style, points)| Line { name: format!("line <{style}>"), style, points };
+        let plot = LinePlot {
+            title: "A & B".to_owned(),
+            description: "lines".to_owned(),
+            x: Axis::new("iteration", Scale::Count),
+            y: Axis::new("error, mm", scale),
+            lines: lines.into_iter().enumerate().map(line).collect(),
+            mark: Some(Mark { at: 2.5, label: "rank 2".to_owned() }),
+        };
+        plot.svg()
+    }
+
+    #[test]
+    fn any_data_give_well_formed_pictures() {
+        let odd = [0.0, -1.0, 5e-324, f64::MAX, f64::INFINITY, f64::NEG_INFINITY, f64::NAN];
+        let sets = odd.iter().map(|v| vec![vec![[0.0, *v]]]).chain([
+            vec![],
+            vec![vec![]],
+            vec![odd.iter().map(|v| [*v, *v]).collect(), vec![[1.0, 1.0]]],
+        ]);
+        for lines in sets {
+            for scale in [Scale::Linear, Scale::Log, Scale::Count] {
+                let svg = plot(scale, lines.clone());
+                let document = roxmltree::Document::parse(&svg).unwrap();
+                assert_eq!(document.root_element().attribute("role"), Some("img"));
+                assert!(!svg.contains("NaN") && !svg.contains("\"inf"), "{svg}");
+            }
+        }
+    }
+
+    #[test]
+    fn zero_on_a_log_axis_is_hollow_and_noted() {
+        let svg = plot(Scale::Log, vec![vec![[0.0, 1.0], [1.0, 0.0], [2.0, f64::NAN]]]);
+        assert_eq!(svg.matches("class=\"hollow\"").count(), 1);
+        assert!(svg.contains("Hollow: exactly zero (1).") && svg.contains("Not drawn: 1"));
+    }
+
+    #[test]
+    fn the_same_data_give_the_same_bytes() {
+        let lines = vec![vec![[0.0, 1.0], [1.0, 0.3]], vec![[0.0, 2.0]]];
+        assert_eq!(plot(Scale::Log, lines.clone()), plot(Scale::Log, lines));
+    }
+}

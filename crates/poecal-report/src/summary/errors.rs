@@ -1,0 +1,175 @@
+//! The errors that count: of rows that were not fitted, before and after.
+
+use super::super::found::found_words;
+use super::super::table::{
+    STATISTICS, corner_words, further_words, leading_words, line, lines, number, number_or_dash,
+    pictures_words, row,
+};
+use super::look::reasons;
+use super::{Expectation, expected};
+use poecal_calibrate::{AcceptedLimit, AcceptedStatistic, DeviceFrameKnowledge, ModelAccuracy, SetAccuracy};
+use poecal_model::measurement::Quantity;
+use poecal_results::calibration_file::CalibrationFile;
+
+/// Widths of the label and of each figure.
+const WIDTHS: [usize; 2] = [38, 10];
+
+/// The errors of a model: its words, the errors, and their key in `calibration.json`.
+pub(crate) type ModelRow<'a> = (String, &'a ModelAccuracy, String);
+
+/// The rows that a calibration is judged by, those held out or if there are none those fitted, and the errors of the models on them.
+pub(crate) fn leading(file: &CalibrationFile) -> (&SetAccuracy, Vec<ModelRow<'_>>) {
+    let (accuracy, robust) = (&file.accuracy, &file.robust);
+    let (set, key, rest, suspected) = match &accuracy.held_out {
+        Some(set) => (set, "held_out", &robust.held_out_without_suspected, robust.suspected_held_out),
+        None => (&accuracy.training, "training", &robust.training_without_suspected, robust.suspected_fit),
+    };
+    let holds = |kind: &str| {
+        let is_of = |name: &String| name == kind || name.starts_with(&format!("{kind}."));
+        file.blocks.as_ref().is_some_and(|blocks| blocks.held.iter().any(is_of))
+    };
+    let nominal = match file.measurement_frame.known {
+        DeviceFrameKnowledge::Unknown | DeviceFrameKnowledge::Base if holds("target") || holds("frame") => {
+            "your model, registered by what is free"
+        }
+        DeviceFrameKnowledge::Unknown => "your model, tool and device located",
+        DeviceFrameKnowledge::Base => "your model, tool located",
+    };
+    let mut rows = vec![
+        (nominal.to_owned(), &set.registered, format!("accuracy.{key}.registered")),
+        ("calibrated".to_owned(), &set.calibrated, format!("accuracy.{key}.calibrated")),
+    ];
+    if let Some(corrected) = set.corrected.as_ref().filter(|_| has_terms(file)) {
+        rows.push(("corrected".to_owned(), corrected, format!("accuracy.{key}.corrected")));
+    }
+    rows.extend(rest.as_ref().map(|rest| {
+        let words = format!("calibrated, without {suspected} suspected");
+        (words, &rest.calibrated, format!("robust.{key}_without_suspected.calibrated"))
+    }));
+    (set, rows)
+}
+
+/// Whether the corrected model has terms: otherwise it is the calibrated one.
+pub(crate) fn has_terms(file: &CalibrationFile) -> bool {
+    file.corrected.as_ref().is_some_and(|it| it.has_terms())
+}
+
+/// The rows on which the errors before and after were measured.
+pub(crate) fn judged_on(file: &CalibrationFile) -> &'static str {
+    let (set, _) = leading(file);
+    let are_pictures = set.calibrated.of_pictures(set.count).is_some();
+    match (file.accuracy.held_out.is_some(), are_pictures) {
+        (true, false) => "rows held out",
+        (true, true) => "pictures held out",
+        (false, false) => "fitted rows",
+        (false, true) => "fitted pictures",
+    }
+}
+
+/// Why the error to expect is larger than the one measured, where it is.
+pub(crate) fn why_larger(file: &CalibrationFile) -> Option<&'static str> {
+    let (_, rows) = leading(file);
+    let (_, after, _) = rows.iter().rfind(|(.., key)| key.starts_with("accuracy"))?;
+    let measured_mm = after.get(Quantity::Position)?.rms;
+    (expected(file)?.error_mm > measured_mm).then_some(
+        "The expected error is larger than the measured one: it counts every residual that no stated noise explains as robot error, and it \
+         allows for joint effects that these rows leave open.",
+    )
+}
+
+/// Errors before and after on the same rows, the error to expect, and where that is valid.
+pub(crate) fn figures(out: &mut String, file: &CalibrationFile) {
+    let (set, rows) = leading(file);
+    let mut models = rows.iter().filter(|(.., key)| key.starts_with("accuracy"));
+    let (Some(before), Some(after)) = (models.next(), models.next_back()) else { return };
+    let held_out = file.accuracy.held_out.is_some();
+    let judging = if held_out { "held out" } else { "fitted" };
+    let words = |model: &ModelAccuracy| {
+        if let Some(pixels) = model.of_pictures(set.count) {
+            return corner_words(&pixels);
+        }
+        let each = model.iter().map(|(quantity, error)| {
+            format!("{} {}{}", number(error.rms), quantity.unit().symbol(), further_words(quantity))
+        });
+        each.collect::<Vec<_>>().join(", ")
+    };
+    let on = judged_on(file);
+    line(out, "before", &format!("{} (RMS) on {on}: {}", words(before.1), before.0));
+    line(out, "after", &format!("{} (RMS) on {on}: {} model", words(after.1), after.0));
+    if let Some(expectation) = expected(file) {
+        say_expected(out, file, expectation);
+    }
+    let largest = after
+        .1
+        .leading()
+        .map(|(quantity, error)| format!(", at most {} {}", number(error.max), quantity.unit().symbol()));
+    let rest = rows.iter().find(|(.., key)| key.starts_with("robust")).map(|(name, model, _)| {
+        format!("; {}: {}", name.split_once(", ").map_or(name.as_str(), |it| it.1), words(model))
+    });
+    let rest = rest.unwrap_or_default();
+    match after.1.of_pictures(set.count) {
+        Some(pixels) => {
+            line(out, judging, &format!("{}{rest}", pictures_words(&pixels)));
+        }
+        None => {
+            let largest = largest.unwrap_or_default();
+            line(out, judging, &format!("{} rows{largest}{rest}", set.count));
+        }
+    }
+    if let (Some(before), Some(after), None) =
+        (before.1.pixels, after.1.pixels, after.1.of_pictures(set.count))
+    {
+        let (was, is, mm) = (number(before.rms_px), number(after.rms_px), number(after.rms_mm));
+        let words = format!("{was} px before, {is} px after (RMS), {mm} mm at the board square to the ray");
+        line(out, "corners", &words);
+    }
+    lines(out, "found", found_words(file));
+    if !held_out {
+        let validated = file.cross_validation.as_ref().map(|it| leading_words(&it.random.rms));
+        let validated = validated.map_or_else(String::new, |rms| format!("; cross-validation {rms} (RMS)"));
+        line(out, "", &format!("no row was held out{validated}"));
+    }
+}
+
+/// The error to expect, and where that is valid.
+fn say_expected(out: &mut String, file: &CalibrationFile, expectation: Expectation) {
+    let Expectation { error_mm, bound_mm, anywhere } = expectation;
+    let (error, bound) = (number(error_mm), number(bound_mm));
+    let is_exceeded = |limit: &AcceptedLimit| {
+        limit.quantity == Quantity::Position.name()
+            && limit.statistic == AcceptedStatistic::Rms
+            && limit.to.is_some_and(|to| to < error_mm)
+    };
+    // The bounds of a limit are of measured errors.
+    let why = if file.acceptance.as_ref().is_some_and(|it| it.limits.iter().any(is_exceeded)) {
+        "; above the upper bound of the measured error, since unexplained residuals count as robot error"
+    } else {
+        ""
+    };
+    line(out, "expected", &format!("{error} mm (RMS) of predictions, 95 % below {bound} mm{why}"));
+    let valid = match (anywhere, reasons(file).into_iter().next()) {
+        (Some((sigma, _)), _) => {
+            format!("anywhere within the limits, {} mm (RMS) expected there", number(sigma))
+        }
+        (None, Some(reason)) => format!("inside the sampled range: {reason}"),
+        (None, None) => "inside the sampled range".to_owned(),
+    };
+    line(out, "valid", &valid);
+}
+
+/// Mean, RMS, 95 % and maximum of the errors of the rows held out, or if there are none, of those fitted.
+pub(crate) fn table(out: &mut String, file: &CalibrationFile) {
+    let (set, rows) = leading(file);
+    let name = if file.accuracy.held_out.is_some() { "held out" } else { "fitted" };
+    for (quantity, _) in set.calibrated.iter() {
+        let title = format!("{name} ({}), {} in {}", set.count, quantity.name(), quantity.unit().symbol());
+        row(out, &title, WIDTHS, STATISTICS.map(|(label, ..)| label));
+        for (label, model, _) in &rows {
+            let cells = STATISTICS.map(|(.., value)| number_or_dash(model.get(quantity).map(value)));
+            row(out, &format!("  {label}"), WIDTHS, cells);
+        }
+    }
+    if file.accuracy.held_out.is_none() {
+        line(out, "", "no row was held out: these errors are of fitted rows");
+    }
+}

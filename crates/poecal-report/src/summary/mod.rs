@@ -1,0 +1,297 @@
+//! The table of a calibration in 80 columns: the verdict, what to look at, the errors, the unknowns. All else on demand.
+
+mod details;
+mod errors;
+mod look;
+mod names;
+
+use std::mem::discriminant;
+
+pub(crate) use errors::{ModelRow, has_terms, judged_on, leading, why_larger};
+pub(crate) use look::{Place, Point, SEE_ROBUST, look_at, reasons, unknowns_words};
+pub(crate) use names::{MOST, names};
+
+use super::acceptance;
+use super::table::{line, lines, number, rounded};
+use poecal_calibrate::{Event, Level, TermGroup};
+use poecal_fit::analysis::Cause;
+use poecal_numerics::error::shown as name_shown;
+use poecal_results::calibration_file::{
+    CalibrationFile, ClockEntry, CorrectedEntry, IdentifiabilityEntry, UncertaintyEntry,
+};
+
+/// Angle of gravity from -z of the base below which it is not told, radians.
+const UPRIGHT: f64 = 1e-4;
+
+/// How much a table tells.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Detail {
+    /// What everyone needs: about twenty lines.
+    #[default]
+    Short,
+    /// Everything, and lists as long as they are.
+    Full,
+}
+
+/// The result of a calibration, as text of lines up to 80 characters: the verdict first.
+///
+/// ```
+/// use poecal_calibrate::{CalibrationOptions, calibrate};
+/// use poecal_results::calibration_file::{CalibrationFile, Inputs};
+/// use poecal_report::{Detail, summary};
+/// use poecal_model::simulate::{Kind, Simulation, elbow};
+/// let made = Simulation { count: 100, ..Simulation::default() }.run(&elbow(), Kind::POINT)?;
+/// let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default())?;
+/// let file = CalibrationFile::new(&calibration, &made.data, Inputs::default());
+/// let short = summary(&file, Detail::Short);
+/// assert!(short.starts_with("verdict       good\nbefore        ") && short.contains(" mm (RMS) of predictions, 95 % below "));
+/// assert!(summary(&file, Detail::Full).contains("solver"));
+/// # Ok::<(), poecal_numerics::error::Error>(())
+/// ```
+#[must_use]
+pub fn summary(file: &CalibrationFile, detail: Detail) -> String {
+    let mut out = String::new();
+    verdict(&mut out, file);
+    errors::figures(&mut out, file);
+    if let Some(acceptance) = &file.acceptance {
+        acceptance::lines(&mut out, acceptance);
+    }
+    points(&mut out, file, detail);
+    known(&mut out, file);
+    file.clocks.iter().for_each(|clock| line(&mut out, "clock", &clock_words(clock)));
+    if detail == Detail::Full {
+        out.push('\n');
+        errors::table(&mut out, file);
+        out.push('\n');
+        details::all(&mut out, file);
+    }
+    if out.contains('±') {
+        line(&mut out, "±", "one standard deviation");
+    }
+    out
+}
+
+/// Warnings and diagnoses of a calibration that its table does not name for want of room.
+#[must_use]
+pub fn unsaid(file: &CalibrationFile, detail: Detail) -> Vec<String> {
+    let (_, rest) = shown(look_at(file), detail);
+    let is_warning = |point: &&Point| matches!(point.place, Place::Warning(_) | Place::Diagnosis(_));
+    rest.iter().filter(is_warning).map(|point| point.text.clone()).collect()
+}
+
+/// What to expect of the model that is delivered.
+pub(crate) struct Expectation {
+    /// Millimetres (RMS), in configurations like those that were measured.
+    pub(crate) error_mm: f64,
+    /// The distance that 95 % of the errors do not exceed.
+    pub(crate) bound_mm: f64,
+    /// The same error anywhere within the limits, with its key, where the verdict is good.
+    pub(crate) anywhere: Option<(f64, String)>,
+}
+
+/// What the verdict lets expect; nothing where no use is advised or nothing is known.
+pub(crate) fn expected(file: &CalibrationFile) -> Option<Expectation> {
+    let verdict = file.verdict.as_ref().filter(|it| it.level != Level::DoNotUse)?;
+    let (own, key) = uncertainty(file)?;
+    Some(Expectation {
+        error_mm: verdict.expected_error_mm.unwrap_or(own.measured.sigma_position_mm),
+        bound_mm: verdict.bound95_mm.unwrap_or(own.measured.bound95_position_mm),
+        anywhere: (verdict.level == Level::Good)
+            .then(|| (own.range.sigma_position_mm, format!("{key}.range.sigma_position_mm"))),
+    })
+}
+
+/// The model that is delivered.
+pub(crate) fn delivered(file: &CalibrationFile) -> &'static str {
+    if has_terms(file) { "corrected" } else { "calibrated" }
+}
+
+/// Uncertainty of the model that is delivered, and its key.
+pub(crate) fn uncertainty(file: &CalibrationFile) -> Option<(&UncertaintyEntry, &'static str)> {
+    let corrected = file.corrected.as_deref().filter(|it| it.has_terms());
+    match corrected.and_then(|it| it.uncertainty.as_ref()) {
+        Some(own) => Some((own, "corrected.uncertainty")),
+        None => Some((file.uncertainty.as_ref()?, "uncertainty")),
+    }
+}
+
+fn verdict(out: &mut String, file: &CalibrationFile) {
+    let Some(verdict) = &file.verdict else {
+        line(out, "verdict", "none: the calibration was written by an earlier version");
+        return;
+    };
+    let level = verdict.level.words();
+    match reasons(file).into_iter().next() {
+        Some(reason) if verdict.level == Level::DoNotUse => {
+            line(out, "verdict", &format!("{level}: {reason}"))
+        }
+        _ => line(out, "verdict", level),
+    }
+    lines(out, "repaired", file.repairs.iter().map(repaired_words));
+}
+
+/// What a repair is, and what it gains.
+pub(crate) fn repaired_words(found: &Event) -> String {
+    let gain = found.error_before_mm.zip(found.error_after_mm);
+    let gain = gain.map(|(before, after)| {
+        format!("; cross-validation {} mm (RMS) instead of {}", number(after), number(before))
+    });
+    format!("{}{}", found.statement, gain.unwrap_or_default())
+}
+
+/// What needs attention.
+fn points(out: &mut String, file: &CalibrationFile, detail: Detail) {
+    let (shown, rest) = shown(look_at(file), detail);
+    lines(out, "look at", shown.iter().map(|point| &point.text));
+    if !rest.is_empty() {
+        line(out, "", &format!("… and {} more, in the report", rest.len()));
+    }
+}
+
+/// The points of which there is room to tell, and the others. Of every sort one is told before a second one of another.
+fn shown(points: Vec<Point>, detail: Detail) -> (Vec<Point>, Vec<Point>) {
+    if points.len() <= MOST || detail == Detail::Full {
+        return (points, Vec::new());
+    }
+    // Points of one sort compete for room.
+    let sort = |k: usize| discriminant(&points[k].place);
+    let earlier = |k: usize| (0..k).filter(|&other| sort(other) == sort(k)).count();
+    let mut order: Vec<usize> = (0..points.len()).collect();
+    order.sort_by_key(|&k| (earlier(k), k));
+    let chosen = &order[..MOST - 1];
+    let mut parts = (Vec::new(), Vec::new());
+    for (k, point) in points.iter().enumerate() {
+        if chosen.contains(&k) { &mut parts.0 } else { &mut parts.1 }.push(point.clone());
+    }
+    parts
+}
+
+/// Lag and drift of an instrument's clock, with their standard deviations.
+fn clock_words(clock: &ClockEntry) -> String {
+    let ClockEntry { lag_s, sigma_lag_ms, drift_ppm, sigma_drift_ppm, .. } = clock;
+    let sigma = |of: &Option<f64>, unit: &str| {
+        // Two digits.
+        let digits = |it: f64| [10.0, 1.0, 0.1].into_iter().filter(|limit| it < *limit).count();
+        of.map_or(String::new(), |it| format!(" ± {it:.*}{unit}", digits(it)))
+    };
+    let name = clock.instrument.as_deref().map_or(String::new(), |it| format!("{}: ", name_shown(it)));
+    format!(
+        "{name}lag {lag_s:.5} s{} in the middle, drift {drift_ppm:.1}{} ppm",
+        sigma(sigma_lag_ms, " ms"),
+        sigma(sigma_drift_ppm, "")
+    )
+}
+
+/// How many unknowns are determined, and how many of them weakly.
+pub(crate) fn determined_words(found: &IdentifiabilityEntry) -> String {
+    let weak = match found.weakly() {
+        0 => String::new(),
+        weak => format!(" ({weak} weakly)"),
+    };
+    format!("{} of {}{weak}", found.rank, unknowns_words(found.parameters))
+}
+
+/// Which unknowns the rows determine, and which they do not.
+fn known(out: &mut String, file: &CalibrationFile) {
+    let found = &file.identifiability;
+    let fitted = file.accuracy.training.count;
+    let all = fitted + file.accuracy.held_out.as_ref().map_or(0, |set| set.count);
+    line(out, "determined", &format!("{}, from {fitted} of {all} rows", determined_words(found)));
+    let mut undetermined = Vec::new();
+    if found.rank == 0 && found.parameters > 0 {
+        undetermined.push("everything: the residual is as large as the effect of the unknowns".to_owned());
+    } else if found.rank < found.parameters {
+        let mut joints: Vec<&str> = Vec::new();
+        for name in found.unidentifiable.iter().flat_map(|direction| &direction.joints) {
+            if !joints.contains(&name.as_str()) {
+                joints.push(name);
+            }
+        }
+        let open = found.parameters - found.rank;
+        let of = if joints.is_empty() { String::new() } else { format!(" of {}", names(&joints)) };
+        undetermined.push(format!("{}{of}", unknowns_words(open)));
+    }
+    let structural = found.structural.iter().filter(|it| it.cause == Cause::NoOrientation);
+    undetermined.extend(structural.map(|direction| direction.description.clone()));
+    lines(out, "undetermined", undetermined);
+    lines(out, "target", targets(file));
+    if file.move_tip {
+        line(out, "tip", "the point that was measured, by --move-tip");
+    }
+    if let Some(blocks) = &file.blocks {
+        lines(out, "held", (!blocks.held.is_empty()).then(|| blocks.held.join(", ")));
+    }
+    lines(out, "terms", terms(file).map(|(name, value)| format!("{name} {value}")));
+    if let Some(found) = &file.corrected {
+        line(out, "corrected", &corrected_words(found));
+        let has_terms = found.sizes.values().any(|size| *size > 0.0);
+        let direction = found.robot.gravity.as_ref().map(|gravity| gravity.direction).filter(|_| has_terms);
+        if let Some([x, y, z]) = direction.filter(|[_, _, z]| (-z).clamp(-1.0, 1.0).acos() > UPRIGHT) {
+            let off = number((-z).clamp(-1.0, 1.0).acos().to_degrees());
+            line(out, "gravity", &format!("along {x:.3}, {y:.3}, {z:.3} of the base, {off} deg from -z"));
+        }
+    } else if file.blocks.as_ref().is_some_and(|it| {
+        it.held.iter().any(|name| file.has_joint(name.strip_suffix(".axis").unwrap_or(name)))
+    }) {
+        line(out, "corrected", "not fitted: beside axes that are held, only groups of terms that are named");
+    }
+}
+
+/// Where each target is on the link of the tip, the first few of many.
+fn targets(file: &CalibrationFile) -> Vec<String> {
+    let link = if file.robot.tip_link.is_empty() { "the tip" } else { &file.robot.tip_link };
+    let on_tip = file.targets.iter().filter(|(_, target)| target.on.is_none());
+    let told = on_tip.map(|(name, target)| {
+        let place = rounded(target.position_m, 1e3, 2);
+        format!("{}: at {place} mm in the frame of {}", name_shown(name), name_shown(link))
+    });
+    let mut told: Vec<String> = told.collect();
+    if told.len() > MOST {
+        let rest = told.len() - (MOST - 1);
+        told.truncate(MOST - 1);
+        told.push(format!("… and {rest} more, in calibration.json"));
+    }
+    told
+}
+
+/// Which groups of terms the corrected model has, and what speaks for them.
+fn corrected_words(found: &CorrectedEntry) -> String {
+    let used = TermGroup::ALL.into_iter().filter_map(|group| {
+        let size = *found.sizes.get(group.name())?;
+        let shown = format!("{:.4}", 1e3 * size);
+        let shown = shown.trim_end_matches('0').trim_end_matches('.');
+        (size > 0.0).then(|| format!("{} {shown} {}", group.name(), group.row().symbols[1]))
+    });
+    let used = used.collect::<Vec<_>>().join(", ");
+    let chosen = found.tried.iter().find(|it| it.sizes == found.sizes);
+    match (used.is_empty(), chosen) {
+        (true, _) => format!("as calibrated: {}", found.reason.words()),
+        (false, None) => format!("by {used}: {}", found.reason.words()),
+        (false, Some(chosen)) => format!(
+            "by {used}: {:.2} of the error of geometry alone on rows of other parts of the range",
+            chosen.left_out
+        ),
+    }
+}
+
+/// The terms of joint values with their coefficients, as they are read.
+pub(crate) fn terms(file: &CalibrationFile) -> impl Iterator<Item = (String, String)> {
+    file.joints.iter().flat_map(|joint| {
+        joint.terms.iter().map(|(term, &coefficient)| {
+            let unit = joint.kind.unit_of(*term);
+            let sign = if coefficient < 0.0 { "-" } else { "" };
+            let name = format!("{}.{term}", joint.name);
+            let value = format!("{sign}{}", number(unit.shown(coefficient.abs())));
+            // The prior alone tells as much as half its own width.
+            let (spread, open) = match file.sigma(&name) {
+                Some(sigma) if sigma > 0.5 * joint.kind.deviation_of(*term) => {
+                    (String::new(), " (not determined)")
+                }
+                Some(sigma) => (format!(" ± {}", number(unit.shown(sigma))), ""),
+                None => (String::new(), ""),
+            };
+            let symbol = if unit.symbol().is_empty() { String::new() } else { format!(" {}", unit.symbol()) };
+            (name, format!("{value}{spread}{symbol}{open}"))
+        })
+    })
+}

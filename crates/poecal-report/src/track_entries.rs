@@ -1,0 +1,200 @@
+//! What a visit showed of each joint and of each cause, in numbers and words.
+
+use std::fmt::Write as _;
+
+use serde::Serialize;
+
+use poecal_numerics::text::visible;
+use poecal_results::track::{Explanation, JointSight, Kind, Unseen};
+
+/// What explains the changes.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(crate) struct ExplanationEntry {
+    pub(crate) kind: &'static str,
+    /// The joint of it; of two zeros both, null where it is of none.
+    pub(crate) joint: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) other_joint: Option<String>,
+    /// The target or device, if it has a name.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) name: Option<String>,
+    pub(crate) size_deg: Option<f64>,
+    pub(crate) sigma_deg: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) other_size_deg: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) other_sigma_deg: Option<f64>,
+    pub(crate) size_mm: Option<f64>,
+    pub(crate) sigma_mm: Option<f64>,
+    /// Growth of all lengths, parts in a million.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) size_ppm: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) sigma_ppm: Option<f64>,
+    pub(crate) words: String,
+}
+
+/// A joint of which no shift of the zero is visible.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(crate) struct InvisibleEntry {
+    pub(crate) joint: String,
+    pub(crate) because: &'static str,
+    pub(crate) words: String,
+}
+
+/// What would be visible of a joint: in degrees, of a slide in millimetres.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(crate) struct SightEntry {
+    pub(crate) joint: String,
+    pub(crate) unit: &'static str,
+    /// Smallest shift of its zero that is visible with 95 %; null where none is.
+    pub(crate) smallest: Option<f64>,
+    pub(crate) sigma: Option<f64>,
+}
+
+/// Word of a kind.
+fn kind(of: Kind) -> &'static str {
+    match of {
+        Kind::Device => "device",
+        Kind::Tool => "tool",
+        Kind::Target => "target",
+        Kind::Lengths => "lengths",
+        Kind::Zero => "zero",
+        Kind::Axis => "axis",
+        Kind::Give => "give",
+        Kind::TwoZeros => "two_zeros",
+    }
+}
+
+/// Words of why no shift of a joint is visible.
+fn because(unseen: Unseen) -> (&'static str, &'static str) {
+    match unseen {
+        Unseen::Device => (
+            "device",
+            "the device was set up anew, so that its new place hides the shift: state --device known if it is on fixed nests",
+        ),
+        Unseen::Tool => ("tool", "the tool was mounted anew, so that its new place hides the shift"),
+        Unseen::DeviceAndTool => {
+            ("device and tool", "device and tool are new, so that their places hide the shift")
+        }
+        Unseen::NoMotion => (
+            "motion",
+            "a shift moves no target of these rows by enough: measure a target farther from its axis, and turn the joints before it",
+        ),
+    }
+}
+
+/// A value in degrees; of a slide in millimetres.
+pub(crate) fn shown(value: f64, slides: bool) -> f64 {
+    if slides { 1e3 * value } else { value.to_degrees() }
+}
+
+impl SightEntry {
+    pub(crate) fn of(it: &JointSight) -> Self {
+        SightEntry {
+            joint: it.joint.clone(),
+            unit: if it.slides { "mm" } else { "deg" },
+            smallest: Some(shown(it.smallest, it.slides)).filter(|_| it.unseen.is_none()),
+            sigma: Some(shown(it.sigma, it.slides)).filter(|it| it.is_finite()),
+        }
+    }
+}
+
+impl InvisibleEntry {
+    pub(crate) fn of(it: &JointSight) -> Option<Self> {
+        let (word, words) = because(it.unseen?);
+        Some(InvisibleEntry { joint: it.joint.clone(), because: word, words: words.to_owned() })
+    }
+}
+
+impl ExplanationEntry {
+    pub(crate) fn of(found: &Explanation) -> Self {
+        let is_of_joint = matches!(found.kind, Kind::Zero | Kind::Axis | Kind::Give | Kind::TwoZeros);
+        let name = |at: usize| found.names.get(at).filter(|it| !it.is_empty()).cloned();
+        let is_pair = found.kind == Kind::TwoZeros;
+        let (angle, length) = (found.size(true), found.size(false));
+        let share = found.kind == Kind::Lengths;
+        let own = |at: usize| found.sizes.get(at).filter(|it| it.turns).map(|it| (it.value, it.sigma));
+        let angle = if is_pair { own(0) } else { angle };
+        let other = if is_pair { own(1) } else { None };
+        let millimetres = length.filter(|_| !share);
+        ExplanationEntry {
+            kind: kind(found.kind),
+            joint: name(0).filter(|_| is_of_joint),
+            other_joint: name(1).filter(|_| is_pair),
+            name: name(0).filter(|_| matches!(found.kind, Kind::Target | Kind::Device)),
+            size_deg: angle.map(|it| it.0.to_degrees()),
+            sigma_deg: angle.map(|it| it.1.to_degrees()),
+            other_size_deg: other.map(|it| it.0.to_degrees()),
+            other_sigma_deg: other.map(|it| it.1.to_degrees()),
+            size_mm: millimetres.map(|it| 1e3 * it.0),
+            sigma_mm: millimetres.map(|it| 1e3 * it.1),
+            size_ppm: length.filter(|_| share).map(|it| 1e6 * it.0),
+            sigma_ppm: length.filter(|_| share).map(|it| 1e6 * it.1),
+            words: words(found),
+        }
+    }
+
+    /// What it is of, in a word.
+    pub(crate) fn named(&self) -> String {
+        match (&self.joint, &self.other_joint, &self.name) {
+            (Some(joint), Some(other), _) => format!("{joint} and {other}"),
+            (Some(joint), None, _) if self.kind == "zero" => joint.clone(),
+            (Some(joint), None, _) => format!("{} of {joint}", self.kind),
+            (None, _, Some(name)) => format!("{} {name}", self.kind),
+            _ => self.kind.to_owned(),
+        }
+    }
+}
+
+/// An explanation with its size.
+fn words(found: &Explanation) -> String {
+    let first = found.names.first().map(String::as_str).unwrap_or_default();
+    let name = |what: &str| if first.is_empty() { what.to_owned() } else { format!("{what} {first}") };
+    let angle =
+        |(value, sigma): (f64, f64)| format!("{:+.3} ± {:.3} deg", value.to_degrees(), sigma.to_degrees());
+    let length = |(value, sigma): (f64, f64)| format!("{:+.3} ± {:.3} mm", 1e3 * value, 1e3 * sigma);
+    let far = || {
+        let size = |turns: bool, unit: &str| {
+            let shown = |value: f64| if turns { value.to_degrees() } else { 1e3 * value };
+            found
+                .size(turns)
+                .map(|(value, sigma)| format!("{:.3} ± {:.3} {unit}", shown(value), shown(sigma)))
+        };
+        [size(false, "mm"), size(true, "deg")].into_iter().flatten().collect::<Vec<_>>().join(" and ")
+    };
+    let each = |at: usize| {
+        found.sizes.get(at).map_or_else(String::new, |it| {
+            if it.turns { angle((it.value, it.sigma)) } else { length((it.value, it.sigma)) }
+        })
+    };
+    let second = found.names.get(1).map(String::as_str).unwrap_or_default();
+    match found.kind {
+        Kind::Device => format!("{}: moved by {}", name("device"), far()),
+        Kind::Tool => format!("tool: moved on the flange by {}", far()),
+        Kind::Target => format!("{}: moved on the tool by {}", name("target"), far()),
+        Kind::Lengths => {
+            let (value, sigma) = found.size(false).unwrap_or_default();
+            format!("all lengths: {:+.0} ± {:.0} parts in a million, as by warmth", 1e6 * value, 1e6 * sigma)
+        }
+        Kind::Zero => format!("{first}: zero by {}", each(0)),
+        Kind::Axis => format!("{first}: axis moved by {}", far()),
+        Kind::Give => format!("{first}: gives otherwise by {} at full weight", far()),
+        Kind::TwoZeros => format!("{first}: zero by {}, and {second}: zero by {}", each(0), each(1)),
+    }
+}
+
+/// A line for each joint: the smallest shift that is visible, or why none is.
+pub(crate) fn sight_table(joints: &[SightEntry], invisible: &[InvisibleEntry]) -> String {
+    let mut out = String::new();
+    let _ = writeln!(out, "\n  {:16} {:>30}", "joint", "smallest visible shift (95 %)");
+    for joint in joints {
+        let smallest =
+            joint.smallest.map_or_else(|| "not visible".to_owned(), |it| format!("{it:.3} {}", joint.unit));
+        let _ = writeln!(out, "  {:16} {smallest:>30}", visible(&joint.joint));
+    }
+    for it in invisible {
+        let _ = writeln!(out, "  {}: {}", visible(&it.joint), it.words);
+    }
+    out
+}

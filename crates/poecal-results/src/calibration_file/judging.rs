@@ -1,0 +1,154 @@
+//! Data of a calibration file that its judgement needs.
+
+use super::{CalibrationFile, MeasuredEntry};
+use poecal_arm::lie::Pose;
+use poecal_calibrate::{AcceptedModel, DeviceFrameKnowledge, ModelAccuracy};
+use poecal_model::measurement::{ByQuantity, Dataset, Noise, Quantity};
+use poecal_numerics::error::{ErrorKind, Result, first_few, nearest};
+use poecal_plan::plan::RobotError;
+use poecal_storage::hashes;
+
+/// Noise of a quantity if the calibration measured none of its unit, millimetres or degrees.
+const UNSEEN: f64 = 0.05;
+
+impl CalibrationFile {
+    /// SHA-256 of the file as it is written.
+    ///
+    /// # Errors
+    /// As [`CalibrationFile::to_text`].
+    pub fn sha256(&self) -> Result<String> {
+        Ok(hashes::sha256_of(&self.to_text()?))
+    }
+
+    /// The position errors that the calibration left, of rows that were held out, else of those fitted.
+    #[must_use]
+    pub fn left_error(&self) -> Option<RobotError> {
+        let set = self.accuracy.held_out.as_ref().unwrap_or(&self.accuracy.training);
+        let position_m = |errors: &ModelAccuracy| errors.get(Quantity::Position).map(|it| 1e-3 * it.rms);
+        let calibrated_m = position_m(&set.calibrated)?;
+        let corrected_m = set.corrected.as_ref().and_then(position_m).map(|it| it.min(calibrated_m));
+        Some(RobotError { calibrated_m, corrected_m })
+    }
+
+    /// Knowledge of the device frame.
+    #[must_use]
+    pub fn frame(&self) -> DeviceFrameKnowledge {
+        self.measurement_frame.known
+    }
+
+    /// Noise of the calibration, metres and radians.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Model`] if the file holds no valid noise.
+    pub fn noise(&self) -> Result<Noise> {
+        let sigma = &self.noise.sigma;
+        for (_, key, sigma) in sigma.keys() {
+            if sigma.is_nan() || sigma <= 0.0 {
+                return ErrorKind::Model.refuse(format!(
+                    "found `noise.{key}` of {sigma}, expected a standard deviation above 0: calibrate again"
+                ));
+            }
+        }
+        let like = |quantity: Quantity| sigma.iter().find(|(other, _)| other.unit() == quantity.unit());
+        let shown = |quantity| sigma.get(quantity).or_else(|| like(quantity).map(|(_, sigma)| sigma));
+        Ok(ByQuantity::from_fn(|quantity| quantity.unit().from_shown(shown(quantity).unwrap_or(UNSEEN))))
+    }
+
+    /// Root mean square error of a model's leading quantity, of poses and points the position, on held-out rows, otherwise on training rows;
+    /// millimetres or degrees.
+    #[must_use]
+    pub fn own_rms(&self, model: AcceptedModel) -> f64 {
+        let accuracy = &self.accuracy;
+        let set = accuracy.held_out.as_ref().unwrap_or(&accuracy.training);
+        let corrected = set.corrected.as_ref().filter(|_| model == AcceptedModel::Corrected);
+        corrected.unwrap_or(&set.calibrated).lead().rms
+    }
+
+    /// `base_from_device` of each station of some measurements, by the names of the instruments.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Problem`] if the calibration does not know one of them, [`ErrorKind::Model`] if the file holds no valid pose.
+    pub fn devices_of(&self, data: &Dataset) -> Result<Vec<Pose>> {
+        const REFIT: &str = "or refit the frames with --refit-frame";
+        let stations = data.station_count();
+        if self.stations.is_empty() {
+            if stations == 1 {
+                return Ok(vec![self.base_from_device()?]);
+            }
+            return ErrorKind::Problem.refuse(format!(
+                "found measurements of {stations} instruments, expected those of one, since the calibration has one device frame: judge \
+                 each by itself, {REFIT}"
+            ));
+        }
+        let names = || self.stations.iter().filter_map(|it| it.instrument.as_deref());
+        let known = first_few(&names().collect::<Vec<_>>());
+        (0..stations)
+            .map(|station| {
+                let name = data.stations.get(station).and_then(Option::as_deref);
+                let found = match (self.stations.as_slice(), name) {
+                    ([only], None) => Some(only),
+                    (_, None) if self.last_station().is_some() => self.last_station(),
+                    (several, name) => several.iter().find(|it| it.instrument.as_deref() == name),
+                };
+                if let Some(found) = found {
+                    return found.base_from_device.pose();
+                }
+                ErrorKind::Problem.refuse(match name {
+                    None => format!(
+                        "found measurements without an instrument's name, expected one of {known} as in the calibration: add a column \
+                         `instrument`, {REFIT}"
+                    ),
+                    Some(name) => format!(
+                        "found measurements of instrument `{name}`, whose frame is not in the calibration, expected one of {known}: \
+                         rename it, {REFIT}"
+                    ),
+                })
+            })
+            .collect()
+    }
+
+    /// Refuses measurements of unknown targets, or of orientations of targets that were calibrated as points.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Problem`].
+    pub fn check_targets(&self, data: &Dataset) -> Result<()> {
+        let refit = "or refit the targets with --refit-tool";
+        let names = || self.targets.keys().map(String::as_str);
+        let frames = data.frames(&data.all_rows());
+        let known = first_few(&names().collect::<Vec<_>>());
+        for (is_frame, name) in frames.into_iter().zip(&data.targets) {
+            return ErrorKind::Problem.refuse(match name.as_deref().or(self.unnamed()) {
+                None if self.targets.is_empty() => continue,
+                None => format!(
+                    "found measurements without a target's name, expected one of {known} as in the calibration: add a \
+                     column `target`, {refit}"
+                ),
+                Some(name) => match self.targets.get(name) {
+                    Some(target) if target.measured() == MeasuredEntry::Nothing => {
+                        format!(
+                            "found measurements of target `{name}`, expected targets that the calibration measured: calibrate with some of it, {refit}"
+                        )
+                    }
+                    Some(target) if target.measured() == MeasuredEntry::Position && is_frame => {
+                        format!(
+                            "found orientations of target `{name}`, expected positions alone, since it is a point in the calibration: leave the orientation columns out, {refit}"
+                        )
+                    }
+                    Some(_) => continue,
+                    None if self.targets.is_empty() => format!(
+                        "found measurements of target `{name}`, expected no name, since the calibration has the tip alone: leave the names out, {refit}"
+                    ),
+                    None => {
+                        let near = nearest(name, names()).map(|near| format!(" (nearest: `{near}`)"));
+                        format!(
+                            "found measurements of target `{name}`, expected one of {known} as in the calibration{}: rename \
+                             it, {refit}",
+                            near.unwrap_or_default()
+                        )
+                    }
+                },
+            });
+        }
+        Ok(())
+    }
+}

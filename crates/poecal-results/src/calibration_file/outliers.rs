@@ -1,0 +1,104 @@
+//! Outliers in `calibration.json`.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::keyed::{Keyed, ResidualKeys, shown};
+use poecal_calibrate::{Calibration, Loss, RowError, SetAccuracy, row_influence};
+use poecal_model::measurement::Dataset;
+
+/// Most suspected rows in a file; `robust` has their number.
+const LISTED: usize = 1000;
+
+/// Treatment of outliers.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct RobustEntry {
+    /// Loss of a robust fit; null: least squares.
+    pub loss: Option<Loss>,
+    /// Number of suspected training rows.
+    pub suspected_fit: usize,
+    /// Number of suspected held-out rows.
+    pub suspected_held_out: usize,
+    /// `accuracy.training` without suspected rows; null if there are none.
+    pub training_without_suspected: Option<SetAccuracy>,
+    /// `accuracy.held_out` without suspected rows; null if there are none.
+    pub held_out_without_suspected: Option<SetAccuracy>,
+}
+
+/// A suspected outlier.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct OutlierEntry {
+    /// Its file, as named by the user.
+    pub file: String,
+    /// Its line in that file, from 1.
+    pub row: u32,
+    /// Its set.
+    pub set: OutlierSet,
+    /// Distance from the position that the calibrated model predicts, angle from the orientation, and so on of each measured quantity,
+    /// millimetres or degrees.
+    #[serde(flatten)]
+    pub residual: Keyed<ResidualKeys>,
+    /// Studentised residual: length over its own standard deviation.
+    pub studentized: f64,
+    /// Weight in the fit, 0 to 1; of a held-out row the weight that it would have had.
+    pub weight: f64,
+}
+
+/// Set of a suspected row.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum OutlierSet {
+    /// Training row.
+    Fit,
+    /// Held-out row.
+    HeldOut,
+}
+
+impl RobustEntry {
+    /// Outliers of a finished calibration.
+    pub(crate) fn of(calibration: &Calibration) -> Self {
+        let robustness = &calibration.robustness;
+        let suspected = |rows: &[u32]| rows.len() - robustness.rest(rows).len();
+        RobustEntry {
+            loss: robustness.loss,
+            suspected_fit: suspected(&calibration.fit_rows),
+            suspected_held_out: suspected(&calibration.held_out_rows),
+            training_without_suspected: robustness.training_rest,
+            held_out_without_suspected: robustness.held_out_rest,
+        }
+    }
+}
+
+impl OutlierEntry {
+    /// Suspected rows of a finished calibration, the worst first, at most 1,000.
+    #[must_use]
+    pub fn of(calibration: &Calibration, data: &Dataset) -> Vec<Self> {
+        let robustness = &calibration.robustness;
+        let rows: Vec<u32> = robustness.suspects().collect();
+        if rows.is_empty() {
+            return Vec::new();
+        }
+        let influences = row_influence(calibration, data, &rows);
+        let mut rows: Vec<(u32, f64)> =
+            rows.into_iter().zip(influences.iter().map(|influence| influence.studentized)).collect();
+        rows.sort_by(|(a, first), (b, second)| second.total_cmp(first).then(a.cmp(b)));
+        rows.truncate(LISTED);
+        let numbers: Vec<u32> = rows.iter().map(|(row, _)| *row).collect();
+        let packed = calibration.packed(data);
+        let errors = calibration.session(data, &packed).errors(&numbers, &calibration.models.calibrated);
+        let entry = |((row, studentized), error): (&(u32, f64), &RowError)| {
+            let source = data.observations[*row as usize].source;
+            let file = data.files.get(source.file as usize);
+            let held_out = calibration.held_out_rows.binary_search(row).is_ok();
+            OutlierEntry {
+                file: file.map_or_else(String::new, |path| path.display().to_string()),
+                row: source.line,
+                set: if held_out { OutlierSet::HeldOut } else { OutlierSet::Fit },
+                residual: shown(|quantity| error.length(quantity)),
+                studentized: *studentized,
+                weight: robustness.rows.get(*row as usize).map_or(1.0, |judged| judged.weight),
+            }
+        };
+        rows.iter().zip(&errors).map(entry).collect()
+    }
+}

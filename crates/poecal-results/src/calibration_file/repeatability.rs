@@ -1,0 +1,126 @@
+//! Pose accuracy and repeatability in `calibration.json`.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::keyed::{CalibratedKeys, Keyed, NominalKeys, RegisteredKeys, RepeatabilityKeys, WorstKeys, shown};
+use poecal_calibrate::{Calibration, RepeatedPose, repeatability};
+use poecal_model::measurement::{Dataset, Measured, Quantity};
+
+/// Most poses in a file.
+const LISTED: usize = 100;
+
+/// Pose accuracy and repeatability of positions, after ISO 9283; of poses that were measured by other quantities theirs.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct RepeatabilityEntry {
+    /// Number of targets in configurations with three rows or more.
+    pub poses: usize,
+    /// Number of their rows.
+    pub rows: usize,
+    /// Means over the poses.
+    #[serde(flatten)]
+    pub mean: PoseRepeatability,
+    /// The largest repeatability.
+    #[serde(flatten)]
+    pub worst_repeatability: Keyed<WorstKeys>,
+    /// The poses, those with most rows first, at most 100.
+    pub listed: Vec<RepeatedPoseEntry>,
+}
+
+/// A configuration that was measured several times.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct RepeatedPoseEntry {
+    /// File of its first row.
+    pub file: String,
+    /// Line of its first row, from 1.
+    pub row: u32,
+    /// Number of its rows.
+    pub rows: usize,
+    /// Its accuracy and repeatability.
+    #[serde(flatten)]
+    pub own: PoseRepeatability,
+}
+
+/// Accuracy and repeatability of the quantity by which a pose was measured, millimetres or degrees.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct PoseRepeatability {
+    /// Accuracy of the nominal model: distance from its prediction to the mean measured position.
+    #[serde(flatten)]
+    pub accuracy_nominal: Keyed<NominalKeys>,
+    /// Of the registered model.
+    #[serde(flatten)]
+    pub accuracy_registered: Keyed<RegisteredKeys>,
+    /// Of the calibrated model.
+    #[serde(flatten)]
+    pub accuracy_calibrated: Keyed<CalibratedKeys>,
+    /// Repeatability: mean distance of measured positions from their mean, plus three standard deviations.
+    #[serde(flatten)]
+    pub repeatability: Keyed<RepeatabilityKeys>,
+}
+
+impl PoseRepeatability {
+    /// Those of a quantity with their keys.
+    #[must_use]
+    pub fn of(&self, quantity: Quantity) -> [(String, Option<f64>); 4] {
+        [
+            self.accuracy_nominal.named(quantity),
+            self.accuracy_registered.named(quantity),
+            self.accuracy_calibrated.named(quantity),
+            self.repeatability.named(quantity),
+        ]
+    }
+}
+
+impl RepeatabilityEntry {
+    /// Repeatability of a finished calibration; `None` if nothing was measured three times.
+    pub(crate) fn of(calibration: &Calibration, data: &Dataset) -> Option<Self> {
+        let mut poses = repeatability(calibration, data);
+        poses.sort_by_key(|pose| std::cmp::Reverse(pose.rows.len()));
+        let count = poses.len();
+        let each = |quantity: Quantity, of: fn(&RepeatedPose) -> f64| -> Option<Vec<f64>> {
+            let own = poses.iter().filter(|pose| pose.quantity == quantity);
+            Some(own.map(of).collect()).filter(|numbers: &Vec<f64>| !numbers.is_empty())
+        };
+        let mean = |of: fn(&RepeatedPose) -> f64| {
+            Measured::of(|quantity| {
+                let numbers = each(quantity, of)?;
+                Some(quantity.unit().shown(1.0) * numbers.iter().sum::<f64>() / numbers.len() as f64)
+            })
+        };
+        let worst =
+            |quantity| Some(each(quantity, |pose| pose.repeatability)?.into_iter().fold(0.0, f64::max));
+        (count > 0).then(|| RepeatabilityEntry {
+            poses: count,
+            rows: poses.iter().map(|pose| pose.rows.len()).sum(),
+            mean: PoseRepeatability {
+                accuracy_nominal: mean(|pose| pose.accuracy[0]).into(),
+                accuracy_registered: mean(|pose| pose.accuracy[1]).into(),
+                accuracy_calibrated: mean(|pose| pose.accuracy[2]).into(),
+                repeatability: mean(|pose| pose.repeatability).into(),
+            },
+            worst_repeatability: shown(worst),
+            listed: poses.iter().take(LISTED).map(|pose| RepeatedPoseEntry::of(pose, data)).collect(),
+        })
+    }
+}
+
+impl RepeatedPoseEntry {
+    fn of(pose: &RepeatedPose, data: &Dataset) -> Self {
+        let first = pose.rows.first().and_then(|&row| data.observations.get(row as usize));
+        let source = first.map(|observation| observation.source).unwrap_or_default();
+        let file = data.files.get(source.file as usize);
+        let own = |quantity: Quantity, number: f64| (quantity == pose.quantity).then_some(number);
+        let [nominal, registered, calibrated] = pose.accuracy;
+        RepeatedPoseEntry {
+            file: file.map_or_else(String::new, |path| path.display().to_string()),
+            row: source.line,
+            rows: pose.rows.len(),
+            own: PoseRepeatability {
+                accuracy_nominal: shown(|quantity| own(quantity, nominal)),
+                accuracy_registered: shown(|quantity| own(quantity, registered)),
+                accuracy_calibrated: shown(|quantity| own(quantity, calibrated)),
+                repeatability: shown(|quantity| own(quantity, pose.repeatability)),
+            },
+        }
+    }
+}

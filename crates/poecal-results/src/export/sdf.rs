@@ -1,0 +1,77 @@
+//! Gazebo's model: links placed in the links before, joints about the z of their links.
+
+use std::f64::consts::FRAC_PI_2;
+use std::fmt::Write as _;
+
+use super::names::Names;
+use super::{Proof, Written, read_back};
+use poecal_arm::lie::Pose;
+use poecal_formats::urdf::{escaped, origin_values};
+use poecal_model::forms::AxisFrames;
+use poecal_model::robot::{JointKind, Limits, Robot};
+use poecal_numerics::error::Result;
+use poecal_storage::numbers::shortest;
+
+/// Limit of a joint that has none: SDF's own.
+const UNLIMITED: f64 = 1e16;
+
+pub(crate) fn write(robot: &Robot) -> Result<Written> {
+    let frames = AxisFrames::of(robot)?;
+    let (names, plain) = (Names::of(robot), frames.robot(robot)?);
+    let mut text = format!(
+        "<?xml version=\"1.0\"?>\n<sdf version=\"1.9\">\n  <model name=\"{}\">\n",
+        escaped(&robot.name)
+    );
+    let _ = writeln!(text, "    <link name=\"{}\"/>", escaped(&names.base));
+    let mut before = names.base.clone();
+    for (at, (joint, frame)) in plain.joints.iter().zip(&frames.joints).enumerate() {
+        let link = names.links[at].clone();
+        push_link(&mut text, &link, &before, frame);
+        let kind = match joint.kind {
+            JointKind::Revolute => "revolute",
+            JointKind::Prismatic => "prismatic",
+        };
+        let Limits { lower, upper } = joint.limits.unwrap_or(Limits { lower: -UNLIMITED, upper: UNLIMITED });
+        let _ = writeln!(
+            text,
+            "    <joint name=\"{}\" type=\"{kind}\">\n      <parent>{}</parent>\n      <child>{}</child>\n      <axis>\n        <xyz>0 0 1</xyz>\n        \
+             <limit>\n          <lower>{}</lower>\n          <upper>{}</upper>\n        </limit>\n      </axis>\n    </joint>",
+            escaped(&names.joints[at]),
+            escaped(&before),
+            escaped(&link),
+            shortest(lower),
+            shortest(upper)
+        );
+        before = link;
+    }
+    push_link(&mut text, &names.tip, &before, &frames.last_from_tip);
+    let _ = writeln!(
+        text,
+        "    <joint name=\"{2}\" type=\"fixed\">\n      <parent>{1}</parent>\n      <child>{0}</child>\n    </joint>\n  </model>\n</sdf>",
+        escaped(&names.tip),
+        escaped(&before),
+        escaped(&names.mount)
+    );
+    let again = read_back(&text, "robot.sdf", Some((&names.base, &names.tip)))?;
+    let masses = "the file has no masses and meshes, since a calibration has none: Gazebo takes 1 kg a link";
+    let notes = names.note(robot).into_iter().chain([masses.to_owned()]).collect();
+    Ok(Written { text, notes, proof: Proof::Again(again.into()) })
+}
+
+fn push_link(text: &mut String, name: &str, before: &str, pose: &Pose) {
+    let (xyz, rpy) = origin_values(pose);
+    let [x, y, z] = xyz.map(shortest);
+    // Angles near 90° about y would lose half their digits.
+    let (format, turn) = if (rpy[1].abs() - FRAC_PI_2).abs() < 1e-3 {
+        let [qx, qy, qz, qw] = pose.quaternion_xyzw().map(shortest);
+        (" rotation_format=\"quat_xyzw\"", format!("{qx} {qy} {qz} {qw}"))
+    } else {
+        ("", rpy.map(shortest).join(" "))
+    };
+    let _ = writeln!(
+        text,
+        "    <link name=\"{}\">\n      <pose relative_to=\"{}\"{format}>{x} {y} {z} {turn}</pose>\n    </link>",
+        escaped(name),
+        escaped(before)
+    );
+}

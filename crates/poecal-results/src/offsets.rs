@@ -1,0 +1,76 @@
+//! The joint offsets with which one model comes nearest to another, as every command states them.
+
+use super::model::{Model, ModelSource};
+use poecal_calibrate::DeviceFrameKnowledge;
+use poecal_fit::analysis::within_sampled;
+use poecal_model::offsets::{End, Explanation, OffsetOptions, explain};
+use poecal_model::robot::Robot;
+use poecal_numerics::error::Result;
+
+/// The offsets between two models, and how they were found.
+///
+/// ```
+/// use poecal_results::model::{Model, ModelSource};
+/// use poecal_results::offsets::ModelOffsets;
+/// let model = Model { robot: poecal_model::simulate::elbow(), source: ModelSource::Toml, path: "elbow.toml".into() };
+/// let found = ModelOffsets::between(&model, &model, [None, None])?;
+/// assert!(found.explanation.offsets.iter().all(|offset| offset.abs() < 1e-12) && !found.is_sampled);
+/// # Ok::<(), poecal_numerics::error::Error>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct ModelOffsets {
+    /// The offsets, and what they leave.
+    pub explanation: Explanation,
+    /// Why the base and the tip are kept or free.
+    pub reasons: [&'static str; 2],
+    /// Whether the tips are compared over the range that the calibration sampled, and not within the limits.
+    pub is_sampled: bool,
+}
+
+impl ModelOffsets {
+    /// Those with which `nominal` comes nearest to `actual`, with base and tip as stated or else as [`ModelOffsets::ends`] says: the tip is nearest over
+    /// the sampled range where the actual model is a calibration, otherwise over the nominal limits.
+    ///
+    /// # Errors
+    /// As [`explain`].
+    pub fn between(nominal: &Model, actual: &Model, ends: [Option<End>; 2]) -> Result<Self> {
+        Self::of_robots(&nominal.robot, &actual.robot, actual, ends)
+    }
+
+    /// The same of robots of the models: `source` is the actual one's.
+    pub(crate) fn of_robots(
+        nominal: &Robot,
+        actual: &Robot,
+        source: &Model,
+        ends: [Option<End>; 2],
+    ) -> Result<Self> {
+        let coverage = match &source.source {
+            ModelSource::Calibration(file) => file.coverage.as_slice(),
+            ModelSource::Urdf(_) | ModelSource::Toml => &[],
+        };
+        let [(base, base_reason), (tip, tip_reason)] = Self::ends(ends, source);
+        let options = OffsetOptions { base, tip, ..OffsetOptions::default() };
+        let explanation = explain(&within_sampled(nominal, &[coverage]), actual, &options)?;
+        Ok(ModelOffsets { explanation, reasons: [base_reason, tip_reason], is_sampled: !coverage.is_empty() })
+    }
+
+    /// Whether base and tip are kept or free, as asked or else as usual, each with the reason: free is what a calibration does not know.
+    fn ends([base, tip]: [Option<End>; 2], actual: &Model) -> [(End, &'static str); 2] {
+        let both = (End::Kept, "both models state it");
+        let (usual_base, usual_tip) = match &actual.source {
+            ModelSource::Calibration(file) => {
+                let base = match file.frame() {
+                    DeviceFrameKnowledge::Unknown => (
+                        End::Free,
+                        "the calibration did not know the device's place, so its base frame is a matter of choice",
+                    ),
+                    DeviceFrameKnowledge::Base => (End::Kept, "the calibration was measured in it"),
+                };
+                (base, (End::Free, "a tool is taught on the robot as it is"))
+            }
+            ModelSource::Urdf(_) | ModelSource::Toml => (both, both),
+        };
+        let asked = |end: Option<End>, usual| end.map_or(usual, |end| (end, "as asked"));
+        [asked(base, usual_base), asked(tip, usual_tip)]
+    }
+}

@@ -1,0 +1,14 @@
+//! Output of a reproduction.
+
+use super::{FolderPlace, NewFile, Written, write_files};
+use poecal_numerics::error::Result;
+
+/// Writes a reproduction's files, each a name and a text as the crate `poecal-lou2009` makes them, whole or not at all. Figures of an
+/// earlier run that are not written again go.
+///
+/// # Errors
+/// [`ErrorKind::File`](poecal_numerics::error::ErrorKind::File) if something cannot be written; nothing is left behind then.
+pub fn write_reproduction(place: FolderPlace, files: &[(String, String)]) -> Result<Written> {
+    let files: Vec<NewFile> = files.iter().map(|(name, text)| NewFile::new(name, text.clone())).collect();
+    write_files(place, &files, None, Vec::new())
+}

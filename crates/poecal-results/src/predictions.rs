@@ -1,0 +1,209 @@
+//! Predicted poses as CSV.
+
+use std::borrow::Cow;
+
+use super::calibration_file::{BodyEntry, MeasuredEntry, TargetEntry, only_target};
+use super::model::{Model, ModelSource};
+use poecal_arm::lie::Pose;
+use poecal_fit::analysis::inside;
+use poecal_fit::state::Packed;
+use poecal_fit::uncertainty::PredictedError;
+use poecal_import::JointsTable;
+use poecal_model::robot::Robot;
+use poecal_numerics::error::{ErrorKind, Result, first_few, nearest};
+use poecal_storage::csv_text::cell;
+use poecal_storage::numbers::push_number;
+
+/// Frame of predicted poses.
+///
+/// ```
+/// use poecal_results::predictions::PredictionFrame;
+/// assert_ne!(PredictionFrame::Base, PredictionFrame::Device);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PredictionFrame {
+    /// The robot's base.
+    Base,
+    /// The measuring device of a calibration.
+    Device,
+}
+
+/// Predicts the pose of the tip, or of a named target, in each configuration; in the device's frame without a name that of the only target,
+/// which the device sees: a header and `x[m],y[m],z[m],qx,qy,qz,qw` a row, after
+/// the rows' `id` if they have one. Numbers read back exactly; `qw ≥ 0`.
+///
+/// # Errors
+/// [`ErrorKind::Option`] if the model has no such target, no measuring device, or several targets that it may see.
+pub fn predict(
+    model: &Model,
+    joints: &JointsTable,
+    frame: PredictionFrame,
+    target: Option<&str>,
+    with_uncertainty: bool,
+) -> Result<String> {
+    let found = predicted(model, &joints.readings, frame, target, with_uncertainty)?;
+    let with_ids = !joints.ids.is_empty();
+    let mut out = String::with_capacity((joints.rows + 1) * 200);
+    out.push_str(if with_ids { "id," } else { "" });
+    out.push_str("x[m],y[m],z[m],qx,qy,qz,qw");
+    out.push_str(if with_uncertainty { UNCERTAINTY_COLUMNS } else { "" });
+    out.push('\n');
+    for (row, pose) in found.poses.iter().enumerate() {
+        if with_ids {
+            out.push_str(&cell(joints.ids.get(row).map_or("", String::as_str)));
+            out.push(',');
+        }
+        let [x, y, z]: [f64; 3] = pose.translation.into();
+        let [qx, qy, qz, qw] = pose.quaternion_xyzw();
+        for (column, number) in [x, y, z, qx, qy, qz, qw].into_iter().enumerate() {
+            out.push_str(if column == 0 { "" } else { "," });
+            push_number(&mut out, number);
+        }
+        if let Some((error, inside)) = found.doubts.as_ref().and_then(|doubts| doubts.get(row)) {
+            for number in [error.sigma_position_m(), error.sigma_rotation_rad(), error.bound_position_m()] {
+                out.push(',');
+                push_number(&mut out, number);
+            }
+            out.push_str(if *inside { ",true" } else { ",false" });
+        }
+        out.push('\n');
+    }
+    Ok(out)
+}
+
+/// Predicted poses.
+///
+/// ```
+/// use poecal_results::model::{Model, ModelSource};
+/// use poecal_results::predictions::{PredictionFrame, predicted};
+/// let model = Model { robot: poecal_model::simulate::scara(), source: ModelSource::Toml, path: "scara.toml".into() };
+/// let found = predicted(&model, &[0.0; 8], PredictionFrame::Base, None, false)?;
+/// assert_eq!((found.poses.len(), found.poses[0]), (2, model.robot.home));
+/// # Ok::<(), poecal_numerics::error::Error>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Predicted {
+    /// Pose of the tip or target in the chosen frame, one for each configuration.
+    pub poses: Vec<Pose>,
+    /// Predicted uncertainty of each, and whether every joint is inside the sampled range; if asked for.
+    pub doubts: Option<Vec<(PredictedError, bool)>>,
+}
+
+/// Predicts as [`predict`], from readings one after the other in the order of [`Robot::reading_names`](poecal_model::robot::Robot::reading_names)
+/// (radians, metres).
+///
+/// # Errors
+/// As [`predict`].
+pub fn predicted(
+    model: &Model,
+    readings: &[f64],
+    frame: PredictionFrame,
+    target: Option<&str>,
+    with_uncertainty: bool,
+) -> Result<Predicted> {
+    let target = match frame {
+        PredictionFrame::Device => target.map_or_else(|| seen(model), |name| Ok(Some(name)))?,
+        PredictionFrame::Base => target,
+    };
+    let (robot, tip_from_target) = match target {
+        None => (Cow::Borrowed(&model.robot), Pose::identity()),
+        Some(name) => robot_with_target(model, name)?,
+    };
+    let frame_from_base = match frame {
+        PredictionFrame::Base => Pose::identity(),
+        PredictionFrame::Device => device_from_base(model)?,
+    };
+    let doubts = if with_uncertainty { Some(doubts(model, readings, target)?) } else { None };
+    let poses = robot.forward_kinematics_of(readings);
+    let poses = poses.map(|base_from_tip| frame_from_base * base_from_tip * tip_from_target).collect();
+    Ok(Predicted { poses, doubts })
+}
+
+/// The only target that a calibration measured; `None` where that is the tip.
+fn seen(model: &Model) -> Result<Option<&str>> {
+    let ModelSource::Calibration(file) = &model.source else { return Ok(None) };
+    let is_measured = |it: &TargetEntry| it.measured() != MeasuredEntry::Nothing;
+    let names = file.targets.iter().filter(|(_, it)| is_measured(it)).map(|(name, _)| name.as_str());
+    let names: Vec<&str> = names.collect();
+    match (names.as_slice(), only_target(&names)) {
+        ([], _) => Ok(None),
+        (_, Some(only)) => Ok(Some(only)),
+        (several, None) => {
+            Err(ErrorKind::Option.error(format!(
+                "found {} targets that the device may see ({}), expected the name of one for --frame device: write --target {}",
+                several.len(),
+                first_few(several),
+                several[0]
+            )).in_file(&model.path))
+        }
+    }
+}
+
+/// Expected root mean square distance and angle, 95 % bound of the distance, and whether every joint is inside the sampled range.
+const UNCERTAINTY_COLUMNS: &str =
+    ",sigma_position[m],sigma_rotation[rad],bound95_position[m],inside_sampled_range";
+
+/// Predicted uncertainty of each row.
+fn doubts(model: &Model, readings: &[f64], target: Option<&str>) -> Result<Vec<(PredictedError, bool)>> {
+    let ModelSource::Calibration(file) = &model.source else {
+        return Err(ErrorKind::Option
+            .error(
+                "found a robot model without uncertainty, expected a calibration.json for \
+                       --with-uncertainty: calibrate first",
+            )
+            .in_file(&model.path));
+    };
+    let (uncertainty, indices) = file.uncertainty(&[target]).map_err(|error| error.in_file(&model.path))?;
+    let width = model.robot.reading_names().len();
+    let packed = Packed::new(&model.robot, readings, width);
+    let errors = uncertainty.predictions(&packed, indices.first().copied().unwrap_or_default());
+    let sampled = |row: &[f64]| inside(&model.robot, &file.coverage, row);
+    Ok(errors.into_iter().zip(readings.chunks_exact(width.max(1)).map(sampled)).collect())
+}
+
+/// The robot with its tip on the body of a target, and the target in that tip.
+fn robot_with_target<'a>(model: &'a Model, name: &str) -> Result<(Cow<'a, Robot>, Pose)> {
+    let robot = &model.robot;
+    if let Some((_, pose)) = robot.targets.iter().find(|(known, _)| known == name) {
+        return Ok((Cow::Borrowed(robot), *pose));
+    }
+    if let Some(mount) = robot.mounted.iter().find(|mount| mount.name == name) {
+        return Ok((Cow::Owned(robot.with_tip_at(mount)), Pose::identity()));
+    }
+    let mounted = robot.mounted.iter().map(|mount| mount.name.as_str());
+    let names: Vec<&str> = robot.targets.iter().map(|(known, _)| known.as_str()).chain(mounted).collect();
+    let expected = match nearest(name, names.iter().copied()) {
+        Some(near) => format!("expected one of {}; did you mean `{near}`?", first_few(&names)),
+        None if !names.is_empty() => format!("expected one of {}", first_few(&names)),
+        None => "expected none: the model has no targets, leave out --target to predict the tip".to_owned(),
+    };
+    Err(ErrorKind::Option.error(format!("found no target `{name}`, {expected}")).in_file(&model.path))
+}
+
+fn device_from_base(model: &Model) -> Result<Pose> {
+    match &model.source {
+        ModelSource::Calibration(file) => {
+            let first = file.stations.first().and_then(|station| station.instrument.as_ref());
+            let is_moved = |name: &&String| {
+                file.instruments.get(*name).is_some_and(|instrument| instrument.on != BodyEntry::Base)
+            };
+            if let Some(name) = first.filter(is_moved) {
+                return Err(ErrorKind::Option.error(format!(
+                    "found the instrument `{name}` on the robot, expected one beside it for --frame device: use --frame base"
+                )).in_file(&model.path));
+            }
+            let found = match file.last_station() {
+                Some(station) => station.base_from_device.pose(),
+                None => file.base_from_device(),
+            };
+            let base_from_device = found.map_err(|error| error.in_file(&model.path))?;
+            Ok(base_from_device.inverse())
+        }
+        ModelSource::Urdf(_) | ModelSource::Toml => Err(ErrorKind::Option
+            .error(
+                "found a robot model without a measuring device, expected a calibration.json for \
+                           --frame device: use --frame base",
+            )
+            .in_file(&model.path)),
+    }
+}

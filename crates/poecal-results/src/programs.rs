@@ -1,0 +1,36 @@
+//! Robot programs, as the bytes that they are.
+
+use std::io::Read as _;
+use std::path::Path;
+
+use poecal_numerics::error::{ErrorKind, Result};
+use poecal_storage::source;
+
+/// Largest program that is read, bytes.
+const LARGEST: u64 = 64 << 20;
+
+/// The bytes of a robot program, of whatever encoding.
+///
+/// # Errors
+/// [`ErrorKind::File`] if it is a directory, missing, unreadable, larger than 64 MiB, or empty; [`ErrorKind::Syntax`] if it is text of two
+/// bytes a letter.
+pub fn read_program(path: impl AsRef<Path>) -> Result<Vec<u8>> {
+    read_at(path.as_ref())
+}
+
+/// Compiled once, and not for each kind of path.
+fn read_at(path: &Path) -> Result<Vec<u8>> {
+    let expected = "a robot program";
+    let mut bytes = Vec::new();
+    source::open(path, expected, LARGEST)?
+        .read_to_end(&mut bytes)
+        .map_err(|error| source::unreadable(path, &error, expected))?;
+    if bytes.iter().all(u8::is_ascii_whitespace) {
+        return Err(ErrorKind::File.error("the file is empty, expected a robot program").in_file(path));
+    }
+    if bytes.contains(&0) {
+        return Err(ErrorKind::Syntax.error("found zero bytes, expected a robot program as text with one byte for each letter of a word (ASCII, Latin-1, UTF-8): save \
+                       it so").in_file(path));
+    }
+    Ok(bytes)
+}

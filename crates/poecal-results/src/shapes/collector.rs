@@ -1,0 +1,52 @@
+//! Triangles, as readers find them.
+
+/// Triangles of all meshes, at most.
+pub(crate) const MOST_TRIANGLES: usize = 3_000_000;
+/// Largest coordinate, metres.
+const FAR: f64 = 1e4;
+
+/// Corners of triangles, metres.
+pub(crate) type Triangles = Vec<[[f32; 3]; 3]>;
+
+/// Why a mesh cannot be drawn, in words that follow "not drawn: ".
+pub(crate) type Reason = String;
+
+/// Takes triangles up to a number, scaled.
+pub(crate) struct Collector {
+    scale: [f64; 3],
+    most: usize,
+    found: Triangles,
+}
+
+impl Collector {
+    pub(crate) fn new(scale: [f64; 3], most: usize) -> Self {
+        Collector { scale, most, found: Vec::new() }
+    }
+
+    /// Adds a triangle. One with a corner that is no place is left out.
+    pub(crate) fn add(&mut self, corners: [[f64; 3]; 3]) -> Result<(), Reason> {
+        if self.found.len() >= self.most {
+            return Err(format!("with the others it has more than {MOST_TRIANGLES} triangles"));
+        }
+        let scaled = corners.map(|corner| [0, 1, 2].map(|k| corner[k] * self.scale[k]));
+        if scaled.iter().flatten().all(|value| value.abs() <= FAR) {
+            self.found.push(scaled.map(|corner| corner.map(|value| value as f32)));
+        }
+        Ok(())
+    }
+
+    /// Adds a polygon as triangles about its first corner.
+    pub(crate) fn fan(&mut self, corners: &[[f64; 3]]) -> Result<(), Reason> {
+        for pair in corners.get(1..).unwrap_or_default().windows(2) {
+            if let (Some(&first), &[second, third]) = (corners.first(), pair) {
+                self.add([first, second, third])?;
+            }
+        }
+        Ok(())
+    }
+
+    /// The triangles; an error if there are none.
+    pub(crate) fn finished(self) -> Result<Triangles, Reason> {
+        if self.found.is_empty() { Err("found no triangles in it".to_owned()) } else { Ok(self.found) }
+    }
+}

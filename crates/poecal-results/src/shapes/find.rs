@@ -1,0 +1,67 @@
+//! Where the files are that a URDF names.
+
+use std::path::{Path, PathBuf};
+
+use poecal_storage::disk::{self, ObjectKind};
+
+/// Folders beside files, each with those above it.
+pub(crate) struct Folders {
+    ways: Vec<Vec<PathBuf>>,
+}
+
+impl Folders {
+    /// Of some files, which need not be there.
+    pub(crate) fn of(files: &[&Path]) -> Self {
+        let mut ways: Vec<Vec<PathBuf>> = Vec::new();
+        for file in files {
+            let Some(way) = way(file.parent().unwrap_or(Path::new(""))) else { continue };
+            if !ways.contains(&way) {
+                ways.push(way);
+            }
+        }
+        Folders { ways }
+    }
+
+    /// The file of a name: `package://NAME/…` below a folder upwards that is the package or holds it, others beside the URDF.
+    pub(crate) fn find(&self, name: &str) -> Option<PathBuf> {
+        let packaged = ["package://", "model://"].iter().find_map(|scheme| name.strip_prefix(scheme));
+        if let Some(rest) = packaged {
+            return self.packaged(rest);
+        }
+        let plain = name.strip_prefix("file://").unwrap_or(name);
+        if plain.contains("://") {
+            return None;
+        }
+        // A path from the root replaces the folder.
+        self.ways
+            .iter()
+            .filter_map(|way| way.first())
+            .map(|folder| folder.join(plain))
+            .find(|path| is_file(path))
+    }
+
+    fn packaged(&self, rest: &str) -> Option<PathBuf> {
+        let (package, inner) = rest.split_once('/')?;
+        let places = self.ways.iter().flatten().flat_map(|folder| {
+            let own = folder.file_name().is_some_and(|name| name == package).then(|| folder.join(inner));
+            own.into_iter().chain([folder.join(package).join(inner)])
+        });
+        places.into_iter().find(|path| is_file(path))
+    }
+}
+
+/// A folder and those above it, from the root's names; the folder itself need not be there.
+fn way(folder: &Path) -> Option<Vec<PathBuf>> {
+    let disk = disk::here();
+    let named =
+        |folder: &Path| if folder.as_os_str().is_empty() { PathBuf::from(".") } else { folder.to_path_buf() };
+    let actual = disk.actual(&named(folder)).ok().or_else(|| {
+        let above = disk.actual(&named(folder.parent()?)).ok()?;
+        Some(above.join(folder.file_name()?))
+    })?;
+    Some(actual.ancestors().map(Path::to_path_buf).collect())
+}
+
+fn is_file(path: &Path) -> bool {
+    disk::here().follow(path).is_ok_and(|found| found.kind == ObjectKind::File)
+}

@@ -1,0 +1,164 @@
+//! What a robot looks like: the shapes of its links, from the URDF in a `calibration.json` and the meshes that it names.
+
+mod capsules;
+mod collada;
+mod collector;
+mod find;
+mod mesh;
+mod obj;
+mod simplify;
+mod stl;
+mod written;
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use self::collector::{MOST_TRIANGLES, Triangles};
+use self::find::Folders;
+
+pub use self::capsules::capsules_of;
+use self::simplify::fitted;
+pub use self::written::Mesh;
+use super::calibration_file::CalibrationFile;
+use poecal_arm::lie::Pose;
+use poecal_formats::urdf::{Geometry, Visual};
+use poecal_model::robot::{Body, Robot};
+
+/// Characters of all meshes in a page, at most: about 80,000 triangles. Finer ones are made coarser.
+pub const MOST_CHARACTERS: usize = 1_000_000;
+/// Names of meshes in a note.
+const NAMED: usize = 3;
+/// A mesh that is larger than this many arms would leave nothing of the arm to see.
+const MOST_ARMS: f64 = 20.0;
+
+/// The form of a shape, metres. Boxes, cylinders (along z) and spheres are about their middles; a mesh has the axes of its file.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Form {
+    /// Its sides.
+    Box([f64; 3]),
+    /// Radius and length.
+    Cylinder([f64; 2]),
+    /// Its radius.
+    Sphere(f64),
+    /// Index into [`Shapes::meshes`].
+    Mesh(usize),
+}
+
+/// A shape of a link, and where it is with all joints at zero.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Shape {
+    /// The link.
+    pub link: String,
+    /// The body that carries it.
+    pub body: Body,
+    /// Its pose in the base, calibrated: it stays with the frame of its joint.
+    pub pose: Pose,
+    /// Its pose in the base by the nominal model.
+    pub nominal_pose: Pose,
+    /// Its form.
+    pub form: Form,
+}
+
+/// What a robot looks like.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Shapes {
+    /// The shapes, in the order of the URDF.
+    pub shapes: Vec<Shape>,
+    /// Meshes of these shapes.
+    pub meshes: Vec<Mesh>,
+    /// Meshes that are not drawn, and why, in sentences.
+    pub notes: Vec<String>,
+}
+
+impl Shapes {
+    /// Boxes, cylinders and spheres of the URDF that was calibrated, without opening any file. Nothing if the model was no URDF.
+    #[must_use]
+    pub fn of(file: &CalibrationFile) -> Self {
+        collected(file, &mut |_, _| None)
+    }
+
+    /// The same with the meshes that the URDF names: STL, OBJ or COLLADA, beside the URDF, or beside the `calibration.json` at `path`. A
+    /// mesh that is missing or broken gives a note; if all would be larger than [`MOST_CHARACTERS`], they are made coarser.
+    #[must_use]
+    pub fn read(file: &CalibrationFile, path: &Path) -> Self {
+        let folders = Folders::of(&[Path::new(&file.inputs.model), path]);
+        let (mut read, mut missing, mut notes) = (Vec::<Triangles>::new(), Vec::new(), Vec::new());
+        let mut known: BTreeMap<(String, [u64; 3]), Option<usize>> = BTreeMap::new();
+        let mut triangles = 0;
+        let arm_m = file.robot().map_or(f64::INFINITY, |robot| robot.reach_m());
+        let mut shapes = collected(file, &mut |name, scale| {
+            *known.entry((name.to_owned(), scale.map(f64::to_bits))).or_insert_with(|| {
+                let Some(found) = folders.find(name) else {
+                    missing.push(name.to_owned());
+                    return None;
+                };
+                match mesh::read(&found, scale, MOST_TRIANGLES.saturating_sub(triangles)) {
+                    Ok(mesh) if mesh::longest_m(&mesh) > MOST_ARMS * arm_m => {
+                        let (size, arm) = (mesh::longest_m(&mesh), arm_m);
+                        notes.push(format!(
+                            "The mesh `{name}` is not drawn: it is {size:.0} m long, the arm {arm:.2} m. If it is in millimetres, write \
+                             scale=\"0.001 0.001 0.001\" beside its name in the URDF."
+                        ));
+                        None
+                    }
+                    Ok(mesh) => {
+                        triangles += mesh.len();
+                        read.push(mesh);
+                        Some(read.len() - 1)
+                    }
+                    Err(reason) => {
+                        notes.push(format!("The mesh `{name}` is not drawn: {reason}."));
+                        None
+                    }
+                }
+            })
+        });
+        shapes.meshes = fitted(&read, MOST_CHARACTERS);
+        if let Some(first) = missing.first() {
+            let count = missing.len();
+            let named: Vec<String> = missing.iter().take(NAMED).map(|name| format!("`{name}`")).collect();
+            shapes.notes.push(match count {
+                1 => format!("The mesh `{first}` was not found beside the URDF, and is not drawn."),
+                _ => format!(
+                    "{count} meshes were not found beside the URDF, and are not drawn: {}{}.",
+                    named.join(", "),
+                    if count > NAMED { " and others" } else { "" }
+                ),
+            });
+        }
+        shapes.notes.append(&mut notes);
+        shapes
+    }
+}
+
+/// The shapes of a file; `mesh` gives the index of a mesh by its name and scale.
+fn collected(file: &CalibrationFile, mesh: &mut dyn FnMut(&str, [f64; 3]) -> Option<usize>) -> Shapes {
+    let path = PathBuf::from(&file.inputs.model);
+    let (Ok(Some(urdf)), Ok(robot), Ok(nominal)) =
+        (file.original_urdf(&path), file.robot(), file.nominal_robot())
+    else {
+        return Shapes::default();
+    };
+    let names = |robot: &Robot| robot.joints.iter().map(|joint| joint.name.clone()).collect::<Vec<_>>();
+    if names(urdf.robot()) != names(&robot) {
+        return Shapes::default();
+    }
+    // Frames of the URDF, moved with the axes of the nominal model if this has been calibrated before.
+    let screws: Vec<_> = nominal.joints.iter().map(|joint| joint.screw).collect();
+    let nominal = urdf.robot().with_screws(&screws);
+    let on = |robot: &Robot, body: Body, pose: Pose| match body {
+        Body::Base => pose,
+        Body::Link(k) => robot.joints[k].frame * urdf.robot().joints[k].frame.inverse() * pose,
+    };
+    let shape = |Visual { link, body, base_from_shape, geometry }| {
+        let form = match geometry {
+            Geometry::Box(sides) => Form::Box(sides),
+            Geometry::Cylinder { radius, length } => Form::Cylinder([radius, length]),
+            Geometry::Sphere { radius } => Form::Sphere(radius),
+            Geometry::Mesh { file, scale } => Form::Mesh(mesh(&file, scale)?),
+        };
+        let (pose, nominal_pose) = (on(&robot, body, base_from_shape), on(&nominal, body, base_from_shape));
+        Some(Shape { link, body, pose, nominal_pose, form })
+    };
+    Shapes { shapes: urdf.visuals().into_iter().filter_map(shape).collect(), ..Shapes::default() }
+}

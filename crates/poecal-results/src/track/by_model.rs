@@ -1,0 +1,169 @@
+//! Rows that repeat nothing, judged by the model that is delivered: its own errors are what changes must exceed.
+
+use std::collections::BTreeSet;
+
+use nalgebra::{DMatrix, DVector};
+use rand_chacha::ChaCha8Rng;
+use rand_core::SeedableRng;
+
+use super::explain::{Evidence, Level, Tests, leave_unseen_out, ratio};
+use super::hypotheses::{free, hypotheses};
+use super::model::Model;
+use super::options::TrackOptions;
+use super::pairs::Changes;
+use super::visit::Visit;
+use poecal_model::measurement::{Dataset, Quantity};
+use poecal_model::simulate::random::uniform;
+use poecal_numerics::error::Result;
+use poecal_numerics::linalg;
+
+/// Visits drawn of the calibration's own rows, and the share of them that may be called changed.
+const DRAWN: usize = 300;
+const CHANCE: f64 = 0.01;
+/// Where the model is geometry alone, how much larger squares may be elsewhere than the largest of the calibration's own rows.
+const OF_GEOMETRY: f64 = 1.3;
+/// Most configurations that are judged by the model: their errors are one covariance.
+pub(crate) const MOST: usize = 40;
+/// Level by which errors of the model exceed those that the calibration states, where its rows are not there to say so.
+const UNKNOWN: f64 = 1.5;
+
+/// Covariance of the errors of predictions and measurements of some numbers: what the calibration is uncertain of, what it states of its
+/// errors (the same for all targets of a configuration), and noise.
+fn covariance(model: &Model, visit: &Visit, rows: &[u32], groups: &[usize]) -> Option<DMatrix<f64>> {
+    let numbers: Vec<usize> =
+        rows.iter().flat_map(|&row| visit.starts[row as usize]..visit.starts[row as usize + 1]).collect();
+    let entry = model.file.uncertainty.as_ref()?;
+    let by_known = visit.by_known.as_ref()?.select_rows(&numbers);
+    let mut all = &by_known * by_known.transpose();
+    let shown =
+        |quantity: Quantity, value: Option<f64>| quantity.unit().from_shown(value.unwrap_or_default());
+    let place: Vec<(usize, usize)> = rows
+        .iter()
+        .zip(groups)
+        .flat_map(|(&row, &group)| {
+            let count = visit.starts[row as usize + 1] - visit.starts[row as usize];
+            (0..count).map(move |at| (group, at))
+        })
+        .collect();
+    for (i, &number) in numbers.iter().enumerate() {
+        let quantity = visit.quantities[number];
+        let error = shown(quantity, entry.discrepancy.get(quantity));
+        all[(i, i)] += visit.sigma[number].powi(2) + error.powi(2);
+        for j in 0..i {
+            if place[j] == place[i] {
+                all[(i, j)] += error.powi(2);
+                all[(j, i)] += error.powi(2);
+            }
+        }
+    }
+    Some(all)
+}
+
+/// Configuration of each row, by readings.
+fn configurations(data: &Dataset) -> Vec<Vec<u32>> {
+    data.configurations(&data.all_rows())
+}
+
+/// Changes of some rows from what the model predicts, in its standard deviations; `None` where the calibration states no uncertainty.
+fn of_rows(model: &Model, visit: &Visit, rows: &[u32], groups: &[usize]) -> Option<Changes> {
+    let numbers: Vec<usize> =
+        rows.iter().flat_map(|&row| visit.starts[row as usize]..visit.starts[row as usize + 1]).collect();
+    let all = covariance(model, visit, rows, groups)?;
+    // Of a coordinate alone: noise, and the errors that the calibration states.
+    let entry = model.file.uncertainty.as_ref()?;
+    let own = |number: &usize| {
+        let quantity = visit.quantities[*number];
+        let error = entry.discrepancy.get(quantity).unwrap_or_default();
+        visit.sigma[*number].hypot(quantity.unit().from_shown(error))
+    };
+    let sigma = DVector::from_iterator(numbers.len(), numbers.iter().map(own));
+    let jacobian = visit.jacobian.select_rows(&numbers);
+    let residual = visit.residual.select_rows(&numbers);
+    let k = jacobian.ncols();
+    let mut both = DMatrix::zeros(numbers.len(), k + 1);
+    both.columns_mut(0, k).copy_from(&jacobian);
+    both.set_column(k, &residual);
+    let both = linalg::whitened(all, &both)?;
+    Some(Changes {
+        residual: both.column(k).into_owned(),
+        jacobian: both.columns(0, k).into_owned(),
+        sigma,
+        scatter: (0.0, 0.0),
+        rows: rows.to_vec(),
+    })
+}
+
+/// At most so many of them, evenly.
+fn some_of(all: Vec<Vec<u32>>) -> Vec<Vec<u32>> {
+    let step = all.len().div_ceil(MOST).max(1);
+    all.into_iter().step_by(step).collect()
+}
+
+/// Groups of rows, as a group of each row in their order.
+fn grouped(configurations: &[Vec<u32>]) -> (Vec<u32>, Vec<usize>) {
+    let each =
+        configurations.iter().enumerate().flat_map(|(group, rows)| rows.iter().map(move |row| (*row, group)));
+    each.unzip()
+}
+
+/// Changes of a visit from what the model predicts.
+pub(crate) fn changes(model: &Model, visit: &Visit, data: &Dataset) -> Option<Changes> {
+    let (rows, groups) = grouped(&some_of(configurations(data)));
+    of_rows(model, visit, &rows, &groups)
+}
+
+/// The level of the model's errors: what visits of as many configurations, drawn of the rows of the calibration, must not exceed.
+pub(crate) fn level(
+    model: &Model,
+    earlier: Option<(&Visit, &Dataset)>,
+    count: usize,
+    options: &TrackOptions,
+) -> Result<(Level, bool)> {
+    let Some((visit, data)) = earlier else { return Ok((Level::Known(UNKNOWN * UNKNOWN), false)) };
+    let (all, count) = (configurations(data), count.min(MOST));
+    if all.len() < 2 * count {
+        return Ok((Level::Known(UNKNOWN * UNKNOWN), false));
+    }
+    let mut generator = ChaCha8Rng::seed_from_u64(1);
+    let mut ratios = Vec::with_capacity(DRAWN);
+    // The rows of the calibration are as if its device stood anywhere.
+    let as_anew = Visit { device_is_known: options.device_is_known, ..visit.clone() };
+    for _ in 0..DRAWN {
+        let mut chosen = BTreeSet::new();
+        while chosen.len() < count {
+            let drawn = (uniform(&mut generator) * all.len() as f64) as usize;
+            chosen.insert(drawn.min(all.len() - 1));
+        }
+        let some: Vec<Vec<u32>> = chosen.iter().map(|at| all[*at].clone()).collect();
+        let (rows, groups) = grouped(&some);
+        let Some(found) = of_rows(model, &as_anew, &rows, &groups) else { continue };
+        let evidence = Evidence::new(&found.residual, &free(&found.jacobian, &as_anew, options));
+        let mut hypotheses = hypotheses(&found.jacobian, &as_anew, options);
+        leave_unseen_out(&mut hypotheses, &evidence, Level::Known(1.0));
+        let tests = Tests::new(&hypotheses);
+        ratios.push(ratio(&evidence, &hypotheses, &tests));
+    }
+    ratios.sort_by(f64::total_cmp);
+    // Errors of geometry alone have few large values, which few rows do not show: then it is the largest.
+    let (chance, beyond) = if model.is_corrected { (CHANCE, 1.0) } else { (0.0, OF_GEOMETRY) };
+    let at = ((1.0 - chance) * ratios.len() as f64) as usize;
+    let found = ratios.get(at.min(ratios.len().saturating_sub(1))).copied().unwrap_or(1.0);
+    Ok((Level::Known(found.max(1.0) * beyond * shrunk(model, visit)), true))
+}
+
+/// How much larger squares of errors are of rows that the calibration has not seen, over those of its own rows.
+fn shrunk(model: &Model, visit: &Visit) -> f64 {
+    let accuracy = &model.file.accuracy;
+    let Some(held) = accuracy.held_out.as_ref() else { return 1.0 };
+    let lead = |set: &poecal_calibrate::SetAccuracy| {
+        let corrected = set.corrected.as_ref().filter(|_| model.is_corrected);
+        corrected.unwrap_or(&set.calibrated).leading().map(|(quantity, it)| (quantity, it.rms))
+    };
+    let Some((quantity, rms)) = lead(held) else { return 1.0 };
+    let own = visit.residual.iter().zip(&visit.quantities).filter(|(_, it)| **it == quantity);
+    let (squares, count) =
+        own.fold((0.0, 0.0), |(sum, count), (value, _)| (sum + value * value, count + 1.0));
+    let components = quantity.components() as f64;
+    let own = quantity.unit().shown((components * squares / f64::max(count, 1.0)).sqrt());
+    if own > 0.0 { (rms / own).powi(2).max(1.0) } else { 1.0 }
+}

@@ -1,0 +1,107 @@
+//! A visit with what its rows are judged by.
+
+use super::explain::{Evidence, Level};
+use super::hypotheses::free;
+use super::model::Model;
+use super::options::{JudgedBy, TrackOptions};
+use super::pairs::Changes;
+use super::visit::Visit;
+use super::{by_model, words};
+use crate::calibration_file::CalibrationFile;
+use poecal_model::measurement::Dataset;
+use poecal_numerics::error::Result;
+
+/// Numbers beyond what is free that repeated rows must have, to be judged alone.
+const FREEDOM: f64 = 3.0;
+/// Error over that of the calibration itself above which a device stands elsewhere.
+const MUCH: f64 = 3.0;
+
+/// Earlier rows.
+#[derive(Clone, Copy, Debug)]
+pub struct Earlier<'a> {
+    /// The rows.
+    pub data: &'a Dataset,
+    /// Whether they are those that the calibration was made of: before joints were calibrated anew.
+    pub is_own: bool,
+}
+
+/// A visit about the model, its changes, and the level of their noise.
+pub(crate) struct Judged {
+    pub(crate) model: Model,
+    pub(crate) data: Dataset,
+    pub(crate) visit: Visit,
+    pub(crate) changes: Changes,
+    pub(crate) level: Level,
+    pub(crate) judged_by: JudgedBy,
+    pub(crate) repeated: usize,
+    pub(crate) notes: Vec<String>,
+}
+
+impl Judged {
+    /// Of the rows of a visit: compared with earlier ones where enough of them repeat, with the model elsewhere.
+    pub(crate) fn of(
+        file: &CalibrationFile,
+        data: &Dataset,
+        earlier: Option<Earlier<'_>>,
+        options: &TrackOptions,
+    ) -> Result<Self> {
+        let model = Model::of(file, options)?;
+        let data = file.at_stage(data, file.stages()).into_owned();
+        let visit = Visit::of(&model, &data, options.device_is_known, options)?;
+        let before = earlier.map(|it| before(file, &model, it, options)).transpose()?;
+        let earlier = before.as_ref().map(|(visit, data)| (visit, data));
+        let mut notes = Vec::new();
+        let pairs = earlier.and_then(|earlier| {
+            Changes::between((&visit, &data), earlier, &model.robot, options.tool_is_anew)
+        });
+        let repeated = pairs.as_ref().map_or(0, |it| it.rows.len());
+        let is_enough = |it: &Changes| {
+            Evidence::new(&it.residual, &free(&it.jacobian, &visit, options)).left().1 >= FREEDOM
+        };
+        let (judged_by, changes, level) = match pairs.filter(is_enough) {
+            Some(pairs) => {
+                let level = match options.repeatability_m {
+                    Some(_) => Level::Known(1.0),
+                    None => Level::Found(pairs.scatter.0, pairs.scatter.1),
+                };
+                (JudgedBy::Repeats, pairs, level)
+            }
+            None => {
+                if earlier.is_some() {
+                    notes.push(words::few_repeat(repeated, data.len()));
+                }
+                let count = data.configurations(&data.all_rows()).len();
+                let changes = by_model::changes(&model, &visit, &data).ok_or_else(words::no_uncertainty)?;
+                let (level, is_found) = by_model::level(&model, earlier, count, options)?;
+                notes.extend((!is_found).then(words::level_is_assumed));
+                notes.extend((!model.is_corrected).then(words::geometry_alone));
+                (JudgedBy::Model, changes, level)
+            }
+        };
+        Ok(Judged { model, data, visit, changes, level, judged_by, repeated, notes })
+    }
+}
+
+/// The earlier visit, about the model that its rows are of.
+fn before(
+    file: &CalibrationFile,
+    model: &Model,
+    earlier: Earlier<'_>,
+    options: &TrackOptions,
+) -> Result<(Visit, Dataset)> {
+    let data = file.at_stage(earlier.data, file.stages()).into_owned();
+    let same_tool = TrackOptions { tool_is_anew: false, ..*options };
+    if !earlier.is_own || file.recalibrated.is_empty() {
+        return Ok((earlier_visit(model, &data, &same_tool)?, data));
+    }
+    let model = Model::of(&file.before_repairs()?, options)?;
+    Ok((earlier_visit(&model, &data, &same_tool)?, data))
+}
+
+/// The earlier visit: from where its devices are by the calibration, if that has them; else as they fit.
+pub(crate) fn earlier_visit(model: &Model, data: &Dataset, options: &TrackOptions) -> Result<Visit> {
+    match Visit::of(model, data, true, options) {
+        Ok(found) if found.rms() < MUCH * model.own_m() => Ok(found),
+        _ => Visit::of(model, data, false, options),
+    }
+}

@@ -1,0 +1,127 @@
+//! A visit judged: the steps in order.
+
+use super::explain::{Evidence, Level, Tests, Tried, Verdict, explain, leave_unseen_out};
+use super::found::{Explanation, Tracked, explanation};
+use super::hypotheses::{free, hypotheses};
+use super::judged::{Earlier, Judged};
+use super::model::Model;
+use super::options::{State, TrackOptions};
+use super::pairs::Changes;
+use super::visit::Visit;
+use super::{sight, words};
+use crate::calibration_file::CalibrationFile;
+use poecal_model::measurement::{Dataset, Quantity};
+use poecal_numerics::error::Result;
+
+/// How many times what noise and errors of the model explain the changes may scatter beside the best explanation: beyond it no single change
+/// explains them, or the calibration is of another robot.
+const BEYOND: f64 = 5.0;
+/// Changes in standard deviations below which a row is a copy: rounding of a device that is fitted.
+const ROUNDING: f64 = 1e-6;
+/// Share of the changes that an explanation beyond what is linear may leave.
+const NEARLY: f64 = 0.3;
+
+/// Judges by a visit whether a robot is as it was when it was calibrated. `earlier` are the rows of the calibration, or of an earlier visit:
+/// rows that repeat their configurations are compared with them, others with the delivered model.
+///
+/// # Errors
+/// [`ErrorKind::Problem`](poecal_numerics::error::ErrorKind::Problem) if the rows are too few, of other targets or of other instruments;
+/// [`ErrorKind::Model`](poecal_numerics::error::ErrorKind::Model) if the file holds no valid calibration, or none whose errors are known where rows must be
+/// judged by it.
+///
+/// ```
+/// use poecal_calibrate::{CalibrationOptions, calibrate};
+/// use poecal_results::calibration_file::{CalibrationFile, Inputs};
+/// use poecal_model::simulate::{Kind, Simulation, elbow};
+/// use poecal_results::track::{Earlier, State, TrackOptions, track};
+/// let made = Simulation { count: 60, ..Simulation::default() }.run(&elbow(), Kind::POINT)?;
+/// let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default())?;
+/// let file = CalibrationFile::new(&calibration, &made.data, Inputs::default());
+/// // The same rows again: nothing has changed.
+/// let earlier = Earlier { data: &made.data, is_own: true };
+/// let found = track(&file, &made.data, Some(earlier), &TrackOptions::default())?;
+/// assert_eq!((found.state, found.repeated), (State::Unchanged, 60));
+/// # Ok::<(), poecal_numerics::error::Error>(())
+/// ```
+pub fn track(
+    file: &CalibrationFile,
+    data: &Dataset,
+    earlier: Option<Earlier<'_>>,
+    options: &TrackOptions,
+) -> Result<Tracked> {
+    let judged = Judged::of(file, data, earlier, options)?;
+    let Judged { model, visit, data, changes, level, judged_by, repeated, mut notes, .. } = judged;
+    let evidence = Evidence::new(&changes.residual, &free(&changes.jacobian, &visit, options));
+    let mut hypotheses = hypotheses(&changes.jacobian, &visit, options);
+    leave_unseen_out(&mut hypotheses, &evidence, level);
+    let tests = Tests::new(&hypotheses);
+    let verdict = explain(&evidence, &hypotheses, &tests, level);
+    if verdict.is_wider {
+        notes.push(words::wider(options.repeatability_m.is_some(), verdict.variance.sqrt()));
+    }
+    if repeated == data.len() && changes.residual.iter().all(|it| it.abs() < ROUNDING) {
+        notes.push(words::copied());
+    }
+    let named = |it: &Tried| explanation(it, &hypotheses[it.at], &verdict, &model, &data);
+    let mut explanation = verdict.best.as_ref().map(named);
+    let mut alternatives: Vec<Explanation> = verdict.nearly.iter().map(named).collect();
+    let is_far = explanation.as_ref().is_some_and(Explanation::is_far);
+    let joints = sight::joints(
+        &changes,
+        &visit,
+        &model,
+        (&hypotheses, &tests),
+        (verdict.variance, verdict.freedom),
+        options,
+    );
+    let (change_m, noise_m) = in_metres(&changes, &verdict, verdict.left);
+    let gain = verdict.best.as_ref().map_or((0.0, 0), |it| (it.gain, it.rank));
+    let (left_m, _) =
+        in_metres(&changes, &verdict, (verdict.left.0 - gain.0, verdict.left.1 - gain.1 as f64));
+    let usual_m = usual_m(&changes, level, &model);
+    // Of a zero far off, what is not linear is left.
+    let is_nearly = is_far && left_m < NEARLY * change_m;
+    let is_unexplained = !is_nearly && noise_m > BEYOND * usual_m;
+    if is_unexplained {
+        (explanation, alternatives) = (None, Vec::new());
+        notes.push(words::unexplained(change_m, usual_m, visit.device_is_known));
+    }
+    notes.extend(explanation.as_ref().filter(|_| is_far).map(words::far));
+    Ok(Tracked {
+        state: if is_unexplained || explanation.is_some() { State::Changed } else { State::Unchanged },
+        judged_by,
+        rows: data.len(),
+        repeated,
+        explanation,
+        alternatives,
+        joints,
+        change_m,
+        left_m,
+        noise_m,
+        freedom: verdict.freedom,
+        error_m: error_m(&visit),
+        notes,
+    })
+}
+
+/// Standard deviation of a coordinate, metres, that noise and errors of the model explain.
+fn usual_m(changes: &Changes, level: Level, model: &Model) -> f64 {
+    let variance = match level {
+        Level::Known(variance) => variance,
+        Level::Found(..) => 1.0,
+    };
+    model.own_m().max(changes.largest_sigma() * variance.sqrt())
+}
+
+/// Root mean square error of measured places, metres.
+fn error_m(visit: &Visit) -> f64 {
+    let is_place = visit.quantities.contains(&Quantity::Position);
+    visit.rms() * if is_place { 3f64.sqrt() } else { 1.0 }
+}
+
+/// Root mean square change of places in metres from squares in variances, and the standard deviation of a coordinate.
+fn in_metres(changes: &Changes, verdict: &Verdict, (squares, _): (f64, f64)) -> (f64, f64) {
+    let count = changes.residual.len().max(1) as f64;
+    let largest = changes.largest_sigma();
+    ((3.0 * squares.max(0.0) / count).sqrt() * largest, largest * verdict.variance.sqrt())
+}

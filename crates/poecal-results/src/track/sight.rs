@@ -1,0 +1,92 @@
+//! How large a shift of each joint's zero would be found, and why one would not.
+
+use super::explain::{Evidence, Hypothesis, Kind, Tests};
+use super::hypotheses::free;
+use super::model::Model;
+use super::options::{MOST_M, MOST_RAD, TrackOptions};
+use super::pairs::Changes;
+use super::visit::{Of, Visit};
+use poecal_model::robot::JointKind;
+
+/// Normal quantile of 95 %.
+const NORMAL: f64 = 1.644_853_627;
+
+/// Why the zero of a joint is not seen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Unseen {
+    /// The device was set up anew: its place hides the shift.
+    Device,
+    /// The tool was mounted anew: its targets take the shift.
+    Tool,
+    /// Both together do.
+    DeviceAndTool,
+    /// The joint moves no target, or none by enough.
+    NoMotion,
+}
+
+/// What would be found of a joint's zero.
+#[derive(Clone, Debug, PartialEq)]
+pub struct JointSight {
+    /// Its name.
+    pub joint: String,
+    /// Whether it slides, so that its zero is a length.
+    pub slides: bool,
+    /// Standard deviation of its shift, radians or metres; infinite if it is not seen.
+    pub sigma: f64,
+    /// Smallest shift that is found with a probability of 95 %, radians or metres.
+    pub smallest: f64,
+    /// Why it is not seen at all.
+    pub unseen: Option<Unseen>,
+}
+
+/// Smallest shift over its standard deviation that is found with 95 %, where noise must not exceed `quantile` (a square) by as many degrees
+/// of freedom: of a noncentral t by its normal approximation.
+pub(crate) fn smallest(quantile: f64, freedom: f64) -> f64 {
+    let t = quantile.sqrt();
+    t + NORMAL * (1.0 + 0.5 * quantile / freedom.max(1.0)).sqrt()
+}
+
+/// Of all joints.
+pub(crate) fn joints(
+    changes: &Changes,
+    visit: &Visit,
+    model: &Model,
+    (hypotheses, tests): (&[Hypothesis], &Tests),
+    (variance, freedom): (f64, f64),
+    options: &TrackOptions,
+) -> Vec<JointSight> {
+    let beside = |options: &TrackOptions, device_is_known: bool| {
+        let visit = Visit { device_is_known, ..visit.clone() };
+        Evidence::new(&changes.residual, &free(&changes.jacobian, &visit, options))
+    };
+    let known_tool = TrackOptions { tool_is_anew: false, ..*options };
+    let all = [
+        beside(options, visit.device_is_known),
+        beside(options, true),
+        beside(&known_tool, visit.device_is_known),
+        beside(&known_tool, true),
+    ];
+    let zeros = hypotheses.iter().enumerate().filter(|(_, it)| it.kind == Kind::Zero);
+    let sight = |(at, it): (usize, &Hypothesis)| {
+        let Some(&Of::Zero(index)) = it.of.first() else { return None };
+        let joint = &model.robot.joints[index];
+        let slides = joint.kind == JointKind::Prismatic;
+        let most = if slides { MOST_M } else { MOST_RAD };
+        let factor = smallest(tests.quantile(at, 1, freedom), freedom);
+        let sigma = |evidence: &Evidence| variance.sqrt() * evidence.sigma(&it.columns);
+        let [own, device, tool, both] = [0, 1, 2, 3].map(|k| sigma(&all[k]));
+        // What is known must show a shift well, to be the reason why it is not seen.
+        let is_seen = |sigma: f64| factor * sigma <= if sigma < own { 0.25 * most } else { most };
+        let unseen = match () {
+            () if is_seen(own) => None,
+            () if !visit.device_is_known && is_seen(device) => Some(Unseen::Device),
+            () if options.tool_is_anew && is_seen(tool) => Some(Unseen::Tool),
+            () if (options.tool_is_anew || !visit.device_is_known) && is_seen(both) => {
+                Some(Unseen::DeviceAndTool)
+            }
+            () => Some(Unseen::NoMotion),
+        };
+        Some(JointSight { joint: joint.name.clone(), slides, sigma: own, smallest: factor * own, unseen })
+    };
+    zeros.filter_map(sight).collect()
+}

@@ -1,0 +1,91 @@
+//! `errors.csv`: the error of each judging row beside what was promised of it.
+
+use super::shown;
+use poecal_calibrate::JudgedRow;
+use poecal_model::measurement::{Dataset, Quantity};
+use poecal_model::robot::Robot;
+use poecal_storage::csv_text::cell;
+use poecal_storage::numbers::push_number;
+
+/// First columns; those of each quantity follow, then the joint readings.
+const FIRST: &str = "file,line,id,target,inside_sampled_range";
+
+/// The rows of a judgement with the data that they are of.
+#[derive(Clone, Copy, Debug)]
+pub struct JudgedRows<'a> {
+    /// The measurements.
+    pub data: &'a Dataset,
+    /// The robot, which knows what the readings are.
+    pub robot: &'a Robot,
+    /// The errors, in the order of the measurements.
+    pub rows: &'a [JudgedRow],
+}
+
+impl JudgedRows<'_> {
+    /// The quantities that some row measured.
+    #[must_use]
+    pub fn measured(&self) -> Vec<Quantity> {
+        Quantity::ALL.into_iter().filter(|quantity| self.data.has(*quantity)).collect()
+    }
+
+    /// The text of the file.
+    #[must_use]
+    pub fn text(&self) -> String {
+        let quantities = self.measured();
+        let names = self.data.reading_names();
+        let kinds: Vec<_> = names.iter().map(|name| self.robot.reading_kind(name)).collect();
+        let has_stations = self.data.station_count() > 1;
+        let mut out = FIRST.to_owned();
+        for quantity in &quantities {
+            let (name, unit) = (quantity.name(), quantity.unit().symbol());
+            for what in ["error", "expected", "bound95"] {
+                out.push_str(&format!(",{name}_{what}[{unit}]"));
+            }
+        }
+        let has_pictures = !self.data.pictures.is_empty();
+        if has_pictures {
+            out.push_str(",corners[px],corners[mm]");
+        }
+        for (name, kind) in names.iter().zip(&kinds) {
+            out.push(',');
+            out.push_str(&cell(&format!("{name}[{}]", kind.symbol())));
+        }
+        if has_stations {
+            out.push_str(",instrument");
+        }
+        out.push('\n');
+        for (k, (row, observation)) in self.rows.iter().zip(&self.data.observations).enumerate() {
+            let file = self.data.files.get(observation.source.file as usize);
+            let file = file.map(|path| path.display().to_string()).unwrap_or_default();
+            let id = self.data.ids.get(k).map_or("", String::as_str);
+            let target = self.data.targets.get(observation.target).and_then(Option::as_deref);
+            let inside = if row.inside_sampled_range { "yes" } else { "no" };
+            let (file, id, target) = (cell(&file), cell(id), cell(target.unwrap_or_default()));
+            out.push_str(&format!("{file},{},{id},{target},{inside}", observation.source.line));
+            for quantity in &quantities {
+                let numbers = row.errors.get(*quantity).map_or([None; 3], |found| shown(*quantity, found));
+                for number in numbers {
+                    out.push(',');
+                    number.into_iter().for_each(|number| push_number(&mut out, number));
+                }
+            }
+            if has_pictures {
+                for number in [row.corners.map(|it| it.rms_px), row.corners.map(|it| it.rms_mm)] {
+                    out.push(',');
+                    number.into_iter().for_each(|number| push_number(&mut out, number));
+                }
+            }
+            for (value, kind) in self.data.readings(k).iter().zip(&kinds) {
+                out.push(',');
+                push_number(&mut out, kind.shown(*value));
+            }
+            if has_stations {
+                let name = self.data.stations.get(observation.station).and_then(Option::as_deref);
+                out.push(',');
+                out.push_str(&cell(name.unwrap_or_default()));
+            }
+            out.push('\n');
+        }
+        out
+    }
+}

@@ -1,6 +1,0 @@
-//! The largest of several differences.
-
-/// The larger number, or NaN if either is: a difference that is no number must not pass.
-pub(crate) fn larger(a: f64, b: f64) -> f64 {
-    if a.is_nan() || a > b { a } else { b }
-}
