@@ -161,13 +161,22 @@ pub(crate) fn calibrate(
     warn_of_residual(py, &data, residual)?;
     let stated = (inputs(robot, measurements, validate), record.unwrap_or_default());
     let (found, repaired, took) = fit(py, &robot.model.robot, &data, &options, progress)?;
-    let data = match (repaired, data) {
+    let data = kept_rows(measurements, repaired, data);
+    Ok(Calibration::of_fit(robot.clone(), found, data, stated, took))
+}
+
+/// The rows of a calibration: its measurements, or what became of them.
+fn kept_rows(
+    measurements: &Measurements,
+    repaired: Option<Dataset>,
+    data: Cow<'_, Dataset>,
+) -> Arc<MeasurementFile> {
+    match (repaired, data) {
         (None, Cow::Borrowed(_)) => Arc::clone(&measurements.file),
         (Some(data), _) | (None, Cow::Owned(data)) => {
             Arc::new(MeasurementFile { data, ..Default::default() })
         }
-    };
-    Ok(Calibration::of_fit(robot.clone(), found, data, stated, took))
+    }
 }
 
 /// The formulation that these words name, and its residual.

@@ -1,33 +1,17 @@
 //! `plan`: which configurations to measure.
 
-use std::sync::Arc;
+mod session;
 
-use nalgebra::Vector3;
 use poecal_calibrate::Corrections;
 use poecal_model::robot::GravityDirection;
-use poecal_plan::plan::{
-    Conditions, PlanCriterion, PlanOptions, PlannedRow, RobotError, RowPart, Sight, plan as planned,
-};
-use poecal_report as report;
-use poecal_results::shapes::capsules_of;
-use pyo3::IntoPyObjectExt as _;
+use poecal_plan::plan::RobotError;
 use pyo3::prelude::*;
 
+use self::session::{Aim, Room, Rows, Session, View};
 use crate::arguments::{self as arg, Believed};
-use crate::calibration::Calibration;
-use crate::errors::{argument, raise};
 use crate::measurements::Measurements;
-use crate::paths;
-use crate::plan_options::{Believe, configurations, corners, place, workspace};
-use crate::planned::Plan;
-use crate::robot::Robot;
+use crate::plan_options::Believe;
 use crate::visit_plan::VisitOptions;
-use crate::words::{chosen, from_mm, kind as kind_word, sigma, size};
-
-/// Most configurations of a plan, and most rows to judge by, as by the program.
-const MOST: usize = 1000;
-/// Most targets of a nest, as by the program.
-const MOST_TARGETS: usize = 8;
 
 /// Plans a session: configurations that determine the most, rows to judge by, how many are worth it, and the error to expect.
 ///
@@ -129,10 +113,10 @@ pub(crate) fn plan<'py>(
     #[pyo3(from_py_with = arg::kind)] kind: &str,
     #[pyo3(from_py_with = arg::count)] count: Option<usize>,
     #[pyo3(from_py_with = arg::judge)] judge: Option<usize>,
-    candidates: Option<&Bound<'_, PyAny>>,
-    over: Option<&Bound<'_, PyAny>>,
-    over_box_mm: Option<&Bound<'_, PyAny>>,
-    keep: Option<&Bound<'_, PyAny>>,
+    candidates: Option<&Bound<'py, PyAny>>,
+    over: Option<&Bound<'py, PyAny>>,
+    over_box_mm: Option<&Bound<'py, PyAny>>,
+    keep: Option<&Bound<'py, PyAny>>,
     #[pyo3(from_py_with = arg::replace)] replace: Option<Vec<usize>>,
     #[pyo3(from_py_with = arg::criterion)] criterion: &str,
     #[pyo3(from_py_with = arg::targets)] targets: usize,
@@ -145,7 +129,7 @@ pub(crate) fn plan<'py>(
     #[pyo3(from_py_with = arg::corrections)] corrections: Option<Corrections>,
     #[pyo3(from_py_with = arg::gravity)] gravity: Option<GravityDirection>,
     #[pyo3(from_py_with = arg::margin_deg_mm)] margin_deg_mm: (f64, f64),
-    keep_out_mm: Option<Vec<Bound<'_, PyAny>>>,
+    keep_out_mm: Option<Vec<Bound<'py, PyAny>>>,
     #[pyo3(from_py_with = arg::floor_mm)] floor_mm: Option<f64>,
     #[pyo3(from_py_with = arg::separation_deg)] separation_deg: Option<f64>,
     #[pyo3(from_py_with = arg::device_mm)] device_mm: Option<[f64; 3]>,
@@ -164,60 +148,6 @@ pub(crate) fn plan<'py>(
     #[pyo3(from_py_with = arg::target)] target: Option<&str>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let visits = VisitOptions { earlier, device, tool, repeatability_mm, target };
-    if chosen("purpose", purpose, &[("calibration", false), ("drift", true)])? {
-        let usual = tolerance_deg_mm == Believed::Given((0.5, 5.0));
-        // What a default says is no statement.
-        let stated = [
-            ("kind", kind != "point"),
-            ("judge", judge.is_some()),
-            ("over", over.is_some()),
-            ("over_box_mm", over_box_mm.is_some()),
-            ("keep", keep.is_some()),
-            ("replace", replace.is_some()),
-            ("criterion", criterion != "expected"),
-            ("targets", targets != 1),
-            ("target_offset_mm", target_offset_mm.is_some()),
-            ("sigma_position_mm", sigma_position_mm.is_some()),
-            ("sigma_rotation_deg", sigma_rotation_deg.is_some()),
-            ("robot_error_mm", robot_error_mm.is_some()),
-            ("frame", frame != "unknown"),
-            ("tolerance_deg_mm", !usual),
-            ("corrections", corrections.is_some()),
-            ("gravity", gravity.is_some()),
-            ("margin_deg_mm", margin_deg_mm != (0.0, 0.0)),
-            ("keep_out_mm", keep_out_mm.is_some()),
-            ("floor_mm", floor_mm.is_some()),
-            ("separation_deg", separation_deg.is_some()),
-            ("device_mm", device_mm.is_some()),
-            ("cone_deg", cone_deg.is_some()),
-            ("device_looks_at_mm", device_looks_at_mm.is_some()),
-            ("distance_mm", distance_mm.is_some()),
-            ("acceptance_deg", acceptance_deg.is_some()),
-            ("facing", facing.is_some()),
-            ("self_collision", self_collision != "avoid"),
-            ("stop_s", stop_s != 30.0),
-            ("seed", seed != 1),
-        ];
-        if let Some((name, _)) = stated.into_iter().find(|it| it.1) {
-            let message = "found it with purpose=\"drift\", expected only candidates, count, earlier, device, tool and repeatability_mm beside it";
-            return Err(argument(name, message));
-        }
-        return visits.plan(py, robot, count, candidates)?.into_pyobject(py);
-    }
-    visits.refuse()?;
-    let robot = planned_robot(robot)?;
-    let robot = robot.get();
-    let count = count.unwrap_or(30);
-    for (name, number, least, most) in [
-        ("count", count, 1, MOST),
-        ("judge", judge.unwrap_or(0), 0, MOST),
-        ("targets", targets, 1, MOST_TARGETS),
-    ] {
-        if !(least..=most).contains(&number) {
-            return Err(argument(name, format!("found {number}, expected {least} to {most}")));
-        }
-    }
-    let model = &robot.model;
     let believe = Believe {
         sigma_position_mm,
         sigma_rotation_deg,
@@ -227,82 +157,10 @@ pub(crate) fn plan<'py>(
         corrections,
         gravity,
     };
-    let sight = [
-        ("cone_deg", cone_deg.is_some()),
-        ("device_looks_at_mm", device_looks_at_mm.is_some()),
-        ("distance_mm", distance_mm.is_some()),
-        ("acceptance_deg", acceptance_deg.is_some()),
-        ("facing", facing.is_some()),
-    ];
-    if let Some((name, _)) = sight.into_iter().find(|it| it.1 && device_mm.is_none()) {
-        return Err(argument(name, "found it without device_mm, expected the device's place beside it"));
-    }
-    let angle = |name, value: Option<f64>| value.map(|it| sigma(name, it, f64::to_radians)).transpose();
-    let (cone, acceptance_rad) = (angle("cone_deg", cone_deg)?, angle("acceptance_deg", acceptance_deg)?);
-    let boxes = keep_out_mm.unwrap_or_default();
-    let named = |(at, value): (usize, &Bound<'_, PyAny>)| corners(value, &format!("keep_out_mm[{at}]"));
-    let is_avoiding = chosen("self_collision", self_collision, &[("avoid", true), ("ignore", false)])?;
-    let (capsules, notes) = if is_avoiding { capsules_of(model) } else { Default::default() };
-    crate::warn(py, &notes)?;
-    let conditions = Conditions {
-        margin: [
-            size("margin_deg_mm", margin_deg_mm.0, f64::to_radians)?,
-            size("margin_deg_mm", margin_deg_mm.1, from_mm)?,
-        ],
-        keep_out: boxes.iter().enumerate().map(named).collect::<PyResult<_>>()?,
-        floor_m: floor_mm.map(from_mm),
-        separation_rad: angle("separation_deg", separation_deg)?.unwrap_or(0.0),
-        sight: place(device_mm).map(|at| Sight {
-            place: at,
-            cone: cone.map(|half| (place(device_looks_at_mm).unwrap_or_default(), half)),
-            distance_m: distance_mm.map_or([0.0, f64::INFINITY], |(low, high)| [low, high].map(from_mm)),
-            acceptance_rad,
-            facing: facing.map_or_else(Vector3::z, Vector3::from),
-        }),
-        capsules,
-    };
-    let kept = kept(keep, robot)?;
-    let replaced = replace.unwrap_or_default();
-    if let Some(row) = replaced.iter().find(|&&row| row >= kept.len()) {
-        let expected = format!("found {row}, expected a row of keep, from 0 to below {}", kept.len());
-        return Err(argument("replace", expected));
-    }
-    let options = PlanOptions {
-        fit: believe
-            .fit(model, kind_word(kind)?, count)?
-            .with_targets(targets, target_offset_mm.map(|it| it.map(from_mm))),
-        criterion: chosen("criterion", criterion, &PlanCriterion::WORDS)?,
-        list: configurations(candidates, robot)?,
-        workspace: workspace(robot, over, over_box_mm, seed)?,
-        judge,
-        conditions,
-        kept,
-        replaced,
-        seed,
-        ..PlanOptions::default()
-    };
-    let stop_s = sigma("stop_s", stop_s, std::convert::identity)?;
-    let found = py.detach(|| planned(&model.robot, &options)).map_err(raise)?;
-    let told = report::Plan::new(model, &options, &found, stop_s);
-    Plan { model: Arc::clone(model), options, found, told }.into_bound_py_any(py)
-}
-
-/// The robot whose session is planned: one that is given, that of a path, or the calibrated one of a calibration.
-fn planned_robot<'py>(value: &Bound<'py, PyAny>) -> PyResult<Bound<'py, Robot>> {
-    match value.cast::<Calibration>() {
-        Ok(calibration) => Bound::new(value.py(), calibration.get().calibrated()?.clone()),
-        Err(_) => paths::robot(value),
-    }
-}
-
-/// Rows that are there already: those of a plan, or configurations to fit.
-fn kept(keep: Option<&Bound<'_, PyAny>>, robot: &Robot) -> PyResult<Vec<PlannedRow>> {
-    let Some(value) = keep else { return Ok(Vec::new()) };
-    if let Ok(plan) = value.cast::<Plan>() {
-        return Ok(plan.get().found.rows.clone());
-    }
-    let readings = configurations(Some(value), robot)?.unwrap_or_default();
-    let width = robot.model.robot.reading_names().len();
-    let parts = vec![RowPart::Fit; readings.len() / width.max(1)];
-    Ok(PlannedRow::of_list(&readings, width, &parts))
+    let rows = Rows { count, judge, candidates, keep, replace };
+    let aim = Aim { kind, criterion, over, over_box_mm, targets, target_offset_mm };
+    let room = Room { margin_deg_mm, keep_out_mm, floor_mm, separation_deg, self_collision };
+    let view = View { device_mm, cone_deg, device_looks_at_mm, distance_mm, acceptance_deg, facing };
+    let session = Session { rows, aim, believe, room, view, stop_s, seed };
+    session.plan_for(purpose, py, robot, &visits)
 }

@@ -8,7 +8,8 @@ use poecal_arm::lie::Pose;
 use poecal_compensate::{
     ChangeOptions, Compensation, Inverse, Kinematics, Language, MostChange, ProgramOptions, compensate_file,
 };
-use poecal_model::robot::{Counting, JointKind, Robot};
+use poecal_model::robot::Robot;
+use poecal_model::robot::{Counting, JointKind};
 use poecal_results::calibration_file::CalibrationFile;
 use pyo3::IntoPyObjectExt as _;
 use pyo3::prelude::*;

@@ -2,8 +2,7 @@
 
 use std::path::PathBuf;
 
-use poecal_lou2009 as experiments;
-use poecal_lou2009::report as reproduced;
+use poecal_lou2009::{self as experiments, report as reproduced};
 use poecal_report as report;
 use poecal_results::output::{self, Contents, Existing};
 use pyo3::prelude::*;

@@ -9,7 +9,8 @@ use poecal_results::record::Record;
 use poecal_results::validation::{Earlier, History, JudgedRows, Judging, Validation, ValidationInputs, now};
 use pyo3::prelude::*;
 
-use super::{Calibration, ReportPlace};
+use super::content::Calibration;
+use super::report_place::ReportPlace;
 use crate::errors::raise;
 use crate::findings::Findings;
 use crate::measurements::Measurements;

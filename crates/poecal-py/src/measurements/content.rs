@@ -10,8 +10,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::arguments::{Argument, unexpected};
 use crate::errors::{argument, raise};
+use crate::pickle;
 use crate::robot::Robot;
-use crate::{pickle, rows};
+use crate::rows;
 
 /// Measurements of a robot: in each row a configuration and the measurement of a target. Immutable.
 ///

@@ -1,0 +1,123 @@
+//! A calibration judged by other measurements, and what others would determine.
+
+use std::path::PathBuf;
+
+use poecal_calibrate::AcceptanceLimits;
+use poecal_plan::plan::RobotError;
+use poecal_results::record::Record;
+use poecal_results::validation::Judging;
+use pyo3::prelude::*;
+
+use super::content::Calibration;
+use super::report_place::ReportPlace;
+use super::validated;
+use crate::arguments as arg;
+use crate::calibrate::accept_limits;
+use crate::findings::{self, Findings};
+use crate::measurements::Measurements;
+use crate::words::chosen;
+
+#[pymethods]
+impl Calibration {
+    /// Judges the calibration by measurements that it did not see; every row counts.
+    ///
+    /// Parameters
+    /// ----------
+    /// measurements
+    ///     The measurements.
+    /// refit_frame
+    ///     Whether to refit the device's frame to them.
+    /// refit_tool
+    ///     Whether to refit the targets to them.
+    /// refit
+    ///     "auto" refits the device's frame where the measurements show that the device stands elsewhere; "never" says it.
+    /// accept
+    ///     Limits that the errors must meet, like "0.2mm" or "0.2mm,max:0.5mm,0.05deg"; see `poecal.calibrate`.
+    /// accept_model
+    ///     Which model must meet them: "corrected", if there is one, or "calibrated".
+    /// out
+    ///     Folder for the results of the check: validation.json, errors.csv with each row beside its bound, and a report.
+    /// force
+    ///     Whether to write over results of a check and a report that exist.
+    /// report
+    ///     Whether to write a report among the results, or the path of another file for it.
+    /// record
+    ///     What the report states of this session, by key; see `poecal.calibrate`.
+    /// history
+    ///     File to which the check is appended as a line, like the history.jsonl that the program keeps beside a calibration.
+    ///
+    /// Returns
+    /// -------
+    /// Validation
+    ///     Errors of the nominal and the calibrated robot, their share inside the predicted bounds, and `acceptance`.
+    #[pyo3(signature = (measurements, *, refit_frame=false, refit_tool=false, refit="never", accept=None, accept_model="corrected", out=None, force=false, report=None,
+                        record=None, history=None),
+           text_signature = "($self, measurements, *, refit_frame=False, refit_tool=False, refit='never', accept=None, accept_model='corrected', out=None, force=False, report=True, record=None, history=None)")]
+    #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
+    fn validate(
+        &self,
+        py: Python<'_>,
+        #[pyo3(from_py_with = arg::measurements)] measurements: &Measurements,
+        #[pyo3(from_py_with = arg::refit_frame)] refit_frame: bool,
+        #[pyo3(from_py_with = arg::refit_tool)] refit_tool: bool,
+        #[pyo3(from_py_with = arg::refit)] refit: &str,
+        #[pyo3(from_py_with = arg::accept)] accept: Option<AcceptanceLimits>,
+        #[pyo3(from_py_with = arg::accept_model)] accept_model: &str,
+        #[pyo3(from_py_with = arg::out)] out: Option<PathBuf>,
+        #[pyo3(from_py_with = arg::force)] force: bool,
+        #[pyo3(from_py_with = arg::report)] report: Option<ReportPlace>,
+        #[pyo3(from_py_with = arg::record)] record: Option<Record>,
+        #[pyo3(from_py_with = arg::history)] history: Option<PathBuf>,
+    ) -> PyResult<Findings> {
+        measurements.check_robot(self.calibrated()?)?;
+        let limits = accept_limits(accept, accept_model)?;
+        let refit_moved = chosen("refit", refit, &[("never", false), ("auto", true)])?;
+        let judging = Judging { refit_frame, refit_moved, refit_tool, accept: limits.as_ref() };
+        let places =
+            validated::Places::reserve(py, (self, measurements), (out.as_deref(), force), report, history)?;
+        places.judge(py, (self, measurements), &judging, record.unwrap_or_default())
+    }
+
+    /// Which unknowns measurements of the calibrated robot in given configurations would determine; see `poecal.identify`.
+    ///
+    /// Parameters
+    /// ----------
+    /// joints
+    ///     Configurations, shape (m, n), radians and metres, in the order of `robot.reading_names`.
+    /// kind
+    ///     Kind of the measurements of the tip: "pose", "point", or "mixed" (both in turn).
+    /// sigma_position_mm, sigma_rotation_deg
+    ///     Standard deviation of each measured component (default 0.05 mm, 0.01 deg).
+    /// frame
+    ///     The measuring device's frame: "unknown" or "base".
+    /// robot_error_mm
+    ///     Error of the tip (RMS) that a calibration leaves however much is measured, or that and the one with corrections (default what this calibration left).
+    ///
+    /// Returns
+    /// -------
+    /// Identification
+    ///     What would be determined, and the expected error.
+    #[pyo3(signature = (joints, *, kind="pose", sigma_position_mm=None, sigma_rotation_deg=None, frame="unknown", robot_error_mm=None))]
+    #[expect(clippy::too_many_arguments, reason = "the options of a Python function")]
+    fn identify(
+        &self,
+        py: Python<'_>,
+        joints: &Bound<'_, PyAny>,
+        #[pyo3(from_py_with = arg::kind)] kind: &str,
+        #[pyo3(from_py_with = arg::sigma_position_mm)] sigma_position_mm: Option<f64>,
+        #[pyo3(from_py_with = arg::sigma_rotation_deg)] sigma_rotation_deg: Option<f64>,
+        #[pyo3(from_py_with = arg::frame)] frame: &str,
+        #[pyo3(from_py_with = arg::robot_error_mm)] robot_error_mm: Option<RobotError>,
+    ) -> PyResult<Findings> {
+        findings::identify(
+            py,
+            self.calibrated()?,
+            joints,
+            kind,
+            sigma_position_mm,
+            sigma_rotation_deg,
+            frame,
+            robot_error_mm.or_else(|| self.file().left_error()),
+        )
+    }
+}

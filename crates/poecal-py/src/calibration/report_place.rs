@@ -1,0 +1,23 @@
+//! Where a report goes.
+
+use std::path::PathBuf;
+
+use pyo3::prelude::*;
+
+use crate::arguments::{Argument, unexpected};
+
+/// Place of a report: among the results, a file, or none.
+pub(crate) enum ReportPlace {
+    Among(bool),
+    File(PathBuf),
+}
+
+impl<'a, 'py> Argument<'a, 'py> for ReportPlace {
+    fn of(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
+        match value.extract() {
+            Ok(among) => Ok(ReportPlace::Among(among)),
+            Err(_) if value.extract::<PathBuf>().is_ok() => PathBuf::of(value, name).map(ReportPlace::File),
+            Err(_) => Err(unexpected(name, value, "True, False, or the path of a file")),
+        }
+    }
+}

@@ -1,0 +1,197 @@
+//! Results of a calibration as files and texts.
+
+use std::path::{Path, PathBuf};
+
+use poecal_report as report;
+use poecal_results::export::{ExportFormat, ExportOptions, export};
+use poecal_results::output::{self, Contents, Existing, Results};
+use poecal_results::record::Record;
+use poecal_results::residuals::ResidualRows;
+use poecal_results::shapes::Shapes;
+use pyo3::prelude::*;
+
+use super::content::Calibration;
+use super::report_place::ReportPlace;
+use crate::arguments as arg;
+use crate::errors::raise;
+use crate::places::{reserved_file, reserved_folder, said};
+use crate::words::chosen;
+
+#[pymethods]
+impl Calibration {
+    /// Writes the results to a folder, as the program does: calibration.json, the calibrated model, residuals.csv and report.html.
+    ///
+    /// All is written or nothing, and the models are read back and compared with the fit.
+    ///
+    /// Parameters
+    /// ----------
+    /// folder
+    ///     The folder.
+    /// force
+    ///     Whether to write over files that exist.
+    /// report
+    ///     Whether to write the report too, or the path of another file for it.
+    ///
+    /// Returns
+    /// -------
+    /// list of str
+    ///     Names of the files.
+    ///
+    /// Raises
+    /// ------
+    /// FileError
+    ///     The folder exists, and `force` is not set.
+    /// ExportError
+    ///     Written files did not reproduce what was fitted.
+    #[pyo3(signature = (folder, *, force=false, report=None), text_signature = "($self, folder, *, force=False, report=True)")]
+    fn write(
+        &self,
+        py: Python<'_>,
+        #[pyo3(from_py_with = arg::folder)] folder: PathBuf,
+        #[pyo3(from_py_with = arg::force)] force: bool,
+        #[pyo3(from_py_with = arg::report)] report: Option<ReportPlace>,
+    ) -> PyResult<Vec<String>> {
+        let report = report.unwrap_or(ReportPlace::Among(true));
+        let (file, residuals) = (self.file(), self.rows()?);
+        let (robot, model) = (self.as_fitted(), &self.nominal.model);
+        let existing = Existing::forced(force);
+        let measured = file.inputs.measurements.iter().map(Path::new);
+        let inputs: Vec<&Path> = std::iter::once(model.path.as_path()).chain(measured).collect();
+        let place = reserved_folder(py, &folder, Contents::Calibration, existing, &inputs)?;
+        let elsewhere = match &report {
+            ReportPlace::File(path) => said(py, |say| place.reserve_report(path, &inputs, say))?,
+            ReportPlace::Among(_) => None,
+        };
+        let written = py.detach(|| {
+            let page = match &report {
+                ReportPlace::Among(false) => None,
+                ReportPlace::Among(true) | ReportPlace::File(_) => {
+                    let shapes = Shapes::read(file, &folder.join("calibration.json"));
+                    Some(report::calibration_page_with(file, residuals, &shapes)?)
+                }
+            };
+            let results =
+                Results { file: file.clone(), residuals: ResidualRows::AtHand(residuals), report: page };
+            output::write(place, elsewhere, model, &robot, results)
+        });
+        let written = written.map_err(raise)?;
+        crate::warn(py, &written.notes)?;
+        Ok(written.files)
+    }
+
+    /// The calibrated robot in the form of a controller, a driver or a simulator, read back and compared on 1,000 configurations.
+    ///
+    /// Parameters
+    /// ----------
+    /// format
+    ///     "urdf" (the one that was calibrated, with other numbers), "toml", "poe", "dh", "mdh", "hayati", "origins", "ur", "xarm", "franka",
+    ///     "pal", "lerobot", "mjcf", "sdf", "usd", "csv" or "offsets".
+    /// model
+    ///     "calibrated", geometry alone, or "corrected", whose terms of the joints a form of geometry leaves out, with a warning.
+    /// hash
+    ///     The controller's checksum, for "ur".
+    /// motors
+    ///     The text of the calibration of motors that LeRobot has, for "lerobot".
+    ///
+    /// Returns
+    /// -------
+    /// str
+    ///     The text. What the form cannot say is a warning.
+    ///
+    /// Raises
+    /// ------
+    /// ExportError
+    ///     The form cannot hold this robot.
+    #[pyo3(signature = (format, *, model="calibrated", hash=None, motors=None))]
+    fn export(
+        &self,
+        py: Python<'_>,
+        #[pyo3(from_py_with = arg::format)] format: &str,
+        #[pyo3(from_py_with = arg::model)] model: &str,
+        #[pyo3(from_py_with = arg::hash)] hash: Option<String>,
+        #[pyo3(from_py_with = arg::motors)] motors: Option<String>,
+    ) -> PyResult<String> {
+        let words = ExportFormat::ALL.map(|format| (format.word(), format));
+        let format = chosen("format", format, &words)?;
+        let robot = match chosen("model", model, &[("calibrated", false), ("corrected", true)])? {
+            true => self.corrected()?.unwrap_or(self.calibrated()?),
+            false => self.calibrated()?,
+        };
+        let options = ExportOptions { hash, motors };
+        let exported = py.detach(|| export(&robot.model, format, &options)).map_err(raise)?;
+        crate::warn(py, &exported.notes)?;
+        Ok(exported.text)
+    }
+
+    /// The URDF that was calibrated, with the calibrated numbers; a new one if the model was no URDF.
+    ///
+    /// Returns
+    /// -------
+    /// str
+    ///     The text.
+    fn to_urdf(&self, py: Python<'_>) -> PyResult<String> {
+        self.export(py, ExportFormat::Urdf.word(), "calibrated", None, None)
+    }
+
+    /// Writes the report, one HTML file.
+    ///
+    /// Parameters
+    /// ----------
+    /// path
+    ///     The file.
+    /// force
+    ///     Whether to write over a file that is no report of poecal.
+    #[pyo3(signature = (path, *, force=false))]
+    fn report(
+        &self,
+        py: Python<'_>,
+        #[pyo3(from_py_with = arg::path)] path: PathBuf,
+        #[pyo3(from_py_with = arg::force)] force: bool,
+    ) -> PyResult<()> {
+        let (file, residuals) = (self.file(), self.rows()?);
+        let existing = if force { Existing::Replaced } else { Existing::Own };
+        let place = reserved_file(py, &path, existing, &[])?;
+        let page = || {
+            let shapes = Shapes::read(file, &path);
+            place.write(report::calibration_page_with(file, residuals, &shapes)?)
+        };
+        py.detach(page).map_err(raise)
+    }
+
+    /// Writes the certificate, one page of paper (HTML).
+    ///
+    /// Parameters
+    /// ----------
+    /// path
+    ///     The file.
+    /// logo
+    ///     Picture for its head: PNG, JPEG or SVG.
+    /// valid_until
+    ///     Day until which it is valid, like "2027-11-28".
+    /// record
+    ///     What it states beside and in place of what the calibration's record states, as {"serial": "4711"}.
+    /// force
+    ///     Whether to write over a file that is none of poecal.
+    #[pyo3(signature = (path, *, logo=None, valid_until=None, record=None, force=false))]
+    fn certificate(
+        &self,
+        py: Python<'_>,
+        #[pyo3(from_py_with = arg::path)] path: PathBuf,
+        #[pyo3(from_py_with = arg::logo)] logo: Option<PathBuf>,
+        #[pyo3(from_py_with = arg::valid_until)] valid_until: Option<String>,
+        #[pyo3(from_py_with = arg::record)] record: Option<Record>,
+        #[pyo3(from_py_with = arg::force)] force: bool,
+    ) -> PyResult<()> {
+        let file = self.file();
+        let until = valid_until.as_deref().map(|day| ("valid_until", day));
+        let stated = file.record.clone().overridden(&record.unwrap_or_default());
+        let stated = stated.overridden(&Record::of(until).map_err(raise)?);
+        let logo = logo.as_deref().map(poecal_formats::logo::read).transpose().map_err(raise)?;
+        let existing = if force { Existing::Replaced } else { Existing::Own };
+        let place = reserved_file(py, &path, existing, &[])?;
+        // The checksum is that of calibration.json as it is written.
+        let sha256 = file.sha256().map_err(raise)?;
+        let attest = report::Attest { sha256: Some(sha256), logo };
+        py.detach(|| place.write(report::certificate_page(file, &stated, &attest))).map_err(raise)
+    }
+}

@@ -1,0 +1,241 @@
+//! A session that is to be planned: what was asked for, in the words and units of Python.
+
+use std::sync::Arc;
+
+use nalgebra::Vector3;
+use poecal_plan::plan::{
+    Conditions, PlanCriterion, PlanOptions, PlannedRow, RowPart, Sight, plan as planned,
+};
+use poecal_report as report;
+use poecal_results::model::Model;
+use poecal_results::shapes::capsules_of;
+use pyo3::IntoPyObjectExt as _;
+use pyo3::prelude::*;
+
+use crate::arguments::Believed;
+use crate::calibration::Calibration;
+use crate::errors::{argument, raise};
+use crate::paths;
+use crate::plan_options::{Believe, configurations, corners, place, workspace};
+use crate::planned::Plan;
+use crate::robot::Robot;
+use crate::visit_plan::VisitOptions;
+use crate::words::{chosen, from_mm, kind as kind_word, sigma, size};
+
+/// Most configurations of a plan, and most rows to judge by, as by the program.
+const MOST: usize = 1000;
+/// Most targets of a nest, as by the program.
+const MOST_TARGETS: usize = 8;
+
+/// Which rows are planned, and those that are there already.
+pub(super) struct Rows<'a, 'py> {
+    pub(super) count: Option<usize>,
+    pub(super) judge: Option<usize>,
+    pub(super) candidates: Option<&'a Bound<'py, PyAny>>,
+    pub(super) keep: Option<&'a Bound<'py, PyAny>>,
+    pub(super) replace: Option<Vec<usize>>,
+}
+
+/// What is measured, and where predictions shall be good.
+pub(super) struct Aim<'a, 'py> {
+    pub(super) kind: &'a str,
+    pub(super) criterion: &'a str,
+    pub(super) over: Option<&'a Bound<'py, PyAny>>,
+    pub(super) over_box_mm: Option<&'a Bound<'py, PyAny>>,
+    pub(super) targets: usize,
+    pub(super) target_offset_mm: Option<[f64; 3]>,
+}
+
+/// Where the robot may be.
+pub(super) struct Room<'a, 'py> {
+    pub(super) margin_deg_mm: (f64, f64),
+    pub(super) keep_out_mm: Option<Vec<Bound<'py, PyAny>>>,
+    pub(super) floor_mm: Option<f64>,
+    pub(super) separation_deg: Option<f64>,
+    pub(super) self_collision: &'a str,
+}
+
+/// What the measuring device sees.
+pub(super) struct View {
+    pub(super) device_mm: Option<[f64; 3]>,
+    pub(super) cone_deg: Option<f64>,
+    pub(super) device_looks_at_mm: Option<[f64; 3]>,
+    pub(super) distance_mm: Option<(f64, f64)>,
+    pub(super) acceptance_deg: Option<f64>,
+    pub(super) facing: Option<[f64; 3]>,
+}
+
+/// A session that is to be planned.
+pub(super) struct Session<'a, 'py> {
+    pub(super) rows: Rows<'a, 'py>,
+    pub(super) aim: Aim<'a, 'py>,
+    pub(super) believe: Believe<'a>,
+    pub(super) room: Room<'a, 'py>,
+    pub(super) view: View,
+    pub(super) stop_s: f64,
+    pub(super) seed: u64,
+}
+
+impl Session<'_, '_> {
+    /// Plans a calibration, or visits to one that is calibrated.
+    pub(super) fn plan_for<'py>(
+        self,
+        purpose: &str,
+        py: Python<'py>,
+        robot: &Bound<'py, PyAny>,
+        visits: &VisitOptions<'_>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        if chosen("purpose", purpose, &[("calibration", false), ("drift", true)])? {
+            self.refuse_for_visits()?;
+            return visits.plan(py, robot, self.rows.count, self.rows.candidates)?.into_pyobject(py);
+        }
+        visits.refuse()?;
+        self.plan(py, planned_robot(robot)?.get())?.into_bound_py_any(py)
+    }
+
+    /// Refuses what is stated of a calibration where visits are planned. What a default says is no statement.
+    fn refuse_for_visits(&self) -> PyResult<()> {
+        let Session { rows, aim, believe, room, view, stop_s, seed } = self;
+        let usual = *believe.tolerance_deg_mm == Believed::Given((0.5, 5.0));
+        let stated = [
+            ("kind", aim.kind != "point"),
+            ("judge", rows.judge.is_some()),
+            ("over", aim.over.is_some()),
+            ("over_box_mm", aim.over_box_mm.is_some()),
+            ("keep", rows.keep.is_some()),
+            ("replace", rows.replace.is_some()),
+            ("criterion", aim.criterion != "expected"),
+            ("targets", aim.targets != 1),
+            ("target_offset_mm", aim.target_offset_mm.is_some()),
+            ("sigma_position_mm", believe.sigma_position_mm.is_some()),
+            ("sigma_rotation_deg", believe.sigma_rotation_deg.is_some()),
+            ("robot_error_mm", believe.robot_error_mm.is_some()),
+            ("frame", believe.frame != "unknown"),
+            ("tolerance_deg_mm", !usual),
+            ("corrections", believe.corrections.is_some()),
+            ("gravity", believe.gravity.is_some()),
+            ("margin_deg_mm", room.margin_deg_mm != (0.0, 0.0)),
+            ("keep_out_mm", room.keep_out_mm.is_some()),
+            ("floor_mm", room.floor_mm.is_some()),
+            ("separation_deg", room.separation_deg.is_some()),
+            ("device_mm", view.device_mm.is_some()),
+            ("cone_deg", view.cone_deg.is_some()),
+            ("device_looks_at_mm", view.device_looks_at_mm.is_some()),
+            ("distance_mm", view.distance_mm.is_some()),
+            ("acceptance_deg", view.acceptance_deg.is_some()),
+            ("facing", view.facing.is_some()),
+            ("self_collision", room.self_collision != "avoid"),
+            ("stop_s", *stop_s != 30.0),
+            ("seed", *seed != 1),
+        ];
+        if let Some((name, _)) = stated.into_iter().find(|it| it.1) {
+            let message = "found it with purpose=\"drift\", expected only candidates, count, earlier, device, tool and repeatability_mm beside it";
+            return Err(argument(name, message));
+        }
+        Ok(())
+    }
+
+    /// Plans it.
+    fn plan(self, py: Python<'_>, robot: &Robot) -> PyResult<Plan> {
+        let Session { rows, aim, believe, room, view, stop_s, seed } = self;
+        let count = rows.count.unwrap_or(30);
+        refuse_numbers(count, rows.judge.unwrap_or(0), aim.targets)?;
+        let model = &robot.model;
+        let conditions = conditions(py, model, &room, &view)?;
+        let kept = kept(rows.keep, robot)?;
+        let replaced = rows.replace.unwrap_or_default();
+        if let Some(row) = replaced.iter().find(|&&row| row >= kept.len()) {
+            let expected = format!("found {row}, expected a row of keep, from 0 to below {}", kept.len());
+            return Err(argument("replace", expected));
+        }
+        let options = PlanOptions {
+            fit: believe
+                .fit(model, kind_word(aim.kind)?, count)?
+                .with_targets(aim.targets, aim.target_offset_mm.map(|it| it.map(from_mm))),
+            criterion: chosen("criterion", aim.criterion, &PlanCriterion::WORDS)?,
+            list: configurations(rows.candidates, robot)?,
+            workspace: workspace(robot, aim.over, aim.over_box_mm, seed)?,
+            judge: rows.judge,
+            conditions,
+            kept,
+            replaced,
+            seed,
+            ..PlanOptions::default()
+        };
+        let stop_s = sigma("stop_s", stop_s, std::convert::identity)?;
+        let found = py.detach(|| planned(&model.robot, &options)).map_err(raise)?;
+        let told = report::Plan::new(model, &options, &found, stop_s);
+        Ok(Plan { model: Arc::clone(model), options, found, told })
+    }
+}
+
+/// Refuses numbers of rows and targets that a plan cannot have.
+fn refuse_numbers(count: usize, judge: usize, targets: usize) -> PyResult<()> {
+    for (name, number, least, most) in
+        [("count", count, 1, MOST), ("judge", judge, 0, MOST), ("targets", targets, 1, MOST_TARGETS)]
+    {
+        if !(least..=most).contains(&number) {
+            return Err(argument(name, format!("found {number}, expected {least} to {most}")));
+        }
+    }
+    Ok(())
+}
+
+/// What a configuration must fulfil.
+fn conditions(py: Python<'_>, model: &Model, room: &Room<'_, '_>, view: &View) -> PyResult<Conditions> {
+    let sight = [
+        ("cone_deg", view.cone_deg.is_some()),
+        ("device_looks_at_mm", view.device_looks_at_mm.is_some()),
+        ("distance_mm", view.distance_mm.is_some()),
+        ("acceptance_deg", view.acceptance_deg.is_some()),
+        ("facing", view.facing.is_some()),
+    ];
+    if let Some((name, _)) = sight.into_iter().find(|it| it.1 && view.device_mm.is_none()) {
+        return Err(argument(name, "found it without device_mm, expected the device's place beside it"));
+    }
+    let angle = |name, value: Option<f64>| value.map(|it| sigma(name, it, f64::to_radians)).transpose();
+    let cone = angle("cone_deg", view.cone_deg)?;
+    let acceptance_rad = angle("acceptance_deg", view.acceptance_deg)?;
+    let boxes = room.keep_out_mm.iter().flatten();
+    let named = |(at, value): (usize, &Bound<'_, PyAny>)| corners(value, &format!("keep_out_mm[{at}]"));
+    let is_avoiding = chosen("self_collision", room.self_collision, &[("avoid", true), ("ignore", false)])?;
+    let (capsules, notes) = if is_avoiding { capsules_of(model) } else { Default::default() };
+    crate::warn(py, &notes)?;
+    Ok(Conditions {
+        margin: [
+            size("margin_deg_mm", room.margin_deg_mm.0, f64::to_radians)?,
+            size("margin_deg_mm", room.margin_deg_mm.1, from_mm)?,
+        ],
+        keep_out: boxes.enumerate().map(named).collect::<PyResult<_>>()?,
+        floor_m: room.floor_mm.map(from_mm),
+        separation_rad: angle("separation_deg", room.separation_deg)?.unwrap_or(0.0),
+        sight: place(view.device_mm).map(|at| Sight {
+            place: at,
+            cone: cone.map(|half| (place(view.device_looks_at_mm).unwrap_or_default(), half)),
+            distance_m: view.distance_mm.map_or([0.0, f64::INFINITY], |(low, high)| [low, high].map(from_mm)),
+            acceptance_rad,
+            facing: view.facing.map_or_else(Vector3::z, Vector3::from),
+        }),
+        capsules,
+    })
+}
+
+/// Rows that are there already: those of a plan, or configurations to fit.
+fn kept(keep: Option<&Bound<'_, PyAny>>, robot: &Robot) -> PyResult<Vec<PlannedRow>> {
+    let Some(value) = keep else { return Ok(Vec::new()) };
+    if let Ok(plan) = value.cast::<Plan>() {
+        return Ok(plan.get().found.rows.clone());
+    }
+    let readings = configurations(Some(value), robot)?.unwrap_or_default();
+    let width = robot.model.robot.reading_names().len();
+    let parts = vec![RowPart::Fit; readings.len() / width.max(1)];
+    Ok(PlannedRow::of_list(&readings, width, &parts))
+}
+
+/// The robot whose session is planned: one that is given, that of a path, or the calibrated one of a calibration.
+fn planned_robot<'py>(value: &Bound<'py, PyAny>) -> PyResult<Bound<'py, Robot>> {
+    match value.cast::<Calibration>() {
+        Ok(calibration) => Bound::new(value.py(), calibration.get().calibrated()?.clone()),
+        Err(_) => paths::robot(value),
+    }
+}
