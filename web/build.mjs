@@ -5,7 +5,7 @@
 import { build } from "esbuild";
 import { readFile, writeFile } from "node:fs/promises";
 
-const ASSETS = new URL("../crates/poecal/src/report/page/assets/", import.meta.url);
+const ASSETS = new URL("../crates/poecal-report/src/page/assets/", import.meta.url);
 const BUNDLED = ["three", "uplot"];
 
 /** The licences of what is bundled, as a comment that stays in every report. */

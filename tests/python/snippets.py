@@ -31,7 +31,7 @@ NOTE = re.compile(r"<!-- *(?P<word>output|file|given|exit|shorter|not run)(?:: *
 ROUNDED = re.compile(r"(?<![\w.-])((?=[\d.]{4,})\d+\.\d+)(?![\w.])")
 # Languages that are not run: what is shown, not done.
 SHOWN = {"", "text", "math"}
-# Files that are shown there are read by crates/poecal/tests/it/documented_files.rs.
+# Files that are shown there are read by crates/poecal-results/tests/it/documented_files.rs.
 DOCUMENTED_FILES = "docs/file-formats.md"
 
 

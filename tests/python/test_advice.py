@@ -15,7 +15,9 @@ from program import ROOT, program
 ELBOW = ROOT / "examples/elbow"
 MODEL = (ELBOW / "robot.urdf").read_text()
 POINTS = [line for line in (ELBOW / "points.csv").read_text().splitlines() if line and not line.startswith("#")]
-CRATES = ["crates/poecal/src", "crates/poecal-cli/src"]
+# The program and all parts of the library; not what stands beside them.
+BESIDE = {f"poecal-{name}" for name in ("arm", "c", "detect", "fuzz", "lou2009", "py", "testing", "wasm")}
+CRATES = sorted(path for path in (ROOT / "crates").glob("*/src") if path.parent.name not in BESIDE)
 # What a sentence looks like that says what to write.
 ADVICE = re.compile(r"write `|write \{|state it by|in a mapping\b|into a mapping|a mapping file|put `#`|expand the file|expected another: take|: take `|\(--columns\)|by --start|`--third-axis")
 
@@ -24,9 +26,9 @@ FOLLOWED = {
     "put `#` in front of a line that is no row": HERE + "test_a_line_that_is_no_row",
     "write `{si}`": HERE + "test_a_unit_that_is_missing_in_the_line_of_units",
     "has it: put `#` in front of the lines above it": HERE + "test_lines_above_the_header",
-    "state it by --lag, like": "crates/poecal/tests/it/stands.rs::a_program_that_repeats_itself_is_refused_until_the_lag_is_stated",
+    "state it by --lag, like": "crates/poecal-import/tests/it/stands.rs::a_program_that_repeats_itself_is_refused_until_the_lag_is_stated",
     "if they are {unit}, write `time[{unit}]` in the header": "crates/poecal-cli/tests/it/recordings.rs::a_log_without_usable_times_is_refused_at_once_and_says_why",
-    "or number them in a mapping (--columns), like": "crates/poecal/tests/it/mapping_forms.rs::columns_of_a_table_without_names_are_named_by_their_numbers",
+    "or number them in a mapping (--columns), like": "crates/poecal-import/tests/it/mapping_forms.rs::columns_of_a_table_without_names_are_named_by_their_numbers",
     "export them with comments, or name the columns by number in a mapping (--columns)": HERE + "test_points_without_a_unit",
     "expected one that was measured: name its columns in a mapping (--columns)": HERE + "test_two_sets_of_coordinates",
     "since angles do not say their convention, which a mapping does (--columns)": HERE + "test_two_sets_of_coordinates",
@@ -36,7 +38,7 @@ FOLLOWED = {
     "write `{}[{symbol}]` in the header": HERE + "test_degrees_without_a_unit",
     "most likely {smaller}; write `{}` in the header": HERE + "test_millimetres_that_are_called_metres",
     "rename or add a column, or name the right one in a mapping file (--columns)": HERE + "test_a_column_of_another_name",
-    "name them in a mapping file (--columns)": "crates/poecal/tests/it/measurement_errors.rs",
+    "name them in a mapping file (--columns)": "crates/poecal-import/tests/it/measurement_errors.rs",
     "and say so with `joints": HERE + "test_a_joint_that_is_called_x",
     "add the missing cells (they may be empty), or put `#`": HERE + "test_a_line_that_is_no_row",
     "{why}; in a mapping file: `[joints]` and below it": "crates/poecal-cli/tests/it/diagnosis.rs::readings_in_per_cent_of_the_range_are_named_with_the_mapping_that_reads_them",
@@ -45,7 +47,7 @@ FOLLOWED = {
     "(poses of the device in the target: `pose": HERE + "test_poses_the_other_way",
     "or in a mapping (`unit": HERE + "test_angles_in_another_unit",
     "check the convention of the angles; a mapping (--columns) with": "crates/poecal-cli/tests/it/diagnosis.rs::angles_of_a_controller_that_are_called_roll_pitch_yaw_are_named_with_the_mapping_that_reads_them",
-    "take `--format hayati`": "crates/poecal/tests/it/export.rs",
+    "take `--format hayati`": "crates/poecal-results/tests/it/export.rs",
     "write `third_axis = ": HERE + "test_options_of_programs",
     "state it by --factor": HERE + "test_a_factor",
     "expand the file with `xacro": HERE + "test_remains_of_xacro",
@@ -56,7 +58,7 @@ FOLLOWED = {
     "the tool is not known: state it by --tool": HERE + "test_options_of_programs",
     "the frame is not known: state it by --frame": HERE + "test_options_of_programs",
     "is not in this file: state it by {flag}": HERE + "test_options_of_programs",
-    "its frame is stated in no line of this file: state it by --frame NAME=": "crates/poecal/tests/it/programs.rs",
+    "its frame is stated in no line of this file: state it by --frame NAME=": "crates/poecal-compensate/tests/it/programs/urscript.rs",
     "state where the robot starts by --start": HERE + "test_options_of_programs",
     "do not show from where the third axis counts": "crates/poecal-cli/tests/it/counted.rs::a_third_axis_is_stated_where_rows_do_not_show_it",
     "which are not all here: took these": "crates/poecal-cli/tests/it/counted.rs::tables_are_read_and_written_as_the_controller_counts",
@@ -73,7 +75,7 @@ def sentences() -> list[str]:
     """Text of every source line, tests and comments left out, that says what to write; with the lines around it, since sentences are long."""
     found = []
     for crate in CRATES:
-        for path in sorted((ROOT / crate).rglob("*.rs")):
+        for path in sorted(crate.rglob("*.rs")):
             lines = path.read_text().split("#[cfg(test)]")[0].splitlines()
             for at, line in enumerate(lines):
                 if not line.lstrip().startswith("//") and '"' in "".join(lines[max(at - 3, 0) : at + 1]) and ADVICE.search(line):

@@ -11,7 +11,7 @@ function split(words) {
   return { numbers, rest };
 }
 
-/** What is written of a calibration with six decimals (io/calibration_file/corrected.rs), the last of which may be rounded the other way. */
+/** What is written of a calibration with six decimals (poecal-results/src/calibration_file/corrected.rs), the last of which may be rounded the other way. */
 const COARSE = /("(?:left_out|score)": )(-?[\d.e-]+)/g;
 const LAST_DECIMAL = 1.0001e-6;
 

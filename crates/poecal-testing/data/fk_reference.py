@@ -1,7 +1,7 @@
-"""Forward kinematics of the URDFs beside this file, by Pinocchio: the reference of tests/it/fk_reference.rs.
+"""Forward kinematics of the URDFs beside this file, by Pinocchio: the reference of crates/poecal-results/tests/it/fk_reference.rs.
 
     pip install pin numpy
-    python crates/poecal/tests/data/fk_reference.py
+    python crates/poecal-testing/data/fk_reference.py
 
 writes fk_reference.json: for each URDF the tip link, the names of the readings, and 20 configurations with the pose of the tip
 in base_link. Mimic relations are not left to Pinocchio: it gets every joint's own value, computed here from the leader's.
