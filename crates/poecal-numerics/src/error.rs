@@ -96,6 +96,13 @@ struct Inner {
 
 /// What an option could be, where nothing else decides.
 ///
+/// ```
+/// use poecal_numerics::error::ErrorKind;
+/// let two = ErrorKind::Model.error("found two ends").with_choices("--tip-link", vec!["b".to_owned(), "c".to_owned()]);
+/// let choices = two.choices().ok_or("no choices")?;
+/// assert_eq!((choices.option, choices.of.join(" ")), ("--tip-link", "b c".to_owned()));
+/// # Ok::<(), &str>(())
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
 pub struct Choices {
     /// The option, as it is typed.

@@ -66,6 +66,17 @@ impl Cause {
 }
 
 /// Unknowns that the measurements do not determine, or only weakly.
+///
+/// ```
+/// # use poecal_fit::analysis::{PlannedSession, identify};
+/// # use poecal_model::{measurement::Kind, simulate::{Simulation, elbow}};
+/// # let made = Simulation { count: 40, ..Simulation::default() }.run(&elbow(), Kind::POINT)?;
+/// let planned = PlannedSession { kind: Kind::POINT, ..PlannedSession::default() };
+/// let structural = identify(&elbow(), made.data.all_readings(), &planned)?.identifiability.structural;
+/// // Points of a tracker that stands anywhere do not determine the base frame: a choice that changes no prediction.
+/// assert!(structural.iter().any(|direction| direction.description.contains("base")));
+/// # Ok::<(), poecal_numerics::error::Error>(())
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Direction {
     /// Description.

@@ -14,6 +14,17 @@ use poecal_numerics::linalg;
 use poecal_numerics::solve::Normal;
 
 /// What the measurements determine.
+///
+/// ```
+/// # use poecal_fit::analysis::{PlannedSession, identify};
+/// # use poecal_model::{measurement::Kind, simulate::{Simulation, elbow}};
+/// # let made = Simulation { count: 60, ..Simulation::default() }.run(&elbow(), Kind::POINT)?;
+/// let planned = PlannedSession { kind: Kind::POINT, ..PlannedSession::default() };
+/// let found = identify(&elbow(), made.data.all_readings(), &planned)?.identifiability;
+/// assert_eq!((found.rank, found.parameters), (27, 27));
+/// assert!(found.unidentifiable.is_empty() && found.spectrum.determined().iter().all(|&known| known));
+/// # Ok::<(), poecal_numerics::error::Error>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Identifiability {
     /// Unknowns in the minimal basis: 4 a revolute joint, 2 a prismatic one, 6 a target frame, 3 a target point.
