@@ -26,7 +26,7 @@ DOCUMENTATION = ["cargo", "doc", "--locked", "--quiet", "--no-deps", "-p", "poec
 INSTALL = "tests/python/test_install.py"
 SITE = "tests/python/test_site.py"
 WASM = "wasm32-unknown-unknown"
-# Levels of vector instructions, the best first (crates/poecal/src/lanes/simd.rs), and what compares digits: programs of Rust tests, Python
+# Levels of vector instructions, the best first (crates/poecal-numerics/src/kernels/simd.rs), and what compares digits: programs of Rust tests, Python
 # files, and what web/ compares with the program. Every change is tried by a few of them at each level, and by all at the best.
 LEVELS = ["avx512", "avx2", "neon", "plain"]
 DIGITS_OF_RUST = ["poecal-cli it ", "poecal-lou2009 it ", "it determinism", "-simulated_disk", "-hostile",
@@ -119,7 +119,7 @@ def change() -> list[Step]:
     pages = sorted(path.name for path in (ROOT / "web/test").glob("*.test.mjs") if path.name not in ("npm.test.mjs", "site.test.mjs", *alone))
     return [
         Step("format", [["cargo", "fmt", "--all", "--check"]], shows="^Diff in", lacks=lack("rustfmt", has("cargo", "fmt", "--version"))),
-        Step("imports", [[sys.executable, "scripts/check-imports"]], shows="^imports go| may name |^only "),
+        Step("imports", [[sys.executable, "scripts/check-imports"]], shows="^imports go| may depend only |^only |import each other"),
         Step("recipes apply", [[sys.executable, "scripts/recipes", "--apply"]], shows=r"\.patch: "),
         rust_build(),
         *tools(),

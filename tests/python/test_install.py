@@ -19,15 +19,20 @@ from pathlib import Path
 import pytest
 from program import ROOT
 
+try:
+    import tomllib
+except ModuleNotFoundError:
+    import tomli as tomllib
+
 TARGET = Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target")).resolve()
-QUICK = {
-    "CARGO_TARGET_DIR": str(TARGET / "install"),
-    "CARGO_PROFILE_RELEASE_OPT_LEVEL": "0",
-    "CARGO_PROFILE_RELEASE_LTO": "off",
-    "CARGO_PROFILE_RELEASE_CODEGEN_UNITS": "256",
-    "CARGO_PROFILE_RELEASE_DEBUG": "false",
-}
-CRATES = ["poecal-arm", "poecal-c", "poecal", "poecal-detect", "poecal-lou2009", "poecal-cli"]
+SETTINGS = {"OPT_LEVEL": "0", "LTO": "off", "CODEGEN_UNITS": "256", "DEBUG": "false"}
+PROFILES = ["release", "dist"]
+QUICK = {f"CARGO_PROFILE_{profile.upper()}_{name}": value for profile in PROFILES for name, value in SETTINGS.items()}
+QUICK["CARGO_TARGET_DIR"] = str(TARGET / "install")
+# In the order in which they are published.
+CRATES = ["poecal-arm", "poecal-c", "poecal-detect", "poecal-numerics", "poecal-model", "poecal-programs", "poecal-fit", "poecal-calibrate",
+          "poecal-plan", "poecal-storage", "poecal-formats", "poecal-import", "poecal-results", "poecal-compensate", "poecal-report", "poecal",
+          "poecal-lou2009", "poecal-cli"]  # fmt: skip
 LICENCES = ["LICENSE-APACHE", "LICENSE-MIT"]
 LARGEST_PROGRAM = 20_000_000
 AS_HANDED_OUT = os.environ.get("POECAL_TRIALS") in ("weekly", "full")
@@ -50,6 +55,16 @@ def installed(*command, cwd, **settings) -> str:
     """A run that builds: without optimisation, and with nothing of this test's own Python."""
     names = {name: value for name, value in os.environ.items() if not name.startswith(("PYTHON", "VIRTUAL_ENV"))}
     return run(*command, cwd=cwd, env=names | QUICK | settings)
+
+
+def unoptimised(folder: Path) -> Path:
+    """The folder, below which profiles optimise no single crate either; of these no variable decides."""
+    profiles = tomllib.loads((ROOT / "Cargo.toml").read_text())["profile"]
+    names = sorted({name for profile in PROFILES for name in profiles[profile]["package"]})
+    lines = [f"{profile}.package.{name}.opt-level = 0\n" for profile in PROFILES for name in names]
+    (folder / ".cargo").mkdir(parents=True, exist_ok=True)
+    (folder / ".cargo/config.toml").write_text("[profile]\n" + "".join(lines))
+    return folder
 
 
 @pytest.fixture
@@ -110,7 +125,8 @@ def test_pip_installs_the_source_package(empty, tmp_path):
     # Sources of a package are as old as each other, so that what an earlier version was built into would be taken for theirs.
     for built in (TARGET / "install/release/.fingerprint").glob("poecal*"):
         shutil.rmtree(built)
-    installed(programs / "pip", "install", "--quiet", source, cwd=empty)
+    # Where pip unpacks it.
+    installed(programs / "pip", "install", "--quiet", source, cwd=empty, TMPDIR=str(unoptimised(tmp_path / "unpacked")))
     works_in_python(programs, empty)
 
 
@@ -160,6 +176,10 @@ def image() -> tuple[Path, list[str]]:
     Of the images that it begins with, `scratch` is empty, and of Rust's only Rust is needed, which is here too.
     """
     parent = TARGET / "image"
+    if AS_HANDED_OUT:
+        shutil.rmtree(parent / ".cargo", ignore_errors=True)
+    else:
+        unoptimised(parent)
     roots, root, where, entry = {}, None, None, []
     for word, rest in steps((ROOT / "Dockerfile").read_text()):
         if word == "FROM":
