@@ -1,6 +1,6 @@
 """Checks that one version is named everywhere before it is published.
 
-    python scripts/check_version.py         as it stands, in Cargo.toml, CHANGELOG.md, CITATION.cff and the npm package
+    python scripts/check_version.py         as it stands, in Cargo.toml and those of the crates, CHANGELOG.md, CITATION.cff and the npm package
     python scripts/check_version.py v1.2.3  for a release: that tag, and a day in the changelog
 """
 
@@ -9,6 +9,8 @@ import sys
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
+# Crates that users name themselves.
+FOR_USERS = {"poecal", "poecal-arm", "poecal-detect", "poecal-lou2009"}
 
 
 def one(pattern, name):
@@ -23,10 +25,13 @@ def one(pattern, name):
 def complaints(tag=None):
     """A sentence for each place that names another version than Cargo.toml."""
     version = one(r'^version = "([^"]+)"', "Cargo.toml")[1]
-    for name in ("poecal-arm", "poecal", "poecal-detect", "poecal-lou2009"):
-        found = one(rf'^{name} = {{ path = "[^"]+", version = "([^"]+)"', "Cargo.toml")[1]
-        if found != version:
-            yield f"Cargo.toml: found {name} {found} among the dependencies, expected {version}"
+    for path in [ROOT / "Cargo.toml", *sorted(ROOT.glob("crates/*/Cargo.toml"))]:
+        name = path.relative_to(ROOT).as_posix()
+        for crate, found in re.findall(r'^(poecal[\w-]*) = \{ path = "[^"]+", version = "([^"]+)"', path.read_text(encoding="utf-8"), re.M):
+            # Parts of the library change without notice: each fits its own version alone.
+            expected = version if crate in FOR_USERS else f"={version}"
+            if found != expected:
+                yield f"{name}: found {crate} {found} among the dependencies, expected {expected}"
     changes = one(r"^## \[([^\]]+)\] - (\S+)", "CHANGELOG.md")
     if changes[1] != version:
         yield f"CHANGELOG.md: found {changes[1]} first, expected {version}"

@@ -108,11 +108,11 @@ def run(tests):
     return results
 
 
-def report(results):
+def report(results, of="seconds of processors"):
     """Prints the slowest tests and those that failed; gives the number that failed."""
     slowest = sorted(results.items(), key=lambda item: -item[1][0])[:SLOWEST]
     if slowest:
-        print(f"\nslowest tests (seconds of processors, {PROCESSORS} at once, POECAL_TRIALS={os.environ.get('POECAL_TRIALS') or 'not set'})")
+        print(f"\nslowest tests ({of}, {PROCESSORS} at once, POECAL_TRIALS={os.environ.get('POECAL_TRIALS') or 'not set'})")
     for name, (seconds, *_) in slowest:
         print(f"{seconds:6.2f} s  {name}")
     bad = sorted(name for name, (_, passed, _) in results.items() if not passed)

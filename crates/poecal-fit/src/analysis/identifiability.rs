@@ -18,10 +18,9 @@ use poecal_numerics::solve::Normal;
 /// ```
 /// # use poecal_fit::analysis::{PlannedSession, identify};
 /// # use poecal_model::{measurement::Kind, simulate::{Simulation, elbow}};
-/// # let made = Simulation { count: 60, ..Simulation::default() }.run(&elbow(), Kind::POINT)?;
-/// let planned = PlannedSession { kind: Kind::POINT, ..PlannedSession::default() };
-/// let found = identify(&elbow(), made.data.all_readings(), &planned)?.identifiability;
-/// assert_eq!((found.rank, found.parameters), (27, 27));
+/// let made = Simulation { count: 40, ..Simulation::default() }.run(&elbow(), Kind::POSE)?;
+/// let found = identify(&made.nominal, made.data.all_readings(), &PlannedSession::default())?.identifiability;
+/// assert_eq!((found.rank, found.parameters), (30, 30));
 /// assert!(found.unidentifiable.is_empty() && found.spectrum.determined().iter().all(|&known| known));
 /// # Ok::<(), poecal_numerics::error::Error>(())
 /// ```
