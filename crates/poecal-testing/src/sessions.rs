@@ -4,6 +4,7 @@ use nalgebra::Vector3;
 use poecal_arm::lie::{Pose, Screw, Twist};
 #[cfg(feature = "calibrate")]
 use poecal_calibrate::{Calibration, CalibrationOptions, Corrections, calibrate};
+#[cfg(feature = "calibrate")]
 use poecal_model::measurement::Dataset;
 use poecal_model::robot::{Joint, Limits, Robot};
 use poecal_model::simulate::{Kind, Simulated, Simulation, elbow, random};

@@ -109,7 +109,7 @@ fn documentation(place: &Path, name: &str) -> Option<String> {
 /// A path as a module says it, with the crate that it is of.
 fn whole(module: &str, from: &str) -> String {
     let own = module.split("::").next().unwrap_or_default();
-    match from.split_once("::").map_or((from, ""), |(first, rest)| (first, rest)) {
+    match from.split_once("::").unwrap_or((from, "")) {
         ("crate", rest) => format!("{own}::{rest}"),
         (first, _) if first.starts_with("poecal_") => from.to_owned(),
         _ => module.to_owned(),
