@@ -20,8 +20,11 @@ PYTEST = [PYTHON, "-m", "pytest", "-rs", "--rootdir", ".", "-p", "no:cacheprovid
 PYTEST_SHOWS = r"^=+ .* in [0-9.]+s|^documentation: \d|^SKIPPED |^(FAILED|ERROR) "
 NODE_SHOWS = r"^# (tests|pass|fail|skipped) |^# .*(bytes|differs? by|processor time|MB)|^# real robots|^# .* s after the drop|^[^ ].*# SKIP|^ *not ok"
 CARGO_SHOWS = r"^ *Finished|^(error|warning):"
-# Documentation of the crates that have users; scripts/build-docs puts it beside the site.
-DOCUMENTATION = ["cargo", "doc", "--locked", "--quiet", "--no-deps", "-p", "poecal", "-p", "poecal-arm", "-p", "poecal-detect", "-p", "poecal-lou2009"]
+# Documentation of the crates that have users, which scripts/build-docs puts beside the site, and of the parts of the library.
+DOCUMENTED = ["poecal", "poecal-arm", "poecal-detect", "poecal-lou2009", "poecal-numerics", "poecal-model", "poecal-programs", "poecal-fit",
+              "poecal-calibrate", "poecal-plan", "poecal-storage", "poecal-formats", "poecal-import", "poecal-results", "poecal-compensate",
+              "poecal-report"]  # fmt: skip
+DOCUMENTATION = ["cargo", "doc", "--locked", "--quiet", "--no-deps", *(word for crate in DOCUMENTED for word in ("-p", crate))]
 # What only ./test packages needs.
 INSTALL = "tests/python/test_install.py"
 SITE = "tests/python/test_site.py"

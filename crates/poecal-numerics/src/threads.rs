@@ -30,7 +30,7 @@ pub fn map_parts<T: Send>(count: usize, part: impl Fn(usize) -> T + Sync + Send)
     }
 }
 
-/// [`map_parts`], where each part looks at so many items. Runs serially for up to [`FEW`] items.
+/// [`map_parts`], where each part looks at so many items. Runs serially for up to `FEW` items.
 pub fn map_parts_of<T: Send>(items: usize, count: usize, part: impl Fn(usize) -> T + Sync + Send) -> Vec<T> {
     if items > FEW { map_parts(count, part) } else { (0..count).map(part).collect() }
 }

@@ -52,7 +52,7 @@ impl PoseForm {
         }
     }
 
-    /// The pose that the first of these numbers mean, the others being words of a configuration; `None` as of [`PoseForm::pose`].
+    /// The pose that the first of these numbers mean, the others being words of a configuration; `None` as of `PoseForm::pose`.
     pub fn of_first(self, numbers: &[f64]) -> Option<Pose> {
         self.pose(numbers.get(..self.names().len())?)
     }

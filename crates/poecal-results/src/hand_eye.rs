@@ -264,7 +264,7 @@ impl HandEyeResult<'_> {
     /// The contents of `hand_eye.json`.
     ///
     /// # Errors
-    /// [`ErrorKind::Export`](poecal_numerics::error::ErrorKind::Export) if it cannot be written as JSON.
+    /// [`ErrorKind::Export`] if it cannot be written as JSON.
     pub fn to_text(&self) -> Result<String> {
         let found = self.found;
         let [camera, target] = self.frames();

@@ -28,7 +28,7 @@ pub struct ModelOffsets {
 }
 
 impl ModelOffsets {
-    /// Those with which `nominal` comes nearest to `actual`, with base and tip as stated or else as [`ModelOffsets::ends`] says: the tip is nearest over
+    /// Those with which `nominal` comes nearest to `actual`, with base and tip as stated or else as `ModelOffsets::ends` says: the tip is nearest over
     /// the sampled range where the actual model is a calibration, otherwise over the nominal limits.
     ///
     /// # Errors

@@ -54,7 +54,7 @@ impl UrdfDocument {
     /// Reads a URDF file.
     ///
     /// # Errors
-    /// [`ErrorKind::File`] if the file cannot be read, and as [`UrdfDocument::parse`].
+    /// `ErrorKind::File` if the file cannot be read, and as [`UrdfDocument::parse`].
     pub fn read(path: impl AsRef<Path>, selection: &ChainSelection) -> Result<Self> {
         let path = path.as_ref();
         Self::parse(&source_text::read(path, "a URDF robot description")?, path, selection)
@@ -63,7 +63,7 @@ impl UrdfDocument {
     /// Reads the chain or tree from a text; `path` is for the messages only.
     ///
     /// # Errors
-    /// [`ErrorKind::Syntax`] if the text is no XML or no URDF, [`ErrorKind::Model`] if it is not a tree of links, the chain is not unique
+    /// `ErrorKind::Syntax` if the text is no XML or no URDF, `ErrorKind::Model` if it is not a tree of links, the chain is not unique
     /// or missing, or a joint of it is invalid.
     pub fn parse(text: &str, path: impl AsRef<Path>, selection: &ChainSelection) -> Result<Self> {
         Self::parse_at(text, path.as_ref(), selection)
