@@ -2,7 +2,7 @@
 
 use pulp::Simd;
 
-use super::vector::{Lanes, WIDTH, Wide, parts};
+use super::vector::{Lanes, WIDTH, Wide, each, parts};
 
 /// The factor `R` of `RᵀR`: upper, row after row. Elements on and below the diagonal are arbitrary.
 #[derive(Clone, Debug, Default)]
@@ -77,8 +77,11 @@ fn subtract_all<S: Simd>(simd: S, panel: &mut [Wide], above: &[Wide], stride: us
     let (first, lane) = (i / WIDTH, i % WIDTH);
     for block in first..stride {
         for part in parts(simd) {
-            let mut values: [Lanes<S>; PANEL] =
-                std::array::from_fn(|k| Lanes::load(simd, &panel[k * stride + block], part));
+            let mut values: [Lanes<S>; PANEL] = each(
+                simd,
+                #[inline(always)]
+                |k| Lanes::load(simd, &panel[k * stride + block], part),
+            );
             for row in above.chunks_exact(stride) {
                 let other = Lanes::load(simd, &row[block], part);
                 for (value, &factor) in values.iter_mut().zip(&row[first].0[lane..lane + PANEL]) {

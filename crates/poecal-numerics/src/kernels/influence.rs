@@ -3,7 +3,7 @@
 use pulp::Simd;
 
 use super::dense::Factor;
-use super::vector::{Lanes, Wide, parts};
+use super::vector::{Lanes, Wide, each, parts};
 
 /// Length of a row's residual: three numbers of a position, three of a rotation.
 pub const NUMBERS: usize = 6;
@@ -25,19 +25,31 @@ pub(crate) fn influences<S: Simd>(
     for part in parts(simd) {
         for i in 0..factor.n {
             let (done, later) = jacobian.split_at_mut(i);
-            let mut own: [Lanes<S>; NUMBERS] = std::array::from_fn(|k| Lanes::load(simd, &later[0][k], part));
+            let mut own: [Lanes<S>; NUMBERS] = each(
+                simd,
+                #[inline(always)]
+                |k| Lanes::load(simd, &later[0][k], part),
+            );
             let (moved, turned) = done.split_at(shifts.min(i));
             let mut above = factor.column(i);
             for (column, value) in moved.iter().zip(&mut above) {
                 let value = Lanes::splat(simd, value);
-                own = std::array::from_fn(|k| match own[k] {
-                    own if k < NUMBERS / 2 => Lanes::load(simd, &column[k], part).times_from(value, own),
-                    own => own,
-                });
+                own = each(
+                    simd,
+                    #[inline(always)]
+                    |k| match own[k] {
+                        own if k < NUMBERS / 2 => Lanes::load(simd, &column[k], part).times_from(value, own),
+                        own => own,
+                    },
+                );
             }
             for (column, value) in turned.iter().zip(above) {
                 let value = Lanes::splat(simd, value);
-                own = std::array::from_fn(|k| Lanes::load(simd, &column[k], part).times_from(value, own[k]));
+                own = each(
+                    simd,
+                    #[inline(always)]
+                    |k| Lanes::load(simd, &column[k], part).times_from(value, own[k]),
+                );
             }
             let inverse = Lanes::splat(simd, factor.inverses[i]);
             for (own, wide) in own.into_iter().zip(&mut later[0]) {
@@ -49,7 +61,11 @@ pub(crate) fn influences<S: Simd>(
         trace.store(&mut found[0], part);
         let weight = Lanes::load(simd, weight, part);
         let whole = Lanes::splat(simd, 1.0);
-        let residual: [Lanes<S>; NUMBERS] = std::array::from_fn(|k| Lanes::load(simd, &residual[k], part));
+        let residual: [Lanes<S>; NUMBERS] = each(
+            simd,
+            #[inline(always)]
+            |k| Lanes::load(simd, &residual[k], part),
+        );
         let left_out = solved(simd, &hat, -weight, Lanes::splat(simd, 1.0 + least), residual);
         let judged = solved(simd, &hat, whole - weight, whole, left_out);
         let sum = (1..NUMBERS).fold(residual[0] * judged[0], |sum, k| residual[k].times_plus(judged[k], sum));
@@ -63,9 +79,17 @@ pub(crate) fn influences<S: Simd>(
 fn squared<S: Simd>(simd: S, columns: &[[Wide; NUMBERS]], part: usize) -> [[Lanes<S>; NUMBERS]; NUMBERS] {
     let mut sum = [[Lanes::splat(simd, 0.0); NUMBERS]; NUMBERS];
     for column in columns {
-        let own: [Lanes<S>; NUMBERS] = std::array::from_fn(|k| Lanes::load(simd, &column[k], part));
+        let own: [Lanes<S>; NUMBERS] = each(
+            simd,
+            #[inline(always)]
+            |k| Lanes::load(simd, &column[k], part),
+        );
         for (k, row) in sum.iter_mut().enumerate() {
-            *row = std::array::from_fn(|l| if l < k { row[l] } else { own[k].times_plus(own[l], row[l]) });
+            *row = each(
+                simd,
+                #[inline(always)]
+                |l| if l < k { row[l] } else { own[k].times_plus(own[l], row[l]) },
+            );
         }
     }
     sum
@@ -95,7 +119,11 @@ fn solved<S: Simd>(
         for l in k + 1..NUMBERS {
             let factor = own[l] * inverses[k];
             let row = rows[l];
-            rows[l] = std::array::from_fn(|m| own[m].times_from(factor, row[m]));
+            rows[l] = each(
+                simd,
+                #[inline(always)]
+                |m| own[m].times_from(factor, row[m]),
+            );
             x[l] = x[k].times_from(factor, x[l]);
         }
     }

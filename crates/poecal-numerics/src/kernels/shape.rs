@@ -57,8 +57,10 @@ impl ShapedRows {
     #[inline(always)]
     pub(crate) fn residual<S: Simd>(&self, simd: S) -> [Vectors<S>; 2] {
         let [a, b, c, d, e, f] = &self.residual;
-        let load = |wide: [&Wide; 3]| Vectors(wide.map(|wide| Lanes::load(simd, wide, 0)));
-        [load([a, b, c]), load([d, e, f])]
+        [
+            Vectors([Lanes::load(simd, a, 0), Lanes::load(simd, b, 0), Lanes::load(simd, c, 0)]),
+            Vectors([Lanes::load(simd, d, 0), Lanes::load(simd, e, 0), Lanes::load(simd, f, 0)]),
+        ]
     }
 
     /// The residual as force and torque on the target, `Sᵀ e`.
@@ -72,7 +74,8 @@ impl ShapedRows {
                 *sum = Lanes::load(simd, wide, 0).times_plus(e, *sum);
             }
         }
-        sum.map(Vectors)
+        let [shift, turn] = sum;
+        [Vectors(shift), Vectors(turn)]
     }
 
     /// Adds the gradient of the given columns, and writes them after the others where columns are wanted.

@@ -32,6 +32,19 @@ pub(crate) fn parts<S: Simd>(_simd: S) -> std::ops::Range<usize> {
     0..WIDTH / S::F64_LANES
 }
 
+/// Numbers by their index. `std::array::from_fn` calls a function that is not compiled for the vector instructions, wherever the optimiser
+/// does not put it in line.
+#[inline(always)]
+pub(crate) fn each<S: Simd, const N: usize>(simd: S, make: impl Fn(usize) -> Lanes<S>) -> [Lanes<S>; N] {
+    let mut all = [Lanes::splat(simd, 0.0); N];
+    let mut k = 0;
+    while k < N {
+        all[k] = make(k);
+        k += 1;
+    }
+    all
+}
+
 impl<S: Simd> Lanes<S> {
     #[inline(always)]
     pub(crate) fn splat(simd: S, value: f64) -> Self {
