@@ -1,5 +1,10 @@
 //! A finished calibration.
 
+pub(crate) mod accuracy;
+pub(crate) mod findings;
+pub(crate) mod recalibrate;
+pub(crate) mod residuals;
+
 mod checks;
 mod compensation;
 mod content;

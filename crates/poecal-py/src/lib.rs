@@ -1,6 +1,5 @@
 //! The compiled half of the Python package `poecal`: conversions between Python and the library, and nothing else.
 
-mod accuracy;
 mod arguments;
 mod arrays;
 mod build;
@@ -9,10 +8,6 @@ mod calibration;
 mod convert;
 mod covariance;
 mod errors;
-mod findings;
-mod from_arrays;
-mod from_dataframe;
-mod guess;
 mod hand_eye;
 mod measurements;
 mod notebook;
@@ -21,21 +16,22 @@ mod paths;
 mod pickle;
 mod places;
 mod plan;
-mod plan_options;
-mod planned;
 mod prediction;
 mod project;
 mod reach;
-mod recalibrate;
 mod reproduce;
-mod residuals;
 mod robot;
 mod rows;
 mod simulation;
 mod units;
-mod visit_plan;
 mod watch;
 mod words;
+
+use measurements::{from_arrays, from_dataframe, guess};
+
+use calibration::{accuracy, findings, recalibrate, residuals};
+
+use plan::{plan_options, planned, visit_plan};
 
 use pyo3::prelude::*;
 

@@ -1,5 +1,9 @@
 //! Measurements from files, arrays and data frames.
 
+pub(crate) mod from_arrays;
+pub(crate) mod from_dataframe;
+pub(crate) mod guess;
+
 mod content;
 mod db3;
 mod sources;

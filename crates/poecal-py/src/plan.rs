@@ -1,5 +1,9 @@
 //! `plan`: which configurations to measure.
 
+pub(crate) mod plan_options;
+pub(crate) mod planned;
+pub(crate) mod visit_plan;
+
 mod session;
 
 use poecal_calibrate::Corrections;

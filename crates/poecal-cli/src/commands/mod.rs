@@ -1,16 +1,11 @@
 //! The commands, one per file (and `typed`, the command line of a run, which several need).
 
-#[cfg(any(unix, windows))]
-mod board;
 mod calibrate;
 mod certificate;
 mod check;
 mod compare;
 mod compensate;
-mod completions;
 mod convert;
-#[cfg(any(unix, windows))]
-mod detect;
 mod export;
 #[cfg(any(unix, windows))]
 mod fleet;
@@ -19,16 +14,13 @@ mod hand_eye;
 mod identify;
 mod import;
 mod init;
+mod itself;
 mod kept;
-mod man;
 mod offsets;
-#[cfg(any(unix, windows))]
-mod photograph;
+mod pictures;
 mod plan;
 mod predict;
 mod report;
-mod reproduce;
-mod schema;
 mod simulate;
 mod tcp;
 mod track;
@@ -36,6 +28,10 @@ mod typed;
 mod validate;
 mod visits;
 mod watch;
+
+use pictures::{board, detect, photograph};
+
+use itself::{completions, man, reproduce, schema};
 
 #[cfg(any(unix, windows))]
 pub(crate) use board::board;

@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
+use crate::pictures::lens_checks::EXPECTED;
 use crate::table::header::Header;
-use crate::table::lens_checks::EXPECTED;
 use crate::table::mapping::ColumnMap;
 use crate::table::number::Numbers;
 use crate::table::text::Blocks;

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::intrinsics::of_intrinsics;
-use crate::table::lens_checks::{EXPECTED, distortion};
+use crate::pictures::lens_checks::{EXPECTED, distortion};
 use poecal_model::camera::{Camera, Lens};
 use poecal_numerics::error::{Error, ErrorKind, Result};
 use poecal_storage::yaml::{Leaf, leaves};

@@ -10,6 +10,7 @@ pub(crate) mod corner_columns;
 pub(crate) mod corner_names;
 pub(crate) mod gathering;
 pub(crate) mod intrinsics;
+pub(crate) mod lens_checks;
 pub(crate) mod picture_files;
 pub(crate) mod pixels;
 pub(crate) mod sightings;

@@ -2,9 +2,7 @@
 
 pub(crate) mod builder;
 pub(crate) mod cells;
-pub(crate) mod column_meanings;
-pub(crate) mod column_names;
-pub(crate) mod column_spec;
+mod columns;
 pub(crate) mod configurations;
 pub(crate) mod encodings;
 pub(crate) mod fit_where;
@@ -13,10 +11,7 @@ pub(crate) mod inputs;
 pub(crate) mod instrument_noise;
 pub(crate) mod kinds;
 pub(crate) mod layout;
-pub(crate) mod lens_checks;
 pub(crate) mod lost;
-pub(crate) mod mapping;
-pub(crate) mod mapping_values;
 pub(crate) mod naming;
 pub(crate) mod number;
 pub(crate) mod numbered;
@@ -30,6 +25,8 @@ pub(crate) mod text;
 pub(crate) mod times;
 pub(crate) mod understanding;
 pub(crate) mod understood;
+
+pub(crate) use columns::{column_names, column_spec, mapping, mapping_values};
 
 use std::collections::BTreeMap;
 use std::path::Path;

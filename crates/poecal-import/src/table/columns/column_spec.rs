@@ -7,8 +7,8 @@ use serde::Deserialize;
 use serde::de::value::MapAccessDeserializer;
 use serde::de::{Deserializer, Error as _, MapAccess, Visitor};
 
-use super::column_names::{column_name, counted_column};
-use super::mapping_values::any_unit;
+use super::super::column_names::{column_name, counted_column};
+use super::super::mapping_values::any_unit;
 use poecal_numerics::named_unit::NamedUnit;
 
 /// One column, a sum of columns, or a constant. In TOML a column's name, or a table.

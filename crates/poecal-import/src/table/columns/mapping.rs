@@ -5,12 +5,14 @@ use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
 
-use super::cells::Separator;
-use super::column_names::{column_name, column_names, some_columns, three_columns};
-use super::column_spec::ColumnSpec;
-use super::mapping_values::{angle_unit, decimal_sign, length_unit, orientation_form, separator, third_axis};
-use super::number::DecimalSign;
-use super::orientation::OrientationForm;
+use super::super::cells::Separator;
+use super::super::column_names::{column_name, column_names, some_columns, three_columns};
+use super::super::column_spec::ColumnSpec;
+use super::super::mapping_values::{
+    angle_unit, decimal_sign, length_unit, orientation_form, separator, third_axis,
+};
+use super::super::number::DecimalSign;
+use super::super::orientation::OrientationForm;
 use crate::FitWhere;
 use poecal_formats::urdf::ChainSelection;
 use poecal_model::robot::ThirdAxis;

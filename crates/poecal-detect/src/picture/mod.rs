@@ -1,5 +1,9 @@
 //! Pictures in files.
 
+pub(crate) mod decoded;
+pub(crate) mod exif;
+pub(crate) mod preview;
+
 use std::fmt;
 use std::path::Path;
 

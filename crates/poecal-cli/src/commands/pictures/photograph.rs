@@ -26,7 +26,7 @@ const LEVELS: [f64; 2] = [35.0, 200.0];
 const BLUR_PX: f64 = 0.8;
 const NOISE: f64 = 2.0;
 
-pub(super) fn photograph(
+pub(crate) fn photograph(
     (arguments, camera): (&Simulate, CameraPlace),
     (model, place, command): (&Model, FolderPlace, &str),
     console: &Console,

@@ -2,10 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use super::builder::{Builder, OUR_NAMES, is_our_name};
-use super::header::unit_in_name;
-use super::inputs::{Input, InputSource};
-use super::kinds;
+use super::super::builder::{Builder, OUR_NAMES, is_our_name};
+use super::super::header::unit_in_name;
+use super::super::inputs::{Input, InputSource};
+use super::super::kinds;
 use poecal_numerics::error::{Error, ErrorKind, Result, distance_within};
 
 impl Builder<'_> {

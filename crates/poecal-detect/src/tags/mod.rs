@@ -1,5 +1,10 @@
 //! Loose tags: each marker that is read, with its four corners.
 
+pub(crate) mod dictionary;
+pub(crate) mod markers;
+pub(crate) mod quads;
+pub(crate) mod tagfit;
+
 use nalgebra::Vector2;
 
 use crate::dictionary::Dictionary;

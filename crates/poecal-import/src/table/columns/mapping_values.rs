@@ -3,9 +3,9 @@
 use serde::Deserialize;
 use serde::de::{Deserializer, Error as _};
 
-use super::cells::Separator;
-use super::number::DecimalSign;
-use super::orientation::OrientationForm;
+use super::super::cells::Separator;
+use super::super::number::DecimalSign;
+use super::super::orientation::OrientationForm;
 use poecal_model::robot::ThirdAxis;
 use poecal_numerics::error::{ErrorKind, Result};
 use poecal_numerics::named_unit::NamedUnit;

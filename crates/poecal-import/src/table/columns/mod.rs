@@ -1,0 +1,7 @@
+//! Columns by their names, and the mapping that states them.
+
+pub(crate) mod column_meanings;
+pub(crate) mod column_names;
+pub(crate) mod column_spec;
+pub(crate) mod mapping;
+pub(crate) mod mapping_values;
