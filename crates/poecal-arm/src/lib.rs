@@ -1,7 +1,9 @@
 //! Forward and inverse kinematics of robot arms as they are, by the product of exponentials: without the standard library, threads or
 //! files, and nothing is allocated once an arm is made.
 //!
-//! This is the lowest crate of [poecal](https://github.com/poecal/poecal), which finds the arm that is really there from measurements.
+//! This is the lowest crate of [poecal](https://github.com/poecal/poecal), which finds the arm that is really there from measurements. It is for
+//! programs that move an arm, also on controllers; its public items follow semantic versioning. Not here: std, files, threads, measurements,
+//! and other crates of the workspace.
 //!
 //! | to | see |
 //! |---|---|

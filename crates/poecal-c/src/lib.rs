@@ -3,6 +3,9 @@
 //!
 //! Every function takes null pointers (and then does nothing but say so); other pointers have to be valid, which C cannot promise:
 //! that is what `unsafe` stands for here, and all there is of it.
+//!
+//! For programs in C and controllers, as a part of poecal; a test compares the header, which cbindgen writes. `bare.rs` is what the standard library
+//! would bring where there is none. Not here: computation.
 
 #![cfg_attr(not(feature = "std"), no_std)]
 

@@ -3,6 +3,10 @@
 //!
 //! Exit codes: 0 done, and a calibration is usable; 1 there are results, but they should not be used, are worse than `--require` asks, do not
 //! show that they keep a limit of `--accept`, or could not be printed; 2 refused: wrong input or usage, and nothing was written; 3 there is no result.
+//!
+//! For people and scripts: options, exit codes and JSON of the program follow semantic versioning, the functions here do not. `lib.rs::understood`
+//! lets clap turn typed words into arguments; where a command has settings, `settings.rs` adds those of `poecal.toml` as further words, and clap
+//! reads all of them again. Not here: computation, and sentences on results, which `poecal-report` has.
 
 mod args;
 mod commands;

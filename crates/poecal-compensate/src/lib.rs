@@ -1,6 +1,13 @@
-//! What to command so that the robot as it is does what a program for its drawing meant.
+//! Readings and programs corrected so that the actual robot does what was programmed for the nominal one.
 //!
-//! A part of [poecal](https://docs.rs/poecal): its interface follows the needs of the other parts and promises nothing by itself.
+//! A part of [poecal](https://docs.rs/poecal), for the other parts, the program and the package: its interface follows their needs and promises
+//! nothing by itself.
+//!
+//! `table.rs` corrects files of joint readings, `programs` targets in the text of robot programs; [`Inverse`] and [`Kinematics`] compute inverses,
+//! poses, Jacobians and sag of many configurations.
+//!
+//! Not here: iterations, which are `poecal-arm`'s; languages, which are `poecal-programs`'s; base and tool, with which
+//! `poecal-results`'s `calibration_file/taught.rs` provides the nominal robot.
 
 #![forbid(unsafe_code)]
 

@@ -10,6 +10,10 @@
 //!
 //! A corner is never guessed: each is where two edges cross, with dark and light as the board has them, and agrees with its neighbours. What is
 //! hidden is left out.
+//!
+//! For programs that take pictures of boards; public items follow semantic versioning. Markers are found and read by `quads.rs` and `markers.rs`,
+//! crossings joined to a board by `grid.rs` and `growth.rs` and refined by `saddle.rs`; `suggest.rs` names another board that fits. Not here: robots,
+//! lenses' calibration, and other crates of the workspace.
 
 #![forbid(unsafe_code)]
 

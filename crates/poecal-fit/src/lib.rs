@@ -1,6 +1,15 @@
-//! The state of a fit and what is unknown in it, the least-squares problem, its start, what the rows determine, uncertainty, diagnosis, hand-eye.
+//! Estimation: the state and the unknowns of a fit, the least-squares problem, its start, identifiability, uncertainty, diagnosis, hand-eye.
 //!
-//! A part of [poecal](https://docs.rs/poecal): its interface follows the needs of the other parts and promises nothing by itself.
+//! A part of [poecal](https://docs.rs/poecal), for the other parts, the program and the package: its interface follows their needs and promises
+//! nothing by itself.
+//!
+//! - [`state`] is all that may change in a fit, and its prediction of each row.
+//! - [`parameters`] are unknowns with columns; they see no measured functions, weights or solver.
+//! - [`problem`] is the only place where rows and columns meet, and has no algorithms.
+//! - [`forensics`] names mistakes, and changes nothing but its own copies.
+//! - [`hand_eye`] gets lists of poses, no robot.
+//!
+//! Not here: the order of a calibration's steps, files, tables.
 
 #![forbid(unsafe_code)]
 

@@ -3,6 +3,8 @@
 //! Each of [`TARGETS`] takes bytes for the text of a file that poecal reads, and fails by panicking: if the library does, or if something
 //! does not hold that should, such as that what is written reads back the same. The programs in `fuzz/` call them with what libFuzzer
 //! makes up, the test of this crate with the seeds in `fuzz/seeds` and [`Mutator`]'s variations of them.
+//!
+//! For tests alone; not published.
 
 // Whatever does not hold is told by a panic.
 #![allow(clippy::panic, clippy::expect_used, clippy::unwrap_used)]

@@ -1,10 +1,15 @@
-//! Measurement files: CSV with one row per configuration and target (docs/file-formats.md, "Measurements").
+//! Measurement files of instruments, recorders and cameras as rows of a session (docs/file-formats.md, "Measurements").
 //!
-//! Text becomes lines (`text`) and cells (`cells`), a table with places for messages (`table`), columns with a meaning and a unit
-//! (`layout` and `builder`, from header, mapping and robot), numbers in SI (`inputs`), without those of lost beams (`lost`), and at
-//! last measurements (`row`, [`read()`]), which are judged for their scale (`scale`, `spread`, `turns`).
+//! A part of [poecal](https://docs.rs/poecal), for the other parts, the program and the package: its interface follows their needs and promises
+//! nothing by itself.
 //!
-//! A part of [poecal](https://docs.rs/poecal): its interface follows the needs of the other parts and promises nothing by itself.
+//! Text becomes lines and cells with their places (`table`), columns with a meaning and a unit (`table/layout.rs` and `table/builder.rs`, from
+//! header, mapping and robot), numbers in SI (`table/inputs.rs`) without those of lost beams (`table/lost.rs`), and at last measurements
+//! (`table/row.rs`, [`read()`]), which are judged for their scale, spread and turns (`checks`). Files of instruments and messages are made tables
+//! first (`instruments`, `messages`); two files are joined (`join`); `poses` and `pictures` read lists of poses and corners, `guess` names foreign
+//! columns, `write` makes templates and lists. Workbooks and bags are features.
+//!
+//! Not here: fits (the nominal robot is registered where files or units are in doubt), results, sentences on results.
 
 #![forbid(unsafe_code)]
 

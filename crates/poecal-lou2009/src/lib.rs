@@ -1,6 +1,9 @@
 //! What only lou2009 needs, beside the library: its formulations ([`formulated`]), its experiment with each of them and what became of its
 //! claims ([`lou2009`]), and an experiment on what gross errors do to a calibration ([`breakdown()`]). It uses public items of the library;
 //! nothing in there knows of it.
+//!
+//! For the program's `reproduce`, the package and readers of the paper; its interface promises nothing. Not here: a solver other than plain
+//! Gauss-Newton, and Jacobians that the solver of the library uses.
 
 mod basin;
 mod breakdown;

@@ -1,6 +1,12 @@
 //! Robot programs in the languages of their controllers: targets and the motions to them.
 //!
-//! A part of [poecal](https://docs.rs/poecal): its interface follows the needs of the other parts and promises nothing by itself.
+//! A part of [poecal](https://docs.rs/poecal), for the other parts, the program and the package: its interface follows their needs and promises
+//! nothing by itself.
+//!
+//! A folder is a language. `scan.rs` has the tokens of all languages, `flow.rs` follows calls, branches and loops, [`parsed`] is the common result,
+//! for files of joint readings (`poecal-import`) and for corrections (`poecal-compensate`).
+//!
+//! Not here: files, corrections, and kinematics beyond a language's words for configurations.
 
 #![forbid(unsafe_code)]
 

@@ -1,4 +1,8 @@
 //! The compiled half of the Python package `poecal`: conversions between Python and the library, and nothing else.
+//!
+//! For the Python package, whose interface follows semantic versioning. `calibrate.rs` turns words and units to options, asks the library as the
+//! program does, without the interpreter's lock, and keeps the result; file, residuals, arrays and dicts are made when they are asked for. The
+//! package calls the program too, as a function of its arguments, so that one wheel installs both. Not here: computation, and rules.
 
 mod arguments;
 mod arrays;

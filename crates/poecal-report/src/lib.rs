@@ -1,6 +1,13 @@
-//! Results as text for people. No number here that is not in the result.
+//! Results as text for people: the HTML report, certificates, tables of the program, and their JSON.
 //!
-//! A part of [poecal](https://docs.rs/poecal): its interface follows the needs of the other parts and promises nothing by itself.
+//! A part of [poecal](https://docs.rs/poecal), for the other parts, the program and the package: its interface follows their needs and promises
+//! nothing by itself.
+//!
+//! No number here that is not in the result, except sums over the rows of `residuals.csv`. `page` makes HTML by maud, which escapes it, and
+//! [`visible_markup`](poecal_numerics::text::visible_markup) goes over the whole; its style and script are built from `web/src` into `page/assets`.
+//! [`plot`] gets numbers, titles and axes, and returns SVG, without robots and calibrations.
+//!
+//! Not here: files (`poecal-results` writes the texts), computation.
 
 #![forbid(unsafe_code)]
 

@@ -1,6 +1,13 @@
-//! What is kept of a calibration: calibration.json, residuals, predictions, exports, validation, visits, comparisons and output folders.
+//! Stored results: calibration.json, residuals, predictions, exports, validation, visits, comparisons and output folders.
 //!
-//! A part of [poecal](https://docs.rs/poecal): its interface follows the needs of the other parts and promises nothing by itself.
+//! A part of [poecal](https://docs.rs/poecal), for the other parts, the program and the package: its interface follows their needs and promises
+//! nothing by itself.
+//!
+//! [`calibration_file`] has the corrected model as an entry whose parts replace those of the file, so that predictions and judgements have one code
+//! for both models. [`output`] writes all files of a run or none, and compares written models with the fit. [`compare`] and [`track`] return numbers
+//! and single sentences, which `poecal-report` shows.
+//!
+//! Not here: the fit and its judgement (`poecal-calibrate`), tables and HTML for people (`poecal-report`).
 
 #![forbid(unsafe_code)]
 

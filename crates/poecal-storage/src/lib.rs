@@ -1,6 +1,12 @@
-//! Files: robot models, measurements, results. The only module that opens them; it computes nothing beyond units.
+//! Files as bytes and text: a disk behind a trait, inputs with limits, CSV, XML, YAML and checksums.
 //!
-//! A part of [poecal](https://docs.rs/poecal): its interface follows the needs of the other parts and promises nothing by itself.
+//! A part of [poecal](https://docs.rs/poecal), for the other parts, the program and the package: its interface follows their needs and promises
+//! nothing by itself.
+//!
+//! It is the only part that opens files. [`disk`] has the trait; inputs are opened in [`source`] alone (limits, standard input, files that are not
+//! text). Results are put in place by `poecal-results`'s `output`, through the same trait.
+//!
+//! Not here: robots, measurements, results, and computation beyond the numbers of a text.
 
 #![forbid(unsafe_code)]
 

@@ -2,6 +2,9 @@
 //!
 //! [`run`] is the whole of it: it puts files on a [`MemoryDisk`], runs the program on it, and collects what was written. `exports` hands it
 //! to JavaScript through plain memory; the module imports nothing. `web/npm/poecal.js` is the other side, with the same encoding.
+//!
+//! For `web/npm` and the page in `web/app`; its interface promises nothing beyond the program's. `exports.rs` is its only `unsafe` code. Not here:
+//! computation, sentences and settings of its own.
 
 mod disk;
 #[cfg(target_arch = "wasm32")]

@@ -1,6 +1,7 @@
 //! Kinematic calibration of robot arms, and of trees of them, by the product of exponentials.
 //!
-//! What is public here follows semantic versioning.
+//! For programs in Rust. What is public here follows semantic versioning. Not here: code of its own, which is in the parts, and whatever only
+//! the program or the Python package needs of them.
 //!
 //! A robot is a screw `ξᵢ` for every joint and a home pose `M`. With joint values `θ`, its tip stands in the base frame at
 //!
@@ -49,7 +50,7 @@
 //! Whatever fails says so by [`Error`] with an [`ErrorKind`].
 //!
 //! Lengths are in metres and angles in radians, a twist is `(v; ω)`, `a_from_b` takes coordinates in b to coordinates in a. The
-//! formulas stand in `docs/theory.md`, the conventions in `docs/conventions.md`, the modules and what they may import in
+//! formulas stand in `docs/theory.md`, the conventions in `docs/conventions.md`, the crates and what they may import in
 //! `ARCHITECTURE.md`. This crate hands on what users need of the parts that it is made of (`poecal-model`, `poecal-fit`,
 //! `poecal-calibrate` and others, all of the same version), whose interfaces change without notice.
 

@@ -1,4 +1,7 @@
 //! All configurations of an arm that have its tip at a pose.
+//!
+//! Starts are found by closed forms, or, in doubt, by the roots of the arm's equations (`ways.rs`), and refined by `newton.rs`; `held.rs` is for
+//! seven joints.
 
 mod axis;
 mod found;

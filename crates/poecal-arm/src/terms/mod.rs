@@ -1,4 +1,8 @@
 //! Terms of joint values: what a joint turns or slides beyond its reading.
+//!
+//! `table.rs` is the table of what joints do beyond their readings, a row a kind of term: function and derivative, prior and group. Their arguments
+//! are put together in `poecal-model`'s `robot/term.rs` for rows and in `robot/arm.rs` for arms. Over the table go `--free`, corrections, files,
+//! exports and inverse kinematics; so kernels, covariance and the forms of files have no code for corrections.
 
 mod table;
 

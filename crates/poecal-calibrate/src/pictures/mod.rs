@@ -1,5 +1,9 @@
 //! Pictures as a fit sees them: the common error of their corners, and the pose of each that is nearest to its prediction (theory.md §4,
 //! *Pictures*).
+//!
+//! A picture is one row, so that fits, bounds and judgements count pictures. The common error is found in turn with the fit; `poecal-fit`'s
+//! `start/pictures.rs` finds which end of the robot a camera is on, and which of two poses of a flat board the others agree with, and its
+//! `problem/bundle.rs` fits all corners at once.
 
 pub(crate) mod image_map;
 pub(crate) mod optics;

@@ -1,4 +1,7 @@
 //! Robot programs in the languages of their controllers: targets corrected in place, everything else as it was, byte for byte.
+//!
+//! `engine.rs` places and corrects targets, `fate.rs` has what the motions to a target make of it, `written.rs` its numbers in the text. No languages
+//! here: `poecal-programs` has them.
 
 mod engine;
 mod fate;

@@ -4,6 +4,8 @@
 //! fit of `calibrate`, it knows more of a camera: that it errs otherwise along its line of sight than across it
 //! (`noise`), that a board is seen best in its middle (`fit`), and which mistakes people make with two lists of poses (`directions`,
 //! `readings`, `moved`).
+//!
+//! `result.rs` has the steps in order, `tip.rs` and `touches.rs` those of a tool's tip. No robots and no files here: it gets lists of poses.
 
 mod bounds;
 mod directions;

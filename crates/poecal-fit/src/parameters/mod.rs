@@ -1,5 +1,8 @@
 //! Parameters: groups of unknowns of a robot, its targets and the device. A parameter provides the motion of the target by each of its
 //! unknowns, and depends on no measurement.
+//!
+//! A [`Parameter`] is a block with a name: the axis of a joint, a term of its value, a target, a frame (`block.rs` names blocks and their unknowns).
+//! The covariance in `calibration.json` is by these names. No measured functions, weights or solver here.
 
 mod block;
 mod clock_unknown;

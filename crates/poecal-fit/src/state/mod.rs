@@ -2,6 +2,10 @@
 //!
 //! The state is the full set of screws, each carried by a frame on its axis: `A_i = base_from_axis` at zero configuration, z along
 //! the screw. A local step `A_i ← A_i exp(ε)` is the adjoint update `ξ_i ← Ad_exp(η) ξ_i` with `η = Ad_A_i ε` (theory.md §5 (18)).
+//!
+//! A robot with its measurements is one value, [`Session`]: functions of both take it, and structs such as `Problem` and `Registration` hold it.
+//! [`Estimate`] is not one type with `Robot`: a fit makes a state in every step, and names, limits and readings never change in one. `tree.rs` has the
+//! joints on the way from each instrument to each target, passed forward or backward; `unknowns.rs` which unknowns a fit changes.
 
 mod chain;
 mod clock;

@@ -1,5 +1,7 @@
 //! Models in forms of simulators and makers. Each is read as links and joints, and the URDF that says the same is the robot's document: so
 //! chains are selected, and results written, as for any URDF.
+//!
+//! A new form is a module that makes links and joints, and a variant of [`Form`].
 
 mod driver_yaml;
 mod links;

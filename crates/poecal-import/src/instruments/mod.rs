@@ -1,5 +1,9 @@
 //! Files as instruments, controllers, recorders and spreadsheets write them, as tables in our form. They are recognised by what is in them,
 //! never by their names.
+//!
+//! A module a form, in [`FORMS`]: it makes a `Made` (`maker.rs`), a text in our form with the line or cell of each row (`table/places.rs`), which is
+//! read as any other; so units, lost beams, scales and errors are those of one reader. What holds joint readings and measurements at once
+//! (`recording.rs`) is two entries of the plan of files. `rigid.rs` tells markers apart by their distances.
 
 mod auto_id;
 #[cfg(feature = "bags")]

@@ -1,4 +1,10 @@
 //! Two files as one session: which line belongs to which, by names, order, time or motion.
+//!
+//! `join_plan.rs` sees which files have joint readings alone and which measurements alone; `read/joining.rs` reads the measurements twice, first
+//! without readings; `join_pairs.rs` pairs them by names or by their order, and says so. Recordings in time are reduced to the robot's stands before
+//! (`streams.rs`). Whether pairs are right the robot decides (`poecal-fit`'s `start/pairing`). Each line of the measurements then has its readings,
+//! and all else goes on as if one file had both. `set_choice.rs` and `shifted_header.rs` ask the robot which of two sets was measured, and whether
+//! names stand beside their values; `join_entry.rs` and `motions.rs` keep what `calibration.json` and the report show of it.
 
 pub(crate) mod beside;
 pub(crate) mod join_doubt;

@@ -1,4 +1,6 @@
 //! Pictures and corners as rows, cameras and boards of files.
+//!
+//! `corner_columns.rs` is the table of what other programs call the columns of corners, `board_files.rs` has their boards in words.
 
 pub(crate) mod board_files;
 pub(crate) mod board_words;

@@ -1,4 +1,7 @@
 //! Poses of the flange and of what it holds, as lists and as pairs.
+//!
+//! `pose_columns.rs` is from names of columns to forms, `pose_file.rs` one file, with joint readings too, `pose_lists.rs` one file or two,
+//! `picture_poses.rs` the target by corners, `pose_readings.rs` how else the numbers could be read.
 
 pub(crate) mod paired_readings;
 pub(crate) mod picture_poses;

@@ -1,4 +1,8 @@
 //! Cameras: lenses, boards of known points, and the poses from which these look as they were seen.
+//!
+//! `sighting.rs` finds the pose of a board that has its corners where they were seen, with what they determine of it; `pnp.rs` and `poses.rs` find all
+//! poses that a board may have, without a guess; `common.rs` has what the corners of one picture share. No robots, and no rows of a session: a picture
+//! becomes one row (`measurement/pictures.rs`), a pose with noise of the shape that its corners have.
 
 mod board;
 mod common;

@@ -1,4 +1,8 @@
 //! Robots: a chain or a tree of joints with screws, a home pose, forward kinematics. No estimation here, and no files.
+//!
+//! [`Robot`] is a tree of joints, a serial chain where nothing else is said, with the bodies of instruments and targets (`body.rs`). What joints do
+//! beyond geometry is more joints, or terms of their values: a link that tilts is a joint without a reading (`give.rs`), and moments of weights are
+//! in `statics.rs`. No unknowns and no measured data here.
 
 mod arm;
 mod body;

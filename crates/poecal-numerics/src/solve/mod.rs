@@ -1,4 +1,9 @@
 //! Nonlinear least squares on a manifold. It knows no robots: a problem gives normal information and applies steps.
+//!
+//! `levenberg_marquardt.rs` has the iteration: normal information or, while `JᵀJ` is frozen, the gradient alone (`reuse.rs` decides which), a damped
+//! step by `linalg`, its predicted reduction and gain ratio, second derivatives where a step has shown that the problem is curved, and the last digits
+//! by the gradient where an option asks for them (`refine.rs`). `scaling.rs` stands between it and the problem, idle by default. The words robot,
+//! pose and millimetre do not occur in the code here.
 
 mod levenberg_marquardt;
 mod normal;

@@ -1,5 +1,7 @@
 //! A line of robots of one type: how far their corrections scatter, what of that is the line's own, robots that are none of it, and steps
 //! in time (theory.md §9, *A line of robots*).
+//!
+//! No robots and no files here: it gets figures of robots with their deviations; `poecal-results`'s `fleet` has the station and the ledger.
 
 mod capability;
 mod outlying;

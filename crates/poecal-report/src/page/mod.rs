@@ -1,4 +1,8 @@
 //! The report of a calibration: one HTML page that holds its style, its script and its data, and loads nothing.
+//!
+//! A file is a part of the page. No HTML as strings: maud writes and escapes it, and `text::visible_markup` goes over the whole. No figures without
+//! their key of `calibration.json`, except sums over the rows of `residuals.csv`. Style and script are built from `web/src` into `assets/`: the script
+//! draws the page's data, with kinematics for that, and needs no network.
 
 mod advice;
 mod answer;

@@ -4,6 +4,8 @@
 //! A series has its own marker and dash beside its colour. The legend stands above the axes, never on the data. Values that an
 //! axis cannot show are drawn hollow at its edge (zero on a logarithmic axis, infinity) or left out (not a number), and a note
 //! below the plot says so.
+//!
+//! No robots and no calibrations here: it gets numbers, titles and axes.
 
 mod arms;
 mod axis;

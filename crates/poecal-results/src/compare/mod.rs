@@ -1,5 +1,8 @@
 //! What changed between two calibrations of one robot: in terms that do not depend on how base, tool and screws were written
 //! (theory.md §9, *Two calibrations*).
+//!
+//! Offset, tilt and shift of each joint come with base and tool as they fit best (`poecal-model`'s `offsets`), the covariance of these from both files
+//! (`spread.rs`). No words and tables here: it has numbers, which `poecal-report` shows.
 
 mod chi_square;
 mod spread;

@@ -3,6 +3,11 @@
 //! A place is reserved before the work ([`FolderPlace`], [`FilePlace`]). Files are written to a staging folder (`staging.rs`), read back
 //! and put in place together (`exchange.rs`, `journal.rs`). Remains of an interrupted run are settled by the next one (`leftovers.rs`), or
 //! by a signal handler ([`clean_up`]).
+//!
+//! A folder that holds nothing but results is exchanged whole. In any other folder, and in the current one, which an open shell or a bind mount would
+//! still see as it was, files are renamed one by one by a journal, which is on the disk before the first rename, together with the journal that undoes
+//! it, since a full disk may be the cause of a failure. A lock on the staging folder shows whether its run still lives. A signal cleans up at once
+//! (`interrupted.rs`), but not while files are put in place.
 
 mod calibration;
 mod contents;

@@ -2,6 +2,9 @@
 //!
 //! [`SystemDisk`] is the machine's. [`on`] replaces it for the work of one thread; `tests/it/simulated_disk` has one with short writes, no
 //! space, and loss of unsynced data.
+//!
+//! [`Disk`] has some twenty operations, each one step. [`here`] is the disk of the thread: the machine's, unless [`on`] names another; in WebAssembly a
+//! disk in memory (`crates/poecal-wasm`). It is not an argument of the public functions because only that and tests need another disk.
 
 mod system;
 

@@ -1,5 +1,8 @@
 //! Which joint readings belong to which measurements, where two files have them: the nominal robot, registered, misses what was measured by least
 //! where they are paired rightly.
+//!
+//! The robot decides whether pairs are right: the same rows are registered in other orders, lists of unequal length are aligned, stands of recordings
+//! found (`stands.rs`), and those of two clocks paired by their lag (`lags.rs`).
 
 mod agreement;
 mod jitter;
