@@ -125,12 +125,11 @@ def change() -> list[Step]:
         Step("imports", [[sys.executable, "scripts/check-imports"]], shows="^imports go| may depend only |^only |import each other"),
         Step("recipes apply", [[sys.executable, "scripts/recipes", "--apply"]], shows=r"\.patch: "),
         rust_build(),
+        Step("sizes", [[sys.executable, "scripts/sizes"], [sys.executable, "scripts/sizes", "--program", os.environ["POECAL_PROGRAM"]]], after=["Rust build"],
+             shows=r": found \d|^\d+ commands| in \d+ files"),
         *tools(),
         # Beside the long compilation of the library, in a folder of its own: it would wait there, and a processor with it.
-        Step("lints", [["cargo", "clippy", "--locked", "--workspace", "--all-targets", "--", "-D", "warnings"], DOCUMENTATION], shows=CARGO_SHOWS, lacks=lack("clippy", clippy),
-             env={"RUSTDOCFLAGS": "-D warnings"}),
-        Step("page build", [["node", "web/app/build.mjs"]], after=["web tools"], shows="^poecal.html: ", env={"POECAL_WEB_PROFILE": "tested-web"},
-             lacks=lack(f"standard library of {WASM} (rustup target add {WASM})", has_standard_library(WASM))),
+        Step("lints", [["cargo", "clippy", "--locked", "--workspace", "--all-targets", "--", "-D", "warnings"]], shows=CARGO_SHOWS, lacks=lack("clippy", clippy)),
         package_build(),
         Step("licences of others", [[PYTHON, "scripts/third_party.py", "--check"]], after=["Python tools"], shows="^THIRD-PARTY"),
         Step("dependencies", [[PYTHON, "scripts/check_dependencies.py"]], after=["Python tools"], shows="^dependencies: |: (found|is|comes|takes) "),
@@ -142,8 +141,6 @@ def change() -> list[Step]:
         Step("scripts and types", [["node", "web/build.mjs", "--check"], ["node", "web/npm/types.mjs", "--check"]], after=["web tools"], shows="^report.(js|css): |^types"),
         Step("web without a browser", [in_browser(alone)], after=["Rust build", "web tools"], shows=NODE_SHOWS, waits=True),
         Step("report in a browser", [in_browser(name for name in pages if not name.startswith("app."))], after=["Rust build", "scripts and types"], shows=NODE_SHOWS, lacks=browser, waits=True),
-        Step("page in a browser", [in_browser(name for name in pages if name.startswith("app."))], after=["Rust build", "page build"], shows=NODE_SHOWS, lacks=browser, waits=True,
-             env={"POECAL_APP": str(ROOT / "web/app/dist-tested-web/poecal.html")}),
         digits("some digits at every level", "some-levels"),
     ]  # fmt: skip
 
@@ -163,6 +160,7 @@ def packages() -> list[Step]:
     oldest = next(line.split('"')[1] for line in (ROOT / "Cargo.toml").read_text().splitlines() if line.startswith("rust-version"))
     clippy = has("cargo", "clippy", "--version")
     node, browser = has_node(), lack("Chromium", has_chromium())
+    pages = sorted(path.name for path in (ROOT / "web/test").glob("app.*test.mjs") if path.name != "app.parts.test.mjs")
     wasm = lack(f"standard library of {WASM} (rustup target add {WASM})", has_standard_library(WASM))
     return [
         # What ./test has built, or the same.
@@ -170,16 +168,18 @@ def packages() -> list[Step]:
         *tools(),
         Step("npm build", [["node", "web/app/build.mjs"]], after=["web tools"], shows="^poecal.html: |^web/npm", lacks=wasm),
         package_build(),
+        Step("README's build", [[sys.executable, "scripts/sizes", "--build"]], shows=r": found \d|s of processors"),
         Step("installation", [[*PYTEST, INSTALL]], after=["package build"], shows=PYTEST_SHOWS + "|^static program"),
         Step("C on a controller", [[*PYTEST, "tests/python/test_c.py"]], after=["package build"], shows=PYTEST_SHOWS, env={"POECAL_CONTROLLER": "controller"}),
         Step("npm package", [in_browser(["npm.test.mjs"])], after=["npm build", "Rust build"], shows=NODE_SHOWS),
         Step("report of every real robot", [in_browser(["report.test.mjs"])], after=["Rust build", "web tools"], shows=NODE_SHOWS, lacks=browser, waits=True, env={"POECAL_REPORTS": "all"}),
-        Step("page in a browser", [in_browser(["app.test.mjs"])], after=["npm build", "Rust build"], shows=NODE_SHOWS, lacks=browser, waits=True),
+        Step("page in a browser", [in_browser(pages)], after=["npm build", "Rust build"], shows=NODE_SHOWS, lacks=browser, waits=True),
         *(Step(f"lints of {name}", [["cargo", "clippy", "--locked", "--profile", "tested", "-p", "poecal", "-p", "poecal-wasm", "--target", name, "--", "-D", "warnings"]], shows=CARGO_SHOWS,
                lacks=lack("clippy", clippy) or lack(f"standard library of {name} (rustup target add {name})", has_standard_library(name)))
           for name in ("aarch64-unknown-linux-gnu", WASM)),
         Step(f"oldest Rust ({oldest})", [["cargo", f"+{oldest}", "check", "--locked", "--workspace"]], shows=CARGO_SHOWS, may_lack=True,
              lacks=lack(f"Rust {oldest} (rustup toolchain install {oldest} --profile minimal)", has("cargo", f"+{oldest}", "--version"))),
+        Step("documentation of the crates", [DOCUMENTATION], shows=CARGO_SHOWS, env={"RUSTDOCFLAGS": "-D warnings"}),
         Step("documentation site", [["scripts/build-docs"], [*PYTEST, SITE]], after=["Python tools", "npm build"] if node and not wasm else ["Python tools", "web tools"] if node else ["Python tools"],
              shows="^site: |^(WARNING|ERROR) |" + PYTEST_SHOWS, env={"POECAL_PAGE": "web/app/dist/poecal.html"} if node and not wasm else {}),
         Step("site in a browser", [in_browser(["site.test.mjs"])], after=["documentation site", "web tools", "Rust build"], shows=NODE_SHOWS, lacks=browser, waits=True),

@@ -3,7 +3,7 @@
 //   node web/npm/build.mjs                 with vector instructions
 //   node web/npm/build.mjs --plain FILE    the module without them, to that file: for comparisons
 //
-// POECAL_WEB_PROFILE is the profile of cargo: `web`, what is shipped; or `tested-web`, which ./test builds in less time and is larger.
+// POECAL_WEB_PROFILE is the profile of cargo: `web`, what is shipped, or another one.
 //
 // Exit code 4: Rust lacks the standard library of the target.
 import { execFileSync, spawnSync } from "node:child_process";
