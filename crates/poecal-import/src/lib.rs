@@ -70,7 +70,10 @@ use poecal_numerics::error::Result;
 /// Options for reading measurement files.
 ///
 /// ```
-/// use poecal_import::ReadOptions;
+/// # mod poecal {
+/// #     pub use poecal_import::ReadOptions;
+/// # }
+/// use poecal::ReadOptions;
 /// let options = ReadOptions { fit_where: Some("stage=1,2".parse()?), ..ReadOptions::default() };
 /// assert!(options.mapping.is_none());
 /// # Ok::<(), poecal_numerics::error::Error>(())
@@ -225,11 +228,15 @@ pub enum Frames {
 /// Contents of measurement files, and how they were read.
 ///
 /// ```
+/// # mod poecal {
+/// #     pub use poecal_import::ReadOptions;
+/// #     pub use poecal_arm::lie;
+/// #     pub use poecal_model::robot::{Joint, Robot};
+/// # }
+/// use poecal::{ReadOptions, Joint, Robot};
+/// use poecal::lie::{Pose, Screw};
 /// use nalgebra::Vector3;
 /// use poecal_import;
-/// use poecal_import::ReadOptions;
-/// use poecal_arm::lie::{Pose, Screw};
-/// use poecal_model::robot::{Joint, Robot};
 /// let joint = Joint::revolute("joint1", Screw::revolute(&Vector3::z(), &Vector3::zeros()));
 /// let robot = Robot::new("one_axis", vec![joint], Pose::from_translation(Vector3::x()))?;
 /// let path = std::env::temp_dir().join("poecal_measurement_file_example.csv");

@@ -9,7 +9,10 @@ use crate::text::visible;
 /// What went wrong, as a word that does not change between versions.
 ///
 /// ```
-/// use poecal_numerics::error::ErrorKind;
+/// # mod poecal {
+/// #     pub use poecal_numerics::error::ErrorKind;
+/// # }
+/// use poecal::ErrorKind;
 /// let error = ErrorKind::Unit.error("found unit `inch`, expected a length (m, cm, mm, um)");
 /// assert_eq!(error.kind(), ErrorKind::Unit);
 /// ```
@@ -78,7 +81,10 @@ impl fmt::Display for Place {
 /// An error that reads as one sentence.
 ///
 /// ```
-/// use poecal_numerics::error::{Error, ErrorKind};
+/// # mod poecal {
+/// #     pub use poecal_numerics::error::{Error, ErrorKind};
+/// # }
+/// use poecal::{Error, ErrorKind};
 /// let error = Error::new(ErrorKind::Unit, "found unit `inch`, expected a length (m, cm, mm, um)").at("points.csv", 1, 14);
 /// assert_eq!(error.to_string(), "points.csv:1:14: found unit `inch`, expected a length (m, cm, mm, um)");
 /// assert_eq!(error.kind(), ErrorKind::Unit);
@@ -97,7 +103,10 @@ struct Inner {
 /// What an option could be, where nothing else decides.
 ///
 /// ```
-/// use poecal_numerics::error::ErrorKind;
+/// # mod poecal {
+/// #     pub use poecal_numerics::error::ErrorKind;
+/// # }
+/// use poecal::ErrorKind;
 /// let two = ErrorKind::Model.error("found two ends").with_choices("--tip-link", vec!["b".to_owned(), "c".to_owned()]);
 /// let choices = two.choices().ok_or("no choices")?;
 /// assert_eq!((choices.option, choices.of.join(" ")), ("--tip-link", "b c".to_owned()));

@@ -21,8 +21,12 @@ const MODEL: &str = "a robot model (URDF, MJCF, SDF, TOML or calibration.json)";
 /// Source of a model.
 ///
 /// ```
-/// use poecal_results::model::{Model, ModelSource};
-/// use poecal_model::simulate::elbow;
+/// # mod poecal {
+/// #     pub use poecal_results::model::{Model, ModelSource};
+/// #     pub use poecal_model::simulate;
+/// # }
+/// use poecal::{Model, ModelSource};
+/// use poecal::simulate::elbow;
 /// let model = Model { robot: elbow(), source: ModelSource::Toml, path: "elbow.toml".into() };
 /// assert_eq!(model.robot.joints.len(), 6);
 /// ```
@@ -70,7 +74,10 @@ impl Model {
 /// Forms of robot models for output.
 ///
 /// ```
-/// use poecal_results::model::ModelFormat;
+/// # mod poecal {
+/// #     pub use poecal_results::model::ModelFormat;
+/// # }
+/// use poecal::ModelFormat;
 /// assert_eq!(ModelFormat::of_path("out/robot.urdf"), Some(ModelFormat::Urdf));
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -17,7 +17,10 @@ use poecal_storage::numbers::push_number;
 /// Frame of predicted poses.
 ///
 /// ```
-/// use poecal_results::predictions::PredictionFrame;
+/// # mod poecal {
+/// #     pub use poecal_results::predictions::PredictionFrame;
+/// # }
+/// use poecal::PredictionFrame;
 /// assert_ne!(PredictionFrame::Base, PredictionFrame::Device);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -74,8 +77,11 @@ pub fn predict(
 /// Predicted poses.
 ///
 /// ```
-/// use poecal_results::model::{Model, ModelSource};
-/// use poecal_results::predictions::{PredictionFrame, predicted};
+/// # mod poecal {
+/// #     pub use poecal_results::model::{Model, ModelSource};
+/// #     pub use poecal_results::predictions::{PredictionFrame, predicted};
+/// # }
+/// use poecal::{Model, ModelSource, PredictionFrame, predicted};
 /// let model = Model { robot: poecal_model::simulate::scara(), source: ModelSource::Toml, path: "scara.toml".into() };
 /// let found = predicted(&model, &[0.0; 8], PredictionFrame::Base, None, false)?;
 /// assert_eq!((found.poses.len(), found.poses[0]), (2, model.robot.home));

@@ -7,7 +7,10 @@ use serde::{Deserialize, Serialize};
 /// of that many components.
 ///
 /// ```
-/// use poecal_calibrate::Loss;
+/// # mod poecal {
+/// #     pub use poecal_calibrate::Loss;
+/// # }
+/// use poecal::Loss;
 /// assert_eq!(Loss::Huber.weight(0.5, 3), 1.0);
 /// assert_eq!(Loss::Tukey.weight(50.0, 3), 0.0);
 /// assert!(Loss::Cauchy.weight(50.0, 3) < 0.01);

@@ -24,7 +24,10 @@ pub struct Models {
 /// Mean, root mean square, 95th percentile (linear between ranks) and maximum of errors.
 ///
 /// ```
-/// use poecal_calibrate::Statistic;
+/// # mod poecal {
+/// #     pub use poecal_calibrate::Statistic;
+/// # }
+/// use poecal::Statistic;
 /// let s = Statistic::of(vec![3.0, 4.0]).expect("two values");
 /// assert_eq!((s.mean, s.rms, s.max), (3.5, 12.5_f64.sqrt(), 4.0));
 /// ```
@@ -68,7 +71,7 @@ impl Statistic {
 /// # use poecal_calibrate::CalibrationOptions;
 /// # use poecal_model::measurement::Kind;
 /// # use poecal_model::simulate::{Simulation, elbow};
-/// # use poecal_calibrate::steps::calibrate;
+/// # use poecal_calibrate::calibrate;
 /// # let made = Simulation { count: 40, ..Simulation::default() }.run(&elbow(), Kind::POSE)?;
 /// # let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default())?;
 /// let calibrated = calibration.accuracy.training.calibrated;
@@ -173,7 +176,7 @@ pub struct Improvements {
 /// # use poecal_calibrate::CalibrationOptions;
 /// # use poecal_model::measurement::Kind;
 /// # use poecal_model::simulate::{Simulation, elbow};
-/// # use poecal_calibrate::steps::calibrate;
+/// # use poecal_calibrate::calibrate;
 /// # let made = Simulation { count: 40, ..Simulation::default() }.run(&elbow(), Kind::POSE)?;
 /// # let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default())?;
 /// let fitted = calibration.accuracy.training;
@@ -204,7 +207,7 @@ pub struct SetAccuracy {
 /// # use poecal_calibrate::CalibrationOptions;
 /// # use poecal_model::measurement::Kind;
 /// # use poecal_model::simulate::{Simulation, elbow};
-/// # use poecal_calibrate::steps::calibrate;
+/// # use poecal_calibrate::calibrate;
 /// # let made = Simulation { count: 40, ..Simulation::default() }.run(&elbow(), Kind::POSE)?;
 /// # let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default())?;
 /// let accuracy = calibration.accuracy;

@@ -16,8 +16,11 @@ pub type Minimize = fn(&Problem<'_>, Estimate, &Options) -> Minimum;
 /// Parameterisation of the joints, residual of measured frames, and method. The result is always judged in the minimal basis.
 ///
 /// ```
-/// use poecal_calibrate::Formulation;
-/// use poecal_model::robot::JointKind;
+/// # mod poecal {
+/// #     pub use poecal_calibrate::Formulation;
+/// #     pub use poecal_model::robot::JointKind;
+/// # }
+/// use poecal::{Formulation, JointKind};
 /// // The usual one has four unknowns for an axis that turns.
 /// let unknowns = (Formulation::default().joint_parameters)(&[JointKind::Revolute]);
 /// assert_eq!(unknowns[0].model().columns().len(), 4);

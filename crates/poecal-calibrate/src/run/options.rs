@@ -14,7 +14,10 @@ use crate::{AcceptanceLimits, BlockChoice, Corrections, Formulation, Repairs, Ro
 /// What is known of the measuring device's frame.
 ///
 /// ```
-/// use poecal_calibrate::{CalibrationOptions, DeviceFrameKnowledge};
+/// # mod poecal {
+/// #     pub use poecal_calibrate::{CalibrationOptions, DeviceFrameKnowledge};
+/// # }
+/// use poecal::{CalibrationOptions, DeviceFrameKnowledge};
 /// let options = CalibrationOptions { frame: DeviceFrameKnowledge::Base, ..Default::default() };
 /// assert_ne!(options, CalibrationOptions::default());
 /// ```
@@ -34,7 +37,10 @@ pub enum DeviceFrameKnowledge {
 /// Options of a calibration.
 ///
 /// ```
-/// use poecal_calibrate::CalibrationOptions;
+/// # mod poecal {
+/// #     pub use poecal_calibrate::CalibrationOptions;
+/// # }
+/// use poecal::CalibrationOptions;
 /// let options = CalibrationOptions { held_out: 0.2, ..Default::default() };
 /// assert_eq!(options.seed, 1);
 /// ```

@@ -11,7 +11,7 @@ use poecal_model::robot::{MEASURED, Mount, Robot};
 /// # use poecal_calibrate::CalibrationOptions;
 /// # use poecal_model::measurement::Kind;
 /// # use poecal_model::simulate::{Simulation, elbow};
-/// # use poecal_calibrate::steps::calibrate;
+/// # use poecal_calibrate::calibrate;
 /// # let made = Simulation { count: 40, ..Simulation::default() }.run(&elbow(), Kind::POSE)?;
 /// # let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default())?;
 /// let [measured] = &calibration.targets[..] else { unreachable!() };

@@ -21,9 +21,13 @@ use poecal_numerics::{solve, threads};
 /// A finished calibration.
 ///
 /// ```
-/// use poecal_calibrate::CalibrationOptions;
-/// use poecal_calibrate::steps::calibrate;
-/// use poecal_model::simulate::{Kind, Simulation, elbow};
+/// # mod poecal {
+/// #     pub use poecal_calibrate::{CalibrationOptions, calibrate};
+/// #     pub use poecal_model::simulate;
+/// #     pub use poecal_model::simulate::Simulation;
+/// # }
+/// use poecal::{CalibrationOptions, calibrate, Simulation};
+/// use poecal::simulate::{Kind, elbow};
 /// let simulation = Simulation { noise_position_m: 0.0, noise_rotation_rad: 0.0, ..Simulation::default() };
 /// let made = simulation.run(&elbow(), Kind::POSE)?;
 /// let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default())?;

@@ -24,7 +24,7 @@ const EFFECT_SAMPLE: usize = 300;
 /// # use poecal_calibrate::CalibrationOptions;
 /// # use poecal_model::measurement::Kind;
 /// # use poecal_model::simulate::{Simulation, elbow};
-/// # use poecal_calibrate::steps::calibrate;
+/// # use poecal_calibrate::calibrate;
 /// # let made = Simulation { count: 40, ..Simulation::default() }.run(&elbow(), Kind::POSE)?;
 /// # let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default())?;
 /// let expected = calibration.trust.expected.range.ok_or("too few rows")?;

@@ -62,8 +62,11 @@ pub enum Refitted {
 /// Errors of a calibration on other measurements.
 ///
 /// ```
-/// use poecal_model::measurement::{Measured, Quantity};
-/// use poecal_calibrate::{Judgement, Statistic};
+/// # mod poecal {
+/// #     pub use poecal_model::measurement::{Measured, Quantity};
+/// #     pub use poecal_calibrate::{Judgement, Statistic};
+/// # }
+/// use poecal::{Measured, Quantity, Judgement, Statistic};
 /// let errors = Statistic { mean: 0.1, rms: 0.11, p95: 0.2, max: 0.25 };
 /// let calibrated = Measured::of(|quantity| (quantity == Quantity::Position).then_some(errors));
 /// let judgement = Judgement { count: 20, refitted: vec![], calibrated: calibrated.into(), corrected: None, nominal: None, promised: None,
@@ -137,7 +140,7 @@ pub struct JudgedModel {
 ///
 /// ```
 /// use poecal_calibrate::{CalibrationOptions, DeviceFrameKnowledge, Subject};
-/// use poecal_calibrate::steps::calibrate;
+/// use poecal_calibrate::calibrate;
 /// use poecal_calibrate::validate::judge;
 /// use poecal_model::simulate::{Kind, Simulation, elbow};
 /// let exact = Simulation { noise_position_m: 0.0, noise_rotation_rad: 0.0, ..Simulation::default() };

@@ -31,8 +31,11 @@ const UNDETERMINED_EFFECT: f64 = 1.0;
 /// A planned session: measurements and their noise.
 ///
 /// ```
-/// use poecal_model::measurement::Kind;
-/// use poecal_fit::analysis::PlannedSession;
+/// # mod poecal {
+/// #     pub use poecal_model::measurement::Kind;
+/// #     pub use poecal_fit::analysis::PlannedSession;
+/// # }
+/// use poecal::{Kind, PlannedSession};
 /// let planned = PlannedSession { kind: Kind::POINT, ..PlannedSession::default() };
 /// assert!(planned.device_free);
 /// ```
@@ -71,9 +74,14 @@ pub struct ExpectedError {
 /// Expected result of measuring some configurations.
 ///
 /// ```
-/// use poecal_model::measurement::Kind;
-/// use poecal_fit::analysis::{PlannedSession, identify};
-/// use poecal_model::simulate::{Simulation, elbow};
+/// # mod poecal {
+/// #     pub use poecal_model::measurement::Kind;
+/// #     pub use poecal_fit::analysis::{PlannedSession, identify};
+/// #     pub use poecal_model::simulate::Simulation;
+/// #     pub use poecal_model::simulate;
+/// # }
+/// use poecal::{Kind, PlannedSession, identify, Simulation};
+/// use poecal::simulate::elbow;
 /// let made = Simulation { count: 40, ..Simulation::default() }.run(&elbow(), Kind::POSE)?;
 /// let foresight = identify(&made.nominal, made.data.all_readings(), &PlannedSession::default())?;
 /// assert_eq!((foresight.count, foresight.identifiability.rank), (40, 30));
@@ -117,8 +125,13 @@ pub struct MeasuredPictures {
 /// [`ErrorKind::Problem`] if the robot has more unknowns than one fit allows.
 ///
 /// ```
-/// use poecal_fit::analysis::{PlannedSession, identify};
-/// use poecal_model::simulate::{Kind, Simulation, seven_axis};
+/// # mod poecal {
+/// #     pub use poecal_fit::analysis::{PlannedSession, identify};
+/// #     pub use poecal_model::simulate;
+/// #     pub use poecal_model::simulate::Simulation;
+/// # }
+/// use poecal::{PlannedSession, identify, Simulation};
+/// use poecal::simulate::{Kind, seven_axis};
 /// let made = Simulation { count: 40, ..Simulation::default() }.run(&seven_axis(), Kind::POSE)?;
 /// let found = identify(&seven_axis(), made.data.all_readings(), &PlannedSession::default())?;
 /// assert_eq!((found.identifiability.rank, found.identifiability.parameters), (34, 34));

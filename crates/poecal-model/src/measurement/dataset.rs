@@ -12,8 +12,11 @@ use poecal_numerics::error::{Error, ErrorKind, Result};
 /// Measurements with the configurations they were taken in. Readings are stored flat, one after the other.
 ///
 /// ```
+/// # mod poecal {
+/// #     pub use poecal_model::measurement::{Dataset, Measurement};
+/// # }
+/// use poecal::{Dataset, Measurement};
 /// use nalgebra::Vector3;
-/// use poecal_model::measurement::{Dataset, Measurement};
 /// let mut data = Dataset::new(vec!["joint1".into(), "joint2".into()]);
 /// let seen = Measurement::point(Vector3::new(0.1, 0.2, 0.3));
 /// data.push(&[0.1, -0.4], None, seen)?;

@@ -9,8 +9,11 @@ use poecal_arm::lie::{Freedom, Pose, rotation};
 /// target alone, not on joints or parameters.
 ///
 /// ```
+/// # mod poecal {
+/// #     pub use poecal_model::measurement::Measurement;
+/// # }
+/// use poecal::Measurement;
 /// use nalgebra::Vector3;
-/// use poecal_model::measurement::Measurement;
 /// let seen = Measurement::point(Vector3::new(1.0, 2.0, 3.0));
 /// assert_eq!((seen.dim(), seen.function().name), (3, "point"));
 /// ```

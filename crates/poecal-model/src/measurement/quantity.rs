@@ -206,7 +206,10 @@ impl<T> IndexMut<Quantity> for ByQuantity<T> {
 /// Standard deviation of each component of each quantity, metres or radians, by which residuals are whitened: theory.md §4 (17).
 ///
 /// ```
-/// use poecal_model::measurement::{Noise, Quantity};
+/// # mod poecal {
+/// #     pub use poecal_model::measurement::{Noise, Quantity};
+/// # }
+/// use poecal::{Noise, Quantity};
 /// let noise = Noise::new(5e-5, 1e-4);
 /// assert_eq!((noise[Quantity::Position], noise[Quantity::Rotation]), (5e-5, 1e-4));
 /// ```
@@ -287,7 +290,10 @@ impl From<Stated> for ByQuantity<Option<f64>> {
 /// measured is null.
 ///
 /// ```
-/// use poecal_model::measurement::{Measured, Quantity};
+/// # mod poecal {
+/// #     pub use poecal_model::measurement::{Measured, Quantity};
+/// # }
+/// use poecal::{Measured, Quantity};
 /// let largest = Measured::of(|quantity| (quantity == Quantity::Position).then_some(0.25));
 /// assert_eq!((largest.position_mm(), largest.rotation_deg()), (0.25, None));
 /// assert_eq!(serde_json::to_string(&largest).unwrap(), r#"{"position_mm":0.25,"rotation_deg":null}"#);

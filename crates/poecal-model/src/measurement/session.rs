@@ -74,7 +74,10 @@ pub struct Drawn<'a> {
 /// Kind of a session: what is measured, and from where.
 ///
 /// ```
-/// use poecal_model::measurement::Kind;
+/// # mod poecal {
+/// #     pub use poecal_model::measurement::Kind;
+/// # }
+/// use poecal::Kind;
 /// assert_eq!((Kind::POINT.word(), Kind::FLUSH.is_touched()), ("point", true));
 /// ```
 #[derive(Clone, Copy)]

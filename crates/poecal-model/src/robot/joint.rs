@@ -137,9 +137,13 @@ impl Default for Tolerance {
 /// origin on the axis.
 ///
 /// ```
+/// # mod poecal {
+/// #     pub use poecal_arm::lie;
+/// #     pub use poecal_model::robot::Joint;
+/// # }
+/// use poecal::lie::Screw;
+/// use poecal::Joint;
 /// use nalgebra::Vector3;
-/// use poecal_arm::lie::Screw;
-/// use poecal_model::robot::Joint;
 /// let joint = Joint::revolute("elbow", Screw::revolute(&Vector3::y(), &Vector3::new(0.15, 0.0, 0.57)));
 /// assert_eq!(joint.frame.translation, Vector3::new(0.15, 0.0, 0.57));
 /// ```

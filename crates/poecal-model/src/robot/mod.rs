@@ -56,9 +56,13 @@ pub const LONGEST_NAME: usize = 200;
 /// All screws and frames are in the base frame. A robot is a value: forward kinematics changes nothing in it.
 ///
 /// ```
+/// # mod poecal {
+/// #     pub use poecal_arm::lie;
+/// #     pub use poecal_model::robot::{Joint, Robot};
+/// # }
+/// use poecal::lie::{Pose, Screw};
+/// use poecal::{Joint, Robot};
 /// use nalgebra::Vector3;
-/// use poecal_arm::lie::{Pose, Screw};
-/// use poecal_model::robot::{Joint, Robot};
 /// let joint = Joint::revolute("shoulder", Screw::revolute(&Vector3::z(), &Vector3::zeros()));
 /// let robot = Robot::new("one_axis", vec![joint], Pose::from_translation(Vector3::new(0.5, 0.0, 0.0)))?;
 /// let tip = robot.forward_kinematics(&[std::f64::consts::FRAC_PI_2]);

@@ -8,7 +8,10 @@ use crate::robot::{JointKind, Limits, ReadingKind, Robot};
 /// The configurations of a robot: the range of each reading (±π and ±0.5 m where there are no limits; its reference of a factor).
 ///
 /// ```
-/// use poecal_model::simulate::{Configurations, elbow};
+/// # mod poecal {
+/// #     pub use poecal_model::simulate;
+/// # }
+/// use poecal::simulate::{Configurations, elbow};
 /// use rand_core::SeedableRng;
 /// let mut generator = rand_chacha::ChaCha8Rng::seed_from_u64(1);
 /// let readings = Configurations::new(&elbow()).random(&mut generator);

@@ -12,7 +12,12 @@ use poecal_arm::lie::{Pose, rotation};
 /// Distances and angles are uniform between their two limits.
 ///
 /// ```
-/// use poecal_model::simulate::{Gross, Kind, Simulation, elbow};
+/// # mod poecal {
+/// #     pub use poecal_model::simulate;
+/// #     pub use poecal_model::simulate::Simulation;
+/// # }
+/// use poecal::simulate::{Gross, Kind, elbow};
+/// use poecal::Simulation;
 /// let mut made = Simulation::default().run(&elbow(), Kind::POSE)?;
 /// let rows = Gross { share: 0.1, ..Gross::default() }.spoil(&mut made.data);
 /// assert_eq!(rows.len(), 5);

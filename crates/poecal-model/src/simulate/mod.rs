@@ -28,7 +28,12 @@ use poecal_numerics::error::{ErrorKind, Result};
 /// A simulated measurement session.
 ///
 /// ```
-/// use poecal_model::simulate::{Kind, Simulation, elbow};
+/// # mod poecal {
+/// #     pub use poecal_model::simulate;
+/// #     pub use poecal_model::simulate::Simulation;
+/// # }
+/// use poecal::simulate::{Kind, elbow};
+/// use poecal::Simulation;
 /// let made = Simulation { count: 20, ..Simulation::default() }.run(&elbow(), Kind::POINT)?;
 /// assert_eq!(made.data.len(), 20);
 /// # Ok::<(), poecal_numerics::error::Error>(())
@@ -107,8 +112,13 @@ impl Default for Simulation {
 /// A simulated session with its truth.
 ///
 /// ```
-/// use poecal_model::measurement::Kind;
-/// use poecal_model::simulate::{Simulation, scara};
+/// # mod poecal {
+/// #     pub use poecal_model::measurement::Kind;
+/// #     pub use poecal_model::simulate::Simulation;
+/// #     pub use poecal_model::simulate;
+/// # }
+/// use poecal::{Kind, Simulation};
+/// use poecal::simulate::scara;
 /// let made = Simulation::default().run(&scara(), Kind::POINT)?;
 /// let readings = made.data.readings(0);
 /// let tip = made.device_from_base * made.actual.forward_kinematics(readings);

@@ -15,7 +15,12 @@ use poecal_numerics::error::{Error, ErrorKind, Result};
 /// A simulated session in which a camera takes pictures of a board, one of them on the robot's tip.
 ///
 /// ```
-/// use poecal_model::simulate::{PictureSimulation, Simulation, elbow};
+/// # mod poecal {
+/// #     pub use poecal_model::simulate;
+/// #     pub use poecal_model::simulate::Simulation;
+/// # }
+/// use poecal::simulate::{PictureSimulation, elbow};
+/// use poecal::Simulation;
 /// let session = Simulation { count: 12, error_rotation_rad: 1e-3, error_position_m: 1e-3, ..Simulation::default() };
 /// let made = PictureSimulation::usual(session, true).run(&elbow())?;
 /// assert_eq!((made.data.len(), made.data.pictures.all[0].corners.len()), (12, 24));

@@ -24,7 +24,10 @@ pub use warm_start::{WarmStart, minimize_warm};
 /// or else are to be scaled by the solver ([`Scaling::Columns`]).
 ///
 /// ```
-/// use poecal_numerics::solve::{LeastSquares, Normal, Options, minimize};
+/// # mod poecal {
+/// #     pub use poecal_numerics::solve;
+/// # }
+/// use poecal::solve::{LeastSquares, Normal, Options, minimize};
 ///
 /// /// `y = a exp(b x)`, two unknowns.
 /// struct Growth([(f64, f64); 4]);

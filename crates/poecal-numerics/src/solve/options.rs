@@ -5,7 +5,10 @@ use super::Termination;
 /// By which units steps are measured, and damped.
 ///
 /// ```
-/// use poecal_numerics::solve::{Options, Scaling};
+/// # mod poecal {
+/// #     pub use poecal_numerics::solve;
+/// # }
+/// use poecal::solve::{Options, Scaling};
 /// let options = Options { scaling: Scaling::Columns { damping: 1e-3 }, ..Options::default() };
 /// assert!(options.reuse);
 /// ```

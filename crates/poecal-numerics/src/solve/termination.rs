@@ -3,7 +3,10 @@
 /// Why a minimisation ended: data, not an error string.
 ///
 /// ```
-/// use poecal_numerics::solve::Termination;
+/// # mod poecal {
+/// #     pub use poecal_numerics::solve;
+/// # }
+/// use poecal::solve::Termination;
 /// assert!(Termination::Optimum.is_success() && !Termination::IterationLimit.is_success());
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize, schemars::JsonSchema)]

@@ -9,7 +9,10 @@ use crate::linalg::{self, Factor};
 /// A state with its normal information and the factor of its `JᵀJ`.
 ///
 /// ```
-/// use poecal_numerics::solve::{Normal, WarmStart};
+/// # mod poecal {
+/// #     pub use poecal_numerics::solve;
+/// # }
+/// use poecal::solve::{Normal, WarmStart};
 /// let mut normal = Normal::new(1);
 /// normal.add_rows(&[2.0], &[0.1], 0);
 /// let start = WarmStart::new("a state", normal);

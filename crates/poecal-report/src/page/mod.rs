@@ -61,10 +61,15 @@ const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; script-src 
 /// robot in three dimensions and charts of the rows. In pieces, since most of it is the same for every calibration.
 ///
 /// ```
-/// use poecal_calibrate::{CalibrationOptions, calibrate};
-/// use poecal_results::calibration_file::{CalibrationFile, Inputs};
-/// use poecal_results::residuals::Residuals;
-/// use poecal_model::simulate::{Kind, Simulation, elbow};
+/// # mod poecal {
+/// #     pub use poecal_calibrate::{CalibrationOptions, calibrate};
+/// #     pub use poecal_results::calibration_file::{CalibrationFile, Inputs};
+/// #     pub use poecal_results::residuals::Residuals;
+/// #     pub use poecal_model::simulate;
+/// #     pub use poecal_model::simulate::Simulation;
+/// # }
+/// use poecal::{CalibrationOptions, calibrate, CalibrationFile, Inputs, Residuals, Simulation};
+/// use poecal::simulate::{Kind, elbow};
 /// let made = Simulation::default().run(&elbow(), Kind::POINT)?;
 /// let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default())?;
 /// let file = CalibrationFile::new(&calibration, &made.data, Inputs::default());

@@ -146,7 +146,10 @@ pub struct CalibrationFile {
 /// Inputs.
 ///
 /// ```
-/// use poecal_results::calibration_file::Inputs;
+/// # mod poecal {
+/// #     pub use poecal_results::calibration_file::Inputs;
+/// # }
+/// use poecal::Inputs;
 /// let inputs = Inputs { model: "robot.urdf".into(), measurements: vec!["points.csv".into()], ..Inputs::default() };
 /// assert_eq!(inputs.measurements.len(), 1);
 /// ```

@@ -135,9 +135,14 @@ pub struct ResidualRow {
 /// Residuals and diagnostics of all measurements, in the order read.
 ///
 /// ```
-/// use poecal_calibrate::{CalibrationOptions, calibrate};
-/// use poecal_results::residuals::Residuals;
-/// use poecal_model::simulate::{Kind, Simulation, elbow};
+/// # mod poecal {
+/// #     pub use poecal_calibrate::{CalibrationOptions, calibrate};
+/// #     pub use poecal_results::residuals::Residuals;
+/// #     pub use poecal_model::simulate;
+/// #     pub use poecal_model::simulate::Simulation;
+/// # }
+/// use poecal::{CalibrationOptions, calibrate, Residuals, Simulation};
+/// use poecal::simulate::{Kind, elbow};
 /// let made = Simulation::default().run(&elbow(), Kind::POINT)?;
 /// let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default())?;
 /// let residuals = Residuals::of(&made.data, &calibration);

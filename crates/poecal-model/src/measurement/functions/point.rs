@@ -60,9 +60,13 @@ impl Measurement {
     /// Position of a target in the device's frame, metres.
     ///
     /// ```
+    /// # mod poecal {
+    /// #     pub use poecal_arm::lie;
+    /// #     pub use poecal_model::measurement::Measurement;
+    /// # }
+    /// use poecal::lie::Pose;
+    /// use poecal::Measurement;
     /// use nalgebra::Vector3;
-    /// use poecal_arm::lie::Pose;
-    /// use poecal_model::measurement::Measurement;
     /// let mut e = [0.0; 3];
     /// Measurement::point(Vector3::new(0.0, 0.0, 0.002)).residual(&Pose::identity(), &mut e);
     /// assert_eq!(e, [0.0, 0.0, 0.002]);

@@ -125,8 +125,12 @@ impl Measurement {
     /// A measured `device_from_target`.
     ///
     /// ```
-    /// use poecal_arm::lie::Pose;
-    /// use poecal_model::measurement::Measurement;
+    /// # mod poecal {
+    /// #     pub use poecal_arm::lie;
+    /// #     pub use poecal_model::measurement::Measurement;
+    /// # }
+    /// use poecal::lie::Pose;
+    /// use poecal::Measurement;
     /// let pose = Pose::from_xyz_rpy([0.1, 0.2, 0.3], [0.4, 0.5, 0.6]);
     /// let mut e = [1.0; 6];
     /// Measurement::of_pose(&pose).residual(&pose, &mut e);
