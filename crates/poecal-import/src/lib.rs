@@ -71,7 +71,7 @@ use poecal_numerics::error::Result;
 ///
 /// ```
 /// # mod poecal {
-/// #     pub use poecal_import::ReadOptions;
+/// #     pub use poecal_import::{ReadOptions, read as read_measurements};
 /// # }
 /// use poecal::ReadOptions;
 /// let options = ReadOptions { fit_where: Some("stage=1,2".parse()?), ..ReadOptions::default() };
@@ -229,20 +229,19 @@ pub enum Frames {
 ///
 /// ```
 /// # mod poecal {
-/// #     pub use poecal_import::ReadOptions;
+/// #     pub use poecal_import::{ReadOptions, read as read_measurements};
 /// #     pub use poecal_arm::lie;
 /// #     pub use poecal_model::robot::{Joint, Robot};
 /// # }
-/// use poecal::{ReadOptions, Joint, Robot};
+/// use poecal::{Joint, ReadOptions, Robot, read_measurements};
 /// use poecal::lie::{Pose, Screw};
 /// use nalgebra::Vector3;
-/// use poecal_import;
 /// let joint = Joint::revolute("joint1", Screw::revolute(&Vector3::z(), &Vector3::zeros()));
 /// let robot = Robot::new("one_axis", vec![joint], Pose::from_translation(Vector3::x()))?;
 /// let path = std::env::temp_dir().join("poecal_measurement_file_example.csv");
 /// # let write = |text: &str| std::fs::write(&path, text).unwrap();
 /// write("joint1[deg],x[mm],y[mm],z[mm]\n90,0,1000,0\n");
-/// let file = measurements::read(&[&path], &robot, &ReadOptions::default())?;
+/// let file = read_measurements(&[&path], &robot, &ReadOptions::default())?;
 /// # std::fs::remove_file(&path).unwrap();
 /// assert_eq!(file.data.readings(0), [std::f64::consts::FRAC_PI_2]);
 /// assert_eq!(file.understood[0].columns[1].unit, Some("mm"));

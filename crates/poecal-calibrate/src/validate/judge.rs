@@ -139,9 +139,7 @@ pub struct JudgedModel {
 /// [`ErrorKind::Problem`] if there are fewer measured numbers than unknowns to be refitted, or none at all.
 ///
 /// ```
-/// use poecal_calibrate::{CalibrationOptions, DeviceFrameKnowledge, Subject};
-/// use poecal_calibrate::calibrate;
-/// use poecal_calibrate::validate::judge;
+/// use poecal_calibrate::{CalibrationOptions, DeviceFrameKnowledge, Subject, calibrate, judge};
 /// use poecal_model::simulate::{Kind, Simulation, elbow};
 /// let exact = Simulation { noise_position_m: 0.0, noise_rotation_rad: 0.0, ..Simulation::default() };
 /// let made = exact.run(&elbow(), Kind::POINT)?;
