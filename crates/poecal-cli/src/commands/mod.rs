@@ -17,6 +17,7 @@ mod init;
 mod itself;
 mod kept;
 mod offsets;
+#[cfg(any(unix, windows))]
 mod pictures;
 mod plan;
 mod predict;
@@ -29,6 +30,7 @@ mod validate;
 mod visits;
 mod watch;
 
+#[cfg(any(unix, windows))]
 use pictures::{board, detect, photograph};
 
 use itself::{completions, man, reproduce, schema};
