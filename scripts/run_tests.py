@@ -168,7 +168,6 @@ def packages() -> list[Step]:
         *tools(),
         Step("npm build", [["node", "web/app/build.mjs"]], after=["web tools"], shows="^poecal.html: |^web/npm", lacks=wasm),
         package_build(),
-        Step("README's build", [[sys.executable, "scripts/sizes", "--build"]], shows=r": found \d|s of processors"),
         Step("installation", [[*PYTEST, INSTALL]], after=["package build"], shows=PYTEST_SHOWS + "|^static program"),
         Step("C on a controller", [[*PYTEST, "tests/python/test_c.py"]], after=["package build"], shows=PYTEST_SHOWS, env={"POECAL_CONTROLLER": "controller"}),
         Step("npm package", [in_browser(["npm.test.mjs"])], after=["npm build", "Rust build"], shows=NODE_SHOWS),
