@@ -9,9 +9,3 @@ pub mod largest;
 #[cfg(feature = "sessions")]
 pub mod sessions;
 pub mod trials;
-
-/// A file of `data/`.
-#[must_use]
-pub fn data(name: &str) -> std::path::PathBuf {
-    std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("data").join(name)
-}
