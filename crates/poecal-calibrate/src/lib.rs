@@ -47,11 +47,12 @@ pub use crate::steps::repeatability::{RepeatedPose, repeatability};
 pub use crate::steps::result::{Calibration, Repaired};
 pub use crate::steps::together::CommonDirection;
 pub use crate::steps::trust::Trust;
-pub use crate::steps::verdict::{Level, Verdict};
+pub use crate::steps::verdict::{Gain, Level, Verdict};
 pub use crate::trust::coverage_check::{
     CoverageCheck, InSampledRange, JudgedError, JudgedRow, PartCoverage, PredictedUncertainty, Promise,
 };
 pub use crate::trust::expected::{Expectations, Expected, RangePart};
+pub use crate::trust::nominal::NominalError;
 pub use crate::validate::arm_too::{ArmToo, arm_too, session_of};
 pub use crate::validate::judge::{
     DeliveredModel, JudgedModel, Judgement, MovedDevice, Refitted, Subject, judge,

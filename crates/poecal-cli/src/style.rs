@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use anstyle::{AnsiColor, Style};
+use poecal_calibrate::Level;
 use poecal_numerics::text::visible;
 use poecal_report::table::{INDENT as LABELS, WIDTH, broken, lines};
 
@@ -16,8 +17,13 @@ const LABEL: Style = Style::new().bold();
 /// Labels of warnings for the reader.
 const LOOK: [&str; 4] = ["look at", "outliers", "warnings", "diagnosis"];
 /// First words of each verdict.
-const VERDICTS: [(&str, Style); 3] =
-    [("good", GOOD), ("use inside the sampled range", WARNING), ("do not use", ERROR)];
+const VERDICTS: [(Level, Style); 5] = [
+    (Level::Good, GOOD),
+    (Level::InsideSampledRange, WARNING),
+    (Level::MeasuredConfigurations, WARNING),
+    (Level::Located, WARNING),
+    (Level::DoNotUse, ERROR),
+];
 
 /// A path on one line, without control characters.
 pub(crate) fn shown(path: &Path) -> String {
@@ -106,7 +112,9 @@ fn painted_line(line: &str) -> String {
     let gap = rest.len() - rest.trim_start().len();
     let (gap, rest) = rest.split_at(gap);
     let mut verdicts = VERDICTS.iter().filter(|_| label == "verdict");
-    let rest = match verdicts.find_map(|(words, style)| Some((words, style, rest.strip_prefix(*words)?))) {
+    let found =
+        verdicts.find_map(|(level, style)| Some((level.words(), style, rest.strip_prefix(level.words())?)));
+    let rest = match found {
         Some((words, style, rest)) => format!("{style}{words}{style:#}{rest}"),
         None => rest.to_owned(),
     };

@@ -141,7 +141,7 @@ def test_parts_are_those_of_the_file(calibration):
 def test_a_calibration_shows_itself(calibration):
     assert str(calibration).startswith("verdict       good\nbefore ")
     verdict = calibration.verdict
-    assert f"expected      {verdict.expected_error_mm:.4f} mm (RMS) of predictions, 95 % below {verdict.bound95_mm:.4f} mm" in str(calibration)
+    assert f"expected      {verdict.expected_error_mm:.4f} mm (RMS) near measured configurations, 95 % below {verdict.bound95_mm:.4f} mm" in str(calibration)
     assert "mm RMS on 15 held-out rows" in repr(calibration)
     html = calibration._repr_html_()
     assert html.startswith("<div>") and "held out" in html and "mm" in html

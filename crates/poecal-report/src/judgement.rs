@@ -58,7 +58,9 @@ pub fn judgement(calibration: &str, measurements: &str, judgement: &Judgement) -
 pub(crate) fn confirmed_words(level: Option<Level>) -> &'static str {
     match level {
         Some(Level::Good) => "the calibration holds for these measurements",
-        Some(Level::InsideSampledRange) => "the calibration holds inside the sampled range only",
+        Some(Level::Located | Level::MeasuredConfigurations | Level::InsideSampledRange) => {
+            "the calibration holds inside the sampled range only"
+        }
         Some(Level::DoNotUse) => "the calibration does not hold for these measurements",
         None => "the calibration has no bounds to test",
     }
@@ -97,16 +99,16 @@ fn coverage(out: &mut String, label: &str, quantity: Quantity, check: &PartCover
 
 fn range_words(judgement: &Judgement) -> String {
     let Some(some) = &judgement.in_sampled_range else {
-        return "none of the configurations lies inside it, so these rows do not test it".to_owned();
+        return "none of the rows lies inside it, so they do not test it".to_owned();
     };
     if some.count == judgement.count {
-        return "all configurations lie inside it".to_owned();
+        return "all rows lie inside it".to_owned();
     }
     let share = 100.0 * some.promised.parts.lead().inside_bound95;
     let leading = some.calibrated.leading().map_or(Quantity::Position, |(quantity, _)| quantity);
     let (rms, what, unit) = (number(some.calibrated.lead().rms), leading.name(), leading.unit().symbol());
     format!(
-        "{} of {} configurations {} inside it: {what} error {rms} {unit} (RMS), {share:.1} % inside the bounds",
+        "{} of {} rows {} inside it: {what} error {rms} {unit} (RMS), {share:.1} % inside the bounds",
         some.count,
         judgement.count,
         if some.count == 1 { "lies" } else { "lie" }

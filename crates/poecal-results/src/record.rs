@@ -57,7 +57,7 @@ record! {
     /// The measuring instrument: its serial number and its own certificate.
     instrument = "Instrument",
     /// Day of the instrument's own calibration, `YYYY-MM-DD`.
-    instrument_calibrated = "Instrument calibrated",
+    instrument_calibrated = "Instrument calibration",
     /// The tool that was on the flange.
     tool = "Tool",
     /// The load that the robot carried, with its unit.

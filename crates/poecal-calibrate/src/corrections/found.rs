@@ -11,7 +11,7 @@ use crate::run::options::DeviceFrameKnowledge;
 use crate::run::placed::{CalibratedStation, CalibratedTarget, place_tip, stations};
 use crate::steps::calibrated::CalibratedFit;
 use crate::trust::coverage_check::{CoverageCheck, held_out_check};
-use crate::trust::expected::{Expectations, expectations_beside};
+use crate::trust::expected::{Domain, Expectations};
 use poecal_fit::analysis::coverage;
 use poecal_fit::state::{Estimate, Packed, RowError, Session, Unknowns};
 use poecal_fit::uncertainty::{CrossValidation, Uncertainty};
@@ -76,6 +76,7 @@ impl CorrectedFit {
         mut self,
         geometry: &CalibratedFit<'_>,
         of_geometry: Option<&CrossValidation>,
+        registered: &Estimate,
     ) -> Correction {
         let Run { options, held_out_rows, .. } = &geometry.run;
         let left_out_m = self.left_out_m(of_geometry);
@@ -83,8 +84,15 @@ impl CorrectedFit {
         let (session, rows) = (self.session(geometry), &geometry.weighted_rows());
         let CorrectedFit { model, estimate, noise, .. } = &self;
         let coverage = coverage(&session, rows);
+        let domain = Domain {
+            session: &session,
+            rows,
+            coverage: &coverage,
+            nominal: (&geometry.run.robot, registered),
+            seed: options.seed,
+        };
         let expected = uncertainty.as_mut().map_or_else(Expectations::default, |uncertainty| {
-            expectations_beside(&session, rows, &coverage, (uncertainty, left_out_m), options.seed)
+            domain.expectations_beside(uncertainty, left_out_m)
         });
         let found = uncertainty.as_ref().filter(|_| self.has_terms()).map(|uncertainty| {
             let deviations: Vec<f64> = model.deviations(&self.possible).collect();

@@ -122,10 +122,17 @@ impl ModelAccuracy {
 pub(crate) const CORNERS: &str = "error of the corners at the board";
 
 /// The error by which a model is judged, root mean square in the unit in which people read it.
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) struct JudgingError {
     pub(crate) what: String,
     pub(crate) rms: f64,
     pub(crate) unit: Unit,
+}
+
+impl Default for JudgingError {
+    fn default() -> Self {
+        JudgingError { what: String::new(), rms: 0.0, unit: Unit::Metre }
+    }
 }
 
 impl JudgingError {

@@ -5,13 +5,14 @@ use super::summary::FitSummary;
 use super::trust::trust;
 use crate::corrections::CorrectedFit;
 use crate::robust::RobustFit;
+use crate::run::Run;
 use crate::run::located::located;
 use crate::trust::coverage_check::held_out_check;
-use crate::trust::expected::expectations_with_terms;
+use crate::trust::expected::Domain;
 use crate::{Accuracy, Correction, JointEffect, Models, Robustness, Trust, set_accuracy};
 use poecal_fit::analysis::{Identifiability, Setup, identifiability};
 use poecal_fit::start::{register, register_again};
-use poecal_fit::state::Session;
+use poecal_fit::state::{Estimate, Session};
 use poecal_fit::uncertainty::CrossValidation;
 use poecal_model::measurement::ByQuantity;
 use poecal_model::robot::Robot;
@@ -62,11 +63,16 @@ impl CalibratedFit<'_> {
         let of = |rows: &[u32]| set_accuracy(&session, rows, &models);
         let rows = [&run.fit_rows[..], &run.held_out_rows[..]];
         let robustness = robustness.clone().beside(rows, of);
-        let mut trust =
-            trust(&summary.view(session, &self.estimate), summary, cross_validation, run.options.seed);
-        let correction = corrected.map(|it| it.judged(self, trust.cross_validation.as_ref()));
+        let mut trust = trust(
+            &summary.view(session, &self.estimate),
+            summary,
+            cross_validation,
+            (&models.registered, run.options.seed),
+        );
+        let correction =
+            corrected.map(|it| it.judged(self, trust.cross_validation.as_ref(), &models.registered));
         if let Some(found) = correction.as_ref().filter(|it| !it.has_terms()) {
-            self.allow_for_terms(&session, &mut trust, found);
+            self.allow_for_terms(&session, &mut trust, (found, &models.registered));
         }
         let predicted = trust.uncertainty.as_ref().map(|it| (it, &trust.coverage[..]));
         let of_calibrated = (&session, &models.calibrated);
@@ -113,13 +119,23 @@ impl CalibratedFit<'_> {
     }
 
     /// Beside a corrected model without terms, what terms might be there stays a part of the uncertainty of geometry, so that both are one.
-    fn allow_for_terms(&self, session: &Session<'_>, trust: &mut Trust, found: &Correction) {
+    fn allow_for_terms(
+        &self,
+        session: &Session<'_>,
+        trust: &mut Trust,
+        (found, registered): (&Correction, &Estimate),
+    ) {
         let Some(uncertainty) = trust.uncertainty.as_mut() else { return };
+        let Run { robot, fit_rows: rows, options, .. } = &self.run;
+        let domain = Domain {
+            session,
+            rows,
+            coverage: &trust.coverage,
+            nominal: (robot, registered),
+            seed: options.seed,
+        };
         let of = (uncertainty, &trust.expected, &found.expected);
-        let seed = self.run.options.seed;
-        if let Some(expected) =
-            expectations_with_terms(session, &self.run.fit_rows, &trust.coverage, of, seed)
-        {
+        if let Some(expected) = domain.expectations_with_terms(of) {
             trust.expected = expected;
         }
     }

@@ -5,7 +5,7 @@ use super::summary::FitSummary;
 use super::together::{CommonDirection, common_directions, held_sigmas};
 use crate::CoverageCheck;
 use crate::doubts::suspicion::{JointCorrection, suspicions};
-use crate::trust::expected::{Expectations, expectations_beside};
+use crate::trust::expected::{Domain, Expectations};
 use poecal_fit::analysis::{JointCoverage, coverage};
 use poecal_fit::gauge::screw_deviations;
 use poecal_fit::start::{Registration, register_again};
@@ -56,7 +56,7 @@ pub(crate) fn trust(
     view: &View<'_>,
     summary: &FitSummary,
     cross_validation: Option<CrossValidation>,
-    seed: u64,
+    (registered, seed): (&Estimate, u64),
 ) -> Trust {
     let FitSummary { layout, normal, remainder, .. } = summary;
     let found = discrepancy(view, normal, remainder, cross_validation.as_ref());
@@ -65,8 +65,15 @@ pub(crate) fn trust(
         .flatten();
     let coverage = coverage(&view.session, view.rows);
     let left_out_m = cross_validation.as_ref().and_then(|found| found.random.rms.get(Quantity::Position));
+    let domain = Domain {
+        session: &view.session,
+        rows: view.rows,
+        coverage: &coverage,
+        nominal: (view.session.robot, registered),
+        seed,
+    };
     let expected = uncertainty.as_mut().map_or_else(Expectations::default, |uncertainty| {
-        expectations_beside(&view.session, view.rows, &coverage, (uncertainty, left_out_m), seed)
+        domain.expectations_beside(uncertainty, left_out_m)
     });
     let (joints, common) = joints(view, summary, uncertainty.as_ref());
     Trust {

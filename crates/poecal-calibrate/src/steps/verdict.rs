@@ -11,7 +11,7 @@ use crate::{AcceptedModel, Expectations};
 use poecal_fit::analysis::Direction;
 use poecal_fit::forensics::DiagnosisKind;
 
-/// Level of a verdict.
+/// Level of a verdict: what the delivered model may be used for.
 #[derive(
     Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, schemars::JsonSchema,
 )]
@@ -19,41 +19,85 @@ use poecal_fit::forensics::DiagnosisKind;
 pub enum Level {
     /// Not at all: something is wrong with the input, the fit, or both.
     DoNotUse,
+    /// To locate targets and devices: the axes of the joints were held.
+    Located,
     /// In configurations like those that were measured.
+    MeasuredConfigurations,
+    /// Anywhere inside the sampled range of each joint.
     InsideSampledRange,
     /// Anywhere within the limits.
     Good,
 }
 
 impl Level {
+    /// All levels, from the worst to the best, with their words in files and on the command line, and for people.
+    pub const TABLE: [(Level, &'static str, &'static str); 5] = [
+        (Level::DoNotUse, "do_not_use", "do not use"),
+        (Level::Located, "located", "located"),
+        (
+            Level::MeasuredConfigurations,
+            "measured_configurations",
+            "use in configurations like those measured",
+        ),
+        (Level::InsideSampledRange, "inside_sampled_range", "use inside the sampled range"),
+        (Level::Good, "good", "good"),
+    ];
+
     /// Message for users.
     #[must_use]
     pub fn words(self) -> &'static str {
-        match self {
-            Level::DoNotUse => "do not use",
-            Level::InsideSampledRange => "use inside the sampled range",
-            Level::Good => "good",
-        }
+        Self::TABLE[self as usize].2
     }
 
     /// The stable word used in files and on the command line.
     #[must_use]
     pub fn word(self) -> &'static str {
-        match self {
-            Level::DoNotUse => "do_not_use",
-            Level::InsideSampledRange => "inside_sampled_range",
-            Level::Good => "good",
+        Self::TABLE[self as usize].1
+    }
+}
+
+/// Whether the delivered model predicts better than the nominal model anywhere inside the sampled range.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Gain {
+    /// The 95 % interval of the gain is above zero.
+    Clear,
+    /// The interval contains zero.
+    Unclear,
+    /// The interval is below zero.
+    Loss,
+}
+
+impl Gain {
+    /// All, with their words in files and on the command line.
+    pub const TABLE: [(Gain, &'static str); 3] =
+        [(Gain::Clear, "clear"), (Gain::Unclear, "unclear"), (Gain::Loss, "loss")];
+
+    /// The stable word used in files.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        Self::TABLE[self as usize].1
+    }
+
+    /// By the ends of an interval.
+    pub(crate) fn of_interval([least, most]: [f64; 2]) -> Self {
+        if least > 0.0 {
+            Gain::Clear
+        } else if most < 0.0 {
+            Gain::Loss
+        } else {
+            Gain::Unclear
         }
     }
 }
 
-/// A level, and the reasons against a better one; for the best level, the reasons for it. And the one figure: what to expect of the model that is
+/// A level, and the reasons against a better one; for the best level, the reasons for it. And the expected errors of the model that is
 /// delivered.
 ///
 /// ```
 /// use poecal_calibrate::{Level, Verdict};
 /// let reasons = vec!["joint2 was moved through 27 % of its range".into()];
-/// let verdict = Verdict { level: Level::InsideSampledRange, reasons, model: None, expected_error_mm: None, bound95_mm: None };
+/// let verdict = Verdict { level: Level::InsideSampledRange, reasons, ..Verdict::default() };
 /// assert!(verdict.level < Level::Good);
 /// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
@@ -72,6 +116,36 @@ pub struct Verdict {
     /// Mean of the distances that 95 % of its errors do not exceed there, millimetres.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub bound95_mm: Option<f64>,
+    /// Expected error of its predictions anywhere inside the sampled range of each joint, millimetres (RMS); absent where no use is advised,
+    /// and in older files.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sampled_range_error_mm: Option<f64>,
+    /// Distance of the nominal model's predictions from its own there, with targets and devices fitted, millimetres (RMS).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub nominal_error_mm: Option<f64>,
+    /// Whether it predicts better than the nominal model there.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub gain: Option<Gain>,
+    /// That the axes of the nominal model are confirmed, a sentence with its figures: the fitted ones are the same within their uncertainty.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub confirmed: Option<String>,
+}
+
+impl Default for Verdict {
+    /// Of nothing that is known.
+    fn default() -> Self {
+        Verdict {
+            level: Level::DoNotUse,
+            reasons: Vec::new(),
+            model: None,
+            expected_error_mm: None,
+            bound95_mm: None,
+            sampled_range_error_mm: None,
+            nominal_error_mm: None,
+            gain: None,
+            confirmed: None,
+        }
+    }
 }
 
 /// What speaks against a level, before the expected errors of a model do.
@@ -79,6 +153,11 @@ pub struct Verdict {
 pub(crate) struct Judged {
     /// Against any use, of whatever model.
     against: Vec<String>,
+    /// Whether axes of joints were fitted.
+    moves_joints: bool,
+    /// Errors of the nominal model, with targets and devices fitted, and of the calibrated one on the rows that judge.
+    nominal: JudgingError,
+    calibrated: JudgingError,
     /// That the screws are no better than nominal: nothing was shown of this robot.
     no_better: Option<String>,
     /// That the errors of the calibrated model are too large.
@@ -106,59 +185,131 @@ impl Judged {
 
     /// The verdict on the calibrated model, with these expected errors.
     pub(crate) fn of_calibrated(&self, expected: &Expectations) -> Verdict {
-        self.verdict(AcceptedModel::Calibrated, self.too_large.as_ref(), expected)
+        let against = [self.no_better.as_ref(), self.too_large.as_ref()];
+        self.verdict(AcceptedModel::Calibrated, against, [expected, expected])
     }
 
-    /// The verdict on the corrected model, with its error on rows that were not fitted (or on those that were, without such) and these expected
-    /// errors.
-    pub(crate) fn of_corrected(&self, error: &JudgingError, expected: &Expectations) -> Verdict {
-        // Terms may describe what no rigid robot does.
+    /// The verdict on the corrected model, with its error on rows that were not fitted (or on those that were, without such) and the expected
+    /// errors of it and of the calibrated model.
+    pub(crate) fn of_corrected(&self, error: &JudgingError, expected: [&Expectations; 2]) -> Verdict {
+        // Terms may describe what no rigid robot does, and improve a model whose axes are right.
         let too_large = self.too_large.as_ref().filter(|_| is_too_large(error, self.reach_m));
-        self.verdict(AcceptedModel::Corrected, too_large, expected)
+        let no_better = self.no_better.as_ref().filter(|_| is_no_better(error, &self.nominal));
+        self.verdict(AcceptedModel::Corrected, [no_better, too_large], expected)
     }
 
-    fn verdict(&self, model: AcceptedModel, too_large: Option<&String>, expected: &Expectations) -> Verdict {
-        let all = self.against.iter().chain(&self.no_better).chain(too_large);
+    fn verdict(
+        &self,
+        model: AcceptedModel,
+        [no_better, too_large]: [Option<&String>; 2],
+        [expected, of_calibrated]: [&Expectations; 2],
+    ) -> Verdict {
+        let confirmed = self.confirmed(of_calibrated);
+        let no_better = no_better.filter(|_| confirmed.is_none());
+        let all = self.against.iter().chain(no_better).chain(too_large);
         let mut against: Vec<String> = all.cloned().collect();
         if against.is_empty() {
             against.clone_from(&self.drifted);
         }
-        let (mut level, mut reasons) = if !against.is_empty() {
+        let gain = expected.nominal.map(|it| Gain::of_interval(it.gain_interval_m2()));
+        let (level, mut reasons) = if !against.is_empty() {
             (Level::DoNotUse, against)
-        } else if self.everywhere.is_empty() {
-            (Level::Good, Vec::new())
+        } else if !self.moves_joints {
+            (
+                Level::Located,
+                vec!["the axes of the joints were held: only targets and devices were fitted".to_owned()],
+            )
         } else {
-            (Level::InsideSampledRange, self.everywhere.clone())
+            let (level, mut reasons) = self.use_of_axes(expected);
+            let is_gain = confirmed.is_some() || gain == Some(Gain::Clear);
+            if is_gain {
+                (level, reasons)
+            } else {
+                reasons.insert(0, no_clear_gain(expected));
+                (Level::MeasuredConfigurations, reasons)
+            }
         };
+        if level == Level::Good {
+            reasons = vec![in_favour(expected, self.weakly)];
+        }
+        let is_usable = level != Level::DoNotUse;
+        let measured = expected.measured.filter(|_| is_usable);
+        let nominal = expected.nominal.filter(|_| is_usable && self.moves_joints);
+        Verdict {
+            level,
+            reasons,
+            model: Some(model),
+            expected_error_mm: measured.map(|it| 1e3 * it.sigma_m),
+            bound95_mm: measured.map(|it| 1e3 * it.bound_m),
+            sampled_range_error_mm: expected.sampled.filter(|_| is_usable).map(|it| 1e3 * it.sigma_m),
+            nominal_error_mm: nominal.map(|it| 1e3 * it.apart_m),
+            gain: gain.filter(|_| nominal.is_some()),
+            confirmed: confirmed.filter(|_| is_usable),
+        }
+    }
+
+    /// The level of a model that predicts better than the nominal one, and the reasons against a better level.
+    fn use_of_axes(&self, expected: &Expectations) -> (Level, Vec<String>) {
+        let mut reasons = self.everywhere.clone();
         if let (Some(measured), Some(range)) = (expected.measured, expected.range)
-            && level != Level::DoNotUse
             && range.sigma_m > RANGE * measured.sigma_m
         {
-            level = Level::InsideSampledRange;
             reasons.push(format!(
                 "the expected error anywhere within the limits is {:.3} mm, {:.1} times that at the measured configurations",
                 1e3 * range.sigma_m,
                 range.sigma_m / measured.sigma_m
             ));
         }
-        if level == Level::Good {
-            reasons = vec![in_favour(expected, self.weakly)];
-        }
-        let expected = expected.measured.filter(|_| level != Level::DoNotUse);
-        Verdict {
-            level,
-            reasons,
-            model: Some(model),
-            expected_error_mm: expected.map(|it| 1e3 * it.sigma_m),
-            bound95_mm: expected.map(|it| 1e3 * it.bound_m),
-        }
+        (if reasons.is_empty() { Level::Good } else { Level::InsideSampledRange }, reasons)
     }
+
+    /// That the axes of the nominal model are confirmed: the fitted ones are as near as their uncertainty, theory.md §9, *Verdict*.
+    fn confirmed(&self, expected: &Expectations) -> Option<String> {
+        let (sampled, nominal) = expected.sampled.zip(expected.nominal)?;
+        let [before_m, after_m] = [&self.nominal, &self.calibrated].map(JudgingError::metres);
+        let is_of_a_robot = before_m > 0.0 && before_m <= USUAL * self.reach_m;
+        let is_known = sampled.sigma_m <= RANGE * before_m;
+        let is_the_same = nominal.apart_m <= SAME_AXES * sampled.sigma_m && after_m >= AS_BEFORE * before_m;
+        (self.moves_joints && is_of_a_robot && is_known && is_the_same).then(|| {
+            format!(
+                "the axes of your model: the fitted ones predict within {:.3} mm (RMS) of it anywhere inside the sampled range, \
+                 less than their own expected error ({:.3} mm)",
+                1e3 * nominal.apart_m,
+                1e3 * sampled.sigma_m
+            )
+        })
+    }
+}
+
+/// Whether an error is not clearly below that of the nominal model on the same rows.
+fn is_no_better(error: &JudgingError, nominal: &JudgingError) -> bool {
+    error.rms > (1.0 - WORTH) * nominal.rms
+}
+
+/// That the nominal model may be better inside the sampled range.
+fn no_clear_gain(expected: &Expectations) -> String {
+    let (Some(sampled), Some(nominal)) = (expected.sampled, expected.nominal) else {
+        return "too few rows to tell whether this model predicts better than the nominal one in other configurations"
+            .to_owned();
+    };
+    format!(
+        "anywhere inside the sampled range an error of {:.3} mm (RMS) is expected, and the nominal model is {:.3} mm from this one: no clear gain there",
+        1e3 * sampled.sigma_m,
+        1e3 * nominal.apart_m
+    )
 }
 
 /// Least relative reduction of the error on held-out rows.
 const WORTH: f64 = 0.02;
 /// Calibrated error over the reach above which no rigid robot is described: elastic gears and links have a tenth of it.
 const TOO_LARGE: f64 = 1e-2;
+/// Error over the reach above which no model of a robot is confirmed: that of nominal models is half as large.
+const USUAL: f64 = 2e-3;
+/// Distance of the predictions of fitted axes from those of the nominal model, over their expected error, up to which they are the same: fits of
+/// two sessions of one robot are apart by 0.3 to 0.65, and by 0.75 and more where a zero moved by 0.05°.
+const SAME_AXES: f64 = 0.7;
+/// Error of the calibrated model over that of a nominal one from which on it is the same.
+const AS_BEFORE: f64 = 0.8;
 /// Residuals per unknown below which a fit mostly reproduces its data.
 const REDUNDANCY: f64 = 1.5;
 /// Residuals per unknown below which a fit cannot be tested.
@@ -197,8 +348,7 @@ pub(crate) fn judged(grounds: &Grounds<'_>) -> Judged {
     let [before, after] = [&set.registered, &set.calibrated].map(|model| model.judging(set.count));
     let (registered, calibrated, unit) = (before.rms, after.rms, after.unit.symbol());
     let moves_joints = run.unknowns.moves_joints(run.robot.joints.len());
-    let is_no_better = moves_joints && calibrated > (1.0 - WORTH) * registered;
-    let no_better = is_no_better.then(|| {
+    let no_better = (moves_joints && is_no_better(&after, &before)).then(|| {
         format!(
             "on {name} rows the calibrated screws are no better than the nominal ones ({calibrated:.3} {unit} against {registered:.3} {unit})"
         )
@@ -211,6 +361,9 @@ pub(crate) fn judged(grounds: &Grounds<'_>) -> Judged {
     });
     Judged {
         against: against_use(grounds),
+        moves_joints,
+        nominal: before,
+        calibrated: after,
         no_better,
         too_large,
         drifted: drifted(grounds),

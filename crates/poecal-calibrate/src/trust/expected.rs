@@ -1,11 +1,13 @@
-//! Expected errors of predictions: in the measured configurations, anywhere within the limits, and by parts of each joint's range.
+//! Expected errors of predictions: in the measured configurations, inside the measured ranges, anywhere within the limits, and by parts of each
+//! joint's range.
 
 use nalgebra::Matrix3;
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 
+use super::nominal::NominalError;
 use poecal_fit::analysis::JointCoverage;
-use poecal_fit::state::{Packed, Session, sample_rows};
+use poecal_fit::state::{Estimate, Packed, Session, sample_rows};
 use poecal_fit::uncertainty::{Attribution, Quantile, Uncertainty};
 use poecal_model::measurement::Quantity;
 use poecal_model::robot::{Joint, JointKind, Robot};
@@ -60,6 +62,10 @@ pub struct RangePart {
 pub struct Expectations {
     /// In the measured configurations; none without an uncertainty.
     pub measured: Option<Expected>,
+    /// Anywhere between the least and the largest measured value of each joint.
+    pub sampled: Option<Expected>,
+    /// Errors of the nominal model in the same configurations.
+    pub nominal: Option<NominalError>,
     /// Anywhere within the limits.
     pub range: Option<Expected>,
     /// By parts of each joint's range.
@@ -92,66 +98,73 @@ fn raise_to(uncertainty: &mut Uncertainty, measured: Expected, square_m2: f64) -
     true
 }
 
-/// The expectations of geometry alone where terms that may be there were looked for and not taken: as much as with these is expected in the measured
-/// configurations.
-pub(crate) fn expectations_with_terms(
-    session: &Session<'_>,
-    rows: &[u32],
-    coverage: &[JointCoverage],
-    (uncertainty, found, with_terms): (&mut Uncertainty, &Expectations, &Expectations),
-    seed: u64,
-) -> Option<Expectations> {
-    let (measured, other) = (found.measured?, with_terms.measured?);
-    raise_to(uncertainty, measured, other.sigma_m.powi(2))
-        .then(|| expectations(session, rows, coverage, uncertainty, seed))
+/// The robot and rows of which errors are expected.
+pub(crate) struct Domain<'a> {
+    pub(crate) session: &'a Session<'a>,
+    /// Rows that were fitted.
+    pub(crate) rows: &'a [u32],
+    pub(crate) coverage: &'a [JointCoverage],
+    /// The nominal robot, and the nominal model with targets and devices fitted.
+    pub(crate) nominal: (&'a Robot, &'a Estimate),
+    pub(crate) seed: u64,
 }
 
-/// Expected errors of the predictions of some targets, from the rows that were fitted and from random configurations.
-fn expectations(
-    session: &Session<'_>,
-    rows: &[u32],
-    coverage: &[JointCoverage],
-    uncertainty: &Uncertainty,
-    seed: u64,
-) -> Expectations {
-    let Session { robot, data, packed, .. } = *session;
-    let count = if uncertainty.layout.dim() > MANY_UNKNOWNS { FEWER } else { CONFIGURATIONS };
-    let sample = sample_rows(rows, count);
-    let sampled: Vec<f64> =
-        sample.iter().flat_map(|&row| packed.joint_values(row as usize).iter().copied()).collect();
-    let ranges = ranges(robot, coverage);
-    let anywhere = anywhere(robot, &ranges, count, seed);
-    let quantile = uncertainty.quantiles()[Quantity::Position];
-    let targets = data.targets.len().clamp(1, MOST_TARGETS);
-    let of = |values: &[f64]| -> Vec<Vec<Matrix3<f64>>> {
-        let packed = Packed::of_values(robot, values);
-        (0..targets).map(|target| uncertainty.positions(&packed, target)).collect()
-    };
-    let errors = of(&anywhere);
-    Expectations {
-        measured: Some(Expected::of(&of(&sampled).concat(), quantile)),
-        range: Some(Expected::of(&errors.concat(), quantile)),
-        parts: range_parts(robot, &ranges, &anywhere, &errors),
+impl Domain<'_> {
+    /// The expectations of geometry alone where terms that may be there were looked for and not taken: as much as with these is expected in
+    /// the measured configurations.
+    pub(crate) fn expectations_with_terms(
+        &self,
+        (uncertainty, found, with_terms): (&mut Uncertainty, &Expectations, &Expectations),
+    ) -> Option<Expectations> {
+        let (measured, other) = (found.measured?, with_terms.measured?);
+        raise_to(uncertainty, measured, other.sigma_m.powi(2)).then(|| self.expectations(uncertainty))
     }
-}
 
-/// [`expectations`], with the model error raised to what cross-validation shows of positions (metres, RMS).
-pub(crate) fn expectations_beside(
-    session: &Session<'_>,
-    rows: &[u32],
-    coverage: &[JointCoverage],
-    (uncertainty, left_out_m): (&mut Uncertainty, Option<f64>),
-    seed: u64,
-) -> Expectations {
-    let found = expectations(session, rows, coverage, uncertainty, seed);
-    // What pictures are off by in metres is their corners' noise in a direction that these hardly see; what is the robot's is found beside it.
-    let pictures = &session.data.pictures;
-    let is_seen = rows.iter().all(|row| pictures.of_row(*row).is_some());
-    match found.measured.zip(left_out_m).filter(|_| !is_seen) {
-        Some((measured, left_out_m)) if raise(uncertainty, measured, left_out_m) => {
-            expectations(session, rows, coverage, uncertainty, seed)
+    /// [`Self::expectations`], with the model error raised to what cross-validation shows of positions (metres, RMS).
+    pub(crate) fn expectations_beside(
+        &self,
+        uncertainty: &mut Uncertainty,
+        left_out_m: Option<f64>,
+    ) -> Expectations {
+        let found = self.expectations(uncertainty);
+        // What pictures are off by in metres is their corners' noise in a direction that these hardly see; what is the robot's is found beside it.
+        let pictures = &self.session.data.pictures;
+        let is_seen = self.rows.iter().all(|row| pictures.of_row(*row).is_some());
+        match found.measured.zip(left_out_m).filter(|_| !is_seen) {
+            Some((measured, left_out_m)) if raise(uncertainty, measured, left_out_m) => {
+                self.expectations(uncertainty)
+            }
+            _ => found,
         }
-        _ => found,
+    }
+
+    /// Expected errors of the predictions of some targets, from the rows that were fitted and from random configurations.
+    fn expectations(&self, uncertainty: &Uncertainty) -> Expectations {
+        let Session { robot, data, packed, .. } = *self.session;
+        let count = if uncertainty.layout.dim() > MANY_UNKNOWNS { FEWER } else { CONFIGURATIONS };
+        let sample = sample_rows(self.rows, count);
+        let measured: Vec<f64> =
+            sample.iter().flat_map(|&row| packed.joint_values(row as usize).iter().copied()).collect();
+        let box_of_rows: Vec<[f64; 2]> =
+            self.coverage.iter().map(|it| [it.sampled_min, it.sampled_max]).collect();
+        let ranges = ranges(robot, self.coverage);
+        let [inside, anywhere] = [&box_of_rows, &ranges].map(|it| drawn(robot, it, count, self.seed));
+        let quantile = uncertainty.quantiles()[Quantity::Position];
+        let targets = data.targets.len().clamp(1, MOST_TARGETS);
+        let of = |values: &[f64]| -> Vec<Vec<Matrix3<f64>>> {
+            let packed = Packed::of_values(robot, values);
+            (0..targets).map(|target| uncertainty.positions(&packed, target)).collect()
+        };
+        let errors = of(&anywhere);
+        let sampled = Expected::of(&of(&inside).concat(), quantile);
+        let nominal = NominalError::of(self, (uncertainty, sampled.sigma_m), (&inside, targets));
+        Expectations {
+            measured: Some(Expected::of(&of(&measured).concat(), quantile)),
+            sampled: Some(sampled),
+            nominal: Some(nominal),
+            range: Some(Expected::of(&errors.concat(), quantile)),
+            parts: range_parts(robot, &ranges, &anywhere, &errors),
+        }
     }
 }
 
@@ -186,19 +199,19 @@ pub(crate) fn allowed_readings(robot: &Robot, ranges: &[[f64; 2]]) -> Vec<[f64; 
 }
 
 /// Joint values of random readings that keep all joints in their ranges.
-fn anywhere(robot: &Robot, ranges: &[[f64; 2]], count: usize, seed: u64) -> Vec<f64> {
+fn drawn(robot: &Robot, ranges: &[[f64; 2]], count: usize, seed: u64) -> Vec<f64> {
     let indices = robot.reading_indices();
     let allowed = allowed_readings(robot, ranges);
     let mut generator = ChaCha8Rng::seed_from_u64(seed ^ 0x616e_7977);
     let mut values = Vec::with_capacity(count * ranges.len());
     for _ in 0..count {
-        let drawn: Vec<f64> = allowed
+        let readings: Vec<f64> = allowed
             .iter()
             .map(|[lower, upper]| lower + (upper - lower).max(0.0) * random::uniform(&mut generator))
             .map(|reading| if reading.is_finite() { reading } else { 0.0 })
             .collect();
         values.extend(
-            robot.joints.iter().zip(&indices).map(|(joint, &index)| joint.reading.value(drawn[index])),
+            robot.joints.iter().zip(&indices).map(|(joint, &index)| joint.reading.value(readings[index])),
         );
     }
     values

@@ -3,3 +3,4 @@
 pub(crate) mod coverage_check;
 pub(crate) mod expected;
 pub(crate) mod information;
+pub(crate) mod nominal;

@@ -331,7 +331,7 @@ impl Judgement {
         let own = self.delivered();
         let (which, found) = match required {
             Level::DoNotUse => return None,
-            Level::InsideSampledRange => (
+            Level::Located | Level::MeasuredConfigurations | Level::InsideSampledRange => (
                 "inside the sampled range",
                 own.in_sampled_range.map(|some| (&some.calibrated, &some.promised)),
             ),

@@ -100,9 +100,10 @@ impl Displacements {
     }
 }
 
-/// Displacements over the sampled workspace; `None` of a calibration that is not to be used, and of robots whose tip not every joint moves.
+/// Displacements over the sampled workspace; `None` of a calibration that is not to be used, of one whose axes were held, and of robots whose
+/// tip not every joint moves.
 pub fn workspace(calibration: &Calibration) -> Option<Workspace> {
-    if calibration.verdict.level == Level::DoNotUse {
+    if calibration.verdict.level <= Level::Located {
         return None;
     }
     let trust = &calibration.trust;

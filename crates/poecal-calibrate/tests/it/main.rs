@@ -23,3 +23,4 @@ mod statistics;
 mod suspicion;
 mod uncertainty;
 mod verdict;
+mod where_it_holds;

@@ -110,6 +110,9 @@ pub(crate) struct Calibrate {
     /// End with code 1 if the verdict is worse than this (results are written all the same); it also does if the verdict is `do not use`
     #[arg(long, value_parser = one_of(REQUIRED_LEVEL), value_name = "VERDICT", help_heading = JUDGED)]
     pub(crate) require: Option<Level>,
+    /// End with code 1 unless the result clearly predicts better than the nominal model anywhere inside the sampled range, with 95 % confidence
+    #[arg(long, help_heading = JUDGED)]
+    pub(crate) require_gain: bool,
     /// Limits that the errors of rows that were not fitted must meet, like 0.2mm or 0.2mm,max:0.5mm,0.05deg: rms (the default), p95 or max of all
     /// errors in a unit. End with code 1 unless each is shown to be kept, with 95 % confidence
     #[arg(long, value_name = "[rms:|p95:|max:]LIMIT", value_delimiter = ',', help_heading = JUDGED)]

@@ -51,6 +51,9 @@ pub(crate) struct Compensate {
     /// Value of a factor of the corrected model while the program runs [default: its reference]
     #[arg(long = "factor", value_name = "NAME=VALUE")]
     pub(crate) factors: Vec<String>,
+    /// End with code 1 unless the calibration clearly predicts better than the nominal model anywhere inside the sampled range
+    #[arg(long)]
+    pub(crate) require_gain: bool,
     /// Compute what is left once more, from the written numbers and by the models' own forward kinematics
     #[arg(long)]
     pub(crate) check: bool,

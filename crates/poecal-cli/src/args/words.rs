@@ -163,6 +163,12 @@ pub(super) const REPAIR: Words<Repairs> = &[
 pub(super) const REQUIRED_LEVEL: Words<Level> = &[
     ("good", "Good to use anywhere within the limits", Level::Good),
     ("inside_sampled_range", "Good to use inside the sampled range, or better", Level::InsideSampledRange),
+    (
+        "measured_configurations",
+        "Good to use in configurations like those measured, or better",
+        Level::MeasuredConfigurations,
+    ),
+    ("located", "Targets and devices are located with the axes held, or better", Level::Located),
 ];
 
 /// The frame of predicted poses.

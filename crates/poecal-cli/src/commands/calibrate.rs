@@ -4,7 +4,7 @@ use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
 use poecal_calibrate::{
-    AcceptanceLimits, BlockChoice, Calibration, CalibrationOptions, Decision, Level, Repaired, Stage,
+    AcceptanceLimits, BlockChoice, Calibration, CalibrationOptions, Decision, Gain, Level, Repaired, Stage,
     calibrate_repairing, settle_sets,
 };
 use poecal_formats::abb::AbbCalibration;
@@ -105,9 +105,10 @@ fn doubts(file: &CalibrationFile) -> Vec<String> {
 fn code(arguments: &Calibrate, calibration: &Calibration) -> u8 {
     let level = calibration.verdict.level;
     let worse = arguments.require.is_some_and(|required| level < required);
+    let has_no_gain = arguments.require_gain && calibration.verdict.gain != Some(Gain::Clear);
     let converged = calibration.solver.termination.is_success();
     let refused = calibration.acceptance.as_ref().is_some_and(|it| it.decision != Decision::Pass);
-    if worse || refused || level == Level::DoNotUse || !converged { WORSE } else { DONE }
+    if worse || has_no_gain || refused || level == Level::DoNotUse || !converged { WORSE } else { DONE }
 }
 
 /// What is stated of the session.

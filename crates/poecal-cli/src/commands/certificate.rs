@@ -2,8 +2,9 @@
 
 use std::path::Path;
 
+use poecal_calibrate::Level;
 use poecal_formats::logo;
-use poecal_numerics::error::Result;
+use poecal_numerics::error::{ErrorKind, Result};
 use poecal_report::{Attest, certificate_page};
 use poecal_results::calibration_file::{CalibrationFile, Inputs};
 use poecal_results::output::{Existing, FilePlace};
@@ -16,6 +17,13 @@ use crate::style::{labelled, shown};
 pub(crate) fn certificate(arguments: &Certificate, console: &Console) -> Result<u8> {
     let calibration = arguments.calibration.as_path();
     let file = CalibrationFile::read(calibration)?;
+    if file.verdict.as_ref().is_some_and(|it| it.level == Level::DoNotUse) {
+        return Err(ErrorKind::Option
+            .error(
+                "found the verdict `do not use`, expected a calibration that may be used: see `poecal report` for the reasons, and calibrate again",
+            )
+            .in_file(calibration));
+    }
     let until = arguments.valid_until.as_deref().map(|day| ("valid_until", day));
     let stated = arguments.record.iter().map(|(key, text)| (key.as_str(), text.as_str())).chain(until);
     let record = file.record.clone().overridden(&Record::of(stated)?);

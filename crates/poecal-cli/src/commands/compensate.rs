@@ -28,20 +28,19 @@ pub(crate) fn compensate(arguments: &Compensate, console: &Console) -> Result<u8
     let ModelSource::Calibration(file) = &model.source else {
         return Err(ErrorKind::Option.error("found a robot model, expected a calibration.json, which has the nominal robot and the actual one").in_file(&arguments.calibration));
     };
+    let doubt = file.gain_doubt();
+    if let Some(doubt) = &doubt {
+        console.warning(format!("do not correct programs with this calibration: {doubt}"));
+    }
+    let worse = arguments.require_gain && doubt.is_some();
     let taught = file.taught(&model.robot)?;
     let factors = factors(&model.robot, &arguments.factors, console)?;
     let robots = (&taught.robot, &model.robot);
     if let Some(language) = language(arguments)? {
         let counted = file.counted(&taught.robot, arguments.third_axis)?;
-        return robot_program(
-            arguments,
-            language,
-            (&taught, &model.robot),
-            &factors,
-            counted,
-            place,
-            console,
-        );
+        let robots = (&taught, &model.robot);
+        let code = robot_program(arguments, language, robots, &factors, counted, place, console)?;
+        return Ok(if worse { WORSE } else { code });
     }
     if let Some(stated) = arguments.third_axis {
         return ErrorKind::Option.refuse(format!(
@@ -69,7 +68,7 @@ pub(crate) fn compensate(arguments: &Compensate, console: &Console) -> Result<u8
         let what = if summary.rows == 1 { "row corrected" } else { "rows corrected" };
         console.json_or_table(arguments.json, || report::json(&summary), || summary.text(&slides, what))?;
     }
-    Ok(if summary.is_whole() { DONE } else { WORSE })
+    Ok(if summary.is_whole() && !worse { DONE } else { WORSE })
 }
 
 /// How far readings may be changed.

@@ -89,7 +89,7 @@ fn what_lies_outside_the_sampled_range_is_not_blamed_on_the_robot() {
     );
     assert!(!run.err.contains("is not as it was calibrated"), "{}", run.err);
     let words = run.out.split_whitespace().collect::<Vec<_>>().join(" ");
-    assert!(words.contains("none of the configurations lies inside it"), "{}", run.out);
+    assert!(words.contains("none of the rows lies inside it"), "{}", run.out);
 
     // Rows inside are as promised, those outside are of another robot.
     let both = folder.read("inside.csv") + folder.read("other_outside.csv").split_once('\n').unwrap().1;

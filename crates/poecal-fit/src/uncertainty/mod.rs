@@ -32,7 +32,7 @@ use motions::{motions, products};
 
 use std::f64::consts::TAU;
 
-use nalgebra::{DMatrix, Matrix3};
+use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 
 use crate::analysis::ranges;
 use crate::problem::Layout;
@@ -124,6 +124,20 @@ impl Uncertainty {
     /// Covariances of predicted places alone, square metres: `P_p` of theory.md §9 (40), in the axes of the first station's device frame.
     pub fn positions(&self, packed: &Packed, target: usize) -> Vec<Matrix3<f64>> {
         self.spread::<1>((0..packed.rows()).map(|row| in_first((row, target))), packed).into_flattened()
+    }
+
+    /// Derivatives by the scaled unknowns of `Σ dᵀ p` over rows of joint values, with the predicted position p of a target in each and
+    /// vectors d, both in the axes of the first station's device frame.
+    #[must_use]
+    pub fn along(&self, packed: &Packed, target: usize, vectors: &[Vector3<f64>]) -> Vec<f64> {
+        let linkage = Linkage::new(&self.estimate);
+        let mut sum = DVector::zeros(self.layout.dim());
+        let rows: Vec<(usize, Sight)> = (0..vectors.len()).map(|row| in_first((row, target))).collect();
+        for (some, vectors) in rows.chunks(TOGETHER).zip(vectors.chunks(TOGETHER)) {
+            let vectors = DVector::from_iterator(3 * vectors.len(), vectors.iter().flatten().copied());
+            sum += motions(&self.layout, &linkage, packed, some, 1).tr_mul(&vectors);
+        }
+        sum.as_slice().to_vec()
     }
 
     /// Distance of a configuration from the sampled range: 0 inside, 1 from a fifth of the range on. The blocks of cross-validation are a

@@ -80,7 +80,7 @@ _Model: TypeAlias = Literal["delivered", "nominal", "registered", "calibrated", 
 _Frame: TypeAlias = Literal["unknown", "base"]
 _End: TypeAlias = Literal["free", "kept"]
 _Form: TypeAlias = Literal["urdf", "toml"]
-_Level: TypeAlias = Literal["good", "inside_sampled_range", "do_not_use"]
+_Level: TypeAlias = Literal["good", "inside_sampled_range", "measured_configurations", "located", "do_not_use"]
 _Rows: TypeAlias = slice | int | np.integer[Any] | Sequence[int] | Sequence[bool] | NDArray[np.integer[Any]] | NDArray[np.bool_]
 
 class _DataFrame(Protocol):
@@ -745,7 +745,7 @@ class Verdict:
     """Verdict: how far a calibration may be used, and why no farther."""
     @property
     def level(self) -> _Level:
-        """"good", "inside_sampled_range" or "do_not_use"."""
+        """"good", "inside_sampled_range", "measured_configurations", "located" or "do_not_use"."""
     @property
     def reasons(self) -> list[str]:
         """Sentences with the deciding figures."""
@@ -758,13 +758,25 @@ class Verdict:
     @property
     def bound95_mm(self) -> float | None:
         """The distance that 95 % of its errors do not exceed there, millimetres."""
+    @property
+    def sampled_range_error_mm(self) -> float | None:
+        """Expected error of that model anywhere inside the sampled range of each joint, millimetres (RMS)."""
+    @property
+    def nominal_error_mm(self) -> float | None:
+        """Distance of the nominal model's predictions from its own there, with targets and devices fitted, millimetres (RMS)."""
+    @property
+    def gain(self) -> str | None:
+        """Whether it predicts better than the nominal model there: "clear", "unclear" or "loss"."""
+    @property
+    def confirmed(self) -> str | None:
+        """That the axes of the nominal model are confirmed, a sentence with its figures; None where they are not."""
     def is_at_least(self, level: _Level) -> bool:
         """Whether a calibration may be used as far as this.
 
         Parameters
         ----------
         level
-            "good", "inside_sampled_range" or "do_not_use".
+            "good", "inside_sampled_range", "measured_configurations", "located" or "do_not_use".
 
         Returns
         -------

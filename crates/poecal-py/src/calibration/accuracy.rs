@@ -188,7 +188,7 @@ pub(crate) struct Verdict(pub(crate) calibration::Verdict);
 
 #[pymethods]
 impl Verdict {
-    /// "good", "inside_sampled_range" or "do_not_use".
+    /// "good", "inside_sampled_range", "measured_configurations", "located" or "do_not_use".
     #[getter]
     fn level(&self) -> &'static str {
         self.0.level.word()
@@ -218,20 +218,45 @@ impl Verdict {
         self.0.bound95_mm
     }
 
+    /// Expected error of that model anywhere inside the sampled range of each joint, millimetres (RMS).
+    #[getter]
+    fn sampled_range_error_mm(&self) -> Option<f64> {
+        self.0.sampled_range_error_mm
+    }
+
+    /// Distance of the nominal model's predictions from its own there, with targets and devices fitted, millimetres (RMS).
+    #[getter]
+    fn nominal_error_mm(&self) -> Option<f64> {
+        self.0.nominal_error_mm
+    }
+
+    /// Whether it predicts better than the nominal model there: "clear", "unclear" or "loss".
+    #[getter]
+    fn gain(&self) -> Option<&'static str> {
+        self.0.gain.map(calibration::Gain::word)
+    }
+
+    /// That the axes of the nominal model are confirmed, a sentence with its figures; None where they are not.
+    #[getter]
+    fn confirmed(&self) -> Option<String> {
+        self.0.confirmed.clone()
+    }
+
     /// Whether a calibration may be used as far as this.
     ///
     /// Parameters
     /// ----------
     /// level
-    ///     "good", "inside_sampled_range" or "do_not_use".
+    ///     "good", "inside_sampled_range", "measured_configurations", "located" or "do_not_use".
     ///
     /// Returns
     /// -------
     /// bool
     ///     Whether the verdict's level is `level` or a better one.
     fn is_at_least(&self, #[pyo3(from_py_with = arg::level)] level: &str) -> PyResult<bool> {
-        let levels = [Level::Good, Level::InsideSampledRange, Level::DoNotUse];
-        Ok(self.0.level >= chosen("level", level, &levels.map(|level| (level.word(), level)))?)
+        let mut levels = Level::TABLE.map(|(level, word, _)| (word, level));
+        levels.reverse();
+        Ok(self.0.level >= chosen("level", level, &levels)?)
     }
 
     fn __repr__(&self) -> String {

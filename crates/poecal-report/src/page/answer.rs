@@ -47,6 +47,9 @@ fn answer(file: &CalibrationFile) -> Markup {
             h2 #verdict-title { span.sign aria-hidden="true" {} (title) }
             (before_after(file))
             div.holds { (holds(file)) }
+            @if let Some(text) = file.verdict.as_ref().and_then(|it| it.confirmed.as_ref()) {
+                p.note { "Confirmed: " (told(text, "verdict.confirmed")) "." }
+            }
             @if let Some(found) = &file.acceptance { (limits_table(found)) }
         }
     }
@@ -88,7 +91,16 @@ fn before_after(file: &CalibrationFile) -> Markup {
             @if let Some(found) = expected(file).filter(|_| has_length) {
                 li {
                     b { (figure(found.error_mm, "verdict.expected_error_mm")) " mm" } " "
-                    span { "expected of predictions; 95\u{a0}% below " (figure(found.bound_mm, "verdict.bound95_mm")) "\u{a0}mm" }
+                    span { "expected near measured configurations; 95\u{a0}% below " (figure(found.bound_mm, "verdict.bound95_mm")) "\u{a0}mm" }
+                }
+                @if let Some(inside) = found.inside_mm {
+                    li {
+                        b { (figure(inside, "verdict.sampled_range_error_mm")) " mm" } " "
+                        span {
+                            "expected anywhere inside the sampled range"
+                            @if let Some(nominal) = found.nominal_mm { " (your model: " (figure(nominal, "verdict.nominal_error_mm")) "\u{a0}mm)" }
+                        }
+                    }
                 }
             }
         }
@@ -108,6 +120,12 @@ fn holds(file: &CalibrationFile) -> Markup {
         },
         Some(Level::InsideSampledRange) => {
             html! { "It holds " b { "inside the sampled range" } ", not beyond" (why) "." }
+        }
+        Some(Level::MeasuredConfigurations) => {
+            html! { "It holds " b { "in configurations like those measured" } ", not in others" (why) "." }
+        }
+        Some(Level::Located) => {
+            html! { "It holds " b { "for the positions of targets and devices" } (why) "." }
         }
         Some(Level::DoNotUse) => html! { "It holds " b { "nowhere" } (why) "." },
         None => html! { "Calibrate again to see where it holds." },

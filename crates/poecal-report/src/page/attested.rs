@@ -9,15 +9,19 @@ use crate::acceptance::plain;
 use crate::summary::{delivered, expected, judged_on, leading, why_larger};
 use crate::table::number;
 use poecal_calibrate::{Acceptance, DeviceFrameKnowledge, Level};
+use poecal_fit::analysis::JointCoverage;
 use poecal_model::measurement::Quantity;
+use poecal_model::robot::JointKind;
 use poecal_numerics::text::visible_markup;
 use poecal_numerics::unit::Unit;
-use poecal_results::calibration_file::CalibrationFile;
+use poecal_results::calibration_file::{CalibrationFile, JointEntry};
 use poecal_results::output::Page;
 use poecal_results::record::Record;
 
 /// Files that are listed at most, and limits.
 const LISTED: usize = 4;
+/// Joints whose ranges are listed at most.
+const MOST_JOINTS: usize = 12;
 /// Coverage factor of the expanded uncertainty.
 const COVERAGE: f64 = 2.0;
 /// What a certificate states, in the order of its table; what is missing is a blank line to write on.
@@ -30,7 +34,7 @@ const STATED: [(&str, &str); 14] = [
     ("tool", "Tool"),
     ("payload", "Payload"),
     ("instrument", "Instrument"),
-    ("instrument_calibrated", "Instrument calibrated"),
+    ("instrument_calibrated", "Instrument calibration"),
     ("date", "Date"),
     ("place", "Place"),
     ("temperature", "Temperature"),
@@ -117,6 +121,8 @@ fn sheet(file: &CalibrationFile, record: &Record, attest: &Attest, title: &Marku
             @if let Some(found) = &file.acceptance { (limits(found)) }
             h2 { "Where it is valid" }
             p { (valid(file)) }
+            p { (ranges(file)) }
+            @for found in file.suspicions.iter().take(LISTED) { p { "Not explained: " (found.statement) } }
             h2 { "Method" }
             p { (method(file)) }
             h2 { "Files, SHA-256" }
@@ -176,8 +182,8 @@ fn limits(found: &Acceptance) -> Markup {
                 @for limit in found.limits.iter().take(LISTED) {
                     tr {
                         td { (limit.quantity) " " (limit.statistic.words()) " at most " (plain(limit.limit)) " " (limit.unit) }
-                        td { (number(limit.found)) }
-                        td { (number(limit.from)) " to " @if let Some(to) = limit.to { (number(to)) } @else { "not shown" } }
+                        td { (number(limit.found)) " " (limit.unit) }
+                        td { (number(limit.from)) " to " @if let Some(to) = limit.to { (number(to)) " " (limit.unit) } @else { "not shown" } }
                         td { b { (limit.decision.words()) } }
                     }
                 }
@@ -193,9 +199,30 @@ fn valid(file: &CalibrationFile) -> &'static str {
         Some(Level::InsideSampledRange) => {
             "Inside the range of the joints that was measured, and not beyond it."
         }
+        Some(Level::MeasuredConfigurations) => {
+            "In configurations like those that were measured, and in no others."
+        }
+        Some(Level::Located) => "For the positions of targets and devices: the axes of the joints were held.",
         Some(Level::DoNotUse) => "Nowhere: this calibration is not to be used (see the report).",
         None => "Not judged: the calibration was written by an earlier version.",
     }
+}
+
+/// The measured range of each joint, and the error to expect inside it.
+fn ranges(file: &CalibrationFile) -> String {
+    let range = |(joint, found): (&JointEntry, &JointCoverage)| {
+        let (factor, unit) = match joint.kind {
+            JointKind::Revolute => (1f64.to_degrees(), "°"),
+            JointKind::Prismatic => (1e3, " mm"),
+        };
+        format!("{} {:.0} to {:.0}{unit}", joint.name, factor * found.sampled_min, factor * found.sampled_max)
+    };
+    let all: Vec<String> = file.joints.iter().zip(&file.coverage).take(MOST_JOINTS).map(range).collect();
+    let more = if file.coverage.len() > MOST_JOINTS { " …" } else { "" };
+    let inside = expected(file)
+        .and_then(|it| it.inside_mm)
+        .map(|it| format!(" Expected anywhere inside these ranges: {} mm (RMS).", number(it)));
+    format!("Measured ranges: {}{more}.{}", all.join(", "), inside.unwrap_or_default())
 }
 
 fn method(file: &CalibrationFile) -> String {

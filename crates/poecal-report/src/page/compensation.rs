@@ -2,6 +2,7 @@
 
 use maud::{Markup, PreEscaped, html};
 
+use super::advice::told_words;
 use super::html::{HtmlTable, count, decimal, figure, figure_or, folded, plots, quoted, section};
 use crate::plot::{HeatCell, HeatMap};
 use crate::summary::uncertainty;
@@ -47,9 +48,14 @@ pub(crate) fn sections(file: &CalibrationFile) -> Markup {
 
 /// The gain in a sentence.
 pub(crate) fn gain(file: &CalibrationFile, found: &CompensationEntry) -> Markup {
-    let expected = uncertainty(file)
-        .map(|(own, key)| (own.measured.sigma_position_mm, format!("{key}.measured.sigma_position_mm")));
+    let here = file.verdict.as_ref().and_then(|it| it.sampled_range_error_mm);
+    // Files of earlier versions state the error in the measured configurations alone.
+    let expected = here.map(|it| (it, "verdict.sampled_range_error_mm".to_owned())).or_else(|| {
+        let (own, key) = uncertainty(file)?;
+        Some((own.measured.sigma_position_mm, format!("{key}.measured.sigma_position_mm")))
+    });
     html! {
+        @if let Some(doubt) = file.gain_doubt() { "Do not correct programs with this calibration: " (told_words(&doubt)) ". " }
         "A program made for the nominal robot, with its frames taught on this robot, misses its targets by " (figure(found.all.median_mm, "compensation.median_mm")) " mm (median), and by up to "
         (figure(found.all.max_mm, "compensation.max_mm")) " mm, within the measured part of the workspace. "
         @if let Some((sigma, key)) = expected {

@@ -7,7 +7,9 @@ use super::super::table::{
 };
 use super::look::reasons;
 use super::{Expectation, expected};
-use poecal_calibrate::{AcceptedLimit, AcceptedStatistic, DeviceFrameKnowledge, ModelAccuracy, SetAccuracy};
+use poecal_calibrate::{
+    AcceptedLimit, AcceptedStatistic, DeviceFrameKnowledge, Level, ModelAccuracy, SetAccuracy,
+};
 use poecal_model::measurement::Quantity;
 use poecal_results::calibration_file::CalibrationFile;
 
@@ -133,7 +135,7 @@ pub(crate) fn figures(out: &mut String, file: &CalibrationFile) {
 
 /// The error to expect, and where that is valid.
 fn say_expected(out: &mut String, file: &CalibrationFile, expectation: Expectation) {
-    let Expectation { error_mm, bound_mm, anywhere } = expectation;
+    let Expectation { error_mm, bound_mm, inside_mm, nominal_mm, anywhere } = expectation;
     let (error, bound) = (number(error_mm), number(bound_mm));
     let is_exceeded = |limit: &AcceptedLimit| {
         limit.quantity == Quantity::Position.name()
@@ -146,13 +148,24 @@ fn say_expected(out: &mut String, file: &CalibrationFile, expectation: Expectati
     } else {
         ""
     };
-    line(out, "expected", &format!("{error} mm (RMS) of predictions, 95 % below {bound} mm{why}"));
+    let here = if inside_mm.is_some() { "near measured configurations" } else { "of predictions" };
+    let expected = format!("{error} mm (RMS) {here}, 95 % below {bound} mm{why}");
+    let nominal = nominal_mm.map(|it| format!(" (your model: {} mm)", number(it)));
+    let inside = inside_mm.map(|it| {
+        format!("{} mm anywhere inside the sampled range{}", number(it), nominal.unwrap_or_default())
+    });
+    lines(out, "expected", [Some(expected), inside].into_iter().flatten());
+    let place = match file.verdict.as_ref().map(|it| it.level) {
+        Some(Level::Located) => "for the positions of targets and devices",
+        Some(Level::MeasuredConfigurations) => "in configurations like those measured",
+        Some(Level::DoNotUse | Level::InsideSampledRange | Level::Good) | None => "inside the sampled range",
+    };
     let valid = match (anywhere, reasons(file).into_iter().next()) {
         (Some((sigma, _)), _) => {
             format!("anywhere within the limits, {} mm (RMS) expected there", number(sigma))
         }
-        (None, Some(reason)) => format!("inside the sampled range: {reason}"),
-        (None, None) => "inside the sampled range".to_owned(),
+        (None, Some(reason)) => format!("{place}: {reason}"),
+        (None, None) => place.to_owned(),
     };
     line(out, "valid", &valid);
 }

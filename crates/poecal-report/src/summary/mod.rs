@@ -44,7 +44,7 @@ pub enum Detail {
 /// let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default())?;
 /// let file = CalibrationFile::new(&calibration, &made.data, Inputs::default());
 /// let short = summary(&file, Detail::Short);
-/// assert!(short.starts_with("verdict       good\nbefore        ") && short.contains(" mm (RMS) of predictions, 95 % below "));
+/// assert!(short.starts_with("verdict       good\nbefore        ") && short.contains(" mm anywhere inside the sampled range"));
 /// assert!(summary(&file, Detail::Full).contains("solver"));
 /// # Ok::<(), poecal_numerics::error::Error>(())
 /// ```
@@ -85,6 +85,10 @@ pub(crate) struct Expectation {
     pub(crate) error_mm: f64,
     /// The distance that 95 % of the errors do not exceed.
     pub(crate) bound_mm: f64,
+    /// The same error anywhere inside the sampled range.
+    pub(crate) inside_mm: Option<f64>,
+    /// Distance of the nominal model's predictions from the delivered one's there.
+    pub(crate) nominal_mm: Option<f64>,
     /// The same error anywhere within the limits, with its key, where the verdict is good.
     pub(crate) anywhere: Option<(f64, String)>,
 }
@@ -96,6 +100,8 @@ pub(crate) fn expected(file: &CalibrationFile) -> Option<Expectation> {
     Some(Expectation {
         error_mm: verdict.expected_error_mm.unwrap_or(own.measured.sigma_position_mm),
         bound_mm: verdict.bound95_mm.unwrap_or(own.measured.bound95_position_mm),
+        inside_mm: verdict.sampled_range_error_mm,
+        nominal_mm: verdict.nominal_error_mm,
         anywhere: (verdict.level == Level::Good)
             .then(|| (own.range.sigma_position_mm, format!("{key}.range.sigma_position_mm"))),
     })
@@ -126,6 +132,9 @@ fn verdict(out: &mut String, file: &CalibrationFile) {
             line(out, "verdict", &format!("{level}: {reason}"))
         }
         _ => line(out, "verdict", level),
+    }
+    if let Some(confirmed) = &verdict.confirmed {
+        line(out, "confirmed", confirmed);
     }
     lines(out, "repaired", file.repairs.iter().map(repaired_words));
 }

@@ -9,6 +9,7 @@ mod controller;
 mod corrected;
 mod fitted;
 mod frames;
+mod gain;
 mod judging;
 mod keyed;
 mod known;

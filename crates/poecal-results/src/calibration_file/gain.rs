@@ -1,0 +1,33 @@
+//! Whether programs are to be corrected with a calibration.
+
+use poecal_calibrate::{Gain, Level};
+
+use super::CalibrationFile;
+
+impl CalibrationFile {
+    /// Why programs are not to be corrected with this calibration, a clause; `None` where correction is a clear gain, and of files of earlier
+    /// versions, which do not say.
+    #[must_use]
+    pub fn gain_doubt(&self) -> Option<String> {
+        let verdict = self.verdict.as_ref()?;
+        match (verdict.level, verdict.gain) {
+            (Level::DoNotUse, _) => Some("its verdict is do not use".to_owned()),
+            (Level::Located, _) => {
+                Some("the axes of the joints were held, so that there is nothing to correct".to_owned())
+            }
+            (_, None | Some(Gain::Clear)) => None,
+            (_, Some(Gain::Unclear | Gain::Loss)) => {
+                let figures = verdict.sampled_range_error_mm.zip(verdict.nominal_error_mm);
+                let figures = figures.map(|(own, nominal)| {
+                    format!(
+                        ": an error of {own:.3} mm (RMS) is expected of corrected ones, and the nominal model is {nominal:.3} mm from it"
+                    )
+                });
+                Some(format!(
+                    "anywhere inside the sampled range it is not clearly better than the nominal model{}",
+                    figures.unwrap_or_default()
+                ))
+            }
+        }
+    }
+}
