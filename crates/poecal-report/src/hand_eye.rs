@@ -82,8 +82,8 @@ fn arm_words(arm: &ArmByJoints) -> String {
 /// Whether a finding is among the reasons of the verdict.
 fn said(found: &HandEye, kind: FindingKind) -> bool {
     match kind {
-        FindingKind::MissingMoves => found.level != poecal_fit::hand_eye::Level::DoNotUse,
-        FindingKind::Scale | FindingKind::Inconsistent => true,
+        FindingKind::MissingMoves | FindingKind::Lens => found.level != poecal_fit::hand_eye::Level::DoNotUse,
+        FindingKind::Scale | FindingKind::Inconsistent | FindingKind::Exchanged => true,
         FindingKind::Inverted
         | FindingKind::Repeated
         | FindingKind::OtherPose

@@ -7,6 +7,7 @@ use super::directions::{found, pairs};
 use super::equations::{Pair, errors, sight_axes};
 use super::findings::{Finding, FindingKind, listed};
 use super::fit::{Fit, sizes};
+use super::lens::{self, FoundLens, Joint, WithLens};
 use super::noise::Spread;
 use super::readings::{PoseList, least_score, misread_angles, mistaken, refuse_other_lengths};
 use super::turns::{refuse_one_axis, turns};
@@ -52,6 +53,9 @@ pub fn hand_eye(
         ));
     }
     refuse_other_lengths(&flange.poses, &target.poses)?;
+    // What corners show is the board as the camera sees it.
+    let target_inverted = options.target_inverted.or(target.lens.as_ref().map(|_| false));
+    let options = &HandEyeOptions { target_inverted, ..*options };
     let mut findings = Vec::new();
     let (poses, rows) = other_poses::settled(&flange.poses, target, options);
     if !rows.is_empty() {
@@ -73,7 +77,7 @@ pub fn hand_eye(
     let part = |poses: &[Pose], rows: &[usize]| -> Vec<Pose> { rows.iter().map(|&row| poses[row]).collect() };
     let [arm, seen] = [&flange.poses, &target.poses].map(|poses| part(poses, &counted));
     let (directions, said) = found(&arm, &seen, options)?;
-    findings.extend(said.map(|said| Finding::new(FindingKind::Inverted, said, Vec::new())));
+    findings.extend(said);
     let all = pairs(&flange.poses, &target.poses, options.camera, &directions);
     let of = |rows: &[usize]| -> Vec<Pair> { rows.iter().map(|&row| all[row]).collect() };
     if let Some(step) = moved::found(&of(&counted)) {
@@ -81,12 +85,29 @@ pub fn hand_eye(
         findings.push(finding);
         counted = longer;
     }
-    let Some(fit) = Fit::of(&of(&counted)) else {
+    let fitted = |poses: &[Pose], before: Option<&Fit>| {
+        let all = pairs(&flange.poses, poses, options.camera, &directions);
+        let rows: Vec<Pair> = counted.iter().map(|&row| all[row]).collect();
+        let fit = match before {
+            Some(before) => Fit::from_start(&rows, before.own_frames()),
+            None => Fit::of(&rows),
+        }?;
+        let about = fit.seen_about(&rows);
+        let kept = counted.iter().copied().zip(about).zip(&fit.kept);
+        let kept = kept.filter(|(_, kept)| **kept).map(|(row, _)| row).collect();
+        Some((fit, kept))
+    };
+    let with_lens = match &target.lens {
+        Some(lens) => lens::together(lens, &target.poses, &fitted),
+        None => fitted(&target.poses, None).map(|(fit, _)| WithLens::known(target.poses.clone(), fit)),
+    };
+    let Some(WithLens { target: poses, fit, joint }) = with_lens else {
         return ErrorKind::Problem.refuse(
             "found poses that do not determine where the camera is, expected turns about two axes or more: add poses that turn about a second axis",
         );
     };
-    finished(&all, &counted, (&fit, directions, turns), options.camera, findings, name)
+    let all = pairs(&flange.poses, &poses, options.camera, &directions);
+    finished(&all, &counted, (&fit, joint, directions, turns), options.camera, findings, name)
 }
 
 /// Leaves the poses before or after a move out; gives those that stay.
@@ -115,7 +136,7 @@ fn leave_moved_out(
 fn finished(
     all: &[Pair],
     counted: &[usize],
-    (fit, directions, turns): (&Fit, Directions, Turns),
+    (fit, joint, directions, turns): (&Fit, Option<Joint>, Directions, Turns),
     camera: CameraPlace,
     mut findings: Vec<Finding>,
     name: &dyn Fn(usize) -> String,
@@ -128,11 +149,19 @@ fn finished(
         );
     };
     let factors = simulated::factors(&fit.rows(&rows), fit);
-    let side = |side: Side| {
+    let by = |spread: &Spread, side: Side| {
         let (by_m, by_rad) = factors.of(side);
-        let placed = bounded(&spread, &fit.frames, &fit.point, side);
+        let placed = bounded(spread, &fit.frames, &fit.point, side);
         Placed { bound95_m: by_m * placed.bound95_m, bound95_rad: by_rad * placed.bound95_rad, ..placed }
     };
+    let known_bound95_m = by(&spread, Side::Camera).bound95_m;
+    let (spread, lens) = match joint {
+        Some(Joint { found, covariance, freedom }) => {
+            (spread.with(covariance, freedom), Some(FoundLens { known_bound95_m, ..found }))
+        }
+        None => (spread, None),
+    };
+    let side = |side: Side| by(&spread, side);
     let (on_flange, in_base) = match camera {
         CameraPlace::InHand => (side(Side::Camera), side(Side::Target)),
         CameraPlace::Beside => (side(Side::Target), side(Side::Camera)),
@@ -165,6 +194,7 @@ fn finished(
         outliers,
         turns,
         findings,
+        lens,
     };
     let distance = poecal_numerics::distributions::median(kept.iter().map(|it| it.seen.translation.norm()));
     verdict::judge(&mut result, scale, distance.unwrap_or_default());

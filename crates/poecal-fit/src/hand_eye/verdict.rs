@@ -4,6 +4,7 @@ use super::equations::{NUMBERS, Pair, UNKNOWNS, derivatives, errors, normal, sig
 use super::findings::{Finding, FindingKind};
 use super::fit::Fit;
 use super::types::{HandEye, Level};
+use poecal_model::camera::PictureNumber;
 use poecal_numerics::distributions::f_quantile;
 
 /// Rows from which on a result is tested well.
@@ -17,6 +18,11 @@ const MANY: f64 = 0.4;
 const NO_CAMERA: f64 = 0.1;
 /// The same of places, as a share of the distance.
 const NO_CAMERA_M: f64 = 0.06;
+/// Bound of the camera's position, as a share of the distance at which it sees the target, up to which a result is good: then what it sees is off by
+/// no more than by a focal length that is off by 1 %.
+const NEAR: f64 = 0.01;
+/// How many times wider an unknown lens makes that bound where it is said.
+const WIDER: f64 = 2.0;
 /// Smallest difference of scales that is said.
 const OTHER_SCALE: f64 = 3e-3;
 /// Probability by chance at which scales differ.
@@ -63,6 +69,7 @@ pub(crate) fn judge(result: &mut HandEye, scale: Option<f64>, distance_m: f64) {
         result.findings.push(Finding::new(FindingKind::Inconsistent, statement.clone(), Vec::new()));
         against.push(statement);
     }
+    against.extend(said(result, FindingKind::Exchanged));
     let places = result.noise[0].max(result.noise[1]);
     if against.is_empty() && places > (NO_CAMERA_M * distance_m).max(0.01) {
         let statement = format!(
@@ -86,6 +93,21 @@ pub(crate) fn judge(result: &mut HandEye, scale: Option<f64>, distance_m: f64) {
         result.findings.push(Finding::new(FindingKind::Scale, statement.clone(), Vec::new()));
         against.push(statement);
     }
+    if against.is_empty() {
+        for statement in of_lens(result) {
+            result.findings.push(Finding::new(FindingKind::Lens, statement.clone(), Vec::new()));
+            weak.push(statement);
+        }
+        let bound = result.camera_frame().bound95_m;
+        if bound > NEAR * distance_m {
+            weak.push(format!(
+                "the camera's position is known to {:.1} mm, {:.1} % of the {distance_m:.2} m at which it sees the target (good: up to {:.0} %)",
+                1e3 * bound,
+                100.0 * bound / distance_m,
+                100.0 * NEAR
+            ));
+        }
+    }
     if fitted < ENOUGH {
         weak.push(format!("{fitted} poses show little of their own errors: take 15 or more"));
     }
@@ -98,6 +120,39 @@ pub(crate) fn judge(result: &mut HandEye, scale: Option<f64>, distance_m: f64) {
         weak.push("something moved during the session".to_owned());
     }
     (result.level, result.reasons) = Level::of(against, weak);
+}
+
+/// What an unknown lens costs, and whether pictures and arm agree on it.
+fn of_lens(result: &HandEye) -> Vec<String> {
+    let Some(lens) = &result.lens else { return Vec::new() };
+    let mut said = Vec::new();
+    let focal = |numbers: &[PictureNumber]| numbers.first().map_or((0.0, 0.0), |it| (it.found, it.deviation));
+    let (found, alone) = (focal(&lens.numbers), focal(&lens.alone));
+    let remedy = "state the lens (--lens FILE), or fit the arm with the camera (poecal calibrate)";
+    if lens.apart > 1.0 {
+        said.push(format!(
+            "the pictures alone show another lens (fx {:.1} px, {:.1} by noise) than they do with the arm's poses (fx {:.1} px), {:.1} times as far apart \
+             as noise explains: bounds are so much wider by the lens; {remedy}",
+            alone.0, alone.1, found.0, lens.apart
+        ));
+    }
+    let bound = result.camera_frame().bound95_m;
+    if bound > WIDER * lens.known_bound95_m {
+        said.push(format!(
+            "the pictures determine the lens to {:.1} px of {:.0} px of focal length only, and by that the camera's position to {:.1} mm (95 %), where a \
+             known lens would leave {:.1} mm: {remedy}",
+            found.1,
+            found.0,
+            1e3 * bound,
+            1e3 * lens.known_bound95_m
+        ));
+    }
+    said
+}
+
+/// The statement of a kind of finding, if there is one.
+fn said(result: &HandEye, kind: FindingKind) -> Option<String> {
+    result.findings.iter().find(|it| it.kind == kind).map(|it| it.statement.clone())
 }
 
 /// Turns that would help.

@@ -1,0 +1,274 @@
+//! An unknown lens with the frames: by the corners of the pictures, whose poses are free, and by the arm, which says how far the camera moved.
+//!
+//! The pictures by themselves determine focal lengths from how boards shrink with distance, which is little where the boards are tilted little. What the
+//! arm adds is in the same equations: the poses `seen` follow the lens (`LensState::follow`), so a lens is better if the poses fit the frames
+//! better. The covariance of both is joint: that of the frames at a known lens, and what they follow the lens by.
+
+use nalgebra::{DMatrix, DVector, Matrix6, Matrix6xX};
+
+use super::equations::{NUMBERS, Pair, UNKNOWNS, derivatives, errors, sight_axes};
+use super::fit::Fit;
+use super::readings::PoseList;
+use poecal_arm::lie::{Pose, hat};
+use poecal_model::camera::{Lens, LensSearch, LensState, PictureNumber, Pictures};
+use poecal_numerics::distributions::f_quantile;
+use poecal_numerics::linalg;
+
+/// Most rounds of lens and frames.
+const ROUNDS: usize = 12;
+/// Squared standard deviations by which a round must be worth it.
+const LEAST: f64 = 1e-6;
+/// Probability by chance at which pictures and arm count as of different lenses.
+const CHANCE: f64 = 1e-3;
+/// Information of the arm in units of that of the pictures, below which it says nothing of a direction.
+const SAYS: f64 = 1e-3;
+
+/// A lens that is unknown, with the pictures that determine it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct UnknownLens {
+    search: LensSearch,
+    state: LensState,
+}
+
+/// A lens that was found with the frames.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FoundLens {
+    /// The lens.
+    pub lens: Lens,
+    /// Its numbers with their standard deviations.
+    pub numbers: Vec<PictureNumber>,
+    /// The same by the pictures alone.
+    pub alone: Vec<PictureNumber>,
+    /// Distance of the camera from the true one that 95 % of such results would not exceed if the lens were known as it was found, metres.
+    pub known_bound95_m: f64,
+    /// How many times farther than by their noise the lens of the pictures is from that of the arm; 1 where noise explains it.
+    pub apart: f64,
+}
+
+/// How far the frames follow the lens, and what that adds to their covariance.
+pub(crate) struct Joint {
+    pub(crate) found: FoundLens,
+    /// Covariance of the frames by that of the lens, and its degrees of freedom.
+    pub(crate) covariance: Vec<f64>,
+    pub(crate) freedom: f64,
+}
+
+impl PoseList {
+    /// The poses of the board in pictures of one camera and one board, with all others that their corners allow; a lens that is a first guess is
+    /// found from the corners.
+    ///
+    /// # Errors
+    /// In words, if the pictures do not determine an unknown lens.
+    pub fn of_pictures(pictures: &Pictures) -> Result<Self, String> {
+        let is_guessed = |at: usize| pictures.cameras.get(at).is_some_and(|it| it.is_guessed);
+        if pictures.all.iter().any(|it| is_guessed(it.camera)) {
+            return of_unknown_lens(pictures);
+        }
+        let half_turn = |at: usize| pictures.boards.get(at).and_then(|board| board.half_turn());
+        let (mut poses, mut other_poses) = (Vec::new(), Vec::new());
+        for picture in &pictures.all {
+            let Some(best) = picture.poses.first() else { continue };
+            poses.push(*best);
+            let half_turn = half_turn(picture.board);
+            let turned = half_turn.iter().flat_map(|turn| picture.poses.iter().map(move |it| *it * *turn));
+            other_poses.push(picture.poses.iter().skip(1).copied().chain(turned).collect());
+        }
+        Ok(PoseList { other_poses, ..poses.into() })
+    }
+}
+
+impl UnknownLens {
+    /// Poses of the rows as poses by their corners as they are named, and the turn of a board that was counted from its other end.
+    fn chosen(&self, target: &[Pose]) -> Vec<(Pose, Pose)> {
+        let pictures = &self.state.pictures;
+        let of = |(row, chosen): (usize, &Pose)| {
+            let Some(picture) = pictures.all.get(row) else { return (*chosen, Pose::identity()) };
+            let half_turn = pictures.boards.get(picture.board).and_then(|board| board.half_turn());
+            let turned = half_turn.and_then(|turn| {
+                picture.poses.iter().find(|it| **it * turn == *chosen).map(|it| (*it, turn))
+            });
+            turned.unwrap_or((*chosen, Pose::identity()))
+        };
+        target.iter().enumerate().map(of).collect()
+    }
+}
+
+/// The poses with the lens that the pictures determine.
+fn of_unknown_lens(pictures: &Pictures) -> Result<PoseList, String> {
+    let refuse = || {
+        "found pictures that do not determine the unknown lens, expected boards that are tilted by 20 to 45 degrees: add such pictures, or state the \
+         lens"
+            .to_owned()
+    };
+    let (search, start) = LensSearch::of(pictures).ok_or_else(refuse)?;
+    let mut state = search.alone(&start).ok_or_else(refuse)?;
+    // Of a flat board that has two poses the better one may be the other one with another lens.
+    for _ in 0..2 {
+        for at in 0..state.pictures.all.len() {
+            let pictures = &state.pictures;
+            let found = pictures.all.get(at).and_then(|it| pictures.view(it)).map(|view| view.poses());
+            if let (Some(picture), Some(Ok(found))) = (state.pictures.all.get_mut(at), found) {
+                picture.poses = found;
+            }
+        }
+        let best: Option<Vec<Pose>> = state.pictures.all.iter().map(|it| it.poses.first().copied()).collect();
+        let same = search.stepped(&state, &best.ok_or_else(refuse)?, &DVector::zeros(state.step.len()));
+        state = search.alone(&same).ok_or_else(refuse)?;
+    }
+    let mut known = state.pictures.clone();
+    known.cameras.iter_mut().for_each(|it| it.is_guessed = false);
+    let list = PoseList::of_pictures(&known)?;
+    Ok(PoseList { lens: Some(UnknownLens { search, state }), ..list })
+}
+
+/// A fit with its lens: the poses seen through it, and the joint uncertainty.
+pub(crate) struct WithLens {
+    pub(crate) target: Vec<Pose>,
+    pub(crate) fit: Fit,
+    pub(crate) joint: Option<Joint>,
+}
+
+impl WithLens {
+    /// Of poses whose lens is known.
+    pub(crate) fn known(target: Vec<Pose>, fit: Fit) -> Self {
+        WithLens { target, fit, joint: None }
+    }
+}
+
+/// Refits frames and lens together, from poses of the target by the lens of the pictures alone. `fitted` fits the frames to poses, and gives
+/// the pairs of the rows that count with their numbers in the list.
+pub(crate) fn together(
+    lens: &UnknownLens,
+    target: &[Pose],
+    fitted: &dyn Fn(&[Pose], Option<&Fit>) -> Option<(Fit, Vec<(usize, Pair)>)>,
+) -> Option<WithLens> {
+    let UnknownLens { search, state: alone } = lens;
+    let chosen = lens.chosen(target);
+    let starts: Vec<Pose> = chosen.iter().map(|it| it.0).collect();
+    let along = |state: &LensState| -> Vec<Pose> {
+        state.poses.iter().zip(&chosen).map(|(pose, (_, turn))| *pose * *turn).collect()
+    };
+    let mut state = search.stepped(alone, &starts, &DVector::zeros(alone.step.len()));
+    let (mut fit, mut rows) = fitted(&along(&state), None)?;
+    let mut first: Option<Apart> = None;
+    let mut normal = Normal::of(&state, &fit, &rows)?;
+    for _ in 0..ROUNDS {
+        let (by, gain) = normal.step()?;
+        if first.is_none() {
+            first = Some(normal.apart(&state, &fit)?);
+        }
+        if gain < LEAST {
+            break;
+        }
+        state = search.stepped(&state, &state.poses, &by);
+        (fit, rows) = fitted(&along(&state), Some(&fit))?;
+        normal = Normal::of(&state, &fit, &rows)?;
+    }
+    let apart = first.map_or(1.0, |it| it.factor);
+    let inverse = |matrix: &DMatrix<f64>| -> Option<DMatrix<f64>> {
+        let n = matrix.nrows();
+        let factor = linalg::cholesky(matrix.as_slice(), n, 0.0)?;
+        Some(DMatrix::from_row_slice(n, n, &linalg::inverse(&factor)))
+    };
+    let of_lens = inverse(&normal.information)? * (apart * apart);
+    let deviations = |covariance: &DMatrix<f64>| -> Vec<f64> {
+        covariance.diagonal().iter().map(|it| it.max(0.0).sqrt()).collect()
+    };
+    let covariance = &normal.follow * &of_lens * normal.follow.transpose();
+    let found = FoundLens {
+        lens: state.lens()?,
+        numbers: search.numbers(&state, &deviations(&of_lens)),
+        alone: search.numbers(alone, &deviations(&inverse(&alone.information)?)),
+        known_bound95_m: 0.0,
+        apart,
+    };
+    let freedom = if apart > 1.0 { (state.step.len() as f64).min(alone.freedom) } else { alone.freedom };
+    let covariance = covariance.transpose().as_slice().to_vec();
+    Some(WithLens { target: along(&state), fit, joint: Some(Joint { found, covariance, freedom }) })
+}
+
+/// What pictures and arm say of the lens at the best frames.
+struct Normal {
+    /// Information of the lens, of pictures and arm.
+    information: DMatrix<f64>,
+    /// The part of the arm, and its pull.
+    of_arm: DMatrix<f64>,
+    arm_pull: DVector<f64>,
+    pull: DVector<f64>,
+    /// How the frames follow the lens, a row an unknown.
+    follow: DMatrix<f64>,
+}
+
+/// Whether the lens of the pictures is that of the arm.
+struct Apart {
+    factor: f64,
+}
+
+impl Normal {
+    fn of(state: &LensState, fit: &Fit, rows: &[(usize, Pair)]) -> Option<Self> {
+        let count = state.step.len();
+        let weights = fit.noise.weights();
+        let (mut frames, mut mixed) = (DMatrix::zeros(UNKNOWNS, UNKNOWNS), DMatrix::zeros(UNKNOWNS, count));
+        let (mut of_arm, mut arm_pull) = (DMatrix::zeros(count, count), DVector::zeros(count));
+        for (row, pair) in rows {
+            let by_lens = in_sight(pair, state.poses.get(*row)?, state.follow.get(*row)?);
+            let off = errors(pair, &fit.frames);
+            let by_frames = derivatives(pair, &fit.frames);
+            for number in 0..NUMBERS {
+                let weight = weights[number];
+                let by_frames = DVector::from_row_slice(&by_frames[number]);
+                let by_lens = by_lens.row(number).transpose();
+                frames += &by_frames * by_frames.transpose() * weight;
+                mixed += &by_frames * by_lens.transpose() * weight;
+                of_arm += &by_lens * by_lens.transpose() * weight;
+                arm_pull -= &by_lens * (weight * off[number]);
+            }
+        }
+        let factor = linalg::cholesky(frames.as_slice(), UNKNOWNS, 0.0)?;
+        let inverse = DMatrix::from_row_slice(UNKNOWNS, UNKNOWNS, &linalg::inverse(&factor));
+        let follow = inverse * &mixed;
+        let of_arm = of_arm - mixed.transpose() * &follow;
+        let information = &state.information + &of_arm;
+        let pull = &state.pull + &arm_pull;
+        Some(Normal { information, of_arm, arm_pull, pull, follow })
+    }
+
+    /// The best step of the lens, with the squared standard deviations that it is worth.
+    fn step(&self) -> Option<(DVector<f64>, f64)> {
+        let by = linalg::solved(self.information.clone(), &self.pull)?;
+        let gain = by.dot(&self.pull);
+        Some((by, gain))
+    }
+
+    /// How far the lens by the arm is from that by the pictures, at the latter: the arm's pull in the directions of which it says something is of
+    /// variance `K + K G⁻¹ K`, with its own information K and that of the pictures G.
+    fn apart(&self, state: &LensState, fit: &Fit) -> Option<Apart> {
+        let count = state.step.len();
+        // In units in which the pictures' information is 1: G = L Lᵀ.
+        let whitened = linalg::whitened(state.information.clone(), &self.of_arm)?;
+        let twice = linalg::whitened(state.information.clone(), &whitened.transpose())?;
+        let pull = DMatrix::from_column_slice(count, 1, self.arm_pull.as_slice());
+        let pull = linalg::whitened(state.information.clone(), &pull)?;
+        let (values, vectors) = linalg::symmetric_eigen(twice.as_slice(), count);
+        let (mut squares, mut directions) = (0.0, 0.0);
+        for (k, &says) in values.iter().enumerate().filter(|(_, value)| **value > SAYS) {
+            let along = vectors.column(k).dot(&pull.column(0));
+            squares += along * along / (says + says * says);
+            directions += 1.0;
+        }
+        let freedom = fit.noise.freedom.iter().copied().fold(f64::INFINITY, f64::min).clamp(1.0, 1e6);
+        let is_apart = directions > 0.0 && squares / directions > f_quantile(CHANCE, directions, freedom);
+        Some(Apart { factor: if is_apart { (squares / directions).sqrt() } else { 1.0 } })
+    }
+}
+
+/// How the six numbers of a row follow the lens: shift of the point that is seen, and turn, in the axes of the sight; `follow` is of the board's origin.
+fn in_sight(pair: &Pair, board: &Pose, follow: &Matrix6xX<f64>) -> Matrix6xX<f64> {
+    let axes = sight_axes(&pair.seen);
+    let arm = pair.seen.translation - board.translation;
+    let mut to = Matrix6::zeros();
+    to.fixed_view_mut::<3, 3>(0, 0).copy_from(&axes);
+    to.fixed_view_mut::<3, 3>(0, 3).copy_from(&(-axes * hat(&arm)));
+    to.fixed_view_mut::<3, 3>(3, 3).copy_from(&axes);
+    to * follow
+}
