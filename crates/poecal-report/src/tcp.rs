@@ -1,8 +1,8 @@
 //! The table of a tool's tip.
 
+use super::hand_eye::with_bound;
 use super::table::lines;
 use poecal_fit::hand_eye::{Tip, Tool};
-use poecal_results::frame_texts::tool_forms;
 use poecal_results::tcp::ToolResult;
 
 /// Where the tip is, how surely, and what to think of it, in a sentence.
@@ -27,7 +27,8 @@ pub fn tool_tip(result: &ToolResult<'_>) -> String {
     let mut out = String::new();
     let mut say = |label: &str, text: &str| lines(&mut out, label, text.lines());
     let reasons: String = found.reasons.iter().map(|it| format!("\n{it}")).collect();
-    say("verdict", &format!("{}{reasons}", found.level.words()));
+    let bound = found.tips.iter().map(|it| it.placed.bound95_m).fold(0.0, f64::max);
+    say("verdict", &format!("{}{reasons}", with_bound(found.level, "tip", bound)));
     for tip in &found.tips {
         say("tip", &tip_words(tip));
     }
@@ -57,18 +58,8 @@ pub fn tool_tip(result: &ToolResult<'_>) -> String {
     for finding in found.findings.iter().filter(|it| !is_said(&it.statement)) {
         say("look at", &finding.statement);
     }
-    for pair in tool_forms(&result.frame().pose).lines().collect::<Vec<_>>().chunks(2) {
-        if let [name, text] = pair {
-            say(maker(name), text);
-        }
+    for form in result.forms() {
+        say(form.maker, &form.text);
     }
     out
-}
-
-/// The short name of a form.
-fn maker(comment: &str) -> &'static str {
-    ["KUKA", "FANUC", "ABB", "UR"]
-        .into_iter()
-        .find(|it| comment.contains(it) || *it == "UR" && comment.contains("Universal"))
-        .unwrap_or("tool")
 }

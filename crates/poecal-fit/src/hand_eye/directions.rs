@@ -129,7 +129,7 @@ pub(crate) fn found(
     let arm_is_open = options.flange_inverted.is_none();
     let Some((_, frames_inverted, _)) = better else {
         let distances = Distances::of(&frames, flange, camera);
-        let is_exchanged = !distances.is_plausible() && distances.exchanged().is_plausible();
+        let is_exchanged = !distances.is_plausible() && distances.on_flange > distances.in_base;
         let is_open = !stated && (arm_is_open || target_is_open);
         return Ok((usual, (is_open && is_exchanged).then(|| exchanged(distances, camera))));
     };

@@ -120,30 +120,29 @@ const KNOWN: [(Option<bool>, Option<bool>); 4] =
 
 #[test]
 fn a_camera_at_the_other_end_is_never_a_result() {
-    let sessions: Vec<Session> = trials(360).seeds().map(session).collect();
-    for known in KNOWN {
-        let mut accepted = 0;
-        for (seed, session) in sessions.iter().enumerate() {
-            let (end, said) = session.ended(session.camera, false, known);
-            if end != End::Right {
-                println!("{seed} {:?}, right end: {said}", session.camera);
-            }
-            assert!(end != End::Wrong, "{seed}: {said}");
-            accepted += usize::from(end == End::Right);
-            let (end, said) = session.ended(session.other(), false, known);
-            assert!(end == End::Refused, "{seed} {:?}, {known:?}: {said}", session.camera);
-            assert!(said.contains(&format!("run with --camera {}", session.camera.word())), "{seed}: {said}");
+    let trials = trials(240);
+    let mut accepted = 0;
+    for seed in trials.seeds() {
+        let (session, known) = (session(seed), KNOWN[seed as usize / 2 % KNOWN.len()]);
+        let (end, said) = session.ended(session.camera, false, known);
+        if end != End::Right {
+            println!("{seed} {:?}, right end: {said}", session.camera);
         }
-        println!("{known:?}: {accepted} of {} accepted at the right end", sessions.len());
-        assert!(60 * accepted >= 59 * sessions.len(), "{accepted}");
+        assert!(end != End::Wrong, "{seed}: {said}");
+        accepted += usize::from(end == End::Right);
+        let (end, said) = session.ended(session.other(), false, known);
+        assert!(end == End::Refused, "{seed} {:?}, {known:?}: {said}", session.camera);
+        assert!(said.contains(&format!("run with --camera {}", session.camera.word())), "{seed}: {said}");
     }
+    println!("{accepted} of {} accepted at the right end", trials.count);
+    assert!(60 * accepted >= 59 * trials.count, "{accepted}");
 }
 
 #[test]
 fn inverted_poses_are_inverted_back_or_refused() {
-    let sessions: Vec<Session> = trials(360).seeds().map(session).collect();
+    let sessions: Vec<Session> = trials(120).seeds().map(session).collect();
     for known in KNOWN.into_iter().filter(|it| it.0.is_none()) {
-        let (mut right, mut refused, mut refused_at_other) = (0, 0, 0);
+        let (mut right, mut refused) = (0, 0);
         for (seed, session) in sessions.iter().enumerate() {
             match session.ended(session.camera, true, known) {
                 (End::Right, _) => right += 1,
@@ -156,16 +155,13 @@ fn inverted_poses_are_inverted_back_or_refused() {
                 }
                 (End::Wrong, said) => panic!("{seed} {:?}, {known:?}: {said}", session.camera),
             }
+            // Two things are other than stated, and poses fit: where both frames are shows it.
             let (end, said) = session.ended(session.other(), true, known);
-            refused_at_other += usize::from(end == End::Refused);
-            if end != End::Refused {
-                println!("{seed} {:?}, inverted, other end: {said}", session.camera);
-            }
+            assert!(end == End::Refused, "{seed} {:?}: {said}", session.camera);
+            assert!(said.contains(&format!("--camera {} --flange flange-from-base", session.camera.word())), "{said}");
         }
-        println!(
-            "{known:?}, inverted: {right} inverted back, {refused} refused; at the other end {refused_at_other} of {} refused",
-            sessions.len()
-        );
-        assert!(2 * right >= sessions.len(), "{right}");
+        println!("{known:?}, inverted: {right} inverted back, {refused} refused");
+        // What is farther from the flange than half of the way to the base is one in thirty.
+        assert!(5 * right >= 4 * sessions.len(), "{right}");
     }
 }

@@ -51,6 +51,8 @@ pub(crate) struct Joint {
     /// Covariance of the frames by that of the lens, and its degrees of freedom.
     pub(crate) covariance: Vec<f64>,
     pub(crate) freedom: f64,
+    /// By how much the variance of the poses is larger than it was estimated, since the lens was fitted to them.
+    pub(crate) larger: f64,
 }
 
 impl PoseList {
@@ -170,7 +172,12 @@ pub(crate) fn together(
         let factor = linalg::cholesky(matrix.as_slice(), n, 0.0)?;
         Some(DMatrix::from_row_slice(n, n, &linalg::inverse(&factor)))
     };
-    let of_lens = inverse(&normal.information)? * (apart * apart);
+    // Degrees of freedom that the lens has taken from the noise of the poses, of which at least half are left.
+    let taken = (inverse(&normal.information)? * &normal.of_arm).trace();
+    let freedom: f64 = fit.noise.freedom.iter().sum();
+    let larger = (freedom / (freedom - taken).max(0.5 * freedom)).max(1.0);
+    let information = &state.information + &normal.of_arm / larger;
+    let of_lens = inverse(&information)? * (apart * apart);
     let deviations = |covariance: &DMatrix<f64>| -> Vec<f64> {
         covariance.diagonal().iter().map(|it| it.max(0.0).sqrt()).collect()
     };
@@ -184,7 +191,7 @@ pub(crate) fn together(
     };
     let freedom = if apart > 1.0 { (state.step.len() as f64).min(alone.freedom) } else { alone.freedom };
     let covariance = covariance.transpose().as_slice().to_vec();
-    Some(WithLens { target: along(&state), fit, joint: Some(Joint { found, covariance, freedom }) })
+    Some(WithLens { target: along(&state), fit, joint: Some(Joint { found, covariance, freedom, larger }) })
 }
 
 /// What pictures and arm say of the lens at the best frames.

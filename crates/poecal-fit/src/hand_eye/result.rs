@@ -154,9 +154,10 @@ fn finished(
         let placed = bounded(spread, &fit.frames, &fit.point, side);
         Placed { bound95_m: by_m * placed.bound95_m, bound95_rad: by_rad * placed.bound95_rad, ..placed }
     };
-    let known_bound95_m = by(&spread, Side::Camera).bound95_m;
     let (spread, lens) = match joint {
-        Some(Joint { found, covariance, freedom }) => {
+        Some(Joint { found, covariance, freedom, larger }) => {
+            let spread = spread.larger(larger);
+            let known_bound95_m = by(&spread, Side::Camera).bound95_m;
             (spread.with(covariance, freedom), Some(FoundLens { known_bound95_m, ..found }))
         }
         None => (spread, None),
