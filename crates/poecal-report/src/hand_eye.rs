@@ -1,7 +1,7 @@
 //! The table of a hand-eye calibration.
 
 use super::table::lines;
-use poecal_fit::hand_eye::{FindingKind, FoundLens, HandEye, Level, Placed};
+use poecal_fit::hand_eye::{FoundLens, HandEye, Level, Placed};
 use poecal_model::camera::PictureNumber;
 use poecal_results::frame_texts::NamedFrame;
 use poecal_results::hand_eye::{ArmByJoints, HandEyeResult, lens_number_name};
@@ -47,7 +47,10 @@ pub fn hand_eye(result: &HandEyeResult<'_>) -> String {
     let mut out = String::new();
     let mut say = |label: &str, text: &str| lines(&mut out, label, text.lines());
     let reasons: String = found.reasons.iter().map(|it| format!("\n{it}")).collect();
-    say("verdict", &format!("{}{reasons}", with_bound(found.level, "camera", found.camera_frame().bound95_m)));
+    say(
+        "verdict",
+        &format!("{}{reasons}", with_bound(found.level, "camera", found.camera_frame().bound95_m)),
+    );
     let [camera, target] = result.frames();
     for (label, (frame, placed)) in [("camera", &camera), ("target", &target)] {
         say(label, &place(frame, placed));
@@ -73,7 +76,7 @@ pub fn hand_eye(result: &HandEyeResult<'_>) -> String {
     if let Some(arm) = result.arm {
         say("arm", &arm_words(arm));
     }
-    for finding in found.findings.iter().filter(|it| !said(found, it.kind)) {
+    for finding in found.findings.iter().filter(|it| !found.reasons.contains(&it.statement)) {
         say("look at", &finding.statement);
     }
     out
@@ -85,8 +88,12 @@ fn lens_words(lens: &FoundLens) -> String {
         let decimals = decimals(it.deviation);
         format!("{} {:.decimals$} ± {:.decimals$}", lens_number_name(it), it.found, it.deviation)
     };
-    let of = |unit: &str| -> Vec<String> { lens.numbers.iter().filter(|it| it.unit == unit).map(number).collect() };
-    format!("{} px; {} (± standard deviation)", of("px").join(", "), of("").join(", "))
+    let of = |unit: &str| -> Vec<String> {
+        lens.numbers.iter().filter(|it| it.unit == unit).map(number).collect()
+    };
+    let bend = of("mm");
+    let bend = if bend.is_empty() { String::new() } else { format!("; board: {} mm", bend.join(", ")) };
+    format!("{} px; {}{bend} (± standard deviation)", of("px").join(", "), of("").join(", "))
 }
 
 /// Which arm predicts poses better, and the command that fits it.
@@ -108,20 +115,6 @@ fn arm_words(arm: &ArmByJoints) -> String {
             }
         }
         Err(reason) => format!("as it is; it was not fitted with the camera: {reason}"),
-    }
-}
-
-/// Whether a finding is among the reasons of the verdict.
-fn said(found: &HandEye, kind: FindingKind) -> bool {
-    match kind {
-        FindingKind::MissingMoves | FindingKind::Lens => found.level != poecal_fit::hand_eye::Level::DoNotUse,
-        FindingKind::Scale | FindingKind::Inconsistent | FindingKind::Exchanged => true,
-        FindingKind::Inverted
-        | FindingKind::Repeated
-        | FindingKind::OtherPose
-        | FindingKind::Moved
-        | FindingKind::Flipped
-        | FindingKind::Outliers => false,
     }
 }
 

@@ -1,6 +1,6 @@
 //! The table of a tool's tip.
 
-use super::hand_eye::with_bound;
+use super::hand_eye::{decimals, with_bound};
 use super::table::lines;
 use poecal_fit::hand_eye::{Tip, Tool};
 use poecal_results::tcp::ToolResult;
@@ -17,7 +17,11 @@ fn tip_words(tip: &Tip) -> String {
     let t = 1e3 * tip.placed.pose.translation;
     let name = if tip.name.is_empty() { String::new() } else { format!("{}: ", tip.name) };
     let bound_mm = 1e3 * tip.placed.bound95_m;
-    format!("{name}({:.3}, {:.3}, {:.3}) mm in the flange; 95 % within {bound_mm:.3} mm", t.x, t.y, t.z)
+    let digits = decimals(bound_mm);
+    format!(
+        "{name}({:.digits$}, {:.digits$}, {:.digits$}) mm in the flange; 95 % within {bound_mm:.digits$} mm",
+        t.x, t.y, t.z
+    )
 }
 
 /// The table of a result.

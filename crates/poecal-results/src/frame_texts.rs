@@ -224,9 +224,21 @@ pub fn tool_forms(pose: &Pose, bounds: ToolBounds) -> Vec<ToolForm> {
     let Some(axis) = bounds.axis_rad else {
         let keep = |angles: &str| format!("position only, keep your {angles}");
         return vec![
-            form("KUKA", format!("KUKA, mm; {}", keep("A, B, C")), format!("X {x}, Y {y}, Z {z}  (keep your A, B, C)")),
-            form("FANUC", format!("FANUC, UTOOL, mm; {}", keep("W, P, R")), format!("X {x}  Y {y}  Z {z}  (keep your W, P, R)")),
-            form("ABB", format!("ABB (RAPID), mm; {} and load", keep("orientation")), format!("tPoecal.tframe.trans := [{x},{y},{z}];")),
+            form(
+                "KUKA",
+                format!("KUKA, mm; {}", keep("A, B, C")),
+                format!("X {x}, Y {y}, Z {z}  (keep your A, B, C)"),
+            ),
+            form(
+                "FANUC",
+                format!("FANUC, UTOOL, mm; {}", keep("W, P, R")),
+                format!("X {x}  Y {y}  Z {z}  (keep your W, P, R)"),
+            ),
+            form(
+                "ABB",
+                format!("ABB (RAPID), mm; {} and load", keep("orientation")),
+                format!("tPoecal.tframe.trans := [{x},{y},{z}];"),
+            ),
             form(
                 "UR",
                 format!("Universal Robots (URScript), m; {}", keep("RX, RY, RZ")),
@@ -241,9 +253,25 @@ pub fn tool_forms(pose: &Pose, bounds: ToolBounds) -> Vec<ToolForm> {
     let [rx, ry, rz] = [rx, ry, rz].map(|it| with_decimals(it, rad));
     let turn = "the turn about the tool's axis was not measured";
     vec![
-        form("KUKA", format!("KUKA (KRL), mm and deg; {turn}"), format!("$TOOL = {{X {x}, Y {y}, Z {z}, A {yaw}, B {pitch}, C {roll}}}")),
-        form("FANUC", format!("FANUC, UTOOL, mm and deg; {turn}"), format!("X {x}  Y {y}  Z {z}  W {roll}  P {pitch}  R {yaw}")),
-        form("ABB", format!("ABB (RAPID), mm; {turn}; keep your load"), format!("tPoecal.tframe := [[{x},{y},{z}],[{qw},{qx},{qy},{qz}]];")),
-        form("UR", format!("Universal Robots (URScript), m and rad; {turn}"), format!("set_tcp(p[{ux}, {uy}, {uz}, {rx}, {ry}, {rz}])")),
+        form(
+            "KUKA",
+            format!("KUKA (KRL), mm and deg; {turn}"),
+            format!("$TOOL = {{X {x}, Y {y}, Z {z}, A {yaw}, B {pitch}, C {roll}}}"),
+        ),
+        form(
+            "FANUC",
+            format!("FANUC, UTOOL, mm and deg; {turn}"),
+            format!("X {x}  Y {y}  Z {z}  W {roll}  P {pitch}  R {yaw}"),
+        ),
+        form(
+            "ABB",
+            format!("ABB (RAPID), mm; {turn}; keep your load"),
+            format!("tPoecal.tframe := [[{x},{y},{z}],[{qw},{qx},{qy},{qz}]];"),
+        ),
+        form(
+            "UR",
+            format!("Universal Robots (URScript), m and rad; {turn}"),
+            format!("set_tcp(p[{ux}, {uy}, {uz}, {rx}, {ry}, {rz}])"),
+        ),
     ]
 }

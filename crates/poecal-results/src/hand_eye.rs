@@ -169,7 +169,11 @@ impl<'a> LensEntry<'a> {
             alone: alone.found,
             alone_sigma: alone.deviation,
         };
-        LensEntry { numbers: lens.numbers.iter().zip(&lens.alone).map(number).collect(), known_bound95_mm: 1e3 * lens.known_bound95_m, apart: lens.apart }
+        LensEntry {
+            numbers: lens.numbers.iter().zip(&lens.alone).map(number).collect(),
+            known_bound95_mm: 1e3 * lens.known_bound95_m,
+            apart: lens.apart,
+        }
     }
 }
 
@@ -182,8 +186,9 @@ pub fn lens_number_name(number: &PictureNumber) -> &str {
 /// A lens as a file that `--lens` and `--camera` read.
 fn lens_text(lens: &FoundLens) -> String {
     let [width, height] = lens.lens.size_px.unwrap_or_default();
-    let names: String = lens.numbers.iter().map(|it| format!("{},", lens_number_name(it))).collect();
-    let values: String = lens.numbers.iter().map(|it| format!("{},", it.found)).collect();
+    let of_lens = || lens.numbers.iter().filter(|it| it.unit != "mm");
+    let names: String = of_lens().map(|it| format!("{},", lens_number_name(it))).collect();
+    let values: String = of_lens().map(|it| format!("{},", it.found)).collect();
     format!("name,{names}width,height\ncamera,{values}{width},{height}\n")
 }
 

@@ -250,8 +250,12 @@ fn tips_of_tools_are_found_with_their_direction_and_wrong_touches() {
     assert_eq!(found["outliers"], serde_json::json!(["line 6"]));
     assert!(found["tool"]["matrix"].is_array(), "{found}");
     // One tip shows no direction, and no touch a mass: none of both is printed.
-    let one: Vec<&str> =
-        lines.iter().filter(|it| !it.ends_with("shaft")).filter_map(|it| it.rsplit_once(',')).map(|it| it.0).collect();
+    let one: Vec<&str> = lines
+        .iter()
+        .filter(|it| !it.ends_with("shaft"))
+        .filter_map(|it| it.rsplit_once(','))
+        .map(|it| it.0)
+        .collect();
     fs::write(folder.path("one.csv"), one.join("\n")).unwrap();
     let said = folder.done("tcp one.csv --out tip");
     assert!(said.contains("good: tip within") || said.contains("bounds: tip within"), "{said}");
@@ -340,9 +344,9 @@ fn corners_of_pictures_give_the_same_camera_whichever_corner_is_named_first() {
         assert!((of(&plain, k) - of(&turned, k)).abs() < 1e-6, "{plain} {turned}");
     }
     assert_eq!(turned["findings"][0]["kind"], "other_pose", "{turned}");
-    let unknown: serde_json::Value = serde_json::from_str(
-        &folder.done(&format!("hand-eye arm.csv corners.csv {run} --out found").replace("lens.csv", "unknown:640x480")),
-    )
+    let unknown: serde_json::Value = serde_json::from_str(&folder.done(
+        &format!("hand-eye arm.csv corners.csv {run} --out found").replace("lens.csv", "unknown:640x480"),
+    ))
     .unwrap();
     let numbers = unknown["lens"]["numbers"].as_array().unwrap();
     let value = |number: &serde_json::Value, key: &str| number[key].as_f64().unwrap();
@@ -356,7 +360,9 @@ fn corners_of_pictures_give_the_same_camera_whichever_corner_is_named_first() {
     for (k, truth) in [0.04, -0.06, 0.09].into_iter().enumerate() {
         assert!((of(&unknown, k) - truth).abs() < 1.5e-3 * bound(&unknown), "{unknown}");
     }
-    let said = folder.done("hand-eye arm.csv corners.csv --camera in-hand --lens unknown:640x480 --markers chessboard:6x5:30mm");
+    let said = folder.done(
+        "hand-eye arm.csv corners.csv --camera in-hand --lens unknown:640x480 --markers chessboard:6x5:30mm",
+    );
     assert!(said.contains("\nlens          fx ") && said.contains(": camera within "), "{said}");
     // The lens that was found is one that can be stated, and gives the same camera.
     fs::copy(folder.path("found/lens.csv"), folder.path("again.csv")).unwrap();

@@ -53,14 +53,17 @@ fn session(seed: u64) -> Session {
                 (seen, in_base * seen.inverse() * on_flange.inverse())
             }
             CameraPlace::Beside => {
-                let middle = Vector3::new(0.5 * reach * around.cos(), 0.5 * reach * around.sin(), 0.5 * reach);
+                let middle =
+                    Vector3::new(0.5 * reach * around.cos(), 0.5 * reach * around.sin(), 0.5 * reach);
                 let place = in_base.inverse().act(&(middle + draw.vector(0.15 * reach)));
                 let seen = Pose::new(turn * rotation::about(0, side), place);
                 (seen, in_base * seen * on_flange.inverse())
             }
         };
         let distance = base_from_flange.translation.norm();
-        if !(0.2 * reach..reach).contains(&distance) || seen.translation.xy().norm() > 0.8 * seen.translation.z {
+        if !(0.2 * reach..reach).contains(&distance)
+            || seen.translation.xy().norm() > 0.8 * seen.translation.z
+        {
             continue;
         }
         let shift = draw.vector(noise * seen.translation.norm());
@@ -84,7 +87,12 @@ enum End {
 }
 
 impl Session {
-    fn ended(&self, camera: CameraPlace, inverted: bool, (flange, target): (Option<bool>, Option<bool>)) -> (End, String) {
+    fn ended(
+        &self,
+        camera: CameraPlace,
+        inverted: bool,
+        (flange, target): (Option<bool>, Option<bool>),
+    ) -> (End, String) {
         let arm: Vec<Pose> = self.flange.iter().map(|it| if inverted { it.inverse() } else { *it }).collect();
         let options = HandEyeOptions { camera, flange_inverted: flange, target_inverted: target };
         match hand_eye(&arm.into(), &self.target.clone().into(), &options, &|row| format!("row {row}")) {
@@ -93,7 +101,8 @@ impl Session {
             Ok(found) => {
                 let (shift, turn) = found.on_flange.pose.apart(&self.on_flange);
                 let is_right = camera == self.camera && shift < 0.1 * self.reach() && turn < 0.2;
-                let said = found.findings.iter().map(|it| it.statement.clone()).collect::<Vec<_>>().join("; ");
+                let said =
+                    found.findings.iter().map(|it| it.statement.clone()).collect::<Vec<_>>().join("; ");
                 if inverted && is_right && flange.is_none() {
                     assert!(found.findings.iter().any(|it| it.kind == FindingKind::Inverted), "{said}");
                 }
@@ -158,7 +167,10 @@ fn inverted_poses_are_inverted_back_or_refused() {
             // Two things are other than stated, and poses fit: where both frames are shows it.
             let (end, said) = session.ended(session.other(), true, known);
             assert!(end == End::Refused, "{seed} {:?}: {said}", session.camera);
-            assert!(said.contains(&format!("--camera {} --flange flange-from-base", session.camera.word())), "{said}");
+            assert!(
+                said.contains(&format!("--camera {} --flange flange-from-base", session.camera.word())),
+                "{said}"
+            );
         }
         println!("{known:?}, inverted: {right} inverted back, {refused} refused");
         // What is farther from the flange than half of the way to the base is one in thirty.

@@ -35,7 +35,7 @@ pub struct UnknownLens {
 pub struct FoundLens {
     /// The lens.
     pub lens: Lens,
-    /// Its numbers with their standard deviations.
+    /// Its numbers with their standard deviations, and the bend of a flat board, which is found with them.
     pub numbers: Vec<PictureNumber>,
     /// The same by the pictures alone.
     pub alone: Vec<PictureNumber>,
@@ -117,6 +117,9 @@ fn of_unknown_lens(pictures: &Pictures) -> Result<PoseList, String> {
         let same = search.stepped(&state, &best.ok_or_else(refuse)?, &DVector::zeros(state.step.len()));
         state = search.alone(&same).ok_or_else(refuse)?;
     }
+    let search = search.with_spread_of(&state);
+    let same = search.stepped(&state, &state.poses, &DVector::zeros(state.step.len()));
+    let state = search.alone(&same).ok_or_else(refuse)?;
     let mut known = state.pictures.clone();
     known.cameras.iter_mut().for_each(|it| it.is_guessed = false);
     let list = PoseList::of_pictures(&known)?;
@@ -182,10 +185,14 @@ pub(crate) fn together(
         covariance.diagonal().iter().map(|it| it.max(0.0).sqrt()).collect()
     };
     let covariance = &normal.follow * &of_lens * normal.follow.transpose();
+    let numbers = |state: &LensState, covariance: &DMatrix<f64>| -> Vec<PictureNumber> {
+        let all = search.numbers(state, &deviations(covariance));
+        all.into_iter().filter(|it| !it.name.contains(".scale_")).collect()
+    };
     let found = FoundLens {
         lens: state.lens()?,
-        numbers: search.numbers(&state, &deviations(&of_lens)),
-        alone: search.numbers(alone, &deviations(&inverse(&alone.information)?)),
+        numbers: numbers(&state, &of_lens),
+        alone: numbers(alone, &inverse(&alone.information)?),
         known_bound95_m: 0.0,
         apart,
     };

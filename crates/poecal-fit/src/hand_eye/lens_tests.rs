@@ -5,7 +5,9 @@ use nalgebra::{Vector2, Vector3};
 use super::draw::Draw;
 use super::{CameraPlace, HandEye, HandEyeOptions, Level, PoseList, hand_eye};
 use poecal_arm::lie::{Pose, rotation};
-use poecal_model::camera::{Board, Camera, Corner, Distortion, FlatView, Lens, Picture, Pictures, guessed_lens, middle};
+use poecal_model::camera::{
+    Board, Camera, Corner, Distortion, FlatView, Lens, Picture, Pictures, guessed_lens, middle,
+};
 use poecal_testing::trials::trials;
 
 /// A session of pictures with its truth.
@@ -50,7 +52,8 @@ fn session(seed: u64, views: Views) -> Session {
     let in_base = Pose::new(rotation::exp(&draw.vector(0.5)), Vector3::new(0.7, 0.1, 0.2) + draw.vector(0.1));
     let far = 2.5 * focal * board.radius_m() / size[1];
     let middle = middle(&board.points);
-    let mut found = Session { camera, on_flange, in_base, lens, flange: Vec::new(), pictures: Pictures::default() };
+    let mut found =
+        Session { camera, on_flange, in_base, lens, flange: Vec::new(), pictures: Pictures::default() };
     for _ in 0..5000 {
         if found.flange.len() == views.count {
             break;
@@ -59,14 +62,18 @@ fn session(seed: u64, views: Views) -> Session {
         let tilt = between(&mut draw, 0.0, views.tilt);
         let turn = rotation::exp(&(Vector3::new(about.cos(), about.sin(), 0.0) * tilt))
             * rotation::about(2, between(&mut draw, -1.5, 1.5));
-        let place = Vector2::new(between(&mut draw, 0.2, 0.8) * size[0], between(&mut draw, 0.2, 0.8) * size[1]);
+        let place =
+            Vector2::new(between(&mut draw, 0.2, 0.8) * size[0], between(&mut draw, 0.2, 0.8) * size[1]);
         let ray = Vector3::new((place.x - centre[0]) / focal, (place.y - centre[1]) / focal, 1.0);
         let depth = far * (1.0 + views.deep * between(&mut draw, -1.0, 1.0));
         let seen = Pose::new(turn, ray * depth - turn * middle);
         let pixels: Option<Vec<Vector2<f64>>> = board
             .points
             .iter()
-            .map(|it| lens.pixel(&seen.act(it)).filter(|it| it.x > 0.0 && it.y > 0.0 && it.x < size[0] && it.y < size[1]))
+            .map(|it| {
+                lens.pixel(&seen.act(it))
+                    .filter(|it| it.x > 0.0 && it.y > 0.0 && it.x < size[0] && it.y < size[1])
+            })
             .collect();
         let Some(pixels) = pixels else { continue };
         let mut corner = |(point, pixel): (u32, Vector2<f64>)| {
@@ -81,7 +88,10 @@ fn session(seed: u64, views: Views) -> Session {
         // What the arm states is off about what it holds, as the pictures are of where it is.
         let error = Pose::new(rotation::exp(&draw.vector(arm.1)), draw.vector(arm.0));
         found.flange.push(base_from_flange * on_flange * error * on_flange.inverse());
-        found.pictures.all.push(Picture { row: found.flange.len() as u32 - 1, ..Picture::new(0, 0, None, corners) });
+        found
+            .pictures
+            .all
+            .push(Picture { row: found.flange.len() as u32 - 1, ..Picture::new(0, 0, None, corners) });
     }
     assert_eq!(found.flange.len(), views.count, "session {seed}");
     found.pictures.boards = vec![board];
@@ -99,15 +109,19 @@ impl Session {
         };
         let views: Vec<FlatView> = pictures.all.iter().map(view).collect();
         let lens = known.unwrap_or_else(|| guessed_lens(self.lens.size_px.unwrap(), &views).unwrap());
-        pictures.cameras = vec![Camera { is_guessed: known.is_none(), ..Camera::new("camera".to_owned(), lens) }];
-        let found: Vec<Vec<Pose>> = pictures.all.iter().map(|it| pictures.view(it).unwrap().poses().unwrap()).collect();
+        pictures.cameras =
+            vec![Camera { is_guessed: known.is_none(), ..Camera::new("camera".to_owned(), lens) }];
+        let found: Vec<Vec<Pose>> =
+            pictures.all.iter().map(|it| pictures.view(it).unwrap().poses().unwrap()).collect();
         pictures.all.iter_mut().zip(found).for_each(|(picture, poses)| picture.poses = poses);
     }
 
     fn solved(&self) -> HandEye {
         let target = PoseList::of_pictures(&self.pictures).unwrap();
-        hand_eye(&self.flange.clone().into(), &target, &HandEyeOptions::of(self.camera), &|row| format!("row {row}"))
-            .unwrap()
+        hand_eye(&self.flange.clone().into(), &target, &HandEyeOptions::of(self.camera), &|row| {
+            format!("row {row}")
+        })
+        .unwrap()
     }
 
     fn truth(&self) -> &Pose {
@@ -124,7 +138,11 @@ fn bounds_hold_with_an_unknown_lens_as_often_as_promised() {
     let (mut inside_m, mut inside_rad, mut focal, mut alone, mut known, mut apart) = (0, 0, 0, 0, 0, 0);
     let mut wider = Vec::new();
     for seed in trials.seeds() {
-        let views = Views { count: 10 + (seed as usize % 4) * 5, tilt: [0.3, 0.5, 0.7][seed as usize % 3], deep: 0.25 };
+        let views = Views {
+            count: 10 + (seed as usize % 4) * 5,
+            tilt: [0.3, 0.5, 0.7][seed as usize % 3],
+            deep: 0.25,
+        };
         let session = session(seed, views);
         let found = session.solved();
         let lens = found.lens.as_ref().unwrap();
@@ -133,7 +151,9 @@ fn bounds_hold_with_an_unknown_lens_as_often_as_promised() {
         inside_m += usize::from(shift <= camera.bound95_m);
         inside_rad += usize::from(turn <= camera.bound95_rad);
         known += usize::from(shift <= lens.known_bound95_m);
-        let of = |it: &poecal_model::camera::PictureNumber| usize::from((it.found - session.lens.focal_px[0]).abs() <= 1.96 * it.deviation);
+        let of = |it: &poecal_model::camera::PictureNumber| {
+            usize::from((it.found - session.lens.focal_px[0]).abs() <= 1.96 * it.deviation)
+        };
         focal += of(&lens.numbers[0]);
         alone += of(&lens.alone[0]);
         apart += usize::from(lens.apart > 1.0);

@@ -130,7 +130,8 @@ fn lists_the_other_way_round_are_found() {
             }
             let turned: PoseList = inverted(&session.target).into();
             let stated = HandEyeOptions { target_inverted: Some(true), ..HandEyeOptions::of(camera) };
-            let stated = hand_eye(&session.flange.clone().into(), &turned, &stated, &|row| format!("row {row}"));
+            let stated =
+                hand_eye(&session.flange.clone().into(), &turned, &stated, &|row| format!("row {row}"));
             match session.read(session.flange.clone().into(), turned) {
                 Ok(found) => assert!(found.directions.target_inverted, "{camera:?}"),
                 // A camera at the other end would see the same, and the board is before it in either direction.

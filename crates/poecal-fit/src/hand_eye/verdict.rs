@@ -98,6 +98,9 @@ pub(crate) fn judge(result: &mut HandEye, scale: Option<f64>, distance_m: f64) {
             result.findings.push(Finding::new(FindingKind::Lens, statement.clone(), Vec::new()));
             weak.push(statement);
         }
+        if let Some(statement) = result.lens.as_ref().and_then(|lens| bent(&lens.numbers)) {
+            result.findings.push(Finding::new(FindingKind::Lens, statement, Vec::new()));
+        }
         let bound = result.camera_frame().bound95_m;
         if bound > NEAR * distance_m {
             weak.push(format!(
@@ -120,6 +123,19 @@ pub(crate) fn judge(result: &mut HandEye, scale: Option<f64>, distance_m: f64) {
         weak.push("something moved during the session".to_owned());
     }
     (result.level, result.reasons) = Level::of(against, weak);
+}
+
+/// A board that is bent by more than its uncertainty, which was taken into account.
+fn bent(numbers: &[PictureNumber]) -> Option<String> {
+    const EVIDENT: f64 = 4.0;
+    let bends = || numbers.iter().filter(|it| it.unit == "mm");
+    let most = bends().max_by(|a, b| a.found.abs().total_cmp(&b.found.abs()))?;
+    bends().any(|it| it.found.abs() > EVIDENT * it.deviation).then(|| {
+        format!(
+            "the board is bent by {:.2} mm from its middle to its edge, which was taken into account: mount it on a plate that is flat",
+            most.found.abs()
+        )
+    })
 }
 
 /// What an unknown lens costs, and whether pictures and arm agree on it.

@@ -69,8 +69,10 @@ pub(crate) fn poses_of_pictures(path: &Path, arm: &PoseFile, options: &ReadOptio
     refuse_wrong_boards(&found.data).map_err(|error| error.in_file(path))?;
     let pictures = &found.data.pictures;
     refuse_several(pictures).map_err(|error| error.in_file(path))?;
-    let poses = PoseList::of_pictures(pictures).map_err(|found| Error::new(ErrorKind::Measurement, found).in_file(path))?;
-    let row = |picture: &Picture| found.data.readings(picture.row as usize).first().copied().unwrap_or_default();
+    let poses = PoseList::of_pictures(pictures)
+        .map_err(|found| Error::new(ErrorKind::Measurement, found).in_file(path))?;
+    let row =
+        |picture: &Picture| found.data.readings(picture.row as usize).first().copied().unwrap_or_default();
     let rows: Vec<usize> = pictures.all.iter().map(|it| row(it) as usize).collect();
     let corners: usize = pictures.all.iter().map(|it| it.corners.len()).sum();
     let words = format!(
