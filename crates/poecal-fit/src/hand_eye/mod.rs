@@ -30,16 +30,17 @@ mod tip;
 mod touches;
 mod turns;
 mod types;
+mod unknown_lens;
 mod verdict;
 
 pub use bounds::Placed;
 pub use findings::{Finding, FindingKind};
-pub use lens::{FoundLens, UnknownLens};
 pub use readings::{PoseList, Reading};
 pub use result::hand_eye;
 pub use tip::{Tip, Tool, tool_tip};
 pub use touches::Touches;
 pub use types::{Directions, HandEye, HandEyeOptions, HeldOut, Level, Outlier, RowError, Turns};
+pub use unknown_lens::{FoundLens, UnknownLens};
 
 /// Where the camera is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -2,9 +2,9 @@
 
 use super::CameraPlace;
 use super::directions::{pairs, score};
-use super::lens::UnknownLens;
 use super::turns::{refuse_one_axis, turns};
 use super::types::{Directions, HandEyeOptions};
+use super::unknown_lens::UnknownLens;
 use nalgebra::{Matrix3, Vector3};
 use poecal_arm::lie::Pose;
 use poecal_numerics::error::{Error, ErrorKind, Result};

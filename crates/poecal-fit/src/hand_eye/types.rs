@@ -5,7 +5,7 @@ use nalgebra::Vector3;
 use super::CameraPlace;
 use super::bounds::Placed;
 use super::findings::Finding;
-use super::lens::FoundLens;
+use super::unknown_lens::FoundLens;
 
 /// Directions of the poses of two lists.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
