@@ -162,7 +162,7 @@ fn at_other_end(distances: Distances, camera: CameraPlace, (arm, target): (bool,
         instead.push("--flange flange-from-base if the poses of the arm are inverted");
     }
     if target {
-        instead.push("--target target-from-camera if those of the target are");
+        instead.push("--target target-from-camera if those of the target are inverted");
     }
     let instead = match instead.is_empty() {
         true => String::new(),

@@ -19,7 +19,7 @@ struct Session {
 /// within reach, a camera up to twice as far. Every second board has its z axis towards the camera.
 fn session(seed: u64) -> Session {
     let mut draw = Draw::new(seed + 71);
-    let camera = if seed % 2 == 0 { CameraPlace::InHand } else { CameraPlace::Beside };
+    let camera = [CameraPlace::InHand, CameraPlace::Beside][seed as usize % 2];
     let mut between = |from: f64, to: f64| from + (to - from) * draw.uniform();
     let reach = 0.3 * 10f64.powf(between(0.0, 1.0));
     let held = between(0.02, 1.0) * 0.5f64.min(0.3 * reach);
@@ -27,7 +27,7 @@ fn session(seed: u64) -> Session {
     let away = reach * if camera == CameraPlace::InHand { between(0.35, 0.9) } else { between(0.8, 1.9) };
     let far = reach * if camera == CameraPlace::InHand { between(0.25, 0.6) } else { 0.0 };
     let noise = 10f64.powf(between(-4.0, -2.5));
-    let side = if seed / 2 % 2 == 0 { std::f64::consts::PI } else { 0.0 };
+    let side = [std::f64::consts::PI, 0.0][seed as usize / 2 % 2];
     let count = 10 + (seed % 3) as usize * 5;
     let on_flange = Pose::new(rotation::exp(&draw.vector(1.0)), draw.vector(1.0).normalize() * held);
     let stays = Vector3::new(away * around.cos(), away * around.sin(), height);

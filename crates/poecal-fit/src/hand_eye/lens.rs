@@ -6,7 +6,7 @@
 
 use nalgebra::{DMatrix, DVector, Matrix6, Matrix6xX};
 
-use super::equations::{NUMBERS, Pair, UNKNOWNS, derivatives, errors, sight_axes};
+use super::equations::{Pair, UNKNOWNS, derivatives, errors, sight_axes};
 use super::fit::Fit;
 use super::readings::PoseList;
 use super::unknown_lens::{FoundLens, UnknownLens};
@@ -118,7 +118,7 @@ pub(crate) fn together(
     };
     let mut state = search.stepped(alone, &starts, &DVector::zeros(alone.step.len()));
     let (mut fit, mut rows) = fitted(&along(&state), None)?;
-    let mut first: Option<Apart> = None;
+    let mut first: Option<f64> = None;
     let mut normal = Normal::of(&state, &fit, &rows)?;
     for _ in 0..ROUNDS {
         let (by, gain) = normal.step()?;
@@ -132,7 +132,7 @@ pub(crate) fn together(
         (fit, rows) = fitted(&along(&state), Some(&fit))?;
         normal = Normal::of(&state, &fit, &rows)?;
     }
-    let apart = first.map_or(1.0, |it| it.factor);
+    let apart = first.unwrap_or(1.0);
     let inverse = |matrix: &DMatrix<f64>| -> Option<DMatrix<f64>> {
         let n = matrix.nrows();
         let factor = linalg::cholesky(matrix.as_slice(), n, 0.0)?;
@@ -176,11 +176,6 @@ struct Normal {
     follow: DMatrix<f64>,
 }
 
-/// Whether the lens of the pictures is that of the arm.
-struct Apart {
-    factor: f64,
-}
-
 impl Normal {
     fn of(state: &LensState, fit: &Fit, rows: &[(usize, Pair)]) -> Option<Self> {
         let count = state.step.len();
@@ -191,14 +186,13 @@ impl Normal {
             let by_lens = in_sight(pair, state.poses.get(*row)?, state.follow.get(*row)?);
             let off = errors(pair, &fit.frames);
             let by_frames = derivatives(pair, &fit.frames);
-            for number in 0..NUMBERS {
-                let weight = weights[number];
-                let by_frames = DVector::from_row_slice(&by_frames[number]);
-                let by_lens = by_lens.row(number).transpose();
+            let numbers = by_frames.iter().zip(by_lens.row_iter()).zip(off).zip(weights);
+            for (((by_frames, by_lens), off), weight) in numbers {
+                let (by_frames, by_lens) = (DVector::from_row_slice(by_frames), by_lens.transpose());
                 frames += &by_frames * by_frames.transpose() * weight;
                 mixed += &by_frames * by_lens.transpose() * weight;
                 of_arm += &by_lens * by_lens.transpose() * weight;
-                arm_pull -= &by_lens * (weight * off[number]);
+                arm_pull -= &by_lens * (weight * off);
             }
         }
         let factor = linalg::cholesky(frames.as_slice(), UNKNOWNS, 0.0)?;
@@ -217,9 +211,9 @@ impl Normal {
         Some((by, gain))
     }
 
-    /// How far the lens by the arm is from that by the pictures, at the latter: the arm's pull in the directions of which it says something is of
+    /// How many times farther than by noise the lens of the arm is from that of the pictures, at the latter; 1 where noise explains it: the arm's pull in the directions of which it says something is of
     /// variance `K + K G⁻¹ K`, with its own information K and that of the pictures G.
-    fn apart(&self, state: &LensState, fit: &Fit) -> Option<Apart> {
+    fn apart(&self, state: &LensState, fit: &Fit) -> Option<f64> {
         let count = state.step.len();
         // In units in which the pictures' information is 1: G = L Lᵀ.
         let whitened = linalg::whitened(state.information.clone(), &self.of_arm)?;
@@ -235,7 +229,7 @@ impl Normal {
         }
         let freedom = fit.noise.freedom.iter().copied().fold(f64::INFINITY, f64::min).clamp(1.0, 1e6);
         let is_apart = directions > 0.0 && squares / directions > f_quantile(CHANCE, directions, freedom);
-        Some(Apart { factor: if is_apart { (squares / directions).sqrt() } else { 1.0 } })
+        Some(if is_apart { (squares / directions).sqrt() } else { 1.0 })
     }
 }
 

@@ -33,7 +33,7 @@ struct Views {
 /// A camera of some lens that sees a board of some size, with noise of corners and of the arm.
 fn session(seed: u64, views: Views) -> Session {
     let mut draw = Draw::new(seed + 911);
-    let camera = if seed % 2 == 0 { CameraPlace::InHand } else { CameraPlace::Beside };
+    let camera = [CameraPlace::InHand, CameraPlace::Beside][seed as usize % 2];
     let between = |draw: &mut Draw, from: f64, to: f64| from + (to - from) * draw.uniform();
     let focal = between(&mut draw, 700.0, 1800.0);
     let size = [focal * between(&mut draw, 0.8, 1.2), focal * between(&mut draw, 0.6, 0.8)].map(f64::round);
