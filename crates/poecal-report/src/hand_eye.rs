@@ -4,7 +4,8 @@ use super::table::lines;
 use poecal_fit::hand_eye::{FoundLens, HandEye, Level, Placed};
 use poecal_model::camera::PictureNumber;
 use poecal_results::frame_texts::NamedFrame;
-use poecal_results::hand_eye::{ArmByJoints, HandEyeResult, lens_number_name};
+use poecal_results::hand_eye::{ArmByJoints, HandEyeResult};
+use poecal_results::lens_entries::lens_number_name;
 
 /// Where the camera is, how surely, and what to think of it, in a sentence.
 #[must_use]

@@ -4,11 +4,11 @@ use serde::Serialize;
 
 use super::frame_entries::{FindingEntry, InputsEntry, VerdictEntry, name_of};
 use super::frame_texts::NamedFrame;
+use super::lens_entries::{LensEntry, lens_text};
 use poecal_calibrate::ArmToo;
-use poecal_fit::hand_eye::{CameraPlace, Directions, FoundLens, HandEye, Placed};
+use poecal_fit::hand_eye::{CameraPlace, Directions, HandEye, Placed};
 use poecal_import as measurements;
 use poecal_import::PosePairs;
-use poecal_model::camera::PictureNumber;
 use poecal_model::measurement::{Dataset, Noise};
 use poecal_model::robot::Robot;
 use poecal_numerics::error::{ErrorKind, Result};
@@ -138,58 +138,6 @@ struct File<'a> {
     arm: Option<ArmEntry<'a>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     lens: Option<LensEntry<'a>>,
-}
-
-/// A lens that was found with the frames.
-#[derive(Serialize)]
-struct LensEntry<'a> {
-    numbers: Vec<LensNumberEntry<'a>>,
-    known_bound95_mm: f64,
-    apart: f64,
-}
-
-/// A number of a lens: as it was found, and by the pictures alone.
-#[derive(Serialize)]
-struct LensNumberEntry<'a> {
-    name: &'a str,
-    unit: &'a str,
-    value: f64,
-    sigma: f64,
-    alone: f64,
-    alone_sigma: f64,
-}
-
-impl<'a> LensEntry<'a> {
-    fn new(lens: &'a FoundLens) -> Self {
-        let number = |(found, alone): (&'a PictureNumber, &'a PictureNumber)| LensNumberEntry {
-            name: lens_number_name(found),
-            unit: &found.unit,
-            value: found.found,
-            sigma: found.deviation,
-            alone: alone.found,
-            alone_sigma: alone.deviation,
-        };
-        LensEntry {
-            numbers: lens.numbers.iter().zip(&lens.alone).map(number).collect(),
-            known_bound95_mm: 1e3 * lens.known_bound95_m,
-            apart: lens.apart,
-        }
-    }
-}
-
-/// The short name of a number of a lens, as `fx`.
-#[must_use]
-pub fn lens_number_name(number: &PictureNumber) -> &str {
-    number.name.rsplit('.').next().unwrap_or_default()
-}
-
-/// A lens as a file that `--lens` and `--camera` read.
-fn lens_text(lens: &FoundLens) -> String {
-    let [width, height] = lens.lens.size_px.unwrap_or_default();
-    let of_lens = || lens.numbers.iter().filter(|it| it.unit != "mm");
-    let names: String = of_lens().map(|it| format!("{},", lens_number_name(it))).collect();
-    let values: String = of_lens().map(|it| format!("{},", it.found)).collect();
-    format!("name,{names}width,height\ncamera,{values}{width},{height}\n")
 }
 
 /// A frame in all forms, with its bounds.

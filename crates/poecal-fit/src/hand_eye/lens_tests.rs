@@ -30,13 +30,14 @@ struct Views {
     deep: f64,
 }
 
-/// A camera of some lens that sees a board of some size, with noise of corners and of the arm.
-fn session(seed: u64, views: Views) -> Session {
-    let mut draw = Draw::new(seed + 911);
-    let camera = [CameraPlace::InHand, CameraPlace::Beside][seed as usize % 2];
-    let between = |draw: &mut Draw, from: f64, to: f64| from + (to - from) * draw.uniform();
-    let focal = between(&mut draw, 700.0, 1800.0);
-    let size = [focal * between(&mut draw, 0.8, 1.2), focal * between(&mut draw, 0.6, 0.8)].map(f64::round);
+fn between(draw: &mut Draw, from: f64, to: f64) -> f64 {
+    from + (to - from) * draw.uniform()
+}
+
+/// A lens with its focal length, the size of its picture, and its centre, pixels.
+fn drawn_lens(draw: &mut Draw) -> (Lens, f64, [f64; 2], [f64; 2]) {
+    let focal = between(draw, 700.0, 1800.0);
+    let size = [focal * between(draw, 0.8, 1.2), focal * between(draw, 0.6, 0.8)].map(f64::round);
     let mut off = || 0.01 * size[0] * draw.normal();
     let centre = [0.5 * size[0] + off(), 0.5 * size[1] + off()];
     let bent = [0.1, 0.02, 5e-4, 5e-4].map(|sigma| sigma * draw.normal());
@@ -45,6 +46,14 @@ fn session(seed: u64, views: Views) -> Session {
         size_px: Some(size.map(|it| it as u32)),
         ..Lens::pinhole([focal, focal * (1.0 + 2e-3 * draw.normal())], centre)
     };
+    (lens, focal, size, centre)
+}
+
+/// A camera of some lens that sees a board of some size, with noise of corners and of the arm.
+fn session(seed: u64, views: Views) -> Session {
+    let mut draw = Draw::new(seed + 911);
+    let camera = [CameraPlace::InHand, CameraPlace::Beside][seed as usize % 2];
+    let (lens, focal, size, centre) = drawn_lens(&mut draw);
     let board = Board::chessboard("board", [9, 7], between(&mut draw, 0.02, 0.04)).unwrap();
     let noise_px = between(&mut draw, 0.05, 0.4);
     let arm = (between(&mut draw, 5e-5, 4e-4), between(&mut draw, 1e-4, 8e-4));

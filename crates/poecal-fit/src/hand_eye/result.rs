@@ -58,15 +58,7 @@ pub fn hand_eye(
     let target_inverted = options.target_inverted.or(target.lens.as_ref().map(|_| false));
     let options = &HandEyeOptions { target_inverted, ..*options };
     let mut findings = Vec::new();
-    let (poses, rows) = other_poses::settled(&flange.poses, target, options);
-    if !rows.is_empty() {
-        let statement = format!(
-            "took another pose of the board by the same corners in {}: so the pictures agree",
-            listed(&rows, name)
-        );
-        findings.push(Finding::new(FindingKind::OtherPose, statement, rows));
-    }
-    let target = &PoseList { poses, ..target.clone() };
+    let target = &with_settled_poses(flange, target, (options, name), &mut findings);
     let mut counted = once_each(flange, target, name, &mut findings);
     refuse_few(flange, &counted)?;
     let turns = turns(&flange.poses, &counted);
@@ -88,15 +80,7 @@ pub fn hand_eye(
     }
     let fitted = |poses: &[Pose], before: Option<&Fit>| {
         let all = pairs(&flange.poses, poses, options.camera, &directions);
-        let rows: Vec<Pair> = counted.iter().map(|&row| all[row]).collect();
-        let fit = match before {
-            Some(before) => Fit::from_start(&rows, before.own_frames()),
-            None => Fit::of(&rows),
-        }?;
-        let about = fit.seen_about(&rows);
-        let kept = counted.iter().copied().zip(about).zip(&fit.kept);
-        let kept = kept.filter(|(_, kept)| **kept).map(|(row, _)| row).collect();
-        Some((fit, kept))
+        fitted_again(&all, &counted, before)
     };
     let with_lens = match &target.lens {
         Some(lens) => lens::together(lens, &target.poses, &fitted),
@@ -109,6 +93,37 @@ pub fn hand_eye(
     };
     let all = pairs(&flange.poses, &poses, options.camera, &directions);
     finished(&all, &counted, (&fit, joint, directions, turns), options.camera, findings, name)
+}
+
+/// The target's list with those of several poses that the rows agree with.
+fn with_settled_poses(
+    flange: &PoseList,
+    target: &PoseList,
+    (options, name): (&HandEyeOptions, &dyn Fn(usize) -> String),
+    findings: &mut Vec<Finding>,
+) -> PoseList {
+    let (poses, rows) = other_poses::settled(&flange.poses, target, options);
+    if !rows.is_empty() {
+        let statement = format!(
+            "took another pose of the board by the same corners in {}: so the pictures agree",
+            listed(&rows, name)
+        );
+        findings.push(Finding::new(FindingKind::OtherPose, statement, rows));
+    }
+    PoseList { poses, ..target.clone() }
+}
+
+/// The fit of some rows, from an earlier one if there is one, with the rows that count as it sees them.
+fn fitted_again(all: &[Pair], counted: &[usize], before: Option<&Fit>) -> Option<(Fit, Vec<(usize, Pair)>)> {
+    let rows: Vec<Pair> = counted.iter().map(|&row| all[row]).collect();
+    let fit = match before {
+        Some(before) => Fit::from_start(&rows, before.own_frames()),
+        None => Fit::of(&rows),
+    }?;
+    let about = fit.seen_about(&rows);
+    let kept = counted.iter().copied().zip(about).zip(&fit.kept);
+    let kept = kept.filter(|(_, kept)| **kept).map(|(row, _)| row).collect();
+    Some((fit, kept))
 }
 
 /// Leaves the poses before or after a move out; gives those that stay.
@@ -149,24 +164,10 @@ fn finished(
             "found poses that determine the camera's place in some directions only, expected turns about two axes or more: add such poses",
         );
     };
-    let factors = simulated::factors(&fit.rows(&rows), fit);
-    let by = |spread: &Spread, side: Side| {
-        let (by_m, by_rad) = factors.of(side);
-        let placed = bounded(spread, &fit.frames, &fit.point, side);
-        Placed { bound95_m: by_m * placed.bound95_m, bound95_rad: by_rad * placed.bound95_rad, ..placed }
-    };
-    let (spread, lens) = match joint {
-        Some(Joint { found, covariance, freedom, larger }) => {
-            let spread = spread.larger(larger);
-            let known_bound95_m = by(&spread, Side::Camera).bound95_m;
-            (spread.with(covariance, freedom), Some(FoundLens { known_bound95_m, ..found }))
-        }
-        None => (spread, None),
-    };
-    let side = |side: Side| by(&spread, side);
+    let ([of_camera, of_target], lens) = with_bounds(spread, &rows, fit, joint);
     let (on_flange, in_base) = match camera {
-        CameraPlace::InHand => (side(Side::Camera), side(Side::Target)),
-        CameraPlace::Beside => (side(Side::Target), side(Side::Camera)),
+        CameraPlace::InHand => (of_camera, of_target),
+        CameraPlace::Beside => (of_target, of_camera),
     };
     let is_kept = |row: usize| counted.iter().position(|it| *it == row).is_some_and(|at| fit.kept[at]);
     let frames = fit.own_frames();
@@ -201,6 +202,26 @@ fn finished(
     let distance = poecal_numerics::distributions::median(kept.iter().map(|it| it.seen.translation.norm()));
     verdict::judge(&mut result, scale, distance.unwrap_or_default());
     Ok(result)
+}
+
+/// Camera and target with their bounds, which contain the uncertainty of an unknown lens.
+fn with_bounds(
+    spread: Spread,
+    rows: &[Pair],
+    fit: &Fit,
+    joint: Option<Joint>,
+) -> ([Placed; 2], Option<FoundLens>) {
+    let factors = simulated::factors(&fit.rows(rows), fit);
+    let by = |spread: &Spread, side: Side| {
+        let (by_m, by_rad) = factors.of(side);
+        let placed = bounded(spread, &fit.frames, &fit.point, side);
+        Placed { bound95_m: by_m * placed.bound95_m, bound95_rad: by_rad * placed.bound95_rad, ..placed }
+    };
+    let both = |spread: &Spread| [Side::Camera, Side::Target].map(|side| by(spread, side));
+    let Some(Joint { found, covariance, freedom, larger }) = joint else { return (both(&spread), None) };
+    let spread = spread.larger(larger);
+    let known_bound95_m = by(&spread, Side::Camera).bound95_m;
+    (both(&spread.with(covariance, freedom)), Some(FoundLens { known_bound95_m, ..found }))
 }
 
 /// The rows that were left out of a fit of some.

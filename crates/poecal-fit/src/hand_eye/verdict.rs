@@ -59,26 +59,11 @@ pub(crate) fn judge(result: &mut HandEye, scale: Option<f64>, distance_m: f64) {
     let outliers = result.outliers.len();
     let share = outliers as f64 / (fitted + outliers).max(1) as f64;
     let (mut against, mut weak) = (Vec::new(), Vec::new());
-    let noise = result.noise[2].max(result.noise[3]);
-    if noise > NO_CAMERA {
-        let statement = format!(
-            "the poses do not fit together: orientations are off by {:.1} deg, more than the noise of any camera; check that both lists are of the same \
-             poses, their conventions of angles, and --camera",
-            noise.to_degrees()
-        );
+    if let Some(statement) = inconsistent(result, distance_m) {
         result.findings.push(Finding::new(FindingKind::Inconsistent, statement.clone(), Vec::new()));
         against.push(statement);
     }
     against.extend(said(result, FindingKind::Exchanged));
-    let places = result.noise[0].max(result.noise[1]);
-    if against.is_empty() && places > (NO_CAMERA_M * distance_m).max(0.01) {
-        let statement = format!(
-            "the poses do not fit together: places are off by {:.0} mm, more than the noise of any camera; check units, signs and origins of both lists",
-            1e3 * places
-        );
-        result.findings.push(Finding::new(FindingKind::Inconsistent, statement.clone(), Vec::new()));
-        against.push(statement);
-    }
     if share > MANY {
         against.push(format!("{outliers} of {} poses contradict the others", fitted + outliers));
     } else if share > FEW {
@@ -94,22 +79,7 @@ pub(crate) fn judge(result: &mut HandEye, scale: Option<f64>, distance_m: f64) {
         against.push(statement);
     }
     if against.is_empty() {
-        for statement in of_lens(result) {
-            result.findings.push(Finding::new(FindingKind::Lens, statement.clone(), Vec::new()));
-            weak.push(statement);
-        }
-        if let Some(statement) = result.lens.as_ref().and_then(|lens| bent(&lens.numbers)) {
-            result.findings.push(Finding::new(FindingKind::Lens, statement, Vec::new()));
-        }
-        let bound = result.camera_frame().bound95_m;
-        if bound > NEAR * distance_m {
-            weak.push(format!(
-                "the camera's position is known to {:.1} mm, {:.1} % of the {distance_m:.2} m at which it sees the target (good: up to {:.0} %)",
-                1e3 * bound,
-                100.0 * bound / distance_m,
-                100.0 * NEAR
-            ));
-        }
+        weak.extend(inaccurate(result, distance_m));
     }
     if fitted < ENOUGH {
         weak.push(format!("{fitted} poses show little of their own errors: take 15 or more"));
@@ -123,6 +93,43 @@ pub(crate) fn judge(result: &mut HandEye, scale: Option<f64>, distance_m: f64) {
         weak.push("something moved during the session".to_owned());
     }
     (result.level, result.reasons) = Level::of(against, weak);
+}
+
+/// Why poses do not fit together, if they do not.
+fn inconsistent(result: &HandEye, distance_m: f64) -> Option<String> {
+    let noise = result.noise[2].max(result.noise[3]);
+    if noise > NO_CAMERA {
+        return Some(format!(
+            "the poses do not fit together: orientations are off by {:.1} deg, more than the noise of any camera; check that both lists are of the same \
+             poses, their conventions of angles, and --camera",
+            noise.to_degrees()
+        ));
+    }
+    let places = result.noise[0].max(result.noise[1]);
+    (places > (NO_CAMERA_M * distance_m).max(0.01)).then(|| {
+        format!(
+            "the poses do not fit together: places are off by {:.0} mm, more than the noise of any camera; check units, signs and origins of both lists",
+            1e3 * places
+        )
+    })
+}
+
+/// What keeps the camera's position from being accurate: an unknown lens, whose findings are added, and a wide bound.
+fn inaccurate(result: &mut HandEye, distance_m: f64) -> Vec<String> {
+    let mut weak = of_lens(result);
+    let bent = result.lens.as_ref().and_then(|lens| bent(&lens.numbers));
+    let of_lens = weak.iter().cloned().chain(bent).map(|it| Finding::new(FindingKind::Lens, it, Vec::new()));
+    result.findings.extend(of_lens);
+    let bound = result.camera_frame().bound95_m;
+    if bound > NEAR * distance_m {
+        weak.push(format!(
+            "the camera's position is known to {:.1} mm, {:.1} % of the {distance_m:.2} m at which it sees the target (good: up to {:.0} %)",
+            1e3 * bound,
+            100.0 * bound / distance_m,
+            100.0 * NEAR
+        ));
+    }
+    weak
 }
 
 /// A board that is bent by more than its uncertainty, which was taken into account.
