@@ -103,12 +103,15 @@ impl WithLens {
     }
 }
 
-/// Refits frames and lens together, from poses of the target by the lens of the pictures alone. `fitted` fits the frames to poses, and gives
-/// the pairs of the rows that count with their numbers in the list.
+/// A fit of the frames, with the rows that count as it sees them and their numbers in the list.
+pub(crate) type Fitted = (Fit, Vec<(usize, Pair)>);
+
+/// Refits frames and lens together, from poses of the target by the lens of the pictures alone. `fitted` fits the frames to poses,
+/// from an earlier fit if there is one.
 pub(crate) fn together(
     lens: &UnknownLens,
     target: &[Pose],
-    fitted: &dyn Fn(&[Pose], Option<&Fit>) -> Option<(Fit, Vec<(usize, Pair)>)>,
+    fitted: &dyn Fn(&[Pose], Option<&Fit>) -> Option<Fitted>,
 ) -> Option<WithLens> {
     let UnknownLens { search, state: alone } = lens;
     let chosen = lens.chosen(target);

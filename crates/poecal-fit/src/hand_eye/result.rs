@@ -7,7 +7,7 @@ use super::directions::{found, pairs};
 use super::equations::{Pair, errors, sight_axes};
 use super::findings::{Finding, FindingKind, listed};
 use super::fit::{Fit, sizes};
-use super::lens::{self, Joint, WithLens};
+use super::lens::{self, Fitted, Joint, WithLens};
 use super::noise::Spread;
 use super::readings::{PoseList, least_score, misread_angles, mistaken, refuse_other_lengths};
 use super::turns::{refuse_one_axis, turns};
@@ -114,7 +114,7 @@ fn with_settled_poses(
 }
 
 /// The fit of some rows, from an earlier one if there is one, with the rows that count as it sees them.
-fn fitted_again(all: &[Pair], counted: &[usize], before: Option<&Fit>) -> Option<(Fit, Vec<(usize, Pair)>)> {
+fn fitted_again(all: &[Pair], counted: &[usize], before: Option<&Fit>) -> Option<Fitted> {
     let rows: Vec<Pair> = counted.iter().map(|&row| all[row]).collect();
     let fit = match before {
         Some(before) => Fit::from_start(&rows, before.own_frames()),
