@@ -1,15 +1,34 @@
 //! The table of a hand-eye calibration.
 
 use super::table::lines;
-use poecal_fit::hand_eye::{FindingKind, HandEye, Placed};
+use poecal_fit::hand_eye::{FoundLens, HandEye, Level, Placed};
+use poecal_model::camera::PictureNumber;
 use poecal_results::frame_texts::NamedFrame;
 use poecal_results::hand_eye::{ArmByJoints, HandEyeResult};
+use poecal_results::lens_entries::lens_number_name;
 
 /// Where the camera is, how surely, and what to think of it, in a sentence.
 #[must_use]
 pub fn hand_eye_answer(result: &HandEyeResult<'_>) -> String {
     let [(frame, placed), _] = result.frames();
     format!("{}: {}", result.found.level.words(), in_parent(&frame, &placed))
+}
+
+/// A level with the bound of what was found, unless nothing holds.
+pub(crate) fn with_bound(level: Level, what: &str, bound_m: f64) -> String {
+    match level {
+        Level::DoNotUse => level.words().to_owned(),
+        Level::Good | Level::WithinBounds => {
+            let bound_mm = 1e3 * bound_m;
+            format!("{}: {what} within {bound_mm:.*} mm (95 %)", level.words(), decimals(bound_mm))
+        }
+    }
+}
+
+/// Decimals that show two digits of an uncertainty.
+pub(crate) fn decimals(uncertainty: f64) -> usize {
+    let first = if uncertainty > 0.0 { uncertainty.log10().floor() } else { 0.0 };
+    (1.0 - first).clamp(0.0, 9.0) as usize
 }
 
 /// Where a frame is in its parent, and how surely.
@@ -29,7 +48,10 @@ pub fn hand_eye(result: &HandEyeResult<'_>) -> String {
     let mut out = String::new();
     let mut say = |label: &str, text: &str| lines(&mut out, label, text.lines());
     let reasons: String = found.reasons.iter().map(|it| format!("\n{it}")).collect();
-    say("verdict", &format!("{}{reasons}", found.level.words()));
+    say(
+        "verdict",
+        &format!("{}{reasons}", with_bound(found.level, "camera", found.camera_frame().bound95_m)),
+    );
     let [camera, target] = result.frames();
     for (label, (frame, placed)) in [("camera", &camera), ("target", &target)] {
         say(label, &place(frame, placed));
@@ -46,16 +68,33 @@ pub fn hand_eye(result: &HandEyeResult<'_>) -> String {
             ),
         );
     }
+    if let Some(lens) = &found.lens {
+        say("lens", &lens_words(lens));
+    }
     say("noise", &noise(found));
     let fitted = found.rows.iter().filter(|it| it.is_fitted).count();
     say("poses", &format!("{fitted} of {} fitted; {}", found.rows.len(), found.directions.words()));
     if let Some(arm) = result.arm {
         say("arm", &arm_words(arm));
     }
-    for finding in found.findings.iter().filter(|it| !said(found, it.kind)) {
+    for finding in found.findings.iter().filter(|it| !found.reasons.contains(&it.statement)) {
         say("look at", &finding.statement);
     }
     out
+}
+
+/// The numbers of a lens that was found, each with its standard deviation.
+fn lens_words(lens: &FoundLens) -> String {
+    let number = |it: &PictureNumber| {
+        let decimals = decimals(it.deviation);
+        format!("{} {:.decimals$} ± {:.decimals$}", lens_number_name(it), it.found, it.deviation)
+    };
+    let of = |unit: &str| -> Vec<String> {
+        lens.numbers.iter().filter(|it| it.unit == unit).map(number).collect()
+    };
+    let bend = of("mm");
+    let bend = if bend.is_empty() { String::new() } else { format!("; board: {} mm", bend.join(", ")) };
+    format!("{} px; {}{bend} (± standard deviation)", of("px").join(", "), of("").join(", "))
 }
 
 /// Which arm predicts poses better, and the command that fits it.
@@ -67,7 +106,8 @@ fn arm_words(arm: &ArmByJoints) -> String {
             let (held, fitted, rows) = (of(errors.held), of(errors.fitted), errors.rows);
             if errors.is_better() {
                 format!(
-                    "fitted with the camera it predicts {rows} other poses better: {fitted} (RMS) instead of {held} as it is:\n{command}"
+                    "fitted with the camera it predicts {rows} other poses {:.1} times better: {fitted} (RMS) instead of {held} as it is:\n{command}",
+                    errors.gain()
                 )
             } else {
                 format!(
@@ -76,20 +116,6 @@ fn arm_words(arm: &ArmByJoints) -> String {
             }
         }
         Err(reason) => format!("as it is; it was not fitted with the camera: {reason}"),
-    }
-}
-
-/// Whether a finding is among the reasons of the verdict.
-fn said(found: &HandEye, kind: FindingKind) -> bool {
-    match kind {
-        FindingKind::MissingMoves => found.level != poecal_fit::hand_eye::Level::DoNotUse,
-        FindingKind::Scale | FindingKind::Inconsistent => true,
-        FindingKind::Inverted
-        | FindingKind::Repeated
-        | FindingKind::OtherPose
-        | FindingKind::Moved
-        | FindingKind::Flipped
-        | FindingKind::Outliers => false,
     }
 }
 

@@ -1,8 +1,8 @@
 //! The table of a tool's tip.
 
+use super::hand_eye::{decimals, with_bound};
 use super::table::lines;
 use poecal_fit::hand_eye::{Tip, Tool};
-use poecal_results::frame_texts::tool_forms;
 use poecal_results::tcp::ToolResult;
 
 /// Where the tip is, how surely, and what to think of it, in a sentence.
@@ -17,7 +17,11 @@ fn tip_words(tip: &Tip) -> String {
     let t = 1e3 * tip.placed.pose.translation;
     let name = if tip.name.is_empty() { String::new() } else { format!("{}: ", tip.name) };
     let bound_mm = 1e3 * tip.placed.bound95_m;
-    format!("{name}({:.3}, {:.3}, {:.3}) mm in the flange; 95 % within {bound_mm:.3} mm", t.x, t.y, t.z)
+    let digits = decimals(bound_mm);
+    format!(
+        "{name}({:.digits$}, {:.digits$}, {:.digits$}) mm in the flange; 95 % within {bound_mm:.digits$} mm",
+        t.x, t.y, t.z
+    )
 }
 
 /// The table of a result.
@@ -27,7 +31,8 @@ pub fn tool_tip(result: &ToolResult<'_>) -> String {
     let mut out = String::new();
     let mut say = |label: &str, text: &str| lines(&mut out, label, text.lines());
     let reasons: String = found.reasons.iter().map(|it| format!("\n{it}")).collect();
-    say("verdict", &format!("{}{reasons}", found.level.words()));
+    let bound = found.tips.iter().map(|it| it.placed.bound95_m).fold(0.0, f64::max);
+    say("verdict", &format!("{}{reasons}", with_bound(found.level, "tip", bound)));
     for tip in &found.tips {
         say("tip", &tip_words(tip));
     }
@@ -57,18 +62,8 @@ pub fn tool_tip(result: &ToolResult<'_>) -> String {
     for finding in found.findings.iter().filter(|it| !is_said(&it.statement)) {
         say("look at", &finding.statement);
     }
-    for pair in tool_forms(&result.frame().pose).lines().collect::<Vec<_>>().chunks(2) {
-        if let [name, text] = pair {
-            say(maker(name), text);
-        }
+    for form in result.forms() {
+        say(form.maker, &form.text);
     }
     out
-}
-
-/// The short name of a form.
-fn maker(comment: &str) -> &'static str {
-    ["KUKA", "FANUC", "ABB", "UR"]
-        .into_iter()
-        .find(|it| comment.contains(it) || *it == "UR" && comment.contains("Universal"))
-        .unwrap_or("tool")
 }

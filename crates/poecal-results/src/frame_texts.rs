@@ -131,6 +131,25 @@ impl NamedFrame {
             + &matrix(&format!("{}_from_{}", self.parent, self.child), 4, 4, self.matrix().as_flattened())
     }
 
+    /// Its place alone, where its orientation was not measured.
+    #[must_use]
+    pub fn position_forms(&self) -> String {
+        let millimetres: Vec<f64> = self.pose.translation.iter().map(|it| 1e3 * it).collect();
+        let name = format!("{} from {}, position only", self.parent, self.child);
+        [
+            format!("# {name}: x y z (m)"),
+            listed(self.pose.translation.as_slice(), " "),
+            format!("# {name}: X Y Z (mm)"),
+            listed(&millimetres, " "),
+            format!("# {name}: ROS 2, with the axes of the flange"),
+            self.static_transform_publisher(),
+            format!("# {name}: URDF, with the axes of the flange"),
+            self.urdf_joint(),
+        ]
+        .join("\n")
+            + "\n"
+    }
+
     /// All short forms, each under its name.
     #[must_use]
     pub fn short_forms(&self) -> String {
@@ -161,24 +180,98 @@ impl NamedFrame {
     }
 }
 
-/// A tool's tip (and its axes) in the forms of controllers.
+/// What is known of a tool: lengths and, if its direction was measured, angles within which it is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ToolBounds {
+    /// Of the tip, metres.
+    pub tip_m: f64,
+    /// Of the direction, radians; none if it was not measured.
+    pub axis_rad: Option<f64>,
+}
+
+/// A tool in the form of a maker of controllers.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ToolForm {
+    /// The maker's short name.
+    pub maker: &'static str,
+    /// Its language and units, with what is not known and stays as the controller has it.
+    pub remark: String,
+    /// The text to paste, or the numbers to type.
+    pub text: String,
+}
+
+/// Decimals that show a tenth of a bound.
+fn known_to(bound: f64) -> usize {
+    if bound > 0.0 { (1.0 - bound.log10().floor()).clamp(0.0, 9.0) as usize } else { 9 }
+}
+
+/// A number with these decimals, without `-0`.
+fn with_decimals(value: f64, decimals: usize) -> String {
+    let text = format!("{value:.decimals$}");
+    match text.trim_start_matches(['-', '0', '.']).is_empty() {
+        true => text.trim_start_matches('-').to_owned(),
+        false => text,
+    }
+}
+
+/// A tool's tip, and its axes if its direction was measured, in the forms of controllers: with as many digits as are known, and without a mass.
 #[must_use]
-pub fn tool_forms(pose: &Pose) -> String {
-    let [x, y, z] = [0, 1, 2].map(|k| number(1e3 * pose.translation[k]));
-    let [roll, pitch, yaw] = rotation::to_rpy(&pose.rotation).map(|it| number(it.to_degrees()));
+pub fn tool_forms(pose: &Pose, bounds: ToolBounds) -> Vec<ToolForm> {
+    let (mm, m) = (known_to(1e3 * bounds.tip_m), known_to(bounds.tip_m));
+    let [x, y, z] = [0, 1, 2].map(|k| with_decimals(1e3 * pose.translation[k], mm));
+    let [ux, uy, uz] = [0, 1, 2].map(|k| with_decimals(pose.translation[k], m));
+    let form = |maker: &'static str, remark: String, text: String| ToolForm { maker, remark, text };
+    let Some(axis) = bounds.axis_rad else {
+        let keep = |angles: &str| format!("position only, keep your {angles}");
+        return vec![
+            form(
+                "KUKA",
+                format!("KUKA, mm; {}", keep("A, B, C")),
+                format!("X {x}, Y {y}, Z {z}  (keep your A, B, C)"),
+            ),
+            form(
+                "FANUC",
+                format!("FANUC, UTOOL, mm; {}", keep("W, P, R")),
+                format!("X {x}  Y {y}  Z {z}  (keep your W, P, R)"),
+            ),
+            form(
+                "ABB",
+                format!("ABB (RAPID), mm; {} and load", keep("orientation")),
+                format!("tPoecal.tframe.trans := [{x},{y},{z}];"),
+            ),
+            form(
+                "UR",
+                format!("Universal Robots (URScript), m; {}", keep("RX, RY, RZ")),
+                format!("tcp = get_tcp_offset()\nset_tcp(p[{ux}, {uy}, {uz}, tcp[3], tcp[4], tcp[5]])"),
+            ),
+        ];
+    };
+    let (deg, rad) = (known_to(axis.to_degrees()), known_to(axis));
+    let [roll, pitch, yaw] = rotation::to_rpy(&pose.rotation).map(|it| with_decimals(it.to_degrees(), deg));
     let [qx, qy, qz, qw] = pose.quaternion_xyzw().map(number);
     let [rx, ry, rz]: [f64; 3] = rotation::log(&pose.rotation).into();
-    let metres = listed(pose.translation.as_slice(), ", ");
-    [
-        "# KUKA (KRL), mm and deg".to_owned(),
-        format!("$TOOL = {{X {x}, Y {y}, Z {z}, A {yaw}, B {pitch}, C {roll}}}"),
-        "# FANUC, UTOOL, mm and deg".to_owned(),
-        format!("X {x}  Y {y}  Z {z}  W {roll}  P {pitch}  R {yaw}"),
-        "# ABB (RAPID), mm; set mass and centre of gravity".to_owned(),
-        format!("PERS tooldata tPoecal := [TRUE,[[{x},{y},{z}],[{qw},{qx},{qy},{qz}]],[1,[0,0,1],[1,0,0,0],0,0,0]];"),
-        "# Universal Robots (URScript), m and rad".to_owned(),
-        format!("set_tcp(p[{metres}, {}])", listed(&[rx, ry, rz], ", ")),
+    let [rx, ry, rz] = [rx, ry, rz].map(|it| with_decimals(it, rad));
+    let turn = "the turn about the tool's axis was not measured";
+    vec![
+        form(
+            "KUKA",
+            format!("KUKA (KRL), mm and deg; {turn}"),
+            format!("$TOOL = {{X {x}, Y {y}, Z {z}, A {yaw}, B {pitch}, C {roll}}}"),
+        ),
+        form(
+            "FANUC",
+            format!("FANUC, UTOOL, mm and deg; {turn}"),
+            format!("X {x}  Y {y}  Z {z}  W {roll}  P {pitch}  R {yaw}"),
+        ),
+        form(
+            "ABB",
+            format!("ABB (RAPID), mm; {turn}; keep your load"),
+            format!("tPoecal.tframe := [[{x},{y},{z}],[{qw},{qx},{qy},{qz}]];"),
+        ),
+        form(
+            "UR",
+            format!("Universal Robots (URScript), m and rad; {turn}"),
+            format!("set_tcp(p[{ux}, {uy}, {uz}, {rx}, {ry}, {rz}])"),
+        ),
     ]
-    .join("\n")
-        + "\n"
 }

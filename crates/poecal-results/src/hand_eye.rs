@@ -4,6 +4,7 @@ use serde::Serialize;
 
 use super::frame_entries::{FindingEntry, InputsEntry, VerdictEntry, name_of};
 use super::frame_texts::NamedFrame;
+use super::lens_entries::{LensEntry, lens_text};
 use poecal_calibrate::ArmToo;
 use poecal_fit::hand_eye::{CameraPlace, Directions, HandEye, Placed};
 use poecal_import as measurements;
@@ -135,6 +136,8 @@ struct File<'a> {
     findings: Vec<FindingEntry<'a>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     arm: Option<ArmEntry<'a>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    lens: Option<LensEntry<'a>>,
 }
 
 /// A frame in all forms, with its bounds.
@@ -318,6 +321,7 @@ impl HandEyeResult<'_> {
                 .collect(),
             findings: FindingEntry::all(&found.findings, &self.poses.names),
             arm: self.arm.map(ArmEntry::new),
+            lens: found.lens.as_ref().map(LensEntry::new),
         };
         json_text(&file, "result")
     }
@@ -357,6 +361,7 @@ impl HandEyeResult<'_> {
             ("rows.csv", self.rows_text()),
         ];
         texts.extend(self.arm.map(|arm| ("session.csv", arm.session.clone())));
+        texts.extend(self.found.lens.as_ref().map(|lens| ("lens.csv", lens_text(lens))));
         texts
     }
 }

@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::frame_entries::{FindingEntry, InputsEntry, VerdictEntry, name_of};
-use super::frame_texts::{NamedFrame, tool_forms};
+use super::frame_texts::{NamedFrame, ToolBounds, ToolForm, tool_forms};
 use poecal_fit::hand_eye::Tool;
 use poecal_import::FlangePoses;
 use poecal_numerics::error::Result;
@@ -58,8 +58,10 @@ struct AxisEntry {
 #[derive(Serialize)]
 struct ToolEntry {
     position_m: [f64; 3],
-    quaternion_xyzw: [f64; 4],
-    matrix: [[f64; 4]; 4],
+    #[serde(skip_serializing_if = "Option::is_none")]
+    quaternion_xyzw: Option<[f64; 4]>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    matrix: Option<[[f64; 4]; 4]>,
     controllers: String,
 }
 
@@ -68,6 +70,18 @@ impl ToolResult<'_> {
     #[must_use]
     pub fn frame(&self) -> NamedFrame {
         NamedFrame { parent: "tool0".to_owned(), child: "tcp".to_owned(), pose: self.found.frame }
+    }
+
+    /// The tool in the forms of controllers.
+    #[must_use]
+    pub fn forms(&self) -> Vec<ToolForm> {
+        let tip_m = self.found.tips.first().map_or(0.0, |it| it.placed.bound95_m);
+        tool_forms(&self.found.frame, ToolBounds { tip_m, axis_rad: self.found.axis.map(|it| it.1) })
+    }
+
+    /// The same as text, each under its remark.
+    fn forms_text(&self) -> String {
+        self.forms().iter().map(|it| format!("# {}\n{}\n", it.remark, it.text)).collect()
     }
 
     fn name(&self, row: usize) -> &str {
@@ -106,9 +120,9 @@ impl ToolResult<'_> {
             }),
             tool: ToolEntry {
                 position_m: frame.pose.translation.into(),
-                quaternion_xyzw: frame.pose.quaternion_xyzw(),
-                matrix: frame.matrix(),
-                controllers: tool_forms(&frame.pose),
+                quaternion_xyzw: found.axis.map(|_| frame.pose.quaternion_xyzw()),
+                matrix: found.axis.map(|_| frame.matrix()),
+                controllers: self.forms_text(),
             },
             touches: found.rows.len(),
             fitted: found.rows.len() - found.outliers.len(),
@@ -129,6 +143,7 @@ impl ToolResult<'_> {
             rows += &format!("{},{name},{},{:.6}\n", row + 1, u8::from(error.is_fitted), 1e3 * error.shift_m);
         }
         let frame = self.frame();
-        vec![("transforms.txt", frame.short_forms() + "\n" + &tool_forms(&frame.pose)), ("rows.csv", rows)]
+        let forms = if self.found.axis.is_some() { frame.short_forms() } else { frame.position_forms() };
+        vec![("transforms.txt", forms + "\n" + &self.forms_text()), ("rows.csv", rows)]
     }
 }

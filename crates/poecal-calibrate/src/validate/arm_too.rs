@@ -25,8 +25,30 @@ impl ArmToo {
     /// Whether the fitted arm predicts these poses evidently better.
     #[must_use]
     pub fn is_better(&self) -> bool {
-        const EVIDENT: f64 = 0.9;
-        self.fitted.0 < EVIDENT * self.held.0
+        const EVIDENT: f64 = 1.0 / 0.9;
+        self.gain() > EVIDENT
+    }
+
+    /// How many times nearer to these poses the fitted arm is.
+    #[must_use]
+    pub fn gain(&self) -> f64 {
+        self.held.0 / self.fitted.0.max(f64::MIN_POSITIVE)
+    }
+
+    /// Why the frames are no better than within their bounds, if they are so because the arm's own errors are most of what remains of the poses: these
+    /// follow the poses, while the bounds take them for noise.
+    #[must_use]
+    pub fn weakens(&self) -> Option<String> {
+        const MOST: f64 = 2.0;
+        (self.gain() > MOST).then(|| {
+            format!(
+                "the arm's own errors are most of what remains: fitted with the camera it predicts other poses {:.1} times better ({:.2} mm instead of \
+                 {:.2} mm, RMS)",
+                self.gain(),
+                self.fitted.0,
+                self.held.0
+            )
+        })
     }
 }
 

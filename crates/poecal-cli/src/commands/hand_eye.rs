@@ -36,9 +36,11 @@ pub(crate) fn hand_eye(arguments: &HandEye, typed: &[OsString], console: &Consol
         flange_inverted: arguments.flange.or(model.is_some().then_some(false)),
         target_inverted: arguments.target.or(is_of_corners.then_some(false)),
     };
-    let found = calibrated(&poses.flange, &poses.target, &options, &row_name(&poses.names))?;
+    let mut found = calibrated(&poses.flange, &poses.target, &options, &row_name(&poses.names))?;
     let command = command(typed);
     let arm = robot.map(|robot| by_joints(robot, &poses, &found, arguments)).transpose()?;
+    let weakens = arm.as_ref().and_then(|arm| arm.errors.as_ref().ok()?.weakens());
+    weakens.into_iter().for_each(|reason| found.weaken(reason));
     let names =
         arguments.frames.clone().unwrap_or_else(|| robot.map_or_else(FrameNames::default, FrameNames::of));
     let result =

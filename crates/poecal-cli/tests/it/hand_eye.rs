@@ -248,6 +248,24 @@ fn tips_of_tools_are_found_with_their_direction_and_wrong_touches() {
     assert!((number(&found["tips"][0]["position_m"][2]) - 0.152).abs() < 5e-5, "{found}");
     assert!(number(&found["axis"]["direction"][2]) > 0.9999, "{found}");
     assert_eq!(found["outliers"], serde_json::json!(["line 6"]));
+    assert!(found["tool"]["matrix"].is_array(), "{found}");
+    // One tip shows no direction, and no touch a mass: none of both is printed.
+    let one: Vec<&str> = lines
+        .iter()
+        .filter(|it| !it.ends_with("shaft"))
+        .filter_map(|it| it.rsplit_once(','))
+        .map(|it| it.0)
+        .collect();
+    fs::write(folder.path("one.csv"), one.join("\n")).unwrap();
+    let said = folder.done("tcp one.csv --out tip");
+    assert!(said.contains("good: tip within") || said.contains("bounds: tip within"), "{said}");
+    let texts = [said, folder.read("tip/transforms.txt"), folder.read("tip/tcp.json")].concat();
+    for never in ["A 0", "tooldata", "[1,[0,0,1]", "\"matrix\"", "quaternion"] {
+        assert!(!texts.contains(never), "{never}: {texts}");
+    }
+    for always in ["keep your A, B, C", "tPoecal.tframe.trans := [12.0", "get_tcp_offset()"] {
+        assert!(texts.contains(always), "{always}: {texts}");
+    }
     let two: Vec<&String> = lines.iter().take(3).collect();
     fs::write(folder.path("two.csv"), two.iter().map(|it| it.as_str()).collect::<Vec<_>>().join("\n"))
         .unwrap();
@@ -326,7 +344,40 @@ fn corners_of_pictures_give_the_same_camera_whichever_corner_is_named_first() {
         assert!((of(&plain, k) - of(&turned, k)).abs() < 1e-6, "{plain} {turned}");
     }
     assert_eq!(turned["findings"][0]["kind"], "other_pose", "{turned}");
+    let unknown: serde_json::Value = serde_json::from_str(&folder.done(
+        &format!("hand-eye arm.csv corners.csv {run} --out found").replace("lens.csv", "unknown:640x480"),
+    ))
+    .unwrap();
+    let numbers = unknown["lens"]["numbers"].as_array().unwrap();
+    let value = |number: &serde_json::Value, key: &str| number[key].as_f64().unwrap();
+    for (number, truth) in numbers.iter().zip([800.0, 800.0, 319.5, 239.5, 0.0, 0.0, 0.0, 0.0]) {
+        let (off, sigma) = (value(number, "value") - truth, value(number, "sigma"));
+        // One of eight is beyond 4 deviations once in 2,000.
+        assert!(off.abs() < 4.0 * sigma && sigma > 0.0, "{number}");
+    }
+    let bound = |found: &serde_json::Value| found["camera_frame"]["bound95_mm"].as_f64().unwrap();
+    assert!(bound(&unknown) > bound(&plain), "{unknown}");
+    for (k, truth) in [0.04, -0.06, 0.09].into_iter().enumerate() {
+        assert!((of(&unknown, k) - truth).abs() < 1.5e-3 * bound(&unknown), "{unknown}");
+    }
+    let said = folder.done(
+        "hand-eye arm.csv corners.csv --camera in-hand --lens unknown:640x480 --markers chessboard:6x5:30mm",
+    );
+    assert!(said.contains("\nlens          fx ") && said.contains(": camera within "), "{said}");
+    // The lens that was found is one that can be stated, and gives the same camera.
+    fs::copy(folder.path("found/lens.csv"), folder.path("again.csv")).unwrap();
+    let again: serde_json::Value = serde_json::from_str(
+        &folder.done(&format!("hand-eye arm.csv corners.csv {run}").replace("lens.csv", "again.csv")),
+    )
+    .unwrap();
+    for k in 0..3 {
+        assert!((of(&again, k) - of(&unknown, k)).abs() < 1e-3 * bound(&unknown), "{again} {unknown}");
+    }
     for (words, expected) in [
+        (
+            "hand-eye arm.csv corners.csv --camera beside --lens lens.csv --markers chessboard:6x5:30mm --out wrong",
+            "run with --camera in-hand",
+        ),
         (
             "hand-eye arm.csv corners.csv --camera in-hand --markers chessboard:6x5:30mm",
             "expected --lens FILE",

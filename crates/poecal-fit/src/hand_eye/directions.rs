@@ -1,11 +1,17 @@
-//! Which way round the two lists of poses are.
+//! Which way round the two lists of poses are, and whether the camera is where it is said to be.
+//!
+//! A camera in the hand whose arm's poses are inverted has the equations of a camera beside the robot, with camera and target exchanged. So the
+//! fit shows only whether an odd number of these three is other than stated: the camera's end, the arm's list, the target's list. Which one it is
+//! follows from where camera and target would then be.
 
 use super::CameraPlace;
 use super::equations::{Frames, Pair};
+use super::findings::{Finding, FindingKind};
 use super::fit::{STARTS, medians, start};
 use super::types::{Directions, HandEyeOptions};
 use poecal_arm::lie::Pose;
-use poecal_numerics::error::{ErrorKind, Result};
+use poecal_numerics::distributions::median;
+use poecal_numerics::error::{Error, ErrorKind, Result};
 
 /// The pairs of two lists, read in these directions.
 pub(crate) fn pairs(flange: &[Pose], target: &[Pose], camera: CameraPlace, by: &Directions) -> Vec<Pair> {
@@ -28,133 +34,162 @@ pub(crate) fn score(pairs: &[Pair]) -> Option<(f64, Frames, (f64, f64))> {
 
 /// How much smaller the product of the median errors must be for a direction to be the better one.
 const BETTER: f64 = 2.0;
-/// How many times nearer to its parent a camera in the hand is than the board, if the directions follow from that.
-const NEARER: f64 = 1.5;
+/// Median angle, radians, above which poses fit in no direction.
+const NO_FIT: f64 = 0.1;
+/// Largest distance from the flange of what is on it, as a share of the median distance of the flange from the base: a reach is 1.3 to 1.6 of
+/// these distances, so this is about a third of the reach.
+const FARTHEST: f64 = 0.5;
+/// How many times farther from the base what stays is, at least, than what is on the flange is from the flange: nearer, it would be inside the
+/// robot.
+const FARTHER: f64 = 2.0;
 
-/// A direction with how well it fits.
-struct Candidate {
-    directions: Directions,
-    score: f64,
-    frames: Frames,
+/// Where camera and target would be.
+#[derive(Clone, Copy)]
+struct Distances {
+    /// Of what is on the flange from it, metres.
+    on_flange: f64,
+    /// Of what stays from the base, metres.
+    in_base: f64,
+    /// Median distance of the flange from the base, metres: the same of inverted poses.
+    of_flange: f64,
 }
 
-/// The directions in which the lists fit, and a sentence if they are not the usual ones.
+impl Distances {
+    fn of(frames: &Frames, flange: &[Pose], camera: CameraPlace) -> Self {
+        let (of_camera, of_target) = (frames.outer.translation.norm(), frames.inner.translation.norm());
+        let (on_flange, in_base) = match camera {
+            CameraPlace::InHand => (of_camera, of_target),
+            CameraPlace::Beside => (of_target, of_camera),
+        };
+        let of_flange = median(flange.iter().map(|it| it.translation.norm())).unwrap_or_default();
+        Distances { on_flange, in_base, of_flange }
+    }
+
+    /// With what is on the flange and what stays exchanged.
+    fn exchanged(self) -> Self {
+        Distances { on_flange: self.in_base, in_base: self.on_flange, ..self }
+    }
+
+    /// Whether a robot can be so: what is on the flange is near it, and what stays is outside the base.
+    fn is_plausible(self) -> bool {
+        self.on_flange <= FARTHEST * self.of_flange && self.in_base >= FARTHER * self.on_flange
+    }
+
+    /// Where both are, in words.
+    fn words(self, camera: CameraPlace) -> String {
+        let mm = |metres: f64| 1e3 * metres;
+        format!(
+            "the {} {:.0} mm from the flange and the {} {:.0} mm from the base",
+            camera.on_flange(),
+            mm(self.on_flange),
+            camera.in_base(),
+            mm(self.in_base)
+        )
+    }
+}
+
+/// Which directions of the target's list its poses allow: a camera sees what is in front of it.
+fn seen(target: &[Pose]) -> (bool, bool) {
+    let is_before = |it: &Pose| it.translation.z > 0.0 && it.translation.xy().norm() < it.translation.z;
+    let as_read = target.iter().all(is_before);
+    let turned = target.iter().all(|it| is_before(&it.inverse()));
+    // Neither: the axes of its camera are others than OpenCV's, and nothing follows.
+    (as_read || !turned, turned || !as_read)
+}
+
+/// The directions in which the lists fit, and a sentence if they are not the usual ones; with whether camera and target lie as if they were
+/// exchanged.
 ///
-/// Both lists the other way round fit as well, with the two frames exchanged: then what is on the flange is nearer to it than what stays
-/// is to the base.
+/// # Errors
+/// [`ErrorKind::Problem`] if the poses fit in no direction, if the camera is at the other end, or if it cannot be said which of both is
+/// other than stated.
 pub(crate) fn found(
     flange: &[Pose],
     target: &[Pose],
     options: &HandEyeOptions,
-) -> Result<(Directions, Option<String>)> {
+) -> Result<(Directions, Option<Finding>)> {
     let camera = options.camera;
+    let fit = |directions: &Directions| score(&pairs(flange, target, camera, directions));
     let stated = options.flange_inverted.is_some() && options.target_inverted.is_some();
-    let allowed = |stated: Option<bool>| match stated {
-        Some(it) => vec![it],
-        None => vec![false, true],
+    let usual = Directions {
+        flange_inverted: options.flange_inverted.unwrap_or(false),
+        target_inverted: options.target_inverted.unwrap_or(false),
+        stated,
     };
-    let mut candidates = Vec::new();
-    for flange_inverted in allowed(options.flange_inverted) {
-        for target_inverted in allowed(options.target_inverted) {
-            let directions = Directions { flange_inverted, target_inverted, stated };
-            if let Some((score, frames, _)) = score(&pairs(flange, target, camera, &directions)) {
-                candidates.push(Candidate { directions, score, frames });
-            }
-        }
-    }
-    let Some(usual) = candidates.first() else {
+    let inverted = Directions { flange_inverted: !usual.flange_inverted, ..usual };
+    let (as_usual, as_inverted) = (fit(&usual), fit(&inverted));
+    let Some((least, frames, _)) = as_usual else {
         return ErrorKind::Problem.refuse(
             "found poses from which no frame can be computed, expected poses that turn about two axes or more: turn the flange further",
         );
     };
-    // Both lists inverted are the same equations as none, and one is the same as the other.
-    let is_mixed = |it: &Candidate| it.directions.flange_inverted != it.directions.target_inverted;
-    let least = |mixed: bool| {
-        let own = candidates.iter().filter(|it| is_mixed(it) == mixed);
-        own.map(|it| it.score).fold(f64::INFINITY, f64::min)
+    let better = as_inverted.filter(|(score, _, (_, turn))| *score < least - BETTER.ln() && *turn < NO_FIT);
+    let (may_be_as_read, may_be_turned) = seen(target);
+    let target_is_open = options.target_inverted.is_none() && may_be_turned;
+    let arm_is_open = options.flange_inverted.is_none();
+    let Some((_, frames_inverted, _)) = better else {
+        let distances = Distances::of(&frames, flange, camera);
+        let is_exchanged = !distances.is_plausible() && distances.on_flange > distances.in_base;
+        let is_open = !stated && (arm_is_open || target_is_open);
+        return Ok((usual, (is_open && is_exchanged).then(|| exchanged(distances, camera))));
     };
-    let mixed_is_better = least(true) < least(false) - BETTER.ln();
-    if candidates.len() == 1 {
-        return Ok((usual.directions, None));
+    // Of the arm's list inverted; of the target's list inverted, and of the other end, camera and target are exchanged.
+    let distances = Distances::of(&frames_inverted, flange, camera);
+    let target_as_stated = options.target_inverted.is_some() || may_be_as_read;
+    if arm_is_open && target_as_stated && distances.is_plausible() {
+        return Ok((inverted, Some(said(&inverted, camera))));
     }
-    if !mixed_is_better && !is_mixed(usual) {
-        return Ok((usual.directions, exchanged(usual, camera)));
+    let of_target = Directions { target_inverted: true, ..usual };
+    if target_is_open && !may_be_as_read {
+        return Ok((of_target, Some(said(&of_target, camera))));
     }
-    let good: Vec<&Candidate> = candidates.iter().filter(|it| is_mixed(it) == mixed_is_better).collect();
-    other_directions(&good, target, camera)
+    let is_certain = distances.exchanged().is_plausible() || !arm_is_open;
+    Err(at_other_end(distances, camera, (!is_certain && arm_is_open, target_is_open)))
 }
 
-/// Distances of what is on the flange from it, and of what stays from the base.
-fn distances(frames: &Frames, camera: CameraPlace) -> (f64, f64) {
-    let (of_camera, of_target) = (frames.outer.translation.norm(), frames.inner.translation.norm());
+fn other(camera: CameraPlace) -> CameraPlace {
     match camera {
-        CameraPlace::InHand => (of_camera, of_target),
-        CameraPlace::Beside => (of_target, of_camera),
-    }
-}
-
-/// What is said where the usual directions fit, but both lists the other way round would be likelier.
-fn exchanged(usual: &Candidate, camera: CameraPlace) -> Option<String> {
-    let (on_flange, in_base) = distances(&usual.frames, camera);
-    (on_flange > 2.0 * in_base && on_flange > 1.0).then(|| {
-        format!(
-            "the {} is {on_flange:.2} m from the flange and the {} {in_base:.2} m from the base: if that is the other way round, both lists are \
-             inverted (--flange flange-from-base --target target-from-camera)",
-            camera.on_flange(),
-            camera.in_base()
-        )
-    })
-}
-
-/// Where the usual directions do not fit: the others, if it can be said which list is inverted.
-fn other_directions(
-    good: &[&Candidate],
-    target: &[Pose],
-    camera: CameraPlace,
-) -> Result<(Directions, Option<String>)> {
-    let (Some(first), rest) = (good.first(), good.get(1)) else {
-        return ErrorKind::Problem
-            .refuse("found poses that fit in no direction, expected poses of one session: check both lists");
-    };
-    let other_place = match camera {
         CameraPlace::InHand => CameraPlace::Beside,
         CameraPlace::Beside => CameraPlace::InHand,
-    };
-    let Some(second) = rest else {
-        return Ok((first.directions, Some(inverted(&first.directions, other_place))));
-    };
-    // A camera sees what is before it: then the target's list is as it should be.
-    let is_before = |it: &Pose| it.translation.z > 0.0 && it.translation.xy().norm() < it.translation.z;
-    let as_read = target.iter().all(is_before);
-    let turned = target.iter().all(|it| is_before(&it.inverse()));
-    if as_read && !turned {
-        return ErrorKind::Problem.refuse(format!(
-            "found poses that do not fit a camera {} and do fit one {}, expected those of --camera {}: run with --camera {}, or state --flange \
-             flange-from-base if the poses of the arm are inverted",
-            place(camera),
-            place(other_place),
-            camera.word(),
-            other_place.word()
-        ));
     }
-    let near = |it: &Candidate| {
-        let (on_flange, in_base) = distances(&it.frames, camera);
-        on_flange / in_base.max(1e-9)
+}
+
+/// The error of a camera at the other end; with which lists may be inverted instead: the arm's, the target's.
+fn at_other_end(distances: Distances, camera: CameraPlace, (arm, target): (bool, bool)) -> Error {
+    let other = other(camera);
+    let mut instead = Vec::new();
+    if arm {
+        instead.push("--flange flange-from-base if the poses of the arm are inverted");
+    }
+    if target {
+        instead.push("--target target-from-camera if those of the target are inverted");
+    }
+    let instead = match instead.is_empty() {
+        true => String::new(),
+        false => format!(", or state {}", instead.join(", or ")),
     };
-    let target_first = turned && !as_read;
-    let (one, other) = (near(first), near(second));
-    let (mut chosen, mut ratio) = if one <= other { (first, other / one) } else { (second, one / other) };
-    if target_first && let Some(candidate) = good.iter().find(|it| it.directions.target_inverted) {
-        (chosen, ratio) = (candidate, f64::INFINITY);
-    }
-    if ratio < NEARER {
-        return ErrorKind::Problem.refuse(format!(
-            "found poses that fit with one of the lists inverted, and as well with the other, expected base from flange and camera from target: \
-             state --flange flange-from-base or --target target-from-camera, or --camera {}",
-            other_place.word()
-        ));
-    }
-    Ok((chosen.directions, Some(inverted(&chosen.directions, other_place))))
+    ErrorKind::Problem.error(format!(
+        "found poses that fit a camera {} ({}), and not one {}, expected those of --camera {}: run with --camera {}{instead}",
+        place(other),
+        distances.exchanged().words(other),
+        place(camera),
+        camera.word(),
+        other.word(),
+    ))
+}
+
+/// The finding of poses that fit as they are stated, but with camera and target where the other one is likelier.
+fn exchanged(distances: Distances, camera: CameraPlace) -> Finding {
+    let other = other(camera);
+    let statement = format!(
+        "found {}, as if both were exchanged: if the camera is {} and the poses of the arm are inverted, state --camera {} --flange \
+         flange-from-base; if both lists are inverted, --flange flange-from-base --target target-from-camera; if neither, --flange \
+         base-from-flange --target camera-from-target",
+        distances.words(camera),
+        place(other),
+        other.word()
+    );
+    Finding::new(FindingKind::Exchanged, statement, Vec::new())
 }
 
 fn place(camera: CameraPlace) -> &'static str {
@@ -164,17 +199,18 @@ fn place(camera: CameraPlace) -> &'static str {
     }
 }
 
-/// The sentence about lists that are inverted.
-fn inverted(directions: &Directions, other_place: CameraPlace) -> String {
-    let what = match (directions.flange_inverted, directions.target_inverted) {
-        (true, true) => "both lists are inverted",
-        (true, false) => "the poses of the arm are inverted (flange from base)",
-        (false, _) => "the poses of the target are inverted (target from camera)",
+/// The finding of a list that is inverted.
+fn said(directions: &Directions, camera: CameraPlace) -> Finding {
+    let what = match directions.flange_inverted {
+        true => "the poses of the arm are inverted (flange from base)",
+        false => "the poses of the target are inverted (target from camera)",
     };
-    format!(
+    let other = other(camera);
+    let statement = format!(
         "{what}: so they fit, and not as base from flange and camera from target; they were inverted back. If the camera is {} instead, run with \
          --camera {}",
-        place(other_place),
-        other_place.word()
-    )
+        place(other),
+        other.word()
+    );
+    Finding::new(FindingKind::Inverted, statement, Vec::new())
 }

@@ -5,6 +5,8 @@
 pub enum FindingKind {
     /// A list is inverted, and was inverted back.
     Inverted,
+    /// Camera and target lie as if they were exchanged.
+    Exchanged,
     /// Rows that repeat earlier ones, and count once.
     Repeated,
     /// Pictures whose corners fit several poses, and another one than the best fits the other pictures.
@@ -17,6 +19,8 @@ pub enum FindingKind {
     Outliers,
     /// The camera's lengths are of another scale than the arm's.
     Scale,
+    /// The pictures do not determine the lens well, or another one than the arm's poses do.
+    Lens,
     /// Further poses would help.
     MissingMoves,
     /// The poses do not fit together.
@@ -29,12 +33,14 @@ impl FindingKind {
     pub fn word(self) -> &'static str {
         match self {
             FindingKind::Inverted => "inverted",
+            FindingKind::Exchanged => "exchanged",
             FindingKind::Repeated => "repeated",
             FindingKind::OtherPose => "other_pose",
             FindingKind::Moved => "moved",
             FindingKind::Flipped => "flipped",
             FindingKind::Outliers => "outliers",
             FindingKind::Scale => "scale",
+            FindingKind::Lens => "lens",
             FindingKind::MissingMoves => "missing_moves",
             FindingKind::Inconsistent => "inconsistent",
         }

@@ -3,16 +3,21 @@
 //! The arm is taken as it is, so that the problem has twelve unknowns, two frames between known motions (`equations`). Beside the general
 //! fit of `calibrate`, it knows more of a camera: that it errs otherwise along its line of sight than across it
 //! (`noise`), that a board is seen best in its middle (`fit`), and which mistakes people make with two lists of poses (`directions`,
-//! `readings`, `moved`).
+//! `readings`, `moved`). An unknown lens of pictures is found with the frames (`lens`).
 //!
 //! `result.rs` has the steps in order, `tip.rs` and `touches.rs` those of a tool's tip. No robots and no files here: it gets lists of poses.
 
 mod bounds;
 mod directions;
 mod draw;
+#[cfg(test)]
+mod end_tests;
 mod equations;
 mod findings;
 mod fit;
+mod lens;
+#[cfg(test)]
+mod lens_tests;
 mod moved;
 mod noise;
 mod other_poses;
@@ -25,6 +30,7 @@ mod tip;
 mod touches;
 mod turns;
 mod types;
+mod unknown_lens;
 mod verdict;
 
 pub use bounds::Placed;
@@ -34,6 +40,7 @@ pub use result::hand_eye;
 pub use tip::{Tip, Tool, tool_tip};
 pub use touches::Touches;
 pub use types::{Directions, HandEye, HandEyeOptions, HeldOut, Level, Outlier, RowError, Turns};
+pub use unknown_lens::{FoundLens, UnknownLens};
 
 /// Where the camera is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

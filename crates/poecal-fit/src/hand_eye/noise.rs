@@ -165,6 +165,20 @@ impl Spread {
         covariance.iter_mut().for_each(|it| *it *= wider);
         Some(Spread { covariance, by_part })
     }
+
+    /// The same of noise whose variance is larger by a factor.
+    pub(crate) fn larger(mut self, factor: f64) -> Self {
+        let parts = self.by_part.iter_mut().map(|(part, _)| part);
+        parts.chain([&mut self.covariance]).flatten().for_each(|it| *it *= factor);
+        self
+    }
+
+    /// The same with a further part, which is known with these degrees of freedom.
+    pub(crate) fn with(mut self, part: Vec<f64>, freedom: f64) -> Self {
+        self.covariance.iter_mut().zip(&part).for_each(|(sum, it)| *sum += it);
+        self.by_part.push((part, freedom));
+        self
+    }
 }
 
 /// Fewest rows in which errors that follow each other are sought.

@@ -19,11 +19,8 @@ pub(crate) fn settled(
     if target.other_poses.is_empty() {
         return (target.poses.clone(), Vec::new());
     }
-    let inverted = match options.flange_inverted {
-        Some(stated) => vec![stated],
-        None => vec![false, true],
-    };
-    let tried = inverted.into_iter().filter_map(|flange_inverted| {
+    // Both, whatever is stated: the camera may be at the other end.
+    let tried = [false, true].into_iter().filter_map(|flange_inverted| {
         let directions = Directions { flange_inverted, target_inverted: false, stated: false };
         by_rounds(flange, target, options.camera, &directions)
     });

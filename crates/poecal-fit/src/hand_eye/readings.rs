@@ -4,6 +4,7 @@ use super::CameraPlace;
 use super::directions::{pairs, score};
 use super::turns::{refuse_one_axis, turns};
 use super::types::{Directions, HandEyeOptions};
+use super::unknown_lens::UnknownLens;
 use nalgebra::{Matrix3, Vector3};
 use poecal_arm::lie::Pose;
 use poecal_numerics::error::{Error, ErrorKind, Result};
@@ -17,6 +18,8 @@ pub struct PoseList {
     pub others: Vec<Reading>,
     /// Of each row other poses that what was seen fits nearly as well, as the second one of a flat board; empty if there are none at all.
     pub other_poses: Vec<Vec<Pose>>,
+    /// The unknown lens with which the poses were found from pictures, one a row; none where the lens is known, or there are no pictures.
+    pub lens: Option<UnknownLens>,
 }
 
 /// Another reading of a list.
@@ -29,7 +32,7 @@ pub struct Reading {
 }
 
 impl PoseList {
-    /// The list of some rows, in this order.
+    /// The list of some rows, in this order; with the lens as it is.
     #[must_use]
     pub fn of_rows(&self, rows: &[usize]) -> Self {
         let of = |poses: &[Pose]| rows.iter().filter_map(|&row| poses.get(row)).copied().collect();
@@ -38,7 +41,7 @@ impl PoseList {
             true => Vec::new(),
             false => rows.iter().filter_map(|&row| self.other_poses.get(row)).cloned().collect(),
         };
-        PoseList { poses: of(&self.poses), others: others.collect(), other_poses }
+        PoseList { poses: of(&self.poses), others: others.collect(), other_poses, lens: None }
     }
 }
 

@@ -7,10 +7,12 @@ use super::directions::{found, pairs};
 use super::equations::{Pair, errors, sight_axes};
 use super::findings::{Finding, FindingKind, listed};
 use super::fit::{Fit, sizes};
+use super::lens::{self, Fitted, Joint, WithLens};
 use super::noise::Spread;
 use super::readings::{PoseList, least_score, misread_angles, mistaken, refuse_other_lengths};
 use super::turns::{refuse_one_axis, turns};
 use super::types::{Directions, HandEye, HandEyeOptions, HeldOut, Level, Outlier, RowError, Turns};
+use super::unknown_lens::FoundLens;
 use super::{CameraPlace, moved, other_poses, simulated, verdict};
 use poecal_arm::lie::{Pose, rotation};
 use poecal_numerics::error::{ErrorKind, Result};
@@ -52,16 +54,11 @@ pub fn hand_eye(
         ));
     }
     refuse_other_lengths(&flange.poses, &target.poses)?;
+    // What corners show is the board as the camera sees it.
+    let target_inverted = options.target_inverted.or(target.lens.as_ref().map(|_| false));
+    let options = &HandEyeOptions { target_inverted, ..*options };
     let mut findings = Vec::new();
-    let (poses, rows) = other_poses::settled(&flange.poses, target, options);
-    if !rows.is_empty() {
-        let statement = format!(
-            "took another pose of the board by the same corners in {}: so the pictures agree",
-            listed(&rows, name)
-        );
-        findings.push(Finding::new(FindingKind::OtherPose, statement, rows));
-    }
-    let target = &PoseList { poses, ..target.clone() };
+    let target = &with_settled_poses(flange, target, (options, name), &mut findings);
     let mut counted = once_each(flange, target, name, &mut findings);
     refuse_few(flange, &counted)?;
     let turns = turns(&flange.poses, &counted);
@@ -73,7 +70,7 @@ pub fn hand_eye(
     let part = |poses: &[Pose], rows: &[usize]| -> Vec<Pose> { rows.iter().map(|&row| poses[row]).collect() };
     let [arm, seen] = [&flange.poses, &target.poses].map(|poses| part(poses, &counted));
     let (directions, said) = found(&arm, &seen, options)?;
-    findings.extend(said.map(|said| Finding::new(FindingKind::Inverted, said, Vec::new())));
+    findings.extend(said);
     let all = pairs(&flange.poses, &target.poses, options.camera, &directions);
     let of = |rows: &[usize]| -> Vec<Pair> { rows.iter().map(|&row| all[row]).collect() };
     if let Some(step) = moved::found(&of(&counted)) {
@@ -81,12 +78,52 @@ pub fn hand_eye(
         findings.push(finding);
         counted = longer;
     }
-    let Some(fit) = Fit::of(&of(&counted)) else {
+    let fitted = |poses: &[Pose], before: Option<&Fit>| {
+        let all = pairs(&flange.poses, poses, options.camera, &directions);
+        fitted_again(&all, &counted, before)
+    };
+    let with_lens = match &target.lens {
+        Some(lens) => lens::together(lens, &target.poses, &fitted),
+        None => fitted(&target.poses, None).map(|(fit, _)| WithLens::known(target.poses.clone(), fit)),
+    };
+    let Some(WithLens { target: poses, fit, joint }) = with_lens else {
         return ErrorKind::Problem.refuse(
             "found poses that do not determine where the camera is, expected turns about two axes or more: add poses that turn about a second axis",
         );
     };
-    finished(&all, &counted, (&fit, directions, turns), options.camera, findings, name)
+    let all = pairs(&flange.poses, &poses, options.camera, &directions);
+    finished(&all, &counted, (&fit, joint, directions, turns), options.camera, findings, name)
+}
+
+/// The target's list with those of several poses that the rows agree with.
+fn with_settled_poses(
+    flange: &PoseList,
+    target: &PoseList,
+    (options, name): (&HandEyeOptions, &dyn Fn(usize) -> String),
+    findings: &mut Vec<Finding>,
+) -> PoseList {
+    let (poses, rows) = other_poses::settled(&flange.poses, target, options);
+    if !rows.is_empty() {
+        let statement = format!(
+            "took another pose of the board by the same corners in {}: so the pictures agree",
+            listed(&rows, name)
+        );
+        findings.push(Finding::new(FindingKind::OtherPose, statement, rows));
+    }
+    PoseList { poses, ..target.clone() }
+}
+
+/// The fit of some rows, from an earlier one if there is one, with the rows that count as it sees them.
+fn fitted_again(all: &[Pair], counted: &[usize], before: Option<&Fit>) -> Option<Fitted> {
+    let rows: Vec<Pair> = counted.iter().map(|&row| all[row]).collect();
+    let fit = match before {
+        Some(before) => Fit::from_start(&rows, before.own_frames()),
+        None => Fit::of(&rows),
+    }?;
+    let about = fit.seen_about(&rows);
+    let kept = counted.iter().copied().zip(about).zip(&fit.kept);
+    let kept = kept.filter(|(_, kept)| **kept).map(|(row, _)| row).collect();
+    Some((fit, kept))
 }
 
 /// Leaves the poses before or after a move out; gives those that stay.
@@ -115,7 +152,7 @@ fn leave_moved_out(
 fn finished(
     all: &[Pair],
     counted: &[usize],
-    (fit, directions, turns): (&Fit, Directions, Turns),
+    (fit, joint, directions, turns): (&Fit, Option<Joint>, Directions, Turns),
     camera: CameraPlace,
     mut findings: Vec<Finding>,
     name: &dyn Fn(usize) -> String,
@@ -127,15 +164,10 @@ fn finished(
             "found poses that determine the camera's place in some directions only, expected turns about two axes or more: add such poses",
         );
     };
-    let factors = simulated::factors(&fit.rows(&rows), fit);
-    let side = |side: Side| {
-        let (by_m, by_rad) = factors.of(side);
-        let placed = bounded(&spread, &fit.frames, &fit.point, side);
-        Placed { bound95_m: by_m * placed.bound95_m, bound95_rad: by_rad * placed.bound95_rad, ..placed }
-    };
+    let ([of_camera, of_target], lens) = with_bounds(spread, &rows, fit, joint);
     let (on_flange, in_base) = match camera {
-        CameraPlace::InHand => (side(Side::Camera), side(Side::Target)),
-        CameraPlace::Beside => (side(Side::Target), side(Side::Camera)),
+        CameraPlace::InHand => (of_camera, of_target),
+        CameraPlace::Beside => (of_target, of_camera),
     };
     let is_kept = |row: usize| counted.iter().position(|it| *it == row).is_some_and(|at| fit.kept[at]);
     let frames = fit.own_frames();
@@ -165,10 +197,31 @@ fn finished(
         outliers,
         turns,
         findings,
+        lens,
     };
     let distance = poecal_numerics::distributions::median(kept.iter().map(|it| it.seen.translation.norm()));
     verdict::judge(&mut result, scale, distance.unwrap_or_default());
     Ok(result)
+}
+
+/// Camera and target with their bounds, which contain the uncertainty of an unknown lens.
+fn with_bounds(
+    spread: Spread,
+    rows: &[Pair],
+    fit: &Fit,
+    joint: Option<Joint>,
+) -> ([Placed; 2], Option<FoundLens>) {
+    let factors = simulated::factors(&fit.rows(rows), fit);
+    let by = |spread: &Spread, side: Side| {
+        let (by_m, by_rad) = factors.of(side);
+        let placed = bounded(spread, &fit.frames, &fit.point, side);
+        Placed { bound95_m: by_m * placed.bound95_m, bound95_rad: by_rad * placed.bound95_rad, ..placed }
+    };
+    let both = |spread: &Spread| [Side::Camera, Side::Target].map(|side| by(spread, side));
+    let Some(Joint { found, covariance, freedom, larger }) = joint else { return (both(&spread), None) };
+    let spread = spread.larger(larger);
+    let known_bound95_m = by(&spread, Side::Camera).bound95_m;
+    (both(&spread.with(covariance, freedom)), Some(FoundLens { known_bound95_m, ..found }))
 }
 
 /// The rows that were left out of a fit of some.

@@ -128,10 +128,16 @@ fn lists_the_other_way_round_are_found() {
                 }
                 Err(error) => assert!(error.to_string().contains("--camera"), "{error}"),
             }
-            let found =
-                session.read(session.flange.clone().into(), inverted(&session.target).into()).unwrap();
-            assert!(found.directions.target_inverted, "{camera:?}");
-            assert!(found.on_flange.pose.apart(&session.on_flange).0 < 5e-3);
+            let turned: PoseList = inverted(&session.target).into();
+            let stated = HandEyeOptions { target_inverted: Some(true), ..HandEyeOptions::of(camera) };
+            let stated =
+                hand_eye(&session.flange.clone().into(), &turned, &stated, &|row| format!("row {row}"));
+            match session.read(session.flange.clone().into(), turned) {
+                Ok(found) => assert!(found.directions.target_inverted, "{camera:?}"),
+                // A camera at the other end would see the same, and the board is before it in either direction.
+                Err(error) => assert!(error.to_string().contains("--target target-from-camera"), "{error}"),
+            }
+            assert!(stated.unwrap().on_flange.pose.apart(&session.on_flange).0 < 5e-3);
         }
     }
 }

@@ -5,6 +5,7 @@ use nalgebra::Vector3;
 use super::CameraPlace;
 use super::bounds::Placed;
 use super::findings::Finding;
+use super::unknown_lens::FoundLens;
 
 /// Directions of the poses of two lists.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -164,4 +165,25 @@ pub struct HandEye {
     pub turns: Turns,
     /// What was found beside, a sentence each.
     pub findings: Vec<Finding>,
+    /// The lens, if it was unknown.
+    pub lens: Option<FoundLens>,
+}
+
+impl HandEye {
+    /// The frame of the camera: on the flange, or in the base.
+    #[must_use]
+    pub fn camera_frame(&self) -> &Placed {
+        match self.camera {
+            CameraPlace::InHand => &self.on_flange,
+            CameraPlace::Beside => &self.in_base,
+        }
+    }
+
+    /// Adds a reason for which the result is no better than within its bounds.
+    pub fn weaken(&mut self, reason: String) {
+        if self.level != Level::DoNotUse {
+            self.level = Level::WithinBounds;
+            self.reasons.push(reason);
+        }
+    }
 }

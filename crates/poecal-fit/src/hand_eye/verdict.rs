@@ -4,6 +4,7 @@ use super::equations::{NUMBERS, Pair, UNKNOWNS, derivatives, errors, normal, sig
 use super::findings::{Finding, FindingKind};
 use super::fit::Fit;
 use super::types::{HandEye, Level};
+use poecal_model::camera::PictureNumber;
 use poecal_numerics::distributions::f_quantile;
 
 /// Rows from which on a result is tested well.
@@ -17,6 +18,11 @@ const MANY: f64 = 0.4;
 const NO_CAMERA: f64 = 0.1;
 /// The same of places, as a share of the distance.
 const NO_CAMERA_M: f64 = 0.06;
+/// Bound of the camera's position, as a share of the distance at which it sees the target, up to which a result is good: then what it sees is off by
+/// no more than by a focal length that is off by 1 %.
+const NEAR: f64 = 0.01;
+/// How many times wider an unknown lens makes that bound where it is said.
+const WIDER: f64 = 2.0;
 /// Smallest difference of scales that is said.
 const OTHER_SCALE: f64 = 3e-3;
 /// Probability by chance at which scales differ.
@@ -53,25 +59,11 @@ pub(crate) fn judge(result: &mut HandEye, scale: Option<f64>, distance_m: f64) {
     let outliers = result.outliers.len();
     let share = outliers as f64 / (fitted + outliers).max(1) as f64;
     let (mut against, mut weak) = (Vec::new(), Vec::new());
-    let noise = result.noise[2].max(result.noise[3]);
-    if noise > NO_CAMERA {
-        let statement = format!(
-            "the poses do not fit together: orientations are off by {:.1} deg, more than the noise of any camera; check that both lists are of the same \
-             poses, their conventions of angles, and --camera",
-            noise.to_degrees()
-        );
+    if let Some(statement) = inconsistent(result, distance_m) {
         result.findings.push(Finding::new(FindingKind::Inconsistent, statement.clone(), Vec::new()));
         against.push(statement);
     }
-    let places = result.noise[0].max(result.noise[1]);
-    if against.is_empty() && places > (NO_CAMERA_M * distance_m).max(0.01) {
-        let statement = format!(
-            "the poses do not fit together: places are off by {:.0} mm, more than the noise of any camera; check units, signs and origins of both lists",
-            1e3 * places
-        );
-        result.findings.push(Finding::new(FindingKind::Inconsistent, statement.clone(), Vec::new()));
-        against.push(statement);
-    }
+    against.extend(said(result, FindingKind::Exchanged));
     if share > MANY {
         against.push(format!("{outliers} of {} poses contradict the others", fitted + outliers));
     } else if share > FEW {
@@ -86,6 +78,9 @@ pub(crate) fn judge(result: &mut HandEye, scale: Option<f64>, distance_m: f64) {
         result.findings.push(Finding::new(FindingKind::Scale, statement.clone(), Vec::new()));
         against.push(statement);
     }
+    if against.is_empty() {
+        weak.extend(inaccurate(result, distance_m));
+    }
     if fitted < ENOUGH {
         weak.push(format!("{fitted} poses show little of their own errors: take 15 or more"));
     }
@@ -98,6 +93,89 @@ pub(crate) fn judge(result: &mut HandEye, scale: Option<f64>, distance_m: f64) {
         weak.push("something moved during the session".to_owned());
     }
     (result.level, result.reasons) = Level::of(against, weak);
+}
+
+/// Why poses do not fit together, if they do not.
+fn inconsistent(result: &HandEye, distance_m: f64) -> Option<String> {
+    let noise = result.noise[2].max(result.noise[3]);
+    if noise > NO_CAMERA {
+        return Some(format!(
+            "the poses do not fit together: orientations are off by {:.1} deg, more than the noise of any camera; check that both lists are of the same \
+             poses, their conventions of angles, and --camera",
+            noise.to_degrees()
+        ));
+    }
+    let places = result.noise[0].max(result.noise[1]);
+    (places > (NO_CAMERA_M * distance_m).max(0.01)).then(|| {
+        format!(
+            "the poses do not fit together: places are off by {:.0} mm, more than the noise of any camera; check units, signs and origins of both lists",
+            1e3 * places
+        )
+    })
+}
+
+/// What keeps the camera's position from being accurate: an unknown lens, whose findings are added, and a wide bound.
+fn inaccurate(result: &mut HandEye, distance_m: f64) -> Vec<String> {
+    let mut weak = of_lens(result);
+    let bent = result.lens.as_ref().and_then(|lens| bent(&lens.numbers));
+    let of_lens = weak.iter().cloned().chain(bent).map(|it| Finding::new(FindingKind::Lens, it, Vec::new()));
+    result.findings.extend(of_lens);
+    let bound = result.camera_frame().bound95_m;
+    if bound > NEAR * distance_m {
+        weak.push(format!(
+            "the camera's position is known to {:.1} mm, {:.1} % of the {distance_m:.2} m at which it sees the target (good: up to {:.0} %)",
+            1e3 * bound,
+            100.0 * bound / distance_m,
+            100.0 * NEAR
+        ));
+    }
+    weak
+}
+
+/// A board that is bent by more than its uncertainty, which was taken into account.
+fn bent(numbers: &[PictureNumber]) -> Option<String> {
+    const EVIDENT: f64 = 4.0;
+    let bends = || numbers.iter().filter(|it| it.unit == "mm");
+    let most = bends().max_by(|a, b| a.found.abs().total_cmp(&b.found.abs()))?;
+    bends().any(|it| it.found.abs() > EVIDENT * it.deviation).then(|| {
+        format!(
+            "the board is bent by {:.2} mm from its middle to its edge, which was taken into account: mount it on a plate that is flat",
+            most.found.abs()
+        )
+    })
+}
+
+/// What an unknown lens costs, and whether pictures and arm agree on it.
+fn of_lens(result: &HandEye) -> Vec<String> {
+    let Some(lens) = &result.lens else { return Vec::new() };
+    let mut said = Vec::new();
+    let focal = |numbers: &[PictureNumber]| numbers.first().map_or((0.0, 0.0), |it| (it.found, it.deviation));
+    let (found, alone) = (focal(&lens.numbers), focal(&lens.alone));
+    let remedy = "state the lens (--lens FILE), or fit the arm with the camera (poecal calibrate)";
+    if lens.apart > 1.0 {
+        said.push(format!(
+            "the pictures alone show another lens (fx {:.1} px, {:.1} by noise) than they do with the arm's poses (fx {:.1} px), {:.1} times as far apart \
+             as noise explains: bounds are so much wider by the lens; {remedy}",
+            alone.0, alone.1, found.0, lens.apart
+        ));
+    }
+    let bound = result.camera_frame().bound95_m;
+    if bound > WIDER * lens.known_bound95_m {
+        said.push(format!(
+            "the pictures determine the lens to {:.1} px of {:.0} px of focal length only, and by that the camera's position to {:.1} mm (95 %), where a \
+             known lens would leave {:.1} mm: {remedy}",
+            found.1,
+            found.0,
+            1e3 * bound,
+            1e3 * lens.known_bound95_m
+        ));
+    }
+    said
+}
+
+/// The statement of a kind of finding, if there is one.
+fn said(result: &HandEye, kind: FindingKind) -> Option<String> {
+    result.findings.iter().find(|it| it.kind == kind).map(|it| it.statement.clone())
 }
 
 /// Turns that would help.

@@ -16,7 +16,7 @@ use crate::table::mapping::ColumnMap;
 use crate::table::text::Blocks;
 use poecal_arm::lie::{Pose, Screw};
 use poecal_fit::hand_eye::PoseList;
-use poecal_model::camera::Pictures;
+use poecal_model::camera::{Picture, Pictures};
 use poecal_model::robot::{Joint, Robot};
 use poecal_numerics::error::{Error, ErrorKind, Result, first_few};
 
@@ -68,17 +68,12 @@ pub(crate) fn poses_of_pictures(path: &Path, arm: &PoseFile, options: &ReadOptio
     found.data.settle_pixels();
     refuse_wrong_boards(&found.data).map_err(|error| error.in_file(path))?;
     let pictures = &found.data.pictures;
-    let board = only_board(pictures).map_err(|error| error.in_file(path))?;
-    let half_turn = pictures.boards.get(board).and_then(|board| board.half_turn());
-    let (mut rows, mut poses, mut other_poses) = (Vec::new(), Vec::new(), Vec::new());
-    for picture in &pictures.all {
-        let Some(best) = picture.poses.first() else { continue };
-        let row = found.data.readings(picture.row as usize).first().copied().unwrap_or_default();
-        rows.push(row as usize);
-        poses.push(*best);
-        let turned = half_turn.iter().flat_map(|turn| picture.poses.iter().map(move |it| *it * *turn));
-        other_poses.push(picture.poses.iter().skip(1).copied().chain(turned).collect());
-    }
+    refuse_several(pictures).map_err(|error| error.in_file(path))?;
+    let poses = PoseList::of_pictures(pictures)
+        .map_err(|found| Error::new(ErrorKind::Measurement, found).in_file(path))?;
+    let row =
+        |picture: &Picture| found.data.readings(picture.row as usize).first().copied().unwrap_or_default();
+    let rows: Vec<usize> = pictures.all.iter().map(|it| row(it) as usize).collect();
     let corners: usize = pictures.all.iter().map(|it| it.corners.len()).sum();
     let words = format!(
         "the target: its pose by its corners in each picture ({corners} corners in {} pictures)",
@@ -86,17 +81,17 @@ pub(crate) fn poses_of_pictures(path: &Path, arm: &PoseFile, options: &ReadOptio
     );
     Ok(PicturePoses {
         rows,
-        poses: PoseList { other_poses, ..poses.into() },
+        poses,
         words,
         warnings: found.warnings,
         sha256: found.sha256.into_iter().collect(),
     })
 }
 
-/// The one board of pictures, which one camera saw.
-fn only_board(pictures: &Pictures) -> Result<usize> {
+/// Refuses pictures of several boards, or by several cameras.
+fn refuse_several(pictures: &Pictures) -> Result<()> {
     let seen: BTreeSet<(usize, usize)> = pictures.all.iter().map(|it| (it.camera, it.board)).collect();
-    let [(_, board)] = Vec::from_iter(seen.iter().copied())[..] else {
+    if seen.len() > 1 {
         let names: Vec<&str> = (seen.iter())
             .filter_map(|(camera, board)| match seen.iter().any(|it| it.0 != *camera) {
                 true => pictures.cameras.get(*camera).map(|it| it.name.as_str()),
@@ -108,6 +103,6 @@ fn only_board(pictures: &Pictures) -> Result<usize> {
             first_few(&names)
         );
         return Err(Error::new(ErrorKind::Measurement, message));
-    };
-    Ok(board)
+    }
+    Ok(())
 }

@@ -20,7 +20,7 @@ const SIMULATION: [&str; 9] = [
     "truth.json",
 ];
 /// File names of a hand-eye calibration.
-const HAND_EYE: [&str; 7] = [
+const HAND_EYE: [&str; 8] = [
     "hand_eye.json",
     "transforms.txt",
     "easy_handeye2.calib",
@@ -28,6 +28,7 @@ const HAND_EYE: [&str; 7] = [
     "opencv.yml",
     "rows.csv",
     "session.csv",
+    "lens.csv",
 ];
 /// File names of a tool's tip.
 const TIP: [&str; 3] = ["tcp.json", "transforms.txt", "rows.csv"];

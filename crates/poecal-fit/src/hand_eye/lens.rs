@@ -1,0 +1,248 @@
+//! An unknown lens with the frames: by the corners of the pictures, whose poses are free, and by the arm, which says how far the camera moved.
+//!
+//! The pictures by themselves determine focal lengths from how boards shrink with distance, which is little where the boards are tilted little. What the
+//! arm adds is in the same equations: the poses `seen` follow the lens (`LensState::follow`), so a lens is better if the poses fit the frames
+//! better. The covariance of both is joint: that of the frames at a known lens, and what they follow the lens by.
+
+use nalgebra::{DMatrix, DVector, Matrix6, Matrix6xX};
+
+use super::equations::{Pair, UNKNOWNS, derivatives, errors, sight_axes};
+use super::fit::Fit;
+use super::readings::PoseList;
+use super::unknown_lens::{FoundLens, UnknownLens};
+use poecal_arm::lie::{Pose, hat};
+use poecal_model::camera::{LensSearch, LensState, PictureNumber, Pictures};
+use poecal_numerics::distributions::f_quantile;
+use poecal_numerics::linalg;
+
+/// Most rounds of lens and frames.
+const ROUNDS: usize = 12;
+/// Squared standard deviations by which a round must be worth it.
+const LEAST: f64 = 1e-6;
+/// Probability by chance at which pictures and arm count as of different lenses.
+const CHANCE: f64 = 1e-3;
+/// Information of the arm in units of that of the pictures, below which it says nothing of a direction.
+const SAYS: f64 = 1e-3;
+
+/// How far the frames follow the lens, and what that adds to their covariance.
+pub(crate) struct Joint {
+    pub(crate) found: FoundLens,
+    /// Covariance of the frames by that of the lens, and its degrees of freedom.
+    pub(crate) covariance: Vec<f64>,
+    pub(crate) freedom: f64,
+    /// By how much the variance of the poses is larger than it was estimated, since the lens was fitted to them.
+    pub(crate) larger: f64,
+}
+
+impl PoseList {
+    /// The poses of the board in pictures of one camera and one board, with all others that their corners allow; a lens that is a first guess is
+    /// found from the corners.
+    ///
+    /// # Errors
+    /// In words, if the pictures do not determine an unknown lens.
+    pub fn of_pictures(pictures: &Pictures) -> Result<Self, String> {
+        let is_guessed = |at: usize| pictures.cameras.get(at).is_some_and(|it| it.is_guessed);
+        if pictures.all.iter().any(|it| is_guessed(it.camera)) {
+            return of_unknown_lens(pictures);
+        }
+        let half_turn = |at: usize| pictures.boards.get(at).and_then(|board| board.half_turn());
+        let (mut poses, mut other_poses) = (Vec::new(), Vec::new());
+        for picture in &pictures.all {
+            let Some(best) = picture.poses.first() else { continue };
+            poses.push(*best);
+            let half_turn = half_turn(picture.board);
+            let turned = half_turn.iter().flat_map(|turn| picture.poses.iter().map(move |it| *it * *turn));
+            other_poses.push(picture.poses.iter().skip(1).copied().chain(turned).collect());
+        }
+        Ok(PoseList { other_poses, ..poses.into() })
+    }
+}
+
+/// The poses with the lens that the pictures determine.
+fn of_unknown_lens(pictures: &Pictures) -> Result<PoseList, String> {
+    let refuse = || {
+        "found pictures that do not determine the unknown lens, expected boards that are tilted by 20 to 45 degrees: add such pictures, or state the \
+         lens"
+            .to_owned()
+    };
+    let (search, start) = LensSearch::of(pictures).ok_or_else(refuse)?;
+    let mut state = search.alone(&start).ok_or_else(refuse)?;
+    // Of a flat board that has two poses the better one may be the other one with another lens.
+    for _ in 0..2 {
+        for at in 0..state.pictures.all.len() {
+            let pictures = &state.pictures;
+            let found = pictures.all.get(at).and_then(|it| pictures.view(it)).map(|view| view.poses());
+            if let (Some(picture), Some(Ok(found))) = (state.pictures.all.get_mut(at), found) {
+                picture.poses = found;
+            }
+        }
+        let best: Option<Vec<Pose>> = state.pictures.all.iter().map(|it| it.poses.first().copied()).collect();
+        let same = search.stepped(&state, &best.ok_or_else(refuse)?, &DVector::zeros(state.step.len()));
+        state = search.alone(&same).ok_or_else(refuse)?;
+    }
+    let search = search.with_spread_of(&state);
+    let same = search.stepped(&state, &state.poses, &DVector::zeros(state.step.len()));
+    let state = search.alone(&same).ok_or_else(refuse)?;
+    let mut known = state.pictures.clone();
+    known.cameras.iter_mut().for_each(|it| it.is_guessed = false);
+    let list = PoseList::of_pictures(&known)?;
+    Ok(PoseList { lens: Some(UnknownLens { search, state }), ..list })
+}
+
+/// A fit with its lens: the poses seen through it, and the joint uncertainty.
+pub(crate) struct WithLens {
+    pub(crate) target: Vec<Pose>,
+    pub(crate) fit: Fit,
+    pub(crate) joint: Option<Joint>,
+}
+
+impl WithLens {
+    /// Of poses whose lens is known.
+    pub(crate) fn known(target: Vec<Pose>, fit: Fit) -> Self {
+        WithLens { target, fit, joint: None }
+    }
+}
+
+/// A fit of the frames, with the rows that count as it sees them and their numbers in the list.
+pub(crate) type Fitted = (Fit, Vec<(usize, Pair)>);
+
+/// Refits frames and lens together, from poses of the target by the lens of the pictures alone. `fitted` fits the frames to poses,
+/// from an earlier fit if there is one.
+pub(crate) fn together(
+    lens: &UnknownLens,
+    target: &[Pose],
+    fitted: &dyn Fn(&[Pose], Option<&Fit>) -> Option<Fitted>,
+) -> Option<WithLens> {
+    let UnknownLens { search, state: alone } = lens;
+    let chosen = lens.chosen(target);
+    let starts: Vec<Pose> = chosen.iter().map(|it| it.0).collect();
+    let along = |state: &LensState| -> Vec<Pose> {
+        state.poses.iter().zip(&chosen).map(|(pose, (_, turn))| *pose * *turn).collect()
+    };
+    let mut state = search.stepped(alone, &starts, &DVector::zeros(alone.step.len()));
+    let (mut fit, mut rows) = fitted(&along(&state), None)?;
+    let mut first: Option<f64> = None;
+    let mut normal = Normal::of(&state, &fit, &rows)?;
+    for _ in 0..ROUNDS {
+        let (by, gain) = normal.step()?;
+        if first.is_none() {
+            first = Some(normal.apart(&state, &fit)?);
+        }
+        if gain < LEAST {
+            break;
+        }
+        state = search.stepped(&state, &state.poses, &by);
+        (fit, rows) = fitted(&along(&state), Some(&fit))?;
+        normal = Normal::of(&state, &fit, &rows)?;
+    }
+    let apart = first.unwrap_or(1.0);
+    let inverse = |matrix: &DMatrix<f64>| -> Option<DMatrix<f64>> {
+        let n = matrix.nrows();
+        let factor = linalg::cholesky(matrix.as_slice(), n, 0.0)?;
+        Some(DMatrix::from_row_slice(n, n, &linalg::inverse(&factor)))
+    };
+    // Degrees of freedom that the lens has taken from the noise of the poses, of which at least half are left.
+    let taken = (inverse(&normal.information)? * &normal.of_arm).trace();
+    let freedom: f64 = fit.noise.freedom.iter().sum();
+    let larger = (freedom / (freedom - taken).max(0.5 * freedom)).max(1.0);
+    let information = &state.information + &normal.of_arm / larger;
+    let of_lens = inverse(&information)? * (apart * apart);
+    let deviations = |covariance: &DMatrix<f64>| -> Vec<f64> {
+        covariance.diagonal().iter().map(|it| it.max(0.0).sqrt()).collect()
+    };
+    let covariance = &normal.follow * &of_lens * normal.follow.transpose();
+    let numbers = |state: &LensState, covariance: &DMatrix<f64>| -> Vec<PictureNumber> {
+        let all = search.numbers(state, &deviations(covariance));
+        all.into_iter().filter(|it| !it.name.contains(".scale_")).collect()
+    };
+    let found = FoundLens {
+        lens: state.lens()?,
+        numbers: numbers(&state, &of_lens),
+        alone: numbers(alone, &inverse(&alone.information)?),
+        known_bound95_m: 0.0,
+        apart,
+    };
+    let freedom = if apart > 1.0 { (state.step.len() as f64).min(alone.freedom) } else { alone.freedom };
+    let covariance = covariance.transpose().as_slice().to_vec();
+    Some(WithLens { target: along(&state), fit, joint: Some(Joint { found, covariance, freedom, larger }) })
+}
+
+/// What pictures and arm say of the lens at the best frames.
+struct Normal {
+    /// Information of the lens, of pictures and arm.
+    information: DMatrix<f64>,
+    /// The part of the arm, and its pull.
+    of_arm: DMatrix<f64>,
+    arm_pull: DVector<f64>,
+    pull: DVector<f64>,
+    /// How the frames follow the lens, a row an unknown.
+    follow: DMatrix<f64>,
+}
+
+impl Normal {
+    fn of(state: &LensState, fit: &Fit, rows: &[(usize, Pair)]) -> Option<Self> {
+        let count = state.step.len();
+        let weights = fit.noise.weights();
+        let (mut frames, mut mixed) = (DMatrix::zeros(UNKNOWNS, UNKNOWNS), DMatrix::zeros(UNKNOWNS, count));
+        let (mut of_arm, mut arm_pull) = (DMatrix::zeros(count, count), DVector::zeros(count));
+        for (row, pair) in rows {
+            let by_lens = in_sight(pair, state.poses.get(*row)?, state.follow.get(*row)?);
+            let off = errors(pair, &fit.frames);
+            let by_frames = derivatives(pair, &fit.frames);
+            let numbers = by_frames.iter().zip(by_lens.row_iter()).zip(off).zip(weights);
+            for (((by_frames, by_lens), off), weight) in numbers {
+                let (by_frames, by_lens) = (DVector::from_row_slice(by_frames), by_lens.transpose());
+                frames += &by_frames * by_frames.transpose() * weight;
+                mixed += &by_frames * by_lens.transpose() * weight;
+                of_arm += &by_lens * by_lens.transpose() * weight;
+                arm_pull -= &by_lens * (weight * off);
+            }
+        }
+        let factor = linalg::cholesky(frames.as_slice(), UNKNOWNS, 0.0)?;
+        let inverse = DMatrix::from_row_slice(UNKNOWNS, UNKNOWNS, &linalg::inverse(&factor));
+        let follow = inverse * &mixed;
+        let of_arm = of_arm - mixed.transpose() * &follow;
+        let information = &state.information + &of_arm;
+        let pull = &state.pull + &arm_pull;
+        Some(Normal { information, of_arm, arm_pull, pull, follow })
+    }
+
+    /// The best step of the lens, with the squared standard deviations that it is worth.
+    fn step(&self) -> Option<(DVector<f64>, f64)> {
+        let by = linalg::solved(self.information.clone(), &self.pull)?;
+        let gain = by.dot(&self.pull);
+        Some((by, gain))
+    }
+
+    /// How many times farther than by noise the lens of the arm is from that of the pictures, at the latter; 1 where noise explains it: the arm's pull in the directions of which it says something is of
+    /// variance `K + K G⁻¹ K`, with its own information K and that of the pictures G.
+    fn apart(&self, state: &LensState, fit: &Fit) -> Option<f64> {
+        let count = state.step.len();
+        // In units in which the pictures' information is 1: G = L Lᵀ.
+        let whitened = linalg::whitened(state.information.clone(), &self.of_arm)?;
+        let twice = linalg::whitened(state.information.clone(), &whitened.transpose())?;
+        let pull = DMatrix::from_column_slice(count, 1, self.arm_pull.as_slice());
+        let pull = linalg::whitened(state.information.clone(), &pull)?;
+        let (values, vectors) = linalg::symmetric_eigen(twice.as_slice(), count);
+        let (mut squares, mut directions) = (0.0, 0.0);
+        for (k, &says) in values.iter().enumerate().filter(|(_, value)| **value > SAYS) {
+            let along = vectors.column(k).dot(&pull.column(0));
+            squares += along * along / (says + says * says);
+            directions += 1.0;
+        }
+        let freedom = fit.noise.freedom.iter().copied().fold(f64::INFINITY, f64::min).clamp(1.0, 1e6);
+        let is_apart = directions > 0.0 && squares / directions > f_quantile(CHANCE, directions, freedom);
+        Some(if is_apart { (squares / directions).sqrt() } else { 1.0 })
+    }
+}
+
+/// How the six numbers of a row follow the lens: shift of the point that is seen, and turn, in the axes of the sight; `follow` is of the board's origin.
+fn in_sight(pair: &Pair, board: &Pose, follow: &Matrix6xX<f64>) -> Matrix6xX<f64> {
+    let axes = sight_axes(&pair.seen);
+    let arm = pair.seen.translation - board.translation;
+    let mut to = Matrix6::zeros();
+    to.fixed_view_mut::<3, 3>(0, 0).copy_from(&axes);
+    to.fixed_view_mut::<3, 3>(0, 3).copy_from(&(-axes * hat(&arm)));
+    to.fixed_view_mut::<3, 3>(3, 3).copy_from(&axes);
+    to * follow
+}

@@ -1,0 +1,196 @@
+//! An unknown lens from pictures whose poses are free (theory.md §4, *Pictures*).
+//!
+//! With the lens the bend of a flat board is found: a bend of a few tenths of a millimetre, that of paper on cardboard, is taken for a focal length
+//! that is off by a percent, many times what the noise of corners says of it.
+
+use nalgebra::{DMatrix, DVector, Matrix6xX};
+
+use super::{
+    Board, Lens, OwnInformation, Picture, PictureNumber, PictureUnknown, PictureUnknowns, Pictures, View,
+    is_flat_sheet,
+};
+use poecal_arm::lie::Pose;
+use poecal_numerics::linalg;
+
+/// Most steps to the lens of pictures alone.
+const STEPS: usize = 60;
+/// Largest step of a number, standard deviations of its prior.
+const FARTHEST: f64 = 2.0;
+/// Squared standard deviations by which a step must be worth it.
+const LEAST: f64 = 1e-9;
+/// Standard deviations by which pictures must differ more than by the noise of their corners.
+const SPREAD: f64 = 4.0;
+
+/// The search for the lens of the one camera of some pictures: what the corners say of it where the poses of the pictures are free.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LensSearch {
+    unknowns: PictureUnknowns,
+    count: usize,
+    /// Numbers that stay as they are: the scales of the board, which the pictures do not determine.
+    held: Vec<usize>,
+    /// By how much what the corners of a picture share makes their information of the numbers less.
+    shared: f64,
+}
+
+/// Pictures with a lens, and what they say of another one.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LensState {
+    /// The pictures with this lens, with the weights of their corners and the noise of them.
+    pub pictures: Pictures,
+    /// The pose of the board in the camera's frame in each picture.
+    pub poses: Vec<Pose>,
+    /// How each of these poses moves (m, rad, in the camera's axes) by a standard deviation of the prior of each number.
+    pub follow: Vec<Matrix6xX<f64>>,
+    /// The numbers, in standard deviations of their prior from the first guess.
+    pub step: DVector<f64>,
+    /// Information of the numbers in these deviations, with the prior.
+    pub information: DMatrix<f64>,
+    /// Its pull.
+    pub pull: DVector<f64>,
+    /// Degrees of freedom of the corners' noise.
+    pub freedom: f64,
+    /// How many times more than by independent noise of the corners the pictures differ in what they say of the numbers (variance).
+    pub spread: f64,
+}
+
+impl LensSearch {
+    /// Of the camera of pictures, whose lens is a first guess; with the state there. `None` if there is no such camera.
+    #[must_use]
+    pub fn of(pictures: &Pictures) -> Option<(Self, LensState)> {
+        let first = pictures.all.first()?;
+        let lens = PictureUnknown::Lens(first.camera);
+        let is_sheet = pictures.boards.get(first.board).is_some_and(is_flat_sheet);
+        let of = |parts: &[PictureUnknown]| PictureUnknowns::new(&pictures.cameras, &pictures.boards, parts);
+        let lens_alone = of(&[lens]).count();
+        let unknowns = if is_sheet { of(&[lens, PictureUnknown::Board(first.board)]) } else { of(&[lens]) };
+        let count = unknowns.count();
+        let held = if is_sheet { vec![lens_alone, lens_alone + 1] } else { Vec::new() };
+        let poses = pictures.all.iter().map(|it| it.poses.first().copied()).collect::<Option<Vec<Pose>>>()?;
+        let search = LensSearch { unknowns, count, held, shared: 1.0 };
+        let state = search.at(pictures, &poses, DVector::zeros(count));
+        (count > 0).then_some((search, state))
+    }
+
+    /// The state after a step of the numbers; each pose is the best one near that of this state, or near another one that is given.
+    #[must_use]
+    pub fn stepped(&self, from: &LensState, poses: &[Pose], by: &DVector<f64>) -> LensState {
+        let by = by * (FARTHEST / by.amax().max(FARTHEST));
+        self.at(&from.pictures, poses, &from.step + by)
+    }
+
+    /// The search in which the pictures have the information by which they differ at a state: what the corners of a picture share, as a board or a
+    /// lens of another shape than is fitted, counts once in each picture.
+    #[must_use]
+    pub fn with_spread_of(&self, state: &LensState) -> Self {
+        LensSearch { shared: (self.shared * state.spread).max(1.0), ..self.clone() }
+    }
+
+    /// The lens that the pictures determine by themselves. `None` where they do not.
+    #[must_use]
+    pub fn alone(&self, start: &LensState) -> Option<LensState> {
+        let mut state = start.clone();
+        for _ in 0..STEPS {
+            let by = linalg::solved(state.information.clone(), &state.pull)?;
+            if by.dot(&state.pull) < LEAST {
+                break;
+            }
+            state = self.stepped(&state, &state.poses, &by);
+        }
+        state.step.iter().all(|it| it.is_finite()).then_some(state)
+    }
+
+    /// The numbers of the lens of a state, with these standard deviations in those of the prior.
+    #[must_use]
+    pub fn numbers(&self, state: &LensState, deviations: &[f64]) -> Vec<PictureNumber> {
+        self.unknowns.numbers(&state.step, deviations)
+    }
+
+    fn at(&self, before: &Pictures, poses: &[Pose], step: DVector<f64>) -> LensState {
+        let mut pictures = before.clone();
+        // The boards stay flat: of a flat one other poses are known.
+        let (cameras, bent) = self.unknowns.at(&step);
+        pictures.cameras = cameras;
+        let sightings: Vec<_> = (pictures.all.iter().zip(poses))
+            .map(|(picture, pose)| view(&pictures, &bent, picture)?.sighting(pose, true))
+            .collect();
+        let (mut squares, mut freedom) = (0.0, -(self.count as f64));
+        let mut found = Vec::with_capacity(poses.len());
+        for ((picture, sighting), pose) in pictures.all.iter_mut().zip(&sightings).zip(poses) {
+            found.push(sighting.as_ref().map_or(*pose, |it| it.camera_from_board));
+            let Some(sighting) = sighting else { continue };
+            (squares, freedom) = (squares + sighting.cost, freedom + sighting.freedom);
+            picture
+                .corners
+                .iter_mut()
+                .zip(&sighting.weights)
+                .for_each(|(corner, weight)| corner.weight = *weight);
+        }
+        let freedom = freedom.max(1.0);
+        // Corners that state their noise are never better than that.
+        let states = pictures.all.iter().flat_map(|it| &it.corners).all(|corner| corner.sigma_px.is_some());
+        let excess = squares / freedom;
+        let excess = if states { excess.max(1.0) } else { excess.max(1e-6) };
+        let mut own = OwnInformation::none(self.count);
+        let mut squared = DMatrix::zeros(self.count, self.count);
+        let mut follow = Vec::with_capacity(found.len());
+        for (picture, pose) in pictures.all.iter().zip(&found) {
+            let before = own.pull.clone();
+            let added = view(&pictures, &bent, picture).map(|view| {
+                let information = view.information(pose);
+                self.unknowns.add((picture.camera, picture.board), &view, (pose, &information), &mut own)
+            });
+            let mut added = added.unwrap_or_else(|| Matrix6xX::zeros(self.count));
+            self.held.iter().for_each(|&at| added.column_mut(at).fill(0.0));
+            follow.push(added);
+            let mut pull = &own.pull - before;
+            self.held.iter().for_each(|&at| pull[at] = 0.0);
+            squared += &pull * pull.transpose();
+        }
+        for &at in &self.held {
+            own.gram.row_mut(at).fill(0.0);
+            own.gram.column_mut(at).fill(0.0);
+            own.pull[at] = 0.0;
+        }
+        let by = excess * self.shared;
+        let information = &own.gram / by + DMatrix::identity(self.count, self.count);
+        let spread = spread(&information, &(squared / (by * by)), &(own.gram / by), found.len());
+        let pull = own.pull / by - &step;
+        if !states {
+            pictures.sigma_px *= excess.sqrt();
+        }
+        LensState { pictures, poses: found, follow, step, information, pull, freedom, spread }
+    }
+}
+
+/// A picture with boards as they are bent.
+fn view<'a>(pictures: &'a Pictures, bent: &'a [Board], picture: &'a Picture) -> Option<View<'a>> {
+    let lens = &pictures.cameras.get(picture.camera)?.lens;
+    Some(View::new(picture, lens, bent.get(picture.board)?, pictures.sigma_px))
+}
+
+/// How many times larger the squares of the pulls of pictures are than their information says; 1 where that is no more than chance.
+fn spread(
+    information: &DMatrix<f64>,
+    squared: &DMatrix<f64>,
+    expected: &DMatrix<f64>,
+    pictures: usize,
+) -> f64 {
+    let count = information.nrows();
+    let Some(factor) = linalg::cholesky(information.as_slice(), count, 0.0) else { return 1.0 };
+    let inverse = DMatrix::from_row_slice(count, count, &linalg::inverse(&factor));
+    // Numbers that the prior determines do not count. At the best lens the pulls of all pictures cancel.
+    let determined = (&inverse * expected).trace();
+    let rows = pictures as f64;
+    let ratio = (inverse * squared).trace() / determined * rows / (rows - 1.0).max(1.0);
+    let chance = SPREAD * (2.0 / (rows * determined)).sqrt();
+    if determined > 1.0 && ratio > 1.0 + chance { ratio } else { 1.0 }
+}
+
+impl LensState {
+    /// The lens.
+    #[must_use]
+    pub fn lens(&self) -> Option<Lens> {
+        let camera = self.pictures.all.first()?.camera;
+        self.pictures.cameras.get(camera).map(|it| it.lens)
+    }
+}
