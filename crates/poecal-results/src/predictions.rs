@@ -88,6 +88,8 @@ pub fn predict(
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Predicted {
+    /// Name of the target that is predicted; `None` is the tip.
+    pub target: Option<String>,
     /// Pose of the tip or target in the chosen frame, one for each configuration.
     pub poses: Vec<Pose>,
     /// Predicted uncertainty of each, and whether every joint is inside the sampled range; if asked for.
@@ -122,7 +124,7 @@ pub fn predicted(
     let doubts = if with_uncertainty { Some(doubts(model, readings, target)?) } else { None };
     let poses = robot.forward_kinematics_of(readings);
     let poses = poses.map(|base_from_tip| frame_from_base * base_from_tip * tip_from_target).collect();
-    Ok(Predicted { poses, doubts })
+    Ok(Predicted { target: target.map(str::to_owned), poses, doubts })
 }
 
 /// The name of the tip where a target is asked for.
