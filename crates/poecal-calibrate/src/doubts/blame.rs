@@ -14,6 +14,11 @@ const OFF_ZERO: f64 = 10.0;
 /// Usual deviations that are tried, from the root mean square of all downward, and the ratio of each to the next.
 const TRIED: usize = 9;
 const RATIO: f64 = 1.4;
+/// How many times the usual tilt (as an arc at the length) the usual shift is; of many axes, which take longer, 1 alone.
+const SHIFTS: [f64; 5] = [1.0, 0.25, 0.5, 2.0, 4.0];
+/// Prior standard deviation of that, octaves.
+const OCTAVES: f64 = 0.8;
+const MANY: usize = 64;
 /// Eigenvalues below this share of the largest are null.
 const NULL: f64 = 1e-10;
 
@@ -44,6 +49,7 @@ struct Axes {
     /// Place and joint of the first of each joint's tilts, and of its shifts.
     tilts: Vec<(usize, usize)>,
     shifts: Vec<(usize, usize)>,
+    is_shift: Vec<bool>,
     by_base: DMatrix<f64>,
     /// Of each joint by its zero, in metres of arc of a turning joint.
     by_zero: DMatrix<f64>,
@@ -104,14 +110,26 @@ impl Axes {
         let by_steps = DMatrix::from_fn(size, n, |row, k| rows[row].dot(&motions[k][owners[row]]));
         let covariance =
             &by_steps * DMatrix::from_row_slice(n, n, &uncertainty.covariance) * by_steps.transpose();
-        Axes { deviations: DVector::from_vec(deviations), tilts, shifts, by_base, by_zero, covariance }
+        let mut is_shift = vec![false; size];
+        shifts.iter().for_each(|&(at, _)| is_shift[at..at + 2].fill(true));
+        Axes {
+            deviations: DVector::from_vec(deviations),
+            tilts,
+            shifts,
+            is_shift,
+            by_base,
+            by_zero,
+            covariance,
+        }
     }
 
     /// The weights of deviations with everything that moves the base projected out, and the logarithm of their density but for a constant,
     /// times -2, if each deviates by so much as usual.
-    fn weights(&self, usual_m: f64) -> Option<(DMatrix<f64>, f64)> {
-        let size = self.deviations.len();
-        let spread = DMatrix::identity(size, size) + &self.by_zero * self.by_zero.transpose();
+    fn weights(&self, usual_m: f64, shifts: f64) -> Option<(DMatrix<f64>, f64)> {
+        let mut spread = &self.by_zero * self.by_zero.transpose();
+        for (at, own) in self.is_shift.iter().enumerate() {
+            spread[(at, at)] += if *own { shifts * shifts } else { 1.0 };
+        }
         let all = &self.covariance + spread * usual_m.powi(2);
         let (inverse, mut density) = inverse(&all)?;
         let moved = &inverse * &self.by_base;
@@ -172,13 +190,22 @@ pub(crate) fn blame(view: &View<'_>, uncertainty: &Uncertainty) -> Vec<Blame> {
     }
     let mut without = f64::INFINITY;
     let mut best: Vec<Option<Blame>> = vec![None; parts.len()];
-    for tried in 0..TRIED {
-        let usual_m = largest_m * RATIO.powi(-(tried as i32));
-        let Some((weights, density)) = axes.weights(usual_m) else { continue };
+    let ratios = if axes.deviations.len() > MANY { &SHIFTS[..1] } else { &SHIFTS[..] };
+    let tried =
+        (0..TRIED).flat_map(|step| ratios.iter().map(move |shifts| (RATIO.powi(-(step as i32)), *shifts)));
+    for (share, shifts) in tried {
+        let usual_m = largest_m * share;
+        let Some((weights, density)) = axes.weights(usual_m, shifts) else { continue };
+        let density = density + (shifts.log2() / OCTAVES).powi(2);
         without = without.min(density);
         let weighed = &weights * &axes.deviations;
         for ((joint, part, columns), best) in parts.iter().zip(&mut best) {
-            let off_m = usual_m * if *part == Part::Zero { OFF_ZERO } else { OFF_AXIS };
+            let off_m = usual_m
+                * match part {
+                    Part::Zero => OFF_ZERO,
+                    Part::Tilt => OFF_AXIS,
+                    Part::Shift => OFF_AXIS * shifts,
+                };
             let entry = |i: usize, k: usize| match (columns.get(i), columns.get(k)) {
                 (Some(a), Some(b)) => off_m.powi(2) * (a.transpose() * &weights * b)[(0, 0)],
                 _ => 0.0,

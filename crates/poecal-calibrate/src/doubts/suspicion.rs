@@ -3,7 +3,7 @@
 use super::blame::{Blame, Part, blame};
 use poecal_fit::uncertainty::{Pattern, Uncertainty, View, strongest_pattern};
 use poecal_model::offsets::JointChange;
-use poecal_model::robot::{JointKind, Robot};
+use poecal_model::robot::JointKind;
 use poecal_numerics::error::shown;
 use poecal_numerics::solve::Normal;
 
@@ -36,14 +36,16 @@ pub struct JointCorrection {
 
 /// Evidence (twice a logarithm of probabilities) from which a part of a joint is named, where the other axes are as those of usual robots, and
 /// where they are worse: of these one or another often deviates by more.
-const NAMED: [f64; 2] = [1.0, 8.0];
+const NAMED: [f64; 2] = [1.0, 12.0];
 /// Deviations of the other axes (each direction, radians) from which the one counts, and the other.
 const USUAL_RAD: [f64; 2] = [4e-4, 1.2e-3];
 /// Difference of evidence up to which measurements do not tell two explanations apart.
-const ALIKE: f64 = 4.0;
+const ALIKE: f64 = 3.0;
 /// Corrections that are of no concern: a twentieth of a degree, half a millimetre.
 const LEAST_RAD: f64 = 1e-3;
 const LEAST_M: f64 = 5e-4;
+/// Standard deviations of the correction from which it is more than noise.
+const SIGMAS: f64 = 3.0;
 
 /// Suspicions of each joint, in words (theory.md §9 (44)).
 pub(crate) fn suspicions(
@@ -54,7 +56,7 @@ pub(crate) fn suspicions(
 ) -> Vec<Option<String>> {
     let robot = view.session.robot;
     let mut words: Vec<Vec<String>> = vec![Vec::new(); joints.len()];
-    let found = uncertainty.map(|it| off(&blame(view, it), robot)).unwrap_or_default();
+    let found = uncertainty.map(|it| off(&blame(view, it), joints)).unwrap_or_default();
     let told =
         |it: &Blame| Some((it.joint, robot.joints.get(it.joint)?, part_words(it, joints.get(it.joint)?)));
     match found.iter().filter_map(told).collect::<Vec<_>>().as_slice() {
@@ -79,19 +81,30 @@ pub(crate) fn suspicions(
 }
 
 /// The part that is off, if one is, and one of another joint that explains the deviations about as well.
-fn off(all: &[Blame], robot: &Robot) -> Vec<Blame> {
-    let Some(best) = all.first() else { return Vec::new() };
-    let slides =
-        |it: &Blame| robot.joints.get(it.joint).is_some_and(|joint| joint.kind == JointKind::Prismatic);
-    let is_length = |it: &Blame| it.part == Part::Shift || it.part == Part::Zero && slides(it);
-    let counts = |it: &Blame| it.size > if is_length(it) { LEAST_M } else { LEAST_RAD };
+fn off(all: &[Blame], joints: &[JointCorrection]) -> Vec<Blame> {
+    let counts = |it: &&Blame| {
+        let Some(JointChange { kind, sigma_offset, sigma_tilt, sigma_shift, .. }) =
+            joints.get(it.joint).map(|joint| &joint.change)
+        else {
+            return false;
+        };
+        let (sigma, is_length) = match it.part {
+            Part::Zero => (sigma_offset, *kind == JointKind::Prismatic),
+            Part::Tilt => (sigma_tilt, false),
+            Part::Shift => (sigma_shift, true),
+        };
+        let least = if is_length { LEAST_M } else { LEAST_RAD };
+        sigma.is_some_and(|sigma| it.size > least.max(SIGMAS * sigma))
+    };
+    let mut counted = all.iter().filter(counts);
+    let Some(best) = counted.next() else { return Vec::new() };
     let worse = (best.usual_rad / USUAL_RAD[0]).ln() / (USUAL_RAD[1] / USUAL_RAD[0]).ln();
     let named = NAMED[0] + (NAMED[1] - NAMED[0]) * worse.clamp(0.0, 1.0);
-    if best.evidence < named || !counts(best) {
+    if best.evidence < named {
         return Vec::new();
     }
-    let is_alike = |it: &&Blame| it.joint != best.joint && it.evidence > (best.evidence - ALIKE).max(0.0);
-    let other = all.iter().find(is_alike).filter(|it| counts(it));
+    let least = (best.evidence - ALIKE).max(0.0);
+    let other = counted.find(|it| it.joint != best.joint).filter(|it| it.evidence > least);
     [Some(best), other].into_iter().flatten().copied().collect()
 }
 
@@ -105,7 +118,7 @@ fn part_words(found: &Blame, correction: &JointCorrection) -> String {
     };
     // Whatever offsets can explain counts as offset, of other joints too.
     if own < 0.5 * found.size {
-        return format!("its {what} by more than others are, told as corrections of its neighbours");
+        return format!("its {what} by more than others are, counted as corrections of its neighbours");
     }
     format!("its {what} by more than others are ({words})")
 }

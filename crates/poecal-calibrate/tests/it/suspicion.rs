@@ -151,15 +151,21 @@ fn faulty_session(robot: &Robot, fault: Fault, seed: u64) -> Dataset {
         seed,
         ..Simulation::default()
     };
-    let kind = if seed % 2 == 0 { Kind::POSE } else { Kind::POINT };
+    let kind = if seed / 8 % 2 == 0 { Kind::POSE } else { Kind::POINT };
     simulation.run(&actual, kind).unwrap().data
+}
+
+/// The robot with its tip beside the last axis, where a reflector shows how the last joint turns.
+fn with_tool(robot: Robot) -> Robot {
+    let tool = Pose::from_translation(Vector3::new(0.1, 0.05, 0.1));
+    Robot { home: robot.home * tool, ..robot }
 }
 
 /// A fault is that of its joint whatever the device's frame and the tool are: zeros between the first joint, which the base has, and the last, which
 /// the tool has, and axes of all joints.
 #[test]
 fn the_joint_that_is_off_is_named() {
-    let robots = [elbow(), seven_axis()];
+    let robots = [elbow(), seven_axis()].map(with_tool);
     let trials = trials(200).at_least(30);
     let judged = |seed: u64, fault: Fault| {
         let robot = &robots[seed as usize % robots.len()];
@@ -200,7 +206,7 @@ fn the_joint_that_is_off_is_named() {
     let share = |allowed: f64| (allowed + trials.more_of_a_share(allowed)) * count as f64;
     assert!((count - right) as f64 <= share(0.03));
     assert!(both as f64 <= share(0.2));
-    assert!(alarms as f64 <= share(0.02));
+    assert!(alarms as f64 <= share(0.06));
 }
 
 #[test]

@@ -62,7 +62,10 @@ fn predictions_state_their_error() {
     );
     let plain = folder.done("predict some/calibration.json joints.csv --target measured");
     let run = folder.run("predict some/calibration.json joints.csv --with-uncertainty");
-    assert!(run.code == 0 && run.err.contains("predicted `measured`, which was measured; --target tip"), "{run:?}");
+    assert!(
+        run.code == 0 && run.err.contains("predicted `measured`, which was measured; --target tip"),
+        "{run:?}"
+    );
     let text = run.out;
     let rows: Vec<Vec<&str>> = text.lines().map(|line| line.split(',').collect()).collect();
     assert_eq!(
@@ -80,7 +83,10 @@ fn predictions_state_their_error() {
     let tip = folder.run("predict some/calibration.json joints.csv --with-uncertainty --target tip");
     let of_tip: f64 = tip.out.lines().nth(1).and_then(|line| line.split(',').nth(8)?.parse().ok()).unwrap();
     assert!(of_tip > 2.0 * number(1, 8), "{tip:?}");
-    assert!(tip.err.contains("the tip was not measured") && tip.err.contains("(--target measured)"), "{tip:?}");
+    assert!(
+        tip.err.contains("the tip was not measured") && tip.err.contains("(--target measured)"),
+        "{tip:?}"
+    );
     let without = folder.done("predict some/calibration.json joints.csv");
     let same = without.lines().zip(tip.out.lines());
     assert!(same.skip(1).all(|(pose, with)| with.starts_with(&format!("{pose},"))));

@@ -125,8 +125,7 @@ fn formulation_words(file: &CalibrationFile) -> Option<String> {
 }
 
 /// What the offsets of the corrections are not for.
-const NOT_ENTERED: &str =
-    "not for entering into a controller: `poecal offsets` gives the offsets that are";
+const NOT_ENTERED: &str = "not for entering into a controller: `poecal offsets` gives the offsets that are";
 
 /// Most effects that are told.
 const SHOWN: usize = 6;
