@@ -98,12 +98,16 @@ impl CorrectedFit {
             Model { session, estimate },
             Model { session: geometry.session(), estimate: &geometry.estimate },
         ];
-        let (base, tip) = frames(models, rows, options.move_tip);
-        let estimate = estimate.rebased(&base);
-        if let Some(uncertainty) = &mut uncertainty {
-            uncertainty.estimate = estimate.clone();
+        let (mut estimate, mut tip) = (estimate.clone(), Tip::Nominal);
+        // Without terms both models are one.
+        if self.has_terms() {
+            let (base, at) = frames(models, rows, options.move_tip);
+            (estimate, tip) = (estimate.rebased(&base), Tip::At(at));
+            if let Some(uncertainty) = &mut uncertainty {
+                uncertainty.estimate = estimate.clone();
+            }
         }
-        let (data, tip) = (session.data, Tip::At(tip));
+        let data = session.data;
         let (robot, targets) =
             place_tip(&model.robot, data, &data.frames(rows), &estimate, options.move_tip, tip);
         Correction {
