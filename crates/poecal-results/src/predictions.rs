@@ -182,13 +182,11 @@ pub fn remark(
     let Some(first) = on_robot(model) else { return Ok(None) };
     match target {
         None if frame == PredictionFrame::Base => {
-            let count = measured(model).len();
-            let which = if count > 1 {
-                format!("the first of {count} targets that were measured")
-            } else {
-                "which was measured".to_owned()
+            let which = match measured(model).len() {
+                ..=1 => format!("the measured target `{first}`"),
+                count => format!("`{first}`, the first of {count} measured targets"),
             };
-            Ok(Some(format!("predicted `{first}`, {which}; --target tip predicts the tip, which was not")))
+            Ok(Some(format!("predicted {which}; --target tip predicts the tip, which was not measured")))
         }
         Some(name) if is_tip(model, name) => {
             let rms_mm = |target: Option<&str>| {
@@ -198,8 +196,8 @@ pub fn remark(
             };
             let (tip_mm, first_mm) = (rms_mm(None)?, rms_mm(Some(first))?);
             Ok(Some(format!(
-                "the tip was not measured: with its position on the last link it is known to {tip_mm:.2} mm (RMS), `{first}`, which was measured, to \
-                 {first_mm:.2} mm (--target {first})"
+                "the tip was not measured: its position on the last link is known to {tip_mm:.2} mm (RMS), that of `{first}`, which was \
+                 measured, to {first_mm:.2} mm (--target {first})"
             )))
         }
         _ => Ok(None),

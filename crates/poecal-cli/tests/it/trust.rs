@@ -63,7 +63,7 @@ fn predictions_state_their_error() {
     let plain = folder.done("predict some/calibration.json joints.csv --target measured");
     let run = folder.run("predict some/calibration.json joints.csv --with-uncertainty");
     assert!(
-        run.code == 0 && run.err.contains("predicted `measured`, which was measured; --target tip"),
+        run.code == 0 && run.err.contains("predicted the measured target `measured`; --target tip"),
         "{run:?}"
     );
     let text = run.out;
