@@ -260,13 +260,14 @@ pub(crate) struct Predict {
     /// The frame of the poses
     #[arg(long, value_parser = one_of(PREDICT_IN), default_value = "base")]
     pub(crate) frame: PredictionFrame,
-    /// Add the expected error of each prediction, and whether it lies in the sampled range (of a calibration.json)
+    /// Add the expected error of each prediction, and whether it lies in the sampled range (of a calibration.json); without --target of the first
+    /// target that was measured
     #[arg(long)]
     pub(crate) with_uncertainty: bool,
     /// Which model of a calibration predicts: the corrected one, if there is one, or the calibrated one, which a URDF holds
     #[arg(long = "model", value_parser = one_of(MODEL), default_value = "corrected")]
     pub(crate) of: AcceptedModel,
-    /// Predict this target of the model instead of the tip; of a URDF, with its link
+    /// Predict this target of the model, or the `tip` [default: the tip, but for --with-uncertainty]; of a URDF, with its link
     #[arg(long, value_name = "NAME|NAME=LINK")]
     pub(crate) target: Option<String>,
     #[command(flatten)]

@@ -10,6 +10,7 @@ use crate::arrays::pose_arrays;
 /// Predicted poses of m configurations, and the expected error of each.
 #[pyclass(frozen, module = "poecal", name = "Prediction")]
 pub(crate) struct Prediction {
+    pub(crate) target: Option<String>,
     pub(crate) poses: Vec<Pose>,
     pub(crate) doubts: Vec<(PredictedError, bool)>,
 }
@@ -22,6 +23,12 @@ impl Prediction {
 
 #[pymethods]
 impl Prediction {
+    /// Name of the target that was predicted; None for the tip.
+    #[getter]
+    fn target(&self) -> Option<&str> {
+        self.target.as_deref()
+    }
+
     /// The poses, shape (m, 4, 4), metres.
     #[getter]
     fn poses<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray3<f64>>> {

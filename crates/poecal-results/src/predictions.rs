@@ -31,8 +31,7 @@ pub enum PredictionFrame {
     Device,
 }
 
-/// Predicts the pose of the tip, or of a named target, in each configuration; in the device's frame without a name that of the only target,
-/// which the device sees: a header and `x[m],y[m],z[m],qx,qy,qz,qw` a row, after
+/// Predicts the pose of the tip, or of a target ([`default_target`] without a name), in each configuration: a header and `x[m],y[m],z[m],qx,qy,qz,qw` a row, after
 /// the rows' `id` if they have one. Numbers read back exactly; `qw ≥ 0`.
 ///
 /// # Errors
@@ -89,6 +88,8 @@ pub fn predict(
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Predicted {
+    /// Name of the target that is predicted; `None` is the tip.
+    pub target: Option<String>,
     /// Pose of the tip or target in the chosen frame, one for each configuration.
     pub poses: Vec<Pose>,
     /// Predicted uncertainty of each, and whether every joint is inside the sampled range; if asked for.
@@ -107,9 +108,10 @@ pub fn predicted(
     target: Option<&str>,
     with_uncertainty: bool,
 ) -> Result<Predicted> {
-    let target = match frame {
-        PredictionFrame::Device => target.map_or_else(|| seen(model), |name| Ok(Some(name)))?,
-        PredictionFrame::Base => target,
+    let target = match target {
+        Some(name) if is_tip(model, name) => None,
+        Some(name) => Some(name),
+        None => default_target(model, frame, with_uncertainty)?,
     };
     let (robot, tip_from_target) = match target {
         None => (Cow::Borrowed(&model.robot), Pose::identity()),
@@ -122,15 +124,89 @@ pub fn predicted(
     let doubts = if with_uncertainty { Some(doubts(model, readings, target)?) } else { None };
     let poses = robot.forward_kinematics_of(readings);
     let poses = poses.map(|base_from_tip| frame_from_base * base_from_tip * tip_from_target).collect();
-    Ok(Predicted { poses, doubts })
+    Ok(Predicted { target: target.map(str::to_owned), poses, doubts })
+}
+
+/// The name of the tip where a target is asked for.
+const TIP: &str = "tip";
+
+/// Whether a name means the tip: that of no target.
+fn is_tip(model: &Model, name: &str) -> bool {
+    let Robot { targets, mounted, .. } = &model.robot;
+    name == TIP && !targets.iter().any(|(it, _)| it == TIP) && !mounted.iter().any(|it| it.name == TIP)
+}
+
+/// The targets that a calibration measured, with their entries.
+fn measured(model: &Model) -> Vec<(&str, &TargetEntry)> {
+    let ModelSource::Calibration(file) = &model.source else { return Vec::new() };
+    let is_measured = |it: &TargetEntry| it.measured() != MeasuredEntry::Nothing;
+    file.targets.iter().filter(|(_, it)| is_measured(it)).map(|(name, it)| (name.as_str(), it)).collect()
+}
+
+/// The target that is predicted where none is named; `None` is the tip. In the device's frame it is the only one that was measured, which the device
+/// sees; in the base frame the tip, but with the expected error the first that was measured on the robot: the place of a tip on its link was not.
+///
+/// # Errors
+/// [`ErrorKind::Option`] if several targets were measured that the device may see.
+pub fn default_target(model: &Model, frame: PredictionFrame, with_uncertainty: bool) -> Result<Option<&str>> {
+    match frame {
+        PredictionFrame::Device => seen(model),
+        PredictionFrame::Base if with_uncertainty => Ok(on_robot(model)),
+        PredictionFrame::Base => Ok(None),
+    }
+}
+
+/// The first target that was measured on the robot; of the states of one target the last. `None` where the tip itself was measured.
+fn on_robot(model: &Model) -> Option<&str> {
+    let robot = &model.robot;
+    let is_at_tip = |name: &str| robot.mounted.iter().any(|it| it.name == name && robot.is_at_tip(it));
+    if measured(model).iter().any(|(name, _)| is_at_tip(name)) {
+        return None;
+    }
+    let moves = |it: &TargetEntry| !matches!(it.on, Some(BodyEntry::Base));
+    let names: Vec<&str> = measured(model).into_iter().filter(|(_, it)| moves(it)).map(|it| it.0).collect();
+    only_target(&names).or_else(|| names.first().copied())
+}
+
+/// What is to be said of a prediction with its expected error: which target is predicted where none was named, and of a tip that was not measured
+/// why its error is larger, each with the way to the other.
+///
+/// # Errors
+/// As [`predict`].
+pub fn remark(
+    model: &Model,
+    joints: &JointsTable,
+    frame: PredictionFrame,
+    target: Option<&str>,
+) -> Result<Option<String>> {
+    let Some(first) = on_robot(model) else { return Ok(None) };
+    match target {
+        None if frame == PredictionFrame::Base => {
+            let which = match measured(model).len() {
+                ..=1 => format!("the measured target `{first}`"),
+                count => format!("`{first}`, the first of {count} measured targets"),
+            };
+            Ok(Some(format!("predicted {which}; --target tip predicts the tip, which was not measured")))
+        }
+        Some(name) if is_tip(model, name) => {
+            let rms_mm = |target: Option<&str>| {
+                let found = doubts(model, &joints.readings, target)?;
+                let squares: f64 = found.iter().map(|(error, _)| error.sigma_position_m().powi(2)).sum();
+                Ok(1e3 * (squares / found.len().max(1) as f64).sqrt())
+            };
+            let (tip_mm, first_mm) = (rms_mm(None)?, rms_mm(Some(first))?);
+            Ok(Some(format!(
+                "the tip was not measured: its position on the last link is known to {tip_mm:.2} mm (RMS), that of `{first}`, which was \
+                 measured, to {first_mm:.2} mm (--target {first})"
+            )))
+        }
+        _ => Ok(None),
+    }
 }
 
 /// The only target that a calibration measured; `None` where that is the tip.
 fn seen(model: &Model) -> Result<Option<&str>> {
-    let ModelSource::Calibration(file) = &model.source else { return Ok(None) };
-    let is_measured = |it: &TargetEntry| it.measured() != MeasuredEntry::Nothing;
-    let names = file.targets.iter().filter(|(_, it)| is_measured(it)).map(|(name, _)| name.as_str());
-    let names: Vec<&str> = names.collect();
+    let names: Vec<&str> = measured(model).into_iter().map(|(name, _)| name).collect();
     match (names.as_slice(), only_target(&names)) {
         ([], _) => Ok(None),
         (_, Some(only)) => Ok(Some(only)),

@@ -7,6 +7,7 @@ use super::gravity::of_no_use;
 use super::linear::between;
 use super::promise::uncertainty;
 use super::unknowns::{estimate, moving, priors, unknowns};
+use crate::estimate_noise;
 use crate::run::Run;
 use crate::run::accuracy::model_accuracy;
 use crate::run::located::located;
@@ -14,8 +15,6 @@ use crate::run::noise::{NoiseSource, stated};
 use crate::run::task::Task;
 use crate::steps::calibrated::CalibratedFit;
 use crate::steps::found::OngoingFit;
-use crate::{delivered, estimate_noise};
-use poecal_fit::gauge;
 use poecal_fit::state::{Estimate, Packed, RowError, Session};
 use poecal_model::measurement::{ByQuantity, Noise};
 use poecal_model::robot::{CorrectionModel, GravityDirection, JointTerm, Sizes};
@@ -133,11 +132,6 @@ impl CorrectionContext<'_> {
         let weight = weight_of_prior(of_geometry.data.configurations(&self.rows).len()) * variance;
         let task = Task { options: &near, ..self.task(session, (&prior, weight)) };
         let (found, noise) = fitted(&task, start, noise, self.geometry);
-        let base_motion = || {
-            let targets = delivered(&model.robot, of_geometry.data).base_from_target;
-            gauge::base_motion(&found, &model.robot, &targets, session.length_m)
-        };
-        let found = if session.base_free() { found.rebased(&base_motion()) } else { found };
         let predicted = Predicted::new(self, &session, &found, noise);
         // Where rows are far from linear, terms may lead nowhere.
         if !self.is_no_worse(&predicted.training) {

@@ -5,10 +5,11 @@ use std::ops::Deref;
 use super::choice::{SizesReason, TriedSizes};
 use super::effect::Effects;
 use super::effects::effects;
+use super::frames::{Model, frames};
 use crate::run::Run;
 use crate::run::accuracy::ModelAccuracy;
 use crate::run::options::DeviceFrameKnowledge;
-use crate::run::placed::{CalibratedStation, CalibratedTarget, place_tip, stations};
+use crate::run::placed::{CalibratedStation, CalibratedTarget, Tip, place_tip, stations};
 use crate::steps::calibrated::CalibratedFit;
 use crate::trust::coverage_check::{CoverageCheck, held_out_check};
 use crate::trust::expected::{Domain, Expectations};
@@ -71,7 +72,7 @@ impl CorrectedFit {
         Some(geometry_m * left).filter(|it| it.is_finite())
     }
 
-    /// The fit with what it is worth, beside the cross-validation of geometry.
+    /// The fit with what it is worth, beside the cross-validation of geometry, in the base frame of geometry.
     pub(crate) fn judged(
         mut self,
         geometry: &CalibratedFit<'_>,
@@ -101,18 +102,32 @@ impl CorrectedFit {
         });
         let predicted = uncertainty.as_ref().map(|it| (it, &coverage[..]));
         let kept = held_out_check((&session, estimate), (rows, held_out_rows), predicted);
-        let frames = session.data.frames(rows);
-        let (robot, targets) = place_tip(&model.robot, session.data, &frames, estimate, options.move_tip);
+        let models = [
+            Model { session, estimate },
+            Model { session: geometry.session(), estimate: &geometry.estimate },
+        ];
+        let (mut estimate, mut tip) = (estimate.clone(), Tip::Nominal);
+        // Without terms both models are one.
+        if self.has_terms() {
+            let (base, at) = frames(models, rows, options.move_tip);
+            (estimate, tip) = (estimate.rebased(&base), Tip::At(at));
+            if let Some(uncertainty) = &mut uncertainty {
+                uncertainty.estimate = estimate.clone();
+            }
+        }
+        let data = session.data;
+        let (robot, targets) =
+            place_tip(&model.robot, data, &data.frames(rows), &estimate, options.move_tip, tip);
         Correction {
             robot: Robot { terms: estimate.terms.clone(), ..robot },
             targets,
-            stations: stations(&session, estimate, *noise),
+            stations: stations(&session, &estimate, *noise),
             frame: options.frame,
             effects: found.unwrap_or_default(),
             expected,
             left_out_m,
             kept,
-            fit: CorrectedFit { uncertainty, ..self },
+            fit: CorrectedFit { uncertainty, estimate, ..self },
         }
     }
 }

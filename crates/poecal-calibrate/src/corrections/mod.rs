@@ -1,7 +1,7 @@
 //! What joints really do beyond geometry: terms of their values and of their bearings, fitted beside the screws with priors (theory.md §6).
 //!
 //! `context.rs` is what they begin with, `linear.rs` has the rows as linear functions of all unknowns, `choice.rs` chooses sizes of priors from them,
-//! `fit.rs` is the fit with these, `worse.rs` gives them up where they predict rows worse, `promise.rs` is their uncertainty, `effects.rs` what they
+//! `fit.rs` is the fit with these, `frames.rs` its base and tip, `worse.rs` gives them up where they predict rows worse, `promise.rs` is their uncertainty, `effects.rs` what they
 //! do at each joint.
 
 mod choice;
@@ -10,6 +10,7 @@ mod effect;
 mod effects;
 mod fit;
 mod found;
+mod frames;
 mod gravity;
 mod left_out;
 mod linear;

@@ -1,5 +1,6 @@
 //! Signs of mistakes in the input. A fit can absorb them, a registration cannot.
 
+pub(crate) mod blame;
 pub(crate) mod noise_doubts;
 pub(crate) mod one_zero;
 pub(crate) mod signs;

@@ -1,9 +1,10 @@
-//! Corrections of joints, and suspicious joints: the correction stands out, or the residuals follow the joint's position.
+//! Corrections of joints, and suspicious joints: the correction alone explains most deviations, or the residuals follow the joint's position.
 
-use poecal_fit::uncertainty::{Pattern, View, strongest_pattern};
+use super::blame::{Blame, Part, blame};
+use poecal_fit::uncertainty::{Pattern, Uncertainty, View, strongest_pattern};
 use poecal_model::offsets::JointChange;
 use poecal_model::robot::JointKind;
-use poecal_numerics::distributions::median;
+use poecal_numerics::error::shown;
 use poecal_numerics::solve::Normal;
 
 /// A joint's correction.
@@ -33,72 +34,93 @@ pub struct JointCorrection {
     pub suspicious: Option<String>,
 }
 
-/// Ratio to the other joints' median, and to its own standard deviation, above which a correction stands out.
-const STANDS_OUT: f64 = 5.0;
+/// Evidence (twice a logarithm of probabilities) from which a part of a joint is named, where the other axes are as those of usual robots, and
+/// where they are worse: of these one or another often deviates by more.
+const NAMED: [f64; 2] = [1.0, 12.0];
+/// Deviations of the other axes (each direction, radians) from which the one counts, and the other.
+const USUAL_RAD: [f64; 2] = [4e-4, 1.2e-3];
+/// Difference of evidence up to which measurements do not tell two explanations apart.
+const ALIKE: f64 = 3.0;
+/// Corrections that are of no concern: a twentieth of a degree, half a millimetre.
+const LEAST_RAD: f64 = 1e-3;
+const LEAST_M: f64 = 5e-4;
+/// Standard deviations of the correction from which it is more than noise.
 const SIGMAS: f64 = 3.0;
-/// Fewest other joints for a median.
-const FEWEST: usize = 2;
-/// Corrections that are of no concern: a tenth of a degree, half a millimetre.
-const LEAST_TILT_RAD: f64 = 2e-3;
-const LEAST_SHIFT_M: f64 = 5e-4;
 
 /// Suspicions of each joint, in words (theory.md §9 (44)).
 pub(crate) fn suspicions(
     view: &View<'_>,
     normal: &Normal,
     joints: &[JointCorrection],
+    uncertainty: Option<&Uncertainty>,
 ) -> Vec<Option<String>> {
-    let kind = |joint: usize| view.session.robot.joints[joint].kind;
-    let of_joint = |(joint, correction): (usize, &JointCorrection)| {
-        let others = joints.iter().enumerate().filter(|&(other, it)| {
-            other != joint && kind(other) == kind(joint) && it.sigma_tilt_rad.is_some()
-        });
-        stands_out(correction, &others.map(|(_, it)| it).collect::<Vec<_>>())
-    };
-    let mut words: Vec<Vec<String>> = joints.iter().enumerate().map(of_joint).collect();
+    let robot = view.session.robot;
+    let mut words: Vec<Vec<String>> = vec![Vec::new(); joints.len()];
+    let found = uncertainty.map(|it| off(&blame(view, it), joints)).unwrap_or_default();
+    let told =
+        |it: &Blame| Some((it.joint, robot.joints.get(it.joint)?, part_words(it, joints.get(it.joint)?)));
+    match found.iter().filter_map(told).collect::<Vec<_>>().as_slice() {
+        [] => {}
+        [(joint, _, own)] => words[*joint].push(own.clone()),
+        several => {
+            for (joint, _, own) in several {
+                let others = several.iter().filter(|it| it.0 != *joint);
+                let others: Vec<String> =
+                    others.map(|(_, other, words)| format!("{}: {words}", shown(&other.name))).collect();
+                words[*joint].push(format!(
+                    "{own}, or else {}; the measurements do not tell which",
+                    others.join(", or else ")
+                ));
+            }
+        }
+    }
     if let Some((joint, pattern)) = strongest_pattern(view, normal) {
-        words[joint].push(pattern_words(&pattern, kind(joint)));
+        words[joint].push(pattern_words(&pattern, robot.joints[joint].kind));
     }
     words.into_iter().map(|parts| (!parts.is_empty()).then(|| parts.join("; "))).collect()
 }
 
-/// Whether a joint's axis is farther from nominal than those of the other joints of its kind.
-fn stands_out(correction: &JointCorrection, others: &[&JointCorrection]) -> Vec<String> {
-    let median = |of: fn(&JointCorrection) -> f64| {
-        median(others.iter().map(|it| of(it))).filter(|_| others.len() >= FEWEST)
+/// The part that is off, if one is, and one of another joint that explains the deviations about as well.
+fn off(all: &[Blame], joints: &[JointCorrection]) -> Vec<Blame> {
+    let counts = |it: &&Blame| {
+        let Some(JointChange { kind, sigma_offset, sigma_tilt, sigma_shift, .. }) =
+            joints.get(it.joint).map(|joint| &joint.change)
+        else {
+            return false;
+        };
+        let (sigma, is_length) = match it.part {
+            Part::Zero => (sigma_offset, *kind == JointKind::Prismatic),
+            Part::Tilt => (sigma_tilt, false),
+            Part::Shift => (sigma_shift, true),
+        };
+        let least = if is_length { LEAST_M } else { LEAST_RAD };
+        sigma.is_some_and(|sigma| it.size > least.max(SIGMAS * sigma))
     };
-    let mut parts = Vec::new();
-    let mut judge = |value: f64, sigma: Option<f64>, least: f64, others: Option<f64>, words: String| {
-        let (Some(sigma), Some(others)) = (sigma, others) else { return };
-        if value > least && value > SIGMAS * sigma && value > STANDS_OUT * others {
-            parts.push(words);
-        }
+    let mut counted = all.iter().filter(counts);
+    let Some(best) = counted.next() else { return Vec::new() };
+    let worse = (best.usual_rad / USUAL_RAD[0]).ln() / (USUAL_RAD[1] / USUAL_RAD[0]).ln();
+    let named = NAMED[0] + (NAMED[1] - NAMED[0]) * worse.clamp(0.0, 1.0);
+    if best.evidence < named {
+        return Vec::new();
+    }
+    let least = (best.evidence - ALIKE).max(0.0);
+    let other = counted.find(|it| it.joint != best.joint).filter(|it| it.evidence > least);
+    [Some(best), other].into_iter().flatten().copied().collect()
+}
+
+/// A part that is off in the words of the joint's correction.
+fn part_words(found: &Blame, correction: &JointCorrection) -> String {
+    let change = &correction.change;
+    let (what, own, words) = match found.part {
+        Part::Zero => ("zero is off", change.offset.map_or(0.0, f64::abs), change.offset_words()),
+        Part::Tilt => ("axis is tilted", change.tilt.norm(), change.tilt_words()),
+        Part::Shift => ("axis is shifted", change.shift.norm(), change.shift_words()),
     };
-    let tilt = median(|it| it.tilt_rad);
-    judge(
-        correction.tilt_rad,
-        correction.sigma_tilt_rad,
-        LEAST_TILT_RAD,
-        tilt,
-        format!(
-            "its axis is tilted by {:.3} deg from nominal, the median of the others by {:.3}",
-            correction.tilt_rad.to_degrees(),
-            tilt.unwrap_or_default().to_degrees()
-        ),
-    );
-    let shift = median(|it| it.shift_m);
-    judge(
-        correction.shift_m,
-        correction.sigma_shift_m,
-        LEAST_SHIFT_M,
-        shift,
-        format!(
-            "its axis is shifted by {:.2} mm from nominal, the median of the others by {:.2}",
-            1e3 * correction.shift_m,
-            1e3 * shift.unwrap_or_default()
-        ),
-    );
-    parts
+    // Whatever offsets can explain counts as offset, of other joints too.
+    if own < 0.5 * found.size {
+        return format!("its {what} by more than others are, counted as corrections of its neighbours");
+    }
+    format!("its {what} by more than others are ({words})")
 }
 
 fn pattern_words(pattern: &Pattern, kind: JointKind) -> String {

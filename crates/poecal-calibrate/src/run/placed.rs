@@ -59,15 +59,33 @@ pub(crate) fn stations(session: &Session<'_>, estimate: &Estimate, noise: Noise)
     (0..data.station_count()).map(of).collect()
 }
 
-/// The calibrated robot with its tip, and the targets in that tip. The tip keeps its nominal pose on the last joint, but for a target, or an
-/// instrument, of the model at its very place, and, with `move_tip`, for the target that no row names (measured as points, with its nominal
-/// orientation to the last joint). Targets and instruments of the model with bodies of their own stay on these.
+/// Where a tip is that was not measured.
+#[derive(Clone, Copy)]
+pub(crate) enum Tip {
+    /// On the last joint as in the nominal model.
+    Nominal,
+    /// Here, `base_from_tip` at zero joint values.
+    At(Pose),
+}
+
+/// What was measured of the tip.
+#[derive(Clone, Copy, PartialEq)]
+enum SeenTip {
+    Nothing,
+    Place,
+    Pose,
+}
+
+/// The calibrated robot with its tip, and the targets in that tip. The tip is where `tip` has it, but for a target, or an instrument, of the
+/// model at its very place, and, with `move_tip`, for the target that no row names (measured as points, with the orientation of `tip`). Targets
+/// and instruments of the model with bodies of their own stay on these.
 pub(crate) fn place_tip(
     robot: &Robot,
     data: &Dataset,
     frames: &[bool],
     estimate: &Estimate,
     move_tip: bool,
+    tip: Tip,
 ) -> (Robot, Vec<CalibratedTarget>) {
     let mut calibrated = robot.with_screws(&estimate.screws());
     calibrated.terms.clone_from(&estimate.terms);
@@ -76,14 +94,26 @@ pub(crate) fn place_tip(
     calibrated.home =
         last_joint.map_or_else(Pose::identity, |joint| joint.frame) * robot.last_joint_from_tip();
     let is_tip = |name: &Option<String>| move_tip && name.is_none();
-    let is_placed = data.targets.iter().any(is_tip);
-    place_mounts(robot, &mut calibrated, (data, frames), estimate, is_placed);
+    let named = data.targets.iter().zip(frames).find(|(name, _)| is_tip(name));
+    let named = match named {
+        None => SeenTip::Nothing,
+        Some((_, true)) => SeenTip::Pose,
+        Some((_, false)) => SeenTip::Place,
+    };
+    let seen = place_mounts(robot, &mut calibrated, (data, frames), estimate, named);
     for (target, name) in data.targets.iter().enumerate() {
         if is_tip(name) {
             let seen = estimate.base_from_target[target];
             let rotation = if frames[target] { seen.rotation } else { calibrated.home.rotation };
             calibrated.home = Pose::new(rotation, seen.translation);
         }
+    }
+    if let Tip::At(pose) = tip {
+        calibrated.home = match seen {
+            SeenTip::Nothing => pose,
+            SeenTip::Place => Pose::new(pose.rotation, calibrated.home.translation),
+            SeenTip::Pose => calibrated.home,
+        };
     }
     let tip_from_base = calibrated.home.inverse();
     let targets = data
@@ -105,15 +135,15 @@ pub(crate) fn place_tip(
 }
 
 /// Puts the measured targets and the instruments of the model to their calibrated places. A target at the tip moves it too, or else an
-/// instrument there, unless the tip `is_placed`.
+/// instrument there, unless it was `seen` otherwise; returns what was seen of it.
 fn place_mounts(
     robot: &Robot,
     calibrated: &mut Robot,
     (data, frames): (&Dataset, &[bool]),
     estimate: &Estimate,
-    is_placed: bool,
-) {
-    let mut is_placed = is_placed;
+    seen_tip: SeenTip,
+) -> SeenTip {
+    let mut seen_tip = seen_tip;
     for (target, name) in data.targets.iter().enumerate() {
         let name = name.as_deref().unwrap_or(MEASURED);
         let known = calibrated.mounted.iter().position(|mount| mount.name == name);
@@ -123,8 +153,8 @@ fn place_mounts(
             let nominal = calibrated.base_from(&calibrated.mounted[index]);
             let rotation = if frames[target] { seen.rotation } else { nominal.rotation };
             let pose = Pose::new(rotation, seen.translation);
-            if !is_placed && robot.is_at_tip(&robot.mounted[index]) {
-                is_placed = true;
+            if seen_tip == SeenTip::Nothing && robot.is_at_tip(&robot.mounted[index]) {
+                seen_tip = SeenTip::Pose;
                 calibrated.home = pose;
             }
             calibrated.mounted[index] = calibrated.mount(&name, body, &pose);
@@ -135,11 +165,12 @@ fn place_mounts(
         if let Some(index) = known {
             let Mount { name, body, .. } = calibrated.instruments[index].clone();
             let pose = estimate.device_at_zero(station).inverse();
-            if !is_placed && robot.is_at_tip(&robot.instruments[index]) {
-                is_placed = true;
+            if seen_tip == SeenTip::Nothing && robot.is_at_tip(&robot.instruments[index]) {
+                seen_tip = SeenTip::Pose;
                 calibrated.home = pose;
             }
             calibrated.instruments[index] = calibrated.mount(&name, body, &pose);
         }
     }
+    seen_tip
 }

@@ -16,7 +16,7 @@ use crate::pictures::optics_doubts::optics_doubt;
 use crate::pictures::view_doubts::view_doubts;
 use crate::robust::RobustFit;
 use crate::run::Run;
-use crate::run::placed::{place_tip, stations};
+use crate::run::placed::{Tip, place_tip, stations};
 use crate::run::rounding::rounded;
 use crate::{
     Accuracy, CalibratedTarget, Calibration, Correction, Corrections, Level, Repaired, Trust, Verdict,
@@ -104,7 +104,8 @@ impl CalibratedFit<'_> {
     /// The calibrated robot with its tip, and the targets in that.
     fn placed(&self, figures: &Figures) -> (Robot, Vec<CalibratedTarget>) {
         let Run { robot, data, options, fit_rows, .. } = &self.run;
-        place_tip(robot, data, &data.frames(fit_rows), &figures.models.calibrated, options.move_tip)
+        let frames = data.frames(fit_rows);
+        place_tip(robot, data, &frames, &figures.models.calibrated, options.move_tip, Tip::Nominal)
     }
 
     /// Warnings, a sentence each.

@@ -128,7 +128,7 @@ fn joints(
             }
         })
         .collect();
-    let suspicions = suspicions(view, normal, &joints);
+    let suspicions = suspicions(view, normal, &joints, uncertainty);
     joints.iter_mut().zip(suspicions).for_each(|(joint, words)| joint.suspicious = words);
     (joints, common.unwrap_or_default())
 }

@@ -5,7 +5,8 @@ use poecal_calibrate::{Calibration, CalibrationOptions, calibrate, delivered, ra
 use poecal_fit::gauge::base_motion;
 use poecal_fit::state::{Chain, Estimate, Linkage, Packed};
 use poecal_model::measurement::{Dataset, Measurement};
-use poecal_model::robot::Robot;
+use poecal_model::offsets::Taught;
+use poecal_model::robot::{Robot, Sizes};
 use poecal_model::simulate::{
     Kind, Simulated, Simulation, elbow, gantry, random, random_chain, random_configuration, scara, seven_axis,
 };
@@ -225,5 +226,60 @@ fn check_tip(result: &Calibration, targets: &[Target]) {
                 assert!(off.norm() < 0.05, "{off}");
             }
         }
+    }
+}
+
+/// The share by which the distances of two models may exceed what a rigid motion of one leaves of them: tip and target have one base.
+const OF_THE_BASE: f64 = 1.1;
+
+/// Of a session, the distances (RMS, metres) between the tips and between the targets of the calibrated and the corrected model in the base frame, each
+/// with what is left of it after the best rigid motion; and by how much the corrected robot predicts otherwise than the fit in the device's frame.
+fn both_models(robot: &Robot, kind: Kind, seed: u64, move_tip: bool) -> ([(f64, f64); 2], f64) {
+    let simulation = Simulation { count: 60, seed, terms: Sizes::COMMON, ..Simulation::default() };
+    let made = simulation.run(robot, kind).unwrap();
+    let options = CalibrationOptions { move_tip, ..CalibrationOptions::default() };
+    let found = calibrate(&made.nominal, &made.data, &options).unwrap();
+    let corrected = found.correction.as_deref().unwrap();
+    assert!(corrected.has_terms());
+    let target = [found.targets[0].tip_from_target, corrected.targets[0].tip_from_target];
+    let tips = |robot: &Robot| -> Vec<Pose> {
+        found.fit_rows.iter().map(|&row| robot.forward_kinematics(made.data.readings(row as usize))).collect()
+    };
+    let [calibrated, with_terms] = [tips(&found.robot), tips(&corrected.robot)];
+    let places = |of: fn(&Pose, &Pose) -> Pose| {
+        let pairs = with_terms.iter().zip(&calibrated);
+        let pairs: Vec<_> =
+            pairs.map(|(a, b)| (of(a, &target[1]).translation, of(b, &target[0]).translation)).collect();
+        let rms = |motion: &Pose| {
+            let squares: f64 = pairs.iter().map(|(a, b)| (motion.act(a) - b).norm_squared()).sum();
+            (squares / pairs.len() as f64).sqrt()
+        };
+        let rigid = Taught::with_points(&[], &pairs, 1.0, false).base;
+        (rms(&Pose::identity()), rms(&rigid))
+    };
+    let device_from_base = corrected.stations[0].base_from_device.inverse();
+    let errors = corrected.errors(&made.data, &found.fit_rows);
+    let differences = with_terms.iter().zip(&found.fit_rows).zip(errors).map(|((tip, &row), error)| {
+        let predicted = (device_from_base * *tip * target[1]).translation;
+        let measured = made.data.observations[row as usize].measurement.pose().translation;
+        (measured - predicted - error.position_m()).norm()
+    });
+    ([places(|tip, _| *tip), places(|tip, target| *tip * *target)], differences.fold(0.0, larger))
+}
+
+#[test]
+fn the_corrected_and_the_calibrated_model_have_one_base_and_one_tip() {
+    for (robot, kind, move_tip) in [
+        (elbow(), Kind::POINT, false),
+        (elbow(), Kind::POSE, false),
+        (seven_axis(), Kind::POINT, false),
+        (seven_axis(), Kind::POINT, true),
+    ] {
+        let (both, otherwise) = both_models(&robot, kind, 5, move_tip);
+        println!("{:12} move_tip {move_tip}: {both:?}, otherwise {otherwise:.1e}", robot.name);
+        for (apart, left) in both {
+            assert!(apart < OF_THE_BASE * left);
+        }
+        assert!(otherwise < SAME);
     }
 }

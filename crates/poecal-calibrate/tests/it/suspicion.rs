@@ -4,7 +4,8 @@ use nalgebra::Vector3;
 use poecal_arm::lie::{Pose, rotation};
 use poecal_calibrate::calibrate;
 use poecal_model::measurement::{Dataset, Measurement};
-use poecal_model::robot::{JointKind, Robot};
+use poecal_model::offsets::into_screws;
+use poecal_model::robot::{JointKind, Robot, Sizes};
 use poecal_model::simulate::{
     Kind, Simulation, elbow, gantry, random, random_configuration, scara, seven_axis,
 };
@@ -106,6 +107,106 @@ fn an_axis_that_stands_out_is_named() {
     println!("{right} of {all} axes named, {others} others");
     // With the device anywhere, an error of the first axis is one of all the others too.
     assert!(right + 2 >= all && others <= 2);
+}
+
+/// What of a robot is off beside its usual errors.
+#[derive(Clone, Copy, Debug)]
+enum Fault {
+    Nothing,
+    Zero(usize),
+    Axis(usize),
+}
+
+/// Sizes of the faults, radians.
+const ZERO_RAD: f64 = 0.2 * std::f64::consts::PI / 180.0;
+const AXIS_RAD: f64 = 0.1 * std::f64::consts::PI / 180.0;
+
+/// A robot with a fault of some size, and a session of it with usual errors of all axes, joints that give, and a device anywhere.
+fn faulty_session(robot: &Robot, fault: Fault, seed: u64) -> Dataset {
+    let mut generator = ChaCha8Rng::seed_from_u64(seed ^ 0xfa_017);
+    let sign = if random::uniform(&mut generator) < 0.5 { -1.0 } else { 1.0 };
+    let actual = match fault {
+        Fault::Nothing => robot.clone(),
+        Fault::Zero(joint) => {
+            let offsets: Vec<f64> =
+                (0..robot.joints.len()).map(|k| if k == joint { sign * ZERO_RAD } else { 0.0 }).collect();
+            into_screws(robot, &offsets).unwrap()
+        }
+        Fault::Axis(joint) => {
+            let origin = robot.joints[joint].frame.translation;
+            let z = robot.joints[joint].screw.direction();
+            let across = z.cross(&random::direction(&mut generator)).normalize();
+            let turn = rotation::exp(&(across * AXIS_RAD));
+            let mut screws: Vec<_> = robot.joints.iter().map(|joint| joint.screw).collect();
+            screws[joint] = screws[joint].transformed(&Pose::new(turn, origin - turn * origin));
+            robot.with_screws(&screws)
+        }
+    };
+    let simulation = Simulation {
+        error_rotation_rad: 0.03f64.to_radians(),
+        error_position_m: 2e-4,
+        noise_position_m: NOISE_M,
+        count: 60,
+        terms: Sizes::SMALL,
+        seed,
+        ..Simulation::default()
+    };
+    let kind = if seed / 8 % 2 == 0 { Kind::POSE } else { Kind::POINT };
+    simulation.run(&actual, kind).unwrap().data
+}
+
+/// The robot with its tip beside the last axis, where a reflector shows how the last joint turns.
+fn with_tool(robot: Robot) -> Robot {
+    let tool = Pose::from_translation(Vector3::new(0.1, 0.05, 0.1));
+    Robot { home: robot.home * tool, ..robot }
+}
+
+/// A fault is that of its joint whatever the device's frame and the tool are: zeros between the first joint, which the base has, and the last, which
+/// the tool has, and axes of all joints.
+#[test]
+fn the_joint_that_is_off_is_named() {
+    let robots = [elbow(), seven_axis()].map(with_tool);
+    let trials = trials(200).at_least(30);
+    let judged = |seed: u64, fault: Fault| {
+        let robot = &robots[seed as usize % robots.len()];
+        let found = calibrate(robot, &faulty_session(robot, fault, 3000 + seed), &geometry()).unwrap();
+        let joints = found.trust.joints.iter().enumerate();
+        let named: Vec<(usize, String)> = joints
+            .filter_map(|(joint, it)| Some((joint, it.suspicious.clone()?)))
+            .filter(|(_, words)| words.starts_with("its "))
+            .collect();
+        (fault, named)
+    };
+    let of = |seed: u64| {
+        let count = robots[seed as usize % robots.len()].joints.len() as u64;
+        if seed % 4 < 2 {
+            Fault::Zero((1 + seed / 4 % (count - 2)) as usize)
+        } else {
+            Fault::Axis((seed / 4 % count) as usize)
+        }
+    };
+    let found: Vec<_> = trials.seeds().into_par_iter().map(|seed| judged(seed, of(seed))).collect();
+    let (mut right, mut both, mut alone) = (0, 0, 0);
+    for (fault, named) in &found {
+        let (Fault::Zero(joint) | Fault::Axis(joint)) = *fault else { unreachable!() };
+        let is_right = named.iter().any(|(at, _)| *at == joint);
+        right += usize::from(is_right);
+        both += usize::from(named.len() > 1);
+        alone += usize::from(is_right && named.len() == 1);
+        if !is_right || named.len() > 1 {
+            println!("{fault:?}: {named:?}");
+        }
+    }
+    let sound: Vec<_> = trials.seeds().into_par_iter().map(|seed| judged(seed, Fault::Nothing)).collect();
+    let alarms = sound.iter().filter(|(_, named)| !named.is_empty()).count();
+    let count = found.len();
+    println!(
+        "{right} of {count} faults named, {alone} alone, {both} with another; {alarms} sound robots suspected"
+    );
+    let share = |allowed: f64| (allowed + trials.more_of_a_share(allowed)) * count as f64;
+    assert!((count - right) as f64 <= share(0.03));
+    assert!(both as f64 <= share(0.2));
+    assert!(alarms as f64 <= share(0.06));
 }
 
 #[test]

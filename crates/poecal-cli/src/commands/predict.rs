@@ -44,6 +44,11 @@ pub(crate) fn predict(arguments: &Predict, console: &Console) -> Result<u8> {
     let joints = measurements::read_joints(&arguments.joints, &model.robot, &model.reads(options?))?;
     console.warnings(&joints.warnings);
     let (frame, target) = (arguments.frame, mounted.as_ref().map(|(name, _)| name.as_str()).or(target));
+    if arguments.with_uncertainty
+        && let Some(remark) = predictions::remark(&model, &joints, frame, target)?
+    {
+        console.remark(remark);
+    }
     let text = predictions::predict(&model, &joints, frame, target, arguments.with_uncertainty)?;
     console.deliver(text, place)?;
     Ok(DONE)

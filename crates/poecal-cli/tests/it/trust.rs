@@ -60,8 +60,13 @@ fn predictions_state_their_error() {
         "joints.csv",
         "id,joint1,joint2,joint3,joint4,joint5,joint6\na,0.3,-0.4,-0.9,1,0.2,-3\nb,1.3,2.9,-0.7,0,1,2\n",
     );
-    let plain = folder.done("predict some/calibration.json joints.csv");
-    let text = folder.done("predict some/calibration.json joints.csv --with-uncertainty");
+    let plain = folder.done("predict some/calibration.json joints.csv --target measured");
+    let run = folder.run("predict some/calibration.json joints.csv --with-uncertainty");
+    assert!(
+        run.code == 0 && run.err.contains("predicted the measured target `measured`; --target tip"),
+        "{run:?}"
+    );
+    let text = run.out;
     let rows: Vec<Vec<&str>> = text.lines().map(|line| line.split(',').collect()).collect();
     assert_eq!(
         rows[0][8..],
@@ -74,6 +79,17 @@ fn predictions_state_their_error() {
     assert_eq!((rows[1][11], rows[2][11]), ("true", "false"));
     assert!(number(1, 8) > 1e-6 && number(1, 8) < number(1, 10) && number(1, 10) < 1e-3);
     assert!(number(2, 8) > number(1, 8), "{text}");
+    // The position of the tip on its link was not measured: it is known worse, and the reason is said.
+    let tip = folder.run("predict some/calibration.json joints.csv --with-uncertainty --target tip");
+    let of_tip: f64 = tip.out.lines().nth(1).and_then(|line| line.split(',').nth(8)?.parse().ok()).unwrap();
+    assert!(of_tip > 2.0 * number(1, 8), "{tip:?}");
+    assert!(
+        tip.err.contains("the tip was not measured") && tip.err.contains("(--target measured)"),
+        "{tip:?}"
+    );
+    let without = folder.done("predict some/calibration.json joints.csv");
+    let same = without.lines().zip(tip.out.lines());
+    assert!(same.skip(1).all(|(pose, with)| with.starts_with(&format!("{pose},"))));
     let run = folder.run("predict robot.urdf joints.csv --with-uncertainty");
     assert!(
         run.code == 2 && run.err.contains("expected a calibration.json for --with-uncertainty"),

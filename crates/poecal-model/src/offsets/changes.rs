@@ -44,23 +44,34 @@ impl JointChange {
     /// In words: `2.00 ± 0.31 mm toward +x, tilt 0.700 ± 0.020 deg about +y, offset −0.900 ± 0.030 deg`.
     #[must_use]
     pub fn words(&self) -> String {
-        let mut parts = Vec::new();
-        if self.kind == JointKind::Revolute {
-            let shift = Told::new(1e3, "mm", self.sigma_shift, self.is_estimated);
-            parts.push(shift.vector("shift", "toward", &self.shift));
-        }
-        let tilt = Told::new(1f64.to_degrees(), "deg", self.sigma_tilt, self.is_estimated);
-        parts.push(tilt.vector("tilt", "about", &self.tilt));
+        let shift = (self.kind == JointKind::Revolute).then(|| self.shift_words());
+        let parts: Vec<String> = shift.into_iter().chain([self.tilt_words(), self.offset_words()]).collect();
+        parts.join(", ")
+    }
+
+    /// The shift in words: `2.00 ± 0.31 mm toward +x`.
+    #[must_use]
+    pub fn shift_words(&self) -> String {
+        let told = Told::new(1e3, "mm", self.sigma_shift, self.is_estimated);
+        told.vector("shift", "toward", &self.shift)
+    }
+
+    /// The tilt in words: `tilt 0.700 ± 0.020 deg about +y`.
+    #[must_use]
+    pub fn tilt_words(&self) -> String {
+        let told = Told::new(1f64.to_degrees(), "deg", self.sigma_tilt, self.is_estimated);
+        told.vector("tilt", "about", &self.tilt)
+    }
+
+    /// The offset in words: `offset −0.900 ± 0.030 deg`.
+    #[must_use]
+    pub fn offset_words(&self) -> String {
         let (factor, unit) = match self.kind {
             JointKind::Revolute => (1f64.to_degrees(), "deg"),
             JointKind::Prismatic => (1e3, "mm"),
         };
         let told = Told::new(factor, unit, self.sigma_offset, self.is_estimated);
-        parts.push(match self.offset {
-            Some(offset) => told.number("offset", offset),
-            None => "offset not determined".to_owned(),
-        });
-        parts.join(", ")
+        self.offset.map_or_else(|| "offset not determined".to_owned(), |offset| told.number("offset", offset))
     }
 }
 

@@ -3,7 +3,7 @@
 use nalgebra::{Vector3, Vector6};
 
 use crate::robot::Robot;
-use poecal_arm::lie::{Pose, Twist, hat};
+use poecal_arm::lie::{Pose, Twist, by_twist, hat};
 use poecal_numerics::linalg::combination;
 
 /// Steps of the fit: the motions are small.
@@ -20,12 +20,23 @@ pub struct Taught {
 impl Taught {
     /// Least squares of `log((B N T)⁻¹ A)` over pairs of tips, a radian counting as so many metres. A base that is known is held.
     pub fn of(tips: &[(Pose, Pose)], radian_m: f64, base_is_known: bool) -> Self {
+        Taught::with_points(tips, &[], radian_m, base_is_known)
+    }
+
+    /// The same with pairs of points `n`, `a` that the tool does not move, `B n ≈ a`.
+    pub fn with_points(
+        tips: &[(Pose, Pose)],
+        points: &[(Vector3<f64>, Vector3<f64>)],
+        radian_m: f64,
+        base_is_known: bool,
+    ) -> Self {
         let mut taught = Taught { base: Pose::identity(), tool: Pose::identity() };
         let weights = Vector6::from_fn(|k, _| if k < 3 { 1.0 } else { radian_m });
+        let motions = if base_is_known { 6 } else { 12 };
         for _ in 0..STEPS {
-            let motions = if base_is_known { 6 } else { 12 };
-            let mut columns = vec![Vec::with_capacity(6 * tips.len()); motions];
-            let mut opposite = Vec::with_capacity(6 * tips.len());
+            let numbers = 6 * tips.len() + 3 * points.len();
+            let mut columns = vec![Vec::with_capacity(numbers); motions];
+            let mut opposite = Vec::with_capacity(numbers);
             for (nominal, actual) in tips {
                 let at = taught.tip(nominal).inverse();
                 let left = (at * *actual).log().to_vector().component_mul(&weights);
@@ -36,6 +47,17 @@ impl Taught {
                         // A motion of the tool is one in the tip's own axes.
                         None => column.extend((0..6).map(|k| if k == motion { weights[k] } else { 0.0 })),
                         Some(motion) => column.extend((0..6).map(|k| weights[k] * by_base[(k, motion)])),
+                    }
+                }
+            }
+            for (nominal, actual) in points {
+                let at = taught.base.act(nominal);
+                opposite.extend((at - actual).iter());
+                let by_base = by_twist(&at);
+                for (motion, column) in columns.iter_mut().enumerate() {
+                    match motion.checked_sub(6) {
+                        None => column.extend([0.0; 3]),
+                        Some(motion) => column.extend(by_base.column(motion).iter()),
                     }
                 }
             }

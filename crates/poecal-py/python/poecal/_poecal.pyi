@@ -791,6 +791,9 @@ class Verdict:
 class Prediction:
     """Predicted poses of m configurations, and the expected error of each."""
     @property
+    def target(self) -> str | None:
+        """Name of the target that was predicted; None for the tip."""
+    @property
     def poses(self) -> _Array:
         """The poses, shape (m, 4, 4), metres."""
     @property
@@ -1218,7 +1221,7 @@ class Calibration:
         frame
             Frame of the poses: "base" or "device".
         target
-            Name of a target, default the tip.
+            Name of a target, or "tip"; default the tip, with `with_uncertainty` the first target that was measured.
         model
             Which model predicts: "corrected", where there is one, or "calibrated", geometry alone.
         readings

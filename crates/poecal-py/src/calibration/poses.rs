@@ -26,7 +26,7 @@ impl Calibration {
     /// frame
     ///     Frame of the poses: "base" or "device".
     /// target
-    ///     Name of a target, default the tip.
+    ///     Name of a target, or "tip"; default the tip, with `with_uncertainty` the first target that was measured.
     /// model
     ///     Which model predicts: "corrected", where there is one, or "calibrated", geometry alone.
     /// readings
@@ -62,7 +62,9 @@ impl Calibration {
             })
             .map_err(raise)?;
         match found.doubts {
-            Some(doubts) => Prediction { poses: found.poses, doubts }.into_bound_py_any(py),
+            Some(doubts) => {
+                Prediction { target: found.target, poses: found.poses, doubts }.into_bound_py_any(py)
+            }
             None => poses(py, &found.poses, joints.single),
         }
     }

@@ -145,8 +145,10 @@ pub(crate) fn corrections(file: &CalibrationFile) -> Markup {
         div.wide { (table) }
         p.note {
             "Shift, tilt and offset of each axis, in directions of the base frame with all joints at zero; the shift is that of the axis' point \
-             nearest to the joint's origin. Add the offset to the joint's value. Any part of a correction that an offset can explain is counted as offset. \
-             The first joint's offset is not determined if the base was fitted, the last joint's if the tool was."
+             nearest to the joint's origin. Any part of a correction that an offset can explain is counted as offset. " strong {
+                "These offsets are not for entering into a controller"
+            } ": they hold together with the shifts and tilts. " code { "poecal offsets" } " gives those with which the tip comes nearest if they \
+             alone are entered. The first joint's offset is not determined if the base was fitted, the last joint's if the tool was."
         }
         (plots(&figures::corrections(file), "Dots: size of tilt and shift. Lines: ±; none where a correction is not determined."))
         @for (k, found) in file.corrections.iter().enumerate() {

@@ -124,6 +124,9 @@ fn formulation_words(file: &CalibrationFile) -> Option<String> {
     Some(words)
 }
 
+/// What the offsets of the corrections are not for.
+const NOT_ENTERED: &str = "not for entering into a controller: `poecal offsets` gives the offsets that are";
+
 /// Most effects that are told.
 const SHOWN: usize = 6;
 
@@ -199,5 +202,7 @@ fn trust(out: &mut String, file: &CalibrationFile) {
         let change = it.change.as_ref()?;
         Some(format!("{}: {}", visible(&it.joint), visible(&change.words)))
     });
-    lines(out, "corrections", changes);
+    let changes: Vec<String> = changes.collect();
+    let controller = (!changes.is_empty()).then(|| NOT_ENTERED.to_owned());
+    lines(out, "corrections", changes.into_iter().chain(controller));
 }

@@ -1,0 +1,67 @@
+//! Base and tip of a corrected model in those of the calibrated one: both are a choice wherever they were not measured, and both models of a
+//! session make the same (theory.md §8 (38f)).
+
+use nalgebra::Vector3;
+
+use crate::run::placed::{Tip, place_tip};
+use poecal_arm::lie::Pose;
+use poecal_fit::state::{Estimate, Session, Stand, sample_rows};
+use poecal_model::offsets::Taught;
+use poecal_model::robot::{Body, Robot};
+
+/// Pairs of points that decide, and the fewest configurations.
+const POINTS: usize = 3000;
+const FEWEST: usize = 100;
+/// Metres that a radian of the tip counts: turns decide what positions do not.
+const RADIAN_M: f64 = 0.01;
+
+/// A model of a session: the nominal robot of its kind, with what was found.
+#[derive(Clone, Copy)]
+pub(crate) struct Model<'a> {
+    pub(crate) session: Session<'a>,
+    pub(crate) estimate: &'a Estimate,
+}
+
+impl Model<'_> {
+    /// Body and position (base frame, zero joint values) of everything measured or measuring that the robot moves.
+    fn moving(&self) -> Vec<(Body, Vector3<f64>)> {
+        let Estimate { tree, base_from_target, .. } = self.estimate;
+        let targets =
+            tree.targets().iter().zip(base_from_target).map(|(body, pose)| (*body, pose.translation));
+        let instruments = tree.instruments().iter().enumerate().filter_map(|(station, stand)| match stand {
+            Stand::On(body) => Some((*body, self.estimate.device_at_zero(station).inverse().translation)),
+            Stand::Target(_) => None,
+        });
+        targets.chain(instruments).filter(|(body, _)| body.joint().is_some()).collect()
+    }
+
+    /// The robot with its tip where that was measured, or else where the nominal model has it.
+    fn robot(&self, frames: &[bool], move_tip: bool) -> Robot {
+        let Session { robot, data, .. } = self.session;
+        place_tip(robot, data, frames, self.estimate, move_tip, Tip::Nominal).0
+    }
+}
+
+/// The motion of the base (none where it is known) that takes a model's predictions in the base frame nearest to the calibrated model's, least
+/// squares over the rows' configurations of all measured points and of the tip; and the model's `base_from_tip` at zero, with that base and the
+/// tool with which the tip comes nearest.
+pub(crate) fn frames([model, calibrated]: [Model<'_>; 2], rows: &[u32], move_tip: bool) -> (Pose, Pose) {
+    let data = calibrated.session.data;
+    let frames = data.frames(rows);
+    let both = [model, calibrated].map(|it| (it.robot(&frames, move_tip), it.moving()));
+    let rows = sample_rows(rows, (POINTS / both[0].1.len().max(1)).max(FEWEST));
+    let (mut tips, mut points) = (Vec::with_capacity(rows.len()), Vec::new());
+    for row in rows {
+        let seen = both.each_ref().map(|(robot, moving)| {
+            let values = robot.joint_values(data.readings(row as usize));
+            let places: Vec<Vector3<f64>> =
+                moving.iter().map(|(body, place)| robot.motion_of(*body, &values).act(place)).collect();
+            (robot.motion(&values) * robot.home, places)
+        });
+        let [(tip, places), (other_tip, other_places)] = seen;
+        tips.push((tip, other_tip));
+        points.extend(places.into_iter().zip(other_places));
+    }
+    let taught = Taught::with_points(&tips, &points, RADIAN_M, !calibrated.session.base_free());
+    (taught.base, taught.tip(&both[0].0.home))
+}
