@@ -32,12 +32,12 @@ def worst(away):
     """Over 50 poses this far from a half turn, the largest of what is lost by exp(log(T)), in mm of a point 1 m away."""
     lost = np.zeros(4)
     for _ in range(50):
-        axis, place, point = (x / np.linalg.norm(x) for x in random.normal(size=(3, 3)))
+        axis, position, point = (x / np.linalg.norm(x) for x in random.normal(size=(3, 3)))
         pose = np.eye(4)
-        pose[:3, :3], pose[:3, 3] = Rotation.from_rotvec((np.pi - away) * axis).as_matrix(), place
+        pose[:3, :3], pose[:3, 3] = Rotation.from_rotvec((np.pi - away) * axis).as_matrix(), position
         angle, about = UnitQuaternion(pose[:3, :3]).angvec()
         turned = np.eye(4)
-        turned[:3, :3], turned[:3, 3] = Rotation.from_rotvec(angle * about).as_matrix(), place
+        turned[:3, :3], turned[:3, 3] = Rotation.from_rotvec(angle * about).as_matrix(), position
         twist = RigidTransform.from_matrix(pose).as_exp_coords()
         textbook = modern_robotics.MatrixExp6(modern_robotics.MatrixLog6(pose))
         back = trexp(SE3(pose, check=False).log(twist=True)), turned, textbook, RigidTransform.from_exp_coords(twist).as_matrix()

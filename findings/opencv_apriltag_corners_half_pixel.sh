@@ -8,8 +8,8 @@
 # came along. Corners of CORNER_REFINE_SUBPIX have no such shift; pupil-apriltags has all of it.
 # Whom it hurts: whoever mixes corners of both, or uses a lens that was calibrated by chessboards: the
 # camera turns by 0.4 px, which is 0.5 mm of a board at 1 m, and no residual shows it.
-# poecal: its own detector is within 0.01 px here. In a file of corners such a shift is taken up by the
-# place of the camera, which is fitted with the arm; by a stated place of the camera it is not.
+# poecal: its own detector is within 0.01 px here. In a file of corners such a shift goes into the
+# pose of the camera, which is fitted with the arm, as long as that pose is not stated.
 set -euo pipefail
 here=$(mktemp -d); trap 'rm -rf "$here"' EXIT
 python3 -m venv "$here/venv"

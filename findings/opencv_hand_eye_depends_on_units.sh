@@ -23,8 +23,8 @@ print("OpenCV", cv2.__version__)
 random = np.random.default_rng(3)
 
 
-def pose(turn, place):
-    return RigidTransform.from_components(np.array(place), Rotation.from_rotvec(turn))
+def pose(turn, position):
+    return RigidTransform.from_components(np.array(position), Rotation.from_rotvec(turn))
 
 
 camera, board = pose([0.1, -0.2, 0.3], [0.05, 0.02, 0.1]), pose([0.3, 0.2, -1.0], [1.0, 0.2, 0.1])
@@ -45,7 +45,7 @@ def in_hand(method):
 
 
 def robot_world(method):
-    # World is the board, and the camera sees it; gripper and base change places, so that the camera is found in the flange.
+    # World is the board, and the camera sees it; gripper and base are exchanged, so that the camera is found in the flange.
     return lambda flanges, boards, unit: cv2.calibrateRobotWorldHandEye(
         *parts(boards, unit), *parts([x.inv() for x in flanges], unit), method=method)[2:]
 

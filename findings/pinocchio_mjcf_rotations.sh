@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
 # Rotations of MJCF bodies: MuJoCo beside pinocchio's reader of the same file.
 #
-# Expected: buildModelFromMJCF places bodies where MuJoCo does, since it reads eulerseq, axisangle and
+# Expected: buildModelFromMJCF puts bodies where MuJoCo does, since it reads eulerseq, axisangle and
 # classes of defaults.
 # What happens: for simple files it does. But capitals in eulerseq, which mean turns about fixed axes,
 # are taken for turns about moving ones; the axis of axisangle is not brought to length one, so that the
-# body has a matrix that is no rotation; and of a default class within another the place of the joint
+# body has a matrix that is no rotation; and of a default class within another the position of the joint
 # is lost, while its axis is inherited. Nothing is said.
 # Whom it hurts: whoever checks or calibrates with pinocchio a robot that is simulated with MuJoCo.
 # What helps: a file that MuJoCo saved states quaternions and no classes. It rounds to six digits.
@@ -51,14 +51,14 @@ cases = {
     "euler, fixed axes": (model('euler="0.1 0.2 0.3"', eulerseq="XYZ"), True),
     "axisangle, length 1": (model('axisangle="0 0.6 0.8 0.4"'), False),
     "axisangle, length 3.7": (model('axisangle="1 2 3 0.4"'), True),
-    "place of the joint": (model(joint='axis="0 1 0" pos="0.1 0 0"'), False),
-    "place by a class": (model(joint='class="inner"', defaults=NESTED), True),
+    "position of the joint": (model(joint='axis="0 1 0" pos="0.1 0 0"'), False),
+    "position by a class": (model(joint='class="inner"', defaults=NESTED), True),
 }
 unchanged = True
 print("tool of a joint at 0.3 rad:  MuJoCo and pinocchio apart   determinant of pinocchio's matrix")
 for name, (text, differ) in cases.items():
-    place, turn, other_place, other_turn = poses(text)
-    apart, determinant = 1000 * np.linalg.norm(place - other_place), np.linalg.det(other_turn)
+    position, turn, other_position, other_turn = poses(text)
+    apart, determinant = 1000 * np.linalg.norm(position - other_position), np.linalg.det(other_turn)
     print(f"  {name:24} {apart:12.3f} mm   {determinant:25.6f}")
     unchanged = unchanged and (apart > 10 if differ else apart < 1e-9)
     unchanged = unchanged and (abs(determinant - 1) > 1 if name == "axisangle, length 3.7" else abs(determinant - 1) < 1e-12)

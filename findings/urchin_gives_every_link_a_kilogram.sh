@@ -3,7 +3,7 @@
 #
 # Expected: links without <inertial> stay without. Axes keep their digits, as origins do.
 # What happens: each such link is written with a mass of 1 kg, an inertia of 1 kg m2 and its centre of
-# gravity in its frame; frames that only name a place, such as a flange or a tip, weigh 1 kg too. Axes are
+# gravity in its frame; frames without a body, such as a flange or a tip, weigh 1 kg too. Axes are
 # brought to length one and written with eight digits, 1e-8 rad, while origins keep sixteen.
 # Whom it hurts: whoever computes torques or the sag of links by the saved file. By the URDF such a link
 # has no mass, and no reader can tell the invented kilogram from a real one.
@@ -31,7 +31,7 @@ with open("given.urdf", "w") as file:
 <joint name="mount" type="fixed"><parent link="arm"/><child link="tip"/><origin xyz="0.4 0 0"/></joint></robot>""")
 urchin.URDF.load("given.urdf").save("saved.urdf")
 saved = ElementTree.parse("saved.urdf").getroot()
-masses = {link.get("name"): float(link.find("inertial/mass").get("value")) if link.find("inertial") is not None else 0.0 for link in saved.iter("link")}
+masses = {link.get("name"): float(mass.get("value")) for link in saved.iter("link") for mass in link.findall("inertial/mass")}
 print("masses of links that had none, kg:", masses)
 turn = saved.find("joint[@name='turn']")
 axis, origin = (np.array(turn.find(name).get("xyz").split(), float) for name in ("axis", "origin"))
