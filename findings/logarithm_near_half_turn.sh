@@ -2,7 +2,7 @@
 # The logarithm of poses that are nearly half a turn, in spatialmath-python and modern_robotics.
 #
 # Expected: the logarithm gets inexact near a half turn, where the axis changes its sign, by perhaps
-# 1e-8: both packages go with textbooks on screws, and both treat the half turn itself apart.
+# 1e-8: both packages go with textbooks, and both treat the half turn itself apart.
 # What happens: the closer to it, the worse. 1e-6 rad away, exp(log(T)) moves a point at a distance of
 # 1 m by half a millimetre, and 1e-7 away by centimetres. At the double that is nearest to pi itself
 # SE3.log is exact again, and MatrixLog6 is NaN for some poses. UnitQuaternion.angvec loses several

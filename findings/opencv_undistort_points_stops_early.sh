@@ -9,7 +9,7 @@
 # is off lies at the rim, where corners of a board say most about a lens.
 # What helps: criteria (undistortPointsIter in OpenCV 4) that ask for more rounds: exact to 1e-11 px. To
 # fit in pixels, by projectPoints, needs no inverse at all.
-# poecal: fits in pixels.
+# poecal: fits in pixels, and refuses lenses of twelve or fourteen numbers by name.
 set -euo pipefail
 here=$(mktemp -d); trap 'rm -rf "$here"' EXIT
 python3 -m venv "$here/venv"

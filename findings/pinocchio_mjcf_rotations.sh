@@ -8,7 +8,7 @@
 # body has a matrix that is no rotation; and of a default class within another the position of the joint
 # is lost, while its axis is inherited. Nothing is said.
 # Whom it hurts: whoever checks or calibrates with pinocchio a robot that is simulated with MuJoCo.
-# What helps: a file that MuJoCo saved states quaternions and no classes. It rounds to six digits.
+# What helps: a file that MuJoCo saved states quaternions, of six digits; classes remain.
 # poecal: agrees with MuJoCo in each of these.
 set -euo pipefail
 here=$(mktemp -d); trap 'rm -rf "$here"' EXIT

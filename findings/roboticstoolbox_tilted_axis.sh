@@ -2,14 +2,14 @@
 # A URDF joint whose axis is not exactly along x, y or z, in roboticstoolbox-python.
 #
 # Expected: any <axis> works. Its direction matters, its components do not.
-# What happens: if the axis is off a coordinate axis by as little as 1e-9, the link is turned by one
-# radian about that axis, once and for all. At joint values of zero the tool already stands 57 degrees
-# off, and no value of the joint is right, except by chance. Nothing is said.
+# What happens: if the axis is off a coordinate axis by as little as 1e-9, z is not turned onto it.
+# Instead the link is turned by one radian about it, and the joint then turns about the z that this
+# gives. At a joint value of zero the tool already stands up to 57 degrees off. Nothing is said.
 # Whom it hurts: whoever loads a robot whose axes were measured, rounded or exported from CAD, since
 # these are never exactly along a coordinate axis. Nominal models are not affected.
 # What helps: the same tilt in the joint's <origin>, with an axis along x, y or z.
-# poecal: reads such an axis as any other. A calibrated URDF has its corrections in <origin> alone
-# where the nominal axis lies along a coordinate axis, so such a file loads as it should.
+# poecal: reads such an axis as any other. Corrections of a calibration go into <origin>: the axes of a
+# calibrated URDF are those of the nominal one, so that it loads as it should where they are along x, y, z.
 set -euo pipefail
 here=$(mktemp -d); trap 'rm -rf "$here"' EXIT
 python3 -m venv "$here/venv"

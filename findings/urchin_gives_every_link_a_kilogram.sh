@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# A URDF without masses, loaded and saved by urchin, the successor of urdfpy.
+# A URDF without masses, loaded and saved by urchin, a fork of urdfpy.
 #
 # Expected: links without <inertial> stay without. Axes keep their digits, as origins do.
 # What happens: each such link is written with a mass of 1 kg, an inertia of 1 kg m2 and its centre of
