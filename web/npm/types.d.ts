@@ -119,7 +119,12 @@ export interface CalibrateOptions {
   /** Seed of that choice [default: 1] */
   seed?: Value | readonly Value[];
   /** End with code 1 if the verdict is worse than this (results are written all the same); it also does if the verdict is `do not use` */
-  require?: "good" | "inside_sampled_range";
+  require?: "good" | "inside_sampled_range" | "measured_configurations" | "located";
+  /**
+   * End with code 1 unless the result clearly predicts better than the nominal model anywhere inside the sampled range, with 95 %
+   * confidence
+   */
+  requireGain?: boolean;
   /**
    * Limits that the errors of rows that were not fitted must meet, like 0.2mm or 0.2mm,max:0.5mm,0.05deg: rms (the default), p95 or max of
    * all errors in a unit. End with code 1 unless each is shown to be kept, with 95 % confidence
@@ -197,7 +202,7 @@ export interface ValidateOptions {
    * End with code 1 unless the measurements confirm this: `good` if 80 % of all errors are inside their own 95 % bounds and the error (RMS)
    * is at most twice the expected one; `inside_sampled_range` if that holds of the rows inside the sampled range
    */
-  require?: "good" | "inside_sampled_range";
+  require?: "good" | "inside_sampled_range" | "measured_configurations" | "located";
   /**
    * Limits that the errors must meet, like 0.2mm or 0.2mm,max:0.5mm,0.05deg: rms (the default), p95 or max of all errors in a unit. End
    * with code 1 unless each is shown to be kept, with 95 % confidence
@@ -223,11 +228,14 @@ export interface PredictOptions {
   units?: Value | readonly Value[];
   /** The frame of the poses */
   frame?: "base" | "device";
-  /** Add the expected error of each prediction, and whether it lies in the sampled range (of a calibration.json) */
+  /**
+   * Add the expected error of each prediction, and whether it lies in the sampled range (of a calibration.json); without --target of the
+   * first target that was measured
+   */
   withUncertainty?: boolean;
   /** Which model of a calibration predicts: the corrected one, if there is one, or the calibrated one, which a URDF holds */
   model?: "corrected" | "calibrated";
-  /** Predict this target of the model instead of the tip; of a URDF, with its link Results: */
+  /** Predict this target of the model, or the `tip` [default: the tip, but for --with-uncertainty]; of a URDF, with its link Results: */
   target?: Value | readonly Value[];
 }
 
@@ -931,6 +939,9 @@ export type FrameEntry = {
 /** Knowledge of the device frame. */
 export type FrameWord = "unknown" | "base";
 
+/** Whether the delivered model predicts better than the nominal model anywhere inside the sampled range. */
+export type Gain = "clear" | "unclear" | "loss";
+
 /** Weights that a robot carries. How heavy they are is in the coefficients. */
 export type GravityEntry = {
   /** Where weights are pulled, base frame. */
@@ -1228,8 +1239,8 @@ export type LeftOutEntry = {
   tilt_rms_deg?: number;
 };
 
-/** Level of a verdict. */
-export type Level = "do_not_use" | "inside_sampled_range" | "good";
+/** Level of a verdict: what the delivered model may be used for. */
+export type Level = "do_not_use" | "located" | "measured_configurations" | "inside_sampled_range" | "good";
 
 /**
  * Loss of robust estimation, a function of the length of a row's whitened residual. Its constant gives 95 % efficiency under normal noise
@@ -1984,23 +1995,34 @@ export type UncertaintyEntry = {
 };
 
 /**
- * A level, and the reasons against a better one; for the best level, the reasons for it. And the one figure: what to expect of the model
- * that is delivered.
+ * A level, and the reasons against a better one; for the best level, the reasons for it. And the expected errors of the model that is
+ * delivered.
  */
 export type Verdict = {
   /** Mean of the distances that 95 % of its errors do not exceed there, millimetres. */
   bound95_mm?: number | null;
+  /** That the axes of the nominal model are confirmed, a sentence with its figures: the fitted ones are the same within their uncertainty. */
+  confirmed?: string | null;
   /**
    * Expected error of its predictions in configurations like those that were measured, millimetres (RMS); absent where no use is advised,
    * or nothing is known.
    */
   expected_error_mm?: number | null;
+  /** Whether it predicts better than the nominal model there. */
+  gain?: Gain | null;
   /** How far it may be used. */
   level: Level;
   /** The model that is delivered: the corrected one where it has terms. Missing in older files. */
   model?: AcceptedModel | null;
+  /** Distance of the nominal model's predictions from its own there, with targets and devices fitted, millimetres (RMS). */
+  nominal_error_mm?: number | null;
   /** Sentences with the deciding figures. */
   reasons: string[];
+  /**
+   * Expected error of its predictions anywhere inside the sampled range of each joint, millimetres (RMS); absent where no use is advised,
+   * and in older files.
+   */
+  sampled_range_error_mm?: number | null;
 };
 
 /** A weight. */

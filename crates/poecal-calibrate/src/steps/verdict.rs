@@ -217,7 +217,7 @@ impl Judged {
         } else if !self.moves_joints {
             (
                 Level::Located,
-                vec!["the axes of the joints were held: only targets and devices were fitted".to_owned()],
+                vec!["the axes of the joints were held".to_owned()],
             )
         } else {
             let (level, mut reasons) = self.use_of_axes(expected);
