@@ -105,14 +105,11 @@ impl WithLens {
 
 /// A fit of the frames, with the rows that count as it sees them and their numbers in the list.
 pub(crate) type Fitted = (Fit, Vec<(usize, Pair)>);
+/// Fits the frames to poses of the target, from an earlier fit if there is one.
+pub(crate) type Fitting<'a> = dyn Fn(&[Pose], Option<&Fit>) -> Option<Fitted> + 'a;
 
-/// Refits frames and lens together, from poses of the target by the lens of the pictures alone. `fitted` fits the frames to poses,
-/// from an earlier fit if there is one.
-pub(crate) fn together(
-    lens: &UnknownLens,
-    target: &[Pose],
-    fitted: &dyn Fn(&[Pose], Option<&Fit>) -> Option<Fitted>,
-) -> Option<WithLens> {
+/// Refits frames and lens together, from poses of the target by the lens of the pictures alone.
+pub(crate) fn together(lens: &UnknownLens, target: &[Pose], fitted: &Fitting<'_>) -> Option<WithLens> {
     let UnknownLens { search, state: alone } = lens;
     let chosen = lens.chosen(target);
     let starts: Vec<Pose> = chosen.iter().map(|it| it.0).collect();
