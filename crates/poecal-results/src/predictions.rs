@@ -127,6 +127,8 @@ pub fn predicted(
     Ok(Predicted { target: target.map(str::to_owned), poses, doubts })
 }
 
+/// How many times the expected error of a measured target that of the tip is, from which the reason is said.
+const WORSE: f64 = 1.5;
 /// The name of the tip where a target is asked for.
 const TIP: &str = "tip";
 
@@ -195,7 +197,7 @@ pub fn remark(
                 Ok(1e3 * (squares / found.len().max(1) as f64).sqrt())
             };
             let (tip_mm, first_mm) = (rms_mm(None)?, rms_mm(Some(first))?);
-            Ok(Some(format!(
+            Ok((tip_mm > WORSE * first_mm).then(|| format!(
                 "the tip was not measured: its position on the last link is known to {tip_mm:.2} mm (RMS), that of `{first}`, which was \
                  measured, to {first_mm:.2} mm (--target {first})"
             )))

@@ -212,9 +212,12 @@ pub(crate) fn blame(view: &View<'_>, uncertainty: &Uncertainty) -> Vec<Blame> {
             };
             let matrix = Matrix2::identity() + Matrix2::from_fn(entry);
             let pull = Vector2::from_fn(|k, _| columns.get(k).map_or(0.0, |it| off_m * it.dot(&weighed)));
-            let Some(inverse) = matrix.try_inverse() else { continue };
-            let found = inverse * pull;
-            let with = density + matrix.determinant().ln() - pull.dot(&found);
+            let determinant = matrix.m11 * matrix.m22 - matrix.m12 * matrix.m21;
+            let found = Vector2::new(
+                matrix.m22 * pull.x - matrix.m12 * pull.y,
+                matrix.m11 * pull.y - matrix.m21 * pull.x,
+            ) / determinant;
+            let with = density + determinant.ln() - pull.dot(&found);
             if best.is_none_or(|best| with < -best.evidence) {
                 let size_m = off_m * found.norm();
                 let is_angle = *part != Part::Shift && !(*part == Part::Zero && slides(view, *joint));

@@ -79,17 +79,6 @@ fn predictions_state_their_error() {
     assert_eq!((rows[1][11], rows[2][11]), ("true", "false"));
     assert!(number(1, 8) > 1e-6 && number(1, 8) < number(1, 10) && number(1, 10) < 1e-3);
     assert!(number(2, 8) > number(1, 8), "{text}");
-    // The position of the tip on its link was not measured: it is known worse, and the reason is said.
-    let tip = folder.run("predict some/calibration.json joints.csv --with-uncertainty --target tip");
-    let of_tip: f64 = tip.out.lines().nth(1).and_then(|line| line.split(',').nth(8)?.parse().ok()).unwrap();
-    assert!(of_tip > 2.0 * number(1, 8), "{tip:?}");
-    assert!(
-        tip.err.contains("the tip was not measured") && tip.err.contains("(--target measured)"),
-        "{tip:?}"
-    );
-    let without = folder.done("predict some/calibration.json joints.csv");
-    let same = without.lines().zip(tip.out.lines());
-    assert!(same.skip(1).all(|(pose, with)| with.starts_with(&format!("{pose},"))));
     let run = folder.run("predict robot.urdf joints.csv --with-uncertainty");
     assert!(
         run.code == 2 && run.err.contains("expected a calibration.json for --with-uncertainty"),
@@ -126,4 +115,26 @@ fn validation_says_whether_the_promise_was_kept() {
     let anew = folder.done("validate bent.json measurements.csv --refit-tool --json");
     let found: serde_json::Value = serde_json::from_str(&anew).unwrap();
     assert!(found["promised"]["position_mm"]["inside_bound95"].as_f64().unwrap() > 0.85, "{anew}");
+}
+
+#[test]
+fn a_tip_that_was_not_measured_is_known_worse_and_the_reason_is_said() {
+    let folder = session(Kind::POINT);
+    folder.done("calibrate robot.urdf measurements.csv --out all");
+    folder.write("joints.csv", "joint1,joint2,joint3,joint4,joint5,joint6\n0.3,-0.4,-0.9,1,0.2,-3\n");
+    let expected = |run: &crate::folder::Run| -> f64 {
+        run.out.lines().nth(1).and_then(|line| line.split(',').nth(7)?.parse().ok()).unwrap()
+    };
+    let measured = folder.run("predict all/calibration.json joints.csv --with-uncertainty");
+    let tip = folder.run("predict all/calibration.json joints.csv --with-uncertainty --target tip");
+    assert!(expected(&tip) > 1.5 * expected(&measured), "{measured:?} {tip:?}");
+    assert!(
+        tip.err.contains("the tip was not measured") && tip.err.contains("(--target measured)"),
+        "{tip:?}"
+    );
+    // The poses are those without the expected error.
+    let without = folder.done("predict all/calibration.json joints.csv");
+    assert!(
+        without.lines().zip(tip.out.lines()).skip(1).all(|(pose, all)| all.starts_with(&format!("{pose},")))
+    );
 }
