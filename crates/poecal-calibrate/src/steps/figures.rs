@@ -8,7 +8,7 @@ use crate::robust::RobustFit;
 use crate::run::Run;
 use crate::run::located::located;
 use crate::trust::coverage_check::held_out_check;
-use crate::trust::expected::Domain;
+use crate::trust::domain::Domain;
 use crate::{Accuracy, Correction, JointEffect, Models, Robustness, Trust, set_accuracy};
 use poecal_fit::analysis::{Identifiability, Setup, identifiability};
 use poecal_fit::start::{register, register_again};

@@ -1,152 +1,14 @@
-//! Verdict: a level with its reasons, by fixed rules (docs/theory.md §9, *Verdict*).
-
-use serde::{Deserialize, Serialize};
+//! The verdict on a calibration, by fixed rules (docs/theory.md §9, *Verdict*).
 
 use super::calibrated::CalibratedFit;
 use super::figures::Figures;
+use super::level::{Gain, Level, Verdict};
 use super::summary::FitSummary;
 use crate::doubts::signs::Signs;
 use crate::run::accuracy::JudgingError;
 use crate::{AcceptedModel, Expectations};
 use poecal_fit::analysis::Direction;
 use poecal_fit::forensics::DiagnosisKind;
-
-/// Level of a verdict: what the delivered model may be used for.
-#[derive(
-    Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, schemars::JsonSchema,
-)]
-#[serde(rename_all = "snake_case")]
-pub enum Level {
-    /// Not at all: something is wrong with the input, the fit, or both.
-    DoNotUse,
-    /// To locate targets and devices: the axes of the joints were held.
-    Located,
-    /// In configurations like those that were measured.
-    MeasuredConfigurations,
-    /// Anywhere inside the sampled range of each joint.
-    InsideSampledRange,
-    /// Anywhere within the limits.
-    Good,
-}
-
-impl Level {
-    /// All levels, from the worst to the best, with their words in files and on the command line, and for people.
-    pub const TABLE: [(Level, &'static str, &'static str); 5] = [
-        (Level::DoNotUse, "do_not_use", "do not use"),
-        (Level::Located, "located", "located"),
-        (
-            Level::MeasuredConfigurations,
-            "measured_configurations",
-            "use in configurations like those measured",
-        ),
-        (Level::InsideSampledRange, "inside_sampled_range", "use inside the sampled range"),
-        (Level::Good, "good", "good"),
-    ];
-
-    /// Message for users.
-    #[must_use]
-    pub fn words(self) -> &'static str {
-        Self::TABLE[self as usize].2
-    }
-
-    /// The stable word used in files and on the command line.
-    #[must_use]
-    pub fn word(self) -> &'static str {
-        Self::TABLE[self as usize].1
-    }
-}
-
-/// Whether the delivered model predicts better than the nominal model anywhere inside the sampled range.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum Gain {
-    /// The 95 % interval of the gain is above zero.
-    Clear,
-    /// The interval contains zero.
-    Unclear,
-    /// The interval is below zero.
-    Loss,
-}
-
-impl Gain {
-    /// All, with their words in files and on the command line.
-    pub const TABLE: [(Gain, &'static str); 3] =
-        [(Gain::Clear, "clear"), (Gain::Unclear, "unclear"), (Gain::Loss, "loss")];
-
-    /// The stable word used in files.
-    #[must_use]
-    pub fn word(self) -> &'static str {
-        Self::TABLE[self as usize].1
-    }
-
-    /// By the ends of an interval.
-    pub(crate) fn of_interval([least, most]: [f64; 2]) -> Self {
-        if least > 0.0 {
-            Gain::Clear
-        } else if most < 0.0 {
-            Gain::Loss
-        } else {
-            Gain::Unclear
-        }
-    }
-}
-
-/// A level, and the reasons against a better one; for the best level, the reasons for it. And the expected errors of the model that is
-/// delivered.
-///
-/// ```
-/// use poecal_calibrate::{Level, Verdict};
-/// let reasons = vec!["joint2 was moved through 27 % of its range".into()];
-/// let verdict = Verdict { level: Level::InsideSampledRange, reasons, ..Verdict::default() };
-/// assert!(verdict.level < Level::Good);
-/// ```
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
-pub struct Verdict {
-    /// How far it may be used.
-    pub level: Level,
-    /// Sentences with the deciding figures.
-    pub reasons: Vec<String>,
-    /// The model that is delivered: the corrected one where it has terms. Missing in older files.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub model: Option<AcceptedModel>,
-    /// Expected error of its predictions in configurations like those that were measured, millimetres (RMS); absent where no use is advised, or
-    /// nothing is known.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub expected_error_mm: Option<f64>,
-    /// Mean of the distances that 95 % of its errors do not exceed there, millimetres.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub bound95_mm: Option<f64>,
-    /// Expected error of its predictions anywhere inside the sampled range of each joint, millimetres (RMS); absent where no use is advised,
-    /// and in older files.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub sampled_range_error_mm: Option<f64>,
-    /// Distance of the nominal model's predictions from its own there, with targets and devices fitted, millimetres (RMS).
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub nominal_error_mm: Option<f64>,
-    /// Whether it predicts better than the nominal model there.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub gain: Option<Gain>,
-    /// That the axes of the nominal model are confirmed, a sentence with its figures: the fitted ones are the same within their uncertainty.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub confirmed: Option<String>,
-}
-
-impl Default for Verdict {
-    /// Of nothing that is known.
-    fn default() -> Self {
-        Verdict {
-            level: Level::DoNotUse,
-            reasons: Vec::new(),
-            model: None,
-            expected_error_mm: None,
-            bound95_mm: None,
-            sampled_range_error_mm: None,
-            nominal_error_mm: None,
-            gain: None,
-            confirmed: None,
-        }
-    }
-}
 
 /// What speaks against a level, before the expected errors of a model do.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -215,10 +77,7 @@ impl Judged {
         let (level, mut reasons) = if !against.is_empty() {
             (Level::DoNotUse, against)
         } else if !self.moves_joints {
-            (
-                Level::Located,
-                vec!["the axes of the joints were held".to_owned()],
-            )
+            (Level::Located, vec!["the axes of the joints were held".to_owned()])
         } else {
             let (level, mut reasons) = self.use_of_axes(expected);
             let is_gain = confirmed.is_some() || gain == Some(Gain::Clear);

@@ -5,9 +5,10 @@ use nalgebra::Matrix3;
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 
+use super::domain::Domain;
 use super::nominal::NominalError;
 use poecal_fit::analysis::JointCoverage;
-use poecal_fit::state::{Estimate, Packed, Session, sample_rows};
+use poecal_fit::state::{Packed, Session, sample_rows};
 use poecal_fit::uncertainty::{Attribution, Quantile, Uncertainty};
 use poecal_model::measurement::Quantity;
 use poecal_model::robot::{Joint, JointKind, Robot};
@@ -96,17 +97,6 @@ fn raise_to(uncertainty: &mut Uncertainty, measured: Expected, square_m2: f64) -
     let sigma = &mut uncertainty.discrepancy.standard_deviation[Quantity::Position];
     *sigma = (*sigma * *sigma + missing / 3.0).sqrt();
     true
-}
-
-/// The robot and rows of which errors are expected.
-pub(crate) struct Domain<'a> {
-    pub(crate) session: &'a Session<'a>,
-    /// Rows that were fitted.
-    pub(crate) rows: &'a [u32],
-    pub(crate) coverage: &'a [JointCoverage],
-    /// The nominal robot, and the nominal model with targets and devices fitted.
-    pub(crate) nominal: (&'a Robot, &'a Estimate),
-    pub(crate) seed: u64,
 }
 
 impl Domain<'_> {

@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector, Vector3};
 
-use super::expected::Domain;
+use super::domain::Domain;
 use poecal_fit::state::{Chain, Linkage, Packed};
 use poecal_fit::uncertainty::Uncertainty;
 use poecal_model::measurement::Quantity;

@@ -5,7 +5,7 @@ use serde::Serialize;
 use crate::acceptance::{Acceptance, AcceptedModel};
 use crate::run::accuracy::{ModelAccuracy, model_accuracy};
 use crate::run::count::{measurements_words, of_device};
-use crate::steps::verdict::Level;
+use crate::steps::level::Level;
 use crate::trust::coverage_check::{
     CoverageCheck, InSampledRange, JudgedRow, JudgedRows, PartCoverage, PredictedUncertainty, ROUNDING,
     coverage_checks, promised_rows,

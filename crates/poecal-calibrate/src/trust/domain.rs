@@ -1,0 +1,16 @@
+//! What errors are expected of: a robot, its rows and its nominal model.
+
+use poecal_fit::analysis::JointCoverage;
+use poecal_fit::state::{Estimate, Session};
+use poecal_model::robot::Robot;
+
+/// The robot and rows of which errors are expected.
+pub(crate) struct Domain<'a> {
+    pub(crate) session: &'a Session<'a>,
+    /// Rows that were fitted.
+    pub(crate) rows: &'a [u32],
+    pub(crate) coverage: &'a [JointCoverage],
+    /// The nominal robot, and the nominal model with targets and devices fitted.
+    pub(crate) nominal: (&'a Robot, &'a Estimate),
+    pub(crate) seed: u64,
+}
