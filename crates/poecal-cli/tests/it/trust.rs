@@ -116,25 +116,3 @@ fn validation_says_whether_the_promise_was_kept() {
     let found: serde_json::Value = serde_json::from_str(&anew).unwrap();
     assert!(found["promised"]["position_mm"]["inside_bound95"].as_f64().unwrap() > 0.85, "{anew}");
 }
-
-#[test]
-fn a_tip_that_was_not_measured_is_known_worse_and_the_reason_is_said() {
-    let folder = session(Kind::POINT);
-    folder.done("calibrate robot.urdf measurements.csv --out all");
-    folder.write("joints.csv", "joint1,joint2,joint3,joint4,joint5,joint6\n0.3,-0.4,-0.9,1,0.2,-3\n");
-    let expected = |run: &crate::folder::Run| -> f64 {
-        run.out.lines().nth(1).and_then(|line| line.split(',').nth(7)?.parse().ok()).unwrap()
-    };
-    let measured = folder.run("predict all/calibration.json joints.csv --with-uncertainty");
-    let tip = folder.run("predict all/calibration.json joints.csv --with-uncertainty --target tip");
-    assert!(expected(&tip) > 1.5 * expected(&measured), "{measured:?} {tip:?}");
-    assert!(
-        tip.err.contains("the tip was not measured") && tip.err.contains("(--target measured)"),
-        "{tip:?}"
-    );
-    // The poses are those without the expected error.
-    let without = folder.done("predict all/calibration.json joints.csv");
-    assert!(
-        without.lines().zip(tip.out.lines()).skip(1).all(|(pose, all)| all.starts_with(&format!("{pose},")))
-    );
-}
