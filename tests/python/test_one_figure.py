@@ -45,7 +45,7 @@ def test_one_figure_for_one_question(name, tmp_path):
     own = corrected["uncertainty"] if has_terms else file["uncertainty"]
     expected = verdict["expected_error_mm"]
     # The table, in its words and figures, and the report by its keys.
-    line = re.search(r"^expected +([0-9.]+) mm \(RMS\) near measured configurations, 95 % below ([0-9.]+) mm(;|$)", table, re.M)
+    line = re.search(r"^expected +([0-9.]+) mm \(RMS\) near measured configurations, 95 % below ([0-9.]+)\s+mm(;|$)", table, re.M)
     assert line and (line[1], line[2]) == (shown(expected), shown(verdict["bound95_mm"])), table
     after = re.search(r"^after +.* \(RMS\)\s+on\s+rows\s+held\s+out:\s+(\w+)\s+model$", table, re.M)
     assert after and after[1] == verdict["model"], table

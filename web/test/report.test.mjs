@@ -257,7 +257,7 @@ describe("the page", { skip }, () => {
   test("says before and after first, without an unknown tool's nominal model", async () => {
     const page = await open(browser, report, { whole: false });
     const steps = await page.$$eval(".steps [data-key]", (all) => all.map((it) => it.dataset.key));
-    assert.deepEqual(steps, ["accuracy.held_out.registered.position_mm.rms", "accuracy.held_out.calibrated.position_mm.rms", "verdict.expected_error_mm", "verdict.bound95_mm"]);
+    assert.deepEqual(steps, ["accuracy.held_out.registered.position_mm.rms", "accuracy.held_out.calibrated.position_mm.rms", "verdict.expected_error_mm", "verdict.bound95_mm", "verdict.sampled_range_error_mm", "verdict.nominal_error_mm"]);
     const places = await page.$$eval(".steps li", (all) => all.map((it) => it.getBoundingClientRect().top));
     assert.equal(new Set(places).size, 1, "the steps are in a line");
     assert.ok(places[0] < 300, `the gain is ${places[0]} px below the top`);

@@ -114,7 +114,7 @@ SENTENCES = [
     (lambda: calibrate().write("out", report=5), "report: found 5, expected True, False, or the path of a file"),
     (lambda: calibrate().plot([1, 2]), "axes: found list, expected two axes of matplotlib, as of plt.subplots(1, 2)"),
     (lambda: poecal.set_threads("4"), "count: found the text `4`, expected a whole number from 0 to 18446744073709551615"),
-    (lambda: calibrate().verdict.is_at_least("perfect"), "level: found `perfect`, expected one of good, inside_sampled_range, do_not_use"),
+    (lambda: calibrate().verdict.is_at_least("perfect"), "level: found `perfect`, expected one of good, inside_sampled_range, measured_configurations, located, do_not_use"),
 ]  # fmt: skip
 
 

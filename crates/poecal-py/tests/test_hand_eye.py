@@ -51,14 +51,14 @@ def test_lists_the_other_way_round_are_found_and_said():
     assert found["findings"][0]["kind"] == "inverted"
     assert found.warnings[0].startswith("the poses of the arm are inverted")
     # These are poses of a camera at the other end as well.
-    with pytest.raises(poecal.Error, match="--target target-from-camera"):
+    with pytest.raises(poecal.Error, match="state target target-from-camera"):
         poecal.hand_eye(arm, np.linalg.inv(seen), camera="in-hand")
     stated = poecal.hand_eye(arm, np.linalg.inv(seen), camera="in-hand", target="target-from-camera")
     assert 1e3 * np.linalg.norm(np.array(stated["camera_frame"]["matrix"])[:3, 3] - CAMERA[:3, 3]) < stated["camera_frame"]["bound95_mm"]
 
 
 def test_a_camera_at_the_other_end_is_refused():
-    with pytest.raises(poecal.Error, match="run with --camera in-hand"):
+    with pytest.raises(poecal.Error, match="run with camera in-hand"):
         poecal.hand_eye(*session(), camera="beside")
 
 

@@ -151,7 +151,7 @@ fn faulty_session(robot: &Robot, fault: Fault, seed: u64) -> Dataset {
         seed,
         ..Simulation::default()
     };
-    let kind = if seed / 8 % 2 == 0 { Kind::POSE } else { Kind::POINT };
+    let kind = if (seed / 8).is_multiple_of(2) { Kind::POSE } else { Kind::POINT };
     simulation.run(&actual, kind).unwrap().data
 }
 

@@ -19,6 +19,9 @@ use rayon::prelude::*;
 /// Configurations over which the truth is taken.
 const JUDGED: usize = 1000;
 
+/// A position for each configuration.
+type Positions = dyn Fn(&[f64]) -> Vector3<f64> + Sync;
+
 /// A session of a robot whose true target is known in every configuration.
 struct Truth {
     nominal: Robot,
@@ -27,7 +30,7 @@ struct Truth {
     /// Mean square of the noise that residuals have and that was not stated, square metres: it counts as the robot's.
     noise_m2: f64,
     /// Position of the target in the device frame.
-    at: Box<dyn Fn(&[f64]) -> Vector3<f64> + Sync>,
+    at: Box<Positions>,
 }
 
 /// Points or poses of a tracker, in configurations in which the tip is in a part of the workspace and faces the tracker.

@@ -11,6 +11,7 @@ use crate::arguments as arg;
 use crate::errors::raise;
 use crate::reach;
 use crate::robot::Robot;
+use crate::warn;
 
 #[pymethods]
 impl Calibration {
@@ -57,6 +58,7 @@ impl Calibration {
         #[pyo3(from_py_with = arg::model)] model: &str,
         #[pyo3(from_py_with = arg::readings)] readings: Option<&str>,
     ) -> PyResult<Bound<'py, PyAny>> {
+        self.warn_of_gain(py)?;
         let actual = self.actual(model)?;
         let taught = self.file().taught(&actual.model.robot).map_err(raise)?;
         let factors = reach::factors(&actual.model.robot, factors)?;
@@ -155,7 +157,17 @@ impl Calibration {
             turn_rad: most_turn_rad,
             slide_m: most_slide_m,
         };
+        self.warn_of_gain(py)?;
         let stated = programs::Stated { language, tools, frames, base, flange, start, third_axis };
         programs::compensate(py, (self, model), (&path, stated), factors, (nearest, most), check)
+    }
+}
+
+impl Calibration {
+    /// Warns where programs are not to be corrected with this calibration.
+    fn warn_of_gain(&self, py: Python<'_>) -> PyResult<()> {
+        let doubt = self.file().gain_doubt();
+        let words = doubt.map(|doubt| format!("do not correct programs with this calibration: {doubt}"));
+        warn(py, words.as_slice())
     }
 }

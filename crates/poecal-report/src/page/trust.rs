@@ -9,6 +9,7 @@ use super::html::{
 use super::lead::{sign, spaced};
 use crate::shade;
 use crate::summary::{delivered, uncertainty};
+use poecal_calibrate::NoiseSource;
 use poecal_fit::analysis::Direction;
 use poecal_fit::uncertainty::Attribution;
 use poecal_model::measurement::Quantity;
@@ -58,9 +59,13 @@ fn expected(file: &CalibrationFile, found: &UncertaintyEntry, of: &str) -> Marku
                 Attribution::Robot => {
                     (figure_or(found.discrepancy.get(leading), format_args!("{of}.discrepancy_{}", leading.key()), "–"))
                     (spaced(leading.unit()))
-                    " per component: the error of the model, by residuals and cross-validation. No stated noise explains the residuals and no repeated \
-                     measurement shows it, so all of them count as robot error. State the noise (--sigma-position) or repeat measurements to \
-                     separate the two."
+                    " per component: the error of the model, by residuals and cross-validation. "
+                    @if matches!(file.noise.source, NoiseSource::Given | NoiseSource::Rows) {
+                        "The stated noise explains a small part of the residuals only; the rest counts as robot error."
+                    } @else {
+                        "No stated noise explains the residuals and no repeated measurement shows it, so all of them count as robot error. State \
+                         the noise (--sigma-position) or repeat measurements to separate the two."
+                    }
                 }
                 Attribution::StatedNoise => {
                     "The stated noise explains the residuals, so predictions are better than any single measurement."
