@@ -6,11 +6,12 @@ use crate::AcceptedModel;
 
 /// Level of a verdict: what the delivered model may be used for.
 #[derive(
-    Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, schemars::JsonSchema,
+    Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, schemars::JsonSchema,
 )]
 #[serde(rename_all = "snake_case")]
 pub enum Level {
     /// Not at all: something is wrong with the input, the fit, or both.
+    #[default]
     DoNotUse,
     /// To locate targets and devices: the axes of the joints were held.
     Located,
@@ -93,7 +94,7 @@ impl Gain {
 /// let verdict = Verdict { level: Level::InsideSampledRange, reasons, ..Verdict::default() };
 /// assert!(verdict.level < Level::Good);
 /// ```
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Verdict {
     /// How far it may be used.
     pub level: Level,
@@ -122,23 +123,6 @@ pub struct Verdict {
     /// That the axes of the nominal model are confirmed, a sentence with its figures: the fitted ones are the same within their uncertainty.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub confirmed: Option<String>,
-}
-
-impl Default for Verdict {
-    /// Of nothing that is known.
-    fn default() -> Self {
-        Verdict {
-            level: Level::DoNotUse,
-            reasons: Vec::new(),
-            model: None,
-            expected_error_mm: None,
-            bound95_mm: None,
-            sampled_range_error_mm: None,
-            nominal_error_mm: None,
-            gain: None,
-            confirmed: None,
-        }
-    }
 }
 
 #[cfg(test)]

@@ -28,11 +28,8 @@ pub(crate) fn compensate(arguments: &Compensate, console: &Console) -> Result<u8
     let ModelSource::Calibration(file) = &model.source else {
         return Err(ErrorKind::Option.error("found a robot model, expected a calibration.json, which has the nominal robot and the actual one").in_file(&arguments.calibration));
     };
-    let doubt = file.gain_doubt();
-    if let Some(doubt) = &doubt {
-        console.warning(format!("do not correct programs with this calibration: {doubt}"));
-    }
-    let worse = arguments.require_gain && doubt.is_some();
+    file.gain_doubt().into_iter().for_each(|doubt| console.warning(doubt));
+    let worse = arguments.require_gain && !file.has_clear_gain();
     let taught = file.taught(&model.robot)?;
     let factors = factors(&model.robot, &arguments.factors, console)?;
     let robots = (&taught.robot, &model.robot);

@@ -21,6 +21,28 @@ fn narrow() -> Folder {
     folder
 }
 
+/// A gain that is asked for is shown: a file that does not say whether there is one ends with 1, without a warning.
+#[test]
+fn a_gain_that_is_asked_for_is_shown() {
+    let folder = session(Kind::POSE);
+    folder.done("calibrate robot.urdf measurements.csv --out all --require-gain");
+    // One row far from singularities.
+    folder.write("joints.csv", "joint1,joint2,joint3,joint4,joint5,joint6\n0.3,-0.5,0.8,0.4,0.7,0.2\n");
+    let joints = "compensate all/calibration.json joints.csv --dry-run --require-gain";
+    let run = folder.run(joints);
+    assert_eq!(run.code, 0, "{run:?}");
+    let mut file = json(&folder, "all/calibration.json");
+    for (gain, is_said) in [(Some("unclear"), true), (None, false)] {
+        let verdict = file["verdict"].as_object_mut().unwrap();
+        verdict.remove("gain");
+        verdict.extend(gain.map(|gain| ("gain".to_owned(), gain.into())));
+        folder.write("all/calibration.json", file.to_string());
+        let run = folder.run(joints);
+        assert_eq!(run.code, 1, "{run:?}");
+        assert_eq!(run.err.contains("do not correct programs with this calibration"), is_said, "{run:?}");
+    }
+}
+
 #[test]
 fn verdict_says_how_far_a_calibration_may_be_used() {
     let folder = narrow();

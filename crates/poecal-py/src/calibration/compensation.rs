@@ -166,8 +166,6 @@ impl Calibration {
 impl Calibration {
     /// Warns where programs are not to be corrected with this calibration.
     fn warn_of_gain(&self, py: Python<'_>) -> PyResult<()> {
-        let doubt = self.file().gain_doubt();
-        let words = doubt.map(|doubt| format!("do not correct programs with this calibration: {doubt}"));
-        warn(py, words.as_slice())
+        warn(py, self.file().gain_doubt().as_slice())
     }
 }

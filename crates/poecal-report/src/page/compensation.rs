@@ -3,6 +3,7 @@
 use maud::{Markup, PreEscaped, html};
 
 use super::advice::told_words;
+use super::errors::capital;
 use super::html::{HtmlTable, count, decimal, figure, figure_or, folded, plots, quoted, section};
 use crate::plot::{HeatCell, HeatMap};
 use crate::summary::uncertainty;
@@ -55,7 +56,7 @@ pub(crate) fn gain(file: &CalibrationFile, found: &CompensationEntry) -> Markup 
         Some((own.measured.sigma_position_mm, format!("{key}.measured.sigma_position_mm")))
     });
     html! {
-        @if let Some(doubt) = file.gain_doubt() { "Do not correct programs with this calibration: " (told_words(&doubt)) ". " }
+        @if let Some(doubt) = file.gain_doubt() { (told_words(&capital(&doubt))) ". " }
         "A program made for the nominal robot, with its frames taught on this robot, misses its targets by " (figure(found.all.median_mm, "compensation.median_mm")) " mm (median), and by up to "
         (figure(found.all.max_mm, "compensation.max_mm")) " mm, within the measured part of the workspace. "
         @if let Some((sigma, key)) = expected {

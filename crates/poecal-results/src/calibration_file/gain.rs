@@ -5,10 +5,21 @@ use poecal_calibrate::{Gain, Level};
 use super::CalibrationFile;
 
 impl CalibrationFile {
-    /// Why programs are not to be corrected with this calibration, a clause; `None` where correction is a clear gain, and of files of earlier
+    /// Whether correction is a clear gain; not of files of earlier versions, which do not say.
+    #[must_use]
+    pub fn has_clear_gain(&self) -> bool {
+        self.verdict.as_ref().is_some_and(|it| it.gain == Some(Gain::Clear)) && self.gain_doubt().is_none()
+    }
+
+    /// That programs are not to be corrected with this calibration, and why; `None` where correction is a clear gain, and of files of earlier
     /// versions, which do not say.
     #[must_use]
     pub fn gain_doubt(&self) -> Option<String> {
+        let why = self.no_gain()?;
+        Some(format!("do not correct programs with this calibration: {why}"))
+    }
+
+    fn no_gain(&self) -> Option<String> {
         let verdict = self.verdict.as_ref()?;
         match (verdict.level, verdict.gain) {
             (Level::DoNotUse, _) => Some("its verdict is do not use".to_owned()),
