@@ -249,6 +249,7 @@ fn rows<'a>(
     seed: Option<u64>,
 ) -> PyResult<Cow<'a, Dataset>> {
     measurements.check_robot(robot)?;
+    crate::warn(py, &Vec::from_iter(robot.model.terms_left_out()))?;
     let mut data = Cow::Borrowed(measurements.data());
     if let Some(other) = validate {
         other.check_robot(robot)?;

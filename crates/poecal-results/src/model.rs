@@ -205,6 +205,20 @@ impl Model {
         }
     }
 
+    /// That a new calibration starts from the axes of this one alone; `None` of other models, and of a calibration without joint terms.
+    #[must_use]
+    pub fn terms_left_out(&self) -> Option<String> {
+        match &self.source {
+            ModelSource::Calibration(file) => file.corrected().map(|_| {
+                format!(
+                    "{}: its calibrated axes are the nominal model; its joint terms are not taken over",
+                    self.path.display()
+                )
+            }),
+            ModelSource::Urdf(_) | ModelSource::Toml => None,
+        }
+    }
+
     /// Options that read files for this robot with what its controller counts.
     #[must_use]
     pub fn reads(&self, options: ReadOptions) -> ReadOptions {

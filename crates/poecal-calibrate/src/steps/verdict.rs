@@ -316,11 +316,9 @@ fn against_use_everywhere(grounds: &Grounds<'_>) -> Vec<String> {
     }
     for (coverage, joint) in trust.coverage.iter().zip(&run.robot.joints) {
         if let Some(share) = coverage.share(joint.kind).filter(|share| *share < COVERED) {
-            reasons.push(format!(
-                "{} was moved through {:.0} % of its range only",
-                coverage.joint,
-                100.0 * share
-            ));
+            let range = if coverage.is_of_a_turn(joint.kind) { "a turn" } else { "its range" };
+            let (name, share) = (&coverage.joint, 100.0 * share);
+            reasons.push(format!("{name} was moved through {share:.0} % of {range} only"));
         }
     }
     let open = undetermined_directions(grounds);
