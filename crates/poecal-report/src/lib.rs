@@ -46,6 +46,7 @@ pub use judgement::{judged, judgement};
 pub use offsets::Offsets;
 pub use page::{
     Attest, calibration_page, calibration_page_with, certificate_page, fleet_page, plan_page, validation_page,
+    visit_page,
 };
 pub use plan::Plan;
 pub use summary::{Detail, summary, unsaid};

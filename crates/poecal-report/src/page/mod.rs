@@ -22,6 +22,7 @@ mod joins;
 mod joints;
 mod lead;
 mod method;
+mod paper;
 mod pictures;
 mod plan;
 mod repairs;
@@ -30,11 +31,14 @@ mod shapes;
 mod sides;
 mod trust;
 mod validation;
+mod visit;
 
 pub use attested::{Attest, certificate_page};
 pub use fleet::fleet_page;
 pub use plan::plan_page;
 pub use validation::validation_page;
+pub(crate) use visit::sampled;
+pub use visit::visit_page;
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 

@@ -160,6 +160,14 @@ impl Evidence {
         Some(Tried { at, rank: own.ncols(), gain: along.norm_squared(), step, covariance })
     }
 
+    /// The unknowns of some columns, each with its standard deviation at level 1; `None` where they are not all seen.
+    pub(crate) fn steps(&self, columns: &DMatrix<f64>) -> Option<Vec<(f64, f64)>> {
+        let (own, steps) = self.beside(columns);
+        let step = &steps * own.tr_mul(&self.residual);
+        let all = step.iter().zip(steps.row_iter()).map(|(value, row)| (*value, row.norm()));
+        (own.ncols() == columns.ncols()).then(|| all.collect())
+    }
+
     /// Standard deviation at level 1 of the only unknown of some columns; infinite where it is not seen.
     pub(crate) fn sigma(&self, column: &DMatrix<f64>) -> f64 {
         let (_, steps) = self.beside(column);

@@ -2,9 +2,10 @@
 
 use super::explain::{Hypothesis, Kind, Tried, Verdict};
 use super::model::Model;
-use super::options::{JudgedBy, MOST_RAD, State};
+use super::options::{JudgedBy, MOST_RAD, State, TrackOptions};
 use super::sight::JointSight;
 use super::visit::Of;
+use poecal_fit::analysis::JointCoverage;
 use poecal_model::measurement::Dataset;
 use poecal_model::robot::JointKind;
 
@@ -37,6 +38,8 @@ pub struct Explanation {
 /// What a visit shows.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tracked {
+    /// What was known of the visit.
+    pub options: TrackOptions,
     /// Whether the robot is as it was.
     pub state: State,
     /// By what the rows were judged.
@@ -51,6 +54,8 @@ pub struct Tracked {
     pub alternatives: Vec<Explanation>,
     /// What of each joint's zero would be found, and what cannot be seen.
     pub joints: Vec<JointSight>,
+    /// Which part of each joint's range the rows sample.
+    pub ranges: Vec<JointCoverage>,
     /// Root mean square change of measured places with what is free fitted, metres: noise of both visits is in it.
     pub change_m: f64,
     /// The same of what the explanation leaves.
