@@ -67,8 +67,7 @@ pub(crate) fn track(arguments: &Track, typed: &[OsString], console: &Console) ->
     };
     let told = report::Track::new(&found, &file.robot.name, inputs).with_record(record);
     if let Some(page) = page {
-        let day = now().and_then(|time| time.get(..DAY).map(str::to_owned));
-        page.write(report::visit_page(&told, &file, day.as_deref()))?;
+        page.write(report::visit_page(&told, &file, now().as_deref()))?;
     }
     history.append(|history, time| history.append(&told, time), console)?;
     if arguments.json {
@@ -80,9 +79,6 @@ pub(crate) fn track(arguments: &Track, typed: &[OsString], console: &Console) ->
     console.warnings(&found.notes);
     Ok(if found.state == State::Changed { WORSE } else { DONE })
 }
-
-/// Letters of a day at the beginning of a time.
-const DAY: usize = "2026-03-02".len();
 
 /// The places of what is written: of a plan or a calibration of one joint, and of the page of a visit.
 fn reserve(arguments: &Track, console: &Console) -> Result<(Option<FilePlace>, Option<FilePlace>)> {

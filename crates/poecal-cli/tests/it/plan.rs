@@ -67,7 +67,7 @@ fn replaced_rows_leave_the_others_in_their_places() {
     let set = |row: &str| row.split(',').nth(1).map(str::to_owned);
     assert!(before.iter().zip(&after).all(|(a, b)| set(a) == set(b)));
     let page = folder.read("plan.html");
-    for words in ["The robot in every configuration", "How each joint is sampled", "From above"] {
+    for words in ["The robot and its targets", "How each joint is sampled", "From above"] {
         assert!(page.contains(words), "{words}");
     }
     let run = folder.run("plan column.toml --keep joints.csv --replace 99 --out no.csv");

@@ -8,7 +8,7 @@ use super::html::{
 };
 use super::lead::{sign, spaced};
 use crate::shade;
-use crate::summary::{delivered, uncertainty};
+use crate::summary::{cross_validated, delivered, has_terms, uncertainty};
 use poecal_calibrate::NoiseSource;
 use poecal_fit::analysis::Direction;
 use poecal_fit::uncertainty::Attribution;
@@ -21,7 +21,7 @@ use poecal_results::calibration_file::{
 pub(crate) fn sections(file: &CalibrationFile) -> Markup {
     let content = html! {
         @if let Some((found, key)) = uncertainty(file) { (expected(file, found, key)) }
-        @if let Some(found) = &file.cross_validation { (cross_validation(found)) }
+        (cross_validation(file))
         @if !file.coverage.is_empty() { (coverage(file)) }
         @if let Some((found, key)) = uncertainty(file).filter(|(it, _)| !it.parts.is_empty()) { (parts(file, found, key)) }
         (determined(file))
@@ -88,7 +88,26 @@ fn expected(file: &CalibrationFile, found: &UncertaintyEntry, of: &str) -> Marku
     }
 }
 
-fn cross_validation(found: &CrossValidationEntry) -> Markup {
+/// Cross-validation of the delivered model, and of geometry alone by its blocks.
+fn cross_validation(file: &CalibrationFile) -> Markup {
+    let corrected = cross_validated(file).filter(|_| has_terms(file));
+    html! {
+        @if corrected.is_some() || file.cross_validation.is_some() { h3 { "Cross-validation" } }
+        @if let Some(found) = &corrected {
+            p {
+                "The corrected model predicts fitted rows in parts of the range that were left out of its fits to " (figure(found.rms, &found.key)) " "
+                (sign(found.quantity.unit())) " (RMS)."
+            }
+        }
+        @if let Some(found) = &file.cross_validation {
+            @if has_terms(file) {
+                details { summary { "Cross-validation of the calibrated model, geometry alone" } (blocks(found)) }
+            } @else { (blocks(found)) }
+        }
+    }
+}
+
+fn blocks(found: &CrossValidationEntry) -> Markup {
     let blocks = found.blocked.iter().enumerate();
     let worst = blocks.max_by(|(_, a), (_, b)| a.rms.lead().total_cmp(&b.rms.lead()));
     let measured: Vec<(Quantity, String)> =
@@ -113,7 +132,6 @@ fn cross_validation(found: &CrossValidationEntry) -> Markup {
         add(entry, &format!("cross_validation.blocked.{k}"));
     }
     html! {
-        h3 { "Cross-validation" }
         p {
             "Fitted rows, predicted by fits of the others: "
             @for (k, (quantity, own)) in measured.iter().enumerate() {
@@ -161,8 +179,32 @@ fn coverage(file: &CalibrationFile) -> Markup {
     }
 }
 
-/// The map of expected errors: a row a joint, a cell a part of its range.
+/// Largest over smallest expected error up to which all parts of the ranges are alike.
+const ALIKE: f64 = 1.3;
+
+/// Expected errors over the joint ranges: a map, or a sentence where they hardly differ.
 fn parts(file: &CalibrationFile, found: &UncertaintyEntry, key: &str) -> Markup {
+    let order = |a: &(usize, &RangeEntry), b: &(usize, &RangeEntry)| {
+        a.1.sigma_position_mm.total_cmp(&b.1.sigma_position_mm)
+    };
+    let all = || found.parts.iter().enumerate();
+    let figure = |(k, part): (usize, &RangeEntry)| {
+        figure(part.sigma_position_mm, format_args!("{key}.parts.{k}.sigma_position_mm"))
+    };
+    match all().min_by(order).zip(all().max_by(order)) {
+        Some((least, most)) if most.1.sigma_position_mm <= ALIKE * least.1.sigma_position_mm => html! {
+            h3 { "Expected error over the joint ranges" }
+            p {
+                "The expected error of position hardly depends on where a joint is: " (figure(least)) " to " (figure(most)) " mm (RMS) in each part of each \
+                 joint's range, with the other joints anywhere in theirs."
+            }
+        },
+        _ => map_of_parts(file, found, key),
+    }
+}
+
+/// The map of expected errors: a row a joint, a cell a part of its range.
+fn map_of_parts(file: &CalibrationFile, found: &UncertaintyEntry, key: &str) -> Markup {
     let worst = found.parts.iter().map(|part| part.sigma_position_mm).fold(0.0, f64::max);
     let of = |joint: &str| {
         let joint = joint.to_owned();

@@ -40,8 +40,8 @@ const SESSION: [(&str, &str); 5] = [
     ("temperature", "Temperature"),
 ];
 
-/// The page of a visit, complete in itself and without a script; it prints on one page of A4. `day` is the day on which it is made, for a visit
-/// whose record states none.
+/// The page of a visit, complete in itself and without a script; it prints on one page of A4. `time` is when it is made, `2026-11-29T…`: its day is
+/// that of a visit whose record states none.
 ///
 /// ```
 /// use poecal_calibrate::{CalibrationOptions, calibrate};
@@ -54,12 +54,13 @@ const SESSION: [(&str, &str); 5] = [
 /// let file = CalibrationFile::new(&calibration, &made.data, Inputs::default());
 /// let found = track(&file, &made.data, None, &TrackOptions::default())?;
 /// let told = poecal_report::Track::new(&found, &file.robot.name, ValidationInputs::default());
-/// let page = poecal_report::visit_page(&told, &file, Some("2026-11-29")).concat();
+/// let page = poecal_report::visit_page(&told, &file, Some("2026-11-29T10:20:30Z")).concat();
 /// assert!(page.contains("unchanged within") && page.contains("2026-11-29"));
 /// # Ok::<(), poecal_numerics::error::Error>(())
 /// ```
 #[must_use]
-pub fn visit_page(told: &Track, file: &CalibrationFile, day: Option<&str>) -> Page {
+pub fn visit_page(told: &Track, file: &CalibrationFile, time: Option<&str>) -> Page {
+    let day = time.and_then(|time| time.split('T').next());
     let title = format!("Visit of {}", file.robot.name);
     // What stays as it was is that of the calibration; what belongs to a day is the visit's own.
     let robot = file.record.clone().overridden(&told.record);

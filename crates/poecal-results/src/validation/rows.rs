@@ -41,6 +41,9 @@ impl JudgedRows<'_> {
             for what in ["error", "expected", "bound95"] {
                 out.push_str(&format!(",{name}_{what}[{unit}]"));
             }
+            for component in quantity.component_names() {
+                out.push_str(&format!(",{component}[{unit}]"));
+            }
         }
         let has_pictures = !self.data.pictures.is_empty();
         if has_pictures {
@@ -63,8 +66,13 @@ impl JudgedRows<'_> {
             let (file, id, target) = (cell(&file), cell(id), cell(target.unwrap_or_default()));
             out.push_str(&format!("{file},{},{id},{target},{inside}", observation.source.line));
             for quantity in &quantities {
-                let numbers = row.errors.get(*quantity).map_or([None; 3], |found| shown(*quantity, found));
-                for number in numbers {
+                let found = row.errors.get(*quantity);
+                let numbers = found.map_or([None; 3], |found| shown(*quantity, found));
+                let components = (0..quantity.components()).map(|k| {
+                    let value = quantity.unit().shown(*found.as_ref()?.residual.get(k)?);
+                    Some(value).filter(|value| !value.is_nan())
+                });
+                for number in numbers.into_iter().chain(components) {
                     out.push(',');
                     number.into_iter().for_each(|number| push_number(&mut out, number));
                 }
